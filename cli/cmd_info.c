@@ -1,0 +1,220 @@
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "cli/input.h"
+#include "cli/quantity.h"
+#include "core/status.h"
+
+#include <cubewright/extract.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef struct info_args {
+    cli_common common;
+    cli_input input;
+    size_t histogram;
+    bool json, levels;
+} info_args;
+
+static const cli_option options[] = {
+    {"histogram", 0, CLI_COUNT, "N", "print the values in N bins (0)",
+     offsetof(info_args, histogram)},
+    {"levels", 0, CLI_FLAG, NULL, "predict the triangles at each suggested level",
+     offsetof(info_args, levels)},
+    {"json", 0, CLI_FLAG, NULL, "one JSON object", offsetof(info_args, json)},
+    CLI_INPUT_OPTIONS(info_args),
+};
+
+/* Between how many kinds of values levels are sought, and in how many bins. */
+enum { MAX_LEVELS = 3, OTSU_BINS = 512 };
+
+typedef struct level {
+    const char *name;
+    double value;
+    cw_extract_counts counts;
+} level;
+
+typedef struct facts {
+    cli_volume volume;
+    cw_statistics range; /* and the bins asked for */
+    level levels[MAX_LEVELS + 1];
+    int level_count;
+} facts;
+
+/* otsu parts two classes; dark, medium and bright part four [Otsu1979, Liao2001]. */
+static cw_status find_levels(facts *f, int threads, cw_error *err)
+{
+    static const char *const names[] = {"otsu", "dark", "medium", "bright"};
+    cw_statistics s;
+    double values[MAX_LEVELS + 1];
+    cw_status st = cw_volume_statistics(&f->volume.view, OTSU_BINS, threads, &s, err);
+    if (st != CW_OK)
+        return st;
+    if (cw_statistics_otsu(&s, 1, values)) {
+        f->level_count = 1;
+        if (cw_statistics_otsu(&s, MAX_LEVELS, values + 1))
+            f->level_count = 1 + MAX_LEVELS;
+    }
+    for (int n = 0; n < f->level_count; n++)
+        f->levels[n] = (level){.name = names[n], .value = values[n]};
+    cw_statistics_free(&s);
+    return CW_OK;
+}
+
+static cw_status predict(facts *f, int threads, cw_error *err)
+{
+    for (int n = 0; n < f->level_count; n++) {
+        const cw_extract_desc desc = {.isovalue = f->levels[n].value, .threads = threads};
+        cw_status st = cw_extract_predict(&f->volume.view, &desc, &f->levels[n].counts, err);
+        if (st != CW_OK)
+            return st;
+    }
+    return CW_OK;
+}
+
+static cw_status find_facts(const info_args *args, facts *f, cw_error *err)
+{
+    const int threads = (int)args->input.threads;
+    cw_status st =
+        cli_read_volume(args->common.inputs[0], &args->input, false, &f->volume, err);
+    if (st != CW_OK)
+        return st;
+    st = cw_volume_statistics(&f->volume.view, args->histogram, threads, &f->range, err);
+    if (st == CW_OK)
+        st = find_levels(f, threads, err);
+    if (st == CW_OK && args->levels)
+        st = predict(f, threads, err);
+    return st == CW_OK ? st : cwi_fail_in(err, st, f->volume.path);
+}
+
+/* "left 0.00, posterior -1.00, ..." : the world direction that each index axis mostly runs to.
+ */
+static const char *axis_letters(const cw_volume *v)
+{
+    static char text[8];
+    for (int c = 0; c < 3; c++) {
+        int most = 0;
+        for (int r = 1; r < 3; r++)
+            if (fabs(v->affine[r][c]) > fabs(v->affine[most][c]))
+                most = r;
+        text[c] = v->affine[most][c] >= 0 ? "LPS"[most] : "RAI"[most];
+    }
+    return text;
+}
+
+static void print_geometry(const facts *f)
+{
+    const cw_volume *v = &f->volume.whole;
+    const double *s = f->volume.spacing;
+    const double last[3] = {(double)(v->dim[0] - 1), (double)(v->dim[1] - 1),
+                            (double)(v->dim[2] - 1)};
+    double from[3], to[3];
+    cw_volume_to_world(v, (const double[3]){0, 0, 0}, from);
+    cw_volume_to_world(v, last, to);
+    printf("%s\n  %s\n", f->volume.path, cli_describe(&f->volume));
+    printf("  size     %.6g x %.6g x %.6g mm\n", last[0] * s[0], last[1] * s[1],
+           last[2] * s[2]);
+    printf("  frame    %s, axes run to %s; first voxel (%.6g, %.6g, %.6g), last (%.6g, %.6g, "
+           "%.6g)\n",
+           v->known & CW_KNOWN_FRAME ? "LPS" : "not named, taken as LPS", axis_letters(v),
+           from[0], from[1], from[2], to[0], to[1], to[2]);
+    if (v->slope != 1 || v->intercept != 0)
+        printf("  scaling  value = %.10g * voxel + %.10g\n", v->slope, v->intercept);
+}
+
+static void print_values(const facts *f)
+{
+    const cw_statistics *r = &f->range;
+    printf("  values   %.10g to %.10g", r->min, r->max);
+    if (r->not_finite)
+        printf(", %s not finite", cli_count(r->not_finite));
+    if (r->nodata)
+        printf(", %s no-data", cli_count(r->nodata));
+    puts("");
+    for (size_t b = 0; b < r->bin_count; b++)
+        printf("  %12.6g  %s\n", r->min + (double)b * r->bin_width,
+               cli_count((size_t)r->bins[b]));
+}
+
+static void print_levels(const facts *f, bool predicted)
+{
+    for (int n = 0; n < f->level_count; n++) {
+        const level *l = &f->levels[n];
+        printf("  level    %-7s--iso %.6g", l->name, l->value);
+        if (predicted)
+            printf("  %s triangles, %s", cli_count(l->counts.triangles),
+                   cli_bytes((double)l->counts.bytes));
+        puts("");
+    }
+}
+
+static void print_json(const facts *f, bool predicted)
+{
+    const cw_statistics *r = &f->range;
+    cli_json j = {.out = stdout};
+    cli_json_open(&j, NULL, '{');
+    cli_json_text(&j, "schema", "cubewright-info-1");
+    cli_json_text(&j, "version", cw_version());
+    cli_json_input(&j, &f->volume);
+    cli_json_numbers(&j, "range", (const double[2]){r->min, r->max}, 2);
+    cli_json_count(&j, "finite", r->finite);
+    cli_json_count(&j, "not_finite", r->not_finite);
+    cli_json_count(&j, "nodata", r->nodata);
+    if (r->bin_count) {
+        cli_json_number(&j, "bin_width", r->bin_width);
+        cli_json_open(&j, "histogram", '[');
+        for (size_t b = 0; b < r->bin_count; b++)
+            cli_json_count(&j, NULL, (size_t)r->bins[b]);
+        cli_json_close(&j, ']');
+    }
+    cli_json_open(&j, "levels", '[');
+    for (int n = 0; n < f->level_count; n++) {
+        cli_json_open(&j, NULL, '{');
+        cli_json_text(&j, "name", f->levels[n].name);
+        cli_json_number(&j, "iso", f->levels[n].value);
+        if (predicted)
+            cli_json_count(&j, "triangles", f->levels[n].counts.triangles);
+        cli_json_close(&j, '}');
+    }
+    cli_json_close(&j, ']');
+    cli_json_close(&j, '}');
+}
+
+static cw_status run(void *p, cw_error *err)
+{
+    info_args *args = p;
+    facts f = {0};
+    cli_common silent = args->common;
+    silent.quiet = true; /* the found line is part of the result here */
+    cli_console_start(&silent, CLI_PROGRESS_AUTO);
+    cw_status st = find_facts(args, &f, err);
+    if (st == CW_OK && args->json) {
+        print_json(&f, args->levels);
+    } else if (st == CW_OK) {
+        print_geometry(&f);
+        print_values(&f);
+        print_levels(&f, args->levels);
+    }
+    cw_statistics_free(&f.range);
+    cw_volume_free(&f.volume.whole);
+    return st;
+}
+
+const cli_command cli_info = {
+    .name = "info",
+    .usage = "VOLUME [options]",
+    .about = "what is in a file: size, type, frame, values, suggested levels",
+    .more =
+        "Suggested levels part the histogram into two (otsu) or four classes (dark, medium,\n"
+        "bright) with the largest variance between them.\n\n"
+        "Examples\n"
+        "  cubewright info head.nii.gz --levels\n"
+        "  cubewright info ct.nrrd --histogram 16 --json\n",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .min_inputs = 1,
+    .max_inputs = 1,
+    .size = sizeof(info_args),
+    .run = run,
+};

@@ -1,0 +1,126 @@
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "core/status.h"
+
+#include <cubewright/field.h>
+#include <cubewright/formats.h>
+
+#include <stdio.h>
+#include <string.h>
+
+typedef struct make_args {
+    cli_common common;
+    const char *output;
+    cli_sizes dims;
+    int type;
+    cli_number noise;
+    size_t seed, threads;
+    bool no_clobber, list;
+} make_args;
+
+#define TYPE_NAMES "u8/i8/u16/i16/u32/i32/f32/f64" /* in the order of cw_type */
+
+static const make_args defaults = {.type = CW_F32};
+
+static const cli_option options[] = {
+    {"output", 'o', CLI_TEXT, "FILE", "the volume: .nrrd, .nii, .nii.gz or .mha",
+     offsetof(make_args, output)},
+    {"dims", 'd', CLI_SIZES, "N|XxYxZ", "voxels along the axes (64)",
+     offsetof(make_args, dims)},
+    {"type", 0, CLI_CHOICE, TYPE_NAMES, "of the voxels (f32)", offsetof(make_args, type)},
+    {"noise", 0, CLI_NUMBER, "SIGMA", "Gaussian noise, in the field's unit (0)",
+     offsetof(make_args, noise)},
+    {"seed", 0, CLI_COUNT, "N", "of the noise (0)", offsetof(make_args, seed)},
+    {"threads", 't', CLI_COUNT, "N", "to use; results do not depend on it (0: all)",
+     offsetof(make_args, threads)},
+    {"no-clobber", 0, CLI_FLAG, NULL, "fail when the output exists (replace it)",
+     offsetof(make_args, no_clobber)},
+    {"list", 'l', CLI_FLAG, NULL, "list the fields and their isovalues",
+     offsetof(make_args, list)},
+};
+
+static cw_status list_fields(void)
+{
+    for (int f = 0; f < CW_FIELD_COUNT; f++)
+        printf("%-16s--iso %-5g %s\n", cw_field_name((cw_field)f),
+               cw_field_isovalue((cw_field)f), cw_field_about((cw_field)f));
+    return CW_OK;
+}
+
+static cw_status unknown_field(const char *name, cw_error *err)
+{
+    const char *names[CW_FIELD_COUNT + 1] = {0};
+    for (int f = 0; f < CW_FIELD_COUNT; f++)
+        names[f] = cw_field_name((cw_field)f);
+    const char *nearest = cli_nearest(name, names);
+    if (nearest)
+        return cw_fail(err, CW_ERR_ARGUMENT, "'%s' is no field; did you mean '%s'?", name,
+                       nearest);
+    return cw_fail(err, CW_ERR_ARGUMENT,
+                   "'%s' is no field; 'cubewright make --list' lists them", name);
+}
+
+static cw_status make(const make_args *args, cw_field field, cw_error *err)
+{
+    const bool cube = args->dims.count == 1;
+    const cw_field_desc desc = {
+        .field = field,
+        .dim = {args->dims.n[0], args->dims.n[cube ? 0 : 1], args->dims.n[cube ? 0 : 2]},
+        .type = (cw_type)args->type,
+        .noise = args->noise.value,
+        .seed = args->seed,
+        .threads = (int)args->threads,
+        .progress = cli_progress(1, "volume"),
+    };
+    cw_volume volume;
+    cw_status st = cw_field_sample(&desc, &volume, err);
+    if (st != CW_OK)
+        return st;
+    const cw_write_desc write = {.no_clobber = args->no_clobber,
+                                 .progress = cli_progress(1, "volume")};
+    st = cw_volume_write(args->output, &volume, &write, err);
+    if (st == CW_OK)
+        cli_result("%s: %s, %zu x %zu x %zu %s; its surface: --iso %.10g\n", args->output,
+                   cw_field_name(field), volume.dim[0], volume.dim[1], volume.dim[2],
+                   cw_type_name(volume.type),
+                   cw_field_stored(field, volume.type, cw_field_isovalue(field)));
+    cw_volume_free(&volume);
+    return st;
+}
+
+static cw_status run(void *p, cw_error *err)
+{
+    const make_args *args = p;
+    cw_field field;
+    if (args->list)
+        return list_fields();
+    if (args->common.input_count == 0)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "make needs a field; 'cubewright make --list' lists them");
+    if (!cw_field_find(args->common.inputs[0], &field))
+        return unknown_field(args->common.inputs[0], err);
+    if (!args->output)
+        return cw_fail(err, CW_ERR_ARGUMENT, "make needs an output: -o FILE");
+    if (args->dims.count == 2)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--dims takes one number or three, not two");
+    return make(args, field, err);
+}
+
+const cli_command cli_make = {
+    .name = "make",
+    .usage = "FIELD -o VOLUME [options]",
+    .about = "a volume whose surface is known on paper, for trying and testing",
+    .more =
+        "Samples a field around the world's zero. 'cubewright make --list' lists the fields.\n"
+        "Floats, and CT numbers, are kept as they are; integer types spread the field over\n"
+        "their range, and the line printed says which isovalue is then its surface.\n\n"
+        "Examples\n"
+        "  cubewright make sphere -o sphere.nrrd --dims 128\n"
+        "  cubewright make ct-head -o head.nii.gz --dims 256 --type i16 --noise 20\n",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .max_inputs = 1,
+    .size = sizeof(make_args),
+    .defaults = &defaults,
+    .run = run,
+};

@@ -1,0 +1,16 @@
+/* The table of commands: one cmd_NAME.c a row. */
+#ifndef CLI_COMMANDS_H
+#define CLI_COMMANDS_H
+
+#include "cli/options.h"
+
+extern const cli_command cli_extract, cli_formats, cli_help, cli_info, cli_make, cli_render,
+    cli_version;
+
+/* In the order of help; the last is NULL. */
+extern const cli_command *const cli_commands[];
+
+/* The row of a name; NULL, and an error with the nearest name, when there is none. */
+const cli_command *cli_find_command(const char *name, cw_error *err);
+
+#endif

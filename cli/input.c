@@ -1,0 +1,149 @@
+#define _GNU_SOURCE /* sysconf names */
+#include "cli/input.h"
+
+#include "cli/console.h"
+#include "cli/quantity.h"
+#include "core/status.h"
+#include "core/text.h"
+
+#include <sha2.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+/* Three quarters of what the machine, or the container around this process, has. */
+static size_t default_memory(void)
+{
+    double bytes = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+    char line[64];
+    FILE *limit = fopen("/sys/fs/cgroup/memory.max", "r");
+    if (limit) {
+        const char *text = fgets(line, sizeof line, limit);
+        double value;
+        if (text && cwi_parse_double(&text, &value) && value > 0 && value < bytes)
+            bytes = value;
+        fclose(limit);
+    }
+    return (size_t)(0.75 * bytes);
+}
+
+/* Stretches the axes to the spacing asked for; directions and origin stay. */
+static void set_spacing(cw_volume *v, const cli_lengths *asked)
+{
+    double spacing[3];
+    cw_volume_spacing(v, spacing);
+    for (int c = 0; c < 3; c++)
+        for (int r = 0; r < 3; r++)
+            v->affine[r][c] *= asked->mm[c] / spacing[c];
+    v->known |= CW_KNOWN_UNIT;
+}
+
+const char *cli_describe(const cli_volume *volume)
+{
+    static char text[256];
+    const cw_volume *v = &volume->whole;
+    const double *s = volume->spacing;
+    int n = snprintf(text, sizeof text, "%s, %zu x %zu x %zu %s", volume->format, v->dim[0],
+                     v->dim[1], v->dim[2], cw_type_name(v->type));
+    if (v->components > 1)
+        n += snprintf(text + n, sizeof text - (size_t)n, ", %zu components", v->components);
+    if (v->steps > 1)
+        n += snprintf(text + n, sizeof text - (size_t)n, ", %zu time steps", v->steps);
+    snprintf(text + n, sizeof text - (size_t)n, ", %.6g x %.6g x %.6g %s", s[0], s[1], s[2],
+             v->known & CW_KNOWN_UNIT ? "mm" : "(no unit given: taken as mm)");
+    return text;
+}
+
+/* header_only leaves no voxels to choose from, so the choice is checked by hand. */
+static cw_status choose(const cli_input *input, cli_volume *volume, cw_error *err)
+{
+    const cw_volume *v = &volume->whole;
+    if (input->component >= v->components)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--component %zu: the volume has %zu, counted from 0", input->component,
+                       v->components);
+    if (input->step >= v->steps)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--step %zu: the volume has %zu, counted from 0",
+                       input->step, v->steps);
+    return v->data ? cw_volume_select(v, input->component, input->step, &volume->view, err)
+                   : CW_OK;
+}
+
+static cw_status read_both(const char *path, cw_read_desc *desc, bool header_only,
+                           const cli_input *input, cli_volume *volume, cw_error *err)
+{
+    desc->header_only = true;
+    cw_status st = cw_volume_read(path, desc, &volume->whole, &volume->format, err);
+    if (st != CW_OK)
+        return st;
+    if (input->spacing.given)
+        set_spacing(&volume->whole, &input->spacing);
+    cw_volume_spacing(&volume->whole, volume->spacing);
+    cli_say("%s: %s", path, cli_describe(volume));
+    st = choose(input, volume, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, path);
+    if (header_only)
+        return CW_OK;
+
+    const cw_volume *v = &volume->whole;
+    const double bytes = (double)cw_type_size(v->type) * (double)v->dim[0] * (double)v->dim[1] *
+                         (double)v->dim[2] * (double)v->components * (double)v->steps;
+    desc->header_only = false;
+    desc->progress = cli_progress(bytes / 1e6, "MB");
+    st = cw_volume_read(path, desc, &volume->whole, &volume->format, err);
+    if (st == CW_OK && input->spacing.given)
+        set_spacing(&volume->whole, &input->spacing);
+    volume->memory_left = (double)desc->max_bytes > bytes ? desc->max_bytes - (size_t)bytes : 1;
+    return st == CW_OK ? choose(input, volume, err) : st;
+}
+
+cw_status cli_read_volume(const char *path, const cli_input *input, bool header_only,
+                          cli_volume *volume, cw_error *err)
+{
+    cw_raw_layout raw;
+    cw_read_desc desc = {.reader = input->reader, .allow_external = input->allow_external};
+    memset(volume, 0, sizeof *volume);
+    volume->path = path;
+    desc.max_bytes = input->memory ? input->memory : default_memory();
+    if (input->raw) {
+        cw_status st = cw_raw_layout_parse(input->raw, &raw, err);
+        if (st != CW_OK)
+            return cwi_fail_in(err, st, "--raw");
+        desc.raw = &raw;
+    }
+    cw_status st = read_both(path, &desc, header_only, input, volume, err);
+    if (st != CW_OK)
+        cw_volume_free(&volume->whole);
+    return st;
+}
+
+const char *cli_shown_path(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return path[0] == '/' && slash ? slash + 1 : path;
+}
+
+void cli_json_input(cli_json *j, const cli_volume *volume)
+{
+    const cw_volume *v = &volume->whole;
+    const double dims[3] = {(double)v->dim[0], (double)v->dim[1], (double)v->dim[2]};
+    char sum[SHA256_DIGEST_STRING_LENGTH];
+    cli_json_open(j, "input", '{');
+    cli_json_text(j, "path", cli_shown_path(volume->path));
+    cli_json_text(j, "kind", volume->format);
+    cli_json_numbers(j, "dims", dims, 3);
+    cli_json_text(j, "type", cw_type_name(v->type));
+    cli_json_count(j, "components", v->components);
+    cli_json_count(j, "steps", v->steps);
+    cli_json_numbers(j, "spacing", volume->spacing, 3);
+    cli_json_text(j, "unit", v->known & CW_KNOWN_UNIT ? "mm" : "unknown");
+    cli_json_text(j, "frame", v->known & CW_KNOWN_FRAME ? "LPS" : "unknown");
+    cli_json_open(j, "affine", '[');
+    for (int r = 0; r < 3; r++)
+        cli_json_numbers(j, NULL, v->affine[r], 4);
+    cli_json_close(j, ']');
+    if (SHA256File(volume->path, sum))
+        cli_json_text(j, "sha256", sum);
+    cli_json_close(j, '}');
+}

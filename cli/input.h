@@ -1,0 +1,88 @@
+/* The options that say how to read a volume, and the reading itself: for every command that
+ * takes one. */
+#ifndef CLI_INPUT_H
+#define CLI_INPUT_H
+
+#include "cli/json.h"
+#include "cli/options.h"
+
+#include <cubewright/formats.h>
+
+typedef struct cli_input {
+    const char *reader, *raw;
+    cli_lengths spacing;
+    size_t component, step;
+    size_t threads, memory;
+    bool allow_external;
+} cli_input;
+
+/* Rows for a command whose struct has the field `input`. */
+#define CLI_INPUT_ROW(args, field) offsetof(args, input) + offsetof(cli_input, field)
+#define CLI_INPUT_OPTIONS(args)                                                                \
+    {"reader",                                                                                 \
+     0,                                                                                        \
+     CLI_TEXT,                                                                                 \
+     "NAME",                                                                                   \
+     "read as this format of 'formats' (by content)",                                          \
+     CLI_INPUT_ROW(args, reader)},                                                             \
+        {"raw",                                                                                \
+         0,                                                                                    \
+         CLI_TEXT,                                                                             \
+         "LAYOUT",                                                                             \
+         "headerless voxels: dims=64x64x93,type=u16le,offset=0,spacing=1x1x2",                 \
+         CLI_INPUT_ROW(args, raw)},                                                            \
+        {"spacing",                                                                            \
+         0,                                                                                    \
+         CLI_LENGTHS,                                                                          \
+         "X[,Y,Z]",                                                                            \
+         "the distance of voxels, e.g. 0.5mm (the file's)",                                    \
+         CLI_INPUT_ROW(args, spacing)},                                                        \
+        {"component",                                                                          \
+         0,                                                                                    \
+         CLI_COUNT,                                                                            \
+         "N",                                                                                  \
+         "of volumes with several values a voxel (0)",                                         \
+         CLI_INPUT_ROW(args, component)},                                                      \
+        {"step", 0, CLI_COUNT, "N", "of time series (0)", CLI_INPUT_ROW(args, step)},          \
+        {"allow-external",                                                                     \
+         0,                                                                                    \
+         CLI_FLAG,                                                                             \
+         NULL,                                                                                 \
+         "follow headers to voxel files outside their own folder (off)",                       \
+         CLI_INPUT_ROW(args, allow_external)},                                                 \
+        {"threads",                                                                            \
+         't',                                                                                  \
+         CLI_COUNT,                                                                            \
+         "N",                                                                                  \
+         "to use; results do not depend on it (0: all)",                                       \
+         CLI_INPUT_ROW(args, threads)},                                                        \
+    {                                                                                          \
+        "memory", 0, CLI_BYTES, "SIZE",                                                        \
+            "stop before voxels and mesh need more, e.g. 8G (75 % of the machine's)",          \
+            CLI_INPUT_ROW(args, memory)                                                        \
+    }
+
+/* A volume as a command uses it. */
+typedef struct cli_volume {
+    const char *path, *format;
+    cw_volume whole; /* owns the voxels */
+    cw_volume view;  /* the chosen component and step, spacing applied */
+    double spacing[3];
+    size_t memory_left; /* of the limit, after the voxels */
+} cli_volume;
+
+/* Reads the header, says what was found, then reads the voxels (unless header_only). Errors
+ * name the file. Free with cw_volume_free(&volume->whole). */
+cw_status cli_read_volume(const char *path, const cli_input *input, bool header_only,
+                          cli_volume *volume, cw_error *err);
+
+/* "nifti, 181 x 217 x 181 u8, 1 x 1 x 1 mm" into static memory. */
+const char *cli_describe(const cli_volume *volume);
+
+/* The "input" object of reports. sha256 of the file, when it can be read again. */
+void cli_json_input(cli_json *j, const cli_volume *volume);
+
+/* A path as reports show it: absolute ones lose their folders. */
+const char *cli_shown_path(const char *path);
+
+#endif

@@ -1,0 +1,73 @@
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "core/status.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const cli_command *const cli_commands[] = {&cli_extract, &cli_info, &cli_render,  &cli_make,
+                                           &cli_formats, &cli_help, &cli_version, NULL};
+
+const cli_command *cli_find_command(const char *name, cw_error *err)
+{
+    const char *names[16] = {0};
+    for (size_t n = 0; cli_commands[n]; n++) {
+        if (strcmp(name, cli_commands[n]->name) == 0)
+            return cli_commands[n];
+        names[n] = cli_commands[n]->name;
+    }
+    const char *nearest = cli_nearest(name, names);
+    if (nearest)
+        cw_fail(err, CW_ERR_ARGUMENT, "'%s' is no command; did you mean '%s'?", name, nearest);
+    else
+        cw_fail(err, CW_ERR_ARGUMENT, "'%s' is no command; 'cubewright help' lists them", name);
+    return NULL;
+}
+
+static cw_status run(const cli_command *command, int count, char **words, cw_error *err)
+{
+    cli_common *args = calloc(1, command->size);
+    const char **inputs = calloc((size_t)count + 1, sizeof *inputs);
+    cw_status st = CW_ERR_NO_MEMORY;
+    if (args && inputs) {
+        if (command->defaults)
+            memcpy(args, command->defaults, command->size);
+        st = cli_parse(command, count, words, args, inputs, err);
+        cli_console_start(args, CLI_PROGRESS_AUTO);
+        if (st == CW_OK && args->help)
+            cli_print_help(command, false);
+        else if (st == CW_OK)
+            st = command->run(args, err);
+    } else {
+        cw_fail(err, st, "no memory for the arguments");
+    }
+    cli_progress_end();
+    free(args);
+    free(inputs);
+    return st;
+}
+
+/* -h, --help and --version in the place of a command are that command. */
+static const char *command_name(const char *word)
+{
+    if (strcmp(word, "-h") == 0 || strcmp(word, "--help") == 0)
+        return "help";
+    return strcmp(word, "--version") == 0 ? "version" : word;
+}
+
+int main(int argc, char **argv)
+{
+    cw_error err = {0};
+    cw_status st = CW_ERR_ARGUMENT;
+    cli_catch_signals();
+    const cli_command *command =
+        cli_find_command(argc > 1 ? command_name(argv[1]) : "help", &err);
+    if (command)
+        st = run(command, argc > 1 ? argc - 2 : 0, argv + (argc > 1 ? 2 : 1), &err);
+    if (st == CW_OK && (fflush(stdout) != 0 || ferror(stdout)))
+        st = cw_fail(&err, CW_ERR_OUTPUT, "the standard output cannot be written");
+    if (st != CW_OK)
+        cli_say_error(err.message);
+    return cw_status_exit_code(st);
+}

@@ -1,0 +1,284 @@
+#include "cli/options.h"
+
+#include "cli/quantity.h"
+#include "core/status.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const cli_option cli_common_options[] = {
+    {"quiet", 'q', CLI_FLAG, NULL, "print results and errors only",
+     offsetof(cli_common, quiet)},
+    {"verbose", 'v', CLI_LOUDER, NULL, "print each step's time and memory; -vv also settings",
+     offsetof(cli_common, verbose)},
+    {"help", 'h', CLI_FLAG, NULL, "this help", offsetof(cli_common, help)},
+};
+const size_t cli_common_option_count = sizeof cli_common_options / sizeof *cli_common_options;
+
+/* Edits between two words: a letter put in, left out, changed, or two swapped. */
+static size_t distance(const char *a, const char *b)
+{
+    enum { LONGEST = 32 };
+    size_t d[LONGEST + 1][LONGEST + 1];
+    const size_t n = strlen(a), m = strlen(b);
+    if (n > LONGEST || m > LONGEST)
+        return LONGEST;
+    for (size_t i = 0; i <= n; i++)
+        for (size_t j = 0; j <= m; j++) {
+            if (i == 0 || j == 0) {
+                d[i][j] = i + j;
+                continue;
+            }
+            size_t best = d[i - 1][j - 1] + (a[i - 1] != b[j - 1]);
+            best = d[i - 1][j] + 1 < best ? d[i - 1][j] + 1 : best;
+            best = d[i][j - 1] + 1 < best ? d[i][j - 1] + 1 : best;
+            if (i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] &&
+                d[i - 2][j - 2] + 1 < best)
+                best = d[i - 2][j - 2] + 1;
+            d[i][j] = best;
+        }
+    return d[n][m];
+}
+
+const char *cli_nearest(const char *word, const char *const *names)
+{
+    const char *nearest = NULL;
+    size_t best = strlen(word) / 3 + 1; /* a third of the letters may be wrong */
+    for (; *names; names++) {
+        const bool begins = strlen(word) >= 2 && strncmp(word, *names, strlen(word)) == 0;
+        const size_t d = begins ? 0 : distance(word, *names);
+        if (d < best || (d == best && !nearest)) {
+            best = d;
+            nearest = *names;
+        }
+    }
+    return nearest;
+}
+
+/* Row n of a command's options, the common ones last; NULL behind the end. */
+static const cli_option *option_at(const cli_command *command, size_t n)
+{
+    if (n < command->option_count)
+        return &command->options[n];
+    n -= command->option_count;
+    return n < cli_common_option_count ? &cli_common_options[n] : NULL;
+}
+
+static const cli_option *find_long(const cli_command *command, const char *name, size_t length)
+{
+    const cli_option *o;
+    for (size_t n = 0; (o = option_at(command, n)); n++)
+        if (strlen(o->name) == length && strncmp(o->name, name, length) == 0)
+            return o;
+    return NULL;
+}
+
+static const cli_option *find_short(const cli_command *command, char letter)
+{
+    const cli_option *o;
+    for (size_t n = 0; (o = option_at(command, n)); n++)
+        if (o->letter == letter)
+            return o;
+    return NULL;
+}
+
+static cw_status unknown_option(const cli_command *command, const char *name, size_t length,
+                                cw_error *err)
+{
+    char word[64];
+    const char *names[64] = {0};
+    const cli_option *o;
+    snprintf(word, sizeof word, "%.*s", (int)(length < 63 ? length : 63), name);
+    for (size_t n = 0; (o = option_at(command, n)) && n < 63; n++)
+        names[n] = o->name;
+    const char *nearest = cli_nearest(word, names);
+    if (nearest)
+        return cw_fail(err, CW_ERR_ARGUMENT, "%s has no option --%s; did you mean --%s?",
+                       command->name, word, nearest);
+    return cw_fail(err, CW_ERR_ARGUMENT, "%s has no option --%s; 'cubewright %s -h' lists them",
+                   command->name, word, command->name);
+}
+
+static bool takes_value(const cli_option *o)
+{
+    return o->kind != CLI_FLAG && o->kind != CLI_LOUDER;
+}
+
+/* "above/below": the position of a word in it, or -1. */
+static int find_choice(const char *choices, const char *word)
+{
+    const size_t length = strlen(word);
+    for (int n = 0; choices; n++) {
+        const char *slash = strchr(choices, '/');
+        const size_t here = slash ? (size_t)(slash - choices) : strlen(choices);
+        if (here == length && strncmp(choices, word, length) == 0)
+            return n;
+        choices = slash ? slash + 1 : NULL;
+    }
+    return -1;
+}
+
+/* Stores a value in its field; false when the text is not one of its kind. */
+static bool store(const cli_option *o, const char *text, void *field)
+{
+    switch (o->kind) {
+    case CLI_TEXT:
+        *(const char **)field = text;
+        return *text != '\0';
+    case CLI_CHOICE:
+        return (*(int *)field = find_choice(o->value, text)) >= 0;
+    case CLI_NUMBER:
+        return cli_parse_number(text, field);
+    case CLI_COUNT:
+        return cli_parse_count(text, 1000, field);
+    case CLI_BYTES:
+        return cli_parse_count(text, 1024, field);
+    case CLI_LENGTHS:
+        return cli_parse_lengths(text, field);
+    case CLI_SIZES:
+        return cli_parse_sizes(text, field);
+    default:
+        return false;
+    }
+}
+
+static const char *expectation(const cli_option *o)
+{
+    switch (o->kind) {
+    case CLI_CHOICE:
+        return o->value;
+    case CLI_NUMBER:
+        return "a number";
+    case CLI_COUNT:
+        return "a whole number such as 500, 50k or 2M";
+    case CLI_BYTES:
+        return "a size such as 512M or 8G";
+    case CLI_LENGTHS:
+        return "a length above 0 such as 0.5mm or 12um, or three of them by comma";
+    case CLI_SIZES:
+        return "whole numbers above 0 joined by x";
+    default:
+        return "a text that is not empty";
+    }
+}
+
+typedef struct parser {
+    const cli_command *command;
+    int count, next;
+    char **words;
+    cli_common *args;
+} parser;
+
+/* value is what stood behind '=' or the letter; NULL: take the next word. */
+static cw_status take_option(parser *p, const cli_option *o, const char *value, bool off,
+                             cw_error *err)
+{
+    void *field = (char *)p->args + o->offset;
+    if (o->kind == CLI_LOUDER)
+        ++*(int *)field;
+    if (o->kind == CLI_FLAG)
+        *(bool *)field = !off;
+    if (!takes_value(o))
+        return value ? cw_fail(err, CW_ERR_ARGUMENT, "--%s takes no value", o->name) : CW_OK;
+    if (!value && p->next == p->count)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--%s needs a value: %s", o->name, expectation(o));
+    value = value ? value : p->words[p->next++];
+    if (!store(o, value, field))
+        return cw_fail(err, CW_ERR_ARGUMENT, "--%s '%s': expected %s", o->name, value,
+                       expectation(o));
+    return CW_OK;
+}
+
+static cw_status take_long(parser *p, const char *word, cw_error *err)
+{
+    const char *name = word + 2, *equals = strchr(name, '=');
+    const size_t length = equals ? (size_t)(equals - name) : strlen(name);
+    const char *value = equals ? equals + 1 : NULL;
+    const cli_option *o = find_long(p->command, name, length);
+    if (o)
+        return take_option(p, o, value, false, err);
+    if (length > 3 && strncmp(name, "no-", 3) == 0) {
+        o = find_long(p->command, name + 3, length - 3);
+        if (o && o->kind == CLI_FLAG)
+            return take_option(p, o, value, true, err);
+    }
+    return unknown_option(p->command, name, length, err);
+}
+
+/* -o FILE, -oFILE, and letters of flags together: -qv. */
+static cw_status take_short(parser *p, const char *word, cw_error *err)
+{
+    for (const char *c = word + 1; *c; c++) {
+        const cli_option *o = find_short(p->command, *c);
+        if (!o)
+            return cw_fail(err, CW_ERR_ARGUMENT,
+                           "%s has no option -%c; 'cubewright %s -h' lists them",
+                           p->command->name, *c, p->command->name);
+        if (takes_value(o))
+            return take_option(p, o, c[1] ? c + 1 : NULL, false, err);
+        cw_status st = take_option(p, o, NULL, false, err);
+        if (st != CW_OK)
+            return st;
+    }
+    return CW_OK;
+}
+
+static cw_status check_inputs(const cli_command *c, const cli_common *args, cw_error *err)
+{
+    if (args->help ||
+        (args->input_count >= c->min_inputs && args->input_count <= c->max_inputs))
+        return CW_OK;
+    if (args->input_count < c->min_inputs)
+        return cw_fail(err, CW_ERR_ARGUMENT, "too few arguments; usage: cubewright %s %s",
+                       c->name, c->usage);
+    return cw_fail(err, CW_ERR_ARGUMENT,
+                   "'%s' is one argument too many; usage: cubewright %s %s",
+                   args->inputs[c->max_inputs], c->name, c->usage);
+}
+
+cw_status cli_parse(const cli_command *command, int count, char **words, void *args,
+                    const char **inputs, cw_error *err)
+{
+    parser p = {command, count, 0, words, args};
+    bool options_end = false;
+    cw_status st = CW_OK;
+    p.args->inputs = inputs;
+    while (p.next < count && st == CW_OK) {
+        const char *word = words[p.next++];
+        if (options_end || word[0] != '-' || word[1] == '\0')
+            inputs[p.args->input_count++] = word;
+        else if (strcmp(word, "--") == 0)
+            options_end = true;
+        else if (word[1] == '-')
+            st = take_long(&p, word, err);
+        else
+            st = take_short(&p, word, err);
+    }
+    return st == CW_OK ? check_inputs(command, p.args, err) : st;
+}
+
+static void print_option(const cli_option *o)
+{
+    char head[64];
+    const int length = snprintf(head, sizeof head, "  %c%c%s--%s%s%s", o->letter ? '-' : ' ',
+                                o->letter ? o->letter : ' ', o->letter ? ", " : "  ", o->name,
+                                o->value ? " " : "", o->value ? o->value : "");
+    if (length > 30)
+        printf("%s\n%32s%s\n", head, "", o->about);
+    else
+        printf("%-32s%s\n", head, o->about);
+}
+
+void cli_print_help(const cli_command *command, bool long_form)
+{
+    const cli_option *o;
+    printf("cubewright %s %s\n%s\n", command->name, command->usage, command->about);
+    if (long_form && command->more)
+        printf("\n%s", command->more);
+    puts("\nOptions");
+    for (size_t n = 0; (o = option_at(command, n)); n++)
+        print_option(o);
+    if (!long_form && command->more)
+        printf("\n'cubewright help %s' has more and examples.\n", command->name);
+}

@@ -1,0 +1,80 @@
+/* Options as tables: parsing, help and "did you mean" are made from the same rows. */
+#ifndef CLI_OPTIONS_H
+#define CLI_OPTIONS_H
+
+#include <cubewright/core.h>
+
+typedef enum cli_kind {
+    CLI_FLAG,    /* bool; --x and --no-x */
+    CLI_TEXT,    /* const char * */
+    CLI_CHOICE,  /* int: the position in value, names parted by '/' */
+    CLI_NUMBER,  /* cli_number */
+    CLI_COUNT,   /* size_t: 50k, 100M */
+    CLI_BYTES,   /* size_t: 512M, 8G (1024s) */
+    CLI_LENGTHS, /* cli_lengths: one for all axes or three; 0.5mm,12um, bare is mm */
+    CLI_SIZES,   /* cli_sizes: 64, 1280x720 or 512x512x300 */
+    CLI_LOUDER,  /* int, counts up */
+} cli_kind;
+
+typedef struct cli_number {
+    bool given;
+    double value;
+} cli_number;
+
+typedef struct cli_lengths {
+    bool given;
+    double mm[3];
+} cli_lengths;
+
+typedef struct cli_sizes {
+    int count; /* 1 to 3 given, 0: none */
+    size_t n[3];
+} cli_sizes;
+
+typedef struct cli_option {
+    const char *name; /* without the dashes */
+    char letter;      /* of the short form; 0: none */
+    cli_kind kind;
+    const char *value; /* what help calls the value; for CLI_CHOICE the choices */
+    const char *about; /* for help; defaults stand in brackets at the end */
+    size_t offset;     /* of its field in the command's struct */
+} cli_option;
+
+/* What every command's struct begins with. */
+typedef struct cli_common {
+    bool help;
+    bool quiet;
+    int verbose;
+    const char **inputs; /* the arguments that are no options */
+    size_t input_count;
+} cli_common;
+
+typedef struct cli_command {
+    const char *name;
+    const char *usage; /* after the name */
+    const char *about; /* one line */
+    const char *more;  /* paragraphs and examples for the long help */
+    const cli_option *options;
+    size_t option_count;
+    size_t min_inputs, max_inputs;
+    size_t size;          /* of the struct that options fill in; it begins with cli_common */
+    const void *defaults; /* that struct before any option; NULL: zeros */
+    cw_status (*run)(void *args, cw_error *err);
+} cli_command;
+
+/* Fills in args (of command->size bytes, holding the defaults) from the words after the
+ * command's name. inputs has room for all words. Returns CW_ERR_ARGUMENT with the nearest name
+ * for an unknown option; checks nothing about the number of inputs when help is asked for. */
+cw_status cli_parse(const cli_command *command, int count, char **words, void *args,
+                    const char **inputs, cw_error *err);
+
+/* The help of a command: long adds its paragraphs. */
+void cli_print_help(const cli_command *command, bool long_form);
+
+/* The candidate most like a word, or NULL when none is close; names end with a NULL. */
+const char *cli_nearest(const char *word, const char *const *names);
+
+extern const cli_option cli_common_options[];
+extern const size_t cli_common_option_count;
+
+#endif

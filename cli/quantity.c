@@ -1,0 +1,115 @@
+#include "cli/quantity.h"
+
+#include "core/text.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+bool cli_parse_number(const char *text, cli_number *out)
+{
+    out->given = cwi_parse_double(&text, &out->value) && *text == '\0' && isfinite(out->value);
+    return out->given;
+}
+
+/* A number and its unit, as millimetres; *text moves behind it. */
+static bool parse_length(const char **text, double *mm)
+{
+    static const struct {
+        const char *name;
+        double mm;
+    } units[] = {{"mm", 1}, {"um", 1e-3}, {"nm", 1e-6}, {"cm", 10}, {"m", 1e3}, {"in", 25.4}};
+    if (!cwi_parse_double(text, mm))
+        return false;
+    for (size_t u = 0; u < sizeof units / sizeof *units; u++)
+        if (strncmp(*text, units[u].name, strlen(units[u].name)) == 0) {
+            *mm *= units[u].mm;
+            *text += strlen(units[u].name);
+            break;
+        }
+    return isfinite(*mm) && *mm > 0;
+}
+
+bool cli_parse_lengths(const char *text, cli_lengths *out)
+{
+    int count = 0;
+    for (; count < 3; count++) {
+        if (!parse_length(&text, &out->mm[count]))
+            return false;
+        if (*text != ',')
+            break;
+        text++;
+    }
+    if (*text != '\0' || (count != 0 && count != 2))
+        return false;
+    for (int a = count + 1; a < 3; a++)
+        out->mm[a] = out->mm[0];
+    return out->given = true;
+}
+
+bool cli_parse_sizes(const char *text, cli_sizes *out)
+{
+    for (out->count = 0; out->count < 3; text++) {
+        int64_t n;
+        if (!cwi_parse_int(&text, &n) || n < 1 || n > INT32_MAX)
+            return false;
+        out->n[out->count++] = (size_t)n;
+        if (*text != 'x')
+            break;
+    }
+    return *text == '\0';
+}
+
+bool cli_parse_count(const char *text, double thousand, size_t *out)
+{
+    static const char prefixes[] = "kMGT";
+    double value;
+    if (!cwi_parse_double(&text, &value))
+        return false;
+    const char *prefix = *text ? strchr(prefixes, *text == 'K' ? 'k' : *text) : NULL;
+    if (prefix) {
+        value *= pow(thousand, (double)(prefix - prefixes + 1));
+        text++;
+    }
+    if (thousand == 1024 && (*text == 'B' || *text == 'b'))
+        text++;
+    if (*text != '\0' || !(value >= 0) || value > 0x1p62 || value != floor(value))
+        return false;
+    *out = (size_t)value;
+    return true;
+}
+
+enum { KEPT = 8, LONGEST = 32 };
+
+static char *next_buffer(void)
+{
+    static char kept[KEPT][LONGEST];
+    static int next;
+    next = (next + 1) % KEPT;
+    return kept[next];
+}
+
+const char *cli_bytes(double bytes)
+{
+    static const char *const units[] = {"bytes", "kB", "MB", "GB", "TB"};
+    char *text = next_buffer();
+    int unit = 0;
+    for (; bytes >= 1000 && unit < 4; unit++)
+        bytes /= 1000;
+    snprintf(text, LONGEST, unit ? "%.1f %s" : "%.0f %s", bytes, units[unit]);
+    return text;
+}
+
+const char *cli_count(size_t count)
+{
+    char digits[LONGEST], *text = next_buffer();
+    const int length = snprintf(digits, sizeof digits, "%zu", count);
+    int n = 0;
+    for (int i = 0; i < length; i++) {
+        if (i > 0 && (length - i) % 3 == 0)
+            text[n++] = ' ';
+        text[n++] = digits[i];
+    }
+    text[n] = '\0';
+    return text;
+}

@@ -1,0 +1,18 @@
+/* Quantities as people type them, and numbers as people read them. */
+#ifndef CLI_QUANTITY_H
+#define CLI_QUANTITY_H
+
+#include "cli/options.h"
+
+bool cli_parse_number(const char *text, cli_number *out);
+bool cli_parse_lengths(const char *text, cli_lengths *out);
+bool cli_parse_sizes(const char *text, cli_sizes *out);
+
+/* A count with an optional k, M, G or T of the given thousand: 1000, or 1024 for bytes. */
+bool cli_parse_count(const char *text, double thousand, size_t *out);
+
+/* "12.3 MB" and "1 234 567" in static memory; the last eight results are kept. */
+const char *cli_bytes(double bytes);
+const char *cli_count(size_t count);
+
+#endif

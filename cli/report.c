@@ -1,0 +1,154 @@
+#define _GNU_SOURCE /* open_memstream */
+#include "cli/report.h"
+
+#include "cli/console.h"
+#include "cli/quantity.h"
+#include "core/outfile.h"
+#include "core/status.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+void cli_report_begin(cli_report *report)
+{
+    report->step_start = cli_seconds();
+}
+
+void cli_report_end(cli_report *report, const char *name, size_t in, size_t out)
+{
+    cli_step *s = &report->steps[report->step_count++];
+    *s = (cli_step){name, cli_seconds() - report->step_start, cli_peak_bytes(), in, out};
+    cli_say_v("%-8s %8.3f s, peak %s", s->name, s->seconds, cli_bytes((double)s->peak_bytes));
+}
+
+static void put_features(cli_json *j)
+{
+    size_t count;
+    const cw_format *formats = cw_formats(&count);
+    cli_json_open(j, "features", '[');
+    for (size_t i = 0; i < count; i++)
+        if (formats[i].in_this_build)
+            cli_json_text(j, NULL, formats[i].name);
+    cli_json_close(j, ']');
+}
+
+static void put_steps(cli_json *j, const cli_report *r)
+{
+    cli_json_open(j, "steps", '[');
+    for (size_t i = 0; i < r->step_count; i++) {
+        const cli_step *s = &r->steps[i];
+        cli_json_open(j, NULL, '{');
+        cli_json_text(j, "name", s->name);
+        if (strcmp(s->name, r->command) == 0) {
+            cli_json_open(j, "params", '{');
+            r->params(j, r->args);
+            cli_json_close(j, '}');
+        }
+        cli_json_number(j, "seconds", rint(s->seconds * 1e6) / 1e6);
+        cli_json_count(j, "peak_bytes", s->peak_bytes);
+        cli_json_count(j, "in", s->in);
+        cli_json_count(j, "out", s->out);
+        cli_json_close(j, '}');
+    }
+    cli_json_close(j, ']');
+}
+
+static void put_mesh(cli_json *j, const cw_quality *q)
+{
+    const double box[6] = {q->min[0], q->min[1], q->min[2], q->max[0], q->max[1], q->max[2]};
+    cli_json_open(j, "mesh", '{');
+    cli_json_count(j, "vertices", q->vertices);
+    cli_json_count(j, "triangles", q->triangles);
+    cli_json_count(j, "components", q->components);
+    cli_json_int(j, "euler", q->euler);
+    cli_json_count(j, "open_edges", q->open_edges);
+    cli_json_count(j, "nonmanifold_edges", q->nonmanifold_edges);
+    cli_json_count(j, "nonmanifold_vertices", q->nonmanifold_vertices);
+    cli_json_count(j, "misoriented_edges", q->misoriented_edges);
+    cli_json_count(j, "degenerate", q->degenerate);
+    cli_json_numbers(j, "box", box, 6);
+    cli_json_number(j, "area", q->area_mm2);
+    cli_json_number(j, "volume", q->volume_mm3);
+    cli_json_text(j, "unit", "mm");
+    cli_json_close(j, '}');
+}
+
+static void put_output(cli_json *j, const char *path)
+{
+    struct stat info;
+    cli_json_open(j, "output", '[');
+    if (path && stat(path, &info) == 0) {
+        cli_json_open(j, NULL, '{');
+        cli_json_text(j, "path", cli_shown_path(path));
+        cli_json_count(j, "bytes", (size_t)info.st_size);
+        cli_json_text(j, "compression", "none");
+        cli_json_close(j, '}');
+    }
+    cli_json_close(j, ']');
+}
+
+static void put_report(FILE *out, const cli_report *r, cw_status status, const cw_error *err)
+{
+    cli_json j = {.out = out};
+    cli_json_open(&j, NULL, '{');
+    cli_json_text(&j, "schema", "cubewright-report-1");
+    cli_json_text(&j, "tool", "cubewright");
+    cli_json_text(&j, "version", cw_version());
+    put_features(&j);
+    cli_json_text(&j, "command", r->command);
+    if (r->input)
+        cli_json_input(&j, r->input);
+    put_steps(&j, r);
+    if (r->quality)
+        put_mesh(&j, r->quality);
+    put_output(&j, status == CW_OK ? r->output : NULL);
+    cli_json_open(&j, "warnings", '[');
+    if (r->input && !(r->input->whole.known & CW_KNOWN_UNIT))
+        cli_json_text(&j, NULL, "the input names no unit: taken as mm");
+    cli_json_close(&j, ']');
+    cli_json_text(&j, "status", cw_status_name(status));
+    if (status != CW_OK)
+        cli_json_text(&j, "message", err->message);
+    cli_json_int(&j, "exit", cw_status_exit_code(status));
+    cli_json_close(&j, '}');
+}
+
+static cw_status save(const char *path, const char *text, size_t size, cw_error *err)
+{
+    cwi_outfile *file = NULL;
+    if (strcmp(path, "-") == 0)
+        return fwrite(text, 1, size, stdout) == size
+                   ? CW_OK
+                   : cw_fail(err, CW_ERR_OUTPUT, "the standard output cannot be written");
+    cw_status st = cwi_outfile_open(&file, path, false, err);
+    if (st == CW_OK)
+        st = cwi_outfile_write(file, text, size, err);
+    if (st == CW_OK)
+        st = cwi_outfile_commit(&file, err);
+    cwi_outfile_abort(&file);
+    return st == CW_OK ? st : cwi_fail_in(err, st, path);
+}
+
+cw_status cli_report_write(const cli_report *report, cw_status status, cw_error *err)
+{
+    char *text = NULL;
+    size_t size = 0;
+    cw_error why = {0};
+    if (!report->path)
+        return status;
+    FILE *out = open_memstream(&text, &size);
+    cw_status st = CW_ERR_NO_MEMORY;
+    if (out) {
+        put_report(out, report, status, err);
+        st = fclose(out) == 0 ? save(report->path, text, size, &why)
+                              : cw_fail(&why, st, "no memory for the report");
+    }
+    free(text);
+    if (status != CW_OK)
+        return status;
+    if (st != CW_OK)
+        *err = why;
+    return st;
+}

@@ -1,0 +1,14 @@
+/* From a volume that was read to its surface: for every command that needs one. */
+#ifndef CLI_SURFACE_H
+#define CLI_SURFACE_H
+
+#include "cli/input.h"
+
+#include <cubewright/extract.h>
+
+/* cw_extract() with progress, within the memory that is left, and with an empty result turned
+ * into CW_ERR_EMPTY that tells the range of the values. Errors name the file. */
+cw_status cli_extract_surface(const cli_volume *volume, const cw_extract_desc *desc,
+                              cw_mesh *mesh, cw_extract_counts *counts, cw_error *err);
+
+#endif

@@ -1,0 +1,31 @@
+// The boundary between C and a C++ library: nothing thrown crosses it.
+#ifndef CORE_GUARD_HPP
+#define CORE_GUARD_HPP
+
+#include "core/status.h"
+
+#include <exception>
+#include <new>
+
+namespace cw
+{
+
+// Runs a function that returns cw_status. bad_alloc becomes CW_ERR_NO_MEMORY; everything else
+// becomes CW_ERR_BACKEND with the library's name and its own words.
+template <typename Body>
+cw_status guard(cw_error *err, const char *library, Body &&body) noexcept
+{
+    try {
+        return body();
+    } catch (const std::bad_alloc &) {
+        return cw_fail(err, CW_ERR_NO_MEMORY, "memory ran out in %s", library);
+    } catch (const std::exception &e) {
+        return cw_fail(err, CW_ERR_BACKEND, "%s failed: %s", library, e.what());
+    } catch (...) {
+        return cw_fail(err, CW_ERR_BACKEND, "%s failed without saying why", library);
+    }
+}
+
+} // namespace cw
+
+#endif

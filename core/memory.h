@@ -1,0 +1,34 @@
+/* Checked sizes and allocation. All memory of the library comes from here. */
+#ifndef CORE_MEMORY_H
+#define CORE_MEMORY_H
+
+#include <cubewright/core.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* *out = a * b; false, and *out untouched, when the product does not fit. */
+CW_API bool cwi_size_mul(size_t a, size_t b, size_t *out);
+CW_API bool cwi_size_add(size_t a, size_t b, size_t *out);
+
+/* count elements of the given size, zeroed or not. NULL when the product overflows or memory is
+ * out; a count of 0 gives a pointer that can be freed. Free with cwi_free(). */
+CW_API void *cwi_alloc_array(size_t count, size_t size);
+CW_API void *cwi_alloc_zeroed(size_t count, size_t size);
+CW_API void *cwi_realloc_array(void *memory, size_t count, size_t size);
+CW_API void cwi_free(void *memory);
+
+/* A copy of a string; NULL when memory is out. */
+CW_API char *cwi_strdup(const char *text);
+
+/* Makes the n-th allocation of this thread from now on (0: the next) and all later ones fail,
+ * until it is called with -1. For tests of what happens then. Returns whether one has failed
+ * since the last call. */
+CW_API bool cwi_alloc_fail_after(long n);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

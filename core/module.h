@@ -1,0 +1,29 @@
+/* Modules: shared objects with a heavy library behind them, loaded when first needed.
+ *
+ * A command that does not write glTF never pays for loading tinygltf, and a program that links
+ * libcubewright depends on libc, libm, zlib and OpenMP alone. A module NAME is the file
+ * cubewright-NAME.so in the folder `cubewright` beside the library; it exports one constant,
+ * cwi_module_NAME, a struct of functions that its NAME_wrap.h declares. */
+#ifndef CORE_MODULE_H
+#define CORE_MODULE_H
+
+#include "core/status.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Sets *functions to the struct exported by a module; it stays loaded.
+ * Returns CW_ERR_UNSUPPORTED, naming the build option and Debian package, when this build has
+ * no such module or it cannot be loaded. */
+CW_API cw_status cwi_module_load(const char *name, const char *option, const char *package,
+                                 const void **functions, cw_error *err);
+
+/* Whether the file of a module is there; nothing is loaded. */
+CW_API bool cwi_module_present(const char *name);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,48 @@
+/* A file that appears at its path only when it is whole. */
+#ifndef CORE_OUTFILE_H
+#define CORE_OUTFILE_H
+
+#include <cubewright/core.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Bytes go to a hidden temporary beside the path; the commit renames it over what stood there.
+ * Until then the path keeps its old file, whatever happens. Messages do not name the path: the
+ * caller puts it in front. */
+typedef struct cwi_outfile cwi_outfile;
+
+/* Makes the temporary. A link to a regular file is followed, and the real file replaced.
+ *
+ * no_clobber  fail when the path exists, here and again, race-free, at the commit
+ * Returns     CW_ERR_OUTPUT  folder missing or not writable, path exists and no_clobber, path
+ * is a folder, device or the like; CW_ERR_NO_MEMORY */
+CW_API cw_status cwi_outfile_open(cwi_outfile **out, const char *path, bool no_clobber,
+                                  cw_error *err);
+
+/* Appends bytes; buffered. CW_ERR_OUTPUT when they cannot be written; later writes and the
+ * commit then fail with the same words. */
+CW_API cw_status cwi_outfile_write(cwi_outfile *f, const void *bytes, size_t size,
+                                   cw_error *err);
+
+/* Appends text; numbers have a decimal point in any locale. */
+CW_API cw_status cwi_outfile_printf(cwi_outfile *f, cw_error *err, const char *format, ...)
+    CW_PRINTF(3, 4);
+
+/* Flushes to the disk and renames. Frees and NULLs the file, on failure too: the temporary is
+ * then gone and the path as it was. */
+CW_API cw_status cwi_outfile_commit(cwi_outfile **f, cw_error *err);
+
+/* Removes the temporary, frees and NULLs. Harmless on NULL and after a commit. */
+CW_API void cwi_outfile_abort(cwi_outfile **f);
+
+/* Unlinks every temporary in progress; the program then has to exit. Async-signal-safe: for a
+ * second Ctrl-C. Knows the first 64 files that are open at one time. */
+CW_API void cwi_outfile_remove_all(void);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,233 @@
+#include "core/volume.h"
+
+#include "core/affine.h"
+#include "core/memory.h"
+#include "core/status.h"
+
+#include <math.h>
+#include <string.h>
+
+static const struct {
+    size_t size;
+    const char *name;
+} types[CW_TYPE_COUNT] = {
+#define ROW(name, ctype, text) {sizeof(ctype), text},
+    CW_TYPE_TABLE(ROW)
+#undef ROW
+};
+
+size_t cw_type_size(cw_type type)
+{
+    return (unsigned)type < CW_TYPE_COUNT ? types[type].size : 0;
+}
+
+const char *cw_type_name(cw_type type)
+{
+    return (unsigned)type < CW_TYPE_COUNT ? types[type].name : "unknown";
+}
+
+static bool packed_bytes(const cw_volume *v, size_t *bytes)
+{
+    size_t n = cw_type_size(v->type);
+    bool fits = true;
+    for (int a = 0; a < 3; a++)
+        fits = fits && cwi_size_mul(n, v->dim[a], &n);
+    fits = fits && cwi_size_mul(n, v->components, &n) && cwi_size_mul(n, v->steps, &n);
+    *bytes = n;
+    return fits && n <= PTRDIFF_MAX;
+}
+
+/* x fastest, components interleaved in front of it, time slowest. */
+static void set_packed_strides(cw_volume *v)
+{
+    const ptrdiff_t size = (ptrdiff_t)cw_type_size(v->type);
+    v->component_stride = size;
+    v->stride[0] = size * (ptrdiff_t)v->components;
+    v->stride[1] = v->stride[0] * (ptrdiff_t)v->dim[0];
+    v->stride[2] = v->stride[1] * (ptrdiff_t)v->dim[1];
+    v->step_stride = v->stride[2] * (ptrdiff_t)v->dim[2];
+}
+
+static void set_identity(double affine[3][4])
+{
+    memset(affine, 0, sizeof(double[3][4]));
+    for (int a = 0; a < 3; a++)
+        affine[a][a] = 1;
+}
+
+static bool is_zero(const double *affine)
+{
+    for (int n = 0; n < 12; n++)
+        if (affine[n] != 0)
+            return false;
+    return true;
+}
+
+cw_status cw_volume_alloc(cw_volume *volume, cw_type type, const size_t dim[3],
+                          size_t components, size_t steps, cw_error *err)
+{
+    size_t bytes;
+    cw_volume v = {.type = type,
+                   .dim = {dim[0], dim[1], dim[2]},
+                   .components = components ? components : 1,
+                   .steps = steps ? steps : 1,
+                   .slope = 1};
+    memset(volume, 0, sizeof *volume);
+    if (!cw_type_size(type) || !dim[0] || !dim[1] || !dim[2])
+        return cw_fail(
+            err, CW_ERR_ARGUMENT,
+            "a volume needs a voxel type and sizes of at least 1; got type %d, %zu x "
+            "%zu x %zu",
+            (int)type, dim[0], dim[1], dim[2]);
+    if (!packed_bytes(&v, &bytes))
+        return cw_fail(err, CW_ERR_LIMIT, "%zu x %zu x %zu voxels do not fit an address space",
+                       dim[0], dim[1], dim[2]);
+    v.owned = cwi_alloc_zeroed(bytes, 1);
+    if (!v.owned)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of voxels", bytes);
+    v.data = v.owned;
+    set_packed_strides(&v);
+    set_identity(v.affine);
+    *volume = v;
+    return CW_OK;
+}
+
+void cw_volume_free(cw_volume *volume)
+{
+    cwi_free(volume->owned);
+    memset(volume, 0, sizeof *volume);
+}
+
+void *cw_volume_voxels(cw_volume *volume)
+{
+    return volume->owned;
+}
+
+static cw_status check_numbers(const cw_volume *v, cw_error *err)
+{
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 4; c++)
+            if (!isfinite(v->affine[r][c]))
+                return cw_fail(err, CW_ERR_ARGUMENT, "the volume's affine is not finite");
+    const double det = cwi_affine_determinant(v->affine[0]);
+    if (!isnormal(det))
+        return cw_fail(err, CW_ERR_ARGUMENT, "the volume's affine has determinant %g", det);
+    if (!isfinite(v->slope) || !isfinite(v->intercept))
+        return cw_fail(err, CW_ERR_ARGUMENT, "slope %g and intercept %g must be finite",
+                       v->slope, v->intercept);
+    return CW_OK;
+}
+
+static cw_status check_strides(const cw_volume *v, cw_error *err)
+{
+    const ptrdiff_t size = (ptrdiff_t)cw_type_size(v->type);
+    const ptrdiff_t all[5] = {v->stride[0], v->stride[1], v->stride[2], v->component_stride,
+                              v->step_stride};
+    bool aligned = (uintptr_t)v->data % (uintptr_t)size == 0;
+    for (int a = 0; a < 5; a++)
+        aligned = aligned && all[a] % size == 0;
+    if (!aligned)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "data and strides must be multiples of %d bytes (%s)", (int)size,
+                       cw_type_name(v->type));
+    return CW_OK;
+}
+
+cw_status cw_volume_resolve(const cw_volume *in, cw_volume *out, cw_error *err)
+{
+    cw_volume v = *in;
+    size_t bytes;
+    if (!cw_type_size(v.type))
+        return cw_fail(err, CW_ERR_ARGUMENT, "%d is no voxel type", (int)v.type);
+    if (!v.dim[0] || !v.dim[1] || !v.dim[2])
+        return cw_fail(err, CW_ERR_ARGUMENT, "the volume is empty: %zu x %zu x %zu", v.dim[0],
+                       v.dim[1], v.dim[2]);
+    if (!v.data)
+        return cw_fail(err, CW_ERR_ARGUMENT, "the volume has no voxels");
+    v.components = v.components ? v.components : 1;
+    v.steps = v.steps ? v.steps : 1;
+    if (!packed_bytes(&v, &bytes))
+        return cw_fail(err, CW_ERR_ARGUMENT, "the volume is larger than an address space");
+    if (!v.stride[0] && !v.stride[1] && !v.stride[2])
+        set_packed_strides(&v);
+    if (is_zero(v.affine[0]))
+        set_identity(v.affine);
+    v.slope = v.slope != 0 ? v.slope : 1;
+    cw_status st = check_numbers(&v, err);
+    if (st == CW_OK)
+        st = check_strides(&v, err);
+    if (st == CW_OK)
+        *out = v;
+    return st;
+}
+
+cw_status cw_volume_select(const cw_volume *in, size_t component, size_t step, cw_volume *out,
+                           cw_error *err)
+{
+    cw_volume v;
+    cw_status st = cw_volume_resolve(in, &v, err);
+    if (st != CW_OK)
+        return st;
+    if (component >= v.components || step >= v.steps)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "component %zu of step %zu: the volume has %zu components, %zu steps",
+                       component, step, v.components, v.steps);
+    v.data = (const char *)v.data + (ptrdiff_t)component * v.component_stride +
+             (ptrdiff_t)step * v.step_stride;
+    v.components = v.steps = 1;
+    v.owned = NULL;
+    *out = v;
+    return CW_OK;
+}
+
+cw_status cw_volume_crop(const cw_volume *in, const cw_box *box, cw_volume *out, cw_error *err)
+{
+    cw_volume v;
+    cw_status st = cw_volume_resolve(in, &v, err);
+    if (st != CW_OK)
+        return st;
+    for (int a = 0; a < 3; a++)
+        if (!box->count[a] || box->first[a] >= v.dim[a] ||
+            box->count[a] > v.dim[a] - box->first[a])
+            return cw_fail(err, CW_ERR_ARGUMENT,
+                           "box %zu+%zu leaves the volume's %zu voxels along %c", box->first[a],
+                           box->count[a], v.dim[a], "xyz"[a]);
+    const double corner[3] = {(double)box->first[0], (double)box->first[1],
+                              (double)box->first[2]};
+    double world[3];
+    cwi_affine_apply(v.affine[0], corner, world);
+    v.data = cwi_voxel_address(&v, box->first[0], box->first[1], box->first[2]);
+    for (int a = 0; a < 3; a++) {
+        v.dim[a] = box->count[a];
+        v.affine[a][3] = world[a];
+    }
+    v.owned = NULL;
+    *out = v;
+    return CW_OK;
+}
+
+double cw_volume_value(const cw_volume *volume, size_t i, size_t j, size_t k)
+{
+    cw_volume v;
+    if (cw_volume_resolve(volume, &v, NULL) != CW_OK || i >= v.dim[0] || j >= v.dim[1] ||
+        k >= v.dim[2])
+        return NAN;
+    return v.slope * cwi_voxel_at(v.type, cwi_voxel_address(&v, i, j, k)) + v.intercept;
+}
+
+void cw_volume_to_world(const cw_volume *volume, const double index[3], double world[3])
+{
+    if (is_zero(volume->affine[0]))
+        memcpy(world, index, 3 * sizeof *world);
+    else
+        cwi_affine_apply(volume->affine[0], index, world);
+}
+
+void cw_volume_spacing(const cw_volume *volume, double spacing_mm[3])
+{
+    const bool identity = is_zero(volume->affine[0]);
+    for (int c = 0; c < 3; c++)
+        spacing_mm[c] = identity ? 1
+                                 : hypot(hypot(volume->affine[0][c], volume->affine[1][c]),
+                                         volume->affine[2][c]);
+}

@@ -1,0 +1,64 @@
+/* Bit planes: one bit per sample, set where the sample is inside. They decide which cells and
+ * edges the surface crosses, 64 at a time, and number its vertices.
+ *
+ * The samples are padded by one layer on every side, outside the solid, so that the solid is
+ * closed where the volume ends; padded sample (i, j, k) is voxel (i-1, j-1, k-1). Row r =
+ * k * rows_y + j holds `words` words; bit i % 64 of word i / 64 is sample i. Cell (i, j, k)
+ * lies between samples i and i+1, j and j+1, k and k+1. */
+#ifndef EXTRACT_GRID_H
+#define EXTRACT_GRID_H
+
+#include <cubewright/extract.h>
+
+typedef struct cwi_grid {
+    cw_volume volume; /* resolved: one component, one step */
+    double level;     /* the isovalue in stored numbers */
+    bool strict;      /* crossed upward above, not at, the level: values fall as numbers rise */
+    bool invert;      /* inside is where the comparison fails */
+    size_t words;     /* of 64 samples in a padded row */
+    size_t rows_y, rows_z, rows;
+    uint64_t *inside; /* rows x words */
+    uint64_t *live;   /* rows x words: cells whose eight samples all have values; NULL: all */
+    bool crossed;     /* some samples with values are inside and some are not */
+} cwi_grid;
+
+/* Per-row numbers: of the first vertex on the row's x-, y- and z-edges, and of its cells' first
+ * triangle. */
+typedef struct cwi_row {
+    uint32_t first[3];
+    size_t triangle;
+} cwi_row;
+
+/* Compares every sample with the isovalue. Free with cwi_grid_free(), also after an error. */
+cw_status cwi_grid_build(cwi_grid *grid, const cw_volume *volume, const cw_extract_desc *desc,
+                         cw_error *err);
+void cwi_grid_free(cwi_grid *grid);
+size_t cwi_grid_bytes(const cwi_grid *grid);
+
+/* Closed curves along which the surface meets the sides of the volume's box. */
+cw_status cwi_grid_border_loops(const cwi_grid *grid, size_t *loops, cw_error *err);
+
+static inline const uint64_t *cwi_grid_row(const cwi_grid *g, size_t row)
+{
+    return g->inside + row * g->words;
+}
+
+/* Word w of a row moved down by one sample: bit i is sample i + 1. */
+static inline uint64_t cwi_next_samples(const uint64_t *row, size_t w, size_t words)
+{
+    return row[w] >> 1 | (w + 1 < words ? row[w + 1] << 63 : 0);
+}
+
+/* Bit i: samples i and i + 1 along axis from row (j, k) are on different sides. */
+static inline uint64_t cwi_grid_crossed(const cwi_grid *g, int axis, size_t j, size_t k,
+                                        size_t w)
+{
+    const uint64_t *row = cwi_grid_row(g, k * g->rows_y + j);
+    if (axis == 0)
+        return row[w] ^ cwi_next_samples(row, w, g->words);
+    if (axis == 1)
+        return j + 1 < g->rows_y ? row[w] ^ row[g->words + w] : 0;
+    return k + 1 < g->rows_z ? row[w] ^ row[g->rows_y * g->words + w] : 0;
+}
+
+#endif

@@ -1,0 +1,310 @@
+// The only file that knows tinygltf: a mesh becomes a model of one scene, one node, one mesh.
+#include "formats/gltf_wrap.h"
+
+#include "core/guard.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+#include <streambuf>
+#include <string>
+#include <tiny_gltf.h>
+#include <vector>
+
+namespace
+{
+
+// Hands bytes to the outfile, a megabyte at a time so that a cancel is heard. Stops at the
+// first error and keeps it: a stream only knows that something went wrong.
+class OutfileBuffer : public std::streambuf
+{
+public:
+    OutfileBuffer(cwi_mesh_output *out, cw_error *err) : out_(out), err_(err)
+    {
+    }
+    cw_status status() const
+    {
+        return status_;
+    }
+
+protected:
+    std::streamsize xsputn(const char *bytes, std::streamsize size) override
+    {
+        std::streamsize written = 0;
+        while (written < size && status_ == CW_OK) {
+            const std::streamsize step = std::min(size - written, std::streamsize(1 << 20));
+            write(bytes + written, static_cast<size_t>(step));
+            written += status_ == CW_OK ? step : 0;
+        }
+        return written;
+    }
+
+    int_type overflow(int_type c) override
+    {
+        const char byte = traits_type::to_char_type(c);
+        return xsputn(&byte, 1) == 1 ? c : traits_type::eof();
+    }
+
+private:
+    void write(const char *bytes, size_t size)
+    {
+        status_ = cwi_outfile_write(out_->file, bytes, size, err_);
+        out_->done = std::min(out_->done + size, out_->total);
+        if (status_ == CW_OK)
+            status_ = cwi_progress(out_->progress, "writing",
+                                   double(out_->done) / double(out_->total), err_);
+    }
+
+    cwi_mesh_output *out_;
+    cw_error *err_;
+    cw_status status_ = CW_OK;
+};
+
+// One array of the buffer; every one starts at a multiple of 4 bytes, as accessors demand.
+struct Part {
+    const char *attribute; // nullptr for the indices
+    size_t count, element_bytes;
+    int component, type;
+    size_t offset = 0;
+
+    size_t bytes() const
+    {
+        return count * element_bytes;
+    }
+};
+
+// 65535 as a 16-bit index means "restart" and must not name a vertex.
+bool has_short_indices(const cw_mesh &mesh)
+{
+    return mesh.vertex_count <= 65535;
+}
+
+std::vector<Part> plan_parts(const cw_mesh &mesh)
+{
+    const bool is_short = has_short_indices(mesh);
+    std::vector<Part> parts = {
+        {nullptr, 3 * mesh.triangle_count, is_short ? size_t(2) : size_t(4),
+         is_short ? TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT
+                  : TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
+         TINYGLTF_TYPE_SCALAR},
+        {"POSITION", mesh.vertex_count, 12, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3}};
+    if (mesh.normals)
+        parts.push_back({"NORMAL", mesh.vertex_count, 12, TINYGLTF_COMPONENT_TYPE_FLOAT,
+                         TINYGLTF_TYPE_VEC3});
+    if (mesh.colors)
+        parts.push_back({"COLOR_0", mesh.vertex_count, 4, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE,
+                         TINYGLTF_TYPE_VEC4});
+    size_t offset = 0;
+    for (Part &part : parts) {
+        part.offset = offset;
+        offset += (part.bytes() + 3) / 4 * 4;
+    }
+    return parts;
+}
+
+// GLB says its lengths in 32 bits; the JSON in front takes a few kilobytes of that.
+cw_status check_size(const cw_mesh &mesh, cw_error *err)
+{
+    const double limit = 4294967295.0 - 65536.0;
+    const double bytes =
+        12.0 * double(mesh.triangle_count) +
+        (12.0 + (mesh.normals ? 12 : 0) + (mesh.colors ? 4 : 0)) * double(mesh.vertex_count);
+    if (mesh.vertex_count >= UINT32_MAX || bytes > limit)
+        return cw_fail(err, CW_ERR_LIMIT, "glTF holds at most 4 GiB; the mesh needs %.1f GiB",
+                       bytes / 1073741824.0);
+    return CW_OK;
+}
+
+unsigned char *put_indices(unsigned char *to, const cw_mesh &mesh)
+{
+    const bool is_short = has_short_indices(mesh);
+    for (size_t i = 0; i < 3 * mesh.triangle_count; i++)
+        to = is_short ? cwi_put_u16(to, uint16_t(mesh.triangles[i]))
+                      : cwi_put_u32(to, mesh.triangles[i]);
+    return to;
+}
+
+void put_floats(unsigned char *to, const float *values, size_t count)
+{
+    for (size_t i = 0; i < count; i++)
+        to = cwi_put_f32(to, values[i]);
+}
+
+// COLOR_0 is linear; alpha is linear already.
+void put_colors(unsigned char *to, const cw_mesh &mesh)
+{
+    unsigned char linear[256];
+    for (int i = 0; i < 256; i++) {
+        const double c = i / 255.0;
+        linear[i] = static_cast<unsigned char>(
+            std::lround(255 * (c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4))));
+    }
+    for (size_t i = 0; i < 4 * mesh.vertex_count; i++)
+        to[i] = i % 4 == 3 ? mesh.colors[i] : linear[mesh.colors[i]];
+}
+
+tinygltf::Buffer make_buffer(const cw_mesh &mesh, const std::vector<Part> &parts)
+{
+    tinygltf::Buffer buffer;
+    buffer.data.resize(parts.back().offset + parts.back().bytes());
+    for (const Part &part : parts) {
+        unsigned char *to = buffer.data.data() + part.offset;
+        const std::string attribute = part.attribute ? part.attribute : "";
+        if (attribute == "POSITION")
+            put_floats(to, mesh.positions, 3 * part.count);
+        else if (attribute == "NORMAL")
+            put_floats(to, mesh.normals, 3 * part.count);
+        else if (attribute == "COLOR_0")
+            put_colors(to, mesh);
+        else
+            put_indices(to, mesh);
+    }
+    return buffer;
+}
+
+// The format wants the box of the stored floats, to the bit; doubles hold them and the JSON
+// writer gives each the digits that bring it back.
+void set_bounds(tinygltf::Accessor &accessor, const cw_mesh &mesh)
+{
+    for (size_t a = 0; a < 3; a++) {
+        float low = mesh.positions[a], high = low;
+        for (size_t v = 1; v < mesh.vertex_count; v++) {
+            low = std::min(low, mesh.positions[3 * v + a]);
+            high = std::max(high, mesh.positions[3 * v + a]);
+        }
+        accessor.minValues.push_back(double(low));
+        accessor.maxValues.push_back(double(high));
+    }
+}
+
+int add_accessor(tinygltf::Model &model, const cw_mesh &mesh, const Part &part)
+{
+    tinygltf::BufferView view;
+    view.buffer = 0;
+    view.byteOffset = part.offset;
+    view.byteLength = part.bytes();
+    view.target =
+        part.attribute ? TINYGLTF_TARGET_ARRAY_BUFFER : TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER;
+    model.bufferViews.push_back(view);
+
+    tinygltf::Accessor accessor;
+    accessor.bufferView = int(model.bufferViews.size()) - 1;
+    accessor.componentType = part.component;
+    accessor.type = part.type;
+    accessor.count = part.count;
+    accessor.normalized = part.component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE;
+    if (part.attribute && std::string(part.attribute) == "POSITION")
+        set_bounds(accessor, mesh);
+    model.accessors.push_back(accessor);
+    return int(model.accessors.size()) - 1;
+}
+
+bool is_translucent(const cw_mesh &mesh)
+{
+    for (size_t v = 0; mesh.colors && v < mesh.vertex_count; v++)
+        if (mesh.colors[4 * v + 3] != 255)
+            return true;
+    return false;
+}
+
+// Vertex colours are multiplied with the base colour, so with them it is white.
+tinygltf::Material make_material(const cw_mesh &mesh)
+{
+    const double grey = mesh.colors ? 1.0 : 0.8;
+    tinygltf::Material material;
+    material.name = "surface";
+    material.pbrMetallicRoughness.baseColorFactor = {grey, grey, grey, 1.0};
+    material.pbrMetallicRoughness.metallicFactor = 0.0;
+    material.pbrMetallicRoughness.roughnessFactor = 0.8;
+    material.alphaMode = is_translucent(mesh) ? "BLEND" : "OPAQUE";
+    return material;
+}
+
+tinygltf::Value make_extras(const cw_mesh &mesh)
+{
+    tinygltf::Value::Object extras = {{"frame", tinygltf::Value(std::string("LPS"))},
+                                      {"unit", tinygltf::Value(std::string("mm"))}};
+    tinygltf::Value::Array affine;
+    bool has_affine = false;
+    for (const double(&row)[4] : mesh.affine)
+        for (double number : row) {
+            affine.push_back(tinygltf::Value(number));
+            has_affine = has_affine || number != 0;
+        }
+    if (has_affine)
+        extras["affine"] = tinygltf::Value(affine);
+    return tinygltf::Value(extras);
+}
+
+// LPS millimetres to glTF's metres, +Y up, front towards +Z: (x, y, z) goes to 0.001 (x, z,
+// -y). The node does it, so that the vertices stay as they are. Adding 0.0 turns -0 into 0.
+tinygltf::Node make_node(const cw_mesh &mesh, const char *name)
+{
+    const double half = std::sqrt(0.5);
+    tinygltf::Node node;
+    node.name = name;
+    node.mesh = 0;
+    node.rotation = {-half, 0, 0, half};
+    node.scale = {0.001, 0.001, 0.001};
+    node.translation = {0.001 * mesh.origin[0] + 0.0, 0.001 * mesh.origin[2] + 0.0,
+                        -0.001 * mesh.origin[1] + 0.0};
+    node.extras = make_extras(mesh);
+    return node;
+}
+
+tinygltf::Model make_model(const cw_mesh &mesh, const char *name)
+{
+    tinygltf::Model model;
+    tinygltf::Primitive primitive;
+    const std::vector<Part> parts = plan_parts(mesh);
+    model.asset.version = "2.0";
+    model.asset.generator = std::string("cubewright ") + CW_VERSION;
+    for (const Part &part : parts) {
+        const int accessor = add_accessor(model, mesh, part);
+        if (part.attribute)
+            primitive.attributes[part.attribute] = accessor;
+        else
+            primitive.indices = accessor;
+    }
+    primitive.material = 0;
+    primitive.mode = TINYGLTF_MODE_TRIANGLES;
+
+    tinygltf::Mesh named;
+    named.name = name;
+    named.primitives.push_back(primitive);
+    tinygltf::Scene scene;
+    scene.nodes.push_back(0);
+    model.meshes.push_back(named);
+    model.materials.push_back(make_material(mesh));
+    model.nodes.push_back(make_node(mesh, name));
+    model.scenes.push_back(scene);
+    model.defaultScene = 0;
+    model.buffers.push_back(make_buffer(mesh, parts));
+    return model;
+}
+
+cw_status write_scene(const cw_mesh *mesh, cwi_mesh_output *out, bool binary,
+                      cw_error *err) noexcept
+{
+    return cw::guard(err, "tinygltf", [&] {
+        const cw_status st = check_size(*mesh, err);
+        if (st != CW_OK)
+            return st;
+        const tinygltf::Model model = make_model(*mesh, out->name);
+        const size_t bytes = model.buffers[0].data.size();
+        out->total = binary ? bytes : bytes + bytes / 3;
+        OutfileBuffer buffer(out, err);
+        std::ostream stream(&buffer);
+        const bool done =
+            tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, stream, !binary, binary);
+        if (buffer.status() != CW_OK)
+            return buffer.status();
+        if (!done || !stream)
+            return cw_fail(err, CW_ERR_BACKEND, "tinygltf could not write the scene");
+        return CW_OK;
+    });
+}
+
+} // namespace
+
+extern "C" const cwi_gltf_functions cwi_module_gltf = {write_scene};

@@ -1,0 +1,375 @@
+#define _GNU_SOURCE /* close */
+#include "formats/source.h"
+
+#include "core/affine.h"
+#include "core/memory.h"
+#include "core/status.h"
+#include "formats/numbers.h"
+#include "formats/stream.h"
+
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+enum { SLAB_BYTES = 1 << 20, MOST_COMPONENTS = 16 };
+
+cw_status cwi_fail_type(cw_error *err, const char *field, const char *name)
+{
+#define NAME(constant, ctype, text) " " text
+    return cw_fail(err, CW_ERR_FORMAT,
+                   "'%s' is %.60s; the types that are read are" CW_TYPE_TABLE(NAME), field,
+                   name);
+#undef NAME
+}
+
+bool cwi_machine_is_big_endian(void)
+{
+    const uint16_t one = 1;
+    return *(const unsigned char *)&one == 0;
+}
+
+void cwi_flip_ras(double affine[3][4])
+{
+    for (int r = 0; r < 2; r++)
+        for (int c = 0; c < 4; c++)
+            affine[r][c] = 0.0 - affine[r][c]; /* no negative zeros */
+}
+
+static bool is_zero_column(double affine[3][4], int c)
+{
+    return affine[0][c] == 0 && affine[1][c] == 0 && affine[2][c] == 0;
+}
+
+void cwi_fill_columns(double affine[3][4])
+{
+    for (int c = 0; c < 3; c++) {
+        const int a = (c + 1) % 3, b = (c + 2) % 3;
+        if (!is_zero_column(affine, c))
+            continue;
+        double normal[3];
+        for (int r = 0; r < 3; r++)
+            normal[r] = affine[(r + 1) % 3][a] * affine[(r + 2) % 3][b] -
+                        affine[(r + 2) % 3][a] * affine[(r + 1) % 3][b];
+        const double length = hypot(hypot(normal[0], normal[1]), normal[2]);
+        for (int r = 0; r < 3 && length > 0; r++)
+            affine[r][c] = normal[r] / length;
+    }
+}
+
+void cwi_swap_bytes(void *numbers, size_t count, size_t size)
+{
+    uint16_t *u16 = numbers;
+    uint32_t *u32 = numbers;
+    uint64_t *u64 = numbers;
+    for (size_t i = 0; size == 2 && i < count; i++)
+        u16[i] = __builtin_bswap16(u16[i]);
+    for (size_t i = 0; size == 4 && i < count; i++)
+        u32[i] = __builtin_bswap32(u32[i]);
+    for (size_t i = 0; size == 8 && i < count; i++)
+        u64[i] = __builtin_bswap64(u64[i]);
+}
+
+void cwi_source_free(cwi_source *src)
+{
+    cwi_names_free(&src->files);
+    *src = (cwi_source){0};
+}
+
+cw_status cwi_source_set_axes(cwi_source *src, const cwi_axis *axes, size_t count,
+                              cw_error *err)
+{
+    const size_t voxel = cw_type_size(src->shape.type);
+    size_t sizes[CWI_ROLE_COUNT] = {1, 1, 1, 1, 1}, strides[CWI_ROLE_COUNT] = {0};
+    size_t bytes = voxel;
+    for (size_t i = 0; i < count; i++) {
+        sizes[axes[i].role] = axes[i].size;
+        strides[axes[i].role] = bytes;
+        if (!cwi_size_mul(bytes, axes[i].size, &bytes) || bytes > PTRDIFF_MAX)
+            return cw_fail(err, CW_ERR_LIMIT,
+                           "'%s' asks for more voxels than an address space holds",
+                           src->size_field);
+    }
+    if (sizes[CWI_AXIS_COMPONENT] > MOST_COMPONENTS)
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "'%s' asks for %zu values per voxel; at most %d are read",
+                       src->size_field, sizes[CWI_AXIS_COMPONENT], MOST_COMPONENTS);
+    for (int r = 0; r < CWI_ROLE_COUNT;
+         r++) /* never stepped along, but as packed data have it */
+        if (strides[r] == 0)
+            strides[r] = r == CWI_AXIS_COMPONENT ? voxel : bytes;
+    cw_volume *v = &src->shape;
+    for (int a = 0; a < 3; a++) {
+        v->dim[a] = sizes[a];
+        v->stride[a] = (ptrdiff_t)strides[a];
+    }
+    v->components = sizes[CWI_AXIS_COMPONENT];
+    v->component_stride = (ptrdiff_t)strides[CWI_AXIS_COMPONENT];
+    v->steps = sizes[CWI_AXIS_STEP];
+    v->step_stride = (ptrdiff_t)strides[CWI_AXIS_STEP];
+    src->bytes = bytes;
+    return CW_OK;
+}
+
+/* Vertices are written as 32-bit floats in places, and products of three lengths are taken. */
+static bool is_moderate(double x)
+{
+    return fabs(x) < 1e30;
+}
+
+static cw_status check_frame(const cwi_source *src, cw_error *err)
+{
+    const cw_volume *v = &src->shape;
+    double unit[3][4] = {{0}};
+    for (int c = 0; c < 4; c++) {
+        const double length = hypot(hypot(v->affine[0][c], v->affine[1][c]), v->affine[2][c]);
+        if (!is_moderate(length * (c < 3 ? (double)v->dim[c] : 1.0)))
+            return cw_fail(err, CW_ERR_FORMAT,
+                           "'%s' has numbers that are not finite or too large",
+                           src->frame_field);
+        if (c < 3 && !(length > 1e-30))
+            return cw_fail(err, CW_ERR_FORMAT, "'%s' gives axis %d no length", src->frame_field,
+                           c);
+        for (int r = 0; r < 3; r++)
+            unit[r][c] = v->affine[r][c] / length;
+    }
+    const double volume = cwi_affine_determinant(unit[0]);
+    if (!(fabs(volume) > 1e-6))
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "'%s' gives directions that lie in one plane (determinant %g)",
+                       src->frame_field, volume);
+    return CW_OK;
+}
+
+/* One file with voxels, open. */
+typedef struct part {
+    int fd;
+    uint64_t size;  /* of the file */
+    uint64_t start; /* of the (encoded) voxels in it */
+    bool own;       /* fd is closed with the part */
+} part;
+
+static size_t share_bytes(const cwi_source *src)
+{
+    return src->files.count ? src->bytes / src->files.count : src->bytes;
+}
+
+/* Moves *start behind the lines to leave out. */
+static cw_status skip_lines(const part *p, uint64_t lines, uint64_t *start, cw_error *err)
+{
+    char text[4096];
+    size_t got = 0, used = 0;
+    for (uint64_t line = 0; line < lines; used++, *start += 1) {
+        if (used == got) {
+            cw_status st = cwi_input_read_at(p->fd, *start, text, sizeof text, &got, err);
+            if (st != CW_OK)
+                return st;
+            if (got == 0)
+                return cw_fail(err, CW_ERR_FORMAT,
+                               "the file has %llu lines; %llu are to be skipped",
+                               (unsigned long long)line, (unsigned long long)lines);
+            used = 0;
+        }
+        line += text[used] == '\n';
+    }
+    return CW_OK;
+}
+
+/* Bytes to skip that are seen only once they are inflated. */
+static uint64_t inflated_skip(const cwi_source *src)
+{
+    return src->encoding == CWI_DEFLATED ? src->skip : 0;
+}
+
+/* The most voxel bytes that the encoded bytes in the file can stand for. Deflate never grows
+ * data more than 1032 times; a number and its blank take two bytes, the last may lack the
+ * blank. */
+static uint64_t most_bytes(const cwi_source *src, uint64_t encoded)
+{
+    const uint64_t voxel = cw_type_size(src->shape.type);
+    const uint64_t most = src->encoding == CWI_DEFLATED ? 1032 : voxel;
+    if (src->encoding == CWI_RAW)
+        return encoded;
+    if (src->encoding == CWI_ASCII)
+        encoded = encoded / 2 + 1;
+    return encoded > UINT64_MAX / most ? UINT64_MAX : encoded * most;
+}
+
+static cw_status check_share(const cwi_source *src, part *p, cw_error *err)
+{
+    const size_t share = share_bytes(src);
+    uint64_t wanted;
+    if (src->at_end)
+        p->start = p->size > share ? p->size - share : 0;
+    const uint64_t encoded = p->size > p->start ? p->size - p->start : 0;
+    if (!__builtin_add_overflow(inflated_skip(src), share, &wanted) &&
+        wanted <= most_bytes(src, encoded))
+        return CW_OK;
+    return cw_fail(
+        err, CW_ERR_FORMAT,
+        "'%s' asks for %zu bytes of voxels%s%s; the file holds %llu bytes behind the "
+        "first %llu",
+        src->size_field, share, src->encoding == CWI_RAW ? "" : ", encoded",
+        src->files.count > 1 ? " in each file" : "", (unsigned long long)encoded,
+        (unsigned long long)p->start);
+}
+
+static void close_part(part *p)
+{
+    if (p->own)
+        close(p->fd);
+    *p = (part){0};
+}
+
+static const char *part_name(const cwi_source *src, size_t index)
+{
+    return src->files.count ? src->files.items[index] : NULL;
+}
+
+static cw_status open_part(const cwi_source *src, const cwi_input *in, size_t index, part *p,
+                           cw_error *err)
+{
+    const char *name = part_name(src, index);
+    *p = (part){.fd = in->fd, .size = in->size, .start = src->offset};
+    cw_status st = name ? cwi_input_open_side(in, name, &p->fd, &p->size, err) : CW_OK;
+    p->own = name && st == CW_OK;
+    if (st == CW_OK)
+        st = skip_lines(p, src->lines, &p->start, err);
+    if (__builtin_add_overflow(p->start, src->skip - inflated_skip(src), &p->start))
+        p->start = UINT64_MAX;
+    if (st == CW_OK)
+        st = check_share(src, p, err);
+    if (st != CW_OK)
+        close_part(p);
+    return st;
+}
+
+/* A stream over one part, and what turns it into voxels. */
+typedef struct reading {
+    const cwi_source *src;
+    const cw_progress *progress;
+    unsigned char *voxels;
+    size_t done; /* bytes, of src->bytes */
+} reading;
+
+static cw_status read_slab(reading *r, cwi_stream *stream, cwi_numbers *numbers, size_t bytes,
+                           cw_error *err)
+{
+    const cwi_source *src = r->src;
+    const size_t voxel = cw_type_size(src->shape.type);
+    unsigned char *to = r->voxels + r->done;
+    if (src->encoding == CWI_ASCII)
+        return cwi_numbers_read(numbers, src->shape.type, to, bytes / voxel, err);
+    cw_status st = cwi_stream_read(stream, to, bytes, err);
+    if (st == CW_OK && src->big_endian != cwi_machine_is_big_endian())
+        cwi_swap_bytes(to, bytes / voxel, voxel);
+    return st;
+}
+
+static cw_status read_slabs(reading *r, cwi_stream *stream, cw_error *err)
+{
+    cwi_numbers numbers = {.stream = stream};
+    const size_t end = r->done + share_bytes(r->src);
+    cw_status st = CW_OK;
+    while (st == CW_OK && r->done < end) {
+        const size_t bytes = end - r->done < SLAB_BYTES ? end - r->done : SLAB_BYTES;
+        st = cwi_progress(r->progress, "reading", (double)r->done / (double)r->src->bytes, err);
+        if (st == CW_OK)
+            st = read_slab(r, stream, &numbers, bytes, err);
+        r->done += bytes;
+    }
+    return st;
+}
+
+static cw_status read_part(reading *r, const part *p, cw_error *err)
+{
+    cwi_stream stream = {0};
+    cw_status st =
+        cwi_stream_open(&stream, p->fd, p->start, r->src->encoding == CWI_DEFLATED, err);
+    if (st == CW_OK)
+        st = cwi_stream_skip(&stream, inflated_skip(r->src), err);
+    if (st == CW_OK)
+        st = read_slabs(r, &stream, err);
+    if (st == CW_OK)
+        st = cwi_stream_finish(&stream, err);
+    cwi_stream_close(&stream);
+    return st;
+}
+
+/* Opens every part, checks it, and reads it where there is room for its voxels. A header may
+ * name more files than a program may keep open, so they are opened again for reading, with
+ * every check again. */
+static cw_status walk_parts(const cwi_source *src, const cwi_input *in, reading *r,
+                            cw_error *err)
+{
+    const size_t count = src->files.count ? src->files.count : 1;
+    cw_status st = CW_OK;
+    for (size_t i = 0; st == CW_OK && i < count; i++) {
+        part p;
+        st = open_part(src, in, i, &p, err);
+        if (st == CW_OK && r)
+            st = read_part(r, &p, err);
+        close_part(&p);
+        if (st != CW_OK && part_name(src, i) && st != CW_ERR_CANCELLED)
+            cwi_fail_in(err, st, part_name(src, i));
+    }
+    return st;
+}
+
+static cw_status check_files(const cwi_source *src, const cwi_input *in, cw_error *err)
+{
+    const size_t count = src->files.count;
+    if (count && (src->bytes % count || share_bytes(src) % cw_type_size(src->shape.type)))
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "'%s' asks for %zu bytes, which %zu files cannot share", src->size_field,
+                       src->bytes, count);
+    return walk_parts(src, in, NULL, err);
+}
+
+static cw_status check_limits(const cwi_source *src, const cw_read_desc *desc, cw_error *err)
+{
+    const cw_volume *v = &src->shape;
+    const uint64_t most = desc->max_voxels ? desc->max_voxels : (uint64_t)1 << 40;
+    const uint64_t voxels = src->bytes / cw_type_size(v->type) / v->components;
+    if (voxels > most)
+        return cw_fail(err, CW_ERR_LIMIT, "'%s' asks for %llu voxels; the limit is %llu",
+                       src->size_field, (unsigned long long)voxels, (unsigned long long)most);
+    if (desc->max_bytes && src->bytes > desc->max_bytes)
+        return cw_fail(err, CW_ERR_LIMIT,
+                       "'%s' asks for %zu bytes of voxels; the limit is %llu", src->size_field,
+                       src->bytes, (unsigned long long)desc->max_bytes);
+    return CW_OK;
+}
+
+static cw_status load_voxels(const cwi_source *src, const cwi_input *in,
+                             const cw_read_desc *desc, cw_volume *volume, cw_error *err)
+{
+    cw_volume v = src->shape;
+    v.owned = cwi_alloc_array(src->bytes, 1);
+    if (!v.owned)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of voxels", src->bytes);
+    v.data = v.owned;
+    reading r = {.src = src, .progress = &desc->progress, .voxels = v.owned};
+    cw_status st = walk_parts(src, in, &r, err);
+    if (st == CW_OK)
+        st = cwi_progress(&desc->progress, "reading", 1, err);
+    if (st == CW_OK)
+        *volume = v;
+    else
+        cw_volume_free(&v);
+    return st;
+}
+
+cw_status cwi_source_load(const cwi_source *src, const cwi_input *in, const cw_read_desc *desc,
+                          cw_volume *volume, cw_error *err)
+{
+    cw_status st = check_frame(src, err);
+    if (st == CW_OK)
+        st = check_files(src, in, err);
+    if (st == CW_OK)
+        st = check_limits(src, desc, err);
+    if (st == CW_OK && desc->header_only)
+        *volume = src->shape;
+    else if (st == CW_OK)
+        st = load_voxels(src, in, desc, volume, err);
+    return st;
+}

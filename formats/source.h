@@ -1,0 +1,78 @@
+/* What a header parser finds out, and the one way from there to voxels in memory. */
+#ifndef FORMATS_SOURCE_H
+#define FORMATS_SOURCE_H
+
+#include "formats/input.h"
+
+#include <cubewright/volume.h>
+
+/* How voxels are written down. */
+typedef enum cwi_encoding {
+    CWI_RAW,
+    CWI_DEFLATED, /* gzip or zlib, told apart by content */
+    CWI_ASCII     /* decimal numbers with blanks between them */
+} cwi_encoding;
+
+/* A zeroed source describes nothing. Free it with cwi_source_free(). */
+typedef struct cwi_source {
+    cw_volume shape;         /* everything but the voxels; strides as the file has them */
+    size_t bytes;            /* of all voxels; set by cwi_source_set_axes() */
+    const char *size_field;  /* the header's name for the sizes, for messages */
+    const char *frame_field; /* ... and for directions, spacing and origin */
+
+    cwi_names files; /* data files, each with an equal share; none: the header's own file */
+    cwi_encoding encoding;
+    bool big_endian;
+    uint64_t offset; /* bytes at the start of each file in front of everything else */
+    uint64_t lines;  /* lines behind the offset to leave out */
+    uint64_t skip;   /* decoded bytes in front of the first voxel */
+    bool at_end;     /* raw: the voxels are the last bytes of the file instead */
+} cwi_source;
+
+/* What an axis of the file stands for. */
+typedef enum cwi_role {
+    CWI_AXIS_X,
+    CWI_AXIS_Y,
+    CWI_AXIS_Z,
+    CWI_AXIS_COMPONENT,
+    CWI_AXIS_STEP,
+    CWI_ROLE_COUNT
+} cwi_role;
+
+typedef struct cwi_axis {
+    cwi_role role;
+    size_t size;
+} cwi_axis;
+
+/* Sets sizes, strides and bytes from the file's axes, the fastest first; roles left out have
+ * size 1. shape.type must be set.
+ * Returns CW_ERR_FORMAT for more than 16 components, CW_ERR_LIMIT when the size overflows. */
+cw_status cwi_source_set_axes(cwi_source *src, const cwi_axis *axes, size_t count,
+                              cw_error *err);
+
+/* Refuses a voxel type by its name in the file, and lists those that are read. */
+cw_status cwi_fail_type(cw_error *err, const char *field, const char *name);
+
+/* Turns a right-anterior-superior affine to LPS or back. */
+void cwi_flip_ras(double affine[3][4]);
+
+/* Fills columns that are all zero (2D data have no third axis) with a unit vector at right
+ * angles to the others. */
+void cwi_fill_columns(double affine[3][4]);
+
+/* Turns round the bytes of each of count numbers; for size 1 it does nothing. */
+void cwi_swap_bytes(void *numbers, size_t count, size_t size);
+
+/* Whether this machine keeps the high byte first. */
+bool cwi_machine_is_big_endian(void);
+
+/* Checks the source against its files and the limits, then reads the voxels (unless
+ * desc->header_only). Nothing is allocated before every size is known to be possible.
+ * volume   filled on success, else untouched
+ * Returns  as cw_volume_read() */
+cw_status cwi_source_load(const cwi_source *src, const cwi_input *in, const cw_read_desc *desc,
+                          cw_volume *volume, cw_error *err);
+
+void cwi_source_free(cwi_source *src);
+
+#endif

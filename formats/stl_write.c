@@ -1,0 +1,53 @@
+/* Binary STL: an 80-byte header, a count, then 50 bytes a triangle. */
+#include "formats/mesh_writers.h"
+
+#include "core/status.h"
+
+#include <math.h>
+
+/* Of the corners as they are written, so that normal and winding agree for every reader. Far
+ * from zero rounding may leave a facet without area: its normal is 0 0 0. */
+static void facet_normal(float corner[3][3], float normal[3])
+{
+    double edge[2][3], n[3];
+    for (int e = 0; e < 2; e++)
+        for (int a = 0; a < 3; a++)
+            edge[e][a] = (double)corner[e + 1][a] - (double)corner[0][a];
+    for (int a = 0; a < 3; a++)
+        n[a] = edge[0][(a + 1) % 3] * edge[1][(a + 2) % 3] -
+               edge[0][(a + 2) % 3] * edge[1][(a + 1) % 3];
+    const double length = sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+    for (int a = 0; a < 3; a++)
+        normal[a] = length > 0 ? (float)(n[a] / length) : 0;
+}
+
+static unsigned char *encode_facet(const cw_mesh *mesh, size_t i, unsigned char *to)
+{
+    float corner[3][3], normal[3];
+    for (int c = 0; c < 3; c++)
+        for (int a = 0; a < 3; a++)
+            corner[c][a] =
+                (float)cwi_world_coordinate(mesh, mesh->triangles[3 * i + (size_t)c], a);
+    facet_normal(corner, normal);
+    to = cwi_put_f32x3(to, normal);
+    for (int c = 0; c < 3; c++)
+        to = cwi_put_f32x3(to, corner[c]);
+    return cwi_put_u16(to, 0);
+}
+
+cw_status cwi_stl_write(const cw_mesh *mesh, cwi_mesh_output *out, cw_error *err)
+{
+    /* Not "solid ...": readers take that for the text form. */
+    unsigned char header[84] = "cubewright, LPS, mm";
+    if (mesh->triangle_count > UINT32_MAX)
+        return cw_fail(err, CW_ERR_LIMIT, "STL counts at most %u triangles; the mesh has %zu",
+                       UINT32_MAX, mesh->triangle_count);
+    cwi_put_u32(header + 80, (uint32_t)mesh->triangle_count);
+    out->total = mesh->triangle_count;
+    cw_status st = cwi_check_single(mesh, err);
+    if (st == CW_OK)
+        st = cwi_outfile_write(out->file, header, sizeof header, err);
+    if (st == CW_OK)
+        st = cwi_write_records(mesh, out, encode_facet, mesh->triangle_count, err);
+    return st;
+}

@@ -1,0 +1,178 @@
+#include "formats/stream.h"
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "formats/input.h"
+
+#include <string.h>
+
+enum { BUFFER_BYTES = 1 << 16, DRAIN_BYTES = 1 << 16 };
+
+static voidpf zlib_alloc(voidpf unused, uInt items, uInt size)
+{
+    (void)unused;
+    return cwi_alloc_zeroed(items, size);
+}
+
+static void zlib_free(voidpf unused, voidpf memory)
+{
+    (void)unused;
+    cwi_free(memory);
+}
+
+void cwi_zlib_use_memory(z_stream *z)
+{
+    z->zalloc = zlib_alloc;
+    z->zfree = zlib_free;
+}
+
+cw_status cwi_stream_open(cwi_stream *s, int fd, uint64_t offset, bool deflated, cw_error *err)
+{
+    *s = (cwi_stream){.fd = fd, .offset = offset};
+    if (!deflated)
+        return CW_OK;
+    cwi_zlib_use_memory(&s->z);
+    s->z.next_in = s->buffer = cwi_alloc_array(BUFFER_BYTES, 1);
+    const int either = 32; /* zlib or gzip, by the header found */
+    s->deflated = s->buffer && inflateInit2(&s->z, MAX_WBITS + either) == Z_OK;
+    if (s->deflated)
+        return CW_OK;
+    cwi_stream_close(s);
+    return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to inflate with");
+}
+
+void cwi_stream_close(cwi_stream *s)
+{
+    if (s->deflated)
+        inflateEnd(&s->z);
+    cwi_free(s->buffer);
+    *s = (cwi_stream){.fd = -1};
+}
+
+/* Puts more of the file behind what is still to be inflated. */
+static cw_status refill(cwi_stream *s, size_t *got, cw_error *err)
+{
+    memmove(s->buffer, s->z.next_in, s->z.avail_in);
+    s->z.next_in = s->buffer;
+    cw_status st = cwi_input_read_at(s->fd, s->offset, s->buffer + s->z.avail_in,
+                                     BUFFER_BYTES - s->z.avail_in, got, err);
+    s->z.avail_in += (uInt)*got;
+    s->offset += *got;
+    return st;
+}
+
+/* After one gzip member: goes on when the next one follows, else the data are over. */
+static cw_status start_next_member(cwi_stream *s, cw_error *err)
+{
+    size_t got;
+    cw_status st = s->z.avail_in < 2 ? refill(s, &got, err) : CW_OK;
+    s->ended = s->z.avail_in < 2 || s->z.next_in[0] != 0x1f || s->z.next_in[1] != 0x8b;
+    if (st == CW_OK && !s->ended)
+        inflateReset(&s->z);
+    return st;
+}
+
+static cw_status fail_inflate(const cwi_stream *s, int code, cw_error *err)
+{
+    if (code == Z_MEM_ERROR)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to inflate with");
+    return cw_fail(err, CW_ERR_FORMAT, "the compressed data are damaged after %llu bytes: %s",
+                   (unsigned long long)(s->given),
+                   s->z.msg              ? s->z.msg
+                   : code == Z_NEED_DICT ? "a dictionary is asked for"
+                                         : "no progress");
+}
+
+/* One call of inflate. zlib's own totals are not used: they wrap at 4 GiB on some systems. */
+static cw_status inflate_some(cwi_stream *s, unsigned char *to, size_t size, size_t *got,
+                              cw_error *err)
+{
+    const uInt most = 1 << 30;
+    size_t fetched = 0;
+    *got = 0;
+    if (s->z.avail_in == 0) {
+        cw_status st = refill(s, &fetched, err);
+        if (st != CW_OK)
+            return st;
+    }
+    const uInt input = s->z.avail_in;
+    s->z.next_out = to;
+    s->z.avail_out = size < most ? (uInt)size : most;
+    const uInt output = s->z.avail_out;
+    const int code = inflate(&s->z, Z_NO_FLUSH);
+    *got = output - s->z.avail_out;
+    s->given += *got;
+    if (code == Z_STREAM_END)
+        return start_next_member(s, err);
+    const bool stuck = *got == 0 && s->z.avail_in == input;
+    if ((code == Z_OK || code == Z_BUF_ERROR) && !(stuck && input))
+        s->ended = s->truncated = stuck;
+    else
+        return fail_inflate(s, code, err);
+    return CW_OK;
+}
+
+static cw_status read_plain(cwi_stream *s, void *to, size_t size, size_t *got, cw_error *err)
+{
+    cw_status st = cwi_input_read_at(s->fd, s->offset, to, size, got, err);
+    s->offset += *got;
+    s->given += *got;
+    return st;
+}
+
+cw_status cwi_stream_some(cwi_stream *s, void *to, size_t size, size_t *got, cw_error *err)
+{
+    if (!s->deflated)
+        return read_plain(s, to, size, got, err);
+    cw_status st = CW_OK;
+    size_t n;
+    for (*got = 0; st == CW_OK && *got < size && !s->ended; *got += n)
+        st = inflate_some(s, (unsigned char *)to + *got, size - *got, &n, err);
+    return st;
+}
+
+cw_status cwi_stream_read(cwi_stream *s, void *to, size_t size, cw_error *err)
+{
+    const uint64_t start = s->given;
+    size_t got;
+    cw_status st = cwi_stream_some(s, to, size, &got, err);
+    if (st == CW_OK && got < size)
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "%s: wanted %zu bytes from byte %llu on, there were %zu",
+                       s->truncated ? "the compressed data break off" : "the data end early",
+                       size, (unsigned long long)start, got);
+    return st;
+}
+
+cw_status cwi_stream_skip(cwi_stream *s, uint64_t size, cw_error *err)
+{
+    unsigned char waste[4096];
+    if (!s->deflated) {
+        s->offset += size;
+        s->given += size;
+        return CW_OK;
+    }
+    cw_status st = CW_OK;
+    while (st == CW_OK && size > 0) {
+        const size_t n = size < sizeof waste ? (size_t)size : sizeof waste;
+        st = cwi_stream_read(s, waste, n, err);
+        size -= n;
+    }
+    return st;
+}
+
+cw_status cwi_stream_finish(cwi_stream *s, cw_error *err)
+{
+    unsigned char waste[4096];
+    size_t got = sizeof waste;
+    cw_status st = CW_OK;
+    if (!s->deflated)
+        return CW_OK;
+    for (size_t n = 0; st == CW_OK && !s->ended && n < DRAIN_BYTES; n += got)
+        st = cwi_stream_some(s, waste, sizeof waste, &got, err);
+    if (st == CW_OK && s->truncated)
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "the compressed data break off after %llu bytes, before their checksum",
+                       (unsigned long long)s->given);
+    return st;
+}

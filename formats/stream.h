@@ -1,0 +1,50 @@
+/* Sequential bytes of an open file, inflated on the way where they are compressed. */
+#ifndef FORMATS_STREAM_H
+#define FORMATS_STREAM_H
+
+#include <cubewright/core.h>
+#ifndef ZLIB_CONST
+#define ZLIB_CONST /* zlib does not write to its input: let its header say so */
+#endif
+#include <zlib.h>
+
+/* A zeroed stream is closed. */
+typedef struct cwi_stream {
+    int fd;          /* borrowed */
+    uint64_t offset; /* in the file, of the next byte to fetch */
+    uint64_t given;  /* bytes handed out so far, decoded */
+    bool deflated;
+    bool ended;     /* the compressed data are over, whole or not */
+    bool truncated; /* ... because the file ended first */
+    z_stream z;
+    unsigned char *buffer; /* compressed bytes on their way into z */
+} cwi_stream;
+
+/* Makes zlib take its memory from core/memory.h, so that tests can make it run out. */
+void cwi_zlib_use_memory(z_stream *z);
+
+/* Starts reading at an offset: the bytes as they are, or (deflated) as gzip or zlib data, told
+ * apart by their own headers. Several gzip members in a row are read as one.
+ * Returns CW_ERR_NO_MEMORY. */
+CW_API cw_status cwi_stream_open(cwi_stream *s, int fd, uint64_t offset, bool deflated,
+                                 cw_error *err);
+
+/* Reads up to size bytes; *got is less only at the end.
+ * Returns CW_ERR_FORMAT for damaged data or a wrong checksum, CW_ERR_IO. */
+CW_API cw_status cwi_stream_some(cwi_stream *s, void *to, size_t size, size_t *got,
+                                 cw_error *err);
+
+/* Reads exactly size bytes; fewer are CW_ERR_FORMAT, and the message says how many. */
+CW_API cw_status cwi_stream_read(cwi_stream *s, void *to, size_t size, cw_error *err);
+
+/* Leaves out bytes; there may turn out to be fewer only when the next are read. */
+CW_API cw_status cwi_stream_skip(cwi_stream *s, uint64_t size, cw_error *err);
+
+/* Reads on to the checksum of compressed data, which must be there and right. A stream that has
+ * more than 64 KiB left is let be: its end is not what was asked for. */
+CW_API cw_status cwi_stream_finish(cwi_stream *s, cw_error *err);
+
+/* Harmless on a zeroed or already closed stream. */
+CW_API void cwi_stream_close(cwi_stream *s);
+
+#endif

@@ -1,0 +1,108 @@
+#include "formats/table.h"
+
+#include "core/module.h"
+
+#include <pthread.h>
+#include <string.h>
+#include <strings.h>
+
+/* in_this_build is filled in once, at run time: a module may have been left out of a package.
+ */
+static const cw_format rows[] = {
+    {.name = "nrrd",
+     .extensions = ".nrrd .nhdr",
+     .about = "NRRD volume, in one file or with its data beside it",
+     .reads_volume = true,
+     .writes_volume = true,
+     .in_this_build = true,
+     .lost = ""},
+    {.name = "nifti",
+     .extensions = ".nii .nii.gz .hdr",
+     .about = "NIfTI volume, plain or gzipped",
+     .reads_volume = true,
+     .writes_volume = true,
+     .in_this_build = true,
+     .lost = "the frame beyond single precision"},
+    {.name = "metaimage",
+     .extensions = ".mha .mhd",
+     .about = "MetaImage volume",
+     .reads_volume = true,
+     .writes_volume = true,
+     .in_this_build = true,
+     .lost = "slope and intercept"},
+    {.name = "raw",
+     .extensions = ".raw",
+     .about = "bytes without a header, laid out as the caller says",
+     .reads_volume = true,
+     .in_this_build = true,
+     .lost = ""},
+    {.name = "glb",
+     .extensions = ".glb",
+     .about = "binary glTF 2.0 scene, metres, +Y up, facing +Z",
+     .writes_mesh = true,
+     .lost = "scalars, labels"},
+    {.name = "gltf",
+     .extensions = ".gltf",
+     .about = "glTF 2.0 scene as text, metres, +Y up, facing +Z",
+     .writes_mesh = true,
+     .lost = "scalars, labels"},
+    {.name = "stl",
+     .extensions = ".stl",
+     .about = "binary STL, LPS millimetres",
+     .writes_mesh = true,
+     .in_this_build = true,
+     .lost = "shared vertices, normals, colours, scalars, labels, affine; places beyond single "
+             "precision"},
+    {.name = "ply",
+     .extensions = ".ply",
+     .about = "binary PLY, LPS millimetres",
+     .writes_mesh = true,
+     .in_this_build = true,
+     .lost = "affine; places beyond single precision"},
+    {.name = "obj",
+     .extensions = ".obj",
+     .about = "Wavefront OBJ, LPS millimetres",
+     .writes_mesh = true,
+     .in_this_build = true,
+     .lost = "colours, scalars, labels, affine"},
+};
+
+enum { ROW_COUNT = sizeof rows / sizeof *rows };
+
+static cw_format formats[ROW_COUNT];
+static pthread_once_t formats_once = PTHREAD_ONCE_INIT;
+
+static void fill_formats(void)
+{
+    const bool gltf = cwi_module_present("gltf");
+    memcpy(formats, rows, sizeof rows);
+    for (int i = 0; i < ROW_COUNT; i++)
+        if (strcmp(rows[i].name, "glb") == 0 || strcmp(rows[i].name, "gltf") == 0)
+            formats[i].in_this_build = gltf;
+}
+
+const cw_format *cw_formats(size_t *count)
+{
+    pthread_once(&formats_once, fill_formats);
+    *count = ROW_COUNT;
+    return formats;
+}
+
+static bool ends_in(const char *path, const char *extension, size_t length)
+{
+    const size_t path_length = strlen(path);
+    return path_length > length &&
+           strncasecmp(path + path_length - length, extension, length) == 0;
+}
+
+bool cwi_has_extension(const char *path, const char *extensions)
+{
+    while (*extensions) {
+        const size_t length = strcspn(extensions, " ");
+        if (length && ends_in(path, extensions, length))
+            return true;
+        extensions += length;
+        extensions += strspn(extensions, " ");
+    }
+    return false;
+}

@@ -1,0 +1,75 @@
+/* Status, errors, progress: what every call of the library has in common. */
+#ifndef CUBEWRIGHT_CORE_H
+#define CUBEWRIGHT_CORE_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define CW_VERSION "0.1.0"
+
+#if defined(__GNUC__)
+#define CW_API                 __attribute__((visibility("default")))
+#define CW_PRINTF(text, first) __attribute__((format(printf, text, first)))
+#else
+#define CW_API
+#define CW_PRINTF(text, first)
+#endif
+
+/* One row per status: constant, exit code of the command line, name in JSON, text for people.
+ * The enum, the command line's exit codes and `cubewright help exit` are all made from it. */
+#define CW_STATUS_TABLE(X)                                                                     \
+    X(CW_OK, 0, "ok", "done")                                                                  \
+    X(CW_ERR_CHECK, 1, "check-failed", "a check failed: the surface is not as promised")       \
+    X(CW_ERR_ARGUMENT, 2, "usage", "the command or an argument is not usable")                 \
+    X(CW_ERR_IO, 3, "unreadable", "an input cannot be opened or read")                         \
+    X(CW_ERR_FORMAT, 3, "bad-input", "an input is damaged or of a kind that is not supported") \
+    X(CW_ERR_BACKEND, 3, "library-failed", "a library gave up on an input")                    \
+    X(CW_ERR_UNSAFE, 4, "unsafe-input", "an input is readable but unsafe to trust")            \
+    X(CW_ERR_UNSUPPORTED, 5, "not-in-this-build", "the feature is not in this build")          \
+    X(CW_ERR_OUTPUT, 6, "output-not-written", "an output was not written")                     \
+    X(CW_ERR_BATCH, 7, "batch-failed", "some files of a batch failed")                         \
+    X(CW_ERR_LIMIT, 8, "over-limit", "a memory, voxel or triangle limit would be exceeded")    \
+    X(CW_ERR_NO_MEMORY, 8, "no-memory", "memory ran out")                                      \
+    X(CW_ERR_EMPTY, 9, "empty", "the result is empty: the level crosses nothing")              \
+    X(CW_ERR_CANCELLED, 130, "interrupted", "interrupted; partial files are removed")
+
+typedef enum cw_status {
+#define CW_STATUS_ENUM(name, exit_code, json, text) name,
+    CW_STATUS_TABLE(CW_STATUS_ENUM)
+#undef CW_STATUS_ENUM
+        CW_STATUS_COUNT
+} cw_status;
+
+/* Why a call failed, for a person: subject, what is wrong, what was expected, what was there.
+ */
+typedef struct cw_error {
+    cw_status status;
+    char message[512];
+} cw_error;
+
+/* How far a call has come, and the caller's chance to stop it. Zero means none. */
+typedef struct cw_progress {
+    /* Called on the calling thread: the step's name and the share of it done, 0 to 1.
+     * Return false to cancel: the call then fails with CW_ERR_CANCELLED. */
+    bool (*report)(void *user, const char *step, double done);
+    void *user;
+} cw_progress;
+
+/* The version of the library at run time, such as "0.1.0". */
+CW_API const char *cw_version(void);
+
+/* The row of CW_STATUS_TABLE for a status; an unknown status reads as CW_ERR_BACKEND. */
+CW_API int cw_status_exit_code(cw_status status);
+CW_API const char *cw_status_name(cw_status status);
+CW_API const char *cw_status_text(cw_status status);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

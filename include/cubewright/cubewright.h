@@ -1,0 +1,13 @@
+/* The whole library. */
+#ifndef CUBEWRIGHT_CUBEWRIGHT_H
+#define CUBEWRIGHT_CUBEWRIGHT_H
+
+#include <cubewright/core.h>
+#include <cubewright/extract.h>
+#include <cubewright/field.h>
+#include <cubewright/formats.h>
+#include <cubewright/mesh.h>
+#include <cubewright/quality.h>
+#include <cubewright/volume.h>
+
+#endif

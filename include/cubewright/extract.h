@@ -1,0 +1,68 @@
+/* Volume to mesh: the surface where a volume's trilinear field equals an isovalue. */
+#ifndef CUBEWRIGHT_EXTRACT_H
+#define CUBEWRIGHT_EXTRACT_H
+
+#include <cubewright/mesh.h>
+#include <cubewright/volume.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* How to take a surface out of a volume. Zero-initialise it and set what you need;
+ * a zero field means the default named beside it. */
+typedef struct cw_extract_desc {
+    double isovalue;      /* in the unit of the values (HU for CT); 0 means 0 */
+    bool inside_is_low;   /* default: values at or above the isovalue are inside */
+    bool leave_open;      /* default: cap the surface where it meets the end of the data */
+    bool no_normals;      /* default: one normal per vertex from the field's gradient */
+    int threads;          /* default: all that OpenMP offers */
+    size_t max_triangles; /* fail with CW_ERR_LIMIT before allocating more; default: no limit */
+    size_t max_bytes;     /* likewise for mesh and working memory; default: no limit */
+    cw_progress progress; /* default: none */
+} cw_extract_desc;
+
+/* What an extraction makes, known before it is made. */
+typedef struct cw_extract_counts {
+    size_t vertices;
+    size_t triangles;
+    size_t border_loops; /* loops along which the surface meets the volume's border */
+    size_t bytes;        /* of the mesh and the working memory, together */
+} cw_extract_counts;
+
+/* Extracts the surface { p : f(p) = isovalue } of the trilinear field f by marching cubes.
+ *
+ * Vertices are in the volume's world frame (LPS, millimetres) and shared by the triangles
+ * around them; each lies on a grid edge, kept 1/1024 of the edge away from its ends, so that
+ * samples equal to the isovalue give no zero-area triangle and no pinched vertex. Triangles
+ * wind counter-clockwise seen from outside. Normals are central differences of the values,
+ * one-sided at the border, interpolated along the edge. NaN and no-data voxels are outside the
+ * domain and infinite ones beyond every isovalue. Where the domain ends the surface is closed
+ * by a cap 1/1024 of a voxel beyond the last sample, or left open there. A volume without a
+ * crossing gives an empty mesh and CW_OK.
+ *
+ * volume   borrowed; at least 2 voxels along each axis; first component and step are used
+ * desc     borrowed; NULL means all defaults
+ * mesh     filled on success, emptied on failure; free it with cw_mesh_free()
+ * counts   what was made; may be NULL
+ * err      may be NULL
+ *
+ * Returns  CW_ERR_ARGUMENT  isovalue is not finite, volume too thin or as cw_volume_resolve()
+ *          CW_ERR_LIMIT     more than 2^32 - 1 vertices, or a limit of desc
+ *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
+ * Cost     two passes over the voxels' sign bits after one over the voxels
+ * Threads  reentrant; the mesh is the same to the bit for any number of threads
+ * Source   [Lorensen1987]; one rule for ambiguous faces [Montani1994]; ranks in place of
+ *          maps as in extract/README.md */
+CW_API cw_status cw_extract(const cw_volume *volume, const cw_extract_desc *desc, cw_mesh *mesh,
+                            cw_extract_counts *counts, cw_error *err);
+
+/* Counts what cw_extract() would make, without making it; same arguments and errors. */
+CW_API cw_status cw_extract_predict(const cw_volume *volume, const cw_extract_desc *desc,
+                                    cw_extract_counts *counts, cw_error *err);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,67 @@
+/* Fields whose surfaces are known on paper, sampled into volumes: for trying and for testing.
+ */
+#ifndef CUBEWRIGHT_FIELD_H
+#define CUBEWRIGHT_FIELD_H
+
+#include <cubewright/volume.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* One row per field: constant, name, isovalue of its surface, range of values, millimetres it
+ * spans along a volume's longest axis, what it is. */
+#define CW_FIELD_TABLE(X)                                                                      \
+    X(CW_FIELD_SPHERE, "sphere", 0, -60, 60, 80,                                               \
+      "distance to a sphere of radius 30 mm, positive inside")                                 \
+    X(CW_FIELD_TORUS, "torus", 0, -60, 60, 80,                                                 \
+      "distance to a torus of radii 26 and 10 mm, positive inside")                            \
+    X(CW_FIELD_PLANE, "plane", 0, -60, 60, 80, "distance to a plane tilted against all axes")  \
+    X(CW_FIELD_GYROID, "gyroid", 0, -1.5, 1.5, 80, "the gyroid, 2.5 periods: high genus")      \
+    X(CW_FIELD_MARSCHNER_LOBB, "marschner-lobb", 0.5, 0, 1, 2,                                 \
+      "the test signal of [Marschner1994], on its own cube of 2 mm")                           \
+    X(CW_FIELD_CT_HEAD, "ct-head", 300, -1024, 2000, 240,                                      \
+      "a CT head phantom in HU: skin at -300, bone at 300")
+
+typedef enum cw_field {
+#define CW_FIELD_ENUM(name, text, iso, low, high, span, about) name,
+    CW_FIELD_TABLE(CW_FIELD_ENUM)
+#undef CW_FIELD_ENUM
+        CW_FIELD_COUNT
+} cw_field;
+
+/* What cw_field_sample() makes. Zero fields mean the default named beside them. */
+typedef struct cw_field_desc {
+    cw_field field;
+    size_t dim[3]; /* voxels; default 64 each */
+    cw_type type;  /* CW_U8 first: name it */
+    double noise;  /* standard deviation of Gaussian noise, in the field's unit; default none */
+    uint64_t seed; /* of the noise */
+    int threads;   /* default: all */
+    cw_progress progress; /* default: none */
+} cw_field_desc;
+
+CW_API const char *cw_field_name(cw_field field);
+CW_API const char *cw_field_about(cw_field field);
+CW_API double cw_field_isovalue(cw_field field);
+CW_API bool cw_field_find(const char *name, cw_field *field);
+
+/* The field's value at a world point in millimetres. */
+CW_API double cw_field_value(cw_field field, const double world[3]);
+
+/* What a value of the field is in a volume of a type. Floats, and CT in types that hold -1024
+ * to 2000, keep the value; CT in u16 and u32 adds 1024; else the field's range is spread over
+ * 0..255, -128..127, 0..65535 or -32768..32767, whichever the type holds. */
+CW_API double cw_field_stored(cw_field field, cw_type type, double value);
+
+/* Samples a field into a new volume centred on the world's zero, rounded for integer types.
+ * Returns CW_ERR_ARGUMENT for an unknown field or type, CW_ERR_LIMIT,
+ * CW_ERR_NO_MEMORY, CW_ERR_CANCELLED.
+ * The same bytes for the same desc, for any number of threads. */
+CW_API cw_status cw_field_sample(const cw_field_desc *desc, cw_volume *volume, cw_error *err);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,100 @@
+/* Files: bytes to volume, volume and mesh to bytes. */
+#ifndef CUBEWRIGHT_FORMATS_H
+#define CUBEWRIGHT_FORMATS_H
+
+#include <cubewright/mesh.h>
+#include <cubewright/volume.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* The layout of a headerless file. */
+typedef struct cw_raw_layout {
+    size_t dim[3]; /* required */
+    cw_type type;
+    size_t components; /* 0 means 1; interleaved */
+    size_t steps;      /* 0 means 1 */
+    bool big_endian;
+    uint64_t offset;   /* bytes in front of the first voxel */
+    double spacing[3]; /* mm; all 0 means 1 each, and the unit is then unknown */
+} cw_raw_layout;
+
+/* How to read a volume. Zero-initialise it; a zero field means the default named beside it. */
+typedef struct cw_read_desc {
+    const char *reader;       /* a name of cw_formats(); default: by content, then extension */
+    const cw_raw_layout *raw; /* read as headerless bytes laid out so; default: by header */
+    bool header_only;         /* leave data NULL: everything else is filled in */
+    bool allow_external;      /* data files outside the header's folder; default: refused */
+    uint64_t max_voxels;      /* default 2^40 */
+    uint64_t max_bytes;       /* of voxels in memory; default: no limit */
+    cw_progress progress;     /* default: none */
+} cw_read_desc;
+
+/* Reads a volume: the whole file, every component and time step.
+ *
+ * The header is checked against the file's true size before anything is allocated. Voxels keep
+ * their type and numbers; only byte order is mended. Direction, origin and spacing arrive in
+ * the affine as the file states them, turned to LPS millimetres.
+ *
+ * format   set to the reader's name (static); may be NULL
+ * Returns  CW_ERR_IO           missing, not a regular file, unreadable
+ *          CW_ERR_FORMAT       not understood, damaged, or truncated; names the field
+ *          CW_ERR_LIMIT        more voxels or bytes than allowed; CW_ERR_NO_MEMORY
+ *          CW_ERR_ARGUMENT     no such reader; CW_ERR_CANCELLED */
+CW_API cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *volume,
+                                const char **format, cw_error *err);
+
+/* Reads a layout written as on the command line, for example
+ * "dims=512x512x300,type=u16le,offset=62,spacing=0.5x0.5x1,components=1,steps=1".
+ * Type is one of the eight with an optional le or be; le when left out.
+ * Returns CW_ERR_ARGUMENT naming the key that is wrong. */
+CW_API cw_status cw_raw_layout_parse(const char *text, cw_raw_layout *layout, cw_error *err);
+
+/* How to write a volume or mesh. Zero-initialise it. */
+typedef struct cw_write_desc {
+    const char *format;   /* a name of cw_formats(); default: by the path's extension */
+    const char *name;     /* of the object inside the file; default: the path's stem */
+    bool no_clobber;      /* fail when the path exists; default: replace it */
+    cw_progress progress; /* default: none */
+} cw_write_desc;
+
+/* Writes beside the path, flushes, then renames: the path holds the old file or the whole new
+ * one. The format is the path's extension (.nrrd, .nii, .nii.gz, .mha, .mhd is not written).
+ * Returns  CW_ERR_ARGUMENT     no writer of that name or extension
+ *          CW_ERR_OUTPUT       folder missing, disk full, path exists and no_clobber
+ *          CW_ERR_UNSUPPORTED  the format is not in this build; CW_ERR_CANCELLED */
+CW_API cw_status cw_volume_write(const char *path, const cw_volume *volume,
+                                 const cw_write_desc *desc, cw_error *err);
+
+/* Writes a mesh in the same way: .glb, .gltf, .stl, .ply or .obj.
+ * glTF goes out in metres, +Y up and facing +Z, by the node's transform: vertices stay exact.
+ * The others hold world coordinates (origin added), LPS millimetres.
+ * Returns  as cw_volume_write(); CW_ERR_ARGUMENT as cw_mesh_check(), and for an empty mesh;
+ *          CW_ERR_LIMIT when the format's own sizes are too small for the mesh. */
+CW_API cw_status cw_mesh_write(const char *path, const cw_mesh *mesh, const cw_write_desc *desc,
+                               cw_error *err);
+
+/* Whether cw_mesh_write() could write to a path, as far as can be known before there is a mesh:
+ * writer and library at hand, folder there and writable, nothing in the way. Same errors. */
+CW_API cw_status cw_mesh_write_check(const char *path, const cw_write_desc *desc,
+                                     cw_error *err);
+
+/* One row of what this build reads and writes. */
+typedef struct cw_format {
+    const char *name;       /* "nrrd" */
+    const char *extensions; /* ".nrrd .nhdr" */
+    const char *about;
+    bool reads_volume, writes_volume, reads_mesh, writes_mesh;
+    bool in_this_build;
+    const char *lost; /* what writing drops; "" for nothing */
+} cw_format;
+
+/* All formats, in_this_build or not; *count rows, static. */
+CW_API const cw_format *cw_formats(size_t *count);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

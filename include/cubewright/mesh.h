@@ -1,0 +1,43 @@
+/* A triangle mesh with shared vertices. */
+#ifndef CUBEWRIGHT_MESH_H
+#define CUBEWRIGHT_MESH_H
+
+#include <cubewright/core.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Vertices and triangles. A zeroed struct is a valid empty mesh.
+ *
+ * The world point of vertex v is  origin + positions[3v .. 3v+2], LPS millimetres: positions
+ * are small numbers near zero, so single precision keeps micrometres however far the scan
+ * stands from the scanner's zero. Triangles wind counter-clockwise seen from outside. */
+typedef struct cw_mesh {
+    double origin[3];
+    size_t vertex_count;
+    size_t triangle_count;
+    float *positions;    /* vertex_count x 3 */
+    float *normals;      /* vertex_count x 3, unit length, outward; or NULL */
+    uint32_t *triangles; /* triangle_count x 3, each below vertex_count */
+    float *scalars;      /* vertex_count; or NULL */
+    uint8_t *colors;     /* vertex_count x 4, sRGB and linear alpha; or NULL */
+    uint32_t *labels;    /* vertex_count; or NULL */
+    double affine[3][4]; /* index to world of the volume it came from; all 0: none */
+} cw_mesh;
+
+/* Frees the arrays and zeroes the struct. Harmless on a zeroed or already freed mesh. */
+CW_API void cw_mesh_free(cw_mesh *mesh);
+
+/* Checks what code below relies on: arrays present, every index below vertex_count, positions
+ * finite. Returns CW_ERR_ARGUMENT naming the first thing that is wrong. */
+CW_API cw_status cw_mesh_check(const cw_mesh *mesh, cw_error *err);
+
+/* World box of the vertices; false (and zeros) for a mesh without vertices. */
+CW_API bool cw_mesh_bounds(const cw_mesh *mesh, double min[3], double max[3]);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,135 @@
+/* A volume: a view of typed voxels, with the map from voxel indices to the world. */
+#ifndef CUBEWRIGHT_VOLUME_H
+#define CUBEWRIGHT_VOLUME_H
+
+#include <cubewright/core.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* One row per voxel type: constant, C type, name in files and on the command line. */
+#define CW_TYPE_TABLE(X)                                                                       \
+    X(CW_U8, uint8_t, "u8")                                                                    \
+    X(CW_I8, int8_t, "i8")                                                                     \
+    X(CW_U16, uint16_t, "u16")                                                                 \
+    X(CW_I16, int16_t, "i16")                                                                  \
+    X(CW_U32, uint32_t, "u32")                                                                 \
+    X(CW_I32, int32_t, "i32")                                                                  \
+    X(CW_F32, float, "f32")                                                                    \
+    X(CW_F64, double, "f64")
+
+typedef enum cw_type {
+#define CW_TYPE_ENUM(name, ctype, text) name,
+    CW_TYPE_TABLE(CW_TYPE_ENUM)
+#undef CW_TYPE_ENUM
+        CW_TYPE_COUNT
+} cw_type;
+
+/* What the file said of its unit and frame. The affine is LPS millimetres in any case: with
+ * nothing said, numbers are taken as millimetres and axes as LPS, and these flags tell so. */
+typedef enum cw_known { CW_KNOWN_UNIT = 1, CW_KNOWN_FRAME = 2 } cw_known;
+
+/* A view of voxels. A zeroed struct is a valid empty volume; fields left zero mean the default
+ * named beside them. Copying the struct copies the view, not the voxels.
+ *
+ * The voxel (i, j, k) of component c at time step t stands at
+ *     data + i stride[0] + j stride[1] + k stride[2] + c component_stride + t step_stride
+ * and stands for the value  slope * voxel + intercept  at the world point  affine * (i j k 1).
+ */
+typedef struct cw_volume {
+    const void *data;           /* first voxel; aligned for its type, native byte order */
+    cw_type type;               /* default CW_U8 */
+    size_t dim[3];              /* voxels along x, y, z; x varies fastest in packed data */
+    ptrdiff_t stride[3];        /* bytes from voxel to voxel; all 0: packed */
+    size_t components;          /* values per voxel (vectors, colours); 0 means 1 */
+    ptrdiff_t component_stride; /* bytes; 0: interleaved before x in packed data */
+    size_t steps;               /* time steps; 0 means 1 */
+    ptrdiff_t step_stride;      /* bytes; 0: one packed volume after another */
+    double step_seconds;        /* time between steps; 0: unknown */
+    double affine[3][4];        /* index to world, LPS millimetres; all 0: identity */
+    double slope, intercept;    /* value = slope * voxel + intercept; slope 0 means 1 */
+    bool has_nodata; /* voxels equal to nodata, before scaling, are outside the domain */
+    double nodata;
+    unsigned known; /* cw_known flags */
+    void *owned;    /* memory freed by cw_volume_free(); NULL for a borrowed view */
+} cw_volume;
+
+/* An index box: first voxel and number of voxels along each axis. */
+typedef struct cw_box {
+    size_t first[3];
+    size_t count[3];
+} cw_box;
+
+CW_API size_t cw_type_size(cw_type type);
+CW_API const char *cw_type_name(cw_type type);
+
+/* Makes a volume that owns zeroed, packed voxels: dim, components and steps as given (both 0
+ * mean 1), identity affine. Write the voxels through cw_volume_voxels().
+ * Returns CW_ERR_ARGUMENT for a zero dim, CW_ERR_LIMIT when the size overflows,
+ * CW_ERR_NO_MEMORY. */
+CW_API cw_status cw_volume_alloc(cw_volume *volume, cw_type type, const size_t dim[3],
+                                 size_t components, size_t steps, cw_error *err);
+
+/* Frees what the volume owns and zeroes it. Harmless on a zeroed or already freed volume. */
+CW_API void cw_volume_free(cw_volume *volume);
+
+/* The owned voxels, to be written to; NULL for a borrowed view. */
+CW_API void *cw_volume_voxels(cw_volume *volume);
+
+/* Copies *in to *out with every defaulted field filled in, so that code below needs no special
+ * cases. Borrowed like *in: free only one of them.
+ * Returns CW_ERR_ARGUMENT for an unknown type, a zero dim, a missing pointer, an affine or
+ * scaling that is not finite or cannot be inverted, strides that break the type's alignment. */
+CW_API cw_status cw_volume_resolve(const cw_volume *in, cw_volume *out, cw_error *err);
+
+/* A borrowed view of one component at one time step.
+ * Returns CW_ERR_ARGUMENT when there is none such. */
+CW_API cw_status cw_volume_select(const cw_volume *in, size_t component, size_t step,
+                                  cw_volume *out, cw_error *err);
+
+/* A borrowed view of the voxels inside a box; its affine places them where they were.
+ * Returns CW_ERR_ARGUMENT when the box is empty or leaves the volume. */
+CW_API cw_status cw_volume_crop(const cw_volume *in, const cw_box *box, cw_volume *out,
+                                cw_error *err);
+
+/* The value (scaled) of one voxel of the first component and step; slow, for tests and probes.
+ */
+CW_API double cw_volume_value(const cw_volume *volume, size_t i, size_t j, size_t k);
+
+/* World point of a (fractional) index; and the millimetres between neighbours along each axis.
+ */
+CW_API void cw_volume_to_world(const cw_volume *volume, const double index[3], double world[3]);
+CW_API void cw_volume_spacing(const cw_volume *volume, double spacing_mm[3]);
+
+/* What the values are: range, and how often each occurs. */
+typedef struct cw_statistics {
+    double min, max;   /* over finite values inside the domain; both 0 when there are none */
+    size_t finite;     /* values counted in the range */
+    size_t not_finite; /* NaN and infinite values */
+    size_t nodata;     /* voxels outside the domain */
+    double quantum;   /* step between neighbouring values of an integer type; 0: a float type */
+    size_t bin_count; /* bins asked for; for integer types never more than there are values */
+    double bin_width; /* bin b holds min + b * bin_width <= value < min + (b+1) * bin_width */
+    uint64_t *bins;   /* bin_count counts; the last bin holds max too */
+} cw_statistics;
+
+/* Counts the values of the first component and step into bin_count bins (0: range only).
+ * threads  0 means all
+ * Returns  CW_ERR_ARGUMENT as cw_volume_resolve(); CW_ERR_NO_MEMORY; free with
+ *          cw_statistics_free(). The result is the same for any number of threads. */
+CW_API cw_status cw_volume_statistics(const cw_volume *volume, size_t bin_count, int threads,
+                                      cw_statistics *out, cw_error *err);
+CW_API void cw_statistics_free(cw_statistics *statistics);
+
+/* Levels that separate the histogram into level_count + 1 classes (1 to 3) with the largest
+ * variance between classes: [Otsu1979], and [Liao2001] for more than one level.
+ * Returns false when the histogram has too few filled bins. */
+CW_API bool cw_statistics_otsu(const cw_statistics *statistics, int level_count,
+                               double *levels);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

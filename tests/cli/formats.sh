@@ -1,0 +1,3 @@
+cubewright formats
+cubewright formats --json | grep -c '"name"'
+cubewright version --features | tail -1

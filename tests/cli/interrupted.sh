@@ -1,0 +1,8 @@
+# Ctrl-C ends a long run with 130 and leaves nothing behind.
+cubewright make gyroid --noise 1 --dims 600 -o v.nrrd -q &
+child=$!
+sleep 0.7
+kill -TERM $child
+wait $child
+echo $?
+ls -A

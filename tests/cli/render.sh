@@ -1,0 +1,9 @@
+# A picture of the size asked for; an unknown camera names those there are.
+cubewright make torus -o t.nrrd --dims 32 -q
+cubewright render t.nrrd --iso 0 -o t.png --size 80x60 --camera top
+od -A n -t u1 -j 16 -N 8 t.png
+cubewright render t.nrrd --iso 0 -o u.png --camera sideways -q
+echo $?
+cubewright render t.nrrd --iso 99 -o u.png -q
+echo $?
+ls

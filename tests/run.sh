@@ -1,0 +1,48 @@
+#!/bin/sh
+# Installs what the tests need, builds, and runs every test. Safe to run twice.
+#
+# dev      gcc, debug, warnings are errors: all tests
+# release  gcc, as users build it: all tests
+# fuzz     clang, address and undefined sanitizers: unit tests and the fuzz corpora
+# tsan     clang, thread sanitizer: the tests of code with threads
+# minimal  no C++ library: unit tests, an installed copy
+set -eu
+cd "$(dirname "$0")/.."
+. cli/packages.sh
+
+mkdir -p build
+install_packages "what the build needs" needed optional
+install_packages "what the tests need" test
+install_packages "other people's readers" validator ||
+    echo "== some readers are missing: their tests will be skipped"
+validator=build/validator
+if command -v npm >/dev/null && [ ! -d $validator/node_modules/gltf-validator ]; then
+    echo "== installing the glTF validator (npm) in $validator"
+    mkdir -p $validator
+    cp tests/validator/package.json $validator/
+    npm install --prefix $validator --no-audit --no-fund --no-package-lock --silent ||
+        echo "== the glTF validator cannot be had: its tests will be skipped"
+fi
+
+# Runs a command and shows what it printed only if it fails.
+quietly() {
+    "$@" >build/log 2>&1 || { cat build/log; exit 1; }
+}
+
+build_and_test() {
+    preset=$1
+    shift
+    echo "== $preset"
+    quietly cmake --preset "$preset"
+    quietly cmake --build --preset "$preset"
+    quietly ctest --preset "$preset" -j "$(nproc)" "$@"
+    sed -n '/tests passed/,/^Total/p' build/log
+}
+
+build_and_test dev
+quietly cmake --build --preset dev --target format-check
+build_and_test release
+build_and_test fuzz -L 'unit|fuzz'
+build_and_test tsan -R 'extract|volume|quality|render'
+build_and_test minimal -R 'unit|fuzz|install'
+echo "== all tests passed"

@@ -1,0 +1,93 @@
+/* What the tests of the readers share: files put together from text and voxels, and what is
+ * read back from them. */
+#ifndef TESTS_READING_H
+#define TESTS_READING_H
+
+#include "core/memory.h"
+#include "support/support.h"
+
+#include <stdlib.h>
+#include <string.h>
+#include <zlib.h>
+
+/* A file of a header and the bytes behind it. */
+static inline void put_file(const char *name, const char *text, const void *bytes, size_t size)
+{
+    const size_t length = strlen(text);
+    char *all = malloc(length + size + 1);
+    assert_non_null(all);
+    memcpy(all, text, length);
+    if (size)
+        memcpy(all + length, bytes, size);
+    test_file_write(test_path(name), all, length + size);
+    free(all);
+}
+
+/* The bytes as gzip or zlib data; free them. */
+static inline unsigned char *pack_bytes(const void *bytes, size_t size, bool gzip,
+                                        size_t *packed)
+{
+    z_stream z = {0};
+    assert_int_equal(deflateInit2(&z, 6, Z_DEFLATED, MAX_WBITS + (gzip ? 16 : 0), 8, 0), Z_OK);
+    const size_t room = size + 1000;
+    unsigned char *out = malloc(room);
+    assert_non_null(out);
+    z.next_in = (Bytef *)(uintptr_t)bytes;
+    z.avail_in = (uInt)size;
+    z.next_out = out;
+    z.avail_out = (uInt)room;
+    assert_int_equal(deflate(&z, Z_FINISH), Z_STREAM_END);
+    *packed = room - z.avail_out;
+    deflateEnd(&z);
+    return out;
+}
+
+static inline cw_status read_back(const char *name, cw_volume *volume, cw_error *err)
+{
+    return cw_volume_read(test_path(name), NULL, volume, NULL, err);
+}
+
+/* The affine is these 12 numbers, row by row, to the bit. */
+static inline void check_affine(const cw_volume *volume, const double *wanted)
+{
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 4; c++)
+            if (volume->affine[r][c] != wanted[4 * r + c])
+                fail_msg("affine[%d][%d] is %.17g, not %.17g", r, c, volume->affine[r][c],
+                         wanted[4 * r + c]);
+}
+
+/* Whatever allocation fails, the reader says so and leaves nothing behind. */
+static inline void check_starved_reads(const char *name)
+{
+    for (long n = 0;; n++) {
+        cw_volume volume;
+        cw_error err = {0};
+        cwi_alloc_fail_after(n);
+        const cw_status st = read_back(name, &volume, &err);
+        if (!cwi_alloc_fail_after(-1)) {
+            assert_ok(st, err);
+            cw_volume_free(&volume);
+            assert_true(n > 0);
+            return;
+        }
+        assert_fails(st, CW_ERR_NO_MEMORY, "no memory", err);
+        assert_null(volume.data);
+    }
+}
+
+static inline int make_folder(void **state)
+{
+    (void)state;
+    test_folder_make();
+    return 0;
+}
+
+static inline int remove_folder(void **state)
+{
+    (void)state;
+    test_folder_remove();
+    return 0;
+}
+
+#endif

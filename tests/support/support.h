@@ -1,0 +1,60 @@
+/* What tests share. Include it instead of cmocka.h: cmocka wants its headers in one order. */
+#ifndef TESTS_SUPPORT_H
+#define TESTS_SUPPORT_H
+
+/* clang-format off */
+#include <setjmp.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <cmocka.h>
+/* clang-format on */
+
+#include <cubewright/cubewright.h>
+
+#define PI 3.14159265358979323846
+
+/* The call succeeded; else the test fails with its message. */
+#define assert_ok(call, err)                                                                   \
+    do {                                                                                       \
+        if ((call) != CW_OK)                                                                   \
+            fail_msg("%s: %s", #call, (err).message);                                          \
+    } while (0)
+
+/* The call failed with this status and a message that holds these words. */
+#define assert_fails(call, wanted, words, err)                                                 \
+    test_assert_fails((call), (wanted), (words), &(err), #call, __FILE__, __LINE__)
+
+/* |value - truth| <= share * |truth|. */
+#define assert_within(value, truth, share)                                                     \
+    test_assert_near((value), (truth), (share) * ((truth) < 0 ? -(truth) : (truth)), #value,   \
+                     __FILE__, __LINE__)
+#define assert_near(value, truth, margin)                                                      \
+    test_assert_near((value), (truth), (margin), #value, __FILE__, __LINE__)
+
+void test_assert_fails(cw_status got, cw_status wanted, const char *words, const cw_error *err,
+                       const char *call, const char *file, int line);
+void test_assert_near(double value, double truth, double margin, const char *what,
+                      const char *file, int line);
+
+/* A new empty folder, and its removal with all it holds; the path is valid until the removal.
+ */
+const char *test_folder_make(void);
+void test_folder_remove(void);
+
+/* "FOLDER/name" in static memory (four results are kept). */
+const char *test_path(const char *name);
+
+/* A whole file in memory (free it), and bytes to a file. Both fail the test on any error. */
+char *test_file_read(const char *path, size_t *size);
+void test_file_write(const char *path, const void *bytes, size_t size);
+
+/* How many entries the test's folder holds: for "nothing was left behind". */
+size_t test_folder_entries(void);
+
+/* A unit tetrahedron and a unit cube (12 triangles, shared vertices, normals), outward wound.
+ */
+void test_make_tetrahedron(cw_mesh *mesh);
+void test_make_cube(cw_mesh *mesh);
+
+#endif

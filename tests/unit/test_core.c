@@ -1,0 +1,160 @@
+#include "support/support.h"
+
+#include "core/memory.h"
+#include "core/module.h"
+#include "core/status.h"
+#include "core/text.h"
+
+#include <locale.h>
+#include <stdio.h>
+#include <string.h>
+
+static void every_status_has_its_row(void **state)
+{
+    (void)state;
+    for (int s = 0; s < CW_STATUS_COUNT; s++) {
+        assert_true(strlen(cw_status_name((cw_status)s)) > 0);
+        assert_true(strlen(cw_status_text((cw_status)s)) > 0);
+    }
+    assert_int_equal(cw_status_exit_code(CW_OK), 0);
+    assert_int_equal(cw_status_exit_code(CW_ERR_EMPTY), 9);
+    assert_int_equal(cw_status_exit_code(CW_ERR_CANCELLED), 130);
+    assert_string_equal(cw_status_name((cw_status)999), cw_status_name(CW_ERR_BACKEND));
+}
+
+static void failing_fills_the_error_and_prefixes_add_up(void **state)
+{
+    (void)state;
+    cw_error err = {0};
+    assert_int_equal(cw_fail(&err, CW_ERR_FORMAT, "'%s' is %d", "dim", 7), CW_ERR_FORMAT);
+    assert_int_equal(cwi_fail_in(&err, CW_ERR_FORMAT, "a.nrrd"), CW_ERR_FORMAT);
+    assert_string_equal(err.message, "a.nrrd: 'dim' is 7");
+    assert_int_equal(err.status, CW_ERR_FORMAT);
+    assert_int_equal(cw_fail(NULL, CW_ERR_IO, "nobody listens"), CW_ERR_IO);
+}
+
+static void a_long_message_is_cut_not_overrun(void **state)
+{
+    (void)state;
+    cw_error err = {0};
+    char text[2000];
+    memset(text, 'x', sizeof text - 1);
+    text[sizeof text - 1] = '\0';
+    cw_fail(&err, CW_ERR_IO, "%s", text);
+    assert_int_equal(strlen(err.message), sizeof err.message - 1);
+    cwi_fail_in(&err, CW_ERR_IO, text);
+    assert_int_equal(strlen(err.message), sizeof err.message - 1);
+}
+
+static bool refuse(void *user, const char *step, double done)
+{
+    (void)step, (void)done;
+    return --*(int *)user > 0;
+}
+
+static void refused_progress_cancels(void **state)
+{
+    (void)state;
+    int calls = 2;
+    cw_error err = {0};
+    const cw_progress progress = {refuse, &calls};
+    assert_int_equal(cwi_progress(&progress, "reading", 0, &err), CW_OK);
+    assert_fails(cwi_progress(&progress, "reading", 0.5, &err), CW_ERR_CANCELLED, "reading",
+                 err);
+    assert_int_equal(cwi_progress(&(cw_progress){0}, "reading", 0, &err), CW_OK);
+}
+
+static void sizes_that_overflow_are_refused(void **state)
+{
+    (void)state;
+    size_t n = 7;
+    assert_true(cwi_size_mul(1u << 20, 1u << 20, &n));
+    assert_true(n == (size_t)1 << 40);
+    assert_false(cwi_size_mul(SIZE_MAX / 2, 3, &n));
+    assert_false(cwi_size_add(SIZE_MAX, 1, &n));
+    assert_true(n == (size_t)1 << 40);
+    assert_null(cwi_alloc_array(SIZE_MAX / 4, 8));
+    assert_null(cwi_alloc_zeroed((size_t)PTRDIFF_MAX + 1, 1));
+    void *nothing = cwi_alloc_array(0, 8);
+    assert_non_null(nothing);
+    cwi_free(nothing);
+}
+
+static void the_nth_allocation_can_be_made_to_fail(void **state)
+{
+    (void)state;
+    cwi_alloc_fail_after(1);
+    void *first = cwi_alloc_array(1, 1), *second = cwi_alloc_array(1, 1);
+    assert_non_null(first);
+    assert_null(second);
+    assert_true(cwi_alloc_fail_after(-1));
+    assert_false(cwi_alloc_fail_after(-1));
+    cwi_free(first);
+}
+
+static void numbers_have_points_in_every_locale(void **state)
+{
+    (void)state;
+    const char *before = setlocale(LC_NUMERIC, "de_DE.UTF-8"); /* when there is one */
+    const char *text = " 2.5e1,7", *words = "x";
+    double value = 0;
+    int64_t whole = 0;
+    char out[16];
+    assert_true(cwi_parse_double(&text, &value));
+    assert_true(value == 25);
+    assert_int_equal(*text, ',');
+    assert_false(cwi_parse_double(&words, &value));
+    text = "-12 ";
+    assert_true(cwi_parse_int(&text, &whole));
+    assert_int_equal(whole, -12);
+    text = "99999999999999999999";
+    assert_false(cwi_parse_int(&text, &whole));
+    void *locale = cwi_locale_c();
+    snprintf(out, sizeof out, "%g", 0.5);
+    cwi_locale_restore(locale);
+    assert_string_equal(out, "0.5");
+    if (before)
+        setlocale(LC_NUMERIC, "C");
+}
+
+static void only_utf8_is_utf8(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text;
+        size_t length;
+    } rows[] = {
+        {"a", 1},    {"\xc3\xa9", 2},         {"\xe2\x82\xac", 3}, {"\xf0\x9f\x99\x82", 4},
+        {"\x80", 0}, {"\xc0\x80", 0},         {"\xe0\x80\xaf", 0}, {"\xed\xa0\x80", 0},
+        {"\xc3", 0}, {"\xf4\x90\x80\x80", 0}, {"\xff", 0},         {"\xe2\x82", 0},
+    };
+    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++)
+        assert_int_equal(cwi_utf8_length(rows[n].text), rows[n].length);
+}
+
+static void a_missing_module_names_its_option_and_package(void **state)
+{
+    (void)state;
+    cw_error err = {0};
+    const void *functions;
+    assert_false(cwi_module_present("nosuch"));
+    assert_fails(
+        cwi_module_load("nosuch", "CUBEWRIGHT_NOSUCH", "libnosuch-dev", &functions, &err),
+        CW_ERR_UNSUPPORTED, "-DCUBEWRIGHT_NOSUCH=ON and the Debian package libnosuch-dev", err);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(every_status_has_its_row),
+        cmocka_unit_test(failing_fills_the_error_and_prefixes_add_up),
+        cmocka_unit_test(a_long_message_is_cut_not_overrun),
+        cmocka_unit_test(refused_progress_cancels),
+        cmocka_unit_test(sizes_that_overflow_are_refused),
+        cmocka_unit_test(the_nth_allocation_can_be_made_to_fail),
+        cmocka_unit_test(numbers_have_points_in_every_locale),
+        cmocka_unit_test(only_utf8_is_utf8),
+        cmocka_unit_test(a_missing_module_names_its_option_and_package),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,199 @@
+#include "support/support.h"
+
+#include "core/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int make_folder(void **state)
+{
+    (void)state;
+    test_folder_make();
+    return 0;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    test_folder_remove();
+    return 0;
+}
+
+/* What can go wrong before a writer is asked, as one row a mistake. */
+static void mistakes_are_named_with_the_path(void **state)
+{
+    (void)state;
+    cw_mesh mesh = {0}, empty = {0}, broken = {0};
+    cw_error err = {0};
+    test_make_tetrahedron(&mesh);
+    test_make_tetrahedron(&broken);
+    broken.positions[4] = NAN;
+    const struct {
+        const char *path, *format;
+        const cw_mesh *mesh;
+        cw_status status;
+        const char *words;
+    } rows[] = {
+        {"a.xyz", NULL, &mesh, CW_ERR_ARGUMENT, "a.xyz: its extension is of no mesh format"},
+        {"a.nrrd", NULL, &mesh, CW_ERR_ARGUMENT, "there are .glb .gltf .stl .ply .obj"},
+        {"a.stl", "nrrd", &mesh, CW_ERR_ARGUMENT,
+         "no mesh format is named 'nrrd'; there are glb"},
+        {"a.stl", NULL, &empty, CW_ERR_ARGUMENT, "a.stl: the mesh is empty"},
+        {"a.stl", NULL, &broken, CW_ERR_ARGUMENT, "vertex 1 is not finite"},
+        {"no/a.stl", NULL, &mesh, CW_ERR_OUTPUT, "no/a.stl: the folder '"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        const cw_write_desc desc = {.format = rows[i].format};
+        assert_fails(cw_mesh_write(test_path(rows[i].path), rows[i].mesh, &desc, &err),
+                     rows[i].status, rows[i].words, err);
+    }
+    broken.positions[4] = 0;
+    broken.origin[2] = 1e300;
+    assert_fails(cw_mesh_write(test_path("a.stl"), &broken, NULL, &err), CW_ERR_LIMIT,
+                 "single precision", err);
+    assert_int_equal(test_folder_entries(), 0);
+    cw_mesh_free(&mesh);
+    cw_mesh_free(&broken);
+}
+
+static void a_named_format_wins_over_the_extension(void **state)
+{
+    (void)state;
+    cw_mesh mesh = {0};
+    cw_error err = {0};
+    size_t size;
+    test_make_tetrahedron(&mesh);
+    const cw_write_desc desc = {.format = "stl"};
+    assert_ok(cw_mesh_write(test_path("a.ply"), &mesh, &desc, &err), err);
+    free(test_file_read(test_path("a.ply"), &size));
+    assert_int_equal(size, 84 + 4 * 50);
+    cw_mesh_free(&mesh);
+}
+
+static bool refuse(void *user, const char *step, double done)
+{
+    assert_string_equal(step, "writing");
+    assert_true(done >= 0 && done <= 1);
+    ++*(int *)user;
+    return false;
+}
+
+/* The n-th format of meshes that this build writes; NULL after the last. */
+static const char *mesh_format(size_t n)
+{
+    size_t count;
+    const cw_format *formats = cw_formats(&count);
+    for (size_t i = 0; i < count; i++)
+        if (formats[i].writes_mesh && formats[i].in_this_build && n-- == 0)
+            return formats[i].name;
+    return NULL;
+}
+
+static void a_cancelled_write_leaves_nothing(void **state)
+{
+    (void)state;
+    cw_mesh mesh = {0};
+    cw_error err = {0};
+    int calls = 0, formats = 0;
+    test_make_cube(&mesh);
+    for (cw_write_desc desc = {.progress = {refuse, &calls}};
+         (desc.format = mesh_format((size_t)formats)); formats++)
+        assert_fails(cw_mesh_write(test_path("a"), &mesh, &desc, &err), CW_ERR_CANCELLED,
+                     "interrupted while writing", err);
+    assert_true(formats >= 3);
+    assert_int_equal(calls, formats);
+    assert_int_equal(test_folder_entries(), 0);
+    cw_mesh_free(&mesh);
+}
+
+static void starve(const cw_mesh *mesh, const char *format)
+{
+    const cw_write_desc desc = {.format = format};
+    const size_t before = test_folder_entries();
+    cw_error err = {0};
+    bool failed = true;
+    for (long n = 0; failed; n++) {
+        cwi_alloc_fail_after(n);
+        cw_status st = cw_mesh_write(test_path(format), mesh, &desc, &err);
+        failed = cwi_alloc_fail_after(-1);
+        assert_int_equal(st, failed ? CW_ERR_NO_MEMORY : CW_OK);
+        assert_int_equal(test_folder_entries(), failed ? before : before + 1);
+    }
+}
+
+static void running_out_of_memory_leaves_nothing(void **state)
+{
+    (void)state;
+    cw_mesh mesh = {0};
+    test_make_cube(&mesh);
+    for (size_t i = 0; mesh_format(i); i++)
+        starve(&mesh, mesh_format(i));
+    cw_mesh_free(&mesh);
+}
+
+static void the_table_of_formats_is_whole_and_always_the_same(void **state)
+{
+    (void)state;
+    static const char wanted[] = "nrrd nifti metaimage raw glb gltf stl ply obj ";
+    char names[128] = "";
+    size_t count, again;
+    const cw_format *formats = cw_formats(&count);
+    assert_ptr_equal(formats, cw_formats(&again));
+    assert_int_equal(count, again);
+    for (size_t i = 0; i < count; i++) {
+        strcat(strcat(names, formats[i].name), " ");
+        assert_true(formats[i].extensions[0] == '.' && formats[i].about[0]);
+        assert_non_null(formats[i].lost);
+        assert_true(formats[i].reads_volume || formats[i].writes_mesh);
+    }
+    assert_string_equal(names, wanted);
+}
+
+/* Names end up in JSON and in lines of text, so nothing but printable UTF-8 may pass. */
+static void names_are_made_safe_for_every_format(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name, *written;
+    } rows[] = {
+        {NULL, "o bone.v2\n"},
+        {"left femur", "o left femur\n"},
+        {"two\nlines", "o two_lines\n"},
+        {"Sch\xc3\xa4"
+         "del",
+         "o Sch\xc3\xa4"
+         "del\n"},
+        {"joined\\", "o joined_\n"},
+        {"latin\xe4 x", "o latin_ x\n"},
+        {"surrogate\xed\xa0\x80", "o surrogate___\n"},
+        {"cut\xe2\x82", "o cut__\n"},
+    };
+    cw_mesh mesh = {0};
+    cw_error err = {0};
+    size_t size;
+    test_make_cube(&mesh);
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        const cw_write_desc desc = {.name = rows[i].name};
+        assert_ok(cw_mesh_write(test_path("bone.v2.obj"), &mesh, &desc, &err), err);
+        char *text = test_file_read(test_path("bone.v2.obj"), &size);
+        assert_non_null(strstr(text, rows[i].written));
+        free(text);
+    }
+    cw_mesh_free(&mesh);
+}
+
+#define CASE(test) cmocka_unit_test_setup_teardown(test, make_folder, remove_folder)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        CASE(mistakes_are_named_with_the_path),
+        CASE(a_named_format_wins_over_the_extension),
+        CASE(a_cancelled_write_leaves_nothing),
+        CASE(running_out_of_memory_leaves_nothing),
+        CASE(the_table_of_formats_is_whole_and_always_the_same),
+        CASE(names_are_made_safe_for_every_format),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,125 @@
+#include "support/support.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static int make_folder(void **state)
+{
+    (void)state;
+    test_folder_make();
+    return 0;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    test_folder_remove();
+    return 0;
+}
+
+/* The next line that starts with a word; moves *text behind the word. */
+static bool next_line(const char **text, const char *word)
+{
+    char start[8];
+    snprintf(start, sizeof start, "\n%s ", word);
+    const char *at = strstr(*text, start);
+    if (at)
+        *text = at + strlen(start);
+    return at != NULL;
+}
+
+static void places_come_back_to_the_bit(void **state)
+{
+    (void)state;
+    cw_mesh mesh = {0};
+    cw_error err = {0};
+    size_t size, count = 0;
+    test_make_cube(&mesh);
+    for (size_t i = 0; i < 24; i++)
+        mesh.positions[i] = 1.0f / (float)(i + 3) - 0.1f * (float)i;
+    assert_ok(cw_mesh_write(test_path("a.obj"), &mesh, NULL, &err), err);
+    char *text = test_file_read(test_path("a.obj"), &size);
+    for (const char *at = text; next_line(&at, "v"); count++)
+        for (size_t a = 0; a < 3; a++)
+            assert_true((float)strtod(at, (char **)&at) == mesh.positions[3 * count + a]);
+    assert_int_equal(count, 8);
+    count = 0;
+    for (const char *at = text; next_line(&at, "vn"); count++)
+        for (size_t a = 0; a < 3; a++)
+            assert_true((float)strtod(at, (char **)&at) == mesh.normals[3 * count + a]);
+    assert_int_equal(count, 8);
+    free(text);
+    cw_mesh_free(&mesh);
+}
+
+static void a_kilometre_from_zero_keeps_its_micrometres(void **state)
+{
+    (void)state;
+    cw_mesh mesh = {0};
+    cw_error err = {0};
+    size_t size, v = 0;
+    test_make_cube(&mesh);
+    mesh.origin[0] = 1e6;
+    for (size_t i = 0; i < 24; i++)
+        mesh.positions[i] *= 0.123456f;
+    assert_ok(cw_mesh_write(test_path("a.obj"), &mesh, NULL, &err), err);
+    char *text = test_file_read(test_path("a.obj"), &size);
+    for (const char *at = text; next_line(&at, "v"); v++)
+        assert_near(strtod(at, NULL), 1e6 + (double)mesh.positions[3 * v], 0.5001e-3);
+    free(text);
+    cw_mesh_free(&mesh);
+}
+
+static void faces_name_vertices_and_normals_from_one(void **state)
+{
+    (void)state;
+    cw_mesh mesh = {0};
+    cw_error err = {0};
+    size_t size, count = 0;
+    test_make_cube(&mesh);
+    assert_ok(cw_mesh_write(test_path("a.obj"), &mesh, NULL, &err), err);
+    char *text = test_file_read(test_path("a.obj"), &size);
+    for (const char *at = text; next_line(&at, "f"); count++)
+        for (size_t c = 0; c < 3; c++) {
+            const unsigned long place = strtoul(at, (char **)&at, 10);
+            assert_int_equal(place, mesh.triangles[3 * count + c] + 1);
+            assert_memory_equal(at, "//", 2);
+            assert_int_equal(strtoul(at + 2, (char **)&at, 10), place);
+        }
+    assert_int_equal(count, 12);
+    free(text);
+    cw_mesh_free(&mesh);
+}
+
+static void a_mesh_without_normals_is_plain(void **state)
+{
+    (void)state;
+    static const char wanted[] = "# cubewright " CW_VERSION ", LPS, mm\no a\n"
+                                 "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\n"
+                                 "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    cw_mesh mesh = {0};
+    cw_error err = {0};
+    size_t size;
+    test_make_tetrahedron(&mesh);
+    free(mesh.normals);
+    mesh.normals = NULL;
+    assert_ok(cw_mesh_write(test_path("a.obj"), &mesh, NULL, &err), err);
+    char *text = test_file_read(test_path("a.obj"), &size);
+    assert_string_equal(text, wanted);
+    free(text);
+    cw_mesh_free(&mesh);
+}
+
+#define CASE(test) cmocka_unit_test_setup_teardown(test, make_folder, remove_folder)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        CASE(places_come_back_to_the_bit),
+        CASE(a_kilometre_from_zero_keeps_its_micrometres),
+        CASE(faces_name_vertices_and_normals_from_one),
+        CASE(a_mesh_without_normals_is_plain),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,359 @@
+#define _GNU_SOURCE /* mkfifo, symlink, setrlimit */
+#include "support/support.h"
+
+#include "core/memory.h"
+#include "core/outfile.h"
+
+#include <fcntl.h>
+#include <locale.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+static int make_folder(void **state)
+{
+    (void)state;
+    test_folder_make();
+    return 0;
+}
+
+static int remove_folder(void **state)
+{
+    (void)state;
+    test_folder_remove();
+    return 0;
+}
+
+static cw_status write_file(const char *path, const char *text, bool no_clobber, cw_error *err)
+{
+    cwi_outfile *file = NULL;
+    cw_status st = cwi_outfile_open(&file, path, no_clobber, err);
+    if (st == CW_OK)
+        st = cwi_outfile_write(file, text, strlen(text), err);
+    if (st == CW_OK)
+        st = cwi_outfile_commit(&file, err);
+    cwi_outfile_abort(&file);
+    return st;
+}
+
+static void assert_holds(const char *path, const char *text)
+{
+    size_t size;
+    char *bytes = test_file_read(path, &size);
+    assert_string_equal(bytes, text);
+    free(bytes);
+}
+
+static unsigned mode_of(const char *path)
+{
+    struct stat info;
+    assert_int_equal(stat(path, &info), 0);
+    return info.st_mode & 0777;
+}
+
+static void a_file_appears_only_at_the_commit(void **state)
+{
+    (void)state;
+    const char *path = test_path("a.bin");
+    cwi_outfile *file = NULL;
+    cw_error err = {0};
+    assert_ok(cwi_outfile_open(&file, path, false, &err), err);
+    assert_ok(cwi_outfile_write(file, "whole", 5, &err), err);
+    assert_int_not_equal(access(path, F_OK), 0);
+    assert_int_equal(test_folder_entries(), 1); /* the temporary */
+    assert_ok(cwi_outfile_commit(&file, &err), err);
+    assert_null(file);
+    assert_holds(path, "whole");
+    assert_int_equal(test_folder_entries(), 1);
+}
+
+static void an_old_file_stays_until_the_commit(void **state)
+{
+    (void)state;
+    const char *path = test_path("old.bin");
+    cwi_outfile *file = NULL;
+    cw_error err = {0};
+    test_file_write(path, "old", 3);
+    assert_ok(cwi_outfile_open(&file, path, false, &err), err);
+    assert_ok(cwi_outfile_write(file, "new", 3, &err), err);
+    assert_holds(path, "old");
+    assert_ok(cwi_outfile_commit(&file, &err), err);
+    assert_holds(path, "new");
+}
+
+static void an_abort_leaves_nothing_and_can_be_repeated(void **state)
+{
+    (void)state;
+    cwi_outfile *file = NULL;
+    cw_error err = {0};
+    assert_ok(cwi_outfile_open(&file, test_path("a.bin"), false, &err), err);
+    assert_ok(cwi_outfile_write(file, "half", 4, &err), err);
+    cwi_outfile_abort(&file);
+    cwi_outfile_abort(&file);
+    assert_null(file);
+    assert_int_equal(test_folder_entries(), 0);
+}
+
+static void buffered_and_large_writes_keep_their_order(void **state)
+{
+    (void)state;
+    enum { SIZE = 3 << 20 };
+    const char *path = test_path("large.bin");
+    unsigned char *bytes = malloc(SIZE);
+    assert_non_null(bytes);
+    for (size_t i = 0; i < SIZE; i++)
+        bytes[i] = (unsigned char)(i * 2654435761u >> 13);
+    cwi_outfile *file = NULL;
+    cw_error err = {0};
+    assert_ok(cwi_outfile_open(&file, path, false, &err), err);
+    size_t at = 0;
+    for (size_t step = 1; at < SIZE; step = step * 3 + 1) {
+        const size_t n = step < SIZE - at ? step : SIZE - at;
+        assert_ok(cwi_outfile_write(file, bytes + at, n, &err), err);
+        at += n;
+    }
+    assert_ok(cwi_outfile_commit(&file, &err), err);
+    size_t size;
+    char *back = test_file_read(path, &size);
+    assert_int_equal(size, SIZE);
+    assert_memory_equal(back, bytes, SIZE);
+    free(back);
+    free(bytes);
+}
+
+static void printed_text_may_be_longer_than_the_buffer(void **state)
+{
+    (void)state;
+    enum { LENGTH = 300000 };
+    const char *path = test_path("text");
+    char *text = malloc(LENGTH + 1);
+    assert_non_null(text);
+    memset(text, 'x', LENGTH);
+    text[LENGTH] = '\0';
+    cwi_outfile *file = NULL;
+    cw_error err = {0};
+    assert_ok(cwi_outfile_open(&file, path, false, &err), err);
+    assert_ok(cwi_outfile_printf(file, &err, "%d %.2f ", 7, 1.25), err);
+    assert_ok(cwi_outfile_printf(file, &err, "%s|", text), err);
+    assert_ok(cwi_outfile_printf(file, &err, "end"), err);
+    assert_ok(cwi_outfile_commit(&file, &err), err);
+    size_t size;
+    char *back = test_file_read(path, &size);
+    assert_int_equal(size, 7 + LENGTH + 4);
+    assert_memory_equal(back, "7 1.25 x", 8);
+    assert_string_equal(back + size - 5, "x|end");
+    free(back);
+    free(text);
+}
+
+static void numbers_have_points_in_every_locale(void **state)
+{
+    (void)state;
+    if (!setlocale(LC_ALL, "de_DE.UTF-8"))
+        skip();
+    cwi_outfile *file = NULL;
+    cw_error err = {0};
+    assert_ok(cwi_outfile_open(&file, test_path("n"), false, &err), err);
+    assert_ok(cwi_outfile_printf(file, &err, "%g", 0.5), err);
+    assert_ok(cwi_outfile_commit(&file, &err), err);
+    setlocale(LC_ALL, "C");
+    assert_holds(test_path("n"), "0.5");
+}
+
+/* What stands at the path before, as one row a kind. */
+static void only_regular_files_are_replaced(void **state)
+{
+    (void)state;
+    cw_error err = {0};
+    assert_int_equal(mkdir(test_path("folder"), 0777), 0);
+    assert_int_equal(mkfifo(test_path("pipe"), 0666), 0);
+    assert_int_equal(symlink("nowhere", test_path("dangling")), 0);
+    test_file_write(test_path("file"), "x", 1);
+    static const struct {
+        const char *name, *words;
+    } rows[] = {
+        {"folder", "it is a folder"},
+        {"folder/", "it is a folder"},
+        {"pipe", "it is a device, pipe or socket"},
+        {"dangling", "a link that leads nowhere"},
+        {"new/", "it names no file"},
+        {"file/a", "cannot be opened: Not a directory"},
+        {"missing/a", "missing' does not exist"},
+        {"missing/b/a", "missing/b' does not exist"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        assert_fails(write_file(test_path(rows[i].name), "x", false, &err), CW_ERR_OUTPUT,
+                     rows[i].words, err);
+    assert_fails(write_file("/dev/null", "x", false, &err), CW_ERR_OUTPUT, "device", err);
+    assert_fails(write_file("", "x", false, &err), CW_ERR_OUTPUT, "it names no file", err);
+    assert_int_equal(test_folder_entries(), 4);
+}
+
+static void a_link_is_followed_and_stays_a_link(void **state)
+{
+    (void)state;
+    cw_error err = {0};
+    struct stat info;
+    assert_int_equal(mkdir(test_path("real"), 0777), 0);
+    test_file_write(test_path("real/file"), "old", 3);
+    assert_int_equal(symlink("real/file", test_path("link")), 0);
+    assert_ok(write_file(test_path("link"), "new", false, &err), err);
+    assert_int_equal(lstat(test_path("link"), &info), 0);
+    assert_true(S_ISLNK(info.st_mode));
+    assert_holds(test_path("real/file"), "new");
+    assert_fails(write_file(test_path("link"), "x", true, &err), CW_ERR_OUTPUT, "it exists",
+                 err);
+}
+
+static void no_clobber_refuses_what_was_there_and_what_came_meanwhile(void **state)
+{
+    (void)state;
+    const char *path = test_path("kept");
+    cwi_outfile *file = NULL;
+    cw_error err = {0};
+    assert_ok(write_file(path, "first", true, &err), err);
+    assert_fails(write_file(path, "second", true, &err), CW_ERR_OUTPUT, "it exists", err);
+    assert_holds(path, "first");
+
+    const char *late = test_path("late");
+    assert_ok(cwi_outfile_open(&file, late, true, &err), err);
+    test_file_write(late, "faster", 6);
+    assert_fails(cwi_outfile_commit(&file, &err), CW_ERR_OUTPUT, "it exists", err);
+    assert_null(file);
+    assert_holds(late, "faster");
+    assert_int_equal(test_folder_entries(), 2);
+}
+
+static void modes_follow_the_umask_or_the_old_file(void **state)
+{
+    (void)state;
+    cw_error err = {0};
+    const mode_t before = umask(027);
+    assert_ok(write_file(test_path("new"), "x", false, &err), err);
+    assert_int_equal(mode_of(test_path("new")), 0640);
+    assert_int_equal(chmod(test_path("new"), 0606), 0);
+    assert_ok(write_file(test_path("new"), "y", false, &err), err);
+    assert_int_equal(mode_of(test_path("new")), 0606);
+    umask(before);
+}
+
+static void the_longest_name_can_be_written(void **state)
+{
+    (void)state;
+    cw_error err = {0};
+    char name[257];
+    memset(name, 'n', sizeof name);
+    name[255] = '\0';
+    char path[512];
+    snprintf(path, sizeof path, "%s", test_path(name)); /* test_path cuts at 255 bytes */
+    const size_t folder = (size_t)(strrchr(path, '/') - path) + 1;
+    snprintf(path + folder, sizeof path - folder, "%s", name);
+    assert_ok(write_file(path, "x", false, &err), err);
+    assert_holds(path, "x");
+    name[255] = 'n';
+    name[256] = '\0';
+    snprintf(path + folder, sizeof path - folder, "%s", name);
+    assert_fails(write_file(path, "x", false, &err), CW_ERR_OUTPUT, "too long", err);
+}
+
+/* A full disk is played by a limit on the size of files. The child has its own limit. */
+static int write_too_much(const char *path)
+{
+    const struct rlimit limit = {4096, 4096};
+    static char bytes[600000];
+    cwi_outfile *file = NULL;
+    cw_error err = {0}, later = {0};
+    signal(SIGXFSZ, SIG_IGN);
+    if (setrlimit(RLIMIT_FSIZE, &limit) != 0 ||
+        cwi_outfile_open(&file, path, false, &err) != CW_OK)
+        return 1;
+    if (cwi_outfile_write(file, bytes, sizeof bytes, &err) != CW_ERR_OUTPUT ||
+        !strstr(err.message, "File too large"))
+        return 2;
+    if (cwi_outfile_printf(file, &later, "x") != CW_ERR_OUTPUT ||
+        cwi_outfile_commit(&file, &later) != CW_ERR_OUTPUT || file)
+        return 3;
+    return strcmp(err.message, later.message) == 0 ? 0 : 4;
+}
+
+static void a_full_disk_fails_and_keeps_the_old_file(void **state)
+{
+    (void)state;
+    const char *path = test_path("full");
+    int status;
+    test_file_write(path, "old", 3);
+    const pid_t child = fork();
+    assert_true(child >= 0);
+    if (child == 0)
+        _exit(write_too_much(path));
+    assert_int_equal(waitpid(child, &status, 0), child);
+    assert_true(WIFEXITED(status));
+    assert_int_equal(WEXITSTATUS(status), 0);
+    assert_holds(path, "old");
+    assert_int_equal(test_folder_entries(), 1);
+}
+
+static void a_signal_handler_can_remove_what_is_in_progress(void **state)
+{
+    (void)state;
+    cwi_outfile *files[70] = {0}; /* more than the registry holds: those are only not removed */
+    cw_error err = {0};
+    char name[16];
+    for (int i = 0; i < 70; i++) {
+        snprintf(name, sizeof name, "f%d", i);
+        assert_ok(cwi_outfile_open(&files[i], test_path(name), false, &err), err);
+    }
+    assert_int_equal(test_folder_entries(), 70);
+    cwi_outfile_remove_all();
+    assert_int_equal(test_folder_entries(), 6);
+    assert_fails(cwi_outfile_commit(&files[0], &err), CW_ERR_OUTPUT, "put in its place", err);
+    for (int i = 0; i < 70; i++)
+        cwi_outfile_abort(&files[i]);
+    assert_int_equal(test_folder_entries(), 0);
+    assert_ok(write_file(test_path("after"), "x", false, &err), err);
+    cwi_outfile_remove_all();
+    assert_holds(test_path("after"), "x");
+}
+
+static void running_out_of_memory_leaves_nothing(void **state)
+{
+    (void)state;
+    cw_error err = {0};
+    long n = 0;
+    for (bool failed = true; failed; n++) {
+        cwi_alloc_fail_after(n);
+        cw_status st = write_file(test_path("m"), "x", false, &err);
+        failed = cwi_alloc_fail_after(-1);
+        assert_int_equal(st, failed ? CW_ERR_NO_MEMORY : CW_OK);
+        assert_int_equal(test_folder_entries(), failed ? 0 : 1);
+    }
+    assert_true(n > 2);
+}
+
+#define CASE(test) cmocka_unit_test_setup_teardown(test, make_folder, remove_folder)
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        CASE(a_file_appears_only_at_the_commit),
+        CASE(an_old_file_stays_until_the_commit),
+        CASE(an_abort_leaves_nothing_and_can_be_repeated),
+        CASE(buffered_and_large_writes_keep_their_order),
+        CASE(printed_text_may_be_longer_than_the_buffer),
+        CASE(numbers_have_points_in_every_locale),
+        CASE(only_regular_files_are_replaced),
+        CASE(a_link_is_followed_and_stays_a_link),
+        CASE(no_clobber_refuses_what_was_there_and_what_came_meanwhile),
+        CASE(modes_follow_the_umask_or_the_old_file),
+        CASE(the_longest_name_can_be_written),
+        CASE(a_full_disk_fails_and_keeps_the_old_file),
+        CASE(a_signal_handler_can_remove_what_is_in_progress),
+        CASE(running_out_of_memory_leaves_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,211 @@
+/* Meshes with one planted fault each, and what the checks must say of them. */
+#include "support/support.h"
+
+#include "core/memory.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static cw_quality measure(const cw_mesh *mesh, bool weld)
+{
+    cw_quality q;
+    cw_error err = {0};
+    assert_ok(cw_quality_measure(mesh, &(cw_quality_desc){.weld = weld}, &q, &err), err);
+    return q;
+}
+
+static void a_cube_is_all_it_should_be(void **state)
+{
+    (void)state;
+    cw_mesh mesh;
+    test_make_cube(&mesh);
+    mesh.origin[0] = 1e6;
+    const cw_quality q = measure(&mesh, false);
+    assert_true(cw_quality_is_closed_manifold(&q));
+    assert_int_equal(q.edges, 18);
+    assert_int_equal(q.euler, 2);
+    assert_int_equal(q.components, 1);
+    assert_near(q.area_mm2, 6, 1e-12);
+    assert_near(q.volume_mm3, 1, 1e-12);
+    assert_true(q.min[0] == 1e6 && q.max[0] == 1e6 + 1);
+    cw_mesh_free(&mesh);
+}
+
+static void a_missing_triangle_opens_three_edges(void **state)
+{
+    (void)state;
+    cw_mesh mesh;
+    test_make_cube(&mesh);
+    mesh.triangle_count--;
+    const cw_quality q = measure(&mesh, false);
+    assert_int_equal(q.open_edges, 3);
+    assert_int_equal(q.euler, 1);
+    assert_false(cw_quality_is_closed_manifold(&q));
+    cw_mesh_free(&mesh);
+}
+
+static void a_flipped_triangle_misorients_three_edges(void **state)
+{
+    (void)state;
+    cw_mesh mesh;
+    test_make_tetrahedron(&mesh);
+    const uint32_t t = mesh.triangles[0];
+    mesh.triangles[0] = mesh.triangles[1];
+    mesh.triangles[1] = t;
+    const cw_quality q = measure(&mesh, false);
+    assert_int_equal(q.misoriented_edges, 3);
+    assert_int_equal(q.open_edges, 0);
+    cw_mesh_free(&mesh);
+}
+
+static void a_repeated_triangle_makes_edges_nonmanifold(void **state)
+{
+    (void)state;
+    cw_mesh mesh;
+    test_make_tetrahedron(&mesh);
+    uint32_t *more = realloc(mesh.triangles, 15 * sizeof *more);
+    assert_non_null(more);
+    memcpy(more + 12, more, 3 * sizeof *more);
+    mesh.triangles = more;
+    mesh.triangle_count = 5;
+    assert_int_equal(measure(&mesh, false).nonmanifold_edges, 3);
+    cw_mesh_free(&mesh);
+}
+
+static void inside_out_has_a_negative_volume(void **state)
+{
+    (void)state;
+    cw_mesh mesh;
+    test_make_cube(&mesh);
+    for (size_t t = 0; t < mesh.triangle_count; t++) {
+        const uint32_t swap = mesh.triangles[3 * t];
+        mesh.triangles[3 * t] = mesh.triangles[3 * t + 1];
+        mesh.triangles[3 * t + 1] = swap;
+    }
+    const cw_quality q = measure(&mesh, false);
+    assert_true(cw_quality_is_closed_manifold(&q));
+    assert_near(q.volume_mm3, -1, 1e-12);
+    cw_mesh_free(&mesh);
+}
+
+/* Two tetrahedra that touch in vertex 0: a bow tie. As indexed or as welded, not both. */
+static void a_bow_tie_is_found_by_index_or_by_place(void **state)
+{
+    (void)state;
+    for (int shared = 0; shared < 2; shared++) {
+        cw_mesh mesh;
+        test_make_tetrahedron(&mesh);
+        float *p = realloc(mesh.positions, 24 * sizeof *p);
+        uint32_t *t = realloc(mesh.triangles, 24 * sizeof *t);
+        assert_true(p && t);
+        for (int n = 0; n < 12; n++) {
+            p[12 + n] = -p[n];
+            t[12 + n] = 4 + t[3 * (n / 3) + 2 - n % 3]; /* mirrored: wound the other way */
+            if (shared && t[12 + n] == 4)
+                t[12 + n] = 0;
+        }
+        mesh.positions = p;
+        mesh.triangles = t;
+        mesh.vertex_count = mesh.triangle_count = 8;
+        const cw_quality q = measure(&mesh, false), w = measure(&mesh, true);
+        assert_int_equal(q.nonmanifold_vertices, shared);
+        assert_int_equal(q.components, shared ? 1 : 2);
+        assert_int_equal(q.unused_vertices, shared);
+        assert_int_equal(w.nonmanifold_vertices, 1);
+        assert_int_equal(w.components, 1);
+        assert_int_equal(w.open_edges, 0);
+        assert_near(q.volume_mm3, 2.0 / 6, 1e-7);
+        cw_mesh_free(&mesh);
+    }
+}
+
+static void zero_area_is_counted_whatever_its_cause(void **state)
+{
+    (void)state;
+    cw_mesh mesh;
+    test_make_tetrahedron(&mesh);
+    mesh.positions[3] = mesh.positions[4] = mesh.positions[5] = 0; /* vertex 1 onto vertex 0 */
+    assert_int_equal(measure(&mesh, false).degenerate, 2);
+    assert_int_equal(measure(&mesh, true).degenerate, 2);
+    mesh.triangles[1] = mesh.triangles[0]; /* and one that names a vertex twice */
+    assert_int_equal(measure(&mesh, false).degenerate, 3 - 1 + 0);
+    cw_mesh_free(&mesh);
+}
+
+static void hostile_meshes_are_refused_by_name(void **state)
+{
+    (void)state;
+    cw_mesh mesh;
+    cw_quality q;
+    cw_error err = {0};
+    test_make_cube(&mesh);
+    mesh.triangles[7] = 8;
+    assert_fails(cw_quality_measure(&mesh, NULL, &q, &err), CW_ERR_ARGUMENT,
+                 "triangle 2 names vertex 8 of 8", err);
+    mesh.triangles[7] = 0;
+    mesh.positions[10] = NAN;
+    assert_fails(cw_quality_measure(&mesh, NULL, &q, &err), CW_ERR_ARGUMENT, "vertex 3", err);
+    mesh.origin[2] = INFINITY;
+    assert_fails(cw_quality_measure(&mesh, NULL, &q, &err), CW_ERR_ARGUMENT, "origin", err);
+    cw_mesh_free(&mesh);
+    assert_ok(cw_quality_measure(&mesh, NULL, &q, &err), err);
+    assert_int_equal(q.triangles, 0);
+}
+
+/* A hundred thousand slivers around one edge: found, and in no quadratic time. */
+static void a_hub_is_not_quadratic(void **state)
+{
+    (void)state;
+    enum { COUNT = 100000 };
+    cw_mesh mesh = {.vertex_count = COUNT + 2, .triangle_count = COUNT};
+    mesh.positions = calloc(3 * (COUNT + 2), sizeof(float));
+    mesh.triangles = calloc(3 * COUNT, sizeof(uint32_t));
+    assert_true(mesh.positions && mesh.triangles);
+    for (uint32_t t = 0; t < COUNT; t++) {
+        mesh.triangles[3 * t + 1] = 1;
+        mesh.triangles[3 * t + 2] = COUNT + 1 - t;
+    }
+    const cw_quality q = measure(&mesh, false);
+    assert_int_equal(q.nonmanifold_edges, 1);
+    assert_int_equal(q.open_edges, 2 * COUNT);
+    assert_int_equal(q.degenerate, COUNT);
+    cw_mesh_free(&mesh);
+}
+
+static void memory_running_out_is_an_error_at_every_allocation(void **state)
+{
+    (void)state;
+    cw_mesh mesh;
+    cw_quality q;
+    cw_error err = {0};
+    test_make_cube(&mesh);
+    for (long n = 0;; n++) {
+        cwi_alloc_fail_after(n);
+        const cw_status st =
+            cw_quality_measure(&mesh, &(cw_quality_desc){.weld = true}, &q, &err);
+        if (!cwi_alloc_fail_after(-1)) {
+            assert_int_equal(st, CW_OK);
+            break;
+        }
+        assert_int_equal(st, CW_ERR_NO_MEMORY);
+    }
+    cw_mesh_free(&mesh);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_cube_is_all_it_should_be),
+        cmocka_unit_test(a_missing_triangle_opens_three_edges),
+        cmocka_unit_test(a_flipped_triangle_misorients_three_edges),
+        cmocka_unit_test(a_repeated_triangle_makes_edges_nonmanifold),
+        cmocka_unit_test(inside_out_has_a_negative_volume),
+        cmocka_unit_test(a_bow_tie_is_found_by_index_or_by_place),
+        cmocka_unit_test(zero_area_is_counted_whatever_its_cause),
+        cmocka_unit_test(hostile_meshes_are_refused_by_name),
+        cmocka_unit_test(a_hub_is_not_quadratic),
+        cmocka_unit_test(memory_running_out_is_an_error_at_every_allocation),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

@@ -1,0 +1,125 @@
+#include "support/reading.h"
+
+static void a_layout_is_read_from_text(void **state)
+{
+    (void)state;
+    cw_raw_layout l;
+    cw_error err = {0};
+    assert_ok(cw_raw_layout_parse("dims=512x256x3,type=u16be,offset=62,spacing=0.5x0.25x1,"
+                                  "components=2,steps=4",
+                                  &l, &err),
+              err);
+    assert_int_equal(l.dim[0], 512);
+    assert_int_equal(l.dim[2], 3);
+    assert_int_equal(l.type, CW_U16);
+    assert_true(l.big_endian);
+    assert_int_equal(l.offset, 62);
+    assert_true(l.spacing[1] == 0.25);
+    assert_int_equal(l.components, 2);
+    assert_int_equal(l.steps, 4);
+}
+
+static void every_type_is_known_by_name(void **state)
+{
+    (void)state;
+    for (int type = 0; type < CW_TYPE_COUNT; type++)
+        for (int order = 0; order < 3; order++) {
+            char text[64] = "type=";
+            cw_raw_layout l;
+            cw_error err = {0};
+            strcat(text, cw_type_name((cw_type)type));
+            strcat(text, (const char *const[]){"", "le", "be"}[order]);
+            strcat(text, ",dims=1x1x1");
+            assert_ok(cw_raw_layout_parse(text, &l, &err), err);
+            assert_int_equal(l.type, type);
+            assert_int_equal(l.big_endian, order == 2);
+        }
+}
+
+static void wrong_keys_are_named(void **state)
+{
+    (void)state;
+    const struct {
+        const char *text, *words;
+    } cases[] = {
+        {"", "'dims' is missing"},
+        {"dims=1x1x1", "'type' is missing"},
+        {"dims=1x1,type=u8", "'dims' is '1x1'"},
+        {"dims=1x1x0,type=u8", "'dims' is '1x1x0'"},
+        {"dims=1x1x1x1,type=u8", "'dims' is '1x1x1x1'"},
+        {"dims=1x1x2147483648,type=u8", "'dims' is '1x1x2147483648'"},
+        {"dims=1x1x1,type=u64", "'type' is u64; the types that are read are u8"},
+        {"dims=1x1x1,type=u8x", "'type' is u8x"},
+        {"dims=1x1x1,type=u8,offset=-1", "'offset' is '-1'"},
+        {"dims=1x1x1,type=u8,spacing=1x0x1", "'spacing' is '1x0x1'"},
+        {"dims=1x1x1,type=u8,spacing=1xnanx1", "'spacing' is '1xnanx1'"},
+        {"dims=1x1x1,type=u8,components=17", "'components' is '17'"},
+        {"dims=1x1x1,type=u8,steps=0", "'steps' is '0'"},
+        {"dims=1x1x1,type=u8,size=3", "'size' is no key of a layout"},
+        {"dims=1x1x1,dims=1x1x1", "'dims' is given twice"},
+        {"dims", "'dims' needs a value"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        cw_raw_layout l = {.steps = 77};
+        cw_error err = {0};
+        assert_fails(cw_raw_layout_parse(cases[i].text, &l, &err), CW_ERR_ARGUMENT,
+                     cases[i].words, err);
+        assert_int_equal(l.steps, 77);
+    }
+}
+
+static void bytes_behind_an_offset_become_voxels(void **state)
+{
+    (void)state;
+    const cw_raw_layout layout = {.dim = {2, 1, 1},
+                                  .type = CW_U16,
+                                  .big_endian = true,
+                                  .offset = 3,
+                                  .spacing = {2, 3, 4}};
+    const cw_read_desc desc = {.raw = &layout};
+    cw_volume v;
+    cw_error err = {0};
+    const char *format = NULL;
+    put_file("a.bin", "abc", "\1\2\3\4", 4);
+    assert_ok(cw_volume_read(test_path("a.bin"), &desc, &v, &format, &err), err);
+    assert_string_equal(format, "raw");
+    assert_true(cw_volume_value(&v, 0, 0, 0) == 0x0102);
+    assert_true(cw_volume_value(&v, 1, 0, 0) == 0x0304);
+    assert_int_equal(v.known, CW_KNOWN_UNIT);
+    check_affine(&v, (const double[12]){2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0});
+    cw_volume_free(&v);
+}
+
+static void a_layout_larger_than_the_file_fails(void **state)
+{
+    (void)state;
+    cw_raw_layout layout = {.dim = {2, 1, 1}, .type = CW_U16, .offset = 3};
+    const cw_read_desc desc = {.raw = &layout}, no_layout = {.reader = "raw"};
+    cw_volume v;
+    cw_error err = {0};
+    put_file("a.bin", "abc", "\1\2\3", 3);
+    assert_fails(cw_volume_read(test_path("a.bin"), &desc, &v, NULL, &err), CW_ERR_FORMAT,
+                 "'dims' asks for 4 bytes of voxels; the file holds 3 bytes behind the first 3",
+                 err);
+    layout.offset = UINT64_MAX;
+    assert_fails(cw_volume_read(test_path("a.bin"), &desc, &v, NULL, &err), CW_ERR_FORMAT,
+                 "the file holds 0 bytes", err);
+    layout.dim[0] = 0;
+    assert_fails(cw_volume_read(test_path("a.bin"), &desc, &v, NULL, &err), CW_ERR_ARGUMENT,
+                 "'dims' holds 0", err);
+    assert_fails(cw_volume_read(test_path("a.bin"), &no_layout, &v, NULL, &err),
+                 CW_ERR_ARGUMENT, "'raw' needs a layout", err);
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
+    const struct CMUnitTest tests[] = {
+        TEST(a_layout_is_read_from_text),
+        TEST(every_type_is_known_by_name),
+        TEST(wrong_keys_are_named),
+        TEST(bytes_behind_an_offset_become_voxels),
+        TEST(a_layout_larger_than_the_file_fails),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

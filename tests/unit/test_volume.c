@@ -1,0 +1,272 @@
+#include "support/support.h"
+
+#include <math.h>
+#include <string.h>
+
+static void a_zeroed_volume_resolves_to_its_defaults(void **state)
+{
+    (void)state;
+    const uint16_t voxels[24] = {0};
+    const cw_volume in = {.data = voxels, .type = CW_U16, .dim = {4, 3, 2}};
+    cw_volume v;
+    cw_error err = {0};
+    assert_ok(cw_volume_resolve(&in, &v, &err), err);
+    assert_int_equal(v.stride[0], 2);
+    assert_int_equal(v.stride[1], 8);
+    assert_int_equal(v.stride[2], 24);
+    assert_int_equal(v.components, 1);
+    assert_int_equal(v.steps, 1);
+    assert_true(v.slope == 1 && v.affine[1][1] == 1 && v.affine[0][1] == 0);
+}
+
+static void unusable_volumes_are_refused_by_name(void **state)
+{
+    (void)state;
+    static const double voxels[8];
+    const cw_volume good = {.data = voxels, .type = CW_F64, .dim = {2, 2, 2}, .slope = 1};
+    cw_volume v = good, out;
+    cw_error err = {0};
+    assert_ok(cw_volume_resolve(&v, &out, &err), err);
+    v.dim[1] = 0;
+    assert_fails(cw_volume_resolve(&v, &out, &err), CW_ERR_ARGUMENT, "2 x 0 x 2", err);
+    v = good;
+    v.data = NULL;
+    assert_fails(cw_volume_resolve(&v, &out, &err), CW_ERR_ARGUMENT, "no voxels", err);
+    v = good;
+    v.type = (cw_type)77;
+    assert_fails(cw_volume_resolve(&v, &out, &err), CW_ERR_ARGUMENT, "77", err);
+    v = good;
+    v.affine[0][0] = NAN;
+    assert_fails(cw_volume_resolve(&v, &out, &err), CW_ERR_ARGUMENT, "not finite", err);
+    v = good;
+    v.affine[0][0] = v.affine[1][0] = 1;
+    assert_fails(cw_volume_resolve(&v, &out, &err), CW_ERR_ARGUMENT, "determinant 0", err);
+    v = good;
+    v.slope = INFINITY;
+    assert_fails(cw_volume_resolve(&v, &out, &err), CW_ERR_ARGUMENT, "slope", err);
+    v = good;
+    v.stride[0] = 4;
+    assert_fails(cw_volume_resolve(&v, &out, &err), CW_ERR_ARGUMENT, "multiples of 8", err);
+    v = good;
+    v.dim[0] = v.dim[1] = v.dim[2] = (size_t)1 << 31;
+    assert_fails(cw_volume_resolve(&v, &out, &err), CW_ERR_ARGUMENT, "larger", err);
+}
+
+/* Every type holds the numbers 1, 2, ... and gives them back through a scaled view. */
+static void all_eight_types_read_the_same(void **state)
+{
+    (void)state;
+    for (int type = 0; type < CW_TYPE_COUNT; type++) {
+        cw_volume v;
+        cw_error err = {0};
+        assert_ok(cw_volume_alloc(&v, (cw_type)type, (size_t[3]){3, 2, 2}, 1, 1, &err), err);
+        for (int n = 0; n < 12; n++)
+            switch (type) {
+#define CASE(name, ctype, text)                                                                \
+    case name:                                                                                 \
+        ((ctype *)cw_volume_voxels(&v))[n] = (ctype)(n + 1);                                   \
+        break;
+                CW_TYPE_TABLE(CASE)
+#undef CASE
+            }
+        v.slope = 2;
+        v.intercept = -1;
+        assert_true(cw_volume_value(&v, 0, 0, 0) == 1);
+        assert_true(cw_volume_value(&v, 2, 1, 1) == 23);
+        assert_true(isnan(cw_volume_value(&v, 3, 0, 0)));
+        cw_volume_free(&v);
+        cw_volume_free(&v);
+        assert_null(v.data);
+    }
+}
+
+static void components_and_steps_are_views(void **state)
+{
+    (void)state;
+    uint8_t voxels[2 * 2 * 2 * 3 * 2]; /* three components, two steps */
+    for (int n = 0; n < 48; n++)
+        voxels[n] = (uint8_t)n;
+    const cw_volume in = {.data = voxels, .dim = {2, 2, 2}, .components = 3, .steps = 2};
+    cw_volume out;
+    cw_error err = {0};
+    assert_ok(cw_volume_select(&in, 2, 1, &out, &err), err);
+    assert_true(cw_volume_value(&out, 0, 0, 0) == 26);
+    assert_true(cw_volume_value(&out, 1, 0, 0) == 29);
+    assert_int_equal(out.components, 1);
+    assert_fails(cw_volume_select(&in, 3, 0, &out, &err), CW_ERR_ARGUMENT, "3 components", err);
+    assert_fails(cw_volume_select(&in, 0, 2, &out, &err), CW_ERR_ARGUMENT, "2 steps", err);
+}
+
+static void a_crop_stays_where_it_was(void **state)
+{
+    (void)state;
+    cw_field_desc desc = {.field = CW_FIELD_PLANE, .dim = {9, 8, 7}, .type = CW_F32};
+    cw_volume v, part;
+    cw_error err = {0};
+    double a[3], b[3];
+    assert_ok(cw_field_sample(&desc, &v, &err), err);
+    assert_ok(cw_volume_crop(&v, &(cw_box){{2, 3, 1}, {4, 4, 4}}, &part, &err), err);
+    cw_volume_to_world(&v, (const double[3]){4, 5, 3}, a);
+    cw_volume_to_world(&part, (const double[3]){2, 2, 2}, b);
+    for (int n = 0; n < 3; n++)
+        assert_near(a[n], b[n], 1e-12);
+    assert_true(cw_volume_value(&v, 4, 5, 3) == cw_volume_value(&part, 2, 2, 2));
+    assert_fails(cw_volume_crop(&v, &(cw_box){{2, 3, 1}, {8, 1, 1}}, &part, &err),
+                 CW_ERR_ARGUMENT, "along x", err);
+    assert_fails(cw_volume_crop(&v, &(cw_box){{0, 0, 0}, {1, 1, 0}}, &part, &err),
+                 CW_ERR_ARGUMENT, "along z", err);
+    cw_volume_free(&v);
+}
+
+static void spacing_is_the_length_of_an_axis(void **state)
+{
+    (void)state;
+    double s[3];
+    const cw_volume v = {.affine = {{3, 0, 0, 9}, {4, 2, 0, 9}, {0, 0, -0.5, 9}}};
+    cw_volume_spacing(&v, s);
+    assert_near(s[0], 5, 1e-12);
+    assert_near(s[1], 2, 1e-12);
+    assert_near(s[2], 0.5, 1e-12);
+}
+
+static void statistics_tell_values_from_the_rest(void **state)
+{
+    (void)state;
+    const float voxels[8] = {1, 2, NAN, INFINITY, -5, 4, 4, -5};
+    const cw_volume v = {
+        .data = voxels, .type = CW_F32, .dim = {2, 2, 2}, .has_nodata = true, .nodata = -5};
+    cw_statistics s;
+    cw_error err = {0};
+    assert_ok(cw_volume_statistics(&v, 3, 1, &s, &err), err);
+    assert_true(s.min == 1 && s.max == 4);
+    assert_int_equal(s.finite, 4);
+    assert_int_equal(s.not_finite, 2);
+    assert_int_equal(s.nodata, 2);
+    assert_int_equal(s.bins[0], 1);
+    assert_int_equal(s.bins[1], 1);
+    assert_int_equal(s.bins[2], 2);
+    cw_statistics_free(&s);
+    cw_statistics_free(&s);
+}
+
+static void integers_get_no_more_bins_than_values(void **state)
+{
+    (void)state;
+    uint8_t voxels[64];
+    for (int n = 0; n < 64; n++)
+        voxels[n] = (uint8_t)(10 + n % 4);
+    const cw_volume v = {.data = voxels, .dim = {4, 4, 4}, .slope = 2, .intercept = 1};
+    cw_statistics s;
+    cw_error err = {0};
+    assert_ok(cw_volume_statistics(&v, 100, 0, &s, &err), err);
+    assert_int_equal(s.bin_count, 4);
+    assert_true(s.bin_width == 2 && s.min == 21 && s.max == 27);
+    for (int b = 0; b < 4; b++)
+        assert_int_equal(s.bins[b], 16);
+    cw_statistics_free(&s);
+}
+
+/* Four flat classes: any level between two of them is as good, and none is a sample's value. */
+static void otsu_parts_classes(void **state)
+{
+    (void)state;
+    uint8_t voxels[64];
+    static const uint8_t grey[4] = {10, 60, 120, 200};
+    for (int n = 0; n < 64; n++)
+        voxels[n] = grey[n % 4];
+    const cw_volume v = {.data = voxels, .dim = {4, 4, 4}};
+    cw_statistics s;
+    cw_error err = {0};
+    double one, three[3];
+    assert_ok(cw_volume_statistics(&v, 256, 0, &s, &err), err);
+    assert_true(cw_statistics_otsu(&s, 1, &one));
+    assert_true(cw_statistics_otsu(&s, 3, three));
+    assert_true(one > 60 && one < 120);
+    for (int n = 0; n < 3; n++)
+        assert_true(three[n] > grey[n] && three[n] < grey[n + 1]);
+    assert_near(three[0], 35, 1);
+    cw_statistics_free(&s);
+    const cw_volume flat = {.data = (const uint8_t[8]){0}, .dim = {2, 2, 2}};
+    assert_ok(cw_volume_statistics(&flat, 256, 0, &s, &err), err);
+    assert_false(cw_statistics_otsu(&s, 1, &one));
+    cw_statistics_free(&s);
+}
+
+static void statistics_do_not_depend_on_threads(void **state)
+{
+    (void)state;
+    const cw_field_desc desc = {
+        .field = CW_FIELD_GYROID, .dim = {33, 20, 17}, .type = CW_F32, .noise = 1};
+    cw_volume v;
+    cw_statistics one, four;
+    cw_error err = {0};
+    assert_ok(cw_field_sample(&desc, &v, &err), err);
+    assert_ok(cw_volume_statistics(&v, 50, 1, &one, &err), err);
+    assert_ok(cw_volume_statistics(&v, 50, 4, &four, &err), err);
+    assert_true(one.min == four.min && one.max == four.max && one.finite == four.finite);
+    assert_memory_equal(one.bins, four.bins, 50 * sizeof *one.bins);
+    cw_statistics_free(&one);
+    cw_statistics_free(&four);
+    cw_volume_free(&v);
+}
+
+static void fields_are_the_same_bytes_for_any_number_of_threads(void **state)
+{
+    (void)state;
+    for (int f = 0; f < CW_FIELD_COUNT; f++)
+        for (int type = 0; type < CW_TYPE_COUNT; type++) {
+            cw_field_desc desc = {.field = (cw_field)f,
+                                  .dim = {9, 10, 11},
+                                  .type = (cw_type)type,
+                                  .noise = 0.1,
+                                  .threads = 1};
+            cw_volume one, four;
+            cw_error err = {0};
+            assert_ok(cw_field_sample(&desc, &one, &err), err);
+            desc.threads = 4;
+            assert_ok(cw_field_sample(&desc, &four, &err), err);
+            assert_memory_equal(one.data, four.data, 990 * cw_type_size((cw_type)type));
+            cw_volume_free(&one);
+            cw_volume_free(&four);
+        }
+}
+
+/* A stored number is the field's value to half a step of the type, and the isovalue with it. */
+static void integer_fields_keep_their_level(void **state)
+{
+    (void)state;
+    const cw_field_desc desc = {.field = CW_FIELD_SPHERE, .dim = {21, 21, 21}, .type = CW_U8};
+    cw_volume v;
+    cw_error err = {0};
+    double world[3];
+    assert_ok(cw_field_sample(&desc, &v, &err), err);
+    cw_volume_to_world(&v, (const double[3]){3, 11, 7}, world);
+    const double value = cw_field_value(CW_FIELD_SPHERE, world);
+    assert_near(cw_volume_value(&v, 3, 11, 7), cw_field_stored(CW_FIELD_SPHERE, CW_U8, value),
+                0.5);
+    assert_near(cw_field_stored(CW_FIELD_SPHERE, CW_U8, 0), 127.5, 1e-9);
+    assert_true(cw_field_stored(CW_FIELD_CT_HEAD, CW_I16, 300) == 300);
+    assert_true(cw_field_stored(CW_FIELD_CT_HEAD, CW_U16, 300) == 1324);
+    cw_volume_free(&v);
+    const cw_field_desc bad = {.field = (cw_field)99};
+    assert_fails(cw_field_sample(&bad, &v, &err), CW_ERR_ARGUMENT, "99", err);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(a_zeroed_volume_resolves_to_its_defaults),
+        cmocka_unit_test(unusable_volumes_are_refused_by_name),
+        cmocka_unit_test(all_eight_types_read_the_same),
+        cmocka_unit_test(components_and_steps_are_views),
+        cmocka_unit_test(a_crop_stays_where_it_was),
+        cmocka_unit_test(spacing_is_the_length_of_an_axis),
+        cmocka_unit_test(statistics_tell_values_from_the_rest),
+        cmocka_unit_test(integers_get_no_more_bins_than_values),
+        cmocka_unit_test(otsu_parts_classes),
+        cmocka_unit_test(statistics_do_not_depend_on_threads),
+        cmocka_unit_test(fields_are_the_same_bytes_for_any_number_of_threads),
+        cmocka_unit_test(integer_fields_keep_their_level),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}

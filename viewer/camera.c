@@ -1,0 +1,140 @@
+#include "viewer/camera.h"
+
+#include "core/status.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* Where one looks to, in LPS: +x is the patient's left, +y the back, +z the head. */
+static const struct {
+    const char *name;
+    double forward[3], up[3];
+} views[] = {
+    {"front", {0, 1, 0}, {0, 0, 1}},         {"back", {0, -1, 0}, {0, 0, 1}},
+    {"left", {-1, 0, 0}, {0, 0, 1}},         {"right", {1, 0, 0}, {0, 0, 1}},
+    {"top", {0, 0, -1}, {0, -1, 0}},         {"bottom", {0, 0, 1}, {0, -1, 0}},
+    {"iso", {-0.5, 0.75, -0.45}, {0, 0, 1}},
+};
+
+enum { VIEW_COUNT = sizeof views / sizeof *views };
+
+static double dot(const double a[3], const double b[3])
+{
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+}
+
+static void cross(const double a[3], const double b[3], double c[3])
+{
+    for (int i = 0; i < 3; i++)
+        c[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
+}
+
+/* False when there is no length to speak of, or no number. */
+static bool normalize(double a[3])
+{
+    const double length = sqrt(dot(a, a));
+    for (int i = 0; i < 3; i++)
+        a[i] /= length;
+    return isnormal(length);
+}
+
+const char *cwi_view_name(size_t n)
+{
+    return n < VIEW_COUNT ? views[n].name : NULL;
+}
+
+cw_status cwi_camera_axes(const cwi_camera *camera, double right[3], double up[3],
+                          double forward[3], cw_error *err)
+{
+    for (int a = 0; a < 3; a++)
+        forward[a] = camera->target[a] - camera->eye[a];
+    if (!normalize(forward))
+        return cw_fail(err, CW_ERR_ARGUMENT, "the camera's eye and target must be apart");
+    cross(forward, camera->up, right);
+    if (!normalize(right))
+        return cw_fail(err, CW_ERR_ARGUMENT, "the camera's up is along its line of sight");
+    cross(right, forward, up);
+    if (!(camera->fov_deg >= 0 && camera->fov_deg < 180))
+        return cw_fail(err, CW_ERR_ARGUMENT, "the camera opens %g degrees, not 0 to 180",
+                       camera->fov_deg);
+    if (camera->fov_deg == 0 && !(isnormal(camera->height_mm) && camera->height_mm > 0))
+        return cw_fail(err, CW_ERR_ARGUMENT, "the camera's picture is %g mm high",
+                       camera->height_mm);
+    return CW_OK;
+}
+
+static cw_status find_view(const char *name, int *view, cw_error *err)
+{
+    char list[128] = "";
+    size_t used = 0;
+    for (*view = 0; *view < VIEW_COUNT; ++*view) {
+        if (strcmp(views[*view].name, name) == 0)
+            return CW_OK;
+        used += (size_t)snprintf(list + used, sizeof list - used, " %s", views[*view].name);
+    }
+    return cw_fail(err, CW_ERR_ARGUMENT, "no view is named '%s'; there are%s", name, list);
+}
+
+/* How far the box reaches from its middle along an axis: a box is symmetric. */
+static double reach(const double half[3], const double axis[3])
+{
+    return fabs(half[0] * axis[0]) + fabs(half[1] * axis[1]) + fabs(half[2] * axis[2]);
+}
+
+/* The distance from the box's middle at which the last corner enters the picture. */
+static double perspective_distance(const double half[3], const double axes[3][3],
+                                   const double slope[2])
+{
+    double distance = 1.01 * reach(half, axes[2]); /* the eye stays outside */
+    for (int corner = 0; corner < 8; corner++) {
+        double p[3];
+        for (int a = 0; a < 3; a++)
+            p[a] = corner >> a & 1 ? half[a] : -half[a];
+        for (int a = 0; a < 2; a++)
+            distance = fmax(distance, fabs(dot(p, axes[a])) / slope[a] - dot(p, axes[2]));
+    }
+    return distance;
+}
+
+static void place(const cwi_fit_desc *d, const double axes[3][3], cwi_camera *camera)
+{
+    const double aspect = d->aspect > 0 ? d->aspect : 1, inner = 1 - 2 * d->margin;
+    double half[3], distance;
+    for (int a = 0; a < 3; a++) {
+        half[a] = (d->max[a] - d->min[a]) / 2;
+        camera->target[a] = d->min[a] + half[a];
+    }
+    if (half[0] + half[1] + half[2] == 0)
+        half[0] = half[1] = half[2] = 0.5; /* a point: a picture of a millimetre around it */
+    if (d->fov_deg > 0) {
+        const double slope = tan(d->fov_deg * acos(-1) / 360) * inner;
+        distance = perspective_distance(half, axes, (const double[2]){slope * aspect, slope});
+    } else {
+        const double tall = fmax(reach(half, axes[1]), reach(half, axes[0]) / aspect);
+        camera->height_mm = 2 * tall / inner;
+        distance = 2 * reach(half, axes[2]) + camera->height_mm;
+    }
+    for (int a = 0; a < 3; a++)
+        camera->eye[a] = camera->target[a] - distance * axes[2][a];
+}
+
+cw_status cwi_camera_fit(const cwi_fit_desc *desc, cwi_camera *camera, cw_error *err)
+{
+    int view;
+    double axes[3][3]; /* right, up, forward */
+    cwi_camera c = {.fov_deg = desc->fov_deg, .height_mm = 1};
+    cw_status st = find_view(desc->view ? desc->view : "front", &view, err);
+    if (st != CW_OK)
+        return st;
+    if (!(desc->margin >= 0 && desc->margin < 0.5))
+        return cw_fail(err, CW_ERR_ARGUMENT, "a margin of %g leaves no picture", desc->margin);
+    memcpy(c.target, views[view].forward, sizeof c.target);
+    memcpy(c.up, views[view].up, sizeof c.up);
+    st = cwi_camera_axes(&c, axes[0], axes[1], axes[2], err);
+    if (st == CW_OK) {
+        place(desc, (const double(*)[3])axes, &c);
+        *camera = c;
+    }
+    return st;
+}
