@@ -75,12 +75,11 @@ int cwi_threads(int asked)
 
 cwi_pace cwi_pace_of(size_t layers, size_t layer_size, int asked_threads)
 {
-    enum { POLL = 1 << 22, SHARE = 1 << 16 }; /* samples between polls; least for a thread */
-    const size_t in_poll = POLL / (layer_size ? layer_size : 1) + 1;
-    const size_t total = layers * layer_size;
-    cwi_pace pace = {in_poll, cwi_threads(asked_threads)};
-    if (total / SHARE < (size_t)pace.threads)
-        pace.threads = (int)(total / SHARE) + 1;
+    enum { POLL = 1 << 22, SHARE = 1 << 19 }; /* samples between polls; least for a thread */
+    cwi_pace pace = {POLL / (layer_size ? layer_size : 1) + 1, cwi_threads(asked_threads)};
+    const size_t shares = layers * layer_size / SHARE + 1;
+    if (asked_threads <= 0 && shares < (size_t)pace.threads)
+        pace.threads = (int)shares;
     if (pace.layers < 2 * (size_t)pace.threads)
         pace.layers = 2 * (size_t)pace.threads;
     return pace;
