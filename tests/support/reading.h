@@ -76,18 +76,4 @@ static inline void check_starved_reads(const char *name)
     }
 }
 
-static inline int make_folder(void **state)
-{
-    (void)state;
-    test_folder_make();
-    return 0;
-}
-
-static inline int remove_folder(void **state)
-{
-    (void)state;
-    test_folder_remove();
-    return 0;
-}
-
 #endif

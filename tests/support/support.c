@@ -30,11 +30,12 @@ void test_assert_near(double value, double truth, double margin, const char *wha
     _fail(file, line);
 }
 
-const char *test_folder_make(void)
+int test_folder_make(void **state)
 {
+    (void)state;
     strcpy(folder, "/tmp/cubewright-test-XXXXXX");
     assert_non_null(mkdtemp(folder));
-    return folder;
+    return 0;
 }
 
 static int remove_one(const char *path, const struct stat *info, int kind, struct FTW *ftw)
@@ -43,9 +44,10 @@ static int remove_one(const char *path, const struct stat *info, int kind, struc
     return remove(path);
 }
 
-void test_folder_remove(void)
+int test_folder_remove(void **state)
 {
-    assert_int_equal(nftw(folder, remove_one, 8, FTW_DEPTH | FTW_PHYS), 0);
+    (void)state;
+    return nftw(folder, remove_one, 8, FTW_DEPTH | FTW_PHYS);
 }
 
 const char *test_path(const char *name)

@@ -37,10 +37,9 @@ void test_assert_fails(cw_status got, cw_status wanted, const char *words, const
 void test_assert_near(double value, double truth, double margin, const char *what,
                       const char *file, int line);
 
-/* A new empty folder, and its removal with all it holds; the path is valid until the removal.
- */
-const char *test_folder_make(void);
-void test_folder_remove(void);
+/* Setup and teardown of tests that need an empty folder. */
+int test_folder_make(void **state);
+int test_folder_remove(void **state);
 
 /* "FOLDER/name" in static memory (four results are kept). */
 const char *test_path(const char *name);

@@ -12,20 +12,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-static int make_folder(void **state)
-{
-    (void)state;
-    test_folder_make();
-    return 0;
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    test_folder_remove();
-    return 0;
-}
-
 /* A GLB taken apart: header, JSON chunk, binary chunk. JSON is searched as text: tinygltf sorts
  * its keys, so what we look for has one spelling. */
 typedef struct glb {
@@ -373,7 +359,7 @@ static void a_build_without_the_module_names_the_option(void **state)
     cw_mesh_free(&mesh);
 }
 
-#define CASE(test) cmocka_unit_test_setup_teardown(test, make_folder, remove_folder)
+#define CASE(test) cmocka_unit_test_setup_teardown(test, test_folder_make, test_folder_remove)
 
 int main(void)
 {

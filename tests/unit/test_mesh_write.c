@@ -6,20 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int make_folder(void **state)
-{
-    (void)state;
-    test_folder_make();
-    return 0;
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    test_folder_remove();
-    return 0;
-}
-
 /* What can go wrong before a writer is asked, as one row a mistake. */
 static void mistakes_are_named_with_the_path(void **state)
 {
@@ -183,7 +169,7 @@ static void names_are_made_safe_for_every_format(void **state)
     cw_mesh_free(&mesh);
 }
 
-#define CASE(test) cmocka_unit_test_setup_teardown(test, make_folder, remove_folder)
+#define CASE(test) cmocka_unit_test_setup_teardown(test, test_folder_make, test_folder_remove)
 
 int main(void)
 {

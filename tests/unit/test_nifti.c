@@ -390,7 +390,7 @@ static void memory_may_run_out_anywhere(void **state)
 
 int main(void)
 {
-#define TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
+#define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
     const struct CMUnitTest tests[] = {
         TEST(both_versions_byte_orders_and_packings_are_the_same),
         TEST(sform_goes_before_qform),

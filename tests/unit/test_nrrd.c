@@ -490,7 +490,7 @@ static void memory_may_run_out_anywhere(void **state)
 
 int main(void)
 {
-#define TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
+#define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
     const struct CMUnitTest tests[] = {
         TEST(a_plain_header_gives_its_voxels),
         TEST(frames_are_turned_to_lps_millimetres),

@@ -4,20 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int make_folder(void **state)
-{
-    (void)state;
-    test_folder_make();
-    return 0;
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    test_folder_remove();
-    return 0;
-}
-
 /* The next line that starts with a word; moves *text behind the word. */
 static bool next_line(const char **text, const char *word)
 {
@@ -111,7 +97,7 @@ static void a_mesh_without_normals_is_plain(void **state)
     cw_mesh_free(&mesh);
 }
 
-#define CASE(test) cmocka_unit_test_setup_teardown(test, make_folder, remove_folder)
+#define CASE(test) cmocka_unit_test_setup_teardown(test, test_folder_make, test_folder_remove)
 
 int main(void)
 {

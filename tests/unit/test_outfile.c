@@ -15,20 +15,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-static int make_folder(void **state)
-{
-    (void)state;
-    test_folder_make();
-    return 0;
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    test_folder_remove();
-    return 0;
-}
-
 static cw_status write_file(const char *path, const char *text, bool no_clobber, cw_error *err)
 {
     cwi_outfile *file = NULL;
@@ -335,7 +321,7 @@ static void running_out_of_memory_leaves_nothing(void **state)
     assert_true(n > 2);
 }
 
-#define CASE(test) cmocka_unit_test_setup_teardown(test, make_folder, remove_folder)
+#define CASE(test) cmocka_unit_test_setup_teardown(test, test_folder_make, test_folder_remove)
 
 int main(void)
 {

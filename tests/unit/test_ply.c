@@ -4,20 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int make_folder(void **state)
-{
-    (void)state;
-    test_folder_make();
-    return 0;
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    test_folder_remove();
-    return 0;
-}
-
 /* A PLY file read the simple way: property lines in order, then fixed records. */
 typedef struct ply {
     char *bytes;
@@ -164,7 +150,7 @@ static void the_header_is_as_the_format_wants_it(void **state)
     cw_mesh_free(&mesh);
 }
 
-#define CASE(test) cmocka_unit_test_setup_teardown(test, make_folder, remove_folder)
+#define CASE(test) cmocka_unit_test_setup_teardown(test, test_folder_make, test_folder_remove)
 
 int main(void)
 {

@@ -113,7 +113,7 @@ static void a_layout_larger_than_the_file_fails(void **state)
 
 int main(void)
 {
-#define TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
+#define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
     const struct CMUnitTest tests[] = {
         TEST(a_layout_is_read_from_text),
         TEST(every_type_is_known_by_name),

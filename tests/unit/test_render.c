@@ -16,20 +16,6 @@
         }                                                                                      \
     }
 
-static int make_folder(void **state)
-{
-    (void)state;
-    test_folder_make();
-    return 0;
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    test_folder_remove();
-    return 0;
-}
-
 static void make_arrays(cw_mesh *mesh, size_t vertices, size_t triangles)
 {
     *mesh = (cw_mesh){.vertex_count = vertices, .triangle_count = triangles};
@@ -572,7 +558,7 @@ static void pngs_come_back_to_the_bit(void **state)
     assert_int_equal(test_folder_entries(), 1);
 }
 
-#define CASE(test) cmocka_unit_test_setup_teardown(test, make_folder, remove_folder)
+#define CASE(test) cmocka_unit_test_setup_teardown(test, test_folder_make, test_folder_remove)
 
 int main(void)
 {

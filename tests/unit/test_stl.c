@@ -6,20 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static int make_folder(void **state)
-{
-    (void)state;
-    test_folder_make();
-    return 0;
-}
-
-static int remove_folder(void **state)
-{
-    (void)state;
-    test_folder_remove();
-    return 0;
-}
-
 static float f32_at(const char *bytes)
 {
     const unsigned char *b = (const unsigned char *)bytes;
@@ -167,7 +153,7 @@ static void more_triangles_than_stl_can_count_are_refused(void **state)
                  err);
 }
 
-#define CASE(test) cmocka_unit_test_setup_teardown(test, make_folder, remove_folder)
+#define CASE(test) cmocka_unit_test_setup_teardown(test, test_folder_make, test_folder_remove)
 
 int main(void)
 {

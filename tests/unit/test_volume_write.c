@@ -265,7 +265,7 @@ static void memory_may_run_out_anywhere(void **state)
 
 int main(void)
 {
-#define TEST(name) cmocka_unit_test_setup_teardown(name, make_folder, remove_folder)
+#define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
     const struct CMUnitTest tests[] = {
         TEST(every_type_survives_every_writer),
         TEST(oblique_frames_survive_as_far_as_the_format_can),
