@@ -20,7 +20,7 @@ typedef struct make_args {
 
 #define TYPE_NAMES "u8/i8/u16/i16/u32/i32/f32/f64" /* in the order of cw_type */
 
-static const make_args defaults = {.type = CW_F32};
+static const make_args defaults = {.type = CW_F32, .dims = {.count = 3, .n = {64, 64, 64}}};
 
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE", "the volume: .nrrd, .nii, .nii.gz or .mha",
@@ -60,24 +60,29 @@ static cw_status unknown_field(const char *name, cw_error *err)
                    "'%s' is no field; 'cubewright make --list' lists them", name);
 }
 
+static double mega_voxels(const make_args *args)
+{
+    const size_t *n = args->dims.n;
+    return 1e-6 * (double)n[0] * (double)n[1] * (double)n[2];
+}
+
 static cw_status make(const make_args *args, cw_field field, cw_error *err)
 {
-    const bool cube = args->dims.count == 1;
     const cw_field_desc desc = {
         .field = field,
-        .dim = {args->dims.n[0], args->dims.n[cube ? 0 : 1], args->dims.n[cube ? 0 : 2]},
+        .dim = {args->dims.n[0], args->dims.n[1], args->dims.n[2]},
         .type = (cw_type)args->type,
         .noise = args->noise.value,
         .seed = args->seed,
         .threads = (int)args->threads,
-        .progress = cli_progress(1, "volume"),
+        .progress = cli_progress(mega_voxels(args), "Mvoxel"),
     };
     cw_volume volume;
     cw_status st = cw_field_sample(&desc, &volume, err);
     if (st != CW_OK)
         return st;
     const cw_write_desc write = {.no_clobber = args->no_clobber,
-                                 .progress = cli_progress(1, "volume")};
+                                 .progress = cli_progress(mega_voxels(args), "Mvoxel")};
     st = cw_volume_write(args->output, &volume, &write, err);
     if (st == CW_OK)
         cli_result("%s: %s, %zu x %zu x %zu %s; its surface: --iso %.10g\n", args->output,
@@ -90,7 +95,7 @@ static cw_status make(const make_args *args, cw_field field, cw_error *err)
 
 static cw_status run(void *p, cw_error *err)
 {
-    const make_args *args = p;
+    make_args *args = p;
     cw_field field;
     if (args->list)
         return list_fields();
@@ -103,6 +108,8 @@ static cw_status run(void *p, cw_error *err)
         return cw_fail(err, CW_ERR_ARGUMENT, "make needs an output: -o FILE");
     if (args->dims.count == 2)
         return cw_fail(err, CW_ERR_ARGUMENT, "--dims takes one number or three, not two");
+    if (args->dims.count == 1)
+        args->dims.n[1] = args->dims.n[2] = args->dims.n[0];
     return make(args, field, err);
 }
 

@@ -8,7 +8,7 @@
 #include <string.h>
 
 const cli_option cli_common_options[] = {
-    {"quiet", 'q', CLI_FLAG, NULL, "print results and errors only",
+    {"quiet", 'q', CLI_FLAG, NULL, "no messages but errors",
      offsetof(cli_common, quiet)},
     {"verbose", 'v', CLI_LOUDER, NULL, "print each step's time and memory; -vv also settings",
      offsetof(cli_common, verbose)},
