@@ -8,8 +8,7 @@
 #include <string.h>
 
 const cli_option cli_common_options[] = {
-    {"quiet", 'q', CLI_FLAG, NULL, "no messages but errors",
-     offsetof(cli_common, quiet)},
+    {"quiet", 'q', CLI_FLAG, NULL, "no messages but errors", offsetof(cli_common, quiet)},
     {"verbose", 'v', CLI_LOUDER, NULL, "print each step's time and memory; -vv also settings",
      offsetof(cli_common, verbose)},
     {"help", 'h', CLI_FLAG, NULL, "this help", offsetof(cli_common, help)},

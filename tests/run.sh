@@ -33,7 +33,8 @@ build_and_test() {
     preset=$1
     shift
     echo "== $preset"
-    quietly cmake --preset "$preset" -DCUBEWRIGHT_TESTS=ON # a quickstart may have built without
+    # a quickstart may have configured without tests; no build may warn
+    quietly cmake --preset "$preset" -DCUBEWRIGHT_TESTS=ON -DCUBEWRIGHT_WERROR=ON
     quietly cmake --build --preset "$preset"
     quietly ctest --preset "$preset" -j "$(nproc)" --no-tests=error "$@"
     sed -n '/tests passed/,/^Total/p' build/log
