@@ -6,7 +6,7 @@
  * keeps inside corners apart. */
 #include "core/memory.h"
 #include "core/status.h"
-#include "extract/grid.h"
+#include "extract/ambiguous.h"
 
 typedef struct box {
     const cwi_grid *grid;
@@ -55,19 +55,36 @@ static void join(box *b, const size_t p[3], const size_t q[3])
     }
 }
 
-/* Joins the corners of one square: neighbours of a kind, and outside corners on a diagonal. */
+/* Whether the inside corners of an alternating square are joined; c[in] is one of them. */
+static bool joins_inside(const box *b, size_t c[4][3], int in)
+{
+    double v[2][2];
+    if (b->grid->simple)
+        return false;
+    for (int n = 0; n < 4; n++)
+        v[(n - in) & 1][n >> 1] = cwi_value_at(b->grid, c[n][0] + 1, c[n][1] + 1, c[n][2] + 1);
+    return cwi_face_joins(v[0], v[1], cwi_zero_is_inside(b->grid));
+}
+
+/* Joins the corners of one square: neighbours of a kind, and one diagonal of an alternating
+ * one. */
 static void join_square(box *b, const size_t at[3], int u, int v)
 {
     size_t c[4][3];
+    int alike = 0;
     for (int n = 0; n < 4; n++)
         for (int a = 0; a < 3; a++)
             c[n][a] = at[a] + (a == u && (n == 1 || n == 2)) + (a == v && n >= 2);
     for (int n = 0; n < 4; n++)
-        if (is_inside(b, c[n]) == is_inside(b, c[(n + 1) % 4]))
+        if (is_inside(b, c[n]) == is_inside(b, c[(n + 1) % 4])) {
             join(b, c[n], c[(n + 1) % 4]);
-    for (int n = 0; n < 2; n++)
-        if (!is_inside(b, c[n]) && !is_inside(b, c[n + 2]))
-            join(b, c[n], c[n + 2]);
+            alike++;
+        }
+    if (alike > 0)
+        return;
+    const int in = is_inside(b, c[0]) ? 0 : 1;
+    const int n = joins_inside(b, c, in) ? in : 1 - in;
+    join(b, c[n], c[n + 2]);
 }
 
 static void join_side(box *b, int axis, size_t side)

@@ -1,16 +1,43 @@
-/* The triangles of each of the 256 cube cases; the tables are made by make_cases.c. */
+/* What the 256 cube cases and the resolutions of their ambiguous faces look like; the tables
+ * are made by make_cases.c. Triangles name edges of the cube, three a triangle,
+ * counter-clockwise seen from outside the solid. */
 #ifndef EXTRACT_CASES_H
 #define EXTRACT_CASES_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
-enum { CWI_CASE_MAX_TRIANGLES = 5 };
+enum {
+    CWI_CASE_MAX_TRIANGLES = 5,
+    CWI_CASE_MAX_LOOPS = 4,
+    CWI_CASE_CONFIGS = 656, /* over all cases, 2 ^ (number of ambiguous faces) */
+};
 
-/* Number of triangles of a case. */
+/* One rule for every face, inside corners kept apart: number of triangles, and their corners.
+ */
 extern const uint8_t cwi_case_count[256];
-
-/* Their corners: edges of the cube, three a triangle, counter-clockwise seen from outside the
- * solid. */
 extern const uint8_t cwi_case_triangles[256][3 * CWI_CASE_MAX_TRIANGLES];
+
+/* A case whose surface its signs alone do not settle: it has ambiguous faces, or two corners
+ * that a tunnel may join. Bit f of the first: face f is ambiguous. */
+extern const uint8_t cwi_case_ambiguous_faces[256];
+extern const bool cwi_case_is_ambiguous[256];
+
+/* Where the configurations of a case begin. Within a case they count the ambiguous faces' bits,
+ * lowest face first; a bit is set where the inside corners of the face are joined. */
+extern const uint16_t cwi_case_first_config[256];
+
+/* A case with its faces resolved. Loops are directed polygons of crossed edges on the cube's
+ * surface; they part it into patches. */
+typedef struct cwi_config {
+    uint8_t loop_count;
+    uint8_t loop_length[CWI_CASE_MAX_LOOPS];
+    uint8_t loop_edges[12];        /* all loops, one after another */
+    bool cone[CWI_CASE_MAX_LOOPS]; /* the loop needs a vertex inside the cube */
+    uint8_t triangles[3 * 10];     /* of the loops that do not, one after another */
+    uint8_t patch[8];              /* of each corner: the lowest corner of its patch */
+} cwi_config;
+
+extern const cwi_config cwi_configs[CWI_CASE_CONFIGS];
 
 #endif

@@ -7,6 +7,8 @@
 #ifndef EXTRACT_CUBE_H
 #define EXTRACT_CUBE_H
 
+#include <stdbool.h>
+
 /* Low-coordinate corner of an edge; the other end is 1 << axis away. */
 static inline int cwi_edge_axis(int edge)
 {
@@ -48,6 +50,15 @@ static inline int cwi_edge_between(int a, int b)
     default:
         return 8 + (low & 3);
     }
+}
+
+/* The corners of a face are inside and outside by turns. */
+static inline bool cwi_face_is_ambiguous(int cube_case, int face)
+{
+    const int a = cube_case >> cwi_face_corner(face, 0) & 1;
+    const int b = cube_case >> cwi_face_corner(face, 1) & 1;
+    return a != b && (cube_case >> cwi_face_corner(face, 2) & 1) == a &&
+           (cube_case >> cwi_face_corner(face, 3) & 1) == b;
 }
 
 #endif

@@ -19,13 +19,14 @@ typedef struct cwi_grid {
     size_t rows_y, rows_z, rows;
     uint64_t *inside; /* rows x words */
     uint64_t *live;   /* rows x words: cells whose eight samples all have values; NULL: all */
+    bool simple;      /* one rule for ambiguous faces, in place of the field's topology */
     bool crossed;     /* some samples with values are inside and some are not */
 } cwi_grid;
 
-/* Per-row numbers: of the first vertex on the row's x-, y- and z-edges, and of its cells' first
- * triangle. */
+/* Per-row numbers: of the first vertex on the row's x-, y- and z-edges and inside its cells,
+ * and of its cells' first triangle. */
 typedef struct cwi_row {
-    uint32_t first[3];
+    uint32_t first[4];
     size_t triangle;
 } cwi_row;
 

@@ -2,6 +2,7 @@
 
 #include "core/affine.h"
 #include "core/status.h"
+#include "extract/ambiguous.h"
 #include "extract/cases.h"
 #include "extract/cube.h"
 #include "extract/typed.h"
@@ -73,6 +74,14 @@ static inline unsigned cell_case(const cell_word *c, int i)
     return cube;
 }
 
+static void count_ambiguous(const cwi_grid *g, const size_t at[3], unsigned cube, cwi_row *row)
+{
+    cwi_ambiguous cell;
+    cwi_ambiguous_load(g, at, cube, &cell);
+    row->triangle += (size_t)cell.plan.triangle_count;
+    row->first[3] += (uint32_t)cell.plan.vertex_count;
+}
+
 /* Leaves counts, not yet first numbers, in the row. */
 static void count_row(const cwi_grid *g, size_t j, size_t k, cwi_row *row)
 {
@@ -82,13 +91,19 @@ static void count_row(const cwi_grid *g, size_t j, size_t k, cwi_row *row)
             count += (unsigned)popcount(edge_vertices(g, axis, j, k, w));
         row->first[axis] = count;
     }
-    row->triangle = 0;
+    row->triangle = row->first[3] = 0;
     if (j + 1 == g->rows_y || k + 1 == g->rows_z)
         return;
     for (size_t w = 0; w < g->words; w++) {
         const cell_word c = load_cells(g, j, k, w);
-        for (uint64_t left = c.active; left; left &= left - 1)
-            row->triangle += cwi_case_count[cell_case(&c, __builtin_ctzll(left))];
+        for (uint64_t left = c.active; left; left &= left - 1) {
+            const int i = __builtin_ctzll(left);
+            const unsigned cube = cell_case(&c, i);
+            if (cwi_case_is_ambiguous[cube] && !g->simple)
+                count_ambiguous(g, (const size_t[3]){64 * w + (size_t)i, j, k}, cube, row);
+            else
+                row->triangle += cwi_case_count[cube];
+        }
     }
 }
 
@@ -98,9 +113,9 @@ static cw_status sum_rows(cwi_row *rows, size_t count, size_t *vertices, size_t 
     size_t v = 0, t = 0;
     for (size_t r = 0; r < count; r++) {
         const size_t triangles_here = rows[r].triangle;
-        for (int axis = 0; axis < 3; axis++) {
-            const uint32_t here = rows[r].first[axis];
-            rows[r].first[axis] = (uint32_t)v;
+        for (int kind = 0; kind < 4; kind++) {
+            const uint32_t here = rows[r].first[kind];
+            rows[r].first[kind] = (uint32_t)v;
             v += here;
         }
         rows[r].triangle = t;
@@ -180,13 +195,41 @@ static inline void cell_vertices(const edge_row e[8], int i, uint32_t vertex[12]
     }
 }
 
+/* Puts one triangle; mirrored frames turn it round. */
+static inline uint32_t *put_triangle(uint32_t *out, uint32_t a, uint32_t b, uint32_t c,
+                                     bool flip)
+{
+    out[0] = a;
+    out[1] = flip ? c : b;
+    out[2] = flip ? b : c;
+    return out + 3;
+}
+
+/* vertex: of the 12 edges, and room for the inner ones, which are numbered from *inner on. */
+static uint32_t *write_ambiguous(const cwi_grid *g, const size_t at[3], unsigned cube,
+                                 const cwi_vertex_sink *sink, bool flip, uint32_t *vertex,
+                                 uint32_t *inner, uint32_t *out)
+{
+    cwi_ambiguous ambiguous;
+    cwi_cell cell;
+    cwi_ambiguous_load(g, at, cube, &ambiguous);
+    cwi_ambiguous_build(g, &ambiguous, sink, *inner, &cell);
+    for (int n = 0; n < ambiguous.plan.vertex_count; n++)
+        vertex[CWI_CELL_INNER + n] = (*inner)++;
+    const uint8_t *corner = cell.triangles;
+    for (int t = 0; t < ambiguous.plan.triangle_count; t++, corner += 3)
+        out = put_triangle(out, vertex[corner[0]], vertex[corner[1]], vertex[corner[2]], flip);
+    return out;
+}
+
 static void write_triangles(const cwi_grid *g, size_t j, size_t k, const cwi_row *rows,
-                            bool flip, uint32_t *out)
+                            const cwi_vertex_sink *sink, bool flip, uint32_t *out)
 {
     /* the 8 rows of edges: x-edges of four rows, y-edges at z 0 and 1, z-edges at y 0 and 1 */
     edge_row e[8] = {{0, j, k, 0, 0},         {0, j + 1, k, 0, 0}, {0, j, k + 1, 0, 0},
                      {0, j + 1, k + 1, 0, 0}, {1, j, k, 0, 0},     {1, j, k + 1, 0, 0},
                      {2, j, k, 0, 0},         {2, j + 1, k, 0, 0}};
+    uint32_t inner = rows[k * g->rows_y + j].first[3];
     for (int n = 0; n < 8; n++)
         e[n].first = rows[e[n].k * g->rows_y + e[n].j].first[e[n].axis];
     for (size_t w = 0; w < g->words; w++) {
@@ -196,14 +239,17 @@ static void write_triangles(const cwi_grid *g, size_t j, size_t k, const cwi_row
         for (uint64_t left = c.active; left; left &= left - 1) {
             const int i = __builtin_ctzll(left);
             const unsigned cube = cell_case(&c, i);
-            const uint8_t *corner = cwi_case_triangles[cube];
-            uint32_t vertex[12];
+            uint32_t vertex[12 + CWI_CELL_MAX_VERTICES];
             cell_vertices(e, i, vertex);
-            for (int t = 0; t < cwi_case_count[cube]; t++, corner += 3, out += 3) {
-                out[0] = vertex[corner[0]];
-                out[1] = vertex[corner[flip ? 2 : 1]];
-                out[2] = vertex[corner[flip ? 1 : 2]];
+            if (cwi_case_is_ambiguous[cube] && !g->simple) {
+                const size_t at[3] = {64 * w + (size_t)i, j, k};
+                out = write_ambiguous(g, at, cube, sink, flip, vertex, &inner, out);
+                continue;
             }
+            const uint8_t *corner = cwi_case_triangles[cube];
+            for (int t = 0; t < cwi_case_count[cube]; t++, corner += 3)
+                out = put_triangle(out, vertex[corner[0]], vertex[corner[1]], vertex[corner[2]],
+                                   flip);
         }
         for (int n = 0; n < 8; n++)
             e[n].first += (uint32_t)popcount(e[n].crossed);
@@ -250,7 +296,7 @@ cw_status cwi_march_write(const cwi_grid *g, const cw_extract_desc *desc, const 
                 const size_t r = k * g->rows_y + j;
                 write_vertices(g, j, k, &rows[r], &sink);
                 if (j + 1 < g->rows_y && k + 1 < g->rows_z)
-                    write_triangles(g, j, k, rows, flip,
+                    write_triangles(g, j, k, rows, &sink, flip,
                                     mesh->triangles + 3 * rows[r].triangle);
             }
     }

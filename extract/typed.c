@@ -1,14 +1,11 @@
 #include "extract/typed.h"
 
 #include "core/volume.h"
+#include "extract/crossing.h"
 
 #include <float.h>
 #include <math.h>
 #include <string.h>
-
-/* Vertices keep this share of an edge between them and its ends: three vertices around one
- * sample then never coincide, also after rounding to single precision. */
-#define NUDGE (1.0 / 1024)
 
 /* 64 bytes of 0 or 1 to bits; byte i to bit i. The product of 8 such bytes with the constant
  * gathers their lowest bits in its top byte. */
@@ -30,29 +27,6 @@ static inline void store_shifted(uint64_t *row, size_t w, size_t words, uint64_t
     row[w] |= bits << 1;
     if (w + 1 < words)
         row[w + 1] |= bits >> 63;
-}
-
-/* Where on the edge from value a to value b the level is crossed, kept off both ends. */
-static inline double crossing(double a, double b, double level)
-{
-    /* halves, so that the difference of two huge doubles is finite */
-    double t = (level * 0.5 - a * 0.5) / (b * 0.5 - a * 0.5);
-    if (isinf(a) || isinf(b))
-        t = isinf(a) && isinf(b) ? 0.5 : isinf(b) ? 0 : 1;
-    return fmin(fmax(t, NUDGE), 1 - NUDGE);
-}
-
-static inline void store_position(const cwi_vertex_sink *sink, const size_t at[3], int axis,
-                                  double t, size_t n)
-{
-    double p[3];
-    for (int a = 0; a < 3; a++)
-        p[a] = (double)at[a] - 1 - sink->centre[a];
-    p[axis] += t;
-    for (int r = 0; r < 3; r++)
-        sink->positions[3 * n + (size_t)r] =
-            (float)(sink->affine[r][0] * p[0] + sink->affine[r][1] * p[1] +
-                    sink->affine[r][2] * p[2]);
 }
 
 /* Scales by the largest component first: squares of tiny or huge ones do not survive. */
@@ -80,6 +54,20 @@ static inline void store_normal(const cwi_vertex_sink *sink, double g[3], size_t
     const bool known = normalise(d);
     for (int r = 0; r < 3; r++)
         sink->normals[3 * n + (size_t)r] = known ? (float)d[r] : 0;
+}
+
+void cwi_sink_vertex(const cwi_vertex_sink *sink, const size_t at[3], const double p[3],
+                     double g[3], size_t n)
+{
+    double x[3];
+    for (int a = 0; a < 3; a++)
+        x[a] = (double)at[a] - 1 - sink->centre[a] + p[a];
+    for (int r = 0; r < 3; r++)
+        sink->positions[3 * n + (size_t)r] =
+            (float)(sink->affine[r][0] * x[0] + sink->affine[r][1] * x[1] +
+                    sink->affine[r][2] * x[2]);
+    if (sink->normals)
+        store_normal(sink, g, n);
 }
 
 /* clang-format off */

@@ -12,6 +12,11 @@ typedef struct cwi_vertex_sink {
     double cofactor[3][3];      /* index gradient to outward world direction */
 } cwi_vertex_sink;
 
+/* Stores vertex n: cell coordinates from padded sample at[], and the gradient of the stored
+ * numbers there; the normal is zero where the gradient is zero or not finite. */
+void cwi_sink_vertex(const cwi_vertex_sink *sink, const size_t at[3], const double p[3],
+                     double g[3], size_t n);
+
 typedef struct cwi_typed {
     /* Sets the inside bits of one row of voxels, and where values are missing (may be NULL). */
     void (*classify)(const cwi_grid *grid, size_t j, size_t k, uint64_t *inside,

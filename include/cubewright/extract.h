@@ -15,6 +15,8 @@ typedef struct cw_extract_desc {
     double isovalue;      /* in the unit of the values (HU for CT); 0 means 0 */
     bool inside_is_low;   /* default: values at or above the isovalue are inside */
     bool leave_open;      /* default: cap the surface where it meets the end of the data */
+    bool simple_topology; /* default: in every cell the topology of the trilinear field; simple
+                             is one table, with one rule for ambiguous faces */
     bool no_normals;      /* default: one normal per vertex from the field's gradient */
     int threads;          /* default: all that OpenMP offers */
     size_t max_triangles; /* fail with CW_ERR_LIMIT before allocating more; default: no limit */
@@ -34,12 +36,14 @@ typedef struct cw_extract_counts {
  *
  * Vertices are in the volume's world frame (LPS, millimetres) and shared by the triangles
  * around them; each lies on a grid edge, kept 1/1024 of the edge away from its ends, so that
- * samples equal to the isovalue give no zero-area triangle and no pinched vertex. Triangles
- * wind counter-clockwise seen from outside. Normals are central differences of the values,
- * one-sided at the border, interpolated along the edge. NaN and no-data voxels are outside the
- * domain and infinite ones beyond every isovalue. Where the domain ends the surface is closed
- * by a cap 1/1024 of a voxel beyond the last sample, or left open there. A volume without a
- * crossing gives an empty mesh and CW_OK.
+ * samples equal to the isovalue give no zero-area triangle and no pinched vertex; a few
+ * ambiguous cells have vertices inside. In every cell the surface has the topology of f: its
+ * components, handles and tunnels. It is a manifold, does not cross itself, and winds
+ * counter-clockwise seen from outside. Normals are central differences of the values, one-sided
+ * at the border, interpolated. NaN and no-data voxels are outside the domain and infinite ones
+ * beyond every isovalue. Where the domain ends the surface is closed by a cap 1/1024 of a voxel
+ * beyond the last sample, or left open there. A volume without a crossing gives an empty mesh
+ * and CW_OK.
  *
  * volume   borrowed; at least 2 voxels along each axis; first component and step are used
  * desc     borrowed; NULL means all defaults
@@ -52,8 +56,8 @@ typedef struct cw_extract_counts {
  *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
  * Cost     two passes over the voxels' sign bits after one over the voxels
  * Threads  reentrant; the mesh is the same to the bit for any number of threads
- * Source   [Lorensen1987]; one rule for ambiguous faces [Montani1994]; ranks in place of
- *          maps as in extract/README.md */
+ * Source   [Lorensen1987]; faces [Nielson1991]; tunnels after [Chernyaev1995]; simple_topology
+ *          [Montani1994]; ranks in place of maps as in extract/README.md */
 CW_API cw_status cw_extract(const cw_volume *volume, const cw_extract_desc *desc, cw_mesh *mesh,
                             cw_extract_counts *counts, cw_error *err);
 

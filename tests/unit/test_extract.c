@@ -594,6 +594,53 @@ static void border_loops_are_counted(void **state)
     cw_volume_free(&rod);
 }
 
+/* The closed curves that a mesh's open edges form, by following them. */
+static size_t count_open_curves(const cw_mesh *mesh)
+{
+    const size_t n = mesh->vertex_count;
+    bool *side = calloc(n * n, sizeof *side), *seen = calloc(n, sizeof *seen);
+    size_t *next = malloc(n * sizeof *next), curves = 0;
+    assert_true(side && seen && next);
+    for (size_t i = 0; i < 3 * mesh->triangle_count; i++)
+        side[mesh->triangles[i] * n + mesh->triangles[i % 3 == 2 ? i - 2 : i + 1]] = true;
+    for (size_t v = 0; v < n; v++) {
+        next[v] = n;
+        for (size_t w = 0; w < n; w++)
+            if (side[v * n + w] && !side[w * n + v])
+                next[v] = w;
+    }
+    for (size_t v = 0; v < n; v++) {
+        curves += next[v] < n && !seen[v];
+        for (size_t w = v; next[w] < n && !seen[w]; w = next[w])
+            seen[w] = true;
+    }
+    free(side);
+    free(seen);
+    free(next);
+    return curves;
+}
+
+/* Ambiguous squares on the border included, in both topologies, ties and all. */
+static void border_loops_are_the_open_surfaces_borders(void **state)
+{
+    (void)state;
+    srand(5);
+    for (int round = 0; round < 60; round++) {
+        float voxels[5 * 4 * 3];
+        for (int n = 0; n < 60; n++)
+            voxels[n] =
+                round % 3 ? (float)rand() / (float)RAND_MAX - 0.5f : (float)(rand() % 5 - 2);
+        const cw_volume v = {.data = voxels, .type = CW_F32, .dim = {5, 4, 3}};
+        const cw_extract_desc d = {
+            .leave_open = true, .simple_topology = round & 1, .inside_is_low = round & 2};
+        cw_extract_counts counts;
+        cw_mesh mesh = extract(&v, &d, &counts);
+        check_promise(&mesh, true);
+        assert_int_equal(counts.border_loops, count_open_curves(&mesh));
+        cw_mesh_free(&mesh);
+    }
+}
+
 /* Where the gradient vanishes the triangles give the normal: a plateau beside a plateau. */
 static void plateaus_have_normals_too(void **state)
 {
@@ -641,6 +688,7 @@ int main(void)
         cmocka_unit_test(it_can_be_cancelled_at_any_poll),
         cmocka_unit_test(memory_running_out_is_an_error_at_every_allocation),
         cmocka_unit_test(border_loops_are_counted),
+        cmocka_unit_test(border_loops_are_the_open_surfaces_borders),
         cmocka_unit_test(plateaus_have_normals_too),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,0 +1,32 @@
+/* Ambiguous cells of a grid: their values, what they are made of, and their inner vertices. */
+#ifndef EXTRACT_AMBIGUOUS_H
+#define EXTRACT_AMBIGUOUS_H
+
+#include "extract/topology.h"
+#include "extract/typed.h"
+
+/* A padded sample as the decisions see it: its number less the isovalue, positive inside; NaN
+ * where there is none. */
+double cwi_value_at(const cwi_grid *grid, size_t i, size_t j, size_t k);
+
+/* Which side a sample on the isovalue is on. */
+static inline bool cwi_zero_is_inside(const cwi_grid *grid)
+{
+    return grid->invert == grid->strict;
+}
+
+/* A cell at padded sample at[] whose case the signs alone do not settle. */
+typedef struct cwi_ambiguous {
+    size_t at[3];
+    double stored[8]; /* the corners' numbers; NaN: outside the volume, or no value */
+    cwi_cell_plan plan;
+} cwi_ambiguous;
+
+void cwi_ambiguous_load(const cwi_grid *grid, const size_t at[3], unsigned cube,
+                        cwi_ambiguous *cell);
+
+/* Builds the cell's surface and writes its inner vertices, numbered from first on. */
+void cwi_ambiguous_build(const cwi_grid *grid, const cwi_ambiguous *cell,
+                         const cwi_vertex_sink *sink, size_t first, cwi_cell *out);
+
+#endif

@@ -1,0 +1,25 @@
+/* Where a grid edge is crossed. */
+#ifndef EXTRACT_CROSSING_H
+#define EXTRACT_CROSSING_H
+
+#include <math.h>
+
+/* Vertices keep this share of an edge between them and its ends: three vertices around one
+ * sample then never coincide, also after rounding to single precision. */
+#define CWI_NUDGE (1.0 / 1024)
+
+/* The share of the edge from number a to number b at which the level is crossed, kept off both
+ * ends. NaN is an end without a value: the crossing is then a cap, just beyond the other end.
+ */
+static inline double cwi_crossing(double a, double b, double level)
+{
+    if (isnan(a) || isnan(b))
+        return isnan(a) ? 1 - CWI_NUDGE : CWI_NUDGE;
+    /* halves, so that the difference of two huge doubles is finite */
+    double t = (level * 0.5 - a * 0.5) / (b * 0.5 - a * 0.5);
+    if (isinf(a) || isinf(b))
+        t = isinf(a) && isinf(b) ? 0.5 : isinf(b) ? 0 : 1;
+    return fmin(fmax(t, CWI_NUDGE), 1 - CWI_NUDGE);
+}
+
+#endif
