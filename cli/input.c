@@ -6,6 +6,7 @@
 #include "core/status.h"
 #include "core/text.h"
 
+#include <math.h>
 #include <sha2.h>
 #include <stdlib.h>
 #include <string.h>
@@ -69,6 +70,64 @@ static cw_status choose(const cli_input *input, cli_volume *volume, cw_error *er
                    : CW_OK;
 }
 
+/* The voxels between the ends of a range, as far as there are any. */
+static bool clip_range(double low, double high, size_t size, size_t *first, size_t *count)
+{
+    low = fmax(ceil(low - 1e-9), 0);
+    high = fmin(floor(high + 1e-9), (double)(size - 1));
+    if (!(low <= high))
+        return false;
+    *first = (size_t)low;
+    *count = (size_t)(high - low) + 1;
+    return true;
+}
+
+/* The box of indices around a box of the world. */
+static cw_status box_from_world(const cw_volume *v, cli_ranges *r, cw_error *err)
+{
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (int corner = 0; corner < 8; corner++) {
+        double world[3], index[3];
+        for (int a = 0; a < 3; a++)
+            world[a] = corner >> a & 1 ? r->high[a] : r->low[a];
+        cw_status st = cw_volume_to_index(v, world, index, err);
+        if (st != CW_OK)
+            return st;
+        for (int a = 0; a < 3; a++) {
+            low[a] = fmin(low[a], index[a]);
+            high[a] = fmax(high[a], index[a]);
+        }
+    }
+    memcpy(r->low, low, sizeof low);
+    memcpy(r->high, high, sizeof high);
+    return CW_OK;
+}
+
+static cw_status crop(const cli_input *input, cw_volume *view, cw_error *err)
+{
+    cli_ranges r = input->crop;
+    cw_box box;
+    cw_volume part;
+    cw_status st = r.world ? box_from_world(view, &r, err) : CW_OK;
+    if (st != CW_OK)
+        return st;
+    for (int a = 0; a < 3; a++)
+        if (!clip_range(r.low[a], r.high[a], view->dim[a], &box.first[a], &box.count[a]))
+            return cw_fail(
+                err, CW_ERR_ARGUMENT,
+                "--crop leaves no voxel along %c: the volume's are 0 to %zu, asked for "
+                "are %.6g to %.6g",
+                "xyz"[a], view -> dim[a] - 1, r.low[a], r.high[a]);
+    st = cw_volume_crop(view, &box, &part, err);
+    if (st == CW_OK) {
+        *view = part;
+        cli_say("using voxels %zu:%zu,%zu:%zu,%zu:%zu", box.first[0],
+                box.first[0] + box.count[0] - 1, box.first[1], box.first[1] + box.count[1] - 1,
+                box.first[2], box.first[2] + box.count[2] - 1);
+    }
+    return st;
+}
+
 static cw_status read_both(const char *path, cw_read_desc *desc, bool header_only,
                            const cli_input *input, cli_volume *volume, cw_error *err)
 {
@@ -95,7 +154,13 @@ static cw_status read_both(const char *path, cw_read_desc *desc, bool header_onl
     if (st == CW_OK && input->spacing.given)
         set_spacing(&volume->whole, &input->spacing);
     volume->memory_left = (double)desc->max_bytes > bytes ? desc->max_bytes - (size_t)bytes : 1;
-    return st == CW_OK ? choose(input, volume, err) : st;
+    if (st == CW_OK)
+        st = choose(input, volume, err);
+    if (st == CW_OK && input->crop.given) {
+        st = crop(input, &volume->view, err);
+        st = st == CW_OK ? st : cwi_fail_in(err, st, path);
+    }
+    return st;
 }
 
 cw_status cli_read_volume(const char *path, const cli_input *input, bool header_only,

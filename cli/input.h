@@ -11,6 +11,7 @@
 typedef struct cli_input {
     const char *reader, *raw;
     cli_lengths spacing;
+    cli_ranges crop;
     size_t component, step;
     size_t threads, memory;
     bool allow_external;
@@ -37,6 +38,12 @@ typedef struct cli_input {
          "X[,Y,Z]",                                                                            \
          "the distance of voxels, e.g. 0.5mm (the file's)",                                    \
          CLI_INPUT_ROW(args, spacing)},                                                        \
+        {"crop",                                                                               \
+         0,                                                                                    \
+         CLI_RANGES,                                                                           \
+         "X:X,Y:Y,Z:Z",                                                                        \
+         "only these voxels, ends included; with units, those in a box of LPS mm",             \
+         CLI_INPUT_ROW(args, crop)},                                                           \
         {"component",                                                                          \
          0,                                                                                    \
          CLI_COUNT,                                                                            \
@@ -66,7 +73,7 @@ typedef struct cli_input {
 typedef struct cli_volume {
     const char *path, *format;
     cw_volume whole; /* owns the voxels */
-    cw_volume view;  /* the chosen component and step, spacing applied */
+    cw_volume view;  /* the chosen component, step and part, spacing applied */
     double spacing[3];
     size_t memory_left; /* of the limit, after the voxels */
 } cli_volume;

@@ -137,6 +137,8 @@ static bool store(const cli_option *o, const char *text, void *field)
         return cli_parse_lengths(text, field);
     case CLI_SIZES:
         return cli_parse_sizes(text, field);
+    case CLI_RANGES:
+        return cli_parse_ranges(text, field);
     default:
         return false;
     }
@@ -157,6 +159,8 @@ static const char *expectation(const cli_option *o)
         return "a length above 0 such as 0.5mm or 12um, or three of them by comma";
     case CLI_SIZES:
         return "whole numbers above 0 joined by x";
+    case CLI_RANGES:
+        return "three ranges such as 10:50,0:99,20:40 (voxels) or -30mm:30mm,... (world)";
     default:
         return "a text that is not empty";
     }

@@ -13,6 +13,7 @@ typedef enum cli_kind {
     CLI_BYTES,   /* size_t: 512M, 8G (1024s) */
     CLI_LENGTHS, /* cli_lengths: one for all axes or three; 0.5mm,12um, bare is mm */
     CLI_SIZES,   /* cli_sizes: 64, 1280x720 or 512x512x300 */
+    CLI_RANGES,  /* cli_ranges: 10:50,0:99,20:40 in voxels, -30mm:30mm,... in the world */
     CLI_LOUDER,  /* int, counts up */
 } cli_kind;
 
@@ -30,6 +31,13 @@ typedef struct cli_sizes {
     int count; /* 1 to 3 given, 0: none */
     size_t n[3];
 } cli_sizes;
+
+/* A box: from low to high along each axis, ends included. */
+typedef struct cli_ranges {
+    bool given;
+    bool world; /* LPS millimetres; else voxel indices */
+    double low[3], high[3];
+} cli_ranges;
 
 typedef struct cli_option {
     const char *name; /* without the dashes */

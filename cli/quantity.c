@@ -12,29 +12,32 @@ bool cli_parse_number(const char *text, cli_number *out)
     return out->given;
 }
 
-/* A number and its unit, as millimetres; *text moves behind it. */
-static bool parse_length(const char **text, double *mm)
+/* A number and its unit, as millimetres; *text moves behind it. *unit: whether there was one.
+ */
+static bool parse_length(const char **text, double *mm, bool *unit)
 {
     static const struct {
         const char *name;
         double mm;
     } units[] = {{"mm", 1}, {"um", 1e-3}, {"nm", 1e-6}, {"cm", 10}, {"m", 1e3}, {"in", 25.4}};
+    *unit = false;
     if (!cwi_parse_double(text, mm))
         return false;
-    for (size_t u = 0; u < sizeof units / sizeof *units; u++)
+    for (size_t u = 0; u < sizeof units / sizeof *units && !*unit; u++)
         if (strncmp(*text, units[u].name, strlen(units[u].name)) == 0) {
             *mm *= units[u].mm;
             *text += strlen(units[u].name);
-            break;
+            *unit = true;
         }
-    return isfinite(*mm) && *mm > 0;
+    return isfinite(*mm);
 }
 
 bool cli_parse_lengths(const char *text, cli_lengths *out)
 {
     int count = 0;
     for (; count < 3; count++) {
-        if (!parse_length(&text, &out->mm[count]))
+        bool unit;
+        if (!parse_length(&text, &out->mm[count], &unit) || !(out->mm[count] > 0))
             return false;
         if (*text != ',')
             break;
@@ -58,6 +61,25 @@ bool cli_parse_sizes(const char *text, cli_sizes *out)
             break;
     }
     return *text == '\0';
+}
+
+/* Six lengths, all with a unit or all bare. */
+bool cli_parse_ranges(const char *text, cli_ranges *out)
+{
+    for (int n = 0; n < 6; n++) {
+        double *end = n % 2 ? &out->high[n / 2] : &out->low[n / 2];
+        bool unit;
+        if (!parse_length(&text, end, &unit) || (n > 0 && unit != out->world))
+            return false;
+        out->world = unit;
+        if (*text != (n == 5 ? '\0' : n % 2 ? ',' : ':'))
+            return false;
+        text++;
+    }
+    for (int a = 0; a < 3; a++)
+        if (!(out->low[a] <= out->high[a]))
+            return false;
+    return out->given = true;
 }
 
 bool cli_parse_count(const char *text, double thousand, size_t *out)

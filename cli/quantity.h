@@ -7,6 +7,7 @@
 bool cli_parse_number(const char *text, cli_number *out);
 bool cli_parse_lengths(const char *text, cli_lengths *out);
 bool cli_parse_sizes(const char *text, cli_sizes *out);
+bool cli_parse_ranges(const char *text, cli_ranges *out);
 
 /* A count with an optional k, M, G or T of the given thousand: 1000, or 1024 for bytes. */
 bool cli_parse_count(const char *text, double thousand, size_t *out);

@@ -223,6 +223,26 @@ void cw_volume_to_world(const cw_volume *volume, const double index[3], double w
         cwi_affine_apply(volume->affine[0], index, world);
 }
 
+cw_status cw_volume_to_index(const cw_volume *volume, const double world[3], double index[3],
+                             cw_error *err)
+{
+    double a[3][4], cofactor[3][3];
+    if (is_zero(volume->affine[0]))
+        set_identity(a);
+    else
+        memcpy(a, volume->affine, sizeof a);
+    const double det = cwi_affine_determinant(a[0]);
+    if (!isnormal(det))
+        return cw_fail(err, CW_ERR_ARGUMENT, "the volume's affine has determinant %g", det);
+    cwi_affine_cofactor(a[0], cofactor);
+    for (int c = 0; c < 3; c++) {
+        index[c] = 0;
+        for (int r = 0; r < 3; r++)
+            index[c] += cofactor[r][c] * (world[r] - a[r][3]) / det;
+    }
+    return CW_OK;
+}
+
 void cw_volume_spacing(const cw_volume *volume, double spacing_mm[3])
 {
     const bool identity = is_zero(volume->affine[0]);

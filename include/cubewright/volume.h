@@ -102,6 +102,11 @@ CW_API double cw_volume_value(const cw_volume *volume, size_t i, size_t j, size_
 CW_API void cw_volume_to_world(const cw_volume *volume, const double index[3], double world[3]);
 CW_API void cw_volume_spacing(const cw_volume *volume, double spacing_mm[3]);
 
+/* The (fractional) index of a world point. CW_ERR_ARGUMENT when the affine cannot be inverted.
+ */
+CW_API cw_status cw_volume_to_index(const cw_volume *volume, const double world[3],
+                                    double index[3], cw_error *err);
+
 /* What the values are: range, and how often each occurs. */
 typedef struct cw_statistics {
     double min, max;   /* over finite values inside the domain; both 0 when there are none */

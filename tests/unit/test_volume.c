@@ -118,6 +118,25 @@ static void a_crop_stays_where_it_was(void **state)
     cw_volume_free(&v);
 }
 
+static void indices_and_world_points_are_inverse(void **state)
+{
+    (void)state;
+    const cw_volume v = {.affine = {{0.5, 2, 0, 9}, {-4, 1, 0.3, -7}, {0.1, 0, -3, 1e6}}};
+    const double index[3] = {12.25, -3, 40};
+    double world[3], back[3];
+    cw_error err = {0};
+    cw_volume_to_world(&v, index, world);
+    assert_ok(cw_volume_to_index(&v, world, back, &err), err);
+    for (int a = 0; a < 3; a++)
+        assert_near(back[a], index[a], 1e-6);
+    const cw_volume identity = {.dim = {1, 1, 1}};
+    assert_ok(cw_volume_to_index(&identity, index, back, &err), err);
+    assert_true(back[0] == 12.25 && back[1] == -3 && back[2] == 40);
+    const cw_volume flat = {.affine = {{1, 1, 0, 0}, {1, 1, 0, 0}, {0, 0, 1, 0}}};
+    assert_fails(cw_volume_to_index(&flat, world, back, &err), CW_ERR_ARGUMENT, "determinant",
+                 err);
+}
+
 static void spacing_is_the_length_of_an_axis(void **state)
 {
     (void)state;
@@ -260,6 +279,7 @@ int main(void)
         cmocka_unit_test(all_eight_types_read_the_same),
         cmocka_unit_test(components_and_steps_are_views),
         cmocka_unit_test(a_crop_stays_where_it_was),
+        cmocka_unit_test(indices_and_world_points_are_inverse),
         cmocka_unit_test(spacing_is_the_length_of_an_axis),
         cmocka_unit_test(statistics_tell_values_from_the_rest),
         cmocka_unit_test(integers_get_no_more_bins_than_values),
