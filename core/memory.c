@@ -1,7 +1,9 @@
+#define _DEFAULT_SOURCE /* madvise */
 #include "core/memory.h"
 
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
 
 /* Per thread, so that a test that starves itself starves no one else. */
 static _Thread_local long allocations_left = -1;
@@ -61,6 +63,23 @@ void *cwi_alloc_zeroed(size_t count, size_t size)
 {
     size_t bytes;
     return usable(count, size, &bytes) ? calloc(bytes ? bytes : 1, 1) : NULL;
+}
+
+void *cwi_alloc_large(size_t count, size_t size)
+{
+    const size_t page = (size_t)2 << 20, least = 2 * page;
+    size_t bytes;
+    if (!usable(count, size, &bytes))
+        return NULL;
+    if (bytes < least || bytes > PTRDIFF_MAX - page)
+        return malloc(bytes ? bytes : 1);
+    bytes = (bytes + page - 1) / page * page;
+    void *memory = aligned_alloc(page, bytes);
+#ifdef MADV_HUGEPAGE
+    if (memory)
+        madvise(memory, bytes, MADV_HUGEPAGE); /* a wish: no harm if it is not granted */
+#endif
+    return memory;
 }
 
 void *cwi_realloc_array(void *memory, size_t count, size_t size)

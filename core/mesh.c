@@ -10,10 +10,10 @@ cw_status cwi_mesh_alloc(cw_mesh *mesh, size_t vertices, size_t triangles, bool 
                          cw_error *err)
 {
     *mesh = (cw_mesh){.vertex_count = vertices, .triangle_count = triangles};
-    mesh->positions = cwi_alloc_array(vertices, 3 * sizeof *mesh->positions);
-    mesh->triangles = cwi_alloc_array(triangles, 3 * sizeof *mesh->triangles);
+    mesh->positions = cwi_alloc_large(vertices, 3 * sizeof *mesh->positions);
+    mesh->triangles = cwi_alloc_large(triangles, 3 * sizeof *mesh->triangles);
     if (normals)
-        mesh->normals = cwi_alloc_array(vertices, 3 * sizeof *mesh->normals);
+        mesh->normals = cwi_alloc_large(vertices, 3 * sizeof *mesh->normals);
     if (mesh->positions && mesh->triangles && (mesh->normals || !normals))
         return CW_OK;
     cw_mesh_free(mesh);

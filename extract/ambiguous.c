@@ -3,6 +3,7 @@
 #include "core/volume.h"
 #include "extract/crossing.h"
 #include "extract/cube.h"
+#include "extract/sink.h"
 
 #include <math.h>
 
@@ -25,16 +26,40 @@ double cwi_value_at(const cwi_grid *grid, size_t i, size_t j, size_t k)
     return value_of(grid, stored_at(&grid->volume, i, j, k));
 }
 
+/* All eight corners of a cell at once; most cells are within the volume. */
+static void load_corners(const cw_volume *v, const size_t at[3], double stored[8])
+{
+    bool within = !v->has_nodata;
+    for (int a = 0; a < 3; a++)
+        within = within && at[a] >= 1 && at[a] < v->dim[a];
+    if (!within) {
+        for (size_t c = 0; c < 8; c++)
+            stored[c] = stored_at(v, at[0] + (c & 1), at[1] + (c >> 1 & 1), at[2] + (c >> 2));
+        return;
+    }
+    const char *p = cwi_voxel_address(v, at[0] - 1, at[1] - 1, at[2] - 1);
+    switch (v->type) {
+#define CASE(name, ctype, text)                                                                \
+    case name:                                                                                 \
+        for (size_t c = 0; c < 8; c++)                                                         \
+            stored[c] = (double)*(const ctype *)(p + (c & 1 ? v->stride[0] : 0) +              \
+                                                 (c & 2 ? v->stride[1] : 0) +                  \
+                                                 (c & 4 ? v->stride[2] : 0));                  \
+        break;
+        CW_TYPE_TABLE(CASE)
+#undef CASE
+    default:
+        break;
+    }
+}
+
 void cwi_ambiguous_load(const cwi_grid *grid, const size_t at[3], unsigned cube,
                         cwi_ambiguous *cell)
 {
     double values[8];
-    for (size_t c = 0; c < 8; c++) {
-        const double x =
-            stored_at(&grid->volume, at[0] + (c & 1), at[1] + (c >> 1 & 1), at[2] + (c >> 2));
-        cell->stored[c] = x;
-        values[c] = value_of(grid, x);
-    }
+    load_corners(&grid->volume, at, cell->stored);
+    for (size_t c = 0; c < 8; c++)
+        values[c] = value_of(grid, cell->stored[c]);
     for (int a = 0; a < 3; a++)
         cell->at[a] = at[a];
     cwi_cell_plan_make(cube, values, cwi_zero_is_inside(grid), &cell->plan);
@@ -68,8 +93,8 @@ static void inner_gradient(const cw_volume *v, const size_t at[3], const double 
     }
 }
 
-void cwi_ambiguous_build(const cwi_grid *grid, const cwi_ambiguous *cell,
-                         const cwi_vertex_sink *sink, size_t first, cwi_cell *out)
+void cwi_ambiguous_build(const cwi_grid *grid, const cwi_ambiguous *cell, cwi_vertex_sink *sink,
+                         size_t first, cwi_cell *out)
 {
     double crossings[12];
     for (int e = 0; e < 12; e++) {
@@ -78,9 +103,11 @@ void cwi_ambiguous_build(const cwi_grid *grid, const cwi_ambiguous *cell,
     }
     cwi_cell_build(&cell->plan, crossings, out);
     for (int n = 0; n < cell->plan.vertex_count; n++) {
-        double g[3] = {0, 0, 0};
-        if (sink->normals)
-            inner_gradient(&grid->volume, cell->at, out->vertices[n], g);
-        cwi_sink_vertex(sink, cell->at, out->vertices[n], g, first + (size_t)n);
+        double g[3];
+        cwi_store_position(sink, cell->at, out->vertices[n], first + (size_t)n);
+        if (!sink->normals)
+            continue;
+        inner_gradient(&grid->volume, cell->at, out->vertices[n], g);
+        cwi_store_normal(sink, g, first + (size_t)n);
     }
 }

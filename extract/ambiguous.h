@@ -2,8 +2,8 @@
 #ifndef EXTRACT_AMBIGUOUS_H
 #define EXTRACT_AMBIGUOUS_H
 
+#include "extract/engine.h"
 #include "extract/topology.h"
-#include "extract/typed.h"
 
 /* A padded sample as the decisions see it: its number less the isovalue, positive inside; NaN
  * where there is none. */
@@ -26,7 +26,7 @@ void cwi_ambiguous_load(const cwi_grid *grid, const size_t at[3], unsigned cube,
                         cwi_ambiguous *cell);
 
 /* Builds the cell's surface and writes its inner vertices, numbered from first on. */
-void cwi_ambiguous_build(const cwi_grid *grid, const cwi_ambiguous *cell,
-                         const cwi_vertex_sink *sink, size_t first, cwi_cell *out);
+void cwi_ambiguous_build(const cwi_grid *grid, const cwi_ambiguous *cell, cwi_vertex_sink *sink,
+                         size_t first, cwi_cell *out);
 
 #endif

@@ -1,19 +1,32 @@
 /* How many closed curves the surface draws on the sides of the volume's box.
  *
- * The box's surface is a sphere of squares. The curves cut it into patches, inside and outside
- * by turns; patches and curves form a tree, so curves = patches - 1. Inside samples are joined
- * along the edges of squares only and outside ones across diagonals too, as the case table
- * keeps inside corners apart. */
+ * The box's surface is a sphere of squares, on which the inside samples, joined along the edges
+ * of squares, and across a diagonal where the surface joins it, make patches. A patch with b
+ * curves around it has Euler number 2 - b; so with V samples, E joins and F squares inside,
+ *     curves = 2 patches - (V - E + F).
+ * V, E and F are counts of bits; patches are found by joining runs of bits. */
 #include "core/memory.h"
 #include "core/status.h"
 #include "extract/ambiguous.h"
 
+#include <string.h>
+
 typedef struct box {
     const cwi_grid *grid;
     size_t n[3];
-    uint32_t *parent; /* union-find over the samples of the six sides */
+    uint32_t
+        *parent;     /* union-find over the samples of the six sides, from 1; 0: not yet seen */
+    uint64_t *lines; /* two lines of bits */
+    size_t words;    /* in a line */
     size_t patches;
+    ptrdiff_t euler;
 } box;
+
+/* A side of the box as lines of samples: `axis` is constant at `at`. */
+typedef struct side {
+    int axis, along, across;
+    size_t at;
+} side;
 
 /* Number of a sample on the box's surface: the bottom layer, a ring for every layer, the top.
  */
@@ -40,81 +53,182 @@ static bool is_inside(const box *b, const size_t p[3])
 
 static uint32_t find(uint32_t *parent, uint32_t x)
 {
-    while (parent[x] != x)
-        x = parent[x] = parent[parent[x]];
+    while (parent[x] != x + 1)
+        x = (parent[x] = parent[parent[x] - 1]) - 1;
     return x;
 }
 
-static void join(box *b, const size_t p[3], const size_t q[3])
+/* Sample x of line n of a side, a patch of its own when it is seen first. */
+static uint32_t sample(box *b, const side *s, size_t n, size_t x)
 {
-    const uint32_t x = find(b->parent, (uint32_t)surface_index(b->n, p));
-    const uint32_t y = find(b->parent, (uint32_t)surface_index(b->n, q));
+    size_t p[3];
+    p[s->axis] = s->at;
+    p[s->along] = x;
+    p[s->across] = n;
+    const uint32_t index = (uint32_t)surface_index(b->n, p);
+    if (!b->parent[index]) {
+        b->parent[index] = index + 1;
+        b->patches++;
+    }
+    return index;
+}
+
+static void join(box *b, uint32_t x, uint32_t y)
+{
+    x = find(b->parent, x);
+    y = find(b->parent, y);
     if (x != y) {
-        b->parent[x > y ? x : y] = x > y ? y : x;
+        b->parent[x > y ? x : y] = (x > y ? y : x) + 1;
         b->patches--;
     }
 }
 
-/* Whether the inside corners of an alternating square are joined; c[in] is one of them. */
-static bool joins_inside(const box *b, size_t c[4][3], int in)
+/* Bits of line n of a side. */
+static void load_line(const box *b, const side *s, size_t n, uint64_t *line)
 {
-    double v[2][2];
-    if (b->grid->simple)
-        return false;
-    for (int n = 0; n < 4; n++)
-        v[(n - in) & 1][n >> 1] = cwi_value_at(b->grid, c[n][0] + 1, c[n][1] + 1, c[n][2] + 1);
-    return cwi_face_joins(v[0], v[1], cwi_zero_is_inside(b->grid));
-}
-
-/* Joins the corners of one square: neighbours of a kind, and one diagonal of an alternating
- * one. */
-static void join_square(box *b, const size_t at[3], int u, int v)
-{
-    size_t c[4][3];
-    int alike = 0;
-    for (int n = 0; n < 4; n++)
-        for (int a = 0; a < 3; a++)
-            c[n][a] = at[a] + (a == u && (n == 1 || n == 2)) + (a == v && n >= 2);
-    for (int n = 0; n < 4; n++)
-        if (is_inside(b, c[n]) == is_inside(b, c[(n + 1) % 4])) {
-            join(b, c[n], c[(n + 1) % 4]);
-            alike++;
-        }
-    if (alike > 0)
+    size_t p[3];
+    p[s->axis] = s->at;
+    p[s->across] = n;
+    memset(line, 0, b->words * sizeof *line);
+    if (s->along == 0) {
+        const uint64_t *row = cwi_grid_row(b->grid, (p[2] + 1) * b->grid->rows_y + p[1] + 1);
+        for (size_t w = 0; 64 * w < b->n[0]; w++)
+            line[w] = cwi_next_samples(row, w, b->grid->words);
         return;
-    const int in = is_inside(b, c[0]) ? 0 : 1;
-    const int n = joins_inside(b, c, in) ? in : 1 - in;
-    join(b, c[n], c[n + 2]);
+    }
+    for (p[1] = 0; p[1] < b->n[1]; p[1]++)
+        line[p[1] / 64] |= (uint64_t)is_inside(b, p) << p[1] % 64;
 }
 
-static void join_side(box *b, int axis, size_t side)
+/* The first sample of the run of bits, within one word, that sample x of a line belongs to. */
+static size_t run_start(const uint64_t *line, size_t x)
 {
-    const int u = (axis + 1) % 3, v = (axis + 2) % 3;
-    size_t at[3];
-    at[axis] = side;
-    for (at[v] = 0; at[v] + 1 < b->n[v]; at[v]++)
-        for (at[u] = 0; at[u] + 1 < b->n[u]; at[u]++)
-            join_square(b, at, u, v);
+    const uint64_t gaps = ~line[x / 64] & ((UINT64_C(1) << x % 64) - 1);
+    return x / 64 * 64 + (gaps ? 64 - (size_t)__builtin_clzll(gaps) : 0);
+}
+
+/* Joins what one line holds: runs across words, and runs with those of their samples that
+ * another side knows by themselves. */
+static void join_line(box *b, const side *s, size_t n, const uint64_t *line)
+{
+    const size_t length = b->n[s->along];
+    const bool seam = s->axis == 0 && (n == 0 || n + 1 == b->n[2]);
+    for (size_t w = 0; w < b->words; w++) {
+        const uint64_t starts = line[w] & ~(line[w] << 1);
+        for (uint64_t left = starts; left; left &= left - 1)
+            sample(b, s, n, 64 * w + (size_t)__builtin_ctzll(left));
+        if (w && line[w] & 1 && line[w - 1] >> 63)
+            join(b, sample(b, s, n, 64 * w), sample(b, s, n, run_start(line, 64 * w - 1)));
+        for (uint64_t left = seam ? line[w] : 0; left; left &= left - 1) {
+            const size_t x = 64 * w + (size_t)__builtin_ctzll(left);
+            join(b, sample(b, s, n, x), sample(b, s, n, run_start(line, x)));
+        }
+    }
+    for (size_t x = 0; x < length; x += length - 1)
+        if (line[x / 64] >> x % 64 & 1)
+            join(b, sample(b, s, n, x), sample(b, s, n, run_start(line, x)));
+}
+
+/* Joins the inside corners of square (x, n - 1), which alternate, where the surface does. */
+static void join_diagonal(box *b, const side *s, size_t n, size_t x, const uint64_t *before,
+                          const uint64_t *line)
+{
+    double v[2][2]; /* the diagonal that begins at x in the line before, and the other */
+    for (size_t c = 0; c < 4; c++) {
+        size_t p[3];
+        p[s->axis] = s->at;
+        p[s->along] = x + (c & 1);
+        p[s->across] = n - 1 + (c >> 1);
+        v[(c & 1) ^ (c >> 1)][c >> 1] = cwi_value_at(b->grid, p[0] + 1, p[1] + 1, p[2] + 1);
+    }
+    const size_t first = before[x / 64] >> x % 64 & 1 ? 0 : 1; /* the inside diagonal */
+    if (!cwi_face_joins(v[first], v[1 - first], cwi_zero_is_inside(b->grid)))
+        return;
+    join(b, sample(b, s, n - 1, run_start(before, x + first)),
+         sample(b, s, n, run_start(line, x + 1 - first)));
+    b->euler--;
+}
+
+static ptrdiff_t count(uint64_t bits)
+{
+    return __builtin_popcountll(bits);
+}
+
+static void join_side(box *b, const side *s)
+{
+    uint64_t *line = b->lines, *before = b->lines + b->words;
+    memset(before, 0, b->words * sizeof *before);
+    for (size_t n = 0; n < b->n[s->across]; n++) {
+        load_line(b, s, n, line);
+        join_line(b, s, n, line);
+        for (size_t w = 0; w < b->words; w++) {
+            const uint64_t both = line[w] & before[w];
+            const uint64_t next = w + 1 < b->words ? line[w + 1] & before[w + 1] : 0;
+            b->euler += count(line[w]) - count(line[w] & cwi_next_samples(line, w, b->words)) -
+                        count(both) + count(both & (both >> 1 | next << 63));
+            const uint64_t here = line[w] ^ before[w];
+            const uint64_t turns = line[w] ^ cwi_next_samples(line, w, b->words);
+            const uint64_t there =
+                here & turns & (before[w] ^ cwi_next_samples(before, w, b->words));
+            for (uint64_t left = n && !b->grid->simple ? there : 0; left; left &= left - 1) {
+                const size_t x = 64 * w + (size_t)__builtin_ctzll(left);
+                if (x + 1 < b->n[s->along])
+                    join_diagonal(b, s, n, x, before, line);
+            }
+            for (uint64_t left = both & ~(both << 1); left; left &= left - 1) {
+                const size_t x = 64 * w + (size_t)__builtin_ctzll(left);
+                join(b, sample(b, s, n, run_start(line, x)),
+                     sample(b, s, n - 1, run_start(before, x)));
+            }
+        }
+        uint64_t *swap = line;
+        line = before;
+        before = swap;
+    }
+}
+
+/* Samples and joins on the box's 12 edges were counted by two sides, its corners by three. */
+static void correct_edges(box *b)
+{
+    for (int axis = 0; axis < 3; axis++)
+        for (int edge = 0; edge < 4; edge++) {
+            const int u = (axis + 1) % 3, v = (axis + 2) % 3;
+            size_t p[3];
+            bool before = false;
+            p[u] = edge & 1 ? b->n[u] - 1 : 0;
+            p[v] = edge >> 1 ? b->n[v] - 1 : 0;
+            for (p[axis] = 0; p[axis] < b->n[axis]; p[axis]++) {
+                const bool in = is_inside(b, p);
+                const bool corner = p[axis] == 0 || p[axis] + 1 == b->n[axis];
+                b->euler -= in - (in && before);
+                b->euler += axis == 0 && corner && in;
+                before = in;
+            }
+        }
 }
 
 cw_status cwi_grid_border_loops(const cwi_grid *grid, size_t *loops, cw_error *err)
 {
     const size_t *n = grid->volume.dim;
-    const size_t count = 2 * n[0] * n[1] + (n[2] - 2) * (2 * (n[0] + n[1]) - 4);
-    box b = {.grid = grid, .n = {n[0], n[1], n[2]}, .patches = count};
-    if (count > UINT32_MAX)
+    const size_t samples = 2 * n[0] * n[1] + (n[2] - 2) * (2 * (n[0] + n[1]) - 4);
+    box b = {.grid = grid, .n = {n[0], n[1], n[2]}};
+    if (samples >= UINT32_MAX)
         return cw_fail(err, CW_ERR_LIMIT, "the volume's border has %zu voxels, more than %u",
-                       count, UINT32_MAX);
-    b.parent = cwi_alloc_array(count, sizeof *b.parent);
-    if (!b.parent)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu border voxels", count);
-    for (size_t i = 0; i < count; i++)
-        b.parent[i] = (uint32_t)i;
-    for (int axis = 0; axis < 3; axis++) {
-        join_side(&b, axis, 0);
-        join_side(&b, axis, n[axis] - 1);
+                       samples, UINT32_MAX);
+    b.words = (n[0] > n[1] ? n[0] : n[1]) / 64 + 1;
+    b.lines = cwi_alloc_array(b.words, 2 * sizeof *b.lines);
+    b.parent = cwi_alloc_zeroed(samples, sizeof *b.parent);
+    const bool room = b.lines && b.parent;
+    for (int i = 0; i < 6 && room; i++) {
+        const int axis = i / 2;
+        const side s = {axis, axis == 0, axis == 2 ? 1 : 2, i % 2 ? n[axis] - 1 : 0};
+        join_side(&b, &s);
     }
-    *loops = b.patches - 1;
+    if (room)
+        correct_edges(&b);
+    *loops = (size_t)(2 * (ptrdiff_t)b.patches - b.euler);
+    cwi_free(b.lines);
     cwi_free(b.parent);
-    return CW_OK;
+    return room ? CW_OK
+                : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu border voxels", samples);
 }

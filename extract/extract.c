@@ -1,17 +1,20 @@
 #include <cubewright/extract.h>
 
+#include "core/affine.h"
 #include "core/memory.h"
 #include "core/mesh.h"
 #include "core/status.h"
-#include "extract/march.h"
+#include "extract/cases.h"
+#include "extract/engine.h"
 
 #include <math.h>
 #include <string.h>
 
 /* What an extraction holds between counting and writing. */
 typedef struct plan {
+    const cwi_engine *engine;
     cwi_grid grid;
-    cwi_row *rows;
+    cwi_row *rows; /* and one after the last, with the totals */
     cw_extract_counts counts;
 } plan;
 
@@ -34,17 +37,56 @@ static cw_status check_limits(const cw_extract_desc *d, const cw_extract_counts 
     return CW_OK;
 }
 
-static cw_status make_plan(plan *p, const cw_volume *volume, const cw_extract_desc *d,
-                           cw_error *err)
+static cw_status for_layers(plan *p, const cw_extract_desc *d, const char *step,
+                            void (*work)(void *, size_t), void *context, cw_error *err)
+{
+    const cwi_grid *g = &p->grid;
+    return cwi_each_layer(g->rows_z, g->rows_y * g->words * 64, d, step, work, context, err);
+}
+
+static void count_layer(void *context, size_t k)
+{
+    plan *p = context;
+    p->engine->count_layer(&p->grid, k, p->rows);
+}
+
+/* Turns every row's counts into first numbers. */
+static cw_status sum_rows(plan *p, cw_error *err)
+{
+    size_t v = 0, t = 0;
+    for (size_t r = 0; r < p->grid.rows; r++) {
+        const size_t triangles_here = p->rows[r].triangle;
+        for (int kind = 0; kind < 4; kind++) {
+            const uint32_t here = p->rows[r].first[kind];
+            p->rows[r].first[kind] = (uint32_t)v;
+            v += here;
+        }
+        p->rows[r].triangle = t;
+        t += triangles_here;
+    }
+    p->rows[p->grid.rows] = (cwi_row){.first = {(uint32_t)v}, .triangle = t};
+    p->counts.vertices = v;
+    p->counts.triangles = t;
+    if (v > UINT32_MAX)
+        return cw_fail(err, CW_ERR_LIMIT, "the surface has %zu vertices; a mesh holds %u", v,
+                       UINT32_MAX);
+    return CW_OK;
+}
+
+static cw_status make_plan(plan *p, const cwi_engine *engine, const cw_volume *volume,
+                           const cw_extract_desc *d, cw_error *err)
 {
     memset(p, 0, sizeof *p);
-    cw_status st = cwi_grid_build(&p->grid, volume, d, err);
+    p->engine = engine;
+    cw_status st = cwi_grid_build(&p->grid, engine, volume, d, err);
     if (st != CW_OK || !p->grid.crossed)
         return st;
-    p->rows = cwi_alloc_array(p->grid.rows, sizeof *p->rows);
+    p->rows = cwi_alloc_large(p->grid.rows + 1, sizeof *p->rows);
     if (!p->rows)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu rows", p->grid.rows);
-    st = cwi_march_count(&p->grid, d, p->rows, &p->counts.vertices, &p->counts.triangles, err);
+    st = for_layers(p, d, "counting", count_layer, p, err);
+    if (st == CW_OK)
+        st = sum_rows(p, err);
     if (st == CW_OK)
         st = cwi_grid_border_loops(&p->grid, &p->counts.border_loops, err);
     p->counts.bytes = mesh_bytes(&p->counts, !d->no_normals) + cwi_grid_bytes(&p->grid);
@@ -107,27 +149,90 @@ static cw_status mend_normals(cw_mesh *mesh, cw_error *err)
     return CW_OK;
 }
 
-static cw_status write_mesh(const plan *p, const cw_extract_desc *d, cw_mesh *mesh,
-                            cw_error *err)
+/* Index gradients become outward world normals through the inverse transpose of the affine,
+ * here as its cofactors; the sign holds the determinant's and the side that is inside. */
+static cwi_vertex_sink make_sink(const cwi_grid *g, cw_mesh *mesh)
+{
+    const cw_volume *v = &g->volume;
+    const double sign = (cwi_affine_determinant(v->affine[0]) < 0) != g->invert ? 1 : -1;
+    cwi_vertex_sink sink = {.positions = mesh->positions, .normals = mesh->normals};
+    double largest = 0;
+    cwi_affine_cofactor(v->affine[0], sink.cofactor);
+    for (int i = 0; i < 9; i++)
+        largest = fmax(largest, fabs(sink.cofactor[i / 3][i % 3]));
+    for (int r = 0; r < 3; r++) {
+        for (int c = 0; c < 3; c++) {
+            sink.affine[r][c] = v->affine[r][c];
+            sink.cofactor[r][c] *= sign / largest;
+        }
+        sink.centre[r] = 0.5 * (double)(v->dim[r] - 1);
+    }
+    for (int a = 0; a < 3; a++) {
+        double square = 0;
+        for (int r = 0; r < 3; r++)
+            square += sink.cofactor[r][a] * sink.cofactor[r][a];
+        for (int r = 0; r < 3; r++) {
+            const double n = sink.cofactor[r][a] / sqrt(square) * (g->invert ? 1 : -1);
+            sink.cap[a][0][r] = (float)-n;
+            sink.cap[a][1][r] = (float)n;
+        }
+    }
+    cwi_affine_apply(v->affine[0], sink.centre, mesh->origin);
+    return sink;
+}
+
+/* A mirroring affine turns triangles inside out: two corners change places. */
+static cwi_emission make_emission(const cwi_grid *g)
+{
+    const bool flip = cwi_affine_determinant(g->volume.affine[0]) < 0;
+    cwi_emission emission = {.flip = flip};
+    for (int c = 0; c < 256; c++)
+        for (int n = 0; n < 3 * cwi_case_count[c]; n++)
+            emission.edge[c][n] =
+                cwi_case_triangles[c][flip && n % 3 ? n - n % 3 + 3 - n % 3 : n];
+    return emission;
+}
+
+typedef struct writing {
+    const plan *plan;
+    cwi_emission emission;
+    cwi_vertex_sink sink;
+    uint32_t *triangles;
+} writing;
+
+static void write_layer(void *context, size_t k)
+{
+    writing *w = context;
+    w->plan->engine->write_layer(&w->plan->grid, k, w->plan->rows, &w->emission, &w->sink,
+                                 w->triangles);
+}
+
+static cw_status write_mesh(plan *p, const cw_extract_desc *d, cw_mesh *mesh, cw_error *err)
 {
     cw_status st =
         cwi_mesh_alloc(mesh, p->counts.vertices, p->counts.triangles, !d->no_normals, err);
-    if (st == CW_OK)
-        st = cwi_march_write(&p->grid, d, p->rows, mesh, err);
-    if (st == CW_OK && mesh->normals)
+    if (st != CW_OK)
+        return st;
+    writing w = {.plan = p,
+                 .emission = make_emission(&p->grid),
+                 .sink = make_sink(&p->grid, mesh),
+                 .triangles = mesh->triangles};
+    st = for_layers(p, d, "marching", write_layer, &w, err);
+    if (st == CW_OK && w.sink.missing)
         st = mend_normals(mesh, err);
     if (st == CW_OK)
         memcpy(mesh->affine, p->grid.volume.affine, sizeof mesh->affine);
     return st;
 }
 
-cw_status cw_extract(const cw_volume *volume, const cw_extract_desc *desc, cw_mesh *mesh,
-                     cw_extract_counts *counts, cw_error *err)
+cw_status cwi_extract_with(const cwi_engine *engine, const cw_volume *volume,
+                           const cw_extract_desc *desc, cw_mesh *mesh,
+                           cw_extract_counts *counts, cw_error *err)
 {
     const cw_extract_desc d = desc ? *desc : (cw_extract_desc){0};
     plan p;
     memset(mesh, 0, sizeof *mesh);
-    cw_status st = make_plan(&p, volume, &d, err);
+    cw_status st = make_plan(&p, engine, volume, &d, err);
     if (st == CW_OK && p.counts.triangles)
         st = write_mesh(&p, &d, mesh, err);
     if (st == CW_OK && counts)
@@ -138,12 +243,18 @@ cw_status cw_extract(const cw_volume *volume, const cw_extract_desc *desc, cw_me
     return st;
 }
 
+cw_status cw_extract(const cw_volume *volume, const cw_extract_desc *desc, cw_mesh *mesh,
+                     cw_extract_counts *counts, cw_error *err)
+{
+    return cwi_extract_with(cwi_engine_best(), volume, desc, mesh, counts, err);
+}
+
 cw_status cw_extract_predict(const cw_volume *volume, const cw_extract_desc *desc,
                              cw_extract_counts *counts, cw_error *err)
 {
     const cw_extract_desc d = desc ? *desc : (cw_extract_desc){0};
     plan p;
-    cw_status st = make_plan(&p, volume, &d, err);
+    cw_status st = make_plan(&p, cwi_engine_best(), volume, &d, err);
     if (st == CW_OK)
         *counts = p.counts;
     free_plan(&p);

@@ -2,7 +2,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
-#include "extract/typed.h"
+#include "extract/engine.h"
 
 #include <math.h>
 #include <string.h>
@@ -15,8 +15,8 @@ static cw_status allocate(cwi_grid *g, bool leave_open, cw_error *err)
     g->rows_z = g->volume.dim[2] + 2;
     if (cwi_size_mul(g->rows_y, g->rows_z, &g->rows) &&
         cwi_size_mul(g->rows, g->words, &bits)) {
-        g->inside = cwi_alloc_zeroed(bits, sizeof *g->inside);
-        g->live = leave_open ? cwi_alloc_zeroed(bits, sizeof *g->live) : NULL;
+        g->inside = cwi_alloc_large(bits, sizeof *g->inside);
+        g->live = leave_open ? cwi_alloc_large(bits, sizeof *g->live) : NULL;
     }
     if (g->inside && (g->live || !leave_open))
         return CW_OK;
@@ -25,50 +25,34 @@ static cw_status allocate(cwi_grid *g, bool leave_open, cw_error *err)
                    g->volume.dim[1], g->volume.dim[2]);
 }
 
-/* Bits of one layer of voxels; *in and *out say whether samples with values were on each side.
- */
-static void classify_layer(cwi_grid *g, size_t k, uint64_t *scratch, bool *in, bool *out)
+typedef struct classification {
+    cwi_grid *grid;
+    const cwi_engine *engine;
+    bool in, out; /* there are samples with values inside, and outside */
+} classification;
+
+static void classify_layer(void *context, size_t k)
 {
-    const cwi_typed *typed = cwi_typed_of(g->volume.type);
-    for (size_t j = 0; j < g->volume.dim[1]; j++) {
-        const size_t row = ((k + 1) * g->rows_y + j + 1) * g->words;
-        uint64_t *inside = g->inside + row, *defined = g->live ? g->live + row : scratch;
-        if (!g->live)
-            memset(scratch, 0, g->words * sizeof *scratch);
-        typed->classify(g, j, k, inside, defined);
-        for (size_t w = 0; w < g->words; w++) {
-            *in = *in || inside[w];
-            *out = *out || (defined[w] & ~inside[w]);
-        }
+    classification *c = context;
+    bool in = false, out = false;
+    c->engine->classify_layer(c->grid, k, &in, &out);
+    if (in) {
+#pragma omp atomic write
+        c->in = true;
+    }
+    if (out) {
+#pragma omp atomic write
+        c->out = true;
     }
 }
 
-static cw_status classify(cwi_grid *g, const cw_extract_desc *desc, cw_error *err)
+static cw_status classify(cwi_grid *g, const cwi_engine *engine, const cw_extract_desc *desc,
+                          cw_error *err)
 {
-    const size_t layers = g->volume.dim[2];
-    const cwi_pace pace =
-        cwi_pace_of(layers, g->volume.dim[0] * g->volume.dim[1], desc->threads);
-    bool any_in = false, any_out = false;
-    uint64_t *scratch = cwi_alloc_array(pace.layers * g->words, sizeof *scratch);
-    cw_status st =
-        scratch ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu rows", pace.layers);
-    for (size_t begin = 0; begin < layers && st == CW_OK; begin += pace.layers) {
-        const size_t end = begin + pace.layers < layers ? begin + pace.layers : layers;
-        st = cwi_progress(&desc->progress, "classifying", (double)begin / (double)layers, err);
-        if (st != CW_OK)
-            break;
-#pragma omp parallel for schedule(static) num_threads(pace.threads)                            \
-    reduction(||                                                                               \
-              : any_in, any_out)
-        for (size_t k = begin; k < end; k++) {
-            bool in = false, out = false;
-            classify_layer(g, k, scratch + (k - begin) * g->words, &in, &out);
-            any_in = any_in || in;
-            any_out = any_out || out;
-        }
-    }
-    cwi_free(scratch);
-    g->crossed = any_in && any_out;
+    classification c = {.grid = g, .engine = engine};
+    cw_status st = cwi_each_layer(g->rows_z, g->volume.dim[0] * g->volume.dim[1], desc,
+                                  "classifying", classify_layer, &c, err);
+    g->crossed = c.in && c.out;
     return st;
 }
 
@@ -156,8 +140,8 @@ static cw_status set_level(cwi_grid *g, const cw_extract_desc *desc, cw_error *e
     return CW_OK;
 }
 
-cw_status cwi_grid_build(cwi_grid *g, const cw_volume *volume, const cw_extract_desc *desc,
-                         cw_error *err)
+cw_status cwi_grid_build(cwi_grid *g, const cwi_engine *engine, const cw_volume *volume,
+                         const cw_extract_desc *desc, cw_error *err)
 {
     memset(g, 0, sizeof *g);
     cw_status st = cw_volume_select(volume, 0, 0, &g->volume, err);
@@ -171,7 +155,7 @@ cw_status cwi_grid_build(cwi_grid *g, const cw_volume *volume, const cw_extract_
     if (st == CW_OK)
         st = allocate(g, desc->leave_open, err);
     if (st == CW_OK)
-        st = classify(g, desc, err);
+        st = classify(g, engine, desc, err);
     if (st == CW_OK && g->live) {
         make_live(g);
         while (drop_pinched(g))

@@ -31,8 +31,9 @@ typedef struct cwi_row {
 } cwi_row;
 
 /* Compares every sample with the isovalue. Free with cwi_grid_free(), also after an error. */
-cw_status cwi_grid_build(cwi_grid *grid, const cw_volume *volume, const cw_extract_desc *desc,
-                         cw_error *err);
+struct cwi_engine;
+cw_status cwi_grid_build(cwi_grid *grid, const struct cwi_engine *engine,
+                         const cw_volume *volume, const cw_extract_desc *desc, cw_error *err);
 void cwi_grid_free(cwi_grid *grid);
 size_t cwi_grid_bytes(const cwi_grid *grid);
 

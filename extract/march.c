@@ -1,51 +1,28 @@
-#include "extract/march.h"
-
-#include "core/affine.h"
-#include "core/status.h"
+/* Counting and writing a layer of cells, from bit planes. Compiled for each engine. */
 #include "extract/ambiguous.h"
 #include "extract/cases.h"
-#include "extract/cube.h"
-#include "extract/typed.h"
+#include "extract/crossings.h"
+#include "extract/engine.h"
 
-#include <math.h>
+#include <string.h>
+
+#if defined __AVX512VBMI__ && defined __GFNI__ && defined __AVX512VPOPCNTDQ__
+#define WIDE 1
+#include <immintrin.h>
+#else
+#define WIDE 0
+#endif
 
 static inline int popcount(uint64_t x)
 {
     return __builtin_popcountll(x);
 }
 
-/* Live cells of word w in row (j, k) of cells; none outside the grid. */
-static uint64_t live_cells(const cwi_grid *g, size_t j, size_t k, size_t w)
-{
-    if (j >= g->rows_y - 1 || k >= g->rows_z - 1) /* true for the row before the first, too */
-        return 0;
-    return g->live[(k * g->rows_y + j) * g->words + w];
-}
-
-/* With open borders an edge has a vertex only if one of the four cells around it is live. */
-static uint64_t live_edges(const cwi_grid *g, int axis, size_t j, size_t k, size_t w)
-{
-    if (axis == 0)
-        return live_cells(g, j, k, w) | live_cells(g, j - 1, k, w) |
-               live_cells(g, j, k - 1, w) | live_cells(g, j - 1, k - 1, w);
-    const size_t dj = axis == 2, dk = axis == 1;
-    const uint64_t here = live_cells(g, j, k, w) | live_cells(g, j - dj, k - dk, w);
-    const uint64_t before =
-        w ? live_cells(g, j, k, w - 1) | live_cells(g, j - dj, k - dk, w - 1) : 0;
-    return here | here << 1 | before >> 63;
-}
-
-/* Bit i: there is a vertex on the edge along axis from sample i of row (j, k). */
-static inline uint64_t edge_vertices(const cwi_grid *g, int axis, size_t j, size_t k, size_t w)
-{
-    const uint64_t crossed = cwi_grid_crossed(g, axis, j, k, w);
-    return g->live ? crossed & live_edges(g, axis, j, k, w) : crossed;
-}
-
 /* The four rows of samples around a row of cells, one word of them. */
 typedef struct cell_word {
-    uint64_t here[4], next[4]; /* row y + 2 z: samples i, and samples i + 1 */
-    uint64_t active;           /* cells whose corners are not all alike */
+    uint64_t corner[8]; /* bit i: corner n of cell i is inside */
+    uint64_t mixed;     /* cells whose corners are not all alike */
+    uint64_t active;    /* of these, the live ones */
 } cell_word;
 
 static inline cell_word load_cells(const cwi_grid *g, size_t j, size_t k, size_t w)
@@ -54,251 +31,341 @@ static inline cell_word load_cells(const cwi_grid *g, size_t j, size_t k, size_t
     uint64_t any = 0, all = ~UINT64_C(0);
     for (size_t n = 0; n < 4; n++) {
         const uint64_t *row = cwi_grid_row(g, (k + (n >> 1)) * g->rows_y + j + (n & 1));
-        c.here[n] = row[w];
-        c.next[n] = cwi_next_samples(row, w, g->words);
-        any |= c.here[n] | c.next[n];
-        all &= c.here[n] & c.next[n];
+        c.corner[2 * n] = row[w];
+        c.corner[2 * n + 1] = cwi_next_samples(row, w, g->words);
+        any |= c.corner[2 * n] | c.corner[2 * n + 1];
+        all &= c.corner[2 * n] & c.corner[2 * n + 1];
     }
-    c.active = any & ~all;
+    c.mixed = c.active = any & ~all;
     if (g->live)
-        c.active &= live_cells(g, j, k, w);
+        c.active &= cwi_live_cells(g, j, k, w);
     return c;
 }
+
+#if WIDE
+
+/* From registers: a wide load of what was just stored word by word would wait for it. */
+static inline __m512i corners(const cell_word *c)
+{
+    const uint64_t *n = c->corner;
+    return _mm512_set_epi64((long long)n[7], (long long)n[6], (long long)n[5], (long long)n[4],
+                            (long long)n[3], (long long)n[2], (long long)n[1], (long long)n[0]);
+}
+
+/* The cases of 64 cells: an 8 x 64 matrix of bits, turned. */
+static inline __m512i turned(const cell_word *c)
+{
+    /* byte 8 b + 7 - n: bits of cells 8 b to 8 b + 7 for corner n */
+    const __m512i gather = _mm512_set_epi64(
+        0x070f171f272f373f, 0x060e161e262e363e, 0x050d151d252d353d, 0x040c141c242c343c,
+        0x030b131b232b333b, 0x020a121a222a323a, 0x0109111921293139, 0x0008101820283038);
+    const __m512i bytes = _mm512_permutexvar_epi8(gather, corners(c));
+    return _mm512_gf2p8affine_epi64_epi8(_mm512_set1_epi64((long long)0x8040201008040201),
+                                         bytes, 0);
+}
+
+static inline void cell_cases(const cell_word *c, uint8_t cases[64])
+{
+    _mm512_storeu_si512(cases, turned(c));
+}
+
+static inline size_t count_triangles(const cell_word *c)
+{
+    const __m512i cases = turned(c);
+    const __m512i low = _mm512_permutex2var_epi8(_mm512_loadu_si512(cwi_case_count), cases,
+                                                 _mm512_loadu_si512(cwi_case_count + 64));
+    const __m512i high =
+        _mm512_permutex2var_epi8(_mm512_loadu_si512(cwi_case_count + 128), cases,
+                                 _mm512_loadu_si512(cwi_case_count + 192));
+    const __m512i counts = _mm512_maskz_mov_epi8(
+        c->active, _mm512_mask_mov_epi8(low, _mm512_movepi8_mask(cases), high));
+    return (size_t)_mm512_reduce_add_epi64(_mm512_sad_epu8(counts, _mm512_setzero_si512()));
+}
+
+/* Bit i: cell i is active, and its signs alone do not settle its surface. */
+static inline uint64_t ambiguous_cells(const cell_word *c)
+{
+    const __m512i cases = turned(c);
+    const __m512i low =
+        _mm512_permutex2var_epi8(_mm512_loadu_si512(cwi_case_is_ambiguous), cases,
+                                 _mm512_loadu_si512(cwi_case_is_ambiguous + 64));
+    const __m512i high =
+        _mm512_permutex2var_epi8(_mm512_loadu_si512(cwi_case_is_ambiguous + 128), cases,
+                                 _mm512_loadu_si512(cwi_case_is_ambiguous + 192));
+    const __m512i both = _mm512_mask_mov_epi8(low, _mm512_movepi8_mask(cases), high);
+    return c->active & _mm512_test_epi8_mask(both, both);
+}
+
+#else
+
+/* Eight bytes as an 8 x 8 matrix of bits, transposed [Warren2013, 7-3]. */
+static inline uint64_t transpose8(uint64_t x)
+{
+    uint64_t t = (x ^ x >> 7) & UINT64_C(0x00aa00aa00aa00aa);
+    x ^= t ^ t << 7;
+    t = (x ^ x >> 14) & UINT64_C(0x0000cccc0000cccc);
+    x ^= t ^ t << 14;
+    t = (x ^ x >> 28) & UINT64_C(0x00000000f0f0f0f0);
+    return x ^ t ^ t << 28;
+}
+
+/* The cases of 64 cells; those of inactive ones may be left out. */
+static inline void cell_cases(const cell_word *c, uint8_t cases[64])
+{
+    for (int b = 0; b < 64; b += 8) {
+        uint64_t eight = 0;
+        if (!(c->active >> b & 255))
+            continue;
+        for (int n = 0; n < 8; n++)
+            eight |= (c->corner[n] >> b & 255) << 8 * n;
+        eight = transpose8(eight);
+        for (int n = 0; n < 8; n++)
+            cases[b + n] = (uint8_t)(eight >> 8 * n);
+    }
+}
+
+static inline size_t count_triangles(const cell_word *c)
+{
+    uint8_t cases[64];
+    size_t count = 0;
+    cell_cases(c, cases);
+    for (uint64_t left = c->active; left; left &= left - 1)
+        count += cwi_case_count[cases[__builtin_ctzll(left)]];
+    return count;
+}
+
+/* Bit i: cell i is active, and its signs alone do not settle its surface. */
+static inline uint64_t ambiguous_cells(const cell_word *c)
+{
+    uint8_t cases[64];
+    uint64_t ambiguous = 0;
+    cell_cases(c, cases);
+    for (uint64_t left = c->active; left; left &= left - 1)
+        if (cwi_case_is_ambiguous[cases[__builtin_ctzll(left)]])
+            ambiguous |= left & -left;
+    return ambiguous;
+}
+
+#endif
 
 static inline unsigned cell_case(const cell_word *c, int i)
 {
     unsigned cube = 0;
-    for (int n = 0; n < 4; n++)
-        cube |= (unsigned)(c->here[n] >> i & 1) << 2 * n | (unsigned)(c->next[n] >> i & 1)
-                                                               << (2 * n + 1);
+    for (int n = 0; n < 8; n++)
+        cube |= (unsigned)(c->corner[n] >> i & 1) << n;
     return cube;
 }
 
-static void count_ambiguous(const cwi_grid *g, const size_t at[3], unsigned cube, cwi_row *row)
+/* Counts what the field's topology makes of the ambiguous cells in word w of row (j, k), in
+ * place of what the table counted for them. */
+static void count_ambiguous(const cwi_grid *g, const cell_word *c, size_t j, size_t k, size_t w,
+                            size_t *triangles, unsigned *inner)
 {
-    cwi_ambiguous cell;
-    cwi_ambiguous_load(g, at, cube, &cell);
-    row->triangle += (size_t)cell.plan.triangle_count;
-    row->first[3] += (uint32_t)cell.plan.vertex_count;
+    for (uint64_t left = ambiguous_cells(c); left; left &= left - 1) {
+        const int i = __builtin_ctzll(left);
+        const unsigned cube = cell_case(c, i);
+        cwi_ambiguous cell;
+        cwi_ambiguous_load(g, (const size_t[3]){64 * w + (size_t)i, j, k}, cube, &cell);
+        *triangles += (size_t)cell.plan.triangle_count;
+        *triangles -= cwi_case_count[cube];
+        *inner += (unsigned)cell.plan.vertex_count;
+    }
 }
 
-/* Leaves counts, not yet first numbers, in the row. */
+/* Leaves counts, not yet first numbers, in the row. An edge that is crossed belongs to a cell
+ * whose corners differ, as the last samples of every row, and the last rows, are padding. */
 static void count_row(const cwi_grid *g, size_t j, size_t k, cwi_row *row)
 {
-    for (int axis = 0; axis < 3; axis++) {
-        unsigned count = 0;
-        for (size_t w = 0; w < g->words; w++)
-            count += (unsigned)popcount(edge_vertices(g, axis, j, k, w));
-        row->first[axis] = count;
-    }
-    row->triangle = row->first[3] = 0;
-    if (j + 1 == g->rows_y || k + 1 == g->rows_z)
-        return;
+    unsigned count[4] = {0, 0, 0, 0};
+    size_t triangles = 0;
     for (size_t w = 0; w < g->words; w++) {
         const cell_word c = load_cells(g, j, k, w);
-        for (uint64_t left = c.active; left; left &= left - 1) {
-            const int i = __builtin_ctzll(left);
-            const unsigned cube = cell_case(&c, i);
-            if (cwi_case_is_ambiguous[cube] && !g->simple)
-                count_ambiguous(g, (const size_t[3]){64 * w + (size_t)i, j, k}, cube, row);
-            else
-                row->triangle += cwi_case_count[cube];
+        if (!c.mixed)
+            continue;
+        if (g->live) {
+            for (int axis = 0; axis < 3; axis++)
+                count[axis] += (unsigned)popcount(cwi_edge_vertices(g, axis, j, k, w));
+        } else {
+            count[0] += (unsigned)popcount(c.corner[0] ^ c.corner[1]);
+            count[1] += (unsigned)popcount(c.corner[0] ^ c.corner[2]);
+            count[2] += (unsigned)popcount(c.corner[0] ^ c.corner[4]);
         }
+        triangles += count_triangles(&c);
+        if (!g->simple)
+            count_ambiguous(g, &c, j, k, w, &triangles, &count[3]);
     }
+    for (int kind = 0; kind < 4; kind++)
+        row->first[kind] = count[kind];
+    row->triangle = triangles;
 }
 
-static cw_status sum_rows(cwi_row *rows, size_t count, size_t *vertices, size_t *triangles,
-                          cw_error *err)
+void cwi_count_layer(const cwi_grid *g, size_t k, cwi_row *rows)
 {
-    size_t v = 0, t = 0;
-    for (size_t r = 0; r < count; r++) {
-        const size_t triangles_here = rows[r].triangle;
-        for (int kind = 0; kind < 4; kind++) {
-            const uint32_t here = rows[r].first[kind];
-            rows[r].first[kind] = (uint32_t)v;
-            v += here;
-        }
-        rows[r].triangle = t;
-        t += triangles_here;
-    }
-    *vertices = v;
-    *triangles = t;
-    if (v > UINT32_MAX)
-        return cw_fail(err, CW_ERR_LIMIT, "the surface has %zu vertices; a mesh holds %u", v,
-                       UINT32_MAX);
-    return CW_OK;
+    cwi_row *row = rows + k * g->rows_y;
+    const bool cells = k + 1 < g->rows_z;
+    for (size_t j = 0; j + 1 < g->rows_y && cells; j++)
+        count_row(g, j, k, row + j);
+    const size_t left = cells ? 1 : g->rows_y;
+    memset(row + g->rows_y - left, 0, left * sizeof *row);
 }
 
-static cwi_pace grid_pace(const cwi_grid *g, const cw_extract_desc *desc)
-{
-    return cwi_pace_of(g->rows_z, g->rows_y * g->words * 64, desc->threads);
-}
-
-cw_status cwi_march_count(const cwi_grid *g, const cw_extract_desc *desc, cwi_row *rows,
-                          size_t *vertices, size_t *triangles, cw_error *err)
-{
-    const cwi_pace pace = grid_pace(g, desc);
-    for (size_t begin = 0; begin < g->rows_z; begin += pace.layers) {
-        const size_t end = begin + pace.layers < g->rows_z ? begin + pace.layers : g->rows_z;
-        cw_status st =
-            cwi_progress(&desc->progress, "counting", (double)begin / (double)g->rows_z, err);
-        if (st != CW_OK)
-            return st;
-#pragma omp parallel for schedule(dynamic) num_threads(pace.threads)
-        for (size_t k = begin; k < end; k++)
-            for (size_t j = 0; j < g->rows_y; j++)
-                count_row(g, j, k, &rows[k * g->rows_y + j]);
-    }
-    return sum_rows(rows, g->rows, vertices, triangles, err);
-}
-
-static void write_vertices(const cwi_grid *g, size_t j, size_t k, const cwi_row *row,
-                           const cwi_vertex_sink *sink)
-{
-    const cwi_typed *typed = cwi_typed_of(g->volume.type);
-    for (int axis = 0; axis < 3; axis++) {
-        size_t v = row->first[axis];
-        for (size_t w = 0; w < g->words; w++)
-            for (uint64_t left = edge_vertices(g, axis, j, k, w); left; left &= left - 1) {
-                const size_t at[3] = {64 * w + (size_t)__builtin_ctzll(left), j, k};
-                typed->vertex(g, at, axis, sink, v++);
-            }
-    }
-}
-
-/* A row of edges beside a row of cells: its crossings in the current word, and the number of
- * the first vertex in that word. */
-typedef struct edge_row {
-    int axis;
-    size_t j, k;
-    uint64_t crossed;
-    uint32_t first;
-} edge_row;
-
-/* The number of the vertex on the edge from sample i: how many crossings come before it. */
-static inline uint32_t rank(const edge_row *e, int i)
-{
-    return e->first + (uint32_t)popcount(e->crossed & ((UINT64_C(1) << i) - 1));
-}
+/* The rows of edges around a word of cells, with what ranks need. Rows of y- and z-edges stand
+ * twice, for the edges at i and at i + 1: lane n is edge n of the cube. */
+typedef struct edge_word {
+    uint64_t crossed[16];
+    uint64_t first[16]; /* number of the first vertex in the word */
+} edge_word;
 
 /* The vertices on the 12 edges of cell i: where they would be numbered if crossed. */
-static inline void cell_vertices(const edge_row e[8], int i, uint32_t vertex[12])
+static inline void cell_vertices(const edge_word *e, int i, uint32_t vertex[12])
 {
-    for (int n = 0; n < 4; n++)
-        vertex[n] = rank(&e[n], i);
-    for (int n = 0; n < 2; n++) {
-        const edge_row *y = &e[4 + n], *z = &e[6 + n];
-        vertex[4 + 2 * n] = rank(y, i);
-        vertex[5 + 2 * n] = vertex[4 + 2 * n] + (uint32_t)(y->crossed >> i & 1);
-        vertex[8 + 2 * n] = rank(z, i);
-        vertex[9 + 2 * n] = vertex[8 + 2 * n] + (uint32_t)(z->crossed >> i & 1);
+    const uint64_t here = UINT64_C(1) << i, before = here - 1, with = here | before;
+    for (int n = 0; n < 12; n++)
+        vertex[n] = (uint32_t)e->first[n] +
+                    (uint32_t)popcount(e->crossed[n] & (n >= 4 && n & 1 ? with : before));
+}
+
+/* The rows of edges a cube's 12 edges lie in: axis, and which of the four rows of samples. */
+static const struct {
+    uint8_t axis, j, k;
+} edge_rows[12] = {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 1, 1}, {1, 0, 0}, {1, 0, 0},
+                   {1, 0, 1}, {1, 0, 1}, {2, 0, 0}, {2, 0, 0}, {2, 1, 0}, {2, 1, 0}};
+
+/* Crossings of the edges around word w of the cells in row (j, k). */
+static inline void load_edges(edge_word *e, const cwi_grid *g, const cell_word *c, size_t j,
+                              size_t k, size_t w)
+{
+    if (g->live) {
+        for (int n = 0; n < 12; n++)
+            e->crossed[n] = cwi_edge_vertices(g, edge_rows[n].axis, j + edge_rows[n].j,
+                                              k + edge_rows[n].k, w);
+        return;
     }
+    for (int n = 0; n < 4; n++)
+        e->crossed[n] = c->corner[2 * n] ^ c->corner[2 * n + 1];
+    e->crossed[4] = e->crossed[5] = c->corner[0] ^ c->corner[2];
+    e->crossed[6] = e->crossed[7] = c->corner[4] ^ c->corner[6];
+    e->crossed[8] = e->crossed[9] = c->corner[0] ^ c->corner[4];
+    e->crossed[10] = e->crossed[11] = c->corner[2] ^ c->corner[6];
 }
 
-/* Puts one triangle; mirrored frames turn it round. */
-static inline uint32_t *put_triangle(uint32_t *out, uint32_t a, uint32_t b, uint32_t c,
-                                     bool flip)
+/* Goes on to the next word. */
+static inline void skip_word(edge_word *e)
 {
-    out[0] = a;
-    out[1] = flip ? c : b;
-    out[2] = flip ? b : c;
-    return out + 3;
+    for (int n = 0; n < 12; n++)
+        e->first[n] += (uint64_t)popcount(e->crossed[n]);
 }
 
-/* vertex: of the 12 edges, and room for the inner ones, which are numbered from *inner on. */
-static uint32_t *write_ambiguous(const cwi_grid *g, const size_t at[3], unsigned cube,
-                                 const cwi_vertex_sink *sink, bool flip, uint32_t *vertex,
-                                 uint32_t *inner, uint32_t *out)
+#if WIDE
+
+/* The triangles of a cell: the ranks of its 12 vertices at once, then one shuffle by the case.
+ */
+static inline uint32_t *emit(const edge_word *e, int i, unsigned cube,
+                             const cwi_emission *emission, uint32_t *out, const uint32_t *end)
 {
+    const uint64_t before = (UINT64_C(1) << i) - 1, with = before << 1 | 1;
+    const __m512i b = _mm512_set1_epi64((long long)before),
+                  c = _mm512_set1_epi64((long long)with);
+    __m512i ranks[2];
+    for (int n = 0; n < 2; n++) { /* edges 5, 7, 9 and 11 stand at i + 1 */
+        const __m512i below = _mm512_mask_mov_epi64(b, n ? 0x0a : 0xa0, c);
+        const __m512i crossed = _mm512_loadu_si512(e->crossed + 8 * n);
+        ranks[n] = _mm512_add_epi64(_mm512_loadu_si512(e->first + 8 * n),
+                                    _mm512_popcnt_epi64(_mm512_and_si512(crossed, below)));
+    }
+    const __m128i edges = _mm_loadu_si128((const __m128i *)(const void *)emission->edge[cube]);
+    const __m512i lanes = _mm512_slli_epi32(_mm512_cvtepu8_epi32(edges), 1);
+    const __m512i all = _mm512_permutex2var_epi32(ranks[0], lanes, ranks[1]);
+    const unsigned count = 3u * cwi_case_count[cube];
+    if (end - out >= 16) /* what is too much, the next cells write over */
+        _mm512_storeu_si512(out, all);
+    else
+        _mm512_mask_storeu_epi32(out, (__mmask16)((1u << count) - 1), all);
+    return out + count;
+}
+
+#else
+
+static inline uint32_t *emit(const edge_word *e, int i, unsigned cube,
+                             const cwi_emission *emission, uint32_t *out, const uint32_t *end)
+{
+    uint32_t vertex[12];
+    const uint8_t *edge = emission->edge[cube];
+    const int count = 3 * cwi_case_count[cube];
+    cell_vertices(e, i, vertex);
+    (void)end;
+    for (int n = 0; n < count; n++)
+        out[n] = vertex[edge[n]];
+    return out + count;
+}
+
+#endif
+
+/* The triangles of an ambiguous cell, and its inner vertices, numbered from *inner on. */
+static uint32_t *emit_ambiguous(const cwi_grid *g, const size_t at[3], const edge_word *e,
+                                unsigned cube, bool flip, cwi_vertex_sink *sink,
+                                uint32_t *inner, uint32_t *out)
+{
+    uint32_t vertex[12 + CWI_CELL_MAX_VERTICES];
     cwi_ambiguous ambiguous;
     cwi_cell cell;
+    cell_vertices(e, (int)(at[0] % 64), vertex);
     cwi_ambiguous_load(g, at, cube, &ambiguous);
     cwi_ambiguous_build(g, &ambiguous, sink, *inner, &cell);
     for (int n = 0; n < ambiguous.plan.vertex_count; n++)
         vertex[CWI_CELL_INNER + n] = (*inner)++;
     const uint8_t *corner = cell.triangles;
-    for (int t = 0; t < ambiguous.plan.triangle_count; t++, corner += 3)
-        out = put_triangle(out, vertex[corner[0]], vertex[corner[1]], vertex[corner[2]], flip);
+    for (int t = 0; t < ambiguous.plan.triangle_count; t++, corner += 3, out += 3) {
+        out[0] = vertex[corner[0]];
+        out[1] = vertex[corner[flip ? 2 : 1]];
+        out[2] = vertex[corner[flip ? 1 : 2]];
+    }
     return out;
 }
 
+/* Writes the triangles of a row of cells from `out` to `end`: the one place where a cell's case
+ * becomes triangles. */
 static void write_triangles(const cwi_grid *g, size_t j, size_t k, const cwi_row *rows,
-                            const cwi_vertex_sink *sink, bool flip, uint32_t *out)
+                            const cwi_emission *emission, cwi_vertex_sink *sink, uint32_t *out,
+                            const uint32_t *end)
 {
-    /* the 8 rows of edges: x-edges of four rows, y-edges at z 0 and 1, z-edges at y 0 and 1 */
-    edge_row e[8] = {{0, j, k, 0, 0},         {0, j + 1, k, 0, 0}, {0, j, k + 1, 0, 0},
-                     {0, j + 1, k + 1, 0, 0}, {1, j, k, 0, 0},     {1, j, k + 1, 0, 0},
-                     {2, j, k, 0, 0},         {2, j + 1, k, 0, 0}};
+    edge_word e;
     uint32_t inner = rows[k * g->rows_y + j].first[3];
-    for (int n = 0; n < 8; n++)
-        e[n].first = rows[e[n].k * g->rows_y + e[n].j].first[e[n].axis];
+    memset(&e, 0, sizeof e);
+    for (int n = 0; n < 12; n++)
+        e.first[n] = rows[(k + edge_rows[n].k) * g->rows_y + j + edge_rows[n].j]
+                         .first[edge_rows[n].axis];
     for (size_t w = 0; w < g->words; w++) {
         const cell_word c = load_cells(g, j, k, w);
-        for (int n = 0; n < 8; n++)
-            e[n].crossed = edge_vertices(g, e[n].axis, e[n].j, e[n].k, w);
+        uint8_t cases[64];
+        if (!c.mixed)
+            continue;
+        const uint64_t ambiguous = g->simple ? 0 : ambiguous_cells(&c);
+        load_edges(&e, g, &c, j, k, w);
+        cell_cases(&c, cases);
         for (uint64_t left = c.active; left; left &= left - 1) {
             const int i = __builtin_ctzll(left);
-            const unsigned cube = cell_case(&c, i);
-            uint32_t vertex[12 + CWI_CELL_MAX_VERTICES];
-            cell_vertices(e, i, vertex);
-            if (cwi_case_is_ambiguous[cube] && !g->simple) {
+            if (ambiguous >> i & 1) {
                 const size_t at[3] = {64 * w + (size_t)i, j, k};
-                out = write_ambiguous(g, at, cube, sink, flip, vertex, &inner, out);
-                continue;
+                out = emit_ambiguous(g, at, &e, cases[i], emission->flip, sink, &inner, out);
+            } else {
+                out = emit(&e, i, cases[i], emission, out, end);
             }
-            const uint8_t *corner = cwi_case_triangles[cube];
-            for (int t = 0; t < cwi_case_count[cube]; t++, corner += 3)
-                out = put_triangle(out, vertex[corner[0]], vertex[corner[1]], vertex[corner[2]],
-                                   flip);
         }
-        for (int n = 0; n < 8; n++)
-            e[n].first += (uint32_t)popcount(e[n].crossed);
+        skip_word(&e);
     }
 }
 
-/* Index gradients become outward world normals through the inverse transpose of the affine,
- * here as its cofactors; the sign holds the determinant's and the side that is inside. */
-static cwi_vertex_sink make_sink(const cwi_grid *g, cw_mesh *mesh)
+void cwi_write_layer(const cwi_grid *g, size_t k, const cwi_row *rows,
+                     const cwi_emission *emission, cwi_vertex_sink *sink, uint32_t *triangles)
 {
-    const cw_volume *v = &g->volume;
-    const double sign = (cwi_affine_determinant(v->affine[0]) < 0) != g->invert ? 1 : -1;
-    cwi_vertex_sink sink = {.positions = mesh->positions, .normals = mesh->normals};
-    double largest = 0;
-    cwi_affine_cofactor(v->affine[0], sink.cofactor);
-    for (int i = 0; i < 9; i++)
-        largest = fmax(largest, fabs(sink.cofactor[i / 3][i % 3]));
-    for (int r = 0; r < 3; r++) {
-        for (int c = 0; c < 3; c++) {
-            sink.affine[r][c] = v->affine[r][c];
-            sink.cofactor[r][c] *= sign / largest;
-        }
-        sink.centre[r] = 0.5 * (double)(v->dim[r] - 1);
+    cwi_write_vertices(g, k, rows, sink);
+    if (k + 1 == g->rows_z)
+        return;
+    for (size_t j = 0; j + 1 < g->rows_y; j++) {
+        const cwi_row *row = rows + k * g->rows_y + j;
+        if (row[0].triangle != row[1].triangle)
+            write_triangles(g, j, k, rows, emission, sink, triangles + 3 * row[0].triangle,
+                            triangles + 3 * row[1].triangle);
     }
-    cwi_affine_apply(v->affine[0], sink.centre, mesh->origin);
-    return sink;
-}
-
-cw_status cwi_march_write(const cwi_grid *g, const cw_extract_desc *desc, const cwi_row *rows,
-                          cw_mesh *mesh, cw_error *err)
-{
-    const cwi_vertex_sink sink = make_sink(g, mesh);
-    const bool flip = cwi_affine_determinant(g->volume.affine[0]) < 0;
-    const cwi_pace pace = grid_pace(g, desc);
-    for (size_t begin = 0; begin < g->rows_z; begin += pace.layers) {
-        const size_t end = begin + pace.layers < g->rows_z ? begin + pace.layers : g->rows_z;
-        cw_status st =
-            cwi_progress(&desc->progress, "marching", (double)begin / (double)g->rows_z, err);
-        if (st != CW_OK)
-            return st;
-#pragma omp parallel for schedule(dynamic) num_threads(pace.threads)
-        for (size_t k = begin; k < end; k++)
-            for (size_t j = 0; j < g->rows_y; j++) {
-                const size_t r = k * g->rows_y + j;
-                write_vertices(g, j, k, &rows[r], &sink);
-                if (j + 1 < g->rows_y && k + 1 < g->rows_z)
-                    write_triangles(g, j, k, rows, &sink, flip,
-                                    mesh->triangles + 3 * rows[r].triangle);
-            }
-    }
-    return CW_OK;
 }

@@ -7,16 +7,31 @@
 
 /* ---- decisions ------------------------------------------------------------------------- */
 
-/* The sign of a c - b d, exactly: products are compared with their rounding errors. Scaling all
- * four by one power of two keeps products from over- and underflowing. */
+/* Products of numbers in this range neither overflow nor lose their rounding errors. */
+#define PLAIN_LEAST 1e-140
+#define PLAIN_MOST  1e140
+
+/* What brings the largest of some magnitudes near 1; 0 when they can stay as they are. */
+static int scale_of(double least, double most)
+{
+    int exponent = 0;
+    if (least < PLAIN_LEAST || most > PLAIN_MOST)
+        frexp(most, &exponent);
+    return -exponent;
+}
+
+/* The sign of a c - b d, exactly: products are compared, and if equal their rounding errors. */
 static int compare_products(double a, double c, double b, double d)
 {
-    int exponent;
-    frexp(fmax(fmax(fabs(a), fabs(b)), fmax(fabs(c), fabs(d))), &exponent);
-    a = ldexp(a, -exponent);
-    b = ldexp(b, -exponent);
-    c = ldexp(c, -exponent);
-    d = ldexp(d, -exponent);
+    const double least = fmin(fmin(fabs(a), fabs(b)), fmin(fabs(c), fabs(d)));
+    const double most = fmax(fmax(fabs(a), fabs(b)), fmax(fabs(c), fabs(d)));
+    const int scale = scale_of(least, most);
+    if (scale) {
+        a = ldexp(a, scale);
+        b = ldexp(b, scale);
+        c = ldexp(c, scale);
+        d = ldexp(d, scale);
+    }
     const double ac = a * c, bd = b * d;
     if (ac != bd)
         return ac > bd ? 1 : -1;
@@ -107,18 +122,20 @@ static void add_event(sweep *s, double t, int column)
 static bool start_sweep(sweep *s, unsigned cube, const double values[8], bool zero_inside)
 {
     double largest = 0;
-    int exponent;
     *s = (sweep){.cube = cube, .values = values, .zero_inside = zero_inside};
     for (int c = 0; c < 8; c++) {
         if (!isfinite(values[c]))
             return false;
         largest = fmax(largest, fabs(values[c]));
     }
-    frexp(largest, &exponent);
+    const int scale = scale_of(largest, largest);
     add_event(s, 0, -1);
     for (int n = 0; n < 4; n++) {
-        const double low = ldexp(values[columns[n]], -exponent);
-        const double high = ldexp(values[columns[n] + 4], -exponent);
+        double low = values[columns[n]], high = values[columns[n] + 4];
+        if (scale) {
+            low = ldexp(low, scale);
+            high = ldexp(high, scale);
+        }
         s->low[n] = low;
         s->slope[n] = high - low;
         s->root[n] = 2;

@@ -1,0 +1,168 @@
+/* Samples to bits: which are inside. Compiled for each engine; where an engine has no faster
+ * way, the plain loops of classify.inc do. */
+#include "core/volume.h"
+#include "extract/engine.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+#ifdef __AVX2__
+#include <immintrin.h>
+#endif
+
+/* 64 bytes of 0 or 1 to bits; byte i to bit i. The product of 8 such bytes with the constant
+ * gathers their lowest bits in its top byte. */
+static inline uint64_t pack_bits(const unsigned char bytes[64])
+{
+    uint64_t bits = 0;
+    for (int i = 0; i < 8; i++) {
+        uint64_t eight = 0;
+        for (int b = 0; b < 8; b++)
+            eight |= (uint64_t)bytes[8 * i + b] << 8 * b;
+        bits |= (eight * UINT64_C(0x0102040810204080) >> 56) << 8 * i;
+    }
+    return bits;
+}
+
+/* Unsigned numbers are compared as signed ones with the top bit flipped: `flip` in every lane.
+ */
+#if defined __AVX512BW__ && defined __AVX512VL__
+
+static inline uint64_t above_8(const void *x, int8_t limit, int8_t flip)
+{
+    const __m512i v = _mm512_xor_si512(_mm512_loadu_si512(x), _mm512_set1_epi8(flip));
+    return _mm512_cmpge_epi8_mask(v, _mm512_set1_epi8((int8_t)(limit ^ flip)));
+}
+
+static inline uint64_t above_16(const void *x, int16_t limit, int16_t flip)
+{
+    const __m512i f = _mm512_set1_epi16(flip), l = _mm512_set1_epi16((int16_t)(limit ^ flip));
+    const char *p = x;
+    const __mmask32 low =
+        _mm512_cmpge_epi16_mask(_mm512_xor_si512(_mm512_loadu_si512(p), f), l);
+    const __mmask32 high =
+        _mm512_cmpge_epi16_mask(_mm512_xor_si512(_mm512_loadu_si512(p + 64), f), l);
+    return (uint64_t)high << 32 | low;
+}
+
+static inline uint64_t above_f32(const float *x, float limit)
+{
+    const __m512 l = _mm512_set1_ps(limit);
+    uint64_t bits = 0;
+    for (int n = 0; n < 4; n++)
+        bits |= (uint64_t)_mm512_cmp_ps_mask(_mm512_loadu_ps(x + 16 * n), l, _CMP_GE_OQ)
+                << 16 * n;
+    return bits;
+}
+
+static inline uint64_t ordered_f32(const float *x)
+{
+    uint64_t bits = 0;
+    for (int n = 0; n < 4; n++) {
+        const __m512 v = _mm512_loadu_ps(x + 16 * n);
+        bits |= (uint64_t)_mm512_cmp_ps_mask(v, v, _CMP_ORD_Q) << 16 * n;
+    }
+    return bits;
+}
+
+#elif defined __AVX2__
+
+static inline uint64_t above_8(const void *x, int8_t limit, int8_t flip)
+{
+    const __m256i f = _mm256_set1_epi8(flip), l = _mm256_set1_epi8((int8_t)(limit ^ flip));
+    uint64_t below = 0;
+    for (int n = 0; n < 2; n++) {
+        const __m256i v = _mm256_xor_si256(_mm256_loadu_si256((const __m256i *)x + n), f);
+        below |= (uint64_t)(uint32_t)_mm256_movemask_epi8(_mm256_cmpgt_epi8(l, v)) << 32 * n;
+    }
+    return ~below;
+}
+
+static inline uint64_t above_16(const void *x, int16_t limit, int16_t flip)
+{
+    const __m256i f = _mm256_set1_epi16(flip), l = _mm256_set1_epi16((int16_t)(limit ^ flip));
+    uint64_t below = 0;
+    for (int n = 0; n < 2; n++) {
+        const __m256i *p = (const __m256i *)x + 2 * n;
+        const __m256i a = _mm256_cmpgt_epi16(l, _mm256_xor_si256(_mm256_loadu_si256(p), f));
+        const __m256i b = _mm256_cmpgt_epi16(l, _mm256_xor_si256(_mm256_loadu_si256(p + 1), f));
+        /* packing works within halves: the middle quarters change places */
+        const __m256i packed = _mm256_permute4x64_epi64(_mm256_packs_epi16(a, b), 0xd8);
+        below |= (uint64_t)(uint32_t)_mm256_movemask_epi8(packed) << 32 * n;
+    }
+    return ~below;
+}
+
+static inline uint64_t above_f32(const float *x, float limit)
+{
+    const __m256 l = _mm256_set1_ps(limit);
+    uint64_t bits = 0;
+    for (int n = 0; n < 8; n++)
+        bits |= (uint64_t)(uint32_t)_mm256_movemask_ps(
+                    _mm256_cmp_ps(_mm256_loadu_ps(x + 8 * n), l, _CMP_GE_OQ))
+                << 8 * n;
+    return bits;
+}
+
+static inline uint64_t ordered_f32(const float *x)
+{
+    uint64_t bits = 0;
+    for (int n = 0; n < 8; n++) {
+        const __m256 v = _mm256_loadu_ps(x + 8 * n);
+        bits |= (uint64_t)(uint32_t)_mm256_movemask_ps(_mm256_cmp_ps(v, v, _CMP_ORD_Q))
+                << 8 * n;
+    }
+    return bits;
+}
+
+#endif
+
+#ifdef __AVX2__
+#define above_u8(x, limit)  above_8(x, (int8_t)(limit), INT8_MIN)
+#define above_i8(x, limit)  above_8(x, limit, 0)
+#define above_u16(x, limit) above_16(x, (int16_t)(limit), INT16_MIN)
+#define above_i16(x, limit) above_16(x, limit, 0)
+#else
+#define above_u8    plain_above_u8
+#define above_i8    plain_above_i8
+#define above_u16   plain_above_u16
+#define above_i16   plain_above_i16
+#define above_f32   plain_above_f32
+#define ordered_f32 plain_ordered_f32
+#endif
+#define above_u32   plain_above_u32
+#define above_i32   plain_above_i32
+#define above_f64   plain_above_f64
+#define ordered_f64 plain_ordered_f64
+/* integers are never NaN: not called */
+#define ordered_u8  plain_ordered_u8
+#define ordered_i8  plain_ordered_i8
+#define ordered_u16 plain_ordered_u16
+#define ordered_i16 plain_ordered_i16
+#define ordered_u32 plain_ordered_u32
+#define ordered_i32 plain_ordered_i32
+
+#define TYPED "extract/classify.inc"
+#include "extract/types.inc"
+
+void cwi_classify_layer(const cwi_grid *g, size_t k, bool *in, bool *out)
+{
+    static void (*const rows[CW_TYPE_COUNT])(const cwi_grid *, size_t, bool *, bool *) = {
+        [CW_U8] = classify_u8,   [CW_I8] = classify_i8,   [CW_U16] = classify_u16,
+        [CW_I16] = classify_i16, [CW_U32] = classify_u32, [CW_I32] = classify_i32,
+        [CW_F32] = classify_f32, [CW_F64] = classify_f64,
+    };
+    const size_t row = g->words * sizeof *g->inside, layer = g->rows_y * g->words;
+    uint64_t *planes[2] = {g->inside, g->live};
+    for (int p = 0; p < 2; p++) {
+        if (!planes[p])
+            continue;
+        uint64_t *first = planes[p] + k * layer;
+        const bool padding = k == 0 || k + 1 == g->rows_z;
+        memset(first, 0, padding ? layer * sizeof *first : row);
+        memset(first + layer - g->words, 0, row);
+    }
+    if (k > 0 && k + 1 < g->rows_z)
+        rows[g->volume.type](g, k - 1, in, out);
+}

@@ -1,0 +1,51 @@
+/* Which edges of a row carry vertices, 64 at a time. */
+#ifndef EXTRACT_CROSSINGS_H
+#define EXTRACT_CROSSINGS_H
+
+#include "extract/grid.h"
+
+/* Live cells of word w in row (j, k) of cells; none outside the grid. */
+static inline uint64_t cwi_live_cells(const cwi_grid *g, size_t j, size_t k, size_t w)
+{
+    if (j >= g->rows_y - 1 || k >= g->rows_z - 1) /* true for the row before the first, too */
+        return 0;
+    return g->live[(k * g->rows_y + j) * g->words + w];
+}
+
+/* With open borders an edge has a vertex only if one of the four cells around it is live. */
+static inline uint64_t cwi_live_edges(const cwi_grid *g, int axis, size_t j, size_t k, size_t w)
+{
+    if (axis == 0)
+        return cwi_live_cells(g, j, k, w) | cwi_live_cells(g, j - 1, k, w) |
+               cwi_live_cells(g, j, k - 1, w) | cwi_live_cells(g, j - 1, k - 1, w);
+    const size_t dj = axis == 2, dk = axis == 1;
+    const uint64_t here = cwi_live_cells(g, j, k, w) | cwi_live_cells(g, j - dj, k - dk, w);
+    const uint64_t before =
+        w ? cwi_live_cells(g, j, k, w - 1) | cwi_live_cells(g, j - dj, k - dk, w - 1) : 0;
+    return here | here << 1 | before >> 63;
+}
+
+/* Bit i: there is a vertex on the edge along axis from sample i of row (j, k). */
+static inline uint64_t cwi_edge_vertices(const cwi_grid *g, int axis, size_t j, size_t k,
+                                         size_t w)
+{
+    const uint64_t crossed = cwi_grid_crossed(g, axis, j, k, w);
+    return g->live ? crossed & cwi_live_edges(g, axis, j, k, w) : crossed;
+}
+
+/* Padded index n along an axis is that of a voxel with one before it and two after. */
+static inline bool cwi_is_inner(const cw_volume *v, int axis, size_t n)
+{
+    return n >= 2 && n + 2 <= v->dim[axis];
+}
+
+/* Both ends of the edge along axis from a padded index are voxels. */
+static inline bool cwi_is_edge(const cw_volume *v, int axis, const size_t index[3])
+{
+    bool within = true;
+    for (int a = 0; a < 3; a++)
+        within = within && index[a] >= 1 && index[a] + (a == axis) <= v->dim[a];
+    return within;
+}
+
+#endif

@@ -1,0 +1,74 @@
+/* The inner loops of extraction, compiled once for any machine and again for what better ones
+ * can do. All engines give the same bytes. */
+#ifndef EXTRACT_ENGINE_H
+#define EXTRACT_ENGINE_H
+
+#include "extract/grid.h"
+
+#include <cubewright/mesh.h>
+
+/* Triangles of a case in the order they are written: three edges each, 16 so that one
+ * fixed-size copy takes them all. */
+typedef struct cwi_emission {
+    uint8_t edge[256][16];
+    bool flip; /* triangles are turned round, as the affine mirrors */
+} cwi_emission;
+
+/* Where vertices go. */
+typedef struct cwi_vertex_sink {
+    float *positions, *normals; /* normals may be NULL */
+    double affine[3][3];        /* index to world directions */
+    double centre[3];           /* index that stands at the mesh's origin */
+    double cofactor[3][3];      /* index gradient to outward world direction */
+    float cap[3][2][3];         /* normals of caps across an axis, low and high side */
+    bool missing;               /* some normal is zero as the gradient vanished */
+} cwi_vertex_sink;
+
+typedef struct cwi_engine {
+    const char *name;
+    bool (*usable)(void);
+    /* Writes the inside bits of a layer of padded samples, and, if there is room, where values
+     * are; tells whether there are samples with values on each side. */
+    void (*classify_layer)(const cwi_grid *grid, size_t k, bool *in, bool *out);
+    /* Leaves a layer's counts, not yet first numbers, in its rows. */
+    void (*count_layer)(const cwi_grid *grid, size_t k, cwi_row *rows);
+    /* Writes a layer's vertices and triangles to their places. */
+    void (*write_layer)(const cwi_grid *grid, size_t k, const cwi_row *rows,
+                        const cwi_emission *emission, cwi_vertex_sink *sink,
+                        uint32_t *triangles);
+} cwi_engine;
+
+/* The n-th engine this machine can use, the plain one first; NULL when there are fewer. */
+CW_API const cwi_engine *cwi_engine_at(size_t n);
+const cwi_engine *cwi_engine_best(void);
+
+/* cw_extract() with an engine of the caller's choice, for tests. */
+CW_API cw_status cwi_extract_with(const cwi_engine *engine, const cw_volume *volume,
+                                  const cw_extract_desc *desc, cw_mesh *mesh,
+                                  cw_extract_counts *counts, cw_error *err);
+
+/* Runs work(context, k) for every layer, on the desc's threads; polls progress on the calling
+ * one. layer_size is the number of samples in a layer. */
+cw_status cwi_each_layer(size_t layers, size_t layer_size, const cw_extract_desc *desc,
+                         const char *step, void (*work)(void *context, size_t k), void *context,
+                         cw_error *err);
+
+/* In files that are compiled for each engine, CWI_ENGINE is its name. */
+#ifdef CWI_ENGINE
+#define CWI_PASTE(a, b)    a##_##b
+#define CWI_EXPAND(a, b)   CWI_PASTE(a, b)
+#define CWI_OF_ENGINE(a)   CWI_EXPAND(a, CWI_ENGINE)
+#define cwi_classify_layer CWI_OF_ENGINE(cwi_classify_layer)
+#define cwi_count_layer    CWI_OF_ENGINE(cwi_count_layer)
+#define cwi_write_layer    CWI_OF_ENGINE(cwi_write_layer)
+#define cwi_write_vertices CWI_OF_ENGINE(cwi_write_vertices)
+
+void cwi_classify_layer(const cwi_grid *grid, size_t k, bool *in, bool *out);
+void cwi_count_layer(const cwi_grid *grid, size_t k, cwi_row *rows);
+void cwi_write_layer(const cwi_grid *grid, size_t k, const cwi_row *rows,
+                     const cwi_emission *emission, cwi_vertex_sink *sink, uint32_t *triangles);
+void cwi_write_vertices(const cwi_grid *grid, size_t k, const cwi_row *rows,
+                        cwi_vertex_sink *sink);
+#endif
+
+#endif

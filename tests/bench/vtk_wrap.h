@@ -1,0 +1,19 @@
+/* The field's usual extractor, to be measured beside ours: vtkFlyingEdges3D, normals on. */
+#ifndef BENCH_VTK_WRAP_H
+#define BENCH_VTK_WRAP_H
+
+#include <cubewright/volume.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Milliseconds of one extraction of a packed u8, u16 or f32 volume; negative: there is no VTK
+ * in this build, or it failed. Freeing its mesh is not timed. */
+double bench_vtk(const cw_volume *volume, double isovalue, int threads, size_t *triangles);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
