@@ -17,7 +17,7 @@
 #define LEAST 1e-280
 #define MOST  1e280
 
-enum { BATCH = 128, LANES = 8, AHEAD = 3 /* rows */ };
+enum { BATCH = 32, LANES = 8, AHEAD = 3 /* rows */ };
 
 /* The vertex between the volume's last sample along an axis and the padding. */
 static void store_cap(const cwi_vertex_sink *sink, const size_t at[3], int axis, size_t n)
