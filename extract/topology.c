@@ -20,11 +20,22 @@ static int scale_of(double least, double most)
     return -exponent;
 }
 
+/* Without the care for NaN that makes fmin and fmax calls. */
+static inline double lesser(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static inline double greater(double a, double b)
+{
+    return a > b ? a : b;
+}
+
 /* The sign of a c - b d, exactly: products are compared, and if equal their rounding errors. */
 static int compare_products(double a, double c, double b, double d)
 {
-    const double least = fmin(fmin(fabs(a), fabs(b)), fmin(fabs(c), fabs(d)));
-    const double most = fmax(fmax(fabs(a), fabs(b)), fmax(fabs(c), fabs(d)));
+    const double least = lesser(lesser(fabs(a), fabs(b)), lesser(fabs(c), fabs(d)));
+    const double most = greater(greater(fabs(a), fabs(b)), greater(fabs(c), fabs(d)));
     const int scale = scale_of(least, most);
     if (scale) {
         a = ldexp(a, scale);
@@ -126,7 +137,7 @@ static bool start_sweep(sweep *s, unsigned cube, const double values[8], bool ze
     for (int c = 0; c < 8; c++) {
         if (!isfinite(values[c]))
             return false;
-        largest = fmax(largest, fabs(values[c]));
+        largest = greater(largest, fabs(values[c]));
     }
     const int scale = scale_of(largest, largest);
     add_event(s, 0, -1);
@@ -211,11 +222,23 @@ static void set_tunnel(cwi_cell_plan *plan, const sweep *s, int column, double t
     }
 }
 
+/* Whether some slice may have columns inside and outside by turns: two opposite ones are inside
+ * at one end at least, and the other two outside. */
+static bool may_alternate(unsigned cube)
+{
+    const unsigned low = cube & 15, high = cube >> 4;
+    const unsigned inside = low | high, outside = ~(low & high);
+    const unsigned even = 9, odd = 6; /* corners 0 and 3, 1 and 2 */
+    return ((inside & even) == even && (outside & odd) == odd) ||
+           ((inside & odd) == odd && (outside & even) == even);
+}
+
 static void find_tunnel(cwi_cell_plan *plan, unsigned cube, const double values[8],
                         bool zero_inside)
 {
     sweep s;
-    if (plan->config->loop_count < 2 || !start_sweep(&s, cube, values, zero_inside))
+    if (plan->config->loop_count < 2 || !may_alternate(cube) ||
+        !start_sweep(&s, cube, values, zero_inside))
         return;
     for (int e = 0; e + 1 < s.event_count; e++) {
         const double t = s.event[e], u = s.event[e + 1], middle = 0.5 * (t + u);
