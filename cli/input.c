@@ -111,13 +111,14 @@ static cw_status crop(const cli_input *input, cw_volume *view, cw_error *err)
     cw_status st = r.world ? box_from_world(view, &r, err) : CW_OK;
     if (st != CW_OK)
         return st;
-    for (int a = 0; a < 3; a++)
-        if (!clip_range(r.low[a], r.high[a], view->dim[a], &box.first[a], &box.count[a]))
-            return cw_fail(
-                err, CW_ERR_ARGUMENT,
-                "--crop leaves no voxel along %c: the volume's are 0 to %zu, asked for "
-                "are %.6g to %.6g",
-                "xyz"[a], view -> dim[a] - 1, r.low[a], r.high[a]);
+    for (int a = 0; a < 3; a++) {
+        const size_t size = view->dim[a];
+        if (!clip_range(r.low[a], r.high[a], size, &box.first[a], &box.count[a]))
+            return cw_fail(err, CW_ERR_ARGUMENT,
+                           "--crop leaves no voxel along %c: the volume's are 0 to %zu, asked "
+                           "for are %.6g to %.6g",
+                           "xyz"[a], size - 1, r.low[a], r.high[a]);
+    }
     st = cw_volume_crop(view, &box, &part, err);
     if (st == CW_OK) {
         *view = part;

@@ -1,6 +1,7 @@
 #include <cubewright/field.h>
 
 #include "core/affine.h"
+#include "core/layers.h"
 #include "core/status.h"
 
 #include <math.h>
@@ -186,8 +187,16 @@ static void store(cw_type type, void *voxels, size_t n, double value)
     }
 }
 
-static void sample_layer(const cw_field_desc *d, const cw_volume *v, void *voxels, size_t k)
+typedef struct sampling {
+    const cw_field_desc *desc;
+    const cw_volume *volume;
+} sampling;
+
+static void sample_layer(void *context, size_t k)
 {
+    const sampling *s = context;
+    const cw_field_desc *d = s->desc;
+    const cw_volume *v = s->volume;
     for (size_t j = 0; j < v->dim[1]; j++)
         for (size_t i = 0; i < v->dim[0]; i++) {
             const double index[3] = {(double)i, (double)j, (double)k};
@@ -197,25 +206,8 @@ static void sample_layer(const cw_field_desc *d, const cw_volume *v, void *voxel
             double value = cw_field_value(d->field, world);
             if (d->noise > 0)
                 value += d->noise * gaussian(d->seed, n);
-            store(d->type, voxels, n, cw_field_stored(d->field, d->type, value));
+            store(d->type, v->owned, n, cw_field_stored(d->field, d->type, value));
         }
-}
-
-static cw_status sample_layers(const cw_field_desc *d, cw_volume *v, cw_error *err)
-{
-    const size_t layers = v->dim[2];
-    const cwi_pace pace = cwi_pace_of(layers, v->dim[0] * v->dim[1], d->threads);
-    for (size_t begin = 0; begin < layers; begin += pace.layers) {
-        const size_t end = begin + pace.layers < layers ? begin + pace.layers : layers;
-        cw_status st =
-            cwi_progress(&d->progress, "sampling", (double)begin / (double)layers, err);
-        if (st != CW_OK)
-            return st;
-#pragma omp parallel for schedule(dynamic) num_threads(pace.threads)
-        for (size_t k = begin; k < end; k++)
-            sample_layer(d, v, v->owned, k);
-    }
-    return CW_OK;
 }
 
 cw_status cw_field_sample(const cw_field_desc *desc, cw_volume *volume, cw_error *err)
@@ -239,7 +231,8 @@ cw_status cw_field_sample(const cw_field_desc *desc, cw_volume *volume, cw_error
         volume->affine[a][3] = -0.5 * spacing * (double)(d.dim[a] - 1);
     }
     volume->known = CW_KNOWN_UNIT | CW_KNOWN_FRAME;
-    st = sample_layers(&d, volume, err);
+    st = cwi_each_layer(d.dim[2], d.dim[0] * d.dim[1], d.threads, &d.progress, "sampling",
+                        sample_layer, &(sampling){&d, volume}, err);
     if (st != CW_OK)
         cw_volume_free(volume);
     return st;

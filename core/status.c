@@ -72,15 +72,3 @@ int cwi_threads(int asked)
 {
     return asked > 0 ? asked : omp_get_max_threads();
 }
-
-cwi_pace cwi_pace_of(size_t layers, size_t layer_size, int asked_threads)
-{
-    enum { POLL = 1 << 22, SHARE = 1 << 19 }; /* samples between polls; least for a thread */
-    cwi_pace pace = {POLL / (layer_size ? layer_size : 1) + 1, cwi_threads(asked_threads)};
-    const size_t shares = layers * layer_size / SHARE + 1;
-    if (asked_threads <= 0 && shares < (size_t)pace.threads)
-        pace.threads = (int)shares;
-    if (pace.layers < 2 * (size_t)pace.threads)
-        pace.layers = 2 * (size_t)pace.threads;
-    return pace;
-}

@@ -24,15 +24,6 @@ CW_API cw_status cwi_progress(const cw_progress *progress, const char *step, dou
 /* The number of threads a desc asks for: all that OpenMP offers when it says 0 or less. */
 CW_API int cwi_threads(int asked);
 
-/* How to walk `layers` of `layer_size` samples each: so many layers at a time, between which
- * progress is polled, by so many threads. A few layers' work is not worth waking threads for.
- */
-typedef struct cwi_pace {
-    size_t layers;
-    int threads;
-} cwi_pace;
-CW_API cwi_pace cwi_pace_of(size_t layers, size_t layer_size, int asked_threads);
-
 #ifdef __cplusplus
 }
 #endif

@@ -1,9 +1,5 @@
 #include "extract/engine.h"
 
-#include "core/status.h"
-
-#include <omp.h>
-
 static bool always(void)
 {
     return true;
@@ -61,43 +57,4 @@ const cwi_engine *cwi_engine_best(void)
     for (size_t n = 0; (next = cwi_engine_at(n)); n++)
         best = next;
     return best;
-}
-
-/* A thread takes a few neighbouring layers at a time: they share samples, and short turns keep
- * the threads busy to the end. One region for all layers: waking and joining threads for every
- * few layers cost more than it balanced. */
-cw_status cwi_each_layer(size_t layers, size_t layer_size, const cw_extract_desc *desc,
-                         const char *step, void (*work)(void *context, size_t k), void *context,
-                         cw_error *err)
-{
-    const int threads = cwi_pace_of(layers, layer_size, desc->threads).threads;
-    const size_t share = layers / ((size_t)threads * 16), turn = share < 1   ? 1
-                                                                 : share > 8 ? 8
-                                                                             : share;
-    cw_status st = CW_OK;
-    size_t next = 0;
-    bool stop = false;
-#pragma omp parallel num_threads(threads) if (threads > 1)
-    for (bool stopped = false; !stopped;) {
-        size_t begin;
-#pragma omp atomic capture
-        {
-            begin = next;
-            next += turn;
-        }
-        if (begin >= layers)
-            break;
-        if (omp_get_thread_num() == 0) {
-            st = cwi_progress(&desc->progress, step, (double)begin / (double)layers, err);
-            if (st != CW_OK) {
-#pragma omp atomic write
-                stop = true;
-            }
-        }
-#pragma omp atomic read
-        stopped = stop;
-        for (size_t k = begin; k < begin + turn && k < layers && !stopped; k++)
-            work(context, k);
-    }
-    return st;
 }

@@ -47,12 +47,6 @@ CW_API cw_status cwi_extract_with(const cwi_engine *engine, const cw_volume *vol
                                   const cw_extract_desc *desc, cw_mesh *mesh,
                                   cw_extract_counts *counts, cw_error *err);
 
-/* Runs work(context, k) for every layer, on the desc's threads; polls progress on the calling
- * one. layer_size is the number of samples in a layer. */
-cw_status cwi_each_layer(size_t layers, size_t layer_size, const cw_extract_desc *desc,
-                         const char *step, void (*work)(void *context, size_t k), void *context,
-                         cw_error *err);
-
 /* In files that are compiled for each engine, CWI_ENGINE is its name. */
 #ifdef CWI_ENGINE
 #define CWI_PASTE(a, b)    a##_##b

@@ -1,6 +1,7 @@
 #include <cubewright/extract.h>
 
 #include "core/affine.h"
+#include "core/layers.h"
 #include "core/memory.h"
 #include "core/mesh.h"
 #include "core/status.h"
@@ -41,7 +42,8 @@ static cw_status for_layers(plan *p, const cw_extract_desc *d, const char *step,
                             void (*work)(void *, size_t), void *context, cw_error *err)
 {
     const cwi_grid *g = &p->grid;
-    return cwi_each_layer(g->rows_z, g->rows_y * g->words * 64, d, step, work, context, err);
+    return cwi_each_layer(g->rows_z, g->rows_y * g->words * 64, d->threads, &d->progress, step,
+                          work, context, err);
 }
 
 static void count_layer(void *context, size_t k)

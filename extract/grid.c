@@ -1,5 +1,6 @@
 #include "extract/grid.h"
 
+#include "core/layers.h"
 #include "core/memory.h"
 #include "core/status.h"
 #include "extract/engine.h"
@@ -50,8 +51,8 @@ static cw_status classify(cwi_grid *g, const cwi_engine *engine, const cw_extrac
                           cw_error *err)
 {
     classification c = {.grid = g, .engine = engine};
-    cw_status st = cwi_each_layer(g->rows_z, g->volume.dim[0] * g->volume.dim[1], desc,
-                                  "classifying", classify_layer, &c, err);
+    cw_status st = cwi_each_layer(g->rows_z, g->volume.dim[0] * g->volume.dim[1], desc->threads,
+                                  &desc->progress, "classifying", classify_layer, &c, err);
     g->crossed = c.in && c.out;
     return st;
 }

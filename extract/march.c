@@ -69,31 +69,29 @@ static inline void cell_cases(const cell_word *c, uint8_t cases[64])
     _mm512_storeu_si512(cases, turned(c));
 }
 
-static inline size_t count_triangles(const cell_word *c)
+/* What a table of 256 bytes says of each of 64 cases. */
+static inline __m512i look_up(const void *table, const uint8_t cases[64])
 {
-    const __m512i cases = turned(c);
-    const __m512i low = _mm512_permutex2var_epi8(_mm512_loadu_si512(cwi_case_count), cases,
-                                                 _mm512_loadu_si512(cwi_case_count + 64));
+    const char *t = table;
+    const __m512i c = _mm512_loadu_si512(cases);
+    const __m512i low =
+        _mm512_permutex2var_epi8(_mm512_loadu_si512(t), c, _mm512_loadu_si512(t + 64));
     const __m512i high =
-        _mm512_permutex2var_epi8(_mm512_loadu_si512(cwi_case_count + 128), cases,
-                                 _mm512_loadu_si512(cwi_case_count + 192));
-    const __m512i counts = _mm512_maskz_mov_epi8(
-        c->active, _mm512_mask_mov_epi8(low, _mm512_movepi8_mask(cases), high));
+        _mm512_permutex2var_epi8(_mm512_loadu_si512(t + 128), c, _mm512_loadu_si512(t + 192));
+    return _mm512_mask_mov_epi8(low, _mm512_movepi8_mask(c), high);
+}
+
+static inline size_t count_triangles(const cell_word *c, const uint8_t cases[64])
+{
+    const __m512i counts = _mm512_maskz_mov_epi8(c->active, look_up(cwi_case_count, cases));
     return (size_t)_mm512_reduce_add_epi64(_mm512_sad_epu8(counts, _mm512_setzero_si512()));
 }
 
 /* Bit i: cell i is active, and its signs alone do not settle its surface. */
-static inline uint64_t ambiguous_cells(const cell_word *c)
+static inline uint64_t ambiguous_cells(const cell_word *c, const uint8_t cases[64])
 {
-    const __m512i cases = turned(c);
-    const __m512i low =
-        _mm512_permutex2var_epi8(_mm512_loadu_si512(cwi_case_is_ambiguous), cases,
-                                 _mm512_loadu_si512(cwi_case_is_ambiguous + 64));
-    const __m512i high =
-        _mm512_permutex2var_epi8(_mm512_loadu_si512(cwi_case_is_ambiguous + 128), cases,
-                                 _mm512_loadu_si512(cwi_case_is_ambiguous + 192));
-    const __m512i both = _mm512_mask_mov_epi8(low, _mm512_movepi8_mask(cases), high);
-    return c->active & _mm512_test_epi8_mask(both, both);
+    const __m512i ambiguous = look_up(cwi_case_is_ambiguous, cases);
+    return c->active & _mm512_test_epi8_mask(ambiguous, ambiguous);
 }
 
 #else
@@ -124,22 +122,18 @@ static inline void cell_cases(const cell_word *c, uint8_t cases[64])
     }
 }
 
-static inline size_t count_triangles(const cell_word *c)
+static inline size_t count_triangles(const cell_word *c, const uint8_t cases[64])
 {
-    uint8_t cases[64];
     size_t count = 0;
-    cell_cases(c, cases);
     for (uint64_t left = c->active; left; left &= left - 1)
         count += cwi_case_count[cases[__builtin_ctzll(left)]];
     return count;
 }
 
 /* Bit i: cell i is active, and its signs alone do not settle its surface. */
-static inline uint64_t ambiguous_cells(const cell_word *c)
+static inline uint64_t ambiguous_cells(const cell_word *c, const uint8_t cases[64])
 {
-    uint8_t cases[64];
     uint64_t ambiguous = 0;
-    cell_cases(c, cases);
     for (uint64_t left = c->active; left; left &= left - 1)
         if (cwi_case_is_ambiguous[cases[__builtin_ctzll(left)]])
             ambiguous |= left & -left;
@@ -148,22 +142,14 @@ static inline uint64_t ambiguous_cells(const cell_word *c)
 
 #endif
 
-static inline unsigned cell_case(const cell_word *c, int i)
-{
-    unsigned cube = 0;
-    for (int n = 0; n < 8; n++)
-        cube |= (unsigned)(c->corner[n] >> i & 1) << n;
-    return cube;
-}
-
 /* Counts what the field's topology makes of the ambiguous cells in word w of row (j, k), in
  * place of what the table counted for them. */
-static void count_ambiguous(const cwi_grid *g, const cell_word *c, size_t j, size_t k, size_t w,
-                            size_t *triangles, unsigned *inner)
+static void count_ambiguous(const cwi_grid *g, const cell_word *c, const uint8_t cases[64],
+                            size_t j, size_t k, size_t w, size_t *triangles, unsigned *inner)
 {
-    for (uint64_t left = ambiguous_cells(c); left; left &= left - 1) {
+    for (uint64_t left = ambiguous_cells(c, cases); left; left &= left - 1) {
         const int i = __builtin_ctzll(left);
-        const unsigned cube = cell_case(c, i);
+        const unsigned cube = cases[i];
         cwi_ambiguous cell;
         cwi_ambiguous_load(g, (const size_t[3]){64 * w + (size_t)i, j, k}, cube, &cell);
         *triangles += (size_t)cell.plan.triangle_count;
@@ -190,9 +176,11 @@ static void count_row(const cwi_grid *g, size_t j, size_t k, cwi_row *row)
             count[1] += (unsigned)popcount(c.corner[0] ^ c.corner[2]);
             count[2] += (unsigned)popcount(c.corner[0] ^ c.corner[4]);
         }
-        triangles += count_triangles(&c);
+        uint8_t cases[64];
+        cell_cases(&c, cases);
+        triangles += count_triangles(&c, cases);
         if (!g->simple)
-            count_ambiguous(g, &c, j, k, w, &triangles, &count[3]);
+            count_ambiguous(g, &c, cases, j, k, w, &triangles, &count[3]);
     }
     for (int kind = 0; kind < 4; kind++)
         row->first[kind] = count[kind];
@@ -340,9 +328,9 @@ static void write_triangles(const cwi_grid *g, size_t j, size_t k, const cwi_row
         uint8_t cases[64];
         if (!c.mixed)
             continue;
-        const uint64_t ambiguous = g->simple ? 0 : ambiguous_cells(&c);
         load_edges(&e, g, &c, j, k, w);
         cell_cases(&c, cases);
+        const uint64_t ambiguous = g->simple ? 0 : ambiguous_cells(&c, cases);
         for (uint64_t left = c.active; left; left &= left - 1) {
             const int i = __builtin_ctzll(left);
             if (ambiguous >> i & 1) {

@@ -100,9 +100,10 @@ static bool corner_inside(const sweep *s, int corner)
     return s->cube >> corner & 1;
 }
 
-static bool column_inside(const sweep *s, int n, double t)
+/* The corner that a column is joined to at height t: its end on this side of the root. */
+static int column_corner(const sweep *s, int n, double t)
 {
-    return corner_inside(s, t < s->root[n] ? columns[n] : columns[n] + 4);
+    return t < s->root[n] ? columns[n] : columns[n] + 4;
 }
 
 /* Whether column m's root comes before column n's. Where one of two neighbours leaves the
@@ -191,12 +192,6 @@ static bool turns_back(const sweep *s, int in, bool joined, double t, double u)
     return q > 0 || (q == 0 && s->zero_inside);
 }
 
-/* The corner at which a column is, at height t, joined to the cell's surface. */
-static int column_corner(const sweep *s, int n, double t)
-{
-    return t < s->root[n] ? columns[n] : columns[n] + 4;
-}
-
 static int find_loop(const cwi_config *config, int patch, int other)
 {
     const uint8_t *edge = config->loop_edges;
@@ -244,7 +239,7 @@ static void find_tunnel(cwi_cell_plan *plan, unsigned cube, const double values[
         const double t = s.event[e], u = s.event[e + 1], middle = 0.5 * (t + u);
         bool in[4];
         for (int n = 0; n < 4; n++)
-            in[n] = column_inside(&s, n, middle);
+            in[n] = corner_inside(&s, column_corner(&s, n, middle));
         if (!(t < u) || in[0] == in[1] || in[0] != in[2] || in[1] != in[3])
             continue;
         const int first = in[0] ? 0 : 1;
@@ -259,6 +254,12 @@ static void find_tunnel(cwi_cell_plan *plan, unsigned cube, const double values[
 static int disc_triangles(const cwi_config *config, int loop)
 {
     return config->loop_length[loop] - (config->cone[loop] ? 0 : 2);
+}
+
+/* Whether a loop is an end of the tunnel, not of a disc. */
+static bool is_tube(const cwi_cell_plan *plan, int loop)
+{
+    return loop == plan->tunnel[0] || loop == plan->tunnel[1];
 }
 
 static bool has_tunnel(const cwi_cell_plan *plan)
@@ -287,7 +288,7 @@ void cwi_cell_plan_make(unsigned cube, const double values[8], bool zero_inside,
     if (!can_tunnel(plan))
         plan->tunnel[0] = plan->tunnel[1] = -1;
     for (int l = 0; l < config->loop_count; l++) {
-        const bool tube = l == plan->tunnel[0] || l == plan->tunnel[1];
+        const bool tube = is_tube(plan, l);
         plan->triangle_count += tube ? config->loop_length[l] + 3 : disc_triangles(config, l);
         plan->vertex_count += !tube && config->cone[l];
     }
@@ -338,7 +339,7 @@ static void build_discs(builder *b)
     const cwi_config *config = b->plan->config;
     const uint8_t *edges = config->loop_edges, *disc = config->triangles;
     for (int l = 0; l < config->loop_count; edges += config->loop_length[l++]) {
-        const bool tube = l == b->plan->tunnel[0] || l == b->plan->tunnel[1];
+        const bool tube = is_tube(b->plan, l);
         const int count = config->loop_length[l];
         if (config->cone[l] && !tube)
             build_cone(b, edges, count);
