@@ -53,6 +53,21 @@ static bool usable(size_t count, size_t size, size_t *bytes)
     return cwi_size_mul(count, size, bytes) && *bytes <= PTRDIFF_MAX && !starved();
 }
 
+enum { LARGE_PAGE = 2 << 20 };
+
+/* Asks for large pages where whole ones lie in large memory: no harm if they are not granted.
+ */
+static void wish_large_pages(char *memory, size_t bytes)
+{
+#ifdef MADV_HUGEPAGE
+    const size_t skip = -(uintptr_t)memory % LARGE_PAGE;
+    if (memory && bytes >= 2 * (size_t)LARGE_PAGE)
+        madvise(memory + skip, (bytes - skip) / LARGE_PAGE * LARGE_PAGE, MADV_HUGEPAGE);
+#else
+    (void)memory, (void)bytes;
+#endif
+}
+
 void *cwi_alloc_array(size_t count, size_t size)
 {
     size_t bytes;
@@ -62,23 +77,24 @@ void *cwi_alloc_array(size_t count, size_t size)
 void *cwi_alloc_zeroed(size_t count, size_t size)
 {
     size_t bytes;
-    return usable(count, size, &bytes) ? calloc(bytes ? bytes : 1, 1) : NULL;
+    if (!usable(count, size, &bytes))
+        return NULL;
+    char *memory = calloc(bytes ? bytes : 1, 1);
+    wish_large_pages(memory, bytes);
+    return memory;
 }
 
 void *cwi_alloc_large(size_t count, size_t size)
 {
-    const size_t page = (size_t)2 << 20, least = 2 * page;
+    const size_t page = LARGE_PAGE;
     size_t bytes;
     if (!usable(count, size, &bytes))
         return NULL;
-    if (bytes < least || bytes > PTRDIFF_MAX - page)
+    if (bytes < 2 * page || bytes > PTRDIFF_MAX - page)
         return malloc(bytes ? bytes : 1);
     bytes = (bytes + page - 1) / page * page;
     void *memory = aligned_alloc(page, bytes);
-#ifdef MADV_HUGEPAGE
-    if (memory)
-        madvise(memory, bytes, MADV_HUGEPAGE); /* a wish: no harm if it is not granted */
-#endif
+    wish_large_pages(memory, bytes);
     return memory;
 }
 

@@ -16,7 +16,7 @@ typedef struct box {
     size_t n[3];
     uint32_t
         *parent;     /* union-find over the samples of the six sides, from 1; 0: not yet seen */
-    uint64_t *lines; /* two lines of bits */
+    uint64_t *lines; /* two lines of bits, each with one word more, which is 0 */
     size_t words;    /* in a line */
     size_t patches;
     ptrdiff_t euler;
@@ -93,7 +93,7 @@ static void load_line(const box *b, const side *s, size_t n, uint64_t *line)
     if (s->along == 0) {
         const uint64_t *row = cwi_grid_row(b->grid, (p[2] + 1) * b->grid->rows_y + p[1] + 1);
         for (size_t w = 0; 64 * w < b->n[0]; w++)
-            line[w] = cwi_next_samples(row, w, b->grid->words);
+            line[w] = cwi_next_samples(row, w);
         return;
     }
     for (p[1] = 0; p[1] < b->n[1]; p[1]++)
@@ -156,20 +156,19 @@ static ptrdiff_t count(uint64_t bits)
 
 static void join_side(box *b, const side *s)
 {
-    uint64_t *line = b->lines, *before = b->lines + b->words;
-    memset(before, 0, b->words * sizeof *before);
+    uint64_t *line = b->lines, *before = b->lines + b->words + 1;
+    memset(b->lines, 0, 2 * (b->words + 1) * sizeof *b->lines);
     for (size_t n = 0; n < b->n[s->across]; n++) {
         load_line(b, s, n, line);
         join_line(b, s, n, line);
         for (size_t w = 0; w < b->words; w++) {
             const uint64_t both = line[w] & before[w];
-            const uint64_t next = w + 1 < b->words ? line[w + 1] & before[w + 1] : 0;
-            b->euler += count(line[w]) - count(line[w] & cwi_next_samples(line, w, b->words)) -
+            const uint64_t next = line[w + 1] & before[w + 1];
+            b->euler += count(line[w]) - count(line[w] & cwi_next_samples(line, w)) -
                         count(both) + count(both & (both >> 1 | next << 63));
             const uint64_t here = line[w] ^ before[w];
-            const uint64_t turns = line[w] ^ cwi_next_samples(line, w, b->words);
-            const uint64_t there =
-                here & turns & (before[w] ^ cwi_next_samples(before, w, b->words));
+            const uint64_t turns = line[w] ^ cwi_next_samples(line, w);
+            const uint64_t there = here & turns & (before[w] ^ cwi_next_samples(before, w));
             for (uint64_t left = n && !b->grid->simple ? there : 0; left; left &= left - 1) {
                 const size_t x = 64 * w + (size_t)__builtin_ctzll(left);
                 if (x + 1 < b->n[s->along])
@@ -216,7 +215,7 @@ cw_status cwi_grid_border_loops(const cwi_grid *grid, size_t *loops, cw_error *e
         return cw_fail(err, CW_ERR_LIMIT, "the volume's border has %zu voxels, more than %u",
                        samples, UINT32_MAX);
     b.words = (n[0] > n[1] ? n[0] : n[1]) / 64 + 1;
-    b.lines = cwi_alloc_array(b.words, 2 * sizeof *b.lines);
+    b.lines = cwi_alloc_array(b.words + 1, 2 * sizeof *b.lines);
     b.parent = cwi_alloc_zeroed(samples, sizeof *b.parent);
     const bool room = b.lines && b.parent;
     for (int i = 0; i < 6 && room; i++) {

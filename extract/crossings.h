@@ -39,6 +39,16 @@ static inline bool cwi_is_inner(const cw_volume *v, int axis, size_t n)
     return n >= 2 && n + 2 <= v->dim[axis];
 }
 
+/* Bits of word w of a row of so many voxels at which cwi_is_inner() holds. */
+static inline uint64_t cwi_inner_word(size_t dim, size_t w)
+{
+    const size_t begin = 64 * w, end = dim < 1 ? 0 : dim - 1; /* inner: 2 to end - 1 */
+    if (begin >= end)
+        return 0;
+    const uint64_t low = w ? ~UINT64_C(0) : ~UINT64_C(3);
+    return end - begin < 64 ? low & ((UINT64_C(1) << (end - begin)) - 1) : low;
+}
+
 /* Both ends of the edge along axis from a padded index are voxels. */
 static inline bool cwi_is_edge(const cw_volume *v, int axis, const size_t index[3])
 {

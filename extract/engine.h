@@ -47,8 +47,15 @@ CW_API cw_status cwi_extract_with(const cwi_engine *engine, const cw_volume *vol
                                   const cw_extract_desc *desc, cw_mesh *mesh,
                                   cw_extract_counts *counts, cw_error *err);
 
-/* In files that are compiled for each engine, CWI_ENGINE is its name. */
+/* In files that are compiled for each engine, CWI_ENGINE is its name, and CWI_WIDE tells
+ * whether it may shuffle, count and compress bytes and bits in words of 512 bits. */
 #ifdef CWI_ENGINE
+#if defined __AVX512VBMI2__ && defined __AVX512VBMI__ && defined __GFNI__ &&                   \
+    defined __AVX512VPOPCNTDQ__
+#define CWI_WIDE 1
+#else
+#define CWI_WIDE 0
+#endif
 #define CWI_PASTE(a, b)    a##_##b
 #define CWI_EXPAND(a, b)   CWI_PASTE(a, b)
 #define CWI_OF_ENGINE(a)   CWI_EXPAND(a, CWI_ENGINE)

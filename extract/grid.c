@@ -8,19 +8,28 @@
 #include <math.h>
 #include <string.h>
 
+/* Words after the last row that loads of several words may reach: 0. */
+enum { BEYOND = 8 };
+
 static cw_status allocate(cwi_grid *g, bool leave_open, cw_error *err)
 {
     size_t bits = 0;
     g->words = (g->volume.dim[0] + 2 + 63) / 64;
     g->rows_y = g->volume.dim[1] + 2;
     g->rows_z = g->volume.dim[2] + 2;
+    g->masks = (g->words + 63) / 64;
     if (cwi_size_mul(g->rows_y, g->rows_z, &g->rows) &&
-        cwi_size_mul(g->rows, g->words, &bits)) {
+        cwi_size_mul(g->rows, g->words, &bits) && cwi_size_add(bits, BEYOND, &bits)) {
         g->inside = cwi_alloc_large(bits, sizeof *g->inside);
         g->live = leave_open ? cwi_alloc_large(bits, sizeof *g->live) : NULL;
+        g->busy = cwi_alloc_large(g->rows * g->masks, sizeof *g->busy);
     }
-    if (g->inside && (g->live || !leave_open))
+    if (g->inside && g->busy && (g->live || !leave_open)) {
+        memset(g->inside + bits - BEYOND, 0, BEYOND * sizeof *g->inside);
+        if (g->live)
+            memset(g->live + bits - BEYOND, 0, BEYOND * sizeof *g->live);
         return CW_OK;
+    }
     return cw_fail(err, CW_ERR_NO_MEMORY,
                    "no memory for the bit planes of %zu x %zu x %zu voxels", g->volume.dim[0],
                    g->volume.dim[1], g->volume.dim[2]);
@@ -69,7 +78,7 @@ static void make_live(cwi_grid *g)
             uint64_t cells = last ? 0 : ~UINT64_C(0);
             for (size_t n = 0; n < 4 && !last; n++) {
                 const uint64_t *samples = row + ((n & 1) + (n >> 1) * g->rows_y) * g->words;
-                cells &= samples[w] & cwi_next_samples(samples, w, g->words);
+                cells &= samples[w] & cwi_next_samples(samples, w);
             }
             row[w] = cells;
         }
@@ -169,11 +178,12 @@ void cwi_grid_free(cwi_grid *g)
 {
     cwi_free(g->inside);
     cwi_free(g->live);
+    cwi_free(g->busy);
     memset(g, 0, sizeof *g);
 }
 
 size_t cwi_grid_bytes(const cwi_grid *g)
 {
     return g->rows * g->words * sizeof *g->inside * (g->live ? 2 : 1) +
-           g->rows * sizeof(cwi_row);
+           g->rows * (g->masks * sizeof *g->busy + sizeof(cwi_row));
 }

@@ -19,8 +19,12 @@ typedef struct cwi_grid {
     size_t rows_y, rows_z, rows;
     uint64_t *inside; /* rows x words */
     uint64_t *live;   /* rows x words: cells whose eight samples all have values; NULL: all */
-    bool simple;      /* one rule for ambiguous faces, in place of the field's topology */
-    bool crossed;     /* some samples with values are inside and some are not */
+    size_t masks;     /* words of a mask that has a bit for every word of a row */
+    uint64_t
+        *busy;    /* rows x masks, found when the row is counted: bit w is set where some
+                     cell of word w has corners on both sides. No other word holds crossings */
+    bool simple;  /* one rule for ambiguous faces, in place of the field's topology */
+    bool crossed; /* some samples with values are inside and some are not */
 } cwi_grid;
 
 /* Per-row numbers: of the first vertex on the row's x-, y- and z-edges and inside its cells,
@@ -45,10 +49,28 @@ static inline const uint64_t *cwi_grid_row(const cwi_grid *g, size_t row)
     return g->inside + row * g->words;
 }
 
-/* Word w of a row moved down by one sample: bit i is sample i + 1. */
-static inline uint64_t cwi_next_samples(const uint64_t *row, size_t w, size_t words)
+static inline const uint64_t *cwi_grid_busy(const cwi_grid *g, size_t row)
 {
-    return row[w] >> 1 | (w + 1 < words ? row[w + 1] << 63 : 0);
+    return g->busy + row * g->masks;
+}
+
+/* The first word at or after w whose bit is set in a mask; `words` when there is none. */
+static inline size_t cwi_next_busy(const uint64_t *mask, size_t w, size_t words)
+{
+    for (; w < words; w = (w | 63) + 1) {
+        const uint64_t left = mask[w / 64] >> w % 64;
+        if (left)
+            return w + (size_t)__builtin_ctzll(left);
+    }
+    return words;
+}
+
+/* Word w of a row moved down by one sample: bit i is sample i + 1. After a row's last word
+ * comes the next row's first, whose lowest bit is padding, as the one beyond this row would be.
+ */
+static inline uint64_t cwi_next_samples(const uint64_t *row, size_t w)
+{
+    return row[w] >> 1 | row[w + 1] << 63;
 }
 
 /* Bit i: samples i and i + 1 along axis from row (j, k) are on different sides. */
@@ -57,7 +79,7 @@ static inline uint64_t cwi_grid_crossed(const cwi_grid *g, int axis, size_t j, s
 {
     const uint64_t *row = cwi_grid_row(g, k * g->rows_y + j);
     if (axis == 0)
-        return row[w] ^ cwi_next_samples(row, w, g->words);
+        return row[w] ^ cwi_next_samples(row, w);
     if (axis == 1)
         return j + 1 < g->rows_y ? row[w] ^ row[g->words + w] : 0;
     return k + 1 < g->rows_z ? row[w] ^ row[g->rows_y * g->words + w] : 0;

@@ -6,11 +6,8 @@
 
 #include <string.h>
 
-#if defined __AVX512VBMI__ && defined __GFNI__ && defined __AVX512VPOPCNTDQ__
-#define WIDE 1
+#if CWI_WIDE
 #include <immintrin.h>
-#else
-#define WIDE 0
 #endif
 
 static inline int popcount(uint64_t x)
@@ -32,7 +29,7 @@ static inline cell_word load_cells(const cwi_grid *g, size_t j, size_t k, size_t
     for (size_t n = 0; n < 4; n++) {
         const uint64_t *row = cwi_grid_row(g, (k + (n >> 1)) * g->rows_y + j + (n & 1));
         c.corner[2 * n] = row[w];
-        c.corner[2 * n + 1] = cwi_next_samples(row, w, g->words);
+        c.corner[2 * n + 1] = cwi_next_samples(row, w);
         any |= c.corner[2 * n] | c.corner[2 * n + 1];
         all &= c.corner[2 * n] & c.corner[2 * n + 1];
     }
@@ -42,7 +39,7 @@ static inline cell_word load_cells(const cwi_grid *g, size_t j, size_t k, size_t
     return c;
 }
 
-#if WIDE
+#if CWI_WIDE
 
 /* From registers: a wide load of what was just stored word by word would wait for it. */
 static inline __m512i corners(const cell_word *c)
@@ -158,16 +155,78 @@ static void count_ambiguous(const cwi_grid *g, const cell_word *c, const uint8_t
     }
 }
 
+/* Of up to 8 words of a row of cells from rows[0][w] on: bit n is set where word w + n has a
+ * cell with corners on both sides. Such a word, or the bit after it, is not all alike in all
+ * four rows of samples. */
+static inline uint64_t busy_words(const uint64_t *const rows[4], size_t w)
+{
+#if CWI_WIDE
+    __m512i any = _mm512_setzero_si512(), all = _mm512_set1_epi64(-1);
+    __m512i any_next = any, all_next = all;
+    for (int n = 0; n < 4; n++) {
+        const __m512i here = _mm512_loadu_si512(rows[n] + w);
+        const __m512i next = _mm512_loadu_si512(rows[n] + w + 1);
+        any = _mm512_or_si512(any, here);
+        all = _mm512_and_si512(all, here);
+        any_next = _mm512_or_si512(any_next, next);
+        all_next = _mm512_and_si512(all_next, next);
+    }
+    const __m512i alike = _mm512_srai_epi64(all, 63);
+    const __m512i rest =
+        _mm512_or_si512(_mm512_xor_si512(any, alike), _mm512_xor_si512(all, alike));
+    const __m512i last =
+        _mm512_or_si512(_mm512_xor_si512(any_next, alike), _mm512_xor_si512(all_next, alike));
+    return _mm512_test_epi64_mask(rest, rest) |
+           _mm512_test_epi64_mask(last, _mm512_set1_epi64(1));
+#else
+    uint64_t busy = 0;
+    for (size_t i = w; i < w + 8; i++) {
+        uint64_t any = 0, all = ~UINT64_C(0), any_next = 0, all_next = ~UINT64_C(0);
+        for (int n = 0; n < 4; n++) {
+            any |= rows[n][i];
+            all &= rows[n][i];
+            any_next |= rows[n][i + 1];
+            all_next &= rows[n][i + 1];
+        }
+        const uint64_t alike = all >> 63 ? ~UINT64_C(0) : 0;
+        const uint64_t mixed =
+            (any ^ alike) | (all ^ alike) | (((any_next ^ alike) | (all_next ^ alike)) & 1);
+        busy |= (uint64_t)(mixed != 0) << (i - w);
+    }
+    return busy;
+#endif
+}
+
+/* Finds the busy words of a row of cells; false when there are none. */
+static bool find_busy(const cwi_grid *g, size_t j, size_t k)
+{
+    const uint64_t *rows[4];
+    uint64_t *busy = g->busy + (k * g->rows_y + j) * g->masks, any = 0;
+    for (size_t n = 0; n < 4; n++)
+        rows[n] = cwi_grid_row(g, (k + (n >> 1)) * g->rows_y + j + (n & 1));
+    memset(busy, 0, g->masks * sizeof *busy);
+    for (size_t w = 0; w < g->words; w += 8) {
+        const uint64_t within = g->words - w < 8 ? (UINT64_C(1) << (g->words - w)) - 1 : 255;
+        const uint64_t found = busy_words(rows, w) & within;
+        busy[w / 64] |= found << w % 64;
+        any |= found;
+    }
+    return any != 0;
+}
+
 /* Leaves counts, not yet first numbers, in the row. An edge that is crossed belongs to a cell
  * whose corners differ, as the last samples of every row, and the last rows, are padding. */
 static void count_row(const cwi_grid *g, size_t j, size_t k, cwi_row *row)
 {
     unsigned count[4] = {0, 0, 0, 0};
     size_t triangles = 0;
-    for (size_t w = 0; w < g->words; w++) {
+    memset(row, 0, sizeof *row);
+    if (!find_busy(g, j, k))
+        return;
+    const uint64_t *busy = cwi_grid_busy(g, k * g->rows_y + j);
+    for (size_t w = cwi_next_busy(busy, 0, g->words); w < g->words;
+         w = cwi_next_busy(busy, w + 1, g->words)) {
         const cell_word c = load_cells(g, j, k, w);
-        if (!c.mixed)
-            continue;
         if (g->live) {
             for (int axis = 0; axis < 3; axis++)
                 count[axis] += (unsigned)popcount(cwi_edge_vertices(g, axis, j, k, w));
@@ -189,12 +248,12 @@ static void count_row(const cwi_grid *g, size_t j, size_t k, cwi_row *row)
 
 void cwi_count_layer(const cwi_grid *g, size_t k, cwi_row *rows)
 {
-    cwi_row *row = rows + k * g->rows_y;
     const bool cells = k + 1 < g->rows_z;
     for (size_t j = 0; j + 1 < g->rows_y && cells; j++)
-        count_row(g, j, k, row + j);
-    const size_t left = cells ? 1 : g->rows_y;
-    memset(row + g->rows_y - left, 0, left * sizeof *row);
+        count_row(g, j, k, rows + k * g->rows_y + j);
+    const size_t left = cells ? 1 : g->rows_y, first = (k + 1) * g->rows_y - left;
+    memset(rows + first, 0, left * sizeof *rows);
+    memset(g->busy + first * g->masks, 0, left * g->masks * sizeof *g->busy);
 }
 
 /* The rows of edges around a word of cells, with what ranks need. Rows of y- and z-edges stand
@@ -244,7 +303,7 @@ static inline void skip_word(edge_word *e)
         e->first[n] += (uint64_t)popcount(e->crossed[n]);
 }
 
-#if WIDE
+#if CWI_WIDE
 
 /* The triangles of a cell: the ranks of its 12 vertices at once, then one shuffle by the case.
  */
@@ -323,11 +382,11 @@ static void write_triangles(const cwi_grid *g, size_t j, size_t k, const cwi_row
     for (int n = 0; n < 12; n++)
         e.first[n] = rows[(k + edge_rows[n].k) * g->rows_y + j + edge_rows[n].j]
                          .first[edge_rows[n].axis];
-    for (size_t w = 0; w < g->words; w++) {
+    const uint64_t *busy = cwi_grid_busy(g, k * g->rows_y + j);
+    for (size_t w = cwi_next_busy(busy, 0, g->words); w < g->words;
+         w = cwi_next_busy(busy, w + 1, g->words)) {
         const cell_word c = load_cells(g, j, k, w);
         uint8_t cases[64];
-        if (!c.mixed)
-            continue;
         load_edges(&e, g, &c, j, k, w);
         cell_cases(&c, cases);
         const uint64_t ambiguous = g->simple ? 0 : ambiguous_cells(&c, cases);

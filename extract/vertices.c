@@ -13,11 +13,65 @@
 #include <math.h>
 #include <string.h>
 
+#if CWI_WIDE
+#include <immintrin.h>
+#endif
+
 /* Lengths of gradients whose squares have lost nothing to overflow or underflow. */
 #define LEAST 1e-280
 #define MOST  1e280
 
-enum { BATCH = 32, LANES = 8, AHEAD = 3 /* rows */ };
+enum { BATCH = 64, LANES = 8, ROOM = BATCH + 64 + 16, AHEAD = 3 /* rows */ };
+
+/* Crossed edges along one axis of a layer, until there are BATCH of them: where they begin, and
+ * the numbers of their vertices. */
+typedef struct cwi_edge_list {
+    int axis;
+    size_t k, count;
+    int32_t i[ROOM], j[ROOM];
+    uint32_t number[ROOM];
+} cwi_edge_list;
+
+#if CWI_WIDE
+_Alignas(64) static const uint8_t cwi_iota[64] = {
+    0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21,
+    22, 23, 24, 25, 26, 27, 28, 29, 30, 31, 32, 33, 34, 35, 36, 37, 38, 39, 40, 41, 42, 43,
+    44, 45, 46, 47, 48, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63};
+#endif
+
+/* Adds the edges at the bits of a word whose lowest stands at i. Several at a time, whether
+ * there are so many or not: how many there are cannot be foreseen, and a wrong guess costs
+ * more.
+ */
+static inline void list_edges(cwi_edge_list *l, uint64_t bits, size_t i, size_t j,
+                              uint32_t number)
+{
+    size_t n = l->count;
+    l->count += (size_t)__builtin_popcountll(bits);
+#if CWI_WIDE
+    const __m512i iota = _mm512_load_si512(cwi_iota);
+    __m512i places = _mm512_maskz_compress_epi8(bits, iota);
+    do {
+        const __m512i wide = _mm512_cvtepu8_epi32(_mm512_castsi512_si128(places));
+        const __m512i ranks = _mm512_cvtepu8_epi32(_mm512_castsi512_si128(iota));
+        _mm512_storeu_si512(l->i + n, _mm512_add_epi32(wide, _mm512_set1_epi32((int)i)));
+        _mm512_storeu_si512(l->j + n, _mm512_set1_epi32((int)j));
+        _mm512_storeu_si512(l->number + n,
+                            _mm512_add_epi32(ranks, _mm512_set1_epi32((int)number)));
+        places = _mm512_alignr_epi64(places, places, 2);
+        n += 16;
+        number += 16;
+    } while (n < l->count);
+#else
+    for (; bits; n += 4)
+        for (size_t c = n; c < n + 4; c++) {
+            l->i[c] = (int32_t)i + __builtin_ctzll(bits | UINT64_C(1) << 63);
+            l->j[c] = (int32_t)j;
+            l->number[c] = number++;
+            bits &= bits - 1;
+        }
+#endif
+}
 
 /* The vertex between the volume's last sample along an axis and the padding. */
 static void store_cap(const cwi_vertex_sink *sink, const size_t at[3], int axis, size_t n)
