@@ -64,13 +64,14 @@ static cw_status find_levels(facts *f, int threads, cw_error *err)
 
 static cw_status predict(facts *f, int threads, cw_error *err)
 {
-    for (int n = 0; n < f->level_count; n++) {
+    cw_extractor *extractor;
+    cw_status st = cw_extractor_new(&f->volume.view, &extractor, err);
+    for (int n = 0; n < f->level_count && st == CW_OK; n++) {
         const cw_extract_desc desc = {.isovalue = f->levels[n].value, .threads = threads};
-        cw_status st = cw_extract_predict(&f->volume.view, &desc, &f->levels[n].counts, err);
-        if (st != CW_OK)
-            return st;
+        st = cw_extractor_predict(extractor, &desc, &f->levels[n].counts, err);
     }
-    return CW_OK;
+    cw_extractor_free(extractor);
+    return st;
 }
 
 static cw_status find_facts(const info_args *args, facts *f, cw_error *err)

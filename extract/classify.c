@@ -143,26 +143,92 @@ static inline uint64_t ordered_f32(const float *x)
 #define ordered_u32 plain_ordered_u32
 #define ordered_i32 plain_ordered_i32
 
+/* The words of a row of samples that cells of wanted words look at, in mask word m: a row of
+ * samples is a side of up to four rows of bricks. */
+static uint64_t wanted_samples(const cwi_grid *g, size_t j, size_t k, size_t m)
+{
+    uint64_t wanted = 0;
+    for (size_t n = 0; n < 4; n++) {
+        const size_t row = j - (n & 1), layer = k - (n >> 1); /* of cells */
+        if (row + 1 < g->rows_y && layer + 1 < g->rows_z)
+            wanted |= g->wanted[cwi_grid_bricks(g, row, layer) * g->masks + m];
+    }
+    return wanted;
+}
+
+/* Likewise, what the leaves around word w of the row are. Leaves that share samples, and are
+ * not wanted, are alike. */
+static cwi_leaf_bits leaves_of_samples(const cwi_grid *g, size_t j, size_t k, size_t w)
+{
+    cwi_leaf_bits bits = {0, 0};
+    for (size_t n = 0; n < 4; n++) {
+        const size_t row = j - (n & 1), layer = k - (n >> 1);
+        if (row + 1 >= g->rows_y || layer + 1 >= g->rows_z)
+            continue;
+        const cwi_leaf_bits here = g->leaves[cwi_grid_bricks(g, row, layer) * g->words + w];
+        bits.wanted |= here.wanted;
+        bits.solid |= here.solid;
+    }
+    return bits;
+}
+
+/* Where bricks at the volume's border are not wanted their samples are outside. */
+static void clear_border_words(const cwi_grid *g, size_t j, size_t k)
+{
+    const size_t *n = g->volume.dim;
+    uint64_t *row = g->inside + (k * g->rows_y + j) * g->words;
+    if (j == 1 || j == n[1] || k == 1 || k == n[2])
+        memset(row, 0, g->words * sizeof *row);
+    row[0] = row[n[0] / 64] = row[g->words - 1] = 0;
+}
+
 #define TYPED "extract/classify.inc"
 #include "extract/types.inc"
 
-void cwi_classify_layer(const cwi_grid *g, size_t k, bool *in, bool *out)
+/* The padding around a layer of bits, or a whole layer of it. */
+static void clear_padding(const cwi_grid *g, uint64_t *plane, size_t k)
 {
-    static void (*const rows[CW_TYPE_COUNT])(const cwi_grid *, size_t, bool *, bool *) = {
+    const size_t layer = g->rows_y * g->words, row = g->words * sizeof *plane;
+    uint64_t *first = plane + k * layer;
+    const bool padding = k == 0 || k + 1 == g->rows_z;
+    memset(first, 0, padding ? layer * sizeof *first : row);
+    memset(first + layer - g->words, 0, row);
+}
+
+void cwi_classify_layer(const cwi_grid *g, size_t b, cwi_range *leaves, bool *in, bool *out)
+{
+    static void (*const classify[CW_TYPE_COUNT])(const cwi_grid *, size_t, size_t, size_t,
+                                                 bool *, bool *) = {
         [CW_U8] = classify_u8,   [CW_I8] = classify_i8,   [CW_U16] = classify_u16,
         [CW_I16] = classify_i16, [CW_U32] = classify_u32, [CW_I32] = classify_i32,
         [CW_F32] = classify_f32, [CW_F64] = classify_f64,
     };
-    const size_t row = g->words * sizeof *g->inside, layer = g->rows_y * g->words;
-    uint64_t *planes[2] = {g->inside, g->live};
-    for (int p = 0; p < 2; p++) {
-        if (!planes[p])
-            continue;
-        uint64_t *first = planes[p] + k * layer;
-        const bool padding = k == 0 || k + 1 == g->rows_z;
-        memset(first, 0, padding ? layer * sizeof *first : row);
-        memset(first + layer - g->words, 0, row);
+    static void (*const measure[CW_TYPE_COUNT])(const cwi_grid *, size_t, size_t,
+                                                cwi_range *) = {
+        [CW_U8] = measure_u8,   [CW_I8] = measure_i8,   [CW_U16] = measure_u16,
+        [CW_I16] = measure_i16, [CW_U32] = measure_u32, [CW_I32] = measure_i32,
+        [CW_F32] = measure_f32, [CW_F64] = measure_f64,
+    };
+    const cw_type type = g->volume.type;
+    const size_t begin = b * CWI_BRICK;
+    const size_t end = b + 1 == g->bricks_z ? g->rows_z : begin + CWI_BRICK;
+    const size_t leaves_x = (g->volume.dim[0] + CWI_BRICK) / CWI_BRICK;
+    for (size_t k = begin; k < end && g->everything; k++) {
+        clear_padding(g, g->inside, k);
+        if (g->find_domain)
+            clear_padding(g, g->domain, k);
     }
-    if (k > 0 && k + 1 < g->rows_z)
-        rows[g->volume.type](g, k - 1, in, out);
+    if (g->everything && !leaves) { /* as memory lies */
+        for (size_t k = begin ? begin : 1; k < end && k + 1 < g->rows_z; k++)
+            classify[type](g, 1, k, g->rows_y - 2, in, out);
+        return;
+    }
+    for (size_t jb = 0; jb < g->bricks_y; jb++) {
+        const size_t first = jb ? jb * CWI_BRICK : 1;
+        const size_t last = jb + 1 == g->bricks_y ? g->rows_y - 1 : (jb + 1) * CWI_BRICK;
+        for (size_t k = begin ? begin : 1; k < end && k + 1 < g->rows_z; k++)
+            classify[type](g, first, k, last - first, in, out);
+        if (leaves)
+            measure[type](g, jb, b, leaves + jb * leaves_x);
+    }
 }

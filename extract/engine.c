@@ -29,7 +29,7 @@ static bool has_avx512(void)
 #endif
 
 #define DECLARE(engine, test)                                                                  \
-    void cwi_classify_layer_##engine(const cwi_grid *, size_t, bool *, bool *);                \
+    void cwi_classify_layer_##engine(const cwi_grid *, size_t, cwi_range *, bool *, bool *);   \
     void cwi_count_layer_##engine(const cwi_grid *, size_t, cwi_row *);                        \
     void cwi_write_layer_##engine(const cwi_grid *, size_t, const cwi_row *,                   \
                                   const cwi_emission *, cwi_vertex_sink *, uint32_t *);

@@ -3,7 +3,7 @@
 #ifndef EXTRACT_ENGINE_H
 #define EXTRACT_ENGINE_H
 
-#include "extract/grid.h"
+#include "extract/octree.h"
 
 #include <cubewright/mesh.h>
 
@@ -24,28 +24,34 @@ typedef struct cwi_vertex_sink {
     bool missing;               /* some normal is zero as the gradient vanished */
 } cwi_vertex_sink;
 
-typedef struct cwi_engine {
+struct cwi_engine {
     const char *name;
     bool (*usable)(void);
-    /* Writes the inside bits of a layer of padded samples, and, if there is room, where values
-     * are; tells whether there are samples with values on each side. */
-    void (*classify_layer)(const cwi_grid *grid, size_t k, bool *in, bool *out);
+    /* Writes the inside bits of what is wanted in brick layer b, that is eight layers of padded
+     * samples, or as many as are left; where the domain is to be found, which samples have
+     * values; and, unless leaves is NULL, the ranges of the layer's bricks. Tells whether it
+     * saw samples with values on each side. */
+    void (*classify_layer)(const cwi_grid *grid, size_t b, cwi_range *leaves, bool *in,
+                           bool *out);
     /* Leaves a layer's counts, not yet first numbers, in its rows. */
     void (*count_layer)(const cwi_grid *grid, size_t k, cwi_row *rows);
     /* Writes a layer's vertices and triangles to their places. */
     void (*write_layer)(const cwi_grid *grid, size_t k, const cwi_row *rows,
                         const cwi_emission *emission, cwi_vertex_sink *sink,
                         uint32_t *triangles);
-} cwi_engine;
+};
 
 /* The n-th engine this machine can use, the plain one first; NULL when there are fewer. */
 CW_API const cwi_engine *cwi_engine_at(size_t n);
 const cwi_engine *cwi_engine_best(void);
 
-/* cw_extract() with an engine of the caller's choice, for tests. */
+/* cw_extract() and cw_extractor_new() with an engine of the caller's choice, for tests. */
 CW_API cw_status cwi_extract_with(const cwi_engine *engine, const cw_volume *volume,
                                   const cw_extract_desc *desc, cw_mesh *mesh,
                                   cw_extract_counts *counts, cw_error *err);
+
+CW_API cw_status cwi_extractor_new_with(const cwi_engine *engine, const cw_volume *volume,
+                                        cw_extractor **out, cw_error *err);
 
 /* In files that are compiled for each engine, CWI_ENGINE is its name, and CWI_WIDE tells
  * whether it may shuffle, count and compress bytes and bits in words of 512 bits. */
@@ -64,7 +70,7 @@ CW_API cw_status cwi_extract_with(const cwi_engine *engine, const cw_volume *vol
 #define cwi_write_layer    CWI_OF_ENGINE(cwi_write_layer)
 #define cwi_write_vertices CWI_OF_ENGINE(cwi_write_vertices)
 
-void cwi_classify_layer(const cwi_grid *grid, size_t k, bool *in, bool *out);
+void cwi_classify_layer(const cwi_grid *grid, size_t b, cwi_range *leaves, bool *in, bool *out);
 void cwi_count_layer(const cwi_grid *grid, size_t k, cwi_row *rows);
 void cwi_write_layer(const cwi_grid *grid, size_t k, const cwi_row *rows,
                      const cwi_emission *emission, cwi_vertex_sink *sink, uint32_t *triangles);

@@ -11,13 +11,17 @@
 #include <math.h>
 #include <string.h>
 
-/* What an extraction holds between counting and writing. */
-typedef struct plan {
+/* What is kept from one extraction to the next, and what one holds between counting and
+ * writing. */
+struct cw_extractor {
     const cwi_engine *engine;
     cwi_grid grid;
-    cwi_row *rows; /* and one after the last, with the totals */
+    cwi_octree tree; /* no levels: not asked for */
+    cwi_row *rows;   /* and one after the last, with the totals */
     cw_extract_counts counts;
-} plan;
+};
+
+typedef struct cw_extractor plan;
 
 static size_t mesh_bytes(const cw_extract_counts *c, bool normals)
 {
@@ -75,15 +79,31 @@ static cw_status sum_rows(plan *p, cw_error *err)
     return CW_OK;
 }
 
-static cw_status make_plan(plan *p, const cwi_engine *engine, const cw_volume *volume,
-                           const cw_extract_desc *d, cw_error *err)
+static cw_status init_plan(plan *p, const cwi_engine *engine, const cw_volume *volume,
+                           cw_error *err)
 {
     memset(p, 0, sizeof *p);
     p->engine = engine;
-    cw_status st = cwi_grid_build(&p->grid, engine, volume, d, err);
+    return cwi_grid_init(&p->grid, volume, err);
+}
+
+static void free_plan(plan *p)
+{
+    cwi_grid_free(&p->grid);
+    cwi_octree_free(&p->tree);
+    cwi_free(p->rows);
+}
+
+/* Everything that is known of the surface before it is made. */
+static cw_status make_plan(plan *p, const cw_extract_desc *d, cw_error *err)
+{
+    memset(&p->counts, 0, sizeof p->counts);
+    cw_status st =
+        cwi_grid_classify(&p->grid, p->engine, p->tree.levels ? &p->tree : NULL, d, err);
     if (st != CW_OK || !p->grid.crossed)
         return st;
-    p->rows = cwi_alloc_large(p->grid.rows + 1, sizeof *p->rows);
+    if (!p->rows)
+        p->rows = cwi_alloc_large(p->grid.rows + 1, sizeof *p->rows);
     if (!p->rows)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu rows", p->grid.rows);
     st = for_layers(p, d, "counting", count_layer, p, err);
@@ -91,14 +111,9 @@ static cw_status make_plan(plan *p, const cwi_engine *engine, const cw_volume *v
         st = sum_rows(p, err);
     if (st == CW_OK)
         st = cwi_grid_border_loops(&p->grid, &p->counts.border_loops, err);
-    p->counts.bytes = mesh_bytes(&p->counts, !d->no_normals) + cwi_grid_bytes(&p->grid);
+    p->counts.bytes = mesh_bytes(&p->counts, !d->no_normals) + cwi_grid_bytes(&p->grid) +
+                      cwi_octree_bytes(&p->tree);
     return st == CW_OK ? check_limits(d, &p->counts, err) : st;
-}
-
-static void free_plan(plan *p)
-{
-    cwi_grid_free(&p->grid);
-    cwi_free(p->rows);
 }
 
 static void add_triangle_normal(const cw_mesh *mesh, const uint32_t *t, float *normal)
@@ -227,20 +242,40 @@ static cw_status write_mesh(plan *p, const cw_extract_desc *d, cw_mesh *mesh, cw
     return st;
 }
 
+static cw_status extract(plan *p, const cw_extract_desc *desc, cw_mesh *mesh,
+                         cw_extract_counts *counts, cw_error *err)
+{
+    const cw_extract_desc d = desc ? *desc : (cw_extract_desc){0};
+    memset(mesh, 0, sizeof *mesh);
+    cw_status st = make_plan(p, &d, err);
+    if (st == CW_OK && p->counts.triangles)
+        st = write_mesh(p, &d, mesh, err);
+    if (st == CW_OK && counts)
+        *counts = p->counts;
+    if (st != CW_OK)
+        cw_mesh_free(mesh);
+    return st;
+}
+
+static cw_status predict(plan *p, const cw_extract_desc *desc, cw_extract_counts *counts,
+                         cw_error *err)
+{
+    const cw_extract_desc d = desc ? *desc : (cw_extract_desc){0};
+    cw_status st = make_plan(p, &d, err);
+    if (st == CW_OK)
+        *counts = p->counts;
+    return st;
+}
+
 cw_status cwi_extract_with(const cwi_engine *engine, const cw_volume *volume,
                            const cw_extract_desc *desc, cw_mesh *mesh,
                            cw_extract_counts *counts, cw_error *err)
 {
-    const cw_extract_desc d = desc ? *desc : (cw_extract_desc){0};
     plan p;
     memset(mesh, 0, sizeof *mesh);
-    cw_status st = make_plan(&p, engine, volume, &d, err);
-    if (st == CW_OK && p.counts.triangles)
-        st = write_mesh(&p, &d, mesh, err);
-    if (st == CW_OK && counts)
-        *counts = p.counts;
-    if (st != CW_OK)
-        cw_mesh_free(mesh);
+    cw_status st = init_plan(&p, engine, volume, err);
+    if (st == CW_OK)
+        st = extract(&p, desc, mesh, counts, err);
     free_plan(&p);
     return st;
 }
@@ -254,11 +289,51 @@ cw_status cw_extract(const cw_volume *volume, const cw_extract_desc *desc, cw_me
 cw_status cw_extract_predict(const cw_volume *volume, const cw_extract_desc *desc,
                              cw_extract_counts *counts, cw_error *err)
 {
-    const cw_extract_desc d = desc ? *desc : (cw_extract_desc){0};
     plan p;
-    cw_status st = make_plan(&p, cwi_engine_best(), volume, &d, err);
+    cw_status st = init_plan(&p, cwi_engine_best(), volume, err);
     if (st == CW_OK)
-        *counts = p.counts;
+        st = predict(&p, desc, counts, err);
     free_plan(&p);
     return st;
+}
+
+cw_status cwi_extractor_new_with(const cwi_engine *engine, const cw_volume *volume,
+                                 cw_extractor **out, cw_error *err)
+{
+    cw_extractor *e = cwi_alloc_array(1, sizeof *e);
+    *out = NULL;
+    if (!e)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for an extractor");
+    cw_status st = init_plan(e, engine, volume, err);
+    if (st == CW_OK)
+        st = cwi_octree_init(&e->tree, &e->grid, err);
+    if (st == CW_OK)
+        *out = e;
+    else
+        cw_extractor_free(e);
+    return st;
+}
+
+cw_status cw_extractor_new(const cw_volume *volume, cw_extractor **out, cw_error *err)
+{
+    return cwi_extractor_new_with(cwi_engine_best(), volume, out, err);
+}
+
+void cw_extractor_free(cw_extractor *e)
+{
+    if (e)
+        free_plan(e);
+    cwi_free(e);
+}
+
+cw_status cw_extractor_extract(cw_extractor *e, const cw_extract_desc *desc, cw_mesh *mesh,
+                               cw_extract_counts *counts, cw_error *err)
+{
+    return extract(e, desc, mesh, counts, err);
+}
+
+cw_status cw_extractor_predict(cw_extractor *e, const cw_extract_desc *desc,
+                               cw_extract_counts *counts, cw_error *err)
+{
+    return predict(e, desc, counts, err);
 }

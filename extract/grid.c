@@ -11,68 +11,60 @@
 /* Words after the last row that loads of several words may reach: 0. */
 enum { BEYOND = 8 };
 
-static cw_status allocate(cwi_grid *g, bool leave_open, cw_error *err)
+static uint64_t *alloc_plane(const cwi_grid *g)
 {
-    size_t bits = 0;
-    g->words = (g->volume.dim[0] + 2 + 63) / 64;
-    g->rows_y = g->volume.dim[1] + 2;
-    g->rows_z = g->volume.dim[2] + 2;
-    g->masks = (g->words + 63) / 64;
-    if (cwi_size_mul(g->rows_y, g->rows_z, &g->rows) &&
-        cwi_size_mul(g->rows, g->words, &bits) && cwi_size_add(bits, BEYOND, &bits)) {
-        g->inside = cwi_alloc_large(bits, sizeof *g->inside);
-        g->live = leave_open ? cwi_alloc_large(bits, sizeof *g->live) : NULL;
-        g->busy = cwi_alloc_large(g->rows * g->masks, sizeof *g->busy);
-    }
-    if (g->inside && g->busy && (g->live || !leave_open)) {
-        memset(g->inside + bits - BEYOND, 0, BEYOND * sizeof *g->inside);
-        if (g->live)
-            memset(g->live + bits - BEYOND, 0, BEYOND * sizeof *g->live);
-        return CW_OK;
-    }
+    const size_t words = g->rows * g->words;
+    uint64_t *plane = cwi_alloc_large(words + BEYOND, sizeof *plane);
+    if (plane)
+        memset(plane + words, 0, BEYOND * sizeof *plane);
+    return plane;
+}
+
+static cw_status no_memory(const cwi_grid *g, cw_error *err)
+{
+    const size_t *dim = g->volume.dim;
     return cw_fail(err, CW_ERR_NO_MEMORY,
-                   "no memory for the bit planes of %zu x %zu x %zu voxels", g->volume.dim[0],
-                   g->volume.dim[1], g->volume.dim[2]);
+                   "no memory for the bit planes of %zu x %zu x %zu voxels", dim[0], dim[1],
+                   dim[2]);
 }
 
-typedef struct classification {
-    cwi_grid *grid;
-    const cwi_engine *engine;
-    bool in, out; /* there are samples with values inside, and outside */
-} classification;
-
-static void classify_layer(void *context, size_t k)
+static cw_status allocate(cwi_grid *g, cw_error *err)
 {
-    classification *c = context;
-    bool in = false, out = false;
-    c->engine->classify_layer(c->grid, k, &in, &out);
-    if (in) {
-#pragma omp atomic write
-        c->in = true;
-    }
-    if (out) {
-#pragma omp atomic write
-        c->out = true;
-    }
+    const size_t *dim = g->volume.dim;
+    size_t samples = 0;
+    g->words = (dim[0] + 2 + 63) / 64;
+    g->masks = (g->words + 63) / 64;
+    g->rows_y = dim[1] + 2;
+    g->rows_z = dim[2] + 2;
+    g->bricks_y = (g->rows_y - 1 + CWI_BRICK - 1) / CWI_BRICK;
+    g->bricks_z = (g->rows_z - 1 + CWI_BRICK - 1) / CWI_BRICK;
+    if (!cwi_size_mul(g->rows_y, g->rows_z, &g->rows) ||
+        !cwi_size_mul(g->rows, 64 * g->words, &samples))
+        return no_memory(g, err);
+    g->inside = alloc_plane(g);
+    g->busy = cwi_alloc_large(g->rows * g->masks, sizeof *g->busy);
+    return g->inside && g->busy ? CW_OK : no_memory(g, err);
 }
 
-static cw_status classify(cwi_grid *g, const cwi_engine *engine, const cw_extract_desc *desc,
-                          cw_error *err)
+cw_status cwi_grid_init(cwi_grid *g, const cw_volume *volume, cw_error *err)
 {
-    classification c = {.grid = g, .engine = engine};
-    cw_status st = cwi_each_layer(g->rows_z, g->volume.dim[0] * g->volume.dim[1], desc->threads,
-                                  &desc->progress, "classifying", classify_layer, &c, err);
-    g->crossed = c.in && c.out;
-    return st;
+    memset(g, 0, sizeof *g);
+    cw_status st = cw_volume_select(volume, 0, 0, &g->volume, err);
+    for (int a = 0; a < 3 && st == CW_OK; a++)
+        if (g->volume.dim[a] < 2)
+            st = cw_fail(err, CW_ERR_ARGUMENT,
+                         "the volume has %zu voxel along %c; a surface needs 2",
+                         g->volume.dim[a], "xyz"[a]);
+    return st == CW_OK ? allocate(g, err) : st;
 }
 
 /* Turns the plane of samples with values into the plane of cells all of whose samples have
  * values, in place: a cell needs its own row and rows after it, which are still samples. */
-static void make_live(cwi_grid *g)
+static void make_domain(cwi_grid *g)
 {
     for (size_t r = 0; r < g->rows; r++) {
         const size_t j = r % g->rows_y, k = r / g->rows_y;
-        uint64_t *row = g->live + r * g->words;
+        uint64_t *row = g->domain + r * g->words;
         const bool last = j + 1 == g->rows_y || k + 1 == g->rows_z;
         for (size_t w = 0; w < g->words; w++) {
             uint64_t cells = last ? 0 : ~UINT64_C(0);
@@ -97,6 +89,14 @@ static void clear_cells(uint64_t *row, size_t w, uint64_t cells, bool before)
         row[w - 1] &= ~(cells << 63);
 }
 
+/* Word w of row (j, k) of cells may hold crossings. */
+static bool is_wanted(const cwi_grid *g, size_t j, size_t k, size_t w)
+{
+    if (j + 1 >= g->rows_y || k + 1 >= g->rows_z)
+        return false;
+    return g->everything || cwi_grid_wanted(g, j, k)[w / 64] >> w % 64 & 1;
+}
+
 /* Drops cells that meet in nothing but a crossed edge: two live ones, diagonal, the other two
  * dead. Both would put triangles at its vertex, in two fans. One sweep; true if any was
  * dropped, which may have left others so. */
@@ -110,6 +110,8 @@ static bool drop_pinched(cwi_grid *g)
                 uint64_t *below = here - (axis == 1 ? g->rows_y : 1) * g->words;
                 uint64_t *side = here - g->rows_y * g->words, *corner = side - g->words;
                 for (size_t w = 0; w < g->words; w++) {
+                    if (!is_wanted(g, j, k, w))
+                        continue;
                     const uint64_t a = here[w], b = below[w];
                     uint64_t c, d; /* beside a, beside b */
                     if (axis == 0) {
@@ -150,40 +152,117 @@ static cw_status set_level(cwi_grid *g, const cw_extract_desc *desc, cw_error *e
     return CW_OK;
 }
 
-cw_status cwi_grid_build(cwi_grid *g, const cwi_engine *engine, const cw_volume *volume,
-                         const cw_extract_desc *desc, cw_error *err)
+/* Cells at the end of the domain are dropped where the surface stays open. */
+static cw_status set_live(cwi_grid *g, const cw_extract_desc *desc, cw_error *err)
 {
-    memset(g, 0, sizeof *g);
-    cw_status st = cw_volume_select(volume, 0, 0, &g->volume, err);
-    if (st == CW_OK)
-        st = set_level(g, desc, err);
-    for (int a = 0; a < 3 && st == CW_OK; a++)
-        if (g->volume.dim[a] < 2)
-            st = cw_fail(err, CW_ERR_ARGUMENT,
-                         "the volume has %zu voxel along %c; a surface needs 2",
-                         g->volume.dim[a], "xyz"[a]);
-    if (st == CW_OK)
-        st = allocate(g, desc->leave_open, err);
-    if (st == CW_OK)
-        st = classify(g, engine, desc, err);
-    if (st == CW_OK && g->live) {
-        make_live(g);
-        while (drop_pinched(g))
-            ;
+    if (!desc->leave_open) {
+        cwi_free(g->live);
+        g->live = NULL;
+        return CW_OK;
     }
-    return st;
+    if (!g->live)
+        g->live = alloc_plane(g);
+    if (!g->live)
+        return no_memory(g, err);
+    memcpy(g->live, g->domain, g->rows * g->words * sizeof *g->live);
+    while (drop_pinched(g))
+        ;
+    return CW_OK;
+}
+
+typedef struct classification {
+    const cwi_grid *grid;
+    const cwi_engine *engine;
+    cwi_octree *grow; /* its leaves are to be measured; may be NULL */
+    bool in, out;     /* there are samples with values inside, and outside */
+} classification;
+
+static void classify_layer(void *context, size_t b)
+{
+    classification *c = context;
+    bool in = false, out = false;
+    cwi_range *leaves =
+        c->grow ? c->grow->level[0] + b * c->grow->dim[0][1] * c->grow->dim[0][0] : NULL;
+    c->engine->classify_layer(c->grid, b, leaves, &in, &out);
+    if (in) {
+#pragma omp atomic write
+        c->in = true;
+    }
+    if (out) {
+#pragma omp atomic write
+        c->out = true;
+    }
+}
+
+/* Marks what is wanted, and whether a tree is to be grown while everything is read. */
+static cw_status plan_classification(classification *c, cwi_grid *g, cwi_octree *tree,
+                                     const cw_extract_desc *desc, cw_error *err)
+{
+    const bool find_domain = desc->leave_open && !g->domain;
+    const size_t bricks = g->bricks_z * g->bricks_y;
+    if (tree && !g->wanted)
+        g->wanted = cwi_alloc_array(bricks * g->masks, sizeof *g->wanted);
+    if (tree && !g->leaves)
+        g->leaves = cwi_alloc_array(bricks * g->words, sizeof *g->leaves);
+    if (find_domain)
+        g->domain = alloc_plane(g);
+    if ((tree && (!g->wanted || !g->leaves)) || (find_domain && !g->domain))
+        return no_memory(g, err);
+    c->grow = tree && !tree->grown ? tree : NULL;
+    g->everything = !tree || !tree->grown || find_domain;
+    g->find_domain = find_domain;
+    if (!g->everything)
+        cwi_octree_mark(tree, g);
+    return CW_OK;
+}
+
+/* After an error, what was to be found is not known. */
+static void forget_domain(cwi_grid *g)
+{
+    if (g->find_domain) {
+        cwi_free(g->domain);
+        g->domain = NULL;
+    }
+}
+
+cw_status cwi_grid_classify(cwi_grid *g, const cwi_engine *engine, cwi_octree *tree,
+                            const cw_extract_desc *desc, cw_error *err)
+{
+    classification c = {.grid = g, .engine = engine};
+    cw_status st = set_level(g, desc, err);
+    if (st == CW_OK)
+        st = plan_classification(&c, g, tree, desc, err);
+    if (st == CW_OK)
+        st = cwi_each_layer(g->bricks_z, CWI_BRICK * g->volume.dim[0] * g->volume.dim[1],
+                            desc->threads, &desc->progress, "classifying", classify_layer, &c,
+                            err);
+    if (st != CW_OK) {
+        forget_domain(g);
+        return st;
+    }
+    if (c.grow)
+        cwi_octree_grow(c.grow);
+    if (g->find_domain)
+        make_domain(g);
+    g->crossed = g->everything ? c.in && c.out : cwi_octree_crossed(tree, g);
+    return set_live(g, desc, err);
 }
 
 void cwi_grid_free(cwi_grid *g)
 {
     cwi_free(g->inside);
+    cwi_free(g->domain);
     cwi_free(g->live);
     cwi_free(g->busy);
+    cwi_free(g->wanted);
+    cwi_free(g->leaves);
     memset(g, 0, sizeof *g);
 }
 
 size_t cwi_grid_bytes(const cwi_grid *g)
 {
-    return g->rows * g->words * sizeof *g->inside * (g->live ? 2 : 1) +
-           g->rows * (g->masks * sizeof *g->busy + sizeof(cwi_row));
+    const size_t planes = 1 + (g->domain != NULL) + (g->live != NULL);
+    const size_t bricks = g->leaves ? g->bricks_z * g->bricks_y : 0;
+    return (planes * g->rows * g->words + (g->rows + bricks) * g->masks) * sizeof *g->inside +
+           g->rows * sizeof(cwi_row) + bricks * g->words * sizeof *g->leaves;
 }

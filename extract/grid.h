@@ -10,6 +10,18 @@
 
 #include <cubewright/extract.h>
 
+/* The surface is looked for in bricks of 8 x 8 x 8 cells. */
+enum { CWI_BRICK = 8 };
+
+/* Of the eight leaves in a word, bit b for leaf b: those that the octree cannot rule out, and
+ * of the others those that are inside. */
+typedef struct cwi_leaf_bits {
+    uint8_t wanted, solid;
+} cwi_leaf_bits;
+
+typedef struct cwi_octree cwi_octree;
+typedef struct cwi_engine cwi_engine;
+
 typedef struct cwi_grid {
     cw_volume volume; /* resolved: one component, one step */
     double level;     /* the isovalue in stored numbers */
@@ -18,13 +30,21 @@ typedef struct cwi_grid {
     size_t words;     /* of 64 samples in a padded row */
     size_t rows_y, rows_z, rows;
     uint64_t *inside; /* rows x words */
-    uint64_t *live;   /* rows x words: cells whose eight samples all have values; NULL: all */
+    uint64_t *domain; /* rows x words: cells whose eight samples have values; NULL: not known */
+    uint64_t *live;   /* rows x words: the domain without pinched cells; NULL: all cells */
     size_t masks;     /* words of a mask that has a bit for every word of a row */
+    uint64_t *busy;   /* rows x masks, found when a row is counted: bit w is set where a cell of
+                         word w has corners on both sides. No other word holds crossings */
+    size_t bricks_y, bricks_z;
     uint64_t
-        *busy;    /* rows x masks, found when the row is counted: bit w is set where some
-                     cell of word w has corners on both sides. No other word holds crossings */
-    bool simple;  /* one rule for ambiguous faces, in place of the field's topology */
-    bool crossed; /* some samples with values are inside and some are not */
+        *wanted; /* bricks_z x bricks_y x masks: words with cells the octree cannot rule out */
+    cwi_leaf_bits
+        *leaves;      /* bricks_z x bricks_y x words: of wanted words, and those after them */
+    bool find_domain; /* the domain is filled while samples are compared */
+    bool everything;  /* all words are wanted; else the others, but for those that hold the
+                         volume's border, mean nothing in planes and masks */
+    bool simple;      /* one rule for ambiguous faces, in place of the field's topology */
+    bool crossed;     /* some samples with values are inside and some are not */
 } cwi_grid;
 
 /* Per-row numbers: of the first vertex on the row's x-, y- and z-edges and inside its cells,
@@ -34,11 +54,15 @@ typedef struct cwi_row {
     size_t triangle;
 } cwi_row;
 
-/* Compares every sample with the isovalue. Free with cwi_grid_free(), also after an error. */
-struct cwi_engine;
-cw_status cwi_grid_build(cwi_grid *grid, const struct cwi_engine *engine,
-                         const cw_volume *volume, const cw_extract_desc *desc, cw_error *err);
+/* Looks at a volume and makes room for its planes. Free with cwi_grid_free(), also after an
+ * error. */
+cw_status cwi_grid_init(cwi_grid *grid, const cw_volume *volume, cw_error *err);
 void cwi_grid_free(cwi_grid *grid);
+
+/* Compares the samples with the isovalue: all of them, or where a tree tells which are wanted,
+ * those. A tree that is not grown yet is, on the way; it may be NULL. */
+cw_status cwi_grid_classify(cwi_grid *grid, const cwi_engine *engine, cwi_octree *tree,
+                            const cw_extract_desc *desc, cw_error *err);
 size_t cwi_grid_bytes(const cwi_grid *grid);
 
 /* Closed curves along which the surface meets the sides of the volume's box. */
@@ -52,6 +76,26 @@ static inline const uint64_t *cwi_grid_row(const cwi_grid *g, size_t row)
 static inline const uint64_t *cwi_grid_busy(const cwi_grid *g, size_t row)
 {
     return g->busy + row * g->masks;
+}
+
+/* The row of bricks that row (j, k) of cells lies in. */
+static inline size_t cwi_grid_bricks(const cwi_grid *g, size_t j, size_t k)
+{
+    return k / CWI_BRICK * g->bricks_y + j / CWI_BRICK;
+}
+
+/* The wanted words of row (j, k) of cells. */
+static inline const uint64_t *cwi_grid_wanted(const cwi_grid *g, size_t j, size_t k)
+{
+    return g->wanted + cwi_grid_bricks(g, j, k) * g->masks;
+}
+
+/* Eight bits to the samples of eight leaves. */
+static inline uint64_t cwi_spread_leaves(unsigned bits)
+{
+    const uint64_t apart =
+        (bits * UINT64_C(0x8040201008040201) & UINT64_C(0x8080808080808080)) >> 7;
+    return __builtin_bswap64(apart) * 255;
 }
 
 /* The first word at or after w whose bit is set in a mask; `words` when there is none. */

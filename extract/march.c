@@ -204,10 +204,13 @@ static bool find_busy(const cwi_grid *g, size_t j, size_t k)
     uint64_t *busy = g->busy + (k * g->rows_y + j) * g->masks, any = 0;
     for (size_t n = 0; n < 4; n++)
         rows[n] = cwi_grid_row(g, (k + (n >> 1)) * g->rows_y + j + (n & 1));
+    const uint64_t *wanted = g->everything ? NULL : cwi_grid_wanted(g, j, k);
     memset(busy, 0, g->masks * sizeof *busy);
     for (size_t w = 0; w < g->words; w += 8) {
-        const uint64_t within = g->words - w < 8 ? (UINT64_C(1) << (g->words - w)) - 1 : 255;
-        const uint64_t found = busy_words(rows, w) & within;
+        uint64_t within = g->words - w < 8 ? (UINT64_C(1) << (g->words - w)) - 1 : 255;
+        if (wanted)
+            within &= wanted[w / 64] >> w % 64;
+        const uint64_t found = within ? busy_words(rows, w) & within : 0;
         busy[w / 64] |= found << w % 64;
         any |= found;
     }

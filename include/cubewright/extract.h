@@ -65,6 +65,27 @@ CW_API cw_status cw_extract(const cw_volume *volume, const cw_extract_desc *desc
 CW_API cw_status cw_extract_predict(const cw_volume *volume, const cw_extract_desc *desc,
                                     cw_extract_counts *counts, cw_error *err);
 
+/* A volume that is asked for several surfaces. The first extraction reads all voxels, and on
+ * the way builds an octree of the lowest and highest value in each brick of 8 x 8 x 8 cells;
+ * later ones read the bricks that their isovalue passes through, and no others. Meshes are the
+ * same to the bit as those of cw_extract().
+ *
+ * Holds planes of bits and the tree: at most 1/8 of the bytes of a volume of floats. One
+ * extraction at a time; several extractors may share a volume.
+ * Source  [Wilhelms1992] */
+typedef struct cw_extractor cw_extractor;
+
+/* Prepares to extract from a volume, which is borrowed: it has to stay, unchanged, until the
+ * extractor is freed. Free with cw_extractor_free(). Errors as cw_extract(). */
+CW_API cw_status cw_extractor_new(const cw_volume *volume, cw_extractor **out, cw_error *err);
+CW_API void cw_extractor_free(cw_extractor *extractor); /* harmless on NULL */
+
+/* As cw_extract() and cw_extract_predict(). */
+CW_API cw_status cw_extractor_extract(cw_extractor *extractor, const cw_extract_desc *desc,
+                                      cw_mesh *mesh, cw_extract_counts *counts, cw_error *err);
+CW_API cw_status cw_extractor_predict(cw_extractor *extractor, const cw_extract_desc *desc,
+                                      cw_extract_counts *counts, cw_error *err);
+
 #ifdef __cplusplus
 }
 #endif

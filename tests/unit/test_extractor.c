@@ -1,0 +1,218 @@
+/* Many surfaces of one volume: the same bytes as one at a time, from the bricks they cross. */
+#include "support/support.h"
+
+#include "core/memory.h"
+#include "extract/engine.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void assert_same_mesh(const cw_mesh *a, const cw_mesh *b)
+{
+    assert_int_equal(a->vertex_count, b->vertex_count);
+    assert_int_equal(a->triangle_count, b->triangle_count);
+    if (a->triangle_count == 0)
+        return;
+    assert_memory_equal(a->origin, b->origin, sizeof a->origin);
+    assert_memory_equal(a->positions, b->positions, 12 * a->vertex_count);
+    assert_memory_equal(a->normals, b->normals, 12 * a->vertex_count);
+    assert_memory_equal(a->triangles, b->triangles, 12 * a->triangle_count);
+}
+
+static double random_number(double limit)
+{
+    return limit * rand() / ((double)RAND_MAX + 1);
+}
+
+/* Boxes of constants and of noise over a constant: most bricks hold one number, and any brick
+ * may hold the end of anything. */
+static void paint(cw_volume *v, bool specials)
+{
+    const size_t *n = v->dim;
+    char *voxels = cw_volume_voxels(v);
+    for (int box = 0; box < 8; box++) {
+        size_t low[3], high[3];
+        const double value = floor(random_number(100)),
+                     noise = rand() % 2 ? random_number(9) : 0;
+        const bool nothing = specials && rand() % 4 == 0;
+        for (int a = 0; a < 3; a++) {
+            low[a] = box ? (size_t)rand() % n[a] : 0;
+            high[a] = box ? low[a] + (size_t)rand() % (n[a] - low[a]) + 1 : n[a];
+        }
+        for (size_t k = low[2]; k < high[2]; k++)
+            for (size_t j = low[1]; j < high[1]; j++)
+                for (size_t i = low[0]; i < high[0]; i++) {
+                    const size_t at = (k * n[1] + j) * n[0] + i;
+                    const double x = nothing ? NAN : value + random_number(noise);
+                    switch (v->type) {
+#define CASE(name, ctype, text)                                                                \
+    case name:                                                                                 \
+        ((ctype *)(void *)voxels)[at] =                                                        \
+            isnan(x) && name != CW_F32 && name != CW_F64 ? (ctype)7 : (ctype)x;                \
+        break;
+                        CW_TYPE_TABLE(CASE)
+#undef CASE
+                    default:
+                        break;
+                    }
+                }
+    }
+}
+
+static void one_after_another_as_each_by_itself(void **state)
+{
+    (void)state;
+    static const size_t sizes[][3] = {{2, 2, 2},    {7, 8, 9},     {62, 15, 17}, {63, 16, 8},
+                                      {64, 40, 24}, {130, 33, 31}, {66, 5, 71},  {200, 9, 10}};
+    srand(91);
+    for (int round = 0; round < 96; round++) {
+        cw_volume v;
+        cw_extractor *extractor;
+        cw_error err = {0};
+        size_t engines = 0;
+        while (cwi_engine_at(engines))
+            engines++;
+        const cwi_engine *engine = cwi_engine_at((size_t)round % engines);
+        assert_ok(cw_volume_alloc(&v, (cw_type)(round % CW_TYPE_COUNT), sizes[rand() % 8], 1, 1,
+                                  &err),
+                  err);
+        paint(&v, rand() % 2);
+        v.slope = rand() % 4 ? 1 : -1;
+        v.has_nodata = rand() % 3 == 0;
+        v.nodata = 7;
+        assert_ok(cwi_extractor_new_with(engine, &v, &extractor, &err), err);
+        for (int n = 0; n < 8; n++) {
+            cw_mesh once, again;
+            cw_extract_counts counts[2] = {{0}, {0}};
+            const double value = rand() % 2 ? floor(random_number(100)) : random_number(100);
+            const cw_extract_desc d = {.isovalue = value * v.slope,
+                                       .inside_is_low = rand() % 2,
+                                       .leave_open = rand() % 4 == 0,
+                                       .threads = 1 + rand() % 2};
+            assert_ok(cwi_extract_with(engine, &v, &d, &once, &counts[0], &err), err);
+            assert_ok(cw_extractor_extract(extractor, &d, &again, &counts[1], &err), err);
+            assert_same_mesh(&once, &again);
+            assert_int_equal(counts[0].border_loops, counts[1].border_loops);
+            cw_mesh_free(&once);
+            cw_mesh_free(&again);
+        }
+        cw_extractor_free(extractor);
+        cw_volume_free(&v);
+    }
+}
+
+/* Bricks that the surface does not cross are spoilt after the first extraction. */
+static void later_surfaces_read_no_other_bricks(void **state)
+{
+    (void)state;
+    const cw_field_desc desc = {.field = CW_FIELD_SPHERE, .dim = {96, 96, 96}, .type = CW_F32};
+    const cw_extract_desc first = {.isovalue = 0}, second = {.isovalue = 0.5};
+    cw_volume v;
+    cw_extractor *extractor;
+    cw_mesh once, again;
+    cw_error err = {0};
+    assert_ok(cw_field_sample(&desc, &v, &err), err);
+    assert_ok(cw_extract(&v, &second, &once, NULL, &err), err);
+    assert_ok(cw_extractor_new(&v, &extractor, &err), err);
+    assert_ok(cw_extractor_extract(extractor, &first, &again, NULL, &err), err);
+    cw_mesh_free(&again);
+    float *voxels = cw_volume_voxels(&v);
+    for (size_t n = 0; n < 96 * 96 * 96; n++)
+        if (fabs((double)voxels[n] - 0.5) > 25)
+            voxels[n] = NAN;
+    assert_ok(cw_extractor_extract(extractor, &second, &again, NULL, &err), err);
+    assert_same_mesh(&once, &again);
+    cw_mesh_free(&once);
+    cw_mesh_free(&again);
+    cw_extractor_free(extractor);
+    cw_volume_free(&v);
+}
+
+static bool stop_at(void *user, const char *step, double done)
+{
+    (void)step, (void)done;
+    return (*(int *)user)-- > 0;
+}
+
+static void after_a_cancelled_extraction_it_starts_afresh(void **state)
+{
+    (void)state;
+    const cw_field_desc desc = {.field = CW_FIELD_TORUS, .dim = {40, 40, 40}, .type = CW_F32};
+    cw_volume v;
+    cw_extractor *extractor;
+    cw_mesh once, again;
+    cw_error err = {0};
+    assert_ok(cw_field_sample(&desc, &v, &err), err);
+    assert_ok(cw_extractor_new(&v, &extractor, &err), err);
+    for (int polls = 0; polls < 40; polls++) {
+        int left = polls;
+        cw_extract_desc d = {.leave_open = polls % 3 == 0, .progress = {stop_at, &left}};
+        const cw_status st = cw_extractor_extract(extractor, &d, &again, NULL, &err);
+        assert_true(st == CW_OK || st == CW_ERR_CANCELLED);
+        cw_mesh_free(&again);
+        d.progress = (cw_progress){0};
+        assert_ok(cw_extract(&v, &d, &once, NULL, &err), err);
+        assert_ok(cw_extractor_extract(extractor, &d, &again, NULL, &err), err);
+        assert_same_mesh(&once, &again);
+        cw_mesh_free(&once);
+        cw_mesh_free(&again);
+    }
+    cw_extractor_free(extractor);
+    cw_volume_free(&v);
+}
+
+static void memory_running_out_is_an_error_at_every_allocation(void **state)
+{
+    (void)state;
+    static const float voxels[27] = {[13] = 1};
+    const cw_volume v = {.data = voxels, .type = CW_F32, .dim = {3, 3, 3}};
+    const cw_extract_desc d = {.isovalue = 0.5f, .leave_open = true};
+    bool done = false;
+    for (long n = 0; !done; n++) {
+        cw_extractor *extractor;
+        cw_mesh mesh = {0};
+        cw_error err = {0};
+        cwi_alloc_fail_after(n);
+        cw_status st = cw_extractor_new(&v, &extractor, &err);
+        if (st == CW_OK)
+            st = cw_extractor_extract(extractor, &d, &mesh, NULL, &err);
+        done = !cwi_alloc_fail_after(-1);
+        assert_int_equal(st, done ? CW_OK : CW_ERR_NO_MEMORY);
+        if (extractor && !done) /* it can be asked again */
+            assert_ok(cw_extractor_extract(extractor, &d, &mesh, NULL, &err), err);
+        cw_mesh_free(&mesh);
+        cw_extractor_free(extractor);
+        assert_true(n < 40);
+    }
+}
+
+static void it_holds_less_than_an_eighth_of_a_volume_of_floats(void **state)
+{
+    (void)state;
+    const cw_field_desc desc = {
+        .field = CW_FIELD_SPHERE, .dim = {256, 256, 256}, .type = CW_F32};
+    cw_volume v;
+    cw_extractor *extractor;
+    cw_extract_counts counts;
+    cw_error err = {0};
+    assert_ok(cw_field_sample(&desc, &v, &err), err);
+    assert_ok(cw_extractor_new(&v, &extractor, &err), err);
+    assert_ok(cw_extractor_predict(extractor, NULL, &counts, &err), err);
+    assert_true(counts.bytes - 24 * counts.vertices - 12 * counts.triangles <
+                (size_t)256 * 256 * 256 * 4 / 8);
+    cw_extractor_free(extractor);
+    cw_volume_free(&v);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(one_after_another_as_each_by_itself),
+        cmocka_unit_test(later_surfaces_read_no_other_bricks),
+        cmocka_unit_test(after_a_cancelled_extraction_it_starts_afresh),
+        cmocka_unit_test(memory_running_out_is_an_error_at_every_allocation),
+        cmocka_unit_test(it_holds_less_than_an_eighth_of_a_volume_of_floats),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
