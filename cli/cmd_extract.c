@@ -15,7 +15,7 @@ typedef struct extract_args {
     const char *output, *name, *format, *json;
     cli_number iso;
     int inside, normals, progress, topology;
-    bool open, no_clobber, check;
+    bool open, no_clobber, local, check;
     size_t max_triangles;
 } extract_args;
 
@@ -41,6 +41,9 @@ static const cli_option options[] = {
      offsetof(extract_args, format)},
     {"no-clobber", 0, CLI_FLAG, NULL, "fail when the output exists (replace it)",
      offsetof(extract_args, no_clobber)},
+    {"local", 0, CLI_FLAG, NULL,
+     "coordinates relative to the mesh's origin, which is printed (the world's)",
+     offsetof(extract_args, local)},
     {"check", 0, CLI_FLAG, NULL, "measure the mesh: closed, manifold, size (on; --no-check)",
      offsetof(extract_args, check)},
     {"max-triangles", 0, CLI_COUNT, "N", "stop before making more, e.g. 100M (no limit)",
@@ -140,18 +143,36 @@ static cw_status check(run_state *s, cw_error *err)
     return CW_OK;
 }
 
+static void warn_of_loss(run_state *s, const cw_write_loss *loss)
+{
+    if (loss->merged_vertices || loss->flat_triangles)
+        cli_report_warn(
+            &s->report,
+            "%s: so far from zero single precision has steps of %.3g mm: %s of %s vertices "
+            "fall together, %s of %s triangles lose their area; --local or .glb keeps them",
+            cli_shown_path(s->args->output), loss->step_mm, cli_count(loss->merged_vertices),
+            cli_count(s->mesh.vertex_count), cli_count(loss->flat_triangles),
+            cli_count(s->mesh.triangle_count));
+}
+
 static cw_status write_mesh(run_state *s, cw_error *err)
 {
     const cw_write_desc desc = {
         .format = s->args->format,
         .name = s->args->name,
         .no_clobber = s->args->no_clobber,
+        .local = s->args->local,
         .progress = cli_progress((double)s->mesh.triangle_count / 1e6, "Mtriangle"),
     };
+    cw_write_loss loss;
     cli_report_begin(&s->report);
-    cw_status st = cw_mesh_write(s->args->output, &s->mesh, &desc, err);
+    cw_status st = cw_mesh_write_loss(s->args->output, &s->mesh, &desc, &loss, err);
+    if (st == CW_OK)
+        st = cw_mesh_write(s->args->output, &s->mesh, &desc, err);
     if (st == CW_OK) {
         s->report.output = s->args->output;
+        s->report.local_origin = desc.local ? s->mesh.origin : NULL;
+        warn_of_loss(s, &loss);
         cli_report_end(&s->report, "write", s->mesh.triangle_count, s->mesh.triangle_count);
     }
     return st;
@@ -182,6 +203,9 @@ static void print_summary(const run_state *s)
                cli_bytes((double)info.st_size));
     if (s->args->check)
         print_topology(s);
+    if (s->args->local)
+        cli_result("; relative to %.15g, %.15g, %.15g mm", s->mesh.origin[0], s->mesh.origin[1],
+                   s->mesh.origin[2]);
     cli_result("; %.2f s\n", cli_seconds() - s->start);
 }
 
@@ -237,6 +261,10 @@ const cli_command cli_extract = {
         "are\n"
         "inside. Where the solid meets the volume's border it is closed by a flat cap.\n"
         "Nothing is smoothed, reduced or dropped. The same bytes for any number of threads.\n\n"
+        "STL, PLY and OBJ hold world coordinates; far from the world's zero single precision\n"
+        "loses them, and extract warns. With --local they are relative to the mesh's origin:\n"
+        "add it to get the world's. It is printed, and named in the report and in the file.\n"
+        "In GLB and glTF, which lose nothing, --local leaves out the node's translation.\n\n"
         "Examples\n"
         "  cubewright extract head.nii.gz --iso 50 -o head.glb\n"
         "  cubewright extract ct.nrrd --iso 300 -o bone.stl --json report.json\n"

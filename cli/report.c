@@ -7,6 +7,7 @@
 #include "core/status.h"
 
 #include <math.h>
+#include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
@@ -21,6 +22,15 @@ void cli_report_end(cli_report *report, const char *name, size_t in, size_t out)
     cli_step *s = &report->steps[report->step_count++];
     *s = (cli_step){name, cli_seconds() - report->step_start, cli_peak_bytes(), in, out};
     cli_say_v("%-8s %8.3f s, peak %s", s->name, s->seconds, cli_bytes((double)s->peak_bytes));
+}
+
+void cli_report_warn(cli_report *report, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    vsnprintf(report->warning, sizeof report->warning, format, args);
+    va_end(args);
+    cli_say("cubewright: warning: %s", report->warning);
 }
 
 static void put_features(cli_json *j)
@@ -75,7 +85,7 @@ static void put_mesh(cli_json *j, const cw_quality *q)
     cli_json_close(j, '}');
 }
 
-static void put_output(cli_json *j, const char *path)
+static void put_output(cli_json *j, const char *path, const double *local_origin)
 {
     struct stat info;
     cli_json_open(j, "output", '[');
@@ -84,6 +94,9 @@ static void put_output(cli_json *j, const char *path)
         cli_json_text(j, "path", cli_shown_path(path));
         cli_json_count(j, "bytes", (size_t)info.st_size);
         cli_json_text(j, "compression", "none");
+        cli_json_bool(j, "local", local_origin);
+        if (local_origin)
+            cli_json_numbers(j, "origin", local_origin, 3);
         cli_json_close(j, '}');
     }
     cli_json_close(j, ']');
@@ -103,10 +116,12 @@ static void put_report(FILE *out, const cli_report *r, cw_status status, const c
     put_steps(&j, r);
     if (r->quality)
         put_mesh(&j, r->quality);
-    put_output(&j, status == CW_OK ? r->output : NULL);
+    put_output(&j, status == CW_OK ? r->output : NULL, r->local_origin);
     cli_json_open(&j, "warnings", '[');
     if (r->input && !(r->input->whole.known & CW_KNOWN_UNIT))
         cli_json_text(&j, NULL, "the input names no unit: taken as mm");
+    if (r->warning[0])
+        cli_json_text(&j, NULL, r->warning);
     cli_json_close(&j, ']');
     cli_json_text(&j, "status", cw_status_name(status));
     if (status != CW_OK)

@@ -18,9 +18,11 @@ typedef struct cli_step {
 typedef struct cli_report {
     const char *path; /* of the report; "-" is stdout; NULL: none is written */
     const char *command;
-    const cli_volume *input;                       /* NULL: not read */
-    const cw_quality *quality;                     /* NULL: not measured */
-    const char *output;                            /* NULL: not written */
+    const cli_volume *input;    /* NULL: not read */
+    const cw_quality *quality;  /* NULL: not measured */
+    const char *output;         /* NULL: not written */
+    const double *local_origin; /* the output's places are relative to it; NULL: the world's */
+    char warning[512];          /* "": none */
     void (*params)(cli_json *j, const void *args); /* writes the settings of the main step */
     const void *args;
     cli_step steps[CLI_MAX_STEPS];
@@ -31,6 +33,9 @@ typedef struct cli_report {
 /* Times a step, from one call to the other. -v prints it. */
 void cli_report_begin(cli_report *report);
 void cli_report_end(cli_report *report, const char *name, size_t in, size_t out);
+
+/* Says it on stderr, unless quiet, and keeps it for the report. */
+void cli_report_warn(cli_report *report, const char *format, ...) CW_PRINTF(2, 3);
 
 /* Writes the report of a run that ended so, if one was asked for. Returns that status, or why
  * the report could not be written when the run itself went well. */

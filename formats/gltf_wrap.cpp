@@ -220,7 +220,7 @@ tinygltf::Material make_material(const cw_mesh &mesh)
     return material;
 }
 
-tinygltf::Value make_extras(const cw_mesh &mesh)
+tinygltf::Value make_extras(const cw_mesh &mesh, const double *origin)
 {
     tinygltf::Value::Object extras = {{"frame", tinygltf::Value(std::string("LPS"))},
                                       {"unit", tinygltf::Value(std::string("mm"))}};
@@ -233,26 +233,32 @@ tinygltf::Value make_extras(const cw_mesh &mesh)
         }
     if (has_affine)
         extras["affine"] = tinygltf::Value(affine);
+    if (origin)
+        extras["origin"] = tinygltf::Value(tinygltf::Value::Array{tinygltf::Value(origin[0]),
+                                                                  tinygltf::Value(origin[1]),
+                                                                  tinygltf::Value(origin[2])});
     return tinygltf::Value(extras);
 }
 
 // LPS millimetres to glTF's metres, +Y up, front towards +Z: (x, y, z) goes to 0.001 (x, z,
-// -y). The node does it, so that the vertices stay as they are. Adding 0.0 turns -0 into 0.
-tinygltf::Node make_node(const cw_mesh &mesh, const char *name)
+// -y). The node does it, so that the vertices stay as they are. Adding 0.0 turns -0 into 0. A
+// local scene is not moved: its origin is told, not applied.
+tinygltf::Node make_node(const cw_mesh &mesh, const cwi_mesh_output &out)
 {
     const double half = std::sqrt(0.5);
     tinygltf::Node node;
-    node.name = name;
+    node.name = out.name;
     node.mesh = 0;
     node.rotation = {-half, 0, 0, half};
     node.scale = {0.001, 0.001, 0.001};
-    node.translation = {0.001 * mesh.origin[0] + 0.0, 0.001 * mesh.origin[2] + 0.0,
-                        -0.001 * mesh.origin[1] + 0.0};
-    node.extras = make_extras(mesh);
+    if (!out.local_origin)
+        node.translation = {0.001 * mesh.origin[0] + 0.0, 0.001 * mesh.origin[2] + 0.0,
+                            -0.001 * mesh.origin[1] + 0.0};
+    node.extras = make_extras(mesh, out.local_origin);
     return node;
 }
 
-tinygltf::Model make_model(const cw_mesh &mesh, const char *name)
+tinygltf::Model make_model(const cw_mesh &mesh, const cwi_mesh_output &out)
 {
     tinygltf::Model model;
     tinygltf::Primitive primitive;
@@ -270,13 +276,13 @@ tinygltf::Model make_model(const cw_mesh &mesh, const char *name)
     primitive.mode = TINYGLTF_MODE_TRIANGLES;
 
     tinygltf::Mesh named;
-    named.name = name;
+    named.name = out.name;
     named.primitives.push_back(primitive);
     tinygltf::Scene scene;
     scene.nodes.push_back(0);
     model.meshes.push_back(named);
     model.materials.push_back(make_material(mesh));
-    model.nodes.push_back(make_node(mesh, name));
+    model.nodes.push_back(make_node(mesh, out));
     model.scenes.push_back(scene);
     model.defaultScene = 0;
     model.buffers.push_back(make_buffer(mesh, parts));
@@ -290,7 +296,7 @@ cw_status write_scene(const cw_mesh *mesh, cwi_mesh_output *out, bool binary,
         const cw_status st = check_size(*mesh, err);
         if (st != CW_OK)
             return st;
-        const tinygltf::Model model = make_model(*mesh, out->name);
+        const tinygltf::Model model = make_model(*mesh, *out);
         const size_t bytes = model.buffers[0].data.size();
         out->total = binary ? bytes : bytes + bytes / 3;
         OutfileBuffer buffer(out, err);

@@ -7,19 +7,21 @@
 
 #include <float.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 typedef struct writer {
     const char *format;
     cwi_mesh_writer *write;
     cw_status (*prepare)(cw_error *err); /* loads what it needs; NULL: nothing */
+    bool world;                          /* coordinates hold the origin, unless local */
 } writer;
 
 static const writer writers[] = {
-    {"glb", cwi_glb_write, cwi_gltf_prepare},
-    {"gltf", cwi_gltf_write, cwi_gltf_prepare},
-    {"stl", cwi_stl_write, NULL},
-    {"ply", cwi_ply_write, NULL},
-    {"obj", cwi_obj_write, NULL},
+    {"glb", cwi_glb_write, cwi_gltf_prepare, false},
+    {"gltf", cwi_gltf_write, cwi_gltf_prepare, false},
+    {"stl", cwi_stl_write, NULL, true},
+    {"ply", cwi_ply_write, NULL, true},
+    {"obj", cwi_obj_write, NULL, true},
 };
 
 enum { NAME_BYTES = 256, PROGRESS_STEP = 65536 };
@@ -50,6 +52,33 @@ cw_status cwi_check_single(const cw_mesh *mesh, cw_error *err)
                            "precision cannot say",
                            high[a]);
     return CW_OK;
+}
+
+/* The fewest digits that read back the same. */
+static int print_shortest(char *text, size_t size, double value)
+{
+    int length = 0;
+    for (int digits = 15; digits <= 17; digits++) {
+        length = snprintf(text, size, "%.*g", digits, value);
+        if (strtod(text, NULL) == value)
+            break;
+    }
+    return length;
+}
+
+void cwi_print_origin(const cwi_mesh_output *out, const char *before, const char *after,
+                      char text[CWI_ORIGIN_BYTES])
+{
+    void *locale = cwi_locale_c();
+    size_t used = 0;
+    text[0] = '\0';
+    for (int a = 0; a < 3 && out->local_origin; a++) {
+        used += (size_t)snprintf(text + used, CWI_ORIGIN_BYTES - used, "%s ", a ? "" : before);
+        used +=
+            (size_t)print_shortest(text + used, CWI_ORIGIN_BYTES - used, out->local_origin[a]);
+    }
+    snprintf(text + used, CWI_ORIGIN_BYTES - used, "%s", out->local_origin ? after : "");
+    cwi_locale_restore(locale);
 }
 
 static bool is_wanted(const cw_format *format, const char *path, const char *name)
@@ -140,10 +169,14 @@ static cw_status write_whole(const char *path, const cw_mesh *mesh, const cw_wri
 {
     char name[NAME_BYTES];
     choose_name(path, d->name, name);
-    cwi_mesh_output out = {.name = name, .progress = &d->progress};
+    cwi_mesh_output out = {
+        .name = name, .local_origin = d->local ? mesh->origin : NULL, .progress = &d->progress};
+    cw_mesh placed = *mesh; /* borrows the arrays */
+    if (d->local)
+        memset(placed.origin, 0, sizeof placed.origin);
     cw_status st = cwi_outfile_open(&out.file, path, d->no_clobber, err);
     if (st == CW_OK)
-        st = write(mesh, &out, err);
+        st = write(&placed, &out, err);
     if (st == CW_OK)
         st = cwi_outfile_commit(&out.file, err);
     cwi_outfile_abort(&out.file);
@@ -162,6 +195,20 @@ cw_status cw_mesh_write(const char *path, const cw_mesh *mesh, const cw_write_de
         st = cw_fail(err, CW_ERR_ARGUMENT, "the mesh is empty");
     if (st == CW_OK)
         st = write_whole(path, mesh, &d, w->write, err);
+    return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
+}
+
+cw_status cw_mesh_write_loss(const char *path, const cw_mesh *mesh, const cw_write_desc *desc,
+                             cw_write_loss *loss, cw_error *err)
+{
+    const cw_write_desc d = desc ? *desc : (cw_write_desc){0};
+    const writer *w;
+    memset(loss, 0, sizeof *loss);
+    cw_status st = find_writer(path, d.format, &w, err);
+    if (st == CW_OK)
+        st = cw_mesh_check(mesh, err);
+    if (st == CW_OK && w->world && !d.local)
+        st = cwi_measure_loss(mesh, loss, err);
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
 }
 

@@ -1,9 +1,10 @@
 /* What the mesh writers share: where bytes go, the records they are made of, places in the
- * world. A writer gets a mesh that is checked and not empty. */
+ * world. A writer gets a mesh that is checked and not empty; for a local file its origin is 0.
+ */
 #ifndef FORMATS_MESH_WRITERS_H
 #define FORMATS_MESH_WRITERS_H
 
-#include <cubewright/mesh.h>
+#include <cubewright/formats.h>
 
 #include "core/outfile.h"
 
@@ -16,6 +17,8 @@ extern "C" {
 typedef struct cwi_mesh_output {
     cwi_outfile *file;
     const char *name; /* of the object; printable UTF-8 on one line, at most 255 bytes */
+    const double
+        *local_origin; /* what gives the world's coordinates when added; NULL: nothing */
     const cw_progress *progress;
     size_t done, total; /* records, for progress; a writer sets the total */
 } cwi_mesh_output;
@@ -39,6 +42,16 @@ typedef unsigned char *cwi_record_encoder(const cw_mesh *mesh, size_t i, unsigne
 /* Writes records 0 to count - 1 and reports progress on the way. */
 cw_status cwi_write_records(const cw_mesh *mesh, cwi_mesh_output *out,
                             cwi_record_encoder *encode, size_t count, cw_error *err);
+
+enum { CWI_ORIGIN_BYTES = 128 };
+
+/* The origin of a local file as text, first what stands before it: " from 1 2 3.5". Empty for a
+ * file of world coordinates. */
+void cwi_print_origin(const cwi_mesh_output *out, const char *before, const char *after,
+                      char text[CWI_ORIGIN_BYTES]);
+
+/* cw_mesh_write_loss() of a file in world coordinates; loss is zeroed. */
+cw_status cwi_measure_loss(const cw_mesh *mesh, cw_write_loss *loss, cw_error *err);
 
 /* CW_ERR_LIMIT when a world coordinate is beyond single precision's largest number. */
 cw_status cwi_check_single(const cw_mesh *mesh, cw_error *err);

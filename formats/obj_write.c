@@ -3,14 +3,39 @@
 
 #include "core/text.h"
 
+#include <math.h>
 #include <stdio.h>
 
-/* Ten digits: nine give a float back to the bit, the tenth is room for the origin. */
-static unsigned char *encode_place(const cw_mesh *mesh, size_t v, unsigned char *to)
+static unsigned char *put_place(const cw_mesh *mesh, size_t v, int digits, unsigned char *to)
 {
-    return to + snprintf((char *)to, CWI_RECORD_BYTES, "v %.10g %.10g %.10g\n",
-                         cwi_world_coordinate(mesh, v, 0), cwi_world_coordinate(mesh, v, 1),
+    return to + snprintf((char *)to, CWI_RECORD_BYTES, "v %.*g %.*g %.*g\n", digits,
+                         cwi_world_coordinate(mesh, v, 0), digits,
+                         cwi_world_coordinate(mesh, v, 1), digits,
                          cwi_world_coordinate(mesh, v, 2));
+}
+
+/* Nine digits give a float back to the bit, the tenth is room for the origin. */
+static unsigned char *encode_near_place(const cw_mesh *mesh, size_t v, unsigned char *to)
+{
+    return put_place(mesh, v, 10, to);
+}
+
+/* A double to the bit. */
+static unsigned char *encode_far_place(const cw_mesh *mesh, size_t v, unsigned char *to)
+{
+    return put_place(mesh, v, 17, to);
+}
+
+/* Whether the mesh stands more than ten times its own size from zero. */
+static bool is_far(const cw_mesh *mesh)
+{
+    double low[3], high[3], distance = 0, size = 0;
+    cw_mesh_bounds(mesh, low, high);
+    for (int a = 0; a < 3; a++) {
+        distance = fmax(distance, fmax(fabs(low[a]), fabs(high[a])));
+        size = fmax(size, high[a] - low[a]);
+    }
+    return distance > 10 * size;
 }
 
 static unsigned char *encode_normal(const cw_mesh *mesh, size_t v, unsigned char *to)
@@ -39,8 +64,11 @@ static cw_status write_lines(const cw_mesh *mesh, cwi_mesh_output *out, cw_error
 {
     const size_t normal_count = mesh->normals ? mesh->vertex_count : 0;
     out->total = mesh->vertex_count + normal_count + mesh->triangle_count;
-    cw_status st = cwi_outfile_printf(out->file, err, "# cubewright %s, LPS, mm\no %s\n",
-                                      CW_VERSION, out->name);
+    cwi_record_encoder *encode_place = is_far(mesh) ? encode_far_place : encode_near_place;
+    char origin[CWI_ORIGIN_BYTES];
+    cwi_print_origin(out, "# origin", "\n", origin);
+    cw_status st = cwi_outfile_printf(out->file, err, "# cubewright %s, LPS, mm\n%so %s\n",
+                                      CW_VERSION, origin, out->name);
     if (st == CW_OK)
         st = cwi_write_records(mesh, out, encode_place, mesh->vertex_count, err);
     if (st == CW_OK)

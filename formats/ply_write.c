@@ -32,13 +32,15 @@ static cw_status write_header(const cw_mesh *mesh, const cwi_mesh_output *out, c
 {
     /* int is what readers expect; uint only when the numbers need it */
     const char *index = mesh->vertex_count > INT32_MAX ? "uint" : "int";
+    char origin[CWI_ORIGIN_BYTES];
+    cwi_print_origin(out, "comment origin", "\n", origin);
     return cwi_outfile_printf(
         out->file, err,
         "ply\nformat binary_little_endian 1.0\n"
-        "comment cubewright %s\ncomment object %s\ncomment unit mm\ncomment frame LPS\n"
+        "comment cubewright %s\ncomment object %s\ncomment unit mm\ncomment frame LPS\n%s"
         "element vertex %zu\nproperty float x\nproperty float y\nproperty float z\n%s%s%s%s"
         "element face %zu\nproperty list uchar %s vertex_indices\nend_header\n",
-        CW_VERSION, out->name, mesh->vertex_count,
+        CW_VERSION, out->name, origin, mesh->vertex_count,
         mesh->normals ? "property float nx\nproperty float ny\nproperty float nz\n" : "",
         mesh->colors ? "property uchar red\nproperty uchar green\nproperty uchar blue\n"
                        "property uchar alpha\n"

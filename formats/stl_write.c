@@ -4,6 +4,7 @@
 #include "core/status.h"
 
 #include <math.h>
+#include <stdio.h>
 
 /* Of the corners as they are written, so that normal and winding agree for every reader. Far
  * from zero rounding may leave a facet without area: its normal is 0 0 0. */
@@ -35,14 +36,26 @@ static unsigned char *encode_facet(const cw_mesh *mesh, size_t i, unsigned char 
     return cwi_put_u16(to, 0);
 }
 
+/* Not "solid ...": readers take that for the text form. */
+static void fill_header(const cwi_mesh_output *out, uint32_t count, unsigned char header[84])
+{
+    char origin[CWI_ORIGIN_BYTES], text[80 + CWI_ORIGIN_BYTES];
+    cwi_print_origin(out, " from", "", origin);
+    int length = snprintf(text, sizeof text, "cubewright, LPS, mm%s", origin);
+    if (length >= 80)
+        length = snprintf(text, sizeof text, "cubewright, LPS, mm from an origin of its own");
+    memset(header, 0, 84);
+    memcpy(header, text, (size_t)length);
+    cwi_put_u32(header + 80, count);
+}
+
 cw_status cwi_stl_write(const cw_mesh *mesh, cwi_mesh_output *out, cw_error *err)
 {
-    /* Not "solid ...": readers take that for the text form. */
-    unsigned char header[84] = "cubewright, LPS, mm";
+    unsigned char header[84];
     if (mesh->triangle_count > UINT32_MAX)
         return cw_fail(err, CW_ERR_LIMIT, "STL counts at most %u triangles; the mesh has %zu",
                        UINT32_MAX, mesh->triangle_count);
-    cwi_put_u32(header + 80, (uint32_t)mesh->triangle_count);
+    fill_header(out, (uint32_t)mesh->triangle_count, header);
     out->total = mesh->triangle_count;
     cw_status st = cwi_check_single(mesh, err);
     if (st == CW_OK)

@@ -165,6 +165,8 @@ cw_status cw_volume_write(const char *path, const cw_volume *volume, const cw_wr
     if (!desc)
         desc = &defaults;
     cw_status st = find_writer(path, desc->format, &w, err);
+    if (st == CW_OK && desc->local)
+        st = cw_fail(err, CW_ERR_ARGUMENT, "a volume has no local form: its frame stays");
     if (st == CW_OK)
         st = cw_volume_resolve(volume, &v, err);
     if (st == CW_OK)

@@ -57,12 +57,13 @@ typedef struct cw_write_desc {
     const char *format;   /* a name of cw_formats(); default: by the path's extension */
     const char *name;     /* of the object inside the file; default: the path's stem */
     bool no_clobber;      /* fail when the path exists; default: replace it */
+    bool local;           /* mesh: relative to its origin; default: in the world */
     cw_progress progress; /* default: none */
 } cw_write_desc;
 
 /* Writes beside the path, flushes, then renames: the path holds the old file or the whole new
  * one. The format is the path's extension (.nrrd, .nii, .nii.gz, .mha, .mhd is not written).
- * Returns  CW_ERR_ARGUMENT     no writer of that name or extension
+ * Returns  CW_ERR_ARGUMENT     no writer of that name or extension; local, which is for meshes
  *          CW_ERR_OUTPUT       folder missing, disk full, path exists and no_clobber
  *          CW_ERR_UNSUPPORTED  the format is not in this build; CW_ERR_CANCELLED */
 CW_API cw_status cw_volume_write(const char *path, const cw_volume *volume,
@@ -70,11 +71,32 @@ CW_API cw_status cw_volume_write(const char *path, const cw_volume *volume,
 
 /* Writes a mesh in the same way: .glb, .gltf, .stl, .ply or .obj.
  * glTF goes out in metres, +Y up and facing +Z, by the node's transform: vertices stay exact.
- * The others hold world coordinates (origin added), LPS millimetres.
+ * The others hold world coordinates (origin added), LPS millimetres: see cw_mesh_write_loss().
+ *
+ * local leaves the origin out: coordinates are the mesh's positions, and the glTF node has no
+ * translation. The file names the origin, which gives the world's coordinates when added: PLY
+ * and OBJ in a comment, STL in its header when it fits there, glTF in the node's extras.
  * Returns  as cw_volume_write(); CW_ERR_ARGUMENT as cw_mesh_check(), and for an empty mesh;
  *          CW_ERR_LIMIT when the format's own sizes are too small for the mesh. */
 CW_API cw_status cw_mesh_write(const char *path, const cw_mesh *mesh, const cw_write_desc *desc,
                                cw_error *err);
+
+/* What single precision takes from the mesh in a file of world coordinates. */
+typedef struct cw_write_loss {
+    double step_mm;         /* between neighbouring numbers, at the farthest coordinate */
+    size_t merged_vertices; /* that fall onto another one, from which they were apart */
+    size_t flat_triangles;  /* that had an area and have none */
+} cw_write_loss;
+
+/* Measures what a reader with single precision will not get of the file that cw_mesh_write()
+ * would write. All zero for glTF, and for local files: those hold the positions as they are.
+ * STL and PLY lose it in the file; OBJ holds every digit, but most of its readers do not.
+ *
+ * Returns  CW_ERR_ARGUMENT  no such writer, or as cw_mesh_check(); CW_ERR_NO_MEMORY
+ * Cost     time in proportion to the triangles, and 28 bytes a vertex at most */
+CW_API cw_status cw_mesh_write_loss(const char *path, const cw_mesh *mesh,
+                                    const cw_write_desc *desc, cw_write_loss *loss,
+                                    cw_error *err);
 
 /* Whether cw_mesh_write() could write to a path, as far as can be known before there is a mesh:
  * writer and library at hand, folder there and writable, nothing in the way. Same errors. */

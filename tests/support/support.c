@@ -131,3 +131,19 @@ void test_make_cube(cw_mesh *mesh)
                                               {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
     make_mesh(mesh, points, 8, triangles, 12, 0.5f);
 }
+
+void test_make_far_sphere(cw_mesh *mesh)
+{
+    /* 64 cells span 80 mm: the field's radius of 30 mm is 24 voxels */
+    const cw_field_desc desc = {.field = CW_FIELD_SPHERE, .dim = {65, 65, 65}, .type = CW_F32};
+    const double spacing[3] = {0.1, 0.1, 5};
+    cw_volume v;
+    cw_error err = {0};
+    assert_ok(cw_field_sample(&desc, &v, &err), err);
+    for (int a = 0; a < 3; a++) {
+        v.affine[a][a] = spacing[a];
+        v.affine[a][3] = 1e6;
+    }
+    assert_ok(cw_extract(&v, NULL, mesh, NULL, &err), err);
+    cw_volume_free(&v);
+}

@@ -56,4 +56,8 @@ size_t test_folder_entries(void);
 void test_make_tetrahedron(cw_mesh *mesh);
 void test_make_cube(cw_mesh *mesh);
 
+/* A kilometre from zero and thin: a sphere of 24 voxels' radius, 0.1 x 0.1 x 5 mm each, whose
+ * first voxel stands at 1e6 mm along each axis. Closed and manifold, without flat triangles. */
+void test_make_far_sphere(cw_mesh *mesh);
+
 #endif

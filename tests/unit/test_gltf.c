@@ -92,11 +92,16 @@ static void rotate(const double q[4], const double x[3], double y[3])
                q[(a + 2) % 3] * t[(a + 1) % 3];
 }
 
-static void write_glb(const cw_mesh *mesh, glb *g)
+static void write_glb_as(const cw_mesh *mesh, const cw_write_desc *desc, glb *g)
 {
     cw_error err = {0};
-    assert_ok(cw_mesh_write(test_path("a.glb"), mesh, NULL, &err), err);
+    assert_ok(cw_mesh_write(test_path("a.glb"), mesh, desc, &err), err);
     glb_read(g, test_path("a.glb"));
+}
+
+static void write_glb(const cw_mesh *mesh, glb *g)
+{
+    write_glb_as(mesh, NULL, g);
 }
 
 static void arrays_come_back_to_the_bit(void **state)
@@ -165,6 +170,59 @@ static void the_node_turns_lps_millimetres_into_gltf_metres(void **state)
     assert_true(move[0] == 0.001 * mesh.origin[0]);
     assert_true(move[1] == 0.001 * mesh.origin[2]);
     assert_true(move[2] == -0.001 * mesh.origin[1]);
+    glb_free(&g);
+    cw_mesh_free(&mesh);
+}
+
+/* POSITION and indices as a reader has them make the mesh again, however far it stands. */
+static void a_far_mesh_loses_nothing(void **state)
+{
+    (void)state;
+    cw_mesh mesh;
+    cw_quality q;
+    cw_error err = {0};
+    cw_write_loss loss;
+    glb g;
+    test_make_far_sphere(&mesh);
+    assert_ok(cw_mesh_write_loss(test_path("a.glb"), &mesh, NULL, &loss, &err), err);
+    assert_int_equal(loss.merged_vertices + loss.flat_triangles, 0);
+    write_glb(&mesh, &g);
+    const size_t indices = 3 * mesh.triangle_count;
+    assert_true(mesh.vertex_count <= 65535 && indices % 2 == 0);
+    cw_mesh back = {.vertex_count = mesh.vertex_count, .triangle_count = mesh.triangle_count};
+    back.positions = malloc(12 * mesh.vertex_count);
+    back.triangles = malloc(4 * indices);
+    assert_true(back.positions && back.triangles);
+    for (size_t i = 0; i < indices; i++)
+        back.triangles[i] = g.bin[2 * i] | (uint32_t)g.bin[2 * i + 1] << 8;
+    for (size_t i = 0; i < 3 * mesh.vertex_count; i++)
+        back.positions[i] = f32_at(g.bin + 2 * indices + 4 * i);
+    assert_memory_equal(back.positions, mesh.positions, 12 * mesh.vertex_count);
+    assert_ok(cw_quality_measure(&back, &(cw_quality_desc){.weld = true}, &q, &err), err);
+    assert_true(cw_quality_is_closed_manifold(&q));
+    assert_int_equal(q.degenerate, 0);
+    assert_int_equal(q.unused_vertices, 0);
+    glb_free(&g);
+    cw_mesh_free(&back);
+    cw_mesh_free(&mesh);
+}
+
+static void a_local_scene_is_not_moved_but_tells_its_origin(void **state)
+{
+    (void)state;
+    cw_mesh mesh = {0};
+    double origin[3];
+    glb g;
+    test_make_cube(&mesh);
+    for (int a = 0; a < 3; a++)
+        mesh.origin[a] = 1e6 / (a + 3);
+    write_glb_as(&mesh, &(cw_write_desc){.local = true}, &g);
+    assert_null(strstr(g.json, "translation"));
+    json_numbers(g.json, "\"extras\"", "origin", 3, origin);
+    assert_memory_equal(origin, mesh.origin, sizeof origin);
+    glb_free(&g);
+    write_glb(&mesh, &g);
+    assert_null(strstr(g.json, "\"origin\""));
     glb_free(&g);
     cw_mesh_free(&mesh);
 }
@@ -368,6 +426,8 @@ int main(void)
         CASE(arrays_come_back_to_the_bit),
         CASE(bounds_are_the_stored_floats_exactly),
         CASE(the_node_turns_lps_millimetres_into_gltf_metres),
+        CASE(a_far_mesh_loses_nothing),
+        CASE(a_local_scene_is_not_moved_but_tells_its_origin),
         CASE(indices_are_short_as_long_as_they_may_be),
         CASE(colours_become_linear_and_translucent_ones_blend),
         CASE(extras_name_frame_unit_and_affine),

@@ -169,6 +169,78 @@ static void names_are_made_safe_for_every_format(void **state)
     cw_mesh_free(&mesh);
 }
 
+/* A cube of 0.5 mm where single precision has steps of 1 mm: each corner goes to the one below
+ * it on that axis or stays, as its half rounds to even; the twelve triangles follow. */
+static void loss_is_counted_where_the_format_has_it(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *path;
+        double origin[3];
+        bool local;
+        size_t merged, flat;
+    } rows[] = {
+        {"a.stl", {0, 0, 0}, false, 0, 0},        {"a.stl", {1e4, 1e4, 1e4}, false, 0, 0},
+        {"a.stl", {0, 0, 1e7}, false, 4, 8},      {"a.ply", {0, 1e7, 1e7}, false, 6, 12},
+        {"a.obj", {1e7, 1e7, 1e7}, false, 7, 12}, {"a.stl", {1e300, 1e7, 1e7}, false, 7, 12},
+        {"a.stl", {1e7, 1e7, 1e7}, true, 0, 0},   {"a.gltf", {1e7, 1e7, 1e7}, false, 0, 0},
+    };
+    cw_mesh mesh = {0};
+    cw_error err = {0};
+    cw_write_loss loss;
+    test_make_cube(&mesh);
+    for (size_t i = 0; i < 24; i++)
+        mesh.positions[i] *= 0.5f;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        const cw_write_desc desc = {.local = rows[i].local};
+        const cw_status st = (memcpy(mesh.origin, rows[i].origin, sizeof mesh.origin),
+                              cw_mesh_write_loss(rows[i].path, &mesh, &desc, &loss, &err));
+        if (st == CW_ERR_UNSUPPORTED) /* glTF, in a build without it */
+            continue;
+        assert_ok(st, err);
+        assert_int_equal(loss.merged_vertices, rows[i].merged);
+        assert_int_equal(loss.flat_triangles, rows[i].flat);
+    }
+    cw_mesh_free(&mesh);
+}
+
+/* What was at one place, or flat, before the rounding is no loss. */
+static void what_was_not_there_cannot_be_lost(void **state)
+{
+    (void)state;
+    cw_mesh mesh = {0};
+    cw_error err = {0};
+    cw_write_loss loss;
+    test_make_cube(&mesh);
+    mesh.origin[0] = 1e7;
+    memset(mesh.positions, 0, 21 * sizeof(float));
+    mesh.positions[3] = -0.0f;
+    assert_ok(cw_mesh_write_loss("a.stl", &mesh, NULL, &loss, &err), err);
+    assert_int_equal(loss.merged_vertices + loss.flat_triangles, 0);
+    cw_mesh_free(&mesh);
+}
+
+static void loss_fails_as_writing_does(void **state)
+{
+    (void)state;
+    cw_mesh mesh = {0};
+    cw_error err = {0};
+    cw_write_loss loss;
+    test_make_cube(&mesh);
+    assert_fails(cw_mesh_write_loss("a.xyz", &mesh, NULL, &loss, &err), CW_ERR_ARGUMENT,
+                 "a.xyz: its extension is of no mesh format", err);
+    for (long n = 0; n < 2; n++) {
+        cwi_alloc_fail_after(n);
+        assert_fails(cw_mesh_write_loss("a.stl", &mesh, NULL, &loss, &err), CW_ERR_NO_MEMORY,
+                     "a.stl: no memory to compare 8 vertices", err);
+        cwi_alloc_fail_after(-1);
+    }
+    mesh.triangles[0] = 8;
+    assert_fails(cw_mesh_write_loss("a.stl", &mesh, NULL, &loss, &err), CW_ERR_ARGUMENT,
+                 "triangle 0 names vertex 8 of 8", err);
+    cw_mesh_free(&mesh);
+}
+
 #define CASE(test) cmocka_unit_test_setup_teardown(test, test_folder_make, test_folder_remove)
 
 int main(void)
@@ -180,6 +252,9 @@ int main(void)
         CASE(running_out_of_memory_leaves_nothing),
         CASE(the_table_of_formats_is_whole_and_always_the_same),
         CASE(names_are_made_safe_for_every_format),
+        CASE(loss_is_counted_where_the_format_has_it),
+        CASE(what_was_not_there_cannot_be_lost),
+        CASE(loss_fails_as_writing_does),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

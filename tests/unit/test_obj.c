@@ -39,20 +39,40 @@ static void places_come_back_to_the_bit(void **state)
     cw_mesh_free(&mesh);
 }
 
-static void a_kilometre_from_zero_keeps_its_micrometres(void **state)
+static void far_from_zero_places_are_the_sum_to_the_bit(void **state)
 {
     (void)state;
     cw_mesh mesh = {0};
     cw_error err = {0};
-    size_t size, v = 0;
-    test_make_cube(&mesh);
-    mesh.origin[0] = 1e6;
-    for (size_t i = 0; i < 24; i++)
-        mesh.positions[i] *= 0.123456f;
+    size_t size, i = 0;
+    test_make_far_sphere(&mesh);
     assert_ok(cw_mesh_write(test_path("a.obj"), &mesh, NULL, &err), err);
     char *text = test_file_read(test_path("a.obj"), &size);
-    for (const char *at = text; next_line(&at, "v"); v++)
-        assert_near(strtod(at, NULL), 1e6 + (double)mesh.positions[3 * v], 0.5001e-3);
+    for (const char *at = text; next_line(&at, "v");)
+        for (size_t a = 0; a < 3; a++, i++)
+            assert_true(strtod(at, (char **)&at) == mesh.origin[a] + (double)mesh.positions[i]);
+    assert_int_equal(i, 3 * mesh.vertex_count);
+    free(text);
+    cw_mesh_free(&mesh);
+}
+
+static void a_local_file_holds_positions_and_names_the_origin(void **state)
+{
+    (void)state;
+    static const char head[] = "# cubewright " CW_VERSION ", LPS, mm\n"
+                               "# origin 1000003.2 1000003.2 1000160\no a\n";
+    cw_mesh mesh = {0};
+    cw_error err = {0};
+    size_t size, i = 0;
+    test_make_far_sphere(&mesh);
+    assert_ok(cw_mesh_write(test_path("a.obj"), &mesh, &(cw_write_desc){.local = true}, &err),
+              err);
+    char *text = test_file_read(test_path("a.obj"), &size);
+    assert_memory_equal(text, head, sizeof head - 1);
+    for (const char *at = text; next_line(&at, "v");)
+        for (size_t a = 0; a < 3; a++, i++)
+            assert_true((float)strtod(at, (char **)&at) == mesh.positions[i]);
+    assert_int_equal(i, 3 * mesh.vertex_count);
     free(text);
     cw_mesh_free(&mesh);
 }
@@ -103,7 +123,8 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         CASE(places_come_back_to_the_bit),
-        CASE(a_kilometre_from_zero_keeps_its_micrometres),
+        CASE(far_from_zero_places_are_the_sum_to_the_bit),
+        CASE(a_local_file_holds_positions_and_names_the_origin),
         CASE(faces_name_vertices_and_normals_from_one),
         CASE(a_mesh_without_normals_is_plain),
     };

@@ -150,6 +150,25 @@ static void the_header_is_as_the_format_wants_it(void **state)
     cw_mesh_free(&mesh);
 }
 
+static void a_local_file_holds_positions_and_names_the_origin(void **state)
+{
+    (void)state;
+    cw_mesh mesh = {0};
+    cw_error err = {0};
+    ply p;
+    test_make_far_sphere(&mesh);
+    assert_ok(cw_mesh_write(test_path("a.ply"), &mesh, &(cw_write_desc){.local = true}, &err),
+              err);
+    ply_read(&p, test_path("a.ply"));
+    assert_non_null(strstr(
+        p.header, "\ncomment frame LPS\ncomment origin 1000003.2 1000003.2 1000160\nelement"));
+    assert_int_equal(p.vertex_count, mesh.vertex_count);
+    for (size_t i = 0; i < 3 * p.vertex_count; i++)
+        assert_true(f32_at(p.vertices + i / 3 * p.stride + i % 3 * 4) == mesh.positions[i]);
+    free(p.bytes);
+    cw_mesh_free(&mesh);
+}
+
 #define CASE(test) cmocka_unit_test_setup_teardown(test, test_folder_make, test_folder_remove)
 
 int main(void)
@@ -158,6 +177,7 @@ int main(void)
         CASE(everything_a_mesh_holds_comes_back),
         CASE(only_what_is_there_is_written),
         CASE(the_header_is_as_the_format_wants_it),
+        CASE(a_local_file_holds_positions_and_names_the_origin),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

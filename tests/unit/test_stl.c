@@ -79,6 +79,8 @@ static void facet_normals_agree_with_the_corners_however_far_away(void **state)
     cw_error err = {0};
     size_t size;
     test_make_cube(&mesh);
+    for (size_t i = 0; i < 24; i++) /* places that rounding moves */
+        mesh.positions[i] *= 0.987654f;
     for (mesh.origin[1] = 0; mesh.origin[1] <= 1e6; mesh.origin[1] += 5e5) {
         assert_ok(cw_mesh_write(test_path("far.stl"), &mesh, NULL, &err), err);
         char *bytes = test_file_read(test_path("far.stl"), &size);
@@ -91,7 +93,7 @@ static void facet_normals_agree_with_the_corners_however_far_away(void **state)
             for (int a = 0; a < 3; a++) {
                 for (int e = 0; e < 2; e++)
                     along[e] += (double)n[a] * ((double)p[e + 1][a] - (double)p[0][a]);
-                out += (double)n[a] * ((double)p[0][a] - mesh.origin[a] - 0.5);
+                out += (double)n[a] * ((double)p[0][a] - mesh.origin[a] - 0.49);
                 length += (double)n[a] * (double)n[a];
             }
             assert_near(length, 1, 1e-6);
@@ -142,6 +144,88 @@ static void a_closed_mesh_stays_closed(void **state)
     cw_mesh_free(&mesh);
 }
 
+/* What a reader makes of a file: three vertices a facet, and those at one place merged. */
+static cw_quality read_and_weld(const char *path)
+{
+    cw_quality q;
+    cw_error err = {0};
+    size_t size;
+    char *bytes = test_file_read(path, &size);
+    const size_t count = facet_count(bytes);
+    cw_mesh mesh = {.vertex_count = 3 * count, .triangle_count = count};
+    mesh.positions = malloc(9 * count * sizeof(float));
+    mesh.triangles = malloc(3 * count * sizeof(uint32_t));
+    assert_true(mesh.positions && mesh.triangles);
+    for (size_t i = 0; i < 3 * count; i++) {
+        read_vector(bytes, i / 3, (int)(i % 3), mesh.positions + 3 * i);
+        mesh.triangles[i] = (uint32_t)i;
+    }
+    assert_ok(cw_quality_measure(&mesh, &(cw_quality_desc){.weld = true}, &q, &err), err);
+    free(bytes);
+    cw_mesh_free(&mesh);
+    return q;
+}
+
+static void far_from_zero_the_loss_is_told_and_true(void **state)
+{
+    (void)state;
+    cw_mesh mesh;
+    cw_error err = {0};
+    cw_write_loss loss;
+    test_make_far_sphere(&mesh);
+    assert_ok(cw_mesh_write_loss(test_path("a.stl"), &mesh, NULL, &loss, &err), err);
+    assert_ok(cw_mesh_write(test_path("a.stl"), &mesh, NULL, &err), err);
+    const cw_quality q = read_and_weld(test_path("a.stl"));
+    assert_true(loss.step_mm == 0.0625);
+    assert_true(loss.merged_vertices > 0 && loss.flat_triangles > 0);
+    assert_int_equal(loss.flat_triangles, q.degenerate);
+    assert_int_equal(loss.merged_vertices,
+                     mesh.vertex_count - (q.vertices - q.unused_vertices));
+    cw_mesh_free(&mesh);
+}
+
+static void a_local_file_keeps_a_far_mesh(void **state)
+{
+    (void)state;
+    const cw_write_desc desc = {.local = true};
+    cw_mesh mesh;
+    cw_error err = {0};
+    cw_write_loss loss;
+    size_t size;
+    test_make_far_sphere(&mesh);
+    assert_ok(cw_mesh_write_loss(test_path("a.stl"), &mesh, &desc, &loss, &err), err);
+    assert_int_equal(loss.merged_vertices + loss.flat_triangles, 0);
+    assert_ok(cw_mesh_write(test_path("a.stl"), &mesh, &desc, &err), err);
+    const cw_quality q = read_and_weld(test_path("a.stl"));
+    assert_true(cw_quality_is_closed_manifold(&q));
+    assert_int_equal(q.degenerate, 0);
+    assert_int_equal(q.vertices - q.unused_vertices, mesh.vertex_count);
+    assert_within(q.volume_mm3, 4.0 / 3 * PI * pow(24, 3) * 0.1 * 0.1 * 5, 0.005);
+    char *bytes = test_file_read(test_path("a.stl"), &size);
+    assert_string_equal(bytes, "cubewright, LPS, mm from 1000003.2 1000003.2 1000160");
+    free(bytes);
+    cw_mesh_free(&mesh);
+}
+
+/* The header has room for 55 bytes of origin. */
+static void an_origin_too_long_for_the_header_is_only_hinted_at(void **state)
+{
+    (void)state;
+    cw_mesh mesh = {0};
+    cw_error err = {0};
+    size_t size;
+    test_make_tetrahedron(&mesh);
+    for (int a = 0; a < 3; a++)
+        mesh.origin[a] = -1e-100 / 3;
+    assert_ok(cw_mesh_write(test_path("a.stl"), &mesh, &(cw_write_desc){.local = true}, &err),
+              err);
+    char *bytes = test_file_read(test_path("a.stl"), &size);
+    assert_string_equal(bytes, "cubewright, LPS, mm from an origin of its own");
+    assert_int_equal(facet_count(bytes), 4);
+    free(bytes);
+    cw_mesh_free(&mesh);
+}
+
 /* The count is checked before a single triangle is read. */
 static void more_triangles_than_stl_can_count_are_refused(void **state)
 {
@@ -163,6 +247,9 @@ int main(void)
         CASE(facet_normals_agree_with_the_corners_however_far_away),
         CASE(a_facet_without_area_has_no_normal),
         CASE(a_closed_mesh_stays_closed),
+        CASE(far_from_zero_the_loss_is_told_and_true),
+        CASE(a_local_file_keeps_a_far_mesh),
+        CASE(an_origin_too_long_for_the_header_is_only_hinted_at),
         CASE(more_triangles_than_stl_can_count_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

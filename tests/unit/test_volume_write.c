@@ -207,11 +207,13 @@ static void unknown_writers_are_refused(void **state)
     (void)state;
     cw_volume v = make_volume(CW_U8, 1, 1), none = {0};
     cw_error err = {0};
-    const cw_write_desc jpeg = {.format = "jpeg"};
+    const cw_write_desc jpeg = {.format = "jpeg"}, local = {.local = true};
     assert_fails(cw_volume_write(test_path("a.mhd"), &v, NULL, &err), CW_ERR_ARGUMENT,
                  ".nrrd, .nii, .nii.gz, .mha", err);
     assert_fails(cw_volume_write(test_path("a.nrrd"), &v, &jpeg, &err), CW_ERR_ARGUMENT,
                  "no writer 'jpeg'", err);
+    assert_fails(cw_volume_write(test_path("a.nrrd"), &v, &local, &err), CW_ERR_ARGUMENT,
+                 "a volume has no local form", err);
     assert_fails(cw_volume_write(test_path("a.nrrd"), &none, NULL, &err), CW_ERR_ARGUMENT,
                  "empty", err);
     assert_int_equal(test_folder_entries(), 0);
