@@ -12,18 +12,34 @@ static void world_point(const cw_mesh *mesh, size_t v, double p[3])
         p[a] = mesh->origin[a] + (double)mesh->positions[3 * v + a];
 }
 
-/* Largest distance of a vertex from the sphere, and angle (radians) of its normal to the truth.
- */
-static void sphere_errors(const cw_mesh *mesh, double *distance, double *angle)
+/* The outward normal of the field at a point, where the inside is high. */
+static void true_normal(cw_field field, const double at[3], double n[3])
+{
+    double length = 0;
+    for (int a = 0; a < 3; a++) {
+        double p[3] = {at[0], at[1], at[2]};
+        p[a] = at[a] - 1e-4;
+        n[a] = cw_field_value(field, p);
+        p[a] = at[a] + 1e-4;
+        n[a] -= cw_field_value(field, p);
+        length += n[a] * n[a];
+    }
+    for (int a = 0; a < 3; a++)
+        n[a] /= sqrt(length);
+}
+
+/* Largest distance of a vertex from the surface of a field that is a distance, and largest
+ * angle (radians) of its normal to the truth. */
+static void largest_errors(cw_field field, const cw_mesh *mesh, double *distance, double *angle)
 {
     *distance = *angle = 0;
     for (size_t v = 0; v < mesh->vertex_count; v++) {
         const float *n = mesh->normals + 3 * v;
-        double p[3];
+        double p[3], t[3];
         world_point(mesh, v, p);
-        const double r = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
-        const double d = hypot(hypot(p[0] / r - n[0], p[1] / r - n[1]), p[2] / r - n[2]);
-        *distance = fmax(*distance, fabs(r - 30));
+        true_normal(field, p, t);
+        const double d = hypot(hypot(t[0] - n[0], t[1] - n[1]), t[2] - n[2]);
+        *distance = fmax(*distance, fabs(cw_field_value(field, p)));
         *angle = fmax(*angle, 2 * asin(d / 2));
     }
 }
@@ -41,30 +57,37 @@ static void sphere_is_closed_round_and_full(void **state)
     assert_int_equal(counts.border_loops, 0);
     assert_within(q.volume_mm3, 4.0 / 3 * PI * 30 * 30 * 30, 0.002);
     assert_within(q.area_mm2, 4 * PI * 30 * 30, 0.002);
-    sphere_errors(&mesh, &distance, &angle);
+    largest_errors(CW_FIELD_SPHERE, &mesh, &distance, &angle);
     assert_true(distance < 0.0075); /* mm; a voxel is 1.27 */
     assert_true(angle < 0.05 * PI / 180);
     cw_mesh_free(&mesh);
     cw_volume_free(&v);
 }
 
-/* Half the spacing, a quarter of the error. */
+/* Half the spacing, a quarter of the error: the order is the logarithm of their ratio. */
 static void positions_and_normals_converge_with_second_order(void **state)
 {
     (void)state;
-    double distance[2], angle[2], missing[2];
-    for (int n = 0; n < 2; n++) {
-        cw_volume v = test_sample(CW_FIELD_SPHERE, n ? 97 : 49, CW_F64);
-        cw_mesh mesh = test_extract(&v, NULL, NULL);
-        cw_quality q = test_check_promise(&mesh, false);
-        sphere_errors(&mesh, &distance[n], &angle[n]);
-        missing[n] = fabs(4.0 / 3 * PI * 27000 - q.volume_mm3);
-        cw_mesh_free(&mesh);
-        cw_volume_free(&v);
+    static const struct {
+        cw_field field;
+        double volume_mm3;
+    } rows[] = {{CW_FIELD_SPHERE, 4.0 / 3 * PI * 27000}, {CW_FIELD_TORUS, 2 * PI * PI * 2600}};
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
+        double distance[3], angle[3], missing[3];
+        for (int n = 0; n < 3; n++) {
+            cw_volume v = test_sample(rows[r].field, (size_t)32 << n, CW_F64);
+            cw_mesh mesh = test_extract(&v, NULL, NULL);
+            largest_errors(rows[r].field, &mesh, &distance[n], &angle[n]);
+            missing[n] = fabs(rows[r].volume_mm3 - test_check_promise(&mesh, false).volume_mm3);
+            cw_mesh_free(&mesh);
+            cw_volume_free(&v);
+        }
+        for (int n = 0; n < 2; n++) {
+            assert_true(log2(distance[n] / distance[n + 1]) > 1.9);
+            assert_true(log2(angle[n] / angle[n + 1]) > 1.9);
+            assert_true(log2(missing[n] / missing[n + 1]) > 1.9);
+        }
     }
-    assert_true(distance[0] / distance[1] > 3.4);
-    assert_true(angle[0] / angle[1] > 3.4);
-    assert_true(missing[0] / missing[1] > 3.6);
 }
 
 static void torus_has_one_handle(void **state)
