@@ -5,6 +5,7 @@
 #include "core/status.h"
 #include "extract/engine.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -141,6 +142,21 @@ static cw_status set_level(cwi_grid *g, const cw_extract_desc *desc, cw_error *e
     return CW_OK;
 }
 
+/* Positions are floats: they cannot tell voxels apart that are too small, and cannot reach the
+ * ends of volumes that are too large. */
+static cw_status check_range(const cw_volume *v, cw_error *err)
+{
+    double spacing[3];
+    cw_volume_spacing(v, spacing);
+    for (int a = 0; a < 3; a++)
+        if (spacing[a] < (double)FLT_MIN ||
+            spacing[a] * (double)v->dim[a] > 0.5 * (double)FLT_MAX)
+            return cw_fail(err, CW_ERR_ARGUMENT,
+                           "%zu voxels of %g mm along %c are beyond what positions can hold",
+                           v->dim[a], spacing[a], "xyz"[a]);
+    return CW_OK;
+}
+
 cw_status cwi_grid_build(cwi_grid *g, const cwi_engine *engine, const cw_volume *volume,
                          const cw_extract_desc *desc, cw_error *err)
 {
@@ -153,6 +169,8 @@ cw_status cwi_grid_build(cwi_grid *g, const cwi_engine *engine, const cw_volume 
             st = cw_fail(err, CW_ERR_ARGUMENT,
                          "the volume has %zu voxel along %c; a surface needs 2",
                          g->volume.dim[a], "xyz"[a]);
+    if (st == CW_OK)
+        st = check_range(&g->volume, err);
     if (st == CW_OK)
         st = allocate(g, desc->leave_open, err);
     if (st == CW_OK)

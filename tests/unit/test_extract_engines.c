@@ -162,6 +162,12 @@ static void unusable_arguments_are_refused_by_name(void **state)
     assert_fails(cw_extract(&v, NULL, &mesh, NULL, &err), CW_ERR_ARGUMENT, "along z", err);
     v.data = NULL;
     assert_fails(cw_extract(&v, NULL, &mesh, NULL, &err), CW_ERR_ARGUMENT, "no voxels", err);
+    static const double spacings[] = {1e-39, 1e-90, 1e38, 1e90};
+    for (size_t n = 0; n < sizeof spacings / sizeof *spacings; n++) {
+        v = (cw_volume){.data = voxels, .dim = {2, 2, 2}, .affine = {{1}, {0, 1}, {0, 0, 1}}};
+        v.affine[1][1] = spacings[n];
+        assert_fails(cw_extract(&v, NULL, &mesh, NULL, &err), CW_ERR_ARGUMENT, "along y", err);
+    }
 }
 
 static void limits_stop_before_the_mesh_is_made(void **state)
