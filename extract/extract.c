@@ -116,13 +116,14 @@ static cw_status make_plan(plan *p, const cw_extract_desc *d, cw_error *err)
     return st == CW_OK ? check_limits(d, &p->counts, err) : st;
 }
 
-static void add_triangle_normal(const cw_mesh *mesh, const uint32_t *t, float *normal)
+static void add_triangle_normal(const cw_mesh *mesh, double scale, const uint32_t *t,
+                                float *normal)
 {
     const float *p = mesh->positions;
     double u[3], v[3];
-    for (int a = 0; a < 3; a++) {
-        u[a] = (double)p[3 * t[1] + (size_t)a] - (double)p[3 * t[0] + (size_t)a];
-        v[a] = (double)p[3 * t[2] + (size_t)a] - (double)p[3 * t[0] + (size_t)a];
+    for (size_t a = 0; a < 3; a++) {
+        u[a] = scale * ((double)p[3 * (size_t)t[1] + a] - (double)p[3 * (size_t)t[0] + a]);
+        v[a] = scale * ((double)p[3 * (size_t)t[2] + a] - (double)p[3 * (size_t)t[0] + a]);
     }
     for (int a = 0; a < 3; a++)
         normal[a] += (float)(u[(a + 1) % 3] * v[(a + 2) % 3] - u[(a + 2) % 3] * v[(a + 1) % 3]);
@@ -135,9 +136,22 @@ static void normalise(float *n)
         n[a] = length > 0 ? (float)(n[a] / length) : a == 2;
 }
 
+/* A power of two that makes voxels about 1 large, so that no product of sides leaves the range
+ * of floats. */
+static double voxel_scale(const cw_volume *v)
+{
+    double largest = 0;
+    int exponent;
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+            largest = fmax(largest, fabs(v->affine[r][c]));
+    frexp(largest, &exponent);
+    return ldexp(1, -exponent);
+}
+
 /* Where the gradient vanished the normal is zero; the triangles around the vertex give it one.
  * One thread, in the order of triangles: sums do not depend on the number of threads. */
-static cw_status mend_normals(cw_mesh *mesh, cw_error *err)
+static cw_status mend_normals(cw_mesh *mesh, double scale, cw_error *err)
 {
     size_t count = 0;
     for (size_t v = 0; v < mesh->vertex_count; v++) {
@@ -157,7 +171,8 @@ static cw_status mend_normals(cw_mesh *mesh, cw_error *err)
         const uint32_t *triangle = mesh->triangles + 3 * t;
         for (int c = 0; c < 3; c++)
             if (missing[triangle[c]])
-                add_triangle_normal(mesh, triangle, mesh->normals + 3 * (size_t)triangle[c]);
+                add_triangle_normal(mesh, scale, triangle,
+                                    mesh->normals + 3 * (size_t)triangle[c]);
     }
     for (size_t v = 0; v < mesh->vertex_count; v++)
         if (missing[v])
@@ -236,7 +251,7 @@ static cw_status write_mesh(plan *p, const cw_extract_desc *d, cw_mesh *mesh, cw
                  .triangles = mesh->triangles};
     st = for_layers(p, d, "marching", write_layer, &w, err);
     if (st == CW_OK && w.sink.missing)
-        st = mend_normals(mesh, err);
+        st = mend_normals(mesh, voxel_scale(&p->grid.volume), err);
     if (st == CW_OK)
         memcpy(mesh->affine, p->grid.volume.affine, sizeof mesh->affine);
     return st;

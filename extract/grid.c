@@ -5,6 +5,7 @@
 #include "core/status.h"
 #include "extract/engine.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -46,6 +47,21 @@ static cw_status allocate(cwi_grid *g, cw_error *err)
     return g->inside && g->busy ? CW_OK : no_memory(g, err);
 }
 
+/* Positions are floats: they cannot tell voxels apart that are too small, and cannot reach the
+ * ends of volumes that are too large. */
+static cw_status check_range(const cw_volume *v, cw_error *err)
+{
+    double spacing[3];
+    cw_volume_spacing(v, spacing);
+    for (int a = 0; a < 3; a++)
+        if (spacing[a] < (double)FLT_MIN ||
+            spacing[a] * (double)v->dim[a] > 0.5 * (double)FLT_MAX)
+            return cw_fail(err, CW_ERR_ARGUMENT,
+                           "%zu voxels of %g mm along %c are beyond what positions can hold",
+                           v->dim[a], spacing[a], "xyz"[a]);
+    return CW_OK;
+}
+
 cw_status cwi_grid_init(cwi_grid *g, const cw_volume *volume, cw_error *err)
 {
     memset(g, 0, sizeof *g);
@@ -55,6 +71,8 @@ cw_status cwi_grid_init(cwi_grid *g, const cw_volume *volume, cw_error *err)
             st = cw_fail(err, CW_ERR_ARGUMENT,
                          "the volume has %zu voxel along %c; a surface needs 2",
                          g->volume.dim[a], "xyz"[a]);
+    if (st == CW_OK)
+        st = check_range(&g->volume, err);
     return st == CW_OK ? allocate(g, err) : st;
 }
 

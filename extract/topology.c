@@ -11,15 +11,6 @@
 #define PLAIN_LEAST 1e-140
 #define PLAIN_MOST  1e140
 
-/* What brings the largest of some magnitudes near 1; 0 when they can stay as they are. */
-static int scale_of(double least, double most)
-{
-    int exponent = 0;
-    if (least < PLAIN_LEAST || most > PLAIN_MOST)
-        frexp(most, &exponent);
-    return -exponent;
-}
-
 /* Without the care for NaN that makes fmin and fmax calls. */
 static inline double lesser(double a, double b)
 {
@@ -31,17 +22,21 @@ static inline double greater(double a, double b)
     return a > b ? a : b;
 }
 
-/* The sign of a c - b d, exactly: products are compared, and if equal their rounding errors. */
+/* The sign of a c - b d, exactly: products are compared, and if equal their rounding errors.
+ * Where exponents are extreme the products of what is left without them are, the first one
+ * times as much as they differ by: 2^4 outweighs any such product. */
 static int compare_products(double a, double c, double b, double d)
 {
     const double least = lesser(lesser(fabs(a), fabs(b)), lesser(fabs(c), fabs(d)));
     const double most = greater(greater(fabs(a), fabs(b)), greater(fabs(c), fabs(d)));
-    const int scale = scale_of(least, most);
-    if (scale) {
-        a = ldexp(a, scale);
-        b = ldexp(b, scale);
-        c = ldexp(c, scale);
-        d = ldexp(d, scale);
+    if (least < PLAIN_LEAST || most > PLAIN_MOST) {
+        int exponent[4];
+        a = frexp(a, &exponent[0]);
+        c = frexp(c, &exponent[1]);
+        b = frexp(b, &exponent[2]);
+        d = frexp(d, &exponent[3]);
+        const int more = exponent[0] + exponent[1] - exponent[2] - exponent[3];
+        a = ldexp(a, more > 4 ? 4 : more < -4 ? -4 : more);
     }
     const double ac = a * c, bd = b * d;
     if (ac != bd)
@@ -140,13 +135,15 @@ static bool start_sweep(sweep *s, unsigned cube, const double values[8], bool ze
             return false;
         largest = greater(largest, fabs(values[c]));
     }
-    const int scale = scale_of(largest, largest);
+    int exponent = 0;
+    if (largest < PLAIN_LEAST || largest > PLAIN_MOST)
+        frexp(largest, &exponent);
     add_event(s, 0, -1);
     for (int n = 0; n < 4; n++) {
         double low = values[columns[n]], high = values[columns[n] + 4];
-        if (scale) {
-            low = ldexp(low, scale);
-            high = ldexp(high, scale);
+        if (exponent) {
+            low = ldexp(low, -exponent);
+            high = ldexp(high, -exponent);
         }
         s->low[n] = low;
         s->slope[n] = high - low;

@@ -5,6 +5,8 @@
  *
  * CGAL's Polygon Mesh Processing is under the GPL. This program is for testing, is linked into
  * nothing and never installed. */
+#include "support/hostile.h"
+
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/self_intersections.h>
 #include <CGAL/Surface_mesh.h>
@@ -14,6 +16,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <functional>
 #include <map>
 #include <utility>
@@ -28,9 +31,9 @@ using Point = std::array<float, 3>;
 
 /* Per family: how many surfaces may be defective. 0 is the promise. */
 struct Allowed {
-    int whole, floats, cells, fields;
+    int whole, floats, cells, fields, hostile;
 };
-constexpr Allowed allowed = {0, 0, 0, 0};
+constexpr Allowed allowed = {0, 0, 0, 0, 0};
 
 /* Triangles over points; positions stay relative to the origin, so they are exact. */
 struct Soup {
@@ -142,8 +145,9 @@ bool defects_are_seen()
 
 void print_volume(const cw_volume &v, const cw_extract_desc &desc, const char *how)
 {
-    std::printf("  %s, %s, isovalue %g, %zu x %zu x %zu", how,
-                desc.leave_open ? "open" : "closed", desc.isovalue, v.dim[0], v.dim[1],
+    std::printf("  %s, %s%s%s, isovalue %.17g, %zu x %zu x %zu", how,
+                desc.leave_open ? "open" : "closed", desc.inside_is_low ? ", low" : "",
+                desc.simple_topology ? ", simple" : "", desc.isovalue, v.dim[0], v.dim[1],
                 v.dim[2]);
     if (v.dim[0] * v.dim[1] * v.dim[2] <= 125)
         for (size_t k = 0; k < v.dim[2]; k++)
@@ -162,26 +166,37 @@ public:
     {
     }
 
-    /* Closed and open, as indexed and, where that differs, welded. */
-    void add(const cw_volume &volume, double isovalue)
+    /* As indexed and, where that differs, welded. */
+    void add(const cw_volume &volume, const cw_extract_desc &desc)
+    {
+        cw_mesh mesh = {};
+        cw_error err = {};
+        if (cw_extract(&volume, &desc, &mesh, nullptr, &err) != CW_OK) {
+            std::printf("%s: %s\n", name_, err.message);
+            defective_ = allowed_ + 1;
+            return;
+        }
+        Soup soup = to_soup(mesh);
+        cw_mesh_free(&mesh);
+        judge(soup, volume, desc, "as indexed");
+        if (weld(soup))
+            judge(soup, volume, desc, "welded");
+    }
+
+    void add_closed_and_open(const cw_volume &volume, double isovalue)
     {
         for (const bool open : {false, true}) {
             cw_extract_desc desc = {};
-            cw_mesh mesh = {};
-            cw_error err = {};
             desc.isovalue = isovalue;
             desc.leave_open = open;
-            if (cw_extract(&volume, &desc, &mesh, nullptr, &err) != CW_OK) {
-                std::printf("%s: %s\n", name_, err.message);
-                defective_ = allowed_ + 1;
-                continue;
-            }
-            Soup soup = to_soup(mesh);
-            cw_mesh_free(&mesh);
-            judge(soup, volume, desc, "as indexed");
-            if (weld(soup))
-                judge(soup, volume, desc, "welded");
+            add(volume, desc);
         }
+    }
+
+    /* What the volumes to come are called. */
+    void about(const char *what)
+    {
+        about_ = what;
     }
 
     bool passes() const
@@ -200,12 +215,13 @@ private:
         if (!is_defective(soup, false))
             return;
         if (defective_++ == 0) {
+            std::printf("  %s\n", about_);
             print_volume(volume, desc, how);
             is_defective(soup, true);
         }
     }
 
-    const char *name_;
+    const char *name_, *about_ = "";
     int allowed_, surfaces_ = 0, defective_ = 0;
 };
 
@@ -232,7 +248,7 @@ bool grids_pass(const char *name, int allowed_defects, int rounds, size_t side,
         v.data = voxels.data();
         v.type = CW_F32;
         v.dim[0] = v.dim[1] = v.dim[2] = side;
-        tally.add(v, 0);
+        tally.add_closed_and_open(v, 0);
     }
     return tally.passes();
 }
@@ -254,7 +270,42 @@ bool fields_pass()
             std::printf("fields: %s\n", err.message);
             return false;
         }
-        tally.add(v, cw_field_isovalue(row.first));
+        tally.add_closed_and_open(v, cw_field_isovalue(row.first));
+        cw_volume_free(&v);
+    }
+    return tally.passes();
+}
+
+/* Where it stands every setting, and one in each of the other frames. */
+void add_hostile(Tally &tally, size_t row, cw_volume &v)
+{
+    const test_frame *frame;
+    for (size_t f = 0; (frame = test_frame_at(f)) != nullptr; f++)
+        for (size_t n = 0; n < 8; n++) {
+            if (f > 0 && n != (row + f) % 8)
+                continue;
+            cw_extract_desc desc = {};
+            desc.isovalue = test_hostile_at(row)->isovalue;
+            desc.leave_open = n & 1;
+            desc.inside_is_low = n & 2;
+            desc.simple_topology = n & 4;
+            tally.about(test_hostile_at(row)->name);
+            std::memcpy(v.affine, frame->affine, sizeof v.affine);
+            tally.add(v, desc);
+        }
+}
+
+bool hostile_pass()
+{
+    Tally tally("hostile volumes", allowed.hostile);
+    for (size_t row = 0; test_hostile_at(row); row++) {
+        cw_volume v = {};
+        cw_error err = {};
+        if (test_hostile_make(test_hostile_at(row), &v, &err) != CW_OK) {
+            std::printf("%s: %s\n", test_hostile_at(row)->name, err.message);
+            return false;
+        }
+        add_hostile(tally, row, v);
         cw_volume_free(&v);
     }
     return tally.passes();
@@ -291,5 +342,6 @@ int main(int argc, char **argv)
     pass = grids_pass("random floats", allowed.floats, 300 * factor, 5, float_value) && pass;
     pass = grids_pass("single cells", allowed.cells, 256 * 6 * factor, 2, cell_value) && pass;
     pass = fields_pass() && pass;
+    pass = hostile_pass() && pass;
     return pass ? 0 : 1;
 }

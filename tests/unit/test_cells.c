@@ -7,6 +7,7 @@
 #include "extract/cube.h"
 #include "extract/topology.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -271,9 +272,42 @@ static void every_kind_of_tunnel_occurs(void **state)
         }
 }
 
+/* A face is joined when the product of its inside values exceeds that of the outside ones,
+ * however far apart the four are; equal products leave it to the side of zero. */
+static void faces_are_decided_exactly_at_any_scale(void **state)
+{
+    (void)state;
+    const double u = DBL_TRUE_MIN, m = DBL_MAX, n = nextafter(DBL_MAX, 0);
+    const struct {
+        double inside[2], outside[2];
+        int larger; /* product: 1 inside, -1 outside, 0 neither */
+    } rows[] = {
+        {{1, 2}, {-1, -1}, 1},
+        {{3, 1}, {-1, -3}, 0},
+        {{0.1, 0.3}, {-0.3, -0.1}, 0},
+        {{1, u}, {-u, -u}, 1},
+        {{u, u}, {-1, -u}, -1},
+        {{3 * u, u}, {-u, -2 * u}, 1},
+        {{3 * u, 2 * u}, {-u, -6 * u}, 0},
+        {{m, u}, {-1, -1}, -1},
+        {{m, u}, {-0x1p-26, -0x1p-25}, 1},
+        {{m, m}, {-m, -n}, 1},
+        {{n, m}, {-m, -n}, 0},
+        {{1e-200, 1e200}, {-nextafter(1, 2), -1}, -1},
+        {{0, 1}, {-u, -u}, -1},
+        {{0, m}, {-0.0, -u}, 0},
+    };
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++)
+        for (int zero = 0; zero < 2; zero++) {
+            const bool joins = cwi_face_joins(rows[r].inside, rows[r].outside, zero);
+            assert_int_equal(joins, rows[r].larger > 0 || (rows[r].larger == 0 && zero));
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(faces_are_decided_exactly_at_any_scale),
         cmocka_unit_test(every_surface_is_bounded_by_its_loops),
         cmocka_unit_test(only_loops_lie_in_walls),
         cmocka_unit_test(no_surface_crosses_itself),

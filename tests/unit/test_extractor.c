@@ -1,5 +1,5 @@
 /* Many surfaces of one volume: the same bytes as one at a time, from the bricks they cross. */
-#include "support/support.h"
+#include "support/surface.h"
 
 #include "core/memory.h"
 #include "extract/engine.h"
@@ -7,18 +7,6 @@
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-static void assert_same_mesh(const cw_mesh *a, const cw_mesh *b)
-{
-    assert_int_equal(a->vertex_count, b->vertex_count);
-    assert_int_equal(a->triangle_count, b->triangle_count);
-    if (a->triangle_count == 0)
-        return;
-    assert_memory_equal(a->origin, b->origin, sizeof a->origin);
-    assert_memory_equal(a->positions, b->positions, 12 * a->vertex_count);
-    assert_memory_equal(a->normals, b->normals, 12 * a->vertex_count);
-    assert_memory_equal(a->triangles, b->triangles, 12 * a->triangle_count);
-}
 
 static double random_number(double limit)
 {
@@ -92,7 +80,7 @@ static void one_after_another_as_each_by_itself(void **state)
                                        .threads = 1 + rand() % 2};
             assert_ok(cwi_extract_with(engine, &v, &d, &once, &counts[0], &err), err);
             assert_ok(cw_extractor_extract(extractor, &d, &again, &counts[1], &err), err);
-            assert_same_mesh(&once, &again);
+            test_assert_same_mesh(&once, &again);
             assert_int_equal(counts[0].border_loops, counts[1].border_loops);
             cw_mesh_free(&once);
             cw_mesh_free(&again);
@@ -122,7 +110,7 @@ static void later_surfaces_read_no_other_bricks(void **state)
         if (fabs((double)voxels[n] - 0.5) > 25)
             voxels[n] = NAN;
     assert_ok(cw_extractor_extract(extractor, &second, &again, NULL, &err), err);
-    assert_same_mesh(&once, &again);
+    test_assert_same_mesh(&once, &again);
     cw_mesh_free(&once);
     cw_mesh_free(&again);
     cw_extractor_free(extractor);
@@ -154,7 +142,7 @@ static void after_a_cancelled_extraction_it_starts_afresh(void **state)
         d.progress = (cw_progress){0};
         assert_ok(cw_extract(&v, &d, &once, NULL, &err), err);
         assert_ok(cw_extractor_extract(extractor, &d, &again, NULL, &err), err);
-        assert_same_mesh(&once, &again);
+        test_assert_same_mesh(&once, &again);
         cw_mesh_free(&once);
         cw_mesh_free(&again);
     }

@@ -1,0 +1,143 @@
+#include "support/surface.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+cw_volume test_sample(cw_field field, size_t n, cw_type type)
+{
+    const cw_field_desc desc = {.field = field, .dim = {n, n, n}, .type = type};
+    cw_volume v;
+    cw_error err = {0};
+    assert_ok(cw_field_sample(&desc, &v, &err), err);
+    return v;
+}
+
+cw_mesh test_extract(const cw_volume *volume, const cw_extract_desc *desc,
+                     cw_extract_counts *counts)
+{
+    cw_mesh mesh;
+    cw_error err = {0};
+    assert_ok(cw_extract(volume, desc, &mesh, counts, &err), err);
+    return mesh;
+}
+
+static const char *quality_fault(const cw_quality *q, bool open)
+{
+    return q->nonmanifold_edges      ? "an edge of more than two triangles"
+           : q->misoriented_edges    ? "an edge that two triangles run through the same way"
+           : q->nonmanifold_vertices ? "a vertex with two fans of triangles"
+           : q->degenerate           ? "a triangle without area"
+           : q->unused_vertices      ? "a vertex that is none or another's"
+           : q->open_edges && !open  ? "an open edge"
+                                     : NULL;
+}
+
+static int compare_triangles(const void *a, const void *b)
+{
+    const uint32_t *s = a, *t = b;
+    for (int c = 0; c < 3; c++)
+        if (s[c] != t[c])
+            return s[c] < t[c] ? -1 : 1;
+    return 0;
+}
+
+static void sort_corners(const uint32_t *triangle, uint32_t sorted[3])
+{
+    const uint32_t a = triangle[0], b = triangle[1], c = triangle[2];
+    const uint32_t low = a < b ? a : b, high = a < b ? b : a;
+    sorted[0] = c < low ? c : low;
+    sorted[2] = c > high ? c : high;
+    sorted[1] = a ^ b ^ c ^ sorted[0] ^ sorted[2];
+}
+
+/* Two back to back would pass for a closed manifold. */
+static bool has_equal_triangles(const cw_mesh *mesh)
+{
+    bool equal = false;
+    uint32_t(*sorted)[3] = malloc(mesh->triangle_count * sizeof *sorted + 1);
+    assert_non_null(sorted);
+    for (size_t t = 0; t < mesh->triangle_count; t++)
+        sort_corners(mesh->triangles + 3 * t, sorted[t]);
+    qsort(sorted, mesh->triangle_count, sizeof *sorted, compare_triangles);
+    for (size_t t = 1; t < mesh->triangle_count; t++)
+        equal = equal || compare_triangles(sorted[t - 1], sorted[t]) == 0;
+    free(sorted);
+    return equal;
+}
+
+static bool has_unit_normals(const cw_mesh *mesh)
+{
+    for (size_t v = 0; v < mesh->vertex_count && mesh->normals; v++) {
+        const float *n = mesh->normals + 3 * v;
+        const double square = (double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2];
+        if (!(fabs(square - 1) < 1e-5))
+            return false;
+    }
+    return true;
+}
+
+const char *test_mesh_fault(const cw_mesh *mesh, bool open, cw_quality *quality)
+{
+    cw_quality q[2];
+    for (int weld = 0; weld < 2; weld++) {
+        const cw_quality_desc desc = {.weld = weld};
+        if (cw_quality_measure(mesh, &desc, &q[weld], NULL) != CW_OK)
+            return "a position that is not finite, or an index that is none";
+        if (quality_fault(&q[weld], open))
+            return quality_fault(&q[weld], open);
+    }
+    if (quality)
+        *quality = q[0];
+    return !has_unit_normals(mesh)     ? "a normal that is not of unit length"
+           : has_equal_triangles(mesh) ? "two triangles of the same corners"
+                                       : NULL;
+}
+
+cw_quality test_check_promise(const cw_mesh *mesh, bool open)
+{
+    cw_quality quality;
+    const char *fault = test_mesh_fault(mesh, open, &quality);
+    if (fault)
+        fail_msg("the mesh has %s", fault);
+    return quality;
+}
+
+bool test_normals_agree(const cw_mesh *mesh)
+{
+    for (size_t c = 0; c < 3 * mesh->triangle_count; c++) {
+        const size_t first = c - c % 3;
+        const float *p[3], *n = mesh->normals + 3 * (size_t)mesh->triangles[c];
+        double u[3], w[3], dot = 0;
+        for (size_t k = 0; k < 3; k++)
+            p[k] = mesh->positions + 3 * (size_t)mesh->triangles[first + k];
+        for (int a = 0; a < 3; a++) {
+            u[a] = (double)p[1][a] - (double)p[0][a];
+            w[a] = (double)p[2][a] - (double)p[0][a];
+        }
+        for (int a = 0; a < 3; a++)
+            dot += n[a] * (u[(a + 1) % 3] * w[(a + 2) % 3] - u[(a + 2) % 3] * w[(a + 1) % 3]);
+        if (!(dot > 0))
+            return false;
+    }
+    return true;
+}
+
+void test_assert_same_mesh(const cw_mesh *a, const cw_mesh *b)
+{
+    assert_int_equal(a->vertex_count, b->vertex_count);
+    assert_int_equal(a->triangle_count, b->triangle_count);
+    assert_memory_equal(a->origin, b->origin, sizeof a->origin);
+    assert_memory_equal(a->positions, b->positions, 12 * a->vertex_count);
+    assert_memory_equal(a->normals, b->normals, 12 * a->vertex_count);
+    assert_memory_equal(a->triangles, b->triangles, 12 * a->triangle_count);
+}
+
+void test_turn(cw_volume *volume, int round)
+{
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+            volume->affine[r][c] = (r == c ? 2.0 : 0) + (double)rand() / RAND_MAX - 0.5;
+    if (round % 3 == 0)
+        for (int r = 0; r < 3; r++)
+            volume->affine[r][0] *= -1;
+}

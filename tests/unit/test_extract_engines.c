@@ -1,0 +1,258 @@
+/* How surfaces are computed: the same by any engine, in any number of threads and through any
+ * strides; within limits, and stopped cleanly. */
+#include "support/surface.h"
+
+#include "core/memory.h"
+#include "extract/engine.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static void any_number_of_threads_gives_the_same_bytes(void **state)
+{
+    (void)state;
+    static const int threads[] = {2, 3, 8};
+    const cw_field_desc desc = {
+        .field = CW_FIELD_GYROID, .dim = {70, 41, 57}, .type = CW_I16, .noise = 1};
+    cw_volume v;
+    cw_error err = {0};
+    assert_ok(cw_field_sample(&desc, &v, &err), err);
+    for (int open = 0; open < 2; open++) {
+        cw_extract_desc d = {.isovalue = 3, .threads = 1, .leave_open = open};
+        cw_mesh one = test_extract(&v, &d, NULL);
+        for (int n = 0; n < 3; n++) {
+            d.threads = threads[n];
+            cw_mesh many = test_extract(&v, &d, NULL);
+            test_assert_same_mesh(&one, &many);
+            cw_mesh_free(&many);
+        }
+        cw_mesh_free(&one);
+    }
+    cw_volume_free(&v);
+}
+
+/* Noise, with NaN and infinities in float types, in any type. */
+static void fill(void *voxels, cw_type type, size_t count)
+{
+    for (size_t n = 0; n < count; n++) {
+        const int r = rand() % 97, kind = rand() % 20;
+        const double special = kind == 0   ? NAN
+                               : kind == 1 ? INFINITY
+                               : kind == 2 ? -(double)FLT_MAX
+                                           : r - 48.25;
+        switch (type) {
+#define CASE(name, ctype, text)                                                                \
+    case name:                                                                                 \
+        ((ctype *)voxels)[n] = name == CW_F32 || name == CW_F64 ? (ctype)special : (ctype)r;   \
+        break;
+            CW_TYPE_TABLE(CASE)
+#undef CASE
+        default:
+            break;
+        }
+    }
+}
+
+/* Every engine this machine can use against the plain one: rows of any length, that start
+ * anywhere, of every type; no two with the same way to compare. */
+static void every_engine_gives_the_same_bytes(void **state)
+{
+    (void)state;
+    double *memory = malloc(sizeof *memory * (4 * 5 * 200 + 8));
+    srand(23);
+    for (size_t width = 2; width <= 200; width++)
+        for (int type = 0; type < CW_TYPE_COUNT; type++) {
+            const size_t bytes = cw_type_size((cw_type)type), shift = (size_t)rand() % 8;
+            char *voxels = (char *)memory + shift * bytes;
+            fill(voxels, (cw_type)type, width * 20);
+            const cw_volume v = {.data = voxels,
+                                 .type = (cw_type)type,
+                                 .dim = {width, 4, 5},
+                                 .slope = rand() % 4 ? 1 : -1,
+                                 .has_nodata = rand() % 8 == 0,
+                                 .nodata = 7};
+            const cw_extract_desc d = {.isovalue = rand() % 60 * v.slope,
+                                       .inside_is_low = rand() % 2,
+                                       .leave_open = rand() % 4 == 0,
+                                       .threads = 1};
+            cw_mesh plain, other;
+            cw_error err = {0};
+            assert_ok(cwi_extract_with(cwi_engine_at(0), &v, &d, &plain, NULL, &err), err);
+            for (size_t e = 1; cwi_engine_at(e); e++) {
+                assert_ok(cwi_extract_with(cwi_engine_at(e), &v, &d, &other, NULL, &err), err);
+                test_assert_same_mesh(&plain, &other);
+                cw_mesh_free(&other);
+            }
+            cw_mesh_free(&plain);
+        }
+    free(memory);
+}
+
+/* No-data that no voxel has sends every vertex through the code for one at a time: positions
+ * are the same to the bit, normals to rounding, on the border as inside. */
+static void many_vertices_at_a_time_are_as_good_as_one(void **state)
+{
+    (void)state;
+    for (int type = 0; type < CW_TYPE_COUNT; type++) {
+        const cw_field_desc desc = {
+            .field = CW_FIELD_GYROID, .dim = {37, 30, 41}, .type = (cw_type)type, .noise = 0.1};
+        cw_volume v;
+        cw_error err = {0};
+        assert_ok(cw_field_sample(&desc, &v, &err), err);
+        const cw_extract_desc d = {.isovalue =
+                                       cw_field_stored(CW_FIELD_GYROID, (cw_type)type, 0.1)};
+        test_turn(&v, type);
+        cw_mesh many = test_extract(&v, &d, NULL);
+        v.has_nodata = true;
+        v.nodata = 0.123;
+        cw_mesh one = test_extract(&v, &d, NULL);
+        assert_int_equal(many.vertex_count, one.vertex_count);
+        assert_memory_equal(many.positions, one.positions, 12 * one.vertex_count);
+        for (size_t n = 0; n < 3 * one.vertex_count; n++)
+            assert_near(many.normals[n], one.normals[n], 1e-5);
+        cw_mesh_free(&many);
+        cw_mesh_free(&one);
+        cw_volume_free(&v);
+    }
+}
+
+/* The same voxels through other strides: transposed, then flipped. */
+static void strides_are_honoured(void **state)
+{
+    (void)state;
+    const cw_field_desc desc = {
+        .field = CW_FIELD_CT_HEAD, .dim = {30, 24, 36}, .type = CW_I16, .noise = 30};
+    cw_volume v, copy;
+    cw_error err = {0};
+    assert_ok(cw_field_sample(&desc, &v, &err), err);
+    assert_ok(cw_volume_alloc(&copy, CW_I16, (size_t[3]){36, 30, 24}, 1, 1, &err), err);
+    memcpy(copy.affine, v.affine, sizeof v.affine);
+    int16_t *to = cw_volume_voxels(&copy);
+    for (size_t k = 0; k < 36; k++) /* z fastest and backwards, then x, then y */
+        for (size_t j = 0; j < 24; j++)
+            for (size_t i = 0; i < 30; i++)
+                to[(35 - k) + 36 * (i + 30 * j)] = (int16_t)cw_volume_value(&v, i, j, k);
+    cw_volume view = copy;
+    memcpy(view.dim, v.dim, sizeof v.dim);
+    view.stride[0] = 72;
+    view.stride[1] = 72 * 30;
+    view.stride[2] = -2;
+    view.data = to + 35;
+    const cw_extract_desc d = {.isovalue = 300};
+    cw_mesh a = test_extract(&v, &d, NULL), b = test_extract(&view, &d, NULL);
+    test_assert_same_mesh(&a, &b);
+    cw_mesh_free(&a);
+    cw_mesh_free(&b);
+    cw_volume_free(&v);
+    cw_volume_free(&copy);
+}
+
+static void unusable_arguments_are_refused_by_name(void **state)
+{
+    (void)state;
+    static const uint8_t voxels[8];
+    cw_volume v = {.data = voxels, .dim = {2, 2, 2}};
+    cw_mesh mesh;
+    cw_error err = {0};
+    assert_fails(cw_extract(&v, &(cw_extract_desc){.isovalue = NAN}, &mesh, NULL, &err),
+                 CW_ERR_ARGUMENT, "isovalue", err);
+    v.dim[2] = 1;
+    assert_fails(cw_extract(&v, NULL, &mesh, NULL, &err), CW_ERR_ARGUMENT, "along z", err);
+    v.data = NULL;
+    assert_fails(cw_extract(&v, NULL, &mesh, NULL, &err), CW_ERR_ARGUMENT, "no voxels", err);
+    static const double spacings[] = {1e-39, 1e-90, 1e38, 1e90};
+    for (size_t n = 0; n < sizeof spacings / sizeof *spacings; n++) {
+        v = (cw_volume){.data = voxels, .dim = {2, 2, 2}, .affine = {{1}, {0, 1}, {0, 0, 1}}};
+        v.affine[1][1] = spacings[n];
+        assert_fails(cw_extract(&v, NULL, &mesh, NULL, &err), CW_ERR_ARGUMENT, "along y", err);
+    }
+}
+
+static void limits_stop_before_the_mesh_is_made(void **state)
+{
+    (void)state;
+    cw_volume v = test_sample(CW_FIELD_SPHERE, 32, CW_F32);
+    cw_mesh mesh;
+    cw_error err = {0};
+    cw_extract_counts counts, made;
+    assert_ok(cw_extract_predict(&v, NULL, &counts, &err), err);
+    mesh = test_extract(&v, NULL, &made);
+    assert_int_equal(counts.triangles, mesh.triangle_count);
+    assert_int_equal(counts.vertices, mesh.vertex_count);
+    assert_int_equal(counts.bytes, made.bytes);
+    cw_mesh_free(&mesh);
+    cw_extract_desc d = {.max_triangles = counts.triangles};
+    mesh = test_extract(&v, &d, NULL);
+    cw_mesh_free(&mesh);
+    d.max_triangles--;
+    assert_fails(cw_extract(&v, &d, &mesh, NULL, &err), CW_ERR_LIMIT, "triangles", err);
+    assert_null(mesh.positions);
+    d = (cw_extract_desc){.max_bytes = counts.bytes - 1};
+    assert_fails(cw_extract(&v, &d, &mesh, NULL, &err), CW_ERR_LIMIT, "bytes", err);
+    cw_volume_free(&v);
+}
+
+static bool stop_at(void *user, const char *step, double done)
+{
+    (void)step, (void)done;
+    return (*(int *)user)-- > 0;
+}
+
+static void it_can_be_cancelled_at_any_poll(void **state)
+{
+    (void)state;
+    cw_volume v = test_sample(CW_FIELD_SPHERE, 40, CW_F32);
+    cw_mesh mesh;
+    cw_error err = {0};
+    for (int polls = 0;; polls++) {
+        int left = polls;
+        const cw_extract_desc d = {.progress = {stop_at, &left}};
+        const cw_status st = cw_extract(&v, &d, &mesh, NULL, &err);
+        if (st == CW_OK)
+            break;
+        assert_int_equal(st, CW_ERR_CANCELLED);
+        assert_null(mesh.positions);
+        assert_true(polls < 100);
+    }
+    cw_mesh_free(&mesh);
+    cw_volume_free(&v);
+}
+
+static void memory_running_out_is_an_error_at_every_allocation(void **state)
+{
+    (void)state;
+    static const float voxels[27] = {[13] = 1};
+    const cw_volume v = {.data = voxels, .type = CW_F32, .dim = {3, 3, 3}};
+    const cw_extract_desc d = {.isovalue = 0.5f, .leave_open = true};
+    cw_mesh mesh;
+    cw_error err = {0};
+    for (long n = 0;; n++) {
+        cwi_alloc_fail_after(n);
+        const cw_status st = cw_extract(&v, &d, &mesh, NULL, &err);
+        if (!cwi_alloc_fail_after(-1)) {
+            assert_int_equal(st, CW_OK);
+            assert_true(n >= 6);
+            break;
+        }
+        assert_int_equal(st, CW_ERR_NO_MEMORY);
+        assert_null(mesh.positions);
+    }
+    cw_mesh_free(&mesh);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(any_number_of_threads_gives_the_same_bytes),
+        cmocka_unit_test(every_engine_gives_the_same_bytes),
+        cmocka_unit_test(many_vertices_at_a_time_are_as_good_as_one),
+        cmocka_unit_test(strides_are_honoured),
+        cmocka_unit_test(unusable_arguments_are_refused_by_name),
+        cmocka_unit_test(limits_stop_before_the_mesh_is_made),
+        cmocka_unit_test(it_can_be_cancelled_at_any_poll),
+        cmocka_unit_test(memory_running_out_is_an_error_at_every_allocation),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
