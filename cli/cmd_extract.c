@@ -14,7 +14,7 @@ typedef struct extract_args {
     cli_input input;
     const char *output, *name, *format, *json;
     cli_number iso;
-    int inside, normals, progress, topology;
+    int inside, normals, progress, topology, placement;
     bool open, no_clobber, local, check;
     size_t max_triangles;
 } extract_args;
@@ -33,6 +33,9 @@ static const cli_option options[] = {
     {"topology", 0, CLI_CHOICE, "field/simple",
      "in ambiguous cells: the trilinear field's, or one table's (field)",
      offsetof(extract_args, topology)},
+    {"placement", 0, CLI_CHOICE, "linear/cubic",
+     "crossings on the line or the cubic through the samples along an edge (linear)",
+     offsetof(extract_args, placement)},
     {"normals", 0, CLI_CHOICE, "field/none", "normals from the field's gradient (field)",
      offsetof(extract_args, normals)},
     {"name", 0, CLI_TEXT, "TEXT", "of the object inside the file (the output's stem)",
@@ -72,6 +75,7 @@ static void put_params(cli_json *j, const void *p)
     cli_json_text(j, "inside", args->inside ? "below" : "above");
     cli_json_bool(j, "open", args->open);
     cli_json_text(j, "topology", args->topology ? "simple" : "field");
+    cli_json_text(j, "placement", args->placement ? "cubic" : "linear");
     cli_json_text(j, "normals", args->normals ? "none" : "field");
     cli_json_count(j, "component", args->input.component);
     cli_json_count(j, "step", args->input.step);
@@ -109,6 +113,7 @@ static cw_status extract(run_state *s, cw_error *err)
         .inside_is_low = s->args->inside,
         .leave_open = s->args->open,
         .simple_topology = s->args->topology,
+        .cubic_placement = s->args->placement,
         .no_normals = s->args->normals,
         .threads = (int)s->args->input.threads,
         .max_triangles = s->args->max_triangles,

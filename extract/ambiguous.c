@@ -93,14 +93,30 @@ static void inner_gradient(const cw_volume *v, const size_t at[3], const double 
     }
 }
 
+/* Where an edge of the cell is crossed: as its vertex says. */
+static double crossing_of(const cwi_grid *grid, const cwi_ambiguous *cell, int edge)
+{
+    const cw_volume *v = &grid->volume;
+    const size_t low = (size_t)cwi_edge_corner(edge), axis = (size_t)cwi_edge_axis(edge);
+    const size_t step[3] = {axis == 0, axis == 1, axis == 2};
+    const size_t at[3] = {cell->at[0] + (low & 1), cell->at[1] + (low >> 1 & 1),
+                          cell->at[2] + (low >> 2)};
+    double x[4] = {NAN, cell->stored[low], cell->stored[low | (size_t)1 << axis], NAN}, t;
+    if (grid->cubic) {
+        x[0] = stored_at(v, at[0] - step[0], at[1] - step[1], at[2] - step[2]);
+        x[3] = stored_at(v, at[0] + 2 * step[0], at[1] + 2 * step[1], at[2] + 2 * step[2]);
+        if (cwi_cubic_crossing(x, grid->level, &t))
+            return t;
+    }
+    return cwi_crossing(x[1], x[2], grid->level);
+}
+
 void cwi_ambiguous_build(const cwi_grid *grid, const cwi_ambiguous *cell, cwi_vertex_sink *sink,
                          size_t first, cwi_cell *out)
 {
     double crossings[12];
-    for (int e = 0; e < 12; e++) {
-        const int low = cwi_edge_corner(e), high = low | 1 << cwi_edge_axis(e);
-        crossings[e] = cwi_crossing(cell->stored[low], cell->stored[high], grid->level);
-    }
+    for (int e = 0; e < 12; e++)
+        crossings[e] = crossing_of(grid, cell, e);
     cwi_cell_build(&cell->plan, crossings, out);
     for (int n = 0; n < cell->plan.vertex_count; n++) {
         double g[3];

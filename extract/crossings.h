@@ -33,19 +33,20 @@ static inline uint64_t cwi_edge_vertices(const cwi_grid *g, int axis, size_t j, 
     return g->live ? crossed & cwi_live_edges(g, axis, j, k, w) : crossed;
 }
 
-/* Padded index n along an axis is that of a voxel with one before it and two after. */
-static inline bool cwi_is_inner(const cw_volume *v, int axis, size_t n)
+/* Padded index n along an axis is that of a voxel with two after it and one before it, or two
+ * for cubics. */
+static inline bool cwi_is_inner(const cwi_grid *g, int axis, size_t n)
 {
-    return n >= 2 && n + 2 <= v->dim[axis];
+    return n >= (g->cubic ? 3 : 2) && n + 2 <= g->volume.dim[axis];
 }
 
-/* Bits of word w of a row of so many voxels at which cwi_is_inner() holds. */
-static inline uint64_t cwi_inner_word(size_t dim, size_t w)
+/* Bits of word w of a row at which cwi_is_inner() holds along x. */
+static inline uint64_t cwi_inner_word(const cwi_grid *g, size_t w)
 {
-    const size_t begin = 64 * w, end = dim < 1 ? 0 : dim - 1; /* inner: 2 to end - 1 */
+    const size_t begin = 64 * w, end = g->volume.dim[0] - 1; /* inner: up to end - 1 */
     if (begin >= end)
         return 0;
-    const uint64_t low = w ? ~UINT64_C(0) : ~UINT64_C(3);
+    const uint64_t low = w ? ~UINT64_C(0) : g->cubic ? ~UINT64_C(7) : ~UINT64_C(3);
     return end - begin < 64 ? low & ((UINT64_C(1) << (end - begin)) - 1) : low;
 }
 

@@ -163,6 +163,7 @@ static cw_status set_level(cwi_grid *g, const cw_extract_desc *desc, cw_error *e
     g->strict = slope < 0;
     g->invert = (slope < 0) != desc->inside_is_low;
     g->simple = desc->simple_topology;
+    g->cubic = desc->cubic_placement;
     if (!isfinite(desc->isovalue) || !isfinite(g->level))
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "isovalue %g is not finite, or not after slope %g and intercept %g",

@@ -43,6 +43,7 @@ typedef struct cwi_grid {
     bool find_domain; /* the domain is filled while samples are compared */
     bool everything;  /* all words are wanted; else the others, but for those that hold the
                          volume's border, mean nothing in planes and masks */
+    bool cubic;       /* crossings stand on the cubic through four samples where there is one */
     bool simple;      /* one rule for ambiguous faces, in place of the field's topology */
     bool crossed;     /* some samples with values are inside and some are not */
 } cwi_grid;

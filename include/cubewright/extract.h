@@ -17,6 +17,9 @@ typedef struct cw_extract_desc {
     bool leave_open;      /* default: cap the surface where it meets the end of the data */
     bool simple_topology; /* default: in every cell the topology of the trilinear field; simple
                              is one table, with one rule for ambiguous faces */
+    bool cubic_placement; /* default: vertices where the field, linear along edges, is the
+                             isovalue; cubic: where the cubic through four samples along the
+                             edge is */
     bool no_normals;      /* default: one normal per vertex from the field's gradient */
     int threads;          /* default: all that OpenMP offers */
     size_t max_triangles; /* fail with CW_ERR_LIMIT before allocating more; default: no limit */

@@ -281,14 +281,15 @@ void add_hostile(Tally &tally, size_t row, cw_volume &v)
 {
     const test_frame *frame;
     for (size_t f = 0; (frame = test_frame_at(f)) != nullptr; f++)
-        for (size_t n = 0; n < 8; n++) {
-            if (f > 0 && n != (row + f) % 8)
+        for (size_t n = 0; n < 16; n++) {
+            if (f > 0 && n != (row + f) % 16)
                 continue;
             cw_extract_desc desc = {};
             desc.isovalue = test_hostile_at(row)->isovalue;
             desc.leave_open = n & 1;
             desc.inside_is_low = n & 2;
             desc.simple_topology = n & 4;
+            desc.cubic_placement = n & 8;
             tally.about(test_hostile_at(row)->name);
             std::memcpy(v.affine, frame->affine, sizeof v.affine);
             tally.add(v, desc);

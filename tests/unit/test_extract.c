@@ -90,6 +90,44 @@ static void positions_and_normals_converge_with_second_order(void **state)
     }
 }
 
+/* Mean distance of the vertices from the surface of a field that is a distance, and mean angle
+ * of their normals to the truth. */
+static void mean_errors(cw_field field, size_t n, bool cubic, double *distance, double *angle)
+{
+    cw_volume v = test_sample(field, n, CW_F64);
+    cw_mesh mesh = test_extract(&v, &(cw_extract_desc){.cubic_placement = cubic}, NULL);
+    test_check_promise(&mesh, false);
+    *distance = *angle = 0;
+    for (size_t i = 0; i < mesh.vertex_count; i++) {
+        const float *normal = mesh.normals + 3 * i;
+        double p[3], t[3];
+        world_point(&mesh, i, p);
+        true_normal(field, p, t);
+        *distance += fabs(cw_field_value(field, p)) / (double)mesh.vertex_count;
+        *angle += hypot(hypot(t[0] - normal[0], t[1] - normal[1]), t[2] - normal[2]) /
+                  (double)mesh.vertex_count;
+    }
+    cw_mesh_free(&mesh);
+    cw_volume_free(&v);
+}
+
+/* Positions of fourth order, down to what floats and the nudge can tell. */
+static void cubics_are_far_closer_and_of_higher_order(void **state)
+{
+    (void)state;
+    static const cw_field fields[] = {CW_FIELD_SPHERE, CW_FIELD_TORUS};
+    for (size_t f = 0; f < 2; f++) {
+        double distance[2], angle[2], linear_distance, linear_angle;
+        for (int n = 0; n < 2; n++)
+            mean_errors(fields[f], (size_t)32 << n, true, &distance[n], &angle[n]);
+        mean_errors(fields[f], 64, false, &linear_distance, &linear_angle);
+        assert_true(distance[1] < linear_distance / 100);
+        assert_true(angle[1] < linear_angle / 10);
+        assert_true(log2(distance[0] / distance[1]) > 3.5);
+        assert_true(log2(angle[0] / angle[1]) > 3);
+    }
+}
+
 static void torus_has_one_handle(void **state)
 {
     (void)state;
@@ -467,6 +505,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(sphere_is_closed_round_and_full),
         cmocka_unit_test(positions_and_normals_converge_with_second_order),
+        cmocka_unit_test(cubics_are_far_closer_and_of_higher_order),
         cmocka_unit_test(torus_has_one_handle),
         cmocka_unit_test(plane_is_exact),
         cmocka_unit_test(gyroid_parts_the_box_in_half),

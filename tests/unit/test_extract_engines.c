@@ -60,22 +60,23 @@ static void fill(void *voxels, cw_type type, size_t count)
 static void every_engine_gives_the_same_bytes(void **state)
 {
     (void)state;
-    double *memory = malloc(sizeof *memory * (4 * 5 * 200 + 8));
+    double *memory = malloc(sizeof *memory * (6 * 6 * 200 + 8));
     srand(23);
     for (size_t width = 2; width <= 200; width++)
         for (int type = 0; type < CW_TYPE_COUNT; type++) {
             const size_t bytes = cw_type_size((cw_type)type), shift = (size_t)rand() % 8;
             char *voxels = (char *)memory + shift * bytes;
-            fill(voxels, (cw_type)type, width * 20);
+            fill(voxels, (cw_type)type, width * 36);
             const cw_volume v = {.data = voxels,
                                  .type = (cw_type)type,
-                                 .dim = {width, 4, 5},
+                                 .dim = {width, 6, 6},
                                  .slope = rand() % 4 ? 1 : -1,
                                  .has_nodata = rand() % 8 == 0,
                                  .nodata = 7};
             const cw_extract_desc d = {.isovalue = rand() % 60 * v.slope,
                                        .inside_is_low = rand() % 2,
                                        .leave_open = rand() % 4 == 0,
+                                       .cubic_placement = rand() % 4 == 0,
                                        .threads = 1};
             cw_mesh plain, other;
             cw_error err = {0};

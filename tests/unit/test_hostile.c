@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { SETTINGS = 16 };
+enum { SETTINGS = 32 };
 
 /* Fills in the volume: half of the settings let values fall as numbers rise. */
 static cw_extract_desc make(const test_hostile *h, unsigned setting, cw_volume *v)
@@ -20,6 +20,7 @@ static cw_extract_desc make(const test_hostile *h, unsigned setting, cw_volume *
                              .leave_open = setting & 1,
                              .inside_is_low = setting & 2,
                              .simple_topology = setting & 4,
+                             .cubic_placement = setting & 16,
                              .threads = 1};
 }
 
