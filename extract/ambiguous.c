@@ -114,8 +114,8 @@ static double crossing_of(const cwi_grid *grid, const cwi_ambiguous *cell, int e
 void cwi_ambiguous_build(const cwi_grid *grid, const cwi_ambiguous *cell, cwi_vertex_sink *sink,
                          size_t first, cwi_cell *out)
 {
-    double crossings[12];
-    for (int e = 0; e < 12; e++)
+    double crossings[12] = {0};
+    for (int e = 0; e < 12 && cell->plan.vertex_count; e++) /* only inner vertices need them */
         crossings[e] = crossing_of(grid, cell, e);
     cwi_cell_build(&cell->plan, crossings, out);
     for (int n = 0; n < cell->plan.vertex_count; n++) {

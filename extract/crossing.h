@@ -9,6 +9,11 @@
  * sample then never coincide, also after rounding to single precision. */
 #define CWI_NUDGE (1.0 / 1024)
 
+static inline double cwi_off_ends(double t)
+{
+    return t < CWI_NUDGE ? CWI_NUDGE : t > 1 - CWI_NUDGE ? 1 - CWI_NUDGE : t;
+}
+
 /* The share of the edge from number a to number b at which the level is crossed, kept off both
  * ends. NaN is an end without a value: the crossing is then a cap, just beyond the other end.
  */
@@ -20,7 +25,8 @@ static inline double cwi_crossing(double a, double b, double level)
     double t = (level * 0.5 - a * 0.5) / (b * 0.5 - a * 0.5);
     if (isinf(a) || isinf(b))
         t = isinf(a) && isinf(b) ? 0.5 : isinf(b) ? 0 : 1;
-    return fmin(fmax(t, CWI_NUDGE), 1 - CWI_NUDGE);
+    return isnan(t) ? CWI_NUDGE
+                    : cwi_off_ends(t); /* NaN: halves of the smallest doubles are 0 */
 }
 
 /* The weights of four samples at -1, 0, 1 and 2 in the value, or the slope, at t of the cubic
@@ -72,7 +78,7 @@ static inline bool cwi_cubic_crossing(const double x[4], double level, double *c
         if (fabs(step) < 1e-12)
             break;
     }
-    *crossing = fmin(fmax(t, CWI_NUDGE), 1 - CWI_NUDGE);
+    *crossing = cwi_off_ends(t);
     return true;
 }
 

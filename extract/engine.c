@@ -31,14 +31,14 @@ static bool has_avx512(void)
 #define DECLARE(engine, test)                                                                  \
     void cwi_classify_layer_##engine(const cwi_grid *, size_t, cwi_range *, bool *, bool *);   \
     void cwi_count_layer_##engine(const cwi_grid *, size_t, cwi_row *);                        \
-    void cwi_write_layer_##engine(const cwi_grid *, size_t, const cwi_row *,                   \
-                                  const cwi_emission *, cwi_vertex_sink *, uint32_t *);
+    void cwi_write_layers_##engine(const cwi_grid *, size_t, size_t, const cwi_row *,          \
+                                   const cwi_emission *, cwi_vertex_sink *, uint32_t *);
 ENGINES(DECLARE)
 
 static const cwi_engine engines[] = {
 #define ROW(engine, test)                                                                      \
     {#engine, test, cwi_classify_layer_##engine, cwi_count_layer_##engine,                     \
-     cwi_write_layer_##engine},
+     cwi_write_layers_##engine},
     ENGINES(ROW)
 #undef ROW
 };

@@ -35,10 +35,10 @@ struct cwi_engine {
                            bool *out);
     /* Leaves a layer's counts, not yet first numbers, in its rows. */
     void (*count_layer)(const cwi_grid *grid, size_t k, cwi_row *rows);
-    /* Writes a layer's vertices and triangles to their places. */
-    void (*write_layer)(const cwi_grid *grid, size_t k, const cwi_row *rows,
-                        const cwi_emission *emission, cwi_vertex_sink *sink,
-                        uint32_t *triangles);
+    /* Writes the vertices and triangles of the layers begin to end to their places. */
+    void (*write_layers)(const cwi_grid *grid, size_t begin, size_t end, const cwi_row *rows,
+                         const cwi_emission *emission, cwi_vertex_sink *sink,
+                         uint32_t *triangles);
 };
 
 /* The n-th engine this machine can use, the plain one first; NULL when there are fewer. */
@@ -67,14 +67,14 @@ CW_API cw_status cwi_extractor_new_with(const cwi_engine *engine, const cw_volum
 #define CWI_OF_ENGINE(a)   CWI_EXPAND(a, CWI_ENGINE)
 #define cwi_classify_layer CWI_OF_ENGINE(cwi_classify_layer)
 #define cwi_count_layer    CWI_OF_ENGINE(cwi_count_layer)
-#define cwi_write_layer    CWI_OF_ENGINE(cwi_write_layer)
+#define cwi_write_layers   CWI_OF_ENGINE(cwi_write_layers)
 #define cwi_write_vertices CWI_OF_ENGINE(cwi_write_vertices)
 
 void cwi_classify_layer(const cwi_grid *grid, size_t b, cwi_range *leaves, bool *in, bool *out);
 void cwi_count_layer(const cwi_grid *grid, size_t k, cwi_row *rows);
-void cwi_write_layer(const cwi_grid *grid, size_t k, const cwi_row *rows,
-                     const cwi_emission *emission, cwi_vertex_sink *sink, uint32_t *triangles);
-void cwi_write_vertices(const cwi_grid *grid, size_t k, const cwi_row *rows,
+void cwi_write_layers(const cwi_grid *grid, size_t begin, size_t end, const cwi_row *rows,
+                      const cwi_emission *emission, cwi_vertex_sink *sink, uint32_t *triangles);
+void cwi_write_vertices(const cwi_grid *grid, size_t begin, size_t end, const cwi_row *rows,
                         cwi_vertex_sink *sink);
 #endif
 

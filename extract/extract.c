@@ -42,14 +42,6 @@ static cw_status check_limits(const cw_extract_desc *d, const cw_extract_counts 
     return CW_OK;
 }
 
-static cw_status for_layers(plan *p, const cw_extract_desc *d, const char *step,
-                            void (*work)(void *, size_t), void *context, cw_error *err)
-{
-    const cwi_grid *g = &p->grid;
-    return cwi_each_layer(g->rows_z, g->rows_y * g->words * 64, d->threads, &d->progress, step,
-                          work, context, err);
-}
-
 static void count_layer(void *context, size_t k)
 {
     plan *p = context;
@@ -106,7 +98,9 @@ static cw_status make_plan(plan *p, const cw_extract_desc *d, cw_error *err)
         p->rows = cwi_alloc_large(p->grid.rows + 1, sizeof *p->rows);
     if (!p->rows)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu rows", p->grid.rows);
-    st = for_layers(p, d, "counting", count_layer, p, err);
+    const cwi_grid *g = &p->grid;
+    st = cwi_each_layer(g->rows_z, g->rows_y * g->words * 64, d->threads, &d->progress,
+                        "counting", count_layer, p, err);
     if (st == CW_OK)
         st = sum_rows(p, err);
     if (st == CW_OK)
@@ -225,6 +219,8 @@ static cwi_emission make_emission(const cwi_grid *g)
     return emission;
 }
 
+enum { SHARE = 8 }; /* layers that a thread writes at a time */
+
 typedef struct writing {
     const plan *plan;
     cwi_emission emission;
@@ -232,11 +228,14 @@ typedef struct writing {
     uint32_t *triangles;
 } writing;
 
-static void write_layer(void *context, size_t k)
+static void write_layers(void *context, size_t share)
 {
     writing *w = context;
-    w->plan->engine->write_layer(&w->plan->grid, k, w->plan->rows, &w->emission, &w->sink,
-                                 w->triangles);
+    const cwi_grid *g = &w->plan->grid;
+    const size_t begin = share * SHARE,
+                 end = begin + SHARE < g->rows_z ? begin + SHARE : g->rows_z;
+    w->plan->engine->write_layers(g, begin, end, w->plan->rows, &w->emission, &w->sink,
+                                  w->triangles);
 }
 
 static cw_status write_mesh(plan *p, const cw_extract_desc *d, cw_mesh *mesh, cw_error *err)
@@ -249,7 +248,9 @@ static cw_status write_mesh(plan *p, const cw_extract_desc *d, cw_mesh *mesh, cw
                  .emission = make_emission(&p->grid),
                  .sink = make_sink(&p->grid, mesh),
                  .triangles = mesh->triangles};
-    st = for_layers(p, d, "marching", write_layer, &w, err);
+    const cwi_grid *g = &p->grid;
+    st = cwi_each_layer((g->rows_z + SHARE - 1) / SHARE, SHARE * g->rows_y * g->words * 64,
+                        d->threads, &d->progress, "marching", write_layers, &w, err);
     if (st == CW_OK && w.sink.missing)
         st = mend_normals(mesh, voxel_scale(&p->grid.volume), err);
     if (st == CW_OK)

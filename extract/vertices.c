@@ -21,7 +21,7 @@
 #define LEAST 1e-280
 #define MOST  1e280
 
-enum { BATCH = 64, LANES = 8, ROOM = BATCH + 64 + 16, AHEAD = 3 /* rows */ };
+enum { BATCH = 64, LANES = 8, ROOM = BATCH + 64 + 16, AHEAD = 3, TILE = 32 /* rows */ };
 
 /* Crossed edges along one axis of a layer, until there are BATCH of them: where they begin, and
  * the numbers of their vertices. */
@@ -87,12 +87,13 @@ static void store_cap(const cwi_vertex_sink *sink, const size_t at[3], int axis,
 #define TYPED "extract/vertices.inc"
 #include "extract/types.inc"
 
-void cwi_write_vertices(const cwi_grid *g, size_t k, const cwi_row *rows, cwi_vertex_sink *sink)
+void cwi_write_vertices(const cwi_grid *g, size_t begin, size_t end, const cwi_row *rows,
+                        cwi_vertex_sink *sink)
 {
-    static void (*const layers[CW_TYPE_COUNT])(const cwi_grid *, size_t, const cwi_row *,
-                                               cwi_vertex_sink *) = {
+    static void (*const layers[CW_TYPE_COUNT])(const cwi_grid *, size_t, size_t,
+                                               const cwi_row *, cwi_vertex_sink *) = {
         [CW_U8] = write_u8,   [CW_I8] = write_i8,   [CW_U16] = write_u16, [CW_I16] = write_i16,
         [CW_U32] = write_u32, [CW_I32] = write_i32, [CW_F32] = write_f32, [CW_F64] = write_f64,
     };
-    layers[g->volume.type](g, k, rows, sink);
+    layers[g->volume.type](g, begin, end, rows, sink);
 }
