@@ -7,8 +7,11 @@
 #include <math.h>
 #include <string.h>
 
-#ifdef __AVX2__
+#if defined __SSE2__ && !defined CWI_PLAIN
+#define SIMD 1
 #include <immintrin.h>
+#else
+#define SIMD 0
 #endif
 
 /* 64 bytes of 0 or 1 to bits; byte i to bit i. The product of 8 such bytes with the constant
@@ -116,9 +119,55 @@ static inline uint64_t ordered_f32(const float *x)
     return bits;
 }
 
+#elif SIMD
+
+static inline uint64_t above_8(const void *x, int8_t limit, int8_t flip)
+{
+    const __m128i f = _mm_set1_epi8(flip), l = _mm_set1_epi8((int8_t)(limit ^ flip));
+    uint64_t below = 0;
+    for (int n = 0; n < 4; n++) {
+        const __m128i v = _mm_xor_si128(_mm_loadu_si128((const __m128i *)x + n), f);
+        below |= (uint64_t)(unsigned)_mm_movemask_epi8(_mm_cmplt_epi8(v, l)) << 16 * n;
+    }
+    return ~below;
+}
+
+static inline uint64_t above_16(const void *x, int16_t limit, int16_t flip)
+{
+    const __m128i f = _mm_set1_epi16(flip), l = _mm_set1_epi16((int16_t)(limit ^ flip));
+    uint64_t below = 0;
+    for (int n = 0; n < 4; n++) {
+        const __m128i *p = (const __m128i *)x + 2 * n;
+        const __m128i a = _mm_cmplt_epi16(_mm_xor_si128(_mm_loadu_si128(p), f), l);
+        const __m128i b = _mm_cmplt_epi16(_mm_xor_si128(_mm_loadu_si128(p + 1), f), l);
+        below |= (uint64_t)(unsigned)_mm_movemask_epi8(_mm_packs_epi16(a, b)) << 16 * n;
+    }
+    return ~below;
+}
+
+static inline uint64_t above_f32(const float *x, float limit)
+{
+    const __m128 l = _mm_set1_ps(limit);
+    uint64_t bits = 0;
+    for (int n = 0; n < 16; n++)
+        bits |= (uint64_t)(unsigned)_mm_movemask_ps(_mm_cmpge_ps(_mm_loadu_ps(x + 4 * n), l))
+                << 4 * n;
+    return bits;
+}
+
+static inline uint64_t ordered_f32(const float *x)
+{
+    uint64_t bits = 0;
+    for (int n = 0; n < 16; n++) {
+        const __m128 v = _mm_loadu_ps(x + 4 * n);
+        bits |= (uint64_t)(unsigned)_mm_movemask_ps(_mm_cmpord_ps(v, v)) << 4 * n;
+    }
+    return bits;
+}
+
 #endif
 
-#ifdef __AVX2__
+#if SIMD
 #define above_u8(x, limit)  above_8(x, (int8_t)(limit), INT8_MIN)
 #define above_i8(x, limit)  above_8(x, limit, 0)
 #define above_u16(x, limit) above_16(x, (int16_t)(limit), INT16_MIN)
