@@ -1,9 +1,13 @@
 /* cw_extract() beside vtkFlyingEdges3D: one run of ours, one of theirs, by turns, medians.
  *
  * bench_extract [--sizes 256,512] [--threads 1,2] [--runs 5] [--cases sphere,noise]
+ *               [--data FOLDER]
  *
- * Prints a JSON line a case on stdout, a table on stderr. limit_ms is a plain pass that reads
- * the volume once and writes as many fresh bytes as the mesh has, with the same threads. */
+ * Prints a JSON line a case on stdout, a table on stderr. next_ms is another isovalue of the
+ * same volume through a cw_extractor; next_ratio sets it beside theirs at that isovalue.
+ * limit_ms is a plain pass that reads the volume once and writes as many fresh bytes as the
+ * mesh has, with the same threads. Of the scans in FOLDER those that are there are measured,
+ * too. */
 #define _DEFAULT_SOURCE /* madvise, clock_gettime */
 #include <cubewright/cubewright.h>
 
@@ -22,8 +26,9 @@ enum { MAX_RUNS = 99 };
 typedef struct bench_case {
     const char *name;
     cw_type type;
-    double isovalue;
+    double isovalue, next;                                       /* levels, in stored numbers */
     float (*value)(const double p[3], size_t n, uint64_t voxel); /* p in -1..1 */
+    double scale, offset;                                        /* to stored numbers */
 } bench_case;
 
 static uint64_t hash(uint64_t x)
@@ -92,12 +97,26 @@ static float sparse(const double p[3], size_t n, uint64_t voxel)
 }
 
 static const bench_case cases[] = {
-    {"sphere", CW_F32, 0, sphere},
-    {"gyroid", CW_F32, 0, gyroid},
-    {"marschner-lobb", CW_F32, 0.5, marschner_lobb},
-    {"smooth-noise", CW_F32, 0.5, smooth_noise},
-    {"noise", CW_U8, 249, white_noise},
-    {"sparse", CW_U16, 2000, sparse},
+    {"sphere", CW_F32, 0, 0.002, sphere, 1, 0},
+    {"gyroid", CW_F32, 0, 0.01, gyroid, 1, 0},
+    {"marschner-lobb", CW_F32, 0.5, 0.51, marschner_lobb, 1, 0},
+    {"smooth-noise", CW_F32, 0.5, 0.505, smooth_noise, 1, 0},
+    {"noise", CW_U8, 249, 248, white_noise, 1, 0},
+    {"sparse", CW_U16, 2000, 2050, sparse, 1, 0},
+    {"sphere-u8", CW_U8, 128, 129, sphere, 70, 128},
+    {"sphere-u16", CW_U16, 30000, 30040, sphere, 20000, 30000},
+    {"gyroid-u8", CW_U8, 128, 129, gyroid, 70, 128},
+    {"gyroid-u16", CW_U16, 30000, 30100, gyroid, 9000, 30000},
+};
+
+/* Scans that may be at hand, and two levels of each. */
+static const struct {
+    const char *path;
+    double isovalue, next;
+} scans[] = {
+    {"ch2-mri/ch2.nii.gz", 50, 100},         {"bonsai-ct/bonsai.nii.gz", 60, 40},
+    {"phantom-ct/phantom_head.mha", 300, 0}, {"ct-example/ct_example.nii.gz", 300, -300},
+    {"headsq-ct/headsq.mha", 1150, 500},     {"flair-mri/FLAIR.nrrd", 40, 120},
 };
 
 static cw_volume make(const bench_case *c, size_t n)
@@ -117,13 +136,13 @@ static cw_volume make(const bench_case *c, size_t n)
                 double p[3];
                 for (int a = 0; a < 3; a++)
                     p[a] = 2 * (double)at[a] / (double)(n - 1) - 1;
-                const float x = c->value(p, n, voxel);
+                const double x = c->scale * (double)c->value(p, n, voxel) + c->offset;
                 if (c->type == CW_U8)
                     ((uint8_t *)voxels)[voxel] = (uint8_t)x;
                 else if (c->type == CW_U16)
                     ((uint16_t *)voxels)[voxel] = (uint16_t)x;
                 else
-                    ((float *)voxels)[voxel] = x;
+                    ((float *)voxels)[voxel] = (float)x;
             }
     return v;
 }
@@ -212,43 +231,99 @@ static double median(double *values, int count)
     return values[count / 2];
 }
 
-static void measure(const bench_case *c, const cw_volume *v, int threads, int runs)
+/* What is measured of a volume, each a median in milliseconds. */
+typedef struct timing {
+    double ours, next, theirs, theirs_next, limit, peak_mb;
+    size_t triangles, vtk_triangles;
+} timing;
+
+static cw_mesh must(cw_status st, cw_mesh mesh, const cw_error *err)
 {
-    double ours[MAX_RUNS], theirs[MAX_RUNS], limit[MAX_RUNS], peak_mb = 0;
-    size_t triangles = 0, vtk_triangles = 0, out = 0;
-    const cw_extract_desc d = {.isovalue = c->isovalue, .threads = threads};
-    cw_extract_counts counts;
-    if (cw_extract_predict(v, &d, &counts, NULL) != CW_OK)
+    if (st != CW_OK) {
+        fprintf(stderr, "%s\n", err->message);
         exit(1);
-    for (int r = 0; r < runs; r++) {
-        cw_mesh mesh;
-        cw_error err = {0};
-        warm(2 * counts.bytes);
-        reset_peak();
-        const double before = memory_kb("VmRSS:"), begin = now_ms();
-        if (cw_extract(v, &d, &mesh, NULL, &err) != CW_OK) {
-            fprintf(stderr, "%s\n", err.message);
-            exit(1);
-        }
-        ours[r] = now_ms() - begin;
-        peak_mb = fmax(peak_mb, (memory_kb("VmHWM:") - before) / 1024);
-        triangles = mesh.triangle_count;
-        out = 24 * mesh.vertex_count + 12 * triangles;
-        cw_mesh_free(&mesh);
-        warm(3 * counts.bytes);
-        theirs[r] = bench_vtk(v, c->isovalue, threads, &vtk_triangles);
-        warm(2 * counts.bytes);
-        limit[r] = limit_ms(v, out, threads);
     }
-    const double o = median(ours, runs), t = median(theirs, runs), l = median(limit, runs);
-    printf("{\"case\": \"%s\", \"size\": %zu, \"type\": \"%s\", \"threads\": %d, "
-           "\"ours_ms\": %.2f, \"vtk_ms\": %.2f, \"ratio\": %.3f, \"limit_ms\": %.2f, "
-           "\"triangles\": %zu, \"vtk_triangles\": %zu, \"peak_mb\": %.1f}\n",
-           c->name, v->dim[0], cw_type_name(c->type), threads, o, t, t / o, l, triangles,
-           vtk_triangles, peak_mb);
+    return mesh;
+}
+
+static double ours_ms(const cw_volume *v, const cw_extract_desc *d, timing *t)
+{
+    cw_mesh mesh;
+    cw_error err = {0};
+    reset_peak();
+    const double before = memory_kb("VmRSS:"), begin = now_ms();
+    const cw_status st = cw_extract(v, d, &mesh, NULL, &err);
+    const double end = now_ms();
+    mesh = must(st, mesh, &err);
+    t->peak_mb = fmax(t->peak_mb, (memory_kb("VmHWM:") - before) / 1024);
+    t->triangles = mesh.triangle_count;
+    cw_mesh_free(&mesh);
+    return end - begin;
+}
+
+static double next_ms(cw_extractor *extractor, const cw_extract_desc *d)
+{
+    cw_mesh mesh;
+    cw_error err = {0};
+    const double begin = now_ms();
+    const cw_status st = cw_extractor_extract(extractor, d, &mesh, NULL, &err);
+    const double end = now_ms();
+    mesh = must(st, mesh, &err);
+    cw_mesh_free(&mesh);
+    return end - begin;
+}
+
+static timing measure(const cw_volume *v, double isovalue, double next, int threads, int runs)
+{
+    double ours[MAX_RUNS], later[MAX_RUNS], theirs[MAX_RUNS], limit[MAX_RUNS];
+    double theirs_later[MAX_RUNS];
+    timing t = {0};
+    const cw_extract_desc d = {.isovalue = isovalue, .threads = threads},
+                          e = {.isovalue = next, .threads = threads};
+    cw_extract_counts counts;
+    cw_extractor *extractor;
+    size_t ignored;
+    if (cw_extract_predict(v, &d, &counts, NULL) != CW_OK ||
+        cw_extractor_new(v, &extractor, NULL) != CW_OK)
+        exit(1);
+    next_ms(extractor, &d); /* builds the octree */
+    for (int r = 0; r < runs; r++) {
+        warm(2 * counts.bytes);
+        ours[r] = ours_ms(v, &d, &t);
+        warm(2 * counts.bytes);
+        next_ms(extractor, &d);
+        warm(2 * counts.bytes);
+        later[r] = next_ms(extractor, &e);
+        warm(3 * counts.bytes);
+        theirs[r] = bench_vtk(v, isovalue, threads, &t.vtk_triangles);
+        warm(3 * counts.bytes);
+        theirs_later[r] = bench_vtk(v, next, threads, &ignored);
+        warm(2 * counts.bytes);
+        limit[r] = limit_ms(v, 24 * counts.vertices + 12 * counts.triangles, threads);
+    }
+    cw_extractor_free(extractor);
+    t.ours = median(ours, runs);
+    t.next = median(later, runs);
+    t.theirs = median(theirs, runs);
+    t.theirs_next = median(theirs_later, runs);
+    t.limit = median(limit, runs);
+    return t;
+}
+
+static void report(const char *name, const cw_volume *v, int threads, const timing *t)
+{
+    printf("{\"case\": \"%s\", \"dims\": [%zu, %zu, %zu], \"type\": \"%s\", \"threads\": %d, "
+           "\"ours_ms\": %.2f, \"vtk_ms\": %.2f, \"ratio\": %.3f, \"next_ms\": %.2f, "
+           "\"next_ratio\": %.3f, \"limit_ms\": %.2f, \"triangles\": %zu, "
+           "\"vtk_triangles\": %zu, \"peak_mb\": %.1f}\n",
+           name, v->dim[0], v->dim[1], v->dim[2], cw_type_name(v->type), threads, t->ours,
+           t->theirs, t->theirs / t->ours, t->next, t->theirs_next / t->next, t->limit,
+           t->triangles, t->vtk_triangles, t->peak_mb);
     fflush(stdout);
-    fprintf(stderr, "%-15s %5zu %3d %9.1f %9.1f %7.2f %9.1f %12zu %8.0f\n", c->name, v->dim[0],
-            threads, o, t, t / o, l, triangles, peak_mb);
+    fprintf(stderr, "%-28s %5zu %3s %3d %9.1f %9.1f %7.2f %9.1f %7.2f %9.1f %12zu %8.0f\n",
+            name, v->dim[0], cw_type_name(v->type), threads, t->ours, t->theirs,
+            t->theirs / t->ours, t->next, t->theirs_next / t->next, t->limit, t->triangles,
+            t->peak_mb);
 }
 
 /* The next number of a comma-separated list; 0 at its end. */
@@ -260,6 +335,15 @@ static size_t next_number(const char **list)
     return n;
 }
 
+static void measure_all(const char *name, const cw_volume *v, double isovalue, double next,
+                        const char *threads, int runs)
+{
+    for (size_t n; (n = next_number(&threads)) > 0;) {
+        const timing t = measure(v, isovalue, next, (int)n, runs);
+        report(name, v, (int)n, &t);
+    }
+}
+
 static bool listed(const char *list, const char *name)
 {
     const size_t n = strlen(name);
@@ -269,34 +353,53 @@ static bool listed(const char *list, const char *name)
     return !*list;
 }
 
+static void measure_scans(const char *folder, const char *names, const char *threads, int runs)
+{
+    for (size_t n = 0; n < sizeof scans / sizeof *scans; n++) {
+        char path[4096];
+        cw_volume v;
+        snprintf(path, sizeof path, "%s/%s", folder, scans[n].path);
+        if (!listed(names, scans[n].path) ||
+            cw_volume_read(path, NULL, &v, NULL, NULL) != CW_OK)
+            continue;
+        measure_all(scans[n].path, &v, scans[n].isovalue, scans[n].next, threads, runs);
+        cw_volume_free(&v);
+    }
+}
+
 int main(int argc, char **argv)
 {
-    const char *sizes = "512", *threads = "1,2", *names = "";
-    int runs = 5;
-    for (int a = 1; a + 1 < argc; a += 2) {
-        if (strcmp(argv[a], "--sizes") == 0)
-            sizes = argv[a + 1];
-        else if (strcmp(argv[a], "--threads") == 0)
-            threads = argv[a + 1];
-        else if (strcmp(argv[a], "--cases") == 0)
-            names = argv[a + 1];
-        else if (strcmp(argv[a], "--runs") == 0)
-            runs = atoi(argv[a + 1]);
-        else
-            return fprintf(stderr, "unknown option %s\n", argv[a]), 2;
+    const char *sizes = "512", *threads = "1,2", *names = "", *data = NULL, *run_count = "5";
+    const struct {
+        const char *name, **value;
+    } options[] = {{"--sizes", &sizes},
+                   {"--threads", &threads},
+                   {"--cases", &names},
+                   {"--data", &data},
+                   {"--runs", &run_count}};
+    for (int a = 1; a < argc; a += 2) {
+        size_t o = 0;
+        while (o < 5 && strcmp(argv[a], options[o].name) != 0)
+            o++;
+        if (o == 5 || a + 1 == argc)
+            return fprintf(stderr, "unknown option, or no value: %s\n", argv[a]), 2;
+        *options[o].value = argv[a + 1];
     }
-    runs = runs < 1 ? 1 : runs > MAX_RUNS ? MAX_RUNS : runs;
-    fprintf(stderr, "%-15s %5s %3s %9s %9s %7s %9s %12s %8s\n", "case", "size", "thr",
-            "ours ms", "vtk ms", "vtk/our", "limit ms", "triangles", "peak MB");
+    const int asked = atoi(run_count), runs = asked < 1          ? 1
+                                              : asked > MAX_RUNS ? MAX_RUNS
+                                                                 : asked;
+    fprintf(stderr, "%-28s %5s %3s %3s %9s %9s %7s %9s %7s %9s %12s %8s\n", "case", "size", "",
+            "thr", "ours ms", "vtk ms", "vtk/our", "next ms", "vtk/nxt", "limit ms",
+            "triangles", "peak MB");
     for (size_t n; (n = next_number(&sizes)) > 1;)
         for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
             if (!listed(names, cases[c].name))
                 continue;
             cw_volume v = make(&cases[c], n);
-            const char *left = threads;
-            for (size_t t; (t = next_number(&left)) > 0;)
-                measure(&cases[c], &v, (int)t, runs);
+            measure_all(cases[c].name, &v, cases[c].isovalue, cases[c].next, threads, runs);
             cw_volume_free(&v);
         }
+    if (data)
+        measure_scans(data, names, threads, runs);
     return 0;
 }

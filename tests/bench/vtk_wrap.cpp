@@ -15,10 +15,20 @@ static int vtk_type(cw_type type)
     switch (type) {
     case CW_U8:
         return VTK_UNSIGNED_CHAR;
+    case CW_I8:
+        return VTK_SIGNED_CHAR;
     case CW_U16:
         return VTK_UNSIGNED_SHORT;
+    case CW_I16:
+        return VTK_SHORT;
+    case CW_U32:
+        return VTK_UNSIGNED_INT;
+    case CW_I32:
+        return VTK_INT;
     case CW_F32:
         return VTK_FLOAT;
+    case CW_F64:
+        return VTK_DOUBLE;
     default:
         return VTK_VOID;
     }
