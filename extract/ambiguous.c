@@ -1,5 +1,6 @@
 #include "extract/ambiguous.h"
 
+#include "core/memory.h"
 #include "core/volume.h"
 #include "extract/crossing.h"
 #include "extract/cube.h"
@@ -53,16 +54,44 @@ static void load_corners(const cw_volume *v, const size_t at[3], double stored[8
     }
 }
 
-void cwi_ambiguous_load(const cwi_grid *grid, const size_t at[3], unsigned cube,
-                        cwi_ambiguous *cell)
+/* Doubles the room of a layer's list when it is full. Without memory for it there is no list:
+ * its cells are planned twice. */
+static void note(cwi_plans *list, uint32_t code)
 {
-    double values[8];
+    if (list->count == list->room && !list->lost) {
+        const size_t room = list->room ? 2 * list->room : 64;
+        uint32_t *more = cwi_realloc_array(list->codes, room, sizeof *more);
+        list->lost = !more;
+        list->room = more ? room : 0;
+        if (list->lost)
+            cwi_free(list->codes);
+        list->codes = more;
+    }
+    if (!list->lost)
+        list->codes[list->count++] = code;
+}
+
+static void load(const cwi_grid *grid, const size_t at[3], cwi_ambiguous *cell)
+{
     load_corners(&grid->volume, at, cell->stored);
-    for (size_t c = 0; c < 8; c++)
-        values[c] = value_of(grid, cell->stored[c]);
     for (int a = 0; a < 3; a++)
         cell->at[a] = at[a];
+}
+
+static void make_plan(const cwi_grid *grid, unsigned cube, cwi_ambiguous *cell)
+{
+    double values[8];
+    for (size_t c = 0; c < 8; c++)
+        values[c] = value_of(grid, cell->stored[c]);
     cwi_cell_plan_make(cube, values, cwi_zero_is_inside(grid), &cell->plan);
+}
+
+void cwi_ambiguous_plan(const cwi_grid *grid, const size_t at[3], unsigned cube,
+                        cwi_ambiguous *cell)
+{
+    load(grid, at, cell);
+    make_plan(grid, cube, cell);
+    note(&grid->plans[at[2]], cwi_cell_plan_pack(&cell->plan));
 }
 
 /* Central differences at a corner, in halves; NaN where a neighbour is missing. */
@@ -111,19 +140,29 @@ static double crossing_of(const cwi_grid *grid, const cwi_ambiguous *cell, int e
     return cwi_crossing(x[1], x[2], grid->level);
 }
 
-void cwi_ambiguous_build(const cwi_grid *grid, const cwi_ambiguous *cell, cwi_vertex_sink *sink,
-                         size_t first, cwi_cell *out)
+void cwi_ambiguous_build(const cwi_grid *grid, const size_t at[3], unsigned cube, size_t n,
+                         cwi_vertex_sink *sink, size_t first, cwi_cell_plan *plan,
+                         cwi_cell *out)
 {
+    const cwi_plans *list = &grid->plans[at[2]];
+    cwi_ambiguous cell;
     double crossings[12] = {0};
-    for (int e = 0; e < 12 && cell->plan.vertex_count; e++) /* only inner vertices need them */
-        crossings[e] = crossing_of(grid, cell, e);
-    cwi_cell_build(&cell->plan, crossings, out);
-    for (int n = 0; n < cell->plan.vertex_count; n++) {
+    if (!list->lost)
+        cwi_cell_plan_unpack(list->codes[n], &cell.plan);
+    if (list->lost || cell.plan.vertex_count)
+        load(grid, at, &cell);
+    if (list->lost)
+        make_plan(grid, cube, &cell);
+    for (int e = 0; e < 12 && cell.plan.vertex_count; e++) /* only inner vertices need them */
+        crossings[e] = crossing_of(grid, &cell, e);
+    cwi_cell_build(&cell.plan, crossings, out);
+    for (int v = 0; v < cell.plan.vertex_count; v++) {
         double g[3];
-        cwi_store_position(sink, cell->at, out->vertices[n], first + (size_t)n);
+        cwi_store_position(sink, at, out->vertices[v], first + (size_t)v);
         if (!sink->normals)
             continue;
-        inner_gradient(&grid->volume, cell->at, out->vertices[n], g);
-        cwi_store_normal(sink, g, first + (size_t)n);
+        inner_gradient(&grid->volume, at, out->vertices[v], g);
+        cwi_store_normal(sink, g, first + (size_t)v);
     }
+    *plan = cell.plan;
 }

@@ -22,11 +22,14 @@ typedef struct cwi_ambiguous {
     cwi_cell_plan plan;
 } cwi_ambiguous;
 
-void cwi_ambiguous_load(const cwi_grid *grid, const size_t at[3], unsigned cube,
+/* Finds the cell's plan, and notes it at the end of its layer's list. */
+void cwi_ambiguous_plan(const cwi_grid *grid, const size_t at[3], unsigned cube,
                         cwi_ambiguous *cell);
 
-/* Builds the cell's surface and writes its inner vertices, numbered from first on. */
-void cwi_ambiguous_build(const cwi_grid *grid, const cwi_ambiguous *cell, cwi_vertex_sink *sink,
-                         size_t first, cwi_cell *out);
+/* Builds the cell's surface and writes its inner vertices, numbered from first on. The plan is
+ * the n-th that was noted in its layer. */
+void cwi_ambiguous_build(const cwi_grid *grid, const size_t at[3], unsigned cube, size_t n,
+                         cwi_vertex_sink *sink, size_t first, cwi_cell_plan *plan,
+                         cwi_cell *out);
 
 #endif

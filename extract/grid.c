@@ -44,7 +44,8 @@ static cw_status allocate(cwi_grid *g, cw_error *err)
         return no_memory(g, err);
     g->inside = alloc_plane(g);
     g->busy = cwi_alloc_large(g->rows * g->masks, sizeof *g->busy);
-    return g->inside && g->busy ? CW_OK : no_memory(g, err);
+    g->plans = cwi_alloc_zeroed(g->rows_z, sizeof *g->plans);
+    return g->inside && g->busy && g->plans ? CW_OK : no_memory(g, err);
 }
 
 /* Positions are floats: they cannot tell voxels apart that are too small, and cannot reach the
@@ -269,6 +270,9 @@ cw_status cwi_grid_classify(cwi_grid *g, const cwi_engine *engine, cwi_octree *t
 
 void cwi_grid_free(cwi_grid *g)
 {
+    for (size_t k = 0; g->plans && k < g->rows_z; k++)
+        cwi_free(g->plans[k].codes);
+    cwi_free(g->plans);
     cwi_free(g->inside);
     cwi_free(g->domain);
     cwi_free(g->live);

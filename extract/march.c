@@ -148,7 +148,7 @@ static void count_ambiguous(const cwi_grid *g, const cell_word *c, const uint8_t
         const int i = __builtin_ctzll(left);
         const unsigned cube = cases[i];
         cwi_ambiguous cell;
-        cwi_ambiguous_load(g, (const size_t[3]){64 * w + (size_t)i, j, k}, cube, &cell);
+        cwi_ambiguous_plan(g, (const size_t[3]){64 * w + (size_t)i, j, k}, cube, &cell);
         *triangles += (size_t)cell.plan.triangle_count;
         *triangles -= cwi_case_count[cube];
         *inner += (unsigned)cell.plan.vertex_count;
@@ -252,6 +252,7 @@ static void count_row(const cwi_grid *g, size_t j, size_t k, cwi_row *row)
 void cwi_count_layer(const cwi_grid *g, size_t k, cwi_row *rows)
 {
     const bool cells = k + 1 < g->rows_z;
+    g->plans[k].count = 0;
     for (size_t j = 0; j + 1 < g->rows_y && cells; j++)
         count_row(g, j, k, rows + k * g->rows_y + j);
     const size_t left = cells ? 1 : g->rows_y, first = (k + 1) * g->rows_y - left;
@@ -351,36 +352,39 @@ static inline uint32_t *emit(const edge_word *e, int i, unsigned cube,
 
 #endif
 
-/* The triangles of an ambiguous cell, and its inner vertices, numbered from *inner on. */
-static uint32_t *emit_ambiguous(const cwi_grid *g, const size_t at[3], const edge_word *e,
-                                unsigned cube, bool flip, cwi_vertex_sink *sink,
-                                uint32_t *inner, uint32_t *out)
+/* What writing a row of cells goes on with. */
+typedef struct cwi_cursor {
+    uint32_t *out;
+    uint32_t inner; /* number of the next vertex inside a cell */
+    size_t plan;    /* of the next ambiguous cell, in its layer */
+} cwi_cursor;
+
+/* The triangles of an ambiguous cell, and its inner vertices. */
+static void emit_ambiguous(const cwi_grid *g, const size_t at[3], const edge_word *e,
+                           unsigned cube, bool flip, cwi_vertex_sink *sink, cwi_cursor *to)
 {
     uint32_t vertex[12 + CWI_CELL_MAX_VERTICES];
-    cwi_ambiguous ambiguous;
+    cwi_cell_plan plan;
     cwi_cell cell;
     cell_vertices(e, (int)(at[0] % 64), vertex);
-    cwi_ambiguous_load(g, at, cube, &ambiguous);
-    cwi_ambiguous_build(g, &ambiguous, sink, *inner, &cell);
-    for (int n = 0; n < ambiguous.plan.vertex_count; n++)
-        vertex[CWI_CELL_INNER + n] = (*inner)++;
+    cwi_ambiguous_build(g, at, cube, to->plan++, sink, to->inner, &plan, &cell);
+    for (int n = 0; n < plan.vertex_count; n++)
+        vertex[CWI_CELL_INNER + n] = to->inner++;
     const uint8_t *corner = cell.triangles;
-    for (int t = 0; t < ambiguous.plan.triangle_count; t++, corner += 3, out += 3) {
-        out[0] = vertex[corner[0]];
-        out[1] = vertex[corner[flip ? 2 : 1]];
-        out[2] = vertex[corner[flip ? 1 : 2]];
+    for (int t = 0; t < plan.triangle_count; t++, corner += 3, to->out += 3) {
+        to->out[0] = vertex[corner[0]];
+        to->out[1] = vertex[corner[flip ? 2 : 1]];
+        to->out[2] = vertex[corner[flip ? 1 : 2]];
     }
-    return out;
 }
 
-/* Writes the triangles of a row of cells from `out` to `end`: the one place where a cell's case
- * becomes triangles. */
+/* Writes the triangles of a row of cells: the one place where a cell's case becomes triangles.
+ */
 static void write_triangles(const cwi_grid *g, size_t j, size_t k, const cwi_row *rows,
-                            const cwi_emission *emission, cwi_vertex_sink *sink, uint32_t *out,
+                            const cwi_emission *emission, cwi_vertex_sink *sink, cwi_cursor *to,
                             const uint32_t *end)
 {
     edge_word e;
-    uint32_t inner = rows[k * g->rows_y + j].first[3];
     memset(&e, 0, sizeof e);
     for (int n = 0; n < 12; n++)
         e.first[n] = rows[(k + edge_rows[n].k) * g->rows_y + j + edge_rows[n].j]
@@ -397,9 +401,9 @@ static void write_triangles(const cwi_grid *g, size_t j, size_t k, const cwi_row
             const int i = __builtin_ctzll(left);
             if (ambiguous >> i & 1) {
                 const size_t at[3] = {64 * w + (size_t)i, j, k};
-                out = emit_ambiguous(g, at, &e, cases[i], emission->flip, sink, &inner, out);
+                emit_ambiguous(g, at, &e, cases[i], emission->flip, sink, to);
             } else {
-                out = emit(&e, i, cases[i], emission, out, end);
+                to->out = emit(&e, i, cases[i], emission, to->out, end);
             }
         }
         skip_word(&e);
@@ -410,11 +414,16 @@ void cwi_write_layers(const cwi_grid *g, size_t begin, size_t end, const cwi_row
                       const cwi_emission *emission, cwi_vertex_sink *sink, uint32_t *triangles)
 {
     cwi_write_vertices(g, begin, end, rows, sink);
-    for (size_t k = begin; k < end && k + 1 < g->rows_z; k++)
+    for (size_t k = begin; k < end && k + 1 < g->rows_z; k++) {
+        cwi_cursor to = {.plan = 0};
         for (size_t j = 0; j + 1 < g->rows_y; j++) {
             const cwi_row *row = rows + k * g->rows_y + j;
-            if (row[0].triangle != row[1].triangle)
-                write_triangles(g, j, k, rows, emission, sink, triangles + 3 * row[0].triangle,
-                                triangles + 3 * row[1].triangle);
+            if (row[0].triangle == row[1].triangle)
+                continue;
+            to.out = triangles + 3 * row[0].triangle;
+            to.inner = row[0].first[3];
+            write_triangles(g, j, k, rows, emission, sink, &to,
+                            triangles + 3 * row[1].triangle);
         }
+    }
 }

@@ -275,21 +275,47 @@ static bool can_tunnel(const cwi_cell_plan *plan)
     return m == 3 || n == 3 || (m == 4 && n == 4);
 }
 
-void cwi_cell_plan_make(unsigned cube, const double values[8], bool zero_inside,
-                        cwi_cell_plan *plan)
+static void count_parts(cwi_cell_plan *plan)
 {
-    *plan =
-        (cwi_cell_plan){.config = resolve_faces(cube, values, zero_inside), .tunnel = {-1, -1}};
     const cwi_config *config = plan->config;
-    find_tunnel(plan, cube, values, zero_inside);
-    if (!can_tunnel(plan))
-        plan->tunnel[0] = plan->tunnel[1] = -1;
+    plan->triangle_count = 0;
+    plan->vertex_count = has_tunnel(plan) ? 3 : 0;
     for (int l = 0; l < config->loop_count; l++) {
         const bool tube = is_tube(plan, l);
         plan->triangle_count += tube ? config->loop_length[l] + 3 : disc_triangles(config, l);
         plan->vertex_count += !tube && config->cone[l];
     }
-    plan->vertex_count += has_tunnel(plan) ? 3 : 0;
+}
+
+void cwi_cell_plan_make(unsigned cube, const double values[8], bool zero_inside,
+                        cwi_cell_plan *plan)
+{
+    *plan =
+        (cwi_cell_plan){.config = resolve_faces(cube, values, zero_inside), .tunnel = {-1, -1}};
+    find_tunnel(plan, cube, values, zero_inside);
+    if (!can_tunnel(plan))
+        plan->tunnel[0] = plan->tunnel[1] = -1;
+    count_parts(plan);
+}
+
+/* From the lowest bit: the configuration, and for each end of a tunnel its loop, from 1, and
+ * its corner. */
+uint32_t cwi_cell_plan_pack(const cwi_cell_plan *plan)
+{
+    uint32_t code = (uint32_t)(plan->config - cwi_configs);
+    for (int i = 0; i < 2 && has_tunnel(plan); i++)
+        code |= (uint32_t)((plan->tunnel[i] + 1) << 3 | plan->tunnel_corner[i]) << (10 + 6 * i);
+    return code;
+}
+
+void cwi_cell_plan_unpack(uint32_t code, cwi_cell_plan *plan)
+{
+    plan->config = cwi_configs + (code & 1023);
+    for (int i = 0; i < 2; i++) {
+        plan->tunnel[i] = (int)(code >> (13 + 6 * i) & 7) - 1;
+        plan->tunnel_corner[i] = (int)(code >> (10 + 6 * i) & 7);
+    }
+    count_parts(plan);
 }
 
 /* ---- surfaces -------------------------------------------------------------------------- */

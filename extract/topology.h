@@ -32,6 +32,10 @@ typedef struct cwi_cell_plan {
 void cwi_cell_plan_make(unsigned cube, const double values[8], bool zero_inside,
                         cwi_cell_plan *plan);
 
+/* A plan in 32 bits, and back. */
+uint32_t cwi_cell_plan_pack(const cwi_cell_plan *plan);
+void cwi_cell_plan_unpack(uint32_t code, cwi_cell_plan *plan);
+
 /* The surface of a cell. Triangles name edges 0 to 11, or 12 + n for the n-th vertex inside. */
 typedef struct cwi_cell {
     uint8_t triangles[3 * CWI_CELL_MAX_TRIANGLES];
