@@ -59,6 +59,10 @@ static const cli_option options[] = {
      offsetof(extract_args, json)},
     {"progress", 0, CLI_CHOICE, "auto/plain/json/none", "how to show it, on stderr (auto)",
      offsetof(extract_args, progress)},
+    {"preview", 0, CLI_FLAG, NULL, "a quick look: every 4th voxel along each axis (all)",
+     CLI_INPUT_ROW(extract_args, preview)},
+    {"coarsen", 0, CLI_COUNT, "N", "a preview of every N-th voxel (4 with --preview, else 1)",
+     CLI_INPUT_ROW(extract_args, coarsen)},
     CLI_INPUT_OPTIONS(extract_args),
 };
 
@@ -73,7 +77,9 @@ typedef struct run_state {
 
 static void put_params(cli_json *j, const void *p, const cli_made *made)
 {
-    const extract_args *args = p;
+    const run_state *s = p;
+    const extract_args *args = s->args;
+    const size_t *step = s->volume.coarsen;
     cli_json_number(j, "iso", made->iso);
     cli_json_text(j, "inside", args->inside ? "below" : "above");
     cli_json_bool(j, "open", args->open);
@@ -84,6 +90,9 @@ static void put_params(cli_json *j, const void *p, const cli_made *made)
         cli_json_text(j, "accel", args->accel ? "none" : "octree");
     cli_json_count(j, "component", args->input.component);
     cli_json_count(j, "step", args->input.step);
+    if (cli_is_preview(&s->volume))
+        cli_json_numbers(j, "coarsen",
+                         (double[3]){(double)step[0], (double)step[1], (double)step[2]}, 3);
 }
 
 static cw_write_desc write_desc(const extract_args *args)
@@ -154,7 +163,8 @@ static cw_status make_surface(run_state *s, size_t n, cw_error *err)
     const cli_delivery how = {.input = s->volume.path,
                               .write = write_desc(s->args),
                               .unchecked = !s->args->check,
-                              .open = s->args->open};
+                              .open = s->args->open,
+                              .preview = cli_is_preview(&s->volume)};
     cli_made *made = cli_report_next(&s->report, s->outputs.path[n], s->args->iso.value[n]);
     cw_mesh mesh = {0};
     cw_extract_counts counts;
@@ -224,7 +234,7 @@ static cw_status run(void *p, cw_error *err)
     s.report.command = "extract";
     s.report.several = args->iso.count > 1;
     s.report.params = put_params;
-    s.report.args = args;
+    s.report.args = &s;
     cli_console_start(&args->common, (cli_progress_mode)args->progress);
     if (args->json && strcmp(args->json, "-") == 0)
         cli_results_to_stderr();
@@ -247,6 +257,12 @@ const cli_command cli_extract = {
         "are\n"
         "inside. Where the solid meets the volume's border it is closed by a flat cap.\n"
         "Nothing is smoothed, reduced or dropped. The same bytes for any number of threads.\n\n"
+        "--preview is for finding a level: of the part chosen by --crop it takes every 4th "
+        "voxel\n"
+        "along each axis, as it stands, and needs time for these only, once the file is read. "
+        "It\n"
+        "is in its place, up to 3 voxels short of the far ends, and says that it is a "
+        "preview.\n\n"
         "STL, PLY and OBJ hold world coordinates; far from the world's zero single precision\n"
         "loses them, and extract warns. With --local they are relative to the mesh's origin:\n"
         "add it to get the world's. It is printed, and named in the report and in the file.\n"

@@ -93,6 +93,8 @@ static void print_summary(const cli_delivery *how, const cli_made *made, const c
     if (made->local)
         cli_result("; relative to %.15g, %.15g, %.15g mm", made->origin[0], made->origin[1],
                    made->origin[2]);
+    if (how->preview)
+        cli_result("; a preview");
     cli_result("; %.2f s\n", cli_seconds() - start);
 }
 

@@ -9,6 +9,7 @@ typedef struct cli_delivery {
     cw_write_desc write; /* but for the progress */
     bool unchecked;      /* default: measured, and refused when not as promised */
     bool open;           /* the surface may end at the volume's border */
+    bool preview;        /* not of all voxels: the line says so */
 } cli_delivery;
 
 /* Delivers the report's latest mesh to its path. The report gets the steps and what was found.

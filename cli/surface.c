@@ -12,10 +12,11 @@ static cw_status explain_empty(const cli_volume *volume, const cw_extract_desc *
         return st;
     if (!range.finite)
         return cw_fail(err, CW_ERR_EMPTY, "no voxel has a finite value");
-    return cw_fail(err, CW_ERR_EMPTY,
-                   "isovalue %g crosses nothing: values are %g to %g, and it must be above the "
-                   "lowest and at most the highest",
-                   desc->isovalue, range.min, range.max);
+    return cw_fail(
+        err, CW_ERR_EMPTY,
+        "isovalue %g crosses nothing: values%s are %g to %g, and it must be above the "
+        "lowest and at most the highest",
+        desc->isovalue, cli_is_preview(volume) ? " of the preview" : "", range.min, range.max);
 }
 
 cw_status cli_extract_surface(const cli_volume *volume, cw_extractor *extractor,
