@@ -1,20 +1,19 @@
 #include "cli/commands.h"
 #include "cli/console.h"
+#include "cli/deliver.h"
 #include "cli/output.h"
 #include "cli/quantity.h"
-#include "cli/report.h"
 #include "cli/surface.h"
 #include "core/status.h"
 
 #include <string.h>
-#include <sys/stat.h>
 
 typedef struct extract_args {
     cli_common common;
     cli_input input;
     const char *output, *name, *format, *json;
-    cli_number iso;
-    int inside, normals, progress, topology, placement;
+    cli_numbers iso;
+    int inside, normals, progress, topology, placement, accel;
     bool open, no_clobber, local, check;
     size_t max_triangles;
 } extract_args;
@@ -22,9 +21,11 @@ typedef struct extract_args {
 static const extract_args defaults = {.check = true};
 
 static const cli_option options[] = {
-    {"output", 'o', CLI_TEXT, "FILE", "the mesh: .glb, .gltf, .stl, .ply or .obj",
+    {"output", 'o', CLI_TEXT, "FILE",
+     "the mesh: .glb, .gltf, .stl, .ply or .obj; may hold {level} and {stem}",
      offsetof(extract_args, output)},
-    {"iso", 'i', CLI_NUMBER, "V", "the isovalue, in the unit of the values (required)",
+    {"iso", 'i', CLI_NUMBERS, "V[,V...]",
+     "the isovalue, or some, in the unit of the values (required)",
      offsetof(extract_args, iso)},
     {"inside", 0, CLI_CHOICE, "above/below", "which values are inside the solid (above)",
      offsetof(extract_args, inside)},
@@ -38,6 +39,9 @@ static const cli_option options[] = {
      offsetof(extract_args, placement)},
     {"normals", 0, CLI_CHOICE, "field/none", "normals from the field's gradient (field)",
      offsetof(extract_args, normals)},
+    {"accel", 0, CLI_CHOICE, "octree/none",
+     "whether isovalues share one pass over the voxels; same bytes (octree)",
+     offsetof(extract_args, accel)},
     {"name", 0, CLI_TEXT, "TEXT", "of the object inside the file (the output's stem)",
      offsetof(extract_args, name)},
     {"format", 0, CLI_TEXT, "NAME", "write this format of 'formats' (by extension)",
@@ -55,61 +59,89 @@ static const cli_option options[] = {
      offsetof(extract_args, json)},
     {"progress", 0, CLI_CHOICE, "auto/plain/json/none", "how to show it, on stderr (auto)",
      offsetof(extract_args, progress)},
+    {"preview", 0, CLI_FLAG, NULL, "a quick look: every 4th voxel along each axis (all)",
+     CLI_INPUT_ROW(extract_args, preview)},
+    {"coarsen", 0, CLI_COUNT, "N", "a preview of every N-th voxel (4 with --preview, else 1)",
+     CLI_INPUT_ROW(extract_args, coarsen)},
     CLI_INPUT_OPTIONS(extract_args),
 };
 
 typedef struct run_state {
     const extract_args *args;
     cli_volume volume;
-    cw_mesh mesh;
-    cw_extract_counts counts;
-    cw_quality quality;
+    cw_extractor *extractor; /* NULL: every surface by itself */
+    cli_outputs outputs;
     cli_report report;
-    double start;
+    double start; /* of the surface at hand */
 } run_state;
 
-static void put_params(cli_json *j, const void *p)
+static void put_params(cli_json *j, const void *p, const cli_made *made)
 {
-    const extract_args *args = p;
-    cli_json_number(j, "iso", args->iso.value);
+    const run_state *s = p;
+    const extract_args *args = s->args;
+    const size_t *step = s->volume.coarsen;
+    cli_json_number(j, "iso", made->iso);
     cli_json_text(j, "inside", args->inside ? "below" : "above");
     cli_json_bool(j, "open", args->open);
     cli_json_text(j, "topology", args->topology ? "simple" : "field");
     cli_json_text(j, "placement", args->placement ? "cubic" : "linear");
     cli_json_text(j, "normals", args->normals ? "none" : "field");
+    if (args->iso.count > 1)
+        cli_json_text(j, "accel", args->accel ? "none" : "octree");
     cli_json_count(j, "component", args->input.component);
     cli_json_count(j, "step", args->input.step);
+    if (cli_is_preview(&s->volume))
+        cli_json_numbers(j, "coarsen",
+                         (double[3]){(double)step[0], (double)step[1], (double)step[2]}, 3);
+}
+
+static cw_write_desc write_desc(const extract_args *args)
+{
+    return (cw_write_desc){.format = args->format,
+                           .name = args->name,
+                           .no_clobber = args->no_clobber,
+                           .local = args->local};
+}
+
+static cw_status check_outputs(run_state *s, cw_error *err)
+{
+    const extract_args *args = s->args;
+    const cw_write_desc desc = write_desc(args);
+    for (size_t n = 0; n < s->outputs.count && args->json; n++) {
+        cw_status st = cli_check_apart(args->json, s->outputs.path[n], err);
+        s->report.path = st == CW_OK ? args->json : NULL;
+        if (st != CW_OK)
+            return st;
+    }
+    return cli_check_outputs(&s->outputs, args->common.inputs[0], &desc, err);
 }
 
 /* Everything about the arguments that can be refused before the input is touched. The report is
- * an output too: until it is known not to be the input, none is written. */
+ * an output too: none is written when it is the input or a mesh. */
 static cw_status check_args(run_state *s, cw_error *err)
 {
     const extract_args *args = s->args;
-    const char *const *inputs = args->common.inputs;
-    cw_status st = args->json ? cli_check_output(args->json, inputs, 1, err) : CW_OK;
+    const char *const *input = args->common.inputs;
+    cw_status st = args->json ? cli_check_output(args->json, input, 1, err) : CW_OK;
     if (st != CW_OK)
         return st;
     s->report.path = args->json;
     if (!args->output)
         return cw_fail(err, CW_ERR_ARGUMENT, "extract needs an output: -o FILE");
-    if (!args->iso.given)
+    if (!args->iso.count)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "extract needs a level: --iso V; 'cubewright info %s' suggests some",
-                       inputs[0]);
-    st = cli_check_output(args->output, inputs, 1, err);
-    if (st != CW_OK)
-        return st;
-    return cw_mesh_write_check(
-        args->output, &(cw_write_desc){.format = args->format, .no_clobber = args->no_clobber},
-        err);
+                       input[0]);
+    st = cli_name_outputs(&s->outputs, args->output, input[0], &args->iso, err);
+    return st == CW_OK ? check_outputs(s, err) : st;
 }
 
-static cw_status extract(run_state *s, cw_error *err)
+static cw_status extract(run_state *s, double iso, cw_mesh *mesh, cw_extract_counts *counts,
+                         cw_error *err)
 {
     const cw_volume *v = &s->volume.view;
     const cw_extract_desc desc = {
-        .isovalue = s->args->iso.value,
+        .isovalue = iso,
         .inside_is_low = s->args->inside,
         .leave_open = s->args->open,
         .simple_topology = s->args->topology,
@@ -119,109 +151,58 @@ static cw_status extract(run_state *s, cw_error *err)
         .max_triangles = s->args->max_triangles,
     };
     cli_report_begin(&s->report);
-    cw_status st = cli_extract_surface(&s->volume, &desc, &s->mesh, &s->counts, err);
+    cw_status st = cli_extract_surface(&s->volume, s->extractor, &desc, mesh, counts, err);
     if (st == CW_OK)
         cli_report_end(&s->report, "extract", v->dim[0] * v->dim[1] * v->dim[2],
-                       s->mesh.triangle_count);
+                       mesh->triangle_count);
     return st;
 }
 
-/* The promise: closed unless --open, and a manifold without zero-area triangles in any case. */
-static cw_status check(run_state *s, cw_error *err)
+static cw_status make_surface(run_state *s, size_t n, cw_error *err)
 {
-    cw_quality *q = &s->quality;
-    cli_report_begin(&s->report);
-    cw_status st = cw_quality_measure(&s->mesh, NULL, q, err);
-    if (st != CW_OK)
-        return st;
-    cli_report_end(&s->report, "check", s->mesh.triangle_count, s->mesh.triangle_count);
-    s->report.quality = q;
-    if (q->nonmanifold_edges || q->nonmanifold_vertices || q->misoriented_edges ||
-        q->degenerate || (q->open_edges && !s->args->open))
-        return cw_fail(
-            err, CW_ERR_CHECK,
-            "%s: the surface at %g is not as promised: %zu open, %zu non-manifold, %zu "
-            "misoriented edges, %zu non-manifold vertices, %zu degenerate triangles; "
-            "nothing is written (--no-check writes it)",
-            s->volume.path, s->args->iso.value, q->open_edges, q->nonmanifold_edges,
-            q->misoriented_edges, q->nonmanifold_vertices, q->degenerate);
-    return CW_OK;
-}
-
-static void warn_of_loss(run_state *s, const cw_write_loss *loss)
-{
-    if (loss->merged_vertices || loss->flat_triangles)
-        cli_report_warn(
-            &s->report,
-            "%s: so far from zero single precision has steps of %.3g mm: %s of %s vertices "
-            "fall together, %s of %s triangles lose their area; --local or .glb keeps them",
-            cli_shown_path(s->args->output), loss->step_mm, cli_count(loss->merged_vertices),
-            cli_count(s->mesh.vertex_count), cli_count(loss->flat_triangles),
-            cli_count(s->mesh.triangle_count));
-}
-
-static cw_status write_mesh(run_state *s, cw_error *err)
-{
-    const cw_write_desc desc = {
-        .format = s->args->format,
-        .name = s->args->name,
-        .no_clobber = s->args->no_clobber,
-        .local = s->args->local,
-        .progress = cli_progress((double)s->mesh.triangle_count / 1e6, "Mtriangle"),
-    };
-    cw_write_loss loss;
-    cli_report_begin(&s->report);
-    cw_status st = cw_mesh_write_loss(s->args->output, &s->mesh, &desc, &loss, err);
+    const cli_delivery how = {.input = s->volume.path,
+                              .write = write_desc(s->args),
+                              .unchecked = !s->args->check,
+                              .open = s->args->open,
+                              .preview = cli_is_preview(&s->volume)};
+    cli_made *made = cli_report_next(&s->report, s->outputs.path[n], s->args->iso.value[n]);
+    cw_mesh mesh = {0};
+    cw_extract_counts counts;
+    cw_status st = extract(s, made->iso, &mesh, &counts, err);
     if (st == CW_OK)
-        st = cw_mesh_write(s->args->output, &s->mesh, &desc, err);
-    if (st == CW_OK) {
-        s->report.output = s->args->output;
-        s->report.local_origin = desc.local ? s->mesh.origin : NULL;
-        warn_of_loss(s, &loss);
-        cli_report_end(&s->report, "write", s->mesh.triangle_count, s->mesh.triangle_count);
-    }
+        st = cli_deliver(&s->report, &how, &mesh, counts.border_loops, s->start, err);
+    cw_mesh_free(&mesh);
+    s->start = cli_seconds();
+    if (st != CW_OK)
+        made->error = *err;
     return st;
 }
 
-static void print_topology(const run_state *s)
+/* An empty level among several is told and passed over; any other failure ends the run. */
+static cw_status make_surfaces(run_state *s, cw_error *err)
 {
-    const cw_quality *q = &s->quality;
-    if (s->args->open)
-        cli_result("; manifold, %s", q->open_edges ? "open at the volume's border" : "closed");
-    else if (s->counts.border_loops)
-        cli_result("; closed (%s %s at the volume's border capped), manifold",
-                   cli_count(s->counts.border_loops),
-                   s->counts.border_loops == 1 ? "loop" : "loops");
-    else
-        cli_result("; closed, manifold");
-    cli_result("; %s %s; box %.6g x %.6g x %.6g mm", cli_count(q->components),
-               q->components == 1 ? "component" : "components", q->max[0] - q->min[0],
-               q->max[1] - q->min[1], q->max[2] - q->min[2]);
+    const size_t count = s->args->iso.count;
+    size_t empty = 0;
+    for (size_t n = 0; n < count; n++) {
+        cw_status st = make_surface(s, n, err);
+        if (st != CW_OK && (st != CW_ERR_EMPTY || count == 1))
+            return st;
+        if (st == CW_ERR_EMPTY) {
+            cli_say_error(err->message);
+            empty++;
+        }
+    }
+    return empty ? cw_fail(err, CW_ERR_EMPTY, "%s: empty levels: %zu of %zu", s->volume.path,
+                           empty, count)
+                 : CW_OK;
 }
 
-static void print_summary(const run_state *s)
-{
-    struct stat info = {0};
-    stat(s->args->output, &info);
-    cli_result("%s: %s vertices, %s triangles, %s", s->args->output,
-               cli_count(s->mesh.vertex_count), cli_count(s->mesh.triangle_count),
-               cli_bytes((double)info.st_size));
-    if (s->args->check)
-        print_topology(s);
-    if (s->args->local)
-        cli_result("; relative to %.15g, %.15g, %.15g mm", s->mesh.origin[0], s->mesh.origin[1],
-                   s->mesh.origin[2]);
-    cli_result("; %.2f s\n", cli_seconds() - s->start);
-}
-
-static cw_status pipeline(run_state *s, cw_error *err)
+static cw_status read_volume(run_state *s, cw_error *err)
 {
     const extract_args *args = s->args;
-    cw_status st = check_args(s, err);
-    if (st != CW_OK)
-        return st;
     cli_report_begin(&s->report);
-    st = cli_read_volume(args->common.inputs[0], &args->input, false, &s->volume, err);
+    cw_status st =
+        cli_read_volume(args->common.inputs[0], &args->input, false, &s->volume, err);
     if (st != CW_OK)
         return st;
     const cw_volume *v = &s->volume.view;
@@ -230,28 +211,38 @@ static cw_status pipeline(run_state *s, cw_error *err)
     for (int r = 0; r < 3; r++)
         cli_say_vv("affine   %12.6g %12.6g %12.6g %12.6g", v->affine[r][0], v->affine[r][1],
                    v->affine[r][2], v->affine[r][3]);
-    st = extract(s, err);
-    if (st == CW_OK && args->check)
-        st = check(s, err);
+    return CW_OK;
+}
+
+static cw_status pipeline(run_state *s, cw_error *err)
+{
+    const extract_args *args = s->args;
+    cw_status st = check_args(s, err);
     if (st == CW_OK)
-        st = write_mesh(s, err);
-    return st;
+        st = read_volume(s, err);
+    if (st == CW_OK && args->iso.count > 1 && !args->accel) {
+        st = cw_extractor_new(&s->volume.view, &s->extractor, err);
+        st = st == CW_OK ? st : cwi_fail_in(err, st, s->volume.path);
+    }
+    return st == CW_OK ? make_surfaces(s, err) : st;
 }
 
 static cw_status run(void *p, cw_error *err)
 {
     const extract_args *args = p;
     run_state s = {.args = args, .start = cli_seconds()};
-    s.report = (cli_report){.command = "extract", .params = put_params, .args = args};
+    s.report.command = "extract";
+    s.report.several = args->iso.count > 1;
+    s.report.params = put_params;
+    s.report.args = &s;
     cli_console_start(&args->common, (cli_progress_mode)args->progress);
     if (args->json && strcmp(args->json, "-") == 0)
         cli_results_to_stderr();
     cw_status st = pipeline(&s, err);
-    if (st == CW_OK)
-        print_summary(&s);
     st = cli_report_write(&s.report, st, err);
-    cw_mesh_free(&s.mesh);
+    cw_extractor_free(s.extractor);
     cw_volume_free(&s.volume.whole);
+    cli_free_outputs(&s.outputs);
     return st;
 }
 
@@ -266,12 +257,25 @@ const cli_command cli_extract = {
         "are\n"
         "inside. Where the solid meets the volume's border it is closed by a flat cap.\n"
         "Nothing is smoothed, reduced or dropped. The same bytes for any number of threads.\n\n"
+        "--preview is for finding a level: of the part chosen by --crop it takes every 4th "
+        "voxel\n"
+        "along each axis, as it stands, and needs time for these only, once the file is read. "
+        "It\n"
+        "is in its place, up to 3 voxels short of the far ends, and says that it is a "
+        "preview.\n\n"
         "STL, PLY and OBJ hold world coordinates; far from the world's zero single precision\n"
         "loses them, and extract warns. With --local they are relative to the mesh's origin:\n"
         "add it to get the world's. It is printed, and named in the report and in the file.\n"
         "In GLB and glTF, which lose nothing, --local leaves out the node's translation.\n\n"
+        "Several isovalues make one file each, whose names tell them apart by {level}; {stem}\n"
+        "is the input's name without its extension. Those after the first read only the parts\n"
+        "of the volume that they cross (--accel octree). A level that crosses nothing is told\n"
+        "and passed over, and the exit code is then 9; after any other failure the files that\n"
+        "were finished stay. The report lists every level under 'surfaces', each with what\n"
+        "'mesh' is for a single one; 'output' lists the files in either case.\n\n"
         "Examples\n"
         "  cubewright extract head.nii.gz --iso 50 -o head.glb\n"
+        "  cubewright extract ct.nrrd --iso -400,300 -o '{stem}-{level}.glb'\n"
         "  cubewright extract ct.nrrd --iso 300 -o bone.stl --json report.json\n"
         "  cubewright extract slab.raw --raw dims=512x512x300,type=u16le --spacing 0.5mm \\\n"
         "      --iso 1200 -o part.ply\n",

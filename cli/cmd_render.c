@@ -95,7 +95,7 @@ static cw_status run(void *p, cw_error *err)
     if (st == CW_OK)
         st = cli_read_volume(args->common.inputs[0], &args->input, false, &volume, err);
     if (st == CW_OK)
-        st = cli_extract_surface(&volume,
+        st = cli_extract_surface(&volume, NULL,
                                  &(cw_extract_desc){.isovalue = args->iso.value,
                                                     .inside_is_low = args->inside,
                                                     .threads = (int)args->input.threads},

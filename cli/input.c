@@ -129,6 +129,33 @@ static cw_status crop(const cli_input *input, cw_volume *view, cw_error *err)
     return st;
 }
 
+/* Every so many-th voxel of what was chosen so far; along thin axes fewer are passed over, so
+ * that two are left. */
+static cw_status coarsen(const cli_input *input, cli_volume *volume, cw_error *err)
+{
+    const size_t asked = input->coarsen ? input->coarsen : input->preview ? 4 : 1;
+    size_t *step = volume->coarsen;
+    cw_volume all = volume->view, *v = &volume->view;
+    for (int a = 0; a < 3; a++)
+        step[a] = asked < all.dim[a] ? asked : all.dim[a] > 2 ? all.dim[a] - 1 : 1;
+    if (asked == 1)
+        return CW_OK;
+    cw_status st = cw_volume_coarsen(&all, step, v, err);
+    if (st == CW_OK)
+        cli_say(
+            "preview: one voxel in %zu x %zu x %zu, %zu x %zu x %zu of %zu x %zu x %zu; what "
+            "is thinner may be lost",
+            step[0], step[1], step[2], v->dim[0], v->dim[1], v->dim[2], all.dim[0], all.dim[1],
+            all.dim[2]);
+    return st;
+}
+
+bool cli_is_preview(const cli_volume *volume)
+{
+    const size_t *step = volume->coarsen;
+    return step[0] > 1 || step[1] > 1 || step[2] > 1;
+}
+
 static cw_status read_both(const char *path, cw_read_desc *desc, bool header_only,
                            const cli_input *input, cli_volume *volume, cw_error *err)
 {
@@ -157,11 +184,13 @@ static cw_status read_both(const char *path, cw_read_desc *desc, bool header_onl
     volume->memory_left = (double)desc->max_bytes > bytes ? desc->max_bytes - (size_t)bytes : 1;
     if (st == CW_OK)
         st = choose(input, volume, err);
-    if (st == CW_OK && input->crop.given) {
+    if (st != CW_OK)
+        return st;
+    if (input->crop.given)
         st = crop(input, &volume->view, err);
-        st = st == CW_OK ? st : cwi_fail_in(err, st, path);
-    }
-    return st;
+    if (st == CW_OK)
+        st = coarsen(input, volume, err);
+    return st == CW_OK ? st : cwi_fail_in(err, st, path);
 }
 
 cw_status cli_read_volume(const char *path, const cli_input *input, bool header_only,

@@ -14,7 +14,8 @@ typedef struct cli_input {
     cli_ranges crop;
     size_t component, step;
     size_t threads, memory;
-    bool allow_external;
+    bool allow_external, preview;
+    size_t coarsen; /* 0: 4 for a preview, else 1 */
 } cli_input;
 
 /* Rows for a command whose struct has the field `input`. */
@@ -73,15 +74,19 @@ typedef struct cli_input {
 typedef struct cli_volume {
     const char *path, *format;
     cw_volume whole; /* owns the voxels */
-    cw_volume view;  /* the chosen component, step and part, spacing applied */
+    cw_volume view;  /* the chosen component, step, part and samples, spacing applied */
     double spacing[3];
     size_t memory_left; /* of the limit, after the voxels */
+    size_t coarsen[3];  /* the view's step along each axis */
 } cli_volume;
 
 /* Reads the header, says what was found, then reads the voxels (unless header_only). Errors
  * name the file. Free with cw_volume_free(&volume->whole). */
 cw_status cli_read_volume(const char *path, const cli_input *input, bool header_only,
                           cli_volume *volume, cw_error *err);
+
+/* Whether the view leaves voxels out between those it has. */
+bool cli_is_preview(const cli_volume *volume);
 
 /* "nifti, 181 x 217 x 181 u8, 1 x 1 x 1 mm" into static memory. */
 const char *cli_describe(const cli_volume *volume);

@@ -129,6 +129,8 @@ static bool store(const cli_option *o, const char *text, void *field)
         return (*(int *)field = find_choice(o->value, text)) >= 0;
     case CLI_NUMBER:
         return cli_parse_number(text, field);
+    case CLI_NUMBERS:
+        return cli_parse_numbers(text, field);
     case CLI_COUNT:
         return cli_parse_count(text, 1000, field);
     case CLI_BYTES:
@@ -151,6 +153,8 @@ static const char *expectation(const cli_option *o)
         return o->value;
     case CLI_NUMBER:
         return "a number";
+    case CLI_NUMBERS:
+        return "a number, or up to 64 by comma such as 50,300";
     case CLI_COUNT:
         return "a whole number such as 500, 50k or 2M";
     case CLI_BYTES:

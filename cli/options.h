@@ -9,6 +9,7 @@ typedef enum cli_kind {
     CLI_TEXT,    /* const char * */
     CLI_CHOICE,  /* int: the position in value, names parted by '/' */
     CLI_NUMBER,  /* cli_number */
+    CLI_NUMBERS, /* cli_numbers: 300 or 50,300 */
     CLI_COUNT,   /* size_t: 50k, 100M */
     CLI_BYTES,   /* size_t: 512M, 8G (1024s) */
     CLI_LENGTHS, /* cli_lengths: one for all axes or three; 0.5mm,12um, bare is mm */
@@ -21,6 +22,13 @@ typedef struct cli_number {
     bool given;
     double value;
 } cli_number;
+
+enum { CLI_MAX_NUMBERS = 64 };
+
+typedef struct cli_numbers {
+    size_t count; /* 0: none given */
+    double value[CLI_MAX_NUMBERS];
+} cli_numbers;
 
 typedef struct cli_lengths {
     bool given;

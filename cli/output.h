@@ -1,11 +1,35 @@
-/* What can be known of an output before the work is done. */
+/* What can be known of outputs before the work is done: their names, and whether they can be.
+ */
 #ifndef CLI_OUTPUT_H
 #define CLI_OUTPUT_H
 
-#include <cubewright/core.h>
+#include "cli/options.h"
+
+#include <cubewright/formats.h>
 
 /* Fails when the output is one of the inputs, by any name. */
 cw_status cli_check_output(const char *output, const char *const *inputs, size_t input_count,
                            cw_error *err);
+
+/* Fails when two outputs are the same file, by name or by a link. */
+cw_status cli_check_apart(const char *a, const char *b, cw_error *err);
+
+/* One output a level. */
+typedef struct cli_outputs {
+    size_t count;
+    char *path[CLI_MAX_NUMBERS];
+} cli_outputs;
+
+/* Names them: {level} and {stem} (the input's) of the text are filled in. Free, also after
+ * failure, with cli_free_outputs().
+ * Returns CW_ERR_ARGUMENT for a level that is there twice, an unknown {part}, and when several
+ * levels come without {level}; CW_ERR_NO_MEMORY */
+cw_status cli_name_outputs(cli_outputs *outputs, const char *text, const char *input,
+                           const cli_numbers *levels, cw_error *err);
+void cli_free_outputs(cli_outputs *outputs);
+
+/* Fails when one of them could not be written, is the input or another of them. */
+cw_status cli_check_outputs(const cli_outputs *outputs, const char *input,
+                            const cw_write_desc *desc, cw_error *err);
 
 #endif

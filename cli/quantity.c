@@ -12,6 +12,19 @@ bool cli_parse_number(const char *text, cli_number *out)
     return out->given;
 }
 
+bool cli_parse_numbers(const char *text, cli_numbers *out)
+{
+    for (out->count = 0; out->count < CLI_MAX_NUMBERS; text++) {
+        double *value = &out->value[out->count++];
+        if (!cwi_parse_double(&text, value) || !isfinite(*value))
+            return false;
+        *value += 0.0; /* -0 is 0 */
+        if (*text != ',')
+            return *text == '\0';
+    }
+    return false;
+}
+
 /* A number and its unit, as millimetres; *text moves behind it. *unit: whether there was one.
  */
 static bool parse_length(const char **text, double *mm, bool *unit)
@@ -133,5 +146,22 @@ const char *cli_count(size_t count)
         text[n++] = digits[i];
     }
     text[n] = '\0';
+    return text;
+}
+
+const char *cli_number_text(double value)
+{
+    char *text = next_buffer();
+    const char *end = text;
+    double same;
+    if (value == floor(value) && fabs(value) < 1e15) {
+        snprintf(text, LONGEST, "%.0f", value);
+        return text;
+    }
+    for (int digits = 1; digits <= 17; digits++, end = text) {
+        snprintf(text, LONGEST, "%.*g", digits, value);
+        if (cwi_parse_double(&end, &same) && same == value)
+            break;
+    }
     return text;
 }

@@ -5,6 +5,7 @@
 #include "cli/options.h"
 
 bool cli_parse_number(const char *text, cli_number *out);
+bool cli_parse_numbers(const char *text, cli_numbers *out);
 bool cli_parse_lengths(const char *text, cli_lengths *out);
 bool cli_parse_sizes(const char *text, cli_sizes *out);
 bool cli_parse_ranges(const char *text, cli_ranges *out);
@@ -12,8 +13,12 @@ bool cli_parse_ranges(const char *text, cli_ranges *out);
 /* A count with an optional k, M, G or T of the given thousand: 1000, or 1024 for bytes. */
 bool cli_parse_count(const char *text, double thousand, size_t *out);
 
-/* "12.3 MB" and "1 234 567" in static memory; the last eight results are kept. */
+/* "12.3 MB", "1 234 567", and a number as people would type it: the shortest text that reads
+ * back the same, whole numbers without an exponent. In static memory; the last eight results
+ * are kept.
+ */
 const char *cli_bytes(double bytes);
 const char *cli_count(size_t count);
+const char *cli_number_text(double value);
 
 #endif

@@ -12,6 +12,13 @@
 #include <string.h>
 #include <sys/stat.h>
 
+cli_made *cli_report_next(cli_report *report, const char *path, double iso)
+{
+    cli_made *made = &report->made[report->made_count++];
+    *made = (cli_made){.path = path, .iso = iso};
+    return made;
+}
+
 void cli_report_begin(cli_report *report)
 {
     report->step_start = cli_seconds();
@@ -20,17 +27,23 @@ void cli_report_begin(cli_report *report)
 void cli_report_end(cli_report *report, const char *name, size_t in, size_t out)
 {
     cli_step *s = &report->steps[report->step_count++];
-    *s = (cli_step){name, cli_seconds() - report->step_start, cli_peak_bytes(), in, out};
+    *s = (cli_step){.name = name,
+                    .made = report->made_count - 1,
+                    .seconds = cli_seconds() - report->step_start,
+                    .peak_bytes = cli_peak_bytes(),
+                    .in = in,
+                    .out = out};
     cli_say_v("%-8s %8.3f s, peak %s", s->name, s->seconds, cli_bytes((double)s->peak_bytes));
 }
 
 void cli_report_warn(cli_report *report, const char *format, ...)
 {
+    cli_made *made = &report->made[report->made_count - 1];
     va_list args;
     va_start(args, format);
-    vsnprintf(report->warning, sizeof report->warning, format, args);
+    vsnprintf(made->warning, sizeof made->warning, format, args);
     va_end(args);
-    cli_say("cubewright: warning: %s", report->warning);
+    cli_say("cubewright: warning: %s", made->warning);
 }
 
 static void put_features(cli_json *j)
@@ -53,7 +66,7 @@ static void put_steps(cli_json *j, const cli_report *r)
         cli_json_text(j, "name", s->name);
         if (strcmp(s->name, r->command) == 0) {
             cli_json_open(j, "params", '{');
-            r->params(j, r->args);
+            r->params(j, r->args, &r->made[s->made]);
             cli_json_close(j, '}');
         }
         cli_json_number(j, "seconds", rint(s->seconds * 1e6) / 1e6);
@@ -85,20 +98,59 @@ static void put_mesh(cli_json *j, const cw_quality *q)
     cli_json_close(j, '}');
 }
 
-static void put_output(cli_json *j, const char *path, const double *local_origin)
+static void put_surfaces(cli_json *j, const cli_report *r)
 {
-    struct stat info;
-    cli_json_open(j, "output", '[');
-    if (path && stat(path, &info) == 0) {
+    cli_json_open(j, "surfaces", '[');
+    for (const cli_made *m = r->made; m < r->made + r->made_count; m++) {
         cli_json_open(j, NULL, '{');
-        cli_json_text(j, "path", cli_shown_path(path));
-        cli_json_count(j, "bytes", (size_t)info.st_size);
-        cli_json_text(j, "compression", "none");
-        cli_json_bool(j, "local", local_origin);
-        if (local_origin)
-            cli_json_numbers(j, "origin", local_origin, 3);
+        cli_json_number(j, "iso", m->iso);
+        if (m->written)
+            cli_json_text(j, "path", cli_shown_path(m->path));
+        if (m->measured)
+            put_mesh(j, &m->quality);
+        cli_json_text(j, "status", cw_status_name(m->error.status));
+        if (m->error.status != CW_OK)
+            cli_json_text(j, "message", m->error.message);
         cli_json_close(j, '}');
     }
+    cli_json_close(j, ']');
+}
+
+static void put_output(cli_json *j, const cli_made *made)
+{
+    struct stat info;
+    if (!made->written || stat(made->path, &info) != 0)
+        return;
+    cli_json_open(j, NULL, '{');
+    cli_json_text(j, "path", cli_shown_path(made->path));
+    cli_json_count(j, "bytes", (size_t)info.st_size);
+    cli_json_text(j, "compression", "none");
+    cli_json_bool(j, "local", made->local);
+    if (made->local)
+        cli_json_numbers(j, "origin", made->origin, 3);
+    cli_json_close(j, '}');
+}
+
+static void put_made(cli_json *j, const cli_report *r)
+{
+    if (r->several)
+        put_surfaces(j, r);
+    else if (r->made[0].measured)
+        put_mesh(j, &r->made[0].quality);
+    cli_json_open(j, "output", '[');
+    for (size_t n = 0; n < r->made_count; n++)
+        put_output(j, &r->made[n]);
+    cli_json_close(j, ']');
+}
+
+static void put_warnings(cli_json *j, const cli_report *r)
+{
+    cli_json_open(j, "warnings", '[');
+    if (r->input && !(r->input->whole.known & CW_KNOWN_UNIT))
+        cli_json_text(j, NULL, "the input names no unit: taken as mm");
+    for (size_t n = 0; n < r->made_count; n++)
+        if (r->made[n].warning[0])
+            cli_json_text(j, NULL, r->made[n].warning);
     cli_json_close(j, ']');
 }
 
@@ -114,15 +166,8 @@ static void put_report(FILE *out, const cli_report *r, cw_status status, const c
     if (r->input)
         cli_json_input(&j, r->input);
     put_steps(&j, r);
-    if (r->quality)
-        put_mesh(&j, r->quality);
-    put_output(&j, status == CW_OK ? r->output : NULL, r->local_origin);
-    cli_json_open(&j, "warnings", '[');
-    if (r->input && !(r->input->whole.known & CW_KNOWN_UNIT))
-        cli_json_text(&j, NULL, "the input names no unit: taken as mm");
-    if (r->warning[0])
-        cli_json_text(&j, NULL, r->warning);
-    cli_json_close(&j, ']');
+    put_made(&j, r);
+    put_warnings(&j, r);
     cli_json_text(&j, "status", cw_status_name(status));
     if (status != CW_OK)
         cli_json_text(&j, "message", err->message);

@@ -7,34 +7,49 @@
 
 #include <cubewright/quality.h>
 
-enum { CLI_MAX_STEPS = 8 };
+enum { CLI_MAX_MADE = CLI_MAX_NUMBERS, CLI_MAX_STEPS = 4 * CLI_MAX_MADE };
 
 typedef struct cli_step {
     const char *name;
+    size_t made; /* which mesh it is about; nothing to go by before the first */
     double seconds;
     size_t peak_bytes, in, out;
 } cli_step;
 
+/* One mesh of a run, as far as it has come. */
+typedef struct cli_made {
+    const char *path; /* where it goes */
+    double iso;
+    bool measured, written, local;
+    cw_quality quality; /* when it is measured */
+    double origin[3];   /* when it is local: the places in the file are relative to it */
+    char warning[512];  /* "": none */
+    cw_error error;     /* with the status CW_OK: none */
+} cli_made;
+
 typedef struct cli_report {
     const char *path; /* of the report; "-" is stdout; NULL: none is written */
     const char *command;
-    const cli_volume *input;    /* NULL: not read */
-    const cw_quality *quality;  /* NULL: not measured */
-    const char *output;         /* NULL: not written */
-    const double *local_origin; /* the output's places are relative to it; NULL: the world's */
-    char warning[512];          /* "": none */
-    void (*params)(cli_json *j, const void *args); /* writes the settings of the main step */
+    const cli_volume *input; /* NULL: not read */
+    cli_made made[CLI_MAX_MADE];
+    size_t made_count; /* meshes begun so far */
+    bool several;      /* meshes were asked for: the report lists them */
+    /* Writes the settings of the main step, for one mesh. */
+    void (*params)(cli_json *j, const void *args, const cli_made *made);
     const void *args;
     cli_step steps[CLI_MAX_STEPS];
     size_t step_count;
     double step_start;
 } cli_report;
 
+/* The next mesh of a run: steps and warnings from now on are about it. */
+cli_made *cli_report_next(cli_report *report, const char *path, double iso);
+
 /* Times a step, from one call to the other. -v prints it. */
 void cli_report_begin(cli_report *report);
 void cli_report_end(cli_report *report, const char *name, size_t in, size_t out);
 
-/* Says it on stderr, unless quiet, and keeps it for the report. */
+/* Says it of the latest mesh on stderr, unless quiet, and keeps it for the report. */
 void cli_report_warn(cli_report *report, const char *format, ...) CW_PRINTF(2, 3);
 
 /* Writes the report of a run that ended so, if one was asked for. Returns that status, or why

@@ -7,8 +7,10 @@
 #include <cubewright/extract.h>
 
 /* cw_extract() with progress, within the memory that is left, and with an empty result turned
- * into CW_ERR_EMPTY that tells the range of the values. Errors name the file. */
-cw_status cli_extract_surface(const cli_volume *volume, const cw_extract_desc *desc,
-                              cw_mesh *mesh, cw_extract_counts *counts, cw_error *err);
+ * into CW_ERR_EMPTY that tells the range of the values. Errors name the file.
+ * extractor  of volume->view, for another surface of it; NULL: this one by itself */
+cw_status cli_extract_surface(const cli_volume *volume, cw_extractor *extractor,
+                              const cw_extract_desc *desc, cw_mesh *mesh,
+                              cw_extract_counts *counts, cw_error *err);
 
 #endif

@@ -93,6 +93,14 @@ CW_API cw_status cw_volume_select(const cw_volume *in, size_t component, size_t 
 CW_API cw_status cw_volume_crop(const cw_volume *in, const cw_box *box, cw_volume *out,
                                 cw_error *err);
 
+/* A borrowed view of every step[a]-th voxel along axis a, from the first one on, each where it
+ * was: for a quick look. Values are picked, not averaged. Up to step[a] - 1 voxels at the far
+ * end are beyond the view. Returns CW_ERR_ARGUMENT for a step of 0 and for one, other than 1,
+ * that leaves a single voxel: at most dim[a] - 1; when the affine leaves the range of doubles.
+ */
+CW_API cw_status cw_volume_coarsen(const cw_volume *in, const size_t step[3], cw_volume *out,
+                                   cw_error *err);
+
 /* The value (scaled) of one voxel of the first component and step; slow, for tests and probes.
  */
 CW_API double cw_volume_value(const cw_volume *volume, size_t i, size_t j, size_t k);

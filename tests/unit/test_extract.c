@@ -128,6 +128,59 @@ static void cubics_are_far_closer_and_of_higher_order(void **state)
     }
 }
 
+/* Every fourth sample along each axis: a sphere still, as near as a grid four times as wide
+ * makes it. */
+static void a_coarse_sphere_is_near_the_sphere(void **state)
+{
+    (void)state;
+    const size_t step[3] = {4, 4, 4};
+    cw_volume v = test_sample(CW_FIELD_SPHERE, 65, CW_F32), coarse;
+    cw_error err = {0};
+    double distance, angle, spacing[3];
+    assert_ok(cw_volume_coarsen(&v, step, &coarse, &err), err);
+    cw_volume_spacing(&coarse, spacing);
+    cw_mesh mesh = test_extract(&coarse, NULL, NULL);
+    const cw_quality q = test_check_promise(&mesh, false);
+    assert_int_equal(q.euler, 2);
+    assert_within(q.volume_mm3, 4.0 / 3 * PI * 30 * 30 * 30, 0.05);
+    largest_errors(CW_FIELD_SPHERE, &mesh, &distance, &angle);
+    assert_near(spacing[0], 5, 1e-9);
+    assert_true(distance < spacing[0] * spacing[0] / (4 * 30)); /* curvature is 1 / 30 mm */
+    cw_mesh_free(&mesh);
+    cw_volume_free(&v);
+}
+
+/* Voxels that stand apart give the bytes of the same voxels side by side, for every type. */
+static void a_coarse_view_is_as_good_as_its_copy(void **state)
+{
+    (void)state;
+    const size_t step[3] = {2, 4, 3};
+    for (int type = 0; type < CW_TYPE_COUNT; type++) {
+        cw_volume v = test_sample(CW_FIELD_GYROID, 70, (cw_type)type), coarse, copy;
+        const cw_extract_desc desc = {.isovalue =
+                                          cw_field_stored(CW_FIELD_GYROID, (cw_type)type, 0)};
+        cw_error err = {0};
+        test_turn(&v, type);
+        assert_ok(cw_volume_coarsen(&v, step, &coarse, &err), err);
+        assert_ok(cw_volume_alloc(&copy, v.type, coarse.dim, 1, 1, &err), err);
+        memcpy(copy.affine, coarse.affine, sizeof copy.affine);
+        for (size_t n = 0; n < copy.dim[0] * copy.dim[1] * copy.dim[2]; n++) {
+            const size_t i = n % copy.dim[0], j = n / copy.dim[0] % copy.dim[1];
+            const size_t k = n / copy.dim[0] / copy.dim[1], size = cw_type_size(v.type);
+            memcpy((char *)cw_volume_voxels(&copy) + n * size,
+                   (const char *)v.data + ((3 * k * 70 + 4 * j) * 70 + 2 * i) * size, size);
+        }
+        cw_mesh apart = test_extract(&coarse, &desc, NULL);
+        cw_mesh packed = test_extract(&copy, &desc, NULL);
+        assert_true(apart.triangle_count > 0);
+        test_assert_same_mesh(&apart, &packed);
+        cw_mesh_free(&apart);
+        cw_mesh_free(&packed);
+        cw_volume_free(&copy);
+        cw_volume_free(&v);
+    }
+}
+
 static void torus_has_one_handle(void **state)
 {
     (void)state;
@@ -506,6 +559,8 @@ int main(void)
         cmocka_unit_test(sphere_is_closed_round_and_full),
         cmocka_unit_test(positions_and_normals_converge_with_second_order),
         cmocka_unit_test(cubics_are_far_closer_and_of_higher_order),
+        cmocka_unit_test(a_coarse_sphere_is_near_the_sphere),
+        cmocka_unit_test(a_coarse_view_is_as_good_as_its_copy),
         cmocka_unit_test(torus_has_one_handle),
         cmocka_unit_test(plane_is_exact),
         cmocka_unit_test(gyroid_parts_the_box_in_half),

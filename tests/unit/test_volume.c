@@ -118,6 +118,71 @@ static void a_crop_stays_where_it_was(void **state)
     cw_volume_free(&v);
 }
 
+/* Every voxel of the view is the one it says it is, in value and in place. */
+static void assert_picks(const cw_volume *v, const size_t step[3], const cw_volume *view)
+{
+    for (size_t k = 0; k < view->dim[2]; k++)
+        for (size_t j = 0; j < view->dim[1]; j++)
+            for (size_t i = 0; i < view->dim[0]; i++) {
+                const size_t at[3] = {i * step[0], j * step[1], k * step[2]};
+                double a[3], b[3];
+                cw_volume_to_world(
+                    v, (const double[3]){(double)at[0], (double)at[1], (double)at[2]}, a);
+                cw_volume_to_world(view, (const double[3]){(double)i, (double)j, (double)k}, b);
+                for (int n = 0; n < 3; n++)
+                    assert_near(a[n], b[n], 1e-9);
+                assert_true(cw_volume_value(v, at[0], at[1], at[2]) ==
+                            cw_volume_value(view, i, j, k));
+            }
+}
+
+static void a_coarse_view_picks_voxels_where_they_are(void **state)
+{
+    (void)state;
+    static const size_t steps[][3] = {{1, 1, 1}, {2, 3, 4}, {4, 4, 4}, {12, 8, 1}, {5, 1, 5}};
+    const cw_box box = {{1, 2, 3}, {12, 10, 7}};
+    cw_volume v, part, coarse;
+    cw_error err = {0};
+    assert_ok(cw_volume_alloc(&v, CW_U16, (size_t[3]){13, 12, 11}, 2, 2, &err), err);
+    for (size_t n = 0; n < 2 * 2 * 13 * 12 * 11; n++)
+        ((uint16_t *)cw_volume_voxels(&v))[n] = (uint16_t)n;
+    memcpy(v.affine, (const double[3][4]){{0.5, 2, 0, 9}, {-4, 1, 0.3, -7}, {0.1, 0, -3, 1e3}},
+           sizeof v.affine);
+    v.slope = -2;
+    for (size_t n = 0; n < sizeof steps / sizeof *steps; n++) {
+        assert_ok(cw_volume_coarsen(&v, steps[n], &coarse, &err), err);
+        for (int a = 0; a < 3; a++)
+            assert_int_equal(coarse.dim[a], (v.dim[a] - 1) / steps[n][a] + 1);
+        assert_picks(&v, steps[n], &coarse);
+    }
+    assert_ok(cw_volume_select(&v, 1, 1, &part, &err), err);
+    assert_ok(cw_volume_crop(&part, &box, &part, &err), err);
+    assert_ok(cw_volume_coarsen(&part, steps[1], &coarse, &err), err);
+    assert_picks(&part, steps[1], &coarse);
+    cw_volume_free(&coarse); /* borrowed */
+    cw_volume_free(&v);
+}
+
+static void steps_that_leave_a_single_voxel_are_refused(void **state)
+{
+    (void)state;
+    const uint8_t voxels[4 * 3] = {0};
+    cw_volume v = {.data = voxels, .dim = {4, 3, 1}}, out;
+    cw_error err = {0};
+    assert_ok(cw_volume_coarsen(&v, (const size_t[3]){3, 2, 1}, &out, &err), err);
+    assert_true(out.dim[0] == 2 && out.dim[1] == 2 && out.dim[2] == 1);
+    assert_fails(cw_volume_coarsen(&v, (const size_t[3]){0, 1, 1}, &out, &err), CW_ERR_ARGUMENT,
+                 "a step of 0 along x", err);
+    assert_fails(cw_volume_coarsen(&v, (const size_t[3]){1, 3, 1}, &out, &err), CW_ERR_ARGUMENT,
+                 "a step of 3 along y: expected 1, or less than the 3", err);
+    assert_fails(cw_volume_coarsen(&v, (const size_t[3]){1, 1, SIZE_MAX}, &out, &err),
+                 CW_ERR_ARGUMENT, "along z", err);
+    v.affine[0][0] = 1e308;
+    v.affine[1][1] = v.affine[2][2] = 1e-150;
+    assert_fails(cw_volume_coarsen(&v, (const size_t[3]){3, 1, 1}, &out, &err), CW_ERR_ARGUMENT,
+                 "not finite", err);
+}
+
 static void indices_and_world_points_are_inverse(void **state)
 {
     (void)state;
@@ -279,6 +344,8 @@ int main(void)
         cmocka_unit_test(all_eight_types_read_the_same),
         cmocka_unit_test(components_and_steps_are_views),
         cmocka_unit_test(a_crop_stays_where_it_was),
+        cmocka_unit_test(a_coarse_view_picks_voxels_where_they_are),
+        cmocka_unit_test(steps_that_leave_a_single_voxel_are_refused),
         cmocka_unit_test(indices_and_world_points_are_inverse),
         cmocka_unit_test(spacing_is_the_length_of_an_axis),
         cmocka_unit_test(statistics_tell_values_from_the_rest),

@@ -1,0 +1,86 @@
+#define _GNU_SOURCE /* open_memstream, strndup */
+#include "cli/template.h"
+
+#include "core/status.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <strings.h>
+
+static cw_status unknown_part(const char *text, const char *name, size_t length,
+                              const cli_part *parts, size_t part_count, cw_error *err)
+{
+    char names[128] = "";
+    size_t used = 0;
+    for (size_t p = 0; p < part_count && used < sizeof names; p++)
+        used += (size_t)snprintf(names + used, sizeof names - used, "%s{%s}", p ? ", " : "",
+                                 parts[p].name);
+    return cw_fail(err, CW_ERR_ARGUMENT,
+                   "%s: there is no {%.*s}; there are %s, and {{ for a brace", text,
+                   (int)length, name, names);
+}
+
+static cw_status put_part(FILE *out, const char *text, const char *name, size_t length,
+                          cli_part *parts, size_t part_count, cw_error *err)
+{
+    for (size_t p = 0; p < part_count; p++)
+        if (strlen(parts[p].name) == length && strncmp(parts[p].name, name, length) == 0) {
+            fputs(parts[p].value, out);
+            parts[p].used = true;
+            return CW_OK;
+        }
+    return unknown_part(text, name, length, parts, part_count, err);
+}
+
+static cw_status fill(FILE *out, const char *text, cli_part *parts, size_t part_count,
+                      cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (const char *c = text; *c && st == CW_OK; c++) {
+        if (*c != '{') {
+            fputc(*c, out);
+        } else if (c[1] == '{') {
+            fputc(*c++, out);
+        } else {
+            const char *end = strchr(c, '}');
+            if (!end)
+                return cw_fail(err, CW_ERR_ARGUMENT,
+                               "%s: '%s' has no closing brace; {{ stands for a brace", text, c);
+            st = put_part(out, text, c + 1, (size_t)(end - c - 1), parts, part_count, err);
+            c = end;
+        }
+    }
+    return st;
+}
+
+cw_status cli_fill_template(const char *text, cli_part *parts, size_t part_count, char **out,
+                            cw_error *err)
+{
+    size_t size;
+    *out = NULL;
+    FILE *stream = open_memstream(out, &size);
+    if (!stream)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of an output");
+    cw_status st = fill(stream, text, parts, part_count, err);
+    if (fclose(stream) != 0 && st == CW_OK)
+        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of an output");
+    if (st != CW_OK) {
+        free(*out);
+        *out = NULL;
+    }
+    return st;
+}
+
+char *cli_stem(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    const char *name = slash ? slash + 1 : path;
+    size_t length = strlen(name);
+    if (length > 3 && strcasecmp(name + length - 3, ".gz") == 0)
+        length -= 3;
+    for (size_t dot = length; dot > 1; dot--)
+        if (name[dot - 1] == '.')
+            return strndup(name, dot - 1);
+    return strndup(name, length);
+}
