@@ -255,6 +255,9 @@ static void clear_padding(const cwi_grid *g, uint64_t *plane, size_t k)
     memset(first + layer - g->words, 0, row);
 }
 
+/* Rows of bricks whose samples stay near the processor until they are measured. */
+enum { TOGETHER = 4 };
+
 void cwi_classify_layer(const cwi_grid *g, size_t b, cwi_range *leaves, bool *in, bool *out)
 {
     static void (*const classify[CW_TYPE_COUNT])(const cwi_grid *, size_t, size_t, size_t,
@@ -283,12 +286,13 @@ void cwi_classify_layer(const cwi_grid *g, size_t b, cwi_range *leaves, bool *in
             classify[type](g, 1, k, g->rows_y - 2, in, out);
         return;
     }
-    for (size_t jb = 0; jb < g->bricks_y; jb++) {
+    for (size_t jb = 0; jb < g->bricks_y; jb += TOGETHER) {
+        const size_t next = jb + TOGETHER < g->bricks_y ? jb + TOGETHER : g->bricks_y;
         const size_t first = jb ? jb * CWI_BRICK : 1;
-        const size_t last = jb + 1 == g->bricks_y ? g->rows_y - 1 : (jb + 1) * CWI_BRICK;
+        const size_t last = next == g->bricks_y ? g->rows_y - 1 : next * CWI_BRICK;
         for (size_t k = begin ? begin : 1; k < end && k + 1 < g->rows_z; k++)
             classify[type](g, first, k, last - first, in, out);
-        if (leaves)
-            measure[type](g, jb, b, leaves + jb * leaves_x);
+        for (size_t row = jb; row < next && leaves; row++)
+            measure[type](g, row, b, leaves + row * leaves_x);
     }
 }
