@@ -173,18 +173,21 @@ static cw_status set_level(cwi_grid *g, const cw_extract_desc *desc, cw_error *e
 }
 
 /* Cells at the end of the domain are dropped where the surface stays open. */
-static cw_status set_live(cwi_grid *g, const cw_extract_desc *desc, cw_error *err)
+static cw_status set_live(cwi_grid *g, bool leave_open, bool keep_domain, cw_error *err)
 {
-    if (!desc->leave_open) {
-        cwi_free(g->live);
-        g->live = NULL;
+    cwi_free(g->live);
+    g->live = NULL;
+    if (!leave_open)
         return CW_OK;
-    }
-    if (!g->live)
+    if (keep_domain) {
         g->live = alloc_plane(g);
-    if (!g->live)
-        return no_memory(g, err);
-    memcpy(g->live, g->domain, g->rows * g->words * sizeof *g->live);
+        if (!g->live)
+            return no_memory(g, err);
+        memcpy(g->live, g->domain, g->rows * g->words * sizeof *g->live);
+    } else {
+        g->live = g->domain;
+        g->domain = NULL;
+    }
     while (drop_pinched(g))
         ;
     return CW_OK;
@@ -265,7 +268,7 @@ cw_status cwi_grid_classify(cwi_grid *g, const cwi_engine *engine, cwi_octree *t
     if (g->find_domain)
         make_domain(g);
     g->crossed = g->everything ? c.in && c.out : cwi_octree_crossed(tree, g);
-    return set_live(g, desc, err);
+    return set_live(g, desc->leave_open, tree != NULL, err);
 }
 
 void cwi_grid_free(cwi_grid *g)
@@ -286,6 +289,10 @@ size_t cwi_grid_bytes(const cwi_grid *g)
 {
     const size_t planes = 1 + (g->domain != NULL) + (g->live != NULL);
     const size_t bricks = g->leaves ? g->bricks_z * g->bricks_y : 0;
-    return (planes * g->rows * g->words + (g->rows + bricks) * g->masks) * sizeof *g->inside +
+    size_t plans = 0;
+    for (size_t k = 0; k < g->rows_z; k++)
+        plans += g->plans[k].room;
+    return plans * sizeof *g->plans->codes + g->rows_z * sizeof *g->plans +
+           (planes * g->rows * g->words + (g->rows + bricks) * g->masks) * sizeof *g->inside +
            g->rows * sizeof(cwi_row) + bricks * g->words * sizeof *g->leaves;
 }
