@@ -73,6 +73,30 @@ static inline void list_edges(cwi_edge_list *l, uint64_t bits, size_t i, size_t 
 #endif
 }
 
+/* Component r of vector n, at from[r * stride + n], to place number[n] of an array of vectors.
+ */
+static inline void scatter(const float *restrict from, size_t stride, const uint32_t *number,
+                           size_t count, float *restrict to)
+{
+#if CWI_WIDE /* three at a time, by stores that leave a fourth place as it is */
+    for (size_t n = 0; n < count; n += 4) {
+        const __m128 x = _mm_loadu_ps(from + n), y = _mm_loadu_ps(from + stride + n),
+                     z = _mm_loadu_ps(from + 2 * stride + n);
+        const __m128 low = _mm_unpacklo_ps(x, y), high = _mm_unpackhi_ps(x, y);
+        const __m128 vectors[4] = {_mm_shuffle_ps(low, z, 0x04), _mm_shuffle_ps(low, z, 0x5e),
+                                   _mm_shuffle_ps(high, z, 0x24),
+                                   _mm_shuffle_ps(high, z, 0x3e)};
+        for (size_t c = 0; c < 4; c++)
+            _mm_mask_storeu_ps(to + 3 * (size_t)number[n + c], n + c < count ? 7 : 0,
+                               vectors[c]);
+    }
+#else
+    for (size_t n = 0; n < count; n++)
+        for (size_t r = 0; r < 3; r++)
+            to[3 * (size_t)number[n] + r] = from[r * stride + n];
+#endif
+}
+
 /* The vertex between the volume's last sample along an axis and the padding. */
 static void store_cap(const cwi_vertex_sink *sink, const size_t at[3], int axis, size_t n)
 {
