@@ -1,8 +1,8 @@
 /* Vertices and normals. Compiled for each engine.
  *
- * Vertices are collected, with the samples they need, until there are enough for arithmetic on
- * many at a time; those of volumes with no-data, beside NaN or infinite values and where the
- * gradient vanishes are computed one by one. */
+ * Crossed edges are listed until there are enough for arithmetic on many at a time; vertices of
+ * volumes with no-data, beside NaN or infinite values and where the gradient vanishes are
+ * computed one by one, and so are those on cubics. */
 #include "core/volume.h"
 #include "extract/crossing.h"
 #include "extract/crossings.h"
