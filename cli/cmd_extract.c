@@ -13,7 +13,7 @@ typedef struct extract_args {
     cli_common common;
     cli_input input;
     const char *output, *name, *format, *json;
-    cli_number iso;
+    cli_number iso, snap;
     int inside, normals, progress, topology;
     bool open, no_clobber, local, check;
     size_t max_triangles;
@@ -33,6 +33,9 @@ static const cli_option options[] = {
     {"topology", 0, CLI_CHOICE, "field/simple",
      "in ambiguous cells: the trilinear field's, or one table's (field)",
      offsetof(extract_args, topology)},
+    {"snap", 0, CLI_NUMBER, "SHARE",
+     "merge crossings within this share of an edge from one sample, to 0.5; try 0.3 (off)",
+     offsetof(extract_args, snap)},
     {"normals", 0, CLI_CHOICE, "field/none", "normals from the field's gradient (field)",
      offsetof(extract_args, normals)},
     {"name", 0, CLI_TEXT, "TEXT", "of the object inside the file (the output's stem)",
@@ -72,6 +75,7 @@ static void put_params(cli_json *j, const void *p)
     cli_json_text(j, "inside", args->inside ? "below" : "above");
     cli_json_bool(j, "open", args->open);
     cli_json_text(j, "topology", args->topology ? "simple" : "field");
+    cli_json_number(j, "snap", args->snap.value);
     cli_json_text(j, "normals", args->normals ? "none" : "field");
     cli_json_count(j, "component", args->input.component);
     cli_json_count(j, "step", args->input.step);
@@ -93,6 +97,10 @@ static cw_status check_args(run_state *s, cw_error *err)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "extract needs a level: --iso V; 'cubewright info %s' suggests some",
                        inputs[0]);
+    if (!(args->snap.value >= 0 && args->snap.value <= CW_EXTRACT_MAX_SNAP))
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--snap is a share of an edge, 0 to %g, and not %g", CW_EXTRACT_MAX_SNAP,
+                       args->snap.value);
     st = cli_check_output(args->output, inputs, 1, err);
     if (st != CW_OK)
         return st;
@@ -109,12 +117,15 @@ static cw_status extract(run_state *s, cw_error *err)
         .inside_is_low = s->args->inside,
         .leave_open = s->args->open,
         .simple_topology = s->args->topology,
+        .snap = s->args->snap.value,
         .no_normals = s->args->normals,
         .threads = (int)s->args->input.threads,
         .max_triangles = s->args->max_triangles,
     };
     cli_report_begin(&s->report);
     cw_status st = cli_extract_surface(&s->volume, &desc, &s->mesh, &s->counts, err);
+    if (st == CW_OK && desc.snap > 0)
+        s->report.snap = &s->counts.snap;
     if (st == CW_OK)
         cli_report_end(&s->report, "extract", v->dim[0] * v->dim[1] * v->dim[2],
                        s->mesh.triangle_count);
@@ -203,6 +214,10 @@ static void print_summary(const run_state *s)
                cli_bytes((double)info.st_size));
     if (s->args->check)
         print_topology(s);
+    if (s->report.snap)
+        cli_result("; %s vertices merged, off by at most %.3g mm, %.2g voxels",
+                   cli_count(s->counts.snap.vertices), s->counts.snap.max_error_mm,
+                   s->counts.snap.max_error_voxels);
     if (s->args->local)
         cli_result("; relative to %.15g, %.15g, %.15g mm", s->mesh.origin[0], s->mesh.origin[1],
                    s->mesh.origin[2]);
@@ -261,6 +276,11 @@ const cli_command cli_extract = {
         "are\n"
         "inside. Where the solid meets the volume's border it is closed by a flat cap.\n"
         "Nothing is smoothed, reduced or dropped. The same bytes for any number of threads.\n\n"
+        "With --snap crossings close to one sample become one vertex, and the needles between\n"
+        "them go: 0.3 leaves few angles below 10 degrees, 0.5 few below 20. What is not proven "
+        "to\n"
+        "keep the topology and to cross nothing stays. The error is printed, and in the "
+        "report.\n\n"
         "STL, PLY and OBJ hold world coordinates; far from the world's zero single precision\n"
         "loses them, and extract warns. With --local they are relative to the mesh's origin:\n"
         "add it to get the world's. It is printed, and named in the report and in the file.\n"

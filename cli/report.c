@@ -85,6 +85,20 @@ static void put_mesh(cli_json *j, const cw_quality *q)
     cli_json_close(j, '}');
 }
 
+static void put_snap(cli_json *j, const cw_snap_counts *c)
+{
+    cli_json_open(j, "snap", '{');
+    cli_json_count(j, "vertices", c->vertices);
+    cli_json_number(j, "max_error", c->max_error_mm);
+    cli_json_number(j, "mean_error", c->mean_error_mm);
+    cli_json_number(j, "max_moved", c->max_moved_mm);
+    cli_json_text(j, "unit", "mm");
+    cli_json_number(j, "max_error_voxels", c->max_error_voxels);
+    cli_json_number(j, "mean_error_voxels", c->mean_error_voxels);
+    cli_json_number(j, "max_moved_voxels", c->max_moved_voxels);
+    cli_json_close(j, '}');
+}
+
 static void put_output(cli_json *j, const char *path, const double *local_origin)
 {
     struct stat info;
@@ -116,6 +130,8 @@ static void put_report(FILE *out, const cli_report *r, cw_status status, const c
     put_steps(&j, r);
     if (r->quality)
         put_mesh(&j, r->quality);
+    if (r->snap)
+        put_snap(&j, r->snap);
     put_output(&j, status == CW_OK ? r->output : NULL, r->local_origin);
     cli_json_open(&j, "warnings", '[');
     if (r->input && !(r->input->whole.known & CW_KNOWN_UNIT))

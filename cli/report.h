@@ -5,6 +5,7 @@
 
 #include "cli/input.h"
 
+#include <cubewright/extract.h>
 #include <cubewright/quality.h>
 
 enum { CLI_MAX_STEPS = 8 };
@@ -20,6 +21,7 @@ typedef struct cli_report {
     const char *command;
     const cli_volume *input;    /* NULL: not read */
     const cw_quality *quality;  /* NULL: not measured */
+    const cw_snap_counts *snap; /* NULL: not snapped */
     const char *output;         /* NULL: not written */
     const double *local_origin; /* the output's places are relative to it; NULL: the world's */
     char warning[512];          /* "": none */
