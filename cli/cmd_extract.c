@@ -13,6 +13,7 @@ typedef struct extract_args {
     cli_input input;
     const char *output, *name, *format, *json;
     cli_numbers iso;
+    cli_number snap;
     int inside, normals, progress, topology, placement, accel;
     bool open, no_clobber, local, check;
     size_t max_triangles;
@@ -37,6 +38,9 @@ static const cli_option options[] = {
     {"placement", 0, CLI_CHOICE, "linear/cubic",
      "crossings on the line or the cubic through the samples along an edge (linear)",
      offsetof(extract_args, placement)},
+    {"snap", 0, CLI_NUMBER, "SHARE",
+     "merge crossings within this share of an edge from one sample, to 0.5; try 0.3 (off)",
+     offsetof(extract_args, snap)},
     {"normals", 0, CLI_CHOICE, "field/none", "normals from the field's gradient (field)",
      offsetof(extract_args, normals)},
     {"accel", 0, CLI_CHOICE, "octree/none",
@@ -85,6 +89,7 @@ static void put_params(cli_json *j, const void *p, const cli_made *made)
     cli_json_bool(j, "open", args->open);
     cli_json_text(j, "topology", args->topology ? "simple" : "field");
     cli_json_text(j, "placement", args->placement ? "cubic" : "linear");
+    cli_json_number(j, "snap", args->snap.value);
     cli_json_text(j, "normals", args->normals ? "none" : "field");
     if (args->iso.count > 1)
         cli_json_text(j, "accel", args->accel ? "none" : "octree");
@@ -132,6 +137,10 @@ static cw_status check_args(run_state *s, cw_error *err)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "extract needs a level: --iso V; 'cubewright info %s' suggests some",
                        input[0]);
+    if (!(args->snap.value >= 0 && args->snap.value <= CW_EXTRACT_MAX_SNAP))
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--snap is a share of an edge, 0 to %g, and not %g", CW_EXTRACT_MAX_SNAP,
+                       args->snap.value);
     st = cli_name_outputs(&s->outputs, args->output, input[0], &args->iso, err);
     return st == CW_OK ? check_outputs(s, err) : st;
 }
@@ -146,6 +155,7 @@ static cw_status extract(run_state *s, double iso, cw_mesh *mesh, cw_extract_cou
         .leave_open = s->args->open,
         .simple_topology = s->args->topology,
         .cubic_placement = s->args->placement,
+        .snap = s->args->snap.value,
         .no_normals = s->args->normals,
         .threads = (int)s->args->input.threads,
         .max_triangles = s->args->max_triangles,
@@ -169,6 +179,8 @@ static cw_status make_surface(run_state *s, size_t n, cw_error *err)
     cw_mesh mesh = {0};
     cw_extract_counts counts;
     cw_status st = extract(s, made->iso, &mesh, &counts, err);
+    made->snapped = st == CW_OK && s->args->snap.value > 0;
+    made->snap = made->snapped ? counts.snap : (cw_snap_counts){0};
     if (st == CW_OK)
         st = cli_deliver(&s->report, &how, &mesh, counts.border_loops, s->start, err);
     cw_mesh_free(&mesh);
@@ -263,6 +275,11 @@ const cli_command cli_extract = {
         "It\n"
         "is in its place, up to 3 voxels short of the far ends, and says that it is a "
         "preview.\n\n"
+        "With --snap crossings close to one sample become one vertex, and the needles between\n"
+        "them go: 0.3 leaves few angles below 10 degrees, 0.5 few below 20. What is not proven "
+        "to\n"
+        "keep the topology and to cross nothing stays. The error is printed, and in the "
+        "report.\n\n"
         "STL, PLY and OBJ hold world coordinates; far from the world's zero single precision\n"
         "loses them, and extract warns. With --local they are relative to the mesh's origin:\n"
         "add it to get the world's. It is printed, and named in the report and in the file.\n"

@@ -90,6 +90,10 @@ static void print_summary(const cli_delivery *how, const cli_made *made, const c
                cli_count(mesh->triangle_count), cli_bytes((double)info.st_size));
     if (made->measured)
         print_topology(how, &made->quality, border_loops);
+    if (made->snapped)
+        cli_result("; %s vertices merged, off by at most %.3g mm, %.2g voxels",
+                   cli_count(made->snap.vertices), made->snap.max_error_mm,
+                   made->snap.max_error_voxels);
     if (made->local)
         cli_result("; relative to %.15g, %.15g, %.15g mm", made->origin[0], made->origin[1],
                    made->origin[2]);

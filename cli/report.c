@@ -98,6 +98,28 @@ static void put_mesh(cli_json *j, const cw_quality *q)
     cli_json_close(j, '}');
 }
 
+static void put_snap(cli_json *j, const cw_snap_counts *c)
+{
+    cli_json_open(j, "snap", '{');
+    cli_json_count(j, "vertices", c->vertices);
+    cli_json_number(j, "max_error", c->max_error_mm);
+    cli_json_number(j, "mean_error", c->mean_error_mm);
+    cli_json_number(j, "max_moved", c->max_moved_mm);
+    cli_json_text(j, "unit", "mm");
+    cli_json_number(j, "max_error_voxels", c->max_error_voxels);
+    cli_json_number(j, "mean_error_voxels", c->mean_error_voxels);
+    cli_json_number(j, "max_moved_voxels", c->max_moved_voxels);
+    cli_json_close(j, '}');
+}
+
+static void put_facts(cli_json *j, const cli_made *m)
+{
+    if (m->measured)
+        put_mesh(j, &m->quality);
+    if (m->snapped)
+        put_snap(j, &m->snap);
+}
+
 static void put_surfaces(cli_json *j, const cli_report *r)
 {
     cli_json_open(j, "surfaces", '[');
@@ -106,8 +128,7 @@ static void put_surfaces(cli_json *j, const cli_report *r)
         cli_json_number(j, "iso", m->iso);
         if (m->written)
             cli_json_text(j, "path", cli_shown_path(m->path));
-        if (m->measured)
-            put_mesh(j, &m->quality);
+        put_facts(j, m);
         cli_json_text(j, "status", cw_status_name(m->error.status));
         if (m->error.status != CW_OK)
             cli_json_text(j, "message", m->error.message);
@@ -135,8 +156,8 @@ static void put_made(cli_json *j, const cli_report *r)
 {
     if (r->several)
         put_surfaces(j, r);
-    else if (r->made[0].measured)
-        put_mesh(j, &r->made[0].quality);
+    else
+        put_facts(j, &r->made[0]);
     cli_json_open(j, "output", '[');
     for (size_t n = 0; n < r->made_count; n++)
         put_output(j, &r->made[n]);

@@ -5,6 +5,7 @@
 
 #include "cli/input.h"
 
+#include <cubewright/extract.h>
 #include <cubewright/quality.h>
 
 enum { CLI_MAX_MADE = CLI_MAX_NUMBERS, CLI_MAX_STEPS = 4 * CLI_MAX_MADE };
@@ -20,11 +21,12 @@ typedef struct cli_step {
 typedef struct cli_made {
     const char *path; /* where it goes */
     double iso;
-    bool measured, written, local;
-    cw_quality quality; /* when it is measured */
-    double origin[3];   /* when it is local: the places in the file are relative to it */
-    char warning[512];  /* "": none */
-    cw_error error;     /* with the status CW_OK: none */
+    bool measured, written, local, snapped;
+    cw_quality quality;  /* when it is measured */
+    cw_snap_counts snap; /* when it is snapped */
+    double origin[3];    /* when it is local: the places in the file are relative to it */
+    char warning[512];   /* "": none */
+    cw_error error;      /* with the status CW_OK: none */
 } cli_made;
 
 typedef struct cli_report {

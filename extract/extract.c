@@ -7,6 +7,7 @@
 #include "core/status.h"
 #include "extract/cases.h"
 #include "extract/engine.h"
+#include "extract/snap.h"
 
 #include <math.h>
 #include <string.h>
@@ -27,6 +28,15 @@ static size_t mesh_bytes(const cw_extract_counts *c, bool normals)
 {
     return c->vertices * 3 * sizeof(float) * (normals ? 2 : 1) +
            c->triangles * 3 * sizeof(uint32_t);
+}
+
+static cw_status check_snap(const cw_extract_desc *d, cw_error *err)
+{
+    if (d->snap >= 0 && d->snap <= CW_EXTRACT_MAX_SNAP)
+        return CW_OK;
+    return cw_fail(err, CW_ERR_ARGUMENT,
+                   "snap is a share of an edge from 0 (off) to %g, and not %g",
+                   CW_EXTRACT_MAX_SNAP, d->snap);
 }
 
 static cw_status check_limits(const cw_extract_desc *d, const cw_extract_counts *c,
@@ -90,8 +100,9 @@ static void free_plan(plan *p)
 static cw_status make_plan(plan *p, const cw_extract_desc *d, cw_error *err)
 {
     memset(&p->counts, 0, sizeof p->counts);
-    cw_status st =
-        cwi_grid_classify(&p->grid, p->engine, p->tree.levels ? &p->tree : NULL, d, err);
+    cw_status st = check_snap(d, err);
+    if (st == CW_OK)
+        st = cwi_grid_classify(&p->grid, p->engine, p->tree.levels ? &p->tree : NULL, d, err);
     if (st != CW_OK || !p->grid.crossed)
         return st;
     if (!p->rows)
@@ -107,6 +118,8 @@ static cw_status make_plan(plan *p, const cw_extract_desc *d, cw_error *err)
         st = cwi_grid_border_loops(&p->grid, &p->counts.border_loops, err);
     p->counts.bytes = mesh_bytes(&p->counts, !d->no_normals) + cwi_grid_bytes(&p->grid) +
                       cwi_octree_bytes(&p->tree);
+    if (d->snap > 0)
+        p->counts.bytes += cwi_snap_bytes(p->counts.vertices, p->counts.triangles);
     return st == CW_OK ? check_limits(d, &p->counts, err) : st;
 }
 
@@ -255,6 +268,10 @@ static cw_status write_mesh(plan *p, const cw_extract_desc *d, cw_mesh *mesh, cw
         st = mend_normals(mesh, voxel_scale(&p->grid.volume), err);
     if (st == CW_OK)
         memcpy(mesh->affine, p->grid.volume.affine, sizeof mesh->affine);
+    if (st == CW_OK && d->snap > 0)
+        st = cwi_snap(&p->grid, p->rows, d, mesh, &p->counts.snap, err);
+    p->counts.vertices = mesh->vertex_count;
+    p->counts.triangles = mesh->triangle_count;
     return st;
 }
 

@@ -9,6 +9,10 @@
 extern "C" {
 #endif
 
+/* The most that cw_extract_desc.snap may be: beyond, a crossing is close to the other sample.
+ */
+#define CW_EXTRACT_MAX_SNAP 0.5
+
 /* How to take a surface out of a volume. Zero-initialise it and set what you need;
  * a zero field means the default named beside it. */
 typedef struct cw_extract_desc {
@@ -21,18 +25,31 @@ typedef struct cw_extract_desc {
                              isovalue; cubic: where the cubic through four samples along the
                              edge is */
     bool no_normals;      /* default: one normal per vertex from the field's gradient */
+    double snap;          /* up to 0.5: merge crossings within this share of an edge from one
+                             sample, as below; 0.3 is usual; default: none */
     int threads;          /* default: all that OpenMP offers */
     size_t max_triangles; /* fail with CW_ERR_LIMIT before allocating more; default: no limit */
     size_t max_bytes;     /* likewise for mesh and working memory; default: no limit */
     cw_progress progress; /* default: none */
 } cw_extract_desc;
 
-/* What an extraction makes, known before it is made. */
+/* What snapping did, and what it cost: in the world, and in voxels, that is in index space. */
+typedef struct cw_snap_counts {
+    size_t vertices;                         /* that were merged with others */
+    double max_moved_mm, max_moved_voxels;   /* the farthest that one was moved; no point of
+                                                the plain surface or of this one is farther
+                                                from the other. At most twice the share */
+    double max_error_mm, max_error_voxels;   /* distances of vertices that were merged, from */
+    double mean_error_mm, mean_error_voxels; /* where they were to the snapped surface */
+} cw_snap_counts;
+
+/* What an extraction makes, known before it is made; with snapping the most it can be. */
 typedef struct cw_extract_counts {
     size_t vertices;
     size_t triangles;
     size_t border_loops; /* loops along which the surface meets the volume's border */
     size_t bytes;        /* of the mesh and the working memory, together */
+    cw_snap_counts snap; /* known when it is made; before, and without snapping, zero */
 } cw_extract_counts;
 
 /* Extracts the surface { p : f(p) = isovalue } of the trilinear field f by marching cubes.
@@ -48,6 +65,14 @@ typedef struct cw_extract_counts {
  * beyond the last sample, or left open there. A volume without a crossing gives an empty mesh
  * and CW_OK.
  *
+ * With snap, crossings near one sample that sides of triangles join become one vertex, on the
+ * field's surface in their middle or where one of them was, and the needles between them go.
+ * All that is said above stays true, but that vertices lie on grid edges; components, handles
+ * and border loops are the same ones. Crossings are left as they were where anything of that is
+ * not certain, where the smallest angle around them would shrink, where one of them would be
+ * left farther from the surface than a quarter of the share (in voxels), and along open
+ * borders.
+ *
  * volume   borrowed; at least 2 voxels along each axis; first component and step are used
  * desc     borrowed; NULL means all defaults
  * mesh     filled on success, emptied on failure; free it with cw_mesh_free()
@@ -55,13 +80,16 @@ typedef struct cw_extract_counts {
  * err      may be NULL
  *
  * Returns  CW_ERR_ARGUMENT  isovalue is not finite, volume too thin, voxels too small or large
- *                           for single precision (1e-38, 1e38 mm), or as cw_volume_resolve()
+ *                           for single precision (1e-38, 1e38 mm), snap out of range, or as
+ *                           cw_volume_resolve()
  *          CW_ERR_LIMIT     more than 2^32 - 1 vertices, or a limit of desc
  *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
- * Cost     two passes over the voxels' sign bits after one over the voxels
+ * Cost     two passes over the voxels' sign bits after one over the voxels; snapping takes some
+ *          ten microseconds for each vertex that it makes, far more than the rest
  * Threads  reentrant; the mesh is the same to the bit for any number of threads
  * Source   [Lorensen1987]; faces [Nielson1991]; tunnels after [Chernyaev1995]; simple_topology
- *          [Montani1994]; ranks in place of maps as in extract/README.md */
+ *          [Montani1994]; snapping after [Moore1992]; ranks in place of maps as in
+ *          extract/README.md */
 CW_API cw_status cw_extract(const cw_volume *volume, const cw_extract_desc *desc, cw_mesh *mesh,
                             cw_extract_counts *counts, cw_error *err);
 

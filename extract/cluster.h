@@ -1,0 +1,73 @@
+/* What the files that snap share: a mesh while it is snapped, and one sample's cluster. */
+#ifndef EXTRACT_CLUSTER_H
+#define EXTRACT_CLUSTER_H
+
+#include "extract/grid.h"
+#include "extract/topology.h"
+
+#include <cubewright/mesh.h>
+
+enum {
+    CWI_MEMBERS = 6, /* edges at a sample */
+    CWI_STAR = 8 * CWI_CELL_MAX_TRIANGLES,
+    CWI_NEAR = 64 * CWI_CELL_MAX_TRIANGLES,
+};
+
+typedef struct cwi_snapping {
+    const cwi_grid *grid;
+    const cwi_row *rows;
+    cw_mesh *mesh;
+    double share;
+    double inverse[3][3], centre[3]; /* positions to padded index */
+    uint64_t *near;                  /* vertex: 1 + the sample it is close to; 0: none */
+    uint32_t *into;                  /* vertex: what it became */
+    uint32_t *cell;                  /* triangle: which cell of its row it was in */
+    float *before;                   /* positions */
+} cwi_snapping;
+
+/* Crossings close to a sample, and the triangles around them. */
+typedef struct cwi_cluster {
+    size_t at[3]; /* padded sample */
+    uint64_t sample;
+    int count, star_count, rim_count;
+    uint32_t member[CWI_MEMBERS];
+    size_t star[CWI_STAR];
+    uint32_t rim[CWI_STAR];    /* vertices around the star, in order */
+    double rim_x[CWI_STAR][3]; /* where these are: padded index */
+    size_t owner[CWI_STAR];    /* the star's triangle at the rim's side from here to the next */
+} cwi_cluster;
+
+uint64_t cwi_sample_number(const cwi_grid *grid, size_t i, size_t j, size_t k);
+void cwi_sample_place(const cwi_grid *grid, uint64_t sample, size_t at[3]);
+
+/* Positions in the mesh to padded index, and back. */
+void cwi_to_index(const cwi_snapping *s, const float position[3], double x[3]);
+void cwi_to_position(const cwi_snapping *s, const double x[3], float position[3]);
+
+static inline const float *cwi_position(const cwi_snapping *s, uint32_t v)
+{
+    return s->mesh->positions + 3 * (size_t)v;
+}
+
+/* A triangle that was between vertices that became one. */
+static inline bool cwi_is_gone(const uint32_t *t)
+{
+    return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
+
+/* The triangles of the cells up to `reach` (1 or 2) from a sample: CWI_STAR or CWI_NEAR at
+ * most. */
+int cwi_find_triangles(const cwi_snapping *s, const size_t at[3], size_t reach, size_t *out);
+
+bool cwi_is_member(const cwi_cluster *c, uint32_t v);
+
+/* The vertices close to v's sample that sides of triangles join to it, and their star. */
+void cwi_cluster_find(const cwi_snapping *s, uint32_t v, cwi_cluster *c);
+
+/* Finds the rim; false unless the star is a disc with all members inside. */
+bool cwi_cluster_is_disc(const cwi_snapping *s, cwi_cluster *c);
+
+/* Finds where all members may go. */
+bool cwi_cluster_place(const cwi_snapping *s, const cwi_cluster *c, float position[3]);
+
+#endif
