@@ -56,19 +56,19 @@ static void load_corners(const cw_volume *v, const size_t at[3], double stored[8
 
 /* Doubles the room of a layer's list when it is full. Without memory for it there is no list:
  * its cells are planned twice. */
-static void note(cwi_plans *list, uint32_t code)
+static void note(cwi_layer *layer, uint32_t code)
 {
-    if (list->count == list->room && !list->lost) {
-        const size_t room = list->room ? 2 * list->room : 64;
-        uint32_t *more = cwi_realloc_array(list->codes, room, sizeof *more);
-        list->lost = !more;
-        list->room = more ? room : 0;
-        if (list->lost)
-            cwi_free(list->codes);
-        list->codes = more;
+    if (layer->plan_count == layer->plan_room && !layer->plans_lost) {
+        const size_t room = layer->plan_room ? 2 * layer->plan_room : 64;
+        uint32_t *more = cwi_realloc_array(layer->plans, room, sizeof *more);
+        layer->plans_lost = !more;
+        layer->plan_room = more ? room : 0;
+        if (!more)
+            cwi_free(layer->plans);
+        layer->plans = more;
     }
-    if (!list->lost)
-        list->codes[list->count++] = code;
+    if (!layer->plans_lost)
+        layer->plans[layer->plan_count++] = code;
 }
 
 static void load(const cwi_grid *grid, const size_t at[3], cwi_ambiguous *cell)
@@ -91,7 +91,7 @@ void cwi_ambiguous_plan(const cwi_grid *grid, const size_t at[3], unsigned cube,
 {
     load(grid, at, cell);
     make_plan(grid, cube, cell);
-    note(&grid->plans[at[2]], cwi_cell_plan_pack(&cell->plan));
+    note(&grid->layers[at[2]], cwi_cell_plan_pack(&cell->plan));
 }
 
 /* Central differences at a corner, in halves; NaN where a neighbour is missing. */
@@ -144,14 +144,14 @@ void cwi_ambiguous_build(const cwi_grid *grid, const size_t at[3], unsigned cube
                          cwi_vertex_sink *sink, size_t first, cwi_cell_plan *plan,
                          cwi_cell *out)
 {
-    const cwi_plans *list = &grid->plans[at[2]];
+    const cwi_layer *layer = &grid->layers[at[2]];
     cwi_ambiguous cell;
     double crossings[12] = {0};
-    if (!list->lost)
-        cwi_cell_plan_unpack(list->codes[n], &cell.plan);
-    if (list->lost || cell.plan.vertex_count)
+    if (!layer->plans_lost)
+        cwi_cell_plan_unpack(layer->plans[n], &cell.plan);
+    if (layer->plans_lost || cell.plan.vertex_count)
         load(grid, at, &cell);
-    if (list->lost)
+    if (layer->plans_lost)
         make_plan(grid, cube, &cell);
     for (int e = 0; e < 12 && cell.plan.vertex_count; e++) /* only inner vertices need them */
         crossings[e] = crossing_of(grid, &cell, e);

@@ -211,6 +211,12 @@ cw_status cwi_grid_border_loops(const cwi_grid *grid, size_t *loops, cw_error *e
     const size_t *n = grid->volume.dim;
     const size_t samples = 2 * n[0] * n[1] + (n[2] - 2) * (2 * (n[0] + n[1]) - 4);
     box b = {.grid = grid, .n = {n[0], n[1], n[2]}};
+    bool any = false;
+    for (size_t k = 0; k < grid->rows_z; k++)
+        any = any || grid->layers[k].at_border;
+    *loops = 0;
+    if (!any)
+        return CW_OK;
     if (samples >= UINT32_MAX)
         return cw_fail(err, CW_ERR_LIMIT, "the volume's border has %zu voxels, more than %u",
                        samples, UINT32_MAX);

@@ -58,19 +58,29 @@ static void count_layer(void *context, size_t k)
     p->engine->count_layer(&p->grid, k, p->rows);
 }
 
-/* Turns every row's counts into first numbers. */
-static cw_status sum_rows(plan *p, cw_error *err)
+/* First numbers within a layer become those within the mesh. */
+static void number_layer(void *context, size_t k)
 {
+    plan *p = context;
+    const size_t rows = p->grid.rows_y;
+    for (cwi_row *row = p->rows + k * rows; row < p->rows + (k + 1) * rows; row++) {
+        for (int kind = 0; kind < 4; kind++)
+            row->first[kind] += (uint32_t)p->grid.layers[k].vertices;
+        row->triangle += p->grid.layers[k].triangles;
+    }
+}
+
+static cw_status number_rows(plan *p, const cw_extract_desc *d, cw_error *err)
+{
+    const cwi_grid *g = &p->grid;
     size_t v = 0, t = 0;
-    for (size_t r = 0; r < p->grid.rows; r++) {
-        const size_t triangles_here = p->rows[r].triangle;
-        for (int kind = 0; kind < 4; kind++) {
-            const uint32_t here = p->rows[r].first[kind];
-            p->rows[r].first[kind] = (uint32_t)v;
-            v += here;
-        }
-        p->rows[r].triangle = t;
-        t += triangles_here;
+    for (size_t k = 0; k < g->rows_z; k++) {
+        cwi_layer *layer = &g->layers[k];
+        const size_t vertices = layer->vertices, triangles = layer->triangles;
+        layer->vertices = v; /* from now on: before the layer */
+        layer->triangles = t;
+        v += vertices;
+        t += triangles;
     }
     p->rows[p->grid.rows] = (cwi_row){.first = {(uint32_t)v}, .triangle = t};
     p->counts.vertices = v;
@@ -78,7 +88,8 @@ static cw_status sum_rows(plan *p, cw_error *err)
     if (v > UINT32_MAX)
         return cw_fail(err, CW_ERR_LIMIT, "the surface has %zu vertices; a mesh holds %u", v,
                        UINT32_MAX);
-    return CW_OK;
+    return cwi_each_layer(g->rows_z, g->rows_y * g->words * 64, d->threads, &(cw_progress){0},
+                          "numbering", number_layer, p, err);
 }
 
 static cw_status init_plan(plan *p, const cwi_engine *engine, const cw_volume *volume,
@@ -113,7 +124,7 @@ static cw_status make_plan(plan *p, const cw_extract_desc *d, cw_error *err)
     st = cwi_each_layer(g->rows_z, g->rows_y * g->words * 64, d->threads, &d->progress,
                         "counting", count_layer, p, err);
     if (st == CW_OK)
-        st = sum_rows(p, err);
+        st = number_rows(p, d, err);
     if (st == CW_OK)
         st = cwi_grid_border_loops(&p->grid, &p->counts.border_loops, err);
     p->counts.bytes = mesh_bytes(&p->counts, !d->no_normals) + cwi_grid_bytes(&p->grid) +

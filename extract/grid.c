@@ -44,8 +44,8 @@ static cw_status allocate(cwi_grid *g, cw_error *err)
         return no_memory(g, err);
     g->inside = alloc_plane(g);
     g->busy = cwi_alloc_large(g->rows * g->masks, sizeof *g->busy);
-    g->plans = cwi_alloc_zeroed(g->rows_z, sizeof *g->plans);
-    return g->inside && g->busy && g->plans ? CW_OK : no_memory(g, err);
+    g->layers = cwi_alloc_zeroed(g->rows_z, sizeof *g->layers);
+    return g->inside && g->busy && g->layers ? CW_OK : no_memory(g, err);
 }
 
 /* Positions are floats: they cannot tell voxels apart that are too small, and cannot reach the
@@ -273,9 +273,9 @@ cw_status cwi_grid_classify(cwi_grid *g, const cwi_engine *engine, cwi_octree *t
 
 void cwi_grid_free(cwi_grid *g)
 {
-    for (size_t k = 0; g->plans && k < g->rows_z; k++)
-        cwi_free(g->plans[k].codes);
-    cwi_free(g->plans);
+    for (size_t k = 0; g->layers && k < g->rows_z; k++)
+        cwi_free(g->layers[k].plans);
+    cwi_free(g->layers);
     cwi_free(g->inside);
     cwi_free(g->domain);
     cwi_free(g->live);
@@ -291,8 +291,8 @@ size_t cwi_grid_bytes(const cwi_grid *g)
     const size_t bricks = g->leaves ? g->bricks_z * g->bricks_y : 0;
     size_t plans = 0;
     for (size_t k = 0; k < g->rows_z; k++)
-        plans += g->plans[k].room;
-    return plans * sizeof *g->plans->codes + g->rows_z * sizeof *g->plans +
+        plans += g->layers[k].plan_room;
+    return plans * sizeof *g->layers->plans + g->rows_z * sizeof *g->layers +
            (planes * g->rows * g->words + (g->rows + bricks) * g->masks) * sizeof *g->inside +
            g->rows * sizeof(cwi_row) + bricks * g->words * sizeof *g->leaves;
 }

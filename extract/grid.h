@@ -19,12 +19,14 @@ typedef struct cwi_leaf_bits {
     uint8_t wanted, solid;
 } cwi_leaf_bits;
 
-/* How the ambiguous cells of a layer resolve, in their order: noted while they are counted. */
-typedef struct cwi_plans {
-    uint32_t *codes;
-    size_t count, room;
-    bool lost; /* there was no memory */
-} cwi_plans;
+/* What counting notes of a layer. */
+typedef struct cwi_layer {
+    size_t vertices, triangles;
+    bool at_border;  /* the solid meets the volume's border here */
+    uint32_t *plans; /* how its ambiguous cells resolve, in their order */
+    size_t plan_count, plan_room;
+    bool plans_lost; /* there was no memory */
+} cwi_layer;
 
 typedef struct cwi_octree cwi_octree;
 typedef struct cwi_engine cwi_engine;
@@ -42,7 +44,7 @@ typedef struct cwi_grid {
     size_t masks;     /* words of a mask that has a bit for every word of a row */
     uint64_t *busy;   /* rows x masks, found when a row is counted: bit w is set where a cell of
                          word w has corners on both sides. No other word holds crossings */
-    cwi_plans *plans; /* rows_z */
+    cwi_layer *layers; /* rows_z */
     size_t bricks_y, bricks_z;
     uint64_t
         *wanted; /* bricks_z x bricks_y x masks: words with cells the octree cannot rule out */

@@ -217,6 +217,15 @@ static bool find_busy(const cwi_grid *g, size_t j, size_t k)
     return any != 0;
 }
 
+/* The cells of word w that are, in part, padding: in these the solid meets the border. */
+static inline uint64_t border_cells(const cwi_grid *g, size_t j, size_t k, size_t w)
+{
+    const size_t *n = g->volume.dim;
+    if (j == 0 || k == 0 || j == n[1] || k == n[2])
+        return ~UINT64_C(0);
+    return (uint64_t)(w == 0) | (uint64_t)(w == n[0] / 64) << n[0] % 64;
+}
+
 /* Leaves counts, not yet first numbers, in the row. An edge that is crossed belongs to a cell
  * whose corners differ, as the last samples of every row, and the last rows, are padding. */
 static void count_row(const cwi_grid *g, size_t j, size_t k, cwi_row *row)
@@ -230,6 +239,8 @@ static void count_row(const cwi_grid *g, size_t j, size_t k, cwi_row *row)
     for (size_t w = cwi_next_busy(busy, 0, g->words); w < g->words;
          w = cwi_next_busy(busy, w + 1, g->words)) {
         const cell_word c = load_cells(g, j, k, w);
+        if (c.mixed & border_cells(g, j, k, w))
+            g->layers[k].at_border = true;
         if (g->live) {
             for (int axis = 0; axis < 3; axis++)
                 count[axis] += (unsigned)popcount(cwi_edge_vertices(g, axis, j, k, w));
@@ -249,15 +260,37 @@ static void count_row(const cwi_grid *g, size_t j, size_t k, cwi_row *row)
     row->triangle = triangles;
 }
 
+/* Turns the counts of a layer's rows into first numbers within the layer. */
+static void sum_layer(cwi_row *rows, size_t count, cwi_layer *layer)
+{
+    uint32_t vertex = 0;
+    size_t triangle = 0;
+    for (size_t j = 0; j < count; j++) {
+        const size_t triangles_here = rows[j].triangle;
+        for (int kind = 0; kind < 4; kind++) {
+            const uint32_t here = rows[j].first[kind];
+            rows[j].first[kind] = vertex;
+            vertex += here;
+        }
+        rows[j].triangle = triangle;
+        triangle += triangles_here;
+    }
+    layer->vertices = vertex;
+    layer->triangles = triangle;
+}
+
 void cwi_count_layer(const cwi_grid *g, size_t k, cwi_row *rows)
 {
+    cwi_layer *layer = &g->layers[k];
     const bool cells = k + 1 < g->rows_z;
-    g->plans[k].count = 0;
+    layer->plan_count = 0;
+    layer->at_border = false;
     for (size_t j = 0; j + 1 < g->rows_y && cells; j++)
         count_row(g, j, k, rows + k * g->rows_y + j);
     const size_t left = cells ? 1 : g->rows_y, first = (k + 1) * g->rows_y - left;
     memset(rows + first, 0, left * sizeof *rows);
     memset(g->busy + first * g->masks, 0, left * g->masks * sizeof *g->busy);
+    sum_layer(rows + k * g->rows_y, g->rows_y, layer);
 }
 
 /* The rows of edges around a word of cells, with what ranks need. Rows of y- and z-edges stand
