@@ -44,8 +44,9 @@ static cw_status allocate(cwi_grid *g, cw_error *err)
         return no_memory(g, err);
     g->inside = alloc_plane(g);
     g->busy = cwi_alloc_large(g->rows * g->masks, sizeof *g->busy);
+    g->filled = cwi_alloc_zeroed(g->rows, sizeof *g->filled);
     g->layers = cwi_alloc_zeroed(g->rows_z, sizeof *g->layers);
-    return g->inside && g->busy && g->layers ? CW_OK : no_memory(g, err);
+    return g->inside && g->busy && g->filled && g->layers ? CW_OK : no_memory(g, err);
 }
 
 /* Positions are floats: they cannot tell voxels apart that are too small, and cannot reach the
@@ -280,6 +281,7 @@ void cwi_grid_free(cwi_grid *g)
     cwi_free(g->domain);
     cwi_free(g->live);
     cwi_free(g->busy);
+    cwi_free(g->filled);
     cwi_free(g->wanted);
     cwi_free(g->leaves);
     memset(g, 0, sizeof *g);
@@ -294,5 +296,6 @@ size_t cwi_grid_bytes(const cwi_grid *g)
         plans += g->layers[k].plan_room;
     return plans * sizeof *g->layers->plans + g->rows_z * sizeof *g->layers +
            (planes * g->rows * g->words + (g->rows + bricks) * g->masks) * sizeof *g->inside +
-           g->rows * sizeof(cwi_row) + bricks * g->words * sizeof *g->leaves;
+           g->rows * (sizeof(cwi_row) + sizeof *g->filled) +
+           bricks * g->words * sizeof *g->leaves;
 }

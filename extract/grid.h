@@ -39,6 +39,7 @@ typedef struct cwi_grid {
     size_t words;     /* of 64 samples in a padded row */
     size_t rows_y, rows_z, rows;
     uint64_t *inside; /* rows x words */
+    bool *filled;     /* rows: some sample of it is inside; known where everything is wanted */
     uint64_t *domain; /* rows x words: cells whose eight samples have values; NULL: not known */
     uint64_t *live;   /* rows x words: the domain without pinched cells; NULL: all cells */
     size_t masks;     /* words of a mask that has a bit for every word of a row */

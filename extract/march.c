@@ -205,7 +205,10 @@ static bool find_busy(const cwi_grid *g, size_t j, size_t k)
     for (size_t n = 0; n < 4; n++)
         rows[n] = cwi_grid_row(g, (k + (n >> 1)) * g->rows_y + j + (n & 1));
     const uint64_t *wanted = g->everything ? NULL : cwi_grid_wanted(g, j, k);
+    const bool *filled = g->filled + k * g->rows_y + j;
     memset(busy, 0, g->masks * sizeof *busy);
+    if (!wanted && !filled[0] && !filled[1] && !filled[g->rows_y] && !filled[g->rows_y + 1])
+        return false;
     for (size_t w = 0; w < g->words; w += 8) {
         uint64_t within = g->words - w < 8 ? (UINT64_C(1) << (g->words - w)) - 1 : 255;
         if (wanted)
