@@ -221,12 +221,12 @@ static bool find_busy(const cwi_grid *g, size_t j, size_t k)
 }
 
 /* The cells of word w that are, in part, padding: in these the solid meets the border. */
-static inline uint64_t border_cells(const cwi_grid *g, size_t j, size_t k, size_t w)
+static inline uint64_t border_cells(const cwi_grid *g, size_t w, bool side)
 {
-    const size_t *n = g->volume.dim;
-    if (j == 0 || k == 0 || j == n[1] || k == n[2])
+    const size_t n = g->volume.dim[0];
+    if (side)
         return ~UINT64_C(0);
-    return (uint64_t)(w == 0) | (uint64_t)(w == n[0] / 64) << n[0] % 64;
+    return (uint64_t)(w == 0) | (uint64_t)(w == n / 64) << n % 64;
 }
 
 /* Leaves counts, not yet first numbers, in the row. An edge that is crossed belongs to a cell
@@ -238,12 +238,16 @@ static void count_row(const cwi_grid *g, size_t j, size_t k, cwi_row *row)
     memset(row, 0, sizeof *row);
     if (!find_busy(g, j, k))
         return;
+    const size_t *n = g->volume.dim;
+    const bool side =
+        j == 0 || k == 0 || j == n[1] || k == n[2]; /* a row of cells in the padding */
+    uint64_t at_border = 0;
     const uint64_t *busy = cwi_grid_busy(g, k * g->rows_y + j);
     for (size_t w = cwi_next_busy(busy, 0, g->words); w < g->words;
          w = cwi_next_busy(busy, w + 1, g->words)) {
         const cell_word c = load_cells(g, j, k, w);
-        if (c.mixed & border_cells(g, j, k, w))
-            g->layers[k].at_border = true;
+        if (side || w == 0 || w == n[0] / 64)
+            at_border |= c.mixed & border_cells(g, w, side);
         if (g->live) {
             for (int axis = 0; axis < 3; axis++)
                 count[axis] += (unsigned)popcount(cwi_edge_vertices(g, axis, j, k, w));
@@ -261,6 +265,8 @@ static void count_row(const cwi_grid *g, size_t j, size_t k, cwi_row *row)
     for (int kind = 0; kind < 4; kind++)
         row->first[kind] = count[kind];
     row->triangle = triangles;
+    if (at_border)
+        g->layers[k].at_border = true;
 }
 
 /* Turns the counts of a layer's rows into first numbers within the layer. */
