@@ -45,10 +45,20 @@ static size_t surface_index(const size_t n[3], const size_t p[3])
     return begin + 2 * n[0] + 2 * (p[1] - 1) + (p[0] != 0);
 }
 
+/* Word w of a row of samples; bricks that are not wanted hold nothing inside at the border. */
+static uint64_t word_at(const cwi_grid *g, size_t j, size_t k, size_t w)
+{
+    if (!g->everything) {
+        const cwi_brick_rows around = cwi_rows_around(g, j, k);
+        if (w >= g->words || !(cwi_wanted_samples(g, &around, w / 64) >> w % 64 & 1))
+            return 0;
+    }
+    return cwi_grid_row(g, k * g->rows_y + j)[w];
+}
+
 static bool is_inside(const box *b, const size_t p[3])
 {
-    const uint64_t *row = cwi_grid_row(b->grid, (p[2] + 1) * b->grid->rows_y + p[1] + 1);
-    return row[(p[0] + 1) / 64] >> (p[0] + 1) % 64 & 1;
+    return word_at(b->grid, p[1] + 1, p[2] + 1, (p[0] + 1) / 64) >> (p[0] + 1) % 64 & 1;
 }
 
 static uint32_t find(uint32_t *parent, uint32_t x)
@@ -91,9 +101,9 @@ static void load_line(const box *b, const side *s, size_t n, uint64_t *line)
     p[s->across] = n;
     memset(line, 0, b->words * sizeof *line);
     if (s->along == 0) {
-        const uint64_t *row = cwi_grid_row(b->grid, (p[2] + 1) * b->grid->rows_y + p[1] + 1);
         for (size_t w = 0; 64 * w < b->n[0]; w++)
-            line[w] = cwi_next_samples(row, w);
+            line[w] = word_at(b->grid, p[1] + 1, p[2] + 1, w) >> 1 |
+                      word_at(b->grid, p[1] + 1, p[2] + 1, w + 1) << 63;
         return;
     }
     for (p[1] = 0; p[1] < b->n[1]; p[1]++)

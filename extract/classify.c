@@ -192,36 +192,9 @@ static inline uint64_t ordered_f32(const float *x)
 #define ordered_u32 plain_ordered_u32
 #define ordered_i32 plain_ordered_i32
 
-/* The rows of bricks that a row of samples is a side of: one to four. */
-typedef struct brick_rows {
-    size_t count, row[4];
-} brick_rows;
-
-static brick_rows rows_around(const cwi_grid *g, size_t j, size_t k)
-{
-    brick_rows b = {0, {0, 0, 0, 0}};
-    for (size_t n = 0; n < 4; n++) {
-        const size_t y = j - (n & 1), z = k - (n >> 1); /* rows of cells */
-        const bool new_y = !(n & 1) || j % CWI_BRICK == 0 || j + 1 == g->rows_y;
-        const bool new_z = !(n >> 1) || k % CWI_BRICK == 0 || k + 1 == g->rows_z;
-        if (y + 1 < g->rows_y && z + 1 < g->rows_z && new_y && new_z)
-            b.row[b.count++] = cwi_grid_bricks(g, y, z);
-    }
-    return b;
-}
-
-/* The words of the row that cells of wanted words look at, in mask word m. */
-static uint64_t wanted_samples(const cwi_grid *g, const brick_rows *b, size_t m)
-{
-    uint64_t wanted = 0;
-    for (size_t n = 0; n < b->count; n++)
-        wanted |= g->wanted[b->row[n] * g->masks + m];
-    return wanted;
-}
-
 /* What the leaves around word w of the row are. Leaves that share samples, and are not wanted,
  * are alike. */
-static cwi_leaf_bits leaves_of_samples(const cwi_grid *g, const brick_rows *b, size_t w)
+static cwi_leaf_bits leaves_of_samples(const cwi_grid *g, const cwi_brick_rows *b, size_t w)
 {
     cwi_leaf_bits bits = {0, 0};
     for (size_t n = 0; n < b->count; n++) {
@@ -230,16 +203,6 @@ static cwi_leaf_bits leaves_of_samples(const cwi_grid *g, const brick_rows *b, s
         bits.solid |= here.solid;
     }
     return bits;
-}
-
-/* Where bricks at the volume's border are not wanted their samples are outside. */
-static void clear_border_words(const cwi_grid *g, size_t j, size_t k)
-{
-    const size_t *n = g->volume.dim;
-    uint64_t *row = g->inside + (k * g->rows_y + j) * g->words;
-    if (j == 1 || j == n[1] || k == 1 || k == n[2])
-        memset(row, 0, g->words * sizeof *row);
-    row[0] = row[n[0] / 64] = row[g->words - 1] = 0;
 }
 
 #define TYPED "extract/classify.inc"

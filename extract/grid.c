@@ -218,6 +218,9 @@ static void classify_layer(void *context, size_t b)
     }
 }
 
+/* With more than this share of the leaves wanted, all are read. */
+enum { DENSE = 10 };
+
 /* Marks what is wanted, and whether a tree is to be grown while everything is read. */
 static cw_status plan_classification(classification *c, cwi_grid *g, cwi_octree *tree,
                                      const cw_extract_desc *desc, cw_error *err)
@@ -235,8 +238,8 @@ static cw_status plan_classification(classification *c, cwi_grid *g, cwi_octree 
     c->grow = tree && !tree->grown ? tree : NULL;
     g->everything = !tree || !tree->grown || find_domain;
     g->find_domain = find_domain;
-    if (!g->everything)
-        cwi_octree_mark(tree, g);
+    if (!g->everything) /* reading leaf by leaf is slower than all in a row */
+        g->everything = cwi_octree_mark(tree, g) > cwi_octree_leaves(tree) / DENSE;
     return CW_OK;
 }
 

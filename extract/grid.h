@@ -52,8 +52,7 @@ typedef struct cwi_grid {
     cwi_leaf_bits
         *leaves;      /* bricks_z x bricks_y x words: of wanted words, and those after them */
     bool find_domain; /* the domain is filled while samples are compared */
-    bool everything;  /* all words are wanted; else the others, but for those that hold the
-                         volume's border, mean nothing in planes and masks */
+    bool everything;  /* all words are wanted; else the others mean nothing in the planes */
     bool cubic;       /* crossings stand on the cubic through four samples where there is one */
     bool simple;      /* one rule for ambiguous faces, in place of the field's topology */
     bool crossed;     /* some samples with values are inside and some are not */
@@ -100,6 +99,33 @@ static inline size_t cwi_grid_bricks(const cwi_grid *g, size_t j, size_t k)
 static inline const uint64_t *cwi_grid_wanted(const cwi_grid *g, size_t j, size_t k)
 {
     return g->wanted + cwi_grid_bricks(g, j, k) * g->masks;
+}
+
+/* The rows of bricks that row (j, k) of samples, of voxels, is a side of: one to four. */
+typedef struct cwi_brick_rows {
+    size_t count, row[4];
+} cwi_brick_rows;
+
+static inline cwi_brick_rows cwi_rows_around(const cwi_grid *g, size_t j, size_t k)
+{
+    const size_t here = cwi_grid_bricks(g, j, k), below = here - g->bricks_y;
+    cwi_brick_rows b = {1, {here, 0, 0, 0}};
+    if (j % CWI_BRICK == 0)
+        b.row[b.count++] = here - 1;
+    if (k % CWI_BRICK == 0)
+        b.row[b.count++] = below;
+    if (j % CWI_BRICK == 0 && k % CWI_BRICK == 0)
+        b.row[b.count++] = below - 1;
+    return b;
+}
+
+/* The words of the row that cells of wanted words look at, in mask word m. */
+static inline uint64_t cwi_wanted_samples(const cwi_grid *g, const cwi_brick_rows *b, size_t m)
+{
+    uint64_t wanted = 0;
+    for (size_t n = 0; n < b->count; n++)
+        wanted |= g->wanted[b->row[n] * g->masks + m];
+    return wanted;
 }
 
 /* Eight bits to the samples of eight leaves. */

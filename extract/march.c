@@ -288,14 +288,33 @@ static void sum_layer(cwi_row *rows, size_t count, cwi_layer *layer)
     layer->triangles = triangle;
 }
 
+/* Something is wanted in the row of bricks that row (j, k) of cells lies in. */
+static bool brick_is_wanted(const cwi_grid *g, size_t j, size_t k)
+{
+    if (g->everything)
+        return true;
+    const uint64_t *wanted = cwi_grid_wanted(g, j, k);
+    return cwi_next_busy(wanted, 0, g->words) < g->words;
+}
+
 void cwi_count_layer(const cwi_grid *g, size_t k, cwi_row *rows)
 {
     cwi_layer *layer = &g->layers[k];
     const bool cells = k + 1 < g->rows_z;
     layer->plan_count = 0;
     layer->at_border = false;
-    for (size_t j = 0; j + 1 < g->rows_y && cells; j++)
-        count_row(g, j, k, rows + k * g->rows_y + j);
+    for (size_t j = 0; j + 1 < g->rows_y && cells;) {
+        if (j % CWI_BRICK == 0 && !brick_is_wanted(g, j, k)) {
+            const size_t row = k * g->rows_y + j,
+                         end = j + CWI_BRICK < g->rows_y ? j + CWI_BRICK : g->rows_y - 1;
+            memset(rows + row, 0, (end - j) * sizeof *rows);
+            memset(g->busy + row * g->masks, 0, (end - j) * g->masks * sizeof *g->busy);
+            j = end;
+        } else {
+            count_row(g, j, k, rows + k * g->rows_y + j);
+            j++;
+        }
+    }
     const size_t left = cells ? 1 : g->rows_y, first = (k + 1) * g->rows_y - left;
     memset(rows + first, 0, left * sizeof *rows);
     memset(g->busy + first * g->masks, 0, left * g->masks * sizeof *g->busy);

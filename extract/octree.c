@@ -110,18 +110,20 @@ static bool straddles(const cwi_range *r, const cwi_grid *g)
     return in && (out || r->gap);
 }
 
-static void mark_below(const cwi_octree *t, int l, const size_t at[3], cwi_grid *g)
+static size_t mark_below(const cwi_octree *t, int l, const size_t at[3], cwi_grid *g)
 {
+    size_t leaves = 0;
     if (!straddles(node(t, l, at[0], at[1], at[2]), g))
-        return;
+        return 0;
     if (l == 0) {
         const size_t word = at[0] * CWI_BRICK / 64;
         uint64_t *mask = g->wanted + (at[2] * g->bricks_y + at[1]) * g->masks;
         mask[word / 64] |= UINT64_C(1) << word % 64;
-        return;
+        return 1;
     }
     EACH_CHILD(t, l, at, x, y, z)
-    mark_below(t, l - 1, (const size_t[3]){x, y, z}, g);
+    leaves += mark_below(t, l - 1, (const size_t[3]){x, y, z}, g);
+    return leaves;
 }
 
 /* What the tree says of the eight leaves in a word of a row of bricks. */
@@ -139,12 +141,17 @@ static cwi_leaf_bits leaf_bits(const cwi_octree *t, const cwi_grid *g, size_t ro
     return bits;
 }
 
-void cwi_octree_mark(const cwi_octree *t, cwi_grid *g)
+size_t cwi_octree_leaves(const cwi_octree *t)
+{
+    return bricks_at(t, 0);
+}
+
+size_t cwi_octree_mark(const cwi_octree *t, cwi_grid *g)
 {
     const size_t rows = g->bricks_z * g->bricks_y;
     memset(g->wanted, 0, rows * g->masks * sizeof *g->wanted);
     memset(g->leaves, 0, rows * g->words * sizeof *g->leaves);
-    mark_below(t, t->levels - 1, (const size_t[3]){0, 0, 0}, g);
+    const size_t leaves = mark_below(t, t->levels - 1, (const size_t[3]){0, 0, 0}, g);
     for (size_t row = 0; row < rows; row++) {
         const uint64_t *mask = g->wanted + row * g->masks;
         for (size_t w = cwi_next_busy(mask, 0, g->words); w < g->words;
@@ -152,4 +159,5 @@ void cwi_octree_mark(const cwi_octree *t, cwi_grid *g)
             for (size_t x = w; x < w + 2 && x < g->words; x++)
                 g->leaves[row * g->words + x] = leaf_bits(t, g, row, x);
     }
+    return leaves;
 }

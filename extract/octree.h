@@ -35,7 +35,9 @@ void cwi_octree_grow(cwi_octree *tree);
 /* Some numbers are inside and some are not. */
 bool cwi_octree_crossed(const cwi_octree *tree, const cwi_grid *grid);
 
-/* Marks, in the grid's `wanted` masks, the words of cells that straddling leaves lie in. */
-void cwi_octree_mark(const cwi_octree *tree, cwi_grid *grid);
+/* Marks, in the grid, the words of cells that straddling leaves lie in. Returns how many leaves
+ * these are. */
+size_t cwi_octree_mark(const cwi_octree *tree, cwi_grid *grid);
+size_t cwi_octree_leaves(const cwi_octree *tree);
 
 #endif

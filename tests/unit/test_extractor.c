@@ -94,7 +94,8 @@ static void one_after_another_as_each_by_itself(void **state)
 static void later_surfaces_read_no_other_bricks(void **state)
 {
     (void)state;
-    const cw_field_desc desc = {.field = CW_FIELD_SPHERE, .dim = {96, 96, 96}, .type = CW_F32};
+    const cw_field_desc desc = {
+        .field = CW_FIELD_SPHERE, .dim = {200, 200, 200}, .type = CW_F32};
     const cw_extract_desc first = {.isovalue = 0}, second = {.isovalue = 0.5};
     cw_volume v;
     cw_extractor *extractor;
@@ -106,7 +107,7 @@ static void later_surfaces_read_no_other_bricks(void **state)
     assert_ok(cw_extractor_extract(extractor, &first, &again, NULL, &err), err);
     cw_mesh_free(&again);
     float *voxels = cw_volume_voxels(&v);
-    for (size_t n = 0; n < 96 * 96 * 96; n++)
+    for (size_t n = 0; n < 200 * 200 * 200; n++)
         if (fabs((double)voxels[n] - 0.5) > 25)
             voxels[n] = NAN;
     assert_ok(cw_extractor_extract(extractor, &second, &again, NULL, &err), err);
