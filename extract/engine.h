@@ -45,13 +45,15 @@ struct cwi_engine {
 CW_API const cwi_engine *cwi_engine_at(size_t n);
 const cwi_engine *cwi_engine_best(void);
 
-/* cw_extract() and cw_extractor_new() with an engine of the caller's choice, for tests. */
+/* cw_extract() and cw_extractor_new() with an engine of the caller's choice, for tests.
+ * leaf_bytes: as in cwi_octree; 0: only wanted leaves are read, however many they are. */
 CW_API cw_status cwi_extract_with(const cwi_engine *engine, const cw_volume *volume,
                                   const cw_extract_desc *desc, cw_mesh *mesh,
                                   cw_extract_counts *counts, cw_error *err);
 
-CW_API cw_status cwi_extractor_new_with(const cwi_engine *engine, const cw_volume *volume,
-                                        cw_extractor **out, cw_error *err);
+CW_API cw_status cwi_extractor_new_with(const cwi_engine *engine, size_t leaf_bytes,
+                                        const cw_volume *volume, cw_extractor **out,
+                                        cw_error *err);
 
 /* In files that are compiled for each engine, CWI_ENGINE is its name, and CWI_WIDE tells
  * whether it may shuffle, count and compress bytes and bits in words of 512 bits. */

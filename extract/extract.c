@@ -341,8 +341,8 @@ cw_status cw_extract_predict(const cw_volume *volume, const cw_extract_desc *des
     return st;
 }
 
-cw_status cwi_extractor_new_with(const cwi_engine *engine, const cw_volume *volume,
-                                 cw_extractor **out, cw_error *err)
+cw_status cwi_extractor_new_with(const cwi_engine *engine, size_t leaf_bytes,
+                                 const cw_volume *volume, cw_extractor **out, cw_error *err)
 {
     cw_extractor *e = cwi_alloc_array(1, sizeof *e);
     *out = NULL;
@@ -351,6 +351,7 @@ cw_status cwi_extractor_new_with(const cwi_engine *engine, const cw_volume *volu
     cw_status st = init_plan(e, engine, volume, err);
     if (st == CW_OK)
         st = cwi_octree_init(&e->tree, &e->grid, err);
+    e->tree.leaf_bytes = leaf_bytes;
     if (st == CW_OK)
         *out = e;
     else
@@ -360,7 +361,7 @@ cw_status cwi_extractor_new_with(const cwi_engine *engine, const cw_volume *volu
 
 cw_status cw_extractor_new(const cw_volume *volume, cw_extractor **out, cw_error *err)
 {
-    return cwi_extractor_new_with(cwi_engine_best(), volume, out, err);
+    return cwi_extractor_new_with(cwi_engine_best(), CWI_LEAF_BYTES, volume, out, err);
 }
 
 void cw_extractor_free(cw_extractor *e)

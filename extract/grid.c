@@ -218,10 +218,6 @@ static void classify_layer(void *context, size_t b)
     }
 }
 
-/* Reading a leaf by itself takes as long as reading so many bytes a sample in a row: it waits
- * for memory. Measured, and of no consequence but for the time. */
-enum { LEAF_BYTES = 60 };
-
 /* Marks what is wanted, and whether a tree is to be grown while everything is read. */
 static cw_status plan_classification(classification *c, cwi_grid *g, cwi_octree *tree,
                                      const cw_extract_desc *desc, cw_error *err)
@@ -240,7 +236,7 @@ static cw_status plan_classification(classification *c, cwi_grid *g, cwi_octree 
     g->everything = !tree || !tree->grown || find_domain;
     g->find_domain = find_domain;
     if (!g->everything)
-        g->everything = cwi_octree_mark(tree, g) * LEAF_BYTES >
+        g->everything = cwi_octree_mark(tree, g) * tree->leaf_bytes >
                         cwi_octree_leaves(tree) * cw_type_size(g->volume.type);
     return CW_OK;
 }

@@ -9,7 +9,7 @@
 
 #include "extract/grid.h"
 
-enum { CWI_OCTREE_LEVELS = 64 };
+enum { CWI_OCTREE_LEVELS = 64, CWI_LEAF_BYTES = 60 /* measured */ };
 
 /* The numbers in a brick; none: from infinity to -infinity. */
 typedef struct cwi_range {
@@ -18,7 +18,9 @@ typedef struct cwi_range {
 } cwi_range;
 
 struct cwi_octree {
-    bool grown; /* the nodes hold ranges */
+    bool grown;        /* the nodes hold ranges */
+    size_t leaf_bytes; /* a leaf by itself takes as long to read as so many bytes a sample in a
+                          row: with more leaves wanted than that makes up for, all are read */
     int levels;
     size_t dim[CWI_OCTREE_LEVELS][3]; /* bricks along each axis; level 0 has the leaves */
     cwi_range *level[CWI_OCTREE_LEVELS];
