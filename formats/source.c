@@ -344,7 +344,7 @@ static cw_status load_voxels(const cwi_source *src, const cwi_input *in,
                              const cw_read_desc *desc, cw_volume *volume, cw_error *err)
 {
     cw_volume v = src->shape;
-    v.owned = cwi_alloc_array(src->bytes, 1);
+    v.owned = cwi_alloc_large(src->bytes, 1);
     if (!v.owned)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of voxels", src->bytes);
     v.data = v.owned;
