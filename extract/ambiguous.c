@@ -54,6 +54,13 @@ static void load_corners(const cw_volume *v, const size_t at[3], double stored[8
     }
 }
 
+void cwi_corner_values(const cwi_grid *grid, const size_t at[3], double values[8])
+{
+    load_corners(&grid->volume, at, values);
+    for (int c = 0; c < 8; c++)
+        values[c] = value_of(grid, values[c]);
+}
+
 /* Doubles the room of a layer's list when it is full. Without memory for it there is no list:
  * its cells are planned twice. */
 static void note(cwi_layer *layer, uint32_t code)

@@ -9,6 +9,9 @@
  * where there is none. */
 double cwi_value_at(const cwi_grid *grid, size_t i, size_t j, size_t k);
 
+/* Of the eight corners of a cell. */
+void cwi_corner_values(const cwi_grid *grid, const size_t at[3], double values[8]);
+
 /* Which side a sample on the isovalue is on. */
 static inline bool cwi_zero_is_inside(const cwi_grid *grid)
 {

@@ -189,52 +189,33 @@ bool cwi_triangles_apart(const cwi_triangle *s, const cwi_triangle *t, int share
 /* From the origin to the nearest point of the line from p to q, if it is nearer. */
 static void try_side(const double p[3], const double q[3], double nearest[3])
 {
-    double d[3], at[3];
-    for (int a = 0; a < 3; a++)
-        d[a] = q[a] - p[a];
-    const double t = fmin(fmax(-dot(p, d) / dot(d, d), 0), 1);
+    vector d, at;
+    subtract(q, p, d);
+    const double t = lesser(greater(-dot(p, d) / dot(d, d), 0), 1);
     for (int a = 0; a < 3; a++)
         at[a] = p[a] + t * d[a];
     if (dot(at, at) < dot(nearest, nearest))
         memcpy(nearest, at, sizeof at);
 }
 
-/* A point of a triangle's plane is inside it: to the left of every side. */
-static bool is_inside(const cwi_triangle *t, const double normal[3], const double at[3])
-{
-    for (int c = 0; c < 3; c++) {
-        const double *from = t->p[c], *to = t->p[(c + 1) % 3];
-        double turn = 0;
-        for (int a = 0; a < 3; a++) {
-            const int b = (a + 1) % 3, d = (a + 2) % 3;
-            turn += normal[a] * ((to[b] - from[b]) * (at[d] - from[d]) -
-                                 (to[d] - from[d]) * (at[b] - from[b]));
-        }
-        if (!(turn >= 0))
-            return false;
-    }
-    return true;
-}
-
-/* The same, of a triangle: its plane's nearest point if that is inside, or one of a side's. */
+/* Its plane's nearest point, if all sides have that on their left; or else a point of a side
+ * that has it on its right. The corners' cross products add up to the normal. */
 void cwi_nearest_of_triangle(const cwi_triangle *t, double nearest[3])
 {
-    double u[3], v[3], n[3], at[3];
-    for (int a = 0; a < 3; a++) {
-        u[a] = t->p[1][a] - t->p[0][a];
-        v[a] = t->p[2][a] - t->p[0][a];
-    }
-    for (int a = 0; a < 3; a++)
-        n[a] = u[(a + 1) % 3] * v[(a + 2) % 3] - u[(a + 2) % 3] * v[(a + 1) % 3];
-    const double height = dot(n, t->p[0]) / dot(n, n);
-    for (int a = 0; a < 3; a++)
-        at[a] = height * n[a];
-    if (dot(at, at) >= dot(nearest, nearest))
-        return;
-    if (is_inside(t, n, at)) {
-        memcpy(nearest, at, sizeof at);
-        return;
-    }
+    vector corners[3], n;
     for (int c = 0; c < 3; c++)
-        try_side(t->p[c], t->p[(c + 1) % 3], nearest);
+        cross(t->p[c], t->p[(c + 1) % 3], corners[c]);
+    for (int a = 0; a < 3; a++)
+        n[a] = corners[0][a] + corners[1][a] + corners[2][a];
+    const double square = dot(n, n), height = dot(n, t->p[0]);
+    if (height * height >= square * dot(nearest, nearest))
+        return;
+    bool inside = true;
+    for (int c = 0; c < 3; c++)
+        if (!(dot(n, corners[c]) >= 0)) {
+            inside = false;
+            try_side(t->p[c], t->p[(c + 1) % 3], nearest);
+        }
+    for (int a = 0; a < 3 && inside; a++)
+        nearest[a] = height / square * n[a];
 }

@@ -29,16 +29,24 @@ void cwi_to_position(const cwi_snapping *s, const double x[3], float p[3])
                        v->affine[r][2] * (x[2] - s->centre[2]));
 }
 
-static size_t first_at(const uint32_t *cell, size_t low, size_t high, size_t i)
+/* The triangles of a row's cells from i on, `count` of them (4 at most), are begin to end. */
+static size_t find_in_row(const cwi_snapping *s, size_t row, size_t i, unsigned count,
+                          size_t *end)
 {
-    while (low < high) {
-        const size_t middle = low + (high - low) / 2;
-        if (cell[middle] < i)
-            low = middle + 1;
-        else
-            high = middle;
-    }
-    return low;
+    const size_t w = i / 64, shift = i % 64;
+    const cwi_cell_word *word = s->cells + row * s->grid->words + w;
+    uint64_t here = word->has >> shift;
+    if (shift + count > 64 && w + 1 < s->grid->words)
+        here |= word[1].has << (64 - shift);
+    here &= (1u << count) - 1;
+    if (!here)
+        return *end = 0;
+    const size_t first = s->rows[row].triangle,
+                 n = word->before +
+                     (size_t)__builtin_popcountll(word->has & ((UINT64_C(1) << shift) - 1));
+    const size_t cells = (0x4332322132212110 >> 4 * here) & 15; /* bits of `here` */
+    *end = first + s->ends[first + n + cells - 1];
+    return n ? first + s->ends[first + n - 1] : first;
 }
 
 int cwi_find_triangles(const cwi_snapping *s, const size_t at[3], size_t reach, size_t *out)
@@ -49,9 +57,9 @@ int cwi_find_triangles(const cwi_snapping *s, const size_t at[3], size_t reach, 
         low[a] = at[a] < reach ? 0 : at[a] - reach;
     for (size_t k = low[2]; k < at[2] + reach && k + 1 < g->rows_z; k++)
         for (size_t j = low[1]; j < at[1] + reach && j + 1 < g->rows_y; j++) {
-            const cwi_row *row = s->rows + k * g->rows_y + j;
-            size_t t = first_at(s->cell, row[0].triangle, row[1].triangle, low[0]);
-            for (; t < row[1].triangle && s->cell[t] < at[0] + reach; t++)
+            size_t end, t = find_in_row(s, k * g->rows_y + j, low[0],
+                                        (unsigned)(at[0] + reach - low[0]), &end);
+            for (; t < end; t++)
                 if (!cwi_is_gone(s->mesh->triangles + 3 * t))
                     out[count++] = t;
         }
@@ -79,27 +87,48 @@ static bool join(const cwi_snapping *s, cwi_cluster *c, const uint32_t *triangle
 {
     bool grown = false;
     for (int n = 0; n < 3 && members_of(c, triangle) > 0; n++)
-        if (s->near[triangle[n]] == c->sample && !cwi_is_member(c, triangle[n])) {
+        if (s->places[triangle[n]].near == c->sample && !cwi_is_member(c, triangle[n])) {
             c->member[c->count++] = triangle[n];
             grown = true;
         }
     return grown;
 }
 
+/* Keeps of the triangles around the sample those that have a vertex close to it. Whether one
+ * has two. */
+static bool find_candidates(const cwi_snapping *s, cwi_cluster *c)
+{
+    const int around = cwi_find_triangles(s, c->at, 1, c->star);
+    bool joined = false;
+    c->star_count = 0;
+    for (int n = 0; n < around; n++) {
+        const uint32_t *t = s->mesh->triangles + 3 * c->star[n];
+        const int close = (s->places[t[0]].near == c->sample) +
+                          (s->places[t[1]].near == c->sample) +
+                          (s->places[t[2]].near == c->sample);
+        joined = joined || close > 1;
+        c->star[c->star_count] = c->star[n];
+        c->star_count += close > 0;
+    }
+    return joined;
+}
+
 void cwi_cluster_find(const cwi_snapping *s, uint32_t v, cwi_cluster *c)
 {
-    c->sample = s->near[v];
+    c->sample = s->places[v].near;
     cwi_sample_place(s->grid, c->sample, c->at);
-    const int around = cwi_find_triangles(s, c->at, 1, c->star);
     c->count = 1;
     c->member[0] = v;
+    if (!find_candidates(s, c))
+        return;
     for (bool grown = true; grown;) {
         grown = false;
-        for (int n = 0; n < around; n++)
+        for (int n = 0; n < c->star_count; n++)
             grown = join(s, c, s->mesh->triangles + 3 * c->star[n]) || grown;
     }
+    const int candidates = c->star_count;
     c->star_count = 0;
-    for (int n = 0; n < around; n++)
+    for (int n = 0; n < candidates; n++)
         if (members_of(c, s->mesh->triangles + 3 * c->star[n]) > 0)
             c->star[c->star_count++] = c->star[n];
 }
@@ -121,16 +150,17 @@ static bool find_rim(const cwi_snapping *s, cwi_cluster *c)
         owner[count++] = c->star[n];
     }
     c->rim_count = 0;
+    if (count < 3 || count > CWI_RIM)
+        return false;
     for (int n = 0, next; c->rim_count < count; n = next) {
         c->owner[c->rim_count] = owner[n];
-        cwi_to_index(s, cwi_position(s, from[n]), c->rim_x[c->rim_count]);
         c->rim[c->rim_count++] = from[n];
         for (next = 0; next < count && from[next] != to[n]; next++)
             ;
         if (next == count || (next == 0 && c->rim_count < count))
             return false;
     }
-    return count >= 3;
+    return true;
 }
 
 /* The star is a surface with one rim, all members inside. It is a disc if its Euler number is

@@ -130,7 +130,7 @@ static cw_status make_plan(plan *p, const cw_extract_desc *d, cw_error *err)
     p->counts.bytes = mesh_bytes(&p->counts, !d->no_normals) + cwi_grid_bytes(&p->grid) +
                       cwi_octree_bytes(&p->tree);
     if (d->snap > 0)
-        p->counts.bytes += cwi_snap_bytes(p->counts.vertices, p->counts.triangles);
+        p->counts.bytes += cwi_snap_bytes(g, p->counts.vertices, p->counts.triangles);
     return st == CW_OK ? check_limits(d, &p->counts, err) : st;
 }
 

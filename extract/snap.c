@@ -63,15 +63,16 @@ static uint64_t inner_edges(const cwi_grid *g, int axis, size_t j, size_t k, siz
  * x-edge. */
 static void mark_vertex(cwi_snapping *s, size_t at[3], int axis, uint32_t v, bool inner)
 {
-    double x[3];
-    cwi_to_index(s, cwi_position(s, v), x);
-    const double t = x[axis] - (double)at[axis];
+    cwi_place *place = &s->places[v];
+    cwi_to_index(s, cwi_position(s, v), place->x);
+    const double t = place->x[axis] - (double)at[axis];
     s->into[v] = (uint32_t)at[0] << 1 | (axis == 0);
+    place->near = 0;
     if (!inner || (t > s->share && 1 - t > s->share))
         return;
     size_t to[3] = {at[0], at[1], at[2]};
     to[axis] += t > s->share;
-    s->near[v] = cwi_sample_number(s->grid, to[0], to[1], to[2]);
+    place->near = cwi_sample_number(s->grid, to[0], to[1], to[2]);
 }
 
 static void mark_row(cwi_snapping *s, size_t j, size_t k, const cwi_row *row)
@@ -88,8 +89,11 @@ static void mark_row(cwi_snapping *s, size_t j, size_t k, const cwi_row *row)
                 mark_vertex(s, at, axis, number[axis]++, (inner & e & -e) != 0);
             }
         }
-    for (uint32_t v = row->first[3]; v < row[1].first[0]; v++)
+    for (uint32_t v = row->first[3]; v < row[1].first[0]; v++) {
+        cwi_to_index(s, cwi_position(s, v), s->places[v].x);
+        s->places[v].near = 0;
         s->into[v] = UINT32_MAX;
+    }
 }
 
 static void mark_layer(void *context, size_t k)
@@ -120,17 +124,32 @@ static uint32_t cell_of(const cwi_snapping *s, const uint32_t triangle[3])
     }
     if (inner == UINT32_MAX || low != high)
         return low;
-    double x[3];
-    cwi_to_index(s, cwi_position(s, inner), x);
-    return x[0] < (double)low ? low - 1 : low;
+    return cwi_index(s, inner)[0] < (double)low ? low - 1 : low;
+}
+
+/* Triangles lie in their cells' order. */
+static void find_cells_of_row(const cwi_snapping *s, size_t row)
+{
+    const size_t first = s->rows[row].triangle, end = s->rows[row + 1].triangle;
+    cwi_cell_word *words = s->cells + row * s->grid->words;
+    uint32_t count = 0, last = UINT32_MAX;
+    for (size_t t = first; t < end; t++) {
+        const uint32_t cell = cell_of(s, s->mesh->triangles + 3 * t);
+        count += cell != last;
+        last = cell;
+        words[cell / 64].has |= UINT64_C(1) << cell % 64;
+        s->ends[first + count - 1] = (uint32_t)(t + 1 - first);
+    }
+    for (size_t w = 1; w < s->grid->words && first < end; w++)
+        words[w].before =
+            words[w - 1].before + (uint32_t)__builtin_popcountll(words[w - 1].has);
 }
 
 static void find_cells(void *context, size_t k)
 {
-    cwi_snapping *s = &((snap_run *)context)->s;
+    const cwi_snapping *s = &((snap_run *)context)->s;
     for (size_t r = k * s->grid->rows_y; r < (k + 1) * s->grid->rows_y; r++)
-        for (size_t t = s->rows[r].triangle; t < s->rows[r + 1].triangle; t++)
-            s->cell[t] = cell_of(s, s->mesh->triangles + 3 * t);
+        find_cells_of_row(s, r);
 }
 
 static void reset_layer(void *context, size_t k)
@@ -157,10 +176,12 @@ static void merge_normals(const cwi_snapping *s, const cwi_cluster *c)
 }
 
 /* Triangles with two corners in the cluster are left with two equal ones: they are gone. */
-static void merge(const cwi_snapping *s, const cwi_cluster *c, const float p[3])
+static void merge(const cwi_snapping *s, const cwi_cluster *c, const double x[3],
+                  const float p[3])
 {
     if (s->mesh->normals)
         merge_normals(s, c);
+    memcpy(s->places[c->member[0]].x, x, 3 * sizeof *x);
     memcpy(s->mesh->positions + 3 * (size_t)c->member[0], p, 3 * sizeof *p);
     for (int n = 0; n < c->star_count; n++) {
         uint32_t *t = s->mesh->triangles + 3 * c->star[n];
@@ -170,7 +191,7 @@ static void merge(const cwi_snapping *s, const cwi_cluster *c, const float p[3])
     }
     for (int m = 0; m < c->count; m++) {
         s->into[c->member[m]] = c->member[0];
-        s->near[c->member[m]] |= SNAPPED;
+        s->places[c->member[m]].near |= SNAPPED;
     }
 }
 
@@ -179,19 +200,20 @@ static void snap_layer(void *context, size_t n)
     const snap_run *run = context;
     const cwi_snapping *s = &run->s;
     cwi_cluster c;
+    double x[3];
     float p[3];
     const cwi_grid *g = s->grid;
     const size_t k = run->colour + EVERY * n, in_layer = g->rows_y * 64 * g->words;
     const uint64_t first = cwi_sample_number(g, 0, 0, k), end = first + in_layer;
     const uint32_t v_end = s->rows[(k + 1) * g->rows_y].first[0];
     for (uint32_t v = s->rows[(k ? k - 1 : 0) * g->rows_y].first[0]; v < v_end; v++) {
-        if (s->near[v] < first || s->near[v] >= end)
+        if (s->places[v].near < first || s->places[v].near >= end)
             continue;
         cwi_cluster_find(s, v, &c);
-        if (c.count > 1 && cwi_cluster_is_disc(s, &c) && cwi_cluster_place(s, &c, p))
-            merge(s, &c, p);
+        if (c.count > 1 && cwi_cluster_is_disc(s, &c) && cwi_cluster_place(s, &c, x, p))
+            merge(s, &c, x, p);
         for (int m = 0; m < c.count; m++)
-            s->near[c.member[m]] |= SEEN;
+            s->places[c.member[m]].near |= SEEN;
     }
 }
 
@@ -202,14 +224,31 @@ static double dot(const double a[3], const double b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* A difference of positions in the world and in voxels. */
-static void difference(const cwi_snapping *s, const float *from, const float *to,
-                       double world[3], double voxels[3])
+static double lesser(double a, double b)
 {
-    for (int a = 0; a < 3; a++)
-        world[a] = (double)to[a] - (double)from[a];
-    for (int a = 0; a < 3; a++)
-        voxels[a] = dot(s->inverse[a], world);
+    return a < b ? a : b;
+}
+
+static double greater(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+/* Where the surface is nearest to a vertex that was merged: in the world, and in voxels. */
+typedef struct distances {
+    const float *from;
+    double from_x[3];
+    double nearest[2][3];
+} distances;
+
+static void start_from(const cwi_snapping *s, uint32_t v, distances *d)
+{
+    d->from = s->before + 3 * (size_t)v;
+    cwi_to_index(s, d->from, d->from_x);
+    for (int a = 0; a < 3; a++) {
+        d->nearest[0][a] = (double)cwi_position(s, s->into[v])[a] - (double)d->from[a];
+        d->nearest[1][a] = cwi_index(s, s->into[v])[a] - d->from_x[a];
+    }
 }
 
 static void add_to_sums(layer_sums *sums, int unit, double moved, double error)
@@ -219,29 +258,65 @@ static void add_to_sums(layer_sums *sums, int unit, double moved, double error)
     sums->error_sum[unit] += error;
 }
 
+/* A triangle cannot be nearer than a box around it. */
+static bool may_be_nearer(const cwi_snapping *s, const distances *d, const cwi_triangle *t)
+{
+    double square = 0;
+    for (int a = 0; a < 3; a++) {
+        const double x = t->p[0][a], y = t->p[1][a], z = t->p[2][a];
+        const double low = lesser(lesser(x, y), z), high = greater(greater(x, y), z);
+        const double off = greater(greater(low, -high), 0);
+        square += off * off;
+    }
+    return square < dot(d->nearest[1], d->nearest[1]) ||
+           (s->edge == 0 && square * s->shrink * s->shrink < dot(d->nearest[0], d->nearest[0]));
+}
+
+static void try_triangle(const cwi_snapping *s, const uint32_t corner[3], distances *d)
+{
+    cwi_triangle voxels, world;
+    for (int c = 0; c < 3; c++)
+        for (int a = 0; a < 3; a++)
+            voxels.p[c][a] = cwi_index(s, corner[c])[a] - d->from_x[a];
+    if (!may_be_nearer(s, d, &voxels))
+        return;
+    cwi_nearest_of_triangle(&voxels, d->nearest[1]);
+    if (s->edge > 0)
+        return;
+    for (int c = 0; c < 3; c++)
+        for (int a = 0; a < 3; a++)
+            world.p[c][a] = (double)cwi_position(s, corner[c])[a] - (double)d->from[a];
+    cwi_nearest_of_triangle(&world, d->nearest[0]);
+}
+
+static void measure(const cwi_snapping *s, const distances *d, double distance[2])
+{
+    distance[1] = sqrt(dot(d->nearest[1], d->nearest[1]));
+    distance[0] = s->edge > 0 ? s->edge * distance[1] : sqrt(dot(d->nearest[0], d->nearest[0]));
+}
+
 /* How far a vertex that was merged has gone, and how far from where it was the surface is
- * now, looked for in the cells around its sample. */
+ * now, looked for in the cells around its sample: most likely, in the triangles that it was
+ * merged into. */
 static void measure_vertex(const cwi_snapping *s, uint32_t v, layer_sums *sums)
 {
     size_t at[3], triangles[CWI_STAR];
-    double nearest[2][3], moved[2];
-    cwi_triangle t[2];
-    const float *from = s->before + 3 * (size_t)v;
-    difference(s, from, cwi_position(s, s->into[v]), nearest[0], nearest[1]);
-    for (int u = 0; u < 2; u++)
-        moved[u] = sqrt(dot(nearest[u], nearest[u]));
-    cwi_sample_place(s->grid, s->near[v] & SAMPLE, at);
+    double moved[2], error[2];
+    distances d;
+    start_from(s, v, &d);
+    measure(s, &d, moved);
+    cwi_sample_place(s->grid, s->places[v].near & SAMPLE, at);
     const int count = cwi_find_triangles(s, at, 1, triangles);
-    for (int n = 0; n < count; n++) {
-        const uint32_t *corner = s->mesh->triangles + 3 * triangles[n];
-        for (int c = 0; c < 3; c++)
-            difference(s, from, cwi_position(s, corner[c]), t[0].p[c], t[1].p[c]);
-        for (int u = 0; u < 2; u++)
-            cwi_nearest_of_triangle(&t[u], nearest[u]);
-    }
+    for (int own = 1; own >= 0; own--)
+        for (int n = 0; n < count; n++) {
+            const uint32_t *t = s->mesh->triangles + 3 * triangles[n], to = s->into[v];
+            if ((t[0] == to || t[1] == to || t[2] == to) == own)
+                try_triangle(s, t, &d);
+        }
+    measure(s, &d, error);
     sums->count++;
     for (int u = 0; u < 2; u++)
-        add_to_sums(sums, u, moved[u], sqrt(dot(nearest[u], nearest[u])));
+        add_to_sums(sums, u, moved[u], error[u]);
 }
 
 static void measure_layer(void *context, size_t k)
@@ -250,7 +325,7 @@ static void measure_layer(void *context, size_t k)
     const cwi_snapping *s = &run->s;
     const size_t first = k * s->grid->rows_y, end = first + s->grid->rows_y;
     for (uint32_t v = s->rows[first].first[0]; v < s->rows[end].first[0]; v++)
-        if (s->near[v] & SNAPPED)
+        if (s->places[v].near & SNAPPED)
             measure_vertex(s, v, &run->sums[k]);
 }
 
@@ -305,22 +380,23 @@ static void close_ranks(cwi_snapping *s)
     mesh->triangle_count = triangles;
 }
 
-size_t cwi_snap_bytes(size_t vertices, size_t triangles)
+size_t cwi_snap_bytes(const cwi_grid *grid, size_t vertices, size_t triangles)
 {
-    return vertices * (sizeof(uint64_t) + sizeof(uint32_t) + 3 * sizeof(float)) +
-           triangles * sizeof(uint32_t);
+    return vertices * (sizeof(cwi_place) + sizeof(uint32_t) + 3 * sizeof(float)) +
+           triangles * sizeof(uint32_t) + grid->rows * grid->words * sizeof(cwi_cell_word);
 }
 
 static cw_status make_room(snap_run *run, cw_error *err)
 {
     cwi_snapping *s = &run->s;
     const size_t vertices = s->mesh->vertex_count, triangles = s->mesh->triangle_count;
-    s->near = cwi_alloc_zeroed(vertices, sizeof *s->near);
+    s->places = cwi_alloc_large(vertices, sizeof *s->places);
     s->into = cwi_alloc_large(vertices, sizeof *s->into);
-    s->cell = cwi_alloc_large(triangles, sizeof *s->cell);
     s->before = cwi_alloc_large(vertices, 3 * sizeof *s->before);
+    s->cells = cwi_alloc_zeroed(s->grid->rows, s->grid->words * sizeof *s->cells);
+    s->ends = cwi_alloc_large(triangles, sizeof *s->ends);
     run->sums = cwi_alloc_zeroed(s->grid->rows_z, sizeof *run->sums);
-    if (!s->near || !s->into || !s->cell || !s->before || !run->sums)
+    if (!s->places || !s->into || !s->before || !s->cells || !s->ends || !run->sums)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to snap %zu vertices", vertices);
     memcpy(s->before, s->mesh->positions, 3 * vertices * sizeof *s->before);
     return CW_OK;
@@ -329,24 +405,46 @@ static cw_status make_room(snap_run *run, cw_error *err)
 static void free_room(snap_run *run)
 {
     cwi_snapping *s = &run->s;
-    cwi_free(s->near);
+    cwi_free(s->places);
     cwi_free(s->into);
-    cwi_free(s->cell);
     cwi_free(s->before);
+    cwi_free(s->cells);
+    cwi_free(s->ends);
     cwi_free(run->sums);
+}
+
+/* The length of a voxel's edges if it is a cube, so that distances need no measuring twice. */
+static double find_edge(const cw_volume *v)
+{
+    double square[3][3];
+    for (int a = 0; a < 3; a++)
+        for (int b = 0; b < 3; b++)
+            square[a][b] = v->affine[0][a] * v->affine[0][b] +
+                           v->affine[1][a] * v->affine[1][b] +
+                           v->affine[2][a] * v->affine[2][b];
+    for (int a = 0; a < 3; a++) {
+        const int b = (a + 1) % 3;
+        if (fabs(square[a][b]) > 1e-12 * square[a][a] ||
+            fabs(square[b][b] - square[a][a]) > 1e-12 * square[a][a])
+            return 0;
+    }
+    return sqrt(square[0][0]);
 }
 
 static void find_inverse(cwi_snapping *s)
 {
     const cw_volume *v = &s->grid->volume;
     const double determinant = cwi_affine_determinant(v->affine[0]);
-    double cofactor[3][3];
+    double cofactor[3][3], squares = 0;
     cwi_affine_cofactor(v->affine[0], cofactor);
     for (int r = 0; r < 3; r++) {
         s->centre[r] = 0.5 * (double)(v->dim[r] - 1) + 1;
         for (int c = 0; c < 3; c++)
             s->inverse[r][c] = cofactor[c][r] / determinant;
+        squares += dot(s->inverse[r], s->inverse[r]);
     }
+    s->shrink = 1 / sqrt(squares);
+    s->edge = find_edge(v);
 }
 
 typedef struct snap_step {

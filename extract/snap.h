@@ -8,7 +8,7 @@
 #include <cubewright/mesh.h>
 
 /* What snapping a mesh of so many vertices and triangles takes, beside the mesh. */
-size_t cwi_snap_bytes(size_t vertices, size_t triangles);
+size_t cwi_snap_bytes(const cwi_grid *grid, size_t vertices, size_t triangles);
 
 /* Snaps a mesh that was just written from a grid and its rows. desc->snap is above 0. */
 cw_status cwi_snap(const cwi_grid *grid, const cwi_row *rows, const cw_extract_desc *desc,

@@ -85,7 +85,8 @@ typedef struct cw_extract_counts {
  *          CW_ERR_LIMIT     more than 2^32 - 1 vertices, or a limit of desc
  *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
  * Cost     two passes over the voxels' sign bits after one over the voxels; snapping takes some
- *          ten microseconds for each vertex that it makes, far more than the rest
+ *          five microseconds for each vertex that it makes, far more than the rest; in noise
+ *          five times that
  * Threads  reentrant; the mesh is the same to the bit for any number of threads
  * Source   [Lorensen1987]; faces [Nielson1991]; tunnels after [Chernyaev1995]; simple_topology
  *          [Montani1994]; snapping after [Moore1992]; ranks in place of maps as in

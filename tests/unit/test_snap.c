@@ -158,10 +158,11 @@ static const char *change(const pair *p, bool open)
 
 static const struct {
     cw_field field;
-    bool open;
-} smooth[] = {{CW_FIELD_SPHERE, false},        {CW_FIELD_TORUS, false},
-              {CW_FIELD_GYROID, false},        {CW_FIELD_GYROID, true},
-              {CW_FIELD_MARSCHNER_LOBB, true}, {CW_FIELD_CT_HEAD, false}};
+    bool open, cubic;
+} smooth[] = {{CW_FIELD_SPHERE, false, false},        {CW_FIELD_TORUS, false, false},
+              {CW_FIELD_GYROID, false, false},        {CW_FIELD_GYROID, true, false},
+              {CW_FIELD_MARSCHNER_LOBB, true, false}, {CW_FIELD_CT_HEAD, false, false},
+              {CW_FIELD_TORUS, false, true},          {CW_FIELD_GYROID, true, true}};
 
 enum { SMOOTH = sizeof smooth / sizeof *smooth };
 
@@ -170,7 +171,8 @@ static pair extract_smooth(int n, size_t size, double snap)
     const cw_field field = smooth[n].field;
     cw_volume v = test_sample(field, size, CW_F32);
     const cw_extract_desc d = {.isovalue = cw_field_isovalue(field),
-                               .leave_open = smooth[n].open};
+                               .leave_open = smooth[n].open,
+                               .cubic_placement = smooth[n].cubic};
     pair p = extract_pair(&v, d, snap);
     cw_volume_free(&v);
     return p;
@@ -278,6 +280,7 @@ static bool is_changed(const test_hostile *h, const test_frame *frame, unsigned 
                                .leave_open = setting & 1,
                                .inside_is_low = setting & 2,
                                .simple_topology = setting & 4,
+                               .cubic_placement = setting & 8,
                                .threads = 1};
     const double share = shares[setting % 3 + (setting & 1)];
     pair p = extract_pair(&v, d, share);
@@ -300,7 +303,7 @@ static void hostile_volumes_keep_their_topology(void **state)
     (void)state;
     int changed = 0;
     for (size_t n = 0; test_hostile_at(n); n++)
-        for (unsigned s = 0; s < 8; s++)
+        for (unsigned s = 0; s < 16; s++)
             changed += is_changed(test_hostile_at(n), test_frame_at(0), s);
     assert_int_equal(changed, 0);
 }
@@ -311,7 +314,7 @@ static void hostile_volumes_keep_their_topology_in_every_frame(void **state)
     int changed = 0;
     for (size_t n = 0; test_hostile_at(n); n++)
         for (size_t f = 1; test_frame_at(f); f++)
-            changed += is_changed(test_hostile_at(n), test_frame_at(f), (unsigned)(n + f) % 8);
+            changed += is_changed(test_hostile_at(n), test_frame_at(f), (unsigned)(n + f) % 16);
     assert_int_equal(changed, 0);
 }
 
@@ -348,12 +351,10 @@ static cw_volume noise(void)
     return v;
 }
 
-static void threads_and_engines_give_the_same_bytes(void **state)
+static void check_threads_and_engines(cw_extract_desc d)
 {
-    (void)state;
     cw_volume v = noise();
     cw_error err = {0};
-    cw_extract_desc d = {.isovalue = 3, .snap = 0.35, .threads = 1};
     cw_extract_counts one_counts, counts;
     cw_mesh one = test_extract(&v, &d, &one_counts), other;
     for (int n = 2; n < 9; n += 3) {
@@ -370,6 +371,14 @@ static void threads_and_engines_give_the_same_bytes(void **state)
     }
     cw_mesh_free(&one);
     cw_volume_free(&v);
+}
+
+static void threads_and_engines_give_the_same_bytes(void **state)
+{
+    (void)state;
+    check_threads_and_engines((cw_extract_desc){.isovalue = 3, .snap = 0.35, .threads = 1});
+    check_threads_and_engines((cw_extract_desc){
+        .snap = 0.5, .threads = 1, .leave_open = true, .cubic_placement = true});
 }
 
 /* Through the tree some words of bits are stale. */
