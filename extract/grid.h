@@ -137,7 +137,7 @@ static inline uint64_t cwi_spread_leaves(unsigned bits)
 }
 
 /* The first word at or after w whose bit is set in a mask; `words` when there is none. */
-static inline size_t cwi_next_busy(const uint64_t *mask, size_t w, size_t words)
+static inline size_t cwi_next_word(const uint64_t *mask, size_t w, size_t words)
 {
     for (; w < words; w = (w | 63) + 1) {
         const uint64_t left = mask[w / 64] >> w % 64;

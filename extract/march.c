@@ -243,8 +243,8 @@ static void count_row(const cwi_grid *g, size_t j, size_t k, cwi_row *row)
         j == 0 || k == 0 || j == n[1] || k == n[2]; /* a row of cells in the padding */
     uint64_t at_border = 0;
     const uint64_t *busy = cwi_grid_busy(g, k * g->rows_y + j);
-    for (size_t w = cwi_next_busy(busy, 0, g->words); w < g->words;
-         w = cwi_next_busy(busy, w + 1, g->words)) {
+    for (size_t w = cwi_next_word(busy, 0, g->words); w < g->words;
+         w = cwi_next_word(busy, w + 1, g->words)) {
         const cell_word c = load_cells(g, j, k, w);
         if (side || w == 0 || w == n[0] / 64)
             at_border |= c.mixed & border_cells(g, w, side);
@@ -294,7 +294,7 @@ static bool brick_is_wanted(const cwi_grid *g, size_t j, size_t k)
     if (g->everything)
         return true;
     const uint64_t *wanted = cwi_grid_wanted(g, j, k);
-    return cwi_next_busy(wanted, 0, g->words) < g->words;
+    return cwi_next_word(wanted, 0, g->words) < g->words;
 }
 
 void cwi_count_layer(const cwi_grid *g, size_t k, cwi_row *rows)
@@ -451,8 +451,8 @@ static void write_triangles(const cwi_grid *g, size_t j, size_t k, const cwi_row
         e.first[n] = rows[(k + edge_rows[n].k) * g->rows_y + j + edge_rows[n].j]
                          .first[edge_rows[n].axis];
     const uint64_t *busy = cwi_grid_busy(g, k * g->rows_y + j);
-    for (size_t w = cwi_next_busy(busy, 0, g->words); w < g->words;
-         w = cwi_next_busy(busy, w + 1, g->words)) {
+    for (size_t w = cwi_next_word(busy, 0, g->words); w < g->words;
+         w = cwi_next_word(busy, w + 1, g->words)) {
         const cell_word c = load_cells(g, j, k, w);
         uint8_t cases[64];
         load_edges(&e, g, &c, j, k, w);

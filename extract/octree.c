@@ -54,7 +54,7 @@ static const cwi_range *node(const cwi_octree *t, int level, size_t x, size_t y,
     return t->level[level] + (z * t->dim[level][1] + y) * t->dim[level][0] + x;
 }
 
-/* Calls visit for the up to eight children of a node. */
+/* The up to eight children of a node: where they stand a level below. */
 #define EACH_CHILD(t, l, at, x, y, z)                                                          \
     for (size_t z = 2 * at[2]; z < 2 * at[2] + 2 && z < t->dim[l - 1][2]; z++)                 \
         for (size_t y = 2 * at[1]; y < 2 * at[1] + 2 && y < t->dim[l - 1][1]; y++)             \
@@ -154,8 +154,8 @@ size_t cwi_octree_mark(const cwi_octree *t, cwi_grid *g)
     const size_t leaves = mark_below(t, t->levels - 1, (const size_t[3]){0, 0, 0}, g);
     for (size_t row = 0; row < rows; row++) {
         const uint64_t *mask = g->wanted + row * g->masks;
-        for (size_t w = cwi_next_busy(mask, 0, g->words); w < g->words;
-             w = cwi_next_busy(mask, w + 1, g->words))
+        for (size_t w = cwi_next_word(mask, 0, g->words); w < g->words;
+             w = cwi_next_word(mask, w + 1, g->words))
             for (size_t x = w; x < w + 2 && x < g->words; x++)
                 g->leaves[row * g->words + x] = leaf_bits(t, g, row, x);
     }

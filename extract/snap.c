@@ -80,8 +80,8 @@ static void mark_row(cwi_snapping *s, size_t j, size_t k, const cwi_row *row)
     const cwi_grid *g = s->grid;
     const uint64_t *busy = cwi_grid_busy(g, k * g->rows_y + j);
     uint32_t number[3] = {row->first[0], row->first[1], row->first[2]};
-    for (size_t w = cwi_next_busy(busy, 0, g->words); w < g->words;
-         w = cwi_next_busy(busy, w + 1, g->words))
+    for (size_t w = cwi_next_word(busy, 0, g->words); w < g->words;
+         w = cwi_next_word(busy, w + 1, g->words))
         for (int axis = 0; axis < 3; axis++) {
             const uint64_t inner = inner_edges(g, axis, j, k, w);
             for (uint64_t e = cwi_edge_vertices(g, axis, j, k, w); e; e &= e - 1) {
