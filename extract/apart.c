@@ -2,6 +2,7 @@
  * tried. Every comparison keeps a margin far above the rounding errors of doubles: the answer
  * `true` is a proof. */
 #include "extract/apart.h"
+#include "core/vector.h"
 
 #include <math.h>
 #include <string.h>
@@ -18,41 +19,21 @@ static void subtract(const double a[3], const double b[3], vector out)
         out[i] = a[i] - b[i];
 }
 
-static void cross(const double a[3], const double b[3], vector out)
-{
-    out[0] = a[1] * b[2] - a[2] * b[1];
-    out[1] = a[2] * b[0] - a[0] * b[2];
-    out[2] = a[0] * b[1] - a[1] * b[0];
-}
-
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static double lesser(double a, double b)
-{
-    return a < b ? a : b;
-}
-
-static double greater(double a, double b)
-{
-    return a > b ? a : b;
-}
-
 /* ---- no corner in common ---------------------------------------------------------------- */
 
 /* The triangles' shadows on a line do not meet. */
 static bool parts(const double axis[3], const cwi_triangle *s, const cwi_triangle *t)
 {
-    const double length = sqrt(dot(axis, axis));
-    const double a = dot(axis, s->p[0]), b = dot(axis, s->p[1]), c = dot(axis, s->p[2]);
-    const double d = dot(axis, t->p[0]), e = dot(axis, t->p[1]), f = dot(axis, t->p[2]);
+    const double length = sqrt(cwi_dot(axis, axis));
+    const double a = cwi_dot(axis, s->p[0]), b = cwi_dot(axis, s->p[1]),
+                 c = cwi_dot(axis, s->p[2]);
+    const double d = cwi_dot(axis, t->p[0]), e = cwi_dot(axis, t->p[1]),
+                 f = cwi_dot(axis, t->p[2]);
     const double margin = CWI_APART * length;
     if (!(length > 0)) /* any other direction will do, however it was rounded */
         return false;
-    return lesser(lesser(a, b), c) > greater(greater(d, e), f) + margin ||
-           lesser(lesser(d, e), f) > greater(greater(a, b), c) + margin;
+    return cwi_lesser(cwi_lesser(a, b), c) > cwi_greater(cwi_greater(d, e), f) + margin ||
+           cwi_lesser(cwi_lesser(d, e), f) > cwi_greater(cwi_greater(a, b), c) + margin;
 }
 
 /* Some plane across s and along one of its sides. */
@@ -61,7 +42,7 @@ static bool side_parts(const double normal[3], vector sides[3], const cwi_triang
 {
     for (int i = 0; i < 3; i++) {
         vector axis;
-        cross(normal, sides[i], axis);
+        cwi_cross(normal, sides[i], axis);
         if (parts(axis, s, t))
             return true;
     }
@@ -79,12 +60,12 @@ static bool are_apart(const cwi_triangle *s, const cwi_triangle *t)
         subtract(s->p[(i + 1) % 3], s->p[i], s_sides[i]);
         subtract(t->p[(i + 1) % 3], t->p[i], t_sides[i]);
     }
-    cross(s_sides[0], s_sides[1], m);
-    cross(t_sides[0], t_sides[1], n);
+    cwi_cross(s_sides[0], s_sides[1], m);
+    cwi_cross(t_sides[0], t_sides[1], n);
     if (side_parts(m, s_sides, s, t) || side_parts(n, t_sides, s, t))
         return true;
     for (int i = 0; i < 9; i++) {
-        cross(s_sides[i / 3], t_sides[i % 3], axis);
+        cwi_cross(s_sides[i / 3], t_sides[i % 3], axis);
         if (parts(axis, s, t))
             return true;
     }
@@ -96,7 +77,7 @@ static bool are_apart(const cwi_triangle *s, const cwi_triangle *t)
 static bool direction(const double from[3], const double to[3], vector out)
 {
     subtract(to, from, out);
-    const double length = sqrt(dot(out, out));
+    const double length = sqrt(cwi_dot(out, out));
     for (int i = 0; i < 3; i++)
         out[i] /= length;
     return length > 0;
@@ -106,14 +87,17 @@ static bool direction(const double from[3], const double to[3], vector out)
  * plane through a side of each may touch both: along two lines. */
 static bool parts_cones(const double axis[3], vector s[2], vector t[2], bool through_sides)
 {
-    const double length = sqrt(dot(axis, axis)), flat = FLAT * length, slope = SLOPE * length;
-    const double a = dot(axis, s[0]), b = dot(axis, s[1]), c = dot(axis, t[0]),
-                 d = dot(axis, t[1]);
+    const double length = sqrt(cwi_dot(axis, axis)), flat = FLAT * length,
+                 slope = SLOPE * length;
+    const double a = cwi_dot(axis, s[0]), b = cwi_dot(axis, s[1]), c = cwi_dot(axis, t[0]),
+                 d = cwi_dot(axis, t[1]);
     if (!(length > SLOPE))
         return false;
     for (int sign = 1; sign >= -1; sign -= 2) {
-        const double s_low = lesser(sign * a, sign * b), s_high = greater(sign * a, sign * b);
-        const double t_low = lesser(sign * c, sign * d), t_high = greater(sign * c, sign * d);
+        const double s_low = cwi_lesser(sign * a, sign * b),
+                     s_high = cwi_greater(sign * a, sign * b);
+        const double t_low = cwi_lesser(sign * c, sign * d),
+                     t_high = cwi_greater(sign * c, sign * d);
         if (s_low < -flat || t_high > flat)
             continue;
         if (s_low > slope || t_high < -slope)
@@ -127,9 +111,9 @@ static bool parts_cones(const double axis[3], vector s[2], vector t[2], bool thr
 static bool side_parts_cones(vector s[2], vector t[2])
 {
     vector normal, axis;
-    cross(s[0], s[1], normal);
+    cwi_cross(s[0], s[1], normal);
     for (int i = 0; i < 2; i++) {
-        cross(normal, s[i], axis);
+        cwi_cross(normal, s[i], axis);
         if (parts_cones(axis, s, t, false))
             return true;
     }
@@ -147,7 +131,7 @@ static bool cones_apart(const cwi_triangle *s, const cwi_triangle *t)
     if (parts_cones(axis, u, v, false) || side_parts_cones(u, v) || side_parts_cones(v, u))
         return true;
     for (int i = 0; i < 4; i++) {
-        cross(u[i / 2], v[i % 2], axis);
+        cwi_cross(u[i / 2], v[i % 2], axis);
         if (parts_cones(axis, u, v, true))
             return true;
     }
@@ -162,11 +146,11 @@ static bool hinge_is_open(const cwi_triangle *s, const cwi_triangle *t)
     subtract(s->p[1], s->p[0], hinge);
     subtract(s->p[2], s->p[0], u);
     subtract(t->p[2], t->p[0], v);
-    cross(hinge, u, m);
-    cross(hinge, v, n);
-    cross(m, n, across);
-    const double cosine = dot(m, n), sine = sqrt(dot(across, across));
-    const double size = sqrt(dot(m, m)) * sqrt(dot(n, n));
+    cwi_cross(hinge, u, m);
+    cwi_cross(hinge, v, n);
+    cwi_cross(m, n, across);
+    const double cosine = cwi_dot(m, n), sine = sqrt(cwi_dot(across, across));
+    const double size = sqrt(cwi_dot(m, m)) * sqrt(cwi_dot(n, n));
     return size > 0 && (cosine < 0 || sine > SLOPE * size);
 }
 
@@ -191,10 +175,10 @@ static void try_side(const double p[3], const double q[3], double nearest[3])
 {
     vector d, at;
     subtract(q, p, d);
-    const double t = lesser(greater(-dot(p, d) / dot(d, d), 0), 1);
+    const double t = cwi_lesser(cwi_greater(-cwi_dot(p, d) / cwi_dot(d, d), 0), 1);
     for (int a = 0; a < 3; a++)
         at[a] = p[a] + t * d[a];
-    if (dot(at, at) < dot(nearest, nearest))
+    if (cwi_dot(at, at) < cwi_dot(nearest, nearest))
         memcpy(nearest, at, sizeof at);
 }
 
@@ -204,15 +188,15 @@ void cwi_nearest_of_triangle(const cwi_triangle *t, double nearest[3])
 {
     vector corners[3], n;
     for (int c = 0; c < 3; c++)
-        cross(t->p[c], t->p[(c + 1) % 3], corners[c]);
+        cwi_cross(t->p[c], t->p[(c + 1) % 3], corners[c]);
     for (int a = 0; a < 3; a++)
         n[a] = corners[0][a] + corners[1][a] + corners[2][a];
-    const double square = dot(n, n), height = dot(n, t->p[0]);
-    if (height * height >= square * dot(nearest, nearest))
+    const double square = cwi_dot(n, n), height = cwi_dot(n, t->p[0]);
+    if (height * height >= square * cwi_dot(nearest, nearest))
         return;
     bool inside = true;
     for (int c = 0; c < 3; c++)
-        if (!(dot(n, corners[c]) >= 0)) {
+        if (!(cwi_dot(n, corners[c]) >= 0)) {
             inside = false;
             try_side(t->p[c], t->p[(c + 1) % 3], nearest);
         }

@@ -8,6 +8,7 @@
  * Otherwise every triangle near it is looked at. Where a line along a side parts the shadows of
  * two triangles, a plane parts them. What is left, above or below the cone mostly, is compared
  * in space, triangle by triangle. */
+#include "core/vector.h"
 #include "extract/apart.h"
 #include "extract/cluster.h"
 
@@ -52,16 +53,6 @@ typedef struct corner {
 typedef struct obstacle {
     corner corner[3];
 } obstacle;
-
-static double lesser(double a, double b)
-{
-    return a < b ? a : b;
-}
-
-static double greater(double a, double b)
-{
-    return a > b ? a : b;
-}
 
 /* ---- the shadow of the cone ------------------------------------------------------------- */
 
@@ -136,8 +127,8 @@ static void grow_box(cone *o, const double x[3])
 {
     const double at[4] = {x[0], x[1], x[2], height_of(o, x)};
     for (int a = 0; a < 4; a++) {
-        o->low[a] = lesser(at[a] - CWI_APART, o->low[a]);
-        o->high[a] = greater(at[a] + CWI_APART, o->high[a]);
+        o->low[a] = cwi_lesser(at[a] - CWI_APART, o->low[a]);
+        o->high[a] = cwi_greater(at[a] + CWI_APART, o->high[a]);
     }
 }
 
@@ -167,11 +158,12 @@ static void make_cone(const cwi_snapping *s, const cwi_cluster *c, const double 
 static bool is_outside_box(const cone *o, const double *const x[3])
 {
     for (int a = 0; a < 3; a++)
-        if (lesser(lesser(x[0][a], x[1][a]), x[2][a]) > o->high[a] ||
-            greater(greater(x[0][a], x[1][a]), x[2][a]) < o->low[a])
+        if (cwi_lesser(cwi_lesser(x[0][a], x[1][a]), x[2][a]) > o->high[a] ||
+            cwi_greater(cwi_greater(x[0][a], x[1][a]), x[2][a]) < o->low[a])
             return true;
     const double p = height_of(o, x[0]), q = height_of(o, x[1]), r = height_of(o, x[2]);
-    return lesser(lesser(p, q), r) > o->high[3] || greater(greater(p, q), r) < o->low[3];
+    return cwi_lesser(cwi_lesser(p, q), r) > o->high[3] ||
+           cwi_greater(cwi_greater(p, q), r) < o->low[3];
 }
 
 /* ---- one sheet -------------------------------------------------------------------------- */
@@ -311,8 +303,8 @@ static bool boxes_are_apart(const cwi_triangle *s, const cwi_triangle *t)
         const double *const x[2] = {&s->p[0][a], &t->p[0][a]};
         double low[2], high[2];
         for (int n = 0; n < 2; n++) {
-            low[n] = lesser(lesser(x[n][0], x[n][3]), x[n][6]);
-            high[n] = greater(greater(x[n][0], x[n][3]), x[n][6]);
+            low[n] = cwi_lesser(cwi_lesser(x[n][0], x[n][3]), x[n][6]);
+            high[n] = cwi_greater(cwi_greater(x[n][0], x[n][3]), x[n][6]);
         }
         apart = apart || low[0] > high[1] + CWI_APART || low[1] > high[0] + CWI_APART;
     }

@@ -1,4 +1,5 @@
 /* Where a cluster goes, and whether the cone over the rim of its star is good enough. */
+#include "core/vector.h"
 #include "extract/ambiguous.h"
 #include "extract/apart.h"
 #include "extract/cluster.h"
@@ -121,11 +122,6 @@ typedef struct shape {
     double sharpness; /* square of the cotangent of the smallest angle */
 } shape;
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
 /* An angle's cotangent is the dot product of its sides over twice the area. */
 static shape shape_of(const float *p, const float *q, const float *r)
 {
@@ -138,9 +134,9 @@ static shape shape_of(const float *p, const float *q, const float *r)
     }
     for (int a = 0; a < 3; a++)
         out.normal[a] = u[(a + 1) % 3] * v[(a + 2) % 3] - u[(a + 2) % 3] * v[(a + 1) % 3];
-    const double x = -dot(u, v), y = -dot(v, w), z = -dot(w, u), xy = x > y ? x : y;
+    const double x = -cwi_dot(u, v), y = -cwi_dot(v, w), z = -cwi_dot(w, u), xy = x > y ? x : y;
     const double largest = xy > z ? xy : z;
-    out.sharpness = largest * largest / dot(out.normal, out.normal);
+    out.sharpness = largest * largest / cwi_dot(out.normal, out.normal);
     return out;
 }
 
@@ -176,7 +172,7 @@ static bool looks_good(const cwi_snapping *s, const cwi_cluster *c, const looks 
     for (int n = 0; n < c->rim_count; n++) {
         const shape is = shape_of(p, cwi_position(s, c->rim[n]),
                                   cwi_position(s, c->rim[cwi_rim_next(c, n)]));
-        if (!(dot(before->normal[n], is.normal) > 0) || !(is.sharpness <= before->worst))
+        if (!(cwi_dot(before->normal[n], is.normal) > 0) || !(is.sharpness <= before->worst))
             return false;
     }
     return true;
@@ -191,7 +187,7 @@ static double square_from(const cwi_snapping *s, const cwi_cluster *c, const dou
     double nearest[3];
     for (int a = 0; a < 3; a++)
         nearest[a] = t.p[0][a] = x[a] - from[a];
-    for (int n = 0; n < c->rim_count && dot(nearest, nearest) > enough; n++) {
+    for (int n = 0; n < c->rim_count && cwi_dot(nearest, nearest) > enough; n++) {
         const double *q = cwi_index(s, c->rim[n]),
                      *r = cwi_index(s, c->rim[cwi_rim_next(c, n)]);
         for (int a = 0; a < 3; a++) {
@@ -200,7 +196,7 @@ static double square_from(const cwi_snapping *s, const cwi_cluster *c, const dou
         }
         cwi_nearest_of_triangle(&t, nearest);
     }
-    return dot(nearest, nearest);
+    return cwi_dot(nearest, nearest);
 }
 
 /* No member is left far from the new triangles. */
@@ -222,7 +218,7 @@ static bool may_go(const cwi_snapping *s, const cwi_cluster *c, const looks *bef
     cwi_to_index(s, p, x);
     for (int a = 0; a < 3; a++)
         from[a] = x[a] - (double)c->at[a];
-    return dot(from, from) < most * most && looks_good(s, c, before, p) &&
+    return cwi_dot(from, from) < most * most && looks_good(s, c, before, p) &&
            is_faithful(s, c, x) && cwi_cone_is_clear(s, c, x);
 }
 

@@ -16,6 +16,7 @@
 #include "core/layers.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "core/vector.h"
 #include "extract/apart.h"
 #include "extract/cluster.h"
 #include "extract/crossings.h"
@@ -219,21 +220,6 @@ static void snap_layer(void *context, size_t n)
 
 /* ---- what it cost ----------------------------------------------------------------------- */
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static double lesser(double a, double b)
-{
-    return a < b ? a : b;
-}
-
-static double greater(double a, double b)
-{
-    return a > b ? a : b;
-}
-
 /* Where the surface is nearest to a vertex that was merged: in the world, and in voxels. */
 typedef struct distances {
     const float *from;
@@ -264,12 +250,14 @@ static bool may_be_nearer(const cwi_snapping *s, const distances *d, const cwi_t
     double square = 0;
     for (int a = 0; a < 3; a++) {
         const double x = t->p[0][a], y = t->p[1][a], z = t->p[2][a];
-        const double low = lesser(lesser(x, y), z), high = greater(greater(x, y), z);
-        const double off = greater(greater(low, -high), 0);
+        const double low = cwi_lesser(cwi_lesser(x, y), z),
+                     high = cwi_greater(cwi_greater(x, y), z);
+        const double off = cwi_greater(cwi_greater(low, -high), 0);
         square += off * off;
     }
-    return square < dot(d->nearest[1], d->nearest[1]) ||
-           (s->edge == 0 && square * s->shrink * s->shrink < dot(d->nearest[0], d->nearest[0]));
+    return square < cwi_dot(d->nearest[1], d->nearest[1]) ||
+           (s->edge == 0 &&
+            square * s->shrink * s->shrink < cwi_dot(d->nearest[0], d->nearest[0]));
 }
 
 static void try_triangle(const cwi_snapping *s, const uint32_t corner[3], distances *d)
@@ -291,8 +279,9 @@ static void try_triangle(const cwi_snapping *s, const uint32_t corner[3], distan
 
 static void measure(const cwi_snapping *s, const distances *d, double distance[2])
 {
-    distance[1] = sqrt(dot(d->nearest[1], d->nearest[1]));
-    distance[0] = s->edge > 0 ? s->edge * distance[1] : sqrt(dot(d->nearest[0], d->nearest[0]));
+    distance[1] = sqrt(cwi_dot(d->nearest[1], d->nearest[1]));
+    distance[0] =
+        s->edge > 0 ? s->edge * distance[1] : sqrt(cwi_dot(d->nearest[0], d->nearest[0]));
 }
 
 /* How far a vertex that was merged has gone, and how far from where it was the surface is
@@ -441,7 +430,7 @@ static void find_inverse(cwi_snapping *s)
         s->centre[r] = 0.5 * (double)(v->dim[r] - 1) + 1;
         for (int c = 0; c < 3; c++)
             s->inverse[r][c] = cofactor[c][r] / determinant;
-        squares += dot(s->inverse[r], s->inverse[r]);
+        squares += cwi_dot(s->inverse[r], s->inverse[r]);
     }
     s->shrink = 1 / sqrt(squares);
     s->edge = find_edge(v);

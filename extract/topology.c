@@ -1,5 +1,6 @@
 #include "extract/topology.h"
 
+#include "core/vector.h"
 #include "extract/cube.h"
 
 #include <math.h>
@@ -11,24 +12,14 @@
 #define PLAIN_LEAST 1e-140
 #define PLAIN_MOST  1e140
 
-/* Without the care for NaN that makes fmin and fmax calls. */
-static inline double lesser(double a, double b)
-{
-    return a < b ? a : b;
-}
-
-static inline double greater(double a, double b)
-{
-    return a > b ? a : b;
-}
-
 /* The sign of a c - b d, exactly: products are compared, and if equal their rounding errors.
  * Where exponents are extreme the products of what is left without them are, the first one
  * times as much as they differ by: 2^4 outweighs any such product. */
 static int compare_products(double a, double c, double b, double d)
 {
-    const double least = lesser(lesser(fabs(a), fabs(b)), lesser(fabs(c), fabs(d)));
-    const double most = greater(greater(fabs(a), fabs(b)), greater(fabs(c), fabs(d)));
+    const double least = cwi_lesser(cwi_lesser(fabs(a), fabs(b)), cwi_lesser(fabs(c), fabs(d)));
+    const double most =
+        cwi_greater(cwi_greater(fabs(a), fabs(b)), cwi_greater(fabs(c), fabs(d)));
     if (least < PLAIN_LEAST || most > PLAIN_MOST) {
         int exponent[4];
         a = frexp(a, &exponent[0]);
@@ -133,7 +124,7 @@ static bool start_sweep(sweep *s, unsigned cube, const double values[8], bool ze
     for (int c = 0; c < 8; c++) {
         if (!isfinite(values[c]))
             return false;
-        largest = greater(largest, fabs(values[c]));
+        largest = cwi_greater(largest, fabs(values[c]));
     }
     int exponent = 0;
     if (largest < PLAIN_LEAST || largest > PLAIN_MOST)

@@ -1,6 +1,7 @@
 #include "viewer/camera.h"
 
 #include "core/status.h"
+#include "core/vector.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -19,21 +20,10 @@ static const struct {
 
 enum { VIEW_COUNT = sizeof views / sizeof *views };
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double c[3])
-{
-    for (int i = 0; i < 3; i++)
-        c[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-}
-
 /* False when there is no length to speak of, or no number. */
 static bool normalize(double a[3])
 {
-    const double length = sqrt(dot(a, a));
+    const double length = sqrt(cwi_dot(a, a));
     for (int i = 0; i < 3; i++)
         a[i] /= length;
     return isnormal(length);
@@ -51,10 +41,10 @@ cw_status cwi_camera_axes(const cwi_camera *camera, double right[3], double up[3
         forward[a] = camera->target[a] - camera->eye[a];
     if (!normalize(forward))
         return cw_fail(err, CW_ERR_ARGUMENT, "the camera's eye and target must be apart");
-    cross(forward, camera->up, right);
+    cwi_cross(forward, camera->up, right);
     if (!normalize(right))
         return cw_fail(err, CW_ERR_ARGUMENT, "the camera's up is along its line of sight");
-    cross(right, forward, up);
+    cwi_cross(right, forward, up);
     if (!(camera->fov_deg >= 0 && camera->fov_deg < 180))
         return cw_fail(err, CW_ERR_ARGUMENT, "the camera opens %g degrees, not 0 to 180",
                        camera->fov_deg);
@@ -92,7 +82,8 @@ static double perspective_distance(const double half[3], const double axes[3][3]
         for (int a = 0; a < 3; a++)
             p[a] = corner >> a & 1 ? half[a] : -half[a];
         for (int a = 0; a < 2; a++)
-            distance = fmax(distance, fabs(dot(p, axes[a])) / slope[a] - dot(p, axes[2]));
+            distance =
+                fmax(distance, fabs(cwi_dot(p, axes[a])) / slope[a] - cwi_dot(p, axes[2]));
     }
     return distance;
 }

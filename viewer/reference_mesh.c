@@ -9,6 +9,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "core/vector.h"
 
 #include <math.h>
 #include <omp.h>
@@ -61,21 +62,10 @@ typedef struct facet {
     double normal[3]; /* for shading */
 } facet;
 
-static double dot(const double a[3], const double b[3])
-{
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
-}
-
-static void cross(const double a[3], const double b[3], double c[3])
-{
-    for (int i = 0; i < 3; i++)
-        c[i] = a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-}
-
 /* A vector without length stays as it is. */
 static void normalize(double a[3])
 {
-    const double length = sqrt(dot(a, a));
+    const double length = sqrt(cwi_dot(a, a));
     for (int i = 0; i < 3 && length > 0; i++)
         a[i] /= length;
 }
@@ -108,10 +98,10 @@ static point project(const scene *s, size_t v)
     double d[3];
     for (size_t a = 0; a < 3; a++)
         d[a] = s->mesh->origin[a] - s->d->camera.eye[a] + (double)s->mesh->positions[3 * v + a];
-    point p = {.z = dot(d, s->forward)};
+    point p = {.z = cwi_dot(d, s->forward)};
     const double w = s->perspective ? p.z : 1;
-    p.x = s->width / 2.0 * w + s->scale * dot(d, s->right);
-    p.y = s->height / 2.0 * w - s->scale * dot(d, s->up);
+    p.x = s->width / 2.0 * w + s->scale * cwi_dot(d, s->right);
+    p.y = s->height / 2.0 * w - s->scale * cwi_dot(d, s->up);
     if (!is_behind(s, &p)) {
         p.x = snap(p.x / w);
         p.y = snap(p.y / w);
@@ -191,8 +181,8 @@ static bool set_up_facet(const scene *s, size_t t, const point p[3], facet *f)
     f->triangle = t;
     homogeneous(s, p, f, v);
     for (int c = 0; c < 3; c++)
-        cross(v[(c + 1) % 3], v[(c + 2) % 3], f->edge[c]);
-    const double twice_area = dot(v[0], f->edge[0]);
+        cwi_cross(v[(c + 1) % 3], v[(c + 2) % 3], f->edge[c]);
+    const double twice_area = cwi_dot(v[0], f->edge[0]);
     f->is_back = twice_area > 0; /* y points down, so the front is clockwise here */
     for (int c = 0; c < 3; c++) {
         for (int a = 0; a < 3 && !f->is_back; a++)
@@ -232,7 +222,7 @@ static void draw_row(const scene *s, const facet *f, span columns, int y, hit *r
         if (!is_inside(f, e))
             continue;
         shares(f, e, share);
-        const double z = dot(share, f->z);
+        const double z = cwi_dot(share, f->z);
         if (z >= s->near_mm && z < row[x].z)
             row[x] = (hit){z, f->triangle};
     }
@@ -269,7 +259,7 @@ static void facet_normal(const cw_mesh *mesh, facet *f)
         for (size_t a = 0; a < 3; a++)
             side[e][a] = (double)mesh->positions[3 * (size_t)corner[e + 1] + a] -
                          (double)mesh->positions[3 * (size_t)corner[0] + a];
-    cross(side[f->is_back], side[!f->is_back], f->normal);
+    cwi_cross(side[f->is_back], side[!f->is_back], f->normal);
     normalize(f->normal);
 }
 
@@ -283,7 +273,7 @@ static void surface_normal(const cw_mesh *mesh, const facet *f, const double sha
     for (size_t c = 0; c < 3 && mesh->normals; c++)
         for (size_t a = 0; a < 3; a++)
             n[a] += share[c] * (double)mesh->normals[3 * (size_t)corner[c] + a];
-    const double side = dot(n, f->normal);
+    const double side = cwi_dot(n, f->normal);
     if (side == 0)
         memcpy(n, f->normal, 3 * sizeof *n);
     for (int a = 0; a < 3 && side < 0; a++)
@@ -328,11 +318,11 @@ static void shade(const scene *s, const facet *f, double x, double y, double rgb
     for (int a = 0; a < 3; a++)
         h[a] = v[a] + s->fill_light[a];
     normalize(h);
-    const double head = fmax(dot(n, v), 0), fill = fmax(dot(n, s->fill_light), 0);
-    double gloss = fmax(dot(n, h), 0);
+    const double head = fmax(cwi_dot(n, v), 0), fill = fmax(cwi_dot(n, s->fill_light), 0);
+    double gloss = fmax(cwi_dot(n, h), 0);
     for (int i = 0; i < 5; i++)
         gloss *= gloss; /* to the 32nd */
-    const double light = 0.09 + 0.05 * dot(n, s->up) + 0.56 * head + 0.44 * fill;
+    const double light = 0.09 + 0.05 * cwi_dot(n, s->up) + 0.56 * head + 0.44 * fill;
     for (int a = 0; a < 3; a++)
         rgb[a] = fmin(rgb[a] * light + 0.08 * gloss, 1);
 }

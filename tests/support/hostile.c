@@ -364,7 +364,7 @@ const test_hostile *test_hostile_at(size_t n)
     return n < sizeof table / sizeof *table ? &table[n] : NULL;
 }
 
-static void store(cw_type type, void *voxels, size_t n, double value)
+void test_store(cw_type type, void *voxels, size_t n, double value)
 {
     switch (type) {
 #define CASE(name, ctype, text)                                                                \
@@ -389,7 +389,7 @@ cw_status test_hostile_make(const test_hostile *h, cw_volume *volume, cw_error *
     for (at[2] = 0; at[2] < h->dim[2]; at[2]++)
         for (at[1] = 0; at[1] < h->dim[1]; at[1]++)
             for (at[0] = 0; at[0] < h->dim[0]; at[0]++)
-                store(h->type, cw_volume_voxels(volume), n++, h->value(h, at));
+                test_store(h->type, cw_volume_voxels(volume), n++, h->value(h, at));
     return CW_OK;
 }
 

@@ -35,6 +35,9 @@ typedef struct test_frame {
 
 const test_frame *test_frame_at(size_t n);
 
+/* Stores a number that the type can hold as the n-th of packed voxels. */
+void test_store(cw_type type, void *voxels, size_t n, double value);
+
 #ifdef __cplusplus
 }
 #endif

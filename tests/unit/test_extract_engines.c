@@ -1,5 +1,6 @@
 /* How surfaces are computed: the same by any engine, in any number of threads and through any
  * strides; within limits, and stopped cleanly. */
+#include "support/hostile.h"
 #include "support/surface.h"
 
 #include "core/memory.h"
@@ -42,16 +43,7 @@ static void fill(void *voxels, cw_type type, size_t count)
                                : kind == 1 ? INFINITY
                                : kind == 2 ? -(double)FLT_MAX
                                            : r - 48.25;
-        switch (type) {
-#define CASE(name, ctype, text)                                                                \
-    case name:                                                                                 \
-        ((ctype *)voxels)[n] = name == CW_F32 || name == CW_F64 ? (ctype)special : (ctype)r;   \
-        break;
-            CW_TYPE_TABLE(CASE)
-#undef CASE
-        default:
-            break;
-        }
+        test_store(type, voxels, n, type == CW_F32 || type == CW_F64 ? special : r);
     }
 }
 

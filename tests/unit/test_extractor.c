@@ -1,4 +1,5 @@
 /* Many surfaces of one volume: the same bytes as one at a time, from the bricks they cross. */
+#include "support/hostile.h"
 #include "support/surface.h"
 
 #include "core/memory.h"
@@ -33,17 +34,8 @@ static void paint(cw_volume *v, bool specials)
                 for (size_t i = low[0]; i < high[0]; i++) {
                     const size_t at = (k * n[1] + j) * n[0] + i;
                     const double x = nothing ? NAN : value + random_number(noise);
-                    switch (v->type) {
-#define CASE(name, ctype, text)                                                                \
-    case name:                                                                                 \
-        ((ctype *)(void *)voxels)[at] =                                                        \
-            isnan(x) && name != CW_F32 && name != CW_F64 ? (ctype)7 : (ctype)x;                \
-        break;
-                        CW_TYPE_TABLE(CASE)
-#undef CASE
-                    default:
-                        break;
-                    }
+                    const bool has_nan = v->type == CW_F32 || v->type == CW_F64;
+                    test_store(v->type, voxels, at, isnan(x) && !has_nan ? 7 : x);
                 }
     }
 }
