@@ -220,21 +220,19 @@ static void classify_layer(void *context, size_t b)
 
 /* Marks what is wanted, and whether a tree is to be grown while everything is read. */
 static cw_status plan_classification(classification *c, cwi_grid *g, cwi_octree *tree,
-                                     const cw_extract_desc *desc, cw_error *err)
+                                     cw_error *err)
 {
-    const bool find_domain = desc->leave_open && !g->domain;
     const size_t bricks = g->bricks_z * g->bricks_y;
     if (tree && !g->wanted)
         g->wanted = cwi_alloc_array(bricks * g->masks, sizeof *g->wanted);
     if (tree && !g->leaves)
         g->leaves = cwi_alloc_array(bricks * g->words, sizeof *g->leaves);
-    if (find_domain)
+    if (g->find_domain)
         g->domain = alloc_plane(g);
-    if ((tree && (!g->wanted || !g->leaves)) || (find_domain && !g->domain))
+    if ((tree && (!g->wanted || !g->leaves)) || (g->find_domain && !g->domain))
         return no_memory(g, err);
     c->grow = tree && !tree->grown ? tree : NULL;
-    g->everything = !tree || !tree->grown || find_domain;
-    g->find_domain = find_domain;
+    g->everything = !tree || !tree->grown || g->find_domain;
     if (!g->everything)
         g->everything = cwi_octree_mark(tree, g) * tree->leaf_bytes >
                         cwi_octree_leaves(tree) * cw_type_size(g->volume.type);
@@ -254,9 +252,10 @@ cw_status cwi_grid_classify(cwi_grid *g, const cwi_engine *engine, cwi_octree *t
                             const cw_extract_desc *desc, cw_error *err)
 {
     classification c = {.grid = g, .engine = engine};
+    g->find_domain = desc->leave_open && !g->domain;
     cw_status st = set_level(g, desc, err);
     if (st == CW_OK)
-        st = plan_classification(&c, g, tree, desc, err);
+        st = plan_classification(&c, g, tree, err);
     if (st == CW_OK)
         st = cwi_each_layer(g->bricks_z, CWI_BRICK * g->volume.dim[0] * g->volume.dim[1],
                             desc->threads, &desc->progress, "classifying", classify_layer, &c,
