@@ -64,16 +64,17 @@ static const double *rim_index(const cone *o, int n)
 /* The rim's normal: of all cones over it, the sum of their triangles'. */
 static void find_normal(cone *o)
 {
-    double p[3], q[3], sum[3] = {0, 0, 0};
+    double p[3], q[3], across[3], sum[3] = {0, 0, 0};
     for (int n = 0; n < o->c->rim_count; n++) {
         for (int a = 0; a < 3; a++) {
             p[a] = rim_index(o, n)[a] - o->apex[a];
             q[a] = rim_index(o, cwi_rim_next(o->c, n))[a] - o->apex[a];
         }
+        cwi_cross(p, q, across);
         for (int a = 0; a < 3; a++)
-            sum[a] += p[(a + 1) % 3] * q[(a + 2) % 3] - p[(a + 2) % 3] * q[(a + 1) % 3];
+            sum[a] += across[a];
     }
-    const double length = sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+    const double length = sqrt(cwi_dot(sum, sum));
     for (int a = 0; a < 3; a++)
         o->normal[a] = sum[a] / length;
 }
@@ -171,15 +172,13 @@ static bool is_outside_box(const cone *o, const double *const x[3])
 /* Its shadow turns left. */
 static bool faces_up(const cone *o, const double *const x[3])
 {
-    double u[3], v[3], turn = 0;
+    double u[3], v[3], across[3];
     for (int a = 0; a < 3; a++) {
         u[a] = x[1][a] - x[0][a];
         v[a] = x[2][a] - x[0][a];
     }
-    for (int a = 0; a < 3; a++)
-        turn +=
-            o->normal[a] * (u[(a + 1) % 3] * v[(a + 2) % 3] - u[(a + 2) % 3] * v[(a + 1) % 3]);
-    return turn > FLAT;
+    cwi_cross(u, v, across);
+    return cwi_dot(o->normal, across) > FLAT;
 }
 
 static void find_corners(const cwi_snapping *s, size_t triangle, const double *x[3])

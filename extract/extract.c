@@ -5,6 +5,7 @@
 #include "core/memory.h"
 #include "core/mesh.h"
 #include "core/status.h"
+#include "core/vector.h"
 #include "extract/cases.h"
 #include "extract/engine.h"
 #include "extract/snap.h"
@@ -138,13 +139,14 @@ static void add_triangle_normal(const cw_mesh *mesh, double scale, const uint32_
                                 float *normal)
 {
     const float *p = mesh->positions;
-    double u[3], v[3];
+    double u[3], v[3], across[3];
     for (size_t a = 0; a < 3; a++) {
         u[a] = scale * ((double)p[3 * (size_t)t[1] + a] - (double)p[3 * (size_t)t[0] + a]);
         v[a] = scale * ((double)p[3 * (size_t)t[2] + a] - (double)p[3 * (size_t)t[0] + a]);
     }
+    cwi_cross(u, v, across);
     for (int a = 0; a < 3; a++)
-        normal[a] += (float)(u[(a + 1) % 3] * v[(a + 2) % 3] - u[(a + 2) % 3] * v[(a + 1) % 3]);
+        normal[a] += (float)across[a];
 }
 
 static void normalise(float *n)

@@ -171,7 +171,7 @@ static void merge_normals(const cwi_snapping *s, const cwi_cluster *c)
     for (int m = 0; m < c->count; m++)
         for (size_t a = 0; a < 3; a++)
             sum[a] += (double)normals[3 * (size_t)c->member[m] + a];
-    const double length = sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+    const double length = sqrt(cwi_dot(sum, sum));
     for (int a = 0; a < 3 && length > 1e-3; a++)
         to[a] = (float)(sum[a] / length);
 }

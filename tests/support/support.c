@@ -147,3 +147,9 @@ void test_make_far_sphere(cw_mesh *mesh)
     assert_ok(cw_extract(&v, NULL, mesh, NULL, &err), err);
     cw_volume_free(&v);
 }
+
+bool test_stop_after(void *polls, const char *step, double done)
+{
+    (void)step, (void)done;
+    return (*(int *)polls)-- > 0;
+}

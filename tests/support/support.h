@@ -60,4 +60,7 @@ void test_make_cube(cw_mesh *mesh);
  * first voxel stands at 1e6 mm along each axis. Closed and manifold, without flat triangles. */
 void test_make_far_sphere(cw_mesh *mesh);
 
+/* A progress report that goes on for *(int *)polls more polls, then cancels. */
+bool test_stop_after(void *polls, const char *step, double done);
+
 #endif

@@ -187,12 +187,6 @@ static void limits_stop_before_the_mesh_is_made(void **state)
     cw_volume_free(&v);
 }
 
-static bool stop_at(void *user, const char *step, double done)
-{
-    (void)step, (void)done;
-    return (*(int *)user)-- > 0;
-}
-
 static void it_can_be_cancelled_at_any_poll(void **state)
 {
     (void)state;
@@ -201,7 +195,7 @@ static void it_can_be_cancelled_at_any_poll(void **state)
     cw_error err = {0};
     for (int polls = 0;; polls++) {
         int left = polls;
-        const cw_extract_desc d = {.progress = {stop_at, &left}};
+        const cw_extract_desc d = {.progress = {test_stop_after, &left}};
         const cw_status st = cw_extract(&v, &d, &mesh, NULL, &err);
         if (st == CW_OK)
             break;

@@ -112,12 +112,6 @@ static void later_surfaces_read_no_other_bricks(void **state)
     cw_volume_free(&v);
 }
 
-static bool stop_at(void *user, const char *step, double done)
-{
-    (void)step, (void)done;
-    return (*(int *)user)-- > 0;
-}
-
 static void after_a_cancelled_extraction_it_starts_afresh(void **state)
 {
     (void)state;
@@ -130,7 +124,8 @@ static void after_a_cancelled_extraction_it_starts_afresh(void **state)
     assert_ok(cw_extractor_new(&v, &extractor, &err), err);
     for (int polls = 0; polls < 40; polls++) {
         int left = polls;
-        cw_extract_desc d = {.leave_open = polls % 3 == 0, .progress = {stop_at, &left}};
+        cw_extract_desc d = {.leave_open = polls % 3 == 0,
+                             .progress = {test_stop_after, &left}};
         const cw_status st = cw_extractor_extract(extractor, &d, &again, NULL, &err);
         assert_true(st == CW_OK || st == CW_ERR_CANCELLED);
         cw_mesh_free(&again);
