@@ -3,6 +3,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "core/weld.h"
 
 #include <float.h>
 #include <math.h>
@@ -54,53 +55,32 @@ static bool same_point(const float *points, size_t v, size_t u)
     return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
 }
 
-static size_t hash_point(const float *p)
-{
-    uint64_t hash = 0;
-    for (int a = 0; a < 3; a++) {
-        const float positive_zero = p[a] + 0.0f; /* -0 equals 0, so it must hash as 0 does */
-        uint32_t bits;
-        memcpy(&bits, &positive_zero, sizeof bits);
-        hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
-        hash ^= hash >> 32;
-    }
-    return (size_t)hash;
-}
-
-/* Vertices whose rounded point an earlier one has that is elsewhere in truth. The table holds
- * vertex + 1 where the hash of its rounded point says, or in the next free slot. */
-static size_t count_merged(const cw_mesh *mesh, const float *rounded, uint32_t *table,
-                           size_t mask)
+/* Vertices whose rounded point an earlier one has that is elsewhere in truth. */
+static size_t count_merged(const cw_mesh *mesh, const uint32_t *map)
 {
     size_t merged = 0;
-    for (size_t v = 0; v < mesh->vertex_count; v++) {
-        size_t s = hash_point(rounded + 3 * v) & mask;
-        while (table[s] && !same_point(rounded, v, table[s] - 1))
-            s = (s + 1) & mask;
-        if (!table[s])
-            table[s] = (uint32_t)v + 1;
-        merged += !same_point(mesh->positions, v, table[s] - 1);
-    }
+    for (size_t v = 0; v < mesh->vertex_count; v++)
+        merged += !same_point(mesh->positions, v, map[v]);
     return merged;
 }
 
 cw_status cwi_measure_loss(const cw_mesh *mesh, cw_write_loss *loss, cw_error *err)
 {
     const size_t count = mesh->vertex_count;
-    size_t size = 1;
-    while (size < 2 * count)
-        size *= 2;
     float *rounded = cwi_alloc_array(count, 3 * sizeof *rounded);
-    uint32_t *table = cwi_alloc_zeroed(size, sizeof *table);
-    const bool ok = rounded && table;
+    uint32_t *map = cwi_alloc_array(count, sizeof *map);
+    bool ok = rounded && map;
     if (ok) {
         round_points(mesh, rounded);
+        ok = cwi_weld(rounded, count, map);
+    }
+    if (ok) {
         loss->step_mm = step_of(mesh);
-        loss->merged_vertices = count_merged(mesh, rounded, table, size - 1);
+        loss->merged_vertices = count_merged(mesh, map);
         loss->flat_triangles = count_flat(mesh, rounded);
     }
     cwi_free(rounded);
-    cwi_free(table);
+    cwi_free(map);
     return ok ? CW_OK
               : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to compare %zu vertices", count);
 }

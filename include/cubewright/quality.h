@@ -25,9 +25,15 @@ typedef struct cw_quality {
     double min[3], max[3]; /* world box, mm */
 } cw_quality;
 
+/* Which vertices count as one. */
+typedef enum cw_weld {
+    CW_WELD_NONE,  /* those with the same index */
+    CW_WELD_WORLD, /* those with equal single-precision world points, as readers of STL see */
+    CW_WELD_LOCAL, /* those with equal positions */
+} cw_weld;
+
 typedef struct cw_quality_desc {
-    bool weld; /* merge vertices with equal single-precision world points first, as readers of
-                  STL do; default: as indexed */
+    cw_weld weld; /* default: as indexed */
 } cw_quality_desc;
 
 /* Measures a mesh in time proportional to its triangles.

@@ -3,6 +3,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "core/weld.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -59,53 +60,29 @@ static bool collapsed(const work *w, size_t t)
     return v[0] == v[1] || v[1] == v[2] || v[2] == v[0];
 }
 
-/* A vertex and the single-precision world point by which a reader of STL would know it. */
-typedef struct spot {
-    float at[3];
-    uint32_t vertex;
-} spot;
-
-static int compare_spots(const void *a, const void *b)
-{
-    const spot *s = a, *t = b;
-    for (int n = 0; n < 3; n++)
-        if (s->at[n] != t->at[n])
-            return s->at[n] < t->at[n] ? -1 : 1;
-    return s->vertex < t->vertex ? -1 : s->vertex > t->vertex;
-}
-
-/* Maps every vertex to the first one at its place. */
-static bool weld(const cw_mesh *mesh, uint32_t *map)
+/* The points by which vertices are told apart. */
+static bool weld(const cw_mesh *mesh, cw_weld how, uint32_t *map)
 {
     const size_t count = mesh->vertex_count;
-    spot *spots = cwi_alloc_array(count, sizeof *spots);
-    if (!spots)
-        return false;
-    for (size_t v = 0; v < count; v++) {
-        for (size_t a = 0; a < 3; a++)
-            spots[v].at[a] = (float)(mesh->origin[a] + (double)mesh->positions[3 * v + a]);
-        spots[v].vertex = (uint32_t)v;
-    }
-    qsort(spots, count, sizeof *spots, compare_spots);
-    for (size_t i = 0, first = 0; i < count; i++) {
-        for (int a = 0; a < 3; a++)
-            if (spots[i].at[a] != spots[first].at[a])
-                first = i;
-        map[spots[i].vertex] = spots[first].vertex;
-    }
-    cwi_free(spots);
-    return true;
+    if (how == CW_WELD_LOCAL)
+        return cwi_weld(mesh->positions, count, map);
+    float *points = cwi_alloc_array(count, 3 * sizeof *points);
+    for (size_t i = 0; i < 3 * count && points; i++)
+        points[i] = (float)(mesh->origin[i % 3] + (double)mesh->positions[i]);
+    const bool ok = points && cwi_weld(points, count, map);
+    cwi_free(points);
+    return ok;
 }
 
-static bool load_corners(work *w, bool welded)
+static bool load_corners(work *w, cw_weld how)
 {
     const size_t corners = 3 * w->mesh->triangle_count;
-    uint32_t *map = welded ? cwi_alloc_array(w->mesh->vertex_count, sizeof *map) : NULL;
+    uint32_t *map = how ? cwi_alloc_array(w->mesh->vertex_count, sizeof *map) : NULL;
     w->vertex = cwi_alloc_array(corners, sizeof *w->vertex);
-    bool ok = w->vertex && (!welded || (map && weld(w->mesh, map)));
+    bool ok = w->vertex && (!how || (map && weld(w->mesh, how, map)));
     for (size_t c = 0; c < corners && ok; c++) {
         const uint32_t v = w->mesh->triangles[c];
-        w->vertex[c] = welded ? map[v] : v;
+        w->vertex[c] = how ? map[v] : v;
     }
     cwi_free(map);
     return ok;
@@ -234,9 +211,9 @@ static void measure_triangles(const work *w, cw_quality *q)
     }
 }
 
-static bool prepare(work *w, bool welded)
+static bool prepare(work *w, cw_weld how)
 {
-    if (!load_corners(w, welded) || !sort_sides(w))
+    if (!load_corners(w, how) || !sort_sides(w))
         return false;
     w->fan = identity(3 * w->mesh->triangle_count);
     w->part = identity(w->mesh->vertex_count);
@@ -254,7 +231,7 @@ cw_status cw_quality_measure(const cw_mesh *mesh, const cw_quality_desc *desc, c
     if (st == CW_OK && mesh->triangle_count > UINT32_MAX / 3)
         st = cw_fail(err, CW_ERR_LIMIT, "%zu triangles are more than the checks can number",
                      mesh->triangle_count);
-    if (st == CW_OK && !prepare(&w, desc && desc->weld))
+    if (st == CW_OK && !prepare(&w, desc ? desc->weld : CW_WELD_NONE))
         st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory to check %zu triangles",
                      mesh->triangle_count);
     if (st == CW_OK) {

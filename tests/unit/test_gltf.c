@@ -198,7 +198,8 @@ static void a_far_mesh_loses_nothing(void **state)
     for (size_t i = 0; i < 3 * mesh.vertex_count; i++)
         back.positions[i] = f32_at(g.bin + 2 * indices + 4 * i);
     assert_memory_equal(back.positions, mesh.positions, 12 * mesh.vertex_count);
-    assert_ok(cw_quality_measure(&back, &(cw_quality_desc){.weld = true}, &q, &err), err);
+    assert_ok(cw_quality_measure(&back, &(cw_quality_desc){.weld = CW_WELD_WORLD}, &q, &err),
+              err);
     assert_true(cw_quality_is_closed_manifold(&q));
     assert_int_equal(q.degenerate, 0);
     assert_int_equal(q.unused_vertices, 0);

@@ -183,7 +183,7 @@ static void memory_running_out_is_an_error_at_every_allocation(void **state)
     for (long n = 0;; n++) {
         cwi_alloc_fail_after(n);
         const cw_status st =
-            cw_quality_measure(&mesh, &(cw_quality_desc){.weld = true}, &q, &err);
+            cw_quality_measure(&mesh, &(cw_quality_desc){.weld = CW_WELD_WORLD}, &q, &err);
         if (!cwi_alloc_fail_after(-1)) {
             assert_int_equal(st, CW_OK);
             break;

@@ -160,7 +160,8 @@ static cw_quality read_and_weld(const char *path)
         read_vector(bytes, i / 3, (int)(i % 3), mesh.positions + 3 * i);
         mesh.triangles[i] = (uint32_t)i;
     }
-    assert_ok(cw_quality_measure(&mesh, &(cw_quality_desc){.weld = true}, &q, &err), err);
+    assert_ok(cw_quality_measure(&mesh, &(cw_quality_desc){.weld = CW_WELD_WORLD}, &q, &err),
+              err);
     free(bytes);
     cw_mesh_free(&mesh);
     return q;
