@@ -8,23 +8,6 @@
 extern "C" {
 #endif
 
-/* Facts of one mesh, counted from its triangles as indexed (coincident vertices are not merged
- * unless asked). Edges are unordered vertex pairs of triangles. */
-typedef struct cw_quality {
-    size_t vertices, triangles, edges;
-    size_t components;           /* sets of triangles joined by vertices */
-    size_t unused_vertices;      /* in no triangle */
-    size_t open_edges;           /* in one triangle */
-    size_t nonmanifold_edges;    /* in more than two */
-    size_t misoriented_edges;    /* in two triangles that run through it the same way */
-    size_t nonmanifold_vertices; /* whose triangles form more than one fan */
-    size_t degenerate;           /* triangles of zero area in double precision */
-    int64_t euler;               /* used vertices - edges + triangles */
-    double area_mm2;
-    double volume_mm3;     /* signed; positive when triangles wind outward. Of closed meshes */
-    double min[3], max[3]; /* world box, mm */
-} cw_quality;
-
 /* Which vertices count as one. */
 typedef enum cw_weld {
     CW_WELD_NONE,  /* those with the same index */
@@ -32,17 +15,105 @@ typedef enum cw_weld {
     CW_WELD_LOCAL, /* those with equal positions */
 } cw_weld;
 
+/* What can be wrong with a triangle; bits of cw_quality_desc.defects. */
+typedef enum cw_defect {
+    CW_DEFECT_OPEN = 1 << 0,         /* has an open edge */
+    CW_DEFECT_NONMANIFOLD = 1 << 1,  /* at a non-manifold edge or vertex */
+    CW_DEFECT_MISORIENTED = 1 << 2,  /* at a misoriented edge */
+    CW_DEFECT_DUPLICATE = 1 << 3,    /* the same vertices as another one */
+    CW_DEFECT_DEGENERATE = 1 << 4,   /* no area */
+    CW_DEFECT_SLIVER = 1 << 5,       /* a needle or a cap */
+    CW_DEFECT_INSIDE_OUT = 1 << 6,   /* of a shell that faces the wrong way */
+    CW_DEFECT_INTERSECTING = 1 << 7, /* meets a triangle that is no neighbour */
+} cw_defect;
+
+/* A needle's longest side is more than 20 times its shortest; a cap has an angle above 160
+ * degrees, and is not counted as a needle as well. */
+#define CW_NEEDLE_RATIO  20.0
+#define CW_CAP_ANGLE_DEG 160.0
+
+enum { CW_ANGLE_BINS = 18, CW_ASPECT_BINS = 9, CW_LENGTH_BINS = 20 };
+
+/* The shapes of triangles with an area. The aspect ratio is the circumradius over twice the
+ * radius of the inscribed circle: 1 for equal sides. */
+typedef struct cw_shapes {
+    double min_angle_deg, max_angle_deg, max_aspect;
+    double min_edge_mm, max_edge_mm;
+    size_t angles[CW_ANGLE_BINS];   /* all three of each triangle, 10 degrees a bin */
+    size_t smallest[CW_ANGLE_BINS]; /* the smallest of each triangle, 60 / 18 degrees a bin */
+    size_t aspects[CW_ASPECT_BINS]; /* up to 1.25, 1.5, 2, 3, 5, 10, 30, 100, and beyond */
+    size_t lengths[CW_LENGTH_BINS]; /* of edges: equal steps of the logarithm from min to max */
+} cw_shapes;
+
+/* Facts of one mesh, counted from its triangles as indexed, unless welded. Edges are unordered
+ * vertex pairs of triangles; triangles that name a vertex twice have none. */
+typedef struct cw_quality {
+    size_t vertices, triangles, edges;
+    size_t components;           /* sets of triangles joined by vertices */
+    size_t unused_vertices;      /* in no triangle */
+    size_t open_edges;           /* in one triangle */
+    size_t border_loops;         /* closed chains of open edges */
+    size_t nonmanifold_edges;    /* in more than two */
+    size_t misoriented_edges;    /* in two triangles that run through it the same way */
+    size_t nonmanifold_vertices; /* whose triangles form more than one fan */
+    size_t duplicates;           /* triangles with the same vertices as an earlier one */
+    size_t degenerate;           /* triangles of zero area in double precision */
+    size_t needles, caps;        /* triangles: see above */
+    size_t cavities;             /* closed components facing inward, inside one solid */
+    size_t inside_out;           /* closed components facing inward, but not so */
+    size_t nested;               /* closed components facing outward, inside another one */
+    int64_t euler;               /* used vertices - edges + triangles */
+    int64_t genus;               /* handles of all components; -1 unless an oriented manifold */
+    double area_mm2;
+    double volume_mm3;     /* signed; positive when triangles wind outward. Of closed meshes */
+    double min[3], max[3]; /* world box, mm */
+    cw_shapes shapes;
+} cw_quality;
+
 typedef struct cw_quality_desc {
-    cw_weld weld; /* default: as indexed */
+    cw_weld weld;     /* default: as indexed */
+    bool shells;      /* count cavities, inside_out and nested too; default: they stay 0 */
+    int threads;      /* default: all */
+    uint8_t *defects; /* triangle_count: bits of cw_defect are set in it; default: none kept */
 } cw_quality_desc;
 
 /* Measures a mesh in time proportional to its triangles.
- * Returns CW_ERR_ARGUMENT as cw_mesh_check(); CW_ERR_NO_MEMORY. */
+ * Returns  CW_ERR_ARGUMENT as cw_mesh_check(); CW_ERR_LIMIT beyond 2^32 / 3 triangles;
+ *          CW_ERR_NO_MEMORY */
 CW_API cw_status cw_quality_measure(const cw_mesh *mesh, const cw_quality_desc *desc,
                                     cw_quality *out, cw_error *err);
 
 /* No open, no non-manifold and no misoriented edge, no non-manifold vertex. */
 CW_API bool cw_quality_is_closed_manifold(const cw_quality *quality);
+
+typedef struct cw_crossings_desc {
+    cw_weld weld;     /* what makes triangles neighbours; default: as indexed */
+    int threads;      /* default: all */
+    uint8_t *defects; /* triangle_count: CW_DEFECT_INTERSECTING is set; default: none kept */
+    cw_progress progress; /* default: none */
+} cw_crossings_desc;
+
+/* Pairs of triangles that meet. A zeroed struct is valid and empty. */
+typedef struct cw_crossings {
+    size_t count;
+    uint32_t *pairs; /* count x 2 triangles, the lower first, in rising order */
+    bool undecided;  /* so many triangles are in one place that some pairs were not looked at */
+} cw_crossings;
+
+/* Finds every pair of triangles that have a point in common other than the vertex or edge they
+ * share: crossing, touching, overlapping or equal. Exact, by the sign of determinants;
+ * triangles without area are left out (cw_quality counts them).
+ *
+ * out      filled on success; free it with cw_crossings_free()
+ * Returns  as cw_quality_measure(); CW_ERR_CANCELLED
+ * Cost     about 1 us a triangle and thread for a surface; bounded where boxes of more than
+ *          hundreds of triangles overlap everywhere: undecided is then set
+ * Threads  the same pairs for any number
+ * Source   [Guigue2003], signs by [Shewchuk1997] */
+CW_API cw_status cw_self_intersections(const cw_mesh *mesh, const cw_crossings_desc *desc,
+                                       cw_crossings *out, cw_error *err);
+
+CW_API void cw_crossings_free(cw_crossings *crossings);
 
 #ifdef __cplusplus
 }

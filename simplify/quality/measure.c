@@ -1,11 +1,12 @@
 /* The cheap checks: everything that one pass over sorted edges can say of a mesh. */
 #include <cubewright/quality.h>
 
-#include "core/memory.h"
+#include "core/sets.h"
 #include "core/status.h"
-#include "core/weld.h"
+#include "simplify/quality/shapes.h"
+#include "simplify/quality/shells.h"
+#include "simplify/quality/welded.h"
 
-#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -13,90 +14,34 @@
  * from corner c of triangle t to the next. */
 typedef struct side {
     uint32_t higher; /* the other vertex */
+    uint32_t third;  /* the vertex across from it */
     uint32_t corner;
 } side;
 
 typedef struct work {
-    const cw_mesh *mesh;
-    uint32_t *vertex; /* of each corner, after welding; 3 x triangle_count */
-    uint32_t *begin;  /* first side of each vertex, vertex_count + 1 */
-    side *sides;      /* sorted by lower, then higher vertex, then corner */
+    cwi_welded welded;
+    const uint32_t *vertex; /* of each corner */
+    size_t vertices, corners;
+    uint8_t *defects; /* or NULL */
+    uint32_t *begin;  /* first side of each vertex, vertices + 1 */
+    side *sides;      /* sorted by lower, higher, third vertex, then corner */
     uint32_t *fan;    /* union-find: corners around one vertex that share edges */
     uint32_t *part;   /* union-find: vertices that share triangles */
     uint32_t *fans;   /* fans around each vertex */
+    double *volume;   /* of the component whose root a vertex is */
+    uint8_t *open;    /* whether it has an open edge */
 } work;
 
-static uint32_t find(uint32_t *parent, uint32_t x)
-{
-    while (parent[x] != x)
-        x = parent[x] = parent[parent[x]];
-    return x;
-}
+/* The sides of the triangles around one edge. */
+typedef struct edge {
+    uint32_t low; /* its lower vertex */
+    uint32_t begin, count;
+} edge;
 
-static void join(uint32_t *parent, uint32_t x, uint32_t y)
+static void mark(const work *w, size_t triangle, cw_defect defect)
 {
-    x = find(parent, x);
-    y = find(parent, y);
-    parent[x > y ? x : y] = x > y ? y : x;
-}
-
-static uint32_t *identity(size_t count)
-{
-    uint32_t *parent = cwi_alloc_array(count, sizeof *parent);
-    for (size_t i = 0; i < count && parent; i++)
-        parent[i] = (uint32_t)i;
-    return parent;
-}
-
-static uint32_t next_corner(uint32_t corner)
-{
-    return corner % 3 == 2 ? corner - 2 : corner + 1;
-}
-
-/* A triangle that names a vertex twice has no edges to speak of. */
-static bool collapsed(const work *w, size_t t)
-{
-    const uint32_t *v = w->vertex + 3 * t;
-    return v[0] == v[1] || v[1] == v[2] || v[2] == v[0];
-}
-
-/* The points by which vertices are told apart. */
-static bool weld(const cw_mesh *mesh, cw_weld how, uint32_t *map)
-{
-    const size_t count = mesh->vertex_count;
-    if (how == CW_WELD_LOCAL)
-        return cwi_weld(mesh->positions, count, map);
-    float *points = cwi_alloc_array(count, 3 * sizeof *points);
-    for (size_t i = 0; i < 3 * count && points; i++)
-        points[i] = (float)(mesh->origin[i % 3] + (double)mesh->positions[i]);
-    const bool ok = points && cwi_weld(points, count, map);
-    cwi_free(points);
-    return ok;
-}
-
-static bool load_corners(work *w, cw_weld how)
-{
-    const size_t corners = 3 * w->mesh->triangle_count;
-    uint32_t *map = how ? cwi_alloc_array(w->mesh->vertex_count, sizeof *map) : NULL;
-    w->vertex = cwi_alloc_array(corners, sizeof *w->vertex);
-    bool ok = w->vertex && (!how || (map && weld(w->mesh, how, map)));
-    for (size_t c = 0; c < corners && ok; c++) {
-        const uint32_t v = w->mesh->triangles[c];
-        w->vertex[c] = how ? map[v] : v;
-    }
-    cwi_free(map);
-    return ok;
-}
-
-static void sort_bucket(side *s, size_t count)
-{
-    for (size_t i = 1; i < count; i++) {
-        const side x = s[i];
-        size_t j = i;
-        for (; j > 0 && s[j - 1].higher > x.higher; j--)
-            s[j] = s[j - 1];
-        s[j] = x;
-    }
+    if (w->defects)
+        w->defects[triangle] |= (uint8_t)defect;
 }
 
 static int compare_sides(const void *a, const void *b)
@@ -104,35 +49,48 @@ static int compare_sides(const void *a, const void *b)
     const side *s = a, *t = b;
     if (s->higher != t->higher)
         return s->higher < t->higher ? -1 : 1;
+    if (s->third != t->third)
+        return s->third < t->third ? -1 : 1;
     return s->corner < t->corner ? -1 : s->corner > t->corner;
+}
+
+static void sort_bucket(side *s, size_t count)
+{
+    for (size_t i = 1; i < count; i++) {
+        const side x = s[i];
+        size_t j = i;
+        for (; j > 0 && compare_sides(&s[j - 1], &x) > 0; j--)
+            s[j] = s[j - 1];
+        s[j] = x;
+    }
 }
 
 static uint32_t lower_of(const work *w, uint32_t corner)
 {
-    const uint32_t v = w->vertex[corner], u = w->vertex[next_corner(corner)];
+    const uint32_t v = w->vertex[corner], u = w->vertex[cwi_next_corner(corner)];
     return v < u ? v : u;
 }
 
-/* A counting sort by the lower vertex, then each vertex's few sides by the higher one. */
-static bool sort_sides(work *w)
+static void file_sides(work *w)
 {
-    const size_t vertices = w->mesh->vertex_count, corners = 3 * w->mesh->triangle_count;
-    w->begin = cwi_alloc_zeroed(vertices + 2, sizeof *w->begin);
-    w->sides = cwi_alloc_array(corners, sizeof *w->sides);
-    if (!w->begin || !w->sides)
-        return false;
-    for (uint32_t c = 0; c < corners; c++)
-        if (!collapsed(w, c / 3))
+    for (uint32_t c = 0; c < w->corners; c++)
+        if (!cwi_is_collapsed(&w->welded, c / 3))
             w->begin[lower_of(w, c) + 2]++;
-    for (size_t v = 2; v < vertices + 2; v++)
+    for (size_t v = 2; v < w->vertices + 2; v++)
         w->begin[v] += w->begin[v - 1];
-    for (uint32_t c = 0; c < corners; c++)
-        if (!collapsed(w, c / 3)) {
-            const uint32_t low = lower_of(w, c);
-            const uint32_t high = w->vertex[c] ^ w->vertex[next_corner(c)] ^ low;
-            w->sides[w->begin[low + 1]++] = (side){high, c};
+    for (uint32_t c = 0; c < w->corners; c++)
+        if (!cwi_is_collapsed(&w->welded, c / 3)) {
+            const uint32_t d = cwi_next_corner(c), low = lower_of(w, c);
+            w->sides[w->begin[low + 1]++] =
+                (side){w->vertex[c] ^ w->vertex[d] ^ low, w->vertex[cwi_next_corner(d)], c};
         }
-    for (size_t v = 0; v < vertices; v++) {
+}
+
+/* A counting sort by the lower vertex, then each vertex's few sides by the others. */
+static void sort_sides(work *w)
+{
+    file_sides(w);
+    for (size_t v = 0; v < w->vertices; v++) {
         side *bucket = w->sides + w->begin[v];
         const size_t count = w->begin[v + 1] - w->begin[v];
         if (count > 64) /* a hub: keep hostile meshes from quadratic time */
@@ -140,48 +98,125 @@ static bool sort_sides(work *w)
         else
             sort_bucket(bucket, count);
     }
+}
+
+/* Moves on to the next edge; false behind the last. Start with a zeroed edge. */
+static bool next_edge(const work *w, edge *e)
+{
+    e->begin += e->count;
+    e->count = 1;
+    while (e->low < w->vertices && e->begin == w->begin[e->low + 1])
+        e->low++;
+    if (e->low == w->vertices)
+        return false;
+    const uint32_t end = w->begin[e->low + 1], higher = w->sides[e->begin].higher;
+    while (e->begin + e->count < end && w->sides[e->begin + e->count].higher == higher)
+        e->count++;
     return true;
 }
 
-/* One edge: the sides run[0..count) of the triangles around it. */
-static void measure_edge(work *w, uint32_t low, const side *run, size_t count, cw_quality *q)
+static bool runs_up(const work *w, const edge *e, const side *s)
 {
-    q->edges++;
-    q->open_edges += count == 1;
-    q->nonmanifold_edges += count > 2;
-    if (count == 2) {
-        const bool same =
-            (w->vertex[run[0].corner] == low) == (w->vertex[run[1].corner] == low);
-        q->misoriented_edges += same;
-    }
-    for (size_t i = 0; i < count; i++) {
-        const uint32_t c = run[i].corner, d = next_corner(c), first = run[0].corner;
-        const uint32_t c0 = w->vertex[first] == w->vertex[c] ? first : next_corner(first);
-        const uint32_t d0 = w->vertex[first] == w->vertex[c] ? next_corner(first) : first;
-        join(w->fan, c0, c);
-        join(w->fan, d0, d);
-        join(w->part, w->vertex[c], w->vertex[d]);
+    return w->vertex[s->corner] == e->low;
+}
+
+static void mark_edge(const work *w, const edge *e, cw_defect defect)
+{
+    for (uint32_t i = 0; i < e->count && w->defects; i++)
+        mark(w, w->sides[e->begin + i].corner / 3, defect);
+}
+
+/* A triangle is met at three edges: it counts at that of its two lower vertices. */
+static void count_duplicates(const work *w, const edge *e, cw_quality *q)
+{
+    const side *s = w->sides + e->begin;
+    for (uint32_t i = 1; i < e->count; i++)
+        if (s[i].third == s[i - 1].third && s[i].third > s[i].higher) {
+            q->duplicates++;
+            mark(w, s[i].corner / 3, CW_DEFECT_DUPLICATE);
+            mark(w, s[i - 1].corner / 3, CW_DEFECT_DUPLICATE);
+        }
+}
+
+/* Corners at the same vertex of triangles around one edge belong to one fan. */
+static void join_around(work *w, const edge *e)
+{
+    const side *s = w->sides + e->begin;
+    const uint32_t first = s->corner, second = cwi_next_corner(first);
+    cwi_sets_join(w->part, w->vertex[first], w->vertex[second]);
+    for (uint32_t i = 1; i < e->count; i++) {
+        const uint32_t c = s[i].corner, d = cwi_next_corner(c);
+        const bool same = w->vertex[c] == w->vertex[first];
+        cwi_sets_join(w->fan, same ? first : second, c);
+        cwi_sets_join(w->fan, same ? second : first, d);
     }
 }
 
 static void measure_edges(work *w, cw_quality *q)
 {
-    for (size_t v = 0; v < w->mesh->vertex_count; v++)
-        for (uint32_t i = w->begin[v], end = w->begin[v + 1], n; i < end; i += n) {
-            for (n = 1; i + n < end && w->sides[i + n].higher == w->sides[i].higher;)
-                n++;
-            measure_edge(w, (uint32_t)v, w->sides + i, n, q);
+    for (edge e = {0}; next_edge(w, &e);) {
+        const side *s = w->sides + e.begin;
+        q->edges++;
+        join_around(w, &e);
+        if (e.count == 1) {
+            q->open_edges++;
+            mark_edge(w, &e, CW_DEFECT_OPEN);
+        } else if (e.count > 2) {
+            q->nonmanifold_edges++;
+            mark_edge(w, &e, CW_DEFECT_NONMANIFOLD);
+        } else if (runs_up(w, &e, &s[0]) == runs_up(w, &e, &s[1])) {
+            q->misoriented_edges++;
+            mark_edge(w, &e, CW_DEFECT_MISORIENTED);
         }
+        if (e.count > 1)
+            count_duplicates(w, &e, q);
+    }
 }
 
-/* A vertex is a component's or fan's own when it is the root of its set. */
+/* Chains of open edges run on from fan to fan, so loops that touch in a vertex stay two. */
+static bool count_loops(work *w, cw_quality *q)
+{
+    if (!q->open_edges)
+        return true;
+    uint32_t *loop = cwi_sets_alloc(w->corners);
+    uint8_t *seen = cwi_alloc_zeroed(w->corners, 1);
+    const bool ok = loop && seen;
+    for (edge e = {0}; ok && next_edge(w, &e);) {
+        const uint32_t c = w->sides[e.begin].corner;
+        if (e.count == 1)
+            cwi_sets_join(loop, cwi_sets_find(w->fan, c),
+                          cwi_sets_find(w->fan, cwi_next_corner(c)));
+    }
+    for (edge e = {0}; ok && next_edge(w, &e);) {
+        const uint32_t root =
+            cwi_sets_find(loop, cwi_sets_find(w->fan, w->sides[e.begin].corner));
+        if (e.count == 1 && !seen[root]) {
+            seen[root] = 1;
+            q->border_loops++;
+        }
+        if (e.count == 1)
+            w->open[cwi_sets_find(w->part, e.low)] = 1;
+    }
+    cwi_free(loop);
+    cwi_free(seen);
+    return ok;
+}
+
+static void count_fans(work *w)
+{
+    for (uint32_t c = 0; c < w->corners; c++)
+        if (!cwi_is_collapsed(&w->welded, c / 3) && w->fan[c] == c)
+            w->fans[w->vertex[c]]++;
+    for (uint32_t c = 0; c < w->corners && w->defects; c++)
+        if (w->fans[w->vertex[c]] > 1)
+            mark(w, c / 3, CW_DEFECT_NONMANIFOLD);
+}
+
+/* A vertex stands for its component when it is the root of its set. */
 static void measure_vertices(work *w, cw_quality *q)
 {
     size_t used = 0;
-    for (uint32_t c = 0; c < 3 * w->mesh->triangle_count; c++)
-        if (!collapsed(w, c / 3) && w->fan[c] == c)
-            w->fans[w->vertex[c]]++;
-    for (uint32_t v = 0; v < w->mesh->vertex_count; v++) {
+    for (uint32_t v = 0; v < w->vertices; v++) {
         used += w->fans[v] > 0;
         q->nonmanifold_vertices += w->fans[v] > 1;
         q->components += w->fans[v] > 0 && w->part[v] == v;
@@ -190,63 +225,78 @@ static void measure_vertices(work *w, cw_quality *q)
     q->euler += (int64_t)used - (int64_t)q->edges;
 }
 
-static void measure_triangles(const work *w, cw_quality *q)
+static void measure_components(work *w, cw_quality *q)
 {
-    const float *p = w->mesh->positions;
-    for (size_t t = 0; t < w->mesh->triangle_count; t++) {
-        const uint32_t *v = w->mesh->triangles + 3 * t;
-        double a[3], b[3], c[3], n[3];
-        for (size_t k = 0; k < 3; k++) {
-            a[k] = (double)p[3 * (size_t)v[0] + k];
-            b[k] = (double)p[3 * (size_t)v[1] + k] - a[k];
-            c[k] = (double)p[3 * (size_t)v[2] + k] - a[k];
+    for (size_t t = 0; t < w->corners / 3; t++)
+        if (!cwi_is_collapsed(&w->welded, t)) {
+            q->euler++;
+            w->volume[cwi_sets_find(w->part, w->vertex[3 * t])] +=
+                cwi_signed_volume(w->welded.mesh, t);
         }
-        for (int k = 0; k < 3; k++)
-            n[k] = b[(k + 1) % 3] * c[(k + 2) % 3] - b[(k + 2) % 3] * c[(k + 1) % 3];
-        const double area = 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-        q->area_mm2 += area;
-        q->volume_mm3 += (n[0] * a[0] + n[1] * a[1] + n[2] * a[2]) / 6;
-        q->degenerate += !(area > 0) || collapsed(w, t);
-        q->euler += !collapsed(w, t);
-    }
 }
 
-static bool prepare(work *w, cw_weld how)
+static bool prepare(work *w)
 {
-    if (!load_corners(w, how) || !sort_sides(w))
+    w->vertex = w->welded.vertex;
+    w->vertices = w->welded.mesh->vertex_count;
+    w->corners = 3 * w->welded.mesh->triangle_count;
+    w->begin = cwi_alloc_zeroed(w->vertices + 2, sizeof *w->begin);
+    w->sides = cwi_alloc_array(w->corners, sizeof *w->sides);
+    w->fan = cwi_sets_alloc(w->corners);
+    w->part = cwi_sets_alloc(w->vertices);
+    w->fans = cwi_alloc_zeroed(w->vertices, sizeof *w->fans);
+    w->volume = cwi_alloc_zeroed(w->vertices, sizeof *w->volume);
+    w->open = cwi_alloc_zeroed(w->vertices, 1);
+    return w->begin && w->sides && w->fan && w->part && w->fans && w->volume && w->open;
+}
+
+static bool measure_topology(work *w, const cw_quality_desc *d, cw_quality *q)
+{
+    if (!prepare(w))
         return false;
-    w->fan = identity(3 * w->mesh->triangle_count);
-    w->part = identity(w->mesh->vertex_count);
-    w->fans = cwi_alloc_zeroed(w->mesh->vertex_count, sizeof *w->fans);
-    return w->fan && w->part && w->fans;
+    sort_sides(w);
+    measure_edges(w, q);
+    if (!count_loops(w, q))
+        return false;
+    count_fans(w);
+    measure_vertices(w, q);
+    measure_components(w, q);
+    const bool oriented =
+        !q->nonmanifold_edges && !q->misoriented_edges && !q->nonmanifold_vertices;
+    q->genus =
+        oriented ? (int64_t)q->components - (q->euler + (int64_t)q->border_loops) / 2 : -1;
+    const cwi_shells shells = {w->part, w->fans, w->volume, w->open};
+    return !d->shells || cwi_measure_shells(&w->welded, &shells, d, q);
+}
+
+static void free_work(work *w)
+{
+    cwi_welded_free(&w->welded);
+    cwi_free(w->begin);
+    cwi_free(w->sides);
+    cwi_free(w->fan);
+    cwi_free(w->part);
+    cwi_free(w->fans);
+    cwi_free(w->volume);
+    cwi_free(w->open);
 }
 
 cw_status cw_quality_measure(const cw_mesh *mesh, const cw_quality_desc *desc, cw_quality *out,
                              cw_error *err)
 {
-    work w = {.mesh = mesh};
+    const cw_quality_desc d = desc ? *desc : (cw_quality_desc){0};
+    work w = {.defects = d.defects};
     cw_quality q = {.vertices = mesh->vertex_count, .triangles = mesh->triangle_count};
     memset(out, 0, sizeof *out);
-    cw_status st = cw_mesh_check(mesh, err);
-    if (st == CW_OK && mesh->triangle_count > UINT32_MAX / 3)
-        st = cw_fail(err, CW_ERR_LIMIT, "%zu triangles are more than the checks can number",
-                     mesh->triangle_count);
-    if (st == CW_OK && !prepare(&w, desc ? desc->weld : CW_WELD_NONE))
+    cw_status st = cwi_welded_init(&w.welded, mesh, d.weld, err);
+    if (st == CW_OK && !(measure_topology(&w, &d, &q) && cwi_measure_shapes(&w.welded, &d, &q)))
         st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory to check %zu triangles",
                      mesh->triangle_count);
     if (st == CW_OK) {
-        measure_edges(&w, &q);
-        measure_vertices(&w, &q);
-        measure_triangles(&w, &q);
         cw_mesh_bounds(mesh, q.min, q.max);
         *out = q;
     }
-    cwi_free(w.vertex);
-    cwi_free(w.begin);
-    cwi_free(w.sides);
-    cwi_free(w.fan);
-    cwi_free(w.part);
-    cwi_free(w.fans);
+    free_work(&w);
     return st;
 }
 

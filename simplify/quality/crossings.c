@@ -1,0 +1,195 @@
+/* Pairs of triangles that meet where they should not: boxes find the candidates, exact signs
+ * decide. */
+#include <cubewright/quality.h>
+
+#include "core/layers.h"
+#include "core/memory.h"
+#include "core/status.h"
+#include "simplify/quality/blocks.h"
+#include "simplify/quality/contact.h"
+#include "simplify/quality/welded.h"
+
+#include <stdlib.h>
+
+/* Blocks are handed out in chunks. A chunk may make so many tests; when it is cut off, it is
+ * done again with a share of what all such chunks have together. A sound mesh needs about 15
+ * tests a triangle. The count, and so the result, does not depend on threads. */
+enum { CHUNK_BLOCKS = 512 };
+static const size_t tests_per_triangle = 64, tests_beyond = (size_t)1 << 28;
+
+typedef struct pair {
+    uint32_t a, b; /* a < b */
+} pair;
+
+typedef struct chunk {
+    size_t count, room;
+    pair *pairs;
+    size_t tests, most_tests;
+    bool cut, failed;
+} chunk;
+
+typedef struct search {
+    cwi_welded welded;
+    cwi_blocks blocks;
+    chunk *chunks;
+    size_t chunk_count;
+} search;
+
+/* One block against those behind it on the curve. */
+typedef struct visit {
+    const search *s;
+    chunk *to;
+    size_t block;
+} visit;
+
+static void keep(chunk *to, uint32_t a, uint32_t b)
+{
+    if (to->count == to->room) {
+        const size_t room = to->room ? 2 * to->room : 16;
+        pair *pairs = cwi_realloc_array(to->pairs, room, sizeof *pairs);
+        to->failed = !pairs;
+        if (!pairs)
+            return;
+        to->pairs = pairs;
+        to->room = room;
+    }
+    to->pairs[to->count++] = a < b ? (pair){a, b} : (pair){b, a};
+}
+
+static bool meet_block(void *context, size_t other)
+{
+    const visit *v = context;
+    const cwi_blocks *blocks = &v->s->blocks;
+    const cwi_block *own = &blocks->level[0][v->block];
+    const uint32_t *vertex = v->s->welded.vertex;
+    for (int i = 0; i < CWI_BLOCK && v->block * CWI_BLOCK + (size_t)i < blocks->count; i++) {
+        const cwi_box box = {{own->low[0][i], own->low[1][i], own->low[2][i]},
+                             {own->high[0][i], own->high[1][i], own->high[2][i]}};
+        const uint32_t a = blocks->order[v->block * CWI_BLOCK + (size_t)i];
+        unsigned meets = cwi_block_meets(&blocks->level[0][other], &box);
+        if (other == v->block)
+            meets &= ~0u << (i + 1); /* each pair once */
+        for (int j = 0; meets >> j; j++) {
+            if (!(meets >> j & 1))
+                continue;
+            const uint32_t b = blocks->order[other * CWI_BLOCK + (size_t)j];
+            v->to->tests++;
+            if (cwi_triangles_meet(v->s->welded.points, vertex + 3 * (size_t)a,
+                                   vertex + 3 * (size_t)b))
+                keep(v->to, a, b);
+        }
+    }
+    v->to->cut = v->to->tests > v->to->most_tests;
+    return !v->to->cut && !v->to->failed;
+}
+
+static void search_chunk(void *context, size_t k)
+{
+    const search *s = context;
+    chunk *to = &s->chunks[k];
+    const size_t blocks = s->blocks.block_count[0], end = (k + 1) * CHUNK_BLOCKS;
+    if (to->most_tests == 0)
+        return;
+    to->count = to->tests = 0;
+    to->cut = false;
+    for (size_t b = k * CHUNK_BLOCKS; b < end && b < blocks && !to->cut && !to->failed; b++) {
+        visit v = {s, to, b};
+        const cwi_block *own = &s->blocks.level[0][b];
+        const cwi_box hull = cwi_block_hull(own);
+        cwi_blocks_visit(&s->blocks, &hull, b, meet_block, &v);
+    }
+}
+
+static bool prepare(search *s)
+{
+    if (!cwi_welded_sort(&s->welded, &s->blocks))
+        return false;
+    s->chunk_count = (s->blocks.block_count[0] + CHUNK_BLOCKS - 1) / CHUNK_BLOCKS;
+    s->chunks = cwi_alloc_zeroed(s->chunk_count, sizeof *s->chunks);
+    for (size_t k = 0; k < s->chunk_count && s->chunks; k++)
+        s->chunks[k].most_tests = CHUNK_BLOCKS * CWI_BLOCK * tests_per_triangle;
+    return s->chunks;
+}
+
+/* Gives the chunks that were cut off another allowance, the others none; false when there is
+ * nothing to gain. */
+static bool allow_more(search *s)
+{
+    size_t cut = 0;
+    for (size_t k = 0; k < s->chunk_count; k++)
+        cut += s->chunks[k].cut;
+    const size_t share = cut ? tests_beyond / cut : 0;
+    if (share <= CHUNK_BLOCKS * CWI_BLOCK * tests_per_triangle)
+        return false;
+    for (size_t k = 0; k < s->chunk_count; k++)
+        s->chunks[k].most_tests = s->chunks[k].cut ? share : 0;
+    return true;
+}
+
+static int compare_pairs(const void *x, const void *y)
+{
+    const pair *p = x, *q = y;
+    if (p->a != q->a)
+        return p->a < q->a ? -1 : 1;
+    return p->b < q->b ? -1 : p->b > q->b;
+}
+
+static cw_status collect(const search *s, cw_crossings *out, cw_error *err)
+{
+    size_t count = 0;
+    bool failed = false;
+    for (size_t k = 0; k < s->chunk_count; k++) {
+        count += s->chunks[k].count;
+        failed |= s->chunks[k].failed;
+        out->undecided |= s->chunks[k].cut;
+    }
+    pair *pairs = failed ? NULL : cwi_alloc_array(count, sizeof *pairs);
+    if (!pairs)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu pairs of triangles", count);
+    for (size_t k = 0; k < s->chunk_count; k++)
+        for (size_t n = 0; n < s->chunks[k].count; n++)
+            pairs[out->count++] = s->chunks[k].pairs[n];
+    qsort(pairs, count, sizeof *pairs, compare_pairs);
+    out->pairs = (uint32_t *)pairs;
+    return CW_OK;
+}
+
+static cw_status search_chunks(search *s, const cw_crossings_desc *d, cw_error *err)
+{
+    return cwi_each_layer(s->chunk_count, CHUNK_BLOCKS * CWI_BLOCK * 64, d->threads,
+                          &d->progress, "self-intersections", search_chunk, s, err);
+}
+
+static cw_status run(search *s, const cw_crossings_desc *d, cw_error *err)
+{
+    if (!prepare(s))
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to check %zu triangles",
+                       s->welded.mesh->triangle_count);
+    cw_status st = search_chunks(s, d, err);
+    return st == CW_OK && allow_more(s) ? search_chunks(s, d, err) : st;
+}
+
+cw_status cw_self_intersections(const cw_mesh *mesh, const cw_crossings_desc *desc,
+                                cw_crossings *out, cw_error *err)
+{
+    const cw_crossings_desc d = desc ? *desc : (cw_crossings_desc){0};
+    search s = {0};
+    *out = (cw_crossings){0};
+    cw_status st = cwi_welded_init(&s.welded, mesh, d.weld, err);
+    if (st == CW_OK)
+        st = run(&s, &d, err);
+    if (st == CW_OK)
+        st = collect(&s, out, err);
+    for (size_t k = 0; k < s.chunk_count && s.chunks; k++)
+        cwi_free(s.chunks[k].pairs);
+    cwi_free(s.chunks);
+    cwi_blocks_free(&s.blocks);
+    cwi_welded_free(&s.welded);
+    return st;
+}
+
+void cw_crossings_free(cw_crossings *crossings)
+{
+    cwi_free(crossings->pairs);
+    *crossings = (cw_crossings){0};
+}

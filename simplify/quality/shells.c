@@ -1,0 +1,143 @@
+/* Which closed shells face the wrong way: a solid's shell faces outward where nothing is around
+ * it, a cavity's inward where one solid is. */
+#include "simplify/quality/shells.h"
+
+#include "core/layers.h"
+#include "core/sets.h"
+#include "simplify/quality/exact.h"
+
+#include <math.h>
+
+typedef struct work {
+    const cwi_welded *welded;
+    const cwi_shells *shells;
+    uint32_t *part;
+    cwi_blocks blocks;
+    uint32_t *closed; /* the roots of closed shells */
+    int *around;      /* how often the other shells wind around each of these */
+    size_t count;
+} work;
+
+/* A ray from a vertex along +x, met with the triangles of other shells. */
+typedef struct ray {
+    const work *w;
+    uint32_t shell; /* where it starts */
+    const float *start;
+    int winding;
+} ray;
+
+static int sign_of(float x)
+{
+    return (x > 0) - (x < 0);
+}
+
+/* On which side of the edge a b, seen along x, the start is when moved by a little in z and far
+ * less in y: then it is on none. */
+static int side_of(const float *a, const float *b, const float *start)
+{
+    const int side = cwi_orient2d(a, b, start, 0);
+    const int next = side ? side : sign_of(b[1] - a[1]);
+    return next ? next : -sign_of(b[2] - a[2]);
+}
+
+/* How often the triangle, seen along x, winds around the start: -1, 0 or 1. */
+static int winding_of(const float *const corner[3], const float *start)
+{
+    int winding = 0;
+    for (int n = 0; n < 3; n++) {
+        const float *a = corner[n], *b = corner[(n + 1) % 3];
+        const bool a_above = a[2] > start[2], b_above = b[2] > start[2];
+        if (a_above != b_above && side_of(a, b, start) == (b_above ? 1 : -1))
+            winding += b_above ? 1 : -1;
+    }
+    return winding;
+}
+
+static void meet(ray *r, uint32_t triangle)
+{
+    const cwi_welded *w = r->w->welded;
+    const uint32_t *v = w->vertex + 3 * (size_t)triangle;
+    const float *corner[3];
+    if (r->w->part[v[0]] == r->shell)
+        return;
+    for (int n = 0; n < 3; n++)
+        corner[n] = w->points + 3 * (size_t)v[n];
+    const int winding = winding_of(corner, r->start);
+    if (winding && winding * cwi_orient3d(corner[0], corner[1], corner[2], r->start) < 0)
+        r->winding += winding;
+}
+
+static cwi_box box_of(const ray *r)
+{
+    const float *s = r->start;
+    return (cwi_box){{s[0], s[1], s[2]}, {INFINITY, s[1], s[2]}};
+}
+
+static bool meet_block(void *context, size_t block)
+{
+    ray *r = context;
+    const cwi_blocks *blocks = &r->w->blocks;
+    const cwi_box box = box_of(r);
+    const unsigned meets = cwi_block_meets(&blocks->level[0][block], &box);
+    for (int n = 0; meets >> n; n++)
+        if (meets >> n & 1)
+            meet(r, blocks->order[block * CWI_BLOCK + (size_t)n]);
+    return true;
+}
+
+static void wind_around(void *context, size_t k)
+{
+    work *w = context;
+    ray r = {w, w->closed[k], w->welded->points + 3 * (size_t)w->closed[k], 0};
+    const cwi_box box = box_of(&r);
+    cwi_blocks_visit(&w->blocks, &box, 0, meet_block, &r);
+    w->around[k] = r.winding;
+}
+
+static void judge(const work *w, const cw_quality_desc *d, cw_quality *q)
+{
+    uint8_t *wrong = w->shells->open; /* has served its purpose */
+    for (size_t k = 0; k < w->count; k++) {
+        const bool inward = w->shells->volume[w->closed[k]] < 0;
+        q->cavities += inward && w->around[k] == 1;
+        q->inside_out += inward && w->around[k] != 1;
+        q->nested += !inward && w->around[k] != 0;
+        wrong[w->closed[k]] = w->around[k] != (inward ? 1 : 0);
+    }
+    for (size_t t = 0; t < w->welded->mesh->triangle_count && d->defects; t++)
+        if (!cwi_is_collapsed(w->welded, t) && wrong[w->part[w->welded->vertex[3 * t]]])
+            d->defects[t] |= CW_DEFECT_INSIDE_OUT;
+}
+
+/* Roots are found once and for all, so that threads may read them. */
+static void list_closed(work *w)
+{
+    const size_t vertices = w->welded->mesh->vertex_count;
+    for (uint32_t v = 0; v < vertices; v++) {
+        w->part[v] = cwi_sets_find(w->part, v);
+        if (w->part[v] == v && w->shells->used[v] && !w->shells->open[v])
+            w->closed[w->count++] = v;
+    }
+    for (uint32_t v = 0; v < vertices; v++)
+        w->shells->open[v] = 0;
+}
+
+bool cwi_measure_shells(const cwi_welded *welded, const cwi_shells *shells,
+                        const cw_quality_desc *desc, cw_quality *q)
+{
+    const size_t vertices = welded->mesh->vertex_count;
+    work w = {.welded = welded, .shells = shells, .part = shells->part};
+    w.closed = cwi_alloc_array(vertices, sizeof *w.closed);
+    w.around = cwi_alloc_zeroed(vertices, sizeof *w.around);
+    const bool ok = w.closed && w.around && cwi_welded_sort(welded, &w.blocks);
+    if (ok) {
+        list_closed(&w);
+        cwi_each_layer(w.count, 1 << 12, desc->threads, &(cw_progress){0}, "shells",
+                       wind_around, &w, NULL);
+        judge(&w, desc, q);
+    }
+    cwi_blocks_free(&w.blocks);
+    cwi_free(w.closed);
+    cwi_free(w.around);
+    return ok;
+}

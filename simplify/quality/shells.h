@@ -1,0 +1,20 @@
+/* Which closed shells face the wrong way? */
+#ifndef QUALITY_SHELLS_H
+#define QUALITY_SHELLS_H
+
+#include "simplify/quality/welded.h"
+
+/* The components of a mesh; arrays of vertex_count. A component is known by its root. */
+typedef struct cwi_shells {
+    uint32_t *part;       /* union-find: vertices that share triangles; afterwards each root */
+    const uint32_t *used; /* not 0: in a triangle */
+    const double *volume; /* of a root's component: signed */
+    uint8_t *open;        /* whether it has an open edge; used up */
+} cwi_shells;
+
+/* Counts cavities, inside_out and nested, and marks the triangles of the latter two.
+ * False when memory is out. */
+bool cwi_measure_shells(const cwi_welded *welded, const cwi_shells *shells,
+                        const cw_quality_desc *desc, cw_quality *q);
+
+#endif

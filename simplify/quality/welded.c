@@ -1,0 +1,91 @@
+#include "simplify/quality/welded.h"
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "core/weld.h"
+#include "simplify/quality/exact.h"
+
+/* The points by which vertices are told apart. */
+static bool choose_points(cwi_welded *w, cw_weld how)
+{
+    const cw_mesh *mesh = w->mesh;
+    w->points = mesh->positions;
+    if (how != CW_WELD_WORLD)
+        return true;
+    w->points = w->own_points = cwi_alloc_array(mesh->vertex_count, 3 * sizeof(float));
+    for (size_t i = 0; i < 3 * mesh->vertex_count && w->own_points; i++)
+        w->own_points[i] = (float)(mesh->origin[i % 3] + (double)mesh->positions[i]);
+    return w->own_points;
+}
+
+static bool weld_corners(cwi_welded *w, cw_weld how)
+{
+    const size_t corners = 3 * w->mesh->triangle_count, vertices = w->mesh->vertex_count;
+    uint32_t *map = how ? cwi_alloc_array(vertices, sizeof *map) : NULL;
+    w->vertex = cwi_alloc_array(corners, sizeof *w->vertex);
+    const bool ok = w->vertex && (!how || (map && cwi_weld(w->points, vertices, map)));
+    for (size_t c = 0; c < corners && ok; c++)
+        w->vertex[c] = map ? map[w->mesh->triangles[c]] : w->mesh->triangles[c];
+    cwi_free(map);
+    return ok;
+}
+
+cw_status cwi_welded_init(cwi_welded *w, const cw_mesh *mesh, cw_weld how, cw_error *err)
+{
+    *w = (cwi_welded){.mesh = mesh};
+    cw_status st = cw_mesh_check(mesh, err);
+    if (st == CW_OK && mesh->triangle_count > UINT32_MAX / 3)
+        st = cw_fail(err, CW_ERR_LIMIT, "%zu triangles are more than the checks can number",
+                     mesh->triangle_count);
+    if (st == CW_OK && !(choose_points(w, how) && weld_corners(w, how)))
+        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory to check %zu triangles",
+                     mesh->triangle_count);
+    return st;
+}
+
+static cwi_box box_of(const cwi_welded *w, size_t triangle)
+{
+    cwi_box box;
+    for (int a = 0; a < 3; a++) {
+        const float *p = w->points + a;
+        const uint32_t *v = w->vertex + 3 * triangle;
+        const float x = p[3 * (size_t)v[0]], y = p[3 * (size_t)v[1]], z = p[3 * (size_t)v[2]];
+        box.low[a] = x < y ? (x < z ? x : z) : (y < z ? y : z);
+        box.high[a] = x > y ? (x > z ? x : z) : (y > z ? y : z);
+    }
+    return box;
+}
+
+static bool has_area(const cwi_welded *w, size_t triangle)
+{
+    const uint32_t *v = w->vertex + 3 * triangle;
+    return cwi_seen_along(w->points + 3 * (size_t)v[0], w->points + 3 * (size_t)v[1],
+                          w->points + 3 * (size_t)v[2]) >= 0;
+}
+
+bool cwi_welded_sort(const cwi_welded *w, cwi_blocks *blocks)
+{
+    const size_t count = w->mesh->triangle_count;
+    cwi_box *boxes = cwi_alloc_large(count, sizeof *boxes);
+    uint32_t *triangle = cwi_alloc_array(count, sizeof *triangle);
+    bool ok = boxes && triangle;
+    size_t kept = 0;
+    for (size_t t = 0; t < count && ok; t++)
+        if (!cwi_is_collapsed(w, t) && has_area(w, t)) {
+            boxes[kept] = box_of(w, t);
+            triangle[kept++] = (uint32_t)t;
+        }
+    ok = ok && cwi_blocks_build(blocks, boxes, kept);
+    for (size_t n = 0; n < kept && ok; n++)
+        blocks->order[n] = triangle[blocks->order[n]];
+    cwi_free(boxes);
+    cwi_free(triangle);
+    return ok;
+}
+
+void cwi_welded_free(cwi_welded *w)
+{
+    cwi_free(w->own_points);
+    cwi_free(w->vertex);
+    *w = (cwi_welded){0};
+}
