@@ -115,6 +115,32 @@ CW_API cw_status cw_self_intersections(const cw_mesh *mesh, const cw_crossings_d
 
 CW_API void cw_crossings_free(cw_crossings *crossings);
 
+/* The same questions, answered by CGAL. Self-intersections as cw_self_intersections(). */
+typedef struct cw_cgal_facts {
+    bool is_polygon_mesh; /* an oriented 2-manifold, maybe open; if not, all else is 0 */
+    bool closed;
+    bool bounds_volume; /* closed, and no shell inside out, nested or meeting another */
+    bool outward;       /* bounds_volume, and the outermost shells face outward */
+    size_t components;  /* joined by edges */
+    size_t border_loops, self_intersections, degenerate, needles, caps;
+    double area_mm2, volume_mm3; /* volume: of closed meshes */
+} cw_cgal_facts;
+
+/* Whether this build has the module with CGAL in it. That module is under the GPL. */
+CW_API bool cw_quality_has_cgal(void);
+
+/* Asks CGAL's Polygon Mesh Processing; takes ten times as long as our own checks.
+ * Returns  as cw_quality_measure(); CW_ERR_UNSUPPORTED without the module; CW_ERR_BACKEND with
+ *          CGAL's words when it gives up */
+CW_API cw_status cw_quality_ask_cgal(const cw_mesh *mesh, cw_weld weld, cw_cgal_facts *out,
+                                     cw_error *err);
+
+/* One-sided Hausdorff distance from a mesh to a reference by CGAL, off by at most the
+ * tolerance. Returns  as cw_quality_ask_cgal(); CW_ERR_BACKEND for a mesh that is no oriented
+ * manifold */
+CW_API cw_status cw_distance_by_cgal(const cw_mesh *mesh, const cw_mesh *reference,
+                                     double tolerance_mm, double *out_mm, cw_error *err);
+
 #ifdef __cplusplus
 }
 #endif
