@@ -50,7 +50,8 @@ typedef struct cw_shapes {
 typedef struct cw_quality {
     size_t vertices, triangles, edges;
     size_t components;           /* sets of triangles joined by vertices */
-    size_t unused_vertices;      /* in no triangle */
+    size_t unused_vertices;      /* in no triangle, as indexed */
+    size_t merged_vertices;      /* in one, but welded to another vertex */
     size_t open_edges;           /* in one triangle */
     size_t border_loops;         /* closed chains of open edges */
     size_t nonmanifold_edges;    /* in more than two */
@@ -59,11 +60,11 @@ typedef struct cw_quality {
     size_t duplicates;           /* triangles with the same vertices as an earlier one */
     size_t degenerate;           /* triangles of zero area in double precision */
     size_t needles, caps;        /* triangles: see above */
-    size_t cavities;             /* closed components facing inward, inside one solid */
-    size_t inside_out;           /* closed components facing inward, but not so */
-    size_t nested;               /* closed components facing outward, inside another one */
-    int64_t euler;               /* used vertices - edges + triangles */
-    int64_t genus;               /* handles of all components; -1 unless an oriented manifold */
+    size_t cavities;   /* closed, oriented components facing inward, inside one solid */
+    size_t inside_out; /* such components facing inward, but not so */
+    size_t nested;     /* such components facing outward, inside another one */
+    int64_t euler;     /* used vertices - edges + triangles */
+    int64_t genus;     /* handles of all components; -1 unless an oriented manifold */
     double area_mm2;
     double volume_mm3;     /* signed; positive when triangles wind outward. Of closed meshes */
     double min[3], max[3]; /* world box, mm */

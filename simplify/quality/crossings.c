@@ -11,11 +11,13 @@
 
 #include <stdlib.h>
 
-/* Blocks are handed out in chunks. A chunk may make so many tests; when it is cut off, it is
- * done again with a share of what all such chunks have together. A sound mesh needs about 15
- * tests a triangle. The count, and so the result, does not depend on threads. */
-enum { CHUNK_BLOCKS = 512 };
-static const size_t tests_per_triangle = 64, tests_beyond = (size_t)1 << 28;
+/* Blocks are handed out in chunks. A chunk may do so much work, a test being 1 and a pair kept
+ * 4; when it is cut off, it is done again with a share of what all such chunks have together. A
+ * sound mesh needs about 15 a triangle. The count, and so the result, does not depend on
+ * threads.
+ */
+enum { CHUNK_BLOCKS = 512, COST_OF_PAIR = 4 };
+static const size_t work_per_triangle = 96, work_beyond = (size_t)1 << 25;
 
 typedef struct pair {
     uint32_t a, b; /* a < b */
@@ -24,7 +26,7 @@ typedef struct pair {
 typedef struct chunk {
     size_t count, room;
     pair *pairs;
-    size_t tests, most_tests;
+    size_t work, most_work;
     bool cut, failed;
 } chunk;
 
@@ -53,6 +55,7 @@ static void keep(chunk *to, uint32_t a, uint32_t b)
         to->pairs = pairs;
         to->room = room;
     }
+    to->work += COST_OF_PAIR;
     to->pairs[to->count++] = a < b ? (pair){a, b} : (pair){b, a};
 }
 
@@ -73,13 +76,13 @@ static bool meet_block(void *context, size_t other)
             if (!(meets >> j & 1))
                 continue;
             const uint32_t b = blocks->order[other * CWI_BLOCK + (size_t)j];
-            v->to->tests++;
+            v->to->work++;
             if (cwi_triangles_meet(v->s->welded.points, vertex + 3 * (size_t)a,
                                    vertex + 3 * (size_t)b))
                 keep(v->to, a, b);
         }
     }
-    v->to->cut = v->to->tests > v->to->most_tests;
+    v->to->cut = v->to->work > v->to->most_work;
     return !v->to->cut && !v->to->failed;
 }
 
@@ -88,9 +91,9 @@ static void search_chunk(void *context, size_t k)
     const search *s = context;
     chunk *to = &s->chunks[k];
     const size_t blocks = s->blocks.block_count[0], end = (k + 1) * CHUNK_BLOCKS;
-    if (to->most_tests == 0)
+    if (to->most_work == 0)
         return;
-    to->count = to->tests = 0;
+    to->count = to->work = 0;
     to->cut = false;
     for (size_t b = k * CHUNK_BLOCKS; b < end && b < blocks && !to->cut && !to->failed; b++) {
         visit v = {s, to, b};
@@ -107,7 +110,7 @@ static bool prepare(search *s)
     s->chunk_count = (s->blocks.block_count[0] + CHUNK_BLOCKS - 1) / CHUNK_BLOCKS;
     s->chunks = cwi_alloc_zeroed(s->chunk_count, sizeof *s->chunks);
     for (size_t k = 0; k < s->chunk_count && s->chunks; k++)
-        s->chunks[k].most_tests = CHUNK_BLOCKS * CWI_BLOCK * tests_per_triangle;
+        s->chunks[k].most_work = CHUNK_BLOCKS * CWI_BLOCK * work_per_triangle;
     return s->chunks;
 }
 
@@ -118,11 +121,11 @@ static bool allow_more(search *s)
     size_t cut = 0;
     for (size_t k = 0; k < s->chunk_count; k++)
         cut += s->chunks[k].cut;
-    const size_t share = cut ? tests_beyond / cut : 0;
-    if (share <= CHUNK_BLOCKS * CWI_BLOCK * tests_per_triangle)
+    const size_t share = cut ? work_beyond / cut : 0;
+    if (share <= CHUNK_BLOCKS * CWI_BLOCK * work_per_triangle)
         return false;
     for (size_t k = 0; k < s->chunk_count; k++)
-        s->chunks[k].most_tests = s->chunks[k].cut ? share : 0;
+        s->chunks[k].most_work = s->chunks[k].cut ? share : 0;
     return true;
 }
 

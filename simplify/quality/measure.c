@@ -22,14 +22,14 @@ typedef struct work {
     cwi_welded welded;
     const uint32_t *vertex; /* of each corner */
     size_t vertices, corners;
-    uint8_t *defects; /* or NULL */
-    uint32_t *begin;  /* first side of each vertex, vertices + 1 */
-    side *sides;      /* sorted by lower, higher, third vertex, then corner */
-    uint32_t *fan;    /* union-find: corners around one vertex that share edges */
-    uint32_t *part;   /* union-find: vertices that share triangles */
-    uint32_t *fans;   /* fans around each vertex */
-    double *volume;   /* of the component whose root a vertex is */
-    uint8_t *open;    /* whether it has an open edge */
+    uint8_t *defects;   /* or NULL */
+    uint32_t *begin;    /* first side of each vertex, vertices + 1 */
+    side *sides;        /* sorted by lower, higher, third vertex, then corner */
+    uint32_t *fan;      /* union-find: corners around one vertex that share edges */
+    uint32_t *part;     /* union-find: vertices that share triangles */
+    uint32_t *fans;     /* fans around each vertex */
+    double *volume;     /* of the component whose root a vertex is */
+    uint8_t *unbounded; /* whether that component bounds no volume */
 } work;
 
 /* The sides of the triangles around one edge. */
@@ -173,7 +173,18 @@ static void measure_edges(work *w, cw_quality *q)
     }
 }
 
-/* Chains of open edges run on from fan to fan, so loops that touch in a vertex stay two. */
+/* Whether a component bounds a volume: two triangles at each edge, run through in opposite
+ * ways. */
+static void find_unbounded(work *w)
+{
+    for (edge e = {0}; next_edge(w, &e);) {
+        const side *s = w->sides + e.begin;
+        if (e.count != 2 || runs_up(w, &e, &s[0]) == runs_up(w, &e, &s[1]))
+            w->unbounded[cwi_sets_find(w->part, e.low)] = 1;
+    }
+}
+
+/* Chains of open edges run on within a fan of triangles, from one end of it to the other. */
 static bool count_loops(work *w, cw_quality *q)
 {
     if (!q->open_edges)
@@ -194,8 +205,6 @@ static bool count_loops(work *w, cw_quality *q)
             seen[root] = 1;
             q->border_loops++;
         }
-        if (e.count == 1)
-            w->open[cwi_sets_find(w->part, e.low)] = 1;
     }
     cwi_free(loop);
     cwi_free(seen);
@@ -212,6 +221,23 @@ static void count_fans(work *w)
             mark(w, c / 3, CW_DEFECT_NONMANIFOLD);
 }
 
+/* Of the vertices as indexed: in no triangle, or at the place of another one. */
+static bool count_used(const work *w, cw_quality *q)
+{
+    uint8_t *seen = cwi_alloc_zeroed(w->vertices, 1); /* 1: named, 2: named once welded */
+    for (size_t c = 0; c < w->corners && seen; c++) {
+        seen[w->welded.mesh->triangles[c]] |= 1;
+        seen[w->vertex[c]] |= 2;
+    }
+    for (size_t v = 0; v < w->vertices && seen; v++) {
+        q->unused_vertices += !(seen[v] & 1);
+        q->merged_vertices += seen[v] == 1;
+    }
+    const bool ok = seen;
+    cwi_free(seen);
+    return ok;
+}
+
 /* A vertex stands for its component when it is the root of its set. */
 static void measure_vertices(work *w, cw_quality *q)
 {
@@ -221,7 +247,6 @@ static void measure_vertices(work *w, cw_quality *q)
         q->nonmanifold_vertices += w->fans[v] > 1;
         q->components += w->fans[v] > 0 && w->part[v] == v;
     }
-    q->unused_vertices = q->vertices - used;
     q->euler += (int64_t)used - (int64_t)q->edges;
 }
 
@@ -246,8 +271,8 @@ static bool prepare(work *w)
     w->part = cwi_sets_alloc(w->vertices);
     w->fans = cwi_alloc_zeroed(w->vertices, sizeof *w->fans);
     w->volume = cwi_alloc_zeroed(w->vertices, sizeof *w->volume);
-    w->open = cwi_alloc_zeroed(w->vertices, 1);
-    return w->begin && w->sides && w->fan && w->part && w->fans && w->volume && w->open;
+    w->unbounded = cwi_alloc_zeroed(w->vertices, 1);
+    return w->begin && w->sides && w->fan && w->part && w->fans && w->volume && w->unbounded;
 }
 
 static bool measure_topology(work *w, const cw_quality_desc *d, cw_quality *q)
@@ -260,12 +285,15 @@ static bool measure_topology(work *w, const cw_quality_desc *d, cw_quality *q)
         return false;
     count_fans(w);
     measure_vertices(w, q);
+    if (!count_used(w, q))
+        return false;
+    find_unbounded(w);
     measure_components(w, q);
     const bool oriented =
         !q->nonmanifold_edges && !q->misoriented_edges && !q->nonmanifold_vertices;
     q->genus =
         oriented ? (int64_t)q->components - (q->euler + (int64_t)q->border_loops) / 2 : -1;
-    const cwi_shells shells = {w->part, w->fans, w->volume, w->open};
+    const cwi_shells shells = {w->part, w->fans, w->volume, w->unbounded};
     return !d->shells || cwi_measure_shells(&w->welded, &shells, d, q);
 }
 
@@ -278,7 +306,7 @@ static void free_work(work *w)
     cwi_free(w->part);
     cwi_free(w->fans);
     cwi_free(w->volume);
-    cwi_free(w->open);
+    cwi_free(w->unbounded);
 }
 
 cw_status cw_quality_measure(const cw_mesh *mesh, const cw_quality_desc *desc, cw_quality *out,

@@ -96,7 +96,7 @@ static void wind_around(void *context, size_t k)
 
 static void judge(const work *w, const cw_quality_desc *d, cw_quality *q)
 {
-    uint8_t *wrong = w->shells->open; /* has served its purpose */
+    uint8_t *wrong = w->shells->unbounded; /* has served its purpose */
     for (size_t k = 0; k < w->count; k++) {
         const bool inward = w->shells->volume[w->closed[k]] < 0;
         q->cavities += inward && w->around[k] == 1;
@@ -115,11 +115,11 @@ static void list_closed(work *w)
     const size_t vertices = w->welded->mesh->vertex_count;
     for (uint32_t v = 0; v < vertices; v++) {
         w->part[v] = cwi_sets_find(w->part, v);
-        if (w->part[v] == v && w->shells->used[v] && !w->shells->open[v])
+        if (w->part[v] == v && w->shells->used[v] && !w->shells->unbounded[v])
             w->closed[w->count++] = v;
     }
     for (uint32_t v = 0; v < vertices; v++)
-        w->shells->open[v] = 0;
+        w->shells->unbounded[v] = 0;
 }
 
 bool cwi_measure_shells(const cwi_welded *welded, const cwi_shells *shells,

@@ -9,7 +9,7 @@ typedef struct cwi_shells {
     uint32_t *part;       /* union-find: vertices that share triangles; afterwards each root */
     const uint32_t *used; /* not 0: in a triangle */
     const double *volume; /* of a root's component: signed */
-    uint8_t *open;        /* whether it has an open edge; used up */
+    uint8_t *unbounded;   /* whether it bounds no volume: open, or not oriented; used up */
 } cwi_shells;
 
 /* Counts cavities, inside_out and nested, and marks the triangles of the latter two.

@@ -1,0 +1,255 @@
+/* Self-intersections: against CGAL on triangles that touch in every way, and at the limits. */
+#include "support/surface.h"
+
+#include "core/memory.h"
+#include "simplify/quality/exact.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static uint32_t next(uint32_t *seed)
+{
+    *seed = *seed * 1664525u + 1013904223u;
+    return *seed >> 8;
+}
+
+static void alloc_mesh(cw_mesh *mesh, size_t vertices, size_t triangles)
+{
+    *mesh = (cw_mesh){.vertex_count = vertices, .triangle_count = triangles};
+    mesh->positions = calloc(vertices, 3 * sizeof *mesh->positions);
+    mesh->triangles = calloc(triangles, 3 * sizeof *mesh->triangles);
+    assert_true(mesh->positions && mesh->triangles);
+}
+
+/* Triangles that share nothing but, often, places: small whole coordinates times a scale. */
+static void scatter(cw_mesh *mesh, size_t count, uint32_t size, float scale, uint32_t seed)
+{
+    alloc_mesh(mesh, 3 * count, count);
+    for (size_t i = 0; i < 9 * count; i++)
+        mesh->positions[i] = scale * (float)(next(&seed) % size);
+    for (uint32_t i = 0; i < 3 * count; i++)
+        mesh->triangles[i] = i;
+}
+
+/* A sheet of n x n vertices at whole coordinates, crumpled. */
+static void crumple(cw_mesh *mesh, uint32_t n, uint32_t size, uint32_t seed)
+{
+    alloc_mesh(mesh, n * n, 2 * (n - 1) * (n - 1));
+    uint32_t *t = mesh->triangles;
+    for (uint32_t v = 0; v < n * n; v++) {
+        const uint32_t base[3] = {v % n, v / n, 0};
+        for (int a = 0; a < 3; a++)
+            mesh->positions[3 * v + (uint32_t)a] = (float)(base[a] + next(&seed) % size);
+    }
+    for (uint32_t j = 0; j + 1 < n; j++)
+        for (uint32_t i = 0; i + 1 < n; i++, t += 6) {
+            const uint32_t v = j * n + i;
+            const uint32_t six[6] = {v, v + 1, v + n + 1, v, v + n + 1, v + n};
+            memcpy(t, six, sizeof six);
+        }
+}
+
+static cw_crossings find(const cw_mesh *mesh, int threads)
+{
+    cw_crossings x;
+    cw_error err = {0};
+    assert_ok(cw_self_intersections(mesh, &(cw_crossings_desc){.threads = threads}, &x, &err),
+              err);
+    return x;
+}
+
+/* Returns how many pairs there are. */
+static size_t compare_with_cgal(cw_mesh *mesh, int round)
+{
+    cw_cgal_facts facts;
+    cw_error err = {0};
+    cw_crossings x = find(mesh, 0);
+    assert_ok(cw_quality_ask_cgal(mesh, CW_WELD_NONE, &facts, &err), err);
+    assert_true(facts.is_polygon_mesh);
+    if (x.count != facts.self_intersections)
+        fail_msg("round %d: %zu pairs, CGAL has %zu", round, x.count, facts.self_intersections);
+    const size_t count = x.count;
+    cw_crossings_free(&x);
+    cw_mesh_free(mesh);
+    return count;
+}
+
+static void cgal_counts_the_same_pairs(void **state)
+{
+    (void)state;
+    size_t found = 0;
+    if (!cw_quality_has_cgal())
+        skip();
+    for (int round = 0; round < 60; round++) {
+        cw_mesh mesh;
+        const float scales[4] = {1, 0.1f, 1e-20f, 1e15f};
+        scatter(&mesh, 300, 3 + (uint32_t)round % 20, scales[round % 4], (uint32_t)round);
+        found += compare_with_cgal(&mesh, round);
+        crumple(&mesh, 24, 2 + (uint32_t)round % 4, (uint32_t)round);
+        found += compare_with_cgal(&mesh, round);
+    }
+    assert_true(found > 100000);
+}
+
+static void an_extracted_surface_has_none(void **state)
+{
+    (void)state;
+    cw_volume volume = test_sample(CW_FIELD_GYROID, 40, CW_F32);
+    cw_mesh mesh = test_extract(&volume, &(cw_extract_desc){.isovalue = 0}, NULL);
+    cw_crossings x = find(&mesh, 0);
+    assert_int_equal(x.count, 0);
+    assert_false(x.undecided);
+    cw_volume_free(&volume);
+    cw_mesh_free(&mesh);
+}
+
+static void threads_change_nothing(void **state)
+{
+    (void)state;
+    cw_mesh mesh;
+    scatter(&mesh, 3000, 60, 1, 7);
+    cw_crossings one = find(&mesh, 1), three = find(&mesh, 3);
+    assert_true(one.count > 100);
+    assert_int_equal(one.count, three.count);
+    assert_memory_equal(one.pairs, three.pairs, 2 * one.count * sizeof *one.pairs);
+    for (size_t n = 0; n < one.count; n++) {
+        const uint32_t *p = one.pairs + 2 * n;
+        assert_true(p[0] < p[1] && p[1] < mesh.triangle_count);
+        assert_true(n == 0 || p[-2] < p[0] || (p[-2] == p[0] && p[-1] < p[1]));
+    }
+    cw_crossings_free(&one);
+    cw_crossings_free(&three);
+    cw_mesh_free(&mesh);
+}
+
+/* Long slivers side by side along a diagonal: every box meets every other one. */
+static void a_heap_of_slivers_is_given_up_in_time(void **state)
+{
+    (void)state;
+    cw_mesh mesh;
+    const uint32_t count = 10000;
+    alloc_mesh(&mesh, 3 * count, count);
+    for (uint32_t t = 0; t < count; t++) {
+        const float at = (float)t * 1e-6f;
+        const float corners[9] = {at, 0, 0, at + 1, 1, 1, at + 1, 1.001f, 1};
+        memcpy(mesh.positions + 9 * t, corners, sizeof corners);
+        for (uint32_t c = 0; c < 3; c++)
+            mesh.triangles[3 * t + c] = 3 * t + c;
+    }
+    cw_crossings x = find(&mesh, 0);
+    assert_true(x.undecided);
+    cw_crossings_free(&x);
+    cw_mesh_free(&mesh);
+}
+
+static void triangles_without_area_and_empty_meshes_have_none(void **state)
+{
+    (void)state;
+    cw_mesh mesh = {0};
+    cw_crossings x = find(&mesh, 0);
+    assert_int_equal(x.count, 0);
+    cw_crossings_free(&x);
+    alloc_mesh(&mesh, 3, 1000); /* all in one point */
+    x = find(&mesh, 0);
+    assert_int_equal(x.count, 0);
+    cw_crossings_free(&x);
+    cw_mesh_free(&mesh);
+}
+
+static int sign_of(long long x)
+{
+    return (x > 0) - (x < 0);
+}
+
+/* Whole numbers up to 2^20 have exact determinants in 64 bits; adding one far away point's
+ * multiples makes near ties. */
+static void signs_are_exact(void **state)
+{
+    (void)state;
+    uint32_t seed = 1;
+    size_t ties = 0;
+    for (int round = 0; round < 200000; round++) {
+        long long p[4][3], u[3][3];
+        float f[4][3];
+        const uint32_t range = round % 2 ? 1u << 20 : 4;
+        for (int n = 0; n < 4; n++)
+            for (int a = 0; a < 3; a++)
+                p[n][a] = next(&seed) % range;
+        if (round % 4 == 1) /* nearly in the plane of the others */
+            for (int a = 0; a < 3; a++)
+                p[3][a] = (p[1][a] + p[2][a]) / 2 + next(&seed) % 2;
+        for (int n = 0; n < 4; n++)
+            for (int a = 0; a < 3; a++) {
+                f[n][a] = (float)p[n][a];
+                if (n)
+                    u[n - 1][a] = p[n][a] - p[0][a];
+            }
+        const long long det = u[0][0] * (u[1][1] * u[2][2] - u[1][2] * u[2][1]) +
+                              u[0][1] * (u[1][2] * u[2][0] - u[1][0] * u[2][2]) +
+                              u[0][2] * (u[1][0] * u[2][1] - u[1][1] * u[2][0]);
+        ties += det == 0;
+        assert_int_equal(cwi_orient3d(f[0], f[1], f[2], f[3]), sign_of(det));
+        assert_int_equal(cwi_orient3d(f[1], f[0], f[2], f[3]), -sign_of(det));
+        assert_int_equal(cwi_orient2d(f[0], f[1], f[2], 2),
+                         sign_of(u[0][0] * u[1][1] - u[0][1] * u[1][0]));
+    }
+    assert_true(ties > 1000);
+}
+
+/* Where doubles lose all of it: a step of the smallest float beside the largest ones. */
+static void signs_are_exact_at_the_limits(void **state)
+{
+    (void)state;
+    const float tiny = 1e-45f, huge = 3e38f;
+    const float a[3] = {0, 0, 0}, b[3] = {huge, huge, 0}, c[3] = {-huge, -huge, tiny};
+    const float d[3] = {huge, huge, tiny}, e[3] = {huge, 0, 0};
+    assert_int_equal(cwi_orient3d(a, b, c, d), 0);
+    assert_int_equal(cwi_orient3d(a, b, e, c), -1);
+    assert_int_equal(cwi_orient3d(a, e, b, c), 1);
+    assert_int_equal(cwi_seen_along(a, b, c), 0);
+    assert_int_equal(cwi_seen_along(a, a, b), -1);
+    const float f[3] = {tiny, 0, 0}, g[3] = {0, tiny, 0}, h[3] = {0, 0, tiny};
+    assert_int_equal(cwi_orient3d(a, f, g, h), 1);
+}
+
+static void memory_running_out_and_cancelling_are_errors(void **state)
+{
+    (void)state;
+    cw_mesh mesh;
+    cw_crossings x;
+    cw_error err = {0};
+    int polls = 0;
+    scatter(&mesh, 100, 4, 1, 3);
+    for (long n = 0;; n++) {
+        cwi_alloc_fail_after(n);
+        const cw_status st = cw_self_intersections(
+            &mesh, &(cw_crossings_desc){.weld = CW_WELD_WORLD, .threads = 1}, &x, &err);
+        const bool failed = cwi_alloc_fail_after(-1);
+        assert_int_equal(st, failed ? CW_ERR_NO_MEMORY : CW_OK);
+        cw_crossings_free(&x);
+        if (!failed)
+            break;
+    }
+    const cw_crossings_desc stop = {.progress = {test_stop_after, &polls}};
+    assert_fails(cw_self_intersections(&mesh, &stop, &x, &err), CW_ERR_CANCELLED, "", err);
+    mesh.triangles[4] = 300;
+    assert_fails(cw_self_intersections(&mesh, NULL, &x, &err), CW_ERR_ARGUMENT,
+                 "triangle 1 names vertex 300 of 300", err);
+    cw_mesh_free(&mesh);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(cgal_counts_the_same_pairs),
+        cmocka_unit_test(an_extracted_surface_has_none),
+        cmocka_unit_test(threads_change_nothing),
+        cmocka_unit_test(a_heap_of_slivers_is_given_up_in_time),
+        cmocka_unit_test(triangles_without_area_and_empty_meshes_have_none),
+        cmocka_unit_test(signs_are_exact),
+        cmocka_unit_test(signs_are_exact_at_the_limits),
+        cmocka_unit_test(memory_running_out_and_cancelling_are_errors),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
