@@ -80,7 +80,7 @@ static cw_status read_whole(const ply *p, cwi_scan *s, const cwi_ply_element *e,
 static cw_status read_list(ply *p, cwi_scan *s, const cwi_ply_element *e,
                            const cwi_ply_property *property, cw_mesh_file *said, cw_error *err)
 {
-    int64_t count = 0, corner;
+    int64_t count = 0, corner = 0;
     double number;
     const bool is_face = property->role == CWI_PLY_INDICES;
     cw_status st = read_whole(p, s, e, property->count_type, &count, err);
