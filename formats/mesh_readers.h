@@ -27,11 +27,15 @@ typedef bool cwi_mesh_sniffer(const unsigned char *head, size_t size, uint64_t f
 cwi_mesh_sniffer cwi_stl_sniff;
 cwi_mesh_sniffer cwi_ply_sniff;
 cwi_mesh_sniffer cwi_off_sniff;
+cwi_mesh_sniffer cwi_glb_sniff;
+cwi_mesh_sniffer cwi_gltf_sniff;
 
 cwi_mesh_reader cwi_stl_read;
 cwi_mesh_reader cwi_ply_read;
 cwi_mesh_reader cwi_obj_read;
 cwi_mesh_reader cwi_off_read;
+cwi_mesh_reader cwi_glb_read;
+cwi_mesh_reader cwi_gltf_read;
 
 /* Makes an array (array is the address of its pointer) hold at least count elements of a size;
  * what is new is not initialised. room is how many it holds.
