@@ -14,6 +14,19 @@ extern "C" {
  * Returns false when memory is out; takes 8 to 16 bytes a point. */
 CW_API bool cwi_weld(const float *points, size_t count, uint32_t *map);
 
+/* Points met one after another, of which each place is kept once. Zeroed, it has none. */
+typedef struct cwi_welder {
+    float *points; /* count x 3, the first met at each place */
+    size_t count, room;
+    uint32_t *table; /* of slots, a power of two: point + 1, or 0 */
+    size_t slots;
+} cwi_welder;
+
+/* Sets *index to that of a finite point, which is new when its place was not met before.
+ * Returns false when memory is out, or after 2^32 - 2 points. */
+CW_API bool cwi_welder_add(cwi_welder *w, const float point[3], uint32_t *index);
+CW_API void cwi_welder_free(cwi_welder *w);
+
 #ifdef __cplusplus
 }
 #endif

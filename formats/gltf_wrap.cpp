@@ -1,7 +1,9 @@
-// The only file that knows tinygltf: a mesh becomes a model of one scene, one node, one mesh.
+// The only file that knows tinygltf. A mesh becomes a model of one scene, one node, one mesh;
+// and JSON becomes plain numbers.
 #include "formats/gltf_wrap.h"
 
 #include "core/guard.hpp"
+#include "core/memory.h"
 
 #include <algorithm>
 #include <cmath>
@@ -311,6 +313,252 @@ cw_status write_scene(const cw_mesh *mesh, cwi_mesh_output *out, bool binary,
     });
 }
 
+// --- JSON to numbers ----------------------------------------------------------------------
+
+// Arrays go to C: ours frees them, even those of a scene that was not finished.
+template <typename T> void allocate(T *&array, size_t &count, size_t wanted)
+{
+    array = static_cast<T *>(cwi_alloc_zeroed(wanted, sizeof(T)));
+    if (!array)
+        throw std::bad_alloc();
+    count = wanted;
+}
+
+cw_status fail_model(cw_error *err, std::string words)
+{
+    std::replace(words.begin(), words.end(), '\n', ' ');
+    return cw_fail(err, CW_ERR_FORMAT, "the glTF is not valid: %.400s", words.c_str());
+}
+
+// A member of what may be no object.
+const tinygltf::Value &member(const tinygltf::Value &from, const char *key)
+{
+    static const tinygltf::Value none;
+    return from.IsObject() ? from.Get(key) : none;
+}
+
+// What cwi_gltf_blind() left of "buffers": a list of objects, in "extras". Their 'byteLength'
+// is not looked at: what counts is how long they are.
+void copy_buffers(const tinygltf::Value &list, cwi_gltf_scene &scene)
+{
+    allocate(scene.buffers, scene.buffer_count, list.IsArray() ? list.ArrayLen() : 0);
+    for (size_t i = 0; i < scene.buffer_count; i++) {
+        const tinygltf::Value &uri = member(list.Get(int(i)), "uri");
+        if (!uri.IsString())
+            continue;
+        scene.buffers[i].uri = cwi_strdup(uri.Get<std::string>().c_str());
+        if (!scene.buffers[i].uri)
+            throw std::bad_alloc();
+    }
+}
+
+void copy_accessors(const tinygltf::Model &model, cwi_gltf_scene &scene)
+{
+    allocate(scene.views, scene.view_count, model.bufferViews.size());
+    for (size_t i = 0; i < scene.view_count; i++) {
+        const tinygltf::BufferView &from = model.bufferViews[i];
+        scene.views[i] = {from.buffer, from.byteOffset, from.byteLength, from.byteStride};
+    }
+    allocate(scene.accessors, scene.accessor_count, model.accessors.size());
+    for (size_t i = 0; i < scene.accessor_count; i++) {
+        const tinygltf::Accessor &from = model.accessors[i];
+        const int numbers = from.type == TINYGLTF_TYPE_SCALAR ? 1
+                            : from.type >= TINYGLTF_TYPE_VEC2 && from.type <= TINYGLTF_TYPE_VEC4
+                                ? from.type
+                                : 0;
+        scene.accessors[i] = {from.bufferView,     from.byteOffset, from.count,
+                              from.componentType,  numbers,         from.normalized,
+                              from.sparse.isSparse};
+    }
+}
+
+int find_attribute(const tinygltf::Primitive &primitive, const char *name)
+{
+    const auto found = primitive.attributes.find(name);
+    return found == primitive.attributes.end() ? -1 : found->second;
+}
+
+void copy_meshes(const tinygltf::Model &model, cwi_gltf_scene &scene)
+{
+    size_t count = 0;
+    allocate(scene.meshes, scene.mesh_count, model.meshes.size());
+    for (size_t i = 0; i < scene.mesh_count; i++) {
+        scene.meshes[i] = {count, count + model.meshes[i].primitives.size()};
+        count = scene.meshes[i].end;
+    }
+    allocate(scene.primitives, scene.primitive_count, count);
+    cwi_gltf_primitive *to = scene.primitives;
+    for (const tinygltf::Mesh &mesh : model.meshes)
+        for (const tinygltf::Primitive &from : mesh.primitives)
+            *to++ = {from.mode < 0 ? TINYGLTF_MODE_TRIANGLES : from.mode, from.indices,
+                     find_attribute(from, "POSITION"), find_attribute(from, "NORMAL"),
+                     find_attribute(from, "COLOR_0")};
+}
+
+// The numbers of an array of that many; false, and the old ones left, for anything else.
+bool copy_numbers(const tinygltf::Value &from, double *to, size_t count)
+{
+    if (!from.IsArray() || from.ArrayLen() != count)
+        return false;
+    for (size_t i = 0; i < count; i++)
+        if (!from.Get(int(i)).IsNumber() ||
+            !std::isfinite(from.Get(int(i)).GetNumberAsDouble()))
+            return false;
+    for (size_t i = 0; i < count; i++)
+        to[i] = from.Get(int(i)).GetNumberAsDouble();
+    return true;
+}
+
+// What make_extras() wrote.
+void copy_extras(const tinygltf::Value &extras, cwi_gltf_node &node)
+{
+    const tinygltf::Value &frame = member(extras, "frame"), &unit = member(extras, "unit");
+    node.lps = frame.IsString() && frame.Get<std::string>() == "LPS" && unit.IsString() &&
+               unit.Get<std::string>() == "mm";
+    node.has_origin = node.lps && copy_numbers(member(extras, "origin"), node.origin, 3);
+    node.has_affine = node.lps && copy_numbers(member(extras, "affine"), node.affine[0], 12);
+}
+
+// Translation times rotation times scale. The quaternion need not have unit length.
+void set_matrix(const tinygltf::Node &from, double to[3][4])
+{
+    const std::vector<double> &m = from.matrix, &t = from.translation, &s = from.scale;
+    const std::vector<double> q =
+        from.rotation.empty() ? std::vector<double>{0, 0, 0, 1} : from.rotation;
+    const double f = 2 / (q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3]);
+    const double rotation[3][3] = {
+        {1 - f * (q[1] * q[1] + q[2] * q[2]), f * (q[0] * q[1] - q[2] * q[3]),
+         f * (q[0] * q[2] + q[1] * q[3])},
+        {f * (q[0] * q[1] + q[2] * q[3]), 1 - f * (q[0] * q[0] + q[2] * q[2]),
+         f * (q[1] * q[2] - q[0] * q[3])},
+        {f * (q[0] * q[2] - q[1] * q[3]), f * (q[1] * q[2] + q[0] * q[3]),
+         1 - f * (q[0] * q[0] + q[1] * q[1])}};
+    for (size_t r = 0; r < 3; r++)
+        for (size_t c = 0; c < 4; c++)
+            to[r][c] = !m.empty()  ? m[4 * c + r]
+                       : c < 3     ? rotation[r][c] * (s.empty() ? 1 : s[c])
+                       : t.empty() ? 0
+                                   : t[r];
+}
+
+bool has_length(const std::vector<double> &numbers, size_t length)
+{
+    return numbers.empty() || numbers.size() == length;
+}
+
+cw_status copy_node(const tinygltf::Node &from, size_t index, cwi_gltf_node &to, cw_error *err)
+{
+    const bool is_plain = has_length(from.matrix, 16) && has_length(from.translation, 3) &&
+                          has_length(from.rotation, 4) && has_length(from.scale, 3);
+    if (!is_plain)
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "'matrix', 'translation', 'rotation' or 'scale' of node %zu has not as "
+                       "many numbers as it must",
+                       index);
+    if (!from.matrix.empty() && (from.matrix[3] != 0 || from.matrix[7] != 0 ||
+                                 from.matrix[11] != 0 || from.matrix[15] != 1))
+        return cw_fail(err, CW_ERR_FORMAT, "'matrix' of node %zu is not affine", index);
+    to.mesh = from.mesh;
+    set_matrix(from, to.local);
+    copy_extras(from.extras, to);
+    return CW_OK;
+}
+
+cw_status copy_nodes(const tinygltf::Model &model, cwi_gltf_scene &scene, cw_error *err)
+{
+    size_t count = 0;
+    allocate(scene.nodes, scene.node_count, model.nodes.size());
+    for (size_t i = 0; i < scene.node_count; i++) {
+        const cw_status st = copy_node(model.nodes[i], i, scene.nodes[i], err);
+        if (st != CW_OK)
+            return st;
+        scene.nodes[i].first = count;
+        count += model.nodes[i].children.size();
+        scene.nodes[i].end = count;
+    }
+    allocate(scene.children, scene.child_count, count);
+    int *to = scene.children;
+    for (const tinygltf::Node &node : model.nodes)
+        to = std::copy(node.children.begin(), node.children.end(), to);
+    return CW_OK;
+}
+
+// The scene to show; without any scene, every node that is no other's child.
+cw_status copy_roots(const tinygltf::Model &model, cwi_gltf_scene &scene, cw_error *err)
+{
+    std::vector<int> roots;
+    const int shown = std::max(model.defaultScene, 0);
+    if (size_t(shown) < model.scenes.size()) {
+        roots = model.scenes[size_t(shown)].nodes;
+    } else if (model.defaultScene >= 0 || !model.scenes.empty()) {
+        return cw_fail(err, CW_ERR_FORMAT, "'scene' is %d; there are %zu scenes", shown,
+                       model.scenes.size());
+    } else {
+        std::vector<bool> is_child(model.nodes.size());
+        for (size_t i = 0; i < scene.child_count; i++)
+            if (scene.children[i] >= 0 && size_t(scene.children[i]) < is_child.size())
+                is_child[size_t(scene.children[i])] = true;
+        for (size_t i = 0; i < is_child.size(); i++)
+            if (!is_child[i])
+                roots.push_back(int(i));
+    }
+    allocate(scene.roots, scene.root_count, roots.size());
+    std::copy(roots.begin(), roots.end(), scene.roots);
+    return CW_OK;
+}
+
+// Extensions that change how a scene looks, but not where its triangles are, do no harm.
+cw_status check_extensions(const tinygltf::Model &model, cw_error *err)
+{
+    const std::vector<std::string> harmless = {"KHR_mesh_quantization", "KHR_texture_transform",
+                                               "KHR_texture_basisu", "KHR_lights_punctual",
+                                               "EXT_texture_webp"};
+    for (const std::string &name : model.extensionsRequired)
+        if (name.compare(0, 14, "KHR_materials_") != 0 &&
+            std::find(harmless.begin(), harmless.end(), name) == harmless.end())
+            return cw_fail(err, CW_ERR_UNSUPPORTED,
+                           "the file requires the extension '%.100s', which is not read",
+                           name.c_str());
+    return CW_OK;
+}
+
+bool ignore_image(tinygltf::Image *, int, std::string *, std::string *, int, int,
+                  const unsigned char *, int, void *)
+{
+    return true;
+}
+
+cw_status parse_scene(const char *json, size_t size, cwi_gltf_scene *scene,
+                      cw_error *err) noexcept
+{
+    return cw::guard(err, "tinygltf", [&] {
+        tinygltf::TinyGLTF loader;
+        tinygltf::Model model;
+        std::string words, warning;
+        loader.SetImageLoader(ignore_image, nullptr);
+        loader.SetFsCallbacks({});   // it opens no file
+        model.asset.version.clear(); // not what it takes for granted
+        const bool done =
+            loader.LoadASCIIFromString(&model, &words, &warning, json, unsigned(size), "", 0);
+        if (!done || !words.empty()) // what is broken it may leave out, and go on
+            return fail_model(err, words);
+        if (model.asset.version.compare(0, 2, "2.") != 0)
+            return cw_fail(err, CW_ERR_FORMAT, "'asset.version' is '%.20s'; 2.0 was expected",
+                           model.asset.version.c_str());
+        cw_status st = check_extensions(model, err);
+        if (st == CW_OK)
+            st = copy_nodes(model, *scene, err);
+        if (st == CW_OK)
+            st = copy_roots(model, *scene, err);
+        if (st != CW_OK)
+            return st;
+        copy_buffers(model.extras, *scene);
+        copy_accessors(model, *scene);
+        copy_meshes(model, *scene);
+        return CW_OK;
+    });
+}
+
 } // namespace
 
-extern "C" const cwi_gltf_functions cwi_module_gltf = {write_scene};
+extern "C" const cwi_gltf_functions cwi_module_gltf = {write_scene, parse_scene};

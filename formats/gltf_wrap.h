@@ -2,6 +2,7 @@
 #ifndef FORMATS_GLTF_WRAP_H
 #define FORMATS_GLTF_WRAP_H
 
+#include "formats/gltf_scene.h"
 #include "formats/mesh_writers.h"
 
 #ifdef __cplusplus
@@ -12,7 +13,16 @@ typedef struct cwi_gltf_functions {
     /* Writes the mesh as one node of one scene: GLB, or JSON with its buffer embedded.
      * Returns CW_ERR_LIMIT when the buffer cannot be addressed with 32 bits. */
     cw_status (*write)(const cw_mesh *mesh, cwi_mesh_output *out, bool binary, cw_error *err);
+
+    /* Fills a zeroed scene from JSON that cwi_gltf_blind() has seen; no buffer is touched. The
+     * caller frees the scene in any case.
+     * Returns CW_ERR_FORMAT for JSON that is broken or not glTF, CW_ERR_UNSUPPORTED, with its
+     * name, for an extension that the file requires. */
+    cw_status (*parse)(const char *json, size_t size, cwi_gltf_scene *scene, cw_error *err);
 } cwi_gltf_functions;
+
+/* Loads the module. CW_ERR_UNSUPPORTED: not in this build. */
+cw_status cwi_gltf_functions_load(const cwi_gltf_functions **functions, cw_error *err);
 
 extern CW_API const cwi_gltf_functions cwi_module_gltf;
 

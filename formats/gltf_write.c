@@ -3,7 +3,7 @@
 
 #include "core/module.h"
 
-static cw_status load(const cwi_gltf_functions **functions, cw_error *err)
+cw_status cwi_gltf_functions_load(const cwi_gltf_functions **functions, cw_error *err)
 {
     const void *module;
     cw_status st = cwi_module_load("gltf", "CUBEWRIGHT_GLTF", "libtinygltf-dev", &module, err);
@@ -15,14 +15,14 @@ static cw_status load(const cwi_gltf_functions **functions, cw_error *err)
 cw_status cwi_gltf_prepare(cw_error *err)
 {
     const cwi_gltf_functions *functions;
-    return load(&functions, err);
+    return cwi_gltf_functions_load(&functions, err);
 }
 
 static cw_status write_scene(const cw_mesh *mesh, cwi_mesh_output *out, bool binary,
                              cw_error *err)
 {
     const cwi_gltf_functions *functions;
-    cw_status st = load(&functions, err);
+    cw_status st = cwi_gltf_functions_load(&functions, err);
     return st == CW_OK ? functions->write(mesh, out, binary, err) : st;
 }
 

@@ -1,4 +1,4 @@
-/* Files: bytes to volume, volume and mesh to bytes. */
+/* Files: bytes to volume or mesh, volume and mesh to bytes. */
 #ifndef CUBEWRIGHT_FORMATS_H
 #define CUBEWRIGHT_FORMATS_H
 
@@ -51,6 +51,56 @@ CW_API cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_v
  * Type is one of the eight with an optional le or be; le when left out.
  * Returns CW_ERR_ARGUMENT naming the key that is wrong. */
 CW_API cw_status cw_raw_layout_parse(const char *text, cw_raw_layout *layout, cw_error *err);
+
+/* How to read a mesh. Zero-initialise it; a zero field means the default named beside it. */
+typedef struct cw_mesh_read_desc {
+    const char *reader;     /* a name of cw_formats(); default: by content, then extension */
+    bool allow_external;    /* buffers outside the .gltf file's folder; default: refused */
+    uint64_t max_triangles; /* default 2^32 - 1 */
+    uint64_t max_bytes;     /* of the arrays that a mesh takes while read; default: no limit */
+    cw_progress progress;   /* default: none */
+} cw_mesh_read_desc;
+
+/* What a mesh file says of itself, and what was made of it. */
+typedef struct cw_mesh_file {
+    const char *format; /* the reader's name (static) */
+    unsigned known;     /* cw_known flags; what is not known was taken as LPS millimetres */
+    bool local;         /* coordinates were relative to an origin that the file names */
+    size_t parts;       /* glTF: the primitives that were merged; else 1 */
+    size_t polygons;    /* faces of more than three corners, cut into fans of triangles */
+    size_t skipped;     /* points, lines and faces of fewer than three corners: left out */
+} cw_mesh_file;
+
+/* Reads a mesh: all parts of the file, merged, in LPS millimetres.
+ *
+ * Vertices keep their numbers, also those that no triangle names, and positions their bits
+ * where the file has single precision. STL shares nothing: its corners at equal coordinates
+ * become one vertex, and its facet normals are ignored. Triangles without area are kept. A
+ * polygon becomes a fan around its first corner, which is right when it is convex. Normals are
+ * kept when every vertex has one that is finite, and OBJ names no two for it. A file without
+ * triangles gives a mesh without any, and CW_OK.
+ *
+ * The origin is the one that the file names, if it is one of ours. Else it is 0, unless places
+ * are more than ten times the mesh's size from zero and more exact than single precision: then
+ * it is the middle of the mesh's box.
+ *
+ * glTF is in metres, +Y up: its scene is turned to LPS millimetres, (x, y, z) to (1000 x,
+ * -1000 z, 1000 y). Nodes place their meshes as often as they say; a mirrored one has its
+ * winding turned round, so that triangles stay counter-clockwise from outside. Materials,
+ * skins, morph targets and animations are ignored, images never looked at.
+ *
+ * mesh     filled on success, emptied on failure; free it with cw_mesh_free()
+ * file     filled on success; may be NULL
+ * Returns  CW_ERR_IO           missing, empty, not a regular file, unreadable
+ *          CW_ERR_FORMAT       not understood, damaged or truncated; an index beyond the
+ *                              vertices, a coordinate that is not finite; names the place
+ *          CW_ERR_UNSAFE       a .gltf file names a buffer outside its own folder
+ *          CW_ERR_UNSUPPORTED  glTF is not in this build, or the file needs an extension of
+ *                              it that is not read
+ *          CW_ERR_LIMIT        more triangles, vertices or bytes than allowed
+ *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED; CW_ERR_ARGUMENT: no such reader */
+CW_API cw_status cw_mesh_read(const char *path, const cw_mesh_read_desc *desc, cw_mesh *mesh,
+                              cw_mesh_file *file, cw_error *err);
 
 /* How to write a volume or mesh. Zero-initialise it. */
 typedef struct cw_write_desc {

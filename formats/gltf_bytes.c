@@ -1,0 +1,294 @@
+/* The bytes that a glTF file keeps its numbers in: a chunk, text, or a file of their own. */
+#include "core/memory.h"
+#include "core/status.h"
+#include "formats/gltf_scene.h"
+
+#include <stdio.h>
+#include <string.h>
+#include <strings.h>
+#include <unistd.h>
+
+/* Where a buffer's bytes are. */
+typedef struct place {
+    const char *digits; /* base64; NULL: in a file */
+    int fd, own_fd;     /* own_fd: to be closed, or -1 */
+    uint64_t start;     /* in the file */
+    uint64_t held;      /* bytes there are in truth */
+} place;
+
+/* --- data: URIs -------------------------------------------------------------------------- */
+
+static bool is_data(const char *uri)
+{
+    return strncasecmp(uri, "data:", 5) == 0;
+}
+
+static int sextet(char c)
+{
+    if (c >= 'A' && c <= 'Z')
+        return c - 'A';
+    if (c >= 'a' && c <= 'z')
+        return c - 'a' + 26;
+    if (c >= '0' && c <= '9')
+        return c - '0' + 52;
+    return c == '+' || c == '-' ? 62 : c == '/' || c == '_' ? 63 : -1;
+}
+
+/* Bytes from offset on; any place can be decoded alone, as 4 digits make 3 bytes. */
+static cw_status decode_base64(const char *digits, uint64_t offset, uint64_t size,
+                               unsigned char *to, cw_error *err)
+{
+    for (uint64_t i = offset; i < offset + size; i++) {
+        const char *at = digits + i / 3 * 4 + i % 3;
+        const int high = sextet(at[0]), low = sextet(at[1]);
+        const int shift = 2 * (int)(i % 3);
+        if (high < 0 || low < 0)
+            return cw_fail(err, CW_ERR_FORMAT, "byte %llu of a data: URI is not base64",
+                           (unsigned long long)i);
+        to[i - offset] = (unsigned char)(high << (2 + shift) | low >> (4 - shift));
+    }
+    return CW_OK;
+}
+
+/* The digits of a data: URI, and how many bytes they stand for. */
+static cw_status find_digits(const char *uri, uint64_t buffer, place *p, cw_error *err)
+{
+    static const char marker[] = ";base64,";
+    const char *digits = strstr(uri, marker);
+    if (!digits)
+        return cw_fail(err, CW_ERR_FORMAT, "the URI of buffer %llu is not base64",
+                       (unsigned long long)buffer);
+    p->digits = digits + strlen(marker);
+    size_t length = strlen(p->digits);
+    while (length && p->digits[length - 1] == '=')
+        length--;
+    p->held = length / 4 * 3 + (length % 4 ? length % 4 - 1 : 0);
+    return CW_OK;
+}
+
+/* --- files ------------------------------------------------------------------------------- */
+
+static cw_status read_exactly(int fd, uint64_t offset, uint64_t size, unsigned char *to,
+                              cw_error *err)
+{
+    size_t got;
+    cw_status st = cwi_input_read_at(fd, offset, to, (size_t)size, &got, err);
+    if (st == CW_OK && got < size)
+        return cw_fail(err, CW_ERR_IO, "a file became shorter while it was read");
+    return st;
+}
+
+static int hex_digit(char c)
+{
+    return c >= '0' && c <= '9'                 ? c - '0'
+           : (c | 32) >= 'a' && (c | 32) <= 'f' ? (c | 32) - 'a' + 10
+                                                : -1;
+}
+
+/* "my%20mesh.bin" to "my mesh.bin", before the name is checked. */
+static cw_status decode_name(const char *uri, char name[1024], cw_error *err)
+{
+    size_t used = 0;
+    for (const char *s = uri; *s; s++) {
+        const int high = *s == '%' ? hex_digit(s[1]) : -1;
+        const int low = high >= 0 ? hex_digit(s[2]) : -1;
+        const char c = low >= 0 ? (char)(16 * high + low) : *s;
+        s += low >= 0 ? 2 : 0;
+        if (used == 1023 || !c)
+            return cw_fail(err, CW_ERR_UNSAFE,
+                           "a buffer's name of more than 1023 bytes, or with a zero in it");
+        name[used++] = c;
+    }
+    name[used] = '\0';
+    return CW_OK;
+}
+
+static cw_status open_file(const cwi_input *in, const char *uri, place *p, cw_error *err)
+{
+    char name[1024];
+    cw_status st = decode_name(uri, name, err);
+    if (st != CW_OK)
+        return st;
+    st = cwi_input_open_side(in, name, &p->own_fd, &p->held, err);
+    p->fd = p->own_fd;
+    return st == CW_OK ? CW_OK : cwi_fail_in(err, st, name);
+}
+
+/* --- ranges ------------------------------------------------------------------------------ */
+
+static bool fits(uint64_t offset, uint64_t size, uint64_t held)
+{
+    return offset <= held && size <= held - offset;
+}
+
+/* Where a buffer's bytes are; to be closed in any case. */
+static cw_status find_place(const cwi_gltf_bytes *from, const cwi_gltf_buffer *b,
+                            uint64_t index, place *p, cw_error *err)
+{
+    *p = (place){.fd = from->in->fd, .own_fd = -1};
+    if (b->uri && is_data(b->uri))
+        return find_digits(b->uri, index, p, err);
+    if (b->uri)
+        return open_file(from->in, b->uri, p, err);
+    if (index > 0)
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "buffer %llu has no 'uri'; only buffer 0 of a .glb file needs none",
+                       (unsigned long long)index);
+    p->start = from->chunk;
+    p->held = from->chunk_size;
+    return CW_OK;
+}
+
+static void close_place(place *p)
+{
+    if (p->own_fd >= 0)
+        close(p->own_fd);
+}
+
+/* What is claimed is there: only then memory is taken for it. */
+static cw_status load_range(const place *p, uint64_t offset, uint64_t size,
+                            unsigned char **bytes, cw_error *err)
+{
+    *bytes = cwi_alloc_array((size_t)size, 1);
+    if (!*bytes)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %llu bytes of a buffer",
+                       (unsigned long long)size);
+    cw_status st = p->digits ? decode_base64(p->digits, offset, size, *bytes, err)
+                             : read_exactly(p->fd, p->start + offset, size, *bytes, err);
+    if (st != CW_OK) {
+        cwi_free(*bytes);
+        *bytes = NULL;
+    }
+    return st;
+}
+
+cw_status cwi_gltf_load(const cwi_gltf_bytes *from, const cwi_gltf_scene *scene,
+                        uint64_t buffer, uint64_t offset, uint64_t size, unsigned char **bytes,
+                        cw_error *err)
+{
+    place p;
+    if (buffer >= scene->buffer_count)
+        return cw_fail(err, CW_ERR_FORMAT, "a bufferView names buffer %lld; there are %zu",
+                       (long long)buffer, scene->buffer_count);
+    const cwi_gltf_buffer *b = &scene->buffers[buffer];
+    cw_status st = find_place(from, b, buffer, &p, err);
+    if (st == CW_OK && !fits(offset, size, p.held))
+        st = cw_fail(err, CW_ERR_FORMAT,
+                     "buffer %llu has %llu bytes; %llu from byte %llu on were expected",
+                     (unsigned long long)buffer, (unsigned long long)p.held,
+                     (unsigned long long)size, (unsigned long long)offset);
+    if (st == CW_OK)
+        st = load_range(&p, offset, size, bytes, err);
+    close_place(&p);
+    return st;
+}
+
+uint64_t cwi_gltf_file_bytes(const cwi_gltf_bytes *from, const cwi_gltf_buffer *buffer)
+{
+    place p = {.own_fd = -1};
+    if (buffer->uri && !is_data(buffer->uri))
+        open_file(from->in, buffer->uri, &p, NULL);
+    close_place(&p);
+    return p.held;
+}
+
+/* --- accessors --------------------------------------------------------------------------- */
+
+static size_t component_size(int component)
+{
+    return component == 5120 || component == 5121   ? 1
+           : component == 5122 || component == 5123 ? 2
+           : component == 5125 || component == 5126 ? 4
+                                                    : 0;
+}
+
+static cw_status check_accessor(const cwi_gltf_scene *scene, int accessor, const char *what,
+                                cw_error *err)
+{
+    if (accessor < 0 || (size_t)accessor >= scene->accessor_count)
+        return cw_fail(err, CW_ERR_FORMAT, "%s names accessor %d; there are %zu", what,
+                       accessor, scene->accessor_count);
+    const cwi_gltf_accessor *a = &scene->accessors[accessor];
+    if (a->sparse)
+        return cw_fail(err, CW_ERR_UNSUPPORTED, "%s is sparse (accessor %d), which is not read",
+                       what, accessor);
+    if (!component_size(a->component) || !a->numbers)
+        return cw_fail(err, CW_ERR_FORMAT, "%s (accessor %d) has a type that is not read", what,
+                       accessor);
+    if (a->view < 0 || (uint64_t)a->view >= scene->view_count)
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "%s (accessor %d) names bufferView %lld; there are %zu", what, accessor,
+                       (long long)a->view, scene->view_count);
+    return CW_OK;
+}
+
+cw_status cwi_gltf_open_numbers(const cwi_gltf_bytes *from, const cwi_gltf_scene *scene,
+                                int accessor, const char *what, cwi_gltf_numbers *numbers,
+                                cw_error *err)
+{
+    cw_status st = check_accessor(scene, accessor, what, err);
+    if (st != CW_OK)
+        return st;
+    const cwi_gltf_accessor *a = &scene->accessors[accessor];
+    const cwi_gltf_view *v = &scene->views[a->view];
+    const uint64_t element = component_size(a->component) * (uint64_t)a->numbers;
+    const uint64_t stride = v->stride ? v->stride : element;
+    uint64_t size = 0, offset;
+    const bool overflow = (a->count && __builtin_mul_overflow(a->count - 1, stride, &size)) ||
+                          __builtin_add_overflow(size, a->count ? element : 0, &size) ||
+                          __builtin_add_overflow(v->offset, a->offset, &offset);
+    if (overflow || stride < element || !fits(a->offset, size, v->bytes))
+        return cw_fail(
+            err, CW_ERR_FORMAT,
+            "%s (accessor %d) has %llu elements, which bufferView %lld of %llu bytes "
+            "has no room for",
+            what, accessor, (unsigned long long)a->count, (long long)a->view,
+            (unsigned long long)v->bytes);
+    *numbers = (cwi_gltf_numbers){.count = (size_t)a->count,
+                                  .stride = (size_t)stride,
+                                  .component = a->component,
+                                  .numbers = a->numbers,
+                                  .normalized = a->normalized};
+    return cwi_gltf_load(from, scene, (uint64_t)v->buffer, offset, size, &numbers->bytes, err);
+}
+
+double cwi_gltf_number(const cwi_gltf_numbers *n, size_t i, int c)
+{
+    const size_t size = component_size(n->component);
+    const unsigned char *b = n->bytes + i * n->stride + (size_t)c * size;
+    uint32_t bits = b[0];
+    float single;
+    double value, largest;
+    if (size >= 2)
+        bits |= (uint32_t)b[1] << 8;
+    if (size == 4)
+        bits |= (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+    switch (n->component) {
+    case 5120:
+        value = (int8_t)bits;
+        largest = INT8_MAX;
+        break;
+    case 5121:
+        value = bits;
+        largest = UINT8_MAX;
+        break;
+    case 5122:
+        value = (int16_t)bits;
+        largest = INT16_MAX;
+        break;
+    case 5123:
+        value = bits;
+        largest = UINT16_MAX;
+        break;
+    case 5125:
+        value = bits;
+        largest = UINT32_MAX;
+        break;
+    default:
+        memcpy(&single, &bits, sizeof single);
+        return (double)single;
+    }
+    if (!n->normalized)
+        return value;
+    return value < -largest ? -1 : value / largest;
+}

@@ -1,0 +1,128 @@
+#include "core/memory.h"
+#include "core/status.h"
+#include "formats/mesh_readers.h"
+#include "formats/readers.h"
+#include "formats/table.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* One row per reader; content decides, then the extension. */
+typedef struct reader {
+    const char *format;
+    cwi_mesh_sniffer *sniff; /* NULL: content cannot tell */
+    cwi_mesh_reader *read;
+} reader;
+
+static const reader readers[] = {
+    {"ply", cwi_ply_sniff, cwi_ply_read},    {"off", cwi_off_sniff, cwi_off_read},
+    {"glb", cwi_glb_sniff, cwi_glb_read},    {"stl", cwi_stl_sniff, cwi_stl_read},
+    {"gltf", cwi_gltf_sniff, cwi_gltf_read}, {"obj", NULL, cwi_obj_read},
+};
+enum { READER_COUNT = sizeof readers / sizeof *readers };
+
+static const char *reader_names(char names[128])
+{
+    size_t used = 0;
+    for (size_t i = 0; i < READER_COUNT; i++)
+        used += (size_t)snprintf(names + used, 128 - used, "%s%s", i ? ", " : "",
+                                 readers[i].format);
+    return names;
+}
+
+static cw_status find_by_name(const char *name, const reader **found, cw_error *err)
+{
+    char names[128];
+    for (size_t i = 0; i < READER_COUNT; i++)
+        if (strcmp(readers[i].format, name) == 0) {
+            *found = &readers[i];
+            return CW_OK;
+        }
+    return cw_fail(err, CW_ERR_ARGUMENT, "there is no mesh reader '%s'; there are %s", name,
+                   reader_names(names));
+}
+
+static const char *extensions_of(const char *name)
+{
+    size_t count;
+    const cw_format *format = cw_formats(&count);
+    while (strcmp(format->name, name) != 0)
+        format++; /* every reader's format has its row */
+    return format->extensions;
+}
+
+static cw_status find_by_file(const cwi_input *in, const reader **found, cw_error *err)
+{
+    unsigned char head[CWI_SNIFF_BYTES];
+    char names[128];
+    size_t size;
+    cw_status st = cwi_input_read_at(in->fd, 0, head, sizeof head, &size, err);
+    if (st != CW_OK)
+        return st;
+    for (size_t i = 0; i < READER_COUNT && !*found; i++)
+        if (readers[i].sniff && readers[i].sniff(head, size, in->size))
+            *found = &readers[i];
+    for (size_t i = 0; i < READER_COUNT && !*found; i++)
+        if (cwi_has_extension(in->path, extensions_of(readers[i].format)))
+            *found = &readers[i];
+    if (*found)
+        return CW_OK;
+    return cw_fail(err, CW_ERR_FORMAT,
+                   "neither content nor extension is of a mesh format that is read (%s)",
+                   reader_names(names));
+}
+
+static cw_mesh_read_desc resolve_desc(const cw_mesh_read_desc *desc)
+{
+    cw_mesh_read_desc d = desc ? *desc : (cw_mesh_read_desc){0};
+    if (d.max_triangles == 0 || d.max_triangles > UINT32_MAX)
+        d.max_triangles = UINT32_MAX;
+    return d;
+}
+
+/* Normals of degenerate triangles are NaN in some files; half a set is of no use. */
+static void drop_broken_normals(cw_mesh *mesh)
+{
+    bool ok = true;
+    for (size_t i = 0; mesh->normals && ok && i < 3 * mesh->vertex_count; i++)
+        ok = isfinite(mesh->normals[i]);
+    if (ok)
+        return;
+    cwi_free(mesh->normals);
+    mesh->normals = NULL;
+}
+
+static cw_status read_open_file(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said,
+                                cw_error *err)
+{
+    const reader *found = NULL;
+    cw_status st = in->desc.reader ? find_by_name(in->desc.reader, &found, err)
+                                   : find_by_file(&in->file, &found, err);
+    if (st != CW_OK)
+        return st;
+    *said = (cw_mesh_file){.format = found->format, .parts = 1};
+    st = found->read(in, mesh, said, err);
+    if (st == CW_OK)
+        drop_broken_normals(mesh);
+    return st;
+}
+
+cw_status cw_mesh_read(const char *path, const cw_mesh_read_desc *desc, cw_mesh *mesh,
+                       cw_mesh_file *file, cw_error *err)
+{
+    cwi_mesh_input in = {.desc = resolve_desc(desc)};
+    cw_mesh_file said = {0};
+    memset(mesh, 0, sizeof *mesh);
+    cw_status st = cwi_input_open(&in.file, path, err);
+    in.file.allow_external = in.desc.allow_external;
+    if (st == CW_OK)
+        st = read_open_file(&in, mesh, &said, err);
+    cwi_input_close(&in.file);
+    if (file)
+        *file = said;
+    if (st == CW_OK)
+        return CW_OK;
+    cw_mesh_free(mesh);
+    return cwi_fail_in(err, st, path);
+}

@@ -1,0 +1,252 @@
+/* STL, binary and text. Facets share nothing; corners at one place become one vertex. */
+#include "core/memory.h"
+#include "core/status.h"
+#include "core/weld.h"
+#include "formats/mesh_readers.h"
+
+#include <float.h>
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { HEADER = 80, START = 84, FACET = 50 };
+
+static uint32_t u32_at(const unsigned char *b)
+{
+    return b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+}
+
+/* Size decides, as binary files may well begin with "solid". Some are longer than their facets,
+ * so that rule is left to files that cannot be text. */
+static bool is_binary(const unsigned char *head, size_t size, uint64_t file_size)
+{
+    return size >= START && file_size == START + (uint64_t)FACET * u32_at(head + HEADER);
+}
+
+static bool is_text(const unsigned char *head, size_t size)
+{
+    size_t i = 0;
+    while (i < size && (head[i] == ' ' || (head[i] >= '\t' && head[i] <= '\r')))
+        i++;
+    return size - i >= 5 && memcmp(head + i, "solid", 5) == 0;
+}
+
+bool cwi_stl_sniff(const unsigned char *head, size_t size, uint64_t file_size)
+{
+    return is_binary(head, size, file_size) || is_text(head, size);
+}
+
+/* The mesh as it grows: our welder's points, and three of them for each facet. */
+typedef struct facets {
+    cwi_mesh_input *in;
+    cwi_welder welder;
+    uint32_t *triangles;
+    size_t count, room;
+} facets;
+
+/* The welder's memory counts when it has grown: its points and its table. */
+static cw_status limit_memory(const facets *f, cw_error *err)
+{
+    const uint64_t limit = f->in->desc.max_bytes;
+    const uint64_t welder = 12 * (uint64_t)f->welder.room + 4 * (uint64_t)f->welder.slots;
+    if (!limit || f->in->bytes + welder <= limit)
+        return CW_OK;
+    return cw_fail(err, CW_ERR_LIMIT, "the mesh needs more memory than the %llu bytes allowed",
+                   (unsigned long long)limit);
+}
+
+static cw_status add_corner(facets *f, int corner, const float point[3], cw_error *err)
+{
+    for (int a = 0; a < 3; a++)
+        if (!isfinite(point[a]))
+            return cw_fail(err, CW_ERR_FORMAT,
+                           "'%c' of corner %d of facet %zu is %g; it must be finite", "xyz"[a],
+                           corner, f -> count, (double)point[a]);
+    const size_t room = f->welder.room;
+    if (!cwi_welder_add(&f->welder, point, f->triangles + 3 * f->count + (size_t)corner))
+        return cw_fail(err, f->welder.count < UINT32_MAX - 1 ? CW_ERR_NO_MEMORY : CW_ERR_LIMIT,
+                       "no memory or number for vertex %zu", f->welder.count);
+    return f->welder.room == room ? CW_OK : limit_memory(f, err);
+}
+
+static cw_status make_room(facets *f, uint64_t count, cw_error *err)
+{
+    cw_status st = cwi_mesh_limit_triangles(f->in, count, err);
+    if (st == CW_OK)
+        st = cwi_mesh_grow(f->in, &f->triangles, &f->room, (size_t)count,
+                           3 * sizeof *f->triangles, err);
+    return st;
+}
+
+/* --- binary ------------------------------------------------------------------------------ */
+
+static cw_status read_binary_facet(facets *f, cwi_scan *s, cw_error *err)
+{
+    const unsigned char *b;
+    cw_status st = cwi_scan_take(s, FACET, "a facet", &b, err);
+    for (int c = 0; c < 3 && st == CW_OK; c++) {
+        float point[3];
+        for (int a = 0; a < 3; a++) {
+            const uint32_t bits = u32_at(b + 12 * (c + 1) + 4 * a);
+            memcpy(&point[a], &bits, sizeof bits);
+        }
+        st = add_corner(f, c, point, err);
+    }
+    f->count += st == CW_OK;
+    return st;
+}
+
+/* The header that our writer leaves: frame and unit, and the origin of a local file. */
+static void read_header(const unsigned char *head, cw_mesh *mesh, cw_mesh_file *said)
+{
+    static const char ours[] = "cubewright, LPS, mm", from[] = " from ";
+    char text[HEADER + 1] = "";
+    memcpy(text, head, HEADER);
+    if (strncmp(text, ours, strlen(ours)) != 0)
+        return;
+    const char *rest = text + strlen(ours);
+    said->local = strncmp(rest, from, strlen(from)) == 0;
+    const bool placed = !said->local || cwi_parse_origin(rest + strlen(from), mesh->origin);
+    said->known = CW_KNOWN_UNIT | (placed ? CW_KNOWN_FRAME : 0u);
+}
+
+static cw_status read_binary(facets *f, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *said,
+                             cw_error *err)
+{
+    const unsigned char *head;
+    cw_status st = cwi_scan_take(s, START, "the header", &head, err);
+    if (st != CW_OK)
+        return st;
+    const uint32_t count = u32_at(head + HEADER);
+    const uint64_t held = cwi_scan_left(s) / FACET;
+    read_header(head, mesh, said);
+    if (count > held)
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "the header counts %u facets; the file has room for %llu", count,
+                       (unsigned long long)held);
+    st = make_room(f, count, err);
+    while (st == CW_OK && f->count < count)
+        st = read_binary_facet(f, s, err);
+    return st;
+}
+
+/* --- text -------------------------------------------------------------------------------- */
+
+/* Whether a word is a keyword, in any case of letters. */
+static bool is_keyword(const cwi_word *word, const char *keyword)
+{
+    size_t i = 0;
+    while (i < word->size && keyword[i] && (word->text[i] | 32) == keyword[i])
+        i++;
+    return i == word->size && !keyword[i];
+}
+
+static cw_status expect(cwi_scan *s, const char *keyword, cw_error *err)
+{
+    cwi_word word;
+    cw_status st = cwi_scan_word(s, &word, err);
+    if (st == CW_OK && !is_keyword(&word, keyword))
+        return cwi_scan_fail(s, &word, "the next word", keyword, err);
+    return st;
+}
+
+static cw_status read_text_corner(facets *f, cwi_scan *s, int corner, cw_error *err)
+{
+    float point[3] = {0};
+    cw_status st = expect(s, "vertex", err);
+    for (int a = 0; a < 3 && st == CW_OK; a++) {
+        double number;
+        st = cwi_scan_double(s, "a coordinate", &number, err);
+        if (st == CW_OK && fabs(number) > (double)FLT_MAX)
+            number = copysign((double)INFINITY, number);
+        point[a] = st == CW_OK ? (float)number : 0;
+    }
+    return st == CW_OK ? add_corner(f, corner, point, err) : st;
+}
+
+/* Behind the word "facet". The normal may be anything, "nan" too. */
+static cw_status read_text_facet(facets *f, cwi_scan *s, cw_error *err)
+{
+    cwi_word word;
+    cw_status st = make_room(f, (uint64_t)f->count + 1, err);
+    if (st == CW_OK)
+        st = expect(s, "normal", err);
+    for (int a = 0; a < 3 && st == CW_OK; a++)
+        st = cwi_scan_word(s, &word, err);
+    if (st == CW_OK)
+        st = expect(s, "outer", err);
+    if (st == CW_OK)
+        st = expect(s, "loop", err);
+    for (int c = 0; c < 3 && st == CW_OK; c++)
+        st = read_text_corner(f, s, c, err);
+    if (st == CW_OK)
+        st = expect(s, "endloop", err);
+    if (st == CW_OK)
+        st = expect(s, "endfacet", err);
+    f->count += st == CW_OK;
+    return st;
+}
+
+static cw_status read_solid(facets *f, cwi_scan *s, cw_error *err)
+{
+    cwi_word word = {0};
+    cw_status st = cwi_scan_end_line(s, err); /* the name may be any words */
+    while (st == CW_OK) {
+        st = cwi_scan_word(s, &word, err);
+        if (st == CW_OK && is_keyword(&word, "facet"))
+            st = read_text_facet(f, s, err);
+        else if (st == CW_OK && is_keyword(&word, "endsolid"))
+            return cwi_scan_end_line(s, err);
+        else if (st == CW_OK)
+            return cwi_scan_fail(s, &word, "the next word", "facet or endsolid", err);
+    }
+    return st;
+}
+
+static cw_status read_text(facets *f, cwi_scan *s, cw_error *err)
+{
+    cwi_word word;
+    cw_status st = cwi_scan_word(s, &word, err);
+    while (st == CW_OK && word.size) {
+        if (!is_keyword(&word, "solid"))
+            return cwi_scan_fail(s, &word, "the next word", "solid", err);
+        st = read_solid(f, s, err);
+        if (st == CW_OK)
+            st = cwi_scan_word(s, &word, err);
+    }
+    return st;
+}
+
+/* --- either ------------------------------------------------------------------------------ */
+
+static cw_status move_arrays(facets *f, cw_mesh *mesh, cw_error *err)
+{
+    mesh->positions = f->welder.points;
+    mesh->vertex_count = f->welder.count;
+    mesh->triangles = f->triangles;
+    mesh->triangle_count = f->count;
+    f->welder.points = NULL;
+    f->triangles = NULL;
+    return cwi_mesh_shrink(mesh, err);
+}
+
+cw_status cwi_stl_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw_error *err)
+{
+    unsigned char head[START];
+    size_t size;
+    facets f = {.in = in};
+    cwi_scan s = {0};
+    cw_status st = cwi_input_read_at(in->file.fd, 0, head, sizeof head, &size, err);
+    if (st == CW_OK)
+        st = cwi_scan_open(&s, &in->file, 0, &in->desc.progress, err);
+    if (st == CW_OK) {
+        const bool text = is_text(head, size) && !is_binary(head, size, in->file.size);
+        st = text ? read_text(&f, &s, err) : read_binary(&f, &s, mesh, said, err);
+    }
+    if (st == CW_OK)
+        st = move_arrays(&f, mesh, err);
+    cwi_scan_close(&s);
+    cwi_welder_free(&f.welder);
+    cwi_free(f.triangles);
+    return st;
+}

@@ -1,0 +1,583 @@
+/* glTF read: scenes by hand in every dialect, and files that mean harm. */
+#include "support/meshes.h"
+
+#include "core/module.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* The bytes behind every scene here: three corners of a right triangle, their indices in bytes,
+ * a strip of four in 16 bits, colours, and numbers that are broken. */
+static const struct {
+    float corners[9];
+    uint8_t bytes[4];
+    uint16_t strip[4];
+    uint8_t colors[12]; /* linear */
+    float square[12];
+    float broken[9];
+    float normals[9];
+    uint8_t beyond[4];
+    int16_t quantized[12]; /* 3 x 3, each with 2 bytes between */
+} bin = {
+    {0, 0, 0, 1, 0, 0, 0, 1, 0},
+    {0, 1, 2, 0},
+    {0, 1, 2, 3},
+    {0, 255, 55, 255, 1, 188, 0, 0, 255, 255, 255, 128},
+    {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0},
+    {0, 0, 0, 1, NAN, 0, 0, 1, 0},
+    {0, 0, 1, 0, 0, 1, 0, 0, 1},
+    {0, 1, 3, 0},
+    {0, 0, 0, 9, 32767, 0, 0, 9, 0, -32768, 0, 9},
+};
+
+/* Accessors: 0 corners, 1 bytes, 2 strip, 3 colours, 4 square, 5 broken, 6 normals, 7 beyond,
+ * 8 quantized, 9 sparse, 10 a matrix, 11 more than there is, 12 without a view. */
+#define ARRAYS                                                                                 \
+    "\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":216}],\"bufferViews\":["     \
+    "{\"buffer\":0,\"byteLength\":36},"                                                        \
+    "{\"buffer\":0,\"byteOffset\":36,\"byteLength\":4},"                                       \
+    "{\"buffer\":0,\"byteOffset\":40,\"byteLength\":8},"                                       \
+    "{\"buffer\":0,\"byteOffset\":48,\"byteLength\":12},"                                      \
+    "{\"buffer\":0,\"byteOffset\":60,\"byteLength\":48},"                                      \
+    "{\"buffer\":0,\"byteOffset\":108,\"byteLength\":36},"                                     \
+    "{\"buffer\":0,\"byteOffset\":144,\"byteLength\":36},"                                     \
+    "{\"buffer\":0,\"byteOffset\":180,\"byteLength\":4},"                                      \
+    "{\"buffer\":0,\"byteOffset\":184,\"byteLength\":24,\"byteStride\":8},"                    \
+    "{\"buffer\":0,\"byteOffset\":200,\"byteLength\":3600},"                                   \
+    "{\"buffer\":7,\"byteLength\":36}],"                                                       \
+    "\"accessors\":["                                                                          \
+    "{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"                 \
+    "{\"bufferView\":1,\"componentType\":5121,\"count\":3,\"type\":\"SCALAR\"},"               \
+    "{\"bufferView\":2,\"componentType\":5123,\"count\":4,\"type\":\"SCALAR\"},"               \
+    "{\"bufferView\":3,\"componentType\":5121,\"count\":3,\"type\":\"VEC4\","                  \
+    "\"normalized\":true},"                                                                    \
+    "{\"bufferView\":4,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"},"                 \
+    "{\"bufferView\":5,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"                 \
+    "{\"bufferView\":6,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"                 \
+    "{\"bufferView\":7,\"componentType\":5121,\"count\":3,\"type\":\"SCALAR\"},"               \
+    "{\"bufferView\":8,\"componentType\":5122,\"count\":3,\"type\":\"VEC3\","                  \
+    "\"normalized\":true},"                                                                    \
+    "{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"sparse\":"       \
+    "{\"count\":1,\"indices\":{\"bufferView\":1,\"componentType\":5121},"                      \
+    "\"values\":{\"bufferView\":0}}},"                                                         \
+    "{\"bufferView\":0,\"componentType\":5126,\"count\":1,\"type\":\"MAT2\"},"                 \
+    "{\"bufferView\":9,\"componentType\":5126,\"count\":300,\"type\":\"VEC3\"},"               \
+    "{\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"                                  \
+    "{\"bufferView\":10,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"                \
+    "{\"bufferView\":0,\"componentType\":5126,\"count\":1537228672809129302,"                  \
+    "\"type\":\"VEC3\"}]"
+
+static void put_u32(unsigned char *to, size_t value)
+{
+    for (int i = 0; i < 4; i++)
+        to[i] = (unsigned char)(value >> 8 * i);
+}
+
+static cw_status read_glb(const char *json, cw_mesh *mesh, cw_mesh_file *file, cw_error *err)
+{
+    const size_t length = (strlen(json) + 3) / 4 * 4, size = 12 + 8 + length + 8 + sizeof bin;
+    unsigned char *glb = calloc(size, 1);
+    assert_non_null(glb);
+    memcpy(glb, "glTF", 4);
+    put_u32(glb + 4, 2);
+    put_u32(glb + 8, size);
+    put_u32(glb + 12, length);
+    memcpy(glb + 16, "JSON", 4);
+    memset(glb + 20, ' ', length);
+    memcpy(glb + 20, json, strlen(json));
+    put_u32(glb + 20 + length, sizeof bin);
+    memcpy(glb + 24 + length, "BIN", 3);
+    memcpy(glb + 28 + length, &bin, sizeof bin);
+    const cw_status st = read_bytes("a.glb", glb, size, mesh, file, err);
+    free(glb);
+    return st;
+}
+
+/* A scene of one node with one primitive. */
+static cw_status read_primitive(const char *primitive, cw_mesh *mesh, cw_mesh_file *file,
+                                cw_error *err)
+{
+    char json[8192];
+    snprintf(json, sizeof json,
+             "{" ARRAYS ",\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"mesh\":0}],"
+             "\"meshes\":[{\"primitives\":[%s]}]}",
+             primitive);
+    return read_glb(json, mesh, file, err);
+}
+
+#define BY_BYTES "{\"attributes\":{\"POSITION\":0},\"indices\":1}"
+#define ONE_MESH ",\"meshes\":[{\"primitives\":[" BY_BYTES "]}]"
+
+/* Nodes and scenes by hand, around one mesh of one triangle. */
+static cw_status read_nodes(const char *nodes, cw_mesh *mesh, cw_mesh_file *file, cw_error *err)
+{
+    char json[8192];
+    snprintf(json, sizeof json, "{" ARRAYS ONE_MESH ",%s}", nodes);
+    return read_glb(json, mesh, file, err);
+}
+
+static void check_point(const cw_mesh *mesh, size_t v, double x, double y, double z)
+{
+    const double wanted[3] = {x, y, z};
+    for (size_t a = 0; a < 3; a++)
+        assert_near(mesh->origin[a] + (double)mesh->positions[3 * v + a], wanted[a], 1e-4);
+}
+
+/* Metres and +Y up become millimetres and head along +Z. */
+static void bytes_as_indices_and_a_plain_node(void **state)
+{
+    (void)state;
+    static const uint32_t triangle[3] = {0, 1, 2};
+    cw_mesh mesh;
+    cw_mesh_file file;
+    cw_error err = {0};
+    assert_ok(read_primitive(BY_BYTES, &mesh, &file, &err), err);
+    assert_string_equal(file.format, "glb");
+    assert_int_equal(file.known, CW_KNOWN_UNIT);
+    assert_int_equal(file.parts, 1);
+    check_triangles(&mesh, 1, triangle);
+    check_point(&mesh, 0, 0, 0, 0);
+    check_point(&mesh, 1, 1000, 0, 0);
+    check_point(&mesh, 2, 0, 0, 1000);
+    assert_usable(&mesh);
+    cw_mesh_free(&mesh);
+}
+
+static void strips_fans_and_vertices_without_indices(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *primitive;
+        size_t count;
+        uint32_t triangles[6];
+    } rows[] = {
+        {"{\"attributes\":{\"POSITION\":4},\"indices\":2,\"mode\":5}", 2, {0, 1, 2, 1, 3, 2}},
+        {"{\"attributes\":{\"POSITION\":4},\"indices\":2,\"mode\":6}", 2, {1, 2, 0, 2, 3, 0}},
+        {"{\"attributes\":{\"POSITION\":4},\"mode\":5}", 2, {0, 1, 2, 1, 3, 2}},
+        {"{\"attributes\":{\"POSITION\":0}}", 1, {0, 1, 2}},
+        {"{\"attributes\":{\"POSITION\":0},\"indices\":1,\"mode\":4}", 1, {0, 1, 2}},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        cw_mesh mesh;
+        cw_error err = {0};
+        assert_ok(read_primitive(rows[i].primitive, &mesh, NULL, &err), err);
+        check_triangles(&mesh, rows[i].count, rows[i].triangles);
+        cw_mesh_free(&mesh);
+    }
+}
+
+static void points_and_lines_are_counted_and_left_out(void **state)
+{
+    (void)state;
+    cw_mesh mesh;
+    cw_mesh_file file;
+    cw_error err = {0};
+    assert_ok(read_primitive("{\"attributes\":{\"POSITION\":0},\"mode\":0},"
+                             "{\"attributes\":{\"POSITION\":4},\"mode\":1},"
+                             "{\"attributes\":{\"POSITION\":4},\"mode\":2},"
+                             "{\"attributes\":{\"POSITION\":4},\"mode\":3}",
+                             &mesh, &file, &err),
+              err);
+    assert_int_equal(mesh.vertex_count + mesh.triangle_count, 0);
+    assert_int_equal(file.skipped, 3 + 2 + 4 + 3);
+    assert_int_equal(file.parts, 0);
+    cw_mesh_free(&mesh);
+}
+
+/* Primitives that share their vertices do so in the mesh; others follow one another. */
+static void primitives_are_merged(void **state)
+{
+    (void)state;
+    static const uint32_t shared[6] = {0, 1, 2, 0, 1, 2}, apart[6] = {0, 1, 2, 3, 4, 5};
+    cw_mesh mesh;
+    cw_mesh_file file;
+    cw_error err = {0};
+    assert_ok(read_primitive(BY_BYTES "," BY_BYTES, &mesh, &file, &err), err);
+    assert_int_equal(file.parts, 2);
+    assert_int_equal(mesh.vertex_count, 3);
+    check_triangles(&mesh, 2, shared);
+    cw_mesh_free(&mesh);
+    assert_ok(read_primitive("{\"attributes\":{\"POSITION\":0,\"NORMAL\":6}}," BY_BYTES, &mesh,
+                             &file, &err),
+              err);
+    assert_int_equal(mesh.vertex_count, 6);
+    check_triangles(&mesh, 2, apart);
+    assert_null(mesh.normals); /* the second part has none */
+    cw_mesh_free(&mesh);
+}
+
+/* sRGB of linear 55, 1 and 188 of 255; a part without colours is white. */
+static void colors_are_turned_to_srgb(void **state)
+{
+    (void)state;
+    static const uint8_t wanted[24] = {0,   255, 128, 255, 13,  223, 0,   0,
+                                       255, 255, 255, 128, 255, 255, 255, 255,
+                                       255, 255, 255, 255, 255, 255, 255, 255};
+    cw_mesh mesh;
+    cw_error err = {0};
+    assert_ok(read_primitive("{\"attributes\":{\"POSITION\":0,\"COLOR_0\":3}}," BY_BYTES, &mesh,
+                             NULL, &err),
+              err);
+    for (int i = 0; i < 24; i++)
+        assert_int_equal(mesh.colors[i], wanted[i]);
+    cw_mesh_free(&mesh);
+    assert_ok(read_primitive(BY_BYTES ",{\"attributes\":{\"POSITION\":0,\"COLOR_0\":3}}", &mesh,
+                             NULL, &err),
+              err);
+    for (int i = 0; i < 24; i++)
+        assert_int_equal(mesh.colors[i], wanted[(i + 12) % 24]);
+    cw_mesh_free(&mesh);
+}
+
+static void quantized_positions_are_shares_of_the_largest(void **state)
+{
+    (void)state;
+    cw_mesh mesh;
+    cw_error err = {0};
+    assert_ok(read_primitive("{\"attributes\":{\"POSITION\":8}}", &mesh, NULL, &err), err);
+    check_point(&mesh, 1, 1000, 0, 0);
+    check_point(&mesh, 2, 0, 0, -1000);
+    cw_mesh_free(&mesh);
+}
+
+/* The triangle twice: once beneath a parent that moves it, and once in a mirror. */
+static void nodes_place_meshes_and_mirrors_turn_the_winding(void **state)
+{
+    (void)state;
+    static const uint32_t triangles[6] = {0, 1, 2, 5, 4, 3};
+    cw_mesh mesh;
+    cw_mesh_file file;
+    cw_error err = {0};
+    assert_ok(read_nodes("\"scenes\":[{\"nodes\":[2,1]}],\"nodes\":["
+                         "{\"mesh\":0,\"translation\":[0,0,5]},"
+                         "{\"mesh\":0,\"scale\":[-2,2,2]},"
+                         "{\"children\":[0],\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,10,20,30,1]},"
+                         "{\"mesh\":0,\"name\":\"in no scene\"}]",
+                         &mesh, &file, &err),
+              err);
+    assert_int_equal(file.parts, 2);
+    assert_int_equal(mesh.vertex_count, 6);
+    check_triangles(&mesh, 2, triangles);
+    check_point(&mesh, 0, 10000, -35000, 20000);
+    check_point(&mesh, 1, 11000, -35000, 20000);
+    check_point(&mesh, 2, 10000, -35000, 21000);
+    check_point(&mesh, 4, -2000, 0, 0);
+    check_point(&mesh, 5, 0, 0, 2000);
+    cw_mesh_free(&mesh);
+}
+
+/* A quarter turn about +Y, and normals that follow; a mirror leaves them outward. */
+static void normals_turn_with_their_node(void **state)
+{
+    (void)state;
+    static const char *const nodes[2] = {"\"rotation\":[0,0.7071067811865475,0,"
+                                         "0.7071067811865475],\"scale\":[1,3,1]",
+                                         "\"scale\":[1,1,-3]"};
+    static const float wanted[2][3] = {{1, 0, 0}, {0, 1, 0}};
+    for (size_t i = 0; i < 2; i++) {
+        char json[8192];
+        cw_mesh mesh;
+        cw_error err = {0};
+        snprintf(json, sizeof json,
+                 "{" ARRAYS ",\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,"
+                 "\"NORMAL\":6}}]}],\"nodes\":[{\"mesh\":0,%s}]}",
+                 nodes[i]);
+        assert_ok(read_glb(json, &mesh, NULL, &err), err);
+        for (size_t k = 0; k < 9; k++)
+            assert_near((double)mesh.normals[k], (double)wanted[i][k % 3], 1e-6);
+        cw_mesh_free(&mesh);
+    }
+}
+
+/* A kilometre away, turned: single precision alone would keep a sixteenth of a millimetre. */
+static void far_nodes_get_an_origin(void **state)
+{
+    (void)state;
+    cw_mesh mesh;
+    cw_error err = {0};
+    assert_ok(read_nodes("\"nodes\":[{\"mesh\":0,\"scale\":[0.001,0.001,0.001],"
+                         "\"rotation\":[0,1,0,0],\"translation\":[1000.0001,0,0]}]",
+                         &mesh, NULL, &err),
+              err);
+    assert_near(mesh.origin[0], 1000000.1, 1);
+    check_point(&mesh, 0, 1000000.1, 0, 0);
+    check_point(&mesh, 1, 1000000.1 - 1, 0, 0);
+    cw_mesh_free(&mesh);
+}
+
+static void what_we_wrote_comes_back_to_the_bit(void **state)
+{
+    (void)state;
+    static const double origins[][3] = {
+        {0, 0, 0}, {12.3, -45.678, 1e6}, {1.0 / 3, -2e-7, 123456.789012345}};
+    for (size_t i = 0; i < 3; i++) {
+        cw_mesh mesh, back;
+        cw_mesh_file file;
+        cw_error err = {0};
+        test_make_cube(&mesh);
+        memcpy(mesh.origin, origins[i], sizeof mesh.origin);
+        for (size_t k = 0; k < 24; k++)
+            mesh.positions[k] = 0.1f * (float)k + 0.007f;
+        for (int k = 0; k < 12; k++)
+            mesh.affine[k / 4][k % 4] = k == 3 ? 1.0 / 7 : k;
+        assert_ok(cw_mesh_write(test_path("a.gltf"), &mesh, NULL, &err), err);
+        assert_ok(cw_mesh_read(test_path("a.gltf"), NULL, &back, &file, &err), err);
+        assert_int_equal(file.known, CW_KNOWN_UNIT | CW_KNOWN_FRAME);
+        assert_false(file.local);
+        check_positions(&back, 8, mesh.positions);
+        check_triangles(&back, 12, mesh.triangles);
+        assert_memory_equal(back.normals, mesh.normals, 24 * sizeof(float));
+        assert_memory_equal(back.affine, mesh.affine, sizeof mesh.affine);
+        for (int a = 0; a < 3; a++)
+            assert_near(back.origin[a], mesh.origin[a], 2e-16 * fabs(mesh.origin[a]));
+        cw_mesh_free(&back);
+        cw_mesh_free(&mesh);
+    }
+}
+
+/* Buffers of .gltf: in the text, beside it with a name in percents, outside. */
+static void buffers_lie_in_the_text_or_beside_it(void **state)
+{
+    (void)state;
+    static const char form[] =
+        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"%s\",\"byteLength\":36}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"accessors\":[{\"bufferView\":0,"
+        "\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],\"nodes\":[{\"mesh\":0}],"
+        "\"images\":[{\"uri\":\"no-such-image.png\"},{\"uri\":\"data:image/png;base64,AAAA\"}],"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}]}";
+    static const struct {
+        const char *uri;
+        cw_status status;
+        const char *words;
+    } rows[] = {
+        {"data:application/"
+         "octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA",
+         CW_OK, NULL},
+        {"DATA:application/gltf-buffer;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA",
+         CW_OK, NULL},
+        {"my%20corners.bin", CW_OK, NULL},
+        {"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAA", CW_ERR_FORMAT,
+         "buffer 0 has 18 bytes"},
+        {"data:application/"
+         "octet-stream;base64,AAAAAAAAAAAAAAAA*ACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA",
+         CW_ERR_FORMAT, "is not base64"},
+        {"data:application/octet-stream,abc", CW_ERR_FORMAT, "is not base64"},
+        {"short.bin", CW_ERR_FORMAT, "buffer 0 has 5 bytes"},
+        {"none.bin", CW_ERR_IO, "none.bin: cannot be opened"},
+        {"../corners.bin", CW_ERR_UNSAFE, "a path with '..'"},
+        {"%2e%2e%2fcorners.bin", CW_ERR_UNSAFE, "a path with '..'"},
+        {"/etc/passwd", CW_ERR_UNSAFE, "an absolute path"},
+        {"https://example.org/a.bin", CW_ERR_UNSAFE, "an address"},
+        {"a%00b", CW_ERR_UNSAFE, "a zero"},
+    };
+    test_file_write(test_path("my corners.bin"), bin.corners, sizeof bin.corners);
+    test_file_write(test_path("short.bin"), "short", 5);
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char json[2048];
+        cw_mesh mesh;
+        cw_error err = {0};
+        snprintf(json, sizeof json, form, rows[i].uri);
+        const cw_status st = read_text("a.gltf", json, &mesh, NULL, &err);
+        if (rows[i].status != CW_OK) {
+            assert_fails(st, rows[i].status, rows[i].words, err);
+            continue;
+        }
+        assert_ok(st, err);
+        check_point(&mesh, 2, 0, 0, 1000);
+        cw_mesh_free(&mesh);
+    }
+}
+
+static void broken_primitives_are_told_apart(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *primitive, *words;
+        cw_status status;
+    } rows[] = {
+        {"{\"attributes\":{\"POSITION\":0},\"indices\":7}", "names vertex 3 of 3",
+         CW_ERR_FORMAT},
+        {"{\"attributes\":{\"POSITION\":0},\"indices\":2}", "has 4 corners", CW_ERR_FORMAT},
+        {"{\"attributes\":{\"POSITION\":0},\"indices\":0}", "of a type that is not read",
+         CW_ERR_FORMAT},
+        {"{\"attributes\":{\"POSITION\":0},\"indices\":99}", "accessor", CW_ERR_FORMAT},
+        {"{\"attributes\":{\"POSITION\":5}}", "of vertex 1 is nan", CW_ERR_FORMAT},
+        {"{\"attributes\":{\"POSITION\":1}}", "elements of 1 numbers", CW_ERR_FORMAT},
+        {"{\"attributes\":{\"POSITION\":9}}", "POSITION is sparse", CW_ERR_UNSUPPORTED},
+        {"{\"attributes\":{\"POSITION\":10}}", "a type that is not read", CW_ERR_FORMAT},
+        {"{\"attributes\":{\"POSITION\":11}}", "3600 from byte 200 on were expected",
+         CW_ERR_FORMAT},
+        {"{\"attributes\":{\"POSITION\":12}}", "names bufferView -1", CW_ERR_FORMAT},
+        {"{\"attributes\":{\"POSITION\":13}}", "names buffer 7; there are 1", CW_ERR_FORMAT},
+        {"{\"attributes\":{\"POSITION\":14}}", "has no room for", CW_ERR_FORMAT},
+        {"{\"attributes\":{\"POSITION\":15}}", "names accessor 15; there are 15",
+         CW_ERR_FORMAT},
+        {"{\"attributes\":{\"POSITION\":-3}}", "no POSITION", CW_ERR_FORMAT},
+        {"{\"attributes\":{\"NORMAL\":6}}", "no POSITION", CW_ERR_FORMAT},
+        {"{\"attributes\":{\"POSITION\":4,\"NORMAL\":6}}", "has 3 elements; POSITION has 4",
+         CW_ERR_FORMAT},
+        {"{\"attributes\":{\"POSITION\":0,\"COLOR_0\":1}}", "elements of 1 numbers",
+         CW_ERR_FORMAT},
+        {"{\"attributes\":{\"POSITION\":0},\"mode\":7}", "the mode 7", CW_ERR_FORMAT},
+        {"{}", "not valid", CW_ERR_FORMAT},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        cw_mesh mesh;
+        cw_error err = {0};
+        assert_fails(read_primitive(rows[i].primitive, &mesh, NULL, &err), rows[i].status,
+                     rows[i].words, err);
+        assert_null(mesh.positions);
+    }
+}
+
+static void broken_scenes_are_told_apart(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *nodes, *words;
+        cw_status status;
+    } rows[] = {
+        {"\"nodes\":[{\"mesh\":0,\"children\":[1]},{\"children\":[0]}],"
+         "\"scenes\":[{\"nodes\":[0]}]",
+         "node 0 is reached in two ways", CW_ERR_FORMAT},
+        {"\"nodes\":[{\"children\":[0]}],\"scenes\":[{\"nodes\":[0]}]",
+         "node 0 is reached in two ways", CW_ERR_FORMAT},
+        {"\"nodes\":[{\"children\":[1,1]},{\"mesh\":0}]", "node 1 is reached in two ways",
+         CW_ERR_FORMAT},
+        {"\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[0,0,0,0]}]",
+         "node 0 is reached in two ways", CW_ERR_FORMAT},
+        {"\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[1]}]",
+         "node 1 is named; there are 1", CW_ERR_FORMAT},
+        {"\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[-1]}]", "node -1 is named",
+         CW_ERR_FORMAT},
+        {"\"nodes\":[{\"mesh\":4}]", "names mesh 4; there are 1", CW_ERR_FORMAT},
+        {"\"nodes\":[{\"mesh\":0}],\"scene\":3,\"scenes\":[{\"nodes\":[0]}]", "'scene' is 3",
+         CW_ERR_FORMAT},
+        {"\"nodes\":[{\"mesh\":0,\"translation\":[1,2]}]", "of node 0 has not as many",
+         CW_ERR_FORMAT},
+        {"\"nodes\":[{\"mesh\":0,\"rotation\":[0,0,0,0]}]", "matrix is not finite",
+         CW_ERR_FORMAT},
+        {"\"nodes\":[{\"mesh\":0,\"translation\":[1e308,0,0]}]", "matrix is not finite",
+         CW_ERR_FORMAT},
+        {"\"nodes\":[{\"mesh\":0,\"matrix\":[1,0,0,1,0,1,0,0,0,0,1,0,0,0,0,1]}]",
+         "is not affine", CW_ERR_FORMAT},
+        {"\"extensionsRequired\":[\"KHR_mesh_quantization\",\"KHR_draco_mesh_compression\"]",
+         "requires the extension 'KHR_draco_mesh_compression'", CW_ERR_UNSUPPORTED},
+        {"\"extensionsRequired\":[\"EXT_meshopt_compression\"]",
+         "requires the extension 'EXT_meshopt_compression'", CW_ERR_UNSUPPORTED},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        cw_mesh mesh;
+        cw_error err = {0};
+        assert_fails(read_nodes(rows[i].nodes, &mesh, NULL, &err), rows[i].status,
+                     rows[i].words, err);
+        assert_null(mesh.positions);
+    }
+}
+
+static void broken_files_are_told_apart(void **state)
+{
+    (void)state;
+    static const refused rows[] = {
+        {"{", "not valid"},
+        {"{    }", "'asset.version' is ''"},
+        {"{\"asset\":{\"version\":\"1.0\"}}", "'asset.version' is '1.0'"},
+        {"{\"asset\":{\"version\":\"2.0\"},\"nodes\":[3]}", "not valid"},
+        {"{\"a\":[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[",
+         "deeper than 64"},
+    };
+    cw_mesh mesh;
+    cw_error err = {0};
+    check_refused("a.gltf", rows, sizeof rows / sizeof *rows);
+    assert_fails(read_text("a.glb", "glTF\1\0\0\0", &mesh, NULL, &err), CW_ERR_FORMAT,
+                 "does not begin with 'glTF'", err);
+    assert_fails(read_bytes("a.glb", "glTF\1\0\0\0\24\0\0\0", 12, &mesh, NULL, &err),
+                 CW_ERR_FORMAT, "of version 1", err);
+    assert_fails(read_bytes("a.glb", "glTF\2\0\0\0\377\0\0\0", 12, &mesh, NULL, &err),
+                 CW_ERR_FORMAT, "the header says 255 bytes; the file has 12", err);
+    assert_fails(
+        read_bytes("a.glb", "glTF\2\0\0\0\24\0\0\0\1\0\0\0JSON", 20, &mesh, NULL, &err),
+        CW_ERR_FORMAT, "the chunk at byte 12", err);
+}
+
+/* A GLB cut short anywhere is refused. */
+static void no_beginning_of_a_file_is_a_file(void **state)
+{
+    (void)state;
+    cw_mesh mesh;
+    cw_error err = {0};
+    size_t size;
+    test_make_tetrahedron(&mesh);
+    assert_ok(cw_mesh_write(test_path("a.glb"), &mesh, NULL, &err), err);
+    cw_mesh_free(&mesh);
+    char *bytes = test_file_read(test_path("a.glb"), &size);
+    for (size_t n = 4; n < size; n++)
+        if (read_bytes("cut.glb", bytes, n, &mesh, NULL, &err) == CW_OK)
+            fail_msg("%zu of %zu bytes were read", n, size);
+    free(bytes);
+}
+
+/* 2000 nodes with the same 2^17 triangles: 400 KB that would be three gigabytes. */
+static void a_scene_cannot_multiply_itself_without_end(void **state)
+{
+    (void)state;
+    enum { NODES = 2000, TRIANGLES = 1 << 17 };
+    const size_t room = 400 + 16 * NODES;
+    char *json = malloc(room);
+    unsigned char *data = calloc(36 + 3 * TRIANGLES, 1);
+    cw_mesh mesh;
+    cw_error err = {0};
+    assert_true(json && data);
+    size_t used = (size_t)snprintf(
+        json, room,
+        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"a.bin\"}],\"bufferViews\":["
+        "{\"buffer\":0,\"byteLength\":%d}],\"accessors\":[{\"bufferView\":0,\"componentType\":"
+        "5126,\"count\":3,\"type\":\"VEC3\"},{\"bufferView\":0,\"byteOffset\":36,"
+        "\"componentType\":5121,\"count\":%d,\"type\":\"SCALAR\"}],\"meshes\":[{\"primitives\":"
+        "[" BY_BYTES "]}],\"nodes\":[{\"mesh\":0}",
+        36 + 3 * TRIANGLES, 3 * TRIANGLES);
+    for (int i = 1; i < NODES; i++)
+        used += (size_t)snprintf(json + used, room - used, ",{\"mesh\":0}");
+    snprintf(json + used, room - used, "]}");
+    test_file_write(test_path("a.bin"), data, 36 + 3 * TRIANGLES);
+    assert_fails(read_text("a.gltf", json, &mesh, NULL, &err), CW_ERR_LIMIT,
+                 "draws its triangles so often", err);
+    free(json);
+    free(data);
+}
+
+static void a_build_without_the_module_names_the_option(void **state)
+{
+    (void)state;
+    cw_mesh mesh;
+    cw_error err = {0};
+    assert_fails(read_text("a.gltf", "{}", &mesh, NULL, &err), CW_ERR_UNSUPPORTED,
+                 "-DCUBEWRIGHT_GLTF=ON", err);
+}
+
+#define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
+
+int main(void)
+{
+    const struct CMUnitTest without[] = {TEST(a_build_without_the_module_names_the_option)};
+    const struct CMUnitTest with[] = {
+        TEST(bytes_as_indices_and_a_plain_node),
+        TEST(strips_fans_and_vertices_without_indices),
+        TEST(points_and_lines_are_counted_and_left_out),
+        TEST(primitives_are_merged),
+        TEST(colors_are_turned_to_srgb),
+        TEST(quantized_positions_are_shares_of_the_largest),
+        TEST(nodes_place_meshes_and_mirrors_turn_the_winding),
+        TEST(normals_turn_with_their_node),
+        TEST(far_nodes_get_an_origin),
+        TEST(what_we_wrote_comes_back_to_the_bit),
+        TEST(buffers_lie_in_the_text_or_beside_it),
+        TEST(broken_primitives_are_told_apart),
+        TEST(broken_scenes_are_told_apart),
+        TEST(broken_files_are_told_apart),
+        TEST(no_beginning_of_a_file_is_a_file),
+        TEST(a_scene_cannot_multiply_itself_without_end),
+    };
+    return cwi_module_present("gltf") ? cmocka_run_group_tests(with, NULL, NULL)
+                                      : cmocka_run_group_tests(without, NULL, NULL);
+}
