@@ -1,0 +1,98 @@
+/* Verdicts: what is known of a mesh, held against what it is for. */
+#ifndef CUBEWRIGHT_CHECK_H
+#define CUBEWRIGHT_CHECK_H
+
+#include <cubewright/distance.h>
+#include <cubewright/quality.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What a mesh is for, and so what must hold. */
+typedef enum cw_profile {
+    CW_PROFILE_BASIC, /* an oriented 2-manifold without flaws, open or closed */
+    CW_PROFILE_PRINT, /* basic, closed, free of crossings, and of a size that printers can make
+                       */
+    CW_PROFILE_WEB,   /* to be looked at: it faces outward, has normals, and is not too large */
+    CW_PROFILE_FEM,   /* print without the size; angles and shapes that simulations can use */
+} cw_profile;
+
+/* Limits of the profiles: sizes of a print; triangles for the web; shapes for FEM. */
+#define CW_PRINT_MIN_MM      5.0
+#define CW_PRINT_MAX_MM      400.0
+#define CW_WEB_MAX_TRIANGLES 1000000
+#define CW_FEM_MIN_ANGLE_DEG 10.0
+#define CW_FEM_MAX_ASPECT    10.0
+
+/* Measurements of one mesh, each made by the call named beside it. Those left NULL were not
+ * made: what needs them is not judged, or is unknown where the profile asks for it. */
+typedef struct cw_findings {
+    const cw_quality *quality;     /* cw_quality_measure(), welded, with shells; required */
+    const cw_crossings *crossings; /* cw_self_intersections() */
+    const cw_cgal_facts *cgal;     /* cw_quality_ask_cgal() */
+    const cw_distance *to_field;   /* cw_distance_to_field() */
+    const cw_distance *from_field; /* cw_distance_to_mesh() from the field's own surface */
+    const cw_quality *field;       /* cw_quality_measure() of the field's own surface */
+    const cw_distance *to_reference, *from_reference; /* cw_distance_to_mesh() both ways */
+    double tolerance_mm; /* for the distances; 0: none, they are only told */
+    bool has_normals;
+} cw_findings;
+
+/* From the worst to the best. */
+typedef enum cw_grade {
+    CW_GRADE_FAIL,    /* the profile's promise does not hold */
+    CW_GRADE_UNKNOWN, /* the profile asks for it, and it was not or could not be decided */
+    CW_GRADE_WARN,    /* holds, but look at it */
+    CW_GRADE_OK,
+    CW_GRADE_NOTE, /* not promised; for information */
+} cw_grade;
+
+typedef struct cw_verdict {
+    const char *name; /* "closed"; static */
+    cw_grade grade;
+    double number;      /* the count or measure behind it */
+    char text[200];     /* one line for people */
+    const char *advice; /* what to do about it; NULL: nothing. Static */
+} cw_verdict;
+
+enum { CW_MAX_VERDICTS = 24 };
+
+/* Judges the findings. Returns how many verdicts were written, the worst first. */
+CW_API size_t cw_check_judge(const cw_findings *findings, cw_profile profile,
+                             cw_verdict verdicts[CW_MAX_VERDICTS]);
+
+/* No verdict is a failure or unknown. */
+CW_API bool cw_check_holds(const cw_verdict *verdicts, size_t count);
+
+/* "fail", "unknown", "warn", "ok", "note". */
+CW_API const char *cw_grade_name(cw_grade grade);
+
+/* One colour a defect, for cw_check_paint(): red, green, blue. */
+typedef struct cw_paint {
+    cw_defect defect;
+    const char *name, *color; /* "open edges", "red"; static */
+    uint8_t rgb[3];
+} cw_paint;
+
+/* The paints in the order in which they win where a triangle has several defects. */
+CW_API const cw_paint *cw_check_paints(size_t *count);
+
+/* Makes a copy of a mesh in which triangles with defects have their colour all over (as have
+ * the neighbours of those without area, which cannot be seen), and the others are grey, or,
+ * with distances, run from grey at 0 through yellow to red at full_mm. Painted triangles share
+ * no vertex with those of another colour, so the mesh is for looking at.
+ *
+ * defects    triangle_count sets of cw_defect, as the checks leave them
+ * distances  vertex_count, mm, with or without a sign; or NULL. Kept as scalars of the copy
+ * out        filled on success, emptied on failure; free it with cw_mesh_free()
+ * Returns    CW_ERR_ARGUMENT as cw_mesh_check(); CW_ERR_LIMIT; CW_ERR_NO_MEMORY */
+CW_API cw_status cw_check_paint(const cw_mesh *mesh, const uint8_t *defects,
+                                const float *distances, double full_mm, cw_mesh *out,
+                                cw_error *err);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

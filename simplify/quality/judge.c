@@ -1,0 +1,338 @@
+/* Findings into verdicts. A verdict is a few lines that say what is wrong, for whom, and what
+ * to do; profiles are columns of grades. */
+#include <cubewright/check.h>
+
+#include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+typedef struct bench {
+    const cw_findings *f;
+    cw_profile profile;
+    cw_verdict *verdicts;
+    size_t count;
+} bench;
+
+/* How bad a fault is for each profile. */
+typedef struct severity {
+    cw_grade grade[4]; /* basic, print, web, fem */
+} severity;
+
+static const severity always = {{CW_GRADE_FAIL, CW_GRADE_FAIL, CW_GRADE_FAIL, CW_GRADE_FAIL}};
+static const severity not_for_web = {
+    {CW_GRADE_FAIL, CW_GRADE_FAIL, CW_GRADE_WARN, CW_GRADE_FAIL}};
+static const severity for_solids = {
+    {CW_GRADE_NOTE, CW_GRADE_FAIL, CW_GRADE_NOTE, CW_GRADE_FAIL}};
+static const severity for_fem = {{CW_GRADE_NOTE, CW_GRADE_NOTE, CW_GRADE_NOTE, CW_GRADE_FAIL}};
+static const severity for_print = {
+    {CW_GRADE_NOTE, CW_GRADE_WARN, CW_GRADE_NOTE, CW_GRADE_NOTE}};
+static const severity for_web = {{CW_GRADE_NOTE, CW_GRADE_NOTE, CW_GRADE_WARN, CW_GRADE_NOTE}};
+static const severity look = {{CW_GRADE_WARN, CW_GRADE_WARN, CW_GRADE_WARN, CW_GRADE_WARN}};
+static const severity overlap = {{CW_GRADE_WARN, CW_GRADE_WARN, CW_GRADE_NOTE, CW_GRADE_FAIL}};
+
+static const char *plural(size_t count)
+{
+    return count == 1 ? "" : "s";
+}
+
+static cw_verdict *add(bench *b, const char *name, cw_grade grade, double number)
+{
+    cw_verdict *v = &b->verdicts[b->count++];
+    *v = (cw_verdict){.name = name, .grade = grade, .number = number};
+    return v;
+}
+
+static void say(cw_verdict *v, const char *format, ...) CW_PRINTF(2, 3);
+static void say(cw_verdict *v, const char *format, ...)
+{
+    va_list args;
+    va_start(args, format);
+    vsnprintf(v->text, sizeof v->text, format, args);
+    va_end(args);
+}
+
+/* A verdict on a count of faults: OK when there is none; then the text says what does hold. */
+static cw_verdict *add_count(bench *b, const char *name, const severity *s, size_t count,
+                             const char *none, const char *advice)
+{
+    cw_verdict *v = add(b, name, count ? s->grade[b->profile] : CW_GRADE_OK, (double)count);
+    say(v, "%s", none);
+    v->advice = count ? advice : NULL;
+    return v;
+}
+
+static void judge_size(bench *b)
+{
+    const cw_quality *q = b->f->quality;
+    if (q->triangles == 0) {
+        cw_verdict *v = add(b, "triangles", CW_GRADE_FAIL, 0);
+        say(v, "there are none");
+        v->advice = "the file holds no surface: look at what wrote it";
+        return;
+    }
+    double low = INFINITY, high = 0;
+    for (int a = 0; a < 3; a++) {
+        low = fmin(low, q->max[a] - q->min[a]);
+        high = fmax(high, q->max[a] - q->min[a]);
+    }
+    if (b->profile != CW_PROFILE_PRINT)
+        return;
+    const bool fits = high >= CW_PRINT_MIN_MM && high <= CW_PRINT_MAX_MM;
+    cw_verdict *v = add(b, "size", fits ? CW_GRADE_OK : for_print.grade[b->profile], high);
+    say(v, "the box is %.6g x %.6g x %.6g mm", q->max[0] - q->min[0], q->max[1] - q->min[1],
+        q->max[2] - q->min[2]);
+    if (!fits)
+        v->advice = "printers make 5 to 400 mm: is the file's unit the millimetre?";
+}
+
+static void judge_surface(bench *b)
+{
+    const cw_quality *q = b->f->quality;
+    const size_t bad = q->nonmanifold_edges + q->nonmanifold_vertices;
+    cw_verdict *v = add_count(b, "manifold", &not_for_web, bad,
+                              "every edge has one or two triangles, every vertex one fan",
+                              "split the mesh where more than one surface meets");
+    if (bad)
+        say(v, "%zu edge%s with more than two triangles, %zu vert%s with more than one fan",
+            q->nonmanifold_edges, plural(q->nonmanifold_edges), q->nonmanifold_vertices,
+            q->nonmanifold_vertices == 1 ? "ex" : "ices");
+    v = add_count(b, "closed", &for_solids, q->open_edges, "no edge is open",
+                  "fill the holes; a T-junction or a crack is closed by merging near vertices");
+    if (q->open_edges)
+        say(v, "%zu open edge%s in %zu loop%s", q->open_edges, plural(q->open_edges),
+            q->border_loops, plural(q->border_loops));
+    v = add_count(b, "oriented", &always, q->misoriented_edges,
+                  "neighbours agree on what is outside", "flip the triangles that disagree");
+    if (q->misoriented_edges)
+        say(v, "%zu edge%s between triangles that disagree on what is outside",
+            q->misoriented_edges, plural(q->misoriented_edges));
+}
+
+static void judge_shells(bench *b)
+{
+    const cw_quality *q = b->f->quality;
+    cw_verdict *v = add_count(b, "outward", &always, q->inside_out,
+                              "every closed shell faces the right way", "flip these shells");
+    if (q->inside_out)
+        say(v, "%zu closed shell%s inside out", q->inside_out,
+            q->inside_out == 1 ? " is" : "s are");
+    if (!q->nested)
+        return;
+    v = add_count(b, "nested", &overlap, q->nested, "",
+                  "drop the inner shells, or flip them where cavities are meant");
+    say(v, "%zu shell%s inside another solid, not as a cavity", q->nested,
+        q->nested == 1 ? " lies" : "s lie");
+}
+
+static void judge_triangles(bench *b)
+{
+    const cw_quality *q = b->f->quality;
+    cw_verdict *v =
+        add_count(b, "degenerate", &not_for_web, q->degenerate, "every triangle has an area",
+                  "collapse or flip their short edges");
+    if (q->degenerate)
+        say(v, "%zu triangle%s without area", q->degenerate, plural(q->degenerate));
+    if (q->duplicates) {
+        v = add_count(b, "duplicates", &not_for_web, q->duplicates, "",
+                      "keep one of each, or none where two walls meet");
+        say(v, "%zu triangle%s with the vertices of another one", q->duplicates,
+            plural(q->duplicates));
+    }
+    if (q->unused_vertices) {
+        v = add_count(b, "unused", &for_web, q->unused_vertices, "", "drop them");
+        say(v, "%zu vert%s in no triangle", q->unused_vertices,
+            q->unused_vertices == 1 ? "ex" : "ices");
+    }
+}
+
+static void judge_shapes(bench *b)
+{
+    const cw_quality *q = b->f->quality;
+    const cw_shapes *s = &q->shapes;
+    if (q->degenerate == q->triangles)
+        return;
+    const bool good =
+        s->min_angle_deg >= CW_FEM_MIN_ANGLE_DEG && s->max_aspect <= CW_FEM_MAX_ASPECT;
+    cw_verdict *v =
+        add(b, "shapes", good ? CW_GRADE_OK : for_fem.grade[b->profile], s->min_angle_deg);
+    say(v,
+        "smallest angle %.3g degrees, largest aspect ratio %.3g; %zu needle%s, %zu cap%s, "
+        "edges "
+        "%.3g to %.3g mm",
+        s->min_angle_deg, s->max_aspect, q->needles, plural(q->needles), q->caps,
+        plural(q->caps), s->min_edge_mm, s->max_edge_mm);
+    if (v->grade == CW_GRADE_FAIL)
+        v->advice =
+            "remesh, or extract with --snap 0.5: FEM wants 10 degrees and a ratio of 10";
+}
+
+static void judge_crossings(bench *b)
+{
+    const cw_crossings *x = b->f->crossings;
+    const bool asked =
+        not_for_web.grade[b->profile] == CW_GRADE_FAIL && b->profile != CW_PROFILE_BASIC;
+    if (!x || (x->undecided && !x->count)) {
+        const cw_grade grade = asked || x ? CW_GRADE_UNKNOWN : CW_GRADE_NOTE;
+        cw_verdict *v = add(b, "self-intersections", grade, 0);
+        say(v, x ? "undecided: too many triangles are in one place to look at every pair"
+                 : "not looked for");
+        v->advice = x ? "drop the heap of slivers first" : "--deep looks for them";
+        return;
+    }
+    cw_verdict *v = add_count(b, "self-intersections", &not_for_web, x->count,
+                              "no two triangles meet but where they are neighbours",
+                              "separate or unite the parts that cross");
+    if (x->count)
+        say(v, "%s%zu pair%s of triangles meet%s that should not",
+            x->undecided ? "at least " : "", x->count, plural(x->count),
+            x->count == 1 ? "s" : "");
+}
+
+static void judge_look(bench *b)
+{
+    const cw_quality *q = b->f->quality;
+    if (b->profile != CW_PROFILE_WEB)
+        return;
+    const bool many = q->triangles > CW_WEB_MAX_TRIANGLES;
+    cw_verdict *v = add(b, "weight", many ? CW_GRADE_WARN : CW_GRADE_OK, (double)q->triangles);
+    say(v, "%zu triangles", q->triangles);
+    if (many)
+        v->advice = "more than a million is slow to load: reduce the mesh";
+    v = add(b, "normals", b->f->has_normals ? CW_GRADE_OK : CW_GRADE_WARN, 0);
+    say(v, b->f->has_normals ? "one at every vertex" : "none: viewers will shade it flat");
+}
+
+/* The larger of the two directions counts; where is the place of the first. */
+static void judge_distance(bench *b, const char *name, const char *other, const cw_distance *to,
+                           const cw_distance *back)
+{
+    if (!to)
+        return;
+    const double tolerance = b->f->tolerance_mm;
+    const double far = fmax(fmax(to->max_mm, to->bound_mm), back ? back->bound_mm : 0);
+    const bool holds = far <= tolerance;
+    cw_verdict *v = add(
+        b, name, tolerance > 0 ? (holds ? CW_GRADE_OK : CW_GRADE_FAIL) : CW_GRADE_NOTE, far);
+    say(v, "at most %.4g mm from %s, rms %.3g, 99 %% within %.3g; farthest at %.6g, %.6g, %.6g",
+        to->max_mm, other, to->rms_mm, to->p99_mm, to->where[0], to->where[1], to->where[2]);
+    if (v->grade == CW_GRADE_FAIL)
+        v->advice = "beyond the tolerance: --defects shows where";
+    if (!back)
+        return;
+    v = add(b, "covered",
+            v->grade == CW_GRADE_NOTE     ? CW_GRADE_NOTE
+            : back->bound_mm <= tolerance ? CW_GRADE_OK
+                                          : CW_GRADE_FAIL,
+            back->max_mm);
+    say(v, "%s is at most %.4g mm from the mesh, rms %.3g; farthest at %.6g, %.6g, %.6g", other,
+        back->max_mm, back->rms_mm, back->where[0], back->where[1], back->where[2]);
+}
+
+static void judge_topology(bench *b)
+{
+    const cw_quality *q = b->f->quality, *t = b->f->field;
+    if (!t)
+        return;
+    const bool same = q->components == t->components && q->euler == t->euler &&
+                      q->border_loops == t->border_loops;
+    cw_verdict *v = add(b, "topology", same ? CW_GRADE_OK : look.grade[b->profile],
+                        fabs((double)q->components - (double)t->components));
+    if (same)
+        say(v, "as the field's: %zu component%s, Euler number %lld, %zu border loop%s",
+            q->components, plural(q->components), (long long)q->euler, q->border_loops,
+            plural(q->border_loops));
+    else
+        say(v,
+            "not the field's: %zu component%s where it has %zu, Euler number %lld not %lld, "
+            "%zu "
+            "border loops not %zu",
+            q->components, plural(q->components), t->components, (long long)q->euler,
+            (long long)t->euler, q->border_loops, t->border_loops);
+}
+
+/* Where CGAL takes the mesh, it must say what we say. */
+static void judge_agreement(bench *b)
+{
+    const cw_quality *q = b->f->quality;
+    const cw_cgal_facts *c = b->f->cgal;
+    const cw_crossings *x = b->f->crossings;
+    if (!c)
+        return;
+    const bool manifold =
+        !q->nonmanifold_edges && !q->nonmanifold_vertices && !q->misoriented_edges;
+    const char *differs = NULL;
+    if (c->is_polygon_mesh != manifold)
+        differs = "whether it is an oriented manifold";
+    else if (manifold && c->closed != !q->open_edges)
+        differs = "whether it is closed";
+    else if (manifold && c->border_loops != q->border_loops)
+        differs = "the border's loops";
+    else if (manifold && c->components != q->components)
+        differs = "the components";
+    else if (manifold && x && !x->undecided && c->self_intersections != x->count)
+        differs = "the self-intersections";
+    else if (manifold && c->bounds_volume && (q->inside_out || q->nested) && c->outward)
+        differs = "which way shells face";
+    cw_verdict *v = add(b, "cgal", differs ? CW_GRADE_FAIL : CW_GRADE_OK, 0);
+    if (differs)
+        say(v, "CGAL and these checks differ on %s", differs);
+    else
+        say(v, manifold ? "CGAL says the same" : "CGAL takes no such mesh either");
+    v->advice = differs ? "one of the two is wrong: please report it" : NULL;
+}
+
+static int compare(const void *a, const void *b)
+{
+    const cw_verdict *v = a, *w = b;
+    if (v->grade != w->grade)
+        return v->grade < w->grade ? -1 : 1;
+    return 0;
+}
+
+/* Worst first, and as judged among equals: an insertion sort keeps their order. */
+static void sort(cw_verdict *v, size_t count)
+{
+    for (size_t i = 1; i < count; i++) {
+        const cw_verdict x = v[i];
+        size_t j = i;
+        for (; j > 0 && compare(&v[j - 1], &x) > 0; j--)
+            v[j] = v[j - 1];
+        v[j] = x;
+    }
+}
+
+size_t cw_check_judge(const cw_findings *findings, cw_profile profile,
+                      cw_verdict verdicts[CW_MAX_VERDICTS])
+{
+    bench b = {findings, profile, verdicts, 0};
+    judge_size(&b);
+    judge_surface(&b);
+    judge_shells(&b);
+    judge_crossings(&b);
+    judge_triangles(&b);
+    judge_shapes(&b);
+    judge_look(&b);
+    judge_topology(&b);
+    judge_distance(&b, "to field", "the field's surface", findings->to_field,
+                   findings->from_field);
+    judge_distance(&b, "to reference", "the reference", findings->to_reference,
+                   findings->from_reference);
+    judge_agreement(&b);
+    sort(verdicts, b.count);
+    return b.count;
+}
+
+bool cw_check_holds(const cw_verdict *verdicts, size_t count)
+{
+    for (size_t n = 0; n < count; n++)
+        if (verdicts[n].grade == CW_GRADE_FAIL || verdicts[n].grade == CW_GRADE_UNKNOWN)
+            return false;
+    return true;
+}
+
+const char *cw_grade_name(cw_grade grade)
+{
+    static const char *const names[] = {"fail", "unknown", "warn", "ok", "note"};
+    return grade <= CW_GRADE_NOTE ? names[grade] : "unknown";
+}
