@@ -3,6 +3,7 @@
 #define CUBEWRIGHT_CUBEWRIGHT_H
 
 #include <cubewright/core.h>
+#include <cubewright/distance.h>
 #include <cubewright/extract.h>
 #include <cubewright/field.h>
 #include <cubewright/formats.h>
