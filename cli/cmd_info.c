@@ -157,7 +157,7 @@ static void print_json(const facts *f, bool predicted)
     cli_json_open(&j, NULL, '{');
     cli_json_text(&j, "schema", "cubewright-info-1");
     cli_json_text(&j, "version", cw_version());
-    cli_json_input(&j, &f->volume);
+    cli_json_input(&j, "input", &f->volume);
     cli_json_numbers(&j, "range", (const double[2]){r->min, r->max}, 2);
     cli_json_count(&j, "finite", r->finite);
     cli_json_count(&j, "not_finite", r->not_finite);

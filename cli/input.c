@@ -28,6 +28,11 @@ static size_t default_memory(void)
     return (size_t)(0.75 * bytes);
 }
 
+size_t cli_memory_limit(const cli_input *input)
+{
+    return input->memory ? input->memory : default_memory();
+}
+
 /* Stretches the axes to the spacing asked for; directions and origin stay. */
 static void set_spacing(cw_volume *v, const cli_lengths *asked)
 {
@@ -200,7 +205,7 @@ cw_status cli_read_volume(const char *path, const cli_input *input, bool header_
     cw_read_desc desc = {.reader = input->reader, .allow_external = input->allow_external};
     memset(volume, 0, sizeof *volume);
     volume->path = path;
-    desc.max_bytes = input->memory ? input->memory : default_memory();
+    desc.max_bytes = cli_memory_limit(input);
     if (input->raw) {
         cw_status st = cw_raw_layout_parse(input->raw, &raw, err);
         if (st != CW_OK)
@@ -219,12 +224,12 @@ const char *cli_shown_path(const char *path)
     return path[0] == '/' && slash ? slash + 1 : path;
 }
 
-void cli_json_input(cli_json *j, const cli_volume *volume)
+void cli_json_input(cli_json *j, const char *key, const cli_volume *volume)
 {
     const cw_volume *v = &volume->whole;
     const double dims[3] = {(double)v->dim[0], (double)v->dim[1], (double)v->dim[2]};
     char sum[SHA256_DIGEST_STRING_LENGTH];
-    cli_json_open(j, "input", '{');
+    cli_json_open(j, key, '{');
     cli_json_text(j, "path", cli_shown_path(volume->path));
     cli_json_text(j, "kind", volume->format);
     cli_json_numbers(j, "dims", dims, 3);

@@ -91,8 +91,11 @@ bool cli_is_preview(const cli_volume *volume);
 /* "nifti, 181 x 217 x 181 u8, 1 x 1 x 1 mm" into static memory. */
 const char *cli_describe(const cli_volume *volume);
 
-/* The "input" object of reports. sha256 of the file, when it can be read again. */
-void cli_json_input(cli_json *j, const cli_volume *volume);
+/* An object of reports, such as "input". sha256 of the file, when it can be read again. */
+void cli_json_input(cli_json *j, const char *key, const cli_volume *volume);
+
+/* In bytes: as asked for, or three quarters of the machine's. */
+size_t cli_memory_limit(const cli_input *input);
 
 /* A path as reports show it: absolute ones lose their folders. */
 const char *cli_shown_path(const char *path);

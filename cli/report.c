@@ -90,7 +90,12 @@ static void put_mesh(cli_json *j, const cw_quality *q)
     cli_json_count(j, "nonmanifold_edges", q->nonmanifold_edges);
     cli_json_count(j, "nonmanifold_vertices", q->nonmanifold_vertices);
     cli_json_count(j, "misoriented_edges", q->misoriented_edges);
+    cli_json_count(j, "border_loops", q->border_loops);
+    cli_json_int(j, "genus", q->genus);
     cli_json_count(j, "degenerate", q->degenerate);
+    cli_json_count(j, "duplicates", q->duplicates);
+    cli_json_count(j, "needles", q->needles);
+    cli_json_count(j, "caps", q->caps);
     cli_json_numbers(j, "box", box, 6);
     cli_json_number(j, "area", q->area_mm2);
     cli_json_number(j, "volume", q->volume_mm3);
@@ -185,7 +190,9 @@ static void put_report(FILE *out, const cli_report *r, cw_status status, const c
     put_features(&j);
     cli_json_text(&j, "command", r->command);
     if (r->input)
-        cli_json_input(&j, r->input);
+        cli_json_input(&j, "input", r->input);
+    if (r->facts)
+        r->facts(&j, r->args);
     put_steps(&j, r);
     put_made(&j, r);
     put_warnings(&j, r);

@@ -38,6 +38,8 @@ typedef struct cli_report {
     bool several;      /* meshes were asked for: the report lists them */
     /* Writes the settings of the main step, for one mesh. */
     void (*params)(cli_json *j, const void *args, const cli_made *made);
+    /* Writes what only this command has to say, behind the input; NULL: nothing. */
+    void (*facts)(cli_json *j, const void *args);
     const void *args;
     cli_step steps[CLI_MAX_STEPS];
     size_t step_count;

@@ -2,7 +2,9 @@
 #ifndef CUBEWRIGHT_CUBEWRIGHT_H
 #define CUBEWRIGHT_CUBEWRIGHT_H
 
+#include <cubewright/check.h>
 #include <cubewright/core.h>
+#include <cubewright/distance.h>
 #include <cubewright/extract.h>
 #include <cubewright/field.h>
 #include <cubewright/formats.h>

@@ -1,4 +1,6 @@
 /* Every public header stands alone, and the umbrella holds them all. */
+#include <cubewright/distance.h>
+
 #include <cubewright/quality.h>
 
 #include <cubewright/formats.h>

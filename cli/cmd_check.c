@@ -1,0 +1,470 @@
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "cli/mesh.h"
+#include "cli/output.h"
+#include "cli/quantity.h"
+#include "cli/report.h"
+#include "cli/surface.h"
+#include "cli/verdicts.h"
+#include "core/status.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct check_args {
+    cli_common common;
+    cli_input input; /* of the source volume */
+    const char *source, *reference, *defects, *json, *mesh_reader;
+    cli_number iso;
+    cli_lengths tolerance;
+    int profile, inside, progress;
+    bool deep, open, histogram;
+} check_args;
+
+static const char *const profiles[] = {"basic", "print", "web", "fem"};
+
+static const cli_option options[] = {
+    {"profile", 'p', CLI_CHOICE, "basic/print/web/fem", "what the mesh must be fit for (basic)",
+     offsetof(check_args, profile)},
+    {"deep", 0, CLI_FLAG, NULL,
+     "look for self-intersections in any profile, and ask CGAL too (off)",
+     offsetof(check_args, deep)},
+    {"source", 's', CLI_TEXT, "VOLUME",
+     "measure the distance to this volume's surface, and compare topology; with --iso",
+     offsetof(check_args, source)},
+    {"iso", 'i', CLI_NUMBER, "V", "the isovalue of the source's surface",
+     offsetof(check_args, iso)},
+    {"inside", 0, CLI_CHOICE, "above/below", "which of the source's values are inside (above)",
+     offsetof(check_args, inside)},
+    {"open", 0, CLI_FLAG, NULL, "the source's surface ends where the volume does (closed)",
+     offsetof(check_args, open)},
+    {"reference", 0, CLI_TEXT, "MESH", "measure the distance to this mesh, and back",
+     offsetof(check_args, reference)},
+    {"tolerance", 0, CLI_LENGTHS, "L", "the largest distance allowed, e.g. 0.1mm (none)",
+     offsetof(check_args, tolerance)},
+    {"defects", 0, CLI_TEXT, "FILE",
+     "write the mesh with its defects and distances painted: .ply, .glb or .gltf",
+     offsetof(check_args, defects)},
+    {"histogram", 0, CLI_FLAG, NULL, "print angles, aspect ratios and lengths of edges",
+     offsetof(check_args, histogram)},
+    {"json", 0, CLI_TEXT, "FILE", "write a report; - is the standard output",
+     offsetof(check_args, json)},
+    {"progress", 0, CLI_CHOICE, "auto/plain/json/none", "how to show it, on stderr (auto)",
+     offsetof(check_args, progress)},
+    {"mesh-reader", 0, CLI_TEXT, "NAME", "read meshes as this format of 'formats' (by content)",
+     offsetof(check_args, mesh_reader)},
+    CLI_INPUT_OPTIONS(check_args),
+};
+
+/* What was measured; findings point into it. */
+typedef struct run_state {
+    const check_args *args;
+    cli_mesh mesh, reference;
+    cli_volume volume;
+    uint8_t *defects; /* of each triangle; NULL unless they are painted */
+    float *distances; /* of each vertex; NULL unless there is a source or reference too */
+    cw_quality quality, field;
+    cw_crossings crossings;
+    cw_cgal_facts cgal;
+    cw_distance to_field, from_field, to_reference, from_reference;
+    cw_findings findings;
+    cw_verdict verdicts[CW_MAX_VERDICTS];
+    size_t verdict_count;
+    cli_report report;
+} run_state;
+
+static double tolerance_of(const check_args *args)
+{
+    return args->tolerance.given ? args->tolerance.mm[0] : 0;
+}
+
+static void put_params(cli_json *j, const void *p, const cli_made *made)
+{
+    const check_args *args = ((const run_state *)p)->args;
+    (void)made;
+    cli_json_text(j, "profile", profiles[args->profile]);
+    cli_json_bool(j, "deep", args->deep);
+    if (args->source) {
+        cli_json_number(j, "iso", args->iso.value);
+        cli_json_text(j, "inside", args->inside ? "below" : "above");
+        cli_json_bool(j, "open", args->open);
+    }
+    if (args->tolerance.given)
+        cli_json_number(j, "tolerance_mm", tolerance_of(args));
+}
+
+static void put_facts(cli_json *j, const void *p)
+{
+    const run_state *s = p;
+    if (s->mesh.file.format)
+        cli_json_mesh_file(j, "input", &s->mesh);
+    if (s->volume.format)
+        cli_json_input(j, "source", &s->volume);
+    if (s->reference.file.format)
+        cli_json_mesh_file(j, "reference", &s->reference);
+    if (!s->verdict_count)
+        return;
+    cli_json_text(j, "profile", profiles[s->args->profile]);
+    cli_json_verdicts(j, s->verdicts, s->verdict_count);
+    if (s->findings.crossings)
+        cli_json_count(j, "self_intersections", s->crossings.count);
+    cli_json_count(j, "cavities", s->quality.cavities);
+    cli_json_errors(j, &s->findings);
+    cli_json_shapes(j, &s->quality.shapes);
+}
+
+static cw_status check_defects_path(const check_args *args, cw_error *err)
+{
+    const char *dot = strrchr(args->defects, '.');
+    const bool colored = dot && (strcmp(dot, ".ply") == 0 || strcmp(dot, ".glb") == 0 ||
+                                 strcmp(dot, ".gltf") == 0);
+    const char *const inputs[3] = {args->common.inputs[0], args->source, args->reference};
+    if (!colored)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "%s: --defects needs colours, which .ply, .glb and .gltf hold",
+                       args->defects);
+    cw_status st = CW_OK;
+    for (int n = 0; n < 3 && st == CW_OK; n++)
+        st = inputs[n] ? cli_check_output(args->defects, &inputs[n], 1, err) : CW_OK;
+    if (st == CW_OK && args->json)
+        st = cli_check_apart(args->json, args->defects, err);
+    if (st != CW_OK)
+        return st;
+    st = cw_mesh_write_check(args->defects, NULL, err);
+    return st == CW_OK ? st : cwi_fail_in(err, st, args->defects);
+}
+
+static cw_status check_args_of(run_state *s, cw_error *err)
+{
+    const check_args *args = s->args;
+    const double *t = args->tolerance.mm;
+    cw_status st =
+        args->json ? cli_check_output(args->json, args->common.inputs, 1, err) : CW_OK;
+    if (st != CW_OK)
+        return st;
+    s->report.path = args->json;
+    if (args->source && !args->iso.given)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--source needs the isovalue of its surface: --iso V");
+    if (args->iso.given && !args->source)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--iso needs the volume it is of: --source VOLUME");
+    if (args->tolerance.given && !args->source && !args->reference)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--tolerance needs something to measure from: --source or --reference");
+    if (args->tolerance.given && !(t[0] > 0 && t[0] == t[1] && t[0] == t[2]))
+        return cw_fail(err, CW_ERR_ARGUMENT, "--tolerance is one length above 0");
+    return args->defects ? check_defects_path(args, err) : CW_OK;
+}
+
+static cw_status read_inputs(run_state *s, cw_error *err)
+{
+    const check_args *args = s->args;
+    cli_report_begin(&s->report);
+    cw_status st =
+        cli_read_mesh(args->common.inputs[0], args->mesh_reader, &args->input, &s->mesh, err);
+    if (st == CW_OK && args->reference)
+        st =
+            cli_read_mesh(args->reference, args->mesh_reader, &args->input, &s->reference, err);
+    if (st == CW_OK && args->source)
+        st = cli_read_volume(args->source, &args->input, false, &s->volume, err);
+    if (st == CW_OK)
+        cli_report_end(&s->report, "read", 1, s->mesh.mesh.triangle_count);
+    return st;
+}
+
+static cw_status no_memory(const run_state *s, cw_error *err)
+{
+    return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to paint %zu triangles",
+                   s->mesh.mesh.triangle_count);
+}
+
+static cw_status measure_mesh(run_state *s, cw_error *err)
+{
+    const check_args *args = s->args;
+    const cw_mesh *mesh = &s->mesh.mesh;
+    const int threads = (int)args->input.threads;
+    const cw_quality_desc desc = {
+        .weld = CW_WELD_LOCAL, .shells = true, .threads = threads, .defects = s->defects};
+    const cw_crossings_desc crossings = {
+        .weld = CW_WELD_LOCAL,
+        .threads = threads,
+        .defects = s->defects,
+        .progress = cli_progress((double)mesh->triangle_count / 1e6, "Mtriangle")};
+    const bool solid = args->profile == CW_PROFILE_PRINT || args->profile == CW_PROFILE_FEM;
+    cli_report_begin(&s->report);
+    cw_status st = cw_quality_measure(mesh, &desc, &s->quality, err);
+    if (st == CW_OK)
+        cli_report_end(&s->report, "measure", mesh->triangle_count, 0);
+    if (st != CW_OK || !(solid || args->deep))
+        return st;
+    cli_report_begin(&s->report);
+    st = cw_self_intersections(mesh, &crossings, &s->crossings, err);
+    s->findings.crossings = st == CW_OK ? &s->crossings : NULL;
+    if (st == CW_OK)
+        cli_report_end(&s->report, "intersections", mesh->triangle_count, s->crossings.count);
+    return st;
+}
+
+static cw_status ask_cgal(run_state *s, cw_error *err)
+{
+    if (!s->args->deep)
+        return CW_OK;
+    if (!cw_quality_has_cgal()) {
+        cli_say("no second opinion: CGAL is not in this build");
+        return CW_OK;
+    }
+    cli_report_begin(&s->report);
+    cw_status st = cw_quality_ask_cgal(&s->mesh.mesh, CW_WELD_LOCAL, &s->cgal, err);
+    s->findings.cgal = st == CW_OK ? &s->cgal : NULL;
+    if (st == CW_OK)
+        cli_report_end(&s->report, "cgal", s->mesh.mesh.triangle_count, 0);
+    return st;
+}
+
+static cw_status measure_from_field(run_state *s, const cw_mesh *surface, cw_error *err)
+{
+    const cw_mesh_distance_desc back = {
+        .threads = (int)s->args->input.threads,
+        .progress = cli_progress((double)surface->triangle_count / 1e6, "Mtriangle")};
+    cw_status st = cw_quality_measure(surface, &(cw_quality_desc){.threads = back.threads},
+                                      &s->field, err);
+    if (st == CW_OK)
+        st = cw_distance_to_mesh(surface, &s->mesh.mesh, &back, &s->from_field, NULL, err);
+    if (st == CW_OK) {
+        s->findings.field = &s->field;
+        s->findings.from_field = &s->from_field;
+    }
+    return st;
+}
+
+/* To the field itself; and back from its surface as we extract it. */
+static cw_status compare_with_field(run_state *s, cw_error *err)
+{
+    const check_args *args = s->args;
+    const cw_mesh *mesh = &s->mesh.mesh;
+    cw_mesh surface = {0};
+    const cw_field_distance_desc desc = {
+        .isovalue = args->iso.value,
+        .inside_is_low = args->inside,
+        .leave_open = args->open,
+        .threads = (int)args->input.threads,
+        .progress = cli_progress((double)mesh->triangle_count / 1e6, "Mtriangle")};
+    cli_report_begin(&s->report);
+    cw_status st =
+        cw_distance_to_field(mesh, &s->volume.view, &desc, &s->to_field, s->distances, err);
+    if (st != CW_OK)
+        return st;
+    s->findings.to_field = &s->to_field;
+    st = cli_extract_surface(&s->volume, NULL,
+                             &(cw_extract_desc){.isovalue = args->iso.value,
+                                                .inside_is_low = args->inside,
+                                                .leave_open = args->open,
+                                                .no_normals = true,
+                                                .threads = desc.threads},
+                             &surface, NULL, err);
+    if (st == CW_OK)
+        st = measure_from_field(s, &surface, err);
+    cw_mesh_free(&surface);
+    if (st == CW_OK)
+        cli_report_end(&s->report, "field", mesh->triangle_count, s->to_field.samples);
+    return st;
+}
+
+static cw_status compare_with_reference(run_state *s, cw_error *err)
+{
+    const cw_mesh *mesh = &s->mesh.mesh, *other = &s->reference.mesh;
+    const cw_mesh_distance_desc desc = {
+        .threads = (int)s->args->input.threads,
+        .tolerance_mm = tolerance_of(s->args) / 100,
+        .progress = cli_progress((double)mesh->triangle_count / 1e6, "Mtriangle")};
+    float *distances = s->args->source ? NULL : s->distances;
+    cli_report_begin(&s->report);
+    cw_status st = cw_distance_to_mesh(mesh, other, &desc, &s->to_reference, distances, err);
+    if (st == CW_OK)
+        st = cw_distance_to_mesh(other, mesh, &desc, &s->from_reference, NULL, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, s->reference.path);
+    s->findings.to_reference = &s->to_reference;
+    s->findings.from_reference = &s->from_reference;
+    cli_report_end(&s->report, "reference", mesh->triangle_count, s->to_reference.samples);
+    return CW_OK;
+}
+
+/* Without triangles there is nothing to measure from or to: the verdict says so. */
+static cw_status measure(run_state *s, cw_error *err)
+{
+    const check_args *args = s->args;
+    const cw_mesh *mesh = &s->mesh.mesh;
+    if (args->defects) {
+        s->defects = calloc(mesh->triangle_count + 1, 1);
+        if (args->source || args->reference)
+            s->distances = calloc(mesh->vertex_count + 1, sizeof *s->distances);
+        if (!s->defects || ((args->source || args->reference) && !s->distances))
+            return no_memory(s, err);
+    }
+    s->findings.quality = &s->quality;
+    s->findings.tolerance_mm = tolerance_of(args);
+    s->findings.has_normals = mesh->normals;
+    cw_status st = measure_mesh(s, err);
+    if (st == CW_OK && mesh->triangle_count)
+        st = ask_cgal(s, err);
+    if (st == CW_OK && mesh->triangle_count && args->source)
+        st = compare_with_field(s, err);
+    if (st == CW_OK && mesh->triangle_count && args->reference)
+        st = compare_with_reference(s, err);
+    return st == CW_OK ? st : cwi_fail_in(err, st, s->mesh.path);
+}
+
+static void name_paints(const run_state *s)
+{
+    size_t count, used = 0;
+    const cw_paint *paints = cw_check_paints(&count);
+    for (size_t t = 0; t < s->mesh.mesh.triangle_count; t++)
+        used |= s->defects[t];
+    for (size_t n = 0; n < count; n++)
+        if (used & paints[n].defect)
+            cli_result("  %-8s%s\n", paints[n].color, paints[n].name);
+}
+
+static cw_status paint(run_state *s, cw_error *err)
+{
+    const cw_distance *to = s->args->source ? &s->to_field : &s->to_reference;
+    const double full = s->args->tolerance.given ? tolerance_of(s->args) : to->max_mm;
+    cw_mesh painted;
+    cli_made *made = &s->report.made[0];
+    cw_status st = cw_check_paint(&s->mesh.mesh, s->defects, s->distances, full, &painted, err);
+    if (st == CW_OK)
+        st = cw_mesh_write(s->args->defects, &painted, NULL, err);
+    cw_mesh_free(&painted);
+    if (st != CW_OK)
+        return st;
+    made->written = true;
+    cli_result("%s: the mesh with its defects painted", s->args->defects);
+    if (s->distances)
+        cli_result(", distances from grey at 0 to red at %.4g mm", full);
+    cli_result("\n");
+    name_paints(s);
+    return CW_OK;
+}
+
+static void print_facts(const run_state *s)
+{
+    const cw_quality *q = &s->quality;
+    cli_result("%s: %s component%s", s->mesh.path, cli_count(q->components),
+               q->components == 1 ? "" : "s");
+    if (q->cavities)
+        cli_result(", %s of them cavities", cli_count(q->cavities));
+    if (q->genus >= 0)
+        cli_result(", %lld handle%s", (long long)q->genus, q->genus == 1 ? "" : "s");
+    cli_result("; box %.6g x %.6g x %.6g mm, area %.6g mm2", q->max[0] - q->min[0],
+               q->max[1] - q->min[1], q->max[2] - q->min[2], q->area_mm2);
+    if (!q->open_edges && q->triangles)
+        cli_result(", volume %.6g mm3", q->volume_mm3);
+    cli_result("\n");
+}
+
+/* Names what does not hold: for the one line of the error. */
+static cw_status hold_to_profile(const run_state *s, cw_error *err)
+{
+    char names[256] = "";
+    if (cw_check_holds(s->verdicts, s->verdict_count))
+        return CW_OK;
+    for (const cw_verdict *v = s->verdicts; v < s->verdicts + s->verdict_count; v++)
+        if (v->grade == CW_GRADE_FAIL || v->grade == CW_GRADE_UNKNOWN) {
+            const size_t used = strlen(names);
+            snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", v->name);
+        }
+    return cw_fail(err, CW_ERR_CHECK, "%s: does not hold for profile %s: %s", s->mesh.path,
+                   profiles[s->args->profile], names);
+}
+
+static cw_status judge(run_state *s, double start, cw_error *err)
+{
+    const check_args *args = s->args;
+    s->verdict_count = cw_check_judge(&s->findings, (cw_profile)args->profile, s->verdicts);
+    s->report.made[0].quality = s->quality;
+    s->report.made[0].measured = true;
+    print_facts(s);
+    cli_print_verdicts(s->verdicts, s->verdict_count);
+    if (args->histogram && s->quality.degenerate < s->quality.triangles)
+        cli_print_shapes(&s->quality.shapes);
+    cw_status st = args->defects ? paint(s, err) : CW_OK;
+    if (st == CW_OK)
+        st = hold_to_profile(s, err);
+    if (st == CW_OK)
+        cli_result("%s: holds for profile %s; %.2f s\n", s->mesh.path, profiles[args->profile],
+                   cli_seconds() - start);
+    return st;
+}
+
+static void free_state(run_state *s)
+{
+    cw_crossings_free(&s->crossings);
+    cw_mesh_free(&s->mesh.mesh);
+    cw_mesh_free(&s->reference.mesh);
+    cw_volume_free(&s->volume.whole);
+    free(s->defects);
+    free(s->distances);
+}
+
+static cw_status run(void *p, cw_error *err)
+{
+    const check_args *args = p;
+    const double start = cli_seconds();
+    run_state s = {.args = args};
+    s.report.command = "check";
+    s.report.params = put_params;
+    s.report.facts = put_facts;
+    s.report.args = &s;
+    cli_report_next(&s.report, args->defects, args->iso.value);
+    cli_console_start(&args->common, (cli_progress_mode)args->progress);
+    if (args->json && strcmp(args->json, "-") == 0)
+        cli_results_to_stderr();
+    cw_status st = check_args_of(&s, err);
+    if (st == CW_OK)
+        st = read_inputs(&s, err);
+    if (st == CW_OK)
+        st = measure(&s, err);
+    if (st == CW_OK)
+        st = judge(&s, start, err);
+    st = cli_report_write(&s.report, st, err);
+    free_state(&s);
+    return st;
+}
+
+const cli_command cli_check = {
+    .name = "check",
+    .usage = "MESH [--profile NAME] [--source VOLUME --iso V] [options]",
+    .about = "verdicts on a mesh: closed, manifold, free of crossings, near its source",
+    .more =
+        "Reads a mesh and says, the worst first, what holds and what does not, with the "
+        "number\n"
+        "and what to do. Vertices at the same place count as one, as they do for slicers. "
+        "Exit\n"
+        "code 1 when the profile's promise does not hold.\n\n"
+        "  basic  an oriented manifold without flat or duplicate triangles, open or closed\n"
+        "  print  basic, closed, no triangle meets another; 5 to 400 mm\n"
+        "  web    oriented outward; normals, at most a million triangles\n"
+        "  fem    as print in any size; no angle below 10 degrees, no aspect ratio above 10\n\n"
+        "With --source and --iso the distance to the surface of the volume's trilinear field "
+        "is\n"
+        "measured, not to another mesh of it: largest, RMS, 99th percentile, and where. Then "
+        "the\n"
+        "way back, from the field's surface to the mesh, which finds what the mesh leaves "
+        "out,\n"
+        "and the topology of both. --tolerance makes a promise of it, or of --reference.\n\n"
+        "--deep looks for self-intersections in every profile (exact; print and fem always "
+        "do),\n"
+        "and asks CGAL the same questions: its answers must agree.\n\n"
+        "Examples\n"
+        "  cubewright check bone.stl --profile print\n"
+        "  cubewright check bone.glb --source ct.nrrd --iso 300 --tolerance 0.1mm\n"
+        "  cubewright check small.ply --reference bone.ply --defects where.ply\n",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .min_inputs = 1,
+    .max_inputs = 1,
+    .size = sizeof(check_args),
+    .run = run,
+};

@@ -1,0 +1,56 @@
+#include "cli/mesh.h"
+
+#include "cli/console.h"
+#include "cli/quantity.h"
+
+#include <sha2.h>
+#include <sys/stat.h>
+
+static void say_what_was_found(const cli_mesh *m)
+{
+    cli_say("%s: %s, %s vertices, %s triangles%s", m->path, m->file.format,
+            cli_count(m->mesh.vertex_count), cli_count(m->mesh.triangle_count),
+            m->file.known & CW_KNOWN_UNIT ? "" : " (no unit given: taken as mm)");
+    if (m->file.parts > 1)
+        cli_say("%s: %zu parts, taken as one mesh", m->path, m->file.parts);
+    if (m->file.polygons)
+        cli_say("%s: %s polygons cut into triangles", m->path, cli_count(m->file.polygons));
+    if (m->file.skipped)
+        cli_say("%s: %s points and lines left out", m->path, cli_count(m->file.skipped));
+}
+
+static double file_bytes(const char *path)
+{
+    struct stat info;
+    return stat(path, &info) == 0 ? (double)info.st_size : 0;
+}
+
+cw_status cli_read_mesh(const char *path, const char *reader, const cli_input *input,
+                        cli_mesh *mesh, cw_error *err)
+{
+    cw_mesh_read_desc desc = {
+        .reader = reader,
+        .allow_external = input->allow_external,
+        .max_bytes = cli_memory_limit(input),
+    };
+    desc.progress = cli_progress(file_bytes(path) / 1e6, "MB");
+    *mesh = (cli_mesh){.path = path};
+    cw_status st = cw_mesh_read(path, &desc, &mesh->mesh, &mesh->file, err);
+    if (st == CW_OK)
+        say_what_was_found(mesh);
+    return st;
+}
+
+void cli_json_mesh_file(cli_json *j, const char *key, const cli_mesh *mesh)
+{
+    char sum[SHA256_DIGEST_STRING_LENGTH];
+    cli_json_open(j, key, '{');
+    cli_json_text(j, "path", cli_shown_path(mesh->path));
+    cli_json_text(j, "kind", mesh->file.format);
+    cli_json_count(j, "parts", mesh->file.parts);
+    cli_json_text(j, "unit", mesh->file.known & CW_KNOWN_UNIT ? "mm" : "unknown");
+    cli_json_text(j, "frame", mesh->file.known & CW_KNOWN_FRAME ? "LPS" : "unknown");
+    if (SHA256File(mesh->path, sum))
+        cli_json_text(j, "sha256", sum);
+    cli_json_close(j, '}');
+}
