@@ -471,7 +471,7 @@ static cw_status add_triangles(reader *r, const corners *c, int mode, bool mirro
         st = cwi_build_reserve(&r->build, 0, total, err);
     for (size_t t = 0; t < count && st == CW_OK; t++) {
         size_t corner[3];
-        int64_t vertex;
+        int64_t vertex = 0;
         corners_of(mode, t, corner);
         for (int k = 0; k < 3 && st == CW_OK; k++) {
             st = corner_vertex(c, corner[mirrored ? 2 - k : k], &vertex, err);

@@ -70,7 +70,8 @@ static cw_status read_whole(const ply *p, cwi_scan *s, const cwi_ply_element *e,
     if (st == CW_OK && (!(fabs(number) < 1e15) || number != floor(number)))
         return cw_fail(err, CW_ERR_FORMAT, "element '%s' holds %g where a whole number belongs",
                        e->name, number);
-    *whole = (int64_t)number;
+    if (st == CW_OK)
+        *whole = (int64_t)number;
     return st;
 }
 

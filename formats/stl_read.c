@@ -6,8 +6,8 @@
 
 #include <float.h>
 #include <math.h>
-#include <stdio.h>
 #include <string.h>
+#include <strings.h>
 
 enum { HEADER = 80, START = 84, FACET = 50 };
 
@@ -28,7 +28,7 @@ static bool is_text(const unsigned char *head, size_t size)
     size_t i = 0;
     while (i < size && (head[i] == ' ' || (head[i] >= '\t' && head[i] <= '\r')))
         i++;
-    return size - i >= 5 && memcmp(head + i, "solid", 5) == 0;
+    return size - i >= 5 && strncasecmp((const char *)head + i, "solid", 5) == 0;
 }
 
 bool cwi_stl_sniff(const unsigned char *head, size_t size, uint64_t file_size)

@@ -1,0 +1,54 @@
+/* What the fuzz targets of the mesh readers share. */
+#ifndef TESTS_FUZZ_MESH_H
+#define TESTS_FUZZ_MESH_H
+
+#include <cubewright/formats.h>
+
+#include <stdio.h>
+#include <sys/mman.h>
+#include <unistd.h>
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
+
+/* Adds up what a reader made of the bytes, so that every array is looked at from end to end. */
+static inline double touch_mesh(const cw_mesh *m)
+{
+    cw_error err;
+    double sum = 0;
+    if (cw_mesh_check(m, &err) != CW_OK)
+        __builtin_trap(); /* what was read must be usable */
+    for (size_t i = 0; i < 3 * m->vertex_count; i++) {
+        if (m->normals && !(m->normals[i] - m->normals[i] == 0))
+            __builtin_trap(); /* normals are finite, if there are any */
+        sum += m->normals ? (double)m->normals[i] : 0;
+    }
+    for (size_t v = 0; v < m->vertex_count; v++) {
+        sum += m->scalars ? (double)m->scalars[v] : 0;
+        sum += m->labels ? (double)m->labels[v] : 0;
+        sum += m->colors ? (double)m->colors[4 * v + 3] : 0;
+    }
+    return sum;
+}
+
+/* Reads the bytes as a file that lives in memory only, by a reader that is named. */
+static inline int fuzz_mesh(const char *reader, const uint8_t *bytes, size_t size)
+{
+    char path[32];
+    cw_mesh mesh;
+    cw_mesh_file file;
+    cw_error err;
+    const cw_mesh_read_desc desc = {.reader = reader, .max_bytes = (uint64_t)64 << 20};
+    const int fd = memfd_create("fuzz", MFD_CLOEXEC);
+    if (fd < 0 || write(fd, bytes, size) != (ssize_t)size)
+        return 0;
+    snprintf(path, sizeof path, "/proc/self/fd/%d", fd);
+    if (cw_mesh_read(path, &desc, &mesh, &file, &err) == CW_OK) {
+        volatile double sum = touch_mesh(&mesh);
+        (void)sum;
+        cw_mesh_free(&mesh);
+    }
+    close(fd);
+    return 0;
+}
+
+#endif

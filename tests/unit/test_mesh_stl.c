@@ -1,0 +1,178 @@
+/* STL read: both forms, and what is neither. */
+#include "support/meshes.h"
+
+#include <math.h>
+#include <stdio.h>
+
+/* A facet's 50 bytes: its corners, and a normal that is wrong. */
+static void put_facet(char *to, const float corners[9])
+{
+    const float normal[3] = {NAN, 7, 0};
+    memcpy(to, normal, 12);
+    memcpy(to + 12, corners, 36);
+    memset(to + 48, 0, 2);
+}
+
+static const float two_facets[2][9] = {{0, 0, 0, 1, 0, 0, 0, 1, 0},
+                                       {1, 0, 0, 1, 1, 0, 0, 1, 0}};
+static const float points[12] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0};
+static const uint32_t triangles[6] = {0, 1, 2, 1, 3, 2};
+
+/* A binary file of two facets that share an edge; the count is as told. */
+static size_t make_binary(char bytes[200], const char *header, unsigned count)
+{
+    memset(bytes, 0, 200);
+    memcpy(bytes, header, strlen(header));
+    bytes[80] = (char)(count & 255);
+    bytes[83] = (char)(count >> 24);
+    for (size_t t = 0; t < 2; t++)
+        put_facet(bytes + 84 + 50 * t, two_facets[t]);
+    return 184;
+}
+
+static void corners_at_one_place_become_one_vertex(void **state)
+{
+    (void)state;
+    static const char *const headers[] = {"made by hand", "solid, but binary", ""};
+    for (size_t i = 0; i < 3; i++) {
+        char bytes[200];
+        cw_mesh mesh;
+        cw_mesh_file file;
+        cw_error err = {0};
+        const size_t size = make_binary(bytes, headers[i], 2);
+        assert_ok(read_bytes("a.bin", bytes, size, &mesh, &file, &err), err);
+        assert_string_equal(file.format, "stl");
+        assert_int_equal(file.known, 0);
+        check_positions(&mesh, 4, points);
+        check_triangles(&mesh, 2, triangles);
+        assert_null(mesh.normals);
+        cw_mesh_free(&mesh);
+    }
+}
+
+/* -0 and 0 are one place; a facet without area stays, and so does one that is there twice. */
+static void flat_facets_are_kept(void **state)
+{
+    (void)state;
+    static const float facets[2][9] = {{0, 0, 0, -0.0f, 0, 0, 0, 1, 0},
+                                       {0, 0, 0, -0.0f, 0, 0, 0, 1, 0}};
+    static const uint32_t wanted[6] = {0, 0, 1, 0, 0, 1};
+    char bytes[200];
+    cw_mesh mesh;
+    cw_error err = {0};
+    const size_t size = make_binary(bytes, "flat", 2);
+    for (size_t t = 0; t < 2; t++)
+        put_facet(bytes + 84 + 50 * t, facets[t]);
+    assert_ok(read_bytes("a.stl", bytes, size, &mesh, NULL, &err), err);
+    assert_int_equal(mesh.vertex_count, 2);
+    check_triangles(&mesh, 2, wanted);
+    cw_mesh_free(&mesh);
+}
+
+static void binary_files_must_hold_what_they_count(void **state)
+{
+    (void)state;
+    char bytes[200];
+    cw_mesh mesh;
+    cw_error err = {0};
+    size_t size = make_binary(bytes, "cut", 3);
+    assert_fails(read_bytes("a.stl", bytes, size, &mesh, NULL, &err), CW_ERR_FORMAT,
+                 "the header counts 3 facets; the file has room for 2", err);
+    size = make_binary(bytes, "huge", 0xff000000u);
+    assert_fails(read_bytes("a.stl", bytes, size, &mesh, NULL, &err), CW_ERR_FORMAT,
+                 "counts 4278190080 facets", err);
+    assert_fails(read_bytes("a.stl", bytes, 50, &mesh, NULL, &err), CW_ERR_FORMAT,
+                 "the file ends within the header", err);
+    size = make_binary(bytes, "nan", 2);
+    const float broken = -INFINITY;
+    memcpy(bytes + 84 + 50 + 12 + 16, &broken, 4);
+    assert_fails(read_bytes("a.stl", bytes, size, &mesh, NULL, &err), CW_ERR_FORMAT,
+                 "'y' of corner 1 of facet 1 is -inf", err);
+}
+
+/* Bytes behind the last facet, which some programs leave, are left alone. */
+static void no_facets_and_a_tail_are_allowed(void **state)
+{
+    (void)state;
+    char bytes[200];
+    cw_mesh mesh;
+    cw_error err = {0};
+    make_binary(bytes, "none", 0);
+    assert_ok(read_bytes("a.stl", bytes, 84, &mesh, NULL, &err), err);
+    assert_int_equal(mesh.vertex_count + mesh.triangle_count, 0);
+    assert_usable(&mesh);
+    cw_mesh_free(&mesh);
+    make_binary(bytes, "one of two", 1);
+    assert_ok(read_bytes("a.stl", bytes, 184, &mesh, NULL, &err), err);
+    assert_int_equal(mesh.triangle_count, 1);
+    cw_mesh_free(&mesh);
+}
+
+#define FACET(normal, p, q, r)                                                                 \
+    "facet normal " normal "\n outer loop\n  vertex " p "\n  vertex " q "\n  vertex " r        \
+    "\n endloop\nendfacet\n"
+#define ONE FACET("0 0 1", "0 0 0", "1 0 0", "0 1 0")
+#define TWO FACET("nan nan nan", "1 0 0", "1 1.0e0 -0", "0 +1 .0")
+
+static void text_is_read_in_every_shape(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {
+        "solid a name of words\n" ONE TWO "endsolid a name of words\n",
+        "  solid\n" ONE "endsolid\n\n solid\n" TWO "endsolid",
+        "SOLID x\r\n" ONE "\r\n\tFACET NORMAL 0 0 1 OUTER LOOP VERTEX 1 0 0 Vertex 1 1 0\r\n"
+        "VERTEX 0 1 0 ENDLOOP ENDFACET EndSolid\r\n",
+    };
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        cw_mesh mesh;
+        cw_mesh_file file;
+        cw_error err = {0};
+        assert_ok(read_text("a.txt", texts[i], &mesh, &file, &err), err);
+        assert_string_equal(file.format, "stl");
+        check_positions(&mesh, 4, points);
+        check_triangles(&mesh, 2, triangles);
+        cw_mesh_free(&mesh);
+    }
+}
+
+static void broken_text_is_told_by_line(void **state)
+{
+    (void)state;
+    static const refused rows[] = {
+        {"solid\n", "the file ends before the next word; facet or endsolid was expected"},
+        {"solid\n" ONE, "the file ends before the next word"},
+        {"solid\nfacet normal 0 0\nouter loop", "outer was expected"},
+        {"solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 x\n",
+         "line 4: a coordinate is 'x'; a number was expected"},
+        {"solid\n" FACET("0 0 1", "0 0 0", "1 0 0", "0 1e39 0"), "'y' of corner 2 of facet 0"},
+        {"solid\n" FACET("0 0 1", "0 0 0", "1 0 0", "0 nan 0"), "is nan; it must be finite"},
+        {"solid\n" FACET("0 0 1", "0 0 0", "1 0 0", "0 1 0\n vertex 1 1 1"),
+         "line 7: the next word is 'vertex'; endloop was expected"},
+        {"solid\n" ONE "endsolid\njunk",
+         "line 10: the next word is 'junk'; solid was expected"},
+        {"solid\n" ONE "endfacet\n", "facet or endsolid was expected"},
+        {"solid\nfacet normal "
+         "1111111111111111111111111111111111111111111111111111111111111111111"
+         "1111111111111111111111111111111111111111111111111111111111111111111111111111111111111"
+         "1"
+         "1111111111111111111111111111111111111111111111111111111111111111111111111111111111111"
+         "1"
+         "11111111111111111111111111111111111111111111111111111",
+         "a word of more than 255 bytes"},
+    };
+    check_refused("a.stl", rows, sizeof rows / sizeof *rows);
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
+    const struct CMUnitTest tests[] = {
+        TEST(corners_at_one_place_become_one_vertex),
+        TEST(flat_facets_are_kept),
+        TEST(binary_files_must_hold_what_they_count),
+        TEST(no_facets_and_a_tail_are_allowed),
+        TEST(text_is_read_in_every_shape),
+        TEST(broken_text_is_told_by_line),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
