@@ -106,9 +106,6 @@ static void put_facts(cli_json *j, const void *p)
         return;
     cli_json_text(j, "profile", profiles[s->args->profile]);
     cli_json_verdicts(j, s->verdicts, s->verdict_count);
-    if (s->findings.crossings)
-        cli_json_count(j, "self_intersections", s->crossings.count);
-    cli_json_count(j, "cavities", s->quality.cavities);
     cli_json_errors(j, &s->findings);
     cli_json_shapes(j, &s->quality.shapes);
 }
@@ -383,8 +380,10 @@ static cw_status judge(run_state *s, double start, cw_error *err)
 {
     const check_args *args = s->args;
     s->verdict_count = cw_check_judge(&s->findings, (cw_profile)args->profile, s->verdicts);
-    s->report.made[0].quality = s->quality;
-    s->report.made[0].measured = true;
+    cli_made *made = &s->report.made[0];
+    made->quality = s->quality;
+    made->measured = made->shells = true;
+    made->crossings = s->findings.crossings;
     print_facts(s);
     cli_print_verdicts(s->verdicts, s->verdict_count);
     if (args->histogram && s->quality.degenerate < s->quality.triangles)

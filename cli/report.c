@@ -78,8 +78,9 @@ static void put_steps(cli_json *j, const cli_report *r)
     cli_json_close(j, ']');
 }
 
-static void put_mesh(cli_json *j, const cw_quality *q)
+static void put_mesh(cli_json *j, const cli_made *made)
 {
+    const cw_quality *q = &made->quality;
     const double box[6] = {q->min[0], q->min[1], q->min[2], q->max[0], q->max[1], q->max[2]};
     cli_json_open(j, "mesh", '{');
     cli_json_count(j, "vertices", q->vertices);
@@ -92,6 +93,13 @@ static void put_mesh(cli_json *j, const cw_quality *q)
     cli_json_count(j, "misoriented_edges", q->misoriented_edges);
     cli_json_count(j, "border_loops", q->border_loops);
     cli_json_int(j, "genus", q->genus);
+    if (made->shells) {
+        cli_json_count(j, "cavities", q->cavities);
+        cli_json_count(j, "inside_out", q->inside_out);
+        cli_json_count(j, "nested", q->nested);
+    }
+    if (made->crossings)
+        cli_json_count(j, "self_intersections", made->crossings->count);
     cli_json_count(j, "degenerate", q->degenerate);
     cli_json_count(j, "duplicates", q->duplicates);
     cli_json_count(j, "needles", q->needles);
@@ -120,7 +128,7 @@ static void put_snap(cli_json *j, const cw_snap_counts *c)
 static void put_facts(cli_json *j, const cli_made *m)
 {
     if (m->measured)
-        put_mesh(j, &m->quality);
+        put_mesh(j, m);
     if (m->snapped)
         put_snap(j, &m->snap);
 }

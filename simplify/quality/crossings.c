@@ -11,13 +11,11 @@
 
 #include <stdlib.h>
 
-/* Blocks are handed out in chunks. A chunk may do so much work, a test being 1 and a pair kept
- * 4; when it is cut off, it is done again with a share of what all such chunks have together. A
- * sound mesh needs about 15 a triangle. The count, and so the result, does not depend on
- * threads.
- */
-enum { CHUNK_BLOCKS = 512, COST_OF_PAIR = 4 };
-static const size_t work_per_triangle = 96, work_beyond = (size_t)1 << 25;
+/* Blocks are handed out in chunks. A chunk may do so much work, a test being 1 and a pair kept 4:
+ * a sound mesh needs about 15 a triangle. When it is cut off, it is done again with a share of
+ * what all such chunks have together. The result does not depend on threads. */
+enum { CHUNK_BLOCKS = 512, COST_OF_PAIR = 4, LEAST_WORK = 32, MOST_WORK = 96 };
+static const size_t work_of_all = (size_t)1 << 28, work_beyond = (size_t)1 << 25;
 
 typedef struct pair {
     uint32_t a, b; /* a < b */
@@ -103,6 +101,15 @@ static void search_chunk(void *context, size_t k)
     }
 }
 
+static size_t first_allowance(const search *s)
+{
+    const size_t share = work_of_all / (s->blocks.count + 1);
+    const size_t a_triangle = share < LEAST_WORK  ? LEAST_WORK
+                              : share > MOST_WORK ? MOST_WORK
+                                                  : share;
+    return CHUNK_BLOCKS * CWI_BLOCK * a_triangle;
+}
+
 static bool prepare(search *s)
 {
     if (!cwi_welded_sort(&s->welded, &s->blocks))
@@ -110,7 +117,7 @@ static bool prepare(search *s)
     s->chunk_count = (s->blocks.block_count[0] + CHUNK_BLOCKS - 1) / CHUNK_BLOCKS;
     s->chunks = cwi_alloc_zeroed(s->chunk_count, sizeof *s->chunks);
     for (size_t k = 0; k < s->chunk_count && s->chunks; k++)
-        s->chunks[k].most_work = CHUNK_BLOCKS * CWI_BLOCK * work_per_triangle;
+        s->chunks[k].most_work = first_allowance(s);
     return s->chunks;
 }
 
@@ -122,7 +129,7 @@ static bool allow_more(search *s)
     for (size_t k = 0; k < s->chunk_count; k++)
         cut += s->chunks[k].cut;
     const size_t share = cut ? work_beyond / cut : 0;
-    if (share <= CHUNK_BLOCKS * CWI_BLOCK * work_per_triangle)
+    if (share <= first_allowance(s))
         return false;
     for (size_t k = 0; k < s->chunk_count; k++)
         s->chunks[k].most_work = s->chunks[k].cut ? share : 0;
