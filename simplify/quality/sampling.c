@@ -119,6 +119,8 @@ static void measure_vertices(void *context, size_t chunk)
         bool missed = false;
         w->vertex[v] = (float)w->s->measure(w->s->context, p, &hint, &missed);
         w->missed[v] = missed;
+        if (w->s->hints)
+            w->s->hints[v] = hint;
     }
 }
 

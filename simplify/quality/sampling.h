@@ -21,6 +21,7 @@ typedef struct cwi_sampling {
     cwi_measure *measure;
     const void *context;
     bool is_signed;
+    uint32_t *hints;  /* vertex_count: what measuring each vertex left; or NULL */
     const char *name; /* of the work, for progress */
     int threads;
     const cw_progress *progress;

@@ -1,0 +1,101 @@
+/* A tree of boxes: what is near a point, what overlaps a box? */
+#ifndef SIMPLIFY_QUALITY_BOXES_H
+#define SIMPLIFY_QUALITY_BOXES_H
+
+#include <cubewright/core.h>
+
+#include <math.h>
+
+enum { CWI_WIDTH = 8, CWI_LEVELS = 12 };
+
+/* The boxes of eight neighbours, side by side for arithmetic on several at a time; those that
+ * are not there are empty, low above high. */
+typedef struct cwi_boxes_node {
+    float low[3][CWI_WIDTH], high[3][CWI_WIDTH];
+} cwi_boxes_node;
+
+/* Items are sorted along a curve that fills space; eight in a row make a node, eight nodes one
+ * of the next level, up to a single one. So the tree has no pointers and no depth to fear: any
+ * boxes, equal ones too, give the same shape. Zeroed: empty. */
+typedef struct cwi_boxes {
+    size_t count;
+    uint32_t *order; /* items as the tree has them: in slot s stands item order[s] */
+    cwi_boxes_node *nodes;
+    int levels;
+    size_t first[CWI_LEVELS]; /* node of each level; 0 holds items, the last is one node */
+    float most;               /* the largest coordinate, without its sign */
+} cwi_boxes;
+
+/* Sorts boxes into a tree. They are not needed afterwards.
+ * boxes    count x 6: low x, y, z, high x, y, z; finite; fewer than 2^32
+ * Returns  CW_ERR_NO_MEMORY; free with cwi_boxes_free()
+ * Cost     28 bytes an item, 32 more meanwhile
+ * Source   the curve [Morton1966] */
+cw_status cwi_boxes_build(cwi_boxes *tree, const float (*boxes)[6], size_t count,
+                          cw_error *err);
+void cwi_boxes_free(cwi_boxes *tree);
+
+/* Calls visit for every item whose box shares a point with this one, until it returns false.
+ * Returns whether all were visited. */
+bool cwi_boxes_overlaps(const cwi_boxes *tree, const float box[6],
+                        bool (*visit)(void *context, size_t slot), void *context);
+
+/* Squares of a point's distances from eight boxes, never too large: all is widened by slack. */
+static inline void cwi_boxes_squares(const cwi_boxes_node *n, const float p[3], float slack,
+                                     float squares[CWI_WIDTH])
+{
+    for (int c = 0; c < CWI_WIDTH; c++)
+        squares[c] = 0;
+    for (int a = 0; a < 3; a++)
+        for (int c = 0; c < CWI_WIDTH; c++) {
+            const float below = n->low[a][c] - p[a] - slack,
+                        above = p[a] - n->high[a][c] - slack;
+            float d = below > above ? below : above;
+            d = d > 0 ? d : 0;
+            squares[c] += d * d;
+        }
+}
+
+/* Lowers *square, of a distance, to the least that `measure` finds among items in reach.
+ * Inline, so that measure becomes part of the loop. It lowers *square for the item in a slot,
+ * if that is nearer. */
+static inline void cwi_boxes_nearest(const cwi_boxes *tree, const double point[3],
+                                     void (*measure)(void *context, size_t slot,
+                                                     double *square),
+                                     void *context, double *square)
+{
+    typedef struct entry {
+        float square;
+        int level;
+        size_t node;
+    } entry;
+    entry stack[CWI_LEVELS * CWI_WIDTH];
+    const float p[3] = {(float)point[0], (float)point[1], (float)point[2]};
+    const float far = fmaxf(fmaxf(fabsf(p[0]), fabsf(p[1])), fmaxf(fabsf(p[2]), tree->most));
+    const float slack = far * 0x1p-21f;
+    size_t depth = 0;
+    if (tree->count)
+        stack[depth++] = (entry){0, tree->levels - 1, 0};
+    while (depth) {
+        const entry e = stack[--depth];
+        if ((double)e.square * (1 - 0x1p-20) >= *square)
+            continue;
+        float squares[CWI_WIDTH];
+        const size_t child = e.node * CWI_WIDTH, base = depth;
+        cwi_boxes_squares(tree->nodes + tree->first[e.level] + e.node, p, slack, squares);
+        for (size_t c = 0; c < CWI_WIDTH; c++) {
+            if (!((double)squares[c] * (1 - 0x1p-20) < *square))
+                continue;
+            if (e.level == 0) {
+                measure(context, child + c, square);
+                continue;
+            }
+            size_t s = depth++; /* the nearest one comes last, and is taken first */
+            for (; s > base && stack[s - 1].square < squares[c]; s--)
+                stack[s] = stack[s - 1];
+            stack[s] = (entry){squares[c], e.level - 1, child + c};
+        }
+    }
+}
+
+#endif

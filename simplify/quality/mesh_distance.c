@@ -1,0 +1,475 @@
+/* How far a mesh lies from another.
+ *
+ * The largest distance is bounded after [Tang2009]: the distance from one triangle R of the
+ * reference is a convex function, so over a triangle T it is largest in a corner of T; and
+ * whatever the distance from R is, the distance from the whole reference is not larger. The
+ * same holds for the two parts into which a line cuts T, one with R and one with its neighbour.
+ * It does not grow faster than the way gone either. A triangle that these bounds do not clear
+ * is divided into four. */
+#include <cubewright/distance.h>
+
+#include "core/layers.h"
+#include "core/memory.h"
+#include "core/status.h"
+#include "core/vector.h"
+#include "simplify/quality/boxes.h"
+#include "simplify/quality/sampling.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { CHUNK = 512, DEEPEST = 40 };
+
+/* The corners of a triangle of the reference, relative to its origin. */
+typedef struct facet {
+    float a[3], b[3], c[3];
+} facet;
+
+typedef struct reference {
+    cwi_boxes tree;
+    facet *facets;   /* in the tree's order */
+    double shift[3]; /* from the mesh's origin to the reference's */
+    double diagonal, side;
+} reference;
+
+/* What a query is about. */
+typedef struct query {
+    const reference *r;
+    double point[3];
+    size_t slot; /* of the nearest facet found */
+} query;
+
+static double segment_square(const double from[3], const double along[3])
+{
+    const double square = cwi_dot(along, along);
+    double t = square > 0 ? cwi_dot(from, along) / square : 0, way[3];
+    t = cwi_lesser(cwi_greater(t, 0), 1);
+    for (int k = 0; k < 3; k++)
+        way[k] = from[k] - t * along[k];
+    return cwi_dot(way, way);
+}
+
+/* The nearest point is in the triangle's plane or on a side that the point is beyond: which are
+ * the signs of three areas. Without an area all sides are asked. */
+static double facet_square(const facet *f, const double p[3])
+{
+    double ab[3], ac[3], ap[3], bc[3], bp[3], n[3], x[3], y[3], best = INFINITY;
+    for (int k = 0; k < 3; k++) {
+        ab[k] = (double)f->b[k] - (double)f->a[k];
+        ac[k] = (double)f->c[k] - (double)f->a[k];
+        ap[k] = p[k] - (double)f->a[k];
+        bc[k] = ac[k] - ab[k];
+        bp[k] = ap[k] - ab[k];
+    }
+    cwi_cross(ab, ac, n);
+    cwi_cross(ab, ap, x);
+    cwi_cross(ap, ac, y);
+    const double square = cwi_dot(n, n), in_c = cwi_dot(x, n), in_b = cwi_dot(y, n),
+                 in_a = square - in_b - in_c;
+    if (square > 0 && in_a >= 0 && in_b >= 0 && in_c >= 0) {
+        const double height = cwi_dot(ap, n);
+        return height * height / square;
+    }
+    if (!(in_c >= 0) || !(square > 0))
+        best = segment_square(ap, ab);
+    if (!(in_b >= 0) || !(square > 0))
+        best = cwi_lesser(best, segment_square(ap, ac));
+    if (!(in_a >= 0) || !(square > 0))
+        best = cwi_lesser(best, segment_square(bp, bc));
+    return best;
+}
+
+static void measure_facet(void *context, size_t slot, double *square)
+{
+    query *q = context;
+    const double s = facet_square(q->r->facets + slot, q->point);
+    if (s < *square) {
+        *square = s;
+        q->slot = slot;
+    }
+}
+
+/* From the whole reference; *hint is the slot of a facet to begin with, then of the nearest. */
+static double measure(const void *context, const double p[3], uint32_t *hint, bool *missed)
+{
+    const reference *r = context;
+    query q = {.r = r, .slot = *hint == UINT32_MAX ? r->tree.count / 2 : *hint};
+    for (int k = 0; k < 3; k++)
+        q.point[k] = p[k] - r->shift[k];
+    double square = facet_square(r->facets + q.slot, q.point);
+    cwi_boxes_nearest(&r->tree, q.point, measure_facet, &q, &square);
+    *hint = (uint32_t)q.slot;
+    *missed = false;
+    return sqrt(square);
+}
+
+/* A point of the mesh, its distance, and the nearest facet. */
+typedef struct corner {
+    double p[3], distance;
+    uint32_t slot;
+} corner;
+
+/* What a chunk of triangles adds to the bounds. */
+typedef struct extreme {
+    double max, bound, where[3];
+    size_t triangle;
+} extreme;
+
+typedef struct search {
+    const reference *r;
+    const cw_mesh *mesh;
+    const uint32_t *slots;          /* of the facets nearest to vertices */
+    double floor, tolerance, share; /* known to be met; bound - max, in mm and of max */
+    extreme *extremes;              /* one a chunk */
+} search;
+
+static double way_between(const double a[3], const double b[3])
+{
+    const double way[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    return sqrt(cwi_dot(way, way));
+}
+
+/* Facets that points of a triangle are nearest to, and the corners' squared distances. */
+typedef struct choice {
+    int count;
+    uint32_t slots[4];
+    double squares[4][3];
+} choice;
+
+static double square_from(const search *s, const double p[3], uint32_t slot)
+{
+    const double x[3] = {p[0] - s->r->shift[0], p[1] - s->r->shift[1], p[2] - s->r->shift[2]};
+    return facet_square(s->r->facets + slot, x);
+}
+
+static void choose(const search *s, const corner c[3], uint32_t slot, choice *choices)
+{
+    const int n = choices->count;
+    for (int k = 0; k < n; k++)
+        if (choices->slots[k] == slot)
+            return;
+    choices->slots[n] = slot;
+    for (int k = 0; k < 3; k++)
+        choices->squares[n][k] = square_from(s, c[k].p, slot);
+    choices->count++;
+}
+
+/* Cuts the side from a, nearer to one facet, to b, nearer to the other, about where both are
+ * equally near; returns the square that is certain for the cut point. */
+static double cut_side(const search *s, const double a[3], const double b[3],
+                       const uint32_t slots[2], double at_a, double at_b)
+{
+    double low = 0, high = 1, best = INFINITY;
+    for (int n = 0; n < 4; n++) {
+        const double share = at_a / (at_a - at_b), t = low + (high - low) * share;
+        const double p[3] = {a[0] + t * (b[0] - a[0]), a[1] + t * (b[1] - a[1]),
+                             a[2] + t * (b[2] - a[2])};
+        const double first = square_from(s, p, slots[0]), second = square_from(s, p, slots[1]);
+        best = cwi_lesser(best, cwi_greater(first, second));
+        if (first < second) {
+            low = t;
+            at_a = first - second;
+        } else {
+            high = t;
+            at_b = first - second;
+        }
+        if (!(at_a < 0 && at_b > 0))
+            break;
+    }
+    return best;
+}
+
+/* A bound by two facets: the corners nearer to the first one are cut off from the others. */
+static double bound_by_two(const search *s, const corner c[3], const choice *h, int i, int j,
+                           double limit)
+{
+    const uint32_t slots[2] = {h->slots[i], h->slots[j]};
+    const double *first = h->squares[i], *second = h->squares[j];
+    double square = 0;
+    for (int k = 0; k < 3; k++)
+        square = cwi_greater(square, cwi_lesser(first[k], second[k]));
+    for (int k = 0; k < 3 && square <= limit * limit; k++) {
+        const int a = first[k] < second[k] ? k : (k + 1) % 3, b = a == k ? (k + 1) % 3 : k;
+        if (first[a] < second[a] && first[b] > second[b])
+            square = cwi_greater(square, cut_side(s, c[a].p, c[b].p, slots,
+                                                  first[a] - second[a], first[b] - second[b]));
+    }
+    return sqrt(square);
+}
+
+/* The least of the bounds by one or two of the chosen facets; what is below the limit will do.
+ */
+static double bound_by(const search *s, const corner c[3], const choice *h, double limit)
+{
+    double bound = INFINITY;
+    for (int i = 0; i < h->count; i++)
+        bound =
+            cwi_lesser(bound, sqrt(cwi_greater(cwi_greater(h->squares[i][0], h->squares[i][1]),
+                                               h->squares[i][2])));
+    for (int i = 0; i < h->count; i++)
+        for (int j = 0; j < i && bound > limit; j++)
+            bound = cwi_lesser(bound, bound_by_two(s, c, h, i, j, limit));
+    return bound;
+}
+
+/* No point of a triangle is farther than its corner by more than its sides are long. */
+static double bound_by_way(const corner c[3])
+{
+    double bound = INFINITY;
+    for (int n = 0; n < 3; n++) {
+        const double way = cwi_greater(way_between(c[n].p, c[(n + 1) % 3].p),
+                                       way_between(c[n].p, c[(n + 2) % 3].p));
+        bound = cwi_lesser(bound, c[n].distance + way);
+    }
+    return bound;
+}
+
+static corner measure_at(const search *s, const double p[3], uint32_t hint, size_t t,
+                         extreme *e)
+{
+    corner m = {.p = {p[0], p[1], p[2]}, .slot = hint};
+    bool missed;
+    m.distance = measure(s->r, m.p, &m.slot, &missed);
+    if (m.distance > e->max) {
+        e->max = m.distance;
+        e->triangle = t;
+        memcpy(e->where, m.p, sizeof m.p);
+    }
+    return m;
+}
+
+static corner middle(const search *s, const corner *a, const corner *b, size_t t, extreme *e)
+{
+    const double p[3] = {(a->p[0] + b->p[0]) / 2, (a->p[1] + b->p[1]) / 2,
+                         (a->p[2] + b->p[2]) / 2};
+    return measure_at(s, p, a->slot, t, e);
+}
+
+static double limit_of(const search *s, const extreme *e)
+{
+    return e->max + cwi_greater(s->tolerance, s->share * e->max);
+}
+
+/* What is known without dividing the triangle; its middle is looked at if need be. */
+static double bound_of(const search *s, const corner c[3], size_t t, extreme *e)
+{
+    choice choices = {0};
+    double bound = bound_by_way(c), p[3];
+    if (bound <= limit_of(s, e))
+        return bound;
+    for (int n = 0; n < 3; n++)
+        choose(s, c, c[n].slot, &choices);
+    bound = cwi_lesser(bound, bound_by(s, c, &choices, limit_of(s, e)));
+    if (bound <= limit_of(s, e))
+        return bound;
+    for (int k = 0; k < 3; k++)
+        p[k] = (c[0].p[k] + c[1].p[k] + c[2].p[k]) / 3;
+    choose(s, c, measure_at(s, p, c[0].slot, t, e).slot, &choices);
+    return cwi_lesser(bound, bound_by(s, c, &choices, limit_of(s, e)));
+}
+
+static void search_triangle(const search *s, const corner c[3], size_t t, int depth, extreme *e)
+{
+    const double bound = bound_of(s, c, t, e);
+    if (bound <= limit_of(s, e) || depth == DEEPEST) {
+        e->bound = cwi_greater(e->bound, bound);
+        return;
+    }
+    const corner ab = middle(s, c, c + 1, t, e), bc = middle(s, c + 1, c + 2, t, e),
+                 ca = middle(s, c + 2, c, t, e);
+    search_triangle(s, (corner[]){ab, bc, ca}, t, depth + 1, e);
+    search_triangle(s, (corner[]){c[0], ab, ca}, t, depth + 1, e);
+    search_triangle(s, (corner[]){ab, c[1], bc}, t, depth + 1, e);
+    search_triangle(s, (corner[]){ca, bc, c[2]}, t, depth + 1, e);
+}
+
+/* A chunk begins with the largest distance of all points measured before, and sees its own only
+ * from there on: what others find meanwhile would make it depend on chance. */
+static void search_chunk(void *context, size_t chunk)
+{
+    const search *s = context;
+    extreme *e = s->extremes + chunk;
+    *e = (extreme){.max = s->floor, .triangle = SIZE_MAX};
+    for (size_t t = CHUNK * chunk; t < CHUNK * (chunk + 1) && t < s->mesh->triangle_count;
+         t++) {
+        double p[3][3];
+        corner c[3];
+        cwi_corners(s->mesh, t, p);
+        for (size_t n = 0; n < 3; n++) {
+            const size_t v = s->mesh->triangles[3 * t + n];
+            memcpy(c[n].p, p[n], sizeof c[n].p);
+            c[n].slot = s->slots[v];
+            c[n].distance = sqrt(square_from(s, p[n], c[n].slot));
+        }
+        search_triangle(s, c, t, 0, e);
+    }
+}
+
+static void join(const search *s, size_t chunks, cw_distance *out)
+{
+    out->bound_mm = out->max_mm;
+    for (size_t n = 0; n < chunks; n++) {
+        const extreme *e = s->extremes + n;
+        out->bound_mm = cwi_greater(out->bound_mm, cwi_greater(e->bound, e->max));
+        if (e->max > out->max_mm) {
+            out->max_mm = e->max;
+            out->triangle = e->triangle;
+            for (int k = 0; k < 3; k++)
+                out->where[k] = s->mesh->origin[k] + e->where[k];
+        }
+    }
+}
+
+static cw_status find_bound(search *s, const cw_mesh_distance_desc *d, cw_distance *out,
+                            cw_error *err)
+{
+    const size_t chunks = (s->mesh->triangle_count + CHUNK - 1) / CHUNK;
+    s->extremes = cwi_alloc_array(chunks, sizeof *s->extremes);
+    s->floor = out->max_mm;
+    cw_status st = CW_OK;
+    if (!s->extremes)
+        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu triangles",
+                     s->mesh->triangle_count);
+    if (st == CW_OK)
+        st = cwi_each_layer(chunks, CHUNK * CHUNK, d->threads, &d->progress, "largest distance",
+                            search_chunk, s, err);
+    if (st == CW_OK)
+        join(s, chunks, out);
+    cwi_free(s->extremes);
+    return st;
+}
+
+static void set_boxes(reference *r, const cw_mesh *mesh, float (*boxes)[6])
+{
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t t = 0; t < mesh->triangle_count; t++) {
+        double p[3][3];
+        cwi_corners(mesh, t, p);
+        for (int c = 0; c < 3; c++)
+            r->side += way_between(p[c], p[(c + 1) % 3]);
+        for (int a = 0; a < 3; a++) {
+            boxes[t][a] = (float)cwi_lesser(cwi_lesser(p[0][a], p[1][a]), p[2][a]);
+            boxes[t][a + 3] = (float)cwi_greater(cwi_greater(p[0][a], p[1][a]), p[2][a]);
+            low[a] = fminf(low[a], boxes[t][a]);
+            high[a] = fmaxf(high[a], boxes[t][a + 3]);
+        }
+    }
+    for (int a = 0; a < 3; a++)
+        r->diagonal = hypot(r->diagonal, (double)high[a] - (double)low[a]);
+    r->side /= 3 * (double)mesh->triangle_count;
+}
+
+static void set_facets(reference *r, const cw_mesh *mesh)
+{
+    for (size_t s = 0; s < r->tree.count; s++) {
+        const uint32_t *v = mesh->triangles + 3 * (size_t)r->tree.order[s];
+        memcpy(r->facets[s].a, mesh->positions + 3 * (size_t)v[0], sizeof r->facets[s].a);
+        memcpy(r->facets[s].b, mesh->positions + 3 * (size_t)v[1], sizeof r->facets[s].b);
+        memcpy(r->facets[s].c, mesh->positions + 3 * (size_t)v[2], sizeof r->facets[s].c);
+    }
+}
+
+static cw_status make_reference(reference *r, const cw_mesh *mesh, const double origin[3],
+                                cw_error *err)
+{
+    const size_t count = mesh->triangle_count;
+    cw_status st = CW_OK;
+    float(*boxes)[6] = cwi_alloc_array(count, sizeof *boxes);
+    r->facets = cwi_alloc_array(count, sizeof *r->facets);
+    for (int a = 0; a < 3; a++)
+        r->shift[a] = mesh->origin[a] - origin[a];
+    if (!boxes || !r->facets)
+        st =
+            cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a reference of %zu triangles", count);
+    if (st == CW_OK) {
+        set_boxes(r, mesh, boxes);
+        st = cwi_boxes_build(&r->tree, (const float(*)[6])boxes, count, err);
+    }
+    if (st == CW_OK)
+        set_facets(r, mesh);
+    cwi_free(boxes);
+    return st;
+}
+
+static cw_status check_reference(const cw_mesh *mesh, cw_error *err)
+{
+    const cw_status st = cw_mesh_check(mesh, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, "reference");
+    if (mesh->triangle_count == 0)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "the reference has no triangles; at least one was expected");
+    if (mesh->triangle_count > INT32_MAX)
+        return cw_fail(err, CW_ERR_LIMIT,
+                       "the reference has %zu triangles; up to 2^31 - 1 were expected",
+                       mesh->triangle_count);
+    return CW_OK;
+}
+
+static cw_status check_desc(const cw_mesh_distance_desc *d, cw_error *err)
+{
+    if (!(d->tolerance_mm >= 0) || !isfinite(d->tolerance_mm))
+        return cw_fail(err, CW_ERR_ARGUMENT, "tolerance_mm is %g; 0 or a length was expected",
+                       d->tolerance_mm);
+    if (!(d->step_mm >= 0) || !isfinite(d->step_mm))
+        return cw_fail(err, CW_ERR_ARGUMENT, "step_mm is %g; 0 or a length was expected",
+                       d->step_mm);
+    return CW_OK;
+}
+
+/* Means first: the largest distance among their points is where the search for bounds begins.
+ */
+static cw_status measure_mesh(const cw_mesh *mesh, const reference *r,
+                              const cw_mesh_distance_desc *d, cw_distance *out,
+                              float *per_vertex, cw_error *err)
+{
+    uint32_t *slots = cwi_alloc_array(mesh->vertex_count, sizeof *slots);
+    const double step = d->step_mm > 0 ? d->step_mm : r->side > 0 ? r->side : 1;
+    const cwi_sampling sampling = {
+        .mesh = mesh,
+        .step = {{1 / step, 0, 0}, {0, 1 / step, 0}, {0, 0, 1 / step}},
+        .measure = measure,
+        .context = r,
+        .hints = slots,
+        .name = "distances",
+        .threads = d->threads,
+        .progress = &d->progress};
+    search s = {.r = r,
+                .mesh = mesh,
+                .slots = slots,
+                .tolerance = d->tolerance_mm > 0 ? d->tolerance_mm : 0.01 * r->side,
+                .share = d->tolerance_mm > 0 ? 0 : 0.05};
+    cw_status st = CW_OK;
+    if (!slots)
+        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu vertices",
+                     mesh->vertex_count);
+    if (st == CW_OK)
+        st = cwi_sample_mesh(&sampling, out, per_vertex, err);
+    if (st == CW_OK)
+        st = find_bound(&s, d, out, err);
+    cwi_free(slots);
+    return st;
+}
+
+cw_status cw_distance_to_mesh(const cw_mesh *mesh, const cw_mesh *reference_mesh,
+                              const cw_mesh_distance_desc *desc, cw_distance *out,
+                              float *per_vertex, cw_error *err)
+{
+    const cw_mesh_distance_desc none = {0}, *d = desc ? desc : &none;
+    reference r = {0};
+    memset(out, 0, sizeof *out);
+    cw_status st = cw_mesh_check(mesh, err);
+    if (st == CW_OK)
+        st = check_reference(reference_mesh, err);
+    if (st == CW_OK)
+        st = check_desc(d, err);
+    if (st == CW_OK)
+        st = make_reference(&r, reference_mesh, mesh->origin, err);
+    if (st == CW_OK)
+        st = measure_mesh(mesh, &r, d, out, per_vertex, err);
+    if (st != CW_OK)
+        memset(out, 0, sizeof *out);
+    cwi_free(r.facets);
+    cwi_boxes_free(&r.tree);
+    return st;
+}
