@@ -595,6 +595,8 @@ static void describe(const reader *r, cw_mesh *mesh, cw_mesh_file *said)
 static uint64_t most_elements(const reader *r)
 {
     uint64_t largest = 0;
+    if (r->in->desc.max_triangles < UINT32_MAX) /* the caller knows */
+        return 3 * r->in->desc.max_triangles + FREE_COUNT;
     for (size_t i = 0; i < r->scene.buffer_count; i++) {
         const uint64_t bytes = cwi_gltf_file_bytes(&r->bytes, &r->scene.buffers[i]);
         largest = bytes > largest ? bytes : largest;
