@@ -22,11 +22,12 @@ static size_t hash_point(const float *p)
     return (size_t)hash;
 }
 
-/* The slot that holds the point (as its number + 1), or the free one where it belongs. */
-static size_t find_slot(const uint32_t *table, size_t slots, const float *points,
+/* The slot that holds the point (as its number + 1), or the free one where it belongs; the
+ * search starts at the slot that the point's hash says. */
+static size_t find_slot(const uint32_t *table, size_t slots, size_t start, const float *points,
                         const float *point)
 {
-    size_t s = hash_point(point) & (slots - 1);
+    size_t s = start;
     while (table[s] && !same_point(point, points + 3 * ((size_t)table[s] - 1)))
         s = (s + 1) & (slots - 1);
     return s;
@@ -41,7 +42,8 @@ bool cwi_weld(const float *points, size_t count, uint32_t *map)
     if (!table)
         return false;
     for (size_t v = 0; v < count; v++) {
-        const size_t s = find_slot(table, slots, points, points + 3 * v);
+        const float *p = points + 3 * v;
+        const size_t s = find_slot(table, slots, hash_point(p) & (slots - 1), points, p);
         if (!table[s])
             table[s] = (uint32_t)v + 1;
         map[v] = table[s] - 1;
@@ -61,8 +63,12 @@ static bool grow(cwi_welder *w)
     uint32_t *table = cwi_alloc_zeroed(slots, sizeof *table);
     if (!table)
         return false;
-    for (size_t v = 0; v < w->count; v++)
-        table[find_slot(table, slots, points, points + 3 * v)] = (uint32_t)v + 1;
+    for (size_t v = 0; v < w->count; v++) /* all differ: the first free slot is theirs */
+        for (size_t s = hash_point(points + 3 * v) & (slots - 1);; s = (s + 1) & (slots - 1))
+            if (!table[s]) {
+                table[s] = (uint32_t)v + 1;
+                break;
+            }
     cwi_free(w->table);
     w->table = table;
     w->slots = slots;
@@ -70,19 +76,44 @@ static bool grow(cwi_welder *w)
     return true;
 }
 
-bool cwi_welder_add(cwi_welder *w, const float point[3], uint32_t *index)
+enum { BATCH = 64 };
+
+/* Slots of a table that is larger than the caches arrive late: all are asked for first, then
+ * the points that they name, and only then is anything compared. */
+static bool add_batch(cwi_welder *w, const float *points, size_t count, uint32_t *indices)
 {
-    if (w->count == w->room && !grow(w))
-        return false;
-    const size_t s = find_slot(w->table, w->slots, w->points, point);
-    if (!w->table[s]) {
-        if (w->count == UINT32_MAX - 1)
-            return false;
-        memcpy(w->points + 3 * w->count, point, 3 * sizeof *point);
-        w->table[s] = (uint32_t)++w->count;
+    size_t start[BATCH];
+    for (size_t i = 0; i < count; i++) {
+        start[i] = hash_point(points + 3 * i) & (w->slots - 1);
+        __builtin_prefetch(&w->table[start[i]]);
     }
-    *index = w->table[s] - 1;
+    for (size_t i = 0; i < count; i++)
+        if (w->table[start[i]])
+            __builtin_prefetch(w->points + 3 * ((size_t)w->table[start[i]] - 1));
+    for (size_t i = 0; i < count; i++) {
+        const float *p = points + 3 * i;
+        const size_t s = find_slot(w->table, w->slots, start[i], w->points, p);
+        if (!w->table[s]) {
+            if (w->count == UINT32_MAX - 1)
+                return false;
+            memcpy(w->points + 3 * w->count, p, 3 * sizeof *p);
+            w->table[s] = (uint32_t)++w->count;
+        }
+        indices[i] = w->table[s] - 1;
+    }
     return true;
+}
+
+bool cwi_welder_add(cwi_welder *w, const float *points, size_t count, uint32_t *indices)
+{
+    bool ok = true;
+    for (size_t i = 0; ok && i < count; i += BATCH) {
+        const size_t batch = count - i < BATCH ? count - i : BATCH;
+        while (ok && w->room - w->count < batch)
+            ok = grow(w);
+        ok = ok && add_batch(w, points + 3 * i, batch, indices + i);
+    }
+    return ok;
 }
 
 void cwi_welder_free(cwi_welder *w)

@@ -22,9 +22,10 @@ typedef struct cwi_welder {
     size_t slots;
 } cwi_welder;
 
-/* Sets *index to that of a finite point, which is new when its place was not met before.
- * Returns false when memory is out, or after 2^32 - 2 points. */
-CW_API bool cwi_welder_add(cwi_welder *w, const float point[3], uint32_t *index);
+/* Sets each index to that of a finite point (count x 3), which is new when its place was not
+ * met before. Many points in a call are faster than many calls: their places are fetched
+ * together. Returns false when memory is out, or after 2^32 - 2 points. */
+CW_API bool cwi_welder_add(cwi_welder *w, const float *points, size_t count, uint32_t *indices);
 CW_API void cwi_welder_free(cwi_welder *w);
 
 #ifdef __cplusplus

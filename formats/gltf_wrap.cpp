@@ -316,12 +316,11 @@ cw_status write_scene(const cw_mesh *mesh, cwi_mesh_output *out, bool binary,
 // --- JSON to numbers ----------------------------------------------------------------------
 
 // Arrays go to C: ours frees them, even those of a scene that was not finished.
-template <typename T> void allocate(T *&array, size_t &count, size_t wanted)
+template <typename T> cw_status allocate(T *&array, size_t &count, size_t wanted, cw_error *err)
 {
     array = static_cast<T *>(cwi_alloc_zeroed(wanted, sizeof(T)));
-    if (!array)
-        throw std::bad_alloc();
-    count = wanted;
+    count = array ? wanted : 0;
+    return array ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the scene");
 }
 
 cw_status fail_model(cw_error *err, std::string words)
@@ -339,37 +338,50 @@ const tinygltf::Value &member(const tinygltf::Value &from, const char *key)
 
 // What cwi_gltf_blind() left of "buffers": a list of objects, in "extras". Their 'byteLength'
 // is not looked at: what counts is how long they are.
-void copy_buffers(const tinygltf::Value &list, cwi_gltf_scene &scene)
+cw_status copy_buffers(const tinygltf::Value &list, cwi_gltf_scene &scene, cw_error *err)
 {
-    allocate(scene.buffers, scene.buffer_count, list.IsArray() ? list.ArrayLen() : 0);
-    for (size_t i = 0; i < scene.buffer_count; i++) {
+    const size_t count = list.IsArray() ? list.ArrayLen() : 0;
+    cw_status st = allocate(scene.buffers, scene.buffer_count, count, err);
+    for (size_t i = 0; i < scene.buffer_count && st == CW_OK; i++) {
         const tinygltf::Value &uri = member(list.Get(int(i)), "uri");
         if (!uri.IsString())
             continue;
         scene.buffers[i].uri = cwi_strdup(uri.Get<std::string>().c_str());
         if (!scene.buffers[i].uri)
-            throw std::bad_alloc();
+            st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the scene");
     }
+    return st;
 }
 
-void copy_accessors(const tinygltf::Model &model, cwi_gltf_scene &scene)
+cw_status copy_views(const tinygltf::Model &model, cwi_gltf_scene &scene, cw_error *err)
 {
-    allocate(scene.views, scene.view_count, model.bufferViews.size());
+    const cw_status st = allocate(scene.views, scene.view_count, model.bufferViews.size(), err);
     for (size_t i = 0; i < scene.view_count; i++) {
         const tinygltf::BufferView &from = model.bufferViews[i];
         scene.views[i] = {from.buffer, from.byteOffset, from.byteLength, from.byteStride};
     }
-    allocate(scene.accessors, scene.accessor_count, model.accessors.size());
+    return st;
+}
+
+// Numbers of an element; matrices are of no use.
+int numbers_of(int type)
+{
+    if (type == TINYGLTF_TYPE_SCALAR)
+        return 1;
+    return type >= TINYGLTF_TYPE_VEC2 && type <= TINYGLTF_TYPE_VEC4 ? type : 0;
+}
+
+cw_status copy_accessors(const tinygltf::Model &model, cwi_gltf_scene &scene, cw_error *err)
+{
+    const cw_status st =
+        allocate(scene.accessors, scene.accessor_count, model.accessors.size(), err);
     for (size_t i = 0; i < scene.accessor_count; i++) {
         const tinygltf::Accessor &from = model.accessors[i];
-        const int numbers = from.type == TINYGLTF_TYPE_SCALAR ? 1
-                            : from.type >= TINYGLTF_TYPE_VEC2 && from.type <= TINYGLTF_TYPE_VEC4
-                                ? from.type
-                                : 0;
-        scene.accessors[i] = {from.bufferView,     from.byteOffset, from.count,
-                              from.componentType,  numbers,         from.normalized,
+        scene.accessors[i] = {from.bufferView,     from.byteOffset,       from.count,
+                              from.componentType,  numbers_of(from.type), from.normalized,
                               from.sparse.isSparse};
     }
+    return st;
 }
 
 int find_attribute(const tinygltf::Primitive &primitive, const char *name)
@@ -378,21 +390,25 @@ int find_attribute(const tinygltf::Primitive &primitive, const char *name)
     return found == primitive.attributes.end() ? -1 : found->second;
 }
 
-void copy_meshes(const tinygltf::Model &model, cwi_gltf_scene &scene)
+cw_status copy_meshes(const tinygltf::Model &model, cwi_gltf_scene &scene, cw_error *err)
 {
     size_t count = 0;
-    allocate(scene.meshes, scene.mesh_count, model.meshes.size());
+    cw_status st = allocate(scene.meshes, scene.mesh_count, model.meshes.size(), err);
     for (size_t i = 0; i < scene.mesh_count; i++) {
         scene.meshes[i] = {count, count + model.meshes[i].primitives.size()};
         count = scene.meshes[i].end;
     }
-    allocate(scene.primitives, scene.primitive_count, count);
+    if (st == CW_OK)
+        st = allocate(scene.primitives, scene.primitive_count, count, err);
+    if (st != CW_OK)
+        return st;
     cwi_gltf_primitive *to = scene.primitives;
     for (const tinygltf::Mesh &mesh : model.meshes)
         for (const tinygltf::Primitive &from : mesh.primitives)
             *to++ = {from.mode < 0 ? TINYGLTF_MODE_TRIANGLES : from.mode, from.indices,
                      find_attribute(from, "POSITION"), find_attribute(from, "NORMAL"),
                      find_attribute(from, "COLOR_0")};
+    return CW_OK;
 }
 
 // The numbers of an array of that many; false, and the old ones left, for anything else.
@@ -467,16 +483,17 @@ cw_status copy_node(const tinygltf::Node &from, size_t index, cwi_gltf_node &to,
 cw_status copy_nodes(const tinygltf::Model &model, cwi_gltf_scene &scene, cw_error *err)
 {
     size_t count = 0;
-    allocate(scene.nodes, scene.node_count, model.nodes.size());
-    for (size_t i = 0; i < scene.node_count; i++) {
-        const cw_status st = copy_node(model.nodes[i], i, scene.nodes[i], err);
-        if (st != CW_OK)
-            return st;
+    cw_status st = allocate(scene.nodes, scene.node_count, model.nodes.size(), err);
+    for (size_t i = 0; i < scene.node_count && st == CW_OK; i++) {
+        st = copy_node(model.nodes[i], i, scene.nodes[i], err);
         scene.nodes[i].first = count;
         count += model.nodes[i].children.size();
         scene.nodes[i].end = count;
     }
-    allocate(scene.children, scene.child_count, count);
+    if (st == CW_OK)
+        st = allocate(scene.children, scene.child_count, count, err);
+    if (st != CW_OK)
+        return st;
     int *to = scene.children;
     for (const tinygltf::Node &node : model.nodes)
         to = std::copy(node.children.begin(), node.children.end(), to);
@@ -502,9 +519,10 @@ cw_status copy_roots(const tinygltf::Model &model, cwi_gltf_scene &scene, cw_err
             if (!is_child[i])
                 roots.push_back(int(i));
     }
-    allocate(scene.roots, scene.root_count, roots.size());
-    std::copy(roots.begin(), roots.end(), scene.roots);
-    return CW_OK;
+    const cw_status st = allocate(scene.roots, scene.root_count, roots.size(), err);
+    if (st == CW_OK)
+        std::copy(roots.begin(), roots.end(), scene.roots);
+    return st;
 }
 
 // Extensions that change how a scene looks, but not where its triangles are, do no harm.
@@ -550,12 +568,15 @@ cw_status parse_scene(const char *json, size_t size, cwi_gltf_scene *scene,
             st = copy_nodes(model, *scene, err);
         if (st == CW_OK)
             st = copy_roots(model, *scene, err);
-        if (st != CW_OK)
-            return st;
-        copy_buffers(model.extras, *scene);
-        copy_accessors(model, *scene);
-        copy_meshes(model, *scene);
-        return CW_OK;
+        if (st == CW_OK)
+            st = copy_buffers(model.extras, *scene, err);
+        if (st == CW_OK)
+            st = copy_views(model, *scene, err);
+        if (st == CW_OK)
+            st = copy_accessors(model, *scene, err);
+        if (st == CW_OK)
+            st = copy_meshes(model, *scene, err);
+        return st;
     });
 }
 

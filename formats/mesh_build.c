@@ -2,6 +2,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "core/text.h"
+#include "core/vector.h"
 #include "formats/mesh_readers.h"
 
 #include <float.h>
@@ -159,8 +160,8 @@ static void choose_origin(const cwi_mesh_build *b, double origin[3])
     for (int a = 0; a < 3; a++) {
         double low = INFINITY, high = -INFINITY;
         for (size_t v = 0; v < b->point_count; v++) {
-            low = fmin(low, b->points[3 * v + (size_t)a]);
-            high = fmax(high, b->points[3 * v + (size_t)a]);
+            low = cwi_lesser(low, b->points[3 * v + (size_t)a]);
+            high = cwi_greater(high, b->points[3 * v + (size_t)a]);
         }
         middle[a] = low / 2 + high / 2;
         size = fmax(size, high - low);

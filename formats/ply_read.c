@@ -134,11 +134,10 @@ static void store(cw_mesh *mesh, size_t v, double point[3], const cwi_ply_proper
         mesh->labels[v] = number > 0 ? (uint32_t)fmin(number, UINT32_MAX) : 0;
 }
 
-static cw_status read_element(ply *p, cwi_scan *s, const cwi_ply_element *e, cw_mesh *mesh,
-                              cw_mesh_file *said, cw_error *err)
+static cw_status read_element(ply *p, cwi_scan *s, const cwi_ply_element *e, bool is_vertex,
+                              cw_mesh *mesh, cw_mesh_file *said, cw_error *err)
 {
     const size_t v = p->build.point_count;
-    const bool is_vertex = strcmp(e->name, "vertex") == 0;
     double point[3] = {0}, number = 0;
     cw_status st = CW_OK;
     for (size_t i = e->first; st == CW_OK && i < e->end; i++) {
@@ -160,8 +159,9 @@ static cw_status read_elements(ply *p, cwi_scan *s, cw_mesh *mesh, cw_mesh_file 
     cw_status st = CW_OK;
     for (size_t i = 0; i < p->header.element_count; i++) {
         const cwi_ply_element *e = &p->header.elements[i];
+        const bool is_vertex = strcmp(e->name, "vertex") == 0;
         for (uint64_t n = 0; st == CW_OK && n < e->count; n++)
-            st = read_element(p, s, e, mesh, said, err);
+            st = read_element(p, s, e, is_vertex, mesh, said, err);
     }
     return st;
 }

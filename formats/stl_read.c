@@ -9,7 +9,7 @@
 #include <string.h>
 #include <strings.h>
 
-enum { HEADER = 80, START = 84, FACET = 50 };
+enum { HEADER = 80, START = 84, FACET = 50, BATCH = 64 };
 
 static uint32_t u32_at(const unsigned char *b)
 {
@@ -55,17 +55,28 @@ static cw_status limit_memory(const facets *f, cw_error *err)
                    (unsigned long long)limit);
 }
 
-static cw_status add_corner(facets *f, int corner, const float point[3], cw_error *err)
+static cw_status check_corners(const facets *f, const float *corners, size_t count,
+                               cw_error *err)
 {
-    for (int a = 0; a < 3; a++)
-        if (!isfinite(point[a]))
+    for (size_t i = 0; i < 9 * count; i++)
+        if (!isfinite(corners[i]))
             return cw_fail(err, CW_ERR_FORMAT,
-                           "'%c' of corner %d of facet %zu is %g; it must be finite", "xyz"[a],
-                           corner, f -> count, (double)point[a]);
+                           "'%c' of corner %zu of facet %zu is %g; it must be finite",
+                           "xyz"[i % 3], i / 3 % 3, f->count + i / 9, (double)corners[i]);
+    return CW_OK;
+}
+
+/* Facets of nine coordinates each; there is room for them. */
+static cw_status add_facets(facets *f, const float *corners, size_t count, cw_error *err)
+{
     const size_t room = f->welder.room;
-    if (!cwi_welder_add(&f->welder, point, f->triangles + 3 * f->count + (size_t)corner))
+    cw_status st = check_corners(f, corners, count, err);
+    if (st != CW_OK)
+        return st;
+    if (!cwi_welder_add(&f->welder, corners, 3 * count, f->triangles + 3 * f->count))
         return cw_fail(err, f->welder.count < UINT32_MAX - 1 ? CW_ERR_NO_MEMORY : CW_ERR_LIMIT,
                        "no memory or number for vertex %zu", f->welder.count);
+    f->count += count;
     return f->welder.room == room ? CW_OK : limit_memory(f, err);
 }
 
@@ -80,20 +91,19 @@ static cw_status make_room(facets *f, uint64_t count, cw_error *err)
 
 /* --- binary ------------------------------------------------------------------------------ */
 
-static cw_status read_binary_facet(facets *f, cwi_scan *s, cw_error *err)
+static cw_status read_binary_facets(facets *f, cwi_scan *s, size_t count, cw_error *err)
 {
-    const unsigned char *b;
-    cw_status st = cwi_scan_take(s, FACET, "a facet", &b, err);
-    for (int c = 0; c < 3 && st == CW_OK; c++) {
-        float point[3];
-        for (int a = 0; a < 3; a++) {
-            const uint32_t bits = u32_at(b + 12 * (c + 1) + 4 * a);
-            memcpy(&point[a], &bits, sizeof bits);
+    float corners[9 * BATCH];
+    cw_status st = CW_OK;
+    for (size_t t = 0; t < count && st == CW_OK; t++) {
+        const unsigned char *b;
+        st = cwi_scan_take(s, FACET, "a facet", &b, err);
+        for (size_t i = 0; i < 9 && st == CW_OK; i++) {
+            const uint32_t bits = u32_at(b + 12 + 4 * i);
+            memcpy(&corners[9 * t + i], &bits, sizeof bits);
         }
-        st = add_corner(f, c, point, err);
     }
-    f->count += st == CW_OK;
-    return st;
+    return st == CW_OK ? add_facets(f, corners, count, err) : st;
 }
 
 /* The header that our writer leaves: frame and unit, and the origin of a local file. */
@@ -125,8 +135,10 @@ static cw_status read_binary(facets *f, cwi_scan *s, cw_mesh *mesh, cw_mesh_file
                        "the header counts %u facets; the file has room for %llu", count,
                        (unsigned long long)held);
     st = make_room(f, count, err);
-    while (st == CW_OK && f->count < count)
-        st = read_binary_facet(f, s, err);
+    while (st == CW_OK && f->count < count) {
+        const size_t left = count - f->count;
+        st = read_binary_facets(f, s, left < BATCH ? left : BATCH, err);
+    }
     return st;
 }
 
@@ -150,24 +162,24 @@ static cw_status expect(cwi_scan *s, const char *keyword, cw_error *err)
     return st;
 }
 
-static cw_status read_text_corner(facets *f, cwi_scan *s, int corner, cw_error *err)
+static cw_status read_text_corner(cwi_scan *s, float point[3], cw_error *err)
 {
-    float point[3] = {0};
     cw_status st = expect(s, "vertex", err);
     for (int a = 0; a < 3 && st == CW_OK; a++) {
-        double number;
+        double number = 0;
         st = cwi_scan_double(s, "a coordinate", &number, err);
-        if (st == CW_OK && fabs(number) > (double)FLT_MAX)
+        if (fabs(number) > (double)FLT_MAX)
             number = copysign((double)INFINITY, number);
-        point[a] = st == CW_OK ? (float)number : 0;
+        point[a] = (float)number;
     }
-    return st == CW_OK ? add_corner(f, corner, point, err) : st;
+    return st;
 }
 
 /* Behind the word "facet". The normal may be anything, "nan" too. */
 static cw_status read_text_facet(facets *f, cwi_scan *s, cw_error *err)
 {
     cwi_word word;
+    float corners[9];
     cw_status st = make_room(f, (uint64_t)f->count + 1, err);
     if (st == CW_OK)
         st = expect(s, "normal", err);
@@ -178,13 +190,12 @@ static cw_status read_text_facet(facets *f, cwi_scan *s, cw_error *err)
     if (st == CW_OK)
         st = expect(s, "loop", err);
     for (int c = 0; c < 3 && st == CW_OK; c++)
-        st = read_text_corner(f, s, c, err);
+        st = read_text_corner(s, corners + 3 * c, err);
     if (st == CW_OK)
         st = expect(s, "endloop", err);
     if (st == CW_OK)
         st = expect(s, "endfacet", err);
-    f->count += st == CW_OK;
-    return st;
+    return st == CW_OK ? add_facets(f, corners, 1, err) : st;
 }
 
 static cw_status read_solid(facets *f, cwi_scan *s, cw_error *err)

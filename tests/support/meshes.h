@@ -81,7 +81,7 @@ static inline void check_starved_mesh_reads(const char *name)
             assert_true(n > 0);
             return;
         }
-        assert_fails(st, CW_ERR_NO_MEMORY, "memory", err);
+        assert_fails(st, CW_ERR_NO_MEMORY, "no memory", err);
         assert_null(mesh.positions);
     }
 }

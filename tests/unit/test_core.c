@@ -4,9 +4,12 @@
 #include "core/module.h"
 #include "core/status.h"
 #include "core/text.h"
+#include "core/weld.h"
 
 #include <locale.h>
+#include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 static void every_status_has_its_row(void **state)
@@ -143,6 +146,120 @@ static void a_missing_module_names_its_option_and_package(void **state)
         CW_ERR_UNSUPPORTED, "-DCUBEWRIGHT_NOSUCH=ON and the Debian package libnosuch-dev", err);
 }
 
+/* SplitMix64. */
+static uint64_t next_random(uint64_t *state)
+{
+    uint64_t z = *state += 0x9E3779B97F4A7C15u;
+    z = (z ^ z >> 30) * 0xBF58476D1CE4E5B9u;
+    z = (z ^ z >> 27) * 0x94D049BB133111EBu;
+    return z ^ z >> 31;
+}
+
+static void check_as_strtod(const char *number)
+{
+    const char *text = number;
+    char *end;
+    double value = -7;
+    const double wanted = strtod(number, &end);
+    const bool found = cwi_parse_double(&text, &value);
+    if (found != (end != number) || text != end ||
+        (found && memcmp(&value, &wanted, sizeof value) != 0))
+        fail_msg("'%s' is read as %.17g up to '%s', not %.17g", number, value, text, wanted);
+}
+
+/* Short numbers go a way of their own; the C library is the judge of it. */
+static void numbers_are_those_of_strtod(void **state)
+{
+    (void)state;
+    static const char *const odd[] = {
+        "0",
+        "-0",
+        "+.5",
+        "5.",
+        ".",
+        "-.",
+        "",
+        "e5",
+        "1e",
+        "1e+",
+        "1e5",
+        "1E-5",
+        "1e22",
+        "1e23",
+        "1e-22",
+        "1e-23",
+        "0x1p3",
+        "0X10",
+        "1.5x",
+        "1..2",
+        "1.2.3",
+        "--1",
+        "+-1",
+        "1e5e5",
+        "inf",
+        "-NaN",
+        "1e400",
+        "1e-400",
+        "1,5",
+        " \t\n7",
+        "7 8",
+        "1e0005",
+        "9007199254740992",
+        "9007199254740993",
+        "9007199254740993e1",
+        "1e1.5",
+        "12345678901234567890",
+        "0.00000000000000000000001",
+        "123456789012345678.9e-3",
+    };
+    uint64_t random = 1;
+    for (size_t i = 0; i < sizeof odd / sizeof *odd; i++)
+        check_as_strtod(odd[i]);
+    for (int i = 0; i < 200000; i++) {
+        char text[64];
+        const double size = ldexp(1, (int)(next_random(&random) % 100) - 50);
+        const double value = ((double)(next_random(&random) >> 11) * 0x1p-52 - 1) * size;
+        const int digits = (int)(next_random(&random) % 18);
+        if (i % 3 == 0)
+            snprintf(text, sizeof text, "%.*g", digits, value);
+        else
+            snprintf(text, sizeof text, i % 3 == 1 ? " %+.*e" : "%.*f", digits, value);
+        check_as_strtod(text);
+    }
+}
+
+/* Points on a small lattice meet often, and -0 is 0. */
+static void a_welder_numbers_places_as_they_come(void **state)
+{
+    (void)state;
+    enum { COUNT = 20000 };
+    float *points = malloc(COUNT * 3 * sizeof *points);
+    uint32_t *map = malloc(COUNT * sizeof *map), *indices = malloc(COUNT * sizeof *indices);
+    cwi_welder welder = {0};
+    uint64_t random = 2;
+    assert_true(points && map && indices);
+    for (size_t i = 0; i < (size_t)3 * COUNT; i++) {
+        points[i] = (float)((int)(next_random(&random) % 33) - 16) * 0.1f;
+        points[i] = points[i] == 0 && random & 64 ? -0.0f : points[i];
+    }
+    assert_true(cwi_weld(points, COUNT, map));
+    assert_true(cwi_welder_add(&welder, points, 1, indices));
+    assert_true(cwi_welder_add(&welder, points + 3, COUNT - 1, indices + 1));
+    size_t places = 0;
+    for (size_t i = 0; i < COUNT; i++) {
+        const uint32_t first = map[i];
+        assert_int_equal(indices[i], first == i ? places : indices[first]);
+        places += first == i;
+        assert_memory_equal(welder.points + 3 * (size_t)indices[i], points + 3 * (size_t)first,
+                            3 * sizeof *points);
+    }
+    assert_int_equal(welder.count, places);
+    cwi_welder_free(&welder);
+    free(points);
+    free(map);
+    free(indices);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -153,6 +270,8 @@ int main(void)
         cmocka_unit_test(sizes_that_overflow_are_refused),
         cmocka_unit_test(the_nth_allocation_can_be_made_to_fail),
         cmocka_unit_test(numbers_have_points_in_every_locale),
+        cmocka_unit_test(numbers_are_those_of_strtod),
+        cmocka_unit_test(a_welder_numbers_places_as_they_come),
         cmocka_unit_test(only_utf8_is_utf8),
         cmocka_unit_test(a_missing_module_names_its_option_and_package),
     };
