@@ -356,7 +356,7 @@ static void print_facts(const run_state *s)
         cli_result(", %lld handle%s", (long long)q->genus, q->genus == 1 ? "" : "s");
     cli_result("; box %.6g x %.6g x %.6g mm, area %.6g mm2", q->max[0] - q->min[0],
                q->max[1] - q->min[1], q->max[2] - q->min[2], q->area_mm2);
-    if (!q->open_edges && q->triangles)
+    if (cw_quality_is_closed_manifold(q) && q->triangles)
         cli_result(", volume %.6g mm3", q->volume_mm3);
     cli_result("\n");
 }

@@ -11,9 +11,9 @@
 
 #include <stdlib.h>
 
-/* Blocks are handed out in chunks. A chunk may do so much work, a test being 1 and a pair kept 4:
- * a sound mesh needs about 15 a triangle. When it is cut off, it is done again with a share of
- * what all such chunks have together. The result does not depend on threads. */
+/* Blocks are handed out in chunks. A chunk may do so much work, a test being 1 and a pair kept
+ * 4: a sound mesh needs about 15 a triangle. When it is cut off, it is done again with a share
+ * of what all such chunks have together. The result does not depend on threads. */
 enum { CHUNK_BLOCKS = 512, COST_OF_PAIR = 4, LEAST_WORK = 32, MOST_WORK = 96 };
 static const size_t work_of_all = (size_t)1 << 28, work_beyond = (size_t)1 << 25;
 
@@ -190,6 +190,8 @@ cw_status cw_self_intersections(const cw_mesh *mesh, const cw_crossings_desc *de
         st = run(&s, &d, err);
     if (st == CW_OK)
         st = collect(&s, out, err);
+    for (size_t n = 0; n < 2 * out->count && d.defects; n++)
+        d.defects[out->pairs[n]] |= CW_DEFECT_INTERSECTING;
     for (size_t k = 0; k < s.chunk_count && s.chunks; k++)
         cwi_free(s.chunks[k].pairs);
     cwi_free(s.chunks);

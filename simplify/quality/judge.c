@@ -203,14 +203,14 @@ static void judge_look(bench *b)
     say(v, b->f->has_normals ? "one at every vertex" : "none: viewers will shade it flat");
 }
 
-/* The larger of the two directions counts; where is the place of the first. */
+/* There, and back: the mesh may be near all of it and yet leave parts of it out. */
 static void judge_distance(bench *b, const char *name, const char *other, const cw_distance *to,
                            const cw_distance *back)
 {
     if (!to)
         return;
     const double tolerance = b->f->tolerance_mm;
-    const double far = fmax(fmax(to->max_mm, to->bound_mm), back ? back->bound_mm : 0);
+    const double far = fmax(to->max_mm, to->bound_mm);
     const bool holds = far <= tolerance;
     cw_verdict *v = add(
         b, name, tolerance > 0 ? (holds ? CW_GRADE_OK : CW_GRADE_FAIL) : CW_GRADE_NOTE, far);
