@@ -170,10 +170,10 @@ static cw_status read_inputs(run_state *s, cw_error *err)
     return st;
 }
 
-static cw_status no_memory(const run_state *s, cw_error *err)
+/* Errors about the mesh name its file; those about the volume or reference name theirs. */
+static cw_status in_mesh(const run_state *s, cw_status st, cw_error *err)
 {
-    return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to paint %zu triangles",
-                   s->mesh.mesh.triangle_count);
+    return st == CW_OK ? st : cwi_fail_in(err, st, s->mesh.path);
 }
 
 static cw_status measure_mesh(run_state *s, cw_error *err)
@@ -194,13 +194,13 @@ static cw_status measure_mesh(run_state *s, cw_error *err)
     if (st == CW_OK)
         cli_report_end(&s->report, "measure", mesh->triangle_count, 0);
     if (st != CW_OK || !(solid || args->deep))
-        return st;
+        return in_mesh(s, st, err);
     cli_report_begin(&s->report);
     st = cw_self_intersections(mesh, &crossings, &s->crossings, err);
     s->findings.crossings = st == CW_OK ? &s->crossings : NULL;
     if (st == CW_OK)
         cli_report_end(&s->report, "intersections", mesh->triangle_count, s->crossings.count);
-    return st;
+    return in_mesh(s, st, err);
 }
 
 static cw_status ask_cgal(run_state *s, cw_error *err)
@@ -216,7 +216,7 @@ static cw_status ask_cgal(run_state *s, cw_error *err)
     s->findings.cgal = st == CW_OK ? &s->cgal : NULL;
     if (st == CW_OK)
         cli_report_end(&s->report, "cgal", s->mesh.mesh.triangle_count, 0);
-    return st;
+    return in_mesh(s, st, err);
 }
 
 static cw_status measure_from_field(run_state *s, const cw_mesh *surface, cw_error *err)
@@ -232,7 +232,7 @@ static cw_status measure_from_field(run_state *s, const cw_mesh *surface, cw_err
         s->findings.field = &s->field;
         s->findings.from_field = &s->from_field;
     }
-    return st;
+    return in_mesh(s, st, err);
 }
 
 /* To the field itself; and back from its surface as we extract it. */
@@ -251,7 +251,7 @@ static cw_status compare_with_field(run_state *s, cw_error *err)
     cw_status st =
         cw_distance_to_field(mesh, &s->volume.view, &desc, &s->to_field, s->distances, err);
     if (st != CW_OK)
-        return st;
+        return in_mesh(s, st, err);
     s->findings.to_field = &s->to_field;
     st = cli_extract_surface(&s->volume, NULL,
                              &(cw_extract_desc){.isovalue = args->iso.value,
@@ -298,7 +298,8 @@ static cw_status measure(run_state *s, cw_error *err)
         if (args->source || args->reference)
             s->distances = calloc(mesh->vertex_count + 1, sizeof *s->distances);
         if (!s->defects || ((args->source || args->reference) && !s->distances))
-            return no_memory(s, err);
+            return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to paint %zu triangles",
+                           mesh->triangle_count);
     }
     s->findings.quality = &s->quality;
     s->findings.tolerance_mm = tolerance_of(args);
@@ -310,7 +311,7 @@ static cw_status measure(run_state *s, cw_error *err)
         st = compare_with_field(s, err);
     if (st == CW_OK && mesh->triangle_count && args->reference)
         st = compare_with_reference(s, err);
-    return st == CW_OK ? st : cwi_fail_in(err, st, s->mesh.path);
+    return st;
 }
 
 static void name_paints(const run_state *s)

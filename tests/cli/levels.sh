@@ -20,7 +20,7 @@ ls out && rm -r out
 cubewright extract ct.nii.gz --iso 300,9000,-9000,0 -o '{level}.glb' --json r.json -q
 echo $?
 sed -n -e '/"surfaces"/,$p' r.json |
-    grep -v -e '_' -e '"box"' -e '"area"' -e '"volume"' -e '"degenerate"' -e '"euler"'
+    grep -v -e _ -e box -e area -e volume -e degenerate -e euler -e genus -e duplicates -e needles -e caps
 grep -c -e '"params"' -e '"accel": "octree"' r.json
 rm ./*.glb r.json
 

@@ -1,0 +1,37 @@
+# Verdicts: a sphere that is as it should be, and a solid with a hole.
+cubewright make sphere -o s.nrrd --dims 32 -q
+cubewright extract s.nrrd --iso 0 -o s.glb -q
+cubewright check s.glb --profile print --source s.nrrd --iso 0 --tolerance 0.1mm
+cubewright check s.glb --profile fem
+echo "exit $?"
+cat >open.off <<'END'
+OFF
+4 3 0
+0 0 0
+9 0 0
+0 9 0
+0 0 9
+3 0 2 1
+3 0 1 3
+3 0 3 2
+END
+cubewright check open.off && echo fine
+cubewright check open.off --profile print --defects open.ply --json open.json
+echo "exit $?"
+grep -c '^property uchar' open.ply
+grep -e '"command"' -e '"profile"' -e '"grade": "fail"' -e '"open_edges"' -e '"self_intersections"' \
+    -e '"status"' -e '"message"' -e '"exit"' -e '"compression"' open.json
+# the same facts for one thread and for three, and by any reader
+cubewright extract s.nrrd --iso 0 -o s.ply -q
+for t in 1 3; do
+    cubewright check s.ply --deep --source s.nrrd --iso 0 -t $t --json - -q |
+        grep -v -e seconds -e peak_bytes >$t
+done
+cmp 1 3 && echo "same report"
+# against another mesh: shifted by a tenth
+cubewright make sphere -o t.nrrd --dims 32 --type f32 -q
+cubewright extract t.nrrd --iso 0.1 -o t.ply -q
+cubewright check t.ply --reference s.ply --tolerance 0.05mm -q
+echo "exit $?"
+cubewright check t.ply --reference s.ply --tolerance 0.11mm -q --histogram
+echo "exit $?"
