@@ -1,0 +1,63 @@
+#include "cgal_bench.h"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Polygon_mesh_processing/self_intersections.h>
+#include <CGAL/Surface_mesh.h>
+
+#include <chrono>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#ifdef CGAL_LINKED_WITH_TBB
+#include <tbb/global_control.h>
+#endif
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Surface = CGAL::Surface_mesh<Kernel::Point_3>;
+using Pairs = std::vector<std::pair<Surface::Face_index, Surface::Face_index>>;
+
+namespace
+{
+
+Surface to_surface(const cw_mesh &mesh)
+{
+    Surface surface;
+    for (size_t v = 0; v < mesh.vertex_count; v++) {
+        const float *p = mesh.positions + 3 * v;
+        surface.add_vertex(Kernel::Point_3(double(p[0]), double(p[1]), double(p[2])));
+    }
+    for (size_t t = 0; t < mesh.triangle_count; t++) {
+        const uint32_t *c = mesh.triangles + 3 * t;
+        surface.add_face(Surface::Vertex_index(c[0]), Surface::Vertex_index(c[1]),
+                         Surface::Vertex_index(c[2]));
+    }
+    return surface;
+}
+
+template <typename Tag> double measure(const Surface &surface, size_t *pairs)
+{
+    Pairs found;
+    const auto start = std::chrono::steady_clock::now();
+    CGAL::Polygon_mesh_processing::self_intersections<Tag>(surface, std::back_inserter(found));
+    const std::chrono::duration<double, std::milli> spent =
+        std::chrono::steady_clock::now() - start;
+    *pairs = found.size();
+    return spent.count();
+}
+
+} // namespace
+
+double bench_cgal_intersections(const cw_mesh *mesh, int threads, size_t *pairs)
+{
+    const Surface surface = to_surface(*mesh);
+#ifdef CGAL_LINKED_WITH_TBB
+    tbb::global_control limit(tbb::global_control::max_allowed_parallelism, size_t(threads));
+    if (threads > 1)
+        return measure<CGAL::Parallel_tag>(surface, pairs);
+#else
+    if (threads > 1)
+        return -1;
+#endif
+    return measure<CGAL::Sequential_tag>(surface, pairs);
+}
