@@ -92,7 +92,7 @@ typedef struct cw_mesh_distance_desc {
  *                           finite, or as cw_mesh_check()
  *          CW_ERR_LIMIT     the reference has more than 2^31 triangles
  *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
- * Cost     a microsecond or two for a point near the reference; 60 bytes a triangle of it
+ * Cost     a microsecond or two for a point near the reference; 70 bytes a triangle of it
  * Threads  reentrant; the same to the bit for any number of threads
  * Source   bounds after [Tang2009] */
 CW_API cw_status cw_distance_to_mesh(const cw_mesh *mesh, const cw_mesh *reference,
