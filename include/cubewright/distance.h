@@ -67,8 +67,8 @@ CW_API cw_status cw_distance_to_field(const cw_mesh *mesh, const cw_volume *volu
 
 /* How to measure from a mesh. Zero fields mean the default named beside them. */
 typedef struct cw_mesh_distance_desc {
-    double tolerance_mm;  /* bound_mm - max_mm is at most this; default: 1 % of max_mm, or
-                             1e-5 of the diagonal of the reference's box where that is more */
+    double tolerance_mm;  /* bound_mm - max_mm is at most this; default: 5 % of max_mm, or
+                             1 % of the reference's average side where that is more */
     double step_mm;       /* points of mean, rms and p99 are at most so far apart along sides;
                              default: the length of a side in the reference, on average */
     int threads;          /* default: all that OpenMP offers */
@@ -92,7 +92,7 @@ typedef struct cw_mesh_distance_desc {
  *                           finite, or as cw_mesh_check()
  *          CW_ERR_LIMIT     the reference has more than 2^31 triangles
  *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
- * Cost     a microsecond or two for a point near the reference; 60 bytes a triangle of it
+ * Cost     a microsecond or two for a point near the reference; 70 bytes a triangle of it
  * Threads  reentrant; the same to the bit for any number of threads
  * Source   bounds after [Tang2009] */
 CW_API cw_status cw_distance_to_mesh(const cw_mesh *mesh, const cw_mesh *reference,

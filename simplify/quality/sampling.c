@@ -15,10 +15,18 @@
 #include <string.h>
 
 enum {
-    CHUNK = 4096,       /* points that one thread measures in a row, or a large triangle's */
-    BINS = 1 << 16,     /* of distances, by the leading 16 bits of a positive float */
-    WORTH = 512 * CHUNK /* a chunk's work, in samples of a volume compared */
+    CHUNK = 4096,        /* points that one thread measures in a row, or a large triangle's */
+    BINS = 1 << 16,      /* of distances, by the leading 16 bits of a positive float */
+    WORTH = 512 * CHUNK, /* a chunk's work, in samples of a volume compared */
+    KEPT = 2048          /* sides of small triangles whose middles are remembered */
 };
+
+/* What was measured in the middle of a side: its other triangle mostly comes soon. */
+typedef struct side {
+    uint32_t low, high; /* vertices; equal: none */
+    bool missed;
+    double distance;
+} side;
 
 /* What is known of a chunk of triangles, before it is joined with the others. */
 typedef struct tally {
@@ -183,16 +191,41 @@ static double weight_of(uint32_t i, uint32_t j, uint32_t k)
     return walls == 2 ? 1 / 20.0 : walls ? 3 / 20.0 : 6 / 20.0;
 }
 
-static void measure_triangle(const work *w, tally *y, size_t t, uint32_t *hint)
+/* The middle of an undivided triangle's side, measured once for both triangles. */
+static void measure_side(const work *w, tally *y, const double p[3][3], size_t t, int c,
+                         double share, side *sides, uint32_t *hint)
 {
-    double p[3][3], x[3];
-    cwi_corners(w->s->mesh, t, p);
-    const double(*q)[3] = (const double(*)[3])p;
-    const uint32_t n = parts_of(w, q), m = 2 * n;
-    const double share = w->area > 0 ? area_of(q) / w->area / ((double)n * n) : 0;
+    const uint32_t *v = w->s->mesh->triangles + 3 * t, a = v[c], b = v[(c + 1) % 3];
+    const uint32_t low = a < b ? a : b, high = a < b ? b : a;
+    side *s = sides + (low * 7 + high) % KEPT;
+    double x[3];
+    for (int k = 0; k < 3; k++)
+        x[k] = (p[c][k] + p[(c + 1) % 3][k]) / 2;
+    if (s->low != low || s->high != high || low == high) {
+        *s = (side){.low = low, .high = high};
+        s->distance = w->s->measure(w->s->context, x, hint, &s->missed);
+        y->samples++;
+        y->missed += s->missed;
+    }
+    take(w, y, s->distance, share * 2 / 15, x, t);
+}
+
+/* Most triangles of a mesh that was extracted: corners, middles of sides, centroid. */
+static void measure_small(const work *w, tally *y, const double p[3][3], size_t t, double share,
+                          side *sides, uint32_t *hint)
+{
+    double x[3];
     for (int c = 0; c < 3; c++)
-        take(w, y, (double)w->vertex[w->s->mesh->triangles[3 * t + (size_t)c]], share / 20,
-             p[c], t);
+        measure_side(w, y, p, t, c, share, sides, hint);
+    between(p, 1 / 3.0, 1 / 3.0, 1 / 3.0, x);
+    measure_point(w, y, x, share * 9 / 20, t, hint);
+}
+
+static void measure_divided(const work *w, tally *y, const double q[3][3], size_t t,
+                            double share, uint32_t n, uint32_t *hint)
+{
+    const uint32_t m = 2 * n;
+    double x[3];
     for (uint32_t i = 0; i <= m; i++)
         for (uint32_t j = 0; i + j <= m; j++) {
             const uint32_t k = m - i - j;
@@ -210,14 +243,31 @@ static void measure_triangle(const work *w, tally *y, size_t t, uint32_t *hint)
             }
 }
 
+static void measure_triangle(const work *w, tally *y, size_t t, side *sides, uint32_t *hint)
+{
+    double p[3][3];
+    cwi_corners(w->s->mesh, t, p);
+    const double(*q)[3] = (const double(*)[3])p;
+    const uint32_t n = parts_of(w, q);
+    const double share = w->area > 0 ? area_of(q) / w->area / ((double)n * n) : 0;
+    for (int c = 0; c < 3; c++)
+        take(w, y, (double)w->vertex[w->s->mesh->triangles[3 * t + (size_t)c]], share / 20,
+             p[c], t);
+    if (n == 1)
+        measure_small(w, y, q, t, share, sides, hint);
+    else
+        measure_divided(w, y, q, t, share, n, hint);
+}
+
 static void measure_chunk(void *context, size_t chunk)
 {
     const work *w = context;
     tally *y = w->tallies + chunk;
     uint32_t hint = UINT32_MAX;
+    side sides[KEPT] = {{0}};
     y->max = -1;
     for (size_t t = y[0].first; t < y[1].first; t++)
-        measure_triangle(w, y, t, &hint);
+        measure_triangle(w, y, t, sides, &hint);
 }
 
 /* The distance below which 99 % of the area lies. */
