@@ -75,8 +75,7 @@ static void put(cwi_boxes_node *nodes, size_t child, const float box[6])
     }
 }
 
-/* The box around a node's boxes. */
-static void around(const cwi_boxes_node *n, float box[6])
+void cwi_boxes_around(const cwi_boxes_node *n, float box[6])
 {
     for (int a = 0; a < 3; a++) {
         box[a] = n->low[a][0];
@@ -98,7 +97,7 @@ static void fill_level(cwi_boxes *t, const float (*boxes)[6], int level, size_t 
         if (level == 0) {
             put(nodes, c, boxes[t->order[c]]);
         } else {
-            around(t->nodes + t->first[level - 1] + c, box);
+            cwi_boxes_around(t->nodes + t->first[level - 1] + c, box);
             put(nodes, c, box);
         }
     for (; c % CWI_WIDTH; c++)
@@ -159,37 +158,30 @@ void cwi_boxes_free(cwi_boxes *tree)
     *tree = (cwi_boxes){0};
 }
 
-static bool overlaps(const cwi_boxes_node *n, int c, const float box[6])
-{
-    bool meet = true;
-    for (int a = 0; a < 3; a++)
-        meet &= n->low[a][c] <= box[a + 3] && box[a] <= n->high[a][c];
-    return meet;
-}
-
-bool cwi_boxes_overlaps(const cwi_boxes *tree, const float box[6],
-                        bool (*visit)(void *context, size_t slot), void *context)
+void cwi_boxes_visit(const cwi_boxes *tree, const float box[6], size_t first,
+                     bool (*visit)(void *context, size_t node), void *context)
 {
     struct {
         int level;
         size_t node;
     } stack[CWI_LEVELS * CWI_WIDTH] = {{tree->levels - 1, 0}};
-    size_t depth = tree->count > 0;
+    size_t depth = first < cwi_boxes_nodes(tree);
     while (depth) {
         const int level = stack[--depth].level;
         const size_t node = stack[depth].node;
-        const cwi_boxes_node *n = tree->nodes + tree->first[level] + node;
-        for (int c = 0; c < CWI_WIDTH; c++) {
-            if (!overlaps(n, c, box))
+        if (level == 0) {
+            if (!visit(context, node))
+                return;
+            continue;
+        }
+        const unsigned meeting =
+            cwi_boxes_meeting(tree->nodes + tree->first[level] + node, box);
+        for (size_t c = CWI_WIDTH; c-- > 0;) {
+            const size_t child = node * CWI_WIDTH + c;
+            if (!(meeting >> c & 1) || child < first >> 3 * (level - 1)) /* ends before it */
                 continue;
-            const size_t child = node * CWI_WIDTH + (size_t)c;
-            if (level == 0 && !visit(context, child))
-                return false;
-            if (level > 0) {
-                stack[depth].level = level - 1;
-                stack[depth++].node = child;
-            }
+            stack[depth].level = level - 1;
+            stack[depth++].node = child;
         }
     }
-    return true;
 }

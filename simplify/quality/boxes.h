@@ -36,14 +36,42 @@ cw_status cwi_boxes_build(cwi_boxes *tree, const float (*boxes)[6], size_t count
                           cw_error *err);
 void cwi_boxes_free(cwi_boxes *tree);
 
-/* Calls visit for every item whose box shares a point with this one, until it returns false.
- * Returns whether all were visited. */
-bool cwi_boxes_overlaps(const cwi_boxes *tree, const float box[6],
-                        bool (*visit)(void *context, size_t slot), void *context);
+/* Calls visit for each node of level 0, from node `first` on and in rising order, that may hold
+ * boxes sharing a point with this one, until it returns false. Item s of the tree's order is
+ * box s % CWI_WIDTH of node s / CWI_WIDTH. box  low x, y, z, high x, y, z; ends may be infinite
+ */
+void cwi_boxes_visit(const cwi_boxes *tree, const float box[6], size_t first,
+                     bool (*visit)(void *context, size_t node), void *context);
+
+/* The box around a node's boxes. */
+void cwi_boxes_around(const cwi_boxes_node *node, float box[6]);
 
 /* Four numbers at a time, said so: compilers make jumps of loops this short. */
 typedef float cwi_lanes __attribute__((vector_size(16)));
 typedef int32_t cwi_mask __attribute__((vector_size(16)));
+
+/* Bit c: box c of the node shares a point with the box. */
+static inline unsigned cwi_boxes_meeting(const cwi_boxes_node *n, const float box[6])
+{
+    unsigned meeting = 0;
+    for (int c = 0; c < CWI_WIDTH; c += 4) {
+        cwi_mask meet = {1, 2, 4, 8};
+        for (int a = 0; a < 3; a++) {
+            cwi_lanes low, high;
+            memcpy(&low, n->low[a] + c, sizeof low);
+            memcpy(&high, n->high[a] + c, sizeof high);
+            meet &= (low <= box[a + 3]) & (high >= box[a]);
+        }
+        meeting |= (unsigned)(meet[0] | meet[1] | meet[2] | meet[3]) << c;
+    }
+    return meeting;
+}
+
+/* How many nodes of level 0 there are. */
+static inline size_t cwi_boxes_nodes(const cwi_boxes *tree)
+{
+    return (tree->count + CWI_WIDTH - 1) / CWI_WIDTH;
+}
 
 /* Squares of a point's distances from eight boxes, never too large: all is widened by slack. A
  * point is beyond at most one of a box's ends. */

@@ -8,43 +8,19 @@ typedef struct corners {
     const float *p[3];
 } corners;
 
-/* Whether the closed segments p q and r s of one plane, seen along the axis, meet. */
-static bool segments_meet(const float *p, const float *q, const float *r, const float *s,
-                          int axis)
-{
-    const int pr = cwi_orient2d(p, q, r, axis), ps = cwi_orient2d(p, q, s, axis);
-    if (pr * ps > 0)
-        return false;
-    const int rp = cwi_orient2d(r, s, p, axis), rq = cwi_orient2d(r, s, q, axis);
-    if (rp * rq > 0)
-        return false;
-    if (pr || ps || rp || rq)
-        return true;
-    for (int a = 0; a < 3; a++) { /* on one line: do their boxes meet? */
-        const float low = p[a] < q[a] ? p[a] : q[a], high = p[a] < q[a] ? q[a] : p[a];
-        if ((r[a] < low && s[a] < low) || (r[a] > high && s[a] > high))
-            return false;
-    }
-    return true;
-}
-
-static bool holds_point(const corners *t, const float *p, int axis)
-{
-    const int s0 = cwi_orient2d(t->p[0], t->p[1], p, axis);
-    const int s1 = cwi_orient2d(t->p[1], t->p[2], p, axis);
-    const int s2 = cwi_orient2d(t->p[2], t->p[0], p, axis);
-    return !((s0 > 0 || s1 > 0 || s2 > 0) && (s0 < 0 || s1 < 0 || s2 < 0));
-}
-
-/* In one plane, seen along the axis. */
+/* A closed segment and a closed triangle in one plane, seen along the axis: they are apart if
+ * the line of one of their edges has all of the other on its far side. */
 static bool segment_meets_flat(const float *p, const float *q, const corners *t, int axis)
 {
-    if (holds_point(t, p, axis) || holds_point(t, q, axis))
-        return true;
-    for (int n = 0; n < 3; n++)
-        if (segments_meet(p, q, t->p[n], t->p[(n + 1) % 3], axis))
-            return true;
-    return false;
+    const int turn = cwi_orient2d(t->p[0], t->p[1], t->p[2], axis);
+    for (int n = 0; n < 3; n++) {
+        const float *r = t->p[n], *s = t->p[(n + 1) % 3];
+        if (cwi_orient2d(r, s, p, axis) == -turn && cwi_orient2d(r, s, q, axis) == -turn)
+            return false;
+    }
+    const int first = cwi_orient2d(p, q, t->p[0], axis);
+    return !first || cwi_orient2d(p, q, t->p[1], axis) != first ||
+           cwi_orient2d(p, q, t->p[2], axis) != first;
 }
 
 static int side(const corners *t, const float *p)

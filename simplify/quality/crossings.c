@@ -5,16 +5,16 @@
 #include "core/layers.h"
 #include "core/memory.h"
 #include "core/status.h"
-#include "simplify/quality/blocks.h"
+#include "simplify/quality/boxes.h"
 #include "simplify/quality/contact.h"
 #include "simplify/quality/welded.h"
 
 #include <stdlib.h>
 
-/* Blocks are handed out in chunks. A chunk may do so much work, a test being 1 and a pair kept
- * 4: a sound mesh needs about 15 a triangle. When it is cut off, it is done again with a share
- * of what all such chunks have together. The result does not depend on threads. */
-enum { CHUNK_BLOCKS = 512, COST_OF_PAIR = 4, LEAST_WORK = 32, MOST_WORK = 96 };
+/* Nodes of the tree are handed out in chunks. A chunk may do so much work, a test being 1 and a
+ * pair kept 4: a sound mesh needs about 15 a triangle. When it is cut off, it is done again
+ * with a share of what all such chunks have together. The result does not depend on threads. */
+enum { CHUNK_NODES = 512, COST_OF_PAIR = 4, LEAST_WORK = 32, MOST_WORK = 96 };
 static const size_t work_of_all = (size_t)1 << 28, work_beyond = (size_t)1 << 25;
 
 typedef struct pair {
@@ -30,16 +30,16 @@ typedef struct chunk {
 
 typedef struct search {
     cwi_welded welded;
-    cwi_blocks blocks;
+    cwi_boxes tree;
     chunk *chunks;
     size_t chunk_count;
 } search;
 
-/* One block against those behind it on the curve. */
+/* One node against those behind it on the curve. */
 typedef struct visit {
     const search *s;
     chunk *to;
-    size_t block;
+    size_t node;
 } visit;
 
 static void keep(chunk *to, uint32_t a, uint32_t b)
@@ -57,28 +57,36 @@ static void keep(chunk *to, uint32_t a, uint32_t b)
     to->pairs[to->count++] = a < b ? (pair){a, b} : (pair){b, a};
 }
 
-static bool meet_block(void *context, size_t other)
+static void get_box(const cwi_boxes_node *node, int c, float box[6])
+{
+    for (int a = 0; a < 3; a++) {
+        box[a] = node->low[a][c];
+        box[a + 3] = node->high[a][c];
+    }
+}
+
+static void test_pair(const visit *v, uint32_t a, uint32_t b)
+{
+    const uint32_t *vertex = v->s->welded.vertex;
+    v->to->work++;
+    if (cwi_triangles_meet(v->s->welded.points, vertex + 3 * (size_t)a, vertex + 3 * (size_t)b))
+        keep(v->to, a, b);
+}
+
+static bool meet_node(void *context, size_t other)
 {
     const visit *v = context;
-    const cwi_blocks *blocks = &v->s->blocks;
-    const cwi_block *own = &blocks->level[0][v->block];
-    const uint32_t *vertex = v->s->welded.vertex;
-    for (int i = 0; i < CWI_BLOCK && v->block * CWI_BLOCK + (size_t)i < blocks->count; i++) {
-        const cwi_box box = {{own->low[0][i], own->low[1][i], own->low[2][i]},
-                             {own->high[0][i], own->high[1][i], own->high[2][i]}};
-        const uint32_t a = blocks->order[v->block * CWI_BLOCK + (size_t)i];
-        unsigned meets = cwi_block_meets(&blocks->level[0][other], &box);
-        if (other == v->block)
-            meets &= ~0u << (i + 1); /* each pair once */
-        for (int j = 0; meets >> j; j++) {
-            if (!(meets >> j & 1))
-                continue;
-            const uint32_t b = blocks->order[other * CWI_BLOCK + (size_t)j];
-            v->to->work++;
-            if (cwi_triangles_meet(v->s->welded.points, vertex + 3 * (size_t)a,
-                                   vertex + 3 * (size_t)b))
-                keep(v->to, a, b);
-        }
+    const cwi_boxes *tree = &v->s->tree;
+    const size_t first = v->node * CWI_WIDTH;
+    for (size_t i = first; i < first + CWI_WIDTH && i < tree->count; i++) {
+        float box[6];
+        get_box(&tree->nodes[v->node], (int)(i - first), box);
+        unsigned meeting = cwi_boxes_meeting(&tree->nodes[other], box);
+        if (other == v->node)
+            meeting &= ~0u << (i - first + 1); /* each pair once */
+        for (size_t c = 0; meeting >> c; c++)
+            if (meeting >> c & 1)
+                test_pair(v, tree->order[i], tree->order[other * CWI_WIDTH + c]);
     }
     v->to->cut = v->to->work > v->to->most_work;
     return !v->to->cut && !v->to->failed;
@@ -88,33 +96,33 @@ static void search_chunk(void *context, size_t k)
 {
     const search *s = context;
     chunk *to = &s->chunks[k];
-    const size_t blocks = s->blocks.block_count[0], end = (k + 1) * CHUNK_BLOCKS;
+    const size_t nodes = cwi_boxes_nodes(&s->tree), end = (k + 1) * CHUNK_NODES;
     if (to->most_work == 0)
         return;
     to->count = to->work = 0;
     to->cut = false;
-    for (size_t b = k * CHUNK_BLOCKS; b < end && b < blocks && !to->cut && !to->failed; b++) {
-        visit v = {s, to, b};
-        const cwi_block *own = &s->blocks.level[0][b];
-        const cwi_box hull = cwi_block_hull(own);
-        cwi_blocks_visit(&s->blocks, &hull, b, meet_block, &v);
+    for (size_t n = k * CHUNK_NODES; n < end && n < nodes && !to->cut && !to->failed; n++) {
+        visit v = {s, to, n};
+        float around[6];
+        cwi_boxes_around(&s->tree.nodes[n], around);
+        cwi_boxes_visit(&s->tree, around, n, meet_node, &v);
     }
 }
 
 static size_t first_allowance(const search *s)
 {
-    const size_t share = work_of_all / (s->blocks.count + 1);
+    const size_t share = work_of_all / (s->tree.count + 1);
     const size_t a_triangle = share < LEAST_WORK  ? LEAST_WORK
                               : share > MOST_WORK ? MOST_WORK
                                                   : share;
-    return CHUNK_BLOCKS * CWI_BLOCK * a_triangle;
+    return CHUNK_NODES * CWI_WIDTH * a_triangle;
 }
 
 static bool prepare(search *s)
 {
-    if (!cwi_welded_sort(&s->welded, &s->blocks))
+    if (!cwi_welded_sort(&s->welded, &s->tree))
         return false;
-    s->chunk_count = (s->blocks.block_count[0] + CHUNK_BLOCKS - 1) / CHUNK_BLOCKS;
+    s->chunk_count = (cwi_boxes_nodes(&s->tree) + CHUNK_NODES - 1) / CHUNK_NODES;
     s->chunks = cwi_alloc_zeroed(s->chunk_count, sizeof *s->chunks);
     for (size_t k = 0; k < s->chunk_count && s->chunks; k++)
         s->chunks[k].most_work = first_allowance(s);
@@ -166,7 +174,7 @@ static cw_status collect(const search *s, cw_crossings *out, cw_error *err)
 
 static cw_status search_chunks(search *s, const cw_crossings_desc *d, cw_error *err)
 {
-    return cwi_each_layer(s->chunk_count, CHUNK_BLOCKS * CWI_BLOCK * 64, d->threads,
+    return cwi_each_layer(s->chunk_count, CHUNK_NODES * CWI_WIDTH * 64, d->threads,
                           &d->progress, "self-intersections", search_chunk, s, err);
 }
 
@@ -195,7 +203,7 @@ cw_status cw_self_intersections(const cw_mesh *mesh, const cw_crossings_desc *de
     for (size_t k = 0; k < s.chunk_count && s.chunks; k++)
         cwi_free(s.chunks[k].pairs);
     cwi_free(s.chunks);
-    cwi_blocks_free(&s.blocks);
+    cwi_boxes_free(&s.tree);
     cwi_welded_free(&s.welded);
     return st;
 }

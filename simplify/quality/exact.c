@@ -1,9 +1,12 @@
-/* A double evaluates first; where its rounding could matter the terms are summed exactly
- * [Shewchuk1997]. A product of two floats is exact in a double, of three in two doubles. */
+/* Doubles decide first. Where their rounding could matter, coordinates are taken
+ * as whole numbers of a common unit, which nearly always fit: ties are usual, as extraction
+ * cuts flat polygons into triangles. What does not fit is summed without rounding
+ * [Shewchuk1997]: a product of two floats is exact in a double, of three in two doubles. */
 #include "simplify/quality/exact.h"
 
 #include <float.h>
 #include <math.h>
+#include <string.h>
 
 enum { MOST_TERMS = 48 };
 
@@ -66,6 +69,87 @@ static int exact_orient3d(const float *a, const float *b, const float *c, const 
     return sign_of_sum(&s);
 }
 
+/* The determinant's three rows are differences of whole numbers below 2^40 in size: then its
+ * six products sum up to less than 2^126. */
+#ifdef __SIZEOF_INT128__
+__extension__ typedef __int128 wide;
+enum { WHOLE_BITS = 40 };
+
+/* The power of two that takes coordinates up to `most` to just below 2^40. */
+static double unit_for(float most)
+{
+    uint64_t bits;
+    double unit;
+    const double m = (double)most;
+    memcpy(&bits, &m, sizeof bits);
+    bits = (uint64_t)(2 * 1023 + WHOLE_BITS - 1 - (int)(bits >> 52)) << 52;
+    memcpy(&unit, &bits, sizeof unit);
+    return unit;
+}
+
+/* Points in units of a power of two; false when a coordinate is not whole. */
+static bool make_whole(const float *const p[], int count, long long whole[][3])
+{
+    float most = FLT_MIN;
+    for (int n = 0; n < count; n++)
+        for (int a = 0; a < 3; a++)
+            most = fabsf(p[n][a]) > most ? fabsf(p[n][a]) : most;
+    const double unit = unit_for(most);
+    for (int n = 0; n < count; n++)
+        for (int a = 0; a < 3; a++) {
+            const double scaled = (double)p[n][a] * unit;
+            whole[n][a] = (long long)scaled;
+            if ((double)whole[n][a] != scaled)
+                return false;
+        }
+    return true;
+}
+
+static int sign_of_wide(wide x)
+{
+    return (x > 0) - (x < 0);
+}
+
+static bool whole_orient3d(const float *const p[4], int *sign)
+{
+    long long x[4][3];
+    wide value = 0;
+    if (!make_whole(p, 4, x))
+        return false;
+    for (int n = 1; n < 4; n++)
+        for (int a = 0; a < 3; a++)
+            x[n][a] -= x[0][a];
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        value += x[1][i] * ((wide)x[2][j] * x[3][k] - (wide)x[2][k] * x[3][j]);
+    }
+    *sign = sign_of_wide(value);
+    return true;
+}
+
+static bool whole_orient2d(const float *const p[3], int x, int y, int *sign)
+{
+    long long w[3][3];
+    if (!make_whole(p, 3, w))
+        return false;
+    const wide left = (wide)(w[0][x] - w[2][x]) * (w[1][y] - w[2][y]);
+    *sign = sign_of_wide(left - (wide)(w[0][y] - w[2][y]) * (w[1][x] - w[2][x]));
+    return true;
+}
+#else
+static bool whole_orient3d(const float *const p[4], int *sign)
+{
+    (void)p, (void)sign;
+    return false;
+}
+
+static bool whole_orient2d(const float *const p[3], int x, int y, int *sign)
+{
+    (void)p, (void)x, (void)y, (void)sign;
+    return false;
+}
+#endif
+
 /* The bound is Shewchuk's, for inputs of any size; those here cannot under- or overflow. */
 int cwi_orient3d(const float a[3], const float b[3], const float c[3], const float d[3])
 {
@@ -84,7 +168,9 @@ int cwi_orient3d(const float a[3], const float b[3], const float c[3], const flo
     }
     if (fabs(value) > share * size)
         return sign_of(value);
-    return exact_orient3d(a, b, c, d);
+    int sign;
+    return whole_orient3d((const float *[4]){a, b, c, d}, &sign) ? sign
+                                                                 : exact_orient3d(a, b, c, d);
 }
 
 static int exact_orient2d(const float *a, const float *b, const float *c, int x, int y)
@@ -108,7 +194,10 @@ int cwi_orient2d(const float a[3], const float b[3], const float c[3], int axis)
     const double value = left - right;
     if (fabs(value) > share * (fabs(left) + fabs(right)))
         return sign_of(value);
-    return exact_orient2d(a, b, c, x, y);
+    int sign;
+    return whole_orient2d((const float *[3]){a, b, c}, x, y, &sign)
+               ? sign
+               : exact_orient2d(a, b, c, x, y);
 }
 
 int cwi_seen_along(const float a[3], const float b[3], const float c[3])

@@ -4,15 +4,17 @@
 
 #include "core/layers.h"
 #include "core/sets.h"
+#include "simplify/quality/boxes.h"
 #include "simplify/quality/exact.h"
 
 #include <math.h>
+#include <string.h>
 
 typedef struct work {
     const cwi_welded *welded;
     const cwi_shells *shells;
     uint32_t *part;
-    cwi_blocks blocks;
+    cwi_boxes tree;
     uint32_t *closed; /* the roots of closed shells */
     int *around;      /* how often the other shells wind around each of these */
     size_t count;
@@ -67,21 +69,23 @@ static void meet(ray *r, uint32_t triangle)
         r->winding += winding;
 }
 
-static cwi_box box_of(const ray *r)
+static void box_around(const ray *r, float box[6])
 {
     const float *s = r->start;
-    return (cwi_box){{s[0], s[1], s[2]}, {INFINITY, s[1], s[2]}};
+    const float ends[6] = {s[0], s[1], s[2], INFINITY, s[1], s[2]};
+    memcpy(box, ends, sizeof ends);
 }
 
-static bool meet_block(void *context, size_t block)
+static bool meet_node(void *context, size_t node)
 {
     ray *r = context;
-    const cwi_blocks *blocks = &r->w->blocks;
-    const cwi_box box = box_of(r);
-    const unsigned meets = cwi_block_meets(&blocks->level[0][block], &box);
-    for (int n = 0; meets >> n; n++)
-        if (meets >> n & 1)
-            meet(r, blocks->order[block * CWI_BLOCK + (size_t)n]);
+    const cwi_boxes *tree = &r->w->tree;
+    float box[6];
+    box_around(r, box);
+    const unsigned meeting = cwi_boxes_meeting(&tree->nodes[node], box);
+    for (size_t c = 0; meeting >> c; c++)
+        if (meeting >> c & 1)
+            meet(r, tree->order[node * CWI_WIDTH + c]);
     return true;
 }
 
@@ -89,8 +93,9 @@ static void wind_around(void *context, size_t k)
 {
     work *w = context;
     ray r = {w, w->closed[k], w->welded->points + 3 * (size_t)w->closed[k], 0};
-    const cwi_box box = box_of(&r);
-    cwi_blocks_visit(&w->blocks, &box, 0, meet_block, &r);
+    float box[6];
+    box_around(&r, box);
+    cwi_boxes_visit(&w->tree, box, 0, meet_node, &r);
     w->around[k] = r.winding;
 }
 
@@ -129,14 +134,14 @@ bool cwi_measure_shells(const cwi_welded *welded, const cwi_shells *shells,
     work w = {.welded = welded, .shells = shells, .part = shells->part};
     w.closed = cwi_alloc_array(vertices, sizeof *w.closed);
     w.around = cwi_alloc_zeroed(vertices, sizeof *w.around);
-    const bool ok = w.closed && w.around && cwi_welded_sort(welded, &w.blocks);
+    const bool ok = w.closed && w.around && cwi_welded_sort(welded, &w.tree);
     if (ok) {
         list_closed(&w);
         cwi_each_layer(w.count, 1 << 12, desc->threads, &(cw_progress){0}, "shells",
                        wind_around, &w, NULL);
         judge(&w, desc, q);
     }
-    cwi_blocks_free(&w.blocks);
+    cwi_boxes_free(&w.tree);
     cwi_free(w.closed);
     cwi_free(w.around);
     return ok;

@@ -3,6 +3,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "core/weld.h"
+#include "simplify/quality/boxes.h"
 #include "simplify/quality/exact.h"
 
 /* The points by which vertices are told apart. */
@@ -43,17 +44,15 @@ cw_status cwi_welded_init(cwi_welded *w, const cw_mesh *mesh, cw_weld how, cw_er
     return st;
 }
 
-static cwi_box box_of(const cwi_welded *w, size_t triangle)
+static void box_of(const cwi_welded *w, size_t triangle, float box[6])
 {
-    cwi_box box;
+    const uint32_t *v = w->vertex + 3 * triangle;
     for (int a = 0; a < 3; a++) {
         const float *p = w->points + a;
-        const uint32_t *v = w->vertex + 3 * triangle;
         const float x = p[3 * (size_t)v[0]], y = p[3 * (size_t)v[1]], z = p[3 * (size_t)v[2]];
-        box.low[a] = x < y ? (x < z ? x : z) : (y < z ? y : z);
-        box.high[a] = x > y ? (x > z ? x : z) : (y > z ? y : z);
+        box[a] = x < y ? (x < z ? x : z) : (y < z ? y : z);
+        box[a + 3] = x > y ? (x > z ? x : z) : (y > z ? y : z);
     }
-    return box;
 }
 
 static bool has_area(const cwi_welded *w, size_t triangle)
@@ -63,21 +62,21 @@ static bool has_area(const cwi_welded *w, size_t triangle)
                           w->points + 3 * (size_t)v[2]) >= 0;
 }
 
-bool cwi_welded_sort(const cwi_welded *w, cwi_blocks *blocks)
+bool cwi_welded_sort(const cwi_welded *w, cwi_boxes *tree)
 {
     const size_t count = w->mesh->triangle_count;
-    cwi_box *boxes = cwi_alloc_large(count, sizeof *boxes);
+    float(*boxes)[6] = cwi_alloc_large(count, sizeof *boxes);
     uint32_t *triangle = cwi_alloc_array(count, sizeof *triangle);
     bool ok = boxes && triangle;
     size_t kept = 0;
     for (size_t t = 0; t < count && ok; t++)
         if (!cwi_is_collapsed(w, t) && has_area(w, t)) {
-            boxes[kept] = box_of(w, t);
+            box_of(w, t, boxes[kept]);
             triangle[kept++] = (uint32_t)t;
         }
-    ok = ok && cwi_blocks_build(blocks, boxes, kept);
+    ok = ok && cwi_boxes_build(tree, (const float(*)[6])boxes, kept, NULL) == CW_OK;
     for (size_t n = 0; n < kept && ok; n++)
-        blocks->order[n] = triangle[blocks->order[n]];
+        tree->order[n] = triangle[tree->order[n]];
     cwi_free(boxes);
     cwi_free(triangle);
     return ok;

@@ -2,9 +2,9 @@
 #ifndef QUALITY_WELDED_H
 #define QUALITY_WELDED_H
 
-#include "simplify/quality/blocks.h"
-
 #include <cubewright/quality.h>
+
+struct cwi_boxes;
 
 typedef struct cwi_welded {
     const cw_mesh *mesh;
@@ -18,9 +18,9 @@ typedef struct cwi_welded {
 cw_status cwi_welded_init(cwi_welded *welded, const cw_mesh *mesh, cw_weld how, cw_error *err);
 void cwi_welded_free(cwi_welded *welded);
 
-/* Sorts the triangles by place: blocks->order holds triangles. Those without area stay out.
- * Free the blocks, also after a failure; false when memory is out. */
-bool cwi_welded_sort(const cwi_welded *welded, cwi_blocks *blocks);
+/* Sorts the triangles by place: the tree's order holds triangles. Those without area stay out.
+ * Free the tree; false when memory is out. */
+bool cwi_welded_sort(const cwi_welded *welded, struct cwi_boxes *tree);
 
 /* A triangle that names a vertex twice has no edges to speak of. */
 static inline bool cwi_is_collapsed(const cwi_welded *welded, size_t triangle)

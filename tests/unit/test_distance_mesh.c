@@ -263,17 +263,30 @@ static void equal_triangles_do_not_break_the_tree(void **state)
     cw_mesh_free(&reference);
 }
 
-/* Marks the items that a box overlaps, by slot. */
-static bool mark(void *context, size_t slot)
+/* What a visit is to do: mark the items that a box overlaps, by slot. */
+typedef struct marking {
+    const cwi_boxes *tree;
+    const float *box;
+    bool *marked;
+    size_t nodes, first;
+} marking;
+
+static bool mark(void *context, size_t node)
 {
-    ((bool *)context)[slot] = true;
+    marking *m = context;
+    const unsigned meeting = cwi_boxes_meeting(&m->tree->nodes[node], m->box);
+    assert_true(node >= m->first);
+    for (size_t c = 0; c < CWI_WIDTH; c++)
+        if (meeting >> c & 1)
+            m->marked[node * CWI_WIDTH + c] = true;
+    m->nodes++;
     return true;
 }
 
-static bool stop(void *context, size_t slot)
+static bool stop(void *context, size_t node)
 {
-    (void)context;
-    (void)slot;
+    (void)node;
+    ++*(size_t *)context;
     return false;
 }
 
@@ -295,14 +308,17 @@ static void a_box_overlaps_what_a_slow_look_finds(void **state)
         assert_ok(cwi_boxes_build(&tree, (const float(*)[6])boxes, count, &err), err);
         for (size_t q = 0; q < count && q < 50; q++) {
             memset(marked, 0, sizeof marked);
-            assert_true(cwi_boxes_overlaps(&tree, boxes[q], mark, marked));
-            assert_false(cwi_boxes_overlaps(&tree, boxes[q], stop, NULL));
+            marking m = {&tree, boxes[q], marked, 0, q % (cwi_boxes_nodes(&tree) + 1)};
+            size_t visits = 0;
+            cwi_boxes_visit(&tree, boxes[q], m.first, mark, &m);
+            cwi_boxes_visit(&tree, boxes[q], m.first, stop, &visits);
+            assert_int_equal(visits, m.nodes > 0);
             for (size_t s = 0; s < count; s++) {
                 const float *b = boxes[tree.order[s]];
                 bool meet = true;
                 for (int a = 0; a < 3; a++)
                     meet &= b[a] <= boxes[q][a + 3] && boxes[q][a] <= b[a + 3];
-                assert_int_equal(marked[s], meet);
+                assert_int_equal(marked[s], meet && s / CWI_WIDTH >= m.first);
             }
         }
         cwi_boxes_free(&tree);
