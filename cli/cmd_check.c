@@ -62,7 +62,7 @@ typedef struct run_state {
     cli_mesh mesh, reference;
     cli_volume volume;
     uint8_t *defects; /* of each triangle; NULL unless they are painted */
-    float *distances; /* of each vertex; NULL unless there is a source or reference too */
+    float *distances; /* largest around each vertex; NULL: nothing to measure from */
     cw_quality quality, field;
     cw_crossings crossings;
     cw_cgal_facts cgal;
@@ -222,6 +222,7 @@ static cw_status ask_cgal(run_state *s, cw_error *err)
 static cw_status measure_from_field(run_state *s, const cw_mesh *surface, cw_error *err)
 {
     const cw_mesh_distance_desc back = {
+        .vertices_only = true, /* those are on the field's surface */
         .threads = (int)s->args->input.threads,
         .progress = cli_progress((double)surface->triangle_count / 1e6, "Mtriangle")};
     cw_status st = cw_quality_measure(surface, &(cw_quality_desc){.threads = back.threads},
@@ -245,11 +246,11 @@ static cw_status compare_with_field(run_state *s, cw_error *err)
         .isovalue = args->iso.value,
         .inside_is_low = args->inside,
         .leave_open = args->open,
+        .worst = s->distances,
         .threads = (int)args->input.threads,
         .progress = cli_progress((double)mesh->triangle_count / 1e6, "Mtriangle")};
     cli_report_begin(&s->report);
-    cw_status st =
-        cw_distance_to_field(mesh, &s->volume.view, &desc, &s->to_field, s->distances, err);
+    cw_status st = cw_distance_to_field(mesh, &s->volume.view, &desc, &s->to_field, NULL, err);
     if (st != CW_OK)
         return in_mesh(s, st, err);
     s->findings.to_field = &s->to_field;
@@ -271,13 +272,14 @@ static cw_status compare_with_field(run_state *s, cw_error *err)
 static cw_status compare_with_reference(run_state *s, cw_error *err)
 {
     const cw_mesh *mesh = &s->mesh.mesh, *other = &s->reference.mesh;
-    const cw_mesh_distance_desc desc = {
+    cw_mesh_distance_desc desc = {
+        .worst = s->args->source ? NULL : s->distances,
         .threads = (int)s->args->input.threads,
         .tolerance_mm = tolerance_of(s->args) / 100,
         .progress = cli_progress((double)mesh->triangle_count / 1e6, "Mtriangle")};
-    float *distances = s->args->source ? NULL : s->distances;
     cli_report_begin(&s->report);
-    cw_status st = cw_distance_to_mesh(mesh, other, &desc, &s->to_reference, distances, err);
+    cw_status st = cw_distance_to_mesh(mesh, other, &desc, &s->to_reference, NULL, err);
+    desc.worst = NULL;
     if (st == CW_OK)
         st = cw_distance_to_mesh(other, mesh, &desc, &s->from_reference, NULL, err);
     if (st != CW_OK)

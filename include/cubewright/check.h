@@ -84,7 +84,7 @@ CW_API const cw_paint *cw_check_paints(size_t *count);
  * no vertex with those of another colour, so the mesh is for looking at.
  *
  * defects    triangle_count sets of cw_defect, as the checks leave them
- * distances  vertex_count, mm, with or without a sign; or NULL. Kept as scalars of the copy
+ * distances  vertex_count, mm, such as cw_field_distance_desc.worst; or NULL. Kept as scalars
  * out        filled on success, emptied on failure; free it with cw_mesh_free()
  * Returns    CW_ERR_ARGUMENT as cw_mesh_check(); CW_ERR_LIMIT; CW_ERR_NO_MEMORY */
 CW_API cw_status cw_check_paint(const cw_mesh *mesh, const uint8_t *defects,

@@ -33,6 +33,8 @@ typedef struct cw_field_distance_desc {
     double reach_mm;      /* how far to look for the surface; default: 4 voxels, a voxel being
                              the cube root of its volume */
     double step_voxels;   /* points are at most so far apart along sides; default 1 */
+    float *worst;         /* vertex_count: the largest distance met in the triangles around each
+                             vertex; default: not kept */
     int threads;          /* default: all that OpenMP offers */
     cw_progress progress; /* default: none */
 } cw_field_distance_desc;
@@ -71,6 +73,9 @@ typedef struct cw_mesh_distance_desc {
                              1 % of the reference's average side where that is more */
     double step_mm;       /* points of mean, rms and p99 are at most so far apart along sides;
                              default: the length of a side in the reference, on average */
+    bool vertices_only;   /* measure at the vertices alone, each counting the same; bound_mm is
+                             then 0. Default: over the surface */
+    float *worst;         /* as in cw_field_distance_desc */
     int threads;          /* default: all that OpenMP offers */
     cw_progress progress; /* default: none */
 } cw_mesh_distance_desc;

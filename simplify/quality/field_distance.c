@@ -257,6 +257,7 @@ cw_status cw_distance_to_field(const cw_mesh *mesh, const cw_volume *volume,
                              .measure = measure,
                              .context = &f,
                              .is_signed = true,
+                             .worst = d->worst,
                              .name = "distances",
                              .threads = d->threads,
                              .progress = &d->progress};

@@ -220,10 +220,11 @@ static void judge_distance(bench *b, const char *name, const char *other, const 
         v->advice = "beyond the tolerance: --defects shows where";
     if (!back)
         return;
+    const bool covers = fmax(back->max_mm, back->bound_mm) <= tolerance;
     v = add(b, "covered",
-            v->grade == CW_GRADE_NOTE     ? CW_GRADE_NOTE
-            : back->bound_mm <= tolerance ? CW_GRADE_OK
-                                          : CW_GRADE_FAIL,
+            !(tolerance > 0) ? CW_GRADE_NOTE
+            : covers         ? CW_GRADE_OK
+                             : CW_GRADE_FAIL,
             back->max_mm);
     say(v, "%s is at most %.4g mm from the mesh, rms %.3g; farthest at %.6g, %.6g, %.6g", other,
         back->max_mm, back->rms_mm, back->where[0], back->where[1], back->where[2]);

@@ -431,6 +431,8 @@ static cw_status measure_mesh(const cw_mesh *mesh, const reference *r,
         .measure = measure,
         .context = r,
         .hints = slots,
+        .vertices_only = d->vertices_only,
+        .worst = d->worst,
         .name = "distances",
         .threads = d->threads,
         .progress = &d->progress};
@@ -446,7 +448,7 @@ static cw_status measure_mesh(const cw_mesh *mesh, const reference *r,
     if (st == CW_OK)
         st = cwi_sample_mesh(&sampling, out, per_vertex, err);
     if (st == CW_OK)
-        st = find_bound(&s, d, out, err);
+        st = d->vertices_only ? CW_OK : find_bound(&s, d, out, err);
     cwi_free(slots);
     return st;
 }

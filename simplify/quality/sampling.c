@@ -33,6 +33,7 @@ typedef struct tally {
     size_t first; /* triangle; those of the next chunk follow */
     double sum, squares, balance;
     double max, where[3];
+    double here; /* the largest of the triangle at hand */
     size_t triangle, samples, missed;
 } tally;
 
@@ -44,6 +45,7 @@ typedef struct work {
     tally *tallies;      /* chunks + 1 */
     float *vertex;       /* vertex_count distances */
     uint8_t *missed;     /* vertex_count */
+    float *here;         /* triangle_count: the largest distance of each; or NULL */
     uint64_t *histogram; /* threads x BINS: area, in 2^-60 of the whole */
 } work;
 
@@ -157,6 +159,7 @@ static void take(const work *w, tally *y, double distance, double share, const d
     y->sum += share * d;
     y->squares += share * d * d;
     y->balance += share * distance;
+    y->here = cwi_greater(y->here, d);
     if (d > y->max) {
         y->max = d;
         y->triangle = t;
@@ -266,8 +269,38 @@ static void measure_chunk(void *context, size_t chunk)
     uint32_t hint = UINT32_MAX;
     side sides[KEPT] = {{0}};
     y->max = -1;
-    for (size_t t = y[0].first; t < y[1].first; t++)
+    for (size_t t = y[0].first; t < y[1].first; t++) {
+        y->here = 0;
         measure_triangle(w, y, t, sides, &hint);
+        if (w->here)
+            w->here[t] = (float)y->here;
+    }
+}
+
+/* Every vertex counts the same. */
+static void tally_vertices(const work *w)
+{
+    const cw_mesh *mesh = w->s->mesh;
+    tally *y = w->tallies;
+    y->max = -1;
+    for (size_t v = 0; v < mesh->vertex_count; v++) {
+        const float *x = mesh->positions + 3 * v;
+        const double p[3] = {(double)x[0], (double)x[1], (double)x[2]};
+        take(w, y, (double)w->vertex[v], 1 / (double)mesh->vertex_count, p, 0);
+    }
+}
+
+/* From triangles to their corners. */
+static void spread_worst(const work *w)
+{
+    const cw_mesh *mesh = w->s->mesh;
+    float *worst = w->s->worst;
+    for (size_t v = 0; v < mesh->vertex_count; v++)
+        worst[v] = fabsf(w->vertex[v]);
+    for (size_t c = 0; c < 3 * mesh->triangle_count && w->here; c++) {
+        float *at = &worst[mesh->triangles[c]];
+        *at = *at > w->here[c / 3] ? *at : w->here[c / 3];
+    }
 }
 
 /* The distance below which 99 % of the area lies. */
@@ -318,20 +351,32 @@ static void join(const work *w, int threads, cw_distance *out)
     out->missed = missed;
 }
 
-static bool prepare(work *w, int threads, float *per_vertex)
+/* Into chunks of triangles, or one for the vertices. */
+static void plan(work *w)
 {
-    const size_t vertices = w->s->mesh->vertex_count;
-    w->scale = 1;
+    w->scale = w->chunks = 1;
+    if (w->s->vertices_only)
+        return;
     while (count_points(w) > CWI_MOST_SAMPLES && w->scale > 1e-6)
         w->scale *= 0.75;
     w->chunks = cut_chunks(w);
+}
+
+static bool prepare(work *w, int threads, float *per_vertex)
+{
+    const size_t vertices = w->s->mesh->vertex_count;
+    const bool triangles = w->s->worst && !w->s->vertices_only;
+    plan(w);
     w->tallies = cwi_alloc_zeroed(w->chunks + 1, sizeof *w->tallies);
     w->missed = cwi_alloc_zeroed(vertices, sizeof *w->missed);
     w->histogram = cwi_alloc_zeroed((size_t)threads * BINS, sizeof *w->histogram);
     w->vertex = per_vertex ? per_vertex : cwi_alloc_array(vertices, sizeof *w->vertex);
-    if (!w->tallies || !w->missed || !w->histogram || !w->vertex)
+    if (triangles)
+        w->here = cwi_alloc_array(w->s->mesh->triangle_count, sizeof *w->here);
+    if (!w->tallies || !w->missed || !w->histogram || !w->vertex || (triangles && !w->here))
         return false;
-    cut_chunks(w);
+    if (!w->s->vertices_only)
+        cut_chunks(w);
     return true;
 }
 
@@ -348,15 +393,20 @@ cw_status cwi_sample_mesh(const cwi_sampling *sampling, cw_distance *out, float 
     if (st == CW_OK)
         st = cwi_each_layer((vertices + CHUNK - 1) / CHUNK, WORTH, sampling->threads,
                             sampling->progress, sampling->name, measure_vertices, &w, err);
-    if (st == CW_OK)
+    if (st == CW_OK && sampling->vertices_only)
+        tally_vertices(&w);
+    else if (st == CW_OK)
         st = cwi_each_layer(w.chunks, WORTH, sampling->threads, sampling->progress,
                             sampling->name, measure_chunk, &w, err);
     if (st == CW_OK)
         join(&w, threads, out);
+    if (st == CW_OK && sampling->worst)
+        spread_worst(&w);
     if (!per_vertex)
         cwi_free(w.vertex);
     cwi_free(w.tallies);
     cwi_free(w.missed);
+    cwi_free(w.here);
     cwi_free(w.histogram);
     return st;
 }

@@ -21,8 +21,10 @@ typedef struct cwi_sampling {
     cwi_measure *measure;
     const void *context;
     bool is_signed;
-    uint32_t *hints;  /* vertex_count: what measuring each vertex left; or NULL */
-    const char *name; /* of the work, for progress */
+    bool vertices_only; /* measure at these alone, each counting the same */
+    float *worst;       /* vertex_count: the largest distance around each; or NULL */
+    uint32_t *hints;    /* vertex_count: what measuring each vertex left; or NULL */
+    const char *name;   /* of the work, for progress */
     int threads;
     const cw_progress *progress;
 } cwi_sampling;

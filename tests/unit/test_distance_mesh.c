@@ -263,6 +263,38 @@ static void equal_triangles_do_not_break_the_tree(void **state)
     cw_mesh_free(&reference);
 }
 
+static void vertices_alone_and_the_worst_around_them_can_be_had(void **state)
+{
+    (void)state;
+    cw_volume volume = test_sample(CW_FIELD_SPHERE, 20, CW_F32);
+    cw_mesh mesh = test_extract(&volume, &(cw_extract_desc){.isovalue = 0}, NULL);
+    cw_mesh other = test_extract(&volume, &(cw_extract_desc){.isovalue = 2}, NULL);
+    cw_distance whole, vertices;
+    cw_error err = {0};
+    float *at = calloc(mesh.vertex_count, sizeof *at);
+    float *worst = calloc(mesh.vertex_count, sizeof *worst);
+    assert_true(at && worst);
+    const cw_mesh_distance_desc alone = {.vertices_only = true}, all = {.worst = worst};
+    assert_ok(cw_distance_to_mesh(&mesh, &other, &alone, &vertices, at, &err), err);
+    assert_ok(cw_distance_to_mesh(&mesh, &other, &all, &whole, NULL, &err), err);
+    double most = 0, sum = 0, most_around = 0;
+    for (size_t v = 0; v < mesh.vertex_count; v++) {
+        most = fmax(most, (double)at[v]);
+        sum += (double)at[v];
+        most_around = fmax(most_around, (double)worst[v]);
+        assert_true(worst[v] >= at[v]);
+    }
+    assert_near(vertices.max_mm, most, 1e-6);
+    assert_near(vertices.mean_mm, sum / (double)mesh.vertex_count, 1e-6);
+    assert_true(vertices.bound_mm == 0 && vertices.samples == mesh.vertex_count);
+    assert_true(most_around <= whole.max_mm + 1e-6 && most_around >= 0.99 * whole.max_mm);
+    free(at);
+    free(worst);
+    cw_mesh_free(&mesh);
+    cw_mesh_free(&other);
+    cw_volume_free(&volume);
+}
+
 /* What a visit is to do: mark the items that a box overlaps, by slot. */
 typedef struct marking {
     const cwi_boxes *tree;
@@ -335,6 +367,7 @@ int main(void)
         cmocka_unit_test(what_cannot_be_measured_is_refused_by_name),
         cmocka_unit_test(memory_running_out_is_an_error_at_every_allocation),
         cmocka_unit_test(equal_triangles_do_not_break_the_tree),
+        cmocka_unit_test(vertices_alone_and_the_worst_around_them_can_be_had),
         cmocka_unit_test(a_box_overlaps_what_a_slow_look_finds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
