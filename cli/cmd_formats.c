@@ -4,6 +4,7 @@
 #include "cli/json.h"
 
 #include <cubewright/formats.h>
+#include <cubewright/quality.h>
 
 #include <stdio.h>
 
@@ -76,6 +77,8 @@ static cw_status run_version(void *p, cw_error *err)
         return CW_OK;
     }
     printf("cubewright %s\n", cw_version());
+    if (args->features)
+        printf("%-11s%s\n", "cgal", cw_quality_has_cgal() ? "yes" : "no");
     for (size_t i = 0; i < count && args->features; i++)
         printf("%-11s%s\n", formats[i].name, formats[i].in_this_build ? "yes" : "no");
     return CW_OK;
@@ -96,7 +99,7 @@ const cli_command cli_formats = {
 };
 
 static const cli_option version_options[] = {
-    {"features", 0, CLI_FLAG, NULL, "also which formats are in this build",
+    {"features", 0, CLI_FLAG, NULL, "also what is in this build",
      offsetof(formats_args, features)},
     {"json", 0, CLI_FLAG, NULL, "one JSON object, with the formats",
      offsetof(formats_args, json)},

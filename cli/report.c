@@ -51,6 +51,8 @@ static void put_features(cli_json *j)
     size_t count;
     const cw_format *formats = cw_formats(&count);
     cli_json_open(j, "features", '[');
+    if (cw_quality_has_cgal())
+        cli_json_text(j, NULL, "cgal");
     for (size_t i = 0; i < count; i++)
         if (formats[i].in_this_build)
             cli_json_text(j, NULL, formats[i].name);

@@ -13,6 +13,8 @@ cd "$(dirname "$0")/.."
 mkdir -p build
 install_packages "what the build needs" needed optional
 install_packages "what the tests need" test
+install_packages "a second opinion on meshes" heavy ||
+    echo "== CGAL cannot be had: what asks it will be skipped"
 install_packages "the scan that the README shows" data ||
     echo "== mricron-data cannot be had: the README's commands run on a made head"
 install_packages "other people's readers" validator ||
