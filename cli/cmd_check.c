@@ -192,7 +192,7 @@ static cw_status measure_mesh(run_state *s, cw_error *err)
     cli_report_begin(&s->report);
     cw_status st = cw_quality_measure(mesh, &desc, &s->quality, err);
     if (st == CW_OK)
-        cli_report_end(&s->report, "measure", mesh->triangle_count, 0);
+        cli_report_end(&s->report, "check", mesh->triangle_count, 0);
     if (st != CW_OK || !(solid || args->deep))
         return in_mesh(s, st, err);
     cli_report_begin(&s->report);

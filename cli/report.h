@@ -22,13 +22,13 @@ typedef struct cli_made {
     const char *path; /* where it goes */
     double iso;
     bool measured, written, local, snapped;
-    cw_quality quality;  /* when it is measured */
-    bool shells;         /* whether that tells which way shells face */
+    cw_quality quality;            /* when it is measured */
+    bool shells;                   /* whether that tells which way shells face */
     const cw_crossings *crossings; /* NULL: not looked for */
-    cw_snap_counts snap; /* when it is snapped */
-    double origin[3];    /* when it is local: the places in the file are relative to it */
-    char warning[512];   /* "": none */
-    cw_error error;      /* with the status CW_OK: none */
+    cw_snap_counts snap;           /* when it is snapped */
+    double origin[3];  /* when it is local: the places in the file are relative to it */
+    char warning[512]; /* "": none */
+    cw_error error;    /* with the status CW_OK: none */
 } cli_made;
 
 typedef struct cli_report {

@@ -100,11 +100,8 @@ void cli_json_shapes(cli_json *j, const cw_shapes *s)
     cli_json_close(j, '}');
 }
 
-static void put_distance(cli_json *j, const char *key, const cw_distance *d)
+static void put_distance(cli_json *j, const cw_distance *d)
 {
-    if (!d)
-        return;
-    cli_json_open(j, key, '{');
     cli_json_number(j, "max", d->max_mm);
     cli_json_number(j, "rms", d->rms_mm);
     cli_json_number(j, "mean", d->mean_mm);
@@ -112,10 +109,9 @@ static void put_distance(cli_json *j, const char *key, const cw_distance *d)
     cli_json_number(j, "bias", d->bias_mm);
     cli_json_number(j, "bound", d->bound_mm);
     cli_json_numbers(j, "where", d->where, 3);
-    cli_json_count(j, "triangle", d->triangle);
     cli_json_count(j, "samples", d->samples);
     cli_json_count(j, "missed", d->missed);
-    cli_json_close(j, '}');
+    cli_json_text(j, "unit", "mm");
 }
 
 static void put_error(cli_json *j, const char *to, const cw_distance *there,
@@ -125,9 +121,11 @@ static void put_error(cli_json *j, const char *to, const cw_distance *there,
         return;
     cli_json_open(j, NULL, '{');
     cli_json_text(j, "to", to);
-    cli_json_text(j, "unit", "mm");
-    put_distance(j, "from_mesh", there);
-    put_distance(j, "to_mesh", back);
+    put_distance(j, there);
+    cli_json_count(j, "triangle", there->triangle);
+    cli_json_open(j, "back", '{');
+    put_distance(j, back);
+    cli_json_close(j, '}');
     cli_json_close(j, '}');
 }
 
