@@ -214,7 +214,7 @@ static void judge_distance(bench *b, const char *name, const char *other, const 
     const bool holds = far <= tolerance;
     cw_verdict *v = add(
         b, name, tolerance > 0 ? (holds ? CW_GRADE_OK : CW_GRADE_FAIL) : CW_GRADE_NOTE, far);
-    say(v, "at most %.4g mm from %s, rms %.3g, 99 %% within %.3g; farthest at %.6g, %.6g, %.6g",
+    say(v, "at most %.4g mm from %s, rms %.3g, 99 %% within %.3g; farthest at %.8g, %.8g, %.8g",
         to->max_mm, other, to->rms_mm, to->p99_mm, to->where[0], to->where[1], to->where[2]);
     if (v->grade == CW_GRADE_FAIL)
         v->advice = "beyond the tolerance: --defects shows where";
@@ -226,7 +226,7 @@ static void judge_distance(bench *b, const char *name, const char *other, const 
             : covers         ? CW_GRADE_OK
                              : CW_GRADE_FAIL,
             back->max_mm);
-    say(v, "%s is at most %.4g mm from the mesh, rms %.3g; farthest at %.6g, %.6g, %.6g", other,
+    say(v, "%s is at most %.4g mm from the mesh, rms %.3g; farthest at %.8g, %.8g, %.8g", other,
         back->max_mm, back->rms_mm, back->where[0], back->where[1], back->where[2]);
 }
 

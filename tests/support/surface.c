@@ -27,7 +27,8 @@ static const char *quality_fault(const cw_quality *q, bool open)
            : q->misoriented_edges    ? "an edge that two triangles run through the same way"
            : q->nonmanifold_vertices ? "a vertex with two fans of triangles"
            : q->degenerate           ? "a triangle without area"
-           : q->unused_vertices      ? "a vertex that is none or another's"
+           : q->unused_vertices      ? "a vertex in no triangle"
+           : q->merged_vertices      ? "a vertex at the place of another"
            : q->open_edges && !open  ? "an open edge"
                                      : NULL;
 }

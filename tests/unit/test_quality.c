@@ -1,5 +1,5 @@
 /* Meshes with one planted fault each, and what the checks must say of them. */
-#include "support/support.h"
+#include "support/surface.h"
 
 #include "core/memory.h"
 
@@ -173,6 +173,75 @@ static void a_hub_is_not_quadratic(void **state)
     cw_mesh_free(&mesh);
 }
 
+static size_t sum(const size_t *bins, size_t count)
+{
+    size_t total = 0;
+    for (size_t n = 0; n < count; n++)
+        total += bins[n];
+    return total;
+}
+
+/* A regular tetrahedron, and a right triangle with sides of 3, 4 and 5. */
+static void shapes_are_those_of_school(void **state)
+{
+    (void)state;
+    cw_mesh mesh;
+    test_make_tetrahedron(&mesh);
+    const float regular[12] = {0, 0, 0, 1, 1, 0, 1, 0, 1, 0, 1, 1};
+    memcpy(mesh.positions, regular, sizeof regular);
+    const cw_shapes a = measure(&mesh, false).shapes;
+    assert_near(a.min_angle_deg, 60, 1e-9);
+    assert_near(a.max_angle_deg, 60, 1e-9);
+    assert_near(a.max_aspect, 1, 1e-12);
+    assert_near(a.min_edge_mm, sqrt(2), 1e-12);
+    assert_int_equal(a.aspects[0], 4);
+    assert_int_equal(sum(a.angles, CW_ANGLE_BINS), 12);
+    assert_int_equal(a.smallest[CW_ANGLE_BINS - 1] + a.smallest[CW_ANGLE_BINS - 2], 4);
+
+    const float right[9] = {0, 0, 0, 3, 0, 0, 0, 4, 0};
+    memcpy(mesh.positions, right, sizeof right);
+    for (uint32_t n = 0; n < 3; n++)
+        mesh.triangles[n] = n;
+    mesh.triangle_count = 1;
+    const cw_shapes b = measure(&mesh, false).shapes;
+    assert_near(b.min_angle_deg, 180 / PI * atan2(3, 4), 1e-9);
+    assert_near(b.max_angle_deg, 90, 1e-9);
+    assert_near(b.max_aspect, 2.5 / 2, 1e-12); /* circumradius 5/2, inradius 1 */
+    assert_int_equal(b.angles[3] + b.angles[5] + b.angles[8] + b.angles[9], 3);
+    assert_int_equal(b.lengths[0], 1);
+    assert_int_equal(b.lengths[CW_LENGTH_BINS - 1], 1);
+    assert_int_equal(sum(b.lengths, CW_LENGTH_BINS), 3);
+    assert_near(b.min_edge_mm, 3, 1e-12);
+    assert_near(b.max_edge_mm, 5, 1e-12);
+    cw_mesh_free(&mesh);
+}
+
+/* Sums of 20 000 triangles and the marks on them, for one thread and for three. */
+static void threads_change_no_bit(void **state)
+{
+    (void)state;
+    cw_volume volume = test_sample(CW_FIELD_GYROID, 30, CW_F32);
+    cw_mesh mesh = test_extract(&volume, &(cw_extract_desc){.leave_open = true}, NULL);
+    cw_quality q[2];
+    uint8_t *marks[2];
+    cw_error err = {0};
+    assert_true(mesh.triangle_count > 9000);
+    for (int n = 0; n < 2; n++) {
+        marks[n] = calloc(mesh.triangle_count, 1);
+        const cw_quality_desc desc = {
+            .shells = true, .threads = n ? 3 : 1, .defects = marks[n]};
+        assert_ok(cw_quality_measure(&mesh, &desc, &q[n], &err), err);
+    }
+    assert_true(q[0].area_mm2 == q[1].area_mm2 && q[0].volume_mm3 == q[1].volume_mm3);
+    assert_memory_equal(&q[0].shapes, &q[1].shapes, sizeof q[0].shapes);
+    assert_memory_equal(marks[0], marks[1], mesh.triangle_count);
+    assert_true(q[0].border_loops > 0 && q[0].open_edges > 0);
+    free(marks[0]);
+    free(marks[1]);
+    cw_mesh_free(&mesh);
+    cw_volume_free(&volume);
+}
+
 static void memory_running_out_is_an_error_at_every_allocation(void **state)
 {
     (void)state;
@@ -182,8 +251,8 @@ static void memory_running_out_is_an_error_at_every_allocation(void **state)
     test_make_cube(&mesh);
     for (long n = 0;; n++) {
         cwi_alloc_fail_after(n);
-        const cw_status st =
-            cw_quality_measure(&mesh, &(cw_quality_desc){.weld = CW_WELD_WORLD}, &q, &err);
+        const cw_status st = cw_quality_measure(
+            &mesh, &(cw_quality_desc){.weld = CW_WELD_WORLD, .shells = true}, &q, &err);
         if (!cwi_alloc_fail_after(-1)) {
             assert_int_equal(st, CW_OK);
             break;
@@ -205,6 +274,8 @@ int main(void)
         cmocka_unit_test(zero_area_is_counted_whatever_its_cause),
         cmocka_unit_test(hostile_meshes_are_refused_by_name),
         cmocka_unit_test(a_hub_is_not_quadratic),
+        cmocka_unit_test(shapes_are_those_of_school),
+        cmocka_unit_test(threads_change_no_bit),
         cmocka_unit_test(memory_running_out_is_an_error_at_every_allocation),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
