@@ -295,6 +295,39 @@ static void vertices_alone_and_the_worst_around_them_can_be_had(void **state)
     cw_volume_free(&volume);
 }
 
+/* One-sided, between surfaces of other levels and other samples, both ways. */
+static void cgal_finds_the_same_hausdorff_distance(void **state)
+{
+    (void)state;
+    const cw_field fields[] = {CW_FIELD_SPHERE, CW_FIELD_TORUS, CW_FIELD_GYROID};
+    if (!cw_quality_has_cgal())
+        skip();
+    for (size_t f = 0; f < 3; f++) {
+        cw_volume fine = test_sample(fields[f], 18, CW_F32),
+                  coarse = test_sample(fields[f], 11, CW_F32);
+        cw_mesh mesh[2] = {test_extract(&fine, &(cw_extract_desc){.isovalue = 0}, NULL),
+                           test_extract(&coarse, &(cw_extract_desc){.isovalue = 0.1}, NULL)};
+        for (int way = 0; way < 2; way++) {
+            const double tolerance = 0.01;
+            cw_distance ours;
+            cw_error err = {0};
+            double theirs;
+            const cw_mesh_distance_desc desc = {.tolerance_mm = tolerance};
+            assert_ok(cw_distance_to_mesh(&mesh[way], &mesh[!way], &desc, &ours, NULL, &err),
+                      err);
+            assert_ok(cw_distance_by_cgal(&mesh[way], &mesh[!way], tolerance, &theirs, &err),
+                      err);
+            assert_true(ours.bound_mm - ours.max_mm <= tolerance * (1 + 1e-9));
+            assert_true(theirs >= ours.max_mm - tolerance - 1e-6);
+            assert_true(theirs <= ours.bound_mm + tolerance + 1e-6);
+        }
+        for (int n = 0; n < 2; n++)
+            cw_mesh_free(&mesh[n]);
+        cw_volume_free(&fine);
+        cw_volume_free(&coarse);
+    }
+}
+
 /* What a visit is to do: mark the items that a box overlaps, by slot. */
 typedef struct marking {
     const cwi_boxes *tree;
@@ -368,6 +401,7 @@ int main(void)
         cmocka_unit_test(memory_running_out_is_an_error_at_every_allocation),
         cmocka_unit_test(equal_triangles_do_not_break_the_tree),
         cmocka_unit_test(vertices_alone_and_the_worst_around_them_can_be_had),
+        cmocka_unit_test(cgal_finds_the_same_hausdorff_distance),
         cmocka_unit_test(a_box_overlaps_what_a_slow_look_finds),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
