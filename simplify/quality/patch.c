@@ -172,7 +172,7 @@ static bool on_surface(const search *s, const double x[3])
 static bool descend(search *s, const box *b, double x[3], double *pull)
 {
     const double close = 1e-7 * s->metric->voxel;
-    for (int n = 0; n < 10; n++) {
+    for (int n = 0; n < 16; n++) {
         double t[8], y[3];
         expand(s->patch, x, t);
         const double g[3] = {t[1], t[2], t[4]};
@@ -211,6 +211,18 @@ static bool is_convex(const cwi_metric *m, double pull, double xy, double xz, do
            a * (b * c - f * f) - d * (d * c - f * e) + e * (d * f - b * e) > 0;
 }
 
+/* The same wherever no coordinate is farther from that of x than this, t being the patch around
+ * x: rows in which the diagonal outweighs the rest, whatever its signs, are enough. */
+static bool is_plainly_convex(const cwi_metric *m, double pull, const double t[8],
+                              const double far[3])
+{
+    const double p = fabs(pull), bent = fabs(t[7]);
+    const double xy = fabs(m->gram[0][1]) + p * (fabs(t[3]) + bent * far[2]),
+                 xz = fabs(m->gram[0][2]) + p * (fabs(t[5]) + bent * far[1]),
+                 yz = fabs(m->gram[1][2]) + p * (fabs(t[6]) + bent * far[0]);
+    return m->gram[0][0] > xy + xz && m->gram[1][1] > xy + yz && m->gram[2][2] > xz + yz;
+}
+
 /* Whether nothing of the patch in the box is nearer than the limit, as L(y) = |y - u|^2 / 2 +
  * pull * F(y) tells from x, which may be anywhere. With stiffness * |y - x|^2 / 2 added, where
  * that makes it convex, L is at least what its slope at x says; so L itself is at least as much
@@ -233,6 +245,8 @@ static bool is_cleared(const search *s, const box *b, const double x[3], double 
         return false;
     const double stiffness = 2 * room / radius_squared(s->metric, far);
     pull /= 1 + stiffness;
+    if (is_plainly_convex(s->metric, pull, t, far))
+        return true;
     for (int n = 0; n < 8; n++) {
         const double dx = (n & 1 ? b->high : b->low)[0] - x[0];
         const double dy = (n & 2 ? b->high : b->low)[1] - x[1];
