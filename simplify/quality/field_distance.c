@@ -36,50 +36,52 @@ typedef struct range {
     long low[3], high[3];
 } range;
 
-/* One sample less the level; NaN where there is none. */
-static double sample(const field *f, long i, long j, long k)
+/* A sample less the level; NaN where there is none. */
+static double sample(const field *f, const void *voxel)
 {
     const cw_volume *v = &f->volume;
-    if (i < 0 || j < 0 || k < 0 || (size_t)i >= v->dim[0] || (size_t)j >= v->dim[1] ||
-        (size_t)k >= v->dim[2])
-        return NAN;
-    const double x =
-        cwi_voxel_at(v->type, cwi_voxel_address(v, (size_t)i, (size_t)j, (size_t)k));
+    const double x = cwi_voxel_at(v->type, voxel);
     return v->has_nodata && x == v->nodata ? NAN : f->sign * (x - f->level);
 }
 
-/* Puts large finite numbers in place of missing and infinite samples, and scales. */
-static void tame(const field *f, double d[8])
+static void read_corners(const field *f, const long at[3], double d[8])
 {
-    double most = 0, scale;
-    for (int n = 0; n < 8; n++)
-        if (isfinite(d[n]))
-            most = cwi_greater(most, fabs(d[n]));
-    scale = most > 0 ? 1 / most : 1;
-    bool wild = false;
-    for (int n = 0; n < 8; n++)
-        wild |= !isfinite(d[n]);
+    const cw_volume *v = &f->volume;
     for (int n = 0; n < 8; n++) {
-        const double x = isnan(d[n]) ? f->missing : copysign(1, d[n]);
-        d[n] = !isfinite(d[n]) ? x : d[n] * scale / (wild ? BEYOND : 1);
+        const size_t i = (size_t)(at[0] + (n & 1)), j = (size_t)(at[1] + (n >> 1 & 1)),
+                     k = (size_t)(at[2] + (n >> 2)); /* before the first: very large */
+        const bool there = i < v->dim[0] && j < v->dim[1] && k < v->dim[2];
+        d[n] = there ? sample(f, cwi_voxel_address(v, i, j, k)) : NAN;
     }
 }
 
-/* The corners of a cell, made fit for arithmetic; false when no surface goes through it. */
-static bool load_cell(const field *f, const long at[3], double d[8])
+/* Whether there is surface between the corners of a cell. */
+static bool is_crossed(const field *f, const double d[8])
 {
-    bool inside = false, outside = false;
+    bool inside = false, outside = false, missing = false;
     for (int n = 0; n < 8; n++) {
-        d[n] = sample(f, at[0] + (n & 1), at[1] + (n >> 1 & 1), at[2] + (n >> 2));
-        if (f->open && isnan(d[n]))
-            return false;
         const bool in = isnan(d[n]) ? f->missing > 0 : d[n] >= 0;
         inside |= in;
         outside |= !in;
+        missing |= isnan(d[n]);
     }
-    if (inside && outside)
-        tame(f, d);
-    return inside && outside;
+    return inside && outside && !(missing && f->open);
+}
+
+/* Scales the corners; missing and infinite ones become large finite numbers. */
+static void make_patch(const field *f, double d[8], cwi_patch *patch)
+{
+    double most = 0;
+    bool wild = false;
+    for (int n = 0; n < 8; n++)
+        if (isfinite(d[n]))
+            most = cwi_greater(most, fabs(d[n]));
+        else
+            wild = true;
+    const double scale = (most > 0 ? 1 / most : 1) / (wild ? BEYOND : 1);
+    for (int n = 0; n < 8; n++)
+        d[n] = isfinite(d[n]) ? d[n] * scale : isnan(d[n]) ? f->missing : copysign(1, d[n]);
+    cwi_patch_init(patch, d);
 }
 
 /* Looks for something nearer in a cell, unless all of the cell is farther. */
@@ -92,10 +94,11 @@ static void visit(const field *f, const double u[3], const long at[3], double *d
         if (local[a] < -width || local[a] > 1 + width)
             return;
     }
-    if (!load_cell(f, at, d))
+    read_corners(f, at, d);
+    if (!is_crossed(f, d))
         return;
     cwi_patch patch;
-    cwi_patch_init(&patch, d);
+    make_patch(f, d, &patch);
     cwi_patch_nearest(&patch, &f->metric, local, distance);
 }
 
@@ -130,7 +133,7 @@ static long farthest(const range *r, const long home[3])
     return most;
 }
 
-/* The cells at index distance n from home, inside the range. */
+/* The cells at index distance n >= 1 from home, inside the range. */
 static void visit_shell(const field *f, const double u[3], const long home[3], long n,
                         const range *r, double *distance)
 {
@@ -143,7 +146,7 @@ static void visit_shell(const field *f, const double u[3], const long home[3], l
             if (labs(at[1] - home[1]) > n)
                 continue;
             const bool whole = end_z || labs(at[1] - home[1]) == n;
-            for (long i = -n; i <= n; i += whole || n == 0 ? 1 : 2 * n) {
+            for (long i = -n; i <= n; i += whole ? 1 : 2 * n) {
                 at[0] = home[0] + i;
                 if (at[0] >= r->low[0] && at[0] <= r->high[0])
                     visit(f, u, at, distance);
@@ -152,27 +155,26 @@ static void visit_shell(const field *f, const double u[3], const long home[3], l
     }
 }
 
-/* Whether a point is outside the solid: so is whatever is beyond the data. */
-static bool is_outside(const field *f, const double u[3], const long home[3])
+/* The cell a point is in: looks for surface there, and tells whether the point is outside the
+ * solid; so is whatever is beyond the data. */
+static bool visit_home(const field *f, const double u[3], const long home[3], double *distance)
 {
     double d[8], local[3];
+    bool missing = false, beyond = false;
+    cwi_patch patch;
+    read_corners(f, home, d);
+    for (int n = 0; n < 8; n++)
+        missing |= isnan(d[n]);
     for (int a = 0; a < 3; a++) {
         local[a] = u[a] - (double)home[a];
-        if (u[a] < 0 || u[a] > (double)f->volume.dim[a] - 1)
-            return true;
+        beyond |= u[a] < 0 || u[a] > (double)f->volume.dim[a] - 1;
     }
-    bool missing = false;
-    for (int n = 0; n < 8; n++) {
-        d[n] = sample(f, home[0] + (n & 1), home[1] + (n >> 1 & 1), home[2] + (n >> 2));
-        missing |= isnan(d[n]);
-    }
-    if (missing && f->open)
-        return true;
-    cwi_patch patch;
-    tame(f, d);
-    cwi_patch_init(&patch, d);
+    const bool crossed = is_crossed(f, d);
+    make_patch(f, d, &patch);
+    if (crossed)
+        cwi_patch_nearest(&patch, &f->metric, local, distance);
     const double value = cwi_patch_value(&patch, local);
-    return f->missing < 0 ? value < 0 : value >= 0;
+    return beyond || (missing && f->open) || (f->missing < 0 ? value < 0 : value >= 0);
 }
 
 static double measure(const void *context, const double point[3], uint32_t *hint, bool *missed)
@@ -185,10 +187,11 @@ static double measure(const void *context, const double point[3], uint32_t *hint
     cwi_affine_apply(f->to_index, point, u);
     for (int a = 0; a < 3; a++)
         home[a] = clamp(u[a], f->first, f->last[a]);
-    for (long n = 0; find_range(f, u, distance, &r) && n <= farthest(&r, home); n++)
+    const bool outside = visit_home(f, u, home, &distance);
+    for (long n = 1; find_range(f, u, distance, &r) && n <= farthest(&r, home); n++)
         visit_shell(f, u, home, n, &r, &distance);
     *missed = distance == f->reach;
-    return is_outside(f, u, home) ? distance : -distance;
+    return outside ? distance : -distance;
 }
 
 static cw_status check_desc(const cw_field_distance_desc *d, cw_error *err)

@@ -1,10 +1,12 @@
 /* The nearest point of a trilinear patch, for certain.
  *
- * Newton's method finds a point q of the patch F = 0 in a box where |x - u|^2 / 2 + m F(x) has
- * no slope, but into the box's walls. If that function is convex in the box, which its second
- * derivatives tell, q is its lowest point; and as F is zero all over the patch, no point of the
- * patch is nearer than q. Near the surface this holds for the whole cell mostly. Else the box
- * is halved, until it holds, or the box has no surface, or none that matters. */
+ * On the patch F = 0, L(x) = |x - u|^2 / 2 + m F(x) is half the squared distance for any m:
+ * what L is at least in a box bounds the distance of the patch there. Newton's method finds a
+ * point q of the patch where L has no slope, but into the box's walls, for some m. If L is
+ * convex in the box, which its second derivatives tell, q is its lowest point and the nearest
+ * of the patch; if it is not quite, L is lower elsewhere by so much at most. Near the surface
+ * the whole cell is cleared so mostly. Else the box is halved, until each part is cleared, has
+ * no surface, or is too far away. */
 #include "simplify/quality/patch.h"
 
 #include "core/affine.h"
@@ -170,7 +172,7 @@ static bool on_surface(const search *s, const double x[3])
 static bool descend(search *s, const box *b, double x[3], double *pull)
 {
     const double close = 1e-7 * s->metric->voxel;
-    for (int n = 0; n < 10; n++) {
+    for (int n = 0; n < 16; n++) {
         double t[8], y[3];
         expand(s->patch, x, t);
         const double g[3] = {t[1], t[2], t[4]};
@@ -188,6 +190,16 @@ static bool descend(search *s, const box *b, double x[3], double *pull)
     return false;
 }
 
+/* The square of the longest that a vector within the half sizes can be. */
+static double radius_squared(const cwi_metric *m, const double half[3])
+{
+    double square = 0;
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+            square += fabs(m->gram[r][c]) * half[r] * half[c];
+    return square;
+}
+
 /* Whether gram + pull * (second derivatives) is positive definite, the mixed ones being these.
  */
 static bool is_convex(const cwi_metric *m, double pull, double xy, double xz, double yz)
@@ -199,21 +211,42 @@ static bool is_convex(const cwi_metric *m, double pull, double xy, double xz, do
            a * (b * c - f * f) - d * (d * c - f * e) + e * (d * f - b * e) > 0;
 }
 
-/* Whether a point x of the patch, at rest under a pull, is the nearest one of its box. Second
- * derivatives are linear in place, and positive definite matrices a convex set: it is enough
- * that they are so in the box's corners. */
-static bool is_nearest(const search *s, const box *b, const double x[3], double pull)
+/* The same wherever no coordinate is farther from that of x than this, t being the patch around
+ * x: rows in which the diagonal outweighs the rest, whatever its signs, are enough. */
+static bool is_plainly_convex(const cwi_metric *m, double pull, const double t[8],
+                              const double far[3])
 {
-    double t[8], slope[3];
+    const double p = fabs(pull), bent = fabs(t[7]);
+    const double xy = fabs(m->gram[0][1]) + p * (fabs(t[3]) + bent * far[2]),
+                 xz = fabs(m->gram[0][2]) + p * (fabs(t[5]) + bent * far[1]),
+                 yz = fabs(m->gram[1][2]) + p * (fabs(t[6]) + bent * far[0]);
+    return m->gram[0][0] > xy + xz && m->gram[1][1] > xy + yz && m->gram[2][2] > xz + yz;
+}
+
+/* Whether nothing of the patch in the box is nearer than the limit, as L(y) = |y - u|^2 / 2 +
+ * pull * F(y) tells from x, which may be anywhere. With stiffness * |y - x|^2 / 2 added, where
+ * that makes it convex, L is at least what its slope at x says; so L itself is at least as much
+ * less what the addition comes to in the box. Second derivatives are linear in place, and
+ * positive definite matrices a convex set: the box's corners decide. */
+static bool is_cleared(const search *s, const box *b, const double x[3], double pull)
+{
+    double t[8], slope[3], far[3];
     const double way[3] = {x[0] - s->u[0], x[1] - s->u[1], x[2] - s->u[2]};
     expand(s->patch, x, t);
     times((const double(*)[3])s->metric->gram, way, slope);
+    double room = (cwi_dot(way, slope) - s->limit * s->limit) / 2 + pull * t[0];
     for (int a = 0; a < 3; a++) {
+        const double down = x[a] - b->low[a], up = b->high[a] - x[a];
         slope[a] += pull * t[1 << a];
-        const double none = 1e-6 * s->metric->gram[a][a];
-        if ((slope[a] > none && x[a] > b->low[a]) || (slope[a] < -none && x[a] < b->high[a]))
-            return false;
+        room += cwi_lesser(-slope[a] * down, slope[a] * up);
+        far[a] = cwi_greater(down, up);
     }
+    if (!(room > 0))
+        return false;
+    const double stiffness = 2 * room / radius_squared(s->metric, far);
+    pull /= 1 + stiffness;
+    if (is_plainly_convex(s->metric, pull, t, far))
+        return true;
     for (int n = 0; n < 8; n++) {
         const double dx = (n & 1 ? b->high : b->low)[0] - x[0];
         const double dy = (n & 2 ? b->high : b->low)[1] - x[1];
@@ -261,16 +294,6 @@ static bool may_be_near(const search *s, const double middle[3], const double ha
     return true;
 }
 
-/* The longest that a vector within the half sizes can be. */
-static double radius(const cwi_metric *m, const double half[3])
-{
-    double square = 0;
-    for (int r = 0; r < 3; r++)
-        for (int c = 0; c < 3; c++)
-            square += fabs(m->gram[r][c]) * half[r] * half[c];
-    return sqrt(square);
-}
-
 static void search_box(search *s, box b, double *start);
 
 /* Halves a box across its longest side, and looks into the half nearer to the point first. */
@@ -304,7 +327,7 @@ static void search_box(search *s, box b, double *start)
         if (!may_be_near(s, middle, half))
             return;
         const double way[3] = {middle[0] - s->u[0], middle[1] - s->u[1], middle[2] - s->u[2]};
-        const double r = radius(s->metric, half);
+        const double r = sqrt(radius_squared(s->metric, half));
         const double d = length(s->metric, way);
         if (d - r >= s->limit)
             return;
@@ -313,7 +336,9 @@ static void search_box(search *s, box b, double *start)
             return;
         }
         before = s->limit;
-        if (descend(s, &b, x, &pull) && is_nearest(s, &b, x, pull))
+        pull = 0;
+        descend(s, &b, x, &pull);
+        if (is_cleared(s, &b, x, pull))
             return;
         start = x;
     } while (s->limit < before);
