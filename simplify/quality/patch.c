@@ -30,6 +30,11 @@ typedef struct search {
     double limit; /* best less the slack: what is not nearer than this does not matter */
 } search;
 
+static double between(double x, double low, double high)
+{
+    return cwi_lesser(cwi_greater(x, low), high);
+}
+
 static void times(const double m[3][3], const double x[3], double y[3])
 {
     for (int r = 0; r < 3; r++)
@@ -147,6 +152,44 @@ static bool project(const search *s, const box *b, const double x[3], double f,
     return false;
 }
 
+/* What to do where that fails: pulls the point of the box nearest to u towards the plane until
+ * it comes there or can go no farther, axes taken as orthogonal. Each begins to move when it
+ * comes off a wall of the box, and stops at the other. */
+static double press(const search *s, const box *b, const double x[3], double f,
+                    const double g[3], double y[3])
+{
+    double rest = f, speed[3], start[3], stop[3], pull = 0;
+    for (int a = 0; a < 3; a++)
+        rest += g[a] * (between(s->u[a], b->low[a], b->high[a]) - x[a]);
+    const double side = rest < 0 ? -1 : 1;
+    for (int a = 0; a < 3; a++) {
+        speed[a] = side * g[a] / s->metric->gram[a][a];
+        const double near = speed[a] > 0 ? b->high[a] : b->low[a];
+        const double far = speed[a] > 0 ? b->low[a] : b->high[a];
+        start[a] = cwi_greater((s->u[a] - near) / speed[a], 0);
+        stop[a] = cwi_greater((s->u[a] - far) / speed[a], 0);
+    }
+    for (rest *= side;;) {
+        double rate = 0, next = INFINITY; /* until an axis starts or stops */
+        for (int a = 0; a < 3; a++) {
+            rate += start[a] <= pull && pull < stop[a] ? side * g[a] * speed[a] : 0;
+            next = start[a] > pull ? cwi_lesser(next, start[a]) : next;
+            next = stop[a] > pull ? cwi_lesser(next, stop[a]) : next;
+        }
+        if (next == INFINITY)
+            break;
+        if (rate * (next - pull) >= rest) {
+            pull += rate > 0 ? rest / rate : 0;
+            break;
+        }
+        rest -= rate * (next - pull);
+        pull = next;
+    }
+    for (int a = 0; a < 3; a++)
+        y[a] = between(s->u[a] - pull * speed[a], b->low[a], b->high[a]);
+    return side * pull;
+}
+
 static void offer(search *s, const double x[3], double margin)
 {
     const double way[3] = {x[0] - s->u[0], x[1] - s->u[1], x[2] - s->u[2]};
@@ -157,37 +200,42 @@ static void offer(search *s, const double x[3], double margin)
     }
 }
 
-/* Whether the function vanishes at x, or a millionth of a voxel beside it. */
-static bool on_surface(const search *s, const double x[3])
+/* Whether the function vanishes at x, or changes its sign within a millionth of a voxel along
+ * its slope, inside the box. */
+static bool on_surface(const search *s, const box *b, const double x[3])
 {
-    double t[8], down[3];
+    double t[8], down[3], y[3];
     expand(s->patch, x, t);
     const double g[3] = {t[1], t[2], t[4]}, close = 1e-6 * s->metric->voxel;
     times((const double(*)[3])s->metric->inverse[0], g, down);
-    return t[0] * t[0] <= close * close * cwi_dot(g, down);
+    const double step = copysign(close / sqrt(cwi_dot(g, down)), t[0]);
+    for (int a = 0; a < 3; a++)
+        y[a] = between(x[a] - step * down[a], b->low[a], b->high[a]);
+    return t[0] * cwi_patch_value(s->patch, y) <= 0;
 }
 
 /* Newton's method in a box: the nearest point on the tangent plane at the nearest point on the
- * tangent plane ... True when it came to rest; what it found on the surface is offered. */
-static bool descend(search *s, const box *b, double x[3], double *pull)
+ * tangent plane ... What it finds on the surface is offered. Returns the last pull. */
+static double descend(search *s, const box *b, double x[3])
 {
     const double close = 1e-7 * s->metric->voxel;
-    for (int n = 0; n < 16; n++) {
+    double pull = 0, moved = INFINITY;
+    for (int n = 0; n < 16 && moved >= close; n++) {
         double t[8], y[3];
         expand(s->patch, x, t);
         const double g[3] = {t[1], t[2], t[4]};
-        if (!project(s, b, x, t[0], g, y, pull))
-            return false;
+        const bool reached = project(s, b, x, t[0], g, y, &pull);
+        if (!reached)
+            pull = press(s, b, x, t[0], g, y);
         const double move[3] = {y[0] - x[0], y[1] - x[1], y[2] - x[2]};
+        moved = length(s->metric, move);
         memcpy(x, y, 3 * sizeof *x);
-        if (length(s->metric, move) < close) {
-            offer(s, x, 0);
-            return true;
-        }
+        if (!reached)
+            return pull;
     }
-    if (on_surface(s, x))
+    if (moved < close || on_surface(s, b, x))
         offer(s, x, 0);
-    return false;
+    return pull;
 }
 
 /* The square of the longest that a vector within the half sizes can be. */
@@ -235,6 +283,7 @@ static bool is_cleared(const search *s, const box *b, const double x[3], double 
     expand(s->patch, x, t);
     times((const double(*)[3])s->metric->gram, way, slope);
     double room = (cwi_dot(way, slope) - s->limit * s->limit) / 2 + pull * t[0];
+    room -= fabs(pull) * NOTHING;
     for (int a = 0; a < 3; a++) {
         const double down = x[a] - b->low[a], up = b->high[a] - x[a];
         slope[a] += pull * t[1 << a];
@@ -315,14 +364,14 @@ static void search_halves(search *s, const box *b, const double middle[3], const
  * is smaller, and is looked at again. */
 static void search_box(search *s, box b, double *start)
 {
-    double middle[3], half[3], x[3], pull, before;
+    double middle[3], half[3], x[3], before;
     do {
         if (!(s->limit > 0) || !clip(s, &b))
             return;
         for (int a = 0; a < 3; a++) {
             middle[a] = (b.low[a] + b.high[a]) / 2;
             half[a] = (b.high[a] - b.low[a]) / 2;
-            x[a] = start ? cwi_lesser(cwi_greater(start[a], b.low[a]), b.high[a]) : middle[a];
+            x[a] = start ? between(start[a], b.low[a], b.high[a]) : middle[a];
         }
         if (!may_be_near(s, middle, half))
             return;
@@ -336,8 +385,7 @@ static void search_box(search *s, box b, double *start)
             return;
         }
         before = s->limit;
-        pull = 0;
-        descend(s, &b, x, &pull);
+        const double pull = descend(s, &b, x);
         if (is_cleared(s, &b, x, pull))
             return;
         start = x;

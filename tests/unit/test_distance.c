@@ -258,14 +258,14 @@ static void caps_lie_on_the_end_of_the_data(void **state)
 static void threads_do_not_change_a_byte(void **state)
 {
     (void)state;
-    cw_volume v = test_sample(CW_FIELD_GYROID, 32, CW_F32);
+    cw_volume v = test_sample(CW_FIELD_GYROID, 24, CW_F32);
     cw_mesh mesh = test_extract(&v, NULL, NULL);
     float *found[2] = {calloc(mesh.vertex_count, 4), calloc(mesh.vertex_count, 4)};
     cw_distance d[2];
     cw_error err = {0};
     assert_true(found[0] && found[1]);
     for (int n = 0; n < 2; n++) {
-        const cw_field_distance_desc desc = {.isovalue = 0.2, .threads = n ? 7 : 1};
+        const cw_field_distance_desc desc = {.isovalue = 0.1, .threads = n ? 7 : 1};
         assert_ok(cw_distance_to_field(&mesh, &v, &desc, d + n, found[n], &err), err);
     }
     assert_memory_equal(d, d + 1, sizeof *d);
