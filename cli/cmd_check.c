@@ -8,6 +8,7 @@
 #include "cli/verdicts.h"
 #include "core/status.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -16,7 +17,7 @@ typedef struct check_args {
     cli_input input; /* of the source volume */
     const char *source, *reference, *defects, *json, *mesh_reader;
     cli_number iso;
-    cli_lengths tolerance;
+    cli_length tolerance;
     int profile, inside, progress;
     bool deep, open, histogram;
 } check_args;
@@ -40,7 +41,8 @@ static const cli_option options[] = {
      offsetof(check_args, open)},
     {"reference", 0, CLI_TEXT, "MESH", "measure the distance to this mesh, and back",
      offsetof(check_args, reference)},
-    {"tolerance", 0, CLI_LENGTHS, "L", "the largest distance allowed, e.g. 0.1mm (none)",
+    {"tolerance", 0, CLI_LENGTH, "L",
+     "the largest distance allowed: 0.1mm, 0.05% of the diagonal, 0.5vox of the source (none)",
      offsetof(check_args, tolerance)},
     {"defects", 0, CLI_TEXT, "FILE",
      "write the mesh with its defects and distances painted: .ply, .glb or .gltf",
@@ -73,14 +75,10 @@ typedef struct run_state {
     cli_report report;
 } run_state;
 
-static double tolerance_of(const check_args *args)
-{
-    return args->tolerance.given ? args->tolerance.mm[0] : 0;
-}
-
 static void put_params(cli_json *j, const void *p, const cli_made *made)
 {
-    const check_args *args = ((const run_state *)p)->args;
+    const run_state *s = p;
+    const check_args *args = s->args;
     (void)made;
     cli_json_text(j, "profile", profiles[args->profile]);
     cli_json_bool(j, "deep", args->deep);
@@ -90,7 +88,7 @@ static void put_params(cli_json *j, const void *p, const cli_made *made)
         cli_json_bool(j, "open", args->open);
     }
     if (args->tolerance.given)
-        cli_json_number(j, "tolerance_mm", tolerance_of(args));
+        cli_json_number(j, "tolerance_mm", s->findings.tolerance_mm);
 }
 
 static void put_facts(cli_json *j, const void *p)
@@ -134,7 +132,6 @@ static cw_status check_defects_path(const check_args *args, cw_error *err)
 static cw_status check_args_of(run_state *s, cw_error *err)
 {
     const check_args *args = s->args;
-    const double *t = args->tolerance.mm;
     cw_status st =
         args->json ? cli_check_output(args->json, args->common.inputs, 1, err) : CW_OK;
     if (st != CW_OK)
@@ -149,8 +146,8 @@ static cw_status check_args_of(run_state *s, cw_error *err)
     if (args->tolerance.given && !args->source && !args->reference)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "--tolerance needs something to measure from: --source or --reference");
-    if (args->tolerance.given && !(t[0] > 0 && t[0] == t[1] && t[0] == t[2]))
-        return cw_fail(err, CW_ERR_ARGUMENT, "--tolerance is one length above 0");
+    if (args->tolerance.unit == CLI_VOXELS && !args->source)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--tolerance in voxels needs those of a --source");
     return args->defects ? check_defects_path(args, err) : CW_OK;
 }
 
@@ -275,7 +272,7 @@ static cw_status compare_with_reference(run_state *s, cw_error *err)
     cw_mesh_distance_desc desc = {
         .worst = s->args->source ? NULL : s->distances,
         .threads = (int)s->args->input.threads,
-        .tolerance_mm = tolerance_of(s->args) / 100,
+        .tolerance_mm = s->findings.tolerance_mm / 100,
         .progress = cli_progress((double)mesh->triangle_count / 1e6, "Mtriangle")};
     cli_report_begin(&s->report);
     cw_status st = cw_distance_to_mesh(mesh, other, &desc, &s->to_reference, NULL, err);
@@ -288,6 +285,20 @@ static cw_status compare_with_reference(run_state *s, cw_error *err)
     s->findings.from_reference = &s->from_reference;
     cli_report_end(&s->report, "reference", mesh->triangle_count, s->to_reference.samples);
     return CW_OK;
+}
+
+/* The diagonal is that of the mesh's box, a voxel the cube root of its volume. */
+static double tolerance_mm(const run_state *s)
+{
+    const cli_length *t = &s->args->tolerance;
+    const double *spacing = s->volume.spacing;
+    double low[3], high[3];
+    cw_mesh_bounds(&s->mesh.mesh, low, high);
+    const double diagonal = hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
+    const double voxel = cbrt(spacing[0] * spacing[1] * spacing[2]);
+    return t->value * (t->unit == CLI_PERCENT  ? diagonal / 100
+                       : t->unit == CLI_VOXELS ? voxel
+                                               : 1);
 }
 
 /* Without triangles there is nothing to measure from or to: the verdict says so. */
@@ -304,7 +315,7 @@ static cw_status measure(run_state *s, cw_error *err)
                            mesh->triangle_count);
     }
     s->findings.quality = &s->quality;
-    s->findings.tolerance_mm = tolerance_of(args);
+    s->findings.tolerance_mm = tolerance_mm(s);
     s->findings.has_normals = mesh->normals;
     cw_status st = measure_mesh(s, err);
     if (st == CW_OK && mesh->triangle_count)
@@ -330,7 +341,8 @@ static void name_paints(const run_state *s)
 static cw_status paint(run_state *s, cw_error *err)
 {
     const cw_distance *to = s->args->source ? &s->to_field : &s->to_reference;
-    const double full = s->args->tolerance.given ? tolerance_of(s->args) : to->max_mm;
+    const double tolerance = s->findings.tolerance_mm;
+    const double full = tolerance > 0 ? tolerance : to->max_mm;
     cw_mesh painted;
     cli_made *made = &s->report.made[0];
     cw_status st = cw_check_paint(&s->mesh.mesh, s->defects, s->distances, full, &painted, err);

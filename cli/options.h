@@ -13,6 +13,7 @@ typedef enum cli_kind {
     CLI_COUNT,   /* size_t: 50k, 100M */
     CLI_BYTES,   /* size_t: 512M, 8G (1024s) */
     CLI_LENGTHS, /* cli_lengths: one for all axes or three; 0.5mm,12um, bare is mm */
+    CLI_LENGTH,  /* cli_length: 0.1mm, 0.05% of the box's diagonal, 0.5vox; bare is mm */
     CLI_SIZES,   /* cli_sizes: 64, 1280x720 or 512x512x300 */
     CLI_RANGES,  /* cli_ranges: 10:50,0:99,20:40 in voxels, -30mm:30mm,... in the world */
     CLI_LOUDER,  /* int, counts up */
@@ -34,6 +35,15 @@ typedef struct cli_lengths {
     bool given;
     double mm[3];
 } cli_lengths;
+
+typedef enum cli_length_unit { CLI_MM, CLI_PERCENT, CLI_VOXELS } cli_length_unit;
+
+/* A length that may be told in proportion to something. */
+typedef struct cli_length {
+    bool given;
+    double value;
+    cli_length_unit unit; /* millimetres, % of a box's diagonal, or voxels */
+} cli_length;
 
 typedef struct cli_sizes {
     int count; /* 1 to 3 given, 0: none */

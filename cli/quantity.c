@@ -63,6 +63,19 @@ bool cli_parse_lengths(const char *text, cli_lengths *out)
     return out->given = true;
 }
 
+bool cli_parse_length(const char *text, cli_length *out)
+{
+    bool unit;
+    if (!parse_length(&text, &out->value, &unit) || !(out->value > 0))
+        return false;
+    out->unit = CLI_MM;
+    if (!unit && strcmp(text, "%") == 0)
+        out->unit = CLI_PERCENT;
+    else if (!unit && strcmp(text, "vox") == 0)
+        out->unit = CLI_VOXELS;
+    return out->given = *text == '\0' || out->unit != CLI_MM;
+}
+
 bool cli_parse_sizes(const char *text, cli_sizes *out)
 {
     for (out->count = 0; out->count < 3; text++) {

@@ -7,6 +7,7 @@
 bool cli_parse_number(const char *text, cli_number *out);
 bool cli_parse_numbers(const char *text, cli_numbers *out);
 bool cli_parse_lengths(const char *text, cli_lengths *out);
+bool cli_parse_length(const char *text, cli_length *out);
 bool cli_parse_sizes(const char *text, cli_sizes *out);
 bool cli_parse_ranges(const char *text, cli_ranges *out);
 

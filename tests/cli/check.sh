@@ -35,3 +35,8 @@ cubewright check t.ply --reference s.ply --tolerance 0.05mm -q
 echo "exit $?"
 cubewright check t.ply --reference s.ply --tolerance 0.11mm -q --histogram
 echo "exit $?"
+# in proportion: the diagonal of its box is 103.73 mm, a voxel 2.58065 mm
+for tolerance in 0.09% 0.11% 0.03vox 0.045vox; do
+    cubewright check s.ply --reference t.ply --source s.nrrd --iso 0 --tolerance $tolerance -q --json r.json
+    echo "exit $? $(grep tolerance_mm r.json)"
+done 2>/dev/null

@@ -19,6 +19,8 @@ try one.off --iso 3
 try one.off --source s.nrrd
 try one.off --tolerance 1mm
 try one.off --tolerance 1mm,2mm,3mm --reference one.off
+try one.off --tolerance 0.1vox --reference one.off
+try one.off --tolerance 0% --reference one.off
 try one.off --defects x.stl
 try one.off --defects one.off
 try one.off --profile prnt
