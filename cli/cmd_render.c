@@ -1,6 +1,6 @@
 #include "cli/commands.h"
 #include "cli/console.h"
-#include "cli/input.h"
+#include "cli/mesh.h"
 #include "cli/output.h"
 #include "cli/quantity.h"
 #include "cli/surface.h"
@@ -24,7 +24,7 @@ static const render_args defaults = {
 
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE", "the picture, a .png", offsetof(render_args, output)},
-    {"iso", 'i', CLI_NUMBER, "V", "the isovalue of the surface (required)",
+    {"iso", 'i', CLI_NUMBER, "V", "the isovalue of a volume's surface (required for one)",
      offsetof(render_args, iso)},
     {"inside", 0, CLI_CHOICE, "above/below", "which values are inside the solid (above)",
      offsetof(render_args, inside)},
@@ -51,10 +51,6 @@ static cw_status check_args(const render_args *args, cw_error *err)
         return cw_fail(err, CW_ERR_ARGUMENT, "render needs an output: -o FILE");
     if (!dot || strcmp(dot, ".png") != 0)
         return cw_fail(err, CW_ERR_ARGUMENT, "%s: render writes .png", args->output);
-    if (!args->iso.given)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "render needs a level: --iso V; 'cubewright info %s' suggests some",
-                       args->common.inputs[0]);
     if (args->size.count != 2)
         return cw_fail(err, CW_ERR_ARGUMENT, "--size takes two numbers, such as 1280x720");
     if (args->samples < 1 || args->samples > 4)
@@ -84,22 +80,40 @@ static cw_status draw(const render_args *args, const cw_mesh *mesh, cwi_image *i
     return st == CW_OK ? cwi_render_mesh(mesh, &desc, image, err) : st;
 }
 
-static cw_status run(void *p, cw_error *err)
+/* With an isovalue the input is a volume, without a mesh. */
+static cw_status get_mesh(const render_args *args, cw_mesh *mesh, cw_error *err)
 {
-    const render_args *args = p;
-    const double start = cli_seconds();
+    const char *path = args->common.inputs[0];
     cli_volume volume = {0};
-    cw_mesh mesh = {0};
-    cwi_image image = {0};
-    cw_status st = check_args(args, err);
-    if (st == CW_OK)
-        st = cli_read_volume(args->common.inputs[0], &args->input, false, &volume, err);
+    if (!args->iso.given) {
+        cli_mesh file;
+        cw_status st = cli_read_mesh(path, args->input.reader, &args->input, &file, err);
+        *mesh = file.mesh;
+        if (st == CW_ERR_FORMAT)
+            cli_say("a volume needs a level: --iso V; 'cubewright info %s' suggests some",
+                    path);
+        return st;
+    }
+    cw_status st = cli_read_volume(path, &args->input, false, &volume, err);
     if (st == CW_OK)
         st = cli_extract_surface(&volume, NULL,
                                  &(cw_extract_desc){.isovalue = args->iso.value,
                                                     .inside_is_low = args->inside,
                                                     .threads = (int)args->input.threads},
-                                 &mesh, NULL, err);
+                                 mesh, NULL, err);
+    cw_volume_free(&volume.whole);
+    return st;
+}
+
+static cw_status run(void *p, cw_error *err)
+{
+    const render_args *args = p;
+    const double start = cli_seconds();
+    cw_mesh mesh = {0};
+    cwi_image image = {0};
+    cw_status st = check_args(args, err);
+    if (st == CW_OK)
+        st = get_mesh(args, &mesh, err);
     if (st == CW_OK)
         st = draw(args, &mesh, &image, err);
     if (st == CW_OK)
@@ -110,20 +124,21 @@ static cw_status run(void *p, cw_error *err)
                    cli_seconds() - start);
     cwi_image_free(&image);
     cw_mesh_free(&mesh);
-    cw_volume_free(&volume.whole);
     return st;
 }
 
 const cli_command cli_render = {
     .name = "render",
-    .usage = "VOLUME --iso V -o PNG [options]",
-    .about = "a picture of the surface at an isovalue; needs no display",
+    .usage = "VOLUME --iso V -o PNG [options], or MESH -o PNG [options]",
+    .about = "a picture of a mesh, or of the surface at an isovalue; needs no display",
     .more =
-        "Draws the surface that extract makes, lit from the camera, on the CPU in double\n"
-        "precision. Cameras are named in the patient's frame: front looks at the face, heads\n"
+        "Draws a mesh, in its colours if it has some, or the surface that extract makes of a\n"
+        "volume, lit from the camera, on the CPU in double precision; the inside is red. "
+        "Cameras are named in the patient's frame: front looks at the face, heads\n"
         "are up, and the patient's left is on the right of the picture.\n\n"
-        "Example\n"
-        "  cubewright render head.nii.gz --iso 50 --camera iso -o head.png\n",
+        "Examples\n"
+        "  cubewright render head.nii.gz --iso 50 --camera iso -o head.png\n"
+        "  cubewright render defects.ply -o defects.png\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .min_inputs = 1,
