@@ -134,7 +134,8 @@ const cli_command cli_render = {
     .more =
         "Draws a mesh, in its colours if it has some, or the surface that extract makes of a\n"
         "volume, lit from the camera, on the CPU in double precision; the inside is red. "
-        "Cameras are named in the patient's frame: front looks at the face, heads\n"
+        "Cameras\n"
+        "are named in the patient's frame: front looks at the face, heads\n"
         "are up, and the patient's left is on the right of the picture.\n\n"
         "Examples\n"
         "  cubewright render head.nii.gz --iso 50 --camera iso -o head.png\n"

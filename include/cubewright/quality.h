@@ -60,11 +60,12 @@ typedef struct cw_quality {
     size_t duplicates;           /* triangles with the same vertices as an earlier one */
     size_t degenerate;           /* triangles of zero area in double precision */
     size_t needles, caps;        /* triangles: see above */
-    size_t cavities;   /* closed, oriented components facing inward, inside one solid */
-    size_t inside_out; /* such components facing inward, but not so */
-    size_t nested;     /* such components facing outward, inside another one */
-    int64_t euler;     /* used vertices - edges + triangles */
-    int64_t genus;     /* handles of all components; -1 unless an oriented manifold */
+    size_t cavities;    /* closed, oriented components facing inward, inside one solid */
+    size_t inside_out;  /* such components facing inward, but not so */
+    size_t nested;      /* such components facing outward, inside another one */
+    size_t open_inward; /* open, oriented components that seem to face inward */
+    int64_t euler;      /* used vertices - edges + triangles */
+    int64_t genus;      /* handles of all components; -1 unless an oriented manifold */
     double area_mm2;
     double volume_mm3;     /* signed; positive when triangles wind outward. Of closed meshes */
     double min[3], max[3]; /* world box, mm */
@@ -73,7 +74,7 @@ typedef struct cw_quality {
 
 typedef struct cw_quality_desc {
     cw_weld weld;     /* default: as indexed */
-    bool shells;      /* count cavities, inside_out and nested too; default: they stay 0 */
+    bool shells;      /* count cavities to open_inward too; default: they stay 0 */
     int threads;      /* default: all */
     uint8_t *defects; /* triangle_count: bits of cw_defect are set in it; default: none kept */
 } cw_quality_desc;

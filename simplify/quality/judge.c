@@ -117,6 +117,11 @@ static void judge_shells(bench *b)
     if (q->inside_out)
         say(v, "%zu closed shell%s inside out", q->inside_out,
             q->inside_out == 1 ? " is" : "s are");
+    if (q->open_inward) {
+        v = add_count(b, "facing", &look, q->open_inward, "", "if so, flip them");
+        say(v, "%zu open shell%s to be inside out", q->open_inward,
+            q->open_inward == 1 ? " seems" : "s seem");
+    }
     if (!q->nested)
         return;
     v = add_count(b, "nested", &overlap, q->nested, "",

@@ -28,8 +28,9 @@ typedef struct work {
     uint32_t *fan;      /* union-find: corners around one vertex that share edges */
     uint32_t *part;     /* union-find: vertices that share triangles */
     uint32_t *fans;     /* fans around each vertex */
-    double *volume;     /* of the component whose root a vertex is */
-    uint8_t *unbounded; /* whether that component bounds no volume */
+    double *volume;     /* of the component whose root a vertex is, seen from that vertex */
+    double *area;       /* of that component */
+    uint8_t *unbounded; /* whether that component bounds no volume: 1 open, else 2 or 3 */
 } work;
 
 /* The sides of the triangles around one edge. */
@@ -180,7 +181,7 @@ static void find_unbounded(work *w)
     for (edge e = {0}; next_edge(w, &e);) {
         const side *s = w->sides + e.begin;
         if (e.count != 2 || runs_up(w, &e, &s[0]) == runs_up(w, &e, &s[1]))
-            w->unbounded[cwi_sets_find(w->part, e.low)] = 1;
+            w->unbounded[cwi_sets_find(w->part, e.low)] |= e.count == 1 ? 1 : 2;
     }
 }
 
@@ -254,9 +255,9 @@ static void measure_components(work *w, cw_quality *q)
 {
     for (size_t t = 0; t < w->corners / 3; t++)
         if (!cwi_is_collapsed(&w->welded, t)) {
+            const uint32_t root = cwi_sets_find(w->part, w->vertex[3 * t]);
             q->euler++;
-            w->volume[cwi_sets_find(w->part, w->vertex[3 * t])] +=
-                cwi_signed_volume(w->welded.mesh, t);
+            cwi_add_triangle(w->welded.mesh, t, root, &w->volume[root], &w->area[root]);
         }
 }
 
@@ -271,8 +272,10 @@ static bool prepare(work *w)
     w->part = cwi_sets_alloc(w->vertices);
     w->fans = cwi_alloc_zeroed(w->vertices, sizeof *w->fans);
     w->volume = cwi_alloc_zeroed(w->vertices, sizeof *w->volume);
+    w->area = cwi_alloc_zeroed(w->vertices, sizeof *w->area);
     w->unbounded = cwi_alloc_zeroed(w->vertices, 1);
-    return w->begin && w->sides && w->fan && w->part && w->fans && w->volume && w->unbounded;
+    return w->begin && w->sides && w->fan && w->part && w->fans && w->volume && w->area &&
+           w->unbounded;
 }
 
 static bool measure_topology(work *w, const cw_quality_desc *d, cw_quality *q)
@@ -293,7 +296,7 @@ static bool measure_topology(work *w, const cw_quality_desc *d, cw_quality *q)
         !q->nonmanifold_edges && !q->misoriented_edges && !q->nonmanifold_vertices;
     q->genus =
         oriented ? (int64_t)q->components - (q->euler + (int64_t)q->border_loops) / 2 : -1;
-    const cwi_shells shells = {w->part, w->fans, w->volume, w->unbounded};
+    const cwi_shells shells = {w->part, w->fans, w->volume, w->area, w->unbounded};
     return !d->shells || cwi_measure_shells(&w->welded, &shells, d, q);
 }
 
@@ -306,6 +309,7 @@ static void free_work(work *w)
     cwi_free(w->part);
     cwi_free(w->fans);
     cwi_free(w->volume);
+    cwi_free(w->area);
     cwi_free(w->unbounded);
 }
 

@@ -46,11 +46,15 @@ static void load(const cw_mesh *mesh, size_t triangle, sides *s)
     cwi_cross(s->side[0], s->side[1], s->normal);
 }
 
-double cwi_signed_volume(const cw_mesh *mesh, size_t triangle)
+void cwi_add_triangle(const cw_mesh *mesh, size_t triangle, uint32_t vertex, double *volume,
+                      double *area)
 {
     sides s;
     load(mesh, triangle, &s);
-    return cwi_dot(s.normal, s.from[0]) / 6;
+    for (size_t a = 0; a < 3; a++)
+        s.from[0][a] -= (double)mesh->positions[3 * (size_t)vertex + a];
+    *volume += cwi_dot(s.normal, s.from[0]) / 6;
+    *area += sqrt(cwi_dot(s.normal, s.normal)) / 2;
 }
 
 static size_t bin_of(double value, double step)

@@ -4,8 +4,9 @@
 
 #include "simplify/quality/welded.h"
 
-/* Six times less than the determinant: the volume from the mesh's origin to the triangle. */
-double cwi_signed_volume(const cw_mesh *mesh, size_t triangle);
+/* Adds a triangle's area, and the signed volume between it and a vertex. */
+void cwi_add_triangle(const cw_mesh *mesh, size_t triangle, uint32_t vertex, double *volume,
+                      double *area);
 
 /* Fills in area, volume, degenerate, needles, caps and shapes. False when memory is out. */
 bool cwi_measure_shapes(const cwi_welded *welded, const cw_quality_desc *desc, cw_quality *q);

@@ -99,9 +99,22 @@ static void wind_around(void *context, size_t k)
     w->around[k] = r.winding;
 }
 
+/* An open shell has no volume for certain. One that has a tenth of a sphere's of its area, seen
+ * from a point of its own, is nearly closed, and its sign tells how it faces. */
+static void find_open_inward(const work *w, uint8_t *wrong, cw_quality *q)
+{
+    for (size_t v = 0; v < w->welded->mesh->vertex_count; v++) {
+        const double area = w->shells->area[v],
+                     whole = area * sqrt(area) / (6 * sqrt(acos(-1)));
+        wrong[v] = wrong[v] == 1 && w->shells->volume[v] < -0.1 * whole;
+        q->open_inward += wrong[v];
+    }
+}
+
 static void judge(const work *w, const cw_quality_desc *d, cw_quality *q)
 {
     uint8_t *wrong = w->shells->unbounded; /* has served its purpose */
+    find_open_inward(w, wrong, q);
     for (size_t k = 0; k < w->count; k++) {
         const bool inward = w->shells->volume[w->closed[k]] < 0;
         q->cavities += inward && w->around[k] == 1;
@@ -123,8 +136,6 @@ static void list_closed(work *w)
         if (w->part[v] == v && w->shells->used[v] && !w->shells->unbounded[v])
             w->closed[w->count++] = v;
     }
-    for (uint32_t v = 0; v < vertices; v++)
-        w->shells->unbounded[v] = 0;
 }
 
 bool cwi_measure_shells(const cwi_welded *welded, const cwi_shells *shells,

@@ -207,6 +207,13 @@ static void inside_out_cube(test_builder *b)
     flip(b, 0, b->triangles_used);
 }
 
+static void open_inside_out(test_builder *b)
+{
+    a_ball(b);
+    drop(b, 6);
+    flip(b, 0, b->triangles_used);
+}
+
 static void one_inside_out(test_builder *b)
 {
     two_cubes(b);
@@ -404,6 +411,8 @@ const test_planted test_planted_meshes[] = {
      .genus = -1},
     {"half_flipped", half_flipped, .components = 1, .misoriented_edges = 8, .genus = -1},
     {"inside_out_cube", inside_out_cube, .components = 1, .inside_out = 1},
+    {"open_inside_out", open_inside_out, .components = 1, .open_edges = 3, .border_loops = 1,
+     .open_inward = 1},
     {"one_inside_out", one_inside_out, .components = 2, .inside_out = 1},
     {"nested", nested, .components = 2, .nested = 1},
     {"twice_nested", twice_nested, .components = 3, .nested = 2},

@@ -12,7 +12,7 @@ typedef struct test_planted {
     /* The truth with equal points as one vertex. */
     size_t components, open_edges, border_loops, nonmanifold_edges, misoriented_edges,
         nonmanifold_vertices, duplicates, degenerate, needles, caps, cavities, inside_out,
-        nested, unused_vertices;
+        nested, open_inward, unused_vertices;
     int genus; /* -1: not an oriented manifold */
     bool meets_itself;
 } test_planted;

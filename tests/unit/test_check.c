@@ -74,6 +74,7 @@ static void profiles_grade_faults(void **state)
         {"bow_tie", "manifold", {F, F, W, F}, 1},
         {"flipped_triangle", "oriented", {F, F, F, F}, 3},
         {"inside_out_cube", "outward", {F, F, F, F}, 1},
+        {"open_inside_out", "facing", {W, W, W, W}, 1},
         {"cavity", "outward", {O, O, O, O}, 0},
         {"nested", "nested", {W, W, N, F}, 1},
         {"zero_band", "degenerate", {F, F, W, F}, 24},
@@ -254,7 +255,7 @@ static void every_planted_fault_is_marked_where_it_is(void **state)
         wanted |= row->duplicates ? CW_DEFECT_DUPLICATE : 0;
         wanted |= row->degenerate ? CW_DEFECT_DEGENERATE : 0;
         wanted |= row->needles || row->caps ? CW_DEFECT_SLIVER : 0;
-        wanted |= row->inside_out || row->nested ? CW_DEFECT_INSIDE_OUT : 0;
+        wanted |= row->inside_out || row->nested || row->open_inward ? CW_DEFECT_INSIDE_OUT : 0;
         wanted |= row->meets_itself ? CW_DEFECT_INTERSECTING : 0;
         if (marked != wanted)
             fail_msg("%s: marked as %#x, not %#x", row->name, marked, wanted);

@@ -52,6 +52,7 @@ static void what_was_planted_is_found(void **state)
         EXPECT(cavities);
         EXPECT(inside_out);
         EXPECT(nested);
+        EXPECT(open_inward);
         EXPECT(genus);
         expect(row->name, "meets itself", count_crossings(&mesh) > 0, row->meets_itself);
         EXPECT(unused_vertices);
