@@ -3,6 +3,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "formats/input.h"
+#include "formats/isal.h"
 
 #include <string.h>
 
@@ -34,7 +35,8 @@ cw_status cwi_stream_open(cwi_stream *s, int fd, uint64_t offset, bool deflated,
     cwi_zlib_use_memory(&s->z);
     s->z.next_in = s->buffer = cwi_alloc_array(BUFFER_BYTES, 1);
     const int either = 32; /* zlib or gzip, by the header found */
-    s->deflated = s->buffer && inflateInit2(&s->z, MAX_WBITS + either) == Z_OK;
+    s->deflated = s->buffer && cwi_isal_open(&s->isal) &&
+                  (s->isal || inflateInit2(&s->z, MAX_WBITS + either) == Z_OK);
     if (s->deflated)
         return CW_OK;
     cwi_stream_close(s);
@@ -54,8 +56,9 @@ cw_status cwi_stream_from_base64(cwi_stream *s, cw_error *err)
 
 void cwi_stream_close(cwi_stream *s)
 {
-    if (s->deflated)
+    if (s->deflated && !s->isal)
         inflateEnd(&s->z);
+    cwi_free(s->isal);
     cwi_free(s->buffer);
     cwi_free(s->text);
     *s = (cwi_stream){.fd = -1};
@@ -115,7 +118,7 @@ static cw_status start_next_member(cwi_stream *s, cw_error *err)
     size_t got;
     cw_status st = s->z.avail_in < 2 ? refill(s, &got, err) : CW_OK;
     s->ended = s->z.avail_in < 2 || s->z.next_in[0] != 0x1f || s->z.next_in[1] != 0x8b;
-    if (st == CW_OK && !s->ended)
+    if (st == CW_OK && !s->ended && !s->isal)
         inflateReset(&s->z);
     return st;
 }
@@ -147,7 +150,7 @@ static cw_status inflate_some(cwi_stream *s, unsigned char *to, size_t size, siz
     s->z.next_out = to;
     s->z.avail_out = size < most ? (uInt)size : most;
     const uInt output = s->z.avail_out;
-    const int code = inflate(&s->z, Z_NO_FLUSH);
+    const int code = s->isal ? cwi_isal_inflate(s->isal, &s->z) : inflate(&s->z, Z_NO_FLUSH);
     *got = output - s->z.avail_out;
     s->given += *got;
     if (code == Z_STREAM_END)

@@ -19,6 +19,7 @@ typedef struct cwi_stream {
     bool deflated;
     bool ended;     /* the compressed data are over, whole or not */
     bool truncated; /* ... because the file ended first */
+    void *isal;     /* inflates in zlib's place; NULL: zlib does */
     z_stream z;
     unsigned char *buffer; /* compressed bytes on their way into z */
     char *text; /* base64 on its way to bytes; NULL: the file holds them as they are */

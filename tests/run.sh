@@ -48,6 +48,6 @@ build_and_test dev
 quietly cmake --build --preset dev --target format-check
 build_and_test release
 build_and_test fuzz -L 'unit|fuzz'
-build_and_test tsan -R 'extract|volume|quality|render'
+build_and_test tsan -R 'extract|volume|quality|render|distance_mesh|oracle|intersections'
 build_and_test minimal -R 'unit|fuzz|install'
 echo "== all tests passed"

@@ -100,6 +100,7 @@ static void an_extracted_surface_has_none(void **state)
     cw_crossings x = find(&mesh, 0);
     assert_int_equal(x.count, 0);
     assert_false(x.undecided);
+    cw_crossings_free(&x);
     cw_volume_free(&volume);
     cw_mesh_free(&mesh);
 }
