@@ -16,6 +16,7 @@ static const reader readers[] = {
     {"nrrd", ".nrrd .nhdr", cwi_nrrd_sniff, cwi_nrrd_parse},
     {"nifti", ".nii .nii.gz .hdr .hdr.gz .img .img.gz", cwi_nifti_sniff, cwi_nifti_parse},
     {"metaimage", ".mha .mhd", cwi_metaimage_sniff, cwi_metaimage_parse},
+    {"vtk", ".vtk", cwi_vtk_sniff, cwi_vtk_parse},
 };
 enum { READER_COUNT = sizeof readers / sizeof *readers };
 

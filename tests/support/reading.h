@@ -57,6 +57,36 @@ static inline void check_affine(const cw_volume *volume, const double *wanted)
                          wanted[4 * r + c]);
 }
 
+/* Cut behind any of its bytes, the file gives an error and no volume. */
+static inline void check_every_cut(const char *name)
+{
+    size_t size;
+    char *bytes = test_file_read(test_path(name), &size);
+    for (size_t cut = 0; cut < size; cut++) {
+        cw_volume volume;
+        cw_error err = {0};
+        test_file_write(test_path(name), bytes, cut);
+        const cw_status st = read_back(name, &volume, &err);
+        if (st != (cut ? CW_ERR_FORMAT : CW_ERR_IO))
+            fail_msg("%s, %zu of %zu bytes: status %d, %s", name, cut, size, (int)st,
+                     st == CW_OK ? "it was read" : err.message);
+        assert_null(volume.data);
+    }
+    test_file_write(test_path(name), bytes, size);
+    free(bytes);
+}
+
+/* What a file that is wrong must be told of it. */
+static inline void check_told(const char *name, size_t index, const char *words)
+{
+    cw_volume volume;
+    cw_error err = {0};
+    if (read_back(name, &volume, &err) == CW_OK)
+        fail_msg("case %zu was read; not: %s", index, words);
+    if (!strstr(err.message, words))
+        fail_msg("case %zu says: %s; not: %s", index, err.message, words);
+}
+
 /* Whatever allocation fails, the reader says so and leaves nothing behind. */
 static inline void check_starved_reads(const char *name)
 {
