@@ -10,6 +10,7 @@ bool cwi_nrrd_sniff(const unsigned char *head, size_t size);
 bool cwi_nifti_sniff(const unsigned char *head, size_t size);
 bool cwi_metaimage_sniff(const unsigned char *head, size_t size);
 bool cwi_vtk_sniff(const unsigned char *head, size_t size);
+bool cwi_vti_sniff(const unsigned char *head, size_t size);
 
 /* Reads a header into a zeroed source, which the caller frees in any case. The messages name
  * the header's fields; the caller puts the file's name in front. */
@@ -17,6 +18,7 @@ cw_status cwi_nrrd_parse(const cwi_input *in, cwi_source *src, cw_error *err);
 cw_status cwi_nifti_parse(const cwi_input *in, cwi_source *src, cw_error *err);
 cw_status cwi_metaimage_parse(const cwi_input *in, cwi_source *src, cw_error *err);
 cw_status cwi_vtk_parse(const cwi_input *in, cwi_source *src, cw_error *err);
+cw_status cwi_vti_parse(const cwi_input *in, cwi_source *src, cw_error *err);
 
 /* The same from a layout that the caller of the library states. */
 cw_status cwi_raw_describe(const cw_raw_layout *layout, cwi_source *src, cw_error *err);

@@ -143,7 +143,7 @@ static cw_status check_frame(const cwi_source *src, cw_error *err)
 /* One file with voxels, open. */
 typedef struct part {
     int fd;
-    uint64_t size;  /* of the file */
+    uint64_t size;  /* of the file; less where the voxels end before it */
     uint64_t start; /* of the (encoded) voxels in it */
     bool own;       /* fd is closed with the part */
 } part;
@@ -174,19 +174,26 @@ static cw_status skip_lines(const part *p, uint64_t lines, uint64_t *start, cw_e
     return CW_OK;
 }
 
-/* Bytes to skip that are seen only once they are inflated. */
-static uint64_t inflated_skip(const cwi_source *src)
+/* Bytes to skip that are seen only once they are decoded. */
+static uint64_t decoded_skip(const cwi_source *src)
 {
-    return src->encoding == CWI_DEFLATED ? src->skip : 0;
+    return src->encoding == CWI_DEFLATED || src->base64 ? src->skip : 0;
+}
+
+/* Bytes of the file, or the most that base64 text of that size can hold. */
+static uint64_t bytes_of_text(const cwi_source *src, uint64_t encoded)
+{
+    return src->base64 ? encoded / 4 * 3 + encoded % 4 : encoded;
 }
 
 /* The most voxel bytes that the encoded bytes in the file can stand for. Deflate never grows
  * data more than 1032 times; a number and its blank take two bytes, the last may lack the
- * blank. */
+ * blank. What blocks stand for, their table tells. */
 static uint64_t most_bytes(const cwi_source *src, uint64_t encoded)
 {
     const uint64_t voxel = cw_type_size(src->shape.type);
-    const uint64_t most = src->encoding == CWI_DEFLATED ? 1032 : voxel;
+    const uint64_t most = src->encoding == CWI_ASCII ? voxel : 1032;
+    encoded = bytes_of_text(src, encoded);
     if (src->encoding == CWI_RAW)
         return encoded;
     if (src->encoding == CWI_ASCII)
@@ -201,7 +208,7 @@ static cw_status check_share(const cwi_source *src, part *p, cw_error *err)
     if (src->at_end)
         p->start = p->size > share ? p->size - share : 0;
     const uint64_t encoded = p->size > p->start ? p->size - p->start : 0;
-    if (!__builtin_add_overflow(inflated_skip(src), share, &wanted) &&
+    if (!__builtin_add_overflow(decoded_skip(src), share, &wanted) &&
         wanted <= most_bytes(src, encoded))
         return CW_OK;
     return cw_fail(
@@ -211,6 +218,38 @@ static cw_status check_share(const cwi_source *src, part *p, cw_error *err)
         src->size_field, share, src->encoding == CWI_RAW ? "" : ", encoded",
         src->files.count > 1 ? " in each file" : "", (unsigned long long)encoded,
         (unsigned long long)p->start);
+}
+
+/* A stream over the encoded voxels of a part, and the table of their blocks where they are in
+ * blocks. Close both in any case. */
+static cw_status open_stream(const cwi_source *src, const part *p, cwi_stream *stream,
+                             cwi_blocks *blocks, cw_error *err)
+{
+    cw_status st = cwi_stream_open(stream, p->fd, p->start, src->encoding == CWI_DEFLATED, err);
+    if (st != CW_OK)
+        return st;
+    cwi_stream_end_at(stream, p->size);
+    if (src->base64)
+        st = cwi_stream_from_base64(stream, err);
+    if (st == CW_OK)
+        st = cwi_stream_skip(stream, decoded_skip(src), err);
+    if (st == CW_OK && src->encoding == CWI_BLOCKS)
+        st = cwi_blocks_open(blocks, stream, &src->blocks, share_bytes(src),
+                             bytes_of_text(src, p->size - p->start), err);
+    return st;
+}
+
+/* A table of blocks says more of their sizes than the size of the file does. */
+static cw_status check_blocks(const cwi_source *src, const part *p, cw_error *err)
+{
+    cwi_stream stream = {0};
+    cwi_blocks blocks = {0};
+    if (src->encoding != CWI_BLOCKS)
+        return CW_OK;
+    cw_status st = open_stream(src, p, &stream, &blocks, err);
+    cwi_blocks_close(&blocks);
+    cwi_stream_close(&stream);
+    return st;
 }
 
 static void close_part(part *p)
@@ -234,10 +273,14 @@ static cw_status open_part(const cwi_source *src, const cwi_input *in, size_t in
     p->own = name && st == CW_OK;
     if (st == CW_OK)
         st = skip_lines(p, src->lines, &p->start, err);
-    if (__builtin_add_overflow(p->start, src->skip - inflated_skip(src), &p->start))
+    if (__builtin_add_overflow(p->start, src->skip - decoded_skip(src), &p->start))
         p->start = UINT64_MAX;
+    if (src->span && p->start < p->size && src->span < p->size - p->start)
+        p->size = p->start + src->span;
     if (st == CW_OK)
         st = check_share(src, p, err);
+    if (st == CW_OK)
+        st = check_blocks(src, p, err);
     if (st != CW_OK)
         close_part(p);
     return st;
@@ -280,17 +323,43 @@ static cw_status read_slabs(reading *r, cwi_stream *stream, cw_error *err)
     return st;
 }
 
+/* Every block goes straight to its place. Its end need not be a voxel's: those are turned round
+ * that have become whole. */
+static cw_status read_blocks(reading *r, cwi_blocks *blocks, cw_error *err)
+{
+    const cwi_source *src = r->src;
+    const size_t voxel = cw_type_size(src->shape.type), start = r->done;
+    const bool turn = src->big_endian != cwi_machine_is_big_endian();
+    const size_t end = start + share_bytes(src);
+    size_t turned = 0, size;
+    cw_status st = CW_OK;
+    while (st == CW_OK && r->done < end) {
+        st = cwi_progress(r->progress, "reading", (double)r->done / (double)src->bytes, err);
+        if (st == CW_OK)
+            st = cwi_blocks_next(blocks, r->voxels + r->done, &size, err);
+        if (st != CW_OK)
+            break;
+        r->done += size;
+        const size_t whole = (r->done - start) / voxel;
+        if (turn)
+            cwi_swap_bytes(r->voxels + start + turned * voxel, whole - turned, voxel);
+        turned = whole;
+    }
+    return st;
+}
+
 static cw_status read_part(reading *r, const part *p, cw_error *err)
 {
     cwi_stream stream = {0};
-    cw_status st =
-        cwi_stream_open(&stream, p->fd, p->start, r->src->encoding == CWI_DEFLATED, err);
-    if (st == CW_OK)
-        st = cwi_stream_skip(&stream, inflated_skip(r->src), err);
-    if (st == CW_OK)
+    cwi_blocks blocks = {0};
+    cw_status st = open_stream(r->src, p, &stream, &blocks, err);
+    if (st == CW_OK && r->src->encoding == CWI_BLOCKS)
+        st = read_blocks(r, &blocks, err);
+    else if (st == CW_OK)
         st = read_slabs(r, &stream, err);
     if (st == CW_OK)
         st = cwi_stream_finish(&stream, err);
+    cwi_blocks_close(&blocks);
     cwi_stream_close(&stream);
     return st;
 }

@@ -2,6 +2,7 @@
 #ifndef FORMATS_SOURCE_H
 #define FORMATS_SOURCE_H
 
+#include "formats/blocks.h"
 #include "formats/input.h"
 
 #include <cubewright/volume.h>
@@ -10,7 +11,8 @@
 typedef enum cwi_encoding {
     CWI_RAW,
     CWI_DEFLATED, /* gzip or zlib, told apart by content */
-    CWI_ASCII     /* decimal numbers with blanks between them */
+    CWI_ASCII,    /* decimal numbers with blanks between them */
+    CWI_BLOCKS    /* compressed block by block, behind a table */
 } cwi_encoding;
 
 /* A zeroed source describes nothing. Free it with cwi_source_free(). */
@@ -22,8 +24,11 @@ typedef struct cwi_source {
 
     cwi_names files; /* data files, each with an equal share; none: the header's own file */
     cwi_encoding encoding;
+    cwi_block_form blocks; /* of CWI_BLOCKS */
+    bool base64;           /* all that is encoded is once more encoded, as text */
     bool big_endian;
     uint64_t offset; /* bytes at the start of each file in front of everything else */
+    uint64_t span;   /* bytes of the file behind the offset, voxels among them; 0: all */
     uint64_t lines;  /* lines behind the offset to leave out */
     uint64_t skip;   /* decoded bytes in front of the first voxel */
     bool at_end;     /* raw: the voxels are the last bytes of the file instead */

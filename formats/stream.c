@@ -28,7 +28,7 @@ void cwi_zlib_use_memory(z_stream *z)
 
 cw_status cwi_stream_open(cwi_stream *s, int fd, uint64_t offset, bool deflated, cw_error *err)
 {
-    *s = (cwi_stream){.fd = fd, .offset = offset};
+    *s = (cwi_stream){.fd = fd, .offset = offset, .end = UINT64_MAX};
     if (!deflated)
         return CW_OK;
     cwi_zlib_use_memory(&s->z);
@@ -41,12 +41,62 @@ cw_status cwi_stream_open(cwi_stream *s, int fd, uint64_t offset, bool deflated,
     return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to inflate with");
 }
 
+void cwi_stream_end_at(cwi_stream *s, uint64_t end)
+{
+    s->end = end;
+}
+
+cw_status cwi_stream_from_base64(cwi_stream *s, cw_error *err)
+{
+    s->text = cwi_alloc_array(BUFFER_BYTES, 1);
+    return s->text ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to decode base64 with");
+}
+
 void cwi_stream_close(cwi_stream *s)
 {
     if (s->deflated)
         inflateEnd(&s->z);
     cwi_free(s->buffer);
+    cwi_free(s->text);
     *s = (cwi_stream){.fd = -1};
+}
+
+/* What the file holds, as it is. */
+static cw_status fetch_plain(cwi_stream *s, void *to, size_t size, size_t *got, cw_error *err)
+{
+    const uint64_t left = s->end > s->offset ? s->end - s->offset : 0;
+    cw_status st =
+        cwi_input_read_at(s->fd, s->offset, to, size < left ? size : (size_t)left, got, err);
+    s->offset += *got;
+    return st;
+}
+
+static cw_status fetch_base64(cwi_stream *s, unsigned char *to, size_t size, size_t *got,
+                              cw_error *err)
+{
+    cw_status st = CW_OK;
+    *got = 0;
+    while (st == CW_OK && *got < size && !s->base64.ended) {
+        size_t used;
+        if (s->text_next == s->text_size) {
+            s->text_next = 0;
+            st = fetch_plain(s, s->text, BUFFER_BYTES, &s->text_size, err);
+            if (st != CW_OK || s->text_size == 0)
+                break;
+        }
+        *got += cwi_base64_decode(&s->base64, s->text + s->text_next,
+                                  s->text_size - s->text_next, &used, to + *got, size - *got);
+        s->text_next += used;
+        if (s->base64.wrong)
+            st = cw_fail(err, CW_ERR_FORMAT, "byte %llu of the file is not base64",
+                         (unsigned long long)(s->offset - s->text_size + s->text_next));
+    }
+    return st;
+}
+
+static cw_status fetch(cwi_stream *s, void *to, size_t size, size_t *got, cw_error *err)
+{
+    return s->text ? fetch_base64(s, to, size, got, err) : fetch_plain(s, to, size, got, err);
 }
 
 /* Puts more of the file behind what is still to be inflated. */
@@ -54,10 +104,8 @@ static cw_status refill(cwi_stream *s, size_t *got, cw_error *err)
 {
     memmove(s->buffer, s->z.next_in, s->z.avail_in);
     s->z.next_in = s->buffer;
-    cw_status st = cwi_input_read_at(s->fd, s->offset, s->buffer + s->z.avail_in,
-                                     BUFFER_BYTES - s->z.avail_in, got, err);
+    cw_status st = fetch(s, s->buffer + s->z.avail_in, BUFFER_BYTES - s->z.avail_in, got, err);
     s->z.avail_in += (uInt)*got;
-    s->offset += *got;
     return st;
 }
 
@@ -114,8 +162,7 @@ static cw_status inflate_some(cwi_stream *s, unsigned char *to, size_t size, siz
 
 static cw_status read_plain(cwi_stream *s, void *to, size_t size, size_t *got, cw_error *err)
 {
-    cw_status st = cwi_input_read_at(s->fd, s->offset, to, size, got, err);
-    s->offset += *got;
+    cw_status st = fetch(s, to, size, got, err);
     s->given += *got;
     return st;
 }
@@ -147,7 +194,7 @@ cw_status cwi_stream_read(cwi_stream *s, void *to, size_t size, cw_error *err)
 cw_status cwi_stream_skip(cwi_stream *s, uint64_t size, cw_error *err)
 {
     unsigned char waste[4096];
-    if (!s->deflated) {
+    if (!s->deflated && !s->text) {
         s->offset += size;
         s->given += size;
         return CW_OK;

@@ -1,8 +1,10 @@
-/* Sequential bytes of an open file, inflated on the way where they are compressed. */
+/* Sequential bytes of an open file, made of base64 text and inflated on the way where they are
+ * so written. */
 #ifndef FORMATS_STREAM_H
 #define FORMATS_STREAM_H
 
-#include <cubewright/core.h>
+#include "formats/base64.h"
+
 #ifndef ZLIB_CONST
 #define ZLIB_CONST /* zlib does not write to its input: let its header say so */
 #endif
@@ -12,12 +14,16 @@
 typedef struct cwi_stream {
     int fd;          /* borrowed */
     uint64_t offset; /* in the file, of the next byte to fetch */
+    uint64_t end;    /* in the file: what is there is no part of the stream */
     uint64_t given;  /* bytes handed out so far, decoded */
     bool deflated;
     bool ended;     /* the compressed data are over, whole or not */
     bool truncated; /* ... because the file ended first */
     z_stream z;
     unsigned char *buffer; /* compressed bytes on their way into z */
+    char *text; /* base64 on its way to bytes; NULL: the file holds them as they are */
+    size_t text_next, text_size;
+    cwi_base64 base64;
 } cwi_stream;
 
 /* Makes zlib take its memory from core/memory.h, so that tests can make it run out. */
@@ -28,6 +34,11 @@ void cwi_zlib_use_memory(z_stream *z);
  * Returns CW_ERR_NO_MEMORY. */
 CW_API cw_status cwi_stream_open(cwi_stream *s, int fd, uint64_t offset, bool deflated,
                                  cw_error *err);
+
+/* Both before anything is read: nothing from an offset of the file on is part of the stream;
+ * the file holds the bytes as base64 text. Returns CW_ERR_NO_MEMORY. */
+CW_API void cwi_stream_end_at(cwi_stream *s, uint64_t end);
+CW_API cw_status cwi_stream_from_base64(cwi_stream *s, cw_error *err);
 
 /* Reads up to size bytes; *got is less only at the end.
  * Returns CW_ERR_FORMAT for damaged data or a wrong checksum, CW_ERR_IO. */

@@ -17,6 +17,7 @@ static const reader readers[] = {
     {"nifti", ".nii .nii.gz .hdr .hdr.gz .img .img.gz", cwi_nifti_sniff, cwi_nifti_parse},
     {"metaimage", ".mha .mhd", cwi_metaimage_sniff, cwi_metaimage_parse},
     {"vtk", ".vtk", cwi_vtk_sniff, cwi_vtk_parse},
+    {"vti", ".vti", cwi_vti_sniff, cwi_vti_parse},
 };
 enum { READER_COUNT = sizeof readers / sizeof *readers };
 

@@ -40,7 +40,9 @@ typedef struct cw_read_desc {
  * format   set to the reader's name (static); may be NULL
  * Returns  CW_ERR_IO           missing, not a regular file, unreadable
  *          CW_ERR_FORMAT       not understood, damaged, or truncated; names the field
- *          CW_ERR_UNSAFE       the header names voxels outside its own folder
+ *          CW_ERR_UNSAFE       the header names voxels outside its own folder; an XML document
+ *                              type
+ *          CW_ERR_UNSUPPORTED  compressed with a library that is not in this build
  *          CW_ERR_LIMIT        more voxels or bytes than allowed; CW_ERR_NO_MEMORY
  *          CW_ERR_ARGUMENT     no such reader; CW_ERR_CANCELLED */
 CW_API cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *volume,

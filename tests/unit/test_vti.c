@@ -1,0 +1,484 @@
+#include "formats/blocks.h"
+#include "support/reading.h"
+
+#include <stdio.h>
+
+/* --- files put together in every dialect ------------------------------------------------- */
+
+enum { VOXELS = 12, BYTES = 2 * VOXELS, BLOCK = 7, MOST = 4000 };
+
+typedef enum packing { PLAIN, ZLIB, LZ4 } packing;
+typedef enum form { ASCII, INLINE, APPENDED_TEXT, APPENDED_RAW, FORM_COUNT } form;
+typedef struct dialect {
+    form form;
+    packing packing;
+    bool big, wide; /* byte order; header_type UInt64 */
+    bool joined;    /* header and data are one piece of base64 */
+} dialect;
+
+/* Bytes that grow. */
+typedef struct bytes {
+    unsigned char at[MOST];
+    size_t size;
+} bytes;
+
+static void add(bytes *b, const void *more, size_t size)
+{
+    assert_true(b->size + size <= MOST);
+    memcpy(b->at + b->size, more, size);
+    b->size += size;
+}
+
+static void add_text(bytes *b, const char *text)
+{
+    add(b, text, strlen(text));
+}
+
+static void add_number(bytes *b, uint64_t number, size_t size, bool big)
+{
+    unsigned char word[8];
+    for (size_t i = 0; i < size; i++)
+        word[big ? size - 1 - i : i] = (unsigned char)(number >> (8 * i));
+    add(b, word, size);
+}
+
+static void add_base64(bytes *b, const unsigned char *from, size_t size)
+{
+    static const char digits[] =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    for (size_t i = 0; i < size; i += 3) {
+        const size_t n = size - i < 3 ? size - i : 3;
+        uint32_t v = (uint32_t)from[i] << 16;
+        v |= n > 1 ? (uint32_t)from[i + 1] << 8 : 0;
+        v |= n > 2 ? from[i + 2] : 0;
+        for (size_t k = 0; k < 4; k++)
+            add(b, k <= n ? &digits[v >> (18 - 6 * k) & 63] : "=", 1);
+    }
+}
+
+/* LZ4 can hold up to 14 bytes as they are behind one byte that counts them. */
+static void pack_block(packing how, const unsigned char *from, size_t size, bytes *packed)
+{
+    size_t n;
+    if (how == LZ4) {
+        const unsigned char token = (unsigned char)(size << 4);
+        add(packed, &token, 1);
+        add(packed, from, size);
+        return;
+    }
+    unsigned char *zlib = pack_bytes(from, size, false, &n);
+    add(packed, zlib, n);
+    free(zlib);
+}
+
+/* Sizes in front, then the voxels -3, -2 ... 8 (int16). */
+static void make_payload(const dialect *d, bytes *head, bytes *data)
+{
+    const size_t word = d->wide ? 8 : 4;
+    bytes plain = {.size = 0};
+    for (int i = 0; i < VOXELS; i++)
+        add_number(&plain, (uint64_t)(int64_t)(i - 3), 2, d->big);
+    if (d->packing == PLAIN) {
+        add_number(head, BYTES, word, d->big);
+        add(data, plain.at, BYTES);
+        return;
+    }
+    add_number(head, (BYTES + BLOCK - 1) / BLOCK, word, d->big);
+    add_number(head, BLOCK, word, d->big);
+    add_number(head, BYTES % BLOCK, word, d->big);
+    for (size_t i = 0; i < BYTES; i += BLOCK) {
+        const size_t before = data->size;
+        pack_block(d->packing, plain.at + i, BYTES - i < BLOCK ? BYTES - i : BLOCK, data);
+        add_number(head, data->size - before, word, d->big);
+    }
+}
+
+static void add_payload(bytes *file, const dialect *d, bool text)
+{
+    bytes head = {.size = 0}, data = {.size = 0};
+    make_payload(d, &head, &data);
+    if (d->joined || !text) {
+        add(&head, data.at, data.size);
+        data.size = 0;
+    }
+    if (text) {
+        add_base64(file, head.at, head.size);
+        add_base64(file, data.at, data.size);
+    } else {
+        add(file, head.at, head.size);
+    }
+}
+
+#define GRID                                                                                   \
+    "<ImageData WholeExtent='0 1 0 2 0 1' Origin='5 6 7' Spacing='1 2 3'>"                     \
+    "<Piece Extent='0 1 0 2 0 1'><PointData Scalars='s'>"
+#define TAIL "</PointData></Piece></ImageData>"
+
+static void make_file(const dialect *d, bytes *file)
+{
+    static const char *const formats[] = {"ascii", "binary", "appended", "appended"};
+    static const char *const compressors[] = {"", "compressor='vtkZLibDataCompressor'",
+                                              "compressor='vtkLZ4DataCompressor'"};
+    char text[500];
+    file->size = 0;
+    snprintf(text, sizeof text,
+             "<?xml version='1.0'?>\n<VTKFile type='ImageData' version='1.0' byte_order='%s' "
+             "header_type='%s' %s>" GRID "<DataArray type='Int16' Name='s' format='%s' %s>\n ",
+             d->big ? "BigEndian" : "LittleEndian", d->wide ? "UInt64" : "UInt32",
+             compressors[d->packing], formats[d->form],
+             d->form >= APPENDED_TEXT ? "offset='4'" : "");
+    add_text(file, text);
+    if (d->form == ASCII)
+        add_text(file, "-3 -2 -1\n0 1 2 3 4 5 6 7 8");
+    if (d->form == INLINE)
+        add_payload(file, d, true);
+    add_text(file, "</DataArray>" TAIL "\n");
+    if (d->form >= APPENDED_TEXT) {
+        add_text(file, d->form == APPENDED_RAW ? "<AppendedData encoding='raw'>\n _<&<!"
+                                               : "<AppendedData encoding='base64'>_AAAA");
+        add_payload(file, d, d->form == APPENDED_TEXT);
+        add_text(file, "\n</AppendedData>");
+    }
+    add_text(file, "</VTKFile>");
+}
+
+static void save(const bytes *file, const char *name)
+{
+    put_file(name, "", file->at, file->size);
+}
+
+/* --- tests ------------------------------------------------------------------------------- */
+
+static void check_voxels(const char *name)
+{
+    const char *format = NULL;
+    cw_volume v;
+    cw_error err = {0};
+    assert_ok(cw_volume_read(test_path(name), NULL, &v, &format, &err), err);
+    assert_string_equal(format, "vti");
+    assert_int_equal(v.type, CW_I16);
+    assert_int_equal(v.known, 0);
+    check_affine(&v, (const double[12]){1, 0, 0, 5, 0, 2, 0, 6, 0, 0, 3, 7});
+    for (size_t i = 0; i < VOXELS; i++)
+        assert_true(cw_volume_value(&v, i % 2, i / 2 % 3, i / 6) == (double)i - 3);
+    cw_volume_free(&v);
+}
+
+/* Every bit of the number stands for one choice. */
+static dialect dialect_of(unsigned n)
+{
+    return (dialect){.form = (form)(n & 3),
+                     .packing = (packing)(n >> 2 & 3),
+                     .big = n & 16,
+                     .wide = n & 32,
+                     .joined = n & 64};
+}
+
+static bool is_read(const dialect *d)
+{
+    return d->packing <= LZ4 && (d->packing != LZ4 || cwi_lz4_present());
+}
+
+static void every_dialect_gives_the_same_voxels(void **state)
+{
+    (void)state;
+    static bytes file;
+    for (unsigned n = 0; n < 128; n++) {
+        const dialect d = dialect_of(n);
+        if (!is_read(&d))
+            continue;
+        make_file(&d, &file);
+        save(&file, "a.bin");
+        check_voxels("a.bin");
+    }
+}
+
+static void a_cut_is_never_a_volume(void **state)
+{
+    (void)state;
+    static bytes file;
+    for (unsigned n = 0; n < 16; n++) {
+        dialect d = dialect_of(n);
+        d.big = n & 1;
+        d.wide = n >> 1 & 1;
+        if (!is_read(&d))
+            continue;
+        make_file(&d, &file);
+        save(&file, "a.vti");
+        check_every_cut("a.vti");
+    }
+}
+
+/* Whatever a byte is turned into, nothing breaks; compressed voxels are right or refused. */
+static void no_byte_is_trusted(void **state)
+{
+    (void)state;
+    static bytes file;
+    const dialect d = {.form = APPENDED_RAW, .packing = ZLIB};
+    make_file(&d, &file);
+    for (size_t i = 0; i < file.size; i++) {
+        cw_volume v;
+        cw_error err = {0};
+        const unsigned char kept = file.at[i];
+        file.at[i] ^= 0x11;
+        save(&file, "a.vti");
+        if (read_back("a.vti", &v, &err) == CW_OK) {
+            assert_true(v.data && v.components * v.dim[0] * v.dim[1] * v.dim[2] <= BYTES);
+            cw_volume_free(&v);
+        }
+        file.at[i] = kept;
+    }
+}
+
+#define FILE_TAG "<VTKFile type='ImageData' byte_order='LittleEndian'>"
+
+static void frames_are_those_of_the_file(void **state)
+{
+    (void)state;
+    const struct {
+        const char *image, *piece;
+        double affine[12];
+    } cases[] = {
+        {"", "0 1 0 0 0 0", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}},
+        {"Origin='5 6 7' Spacing='2 3 4'", "0 1 0 0 0 0", {2, 0, 0, 5, 0, 3, 0, 6, 0, 0, 4, 7}},
+        {"Origin='5 6 7' Spacing='2 3 4'",
+         "10 11 -2 -2 1 1",
+         {2, 0, 0, 25, 0, 3, 0, 0, 0, 0, 4, 11}},
+        {"Spacing='2 3 0'", "0 1 0 0 0 0", {2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 1, 0}},
+        {"Origin='5 6 7' Spacing='2 3 4' Direction='0 -1 0 1 0 0 0 0 1'",
+         "1 2 0 0 0 0",
+         {0, -3, 0, 5, 2, 0, 0, 8, 0, 0, 4, 7}},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[600];
+        cw_volume v;
+        cw_error err = {0};
+        snprintf(text, sizeof text,
+                 FILE_TAG "<ImageData %s><Piece Extent='%s'><PointData><DataArray type='UInt8' "
+                          "format='ascii'>1 2</DataArray>" TAIL "</VTKFile>\n",
+                 cases[i].image, cases[i].piece);
+        put_file("a.vti", text, NULL, 0);
+        assert_ok(read_back("a.vti", &v, &err), err);
+        check_affine(&v, cases[i].affine);
+        cw_volume_free(&v);
+    }
+}
+
+static void the_scalars_go_before_other_arrays(void **state)
+{
+    (void)state;
+    const struct {
+        const char *attributes, *arrays;
+        size_t components;
+        double first;
+    } cases[] = {
+        {"",
+         "<DataArray type='UInt8' Name='a'>1 2</DataArray>"
+         "<DataArray type='UInt8' Name='b'>3 4</DataArray>",
+         1, 1},
+        {"Scalars='b'",
+         "<DataArray type='UInt8' Name='a'>1 2</DataArray>"
+         "<DataArray type='UInt8' Name='b'>3 4</DataArray>",
+         1, 3},
+        {"",
+         "<DataArray type='UInt8' Name='v' NumberOfComponents='3'>1 2 3 4 5 6</DataArray>"
+         "<DataArray type='Float64' Name='b'>3.5 4</DataArray>",
+         1, 3.5},
+        {"Scalars='v'",
+         "<DataArray type='UInt8' Name='b'>3 4</DataArray><DataArray type='UInt8' Name='v' "
+         "NumberOfComponents='2'>7 2 3 4<InformationKey "
+         "name='x'>9</InformationKey></DataArray>",
+         2, 7},
+        {"Scalars='l'",
+         "<DataArray type='Int64' Name='l'>1 2</DataArray>"
+         "<DataArray type='Int8' Name='b'>-3 4</DataArray>",
+         1, -3},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char text[900];
+        cw_volume v, one;
+        cw_error err = {0};
+        snprintf(text, sizeof text,
+                 FILE_TAG "<ImageData><FieldData><DataArray type='Float64' Name='t'>9"
+                          "</DataArray></FieldData><Piece Extent='0 1 0 0 0 0'>"
+                          "<CellData><DataArray type='UInt8'>5</DataArray></CellData>"
+                          "<PointData %s>%s" TAIL "</VTKFile>\n",
+                 cases[i].attributes, cases[i].arrays);
+        put_file("a.vti", text, NULL, 0);
+        assert_ok(read_back("a.vti", &v, &err), err);
+        assert_int_equal(v.components, cases[i].components);
+        assert_ok(cw_volume_select(&v, 0, 0, &one, &err), err);
+        assert_true(cw_volume_value(&one, 0, 0, 0) == cases[i].first);
+        cw_volume_free(&v);
+    }
+}
+
+#define PIECE             FILE_TAG "<ImageData><Piece Extent='0 1 0 0 0 0'>"
+#define ARRAY(attributes) PIECE "<PointData><DataArray Name='s' " attributes
+#define END               TAIL "</VTKFile>"
+
+static void damaged_files_are_told_where(void **state)
+{
+    (void)state;
+    const struct {
+        const char *text, *words;
+    } cases[] = {
+        {"<VTKFile", "line 1 is no XML"},
+        {"<html><VTKFile></html>", "the first element is not VTKFile"},
+        {"<VTKFile type='PolyData'>", "the VTK file is 'PolyData'; only ImageData"},
+        {"<VTKFile type='UnstructuredGrid'>", "the VTK file is 'UnstructuredGrid'"},
+        {"<VTKFile type='PImageData'>", "the VTK file is 'PImageData'"},
+        {"<VTKFile>", "the VTK file is ''"},
+        {"<VTKFile type='ImageData' byte_order='Middle'>", "'byte_order' is 'Middle'"},
+        {"<VTKFile type='ImageData' header_type='UInt16'>", "'header_type' is 'UInt16'"},
+        {"<VTKFile type='ImageData' compressor='vtkLZMADataCompressor'>",
+         "'compressor' is 'vtkLZMADataCompressor'; those that are read are vtkZLib"},
+        {"<!DOCTYPE x [<!ENTITY a 'b'>]><VTKFile type='ImageData'/>", "a document type"},
+        {"<!DOCTYPE x SYSTEM 'file:///etc/passwd'><VTKFile/>", "a document type"},
+        {FILE_TAG "&a;</VTKFile>", "no XML: undefined entity"},
+        {FILE_TAG "</VTKFile>", "no array that is read"},
+        {FILE_TAG "<ImageData TimeValues='0 1'>", "'TimeValues' is '0 1'"},
+        {FILE_TAG "<ImageData Origin='1 2'>", "'Origin' lists 2 numbers"},
+        {FILE_TAG "<ImageData Spacing='1 2 x'>", "'Spacing' holds 'x'"},
+        {FILE_TAG "<ImageData Direction='1 2 3'>", "'Direction' lists 3"},
+        {FILE_TAG "<ImageData><Piece/>", "'Extent' is ''"},
+        {FILE_TAG "<ImageData><Piece Extent='0 1 0 1 0'/>", "'Extent' is '0 1 0 1 0'"},
+        {FILE_TAG "<ImageData><Piece Extent='0 1 0 1 1 0'/>", "must hold 1 to 2147483647"},
+        {FILE_TAG "<ImageData><Piece Extent='0 1 0 1 -2000000000 2000000000'/>", "must hold 1"},
+        {FILE_TAG "<ImageData><Piece Extent='0 1 0 1 0 99999999999'/>", "six whole numbers"},
+        {PIECE "</Piece><Piece Extent='1 2 0 0 0 0'/>", "several Piece elements"},
+        {PIECE "<CellData><DataArray type='UInt8'/></CellData></Piece></ImageData></VTKFile>",
+         "the arrays are CellData; only values at points"},
+        {ARRAY("type='Int64'>1 2</DataArray>") END,
+         "no array that is read; there are 's' (1 Int64)"},
+        {ARRAY("type='UInt8' NumberOfComponents='17'>1</DataArray>") END, "'s' (17 UInt8)"},
+        {ARRAY("type='UInt8' NumberOfComponents='0'>"), "'NumberOfComponents' is '0'"},
+        {ARRAY("type='UInt8' format='hex'>"),
+         "'format' is 'hex'; those that are read are ascii"},
+        {ARRAY("type='UInt8' format='appended'>"), "its 'offset' is missing"},
+        {ARRAY("type='UInt8' format='appended' offset='-1'>"), "'offset' is '-1'"},
+        {ARRAY("type='UInt8' format='appended' offset='0'/>") END, "AppendedData is missing"},
+        {ARRAY("type='UInt8' format='appended' offset='0'/>") TAIL
+         "<AppendedData encoding='zip'>",
+         "'encoding' is 'zip'"},
+        {ARRAY("type='UInt8' format='appended' offset='0'/>") TAIL "<AppendedData>x",
+         "do not start with '_'"},
+        {ARRAY("type='UInt8' format='appended' offset='0'/>") TAIL "<AppendedData>_AAAA",
+         "does not end with </VTKFile>"},
+        {ARRAY("type='UInt8' format='appended' offset='99'/>") TAIL
+         "<AppendedData>_AgAAAAEC</AppendedData></VTKFile>",
+         "the data end early"},
+        {ARRAY("type='UInt8' format='appended' offset='9223372036854775807'/>") TAIL
+         "<AppendedData encoding='raw'>_AgAAAAEC</AppendedData></VTKFile>",
+         "the data end early"},
+        {ARRAY("type='UInt8' format='binary'>AwAAAAEC</DataArray>") END,
+         "the array 's' has 3 bytes; 'Extent' and 'type' ask for 2"},
+        {ARRAY("type='UInt8' format='binary'>AgAAAAE</DataArray>") END, "the data end early"},
+        {ARRAY("type='UInt8' format='binary'>AgAA*AEC</DataArray>") END, "is not base64"},
+        {ARRAY("type='UInt8' format='binary'>AgAAA=EC</DataArray>") END, "is not base64"},
+        {ARRAY("type='UInt8' format='binary'>AgAAAA</DataArray>") END,
+         "'Extent' asks for 2 bytes"},
+        {ARRAY("type='UInt8'>1</DataArray>") END, "'Extent' asks for 2 bytes"},
+        {ARRAY("type='UInt8'>1  </DataArray>") END, "the voxels end after 1 numbers"},
+        {ARRAY("type='UInt8'>1 300</DataArray>") END, "number 2 of the voxels is '300'"},
+        {ARRAY("type='UInt8'>1 2</DataArray>") TAIL, "line 1 is no XML"},
+        {"<VTKFile type='ImageData'><ImageData><Piece Extent='0 1 0 0 0 0'><PointData>"
+         "<DataArray type='UInt8' format='binary'>AgAAAAEC</DataArray>" END,
+         "'byte_order' is missing"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        put_file("a.vti", cases[i].text, NULL, 0);
+        check_told("a.vti", i, cases[i].words);
+    }
+}
+
+/* Tables of blocks that lie, in words of 32 bits: count, size, size of the last, then each. */
+static void tables_of_blocks_are_checked_before_memory_is_taken(void **state)
+{
+    (void)state;
+    const struct {
+        uint32_t words[6];
+        const char *told;
+    } cases[] = {
+        {{0, 0, 0, 0}, "tells of 0 blocks of 0 bytes"},
+        {{1, 0, 0, 2}, "tells of 1 blocks of 0 bytes"},
+        {{1, 3, 0, 2}, "tells of 1 blocks of 3 bytes, the last of 3; 2 bytes are needed"},
+        {{2, 2, 0, 2, 2}, "tells of 2 blocks of 2 bytes"},
+        {{1, 1, 2, 2}, "tells of 1 blocks of 1 bytes, the last of 2"},
+        {{0xffffffff, 0xffffffff, 0xffffffff, 9}, "tells of 4294967295 blocks"},
+        {{2, 1, 0, 9, 0xffffffff}, "compressed block 1 of 2 has 4294967295 bytes; the file"},
+        {{2, 1, 0, 0, 9}, "block 0 of 2 has 1 bytes, compressed 0"},
+        {{1, 2, 2, 4}, "compressed block 0 of 1 is damaged"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        bytes file = {.size = 0};
+        add_text(&file, "<VTKFile type='ImageData' byte_order='LittleEndian' "
+                        "compressor='vtkZLibDataCompressor'><ImageData><Piece "
+                        "Extent='0 1 0 0 0 0'><PointData><DataArray type='UInt8' "
+                        "format='appended' offset='0'/>" TAIL "<AppendedData encoding='raw'>_");
+        for (int w = 0; w < 6; w++)
+            add_number(&file, cases[i].words[w], 4, false);
+        add_text(&file, "</AppendedData></VTKFile>");
+        save(&file, "a.vti");
+        check_told("a.vti", i, cases[i].told);
+    }
+}
+
+/* A limit of its own for each thing that a file could have without end. */
+static void endless_files_come_to_an_end(void **state)
+{
+    (void)state;
+    enum { SIZE = 3 << 20 };
+    char *text = malloc(SIZE + 1);
+    assert_non_null(text);
+    memset(text, 'x', SIZE);
+    memcpy(text, "<VTKFile a='", 12);
+    put_file("a.vti", "", text, SIZE);
+    check_told("a.vti", 0, "a tag longer than 1 MiB");
+    for (size_t i = 0; i < SIZE; i += 4)
+        memcpy(text + i, "<a/>", 4);
+    put_file("a.vti", FILE_TAG, text, SIZE);
+    check_told("a.vti", 1, "more than 10000 elements");
+    for (size_t i = 0; i + 3 <= SIZE; i += 3)
+        memcpy(text + i, "<a>", 3);
+    put_file("a.vti", FILE_TAG, text, SIZE / 3 * 3);
+    check_told("a.vti", 2, "or 64 inside each other");
+    free(text);
+}
+
+static void memory_may_run_out_anywhere(void **state)
+{
+    (void)state;
+    static bytes file;
+    for (form f = ASCII; f < FORM_COUNT; f++) {
+        const dialect d = {.form = f, .packing = ZLIB};
+        make_file(&d, &file);
+        save(&file, "a.vti");
+        check_starved_reads("a.vti");
+    }
+}
+
+static void without_lz4_its_files_are_refused(void **state)
+{
+    (void)state;
+    put_file("a.vti", "<VTKFile type='ImageData' compressor='vtkLZ4DataCompressor'/>", NULL, 0);
+    check_told("a.vti", 0, cwi_lz4_present() ? "no array" : "this build has no LZ4");
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
+    const struct CMUnitTest tests[] = {
+        TEST(every_dialect_gives_the_same_voxels),
+        TEST(a_cut_is_never_a_volume),
+        TEST(no_byte_is_trusted),
+        TEST(frames_are_those_of_the_file),
+        TEST(the_scalars_go_before_other_arrays),
+        TEST(damaged_files_are_told_where),
+        TEST(tables_of_blocks_are_checked_before_memory_is_taken),
+        TEST(endless_files_come_to_an_end),
+        TEST(memory_may_run_out_anywhere),
+        TEST(without_lz4_its_files_are_refused),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
