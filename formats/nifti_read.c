@@ -179,39 +179,18 @@ static bool has_magic(const nifti *n, const char *magic)
     return memcmp(n->bytes + n->layout->magic, magic, n->layout->magic_bytes) == 0;
 }
 
-static bool is_gzip(const unsigned char *head, size_t size)
-{
-    return size >= 2 && head[0] == 0x1f && head[1] == 0x8b;
-}
-
-/* No other format that is read comes as a gzip file. */
 bool cwi_nifti_sniff(const unsigned char *head, size_t size)
 {
     nifti n = {0};
     memcpy(n.bytes, head, size < MOST_HEADER ? size : MOST_HEADER);
-    return is_gzip(head, size) ||
-           (size >= 348 && find_layout(&n) &&
-            (has_magic(&n, n.layout->one_file) || has_magic(&n, n.layout->pair)));
-}
-
-static cw_status read_bytes(const cwi_input *in, nifti *n, size_t *got, cw_error *err)
-{
-    unsigned char head[2];
-    cwi_stream stream = {0};
-    cw_status st = cwi_input_read_at(in->fd, 0, head, sizeof head, got, err);
-    n->gzipped = is_gzip(head, *got);
-    if (st == CW_OK)
-        st = cwi_stream_open(&stream, in->fd, 0, n->gzipped, err);
-    if (st == CW_OK)
-        st = cwi_stream_some(&stream, n->bytes, sizeof n->bytes, got, err);
-    cwi_stream_close(&stream);
-    return st;
+    return size >= 348 && find_layout(&n) &&
+           (has_magic(&n, n.layout->one_file) || has_magic(&n, n.layout->pair));
 }
 
 static cw_status read_header(const cwi_input *in, nifti *n, cw_error *err)
 {
     size_t got;
-    cw_status st = read_bytes(in, n, &got, err);
+    cw_status st = cwi_stream_head(in->fd, n->bytes, sizeof n->bytes, &got, &n->gzipped, err);
     if (st != CW_OK)
         return st;
     const char *inside = n->gzipped ? "inside the gzip file, " : "";

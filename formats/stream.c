@@ -223,3 +223,18 @@ cw_status cwi_stream_finish(cwi_stream *s, cw_error *err)
                        (unsigned long long)s->given);
     return st;
 }
+
+cw_status cwi_stream_head(int fd, void *to, size_t size, size_t *got, bool *gzipped,
+                          cw_error *err)
+{
+    unsigned char magic[2];
+    cwi_stream stream = {0};
+    cw_status st = cwi_input_read_at(fd, 0, magic, sizeof magic, got, err);
+    *gzipped = *got == 2 && magic[0] == 0x1f && magic[1] == 0x8b;
+    if (st == CW_OK)
+        st = cwi_stream_open(&stream, fd, 0, *gzipped, err);
+    if (st == CW_OK)
+        st = cwi_stream_some(&stream, to, size, got, err);
+    cwi_stream_close(&stream);
+    return st;
+}

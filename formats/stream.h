@@ -55,6 +55,11 @@ CW_API cw_status cwi_stream_skip(cwi_stream *s, uint64_t size, cw_error *err);
  * more than 64 KiB left is let be: its end is not what was asked for. */
 CW_API cw_status cwi_stream_finish(cwi_stream *s, cw_error *err);
 
+/* Reads the first bytes of a file, inflated when it is a gzip file; *got is less where it ends.
+ */
+CW_API cw_status cwi_stream_head(int fd, void *to, size_t size, size_t *got, bool *gzipped,
+                                 cw_error *err);
+
 /* Harmless on a zeroed or already closed stream. */
 CW_API void cwi_stream_close(cwi_stream *s);
 

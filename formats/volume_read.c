@@ -1,5 +1,6 @@
 #include "core/status.h"
 #include "formats/readers.h"
+#include "formats/stream.h"
 #include "formats/table.h"
 
 #include <stdio.h>
@@ -8,16 +9,18 @@
 /* One row per reader; content decides, then the extension. */
 typedef struct reader {
     const char *name, *extensions;
+    bool gzipped; /* the whole file may be a gzip file */
     bool (*sniff)(const unsigned char *head, size_t size);
     cw_status (*parse)(const cwi_input *in, cwi_source *src, cw_error *err);
 } reader;
 
 static const reader readers[] = {
-    {"nrrd", ".nrrd .nhdr", cwi_nrrd_sniff, cwi_nrrd_parse},
-    {"nifti", ".nii .nii.gz .hdr .hdr.gz .img .img.gz", cwi_nifti_sniff, cwi_nifti_parse},
-    {"metaimage", ".mha .mhd", cwi_metaimage_sniff, cwi_metaimage_parse},
-    {"vtk", ".vtk", cwi_vtk_sniff, cwi_vtk_parse},
-    {"vti", ".vti", cwi_vti_sniff, cwi_vti_parse},
+    {"nrrd", ".nrrd .nhdr", false, cwi_nrrd_sniff, cwi_nrrd_parse},
+    {"nifti", ".nii .nii.gz .hdr .hdr.gz .img .img.gz", true, cwi_nifti_sniff, cwi_nifti_parse},
+    {"metaimage", ".mha .mhd", false, cwi_metaimage_sniff, cwi_metaimage_parse},
+    {"vtk", ".vtk", false, cwi_vtk_sniff, cwi_vtk_parse},
+    {"vti", ".vti", false, cwi_vti_sniff, cwi_vti_parse},
+    {"mrc", ".mrc .map .ccp4 .rec .mrc.gz .map.gz", true, cwi_mrc_sniff, cwi_mrc_parse},
 };
 enum { READER_COUNT = sizeof readers / sizeof *readers };
 
@@ -44,16 +47,28 @@ static cw_status find_by_name(const char *name, const reader **found, cw_error *
                    reader_names(names));
 }
 
+/* A gzip file that is damaged from the start has no content to go by. */
+static cw_status read_head(const cwi_input *in, unsigned char *head, size_t *size,
+                           bool *gzipped, cw_error *err)
+{
+    cw_status st = cwi_stream_head(in->fd, head, CWI_SNIFF_BYTES, size, gzipped, err);
+    if (st != CW_ERR_FORMAT)
+        return st;
+    *size = 0;
+    return CW_OK;
+}
+
 static cw_status find_by_file(const cwi_input *in, const reader **found, cw_error *err)
 {
     unsigned char head[CWI_SNIFF_BYTES];
     char names[128];
     size_t size;
-    cw_status st = cwi_input_read_at(in->fd, 0, head, sizeof head, &size, err);
+    bool gzipped;
+    cw_status st = read_head(in, head, &size, &gzipped, err);
     if (st != CW_OK)
         return st;
     for (size_t i = 0; i < READER_COUNT && !*found; i++)
-        if (readers[i].sniff(head, size))
+        if ((readers[i].gzipped || !gzipped) && readers[i].sniff(head, size))
             *found = &readers[i];
     for (size_t i = 0; i < READER_COUNT && !*found; i++)
         if (cwi_has_extension(in->path, readers[i].extensions))

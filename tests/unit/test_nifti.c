@@ -341,9 +341,9 @@ static void what_only_looks_like_nifti_is_told_apart(void **state)
     memset(f.bytes + f.layout->magic, 0, 4);
     save(&f, "analyze.hdr");
     assert_fails(read_back("analyze.hdr", &v, &err), CW_ERR_FORMAT, "Analyze 7.5", err);
-    save_gzipped(&f, "a.gz");
-    assert_fails(read_back("a.gz", &v, &err), CW_ERR_FORMAT, "inside the gzip file, 'magic'",
-                 err);
+    save_gzipped(&f, "a.nii.gz");
+    assert_fails(read_back("a.nii.gz", &v, &err), CW_ERR_FORMAT,
+                 "inside the gzip file, 'magic'", err);
     f.size = 100;
     save(&f, "short.nii");
     assert_fails(read_back("short.nii", &v, &err), CW_ERR_FORMAT, "ends after 100 of 348", err);
