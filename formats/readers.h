@@ -13,6 +13,7 @@ bool cwi_metaimage_sniff(const unsigned char *head, size_t size);
 bool cwi_vtk_sniff(const unsigned char *head, size_t size);
 bool cwi_vti_sniff(const unsigned char *head, size_t size);
 bool cwi_mrc_sniff(const unsigned char *head, size_t size);
+bool cwi_inr_sniff(const unsigned char *head, size_t size);
 
 /* Reads a header into a zeroed source, which the caller frees in any case. The messages name
  * the header's fields; the caller puts the file's name in front. */
@@ -22,6 +23,7 @@ cw_status cwi_metaimage_parse(const cwi_input *in, cwi_source *src, cw_error *er
 cw_status cwi_vtk_parse(const cwi_input *in, cwi_source *src, cw_error *err);
 cw_status cwi_vti_parse(const cwi_input *in, cwi_source *src, cw_error *err);
 cw_status cwi_mrc_parse(const cwi_input *in, cwi_source *src, cw_error *err);
+cw_status cwi_inr_parse(const cwi_input *in, cwi_source *src, cw_error *err);
 
 /* The same from a layout that the caller of the library states. */
 cw_status cwi_raw_describe(const cw_raw_layout *layout, cwi_source *src, cw_error *err);

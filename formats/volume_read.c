@@ -21,6 +21,7 @@ static const reader readers[] = {
     {"vtk", ".vtk", false, cwi_vtk_sniff, cwi_vtk_parse},
     {"vti", ".vti", false, cwi_vti_sniff, cwi_vti_parse},
     {"mrc", ".mrc .map .ccp4 .rec .mrc.gz .map.gz", true, cwi_mrc_sniff, cwi_mrc_parse},
+    {"inr", ".inr .inr.gz", true, cwi_inr_sniff, cwi_inr_parse},
 };
 enum { READER_COUNT = sizeof readers / sizeof *readers };
 
