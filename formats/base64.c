@@ -2,38 +2,36 @@
  * text goes on behind padding. */
 #include "formats/base64.h"
 
-enum { BLANK = 0x40, PADDING = 0x41, END = 0x42, WRONG = 0x43 };
+enum { WRONG, BLANK, PADDING, END, DIGIT = 0x80 };
 
-/* The six bits that a character stands for, or what else it is. */
-static unsigned char value_of(char c)
-{
-    if (c >= 'A' && c <= 'Z')
-        return (unsigned char)(c - 'A');
-    if (c >= 'a' && c <= 'z')
-        return (unsigned char)(c - 'a' + 26);
-    if (c >= '0' && c <= '9')
-        return (unsigned char)(c - '0' + 52);
-    return c == '+'                                          ? 62
-           : c == '/'                                        ? 63
-           : c == '='                                        ? PADDING
-           : c == '<'                                        ? END
-           : c == ' ' || c == '\n' || c == '\r' || c == '\t' ? BLANK
-                                                             : WRONG;
-}
+/* The six bits that a character stands for, with the highest set; or what else it is. */
+/* clang-format off */
+static const unsigned char values[256] = {
+    ['A'] = 0x80, 0x81, 0x82, 0x83, 0x84, 0x85, 0x86, 0x87, 0x88, 0x89, 0x8a, 0x8b, 0x8c,
+            0x8d, 0x8e, 0x8f, 0x90, 0x91, 0x92, 0x93, 0x94, 0x95, 0x96, 0x97, 0x98, 0x99,
+    ['a'] = 0x9a, 0x9b, 0x9c, 0x9d, 0x9e, 0x9f, 0xa0, 0xa1, 0xa2, 0xa3, 0xa4, 0xa5, 0xa6,
+            0xa7, 0xa8, 0xa9, 0xaa, 0xab, 0xac, 0xad, 0xae, 0xaf, 0xb0, 0xb1, 0xb2, 0xb3,
+    ['0'] = 0xb4, 0xb5, 0xb6, 0xb7, 0xb8, 0xb9, 0xba, 0xbb, 0xbc, 0xbd,
+    ['+'] = 0xbe, ['/'] = 0xbf,
+    ['='] = PADDING, ['<'] = END, [' '] = BLANK, ['\t'] = BLANK, ['\n'] = BLANK, ['\r'] = BLANK,
+};
+/* clang-format on */
 
 /* Whole groups without blanks, which is what nearly all text is made of. */
 static size_t decode_groups(const char *text, size_t size, size_t *used, unsigned char *to,
                             size_t room)
 {
+    const unsigned char *from = (const unsigned char *)text;
     size_t i = 0, got = 0;
     for (; size - i >= 4 && room - got >= 3; i += 4, got += 3) {
-        const unsigned a = value_of(text[i]), b = value_of(text[i + 1]),
-                       c = value_of(text[i + 2]), d = value_of(text[i + 3]);
-        if ((a | b | c | d) & 0x40)
+        const unsigned a = values[from[i]], b = values[from[i + 1]], c = values[from[i + 2]],
+                       d = values[from[i + 3]];
+        if (!(a & b & c & d & DIGIT))
             break;
-        to[got] = (unsigned char)(a << 2 | b >> 4);
-        to[got + 1] = (unsigned char)(b << 4 | c >> 2);
-        to[got + 2] = (unsigned char)(c << 6 | d);
+        const unsigned bits = (a & 63) << 18 | (b & 63) << 12 | (c & 63) << 6 | (d & 63);
+        to[got] = (unsigned char)(bits >> 16);
+        to[got + 1] = (unsigned char)(bits >> 8);
+        to[got + 2] = (unsigned char)bits;
     }
     *used += i;
     return got;
@@ -49,7 +47,7 @@ static void take_padding(cwi_base64 *b)
 /* The second, third and fourth character of a group each complete a byte. */
 static size_t take_bits(cwi_base64 *b, unsigned char value, unsigned char *to)
 {
-    b->bits = b->bits << 6 | value;
+    b->bits = b->bits << 6 | (value & 63);
     const unsigned place = b->in_group;
     b->wrong = b->padded;
     b->in_group = (place + 1) & 3;
@@ -69,8 +67,8 @@ size_t cwi_base64_decode(cwi_base64 *b, const char *text, size_t size, size_t *u
             got += decode_groups(text + *used, size - *used, used, to + got, room - got);
         if (*used == size || got == room)
             break;
-        const unsigned char value = value_of(text[*used]);
-        if (value < BLANK)
+        const unsigned char value = values[(unsigned char)text[*used]];
+        if (value & DIGIT)
             got += take_bits(b, value, to + got);
         else if (value == PADDING)
             take_padding(b);

@@ -112,6 +112,75 @@ static void no_damage_goes_unnoticed(void **state)
     free(packed);
 }
 
+/* Padding ends a piece, not the text; blanks may stand anywhere; portions may have any size. */
+static void base64_text_gives_its_bytes(void **state)
+{
+    (void)state;
+    static const char text[] = "\n Zm9v YmE=\tZg==Zm9v\nYmFy</x>Zm9v";
+    static const char wanted[] = "foobaffoobar";
+    for (size_t portion = 1; portion <= sizeof wanted; portion++) {
+        char back[sizeof wanted] = "";
+        size_t done = 0, got = 1;
+        cw_error err = {0};
+        cwi_stream s = {0};
+        const int fd = make_file(text, sizeof text - 1);
+        assert_ok(cwi_stream_open(&s, fd, 0, false, &err), err);
+        assert_ok(cwi_stream_from_base64(&s, &err), err);
+        for (; got > 0; done += got) {
+            const size_t room = sizeof back - done;
+            assert_ok(
+                cwi_stream_some(&s, back + done, portion < room ? portion : room, &got, &err),
+                err);
+        }
+        assert_int_equal(done, sizeof wanted - 1);
+        assert_string_equal(back, wanted);
+        cwi_stream_close(&s);
+        close(fd);
+    }
+}
+
+static void what_is_no_base64_is_told_by_its_place(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *words;
+    } cases[] = {
+        {"Zm9v*m9v", "byte 4 of the file is not base64"},
+        {"Zm9vZ===", "byte 5 of the file is not base64"},
+        {"Zm9vZm=v", "byte 7 of the file is not base64"},
+        {"Zm9vZm9", "there were 5"},
+        {"Zm9v<m9v", "there were 3"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char back[6];
+        cw_error err = {0};
+        cwi_stream s = {0};
+        const int fd = make_file(cases[i].text, strlen(cases[i].text));
+        assert_ok(cwi_stream_open(&s, fd, 0, false, &err), err);
+        assert_ok(cwi_stream_from_base64(&s, &err), err);
+        assert_fails(cwi_stream_read(&s, back, 6, &err), CW_ERR_FORMAT, cases[i].words, err);
+        cwi_stream_close(&s);
+        close(fd);
+    }
+}
+
+static void nothing_behind_its_end_is_read(void **state)
+{
+    (void)state;
+    char back[4];
+    size_t got;
+    cw_error err = {0};
+    cwi_stream s = {0};
+    const int fd = make_file("abcdef", 6);
+    assert_ok(cwi_stream_open(&s, fd, 1, false, &err), err);
+    cwi_stream_end_at(&s, 3);
+    assert_ok(cwi_stream_some(&s, back, 4, &got, &err), err);
+    assert_int_equal(got, 2);
+    assert_memory_equal(back, "bc", 2);
+    cwi_stream_close(&s);
+    close(fd);
+}
+
 static void a_wrong_checksum_is_named(void **state)
 {
     (void)state;
@@ -183,6 +252,9 @@ int main(void)
         cmocka_unit_test(gzip_members_in_a_row_are_one_stream),
         cmocka_unit_test(short_data_say_how_many_bytes_were_there),
         cmocka_unit_test(no_damage_goes_unnoticed),
+        cmocka_unit_test(base64_text_gives_its_bytes),
+        cmocka_unit_test(what_is_no_base64_is_told_by_its_place),
+        cmocka_unit_test(nothing_behind_its_end_is_read),
         cmocka_unit_test(a_wrong_checksum_is_named),
         cmocka_unit_test(a_long_tail_is_left_unread),
         cmocka_unit_test(skipping_lands_where_reading_would),
