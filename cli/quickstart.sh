@@ -10,8 +10,8 @@ set -- # the packages' functions look at $0 alone
 
 install_packages "what the build needs" needed ||
     { echo "quickstart: the packages above could not be installed" >&2; exit 1; }
-install_packages "what brings glTF" optional ||
-    echo "== without libtinygltf-dev there will be no GLB"
+install_packages "what brings glTF and LZ4" optional ||
+    echo "== without libtinygltf-dev there will be no GLB, without liblz4-dev less of VTK's files"
 install_packages "a real scan" data || echo "== mricron-data cannot be had"
 
 echo "== building (release) in $root/build/release"

@@ -1,4 +1,4 @@
-/* ISA-L in zlib's place: three times as fast on machines it knows. */
+/* ISA-L in zlib's place: twice as fast or more on machines it knows. */
 #ifndef FORMATS_ISAL_H
 #define FORMATS_ISAL_H
 

@@ -6,4 +6,10 @@ cubewright render t.nrrd --iso 0 -o u.png --camera sideways -q
 echo $?
 cubewright render t.nrrd --iso 99 -o u.png -q
 echo $?
+# A mesh needs no level, a volume does; the same surface gives the same picture.
+cubewright extract t.nrrd --iso 0 -o t.ply -q
+cubewright render t.ply -o m.png --size 80x60 --camera top -q
+cmp t.png m.png && echo "same picture"
+cubewright render t.nrrd -o u.png
+echo $?
 ls
