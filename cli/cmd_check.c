@@ -185,12 +185,12 @@ static cw_status measure_mesh(run_state *s, cw_error *err)
         .threads = threads,
         .defects = s->defects,
         .progress = cli_progress((double)mesh->triangle_count / 1e6, "Mtriangle")};
-    const bool solid = args->profile == CW_PROFILE_PRINT || args->profile == CW_PROFILE_FEM;
+    const bool wanted = args->deep || cw_check_wants_crossings((cw_profile)args->profile);
     cli_report_begin(&s->report);
     cw_status st = cw_quality_measure(mesh, &desc, &s->quality, err);
     if (st == CW_OK)
         cli_report_end(&s->report, "check", mesh->triangle_count, 0);
-    if (st != CW_OK || !(solid || args->deep))
+    if (st != CW_OK || !wanted)
         return in_mesh(s, st, err);
     cli_report_begin(&s->report);
     st = cw_self_intersections(mesh, &crossings, &s->crossings, err);

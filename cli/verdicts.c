@@ -6,8 +6,6 @@
 #include <math.h>
 #include <string.h>
 
-static const double aspect_ends[CW_ASPECT_BINS] = {1.25, 1.5, 2, 3, 5, 10, 30.0, 100, INFINITY};
-
 void cli_print_verdicts(const cw_verdict *verdicts, size_t count)
 {
     for (const cw_verdict *v = verdicts; v < verdicts + count; v++) {
@@ -50,7 +48,7 @@ void cli_print_shapes(const cw_shapes *s)
     cli_result("  aspect ratio\n");
     for (size_t n = 0; n < CW_ASPECT_BINS; n++) {
         snprintf(label, sizeof label, n + 1 < CW_ASPECT_BINS ? "up to %g" : "beyond %g",
-                 aspect_ends[n + 1 < CW_ASPECT_BINS ? n : n - 1]);
+                 cw_aspect_ends[n + 1 < CW_ASPECT_BINS ? n : n - 1]);
         print_bar(label, s->aspects[n], sum(s->aspects, CW_ASPECT_BINS));
     }
     cli_result("  edges, mm\n");
@@ -94,7 +92,7 @@ void cli_json_shapes(cli_json *j, const cw_shapes *s)
     cli_json_number(j, "max_edge", s->max_edge_mm);
     put_bins(j, "angle_histogram", s->angles, CW_ANGLE_BINS);
     put_bins(j, "min_angle_histogram", s->smallest, CW_ANGLE_BINS);
-    cli_json_numbers(j, "aspect_ends", aspect_ends, CW_ASPECT_BINS - 1);
+    cli_json_numbers(j, "aspect_ends", cw_aspect_ends, CW_ASPECT_BINS - 1);
     put_bins(j, "aspect_histogram", s->aspects, CW_ASPECT_BINS);
     put_bins(j, "edge_histogram", s->lengths, CW_LENGTH_BINS);
     cli_json_close(j, '}');

@@ -58,6 +58,9 @@ typedef struct cw_verdict {
 
 enum { CW_MAX_VERDICTS = 24 };
 
+/* Whether a profile asks for cw_self_intersections(), without which it is unknown. */
+CW_API bool cw_check_wants_crossings(cw_profile profile);
+
 /* Judges the findings. Returns how many verdicts were written, the worst first. */
 CW_API size_t cw_check_judge(const cw_findings *findings, cw_profile profile,
                              cw_verdict verdicts[CW_MAX_VERDICTS]);

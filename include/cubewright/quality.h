@@ -41,9 +41,12 @@ typedef struct cw_shapes {
     double min_edge_mm, max_edge_mm;
     size_t angles[CW_ANGLE_BINS];   /* all three of each triangle, 10 degrees a bin */
     size_t smallest[CW_ANGLE_BINS]; /* the smallest of each triangle, 60 / 18 degrees a bin */
-    size_t aspects[CW_ASPECT_BINS]; /* up to 1.25, 1.5, 2, 3, 5, 10, 30, 100, and beyond */
+    size_t aspects[CW_ASPECT_BINS]; /* up to cw_aspect_ends, and beyond */
     size_t lengths[CW_LENGTH_BINS]; /* of edges: equal steps of the logarithm from min to max */
 } cw_shapes;
+
+/* Where the bins of aspects end; the last has no end. */
+extern CW_API const double cw_aspect_ends[CW_ASPECT_BINS - 1];
 
 /* Facts of one mesh, counted from its triangles as indexed, unless welded. Edges are unordered
  * vertex pairs of triangles; triangles that name a vertex twice have none. */

@@ -96,7 +96,7 @@ static bool around_edge_meet(const corners *a, const corners *b)
 /* Puts the numbers that both triangles have first, in the same order; returns how many. */
 static int align(const uint32_t a[3], const uint32_t b[3], uint32_t x[3], uint32_t y[3])
 {
-    int shared = 0, front = 0, last_a = 3, last_b = 3;
+    int shared = 0, last_a = 3, last_b = 3;
     bool taken[3] = {false};
     for (int i = 0; i < 3; i++) {
         int j = 0;
@@ -107,8 +107,7 @@ static int align(const uint32_t a[3], const uint32_t b[3], uint32_t x[3], uint32
             continue;
         }
         taken[j] = true;
-        x[front] = y[front] = a[i];
-        front++;
+        x[shared] = y[shared] = a[i];
         shared++;
     }
     for (int j = 0; j < 3; j++)

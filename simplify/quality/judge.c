@@ -5,7 +5,6 @@
 #include <math.h>
 #include <stdarg.h>
 #include <stdio.h>
-#include <stdlib.h>
 
 typedef struct bench {
     const cw_findings *f;
@@ -71,13 +70,11 @@ static void judge_size(bench *b)
         v->advice = "the file holds no surface: look at what wrote it";
         return;
     }
-    double low = INFINITY, high = 0;
-    for (int a = 0; a < 3; a++) {
-        low = fmin(low, q->max[a] - q->min[a]);
-        high = fmax(high, q->max[a] - q->min[a]);
-    }
     if (b->profile != CW_PROFILE_PRINT)
         return;
+    double high = 0;
+    for (int a = 0; a < 3; a++)
+        high = fmax(high, q->max[a] - q->min[a]);
     const bool fits = high >= CW_PRINT_MIN_MM && high <= CW_PRINT_MAX_MM;
     cw_verdict *v = add(b, "size", fits ? CW_GRADE_OK : for_print.grade[b->profile], high);
     say(v, "the box is %.6g x %.6g x %.6g mm", q->max[0] - q->min[0], q->max[1] - q->min[1],
@@ -172,11 +169,15 @@ static void judge_shapes(bench *b)
             "remesh, or extract with --snap 0.5: FEM wants 10 degrees and a ratio of 10";
 }
 
+bool cw_check_wants_crossings(cw_profile profile)
+{
+    return for_solids.grade[profile] == CW_GRADE_FAIL;
+}
+
 static void judge_crossings(bench *b)
 {
     const cw_crossings *x = b->f->crossings;
-    const bool asked =
-        not_for_web.grade[b->profile] == CW_GRADE_FAIL && b->profile != CW_PROFILE_BASIC;
+    const bool asked = cw_check_wants_crossings(b->profile);
     if (!x || (x->undecided && !x->count)) {
         const cw_grade grade = asked || x ? CW_GRADE_UNKNOWN : CW_GRADE_NOTE;
         cw_verdict *v = add(b, "self-intersections", grade, 0);
@@ -288,21 +289,13 @@ static void judge_agreement(bench *b)
     v->advice = differs ? "one of the two is wrong: please report it" : NULL;
 }
 
-static int compare(const void *a, const void *b)
-{
-    const cw_verdict *v = a, *w = b;
-    if (v->grade != w->grade)
-        return v->grade < w->grade ? -1 : 1;
-    return 0;
-}
-
 /* Worst first, and as judged among equals: an insertion sort keeps their order. */
 static void sort(cw_verdict *v, size_t count)
 {
     for (size_t i = 1; i < count; i++) {
         const cw_verdict x = v[i];
         size_t j = i;
-        for (; j > 0 && compare(&v[j - 1], &x) > 0; j--)
+        for (; j > 0 && v[j - 1].grade > x.grade; j--)
             v[j] = v[j - 1];
         v[j] = x;
     }

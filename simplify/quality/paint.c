@@ -37,7 +37,8 @@ static int paint_of(unsigned defects)
 
 /* Copies of vertex v, one a paint: a list through `next`. */
 typedef struct copies {
-    uint32_t *first; /* of each vertex; UINT32_MAX: none */
+    uint32_t *corner; /* the copy at each corner of the mesh */
+    uint32_t *first;  /* of each vertex; UINT32_MAX: none */
     uint32_t *next;
     uint32_t *vertex; /* that was copied */
     uint8_t *paint;
@@ -65,16 +66,16 @@ static unsigned flat_beside(const copies *c, const uint32_t *v)
 }
 
 /* A vertex is copied once a paint around it: at most once a corner. */
-static bool make_copies(copies *c, const cw_mesh *mesh, const uint8_t *defects,
-                        uint32_t *triangles)
+static bool make_copies(copies *c, const cw_mesh *mesh, const uint8_t *defects)
 {
     const size_t corners = 3 * mesh->triangle_count;
+    c->corner = cwi_alloc_array(corners, sizeof *c->corner);
     c->first = cwi_alloc_array(mesh->vertex_count, sizeof *c->first);
     c->next = cwi_alloc_array(corners, sizeof *c->next);
     c->vertex = cwi_alloc_array(corners, sizeof *c->vertex);
     c->paint = cwi_alloc_array(corners, 1);
     c->flat = cwi_alloc_zeroed(mesh->vertex_count, 1);
-    if (!c->first || !c->next || !c->vertex || !c->paint || !c->flat)
+    if (!c->corner || !c->first || !c->next || !c->vertex || !c->paint || !c->flat)
         return false;
     memset(c->first, 0xff, mesh->vertex_count * sizeof *c->first);
     for (size_t i = 0; i < corners; i++)
@@ -82,13 +83,14 @@ static bool make_copies(copies *c, const cw_mesh *mesh, const uint8_t *defects,
     for (size_t t = 0; t < mesh->triangle_count; t++) {
         const int paint = paint_of(defects[t] | flat_beside(c, mesh->triangles + 3 * t));
         for (size_t n = 3 * t; n < 3 * t + 3; n++)
-            triangles[n] = copy_of(c, mesh->triangles[n], paint);
+            c->corner[n] = copy_of(c, mesh->triangles[n], paint);
     }
     return true;
 }
 
 static void free_copies(copies *c)
 {
+    cwi_free(c->corner);
     cwi_free(c->first);
     cwi_free(c->next);
     cwi_free(c->vertex);
@@ -129,13 +131,11 @@ static void fill_vertices(const copies *c, const cw_mesh *mesh, const float *dis
 static cw_status fill(const copies *c, const cw_mesh *mesh, const float *distances,
                       double full_mm, cw_mesh *out, cw_error *err)
 {
-    uint32_t *triangles = out->triangles;
-    cw_status st = cwi_mesh_alloc(out, c->count, 0, mesh->normals != NULL, err);
-    cwi_free(out->triangles);
-    out->triangles = triangles;
+    cw_status st =
+        cwi_mesh_alloc(out, c->count, mesh->triangle_count, mesh->normals != NULL, err);
     if (st != CW_OK)
         return st;
-    out->triangle_count = mesh->triangle_count;
+    memcpy(out->triangles, c->corner, 3 * mesh->triangle_count * sizeof *c->corner);
     memcpy(out->origin, mesh->origin, sizeof out->origin);
     memcpy(out->affine, mesh->affine, sizeof out->affine);
     out->colors = cwi_alloc_array(c->count, 4);
@@ -155,14 +155,11 @@ cw_status cw_check_paint(const cw_mesh *mesh, const uint8_t *defects, const floa
     if (st == CW_OK && mesh->triangle_count > UINT32_MAX / 3)
         st = cw_fail(err, CW_ERR_LIMIT, "%zu triangles are too many to paint",
                      mesh->triangle_count);
-    if (st != CW_OK)
-        return st;
-    out->triangles = cwi_alloc_large(mesh->triangle_count, 3 * sizeof *out->triangles);
-    if (out->triangles && make_copies(&c, mesh, defects, out->triangles))
-        st = fill(&c, mesh, distances, full_mm, out, err);
-    else
+    if (st == CW_OK && !make_copies(&c, mesh, defects))
         st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory to paint %zu triangles",
                      mesh->triangle_count);
+    if (st == CW_OK)
+        st = fill(&c, mesh, distances, full_mm, out, err);
     free_copies(&c);
     if (st != CW_OK)
         cw_mesh_free(out);

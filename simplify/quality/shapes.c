@@ -3,6 +3,7 @@
 #include "core/layers.h"
 #include "core/memory.h"
 #include "core/vector.h"
+#include "simplify/quality/sampling.h"
 
 #include <math.h>
 #include <string.h>
@@ -10,7 +11,7 @@
 /* Sums are made chunk by chunk and joined in order, so that they do not depend on threads. */
 enum { CHUNK = 4096 };
 
-static const double aspect_bounds[CW_ASPECT_BINS - 1] = {1.25, 1.5, 2, 3, 5, 10, 30, 100};
+const double cw_aspect_ends[CW_ASPECT_BINS - 1] = {1.25, 1.5, 2, 3, 5, 10, 30, 100};
 
 /* A triangle by its sides; side[n] runs from corner n to the next. */
 typedef struct sides {
@@ -36,10 +37,7 @@ typedef struct work {
 
 static void load(const cw_mesh *mesh, size_t triangle, sides *s)
 {
-    const uint32_t *v = mesh->triangles + 3 * triangle;
-    for (size_t n = 0; n < 3; n++)
-        for (size_t a = 0; a < 3; a++)
-            s->from[n][a] = (double)mesh->positions[3 * (size_t)v[n] + a];
+    cwi_corners(mesh, triangle, s->from);
     for (int n = 0; n < 3; n++)
         for (int a = 0; a < 3; a++)
             s->side[n][a] = s->from[(n + 1) % 3][a] - s->from[n][a];
@@ -86,7 +84,7 @@ static void count_aspect(const sides *s, part *p)
     const double *l = s->length, quarter = 2 * s->twice_area;
     const double aspect = (l[0] / quarter) * (l[1] / quarter) * l[2] * (l[0] + l[1] + l[2]);
     size_t bin = 0;
-    while (bin < CW_ASPECT_BINS - 1 && aspect > aspect_bounds[bin])
+    while (bin < CW_ASPECT_BINS - 1 && aspect > cw_aspect_ends[bin])
         bin++;
     p->shapes.aspects[bin]++;
     p->shapes.max_aspect = cwi_greater(p->shapes.max_aspect, aspect);
