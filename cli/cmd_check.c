@@ -108,19 +108,28 @@ static void put_facts(cli_json *j, const void *p)
     cli_json_shapes(j, &s->quality.shapes);
 }
 
+/* An output must be none of the inputs. */
+static cw_status check_against_inputs(const check_args *args, const char *output, cw_error *err)
+{
+    const char *inputs[3] = {args->common.inputs[0]};
+    size_t count = 1;
+    if (args->source)
+        inputs[count++] = args->source;
+    if (args->reference)
+        inputs[count++] = args->reference;
+    return cli_check_output(output, inputs, count, err);
+}
+
 static cw_status check_defects_path(const check_args *args, cw_error *err)
 {
     const char *dot = strrchr(args->defects, '.');
     const bool colored = dot && (strcmp(dot, ".ply") == 0 || strcmp(dot, ".glb") == 0 ||
                                  strcmp(dot, ".gltf") == 0);
-    const char *const inputs[3] = {args->common.inputs[0], args->source, args->reference};
     if (!colored)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "%s: --defects needs colours, which .ply, .glb and .gltf hold",
                        args->defects);
-    cw_status st = CW_OK;
-    for (int n = 0; n < 3 && st == CW_OK; n++)
-        st = inputs[n] ? cli_check_output(args->defects, &inputs[n], 1, err) : CW_OK;
+    cw_status st = check_against_inputs(args, args->defects, err);
     if (st == CW_OK && args->json)
         st = cli_check_apart(args->json, args->defects, err);
     if (st != CW_OK)
@@ -132,8 +141,7 @@ static cw_status check_defects_path(const check_args *args, cw_error *err)
 static cw_status check_args_of(run_state *s, cw_error *err)
 {
     const check_args *args = s->args;
-    cw_status st =
-        args->json ? cli_check_output(args->json, args->common.inputs, 1, err) : CW_OK;
+    cw_status st = args->json ? check_against_inputs(args, args->json, err) : CW_OK;
     if (st != CW_OK)
         return st;
     s->report.path = args->json;

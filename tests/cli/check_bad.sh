@@ -23,6 +23,8 @@ try one.off --tolerance 0.1vox --reference one.off
 try one.off --tolerance 0% --reference one.off
 try one.off --defects x.stl
 try one.off --defects one.off
+try one.off --json none.off --reference none.off
+try one.off --json one.off
 try one.off --profile prnt
 try one.off --reference none.off -q
 ls
