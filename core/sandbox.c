@@ -118,11 +118,8 @@ static void set_limits(const cwi_sandbox_desc *d)
     limit(RLIMIT_FSIZE, 0);
     limit(RLIMIT_NOFILE, CHILD_FILES);
     limit(RLIMIT_STACK, (uint64_t)8 << 20);
-#ifndef CWI_SANITIZED
-    limit(RLIMIT_AS, space_in_use() + (d->memory ? d->memory : (uint64_t)2 << 30));
-#else
-    (void)d;
-#endif
+    if (!CWI_SANITIZED)
+        limit(RLIMIT_AS, space_in_use() + (d->memory ? d->memory : (uint64_t)2 << 30));
 }
 
 /* Nothing stays open but the socket, which moves behind the standard streams; those lead
@@ -155,7 +152,7 @@ static bool lock(void)
         SCMP_SYS(gettimeofday), SCMP_SYS(getrandom),      SCMP_SYS(sched_yield),
         SCMP_SYS(getpid),       SCMP_SYS(gettid),         SCMP_SYS(sigaltstack)};
     const struct scmp_arg_cmp no_code = SCMP_A2(SCMP_CMP_MASKED_EQ, PROT_EXEC, 0);
-    const struct scmp_arg_cmp no_path = SCMP_A3(SCMP_CMP_EQ, AT_EMPTY_PATH); /* is fstat */
+    const struct scmp_arg_cmp no_path = SCMP_A3(SCMP_CMP_EQ, AT_EMPTY_PATH, 0); /* is fstat */
     scmp_filter_ctx filter = seccomp_init(SCMP_ACT_ERRNO(EPERM));
     bool good = filter != NULL;
     for (size_t i = 0; good && i < sizeof allowed / sizeof *allowed; i++)

@@ -15,12 +15,12 @@ extern "C" {
 #endif
 
 /* Sanitizers keep terabytes of address space for themselves: memory has no limit then. */
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer) || __has_feature(thread_sanitizer)
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define CWI_SANITIZED 1
-#endif
-#elif defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-#define CWI_SANITIZED 1
+#elif defined(__has_feature)
+#define CWI_SANITIZED (__has_feature(address_sanitizer) || __has_feature(thread_sanitizer))
+#else
+#define CWI_SANITIZED 0
 #endif
 
 /* One piece of work, done in the child.

@@ -264,7 +264,7 @@ static void test_the_parents_files_are_closed(void **state)
 static void test_memory_is_limited(void **state)
 {
     (void)state;
-#ifndef CWI_SANITIZED
+#if !CWI_SANITIZED
     cwi_sandbox box = open_box(false, 0);
     cw_error err = {0};
     if (ask(&box, FILL_MEMORY, 0, -1, &err) == CW_OK)
