@@ -122,6 +122,8 @@ static void print_geometry(const facts *f)
            from[0], from[1], from[2], to[0], to[1], to[2]);
     if (v->slope != 1 || v->intercept != 0)
         printf("  scaling  value = %.10g * voxel + %.10g\n", v->slope, v->intercept);
+    for (size_t n = 0; n < f->volume.note_count; n++)
+        printf("  note     %s\n", f->volume.notes[n]);
 }
 
 static void print_values(const facts *f)
@@ -182,14 +184,101 @@ static void print_json(const facts *f, bool predicted)
     cli_json_close(&j, '}');
 }
 
+/* --- series --------------------------------------------------------------------------------
+ */
+
+static const char *shape_of(const cw_series *s)
+{
+    static char text[128];
+    double spacing[3];
+    const size_t *dim = s->shape.dim;
+    int n = snprintf(text, sizeof text, "%zu x %zu x %zu %s", dim[0], dim[1], dim[2],
+                     cw_type_name(s->shape.type));
+    if (s->status != CW_OK)
+        return text;
+    cw_volume_spacing(&s->shape, spacing);
+    if (s->shape.steps > 1)
+        n += snprintf(text + n, sizeof text - (size_t)n, ", %zu steps", s->shape.steps);
+    snprintf(text + n, sizeof text - (size_t)n, ", %.6g x %.6g x %.6g %s, tilt %.3g",
+             spacing[0], spacing[1], spacing[2],
+             s->shape.known & CW_KNOWN_UNIT ? "mm" : "(no unit)", s->tilt_degrees);
+    return text;
+}
+
+static void print_series(const char *path, const cw_series *series, size_t count)
+{
+    printf("%s\n", path);
+    for (size_t n = 0; n < count; n++) {
+        const cw_series *s = &series[n];
+        printf("  series %-6s %-4s %4zu images  %s%s%s\n", s->label, s->modality, s->images,
+               shape_of(s), s->finding[0] ? "\n    " : "", s->finding);
+    }
+}
+
+static void print_series_json(const char *path, const cw_series *series, size_t count)
+{
+    cli_json j = {.out = stdout};
+    cli_json_open(&j, NULL, '{');
+    cli_json_text(&j, "schema", "cubewright-series-1");
+    cli_json_text(&j, "version", cw_version());
+    cli_json_text(&j, "path", cli_shown_path(path));
+    cli_json_open(&j, "series", '[');
+    for (size_t n = 0; n < count; n++) {
+        const cw_series *s = &series[n];
+        const double dims[3] = {(double)s->shape.dim[0], (double)s->shape.dim[1],
+                                (double)s->shape.dim[2]};
+        double spacing[3] = {0};
+        cli_json_open(&j, NULL, '{');
+        cli_json_text(&j, "label", s->label);
+        cli_json_text(&j, "modality", s->modality);
+        cli_json_count(&j, "images", s->images);
+        cli_json_numbers(&j, "dims", dims, 3);
+        cli_json_text(&j, "type", cw_type_name(s->shape.type));
+        if (s->status == CW_OK) {
+            cw_volume_spacing(&s->shape, spacing);
+            cli_json_numbers(&j, "spacing", spacing, 3);
+            cli_json_count(&j, "steps", s->shape.steps);
+            cli_json_number(&j, "tilt_degrees", s->tilt_degrees);
+        }
+        cli_json_text(&j, "status", cw_status_name(s->status));
+        cli_json_text(&j, "finding", s->finding);
+        cli_json_close(&j, '}');
+    }
+    cli_json_close(&j, ']');
+    cli_json_close(&j, '}');
+}
+
+/* Several series, or one that cannot be read as it is, are listed and nothing more. */
+static cw_status list_series(const info_args *args, bool *listed, cw_error *err)
+{
+    const char *path = args->common.inputs[0];
+    const cw_read_desc desc = cli_read_desc(&args->input);
+    cw_series *series;
+    size_t count;
+    if (args->input.series || args->input.raw)
+        return CW_OK;
+    cw_status st = cw_series_list(path, &desc, &series, &count, err);
+    *listed = count > 1 || (count == 1 && series[0].status != CW_OK);
+    if (*listed && args->json)
+        print_series_json(path, series, count);
+    else if (*listed)
+        print_series(path, series, count);
+    cw_series_free(series);
+    return st;
+}
+
 static cw_status run(void *p, cw_error *err)
 {
     info_args *args = p;
     facts f = {0};
+    bool listed = false;
     cli_common silent = args->common;
     silent.quiet = true; /* the found line is part of the result here */
     cli_console_start(&silent, CLI_PROGRESS_AUTO);
-    cw_status st = find_facts(args, &f, err);
+    cw_status st = list_series(args, &listed, err);
+    if (st != CW_OK || listed)
+        return st;
+    st = find_facts(args, &f, err);
     if (st == CW_OK && args->json) {
         print_json(&f, args->levels);
     } else if (st == CW_OK) {
@@ -207,11 +296,13 @@ const cli_command cli_info = {
     .usage = "VOLUME [options]",
     .about = "what is in a file: size, type, frame, values, suggested levels",
     .more =
+        "Several series of DICOM images are listed, and --series chooses one.\n\n"
         "Suggested levels part the histogram into two (otsu) or four classes (dark, medium,\n"
         "bright) with the largest variance between them.\n\n"
         "Examples\n"
         "  cubewright info head.nii.gz --levels\n"
-        "  cubewright info ct.nrrd --histogram 16 --json\n",
+        "  cubewright info ct.nrrd --histogram 16 --json\n"
+        "  cubewright info dicom/ --series 3\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .min_inputs = 1,

@@ -33,17 +33,6 @@ size_t cli_memory_limit(const cli_input *input)
     return input->memory ? input->memory : default_memory();
 }
 
-/* Stretches the axes to the spacing asked for; directions and origin stay. */
-static void set_spacing(cw_volume *v, const cli_lengths *asked)
-{
-    double spacing[3];
-    cw_volume_spacing(v, spacing);
-    for (int c = 0; c < 3; c++)
-        for (int r = 0; r < 3; r++)
-            v->affine[r][c] *= asked->mm[c] / spacing[c];
-    v->known |= CW_KNOWN_UNIT;
-}
-
 const char *cli_describe(const cli_volume *volume)
 {
     static char text[256];
@@ -168,8 +157,6 @@ static cw_status read_both(const char *path, cw_read_desc *desc, bool header_onl
     cw_status st = cw_volume_read(path, desc, &volume->whole, &volume->format, err);
     if (st != CW_OK)
         return st;
-    if (input->spacing.given)
-        set_spacing(&volume->whole, &input->spacing);
     cw_volume_spacing(&volume->whole, volume->spacing);
     cli_say("%s: %s", path, cli_describe(volume));
     st = choose(input, volume, err);
@@ -182,10 +169,9 @@ static cw_status read_both(const char *path, cw_read_desc *desc, bool header_onl
     const double bytes = (double)cw_type_size(v->type) * (double)v->dim[0] * (double)v->dim[1] *
                          (double)v->dim[2] * (double)v->components * (double)v->steps;
     desc->header_only = false;
+    desc->note = NULL; /* said already */
     desc->progress = cli_progress(bytes / 1e6, "MB");
     st = cw_volume_read(path, desc, &volume->whole, &volume->format, err);
-    if (st == CW_OK && input->spacing.given)
-        set_spacing(&volume->whole, &input->spacing);
     volume->memory_left = (double)desc->max_bytes > bytes ? desc->max_bytes - (size_t)bytes : 1;
     if (st == CW_OK)
         st = choose(input, volume, err);
@@ -198,14 +184,39 @@ static cw_status read_both(const char *path, cw_read_desc *desc, bool header_onl
     return st == CW_OK ? st : cwi_fail_in(err, st, path);
 }
 
+/* Says what the reader decided, and keeps it for reports. */
+static void take_note(void *user, const char *text)
+{
+    cli_volume *volume = user;
+    cli_say("%s: %s", volume->path, text);
+    if (volume->note_count < CLI_MOST_NOTES)
+        snprintf(volume->notes[volume->note_count++], sizeof *volume->notes, "%s", text);
+}
+
+cw_read_desc cli_read_desc(const cli_input *input)
+{
+    cw_read_desc desc = {.reader = input->reader,
+                         .allow_external = input->allow_external,
+                         .series = input->series,
+                         .gaps = (cw_gaps)input->gaps,
+                         .tilt = (cw_tilt)input->tilt,
+                         .no_sandbox = input->no_sandbox,
+                         .timeout_s = (double)input->timeout_s,
+                         .max_bytes = cli_memory_limit(input)};
+    if (input->spacing.given)
+        memcpy(desc.spacing_mm, input->spacing.mm, sizeof desc.spacing_mm);
+    return desc;
+}
+
 cw_status cli_read_volume(const char *path, const cli_input *input, bool header_only,
                           cli_volume *volume, cw_error *err)
 {
     cw_raw_layout raw;
-    cw_read_desc desc = {.reader = input->reader, .allow_external = input->allow_external};
+    cw_read_desc desc = cli_read_desc(input);
     memset(volume, 0, sizeof *volume);
     volume->path = path;
-    desc.max_bytes = cli_memory_limit(input);
+    desc.note = take_note;
+    desc.note_user = volume;
     if (input->raw) {
         cw_status st = cw_raw_layout_parse(input->raw, &raw, err);
         if (st != CW_OK)
@@ -242,6 +253,10 @@ void cli_json_input(cli_json *j, const char *key, const cli_volume *volume)
     cli_json_open(j, "affine", '[');
     for (int r = 0; r < 3; r++)
         cli_json_numbers(j, NULL, v->affine[r], 4);
+    cli_json_close(j, ']');
+    cli_json_open(j, "notes", '[');
+    for (size_t n = 0; n < volume->note_count; n++)
+        cli_json_text(j, NULL, volume->notes[n]);
     cli_json_close(j, ']');
     if (SHA256File(volume->path, sum))
         cli_json_text(j, "sha256", sum);

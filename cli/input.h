@@ -9,7 +9,10 @@
 #include <cubewright/formats.h>
 
 typedef struct cli_input {
-    const char *reader, *raw;
+    const char *reader, *raw, *series;
+    int gaps, tilt; /* cw_gaps, cw_tilt */
+    bool no_sandbox;
+    size_t timeout_s;
     cli_lengths spacing;
     cli_ranges crop;
     size_t component, step;
@@ -39,6 +42,24 @@ typedef struct cli_input {
          "X[,Y,Z]",                                                                            \
          "the distance of voxels, e.g. 0.5mm (the file's)",                                    \
          CLI_INPUT_ROW(args, spacing)},                                                        \
+        {"series",                                                                             \
+         0,                                                                                    \
+         CLI_TEXT,                                                                             \
+         "N",                                                                                  \
+         "of a DICOM folder: its number as 'info' lists it, or UID (the only one)",            \
+         CLI_INPUT_ROW(args, series)},                                                         \
+        {"gaps",                                                                               \
+         0,                                                                                    \
+         CLI_CHOICE,                                                                           \
+         "stop/interpolate/allow",                                                             \
+         "where slices are missing or uneven (stop)",                                          \
+         CLI_INPUT_ROW(args, gaps)},                                                           \
+        {"tilt",                                                                               \
+         0,                                                                                    \
+         CLI_CHOICE,                                                                           \
+         "correct/keep",                                                                       \
+         "slices of a tilted gantry: where they were, or straight up (correct)",               \
+         CLI_INPUT_ROW(args, tilt)},                                                           \
         {"crop",                                                                               \
          0,                                                                                    \
          CLI_RANGES,                                                                           \
@@ -58,6 +79,18 @@ typedef struct cli_input {
          NULL,                                                                                 \
          "follow headers to voxel files outside their own folder (off)",                       \
          CLI_INPUT_ROW(args, allow_external)},                                                 \
+        {"no-sandbox",                                                                         \
+         0,                                                                                    \
+         CLI_FLAG,                                                                             \
+         NULL,                                                                                 \
+         "let libraries read in this process, not in one without rights (off)",                \
+         CLI_INPUT_ROW(args, no_sandbox)},                                                     \
+        {"timeout",                                                                            \
+         0,                                                                                    \
+         CLI_COUNT,                                                                            \
+         "SECONDS",                                                                            \
+         "that a library may take for one file (60)",                                          \
+         CLI_INPUT_ROW(args, timeout_s)},                                                      \
         {"threads",                                                                            \
          't',                                                                                  \
          CLI_COUNT,                                                                            \
@@ -70,15 +103,22 @@ typedef struct cli_input {
             CLI_INPUT_ROW(args, memory)                                                        \
     }
 
+enum { CLI_MOST_NOTES = 8 };
+
 /* A volume as a command uses it. */
 typedef struct cli_volume {
     const char *path, *format;
     cw_volume whole; /* owns the voxels */
     cw_volume view;  /* the chosen component, step, part and samples, spacing applied */
     double spacing[3];
-    size_t memory_left; /* of the limit, after the voxels */
-    size_t coarsen[3];  /* the view's step along each axis */
+    size_t memory_left;              /* of the limit, after the voxels */
+    size_t coarsen[3];               /* the view's step along each axis */
+    char notes[CLI_MOST_NOTES][256]; /* what the reader found and decided on */
+    size_t note_count;
 } cli_volume;
+
+/* What the options say of reading. */
+cw_read_desc cli_read_desc(const cli_input *input);
 
 /* Reads the header, says what was found, then reads the voxels (unless header_only). Errors
  * name the file. Free with cw_volume_free(&volume->whole). */

@@ -83,6 +83,12 @@ cw_status cwi_input_open(cwi_input *in, const char *path, cw_error *err)
     return st;
 }
 
+cw_status cwi_input_open_folder(cwi_input *in, const char *path, cw_error *err)
+{
+    *in = (cwi_input){.path = path, .fd = -1, .folder = open_folder(path, strlen(path))};
+    return in->folder < 0 ? fail_system(err, "cannot be opened") : CW_OK;
+}
+
 void cwi_input_close(cwi_input *in)
 {
     if (in->path && in->folder >= 0)
@@ -166,8 +172,7 @@ cw_status cwi_names_add(cwi_names *names, const char *name, cw_error *err)
 {
     const size_t n = names->count;
     if (n >= MOST_NAMES)
-        return cw_fail(err, CW_ERR_LIMIT, "the header names more than %d data files",
-                       MOST_NAMES);
+        return cw_fail(err, CW_ERR_LIMIT, "more than %d data files", MOST_NAMES);
     if ((n & (n - 1)) == 0) { /* full at every power of two */
         char **items = cwi_realloc_array(names->items, n ? 2 * n : 1, sizeof *items);
         if (!items)

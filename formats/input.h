@@ -19,6 +19,9 @@ typedef struct cwi_input {
 cw_status cwi_input_open(cwi_input *in, const char *path, cw_error *err);
 void cwi_input_close(cwi_input *in);
 
+/* Opens a folder to find side files in; there is no file. CW_ERR_IO. */
+cw_status cwi_input_open_folder(cwi_input *in, const char *path, cw_error *err);
+
 /* Opens a file that the header names. Unless in->allow_external it must lie in the header's
  * folder or below: no absolute path, "..", scheme, backslash or percent sign, and no link on
  * the way. The file is the caller's to close. Returns CW_ERR_UNSAFE for a name that leaves the

@@ -14,6 +14,10 @@ bool cwi_vtk_sniff(const unsigned char *head, size_t size);
 bool cwi_vti_sniff(const unsigned char *head, size_t size);
 bool cwi_mrc_sniff(const unsigned char *head, size_t size);
 bool cwi_inr_sniff(const unsigned char *head, size_t size);
+bool cwi_dicom_sniff(const unsigned char *head, size_t size);
+
+/* Tells the reader's caller of something found and decided on. */
+void cwi_note(const cw_read_desc *desc, const char *format, ...) CW_PRINTF(2, 3);
 
 /* Reads a header into a zeroed source, which the caller frees in any case. The messages name
  * the header's fields; the caller puts the file's name in front. */
@@ -24,6 +28,15 @@ cw_status cwi_vtk_parse(const cwi_input *in, cwi_source *src, cw_error *err);
 cw_status cwi_vti_parse(const cwi_input *in, cwi_source *src, cw_error *err);
 cw_status cwi_mrc_parse(const cwi_input *in, cwi_source *src, cw_error *err);
 cw_status cwi_inr_parse(const cwi_input *in, cwi_source *src, cw_error *err);
+
+/* Reads slices in files of their own, shut in with the library that knows them.
+ * in     the folder, or one file and its folder
+ * names  of the files, sorted; NULL: in's own file */
+cw_status cwi_dicom_read(const cwi_input *in, cwi_names *names, const cw_read_desc *desc,
+                         cw_volume *volume, cw_error *err);
+
+cw_status cwi_dicom_list(const cwi_input *in, cwi_names *names, const cw_read_desc *desc,
+                         cw_series **series, size_t *count, cw_error *err);
 
 /* The same from a layout that the caller of the library states. */
 cw_status cwi_raw_describe(const cw_raw_layout *layout, cwi_source *src, cw_error *err);

@@ -116,27 +116,24 @@ static bool is_moderate(double x)
     return fabs(x) < 1e30;
 }
 
-static cw_status check_frame(const cwi_source *src, cw_error *err)
+cw_status cwi_check_frame(const cw_volume *v, const char *field, cw_error *err)
 {
-    const cw_volume *v = &src->shape;
     double unit[3][4] = {{0}};
     for (int c = 0; c < 4; c++) {
         const double length = hypot(hypot(v->affine[0][c], v->affine[1][c]), v->affine[2][c]);
         if (!is_moderate(length * (c < 3 ? (double)v->dim[c] : 1.0)))
             return cw_fail(err, CW_ERR_FORMAT,
-                           "'%s' has numbers that are not finite or too large",
-                           src->frame_field);
+                           "'%s' has numbers that are not finite or too large", field);
         if (c < 3 && !(length > 1e-30))
-            return cw_fail(err, CW_ERR_FORMAT, "'%s' gives axis %d no length", src->frame_field,
-                           c);
+            return cw_fail(err, CW_ERR_FORMAT, "'%s' gives axis %d no length", field, c);
         for (int r = 0; r < 3; r++)
             unit[r][c] = v->affine[r][c] / length;
     }
     const double volume = cwi_affine_determinant(unit[0]);
     if (!(fabs(volume) > 1e-6))
         return cw_fail(err, CW_ERR_FORMAT,
-                       "'%s' gives directions that lie in one plane (determinant %g)",
-                       src->frame_field, volume);
+                       "'%s' gives directions that lie in one plane (determinant %g)", field,
+                       volume);
     return CW_OK;
 }
 
@@ -394,18 +391,18 @@ static cw_status check_files(const cwi_source *src, const cwi_input *in, cw_erro
     return walk_parts(src, in, NULL, err);
 }
 
-static cw_status check_limits(const cwi_source *src, const cw_read_desc *desc, cw_error *err)
+cw_status cwi_check_limits(const cw_volume *v, size_t bytes, const char *field,
+                           const cw_read_desc *desc, cw_error *err)
 {
-    const cw_volume *v = &src->shape;
     const uint64_t most = desc->max_voxels ? desc->max_voxels : (uint64_t)1 << 40;
-    const uint64_t voxels = src->bytes / cw_type_size(v->type) / v->components;
+    const uint64_t voxels = bytes / cw_type_size(v->type) / v->components;
     if (voxels > most)
-        return cw_fail(err, CW_ERR_LIMIT, "'%s' asks for %llu voxels; the limit is %llu",
-                       src->size_field, (unsigned long long)voxels, (unsigned long long)most);
-    if (desc->max_bytes && src->bytes > desc->max_bytes)
+        return cw_fail(err, CW_ERR_LIMIT, "'%s' asks for %llu voxels; the limit is %llu", field,
+                       (unsigned long long)voxels, (unsigned long long)most);
+    if (desc->max_bytes && bytes > desc->max_bytes)
         return cw_fail(err, CW_ERR_LIMIT,
-                       "'%s' asks for %zu bytes of voxels; the limit is %llu", src->size_field,
-                       src->bytes, (unsigned long long)desc->max_bytes);
+                       "'%s' asks for %zu bytes of voxels; the limit is %llu", field, bytes,
+                       (unsigned long long)desc->max_bytes);
     return CW_OK;
 }
 
@@ -431,11 +428,11 @@ static cw_status load_voxels(const cwi_source *src, const cwi_input *in,
 cw_status cwi_source_load(const cwi_source *src, const cwi_input *in, const cw_read_desc *desc,
                           cw_volume *volume, cw_error *err)
 {
-    cw_status st = check_frame(src, err);
+    cw_status st = cwi_check_frame(&src->shape, src->frame_field, err);
     if (st == CW_OK)
         st = check_files(src, in, err);
     if (st == CW_OK)
-        st = check_limits(src, desc, err);
+        st = cwi_check_limits(&src->shape, src->bytes, src->size_field, desc, err);
     if (st == CW_OK && desc->header_only)
         *volume = src->shape;
     else if (st == CW_OK)

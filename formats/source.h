@@ -71,6 +71,13 @@ void cwi_swap_bytes(void *numbers, size_t count, size_t size);
 /* Whether this machine keeps the high byte first. */
 bool cwi_machine_is_big_endian(void);
 
+/* Refuses an affine with columns that are not finite, have no length or lie in one plane. */
+cw_status cwi_check_frame(const cw_volume *shape, const char *field, cw_error *err);
+
+/* Refuses more voxels, or bytes of them, than the description allows. */
+cw_status cwi_check_limits(const cw_volume *shape, size_t bytes, const char *field,
+                           const cw_read_desc *desc, cw_error *err);
+
 /* Checks the source against its files and the limits, then reads the voxels (unless
  * desc->header_only). Nothing is allocated before every size is known to be possible.
  * volume   filled on success, else untouched

@@ -54,6 +54,11 @@ static const cw_format rows[] = {
      .reads_volume = true,
      .in_this_build = true,
      .lost = ""},
+    {.name = "dicom",
+     .extensions = ".dcm .dicom .ima",
+     .about = "DICOM series: a folder, or any file of it",
+     .reads_volume = true,
+     .lost = ""},
     {.name = "raw",
      .extensions = ".raw",
      .about = "bytes without a header, laid out as the caller says",
@@ -109,11 +114,14 @@ static pthread_once_t formats_once = PTHREAD_ONCE_INIT;
 
 static void fill_formats(void)
 {
-    const bool gltf = cwi_module_present("gltf");
+    static const struct {
+        const char *format, *module;
+    } modules[] = {{"glb", "gltf"}, {"gltf", "gltf"}, {"dicom", "dicom"}};
     memcpy(formats, rows, sizeof rows);
     for (int i = 0; i < ROW_COUNT; i++)
-        if (strcmp(rows[i].name, "glb") == 0 || strcmp(rows[i].name, "gltf") == 0)
-            formats[i].in_this_build = gltf;
+        for (size_t m = 0; m < sizeof modules / sizeof *modules; m++)
+            if (strcmp(rows[i].name, modules[m].format) == 0)
+                formats[i].in_this_build = cwi_module_present(modules[m].module);
 }
 
 const cw_format *cw_formats(size_t *count)

@@ -1,10 +1,14 @@
 #include "core/status.h"
+#include "formats/files.h"
 #include "formats/readers.h"
 #include "formats/stream.h"
 #include "formats/table.h"
 
+#include <math.h>
+#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
 /* One row per reader; content decides, then the extension. */
 typedef struct reader {
@@ -12,16 +16,22 @@ typedef struct reader {
     bool gzipped; /* the whole file may be a gzip file */
     bool (*sniff)(const unsigned char *head, size_t size);
     cw_status (*parse)(const cwi_input *in, cwi_source *src, cw_error *err);
+    /* or, for slices in files of their own, the whole reading */
+    cw_status (*read)(const cwi_input *in, cwi_names *names, const cw_read_desc *desc,
+                      cw_volume *volume, cw_error *err);
 } reader;
 
 static const reader readers[] = {
-    {"nrrd", ".nrrd .nhdr", false, cwi_nrrd_sniff, cwi_nrrd_parse},
-    {"nifti", ".nii .nii.gz .hdr .hdr.gz .img .img.gz", true, cwi_nifti_sniff, cwi_nifti_parse},
-    {"metaimage", ".mha .mhd", false, cwi_metaimage_sniff, cwi_metaimage_parse},
-    {"vtk", ".vtk", false, cwi_vtk_sniff, cwi_vtk_parse},
-    {"vti", ".vti", false, cwi_vti_sniff, cwi_vti_parse},
-    {"mrc", ".mrc .map .ccp4 .rec .mrc.gz .map.gz", true, cwi_mrc_sniff, cwi_mrc_parse},
-    {"inr", ".inr .inr.gz", true, cwi_inr_sniff, cwi_inr_parse},
+    {"nrrd", ".nrrd .nhdr", false, cwi_nrrd_sniff, .parse = cwi_nrrd_parse},
+    {"nifti", ".nii .nii.gz .hdr .hdr.gz .img .img.gz", true, cwi_nifti_sniff,
+     .parse = cwi_nifti_parse},
+    {"metaimage", ".mha .mhd", false, cwi_metaimage_sniff, .parse = cwi_metaimage_parse},
+    {"vtk", ".vtk", false, cwi_vtk_sniff, .parse = cwi_vtk_parse},
+    {"vti", ".vti", false, cwi_vti_sniff, .parse = cwi_vti_parse},
+    {"mrc", ".mrc .map .ccp4 .rec .mrc.gz .map.gz", true, cwi_mrc_sniff,
+     .parse = cwi_mrc_parse},
+    {"inr", ".inr .inr.gz", true, cwi_inr_sniff, .parse = cwi_inr_parse},
+    {"dicom", ".dcm .dicom .ima", false, cwi_dicom_sniff, .read = cwi_dicom_read},
 };
 enum { READER_COUNT = sizeof readers / sizeof *readers };
 
@@ -83,41 +93,174 @@ static cw_status find_by_file(const cwi_input *in, const reader **found, cw_erro
         reader_names(names));
 }
 
-static cw_status describe(const cwi_input *in, const cw_read_desc *desc, cwi_source *src,
-                          const char **format, cw_error *err)
+/* --- what a path stands for ----------------------------------------------------------------
+ */
+
+/* One file, or all those of a folder or a pattern. */
+typedef struct opened {
+    cwi_input in;
+    cwi_names names;
+    bool many;
+    const reader *reader; /* NULL: raw */
+} opened;
+
+static void close_path(opened *o)
 {
-    const reader *found = NULL;
-    if (desc->raw) {
-        *format = "raw";
-        return cwi_raw_describe(desc->raw, src, err);
+    cwi_names_free(&o->names);
+    cwi_input_close(&o->in);
+}
+
+static cw_status open_names(opened *o, const char *path, const cw_read_desc *desc,
+                            cw_error *err)
+{
+    size_t links = 0;
+    cw_status st = cwi_files_find(&o->in, path, !desc->raw, &o->names, &links, err);
+    if (st == CW_OK && o->names.count == 0)
+        return cw_fail(err, CW_ERR_IO, "the folder holds no file%s",
+                       links ? ", only links, and external files are not allowed" : "");
+    if (st == CW_OK && links)
+        cwi_note(desc, "%zu links left out: external files are not allowed", links);
+    return st;
+}
+
+/* Whether a file of the folder is of a format; one that cannot be read is of none. */
+static bool is_of(const cwi_input *in, const char *name, const reader *r)
+{
+    unsigned char head[CWI_SNIFF_BYTES];
+    uint64_t file_size;
+    size_t size;
+    int fd;
+    if (cwi_input_open_side(in, name, &fd, &file_size, NULL) != CW_OK)
+        return false;
+    const bool read = cwi_input_read_at(fd, 0, head, sizeof head, &size, NULL) == CW_OK;
+    close(fd);
+    return read && r->sniff(head, size);
+}
+
+static cw_status find_by_files(opened *o, cw_error *err)
+{
+    for (size_t r = 0; r < READER_COUNT; r++)
+        for (size_t i = 0; readers[r].read && i < o->names.count; i++)
+            if (is_of(&o->in, o->names.items[i], &readers[r])) {
+                o->reader = &readers[r];
+                return CW_OK;
+            }
+    return cw_fail(err, CW_ERR_FORMAT,
+                   "none of its %zu files is a slice in a format that is read (DICOM, TIFF); "
+                   "headerless slices need their layout stated (--raw)",
+                   o->names.count);
+}
+
+static cw_status find_reader(opened *o, const cw_read_desc *desc, cw_error *err)
+{
+    cw_status st = desc->reader ? find_by_name(desc->reader, &o->reader, err)
+                   : o->many    ? find_by_files(o, err)
+                                : find_by_file(&o->in, &o->reader, err);
+    if (st == CW_OK && o->many && !o->reader->read)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "the reader '%s' reads one file, and these are %zu", o->reader->name,
+                       o->names.count);
+    return st;
+}
+
+static cw_status open_path(opened *o, const char *path, const cw_read_desc *desc, cw_error *err)
+{
+    *o = (opened){.in = {.allow_external = desc->allow_external}};
+    o->many = cwi_files_is_pattern(path) || cwi_is_folder(path);
+    cw_status st = o->many ? open_names(o, path, desc, err) : cwi_input_open(&o->in, path, err);
+    o->in.allow_external |= desc->allow_external;
+    return st == CW_OK && !desc->raw ? find_reader(o, desc, err) : st;
+}
+
+/* --- reading -------------------------------------------------------------------------------
+ */
+
+void cwi_note(const cw_read_desc *desc, const char *format, ...)
+{
+    char text[512];
+    va_list arguments;
+    if (!desc->note)
+        return;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    desc->note(desc->note_user, text);
+}
+
+/* Stretches the axes; directions and origin stay. */
+static void set_spacing(cw_volume *v, const double wanted[3])
+{
+    double spacing[3];
+    cw_volume_spacing(v, spacing);
+    for (int c = 0; c < 3; c++)
+        for (int r = 0; r < 3; r++)
+            v->affine[r][c] *= wanted[c] / spacing[c];
+    v->known |= CW_KNOWN_UNIT;
+}
+
+/* Headers that a source describes, and layouts. */
+static cw_status read_source(opened *o, const cw_read_desc *desc, cw_volume *volume,
+                             cw_error *err)
+{
+    cwi_source src = {0};
+    cw_status st = desc->raw ? cwi_raw_describe(desc->raw, &src, err)
+                             : o->reader->parse(&o->in, &src, err);
+    if (o->many) {
+        src.files = o->names;
+        o->names = (cwi_names){0};
     }
-    cw_status st =
-        desc->reader ? find_by_name(desc->reader, &found, err) : find_by_file(in, &found, err);
-    if (st != CW_OK)
-        return st;
-    *format = found->name;
-    return found->parse(in, src, err);
+    if (st == CW_OK)
+        st = cwi_source_load(&src, &o->in, desc, volume, err);
+    cwi_source_free(&src);
+    return st;
+}
+
+static cw_status check_spacing(const double *s, cw_error *err)
+{
+    if (s[0] == 0 && s[1] == 0 && s[2] == 0)
+        return CW_OK;
+    for (int a = 0; a < 3; a++)
+        if (!(s[a] > 0) || !isfinite(s[a]))
+            return cw_fail(err, CW_ERR_ARGUMENT, "a spacing of %g mm; it must be above 0",
+                           s[a]);
+    return CW_OK;
 }
 
 cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *volume,
                          const char **format, cw_error *err)
 {
     const cw_read_desc defaults = {0};
-    const char *name = NULL;
-    cwi_input in = {0};
-    cwi_source src = {0};
+    opened o = {0};
     memset(volume, 0, sizeof *volume);
     if (!desc)
         desc = &defaults;
-    cw_status st = cwi_input_open(&in, path, err);
-    in.allow_external = desc->allow_external;
+    cw_status st = check_spacing(desc->spacing_mm, err);
     if (st == CW_OK)
-        st = describe(&in, desc, &src, &name, err);
-    if (st == CW_OK)
-        st = cwi_source_load(&src, &in, desc, volume, err);
-    cwi_source_free(&src);
-    cwi_input_close(&in);
+        st = open_path(&o, path, desc, err);
+    if (st == CW_OK && o.reader && o.reader->read)
+        st = o.reader->read(&o.in, o.many ? &o.names : NULL, desc, volume, err);
+    else if (st == CW_OK)
+        st = read_source(&o, desc, volume, err);
+    if (st == CW_OK && desc->spacing_mm[0] > 0)
+        set_spacing(volume, desc->spacing_mm);
     if (format)
-        *format = name;
+        *format = o.reader ? o.reader->name : desc->raw ? "raw" : NULL;
+    close_path(&o);
+    return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
+}
+
+cw_status cw_series_list(const char *path, const cw_read_desc *desc, cw_series **series,
+                         size_t *count, cw_error *err)
+{
+    const cw_read_desc defaults = {0};
+    opened o = {0};
+    *series = NULL;
+    *count = 0;
+    if (!desc)
+        desc = &defaults;
+    cw_status st = open_path(&o, path, desc, err);
+    if (st == CW_OK && o.reader && o.reader->read == cwi_dicom_read)
+        st = cwi_dicom_list(&o.in, o.many ? &o.names : NULL, desc, series, count, err);
+    close_path(&o);
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
 }

@@ -20,6 +20,20 @@ typedef struct cw_raw_layout {
     double spacing[3]; /* mm; all 0 means 1 each, and the unit is then unknown */
 } cw_raw_layout;
 
+/* What to do where slices are missing, or not at equal distances. */
+typedef enum cw_gaps {
+    CW_GAPS_STOP,        /* CW_ERR_UNSAFE */
+    CW_GAPS_INTERPOLATE, /* slices at equal distances, made of the nearest two */
+    CW_GAPS_ALLOW        /* take the slices as if they were at equal distances */
+} cw_gaps;
+
+/* What to do with slices that are shifted against each other, as a tilted gantry leaves them.
+ */
+typedef enum cw_tilt {
+    CW_TILT_CORRECT, /* leave them where they are: the frame is sheared */
+    CW_TILT_KEEP     /* stack them up as if they were not shifted */
+} cw_tilt;
+
 /* How to read a volume. Zero-initialise it; a zero field means the default named beside it. */
 typedef struct cw_read_desc {
     const char *reader;       /* a name of cw_formats(); default: by content, then extension */
@@ -28,10 +42,30 @@ typedef struct cw_read_desc {
     bool allow_external;      /* data files outside the header's folder; default: refused */
     uint64_t max_voxels;      /* default 2^40 */
     uint64_t max_bytes;       /* of voxels in memory; default: no limit */
-    cw_progress progress;     /* default: none */
+    double spacing_mm[3];     /* in place of the file's; default: all 0, the file's */
+
+    /* Slices in files of their own (TIFF, DICOM). */
+    const char *series; /* label or UID, as of cw_series_list(); default: the only one */
+    cw_gaps gaps;
+    cw_tilt tilt;
+
+    /* Libraries run in a process of their own, without rights, so that a file that breaks one
+     * breaks nothing else. */
+    bool no_sandbox;  /* run them in this one instead */
+    double timeout_s; /* for one file; default 60 */
+
+    /* Called on the calling thread with one line for each thing that was found and decided on:
+     * a tilt, slices left out. Default: none. */
+    void (*note)(void *user, const char *text);
+    void *note_user;
+    cw_progress progress; /* default: none */
 } cw_read_desc;
 
 /* Reads a volume: the whole file, every component and time step.
+ *
+ * path is a file, a folder of slices, or a pattern such as "scan/slice_*.tif" that names them;
+ * numbers in their names count as numbers. With a layout (raw), each has an equal share of the
+ * voxels. A DICOM file stands for its whole series, as far as it is in the same folder.
  *
  * The header is checked against the file's true size before anything is allocated. Voxels keep
  * their type and numbers; only byte order is mended. Direction, origin and spacing arrive in
@@ -41,12 +75,36 @@ typedef struct cw_read_desc {
  * Returns  CW_ERR_IO           missing, not a regular file, unreadable
  *          CW_ERR_FORMAT       not understood, damaged, or truncated; names the field
  *          CW_ERR_UNSAFE       the header names voxels outside its own folder; an XML document
- *                              type
+ *                              type; several series and none chosen; slices that are missing,
+ *                              uneven, without a place, or shifted unevenly
  *          CW_ERR_UNSUPPORTED  compressed with a library that is not in this build
+ *          CW_ERR_BACKEND      a library died of the file, or took too long
  *          CW_ERR_LIMIT        more voxels or bytes than allowed; CW_ERR_NO_MEMORY
  *          CW_ERR_ARGUMENT     no such reader; CW_ERR_CANCELLED */
 CW_API cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *volume,
                                 const char **format, cw_error *err);
+
+/* One series of images in a folder of DICOM files. */
+typedef struct cw_series {
+    char label[32];    /* what cw_read_desc.series takes: its number, and .1, .2 ... when
+                          images of several sizes, types or directions have that number */
+    char modality[20]; /* "CT"; may be empty */
+    size_t images;
+    cw_volume shape;     /* as it would be read, without voxels; with a status other than CW_OK
+                            only type and dim, which then counts the images */
+    double tilt_degrees; /* of the row of slices against their normal */
+    cw_status status;    /* of reading it so: CW_OK, CW_ERR_UNSAFE, ... */
+    char finding[512];   /* what is uneven, missing or wrong; empty: nothing */
+} cw_series;
+
+/* Lists the series that a folder, or a file's folder, holds; a path without DICOM images has
+ * none. Neither names nor dates of patients are read.
+ *
+ * series   set to an array of *count, to be freed with cw_series_free(); NULL when there is
+ * none Returns  CW_ERR_UNSUPPORTED when the build has no DICOM; as cw_volume_read() */
+CW_API cw_status cw_series_list(const char *path, const cw_read_desc *desc, cw_series **series,
+                                size_t *count, cw_error *err);
+CW_API void cw_series_free(cw_series *series);
 
 /* Reads a layout written as on the command line, for example
  * "dims=512x512x300,type=u16le,offset=62,spacing=0.5x0.5x1,components=1,steps=1".

@@ -51,7 +51,8 @@ typedef struct memory_of_child {
 static void crash(void)
 {
     raise(SIGSEGV); /* not permitted in there, as nothing is that reaches a process */
-    *(volatile int *)(uintptr_t)8 = 1;
+    volatile uintptr_t nowhere = 8;
+    *(volatile int *)nowhere = 1;
 }
 
 static void fill_memory(result *r)

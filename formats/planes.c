@@ -1,0 +1,65 @@
+#include "formats/planes.h"
+
+#include "core/module.h"
+#include "core/status.h"
+
+#include <string.h>
+
+cw_status cwi_planes_open(cwi_planes *planes, const char *module, const char *option,
+                          const char *package, const cw_read_desc *desc, cw_error *err)
+{
+    const void *functions;
+    *planes = (cwi_planes){0};
+    cw_status st = cwi_module_load(module, option, package, &functions, err);
+    if (st != CW_OK)
+        return st;
+    planes->functions = functions;
+    planes->state = planes->functions->state_new();
+    if (!planes->state)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %s", planes->functions->library);
+    const cwi_sandbox_desc box = {.library = planes->functions->library,
+                                  .work = planes->functions->work,
+                                  .prepare = planes->functions->prepare,
+                                  .state = planes->state,
+                                  .shared_bytes = CWI_PLANES_SHARED,
+                                  .memory = desc->max_bytes,
+                                  .timeout_s = desc->timeout_s,
+                                  .inside = desc->no_sandbox};
+    st = cwi_sandbox_open(&planes->box, &box, err);
+    planes->box.progress = &desc->progress;
+    return st;
+}
+
+void cwi_planes_close(cwi_planes *planes)
+{
+    cwi_sandbox_close(&planes->box);
+    if (planes->state)
+        planes->functions->state_free(planes->state);
+    *planes = (cwi_planes){0};
+}
+
+cw_status cwi_planes_facts(cwi_planes *planes, int fd, uint64_t file_bytes, const void **facts,
+                           cw_error *err)
+{
+    const cwi_plane_request q = {.op = CWI_PLANE_FACTS, .file_bytes = file_bytes};
+    *facts = planes->box.shared;
+    return cwi_sandbox_run(&planes->box, fd, &q, sizeof q, err);
+}
+
+cw_status cwi_planes_read(cwi_planes *planes, uint32_t plane, size_t first_row,
+                          size_t row_count, size_t row_bytes, void *to, cw_error *err)
+{
+    const size_t most = CWI_PLANES_SHARED / row_bytes;
+    cw_status st = CW_OK;
+    for (size_t row = 0, rows; st == CW_OK && row < row_count; row += rows) {
+        rows = row_count - row < most ? row_count - row : most;
+        const cwi_plane_request q = {.op = CWI_PLANE_PIXELS,
+                                     .plane = plane,
+                                     .first_row = (uint32_t)(first_row + row),
+                                     .row_count = (uint32_t)rows};
+        st = cwi_sandbox_run(&planes->box, -1, &q, sizeof q, err);
+        if (st == CW_OK)
+            memcpy((char *)to + row * row_bytes, planes->box.shared, rows * row_bytes);
+    }
+    return st;
+}

@@ -1,0 +1,196 @@
+#include "formats/stack.h"
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "core/volume.h"
+#include "formats/source.h"
+
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+void cwi_stack_free(cwi_stack *stack)
+{
+    cwi_names_free(&stack->files);
+    cwi_free(stack->planes);
+    cwi_free(stack->slots);
+    *stack = (cwi_stack){0};
+}
+
+/* The reading of a stack. */
+typedef struct reading {
+    const cwi_stack *stack;
+    const cwi_input *in;
+    cwi_planes *planes;
+    size_t file; /* the one handed over last; SIZE_MAX: none */
+    size_t row_pixels, pixels;
+    unsigned char *low, *high; /* planes as the module gives them */
+    char *voxels;
+} reading;
+
+/* --- from pixels to voxels -----------------------------------------------------------------
+ */
+
+static bool is_padding(const cwi_stack *s, double pixel)
+{
+    return s->has_padding && pixel >= s->padding[0] && pixel <= s->padding[1];
+}
+
+/* What a pixel of a plane is in the result; *nodata where it is padding. */
+static double value_of(const reading *r, const cwi_plane *plane, const unsigned char *pixels,
+                       size_t i, bool *nodata)
+{
+    const cwi_stack *s = r->stack;
+    const double pixel = cwi_voxel_at(s->type, pixels + i * cw_type_size(s->type));
+    *nodata = is_padding(s, pixel);
+    return s->scaled ? plane->slope * pixel + plane->intercept : pixel;
+}
+
+static void put_values(const reading *r, const cwi_slot *slot, char *to)
+{
+    const cwi_stack *s = r->stack;
+    const cw_type type = s->shape.type;
+    const size_t size = cw_type_size(type);
+    const cwi_plane *low = &s->planes[slot->low], *high = &s->planes[slot->high];
+    const double nodata = s->shape.has_nodata ? s->shape.nodata : NAN;
+    bool lost[2] = {false, false};
+    for (size_t i = 0; i < r->pixels; i++) {
+        double value = value_of(r, low, r->low, i, &lost[0]);
+        if (slot->t > 0)
+            value = (1 - slot->t) * value + slot->t * value_of(r, high, r->high, i, &lost[1]);
+        cwi_voxel_put(type, to + i * size, lost[0] || lost[1] ? nodata : value);
+    }
+}
+
+static void put_label(const reading *r, const cwi_slot *slot, char *to)
+{
+    const cwi_stack *s = r->stack;
+    const size_t in = cw_type_size(s->type), out = cw_type_size(s->shape.type);
+    for (size_t i = 0; i < r->pixels; i++)
+        if (cwi_voxel_at(s->type, r->low + i * in) != 0)
+            cwi_voxel_put(s->shape.type, to + i * out, slot->label);
+}
+
+/* --- from files to pixels ------------------------------------------------------------------
+ */
+
+static cw_status hand_over(reading *r, size_t file, cw_error *err)
+{
+    const char *name = r->stack->files.items[file];
+    const void *facts;
+    uint64_t size;
+    int fd = -1;
+    if (file == r->file)
+        return CW_OK;
+    cw_status st = cwi_input_open_side(r->in, name, &fd, &size, err);
+    if (st == CW_OK)
+        st = cwi_planes_facts(r->planes, fd, size, &facts, err);
+    if (fd >= 0)
+        close(fd);
+    r->file = st == CW_OK ? file : SIZE_MAX;
+    return st;
+}
+
+static cw_status read_plane(reading *r, size_t index, void *to, cw_error *err)
+{
+    const cwi_stack *s = r->stack;
+    const cwi_plane *plane = &s->planes[index];
+    cw_status st = hand_over(r, plane->file, err);
+    if (st == CW_OK)
+        st = cwi_planes_read(r->planes, plane->number, 0, s->shape.dim[1],
+                             r->row_pixels * cw_type_size(s->type), to, err);
+    return st == CW_OK || st == CW_ERR_CANCELLED
+               ? st
+               : cwi_fail_in(err, st, s->files.items[plane->file]);
+}
+
+/* Whether voxels are the module's pixels and nothing else. */
+static bool is_plain(const cwi_stack *s, const cwi_slot *slot)
+{
+    const bool ranged =
+        s->has_padding && (s->padding[0] != s->padding[1] || s->padding[0] != s->shape.nodata);
+    return !s->scaled && !slot->label && slot->t == 0 && !ranged && s->shape.type == s->type;
+}
+
+static cw_status read_slot(reading *r, const cwi_slot *slot, cw_error *err)
+{
+    const cwi_stack *s = r->stack;
+    char *to = r->voxels + slot->place * r->pixels * cw_type_size(s->shape.type);
+    if (is_plain(s, slot))
+        return read_plane(r, slot->low, to, err);
+    cw_status st = read_plane(r, slot->low, r->low, err);
+    if (st == CW_OK && slot->t > 0)
+        st = read_plane(r, slot->high, r->high, err);
+    if (st == CW_OK && slot->label)
+        put_label(r, slot, to);
+    else if (st == CW_OK)
+        put_values(r, slot, to);
+    return st;
+}
+
+static cw_status read_slots(reading *r, const cw_progress *progress, cw_error *err)
+{
+    const cwi_stack *s = r->stack;
+    cw_status st = CW_OK;
+    for (size_t i = 0; st == CW_OK && i < s->slot_count; i++) {
+        r->planes->box.done = (double)i / (double)s->slot_count;
+        st = cwi_progress(progress, "reading", r->planes->box.done, err);
+        if (st == CW_OK)
+            st = read_slot(r, &s->slots[i], err);
+    }
+    return st == CW_OK ? cwi_progress(progress, "reading", 1, err) : st;
+}
+
+/* Of what the sizes ask for; false when that is more than an address space holds. */
+static bool count_bytes(const cw_volume *v, size_t *bytes)
+{
+    return cwi_size_mul(v->dim[0], v->dim[1], bytes) &&
+           cwi_size_mul(*bytes, v->dim[2], bytes) && cwi_size_mul(*bytes, v->steps, bytes) &&
+           cwi_size_mul(*bytes, v->components, bytes) &&
+           cwi_size_mul(*bytes, cw_type_size(v->type), bytes) && *bytes <= PTRDIFF_MAX;
+}
+
+static cw_status load_voxels(const cwi_stack *s, size_t bytes, reading *r,
+                             const cw_read_desc *desc, cw_volume *volume, cw_error *err)
+{
+    cw_volume v = s->shape;
+    const size_t pixel = cw_type_size(s->type);
+    r->row_pixels = v.dim[0] * s->samples;
+    r->pixels = r->row_pixels * v.dim[1];
+    r->low = cwi_alloc_array(r->pixels, pixel);
+    r->high = cwi_alloc_array(r->pixels, pixel);
+    v.owned = cwi_alloc_large(bytes, 1);
+    r->voxels = v.owned;
+    cw_status st = CW_OK;
+    if (!r->low || !r->high || !v.owned)
+        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of voxels", bytes);
+    else if (s->slot_count && s->slots[0].label)
+        memset(r->voxels, 0, bytes); /* what no label claims */
+    if (st == CW_OK)
+        st = read_slots(r, &desc->progress, err);
+    cwi_free(r->low);
+    cwi_free(r->high);
+    v.data = v.owned;
+    if (st == CW_OK)
+        *volume = v;
+    else
+        cw_volume_free(&v);
+    return st;
+}
+
+cw_status cwi_stack_load(const cwi_stack *stack, const cwi_input *in, cwi_planes *planes,
+                         const cw_read_desc *desc, cw_volume *volume, cw_error *err)
+{
+    size_t bytes;
+    reading r = {.stack = stack, .in = in, .planes = planes, .file = SIZE_MAX};
+    if (!count_bytes(&stack->shape, &bytes))
+        return cw_fail(err, CW_ERR_LIMIT,
+                       "'%s' asks for more voxels than an address space holds",
+                       stack->size_field);
+    cw_status st = cwi_check_limits(&stack->shape, bytes, stack->size_field, desc, err);
+    if (st == CW_OK && desc->header_only)
+        *volume = stack->shape;
+    else if (st == CW_OK)
+        st = load_voxels(stack, bytes, &r, desc, volume, err);
+    return st;
+}
