@@ -291,7 +291,7 @@ static void only_files_are_opened(void **state)
     assert_ok(read_back("named.nrrd", &v, &err), err);
     cw_volume_free(&v);
     assert_fails(read_back("pipe.nrrd", &v, &err), CW_ERR_IO, "a named pipe, not a file", err);
-    assert_fails(read_back("", &v, &err), CW_ERR_IO, "a folder, not a file", err);
+    assert_fails(read_back("", &v, &err), CW_ERR_FORMAT, "is a slice in a format that", err);
     assert_fails(read_back("none.nrrd", &v, &err), CW_ERR_IO, "No such file", err);
     assert_fails(read_back("empty.nrrd", &v, &err), CW_ERR_IO, "the file is empty", err);
     assert_fails(read_back("odd.xyz", &v, &err), CW_ERR_FORMAT, "--raw", err);
