@@ -39,12 +39,19 @@ static void scan_row(const double *values, size_t n, cw_statistics *s)
     }
 }
 
+/* Values of integer types are counted in whole steps: a slope such as 2.02 must not round one
+ * into the bin below. */
 static void count_row(const double *values, size_t n, cw_statistics *s)
 {
+    const bool whole = s->quantum > 0;
+    const double steps = whole ? rint((s->max - s->min) / s->quantum) + 1 : 0;
+    const double unit = whole ? s->quantum : s->bin_width;
+    const double bins = (double)s->bin_count;
     for (size_t i = 0; i < n; i++)
         if (isfinite(values[i])) {
-            const double bin = (values[i] - s->min) / s->bin_width;
-            s->bins[bin < (double)s->bin_count ? (size_t)bin : s->bin_count - 1]++;
+            double bin = (values[i] - s->min) / unit;
+            bin = whole ? rint(bin) * bins / steps : bin;
+            s->bins[bin < bins ? (size_t)bin : s->bin_count - 1]++;
         }
 }
 

@@ -250,6 +250,30 @@ static void integers_get_no_more_bins_than_values(void **state)
     cw_statistics_free(&s);
 }
 
+/* Each of 30,000 values has a bin, and is in it, though the slope is no number of binary
+ * digits. */
+static void scaled_integers_fall_into_their_own_bins(void **state)
+{
+    (void)state;
+    enum { VALUES = 30000 };
+    static int16_t voxels[VALUES];
+    for (int n = 0; n < VALUES; n++)
+        voxels[n] = (int16_t)n;
+    const cw_volume v = {
+        .data = voxels, .type = CW_I16, .dim = {VALUES, 1, 1}, .slope = 2.0222414};
+    cw_statistics s;
+    cw_error err = {0};
+    assert_ok(cw_volume_statistics(&v, 65536, 0, &s, &err), err);
+    assert_int_equal(s.bin_count, VALUES);
+    for (int b = 0; b < VALUES; b++)
+        assert_int_equal(s.bins[b], 1);
+    cw_statistics_free(&s);
+    assert_ok(cw_volume_statistics(&v, 1000, 0, &s, &err), err);
+    for (int b = 0; b < 1000; b++)
+        assert_int_equal(s.bins[b], VALUES / 1000);
+    cw_statistics_free(&s);
+}
+
 /* Four flat classes: any level between two of them is as good, and none is a sample's value. */
 static void otsu_parts_classes(void **state)
 {
@@ -351,6 +375,7 @@ int main(void)
         cmocka_unit_test(statistics_tell_values_from_the_rest),
         cmocka_unit_test(integers_get_no_more_bins_than_values),
         cmocka_unit_test(otsu_parts_classes),
+        cmocka_unit_test(scaled_integers_fall_into_their_own_bins),
         cmocka_unit_test(statistics_do_not_depend_on_threads),
         cmocka_unit_test(fields_are_the_same_bytes_for_any_number_of_threads),
         cmocka_unit_test(integer_fields_keep_their_level),
