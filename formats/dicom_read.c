@@ -19,7 +19,7 @@ static cw_status series_of_file(const cwi_input *in, cwi_planes *planes, char se
 {
     const void *shared;
     cwi_dicom_facts f;
-    cw_status st = cwi_planes_facts(planes, in->fd, in->size, &shared, err);
+    cw_status st = cwi_dicom_facts_of(planes, in->fd, in->size, &shared, err);
     if (st != CW_OK)
         return st;
     memcpy(&f, shared, sizeof f);

@@ -2,6 +2,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "formats/dicom_depth.h"
 #include "formats/readers.h"
 
 #include <math.h>
@@ -137,6 +138,13 @@ static cw_status is_dicom(int fd, bool *yes, cw_error *err)
     return st;
 }
 
+cw_status cwi_dicom_facts_of(cwi_planes *planes, int fd, uint64_t size, const void **shared,
+                             cw_error *err)
+{
+    cw_status st = cwi_dicom_check_depth(fd, size, err);
+    return st == CW_OK ? cwi_planes_facts(planes, fd, size, shared, err) : st;
+}
+
 static cw_status take_file(cwi_dicom_scan *scan, const char *name, int fd, uint64_t size,
                            const char *only, cwi_planes *planes, cw_error *err)
 {
@@ -148,7 +156,7 @@ static cw_status take_file(cwi_dicom_scan *scan, const char *name, int fd, uint6
         scan->strangers += !dicom;
         return st;
     }
-    st = cwi_planes_facts(planes, fd, size, &shared, err);
+    st = cwi_dicom_facts_of(planes, fd, size, &shared, err);
     if (st != CW_OK)
         return st;
     memcpy(&f, shared, sizeof f);
@@ -206,17 +214,24 @@ static int compare_planes(const void *x, const void *y)
     return order ? order : compare_numbers(a->number, b->number);
 }
 
-/* An image of the same identity is the same file under another name. */
+/* An image of the same identity, at the same place, is the same under another file's name. */
+static bool is_copy(const cwi_dicom_plane *a, const cwi_dicom_plane *b)
+{
+    const cwi_dicom_facts *f = a->file, *g = b->file;
+    return a->index != b->index && a->number == b->number && f->instance[0] &&
+           strcmp(f->instance, g->instance) == 0 && f->columns == g->columns &&
+           f->rows == g->rows &&
+           memcmp(a->frame.position, b->frame.position, sizeof a->frame.position) == 0;
+}
+
 static void drop_copies(cwi_dicom_scan *scan)
 {
     size_t kept = 0;
     for (size_t i = 0; i < scan->plane_count; i++) {
-        const cwi_dicom_plane *p = &scan->planes[i], *last = &scan->planes[kept ? kept - 1 : 0];
-        if (kept && p->index != last->index && p->number == last->number &&
-            p->file->instance[0] && strcmp(p->file->instance, last->file->instance) == 0)
+        if (kept && is_copy(&scan->planes[i], &scan->planes[kept - 1]))
             scan->copies++;
         else
-            scan->planes[kept++] = *p;
+            scan->planes[kept++] = scan->planes[i];
     }
     scan->plane_count = kept;
 }

@@ -35,6 +35,10 @@ typedef struct cwi_dicom_scan {
     size_t copies;    /* ... and that are there more than once */
 } cwi_dicom_scan;
 
+/* Has DCMTK read a file that was found to be fit for it. */
+cw_status cwi_dicom_facts_of(cwi_planes *planes, int fd, uint64_t size, const void **shared,
+                             cw_error *err);
+
 /* Takes the facts of the files among names that are DICOM images, and sorts them into series.
  * only  NULL, or the UID of the one series that is wanted
  * Returns  CW_ERR_FORMAT for a file that is damaged, or whose facts contradict each other */

@@ -1,0 +1,15 @@
+/* How deep the sequences of a DICOM file nest, found out without following them on the stack.
+ */
+#ifndef FORMATS_DICOM_DEPTH_H
+#define FORMATS_DICOM_DEPTH_H
+
+#include <cubewright/core.h>
+
+enum { CWI_DICOM_DEEPEST = 64 };
+
+/* Walks over the elements of a file, for DCMTK follows sequences by recursion. What is damaged,
+ * or deflated as a whole, is left to DCMTK.
+ * Returns CW_ERR_FORMAT for sequences nested deeper than CWI_DICOM_DEEPEST; CW_ERR_IO */
+cw_status cwi_dicom_check_depth(int fd, uint64_t size, cw_error *err);
+
+#endif

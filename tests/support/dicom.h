@@ -1,0 +1,68 @@
+/* DICOM files put together byte by byte, for the tests of its reader. */
+#ifndef TESTS_DICOM_H
+#define TESTS_DICOM_H
+
+#include <cubewright/volume.h>
+
+typedef enum test_dicom_syntax {
+    TEST_DICOM_EXPLICIT,
+    TEST_DICOM_IMPLICIT,
+    TEST_DICOM_BIG_ENDIAN,
+    TEST_DICOM_RLE
+} test_dicom_syntax;
+
+/* Bytes that grow. Zero is empty; free with test_dicom_free(). */
+typedef struct test_dicom {
+    unsigned char *bytes;
+    size_t size, room;
+    test_dicom_syntax syntax;
+} test_dicom;
+
+/* Begins a file: preamble and meta header. */
+void test_dicom_begin(test_dicom *d, test_dicom_syntax syntax);
+void test_dicom_free(test_dicom *d);
+
+/* One element: text (or backslash-parted numbers), 16-bit numbers, bytes as they are. Elements
+ * must come in the order of their tags. */
+void test_dicom_text(test_dicom *d, uint32_t tag, const char *vr, const char *text);
+void test_dicom_u16(test_dicom *d, uint32_t tag, unsigned value);
+void test_dicom_bytes(test_dicom *d, uint32_t tag, const char *vr, const void *bytes,
+                      size_t size);
+
+/* Sequences and their items, of undefined length. */
+void test_dicom_open_sequence(test_dicom *d, uint32_t tag);
+void test_dicom_open_item(test_dicom *d);
+void test_dicom_close_item(test_dicom *d);
+void test_dicom_close_sequence(test_dicom *d);
+
+/* Pixels in fragments: opens the element, then one fragment after another. */
+void test_dicom_open_fragments(test_dicom *d);
+void test_dicom_fragment(test_dicom *d, const void *bytes, size_t size);
+
+/* An image as scanners write them; zero fields are the defaults named beside them, NULL texts
+ * leave an element out where it says so. */
+typedef struct test_image {
+    test_dicom_syntax syntax;
+    const char *series;     /* UID; "1.2.3" */
+    const char *identity;   /* SOPInstanceUID; made of series and instance */
+    int number, instance;   /* SeriesNumber, InstanceNumber */
+    unsigned columns, rows; /* 4, 3 */
+    unsigned bits, stored;  /* 16, bits */
+    bool is_signed;
+    unsigned samples; /* 1; 3 for RGB */
+    bool by_plane;
+    const char *position;          /* "0\\0\\0"; "" leaves it out */
+    const char *orientation;       /* "1\\0\\0\\0\\1\\0"; "" leaves it out */
+    const char *spacing;           /* between rows, between columns: "1\\1"; "" leaves it out */
+    const char *slope, *intercept; /* NULL: left out */
+    const char *padding, *padding_limit;
+    const char *trigger; /* TriggerTime, NULL: left out */
+    const void *pixels;  /* columns x rows x samples; NULL: counting from 0 */
+    size_t pixel_bytes;  /* 0: as many as the sizes ask for */
+} test_image;
+
+/* Makes such a file in memory, or under a name in the test's folder. */
+void test_image_make(const test_image *image, test_dicom *d);
+void test_image_write(const test_image *image, const char *name);
+
+#endif
