@@ -57,10 +57,17 @@ typedef struct cwi_dicom_facts {
     double padding[2];
 } cwi_dicom_facts; /* frame_count frames follow */
 
-/* JPEG 2000: the pixels of a codestream, interleaved, as numbers of the facts' type.
- * Returns CW_ERR_FORMAT, CW_ERR_NO_MEMORY. */
-cw_status cwi_dicom_jpeg2000(const void *stream, size_t size, uint32_t columns, uint32_t rows,
-                             uint32_t samples, cw_type type, void *pixels, cw_error *err);
+/* What an image within DICOM must be. */
+typedef struct cwi_dicom_image {
+    uint32_t columns, rows, samples;
+    cw_type type;
+} cwi_dicom_image;
+
+/* JPEG 2000: the pixels of one image, interleaved, as numbers of the type.
+ * Returns CW_ERR_FORMAT for one that is damaged or not of that size, CW_ERR_UNSUPPORTED,
+ * CW_ERR_NO_MEMORY. */
+cw_status cwi_dicom_jpeg2000(const void *data, size_t size, const cwi_dicom_image *image,
+                             void *pixels, cw_error *err);
 
 extern CW_API const cwi_plane_functions cwi_module_dicom;
 

@@ -396,15 +396,29 @@ cw_status work(void *state, int fd, const void *request, void *shared, cw_error 
     });
 }
 
-// What DCMTK reads once: its dictionary, from a file. What it would log, names what it reads.
+// What DCMTK does once in a process. It reads its dictionary from a file, and would log what it
+// reads.
+struct Library {
+    Library()
+    {
+        OFLog::configure(OFLogger::OFF_LOG_LEVEL);
+        DcmRLEDecoderRegistration::registerCodecs();
+        DJDecoderRegistration::registerCodecs();
+        DJLSDecoderRegistration::registerCodecs();
+        dcmDataDict.rdlock();
+        dcmDataDict.rdunlock();
+    }
+    ~Library()
+    {
+        DJLSDecoderRegistration::cleanup();
+        DJDecoderRegistration::cleanup();
+        DcmRLEDecoderRegistration::cleanup();
+    }
+};
+
 void prepare(void *)
 {
-    OFLog::configure(OFLogger::OFF_LOG_LEVEL);
-    DcmRLEDecoderRegistration::registerCodecs();
-    DJDecoderRegistration::registerCodecs();
-    DJLSDecoderRegistration::registerCodecs();
-    dcmDataDict.rdlock();
-    dcmDataDict.rdunlock();
+    static const Library library;
 }
 
 void *state_new()

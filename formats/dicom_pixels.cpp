@@ -4,6 +4,8 @@
 #include "formats/dicom_file.hpp"
 
 #include <cstring>
+#include <dcmtk/dcmdata/dcpixseq.h>
+#include <dcmtk/dcmdata/dcpxitem.h>
 
 using namespace cw;
 
@@ -81,6 +83,49 @@ cw_status read_bits(DicomFile &d, uint32_t frame, cw_error *err)
     return CW_OK;
 }
 
+DcmPixelData *pixel_data(DicomFile &d)
+{
+    DcmElement *element = nullptr;
+    d.data()->findAndGetElement(DCM_PixelData, element);
+    return dynamic_cast<DcmPixelData *>(element);
+}
+
+// Adds a fragment of compressed pixels; false where there is none of that number.
+bool add_fragment(DcmPixelSequence *fragments, unsigned long number,
+                  std::vector<unsigned char> &bytes)
+{
+    DcmPixelItem *item = nullptr;
+    Uint8 *data = nullptr;
+    if (fragments->getItem(item, number).bad() || item->getUint8Array(data).bad() || !data)
+        return false;
+    bytes.insert(bytes.end(), data, data + item->getLength());
+    return true;
+}
+
+// A frame has a fragment of its own, or the only frame has all. The first is a table of
+// offsets.
+cw_status read_jpeg2000(DicomFile &d, uint32_t frame, cw_error *err)
+{
+    const PixelLayout &l = d.layout;
+    DcmPixelSequence *fragments = nullptr;
+    DcmPixelData *data = pixel_data(d);
+    if (!data ||
+        data->getEncapsulatedRepresentation(d.data()->getOriginalXfer(), nullptr, fragments)
+            .bad())
+        return fail_short(frame, err);
+    const unsigned long count = fragments->card();
+    const bool whole = l.frames == 1;
+    if (count < 2 || (!whole && count != l.frames + 1ul))
+        return fail_frame(frame, "frames of JPEG 2000 must have one fragment each", err);
+    std::vector<unsigned char> bytes;
+    for (unsigned long n = whole ? 1 : frame + 1ul; n < (whole ? count : frame + 2ul); n++)
+        if (!add_fragment(fragments, n, bytes))
+            return fail_short(frame, err);
+    const cwi_dicom_image image = {l.columns, l.rows, l.samples, l.type};
+    d.pixels.resize(l.count() * cw_type_size(l.type));
+    return cwi_dicom_jpeg2000(bytes.data(), bytes.size(), &image, d.pixels.data(), err);
+}
+
 // Floats are no "pixel data" to DCMTK.
 cw_status read_reals(DicomFile &d, uint32_t frame, cw_error *err)
 {
@@ -100,9 +145,7 @@ cw_status read_reals(DicomFile &d, uint32_t frame, cw_error *err)
 cw_status read_integers(DicomFile &d, uint32_t frame, cw_error *err)
 {
     const PixelLayout &l = d.layout;
-    DcmElement *element = nullptr;
-    d.data()->findAndGetElement(DCM_PixelData, element);
-    DcmPixelData *data = dynamic_cast<DcmPixelData *>(element);
+    DcmPixelData *data = pixel_data(d);
     OFString colours;
     Uint32 fragment = 0, bytes = 0;
     if (!data)
@@ -118,16 +161,23 @@ cw_status read_integers(DicomFile &d, uint32_t frame, cw_error *err)
     return done.good() ? CW_OK : fail_frame(frame, done.text(), err);
 }
 
+bool is_jpeg2000(E_TransferSyntax syntax)
+{
+    return syntax == EXS_JPEG2000LosslessOnly || syntax == EXS_JPEG2000;
+}
+
 } // namespace
 
 cw_status cw::decode_frame(DicomFile &d, uint32_t frame, cw_error *err)
 {
     const PixelLayout &l = d.layout;
     const bool real = l.type == CW_F32 || l.type == CW_F64;
-    const bool compressed = DcmXfer(d.data()->getOriginalXfer()).isEncapsulated();
+    const E_TransferSyntax syntax = d.data()->getOriginalXfer();
+    const bool compressed = DcmXfer(syntax).isEncapsulated();
     d.decoded = -1;
     cw_status st = real                              ? read_reals(d, frame, err)
                    : l.allocated == 1 && !compressed ? read_bits(d, frame, err)
+                   : is_jpeg2000(syntax)             ? read_jpeg2000(d, frame, err)
                                                      : read_integers(d, frame, err);
     if (st != CW_OK)
         return st;

@@ -13,23 +13,21 @@ static cw_status open_library(cwi_planes *planes, const cw_read_desc *desc, cw_e
     return cwi_planes_open(planes, "dicom", "CUBEWRIGHT_DICOM", "libdcmtk-dev", desc, err);
 }
 
-/* The series of a file, told by the file alone. */
-static cw_status series_of_file(const cwi_input *in, cwi_planes *planes, char series[72],
-                                cw_error *err)
+/* The facts of the one file that was named. */
+static cw_status facts_of_file(const cwi_input *in, cwi_planes *planes, cwi_dicom_facts *f,
+                               cw_error *err)
 {
     const void *shared;
-    cwi_dicom_facts f;
     cw_status st = cwi_dicom_facts_of(planes, in->fd, in->size, &shared, err);
     if (st != CW_OK)
         return st;
-    memcpy(&f, shared, sizeof f);
-    f.series[sizeof f.series - 1] = f.refusal[sizeof f.refusal - 1] = '\0';
-    if (f.refusal[0])
-        return cw_fail(err, CW_ERR_FORMAT, "%s", f.refusal);
-    if (f.kind == CWI_DICOM_NO_IMAGE)
+    memcpy(f, shared, sizeof *f);
+    f->series[sizeof f->series - 1] = f->refusal[sizeof f->refusal - 1] = '\0';
+    if (f->refusal[0])
+        return cw_fail(err, CW_ERR_FORMAT, "%s", f->refusal);
+    if (f->kind == CWI_DICOM_NO_IMAGE)
         return cw_fail(err, CW_ERR_FORMAT,
                        "DICOM without an image; to read a series, name its folder");
-    memcpy(series, f.series, sizeof f.series);
     return CW_OK;
 }
 
@@ -37,15 +35,15 @@ static cw_status series_of_file(const cwi_input *in, cwi_planes *planes, char se
 static cw_status scan(const cwi_input *in, cwi_names *names, cwi_planes *planes,
                       cwi_dicom_scan *found, cw_error *err)
 {
-    char series[72];
+    cwi_dicom_facts facts;
     cwi_names beside = {0};
     if (names)
         return cwi_dicom_scan_files(found, in, names, NULL, planes, err);
-    cw_status st = series_of_file(in, planes, series, err);
+    cw_status st = facts_of_file(in, planes, &facts, err);
     if (st == CW_OK)
         st = cwi_files_beside(in, &beside, err);
     if (st == CW_OK)
-        st = cwi_dicom_scan_files(found, in, &beside, series, planes, err);
+        st = cwi_dicom_scan_files(found, in, &beside, &facts, planes, err);
     cwi_names_free(&beside);
     return st;
 }

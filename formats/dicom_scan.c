@@ -129,6 +129,13 @@ static void clean_modality(cwi_dicom_facts *f)
         f->modality[0] = '\0';
 }
 
+static bool same_images(const cwi_dicom_facts *f, const cwi_dicom_facts *g)
+{
+    return strcmp(f->series, g->series) == 0 && f->columns == g->columns &&
+           f->rows == g->rows && f->samples == g->samples && f->type == g->type &&
+           f->kind == g->kind;
+}
+
 static cw_status is_dicom(int fd, bool *yes, cw_error *err)
 {
     unsigned char head[CWI_SNIFF_BYTES];
@@ -146,7 +153,7 @@ cw_status cwi_dicom_facts_of(cwi_planes *planes, int fd, uint64_t size, const vo
 }
 
 static cw_status take_file(cwi_dicom_scan *scan, const char *name, int fd, uint64_t size,
-                           const char *only, cwi_planes *planes, cw_error *err)
+                           const cwi_dicom_facts *only, cwi_planes *planes, cw_error *err)
 {
     const void *shared;
     cwi_dicom_facts f;
@@ -163,7 +170,7 @@ static cw_status take_file(cwi_dicom_scan *scan, const char *name, int fd, uint6
     st = check_facts(&f, size, err);
     if (f.kind == CWI_DICOM_NO_IMAGE)
         scan->strangers++;
-    if (f.kind == CWI_DICOM_NO_IMAGE || (only && strcmp(only, f.series) != 0))
+    if (f.kind == CWI_DICOM_NO_IMAGE || (only && !same_images(only, &f)))
         return CW_OK; /* whatever is wrong with it */
     clean_modality(&f);
     if (st == CW_OK)
@@ -176,9 +183,7 @@ static cw_status take_file(cwi_dicom_scan *scan, const char *name, int fd, uint6
 
 static bool alike(const cwi_dicom_plane *a, const cwi_dicom_plane *b)
 {
-    const cwi_dicom_facts *f = a->file, *g = b->file;
-    if (strcmp(f->series, g->series) != 0 || f->columns != g->columns || f->rows != g->rows ||
-        f->samples != g->samples || f->type != g->type || f->kind != g->kind ||
+    if (!same_images(a->file, b->file) ||
         (a->frame.has & CWI_DICOM_ORIENTATION) != (b->frame.has & CWI_DICOM_ORIENTATION))
         return false;
     for (int i = 0; i < 6; i++)
@@ -278,7 +283,7 @@ static cw_status sort_into_series(cwi_dicom_scan *scan, cw_error *err)
 }
 
 cw_status cwi_dicom_scan_files(cwi_dicom_scan *scan, const cwi_input *in, cwi_names *names,
-                               const char *only, cwi_planes *planes, cw_error *err)
+                               const cwi_dicom_facts *only, cwi_planes *planes, cw_error *err)
 {
     cw_status st = CW_OK;
     scan->facts = cwi_alloc_zeroed(names->count, sizeof(cwi_dicom_facts *));

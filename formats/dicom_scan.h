@@ -40,10 +40,10 @@ cw_status cwi_dicom_facts_of(cwi_planes *planes, int fd, uint64_t size, const vo
                              cw_error *err);
 
 /* Takes the facts of the files among names that are DICOM images, and sorts them into series.
- * only  NULL, or the UID of the one series that is wanted
+ * only  NULL, or the facts of one file: its series, and images like it, are what is wanted
  * Returns  CW_ERR_FORMAT for a file that is damaged, or whose facts contradict each other */
 cw_status cwi_dicom_scan_files(cwi_dicom_scan *scan, const cwi_input *in, cwi_names *names,
-                               const char *only, cwi_planes *planes, cw_error *err);
+                               const cwi_dicom_facts *only, cwi_planes *planes, cw_error *err);
 void cwi_dicom_scan_free(cwi_dicom_scan *scan);
 
 /* Finds a series by its label or UID; without a name the only one.
