@@ -53,6 +53,7 @@ typedef struct cwi_dicom_facts {
     uint32_t columns, rows, samples, frame_count;
     cw_type type;         /* of the pixels that are given out */
     uint64_t pixel_bytes; /* of pixels as they are stored; 0: compressed */
+    bool deflated;        /* the file as a whole */
     bool has_padding;
     double padding[2];
 } cwi_dicom_facts; /* frame_count frames follow */

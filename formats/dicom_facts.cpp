@@ -352,6 +352,7 @@ cw_status take_facts(DicomFile &d, cwi_dicom_facts *f, size_t room, cw_error *er
     f->samples = l.samples;
     f->type = l.type;
     f->pixel_bytes = is_compressed(d) ? 0 : s.element->getLengthField();
+    f->deflated = d.data()->getOriginalXfer() == EXS_DeflatedLittleEndianExplicit;
     refuse(f, s.why_not);
     refuse(f, check_sizes(l));
     refuse(f, why_unreadable(d));

@@ -11,7 +11,7 @@
 #include <string.h>
 #include <unistd.h>
 
-enum { MOST_COMPRESSION = 65536 };
+enum { MOST_COMPRESSION = 65536, MOST_DEFLATION = 1032 };
 
 bool cwi_dicom_sniff(const unsigned char *head, size_t size)
 {
@@ -53,8 +53,8 @@ static cw_status check_claim(const cwi_dicom_facts *f, uint64_t file_bytes, cw_e
     const uint64_t have = f->pixel_bytes ? f->pixel_bytes : file_bytes;
     const uint64_t most = f->pixel_bytes ? have : have * MOST_COMPRESSION;
     uint64_t wanted;
-    if (have <= file_bytes && !__builtin_mul_overflow(frame, f->frame_count, &wanted) &&
-        (wanted + 7) / 8 <= most)
+    if (have / (f->deflated ? MOST_DEFLATION : 1) <= file_bytes &&
+        !__builtin_mul_overflow(frame, f->frame_count, &wanted) && (wanted + 7) / 8 <= most)
         return CW_OK;
     return cw_fail(err, CW_ERR_FORMAT,
                    "'Rows', 'Columns' and 'NumberOfFrames' ask for %u frames of %llu bytes; "
