@@ -37,6 +37,7 @@ typedef struct level {
 
 typedef struct facts {
     cli_volume volume;
+    cw_series series;    /* of a DICOM image; else no images */
     cw_statistics range; /* and the bins asked for */
     level levels[MAX_LEVELS + 1];
     int level_count;
@@ -122,6 +123,9 @@ static void print_geometry(const facts *f)
            from[0], from[1], from[2], to[0], to[1], to[2]);
     if (v->slope != 1 || v->intercept != 0)
         printf("  scaling  value = %.10g * voxel + %.10g\n", v->slope, v->intercept);
+    if (f->series.images)
+        printf("  series   %s %s, %zu images, tilt %.3g degrees\n", f->series.label,
+               f->series.modality, f->series.images, f->series.tilt_degrees);
     for (size_t n = 0; n < f->volume.note_count; n++)
         printf("  note     %s\n", f->volume.notes[n]);
 }
@@ -152,6 +156,26 @@ static void print_levels(const facts *f, bool predicted)
     }
 }
 
+static void json_series(cli_json *j, const cw_series *s)
+{
+    const double dims[3] = {(double)s->shape.dim[0], (double)s->shape.dim[1],
+                            (double)s->shape.dim[2]};
+    double spacing[3];
+    cli_json_text(j, "label", s->label);
+    cli_json_text(j, "modality", s->modality);
+    cli_json_count(j, "images", s->images);
+    cli_json_numbers(j, "dims", dims, 3);
+    cli_json_text(j, "type", cw_type_name(s->shape.type));
+    if (s->status == CW_OK) {
+        cw_volume_spacing(&s->shape, spacing);
+        cli_json_numbers(j, "spacing", spacing, 3);
+        cli_json_count(j, "steps", s->shape.steps);
+        cli_json_number(j, "tilt_degrees", s->tilt_degrees);
+    }
+    cli_json_text(j, "status", cw_status_name(s->status));
+    cli_json_text(j, "finding", s->finding);
+}
+
 static void print_json(const facts *f, bool predicted)
 {
     const cw_statistics *r = &f->range;
@@ -160,6 +184,11 @@ static void print_json(const facts *f, bool predicted)
     cli_json_text(&j, "schema", "cubewright-info-1");
     cli_json_text(&j, "version", cw_version());
     cli_json_input(&j, "input", &f->volume);
+    if (f->series.images) {
+        cli_json_open(&j, "series", '{');
+        json_series(&j, &f->series);
+        cli_json_close(&j, '}');
+    }
     cli_json_numbers(&j, "range", (const double[2]){r->min, r->max}, 2);
     cli_json_count(&j, "finite", r->finite);
     cli_json_count(&j, "not_finite", r->not_finite);
@@ -224,40 +253,36 @@ static void print_series_json(const char *path, const cw_series *series, size_t 
     cli_json_text(&j, "path", cli_shown_path(path));
     cli_json_open(&j, "series", '[');
     for (size_t n = 0; n < count; n++) {
-        const cw_series *s = &series[n];
-        const double dims[3] = {(double)s->shape.dim[0], (double)s->shape.dim[1],
-                                (double)s->shape.dim[2]};
-        double spacing[3] = {0};
         cli_json_open(&j, NULL, '{');
-        cli_json_text(&j, "label", s->label);
-        cli_json_text(&j, "modality", s->modality);
-        cli_json_count(&j, "images", s->images);
-        cli_json_numbers(&j, "dims", dims, 3);
-        cli_json_text(&j, "type", cw_type_name(s->shape.type));
-        if (s->status == CW_OK) {
-            cw_volume_spacing(&s->shape, spacing);
-            cli_json_numbers(&j, "spacing", spacing, 3);
-            cli_json_count(&j, "steps", s->shape.steps);
-            cli_json_number(&j, "tilt_degrees", s->tilt_degrees);
-        }
-        cli_json_text(&j, "status", cw_status_name(s->status));
-        cli_json_text(&j, "finding", s->finding);
+        json_series(&j, &series[n]);
         cli_json_close(&j, '}');
     }
     cli_json_close(&j, ']');
     cli_json_close(&j, '}');
 }
 
+static bool is_named(const cw_series *s, const char *name)
+{
+    return name && strcmp(s->label, name) == 0;
+}
+
 /* Several series, or one that cannot be read as it is, are listed and nothing more. */
-static cw_status list_series(const info_args *args, bool *listed, cw_error *err)
+static cw_status list_series(const info_args *args, facts *f, bool *listed, cw_error *err)
 {
     const char *path = args->common.inputs[0];
     const cw_read_desc desc = cli_read_desc(&args->input);
     cw_series *series;
     size_t count;
-    if (args->input.series || args->input.raw)
+    if (args->input.raw)
         return CW_OK;
     cw_status st = cw_series_list(path, &desc, &series, &count, err);
+    for (size_t n = 0; n < count; n++)
+        if (count == 1 || is_named(&series[n], args->input.series))
+            f->series = series[n];
+    if (args->input.series) {
+        cw_series_free(series);
+        return st;
+    }
     *listed = count > 1 || (count == 1 && series[0].status != CW_OK);
     if (*listed && args->json)
         print_series_json(path, series, count);
@@ -275,7 +300,7 @@ static cw_status run(void *p, cw_error *err)
     cli_common silent = args->common;
     silent.quiet = true; /* the found line is part of the result here */
     cli_console_start(&silent, CLI_PROGRESS_AUTO);
-    cw_status st = list_series(args, &listed, err);
+    cw_status st = list_series(args, &f, &listed, err);
     if (st != CW_OK || listed)
         return st;
     st = find_facts(args, &f, err);

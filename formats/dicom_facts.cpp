@@ -288,7 +288,8 @@ cw_status open_dicom(DicomFile &d, int fd, uint64_t size, cw_error *err)
     const OFCondition read = d.file->read(*d.stream, EXS_Unknown, EGL_noChange, 1 << 16);
     d.file->transferEnd();
     if (read.bad())
-        return cw_fail(err, CW_ERR_FORMAT, "its elements cannot be read: %s", read.text());
+        return cw_fail(err, CW_ERR_FORMAT, "its elements are damaged or cut off: %s",
+                       read.text());
     return CW_OK;
 }
 

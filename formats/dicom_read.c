@@ -51,9 +51,9 @@ static cw_status scan(const cwi_input *in, cwi_names *names, cwi_planes *planes,
 static void note_scan(const cw_read_desc *desc, const cwi_dicom_scan *found)
 {
     if (found->strangers)
-        cwi_note(desc, "%zu files left out: no DICOM images", found->strangers);
+        cwi_note(desc, "left out, as no DICOM images: %zu of its files", found->strangers);
     if (found->copies)
-        cwi_note(desc, "%zu images left out: copies of others", found->copies);
+        cwi_note(desc, "left out, as copies of others: %zu images", found->copies);
 }
 
 cw_status cwi_dicom_read(const cwi_input *in, cwi_names *names, const cw_read_desc *desc,

@@ -119,7 +119,7 @@ static cw_status open_names(opened *o, const char *path, const cw_read_desc *des
         return cw_fail(err, CW_ERR_IO, "the folder holds no file%s",
                        links ? ", only links, and external files are not allowed" : "");
     if (st == CW_OK && links)
-        cwi_note(desc, "%zu links left out: external files are not allowed", links);
+        cwi_note(desc, "left out, as external files are not allowed: %zu links", links);
     return st;
 }
 
