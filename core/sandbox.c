@@ -189,8 +189,6 @@ _Noreturn static void live(const cwi_sandbox *box, int socket, pid_t parent)
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     prctl(PR_SET_NAME, "cubewright-read");
     bool good = getppid() == parent && drop_files(&socket);
-    if (good && box->desc.prepare)
-        box->desc.prepare(box->desc.state);
     set_limits(&box->desc);
     good = good && prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
            prctl(PR_SET_DUMPABLE, 0) == 0 && lock();
@@ -319,11 +317,8 @@ cw_status cwi_sandbox_open(cwi_sandbox *box, const cwi_sandbox_desc *desc, cw_er
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes to share with %s",
                        desc->shared_bytes, desc->library);
     }
-    if (desc->inside) {
-        if (desc->prepare)
-            desc->prepare(desc->state);
+    if (desc->inside)
         return CW_OK;
-    }
     if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, pair) != 0)
         return fail_start(box, "socketpair", err);
     box->socket = pair[0];

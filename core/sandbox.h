@@ -36,7 +36,6 @@ enum { CWI_SANDBOX_REQUEST = 64 };
 typedef struct cwi_sandbox_desc {
     const char *library; /* for messages: "DCMTK" */
     cwi_sandbox_work work;
-    void (*prepare)(void *state); /* in the child, while it may still open files; may be NULL */
     void *state;
     size_t shared_bytes; /* of the memory that both sides see */
     uint64_t memory;     /* bytes that the child may take besides; 0: 2 GiB */

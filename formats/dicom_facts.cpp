@@ -418,7 +418,7 @@ struct Library {
     }
 };
 
-void prepare(void *)
+void prepare()
 {
     static const Library library;
 }

@@ -14,12 +14,12 @@ cw_status cwi_planes_open(cwi_planes *planes, const char *module, const char *op
     if (st != CW_OK)
         return st;
     planes->functions = functions;
+    planes->functions->prepare(); /* here, so that every child finds it done */
     planes->state = planes->functions->state_new();
     if (!planes->state)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %s", planes->functions->library);
     const cwi_sandbox_desc box = {.library = planes->functions->library,
                                   .work = planes->functions->work,
-                                  .prepare = planes->functions->prepare,
                                   .state = planes->state,
                                   .shared_bytes = CWI_PLANES_SHARED,
                                   .memory = desc->max_bytes,

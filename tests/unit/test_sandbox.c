@@ -45,7 +45,7 @@ typedef struct result {
 } result;
 
 typedef struct memory_of_child {
-    int prepared, calls;
+    int base, calls;
 } memory_of_child;
 
 static void crash(void)
@@ -88,7 +88,7 @@ static cw_status work(void *state, int fd, const void *asked, void *shared, cw_e
     m->calls++;
     switch (q->deed) {
     case ADD:
-        r->number = q->number + m->prepared + m->calls;
+        r->number = q->number + m->base + m->calls;
         break;
     case READ:
         r->number = pread(fd, r->text, sizeof r->text - 1, 2);
@@ -121,22 +121,15 @@ static cw_status work(void *state, int fd, const void *asked, void *shared, cw_e
     return CW_OK;
 }
 
-static void prepare(void *state)
-{
-    memory_of_child *m = state;
-    m->prepared = 100;
-}
-
 static memory_of_child memory;
 
 static cwi_sandbox open_box(bool inside, double timeout_s)
 {
     cwi_sandbox box;
     cw_error err = {0};
-    memory = (memory_of_child){0};
+    memory = (memory_of_child){.base = 100};
     const cwi_sandbox_desc desc = {.library = "libtest",
                                    .work = work,
-                                   .prepare = prepare,
                                    .state = &memory,
                                    .shared_bytes = 4096,
                                    .memory = (uint64_t)256 << 20,
