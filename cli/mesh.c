@@ -32,6 +32,8 @@ cw_status cli_read_mesh(const char *path, const char *reader, const cli_input *i
         .reader = reader,
         .allow_external = input->allow_external,
         .max_bytes = cli_memory_limit(input),
+        .no_sandbox = input->no_sandbox,
+        .timeout_s = (double)input->timeout_s,
     };
     desc.progress = cli_progress(file_bytes(path) / 1e6, "MB");
     *mesh = (cli_mesh){.path = path};

@@ -91,21 +91,17 @@ static cw_status find_chunks(cwi_gltf_reader *r, uint64_t *json, uint64_t *json_
 
 static cw_status parse_json(cwi_gltf_reader *r, uint64_t at, uint64_t size, cw_error *err)
 {
-    const cwi_gltf_functions *functions;
     size_t got;
     if (size > UINT32_MAX)
         return cw_fail(err, CW_ERR_LIMIT, "the JSON has more than 4 GiB");
-    cw_status st = cwi_gltf_functions_load(&functions, err);
-    if (st != CW_OK)
-        return st;
     char *json = cwi_alloc_array((size_t)size + 1, 1);
     if (!json)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the JSON");
-    st = cwi_input_read_at(r->in->file.fd, at, json, (size_t)size, &got, err);
+    cw_status st = cwi_input_read_at(r->in->file.fd, at, json, (size_t)size, &got, err);
     if (st == CW_OK)
         st = cwi_gltf_blind(json, got, err);
     if (st == CW_OK)
-        st = functions->parse(json, got, &r->scene, err);
+        st = cwi_gltf_parse(json, got, &r->in->desc, &r->scene, err);
     cwi_free(json);
     return st;
 }

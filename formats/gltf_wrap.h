@@ -21,6 +21,11 @@ typedef struct cwi_gltf_functions {
     cw_status (*parse)(const char *json, size_t size, cwi_gltf_scene *scene, cw_error *err);
 } cwi_gltf_functions;
 
+/* As parse(), of the module, in a process of its own unless desc->no_sandbox.
+ * Returns CW_ERR_UNSUPPORTED without the module; CW_ERR_BACKEND when that process died. */
+cw_status cwi_gltf_parse(const char *json, size_t size, const cw_mesh_read_desc *desc,
+                         cwi_gltf_scene *scene, cw_error *err);
+
 /* Loads the module. CW_ERR_UNSUPPORTED: not in this build. */
 cw_status cwi_gltf_functions_load(const cwi_gltf_functions **functions, cw_error *err);
 

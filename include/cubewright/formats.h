@@ -118,6 +118,8 @@ typedef struct cw_mesh_read_desc {
     bool allow_external;    /* buffers outside the .gltf file's folder; default: refused */
     uint64_t max_triangles; /* default 2^32 - 1 */
     uint64_t max_bytes;     /* of the arrays that a mesh takes while read; default: no limit */
+    bool no_sandbox;        /* run libraries in this process, not in one without rights */
+    double timeout_s;       /* for a library; default 60 */
     cw_progress progress;   /* default: none */
 } cw_mesh_read_desc;
 
@@ -157,6 +159,7 @@ typedef struct cw_mesh_file {
  *          CW_ERR_UNSAFE       a .gltf file names a buffer outside its own folder
  *          CW_ERR_UNSUPPORTED  glTF is not in this build, or the file needs an extension of
  *                              it that is not read
+ *          CW_ERR_BACKEND      a library died of the file, or took too long
  *          CW_ERR_LIMIT        more triangles, vertices or bytes than allowed; glTF that draws
  *                              its meshes so often that 2^26 triangles and the bytes of its
  *                              files are exceeded, unless max_triangles is stated

@@ -37,7 +37,8 @@ static inline int fuzz_mesh(const char *reader, const uint8_t *bytes, size_t siz
     cw_mesh mesh;
     cw_mesh_file file;
     cw_error err;
-    const cw_mesh_read_desc desc = {.reader = reader, .max_bytes = (uint64_t)64 << 20};
+    const cw_mesh_read_desc desc = {
+        .reader = reader, .max_bytes = (uint64_t)64 << 20, .no_sandbox = true};
     const int fd = memfd_create("fuzz", MFD_CLOEXEC);
     if (fd < 0 || write(fd, bytes, size) != (ssize_t)size)
         return 0;
