@@ -7,7 +7,8 @@
 
 #include <string.h>
 
-enum { BUFFER_BYTES = 1 << 16, DRAIN_BYTES = 1 << 16 };
+/* What inflates may take some bytes ahead, and give them back when the data are over. */
+enum { BUFFER_BYTES = 1 << 16, DRAIN_BYTES = 1 << 16, AHEAD_BYTES = 8 };
 
 static voidpf zlib_alloc(voidpf unused, uInt items, uInt size)
 {
@@ -102,12 +103,15 @@ static cw_status fetch(cwi_stream *s, void *to, size_t size, size_t *got, cw_err
     return s->text ? fetch_base64(s, to, size, got, err) : fetch_plain(s, to, size, got, err);
 }
 
-/* Puts more of the file behind what is still to be inflated. */
+/* Puts more of the file behind what is still to be inflated, and behind the bytes before it
+ * that may be given back. */
 static cw_status refill(cwi_stream *s, size_t *got, cw_error *err)
 {
-    memmove(s->buffer, s->z.next_in, s->z.avail_in);
-    s->z.next_in = s->buffer;
-    cw_status st = fetch(s, s->buffer + s->z.avail_in, BUFFER_BYTES - s->z.avail_in, got, err);
+    const size_t used = (size_t)(s->z.next_in - s->buffer);
+    const size_t kept = used < AHEAD_BYTES ? used : AHEAD_BYTES, held = kept + s->z.avail_in;
+    memmove(s->buffer, s->z.next_in - kept, held);
+    s->z.next_in = s->buffer + kept;
+    cw_status st = fetch(s, s->buffer + held, BUFFER_BYTES - held, got, err);
     s->z.avail_in += (uInt)*got;
     return st;
 }
