@@ -116,6 +116,24 @@ static cw_status refill(cwi_stream *s, size_t *got, cw_error *err)
     return st;
 }
 
+/* Behind compressed data that end before their file only zeros may stand, with which tapes and
+ * some tools fill up their blocks. */
+static cw_status check_padding(cwi_stream *s, cw_error *err)
+{
+    size_t got = 1;
+    cw_status st = CW_OK;
+    while (st == CW_OK && got > 0) {
+        for (; s->z.avail_in > 0; s->z.avail_in--, s->z.next_in++)
+            if (*s->z.next_in)
+                return cw_fail(err, CW_ERR_FORMAT,
+                               "byte %llu of the file is behind the end of the compressed data "
+                               "and not zero",
+                               (unsigned long long)(s->offset - s->z.avail_in));
+        st = refill(s, &got, err);
+    }
+    return st;
+}
+
 /* After one gzip member: goes on when the next one follows, else the data are over. */
 static cw_status start_next_member(cwi_stream *s, cw_error *err)
 {
@@ -218,17 +236,18 @@ cw_status cwi_stream_skip(cwi_stream *s, uint64_t size, cw_error *err)
 cw_status cwi_stream_finish(cwi_stream *s, cw_error *err)
 {
     unsigned char waste[4096];
-    size_t got = sizeof waste;
+    size_t got;
     cw_status st = CW_OK;
     if (!s->deflated)
         return CW_OK;
-    for (size_t n = 0; st == CW_OK && !s->ended && n < DRAIN_BYTES; n += got)
+    const uint64_t enough = s->given + (s->given > DRAIN_BYTES ? s->given : DRAIN_BYTES);
+    while (st == CW_OK && !s->ended && s->given < enough)
         st = cwi_stream_some(s, waste, sizeof waste, &got, err);
     if (st == CW_OK && s->truncated)
         return cw_fail(err, CW_ERR_FORMAT,
                        "the compressed data break off after %llu bytes, before their checksum",
                        (unsigned long long)s->given);
-    return st;
+    return st == CW_OK && s->ended ? check_padding(s, err) : st;
 }
 
 cw_status cwi_stream_head(int fd, void *to, size_t size, size_t *got, bool *gzipped,

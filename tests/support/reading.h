@@ -6,6 +6,7 @@
 #include "core/memory.h"
 #include "support/support.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
@@ -73,6 +74,32 @@ static inline void check_every_cut(const char *name)
         assert_null(volume.data);
     }
     test_file_write(test_path(name), bytes, size);
+    free(bytes);
+}
+
+/* Compressed data reach to the end of a file that the header named: zeros behind them change
+ * nothing, anything else is told by its place. */
+static inline void check_tail(const char *header, const char *data)
+{
+    size_t size;
+    char words[40], *bytes = test_file_read(test_path(data), &size);
+    bytes = realloc(bytes, size + 512);
+    assert_non_null(bytes);
+    memset(bytes + size, 0, 512);
+    for (int spoilt = 0; spoilt < 2; spoilt++) {
+        cw_volume volume;
+        cw_error err = {0};
+        bytes[size + 300] = (char)spoilt;
+        snprintf(words, sizeof words, "byte %zu of the file is behind", size + 300);
+        test_file_write(test_path(data), bytes, size + 512);
+        const cw_status st = read_back(header, &volume, &err);
+        if (spoilt)
+            assert_fails(st, CW_ERR_FORMAT, words, err);
+        else
+            assert_ok(st, err);
+        cw_volume_free(&volume);
+    }
+    test_file_write(test_path(data), bytes, size);
     free(bytes);
 }
 

@@ -178,13 +178,14 @@ static void a_zero_in_the_header_is_named(void **state)
     check_told("a.inr", 0, "the header holds a zero byte");
 }
 
-static void a_cut_is_never_a_volume(void **state)
+static void neither_a_cut_nor_a_tail_is_a_volume(void **state)
 {
     (void)state;
     put_file("a.inr", fill(U8), counting, sizeof counting);
     check_every_cut("a.inr");
     gzipped("a.inr.gz");
     check_every_cut("a.inr.gz");
+    check_tail("a.inr.gz", "a.inr.gz");
 }
 
 static void memory_may_run_out_anywhere(void **state)
@@ -205,7 +206,7 @@ int main(void)
         TEST(headers_may_be_long),
         TEST(damaged_headers_are_told_key_by_key),
         TEST(a_zero_in_the_header_is_named),
-        TEST(a_cut_is_never_a_volume),
+        TEST(neither_a_cut_nor_a_tail_is_a_volume),
         TEST(memory_may_run_out_anywhere),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -227,6 +227,19 @@ static void damaged_headers_are_told_key_by_key(void **state)
     }
 }
 
+static void nothing_but_zeros_may_follow_zlib_data(void **state)
+{
+    (void)state;
+    size_t size;
+    unsigned char *packed = pack_bytes(counting, 12, false, &size);
+    put_file("a.mha", U8_3D "CompressedData = True\n" LOCAL, packed, size);
+    check_tail("a.mha", "a.mha");
+    put_file("a.zraw", "", packed, size);
+    put_file("a.mhd", U8_3D "CompressedData = True\nElementDataFile = a.zraw\n", NULL, 0);
+    check_tail("a.mhd", "a.zraw");
+    free(packed);
+}
+
 static void memory_may_run_out_anywhere(void **state)
 {
     (void)state;
@@ -250,6 +263,7 @@ int main(void)
         TEST(every_type_has_its_name),
         TEST(voxels_may_lie_in_files_of_their_own),
         TEST(damaged_headers_are_told_key_by_key),
+        TEST(nothing_but_zeros_may_follow_zlib_data),
         TEST(memory_may_run_out_anywhere),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -292,7 +292,7 @@ static void damaged_headers_are_told_field_by_field(void **state)
     }
 }
 
-static void a_cut_is_never_a_volume(void **state)
+static void neither_a_cut_nor_a_tail_is_a_volume(void **state)
 {
     (void)state;
     map m = make_map(1, 2);
@@ -302,6 +302,7 @@ static void a_cut_is_never_a_volume(void **state)
     check_every_cut("a.mrc");
     put_file("a.map.gz", "", packed, size);
     check_every_cut("a.map.gz");
+    check_tail("a.map.gz", "a.map.gz");
     free(packed);
 }
 
@@ -330,7 +331,7 @@ int main(void)
         TEST(stacks_of_volumes_are_steps),
         TEST(extended_headers_are_left_out),
         TEST(damaged_headers_are_told_field_by_field),
-        TEST(a_cut_is_never_a_volume),
+        TEST(neither_a_cut_nor_a_tail_is_a_volume),
         TEST(memory_may_run_out_anywhere),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -357,6 +357,8 @@ static void broken_gzip_is_an_error(void **state)
     cw_error err = {0};
     size_t size;
     unsigned char *packed = pack_bytes(f.bytes, f.size, true, &size);
+    put_file("a.nii.gz", "", packed, size);
+    check_tail("a.nii.gz", "a.nii.gz");
     put_file("cut.nii.gz", "", packed, size - 1);
     assert_fails(read_back("cut.nii.gz", &v, &err), CW_ERR_FORMAT, "before their checksum",
                  err);

@@ -8,8 +8,9 @@
 /* 2 x 3 x 2 voxels that tell where they stand. */
 static const uint8_t counting[12] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
 
-#define U8    "NRRD0004\ntype: uint8\nencoding: raw\n"
-#define U8_3D U8 "dimension: 3\nsizes: 2 3 2\n"
+#define U8      "NRRD0004\ntype: uint8\nencoding: raw\n"
+#define U8_3D   U8 "dimension: 3\nsizes: 2 3 2\n"
+#define GZIP_3D "NRRD0004\ntype: uint8\nencoding: gzip\ndimension: 3\nsizes: 2 3 2\n"
 
 static void a_plain_header_gives_its_voxels(void **state)
 {
@@ -473,6 +474,19 @@ static void long_headers_are_cut_off(void **state)
     free(long_text);
 }
 
+static void nothing_but_zeros_may_follow_gzip_data(void **state)
+{
+    (void)state;
+    size_t size;
+    unsigned char *packed = pack_bytes(counting, 12, true, &size);
+    put_file("a.nrrd", GZIP_3D "\n", packed, size);
+    check_tail("a.nrrd", "a.nrrd");
+    put_file("a.gz", "", packed, size);
+    put_file("a.nhdr", GZIP_3D "data file: a.gz\n", NULL, 0);
+    check_tail("a.nhdr", "a.gz");
+    free(packed);
+}
+
 static void memory_may_run_out_anywhere(void **state)
 {
     (void)state;
@@ -480,10 +494,7 @@ static void memory_may_run_out_anywhere(void **state)
     unsigned char *packed = pack_bytes(counting, 6, true, &size);
     put_file("one.gz", "", packed, size);
     put_file("two.gz", "", packed, size);
-    put_file("a.nhdr",
-             "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 3 2\nencoding: gzip\n"
-             "data file: LIST\none.gz\ntwo.gz\n",
-             NULL, 0);
+    put_file("a.nhdr", GZIP_3D "data file: LIST\none.gz\ntwo.gz\n", NULL, 0);
     check_starved_reads("a.nhdr");
     free(packed);
 }
@@ -508,6 +519,7 @@ int main(void)
         TEST(the_header_alone_is_checked_but_holds_no_voxels),
         TEST(a_reader_can_be_interrupted),
         TEST(long_headers_are_cut_off),
+        TEST(nothing_but_zeros_may_follow_gzip_data),
         TEST(memory_may_run_out_anywhere),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
