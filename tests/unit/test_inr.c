@@ -1,4 +1,5 @@
 #include "support/reading.h"
+#include "support/regions.h"
 
 #include <stdio.h>
 
@@ -109,6 +110,7 @@ static void gzip_files_are_found_by_what_is_in_them(void **state)
     assert_ok(cw_volume_read(test_path("a.bin"), NULL, &v, &format, &err), err);
     assert_string_equal(format, "inr");
     assert_memory_equal(v.data, counting, sizeof counting);
+    check_regions("a.bin", NULL);
     cw_volume_free(&v);
 }
 

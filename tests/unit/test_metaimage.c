@@ -1,4 +1,5 @@
 #include "support/reading.h"
+#include "support/regions.h"
 
 #include <stdio.h>
 
@@ -123,6 +124,7 @@ static void byte_orders_and_encodings_give_the_same_numbers(void **state)
         put_file("a.mha", header, cases[i].bytes, cases[i].size);
         assert_ok(read_back("a.mha", &v, &err), err);
         assert_memory_equal(v.data, wanted, sizeof wanted);
+        check_regions("a.mha", NULL);
         cw_volume_free(&v);
     }
     free(zlib);
@@ -178,6 +180,7 @@ static void voxels_may_lie_in_files_of_their_own(void **state)
         put_file("a.mhd", headers[i], NULL, 0);
         assert_ok(read_back("a.mhd", &v, &err), err);
         assert_memory_equal(v.data, counting, sizeof counting);
+        check_regions("a.mhd", NULL);
         cw_volume_free(&v);
     }
 }

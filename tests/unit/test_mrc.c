@@ -1,4 +1,5 @@
 #include "support/reading.h"
+#include "support/regions.h"
 
 #include <stdio.h>
 
@@ -117,6 +118,7 @@ static void modes_byte_orders_and_packings_give_the_same_numbers(void **state)
             const double wanted = (double)i - 3 + (v.type == CW_U16 && i < 3 ? 65536 : 0);
             assert_true(cw_volume_value(&v, i % 2, i / 2 % 3, i / 6) == wanted);
         }
+        check_regions("a.bin", NULL);
         cw_volume_free(&v);
         free(packed);
     }
@@ -143,6 +145,20 @@ static void axes_may_come_in_any_order(void **state)
     assert_true(cw_volume_value(&v, 0, 1, 0) == 3);  /* the second section */
     assert_true(cw_volume_value(&v, 0, 0, 1) == -2); /* the second column */
     cw_volume_free(&v);
+}
+
+static void regions_are_crops_in_every_order_of_axes(void **state)
+{
+    (void)state;
+    for (int32_t n = 0; n < 6; n++) {
+        map m = make_map(1, 2);
+        const int32_t first = n / 2, second = (first + 1 + n % 2) % 3;
+        const int32_t order[3] = {first, second, 3 - first - second};
+        for (size_t a = 0; a < 3; a++)
+            put_word(&m, 64 + 4 * a, order[a] + 1);
+        save(&m, "a.map");
+        check_regions("a.map", NULL);
+    }
 }
 
 static void places_are_origin_words_else_start_words(void **state)
@@ -323,6 +339,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(modes_byte_orders_and_packings_give_the_same_numbers),
         TEST(axes_may_come_in_any_order),
+        TEST(regions_are_crops_in_every_order_of_axes),
         TEST(places_are_origin_words_else_start_words),
         TEST(imod_says_whether_bytes_are_signed),
         TEST(cells_may_be_oblique),

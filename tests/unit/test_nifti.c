@@ -1,5 +1,6 @@
 #include "formats/nifti.h"
 #include "support/reading.h"
+#include "support/regions.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -102,6 +103,7 @@ static void both_versions_byte_orders_and_packings_are_the_same(void **state)
         check_affine(&v, (const double[12]){-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0});
         for (size_t i = 0; i < 12; i++)
             assert_true(cw_volume_value(&v, i % 2, i / 2 % 3, i / 6) == (double)i);
+        check_regions(name, NULL);
         cw_volume_free(&v);
     }
 }

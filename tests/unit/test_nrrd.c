@@ -1,5 +1,6 @@
 #define _GNU_SOURCE /* symlink, mkfifo */
 #include "support/reading.h"
+#include "support/regions.h"
 
 #include <stdio.h>
 #include <sys/stat.h>
@@ -133,6 +134,7 @@ static void axes_find_their_roles(void **state)
         assert_ok(cw_volume_select(&v, v.components - 1, v.steps - 1, &last, &err), err);
         if (cases[i].at)
             assert_true(cw_volume_value(&last, 1, 2, 1) == (double)cases[i].at);
+        check_regions("a.nrrd", NULL);
         cw_volume_free(&v);
     }
 }
@@ -215,6 +217,7 @@ static void encodings_and_byte_orders_give_the_same_numbers(void **state)
         assert_ok(read_back("a.nrrd", &v, &err), err);
         assert_int_equal(v.type, CW_I16);
         assert_memory_equal(v.data, wanted, sizeof wanted);
+        check_regions("a.nrrd", NULL);
         cw_volume_free(&v);
     }
     free(packed);
@@ -248,6 +251,7 @@ static void voxels_may_lie_in_files_of_their_own(void **state)
         put_file("a.nhdr", headers[i], NULL, 0);
         assert_ok(read_back("a.nhdr", &v, &err), err);
         assert_memory_equal(v.data, counting, sizeof counting);
+        check_regions("a.nhdr", NULL);
         cw_volume_free(&v);
     }
 }

@@ -1,5 +1,6 @@
 #include "formats/blocks.h"
 #include "support/reading.h"
+#include "support/regions.h"
 
 #include <stdio.h>
 
@@ -190,6 +191,7 @@ static void every_dialect_gives_the_same_voxels(void **state)
         make_file(&d, &file);
         save(&file, "a.bin");
         check_voxels("a.bin");
+        check_regions("a.bin", NULL);
     }
 }
 
@@ -455,6 +457,30 @@ static void memory_may_run_out_anywhere(void **state)
         make_file(&d, &file);
         save(&file, "a.vti");
         check_starved_reads("a.vti");
+        check_starved("a.vti", &(cw_read_desc){.region = &(cw_box){{1, 1, 0}, {1, 1, 2}}});
+    }
+}
+
+/* The last of the four blocks holds what is wanted of the back alone. */
+static void blocks_that_are_not_wanted_are_not_decoded(void **state)
+{
+    (void)state;
+    static bytes file;
+    static const char tail[] = "\n</AppendedData></VTKFile>";
+    const cw_box front = {{0, 0, 0}, {2, 3, 1}}, back = {{1, 2, 1}, {1, 1, 1}};
+    for (int wanted = 0; wanted < 2; wanted++) {
+        const cw_read_desc desc = {.region = wanted ? &back : &front};
+        cw_volume v;
+        cw_error err = {0};
+        make_file(&(dialect){.form = APPENDED_RAW, .packing = ZLIB}, &file);
+        file.at[file.size - sizeof tail] ^= 1; /* in a checksum */
+        save(&file, "a.vti");
+        const cw_status st = cw_volume_read(test_path("a.vti"), &desc, &v, NULL, &err);
+        if (wanted)
+            assert_fails(st, CW_ERR_FORMAT, "compressed block 3 of 4 is damaged", err);
+        else
+            assert_ok(st, err);
+        cw_volume_free(&v);
     }
 }
 
@@ -477,6 +503,7 @@ int main(void)
         TEST(damaged_files_are_told_where),
         TEST(tables_of_blocks_are_checked_before_memory_is_taken),
         TEST(endless_files_come_to_an_end),
+        TEST(blocks_that_are_not_wanted_are_not_decoded),
         TEST(memory_may_run_out_anywhere),
         TEST(without_lz4_its_files_are_refused),
     };

@@ -1,4 +1,5 @@
 #include "support/reading.h"
+#include "support/regions.h"
 
 #include <stdio.h>
 
@@ -49,6 +50,7 @@ static void the_grid_may_be_told_in_old_and_new_words(void **state)
         assert_ok(read_back("a.vtk", &v, &err), err);
         check_affine(&v, (const double[12]){1, 0, 0, 5, 0, 2, 0, 6, 0, 0, 3, 7});
         assert_memory_equal(v.data, counting, sizeof counting);
+        check_regions("a.vtk", NULL);
         cw_volume_free(&v);
     }
 }
