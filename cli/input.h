@@ -73,17 +73,20 @@ typedef struct cli_input {
 /* A volume as a command uses it. */
 typedef struct cli_volume {
     const char *path, *format;
-    cw_volume whole; /* owns the voxels */
-    cw_volume view;  /* the chosen component, step, part and samples, spacing applied */
+    cw_volume whole;  /* as the file has it, spacing applied; without the voxels */
+    cw_volume voxels; /* what was read of it: all, or what --crop leaves */
+    cw_volume view;   /* of that the chosen component, step and samples */
     double spacing[3];
     size_t memory_left; /* of the limit, after the voxels */
     size_t coarsen[3];  /* the view's step along each axis */
 } cli_volume;
 
 /* Reads the header, says what was found, then reads the voxels (unless header_only). Errors
- * name the file. Free with cw_volume_free(&volume->whole). */
+ * name the file. Free with cli_free_volume(). */
 cw_status cli_read_volume(const char *path, const cli_input *input, bool header_only,
                           cli_volume *volume, cw_error *err);
+
+void cli_free_volume(cli_volume *volume);
 
 /* Whether the view leaves voxels out between those it has. */
 bool cli_is_preview(const cli_volume *volume);

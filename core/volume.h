@@ -21,7 +21,7 @@ static inline double cwi_voxel_at(cw_type type, const void *p)
 
 /* Leaves of a volume's shape (sizes and affine) what is inside a box; data are not touched.
  * Returns CW_ERR_ARGUMENT when the box is empty or leaves the volume. */
-cw_status cwi_volume_shrink(cw_volume *v, const cw_box *box, cw_error *err);
+CW_API cw_status cwi_volume_shrink(cw_volume *v, const cw_box *box, cw_error *err);
 
 static inline const void *cwi_voxel_address(const cw_volume *v, size_t i, size_t j, size_t k)
 {
