@@ -225,7 +225,9 @@ cw_status cli_read_volume(const char *path, const cli_input *input, bool header_
                           cli_volume *volume, cw_error *err)
 {
     cw_raw_layout raw;
-    cw_read_desc desc = {.reader = input->reader, .allow_external = input->allow_external};
+    cw_read_desc desc = {.reader = input->reader,
+                         .allow_external = input->allow_external,
+                         .max_voxels = input->max_voxels};
     memset(volume, 0, sizeof *volume);
     volume->path = path;
     desc.max_bytes = cli_memory_limit(input);

@@ -13,7 +13,7 @@ typedef struct cli_input {
     cli_lengths spacing;
     cli_ranges crop;
     size_t component, step;
-    size_t threads, memory;
+    size_t threads, memory, max_voxels;
     bool allow_external, preview;
     size_t coarsen; /* 0: 4 for a preview, else 1 */
 } cli_input;
@@ -64,6 +64,12 @@ typedef struct cli_input {
          "N",                                                                                  \
          "to use; results do not depend on it (0: all)",                                       \
          CLI_INPUT_ROW(args, threads)},                                                        \
+        {"max-voxels",                                                                         \
+         0,                                                                                    \
+         CLI_COUNT,                                                                            \
+         "N",                                                                                  \
+         "stop before reading more voxels, e.g. 500M (2^40)",                                  \
+         CLI_INPUT_ROW(args, max_voxels)},                                                     \
     {                                                                                          \
         "memory", 0, CLI_BYTES, "SIZE",                                                        \
             "stop before voxels and mesh need more, e.g. 8G (75 % of the machine's)",          \

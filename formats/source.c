@@ -435,12 +435,13 @@ static cw_status check_limits(const cwi_source *src, const cw_read_desc *desc, c
     const uint64_t most = desc->max_voxels ? desc->max_voxels : (uint64_t)1 << 40;
     const uint64_t voxels = src->bytes / cw_type_size(v->type) / v->components;
     if (voxels > most)
-        return cw_fail(err, CW_ERR_LIMIT, "'%s' asks for %llu voxels; the limit is %llu",
+        return cw_fail(err, CW_ERR_LIMIT,
+                       "'%s' asks for %llu voxels; the limit is %llu (--max-voxels)",
                        src->size_field, (unsigned long long)voxels, (unsigned long long)most);
     if (desc->max_bytes && src->bytes > desc->max_bytes)
         return cw_fail(err, CW_ERR_LIMIT,
-                       "'%s' asks for %zu bytes of voxels; the limit is %llu", src->size_field,
-                       src->bytes, (unsigned long long)desc->max_bytes);
+                       "'%s' asks for %zu bytes of voxels; the limit is %llu (--memory)",
+                       src->size_field, src->bytes, (unsigned long long)desc->max_bytes);
     return CW_OK;
 }
 
