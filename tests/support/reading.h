@@ -58,30 +58,38 @@ static inline void check_affine(const cw_volume *volume, const double *wanted)
                          wanted[4 * r + c]);
 }
 
-/* Cut behind any of its bytes, the file gives an error and no volume. */
-static inline void check_every_cut(const char *name)
+/* Cut behind any of its bytes, from one on, a file that the header named gives an error and no
+ * volume. */
+static inline void check_cuts(const char *header, const char *data, size_t from)
 {
     size_t size;
-    char *bytes = test_file_read(test_path(name), &size);
-    for (size_t cut = 0; cut < size; cut++) {
+    char *bytes = test_file_read(test_path(data), &size);
+    for (size_t cut = from; cut < size; cut++) {
         cw_volume volume;
         cw_error err = {0};
-        test_file_write(test_path(name), bytes, cut);
-        const cw_status st = read_back(name, &volume, &err);
+        test_file_write(test_path(data), bytes, cut);
+        const cw_status st = read_back(header, &volume, &err);
         if (st != (cut ? CW_ERR_FORMAT : CW_ERR_IO))
-            fail_msg("%s, %zu of %zu bytes: status %d, %s", name, cut, size, (int)st,
+            fail_msg("%s, %zu of %zu bytes: status %d, %s", data, cut, size, (int)st,
                      st == CW_OK ? "it was read" : err.message);
         assert_null(volume.data);
     }
-    test_file_write(test_path(name), bytes, size);
+    test_file_write(test_path(data), bytes, size);
     free(bytes);
 }
 
+static inline void check_every_cut(const char *name)
+{
+    check_cuts(name, name, 0);
+}
+
 /* Compressed data reach to the end of a file that the header named: zeros behind them change
- * nothing, anything else is told by its place. */
+ * nothing, anything else is told by its place; and their checksum is looked at. */
 static inline void check_tail(const char *header, const char *data)
 {
     size_t size;
+    cw_volume none;
+    cw_error damaged = {0};
     char words[40], *bytes = test_file_read(test_path(data), &size);
     bytes = realloc(bytes, size + 512);
     assert_non_null(bytes);
@@ -99,6 +107,11 @@ static inline void check_tail(const char *header, const char *data)
             assert_ok(st, err);
         cw_volume_free(&volume);
     }
+    bytes[size - 1] ^= 1;
+    test_file_write(test_path(data), bytes, size);
+    assert_fails(read_back(header, &none, &damaged), CW_ERR_FORMAT,
+                 "the compressed data are damaged", damaged);
+    bytes[size - 1] ^= 1;
     test_file_write(test_path(data), bytes, size);
     free(bytes);
 }

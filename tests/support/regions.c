@@ -37,6 +37,34 @@ static bool same_shape(const cw_volume *a, const cw_volume *b)
            memcmp(a->affine, b->affine, sizeof a->affine) == 0;
 }
 
+static uint64_t count_voxels(const cw_volume *v)
+{
+    return (uint64_t)v->steps * v->dim[0] * v->dim[1] * v->dim[2];
+}
+
+static uint64_t count_bytes(const cw_volume *v)
+{
+    return count_voxels(v) * v->components * cw_type_size(v->type);
+}
+
+static void check_limits(const char *name, const cw_read_desc *desc, const cw_volume *whole)
+{
+    cw_read_desc d = *desc;
+    cw_volume v;
+    cw_error err = {0};
+    d.max_voxels = count_voxels(whole);
+    d.max_bytes = count_bytes(whole) - 1;
+    if (d.max_bytes > 0)
+        assert_fails(cw_volume_read(test_path(name), &d, &v, NULL, &err), CW_ERR_LIMIT,
+                     "(--memory)", err);
+    d.max_bytes++;
+    assert_ok(cw_volume_read(test_path(name), &d, &v, NULL, &err), err);
+    cw_volume_free(&v);
+    if (--d.max_voxels > 0)
+        assert_fails(cw_volume_read(test_path(name), &d, &v, NULL, &err), CW_ERR_LIMIT,
+                     "(--max-voxels)", err);
+}
+
 static void check_box(const char *name, const cw_read_desc *desc, const cw_volume *whole,
                       const cw_box *box)
 {
@@ -44,9 +72,8 @@ static void check_box(const char *name, const cw_read_desc *desc, const cw_volum
     cw_volume crop, part, shape;
     cw_error err = {0};
     d.region = box;
-    d.max_bytes = cw_type_size(whole->type) * whole->components * whole->steps * box->count[0] *
-                  box->count[1] * box->count[2];
     assert_ok(cw_volume_crop(whole, box, &crop, &err), err);
+    d.max_bytes = count_bytes(&crop);
     assert_ok(cw_volume_read(test_path(name), &d, &part, NULL, &err), err);
     d.header_only = true;
     assert_ok(cw_volume_read(test_path(name), &d, &shape, NULL, &err), err);
@@ -107,6 +134,7 @@ void check_regions(const char *name, const cw_read_desc *desc)
     cw_error err = {0};
     desc = desc ? desc : &defaults;
     assert_ok(cw_volume_read(test_path(name), desc, &whole, NULL, &err), err);
+    check_limits(name, desc, &whole);
     if (whole.dim[0] * whole.dim[1] * whole.dim[2] <= 12)
         check_all(name, desc, &whole);
     else

@@ -308,6 +308,24 @@ static void damaged_headers_are_told_field_by_field(void **state)
     }
 }
 
+/* A small gzip file cannot hold many voxels, whatever its header says. */
+static void bombs_are_refused_before_memory_is_taken(void **state)
+{
+    (void)state;
+    map m = make_map(1, 2);
+    size_t size;
+    for (size_t at = 0; at < 8; at += 4)
+        put_word(&m, at, 0x7fffffff);
+    put_word(&m, 8, 1);
+    unsigned char *packed = pack_bytes(m.bytes, m.size, true, &size);
+    put_file("a.map.gz", "", packed, size);
+    check_told("a.map.gz", 0, "asks for 9223372028264841218 bytes of voxels, encoded");
+    put_word(&m, 8, 0x7fffffff);
+    save(&m, "a.map");
+    check_told("a.map", 1, "more voxels than an address space holds");
+    free(packed);
+}
+
 static void neither_a_cut_nor_a_tail_is_a_volume(void **state)
 {
     (void)state;
@@ -348,6 +366,7 @@ int main(void)
         TEST(stacks_of_volumes_are_steps),
         TEST(extended_headers_are_left_out),
         TEST(damaged_headers_are_told_field_by_field),
+        TEST(bombs_are_refused_before_memory_is_taken),
         TEST(neither_a_cut_nor_a_tail_is_a_volume),
         TEST(memory_may_run_out_anywhere),
     };

@@ -297,6 +297,8 @@ static void only_files_are_opened(void **state)
     cw_volume_free(&v);
     assert_fails(read_back("pipe.nrrd", &v, &err), CW_ERR_IO, "a named pipe, not a file", err);
     assert_fails(read_back("", &v, &err), CW_ERR_IO, "a folder, not a file", err);
+    put_file("a.nhdr", U8_3D "data file: pipe.nrrd\n", NULL, 0);
+    assert_fails(read_back("a.nhdr", &v, &err), CW_ERR_IO, "a named pipe, not a file", err);
     assert_fails(read_back("none.nrrd", &v, &err), CW_ERR_IO, "No such file", err);
     assert_fails(read_back("empty.nrrd", &v, &err), CW_ERR_IO, "the file is empty", err);
     assert_fails(read_back("odd.xyz", &v, &err), CW_ERR_FORMAT, "--raw", err);
@@ -478,6 +480,28 @@ static void long_headers_are_cut_off(void **state)
     free(long_text);
 }
 
+static void a_cut_is_never_a_volume(void **state)
+{
+    (void)state;
+    size_t size;
+    unsigned char *packed = pack_bytes(counting, 12, true, &size);
+    put_file("a.nrrd", U8_3D "\n", counting, 12);
+    check_every_cut("a.nrrd");
+    put_file("a.nrrd", GZIP_3D "\n", packed, size);
+    check_every_cut("a.nrrd");
+    put_file("a.nrrd",
+             "NRRD0004\ntype: uint8\nencoding: ascii\ndimension: 3\nsizes: 2 3 2\n\n"
+             "0 1 2 3 4 5 6 7 8 9 10 1",
+             NULL, 0);
+    check_every_cut("a.nrrd");
+    put_file("one.raw", "", counting, 6);
+    put_file("two.raw", "", counting + 6, 6);
+    put_file("a.nhdr", U8_3D "data file: LIST\none.raw\ntwo.raw\n", NULL, 0);
+    check_cuts("a.nhdr", "one.raw", 0);
+    check_cuts("a.nhdr", "two.raw", 0);
+    free(packed);
+}
+
 static void nothing_but_zeros_may_follow_gzip_data(void **state)
 {
     (void)state;
@@ -523,6 +547,7 @@ int main(void)
         TEST(the_header_alone_is_checked_but_holds_no_voxels),
         TEST(a_reader_can_be_interrupted),
         TEST(long_headers_are_cut_off),
+        TEST(a_cut_is_never_a_volume),
         TEST(nothing_but_zeros_may_follow_gzip_data),
         TEST(memory_may_run_out_anywhere),
     };

@@ -348,6 +348,24 @@ static void damaged_files_are_told_where(void **state)
         {FILE_TAG "<ImageData><Piece Extent='0 1 0 1 1 0'/>", "must hold 1 to 2147483647"},
         {FILE_TAG "<ImageData><Piece Extent='0 1 0 1 -2000000000 2000000000'/>", "must hold 1"},
         {FILE_TAG "<ImageData><Piece Extent='0 1 0 1 0 99999999999'/>", "six whole numbers"},
+        {FILE_TAG "<ImageData Spacing='0 1 1'><Piece Extent='0 1 0 0 0 0'><PointData>"
+                  "<DataArray type='UInt8'>1 2</DataArray>" END,
+         "gives axis 0 no length"},
+        {FILE_TAG "<ImageData Origin='0 nan 1'><Piece Extent='0 1 0 0 0 0'><PointData>"
+                  "<DataArray type='UInt8'>1 2</DataArray>" END,
+         "not finite"},
+        {FILE_TAG "<ImageData Direction='1 1 0 0 0 1 0 0 0'><Piece Extent='0 1 0 0 0 0'>"
+                  "<PointData><DataArray type='UInt8'>1 2</DataArray>" END,
+         "lie in one plane"},
+        {FILE_TAG "<ImageData><Piece Extent='0 2147483646 0 2147483646 0 0'><PointData>"
+                  "<DataArray type='UInt8'>1 2</DataArray>" END,
+         "'Extent' asks for 4611686014132420609 bytes of voxels, encoded; the file holds"},
+        {FILE_TAG "<ImageData><Piece Extent='0 2147483646 0 2147483646 0 9'><PointData>"
+                  "<DataArray type='UInt8'>1 2</DataArray>" END,
+         "more voxels than an address space holds"},
+        {FILE_TAG "<ImageData><Piece Extent='0 15 0 0 0 0'><PointData><DataArray "
+                  "type='UInt8' format='binary'>EAAAAAEC</DataArray>" END,
+         "'Extent' asks for 16 bytes of voxels"},
         {PIECE "</Piece><Piece Extent='1 2 0 0 0 0'/>", "several Piece elements"},
         {PIECE "<CellData><DataArray type='UInt8'/></CellData></Piece></ImageData></VTKFile>",
          "the arrays are CellData; only values at points"},
