@@ -425,7 +425,7 @@ static void free_state(run_state *s)
     cw_crossings_free(&s->crossings);
     cw_mesh_free(&s->mesh.mesh);
     cw_mesh_free(&s->reference.mesh);
-    cw_volume_free(&s->volume.whole);
+    cli_free_volume(&s->volume);
     free(s->defects);
     free(s->distances);
 }

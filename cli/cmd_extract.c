@@ -253,7 +253,7 @@ static cw_status run(void *p, cw_error *err)
     cw_status st = pipeline(&s, err);
     st = cli_report_write(&s.report, st, err);
     cw_extractor_free(s.extractor);
-    cw_volume_free(&s.volume.whole);
+    cli_free_volume(&s.volume);
     cli_free_outputs(&s.outputs);
     return st;
 }

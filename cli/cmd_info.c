@@ -312,7 +312,7 @@ static cw_status run(void *p, cw_error *err)
         print_levels(&f, args->levels);
     }
     cw_statistics_free(&f.range);
-    cw_volume_free(&f.volume.whole);
+    cli_free_volume(&f.volume);
     return st;
 }
 

@@ -101,7 +101,7 @@ static cw_status get_mesh(const render_args *args, cw_mesh *mesh, cw_error *err)
                                                     .inside_is_low = args->inside,
                                                     .threads = (int)args->input.threads},
                                  mesh, NULL, err);
-    cw_volume_free(&volume.whole);
+    cli_free_volume(&volume);
     return st;
 }
 

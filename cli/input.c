@@ -5,6 +5,7 @@
 #include "cli/quantity.h"
 #include "core/status.h"
 #include "core/text.h"
+#include "core/volume.h"
 
 #include <math.h>
 #include <sha2.h>
@@ -49,10 +50,8 @@ const char *cli_describe(const cli_volume *volume)
     return text;
 }
 
-/* header_only leaves no voxels to choose from, so the choice is checked by hand. */
-static cw_status choose(const cli_input *input, cli_volume *volume, cw_error *err)
+static cw_status check_choice(const cli_input *input, const cw_volume *v, cw_error *err)
 {
-    const cw_volume *v = &volume->whole;
     if (input->component >= v->components)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "--component %zu: the volume has %zu, counted from 0", input->component,
@@ -60,8 +59,7 @@ static cw_status choose(const cli_input *input, cli_volume *volume, cw_error *er
     if (input->step >= v->steps)
         return cw_fail(err, CW_ERR_ARGUMENT, "--step %zu: the volume has %zu, counted from 0",
                        input->step, v->steps);
-    return v->data ? cw_volume_select(v, input->component, input->step, &volume->view, err)
-                   : CW_OK;
+    return CW_OK;
 }
 
 /* The voxels between the ends of a range, as far as there are any. */
@@ -97,29 +95,25 @@ static cw_status box_from_world(const cw_volume *v, cli_ranges *r, cw_error *err
     return CW_OK;
 }
 
-static cw_status crop(const cli_input *input, cw_volume *view, cw_error *err)
+/* The voxels that --crop asks for, as far as there are any. */
+static cw_status find_box(const cli_input *input, const cw_volume *v, cw_box *box,
+                          cw_error *err)
 {
     cli_ranges r = input->crop;
-    cw_box box;
-    cw_volume part;
-    cw_status st = r.world ? box_from_world(view, &r, err) : CW_OK;
-    if (st != CW_OK)
-        return st;
-    for (int a = 0; a < 3; a++) {
-        const size_t size = view->dim[a];
-        if (!clip_range(r.low[a], r.high[a], size, &box.first[a], &box.count[a]))
+    cw_status st = r.world ? box_from_world(v, &r, err) : CW_OK;
+    for (int a = 0; st == CW_OK && a < 3; a++) {
+        const size_t size = v->dim[a];
+        if (!clip_range(r.low[a], r.high[a], size, &box->first[a], &box->count[a]))
             return cw_fail(err, CW_ERR_ARGUMENT,
                            "--crop leaves no voxel along %c: the volume's are 0 to %zu, asked "
                            "for are %.6g to %.6g",
                            "xyz"[a], size - 1, r.low[a], r.high[a]);
     }
-    st = cw_volume_crop(view, &box, &part, err);
-    if (st == CW_OK) {
-        *view = part;
-        cli_say("using voxels %zu:%zu,%zu:%zu,%zu:%zu", box.first[0],
-                box.first[0] + box.count[0] - 1, box.first[1], box.first[1] + box.count[1] - 1,
-                box.first[2], box.first[2] + box.count[2] - 1);
-    }
+    if (st == CW_OK)
+        cli_say("using voxels %zu:%zu,%zu:%zu,%zu:%zu", box->first[0],
+                box->first[0] + box->count[0] - 1, box->first[1],
+                box->first[1] + box->count[1] - 1, box->first[2],
+                box->first[2] + box->count[2] - 1);
     return st;
 }
 
@@ -150,35 +144,61 @@ bool cli_is_preview(const cli_volume *volume)
     return step[0] > 1 || step[1] > 1 || step[2] > 1;
 }
 
-static cw_status read_both(const char *path, cw_read_desc *desc, bool header_only,
-                           const cli_input *input, cli_volume *volume, cw_error *err)
+/* The limits are for what will be read: perhaps only a part. */
+static cw_status read_header(const char *path, const cw_read_desc *voxels,
+                             const cli_input *input, cli_volume *volume, cw_error *err)
 {
-    desc->header_only = true;
-    cw_status st = cw_volume_read(path, desc, &volume->whole, &volume->format, err);
+    cw_read_desc desc = *voxels;
+    desc.header_only = true;
+    desc.max_bytes = 0;
+    desc.max_voxels = UINT64_MAX;
+    cw_status st = cw_volume_read(path, &desc, &volume->whole, &volume->format, err);
     if (st != CW_OK)
         return st;
     cw_volume_spacing(&volume->whole, volume->spacing);
     cli_say("%s: %s", path, cli_describe(volume));
-    st = choose(input, volume, err);
-    if (st != CW_OK)
-        return cwi_fail_in(err, st, path);
-    if (header_only)
-        return CW_OK;
+    st = check_choice(input, &volume->whole, err);
+    return st == CW_OK ? st : cwi_fail_in(err, st, path);
+}
 
-    const cw_volume *v = &volume->whole;
-    const double bytes = (double)cw_type_size(v->type) * (double)v->dim[0] * (double)v->dim[1] *
-                         (double)v->dim[2] * (double)v->components * (double)v->steps;
-    desc->header_only = false;
+/* What is read (`part`, shape only) stands where the header, with the spacing asked for, has
+ * it.
+ */
+static cw_status read_part(const char *path, cw_read_desc *desc, const cw_volume *part,
+                           cli_volume *volume, cw_error *err)
+{
+    cw_volume *v = &volume->voxels;
+    const double bytes = (double)cw_type_size(part->type) * (double)part->dim[0] *
+                         (double)part->dim[1] * (double)part->dim[2] *
+                         (double)part->components * (double)part->steps;
     desc->note = NULL; /* said already */
     desc->progress = cli_progress(bytes / 1e6, "MB");
-    st = cw_volume_read(path, desc, &volume->whole, &volume->format, err);
-    volume->memory_left = (double)desc->max_bytes > bytes ? desc->max_bytes - (size_t)bytes : 1;
-    if (st == CW_OK)
-        st = choose(input, volume, err);
+    cw_status st = cw_volume_read(path, desc, v, &volume->format, err);
     if (st != CW_OK)
         return st;
+    memcpy(v->affine, part->affine, sizeof v->affine);
+    v->known = part->known;
+    volume->memory_left = (double)desc->max_bytes > bytes ? desc->max_bytes - (size_t)bytes : 1;
+    return CW_OK;
+}
+
+static cw_status read_voxels(const char *path, cw_read_desc *desc, const cli_input *input,
+                             cli_volume *volume, cw_error *err)
+{
+    cw_volume part = volume->whole;
+    cw_box box;
+    cw_status st = CW_OK;
     if (input->crop.given)
-        st = crop(input, &volume->view, err);
+        st = find_box(input, &part, &box, err);
+    if (st == CW_OK && input->crop.given)
+        st = cwi_volume_shrink(&part, &box, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, path);
+    desc->region = input->crop.given ? &box : NULL;
+    st = read_part(path, desc, &part, volume, err);
+    if (st != CW_OK)
+        return st;
+    st = cw_volume_select(&volume->voxels, input->component, input->step, &volume->view, err);
     if (st == CW_OK)
         st = coarsen(input, volume, err);
     return st == CW_OK ? st : cwi_fail_in(err, st, path);
@@ -202,10 +222,16 @@ cw_read_desc cli_read_desc(const cli_input *input)
                          .tilt = (cw_tilt)input->tilt,
                          .no_sandbox = input->no_sandbox,
                          .timeout_s = (double)input->timeout_s,
+                         .max_voxels = input->max_voxels,
                          .max_bytes = cli_memory_limit(input)};
     if (input->spacing.given)
         memcpy(desc.spacing_mm, input->spacing.mm, sizeof desc.spacing_mm);
     return desc;
+}
+
+void cli_free_volume(cli_volume *volume)
+{
+    cw_volume_free(&volume->voxels);
 }
 
 cw_status cli_read_volume(const char *path, const cli_input *input, bool header_only,
@@ -223,9 +249,11 @@ cw_status cli_read_volume(const char *path, const cli_input *input, bool header_
             return cwi_fail_in(err, st, "--raw");
         desc.raw = &raw;
     }
-    cw_status st = read_both(path, &desc, header_only, input, volume, err);
+    cw_status st = read_header(path, &desc, input, volume, err);
+    if (st == CW_OK && !header_only)
+        st = read_voxels(path, &desc, input, volume, err);
     if (st != CW_OK)
-        cw_volume_free(&volume->whole);
+        cli_free_volume(volume);
     return st;
 }
 

@@ -16,7 +16,7 @@ typedef struct cli_input {
     cli_lengths spacing;
     cli_ranges crop;
     size_t component, step;
-    size_t threads, memory;
+    size_t threads, memory, max_voxels;
     bool allow_external, preview;
     size_t coarsen; /* 0: 4 for a preview, else 1 */
 } cli_input;
@@ -97,6 +97,12 @@ typedef struct cli_input {
          "N",                                                                                  \
          "to use; results do not depend on it (0: all)",                                       \
          CLI_INPUT_ROW(args, threads)},                                                        \
+        {"max-voxels",                                                                         \
+         0,                                                                                    \
+         CLI_COUNT,                                                                            \
+         "N",                                                                                  \
+         "stop before reading more voxels, e.g. 500M (2^40)",                                  \
+         CLI_INPUT_ROW(args, max_voxels)},                                                     \
     {                                                                                          \
         "memory", 0, CLI_BYTES, "SIZE",                                                        \
             "stop before voxels and mesh need more, e.g. 8G (75 % of the machine's)",          \
@@ -108,8 +114,9 @@ enum { CLI_MOST_NOTES = 8 };
 /* A volume as a command uses it. */
 typedef struct cli_volume {
     const char *path, *format;
-    cw_volume whole; /* owns the voxels */
-    cw_volume view;  /* the chosen component, step, part and samples, spacing applied */
+    cw_volume whole;  /* as the file has it, spacing applied; without the voxels */
+    cw_volume voxels; /* what was read of it: all, or what --crop leaves */
+    cw_volume view;   /* of that the chosen component, step and samples */
     double spacing[3];
     size_t memory_left;              /* of the limit, after the voxels */
     size_t coarsen[3];               /* the view's step along each axis */
@@ -121,9 +128,11 @@ typedef struct cli_volume {
 cw_read_desc cli_read_desc(const cli_input *input);
 
 /* Reads the header, says what was found, then reads the voxels (unless header_only). Errors
- * name the file. Free with cw_volume_free(&volume->whole). */
+ * name the file. Free with cli_free_volume(). */
 cw_status cli_read_volume(const char *path, const cli_input *input, bool header_only,
                           cli_volume *volume, cw_error *err);
+
+void cli_free_volume(cli_volume *volume);
 
 /* Whether the view leaves voxels out between those it has. */
 bool cli_is_preview(const cli_volume *volume);

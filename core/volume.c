@@ -180,27 +180,34 @@ cw_status cw_volume_select(const cw_volume *in, size_t component, size_t step, c
     return CW_OK;
 }
 
+cw_status cwi_volume_shrink(cw_volume *v, const cw_box *box, cw_error *err)
+{
+    for (int a = 0; a < 3; a++)
+        if (!box->count[a] || box->first[a] >= v->dim[a] ||
+            box->count[a] > v->dim[a] - box->first[a])
+            return cw_fail(err, CW_ERR_ARGUMENT,
+                           "box %zu+%zu leaves the volume's %zu voxels along %c", box->first[a],
+                           box->count[a], v->dim[a], "xyz"[a]);
+    const double corner[3] = {(double)box->first[0], (double)box->first[1],
+                              (double)box->first[2]};
+    double world[3];
+    cwi_affine_apply(v->affine[0], corner, world);
+    for (int a = 0; a < 3; a++) {
+        v->dim[a] = box->count[a];
+        v->affine[a][3] = world[a];
+    }
+    return CW_OK;
+}
+
 cw_status cw_volume_crop(const cw_volume *in, const cw_box *box, cw_volume *out, cw_error *err)
 {
     cw_volume v;
     cw_status st = cw_volume_resolve(in, &v, err);
+    if (st == CW_OK)
+        st = cwi_volume_shrink(&v, box, err);
     if (st != CW_OK)
         return st;
-    for (int a = 0; a < 3; a++)
-        if (!box->count[a] || box->first[a] >= v.dim[a] ||
-            box->count[a] > v.dim[a] - box->first[a])
-            return cw_fail(err, CW_ERR_ARGUMENT,
-                           "box %zu+%zu leaves the volume's %zu voxels along %c", box->first[a],
-                           box->count[a], v.dim[a], "xyz"[a]);
-    const double corner[3] = {(double)box->first[0], (double)box->first[1],
-                              (double)box->first[2]};
-    double world[3];
-    cwi_affine_apply(v.affine[0], corner, world);
     v.data = cwi_voxel_address(&v, box->first[0], box->first[1], box->first[2]);
-    for (int a = 0; a < 3; a++) {
-        v.dim[a] = box->count[a];
-        v.affine[a][3] = world[a];
-    }
     v.owned = NULL;
     *out = v;
     return CW_OK;

@@ -47,6 +47,10 @@ static inline void cwi_voxel_put(cw_type type, void *p, double value)
     }
 }
 
+/* Leaves of a volume's shape (sizes and affine) what is inside a box; data are not touched.
+ * Returns CW_ERR_ARGUMENT when the box is empty or leaves the volume. */
+CW_API cw_status cwi_volume_shrink(cw_volume *v, const cw_box *box, cw_error *err);
+
 static inline const void *cwi_voxel_address(const cw_volume *v, size_t i, size_t j, size_t k)
 {
     return (const char *)v->data + (ptrdiff_t)i * v->stride[0] + (ptrdiff_t)j * v->stride[1] +

@@ -44,12 +44,14 @@ static cw_status check_limits(const cw_extract_desc *d, const cw_extract_counts 
                               cw_error *err)
 {
     if (d->max_triangles && c->triangles > d->max_triangles)
-        return cw_fail(err, CW_ERR_LIMIT, "the surface has %zu triangles; the limit is %zu",
+        return cw_fail(err, CW_ERR_LIMIT,
+                       "the surface has %zu triangles; the limit is %zu (--max-triangles)",
                        c->triangles, d->max_triangles);
     if (d->max_bytes && c->bytes > d->max_bytes)
-        return cw_fail(err, CW_ERR_LIMIT,
-                       "extraction of %zu triangles needs %zu bytes; the limit is %zu",
-                       c->triangles, c->bytes, d->max_bytes);
+        return cw_fail(
+            err, CW_ERR_LIMIT,
+            "extraction of %zu triangles needs %zu bytes; the limit is %zu (--memory)",
+            c->triangles, c->bytes, d->max_bytes);
     return CW_OK;
 }
 

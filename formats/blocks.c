@@ -4,6 +4,7 @@
 #include "core/status.h"
 
 #include <limits.h>
+#include <string.h>
 
 /* The most bytes that one byte can stand for, and those that a block has besides. */
 static const struct {
@@ -109,6 +110,7 @@ void cwi_blocks_close(cwi_blocks *b)
 {
     cwi_free(b->table);
     cwi_free(b->packed);
+    cwi_free(b->held);
     *b = (cwi_blocks){0};
 }
 
@@ -132,22 +134,80 @@ static cw_status inflate_block(const cwi_blocks *b, size_t packed, unsigned char
     return CW_OK;
 }
 
-cw_status cwi_blocks_next(cwi_blocks *b, unsigned char *to, size_t *size, cw_error *err)
+/* Decodes the next block to where there is room for it. */
+static cw_status decode(cwi_blocks *b, unsigned char *to, cw_error *err)
 {
-    const size_t index = b->next++;
+    const size_t index = b->next++, size = block_bytes(b, index);
     const size_t packed = (size_t)word_at(b, b->table, index);
     bool whole = false;
-    *size = block_bytes(b, index);
     cw_status st = cwi_stream_read(b->stream, b->packed, packed, err);
     if (st == CW_OK && b->form.codec == CWI_CODEC_ZLIB)
-        st = inflate_block(b, packed, to, *size, &whole, err);
+        st = inflate_block(b, packed, to, size, &whole, err);
     else if (st == CW_OK)
-        whole = cwi_lz4_decode(b->packed, packed, to, *size);
+        whole = cwi_lz4_decode(b->packed, packed, to, size);
     if (st == CW_OK && !whole)
         st =
             cw_fail(err, CW_ERR_FORMAT,
                     "compressed block %zu of %zu is damaged: its %zu bytes are not %s data for "
                     "%zu",
-                    index, b->count, packed, codecs[b->form.codec].name, *size);
+                    index, b->count, packed, codecs[b->form.codec].name, size);
+    return st;
+}
+
+/* Decodes the next block to be taken in parts. */
+static cw_status hold(cwi_blocks *b, cw_error *err)
+{
+    if (!b->held && !(b->held = cwi_alloc_array(block_bytes(b, 0), 1)))
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %zu bytes",
+                       block_bytes(b, 0));
+    b->held_next = 0;
+    b->held_bytes = block_bytes(b, b->next);
+    return decode(b, b->held, err);
+}
+
+static void skip_held(cwi_blocks *b)
+{
+    const size_t rest = b->held_bytes - b->held_next;
+    const size_t n = b->skipped < rest ? (size_t)b->skipped : rest;
+    b->held_next += n;
+    b->skipped -= n;
+}
+
+void cwi_blocks_skip(cwi_blocks *b, uint64_t bytes)
+{
+    b->skipped += bytes;
+}
+
+/* Goes to the bytes behind those to leave out. */
+static cw_status settle(cwi_blocks *b, cw_error *err)
+{
+    cw_status st = CW_OK;
+    skip_held(b);
+    for (; st == CW_OK && b->next < b->count && b->skipped >= block_bytes(b, b->next);
+         b->next++) {
+        b->skipped -= block_bytes(b, b->next);
+        st = cwi_stream_skip(b->stream, word_at(b, b->table, b->next), err);
+    }
+    if (st == CW_OK && b->skipped > 0)
+        st = hold(b, err);
+    skip_held(b);
+    return st;
+}
+
+cw_status cwi_blocks_some(cwi_blocks *b, unsigned char *to, size_t room, size_t *got,
+                          cw_error *err)
+{
+    cw_status st = settle(b, err);
+    if (st == CW_OK && b->held_next == b->held_bytes && room >= block_bytes(b, b->next)) {
+        *got = block_bytes(b, b->next);
+        return decode(b, to, err);
+    }
+    if (st == CW_OK && b->held_next == b->held_bytes)
+        st = hold(b, err);
+    const size_t rest = b->held_bytes - b->held_next;
+    *got = room < rest ? room : rest;
+    if (st == CW_OK)
+        memcpy(to, b->held + b->held_next, *got);
+    b->held_next += *got;
     return st;
 }

@@ -14,7 +14,8 @@ typedef struct cwi_block_form {
     bool big_endian;
 } cwi_block_form;
 
-/* Blocks of a stream, which are read one after another. A zeroed one is closed. */
+/* Blocks of a stream, read one after another, and what they hold as one sequence. A zeroed one
+ * is closed. */
 typedef struct cwi_blocks {
     cwi_stream *stream; /* borrowed */
     cwi_block_form form;
@@ -22,6 +23,9 @@ typedef struct cwi_blocks {
     size_t bytes, last; /* of each block, of the last one, decoded */
     unsigned char *table;
     unsigned char *packed; /* room for the largest block as it is in the file */
+    uint64_t skipped;      /* decoded bytes to leave out before the next that are read */
+    unsigned char *held;   /* a block of which only a part was wanted so far */
+    size_t held_bytes, held_next;
 } cwi_blocks;
 
 /* Reads the table, and checks that the blocks decode to exactly `wanted` bytes, that `there`
@@ -31,8 +35,14 @@ typedef struct cwi_blocks {
 cw_status cwi_blocks_open(cwi_blocks *b, cwi_stream *stream, const cwi_block_form *form,
                           uint64_t wanted, uint64_t there, cw_error *err);
 
-/* Decodes the next block, of *size bytes, to where there is room for it. */
-cw_status cwi_blocks_next(cwi_blocks *b, unsigned char *to, size_t *size, cw_error *err);
+/* Decodes the next bytes: a block at its place if the room is enough for it, else a part of
+ * one, which then is kept beside until it is used up. No more than all that `wanted` said may
+ * be asked for. Returns CW_ERR_FORMAT, CW_ERR_NO_MEMORY, CW_ERR_IO */
+cw_status cwi_blocks_some(cwi_blocks *b, unsigned char *to, size_t room, size_t *got,
+                          cw_error *err);
+
+/* Leaves out bytes; blocks that hold nothing else are not decoded. */
+void cwi_blocks_skip(cwi_blocks *b, uint64_t bytes);
 void cwi_blocks_close(cwi_blocks *b);
 
 /* Whether this build has the codec, and decoding of one block, which must give `size` bytes. */

@@ -39,7 +39,7 @@ static void begin_member(inflater *f, unsigned char first)
     f->begun = true;
 }
 
-/* Bytes that it took ahead, in whole, are given back. */
+/* Bytes that it took ahead, in whole, are given back: up to eight, in front of next_in. */
 static void end_member(inflater *f)
 {
     const uint32_t ahead = (uint32_t)f->isal.read_in_length / 8;

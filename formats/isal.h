@@ -10,7 +10,8 @@
 bool cwi_isal_open(void **state);
 
 /* As inflate() on the stream's input and output, with zlib's codes; z->msg is set on
- * Z_DATA_ERROR. After Z_STREAM_END the next call begins another member. */
+ * Z_DATA_ERROR. After Z_STREAM_END the next call begins another member; next_in may then have
+ * gone back by up to 8 bytes, also to before where it was at the call. */
 int cwi_isal_inflate(void *state, z_stream *z);
 
 #endif

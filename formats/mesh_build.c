@@ -30,7 +30,7 @@ cw_status cwi_mesh_grow(cwi_mesh_input *in, void *array, size_t *room, size_t co
     const size_t next = next_room(in, *room, count, size);
     if (next < count)
         return cw_fail(err, CW_ERR_LIMIT,
-                       "the mesh needs more memory than the %llu bytes allowed",
+                       "the mesh needs more memory than the %llu bytes allowed (--memory)",
                        (unsigned long long)in->desc.max_bytes);
     memcpy(&memory, array, sizeof memory);
     memory = cwi_realloc_array(memory, next, size);

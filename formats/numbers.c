@@ -90,7 +90,8 @@ cw_status cwi_numbers_read(cwi_numbers *numbers, cw_type type, void *to, size_t 
             return cw_fail(err, CW_ERR_FORMAT,
                            "number %llu of the voxels is '%s'; %s cannot hold it",
                            (unsigned long long)numbers->count, token, cw_type_name(type));
-        store(type, to, i, value);
+        if (to)
+            store(type, to, i, value);
     }
     return CW_OK;
 }

@@ -4,9 +4,12 @@
 #include "core/affine.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "core/volume.h"
 #include "formats/numbers.h"
+#include "formats/runs.h"
 #include "formats/stream.h"
 
+#include <assert.h>
 #include <math.h>
 #include <string.h>
 #include <unistd.h>
@@ -81,7 +84,10 @@ cw_status cwi_source_set_axes(cwi_source *src, const cwi_axis *axes, size_t coun
     const size_t voxel = cw_type_size(src->shape.type);
     size_t sizes[CWI_ROLE_COUNT] = {1, 1, 1, 1, 1}, strides[CWI_ROLE_COUNT] = {0};
     size_t bytes = voxel;
+    assert(count <= CWI_ROLE_COUNT);
+    src->axis_count = count;
     for (size_t i = 0; i < count; i++) {
+        src->axes[i] = axes[i];
         sizes[axes[i].role] = axes[i].size;
         strides[axes[i].role] = bytes;
         if (!cwi_size_mul(bytes, axes[i].size, &bytes) || bytes > PTRDIFF_MAX)
@@ -283,87 +289,114 @@ static cw_status open_part(const cwi_source *src, const cwi_input *in, size_t in
     return st;
 }
 
-/* A stream over one part, and what turns it into voxels. */
+/* The reading of all parts, and of the one that is open. */
 typedef struct reading {
     const cwi_source *src;
     const cw_progress *progress;
-    unsigned char *voxels;
-    size_t done; /* bytes, of src->bytes */
+    cwi_runs runs;     /* what is wanted */
+    uint64_t at;       /* among the bytes of all voxels */
+    unsigned char *to; /* where the next that are wanted have their place */
+    cwi_stream stream;
+    cwi_blocks blocks;
+    cwi_numbers numbers;
 } reading;
 
-static cw_status read_slab(reading *r, cwi_stream *stream, cwi_numbers *numbers, size_t bytes,
-                           cw_error *err)
+/* Whole blocks, straight to their place. Their ends need not be a voxel's. */
+static cw_status take_blocks(reading *r, size_t most, size_t *got, cw_error *err)
+{
+    const size_t voxel = cw_type_size(r->src->shape.type);
+    size_t n = 0;
+    cw_status st = CW_OK;
+    for (*got = 0; st == CW_OK && (*got == 0 || *got % voxel); *got += n)
+        st = cwi_blocks_some(&r->blocks, r->to + *got, most - *got, &n, err);
+    return st;
+}
+
+/* Puts the next voxels to their place: a portion, of at most so many bytes. */
+static cw_status take(reading *r, size_t most, size_t *got, cw_error *err)
 {
     const cwi_source *src = r->src;
     const size_t voxel = cw_type_size(src->shape.type);
-    unsigned char *to = r->voxels + r->done;
+    cw_status st;
+    *got = most < SLAB_BYTES ? most : SLAB_BYTES;
     if (src->encoding == CWI_ASCII)
-        return cwi_numbers_read(numbers, src->shape.type, to, bytes / voxel, err);
-    cw_status st = cwi_stream_read(stream, to, bytes, err);
+        return cwi_numbers_read(&r->numbers, src->shape.type, r->to, *got / voxel, err);
+    if (src->encoding == CWI_BLOCKS)
+        st = take_blocks(r, most, got, err);
+    else
+        st = cwi_stream_read(&r->stream, r->to, *got, err);
     if (st == CW_OK && src->big_endian != cwi_machine_is_big_endian())
-        cwi_swap_bytes(to, bytes / voxel, voxel);
+        cwi_swap_bytes(r->to, *got / voxel, voxel);
     return st;
 }
 
-static cw_status read_slabs(reading *r, cwi_stream *stream, cw_error *err)
+/* Leaves out the next voxels: a portion, of at most so many bytes. */
+static cw_status drop(reading *r, uint64_t most, size_t *got, cw_error *err)
 {
-    cwi_numbers numbers = {.stream = stream};
-    const size_t end = r->done + share_bytes(r->src);
+    const cw_type type = r->src->shape.type;
+    *got = most < SLAB_BYTES ? (size_t)most : SLAB_BYTES;
+    if (r->src->encoding == CWI_ASCII)
+        return cwi_numbers_read(&r->numbers, type, NULL, *got / cw_type_size(type), err);
+    if (r->src->encoding != CWI_BLOCKS)
+        return cwi_stream_skip(&r->stream, *got, err);
+    cwi_blocks_skip(&r->blocks, *got);
+    return CW_OK;
+}
+
+/* Takes or leaves out the next bytes of the part, portion by portion. */
+static cw_status pass(reading *r, uint64_t bytes, bool wanted, cw_error *err)
+{
     cw_status st = CW_OK;
-    while (st == CW_OK && r->done < end) {
-        const size_t bytes = end - r->done < SLAB_BYTES ? end - r->done : SLAB_BYTES;
-        st = cwi_progress(r->progress, "reading", (double)r->done / (double)r->src->bytes, err);
+    while (st == CW_OK && bytes > 0) {
+        size_t n = 0;
+        st = cwi_progress(r->progress, "reading", (double)r->at / (double)r->runs.end, err);
         if (st == CW_OK)
-            st = read_slab(r, stream, &numbers, bytes, err);
-        r->done += bytes;
+            st = wanted ? take(r, (size_t)bytes, &n, err) : drop(r, bytes, &n, err);
+        r->at += n;
+        bytes -= n;
+        if (wanted)
+            r->to += n;
     }
     return st;
 }
 
-/* Every block goes straight to its place. Its end need not be a voxel's: those are turned round
- * that have become whole. */
-static cw_status read_blocks(reading *r, cwi_blocks *blocks, cw_error *err)
+/* What is wanted of a part that ends at this byte of all. What is behind it is not looked at,
+ * and so the checksum is only where the part was read to its end. */
+static cw_status read_runs(reading *r, uint64_t end, cw_error *err)
 {
-    const cwi_source *src = r->src;
-    const size_t voxel = cw_type_size(src->shape.type), start = r->done;
-    const bool turn = src->big_endian != cwi_machine_is_big_endian();
-    const size_t end = start + share_bytes(src);
-    size_t turned = 0, size;
     cw_status st = CW_OK;
-    while (st == CW_OK && r->done < end) {
-        st = cwi_progress(r->progress, "reading", (double)r->done / (double)src->bytes, err);
+    while (st == CW_OK && r->runs.left > 0 && r->runs.next < end) {
+        const uint64_t rest = end - r->runs.next;
+        const uint64_t bytes = r->runs.left < rest ? r->runs.left : rest;
+        st = pass(r, r->runs.next - r->at, false, err);
         if (st == CW_OK)
-            st = cwi_blocks_next(blocks, r->voxels + r->done, &size, err);
-        if (st != CW_OK)
-            break;
-        r->done += size;
-        const size_t whole = (r->done - start) / voxel;
-        if (turn)
-            cwi_swap_bytes(r->voxels + start + turned * voxel, whole - turned, voxel);
-        turned = whole;
+            st = pass(r, bytes, true, err);
+        cwi_runs_take(&r->runs, bytes);
     }
-    return st;
+    return st == CW_OK && r->at == end ? cwi_stream_finish(&r->stream, err) : st;
 }
 
-static cw_status read_part(reading *r, const part *p, cw_error *err)
+static cw_status read_part(reading *r, const part *p, size_t index, cw_error *err)
 {
-    cwi_stream stream = {0};
-    cwi_blocks blocks = {0};
-    cw_status st = open_stream(r->src, p, &stream, &blocks, err);
-    if (st == CW_OK && r->src->encoding == CWI_BLOCKS)
-        st = read_blocks(r, &blocks, err);
-    else if (st == CW_OK)
-        st = read_slabs(r, &stream, err);
+    const uint64_t share = share_bytes(r->src);
+    r->at = index * share;
+    r->numbers = (cwi_numbers){.stream = &r->stream};
+    cw_status st = open_stream(r->src, p, &r->stream, &r->blocks, err);
     if (st == CW_OK)
-        st = cwi_stream_finish(&stream, err);
-    cwi_blocks_close(&blocks);
-    cwi_stream_close(&stream);
+        st = read_runs(r, r->at + share, err);
+    cwi_blocks_close(&r->blocks);
+    cwi_stream_close(&r->stream);
     return st;
 }
 
-/* Opens every part, checks it, and reads it where there is room for its voxels. A header may
- * name more files than a program may keep open, so they are opened again for reading, with
- * every check again. */
+static bool has_wanted(const reading *r, size_t index)
+{
+    return r->runs.left > 0 && r->runs.next / share_bytes(r->src) == index;
+}
+
+/* Opens every part and checks it, or opens those of which something is wanted, and reads it. A
+ * header may name more files than a program may keep open, so they are opened again for
+ * reading, with every check again. */
 static cw_status walk_parts(const cwi_source *src, const cwi_input *in, reading *r,
                             cw_error *err)
 {
@@ -371,9 +404,11 @@ static cw_status walk_parts(const cwi_source *src, const cwi_input *in, reading 
     cw_status st = CW_OK;
     for (size_t i = 0; st == CW_OK && i < count; i++) {
         part p;
+        if (r && !has_wanted(r, i))
+            continue;
         st = open_part(src, in, i, &p, err);
         if (st == CW_OK && r)
-            st = read_part(r, &p, err);
+            st = read_part(r, &p, i, err);
         close_part(&p);
         if (st != CW_OK && part_name(src, i) && st != CW_ERR_CANCELLED)
             cwi_fail_in(err, st, part_name(src, i));
@@ -397,24 +432,44 @@ cw_status cwi_check_limits(const cw_volume *v, size_t bytes, const char *field,
     const uint64_t most = desc->max_voxels ? desc->max_voxels : (uint64_t)1 << 40;
     const uint64_t voxels = bytes / cw_type_size(v->type) / v->components;
     if (voxels > most)
-        return cw_fail(err, CW_ERR_LIMIT, "'%s' asks for %llu voxels; the limit is %llu", field,
+        return cw_fail(err, CW_ERR_LIMIT,
+                       "'%s' asks for %llu voxels; the limit is %llu (--max-voxels)", field,
                        (unsigned long long)voxels, (unsigned long long)most);
     if (desc->max_bytes && bytes > desc->max_bytes)
         return cw_fail(err, CW_ERR_LIMIT,
-                       "'%s' asks for %zu bytes of voxels; the limit is %llu", field, bytes,
-                       (unsigned long long)desc->max_bytes);
+                       "'%s' asks for %zu bytes of voxels; the limit is %llu (--memory)", field,
+                       bytes, (unsigned long long)desc->max_bytes);
     return CW_OK;
 }
 
-static cw_status load_voxels(const cwi_source *src, const cwi_input *in,
-                             const cw_read_desc *desc, cw_volume *volume, cw_error *err)
+/* Sizes, place, strides and bytes of a region in place of those of the whole. */
+static cw_status narrow(const cwi_source *src, const cw_box *region, cwi_source *out,
+                        cw_error *err)
 {
-    cw_volume v = src->shape;
-    v.owned = cwi_alloc_large(src->bytes, 1);
+    cwi_axis axes[CWI_ROLE_COUNT];
+    cw_status st = cwi_volume_shrink(&out->shape, region, err);
+    for (size_t a = 0; a < src->axis_count; a++) {
+        axes[a] = src->axes[a];
+        if (axes[a].role <= CWI_AXIS_Z)
+            axes[a].size = region->count[axes[a].role];
+    }
+    out->size_field = "region";
+    return st == CW_OK ? cwi_source_set_axes(out, axes, src->axis_count, err) : st;
+}
+
+/* `wanted` is the source or, narrowed, a region of it. */
+static cw_status load_voxels(const cwi_source *src, const cwi_source *wanted,
+                             const cwi_input *in, const cw_read_desc *desc, cw_volume *volume,
+                             cw_error *err)
+{
+    cw_volume v = wanted->shape;
+    v.owned = cwi_alloc_large(wanted->bytes, 1);
     if (!v.owned)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of voxels", src->bytes);
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of voxels",
+                       wanted->bytes);
     v.data = v.owned;
-    reading r = {.src = src, .progress = &desc->progress, .voxels = v.owned};
+    reading r = {.src = src, .progress = &desc->progress, .to = v.owned};
+    cwi_runs_plan(&r.runs, src, desc->region);
     cw_status st = walk_parts(src, in, &r, err);
     if (st == CW_OK)
         st = cwi_progress(&desc->progress, "reading", 1, err);
@@ -428,14 +483,17 @@ static cw_status load_voxels(const cwi_source *src, const cwi_input *in,
 cw_status cwi_source_load(const cwi_source *src, const cwi_input *in, const cw_read_desc *desc,
                           cw_volume *volume, cw_error *err)
 {
+    cwi_source wanted = *src; /* its files are borrowed */
     cw_status st = cwi_check_frame(&src->shape, src->frame_field, err);
     if (st == CW_OK)
         st = check_files(src, in, err);
+    if (st == CW_OK && desc->region)
+        st = narrow(src, desc->region, &wanted, err);
     if (st == CW_OK)
-        st = cwi_check_limits(&src->shape, src->bytes, src->size_field, desc, err);
+        st = cwi_check_limits(&wanted.shape, wanted.bytes, wanted.size_field, desc, err);
     if (st == CW_OK && desc->header_only)
-        *volume = src->shape;
+        *volume = wanted.shape;
     else if (st == CW_OK)
-        st = load_voxels(src, in, desc, volume, err);
+        st = load_voxels(src, &wanted, in, desc, volume, err);
     return st;
 }

@@ -15,25 +15,6 @@ typedef enum cwi_encoding {
     CWI_BLOCKS    /* compressed block by block, behind a table */
 } cwi_encoding;
 
-/* A zeroed source describes nothing. Free it with cwi_source_free(). */
-typedef struct cwi_source {
-    cw_volume shape;         /* everything but the voxels; strides as the file has them */
-    size_t bytes;            /* of all voxels; set by cwi_source_set_axes() */
-    const char *size_field;  /* the header's name for the sizes, for messages */
-    const char *frame_field; /* ... and for directions, spacing and origin */
-
-    cwi_names files; /* data files, each with an equal share; none: the header's own file */
-    cwi_encoding encoding;
-    cwi_block_form blocks; /* of CWI_BLOCKS */
-    bool base64;           /* all that is encoded is once more encoded, as text */
-    bool big_endian;
-    uint64_t offset; /* bytes at the start of each file in front of everything else */
-    uint64_t span;   /* bytes of the file behind the offset, voxels among them; 0: all */
-    uint64_t lines;  /* lines behind the offset to leave out */
-    uint64_t skip;   /* decoded bytes in front of the first voxel */
-    bool at_end;     /* raw: the voxels are the last bytes of the file instead */
-} cwi_source;
-
 /* What an axis of the file stands for. */
 typedef enum cwi_role {
     CWI_AXIS_X,
@@ -49,8 +30,29 @@ typedef struct cwi_axis {
     size_t size;
 } cwi_axis;
 
-/* Sets sizes, strides and bytes from the file's axes, the fastest first; roles left out have
- * size 1. shape.type must be set.
+/* A zeroed source describes nothing. Free it with cwi_source_free(). */
+typedef struct cwi_source {
+    cw_volume shape;               /* everything but the voxels; strides as the file has them */
+    size_t bytes;                  /* of all voxels */
+    cwi_axis axes[CWI_ROLE_COUNT]; /* the fastest first; a role stands in it once at most */
+    size_t axis_count;
+    const char *size_field;  /* the header's name for the sizes, for messages */
+    const char *frame_field; /* ... and for directions, spacing and origin */
+
+    cwi_names files; /* data files, each with an equal share; none: the header's own file */
+    cwi_encoding encoding;
+    cwi_block_form blocks; /* of CWI_BLOCKS */
+    bool base64;           /* all that is encoded is once more encoded, as text */
+    bool big_endian;
+    uint64_t offset; /* bytes at the start of each file in front of everything else */
+    uint64_t span;   /* bytes of the file behind the offset, voxels among them; 0: all */
+    uint64_t lines;  /* lines behind the offset to leave out */
+    uint64_t skip;   /* decoded bytes in front of the first voxel */
+    bool at_end;     /* raw: the voxels are the last bytes of the file instead */
+} cwi_source;
+
+/* Sets axes, sizes, strides and bytes from the file's axes, the fastest first; roles left out
+ * have size 1. shape.type must be set.
  * Returns CW_ERR_FORMAT for more than 16 components, CW_ERR_LIMIT when the size overflows. */
 cw_status cwi_source_set_axes(cwi_source *src, const cwi_axis *axes, size_t count,
                               cw_error *err);
@@ -79,9 +81,9 @@ cw_status cwi_check_limits(const cw_volume *shape, size_t bytes, const char *fie
                            const cw_read_desc *desc, cw_error *err);
 
 /* Checks the source against its files and the limits, then reads the voxels (unless
- * desc->header_only). Nothing is allocated before every size is known to be possible.
- * volume   filled on success, else untouched
- * Returns  as cw_volume_read() */
+ * desc->header_only), all of them or desc->region. Nothing is allocated before every size is
+ * known to be possible. volume   filled on success, else untouched Returns  as cw_volume_read()
+ */
 cw_status cwi_source_load(const cwi_source *src, const cwi_input *in, const cw_read_desc *desc,
                           cw_volume *volume, cw_error *err);
 

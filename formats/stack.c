@@ -22,8 +22,9 @@ typedef struct reading {
     const cwi_stack *stack;
     const cwi_input *in;
     cwi_planes *planes;
-    size_t file; /* the one handed over last; SIZE_MAX: none */
-    size_t row_pixels, pixels;
+    size_t file;               /* the one handed over last; SIZE_MAX: none */
+    cw_box box;                /* what is wanted */
+    size_t pixels;             /* wanted of a plane, samples counted */
     unsigned char *low, *high; /* planes as the module gives them */
     char *voxels;
 } reading;
@@ -91,14 +92,27 @@ static cw_status hand_over(reading *r, size_t file, cw_error *err)
     return st;
 }
 
+/* Leaves the wanted columns of rows, one behind another. */
+static void keep_columns(const reading *r, char *rows)
+{
+    const cwi_stack *s = r->stack;
+    const size_t pixel = s->samples * cw_type_size(s->type);
+    const size_t row = s->shape.dim[0] * pixel, kept = r->box.count[0] * pixel;
+    for (size_t j = 0; kept < row && j < r->box.count[1]; j++)
+        memmove(rows + j * kept, rows + j * row + r->box.first[0] * pixel, kept);
+}
+
+/* The wanted rows of a plane; there must be room for whole ones. */
 static cw_status read_plane(reading *r, size_t index, void *to, cw_error *err)
 {
     const cwi_stack *s = r->stack;
     const cwi_plane *plane = &s->planes[index];
     cw_status st = hand_over(r, plane->file, err);
     if (st == CW_OK)
-        st = cwi_planes_read(r->planes, plane->number, 0, s->shape.dim[1],
-                             r->row_pixels * cw_type_size(s->type), to, err);
+        st = cwi_planes_read(r->planes, plane->number, r->box.first[1], r->box.count[1],
+                             s->shape.dim[0] * s->samples * cw_type_size(s->type), to, err);
+    if (st == CW_OK)
+        keep_columns(r, to);
     return st == CW_OK || st == CW_ERR_CANCELLED
                ? st
                : cwi_fail_in(err, st, s->files.items[plane->file]);
@@ -115,13 +129,21 @@ static bool is_plain(const cwi_stack *s, const cwi_slot *slot)
 static cw_status read_slot(reading *r, const cwi_slot *slot, cw_error *err)
 {
     const cwi_stack *s = r->stack;
-    char *to = r->voxels + slot->place * r->pixels * cw_type_size(s->shape.type);
-    if (is_plain(s, slot))
+    const size_t slices = s->shape.dim[2], z = slot->place % slices - r->box.first[2];
+    const size_t place = slot->place / slices * r->box.count[2] + z,
+                 bytes = r->pixels * cw_type_size(s->shape.type);
+    char *to = r->voxels + place * bytes;
+    const bool plain = is_plain(s, slot);
+    if (z >= r->box.count[2]) /* in front of it, too */
+        return CW_OK;
+    if (plain && r->box.count[0] == s->shape.dim[0])
         return read_plane(r, slot->low, to, err);
     cw_status st = read_plane(r, slot->low, r->low, err);
     if (st == CW_OK && slot->t > 0)
         st = read_plane(r, slot->high, r->high, err);
-    if (st == CW_OK && slot->label)
+    if (st == CW_OK && plain)
+        memcpy(to, r->low, bytes);
+    else if (st == CW_OK && slot->label)
         put_label(r, slot, to);
     else if (st == CW_OK)
         put_values(r, slot, to);
@@ -150,15 +172,15 @@ static bool count_bytes(const cw_volume *v, size_t *bytes)
            cwi_size_mul(*bytes, cw_type_size(v->type), bytes) && *bytes <= PTRDIFF_MAX;
 }
 
-static cw_status load_voxels(const cwi_stack *s, size_t bytes, reading *r,
-                             const cw_read_desc *desc, cw_volume *volume, cw_error *err)
+/* `v` is the stack's shape or a region of it. */
+static cw_status load_voxels(cw_volume v, size_t bytes, reading *r, const cw_read_desc *desc,
+                             cw_volume *volume, cw_error *err)
 {
-    cw_volume v = s->shape;
-    const size_t pixel = cw_type_size(s->type);
-    r->row_pixels = v.dim[0] * s->samples;
-    r->pixels = r->row_pixels * v.dim[1];
-    r->low = cwi_alloc_array(r->pixels, pixel);
-    r->high = cwi_alloc_array(r->pixels, pixel);
+    const cwi_stack *s = r->stack;
+    const size_t row = s->shape.dim[0] * s->samples * cw_type_size(s->type);
+    r->pixels = v.dim[0] * v.dim[1] * s->samples;
+    r->low = cwi_alloc_array(v.dim[1], row);
+    r->high = cwi_alloc_array(v.dim[1], row);
     v.owned = cwi_alloc_large(bytes, 1);
     r->voxels = v.owned;
     cw_status st = CW_OK;
@@ -178,19 +200,44 @@ static cw_status load_voxels(const cwi_stack *s, size_t bytes, reading *r,
     return st;
 }
 
+/* The shape of a region: strides shrink as sizes do. */
+static cw_status narrow(cw_volume *v, const cw_box *region, cw_error *err)
+{
+    const ptrdiff_t plane = v->stride[2], all = plane * (ptrdiff_t)v->dim[2];
+    cw_status st = cwi_volume_shrink(v, region, err);
+    if (st != CW_OK)
+        return st;
+    v->stride[1] = v->stride[0] * (ptrdiff_t)v->dim[0];
+    v->stride[2] = v->stride[1] * (ptrdiff_t)v->dim[1];
+    const ptrdiff_t shrunk = v->stride[2] * (ptrdiff_t)v->dim[2];
+    v->step_stride = v->step_stride / all * shrunk;
+    if (v->component_stride >= plane) /* components in planes of their own */
+        v->component_stride = v->component_stride / all * shrunk;
+    return CW_OK;
+}
+
 cw_status cwi_stack_load(const cwi_stack *stack, const cwi_input *in, cwi_planes *planes,
                          const cw_read_desc *desc, cw_volume *volume, cw_error *err)
 {
     size_t bytes;
-    reading r = {.stack = stack, .in = in, .planes = planes, .file = SIZE_MAX};
-    if (!count_bytes(&stack->shape, &bytes))
+    cw_volume v = stack->shape;
+    const cw_box whole = {.count = {v.dim[0], v.dim[1], v.dim[2]}};
+    reading r = {.stack = stack,
+                 .in = in,
+                 .planes = planes,
+                 .file = SIZE_MAX,
+                 .box = desc->region ? *desc->region : whole};
+    cw_status st = desc->region ? narrow(&v, desc->region, err) : CW_OK;
+    if (st != CW_OK)
+        return st;
+    if (!count_bytes(&v, &bytes))
         return cw_fail(err, CW_ERR_LIMIT,
                        "'%s' asks for more voxels than an address space holds",
                        stack->size_field);
-    cw_status st = cwi_check_limits(&stack->shape, bytes, stack->size_field, desc, err);
+    st = cwi_check_limits(&v, bytes, desc->region ? "region" : stack->size_field, desc, err);
     if (st == CW_OK && desc->header_only)
-        *volume = stack->shape;
+        *volume = v;
     else if (st == CW_OK)
-        st = load_voxels(stack, bytes, &r, desc, volume, err);
+        st = load_voxels(v, bytes, &r, desc, volume, err);
     return st;
 }

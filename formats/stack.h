@@ -14,7 +14,7 @@ typedef struct cwi_plane {
 
 /* One plane of the result: (1 - t) low + t high. */
 typedef struct cwi_slot {
-    size_t place;     /* in the result: planes lie one behind another */
+    size_t place;     /* in the result, where planes lie one behind another: z varies fastest */
     size_t low, high; /* planes */
     double t;         /* 0: low as it is */
     uint32_t label;   /* not 0: stored where the plane's pixels are not 0 */

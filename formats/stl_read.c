@@ -51,7 +51,8 @@ static cw_status limit_memory(const facets *f, cw_error *err)
     const uint64_t welder = 12 * (uint64_t)f->welder.room + 4 * (uint64_t)f->welder.slots;
     if (!limit || f->in->bytes + welder <= limit)
         return CW_OK;
-    return cw_fail(err, CW_ERR_LIMIT, "the mesh needs more memory than the %llu bytes allowed",
+    return cw_fail(err, CW_ERR_LIMIT,
+                   "the mesh needs more memory than the %llu bytes allowed (--memory)",
                    (unsigned long long)limit);
 }
 

@@ -7,7 +7,8 @@
 
 #include <string.h>
 
-enum { BUFFER_BYTES = 1 << 16, DRAIN_BYTES = 1 << 16 };
+/* What inflates may take some bytes ahead, and give them back when the data are over. */
+enum { BUFFER_BYTES = 1 << 16, DRAIN_BYTES = 1 << 16, AHEAD_BYTES = 8 };
 
 static voidpf zlib_alloc(voidpf unused, uInt items, uInt size)
 {
@@ -102,13 +103,34 @@ static cw_status fetch(cwi_stream *s, void *to, size_t size, size_t *got, cw_err
     return s->text ? fetch_base64(s, to, size, got, err) : fetch_plain(s, to, size, got, err);
 }
 
-/* Puts more of the file behind what is still to be inflated. */
+/* Puts more of the file behind what is still to be inflated, and behind the bytes before it
+ * that may be given back. */
 static cw_status refill(cwi_stream *s, size_t *got, cw_error *err)
 {
-    memmove(s->buffer, s->z.next_in, s->z.avail_in);
-    s->z.next_in = s->buffer;
-    cw_status st = fetch(s, s->buffer + s->z.avail_in, BUFFER_BYTES - s->z.avail_in, got, err);
+    const size_t used = (size_t)(s->z.next_in - s->buffer);
+    const size_t kept = used < AHEAD_BYTES ? used : AHEAD_BYTES, held = kept + s->z.avail_in;
+    memmove(s->buffer, s->z.next_in - kept, held);
+    s->z.next_in = s->buffer + kept;
+    cw_status st = fetch(s, s->buffer + held, BUFFER_BYTES - held, got, err);
     s->z.avail_in += (uInt)*got;
+    return st;
+}
+
+/* Behind compressed data that end before their file only zeros may stand, with which tapes and
+ * some tools fill up their blocks. */
+static cw_status check_padding(cwi_stream *s, cw_error *err)
+{
+    size_t got = 1;
+    cw_status st = CW_OK;
+    while (st == CW_OK && got > 0) {
+        for (; s->z.avail_in > 0; s->z.avail_in--, s->z.next_in++)
+            if (*s->z.next_in)
+                return cw_fail(err, CW_ERR_FORMAT,
+                               "byte %llu of the file is behind the end of the compressed data "
+                               "and not zero",
+                               (unsigned long long)(s->offset - s->z.avail_in));
+        st = refill(s, &got, err);
+    }
     return st;
 }
 
@@ -214,17 +236,18 @@ cw_status cwi_stream_skip(cwi_stream *s, uint64_t size, cw_error *err)
 cw_status cwi_stream_finish(cwi_stream *s, cw_error *err)
 {
     unsigned char waste[4096];
-    size_t got = sizeof waste;
+    size_t got;
     cw_status st = CW_OK;
     if (!s->deflated)
         return CW_OK;
-    for (size_t n = 0; st == CW_OK && !s->ended && n < DRAIN_BYTES; n += got)
+    const uint64_t enough = s->given + (s->given > DRAIN_BYTES ? s->given : DRAIN_BYTES);
+    while (st == CW_OK && !s->ended && s->given < enough)
         st = cwi_stream_some(s, waste, sizeof waste, &got, err);
     if (st == CW_OK && s->truncated)
         return cw_fail(err, CW_ERR_FORMAT,
                        "the compressed data break off after %llu bytes, before their checksum",
                        (unsigned long long)s->given);
-    return st;
+    return st == CW_OK && s->ended ? check_padding(s, err) : st;
 }
 
 cw_status cwi_stream_head(int fd, void *to, size_t size, size_t *got, bool *gzipped,

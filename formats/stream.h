@@ -52,8 +52,10 @@ CW_API cw_status cwi_stream_read(cwi_stream *s, void *to, size_t size, cw_error 
 /* Leaves out bytes; there may turn out to be fewer only when the next are read. */
 CW_API cw_status cwi_stream_skip(cwi_stream *s, uint64_t size, cw_error *err);
 
-/* Reads on to the checksum of compressed data, which must be there and right. A stream that has
- * more than 64 KiB left is let be: its end is not what was asked for. */
+/* Reads on to the checksum of compressed data, which must be there and right, and to the end of
+ * the file, up to which only zeros may follow. A stream that has more left than was read of it,
+ * and more than 64 KiB, is let be: its end is not what was asked for.
+ * Returns CW_ERR_FORMAT, naming the byte of the file that should not be there; CW_ERR_IO. */
 CW_API cw_status cwi_stream_finish(cwi_stream *s, cw_error *err);
 
 /* Reads the first bytes of a file, inflated when it is a gzip file; *got is less where it ends.

@@ -187,14 +187,18 @@ void cwi_note(const cw_read_desc *desc, const char *format, ...)
     desc->note(desc->note_user, text);
 }
 
-/* Stretches the axes; directions and origin stay. */
-static void set_spacing(cw_volume *v, const double wanted[3])
+/* Stretches the axes; directions stay, and so does the first voxel of the whole volume. */
+static void set_spacing(cw_volume *v, const double wanted[3], const cw_box *region)
 {
     double spacing[3];
     cw_volume_spacing(v, spacing);
     for (int c = 0; c < 3; c++)
-        for (int r = 0; r < 3; r++)
-            v->affine[r][c] *= wanted[c] / spacing[c];
+        for (int r = 0; r < 3; r++) {
+            const double before = v->affine[r][c], now = before * (wanted[c] / spacing[c]);
+            v->affine[r][c] = now;
+            if (region)
+                v->affine[r][3] += (now - before) * (double)region->first[c];
+        }
     v->known |= CW_KNOWN_UNIT;
 }
 
@@ -242,7 +246,7 @@ cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *
     else if (st == CW_OK)
         st = read_source(&o, desc, volume, err);
     if (st == CW_OK && desc->spacing_mm[0] > 0)
-        set_spacing(volume, desc->spacing_mm);
+        set_spacing(volume, desc->spacing_mm, desc->region);
     if (format)
         *format = o.reader ? o.reader->name : desc->raw ? "raw" : NULL;
     close_path(&o);

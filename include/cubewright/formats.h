@@ -40,6 +40,7 @@ typedef struct cw_read_desc {
     const cw_raw_layout *raw; /* read as headerless bytes laid out so; default: by header */
     bool header_only;         /* leave data NULL: everything else is filled in */
     bool allow_external;      /* data files outside the header's folder; default: refused */
+    const cw_box *region;     /* only these voxels, x y z; default: all */
     uint64_t max_voxels;      /* default 2^40 */
     uint64_t max_bytes;       /* of voxels in memory; default: no limit */
     double spacing_mm[3];     /* in place of the file's; default: all 0, the file's */
@@ -61,7 +62,7 @@ typedef struct cw_read_desc {
     cw_progress progress; /* default: none */
 } cw_read_desc;
 
-/* Reads a volume: the whole file, every component and time step.
+/* Reads a volume: the whole file or a region of it, every component and time step.
  *
  * path is a file, a folder of slices, or a pattern such as "scan/slice_*.tif" that names them;
  * numbers in their names count as numbers. With a layout (raw), each has an equal share of the
@@ -70,6 +71,11 @@ typedef struct cw_read_desc {
  * The header is checked against the file's true size before anything is allocated. Voxels keep
  * their type and numbers; only byte order is mended. Direction, origin and spacing arrive in
  * the affine as the file states them, turned to LPS millimetres.
+ *
+ * A region is what cw_volume_crop() would leave of the whole, and takes memory for itself
+ * alone. The file is read up to its last voxel: uncompressed data are passed over where they
+ * are not wanted, compressed ones inflated and dropped, and then the checksum at their end is
+ * verified only if the region reaches it.
  *
  * format   set to the reader's name (static); may be NULL
  * Returns  CW_ERR_IO           missing, not a regular file, unreadable
@@ -80,7 +86,8 @@ typedef struct cw_read_desc {
  *          CW_ERR_UNSUPPORTED  compressed with a library that is not in this build
  *          CW_ERR_BACKEND      a library died of the file, or took too long
  *          CW_ERR_LIMIT        more voxels or bytes than allowed; CW_ERR_NO_MEMORY
- *          CW_ERR_ARGUMENT     no such reader; CW_ERR_CANCELLED */
+ *          CW_ERR_ARGUMENT     no such reader; a region that is empty or leaves the volume;
+ *                              CW_ERR_CANCELLED */
 CW_API cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *volume,
                                 const char **format, cw_error *err);
 

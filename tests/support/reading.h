@@ -6,6 +6,7 @@
 #include "core/memory.h"
 #include "support/support.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <zlib.h>
@@ -57,22 +58,61 @@ static inline void check_affine(const cw_volume *volume, const double *wanted)
                          wanted[4 * r + c]);
 }
 
-/* Cut behind any of its bytes, the file gives an error and no volume. */
-static inline void check_every_cut(const char *name)
+/* Cut behind any of its bytes, from one on, a file that the header named gives an error and no
+ * volume. */
+static inline void check_cuts(const char *header, const char *data, size_t from)
 {
     size_t size;
-    char *bytes = test_file_read(test_path(name), &size);
-    for (size_t cut = 0; cut < size; cut++) {
+    char *bytes = test_file_read(test_path(data), &size);
+    for (size_t cut = from; cut < size; cut++) {
         cw_volume volume;
         cw_error err = {0};
-        test_file_write(test_path(name), bytes, cut);
-        const cw_status st = read_back(name, &volume, &err);
+        test_file_write(test_path(data), bytes, cut);
+        const cw_status st = read_back(header, &volume, &err);
         if (st != (cut ? CW_ERR_FORMAT : CW_ERR_IO))
-            fail_msg("%s, %zu of %zu bytes: status %d, %s", name, cut, size, (int)st,
+            fail_msg("%s, %zu of %zu bytes: status %d, %s", data, cut, size, (int)st,
                      st == CW_OK ? "it was read" : err.message);
         assert_null(volume.data);
     }
-    test_file_write(test_path(name), bytes, size);
+    test_file_write(test_path(data), bytes, size);
+    free(bytes);
+}
+
+static inline void check_every_cut(const char *name)
+{
+    check_cuts(name, name, 0);
+}
+
+/* Compressed data reach to the end of a file that the header named: zeros behind them change
+ * nothing, anything else is told by its place; and their checksum is looked at. */
+static inline void check_tail(const char *header, const char *data)
+{
+    size_t size;
+    cw_volume none;
+    cw_error damaged = {0};
+    char words[40], *bytes = test_file_read(test_path(data), &size);
+    bytes = realloc(bytes, size + 512);
+    assert_non_null(bytes);
+    memset(bytes + size, 0, 512);
+    for (int spoilt = 0; spoilt < 2; spoilt++) {
+        cw_volume volume;
+        cw_error err = {0};
+        bytes[size + 300] = (char)spoilt;
+        snprintf(words, sizeof words, "byte %zu of the file is behind", size + 300);
+        test_file_write(test_path(data), bytes, size + 512);
+        const cw_status st = read_back(header, &volume, &err);
+        if (spoilt)
+            assert_fails(st, CW_ERR_FORMAT, words, err);
+        else
+            assert_ok(st, err);
+        cw_volume_free(&volume);
+    }
+    bytes[size - 1] ^= 1;
+    test_file_write(test_path(data), bytes, size);
+    assert_fails(read_back(header, &none, &damaged), CW_ERR_FORMAT,
+                 "the compressed data are damaged", damaged);
+    bytes[size - 1] ^= 1;
+    test_file_write(test_path(data), bytes, size);
     free(bytes);
 }
 
@@ -88,13 +128,13 @@ static inline void check_told(const char *name, size_t index, const char *words)
 }
 
 /* Whatever allocation fails, the reader says so and leaves nothing behind. */
-static inline void check_starved_reads(const char *name)
+static inline void check_starved(const char *name, const cw_read_desc *desc)
 {
     for (long n = 0;; n++) {
         cw_volume volume;
         cw_error err = {0};
         cwi_alloc_fail_after(n);
-        const cw_status st = read_back(name, &volume, &err);
+        const cw_status st = cw_volume_read(test_path(name), desc, &volume, NULL, &err);
         if (!cwi_alloc_fail_after(-1)) {
             assert_ok(st, err);
             cw_volume_free(&volume);
@@ -104,6 +144,11 @@ static inline void check_starved_reads(const char *name)
         assert_fails(st, CW_ERR_NO_MEMORY, "no memory", err);
         assert_null(volume.data);
     }
+}
+
+static inline void check_starved_reads(const char *name)
+{
+    check_starved(name, NULL);
 }
 
 #endif

@@ -1,6 +1,7 @@
 #define _GNU_SOURCE /* symlink */
 #include "support/dicom.h"
 #include "support/reading.h"
+#include "support/regions.h"
 
 #include "core/module.h"
 
@@ -717,6 +718,36 @@ static void here_or_in_a_sandbox_is_the_same(void **state)
     cw_volume_free(&b);
 }
 
+/* Of plain slices, made ones, values, steps and labels. */
+static void regions_are_crops(void **state)
+{
+    (void)state;
+    const double gap[] = {0, 2.5, 7.5, 10};
+    write_row(&oblique, gap, 4, 0.1);
+    check_regions("", &(cw_read_desc){.gaps = CW_GAPS_ALLOW});
+    check_regions("", &(cw_read_desc){.gaps = CW_GAPS_INTERPOLATE, .spacing_mm = {1, 2, 3}});
+    test_folder_remove(NULL);
+    test_folder_make(NULL);
+    for (int n = 0; n < 6; n++) {
+        char name[16], place[16];
+        snprintf(name, sizeof name, "%d", n);
+        snprintf(place, sizeof place, "0\\0\\%d", n % 3);
+        test_image_write(&(test_image){.instance = n,
+                                       .samples = 3,
+                                       .bits = 8,
+                                       .position = place,
+                                       .slope = n ? "0.5" : "0.25"},
+                         name);
+    }
+    check_regions("", NULL);
+    test_folder_remove(NULL);
+    test_folder_make(NULL);
+    const frame frames[] = {{"0\\0\\0", NULL, 3}, {"0\\0\\6", NULL, 3}, {"0\\0\\2", NULL, 1}};
+    const uint8_t bits[5] = {0x5f, 0xf0, 0xa7, 0x3c, 0x81};
+    write_frames("seg.dcm", true, frames, 3, bits, sizeof bits);
+    check_regions("", NULL);
+}
+
 static void starved_reads_fail_cleanly(void **state)
 {
     (void)state;
@@ -753,6 +784,7 @@ int main(void)
         TEST(what_is_no_image_is_told),
         TEST(links_are_left_out),
         TEST(here_or_in_a_sandbox_is_the_same),
+        TEST(regions_are_crops),
         TEST(starved_reads_fail_cleanly),
     };
     if (!cwi_module_present("dicom")) {

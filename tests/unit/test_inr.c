@@ -1,4 +1,5 @@
 #include "support/reading.h"
+#include "support/regions.h"
 
 #include <stdio.h>
 
@@ -86,10 +87,10 @@ static void values_of_a_voxel_are_interleaved(void **state)
     cw_volume_free(&v);
 }
 
-static void gzipped(const char *name)
+static void gzip_lines(const char *name, const char *lines)
 {
     unsigned char all[2048];
-    const char *header = fill(U8);
+    const char *header = fill(lines);
     const size_t length = strlen(header);
     size_t size;
     memcpy(all, header, length);
@@ -97,6 +98,11 @@ static void gzipped(const char *name)
     unsigned char *packed = pack_bytes(all, length + sizeof counting, true, &size);
     put_file(name, "", packed, size);
     free(packed);
+}
+
+static void gzipped(const char *name)
+{
+    gzip_lines(name, U8);
 }
 
 static void gzip_files_are_found_by_what_is_in_them(void **state)
@@ -109,6 +115,7 @@ static void gzip_files_are_found_by_what_is_in_them(void **state)
     assert_ok(cw_volume_read(test_path("a.bin"), NULL, &v, &format, &err), err);
     assert_string_equal(format, "inr");
     assert_memory_equal(v.data, counting, sizeof counting);
+    check_regions("a.bin", NULL);
     cw_volume_free(&v);
 }
 
@@ -165,6 +172,28 @@ static void damaged_headers_are_told_key_by_key(void **state)
     check_told("a.inr", 100, "the first line is not '#INRIMAGE-4#{'");
     put_file("a.inr", "#INRIMAGE-4#{\nXDIM=2\n##}\n", counting, sizeof counting);
     check_told("a.inr", 101, "does not end with '##}' at a multiple of 256 bytes");
+    gzip_lines("a.inr.gz", "XDIM=2147483647\nYDIM=2147483647\nZDIM=1\nTYPE=unsigned fixed\n"
+                           "PIXSIZE=8 bits\n");
+    check_told("a.inr.gz", 102, "asks for 4611686014132420609 bytes of voxels, encoded");
+    put_file("a.inr",
+             fill("XDIM=2147483647\nYDIM=2147483647\nZDIM=9\nTYPE=unsigned fixed\n"
+                  "PIXSIZE=8 bits\n"),
+             counting, 12);
+    check_told("a.inr", 103, "more voxels than an address space holds");
+}
+
+static void endless_headers_are_cut_off(void **state)
+{
+    (void)state;
+    enum { SIZE = 3 << 20 };
+    char *lines = malloc(SIZE);
+    assert_non_null(lines);
+    memset(lines, '#', SIZE);
+    for (size_t i = 99; i < SIZE; i += 100)
+        lines[i] = '\n';
+    put_file("a.inr", "#INRIMAGE-4#{\n", lines, SIZE);
+    check_told("a.inr", 0, "does not end with '##}' at a multiple of 256 bytes");
+    free(lines);
 }
 
 static void a_zero_in_the_header_is_named(void **state)
@@ -178,13 +207,14 @@ static void a_zero_in_the_header_is_named(void **state)
     check_told("a.inr", 0, "the header holds a zero byte");
 }
 
-static void a_cut_is_never_a_volume(void **state)
+static void neither_a_cut_nor_a_tail_is_a_volume(void **state)
 {
     (void)state;
     put_file("a.inr", fill(U8), counting, sizeof counting);
     check_every_cut("a.inr");
     gzipped("a.inr.gz");
     check_every_cut("a.inr.gz");
+    check_tail("a.inr.gz", "a.inr.gz");
 }
 
 static void memory_may_run_out_anywhere(void **state)
@@ -204,8 +234,9 @@ int main(void)
         TEST(gzip_files_are_found_by_what_is_in_them),
         TEST(headers_may_be_long),
         TEST(damaged_headers_are_told_key_by_key),
+        TEST(endless_headers_are_cut_off),
         TEST(a_zero_in_the_header_is_named),
-        TEST(a_cut_is_never_a_volume),
+        TEST(neither_a_cut_nor_a_tail_is_a_volume),
         TEST(memory_may_run_out_anywhere),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,6 +1,9 @@
+#define _GNU_SOURCE /* symlink */
 #include "support/reading.h"
+#include "support/regions.h"
 
 #include <stdio.h>
+#include <unistd.h>
 
 static const uint8_t counting[12] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
 
@@ -123,6 +126,7 @@ static void byte_orders_and_encodings_give_the_same_numbers(void **state)
         put_file("a.mha", header, cases[i].bytes, cases[i].size);
         assert_ok(read_back("a.mha", &v, &err), err);
         assert_memory_equal(v.data, wanted, sizeof wanted);
+        check_regions("a.mha", NULL);
         cw_volume_free(&v);
     }
     free(zlib);
@@ -178,6 +182,7 @@ static void voxels_may_lie_in_files_of_their_own(void **state)
         put_file("a.mhd", headers[i], NULL, 0);
         assert_ok(read_back("a.mhd", &v, &err), err);
         assert_memory_equal(v.data, counting, sizeof counting);
+        check_regions("a.mhd", NULL);
         cw_volume_free(&v);
     }
 }
@@ -227,6 +232,85 @@ static void damaged_headers_are_told_key_by_key(void **state)
     }
 }
 
+static void a_cut_is_never_a_volume(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *header, *text;
+    } cases[] = {
+        {U8_3D LOCAL, NULL},
+        {U8_3D "CompressedData = True\n" LOCAL, NULL},
+        {U8_3D "BinaryData = False\n" LOCAL, "0 1 2 3 4 5 6 7 8 9 10 1"},
+    };
+    size_t size;
+    unsigned char *packed = pack_bytes(counting, 12, false, &size);
+    for (size_t i = 0; i < 3; i++) {
+        const void *bytes[] = {counting, packed, cases[i].text};
+        put_file("a.mha", cases[i].header, bytes[i], i == 0 ? 12 : i == 1 ? size : 24);
+        check_cuts("a.mha", "a.mha", strlen(cases[i].header));
+    }
+    put_file("a.zraw", "", packed, size);
+    put_file("a.mhd", U8_3D "CompressedData = True\nElementDataFile = a.zraw\n", NULL, 0);
+    check_cuts("a.mhd", "a.zraw", 0);
+    free(packed);
+}
+
+static void lying_sizes_are_told_before_memory_is_taken(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *fields, *words;
+    } cases[] = {
+        {"DimSize = 2147483647 2147483647 1\n", "asks for 4611686014132420609 bytes of voxels"},
+        {"DimSize = 2147483647 2147483647 1\nCompressedData = True\n",
+         "asks for 4611686014132420609 bytes of voxels, encoded"},
+        {"DimSize = 2147483647 2147483647 1\nBinaryData = False\n",
+         "asks for 4611686014132420609 bytes of voxels, encoded"},
+        {"DimSize = 2147483647 2147483647 9\n", "more voxels than an address space holds"},
+        {"DimSize = 2147483648 1 1\n", "'DimSize' holds 2147483648"},
+    };
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char header[300];
+        snprintf(header, sizeof header, "NDims = 3\nElementType = MET_UCHAR\n%s" LOCAL,
+                 cases[i].fields);
+        put_file("a.mha", header, counting, 12);
+        check_told("a.mha", i, cases[i].words);
+    }
+}
+
+static void data_files_stay_in_the_headers_folder(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *name, *words;
+    } cases[] = {
+        {"/etc/passwd", "an absolute path"}, {"LIST\n../x.raw\nx.raw", "a path with '..'"},
+        {"http://x.org/x", "an address"},    {"x%2e%2e.raw", "needs one %d"},
+        {"link.raw", "a symbolic link"},
+    };
+    put_file("x.raw", "", counting, 12);
+    assert_int_equal(symlink("x.raw", test_path("link.raw")), 0);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        char header[300];
+        snprintf(header, sizeof header, U8_3D "ElementDataFile = %s\n", cases[i].name);
+        put_file("a.mhd", header, NULL, 0);
+        check_told("a.mhd", i, cases[i].words);
+    }
+}
+
+static void nothing_but_zeros_may_follow_zlib_data(void **state)
+{
+    (void)state;
+    size_t size;
+    unsigned char *packed = pack_bytes(counting, 12, false, &size);
+    put_file("a.mha", U8_3D "CompressedData = True\n" LOCAL, packed, size);
+    check_tail("a.mha", "a.mha");
+    put_file("a.zraw", "", packed, size);
+    put_file("a.mhd", U8_3D "CompressedData = True\nElementDataFile = a.zraw\n", NULL, 0);
+    check_tail("a.mhd", "a.zraw");
+    free(packed);
+}
+
 static void memory_may_run_out_anywhere(void **state)
 {
     (void)state;
@@ -250,6 +334,10 @@ int main(void)
         TEST(every_type_has_its_name),
         TEST(voxels_may_lie_in_files_of_their_own),
         TEST(damaged_headers_are_told_key_by_key),
+        TEST(a_cut_is_never_a_volume),
+        TEST(lying_sizes_are_told_before_memory_is_taken),
+        TEST(data_files_stay_in_the_headers_folder),
+        TEST(nothing_but_zeros_may_follow_zlib_data),
         TEST(memory_may_run_out_anywhere),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,4 +1,5 @@
 #include "support/reading.h"
+#include "support/regions.h"
 
 #include <stdio.h>
 
@@ -117,6 +118,7 @@ static void modes_byte_orders_and_packings_give_the_same_numbers(void **state)
             const double wanted = (double)i - 3 + (v.type == CW_U16 && i < 3 ? 65536 : 0);
             assert_true(cw_volume_value(&v, i % 2, i / 2 % 3, i / 6) == wanted);
         }
+        check_regions("a.bin", NULL);
         cw_volume_free(&v);
         free(packed);
     }
@@ -143,6 +145,20 @@ static void axes_may_come_in_any_order(void **state)
     assert_true(cw_volume_value(&v, 0, 1, 0) == 3);  /* the second section */
     assert_true(cw_volume_value(&v, 0, 0, 1) == -2); /* the second column */
     cw_volume_free(&v);
+}
+
+static void regions_are_crops_in_every_order_of_axes(void **state)
+{
+    (void)state;
+    for (int32_t n = 0; n < 6; n++) {
+        map m = make_map(1, 2);
+        const int32_t first = n / 2, second = (first + 1 + n % 2) % 3;
+        const int32_t order[3] = {first, second, 3 - first - second};
+        for (size_t a = 0; a < 3; a++)
+            put_word(&m, 64 + 4 * a, order[a] + 1);
+        save(&m, "a.map");
+        check_regions("a.map", NULL);
+    }
 }
 
 static void places_are_origin_words_else_start_words(void **state)
@@ -292,7 +308,25 @@ static void damaged_headers_are_told_field_by_field(void **state)
     }
 }
 
-static void a_cut_is_never_a_volume(void **state)
+/* A small gzip file cannot hold many voxels, whatever its header says. */
+static void bombs_are_refused_before_memory_is_taken(void **state)
+{
+    (void)state;
+    map m = make_map(1, 2);
+    size_t size;
+    for (size_t at = 0; at < 8; at += 4)
+        put_word(&m, at, 0x7fffffff);
+    put_word(&m, 8, 1);
+    unsigned char *packed = pack_bytes(m.bytes, m.size, true, &size);
+    put_file("a.map.gz", "", packed, size);
+    check_told("a.map.gz", 0, "asks for 9223372028264841218 bytes of voxels, encoded");
+    put_word(&m, 8, 0x7fffffff);
+    save(&m, "a.map");
+    check_told("a.map", 1, "more voxels than an address space holds");
+    free(packed);
+}
+
+static void neither_a_cut_nor_a_tail_is_a_volume(void **state)
 {
     (void)state;
     map m = make_map(1, 2);
@@ -302,6 +336,7 @@ static void a_cut_is_never_a_volume(void **state)
     check_every_cut("a.mrc");
     put_file("a.map.gz", "", packed, size);
     check_every_cut("a.map.gz");
+    check_tail("a.map.gz", "a.map.gz");
     free(packed);
 }
 
@@ -322,6 +357,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         TEST(modes_byte_orders_and_packings_give_the_same_numbers),
         TEST(axes_may_come_in_any_order),
+        TEST(regions_are_crops_in_every_order_of_axes),
         TEST(places_are_origin_words_else_start_words),
         TEST(imod_says_whether_bytes_are_signed),
         TEST(cells_may_be_oblique),
@@ -330,7 +366,8 @@ int main(void)
         TEST(stacks_of_volumes_are_steps),
         TEST(extended_headers_are_left_out),
         TEST(damaged_headers_are_told_field_by_field),
-        TEST(a_cut_is_never_a_volume),
+        TEST(bombs_are_refused_before_memory_is_taken),
+        TEST(neither_a_cut_nor_a_tail_is_a_volume),
         TEST(memory_may_run_out_anywhere),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

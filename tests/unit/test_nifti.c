@@ -1,8 +1,11 @@
+#define _GNU_SOURCE /* symlink */
 #include "formats/nifti.h"
 #include "support/reading.h"
+#include "support/regions.h"
 
 #include <math.h>
 #include <stdio.h>
+#include <unistd.h>
 
 /* A NIfTI file in memory: header, four zero bytes, voxels. */
 typedef struct nifti_file {
@@ -102,6 +105,7 @@ static void both_versions_byte_orders_and_packings_are_the_same(void **state)
         check_affine(&v, (const double[12]){-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0});
         for (size_t i = 0; i < 12; i++)
             assert_true(cw_volume_value(&v, i % 2, i / 2 % 3, i / 6) == (double)i);
+        check_regions(name, NULL);
         cw_volume_free(&v);
     }
 }
@@ -269,6 +273,11 @@ static void a_pair_of_files_is_one_volume(void **state)
     assert_ok(read_back("head.hdr", &v, &err), err);
     assert_true(cw_volume_value(&v, 1, 2, 1) == 11);
     cw_volume_free(&v);
+    check_cuts("head.hdr", "head.img", 0);
+    assert_int_equal(rename(test_path("head.img"), test_path("other.img")), 0);
+    assert_fails(read_back("head.hdr", &v, &err), CW_ERR_IO, "head.img: cannot be opened", err);
+    assert_int_equal(symlink("other.img", test_path("head.img")), 0);
+    assert_fails(read_back("head.hdr", &v, &err), CW_ERR_UNSAFE, "a symbolic link", err);
     put_file("head.nii", "", f.bytes, 348);
     assert_fails(read_back("head.nii", &v, &err), CW_ERR_FORMAT, "must be named .hdr", err);
 }
@@ -314,6 +323,34 @@ static void impossible_fields_are_named(void **state)
     }
 }
 
+static void directions_in_one_plane_are_refused(void **state)
+{
+    (void)state;
+    nifti_file f = make_nifti(1);
+    put(&f, CWI_NIFTI_SROW, 1, 1); /* y runs as x does */
+    put(&f, CWI_NIFTI_SROW, 5, 0);
+    save(&f, "a.nii");
+    check_told("a.nii", 0, "'srow' gives directions that lie in one plane");
+}
+
+/* NIfTI-2 counts in 64 bits. */
+static void sizes_beyond_memory_are_refused(void **state)
+{
+    (void)state;
+    nifti_file f = make_nifti(2);
+    for (int d = 1; d < 4; d++)
+        put(&f, CWI_NIFTI_DIM, d, 2147483647);
+    save(&f, "a.nii");
+    check_told("a.nii", 0, "'dim' asks for more voxels than an address space holds");
+    put(&f, CWI_NIFTI_DIM, 3, 1);
+    save(&f, "a.nii");
+    check_told("a.nii", 1,
+               "'dim' asks for 9223372028264841218 bytes of voxels; the file holds");
+    put(&f, CWI_NIFTI_DIM, 1, 2147483648);
+    save(&f, "a.nii");
+    check_told("a.nii", 2, "'dim[1]' is 2147483648");
+}
+
 static void impossible_spacings_and_quaternions_are_named(void **state)
 {
     (void)state;
@@ -349,6 +386,18 @@ static void what_only_looks_like_nifti_is_told_apart(void **state)
     assert_fails(read_back("short.nii", &v, &err), CW_ERR_FORMAT, "ends after 100 of 348", err);
 }
 
+static void a_cut_is_never_a_volume(void **state)
+{
+    (void)state;
+    for (int version = 1; version < 3; version++) {
+        const nifti_file f = make_nifti(version);
+        save(&f, "a.nii");
+        check_every_cut("a.nii");
+        save_gzipped(&f, "a.nii.gz");
+        check_every_cut("a.nii.gz");
+    }
+}
+
 static void broken_gzip_is_an_error(void **state)
 {
     (void)state;
@@ -357,6 +406,8 @@ static void broken_gzip_is_an_error(void **state)
     cw_error err = {0};
     size_t size;
     unsigned char *packed = pack_bytes(f.bytes, f.size, true, &size);
+    put_file("a.nii.gz", "", packed, size);
+    check_tail("a.nii.gz", "a.nii.gz");
     put_file("cut.nii.gz", "", packed, size - 1);
     assert_fails(read_back("cut.nii.gz", &v, &err), CW_ERR_FORMAT, "before their checksum",
                  err);
@@ -402,8 +453,11 @@ int main(void)
         TEST(colours_are_components_side_by_side),
         TEST(a_pair_of_files_is_one_volume),
         TEST(impossible_fields_are_named),
+        TEST(directions_in_one_plane_are_refused),
+        TEST(sizes_beyond_memory_are_refused),
         TEST(impossible_spacings_and_quaternions_are_named),
         TEST(what_only_looks_like_nifti_is_told_apart),
+        TEST(a_cut_is_never_a_volume),
         TEST(broken_gzip_is_an_error),
         TEST(bombs_are_refused_before_any_allocation),
         TEST(memory_may_run_out_anywhere),

@@ -1,5 +1,6 @@
 #define _GNU_SOURCE /* symlink, mkfifo */
 #include "support/reading.h"
+#include "support/regions.h"
 
 #include <stdio.h>
 #include <sys/stat.h>
@@ -8,8 +9,9 @@
 /* 2 x 3 x 2 voxels that tell where they stand. */
 static const uint8_t counting[12] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
 
-#define U8    "NRRD0004\ntype: uint8\nencoding: raw\n"
-#define U8_3D U8 "dimension: 3\nsizes: 2 3 2\n"
+#define U8      "NRRD0004\ntype: uint8\nencoding: raw\n"
+#define U8_3D   U8 "dimension: 3\nsizes: 2 3 2\n"
+#define GZIP_3D "NRRD0004\ntype: uint8\nencoding: gzip\ndimension: 3\nsizes: 2 3 2\n"
 
 static void a_plain_header_gives_its_voxels(void **state)
 {
@@ -132,6 +134,7 @@ static void axes_find_their_roles(void **state)
         assert_ok(cw_volume_select(&v, v.components - 1, v.steps - 1, &last, &err), err);
         if (cases[i].at)
             assert_true(cw_volume_value(&last, 1, 2, 1) == (double)cases[i].at);
+        check_regions("a.nrrd", NULL);
         cw_volume_free(&v);
     }
 }
@@ -214,6 +217,7 @@ static void encodings_and_byte_orders_give_the_same_numbers(void **state)
         assert_ok(read_back("a.nrrd", &v, &err), err);
         assert_int_equal(v.type, CW_I16);
         assert_memory_equal(v.data, wanted, sizeof wanted);
+        check_regions("a.nrrd", NULL);
         cw_volume_free(&v);
     }
     free(packed);
@@ -247,6 +251,7 @@ static void voxels_may_lie_in_files_of_their_own(void **state)
         put_file("a.nhdr", headers[i], NULL, 0);
         assert_ok(read_back("a.nhdr", &v, &err), err);
         assert_memory_equal(v.data, counting, sizeof counting);
+        check_regions("a.nhdr", NULL);
         cw_volume_free(&v);
     }
 }
@@ -292,6 +297,8 @@ static void only_files_are_opened(void **state)
     cw_volume_free(&v);
     assert_fails(read_back("pipe.nrrd", &v, &err), CW_ERR_IO, "a named pipe, not a file", err);
     assert_fails(read_back("", &v, &err), CW_ERR_FORMAT, "is a slice in a format that", err);
+    put_file("a.nhdr", U8_3D "data file: pipe.nrrd\n", NULL, 0);
+    assert_fails(read_back("a.nhdr", &v, &err), CW_ERR_IO, "a named pipe, not a file", err);
     assert_fails(read_back("none.nrrd", &v, &err), CW_ERR_IO, "No such file", err);
     assert_fails(read_back("empty.nrrd", &v, &err), CW_ERR_IO, "the file is empty", err);
     assert_fails(read_back("odd.xyz", &v, &err), CW_ERR_FORMAT, "--raw", err);
@@ -411,9 +418,9 @@ static void limits_name_the_value_and_the_limit(void **state)
     const cw_read_desc voxels = {.max_voxels = 11}, bytes = {.max_bytes = 11};
     put_file("a.nrrd", U8_3D "\n", counting, 12);
     assert_fails(cw_volume_read(test_path("a.nrrd"), &voxels, &v, NULL, &err), CW_ERR_LIMIT,
-                 "'sizes' asks for 12 voxels; the limit is 11", err);
+                 "'sizes' asks for 12 voxels; the limit is 11 (--max-voxels)", err);
     assert_fails(cw_volume_read(test_path("a.nrrd"), &bytes, &v, NULL, &err), CW_ERR_LIMIT,
-                 "12 bytes of voxels; the limit is 11", err);
+                 "12 bytes of voxels; the limit is 11 (--memory)", err);
 }
 
 static void the_header_alone_is_checked_but_holds_no_voxels(void **state)
@@ -473,6 +480,41 @@ static void long_headers_are_cut_off(void **state)
     free(long_text);
 }
 
+static void a_cut_is_never_a_volume(void **state)
+{
+    (void)state;
+    size_t size;
+    unsigned char *packed = pack_bytes(counting, 12, true, &size);
+    put_file("a.nrrd", U8_3D "\n", counting, 12);
+    check_every_cut("a.nrrd");
+    put_file("a.nrrd", GZIP_3D "\n", packed, size);
+    check_every_cut("a.nrrd");
+    put_file("a.nrrd",
+             "NRRD0004\ntype: uint8\nencoding: ascii\ndimension: 3\nsizes: 2 3 2\n\n"
+             "0 1 2 3 4 5 6 7 8 9 10 1",
+             NULL, 0);
+    check_every_cut("a.nrrd");
+    put_file("one.raw", "", counting, 6);
+    put_file("two.raw", "", counting + 6, 6);
+    put_file("a.nhdr", U8_3D "data file: LIST\none.raw\ntwo.raw\n", NULL, 0);
+    check_cuts("a.nhdr", "one.raw", 0);
+    check_cuts("a.nhdr", "two.raw", 0);
+    free(packed);
+}
+
+static void nothing_but_zeros_may_follow_gzip_data(void **state)
+{
+    (void)state;
+    size_t size;
+    unsigned char *packed = pack_bytes(counting, 12, true, &size);
+    put_file("a.nrrd", GZIP_3D "\n", packed, size);
+    check_tail("a.nrrd", "a.nrrd");
+    put_file("a.gz", "", packed, size);
+    put_file("a.nhdr", GZIP_3D "data file: a.gz\n", NULL, 0);
+    check_tail("a.nhdr", "a.gz");
+    free(packed);
+}
+
 static void memory_may_run_out_anywhere(void **state)
 {
     (void)state;
@@ -480,10 +522,7 @@ static void memory_may_run_out_anywhere(void **state)
     unsigned char *packed = pack_bytes(counting, 6, true, &size);
     put_file("one.gz", "", packed, size);
     put_file("two.gz", "", packed, size);
-    put_file("a.nhdr",
-             "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 3 2\nencoding: gzip\n"
-             "data file: LIST\none.gz\ntwo.gz\n",
-             NULL, 0);
+    put_file("a.nhdr", GZIP_3D "data file: LIST\none.gz\ntwo.gz\n", NULL, 0);
     check_starved_reads("a.nhdr");
     free(packed);
 }
@@ -508,6 +547,8 @@ int main(void)
         TEST(the_header_alone_is_checked_but_holds_no_voxels),
         TEST(a_reader_can_be_interrupted),
         TEST(long_headers_are_cut_off),
+        TEST(a_cut_is_never_a_volume),
+        TEST(nothing_but_zeros_may_follow_gzip_data),
         TEST(memory_may_run_out_anywhere),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

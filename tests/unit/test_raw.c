@@ -1,4 +1,7 @@
 #include "support/reading.h"
+#include "support/regions.h"
+
+#include <math.h>
 
 static void a_layout_is_read_from_text(void **state)
 {
@@ -87,7 +90,28 @@ static void bytes_behind_an_offset_become_voxels(void **state)
     assert_true(cw_volume_value(&v, 1, 0, 0) == 0x0304);
     assert_int_equal(v.known, CW_KNOWN_UNIT);
     check_affine(&v, (const double[12]){2, 0, 0, 0, 0, 3, 0, 0, 0, 0, 4, 0});
+    check_regions("a.bin", &desc);
     cw_volume_free(&v);
+}
+
+static void spacings_must_be_lengths(void **state)
+{
+    (void)state;
+    static const struct {
+        double spacing;
+        const char *words;
+    } cases[] = {{0, "'spacing' gives axis 1 no length"},
+                 {NAN, "'spacing' has numbers that are not finite"},
+                 {INFINITY, "'spacing' has numbers that are not finite"}};
+    put_file("a.bin", "", "12", 2);
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        const cw_raw_layout layout = {.dim = {2, 1, 1}, .spacing = {1, cases[i].spacing, 1}};
+        const cw_read_desc desc = {.raw = &layout};
+        cw_volume v;
+        cw_error err = {0};
+        assert_fails(cw_volume_read(test_path("a.bin"), &desc, &v, NULL, &err), CW_ERR_FORMAT,
+                     cases[i].words, err);
+    }
 }
 
 static void a_layout_larger_than_the_file_fails(void **state)
@@ -104,6 +128,9 @@ static void a_layout_larger_than_the_file_fails(void **state)
     layout.offset = UINT64_MAX;
     assert_fails(cw_volume_read(test_path("a.bin"), &desc, &v, NULL, &err), CW_ERR_FORMAT,
                  "the file holds 0 bytes", err);
+    layout.dim[0] = layout.dim[1] = layout.dim[2] = INT32_MAX;
+    assert_fails(cw_volume_read(test_path("a.bin"), &desc, &v, NULL, &err), CW_ERR_LIMIT,
+                 "'dims' asks for more voxels than an address space holds", err);
     layout.dim[0] = 0;
     assert_fails(cw_volume_read(test_path("a.bin"), &desc, &v, NULL, &err), CW_ERR_ARGUMENT,
                  "'dims' holds 0", err);
@@ -115,11 +142,9 @@ int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
     const struct CMUnitTest tests[] = {
-        TEST(a_layout_is_read_from_text),
-        TEST(every_type_is_known_by_name),
-        TEST(wrong_keys_are_named),
-        TEST(bytes_behind_an_offset_become_voxels),
-        TEST(a_layout_larger_than_the_file_fails),
+        TEST(a_layout_is_read_from_text), TEST(every_type_is_known_by_name),
+        TEST(wrong_keys_are_named),       TEST(bytes_behind_an_offset_become_voxels),
+        TEST(spacings_must_be_lengths),   TEST(a_layout_larger_than_the_file_fails),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -2,6 +2,7 @@
 #include "formats/stream.h"
 #include "support/reading.h"
 
+#include <stdio.h>
 #include <sys/mman.h>
 #include <unistd.h>
 
@@ -112,7 +113,16 @@ static void no_damage_goes_unnoticed(void **state)
     free(packed);
 }
 
-/* zlib itself on all of the bytes: true when they are whole, and then what they hold. */
+static bool are_zero(const unsigned char *bytes, size_t size)
+{
+    for (size_t i = 0; i < size; i++)
+        if (bytes[i])
+            return false;
+    return true;
+}
+
+/* zlib itself on all of the bytes: true when they are whole, member after member, with nothing
+ * but zeros behind them; and then what they hold. */
 static bool inflate_by_zlib(const unsigned char *packed, size_t packed_size, unsigned char *to,
                             size_t room, size_t *size)
 {
@@ -120,10 +130,14 @@ static bool inflate_by_zlib(const unsigned char *packed, size_t packed_size, uns
     z.next_out = to;
     z.avail_out = (uInt)room;
     assert_int_equal(inflateInit2(&z, MAX_WBITS + 32), Z_OK);
-    const bool whole = inflate(&z, Z_FINISH) == Z_STREAM_END;
+    bool whole = inflate(&z, Z_FINISH) == Z_STREAM_END;
+    while (whole && z.avail_in >= 2 && z.next_in[0] == 0x1f && z.next_in[1] == 0x8b) {
+        inflateReset(&z);
+        whole = inflate(&z, Z_FINISH) == Z_STREAM_END;
+    }
     *size = room - z.avail_out;
     inflateEnd(&z);
-    return whole;
+    return whole && are_zero(z.next_in, z.avail_in);
 }
 
 static uint32_t next_random(uint32_t *x)
@@ -147,6 +161,50 @@ static size_t make_mixed(unsigned char *to, size_t room, uint32_t seed)
     return n;
 }
 
+#define BEHIND "is behind the end of the compressed data"
+
+/* What may follow packed bytes in a file, besides another member. */
+static const struct {
+    const char *bytes;
+    size_t size;
+    const char *told; /* NULL: it may follow */
+    size_t at;        /* the byte that BEHIND is told of */
+} tails[] = {
+    {"", 0, NULL, 0},
+    {"\0", 1, NULL, 0},
+    {"\0\0\0\0\0\0\0", 7, NULL, 0},
+    {"x", 1, BEHIND, 0},
+    {"\n", 1, BEHIND, 0},
+    {"\0\0x\0", 4, BEHIND, 2},
+    {"\037", 1, BEHIND, 0},
+    {"\0\037\213", 3, BEHIND, 1},
+    {"\037\213", 2, "the compressed data break off", 0},
+    {"\037\213x", 3, "the compressed data ", 0}, /* damaged or cut off, by who inflates */
+};
+enum { TAILS = sizeof tails / sizeof *tails, MEMBER = 1000 };
+
+/* Puts a tail behind packed data, and what it holds behind the data. */
+static unsigned char *add_tail(unsigned char *packed, size_t *packed_size, unsigned char *data,
+                               size_t *size, uint32_t index)
+{
+    size_t more = 0;
+    unsigned char *member = NULL;
+    const void *tail = tails[index % TAILS].bytes;
+    if (index < TAILS) {
+        more = tails[index].size;
+    } else {
+        tail = member = pack_bytes(plain, MEMBER, true, &more);
+        memcpy(data + *size, plain, MEMBER);
+        *size += MEMBER;
+    }
+    packed = realloc(packed, *packed_size + more);
+    assert_non_null(packed);
+    memcpy(packed + *packed_size, tail, more);
+    *packed_size += more;
+    free(member);
+    return packed;
+}
+
 /* Whatever inflates in this build: a mutant that zlib finds whole comes out as zlib has it. One
  * that it does not is an error, or (three in 150 000, ISA-L being less strict about headers and
  * codes) holds what was packed, with its checksum. */
@@ -154,13 +212,14 @@ static void mutants_are_taken_as_zlib_takes_them(void **state)
 {
     (void)state;
     enum { ROOM = 20000, ROUNDS = 4000 };
-    static unsigned char data[ROOM], wanted[4 * ROOM], back[4 * ROOM];
+    static unsigned char data[ROOM + MEMBER], wanted[4 * ROOM], back[4 * ROOM];
     size_t whole = 0, damaged = 0;
     for (uint32_t round = 0; round < ROUNDS; round++) {
         uint32_t seed = round;
         size_t packed_size, wanted_size, got = 0;
-        const size_t size = make_mixed(data, 1000 + next_random(&seed) % (ROOM - 1000), seed);
+        size_t size = make_mixed(data, 1000 + next_random(&seed) % (ROOM - 1000), seed);
         unsigned char *packed = pack_bytes(data, size, round % 2, &packed_size);
+        packed = add_tail(packed, &packed_size, data, &size, next_random(&seed) % (TAILS + 4));
         for (uint32_t flips = next_random(&seed) % 3; flips; flips--)
             packed[next_random(&seed) % packed_size] ^=
                 (unsigned char)(1u << next_random(&seed) % 8);
@@ -277,6 +336,90 @@ static void a_wrong_checksum_is_named(void **state)
     free(packed);
 }
 
+/* At ends of compressed data near those of the buffer they pass through, too. */
+static void only_zeros_may_follow_compressed_data(void **state)
+{
+    (void)state;
+    static unsigned char back[SIZE];
+    static const size_t sizes[] = {500, 85000, 85100, SIZE};
+    for (size_t i = 0; i < TAILS * 4 * 2; i++) {
+        const size_t size = sizes[i / 2 % 4], tail = i / 8;
+        size_t packed_size, unused = 0;
+        char place[40];
+        cw_error err = {0};
+        unsigned char *packed = pack_bytes(plain, size, i % 2, &packed_size);
+        snprintf(place, sizeof place, "byte %zu of the file", packed_size + tails[tail].at);
+        packed = add_tail(packed, &packed_size, NULL, &unused, (uint32_t)tail);
+        const int fd = make_file(packed, packed_size);
+        const cw_status st = read_all(fd, 0, true, back, size, &err);
+        if (!tails[tail].told)
+            assert_ok(st, err);
+        else
+            assert_fails(st, CW_ERR_FORMAT, tails[tail].told, err);
+        if (tails[tail].told && strcmp(tails[tail].told, BEHIND) == 0)
+            assert_fails(st, CW_ERR_FORMAT, place, err);
+        close(fd);
+        free(packed);
+    }
+}
+
+static void zeros_may_go_on_but_end_with_the_file(void **state)
+{
+    (void)state;
+    enum { ZEROS = 200000 };
+    unsigned char back[500];
+    size_t size;
+    char place[40];
+    cw_error err = {0};
+    unsigned char *packed = pack_bytes(plain, 500, true, &size);
+    packed = realloc(packed, size + ZEROS + 1);
+    assert_non_null(packed);
+    memset(packed + size, 0, ZEROS);
+    packed[size + ZEROS] = 'x';
+    snprintf(place, sizeof place, "byte %zu of the file", size + ZEROS);
+    const int whole = make_file(packed, size + ZEROS),
+              spoilt = make_file(packed, size + ZEROS + 1);
+    assert_ok(read_all(whole, 0, true, back, 500, &err), err);
+    assert_fails(read_all(spoilt, 0, true, back, 500, &err), CW_ERR_FORMAT, place, err);
+    close(whole), close(spoilt);
+    free(packed);
+}
+
+static void what_is_no_part_of_the_stream_is_not_judged(void **state)
+{
+    (void)state;
+    unsigned char back[500];
+    size_t size;
+    cw_error err = {0};
+    cwi_stream s;
+    unsigned char *packed = pack_bytes(plain, 500, true, &size);
+    packed[size] = 'x'; /* there is room */
+    const int fd = make_file(packed, size + 1);
+    assert_ok(cwi_stream_open(&s, fd, 0, true, &err), err);
+    cwi_stream_end_at(&s, size);
+    assert_ok(cwi_stream_read(&s, back, 500, &err), err);
+    assert_ok(cwi_stream_finish(&s, &err), err);
+    cwi_stream_close(&s);
+    close(fd);
+    free(packed);
+}
+
+/* As many bytes again as were read are looked through for the checksum. */
+static void a_tail_no_longer_than_the_rest_is_verified(void **state)
+{
+    (void)state;
+    static unsigned char back[SIZE];
+    size_t size;
+    cw_error err = {0};
+    unsigned char *packed = pack_bytes(plain, SIZE, true, &size);
+    packed[size - 8] ^= 1;
+    const int fd = make_file(packed, size);
+    assert_fails(read_all(fd, 0, true, back, SIZE / 2, &err), CW_ERR_FORMAT,
+                 "incorrect data check", err);
+    close(fd);
+    free(packed);
+}
+
 static void a_long_tail_is_left_unread(void **state)
 {
     (void)state;
@@ -337,6 +480,10 @@ int main(void)
         cmocka_unit_test(what_is_no_base64_is_told_by_its_place),
         cmocka_unit_test(nothing_behind_its_end_is_read),
         cmocka_unit_test(a_wrong_checksum_is_named),
+        cmocka_unit_test(only_zeros_may_follow_compressed_data),
+        cmocka_unit_test(zeros_may_go_on_but_end_with_the_file),
+        cmocka_unit_test(what_is_no_part_of_the_stream_is_not_judged),
+        cmocka_unit_test(a_tail_no_longer_than_the_rest_is_verified),
         cmocka_unit_test(a_long_tail_is_left_unread),
         cmocka_unit_test(skipping_lands_where_reading_would),
         cmocka_unit_test(a_stream_without_memory_says_so),

@@ -1,5 +1,6 @@
 #include "formats/blocks.h"
 #include "support/reading.h"
+#include "support/regions.h"
 
 #include <stdio.h>
 
@@ -190,6 +191,7 @@ static void every_dialect_gives_the_same_voxels(void **state)
         make_file(&d, &file);
         save(&file, "a.bin");
         check_voxels("a.bin");
+        check_regions("a.bin", NULL);
     }
 }
 
@@ -346,6 +348,24 @@ static void damaged_files_are_told_where(void **state)
         {FILE_TAG "<ImageData><Piece Extent='0 1 0 1 1 0'/>", "must hold 1 to 2147483647"},
         {FILE_TAG "<ImageData><Piece Extent='0 1 0 1 -2000000000 2000000000'/>", "must hold 1"},
         {FILE_TAG "<ImageData><Piece Extent='0 1 0 1 0 99999999999'/>", "six whole numbers"},
+        {FILE_TAG "<ImageData Spacing='0 1 1'><Piece Extent='0 1 0 0 0 0'><PointData>"
+                  "<DataArray type='UInt8'>1 2</DataArray>" END,
+         "gives axis 0 no length"},
+        {FILE_TAG "<ImageData Origin='0 nan 1'><Piece Extent='0 1 0 0 0 0'><PointData>"
+                  "<DataArray type='UInt8'>1 2</DataArray>" END,
+         "not finite"},
+        {FILE_TAG "<ImageData Direction='1 1 0 0 0 1 0 0 0'><Piece Extent='0 1 0 0 0 0'>"
+                  "<PointData><DataArray type='UInt8'>1 2</DataArray>" END,
+         "lie in one plane"},
+        {FILE_TAG "<ImageData><Piece Extent='0 2147483646 0 2147483646 0 0'><PointData>"
+                  "<DataArray type='UInt8'>1 2</DataArray>" END,
+         "'Extent' asks for 4611686014132420609 bytes of voxels, encoded; the file holds"},
+        {FILE_TAG "<ImageData><Piece Extent='0 2147483646 0 2147483646 0 9'><PointData>"
+                  "<DataArray type='UInt8'>1 2</DataArray>" END,
+         "more voxels than an address space holds"},
+        {FILE_TAG "<ImageData><Piece Extent='0 15 0 0 0 0'><PointData><DataArray "
+                  "type='UInt8' format='binary'>EAAAAAEC</DataArray>" END,
+         "'Extent' asks for 16 bytes of voxels"},
         {PIECE "</Piece><Piece Extent='1 2 0 0 0 0'/>", "several Piece elements"},
         {PIECE "<CellData><DataArray type='UInt8'/></CellData></Piece></ImageData></VTKFile>",
          "the arrays are CellData; only values at points"},
@@ -455,6 +475,30 @@ static void memory_may_run_out_anywhere(void **state)
         make_file(&d, &file);
         save(&file, "a.vti");
         check_starved_reads("a.vti");
+        check_starved("a.vti", &(cw_read_desc){.region = &(cw_box){{1, 1, 0}, {1, 1, 2}}});
+    }
+}
+
+/* The last of the four blocks holds what is wanted of the back alone. */
+static void blocks_that_are_not_wanted_are_not_decoded(void **state)
+{
+    (void)state;
+    static bytes file;
+    static const char tail[] = "\n</AppendedData></VTKFile>";
+    const cw_box front = {{0, 0, 0}, {2, 3, 1}}, back = {{1, 2, 1}, {1, 1, 1}};
+    for (int wanted = 0; wanted < 2; wanted++) {
+        const cw_read_desc desc = {.region = wanted ? &back : &front};
+        cw_volume v;
+        cw_error err = {0};
+        make_file(&(dialect){.form = APPENDED_RAW, .packing = ZLIB}, &file);
+        file.at[file.size - sizeof tail] ^= 1; /* in a checksum */
+        save(&file, "a.vti");
+        const cw_status st = cw_volume_read(test_path("a.vti"), &desc, &v, NULL, &err);
+        if (wanted)
+            assert_fails(st, CW_ERR_FORMAT, "compressed block 3 of 4 is damaged", err);
+        else
+            assert_ok(st, err);
+        cw_volume_free(&v);
     }
 }
 
@@ -477,6 +521,7 @@ int main(void)
         TEST(damaged_files_are_told_where),
         TEST(tables_of_blocks_are_checked_before_memory_is_taken),
         TEST(endless_files_come_to_an_end),
+        TEST(blocks_that_are_not_wanted_are_not_decoded),
         TEST(memory_may_run_out_anywhere),
         TEST(without_lz4_its_files_are_refused),
     };

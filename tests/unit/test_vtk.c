@@ -1,4 +1,5 @@
 #include "support/reading.h"
+#include "support/regions.h"
 
 #include <stdio.h>
 
@@ -49,6 +50,7 @@ static void the_grid_may_be_told_in_old_and_new_words(void **state)
         assert_ok(read_back("a.vtk", &v, &err), err);
         check_affine(&v, (const double[12]){1, 0, 0, 5, 0, 2, 0, 6, 0, 0, 3, 7});
         assert_memory_equal(v.data, counting, sizeof counting);
+        check_regions("a.vtk", NULL);
         cw_volume_free(&v);
     }
 }
@@ -231,6 +233,11 @@ static void sizes_are_checked_before_memory_is_taken(void **state)
     const cw_status st = read_back("a.vtk", &v, &err);
     assert_false(cwi_alloc_fail_after(-1));
     assert_fails(st, CW_ERR_FORMAT, "'DIMENSIONS' asks for 8000000000000000000 bytes", err);
+    put_file("a.vtk",
+             HEAD("ASCII") "DATASET STRUCTURED_POINTS\nDIMENSIONS 2000000000 2000000000 9\n"
+                           "POINT_DATA 1\nSCALARS s int\n1",
+             NULL, 0);
+    check_told("a.vtk", 0, "'DIMENSIONS' asks for more voxels than an address space holds");
 }
 
 static void a_cut_is_never_a_volume(void **state)

@@ -1,0 +1,143 @@
+#include "support/regions.h"
+
+#include "support/support.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+static const char *voxel(const cw_volume *v, const size_t at[3], size_t component, size_t step)
+{
+    const char *p = v->data;
+    for (int a = 0; a < 3; a++)
+        p += (ptrdiff_t)at[a] * v->stride[a];
+    return p + (ptrdiff_t)component * v->component_stride + (ptrdiff_t)step * v->step_stride;
+}
+
+static bool same_voxels(const cw_volume *a, const cw_volume *b)
+{
+    const size_t bytes = cw_type_size(a->type);
+    size_t at[3];
+    for (size_t t = 0; t < a->steps; t++)
+        for (size_t c = 0; c < a->components; c++)
+            for (at[2] = 0; at[2] < a->dim[2]; at[2]++)
+                for (at[1] = 0; at[1] < a->dim[1]; at[1]++)
+                    for (at[0] = 0; at[0] < a->dim[0]; at[0]++)
+                        if (memcmp(voxel(a, at, c, t), voxel(b, at, c, t), bytes) != 0)
+                            return false;
+    return true;
+}
+
+static bool same_shape(const cw_volume *a, const cw_volume *b)
+{
+    return a->type == b->type && memcmp(a->dim, b->dim, sizeof a->dim) == 0 &&
+           a->components == b->components && a->steps == b->steps &&
+           a->step_seconds == b->step_seconds && a->slope == b->slope &&
+           a->intercept == b->intercept && a->known == b->known &&
+           a->has_nodata == b->has_nodata &&
+           memcmp(a->affine, b->affine, sizeof a->affine) == 0;
+}
+
+static uint64_t count_voxels(const cw_volume *v)
+{
+    return (uint64_t)v->steps * v->dim[0] * v->dim[1] * v->dim[2];
+}
+
+static uint64_t count_bytes(const cw_volume *v)
+{
+    return count_voxels(v) * v->components * cw_type_size(v->type);
+}
+
+static void check_limits(const char *name, const cw_read_desc *desc, const cw_volume *whole)
+{
+    cw_read_desc d = *desc;
+    cw_volume v;
+    cw_error err = {0};
+    d.max_voxels = count_voxels(whole);
+    d.max_bytes = count_bytes(whole) - 1;
+    if (d.max_bytes > 0)
+        assert_fails(cw_volume_read(test_path(name), &d, &v, NULL, &err), CW_ERR_LIMIT,
+                     "(--memory)", err);
+    d.max_bytes++;
+    assert_ok(cw_volume_read(test_path(name), &d, &v, NULL, &err), err);
+    cw_volume_free(&v);
+    if (--d.max_voxels > 0)
+        assert_fails(cw_volume_read(test_path(name), &d, &v, NULL, &err), CW_ERR_LIMIT,
+                     "(--max-voxels)", err);
+}
+
+static void check_box(const char *name, const cw_read_desc *desc, const cw_volume *whole,
+                      const cw_box *box)
+{
+    cw_read_desc d = *desc;
+    cw_volume crop, part, shape;
+    cw_error err = {0};
+    d.region = box;
+    assert_ok(cw_volume_crop(whole, box, &crop, &err), err);
+    d.max_bytes = count_bytes(&crop);
+    assert_ok(cw_volume_read(test_path(name), &d, &part, NULL, &err), err);
+    d.header_only = true;
+    assert_ok(cw_volume_read(test_path(name), &d, &shape, NULL, &err), err);
+    assert_null(shape.data);
+    if (!same_shape(&crop, &part) || !same_shape(&crop, &shape) || !same_voxels(&crop, &part))
+        fail_msg("%s: the region %zu+%zu, %zu+%zu, %zu+%zu is not the crop of the whole", name,
+                 box->first[0], box->count[0], box->first[1], box->count[1], box->first[2],
+                 box->count[2]);
+    cw_volume_free(&part);
+}
+
+/* Range n of those that lie in an axis: from each voxel to it, or to one behind it. */
+static bool nth_range(size_t n, size_t size, size_t *first, size_t *count)
+{
+    for (*first = 0; *first < size; n -= size - *first, ++*first)
+        if (n < size - *first) {
+            *count = n + 1;
+            return true;
+        }
+    return false;
+}
+
+static void check_all(const char *name, const cw_read_desc *desc, const cw_volume *whole)
+{
+    cw_box box;
+    for (size_t z = 0; nth_range(z, whole->dim[2], &box.first[2], &box.count[2]); z++)
+        for (size_t y = 0; nth_range(y, whole->dim[1], &box.first[1], &box.count[1]); y++)
+            for (size_t x = 0; nth_range(x, whole->dim[0], &box.first[0], &box.count[0]); x++)
+                check_box(name, desc, whole, &box);
+}
+
+/* An axis from end to end, a single voxel of it, or any range. */
+static void random_range(uint32_t *seed, size_t size, size_t *first, size_t *count)
+{
+    uint32_t r[3];
+    for (int i = 0; i < 3; i++)
+        r[i] = (*seed = *seed * 1664525u + 1013904223u) >> 8;
+    *first = r[0] % 3 == 0 ? 0 : r[1] % size;
+    *count = r[0] % 3 == 0 ? size : r[0] % 3 == 1 ? 1 : 1 + r[2] % (size - *first);
+}
+
+static void check_some(const char *name, const cw_read_desc *desc, const cw_volume *whole)
+{
+    enum { ROUNDS = 15 };
+    uint32_t seed = 1;
+    cw_box box;
+    for (int round = 0; round < ROUNDS; round++) {
+        for (int a = 0; a < 3; a++)
+            random_range(&seed, whole->dim[a], &box.first[a], &box.count[a]);
+        check_box(name, desc, whole, &box);
+    }
+}
+
+void check_regions(const char *name, const cw_read_desc *desc)
+{
+    const cw_read_desc defaults = {0};
+    cw_volume whole;
+    cw_error err = {0};
+    desc = desc ? desc : &defaults;
+    assert_ok(cw_volume_read(test_path(name), desc, &whole, NULL, &err), err);
+    check_limits(name, desc, &whole);
+    if (whole.dim[0] * whole.dim[1] * whole.dim[2] <= 12)
+        check_all(name, desc, &whole);
+    else
+        check_some(name, desc, &whole);
+    cw_volume_free(&whole);
+}
