@@ -161,25 +161,17 @@ static cw_status read_header(const char *path, const cw_read_desc *voxels,
     return st == CW_OK ? st : cwi_fail_in(err, st, path);
 }
 
-/* What is read (`part`, shape only) stands where the header, with the spacing asked for, has
- * it.
- */
+/* Reads what has the shape `part`, and counts what memory is left. */
 static cw_status read_part(const char *path, cw_read_desc *desc, const cw_volume *part,
                            cli_volume *volume, cw_error *err)
 {
-    cw_volume *v = &volume->voxels;
     const double bytes = (double)cw_type_size(part->type) * (double)part->dim[0] *
                          (double)part->dim[1] * (double)part->dim[2] *
                          (double)part->components * (double)part->steps;
     desc->note = NULL; /* said already */
     desc->progress = cli_progress(bytes / 1e6, "MB");
-    cw_status st = cw_volume_read(path, desc, v, &volume->format, err);
-    if (st != CW_OK)
-        return st;
-    memcpy(v->affine, part->affine, sizeof v->affine);
-    v->known = part->known;
     volume->memory_left = (double)desc->max_bytes > bytes ? desc->max_bytes - (size_t)bytes : 1;
-    return CW_OK;
+    return cw_volume_read(path, desc, &volume->voxels, &volume->format, err);
 }
 
 static cw_status read_voxels(const char *path, cw_read_desc *desc, const cli_input *input,

@@ -76,6 +76,7 @@ cw_status cwi_dicom_read(const cwi_input *in, cwi_names *names, const cw_read_de
     if (st == CW_OK)
         st = cwi_check_frame(&stack.shape, "ImagePositionPatient", err);
     if (st == CW_OK) {
+        cwi_set_spacing(&stack.shape, desc);
         stack.files = found.files; /* lent */
         st = cwi_stack_load(&stack, in, &planes, desc, volume, err);
         stack.files = (cwi_names){0};

@@ -16,6 +16,9 @@ bool cwi_mrc_sniff(const unsigned char *head, size_t size);
 bool cwi_inr_sniff(const unsigned char *head, size_t size);
 bool cwi_dicom_sniff(const unsigned char *head, size_t size);
 
+/* Stretches the axes to the spacing that a description states; directions and origin stay. */
+void cwi_set_spacing(cw_volume *v, const cw_read_desc *desc);
+
 /* Tells the reader's caller of something found and decided on. */
 void cwi_note(const cw_read_desc *desc, const char *format, ...) CW_PRINTF(2, 3);
 

@@ -484,9 +484,7 @@ cw_status cwi_source_load(const cwi_source *src, const cwi_input *in, const cw_r
                           cw_volume *volume, cw_error *err)
 {
     cwi_source wanted = *src; /* its files are borrowed */
-    cw_status st = cwi_check_frame(&src->shape, src->frame_field, err);
-    if (st == CW_OK)
-        st = check_files(src, in, err);
+    cw_status st = check_files(src, in, err);
     if (st == CW_OK && desc->region)
         st = narrow(src, desc->region, &wanted, err);
     if (st == CW_OK)

@@ -80,9 +80,10 @@ cw_status cwi_check_frame(const cw_volume *shape, const char *field, cw_error *e
 cw_status cwi_check_limits(const cw_volume *shape, size_t bytes, const char *field,
                            const cw_read_desc *desc, cw_error *err);
 
-/* Checks the source against its files and the limits, then reads the voxels (unless
- * desc->header_only), all of them or desc->region. Nothing is allocated before every size is
- * known to be possible. volume   filled on success, else untouched Returns  as cw_volume_read()
+/* Checks the source, but its frame, against its files and the limits, then reads the voxels
+ * (unless desc->header_only), all of them or desc->region. Nothing is allocated before every
+ * size is known to be possible. volume   filled on success, else untouched Returns  as
+ * cw_volume_read()
  */
 cw_status cwi_source_load(const cwi_source *src, const cwi_input *in, const cw_read_desc *desc,
                           cw_volume *volume, cw_error *err);

@@ -187,18 +187,15 @@ void cwi_note(const cw_read_desc *desc, const char *format, ...)
     desc->note(desc->note_user, text);
 }
 
-/* Stretches the axes; directions stay, and so does the first voxel of the whole volume. */
-static void set_spacing(cw_volume *v, const double wanted[3], const cw_box *region)
+void cwi_set_spacing(cw_volume *v, const cw_read_desc *desc)
 {
     double spacing[3];
+    if (desc->spacing_mm[0] == 0)
+        return;
     cw_volume_spacing(v, spacing);
     for (int c = 0; c < 3; c++)
-        for (int r = 0; r < 3; r++) {
-            const double before = v->affine[r][c], now = before * (wanted[c] / spacing[c]);
-            v->affine[r][c] = now;
-            if (region)
-                v->affine[r][3] += (now - before) * (double)region->first[c];
-        }
+        for (int r = 0; r < 3; r++)
+            v->affine[r][c] *= desc->spacing_mm[c] / spacing[c];
     v->known |= CW_KNOWN_UNIT;
 }
 
@@ -213,6 +210,10 @@ static cw_status read_source(opened *o, const cw_read_desc *desc, cw_volume *vol
         src.files = o->names;
         o->names = (cwi_names){0};
     }
+    if (st == CW_OK)
+        st = cwi_check_frame(&src.shape, src.frame_field, err);
+    if (st == CW_OK)
+        cwi_set_spacing(&src.shape, desc);
     if (st == CW_OK)
         st = cwi_source_load(&src, &o->in, desc, volume, err);
     cwi_source_free(&src);
@@ -245,8 +246,6 @@ cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *
         st = o.reader->read(&o.in, o.many ? &o.names : NULL, desc, volume, err);
     else if (st == CW_OK)
         st = read_source(&o, desc, volume, err);
-    if (st == CW_OK && desc->spacing_mm[0] > 0)
-        set_spacing(volume, desc->spacing_mm, desc->region);
     if (format)
         *format = o.reader ? o.reader->name : desc->raw ? "raw" : NULL;
     close_path(&o);
