@@ -56,7 +56,13 @@ typedef struct cwi_gltf_scene {
         child_count, root_count;
 } cwi_gltf_scene;
 
-void cwi_gltf_scene_free(cwi_gltf_scene *scene);
+CW_API void cwi_gltf_scene_free(cwi_gltf_scene *scene);
+
+/* A scene as bytes, to leave a process: false when there is no room. And back, into a zeroed
+ * scene that the caller frees: CW_ERR_BACKEND for lengths, ranges or kinds that cannot be. */
+CW_API bool cwi_gltf_put_scene(const cwi_gltf_scene *scene, void *to, size_t room);
+CW_API cw_status cwi_gltf_take_scene(const void *from, size_t size, cwi_gltf_scene *scene,
+                                     cw_error *err);
 
 /* Makes JSON fit for a library that trusts it: refuses nesting deeper than 64 and more than 32
  * MiB beside strings, and renames what no mesh needs (images, materials, extensions, ...), so

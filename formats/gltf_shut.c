@@ -78,8 +78,9 @@ static bool put_uri(tape *t, const char *uri)
 }
 
 /* Every array, its length in front; behind them the places of buffers. */
-static bool put_scene(tape *t, const cwi_gltf_scene *s)
+bool cwi_gltf_put_scene(const cwi_gltf_scene *s, void *to, size_t room)
 {
+    tape tape_to = {.at = to, .end = (char *)to + room}, *t = &tape_to;
     bool good = true;
     for (size_t n = 0; good && n < COLUMNS; n++) {
         const uint64_t count = count_of(s, &columns[n]);
@@ -100,10 +101,10 @@ static cw_status work(void *state, int fd, const void *request, void *shared, cw
 {
     const job *j = state;
     cwi_gltf_scene scene = {0};
-    tape t = {.at = (char *)shared + j->json, .end = (char *)shared + j->shared};
     (void)fd, (void)request;
     cw_status st = j->functions->parse(shared, j->json, &scene, err);
-    if (st == CW_OK && !put_scene(&t, &scene))
+    if (st == CW_OK &&
+        !cwi_gltf_put_scene(&scene, (char *)shared + j->json, j->shared - j->json))
         st = cw_fail(err, CW_ERR_LIMIT, "the scene takes more memory than its JSON allows for");
     cwi_gltf_scene_free(&scene);
     return st;
@@ -173,9 +174,11 @@ static bool mend_scene(cwi_gltf_scene *s)
     return true;
 }
 
-static cw_status take_scene(tape *t, cwi_gltf_scene *s, cw_error *err)
+cw_status cwi_gltf_take_scene(const void *from, size_t size, cwi_gltf_scene *s, cw_error *err)
 {
+    tape tape_from = {.at = (char *)(uintptr_t)from}, *t = &tape_from;
     cw_status st = CW_OK;
+    t->end = t->at + size;
     for (size_t n = 0; st == CW_OK && n < COLUMNS; n++)
         st = take_column(t, &columns[n], s, err);
     for (size_t i = 0; i < s->buffer_count; i++) /* addresses of the child's */
@@ -209,9 +212,8 @@ cw_status cwi_gltf_parse(const char *json, size_t size, const cw_mesh_read_desc 
     memcpy(box.shared, json, size);
     box.progress = &desc->progress;
     st = cwi_sandbox_run(&box, -1, "", 1, err);
-    tape t = {.at = (char *)box.shared + size, .end = (char *)box.shared + j.shared};
     if (st == CW_OK)
-        st = take_scene(&t, scene, err);
+        st = cwi_gltf_take_scene((char *)box.shared + size, j.shared - size, scene, err);
     cwi_sandbox_close(&box);
     return st;
 }

@@ -2,6 +2,7 @@
 #include "support/meshes.h"
 
 #include "core/module.h"
+#include "formats/gltf_scene.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -557,6 +558,69 @@ static void a_build_without_the_module_names_the_option(void **state)
 
 #define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
 
+/* --- what comes out of the process that parses ------------------------------------------- */
+
+enum { TAPE = 4096 };
+
+/* Whatever is wrong in the bytes, nothing outside of them is read, and no scene is made. */
+static void a_scene_crosses_between_processes(void **state)
+{
+    (void)state;
+    static const char *const uris[] = {"data.bin", NULL};
+    cwi_gltf_buffer buffers[2] = {{(char *)(uintptr_t)uris[0]}, {NULL}};
+    cwi_gltf_accessor accessors[1] = {{.numbers = 3, .count = 9}};
+    cwi_gltf_primitive primitives[2] = {{.mode = 4}, {.mode = 5}};
+    cwi_gltf_mesh meshes[1] = {{0, 2}};
+    cwi_gltf_node nodes[2] = {{.first = 0, .end = 1}, {.first = 1, .end = 1}};
+    int children[1] = {1}, roots[1] = {0};
+    const cwi_gltf_scene scene = {.buffers = buffers,
+                                  .accessors = accessors,
+                                  .primitives = primitives,
+                                  .meshes = meshes,
+                                  .nodes = nodes,
+                                  .children = children,
+                                  .roots = roots,
+                                  .buffer_count = 2,
+                                  .accessor_count = 1,
+                                  .primitive_count = 2,
+                                  .mesh_count = 1,
+                                  .node_count = 2,
+                                  .child_count = 1,
+                                  .root_count = 1};
+    char *bytes = calloc(1, TAPE);
+    cw_error err = {0};
+    cwi_gltf_scene back = {0};
+    size_t room = 0;
+    while (!cwi_gltf_put_scene(&scene, bytes, room)) /* the least there must be */
+        assert_true(++room < TAPE);
+    assert_ok(cwi_gltf_take_scene(bytes, room, &back, &err), err);
+    assert_string_equal(back.buffers[0].uri, "data.bin");
+    assert_null(back.buffers[1].uri);
+    assert_true(back.accessors[0].count == 9 && back.primitives[1].mode == 5);
+    assert_true(back.node_count == 2 && back.nodes[0].end == 1 && back.children[0] == 1);
+    cwi_gltf_scene_free(&back);
+
+    for (size_t cut = 0; cut < room; cut++) {
+        char *piece = malloc(cut + 1); /* its own size, for sanitizers */
+        memcpy(piece, bytes, cut);
+        assert_fails(cwi_gltf_take_scene(piece, cut, &back, &err), CW_ERR_BACKEND,
+                     "makes no sense", err);
+        cwi_gltf_scene_free(&back);
+        free(piece);
+    }
+    for (size_t i = 0; i < room; i++) /* any byte turned round: a scene or an error */
+        for (int bit = 0; bit < 8; bit++) {
+            bytes[i] = (char)(bytes[i] ^ 1 << bit);
+            if (cwi_gltf_take_scene(bytes, room, &back, &err) == CW_OK)
+                for (size_t n = 0; n < back.node_count; n++)
+                    assert_true(back.nodes[n].first <= back.nodes[n].end &&
+                                back.nodes[n].end <= back.child_count);
+            cwi_gltf_scene_free(&back);
+            bytes[i] = (char)(bytes[i] ^ 1 << bit);
+        }
+    free(bytes);
+}
+
 int main(void)
 {
     const struct CMUnitTest without[] = {TEST(a_build_without_the_module_names_the_option)};
@@ -576,6 +640,7 @@ int main(void)
         TEST(broken_scenes_are_told_apart),
         TEST(broken_files_are_told_apart),
         TEST(no_beginning_of_a_file_is_a_file),
+        TEST(a_scene_crosses_between_processes),
         TEST(a_scene_cannot_multiply_itself_without_end),
     };
     return cwi_module_present("gltf") ? cmocka_run_group_tests(with, NULL, NULL)
