@@ -9,10 +9,10 @@
 #include <math.h>
 
 /* Coordinates beyond single precision stay at its largest number. */
-static void round_points(const cw_mesh *mesh, float *rounded)
+static void round_points(const cwi_part *part, float *rounded)
 {
-    for (size_t i = 0; i < 3 * mesh->vertex_count; i++) {
-        const double world = cwi_world_coordinate(mesh, i / 3, (int)(i % 3));
+    for (size_t i = 0; i < 3 * part->mesh.vertex_count; i++) {
+        const double world = cwi_world_coordinate(part, i / 3, (int)(i % 3));
         rounded[i] = (float)fmax(fmin(world, (double)FLT_MAX), -(double)FLT_MAX);
     }
 }
@@ -64,20 +64,21 @@ static size_t count_merged(const cw_mesh *mesh, const uint32_t *map)
     return merged;
 }
 
-cw_status cwi_measure_loss(const cw_mesh *mesh, cw_write_loss *loss, cw_error *err)
+cw_status cwi_measure_loss(const cwi_part *part, cw_write_loss *loss, cw_error *err)
 {
+    const cw_mesh *mesh = &part->mesh;
     const size_t count = mesh->vertex_count;
     float *rounded = cwi_alloc_array(count, 3 * sizeof *rounded);
     uint32_t *map = cwi_alloc_array(count, sizeof *map);
     bool ok = rounded && map;
     if (ok) {
-        round_points(mesh, rounded);
+        round_points(part, rounded);
         ok = cwi_weld(rounded, count, map);
     }
     if (ok) {
-        loss->step_mm = step_of(mesh);
-        loss->merged_vertices = count_merged(mesh, map);
-        loss->flat_triangles = count_flat(mesh, rounded);
+        loss->step_mm = fmax(loss->step_mm, step_of(mesh));
+        loss->merged_vertices += count_merged(mesh, map);
+        loss->flat_triangles += count_flat(mesh, rounded);
     }
     cwi_free(rounded);
     cwi_free(map);

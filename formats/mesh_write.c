@@ -2,7 +2,7 @@
 
 #include "core/status.h"
 #include "core/text.h"
-#include "formats/mesh_writers.h"
+#include "formats/parts.h"
 #include "formats/table.h"
 
 #include <float.h>
@@ -14,25 +14,26 @@ typedef struct writer {
     cwi_mesh_writer *write;
     cw_status (*prepare)(cw_error *err); /* loads what it needs; NULL: nothing */
     bool world;                          /* coordinates hold the origin, unless local */
+    bool own_arrays;                     /* of each part; else those that all parts have */
 } writer;
 
 static const writer writers[] = {
-    {"glb", cwi_glb_write, cwi_gltf_prepare, false},
-    {"gltf", cwi_gltf_write, cwi_gltf_prepare, false},
-    {"stl", cwi_stl_write, NULL, true},
-    {"ply", cwi_ply_write, NULL, true},
-    {"obj", cwi_obj_write, NULL, true},
+    {.format = "glb", .write = cwi_glb_write, .prepare = cwi_gltf_prepare},
+    {.format = "gltf", .write = cwi_gltf_write, .prepare = cwi_gltf_prepare},
+    {.format = "stl", .write = cwi_stl_write, .world = true},
+    {.format = "ply", .write = cwi_ply_write, .world = true},
+    {.format = "obj", .write = cwi_obj_write, .world = true},
 };
 
-enum { NAME_BYTES = 256, PROGRESS_STEP = 65536 };
+enum { PROGRESS_STEP = 65536 };
 
-cw_status cwi_write_records(const cw_mesh *mesh, cwi_mesh_output *out,
+cw_status cwi_write_records(const cwi_part *part, cwi_mesh_output *out,
                             cwi_record_encoder *encode, size_t count, cw_error *err)
 {
     unsigned char record[CWI_RECORD_BYTES];
     cw_status st = CW_OK;
     for (size_t i = 0; i < count && st == CW_OK; i++) {
-        const unsigned char *end = encode(mesh, i, record);
+        const unsigned char *end = encode(part, i, record);
         st = cwi_outfile_write(out->file, record, (size_t)(end - record), err);
         if (st == CW_OK && out->done++ % PROGRESS_STEP == 0)
             st = cwi_progress(out->progress, "writing", (double)out->done / (double)out->total,
@@ -41,7 +42,27 @@ cw_status cwi_write_records(const cw_mesh *mesh, cwi_mesh_output *out,
     return st;
 }
 
-cw_status cwi_check_single(const cw_mesh *mesh, cw_error *err)
+cw_status cwi_write_vertices(const cwi_parts *parts, cwi_mesh_output *out,
+                             cwi_record_encoder *encode, cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (size_t i = 0; i < parts->count && st == CW_OK; i++)
+        st = cwi_write_records(&parts->items[i], out, encode, parts->items[i].mesh.vertex_count,
+                               err);
+    return st;
+}
+
+cw_status cwi_write_triangles(const cwi_parts *parts, cwi_mesh_output *out,
+                              cwi_record_encoder *encode, cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (size_t i = 0; i < parts->count && st == CW_OK; i++)
+        st = cwi_write_records(&parts->items[i], out, encode,
+                               parts->items[i].mesh.triangle_count, err);
+    return st;
+}
+
+static cw_status check_single(const cw_mesh *mesh, cw_error *err)
 {
     double low[3], high[3];
     cw_mesh_bounds(mesh, low, high);
@@ -52,6 +73,14 @@ cw_status cwi_check_single(const cw_mesh *mesh, cw_error *err)
                            "precision cannot say",
                            high[a]);
     return CW_OK;
+}
+
+cw_status cwi_check_single(const cwi_parts *parts, cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (size_t i = 0; i < parts->count && st == CW_OK; i++)
+        st = check_single(&parts->items[i].mesh, err);
+    return st;
 }
 
 /* The fewest digits that read back the same. */
@@ -127,89 +156,73 @@ static cw_status find_writer(const char *path, const char *name, const writer **
     return (*out)->prepare ? (*out)->prepare(err) : CW_OK;
 }
 
-/* Bytes of the character at text that a name may keep; 0 when it may not. */
-static size_t kept_length(const char *text)
+static cw_status write_parts(const char *path, const cwi_parts *parts, const writer *w,
+                             const cw_write_desc *d, cwi_mesh_output *out, cw_error *err)
 {
-    const unsigned char first = (unsigned char)text[0];
-    const bool printable = first >= 0x20 && first != 0x7f && first != '\\';
-    return printable ? cwi_utf8_length(text) : 0;
-}
-
-/* Copies size bytes of text; what is not a printable character of UTF-8 becomes '_', so that no
- * name can break a line of OBJ or the JSON of glTF. */
-static void clean_name(const char *text, size_t size, char name[NAME_BYTES])
-{
-    size_t used = 0;
-    for (size_t i = 0; i < size;) {
-        const size_t length = kept_length(text + i);
-        const size_t step = length ? length : 1;
-        if (used + step >= NAME_BYTES || i + step > size)
-            break;
-        if (length)
-            memcpy(name + used, text + i, length);
-        else
-            name[used] = '_';
-        used += step;
-        i += step;
-    }
-    name[used] = '\0';
-}
-
-/* The name asked for, or the path's last part without its extension. */
-static void choose_name(const char *path, const char *asked, char name[NAME_BYTES])
-{
-    const char *slash = strrchr(path, '/');
-    const char *stem = asked ? asked : slash ? slash + 1 : path;
-    const char *dot = asked ? NULL : strrchr(stem, '.');
-    clean_name(stem, dot && dot != stem ? (size_t)(dot - stem) : strlen(stem), name);
-}
-
-static cw_status write_whole(const char *path, const cw_mesh *mesh, const cw_write_desc *d,
-                             cwi_mesh_writer *write, cw_error *err)
-{
-    char name[NAME_BYTES];
-    choose_name(path, d->name, name);
-    cwi_mesh_output out = {
-        .name = name, .local_origin = d->local ? mesh->origin : NULL, .progress = &d->progress};
-    cw_mesh placed = *mesh; /* borrows the arrays */
-    if (d->local)
-        memset(placed.origin, 0, sizeof placed.origin);
-    cw_status st = cwi_outfile_open(&out.file, path, d->no_clobber, err);
+    cw_status st = cwi_outfile_open(&out->file, path, d->no_clobber, err);
     if (st == CW_OK)
-        st = write(&placed, &out, err);
+        st = w->write(parts, out, err);
     if (st == CW_OK)
-        st = cwi_outfile_commit(&out.file, err);
-    cwi_outfile_abort(&out.file);
+        st = cwi_outfile_commit(&out->file, err);
+    cwi_outfile_abort(&out->file);
     return st;
+}
+
+cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
+                         const cw_write_desc *desc, cw_error *err)
+{
+    const cw_write_desc d = desc ? *desc : (cw_write_desc){0};
+    const writer *w;
+    char name[CWI_NAME_BYTES];
+    double origin[3];
+    cwi_parts placed = {0};
+    cwi_choose_name(path, parts, count, &d, name);
+    cwi_mesh_output out = {
+        .name = name, .local_origin = d.local ? origin : NULL, .progress = &d.progress};
+    cw_status st = find_writer(path, d.format, &w, err);
+    if (st == CW_OK)
+        st = cwi_parts_place(parts, count, &d, w->own_arrays, name, &placed, origin, err);
+    if (st == CW_OK)
+        st = write_parts(path, &placed, w, &d, &out, err);
+    cwi_parts_free(&placed);
+    return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
 }
 
 cw_status cw_mesh_write(const char *path, const cw_mesh *mesh, const cw_write_desc *desc,
                         cw_error *err)
 {
+    return cw_parts_write(path, &(cw_part){.mesh = mesh}, 1, desc, err);
+}
+
+/* A local file of one part holds its positions as they are. */
+static bool is_exact(const cwi_part *part, const cw_write_desc *d)
+{
+    const double *origin = part->mesh.origin;
+    return d->local && origin[0] == 0 && origin[1] == 0 && origin[2] == 0;
+}
+
+cw_status cw_parts_write_loss(const char *path, const cw_part *parts, size_t count,
+                              const cw_write_desc *desc, cw_write_loss *loss, cw_error *err)
+{
     const cw_write_desc d = desc ? *desc : (cw_write_desc){0};
     const writer *w;
+    double origin[3];
+    cwi_parts placed = {0};
+    memset(loss, 0, sizeof *loss);
     cw_status st = find_writer(path, d.format, &w, err);
     if (st == CW_OK)
-        st = cw_mesh_check(mesh, err);
-    if (st == CW_OK && mesh->triangle_count == 0)
-        st = cw_fail(err, CW_ERR_ARGUMENT, "the mesh is empty");
-    if (st == CW_OK)
-        st = write_whole(path, mesh, &d, w->write, err);
+        st = cwi_parts_place(parts, count, &d, w->own_arrays, "", &placed, origin, err);
+    for (size_t i = 0; i < placed.count && st == CW_OK; i++)
+        if (w->world && !is_exact(&placed.items[i], &d))
+            st = cwi_measure_loss(&placed.items[i], loss, err);
+    cwi_parts_free(&placed);
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
 }
 
 cw_status cw_mesh_write_loss(const char *path, const cw_mesh *mesh, const cw_write_desc *desc,
                              cw_write_loss *loss, cw_error *err)
 {
-    const cw_write_desc d = desc ? *desc : (cw_write_desc){0};
-    const writer *w;
-    memset(loss, 0, sizeof *loss);
-    cw_status st = find_writer(path, d.format, &w, err);
-    if (st == CW_OK)
-        st = cw_mesh_check(mesh, err);
-    if (st == CW_OK && w->world && !d.local)
-        st = cwi_measure_loss(mesh, loss, err);
-    return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
+    return cw_parts_write_loss(path, &(cw_part){.mesh = mesh}, 1, desc, loss, err);
 }
 
 cw_status cw_mesh_write_check(const char *path, const cw_write_desc *desc, cw_error *err)

@@ -1,6 +1,5 @@
 /* What the mesh writers share: where bytes go, the records they are made of, places in the
- * world. A writer gets a mesh that is checked and not empty; for a local file its origin is 0.
- */
+ * world. */
 #ifndef FORMATS_MESH_WRITERS_H
 #define FORMATS_MESH_WRITERS_H
 
@@ -14,16 +13,34 @@
 extern "C" {
 #endif
 
+enum { CWI_NAME_BYTES = 256, CWI_RECORD_BYTES = 256 };
+
+/* A part as a writer gets it: checked, with triangles. */
+typedef struct cwi_part {
+    cw_mesh mesh;   /* borrows its arrays; those that the file does not keep are NULL. For a
+                       local file its origin counts from that of the file. */
+    uint64_t first; /* vertices of the parts before it */
+    char name[CWI_NAME_BYTES]; /* printable UTF-8 on one line */
+} cwi_part;
+
+/* Formats that hold one mesh write them one behind the other. All have the same arrays, unless
+ * the writer's row says that each may have its own. */
+typedef struct cwi_parts {
+    cwi_part *items;
+    size_t count;
+    uint64_t vertices, triangles; /* of all */
+} cwi_parts;
+
 typedef struct cwi_mesh_output {
     cwi_outfile *file;
-    const char *name; /* of the object; printable UTF-8 on one line, at most 255 bytes */
+    const char *name; /* of all parts together; as that of a part */
     const double
         *local_origin; /* what gives the world's coordinates when added; NULL: nothing */
     const cw_progress *progress;
     size_t done, total; /* records, for progress; a writer sets the total */
 } cwi_mesh_output;
 
-typedef cw_status cwi_mesh_writer(const cw_mesh *mesh, cwi_mesh_output *out, cw_error *err);
+typedef cw_status cwi_mesh_writer(const cwi_parts *parts, cwi_mesh_output *out, cw_error *err);
 
 CW_API cwi_mesh_writer cwi_stl_write;
 CW_API cwi_mesh_writer cwi_ply_write;
@@ -34,14 +51,18 @@ CW_API cwi_mesh_writer cwi_gltf_write;
 /* Loads the module that both glTF writers need. CW_ERR_UNSUPPORTED: not in this build. */
 CW_API cw_status cwi_gltf_prepare(cw_error *err);
 
-enum { CWI_RECORD_BYTES = 256 }; /* room for any record, binary or a line of text */
+/* Puts record i of a part at to, where there is room for CWI_RECORD_BYTES; returns its end. */
+typedef unsigned char *cwi_record_encoder(const cwi_part *part, size_t i, unsigned char *to);
 
-/* Puts record i at to; returns the end of it. */
-typedef unsigned char *cwi_record_encoder(const cw_mesh *mesh, size_t i, unsigned char *to);
-
-/* Writes records 0 to count - 1 and reports progress on the way. */
-cw_status cwi_write_records(const cw_mesh *mesh, cwi_mesh_output *out,
+/* Writes a part's records 0 to count - 1 and reports progress on the way. */
+cw_status cwi_write_records(const cwi_part *part, cwi_mesh_output *out,
                             cwi_record_encoder *encode, size_t count, cw_error *err);
+
+/* Writes a record for every vertex, or triangle, of all parts. */
+cw_status cwi_write_vertices(const cwi_parts *parts, cwi_mesh_output *out,
+                             cwi_record_encoder *encode, cw_error *err);
+cw_status cwi_write_triangles(const cwi_parts *parts, cwi_mesh_output *out,
+                              cwi_record_encoder *encode, cw_error *err);
 
 enum { CWI_ORIGIN_BYTES = 128 };
 
@@ -50,11 +71,11 @@ enum { CWI_ORIGIN_BYTES = 128 };
 void cwi_print_origin(const cwi_mesh_output *out, const char *before, const char *after,
                       char text[CWI_ORIGIN_BYTES]);
 
-/* cw_mesh_write_loss() of a file in world coordinates; loss is zeroed. */
-cw_status cwi_measure_loss(const cw_mesh *mesh, cw_write_loss *loss, cw_error *err);
+/* Adds what a part loses in a file that holds its coordinates in single precision. */
+cw_status cwi_measure_loss(const cwi_part *part, cw_write_loss *loss, cw_error *err);
 
 /* CW_ERR_LIMIT when a world coordinate is beyond single precision's largest number. */
-cw_status cwi_check_single(const cw_mesh *mesh, cw_error *err);
+cw_status cwi_check_single(const cwi_parts *parts, cw_error *err);
 
 /* Little endian on any machine; each returns the end of what it put. */
 static inline unsigned char *cwi_put_u16(unsigned char *to, uint16_t value)
@@ -84,9 +105,15 @@ static inline unsigned char *cwi_put_f32x3(unsigned char *to, const float value[
 }
 
 /* Summed in double: a position keeps its micrometres until the format takes them. */
-static inline double cwi_world_coordinate(const cw_mesh *mesh, size_t vertex, int axis)
+static inline double cwi_world_coordinate(const cwi_part *part, size_t vertex, int axis)
 {
-    return mesh->origin[axis] + (double)mesh->positions[3 * vertex + (size_t)axis];
+    return part->mesh.origin[axis] + (double)part->mesh.positions[3 * vertex + (size_t)axis];
+}
+
+/* A triangle's corner, counted through all parts from 0. */
+static inline uint64_t cwi_corner_number(const cwi_part *part, size_t triangle, int corner)
+{
+    return part->first + part->mesh.triangles[3 * triangle + (size_t)corner];
 }
 
 #ifdef __cplusplus

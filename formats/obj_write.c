@@ -6,24 +6,24 @@
 #include <math.h>
 #include <stdio.h>
 
-static unsigned char *put_place(const cw_mesh *mesh, size_t v, int digits, unsigned char *to)
+static unsigned char *put_place(const cwi_part *part, size_t v, int digits, unsigned char *to)
 {
     return to + snprintf((char *)to, CWI_RECORD_BYTES, "v %.*g %.*g %.*g\n", digits,
-                         cwi_world_coordinate(mesh, v, 0), digits,
-                         cwi_world_coordinate(mesh, v, 1), digits,
-                         cwi_world_coordinate(mesh, v, 2));
+                         cwi_world_coordinate(part, v, 0), digits,
+                         cwi_world_coordinate(part, v, 1), digits,
+                         cwi_world_coordinate(part, v, 2));
 }
 
 /* Nine digits give a float back to the bit, the tenth is room for the origin. */
-static unsigned char *encode_near_place(const cw_mesh *mesh, size_t v, unsigned char *to)
+static unsigned char *encode_near_place(const cwi_part *part, size_t v, unsigned char *to)
 {
-    return put_place(mesh, v, 10, to);
+    return put_place(part, v, 10, to);
 }
 
 /* A double to the bit. */
-static unsigned char *encode_far_place(const cw_mesh *mesh, size_t v, unsigned char *to)
+static unsigned char *encode_far_place(const cwi_part *part, size_t v, unsigned char *to)
 {
-    return put_place(mesh, v, 17, to);
+    return put_place(part, v, 17, to);
 }
 
 /* Whether the mesh stands more than ten times its own size from zero. */
@@ -38,50 +38,60 @@ static bool is_far(const cw_mesh *mesh)
     return distance > 10 * size;
 }
 
-static unsigned char *encode_normal(const cw_mesh *mesh, size_t v, unsigned char *to)
+static unsigned char *encode_normal(const cwi_part *part, size_t v, unsigned char *to)
 {
-    const float *n = mesh->normals + 3 * v;
+    const float *n = part->mesh.normals + 3 * v;
     return to + snprintf((char *)to, CWI_RECORD_BYTES, "vn %.9g %.9g %.9g\n", (double)n[0],
                          (double)n[1], (double)n[2]);
 }
 
-/* Numbers start at 1; a vertex and its normal share one. */
-static unsigned char *encode_face(const cw_mesh *mesh, size_t t, unsigned char *to)
+/* Numbers start at 1; a vertex and its normal share one, as all parts have normals or none. */
+static unsigned char *encode_face(const cwi_part *part, size_t t, unsigned char *to)
 {
     uint64_t n[3];
-    for (size_t c = 0; c < 3; c++)
-        n[c] = (uint64_t)mesh->triangles[3 * t + c] + 1;
+    for (int c = 0; c < 3; c++)
+        n[c] = cwi_corner_number(part, t, c) + 1;
     const int length =
-        mesh->normals ? snprintf((char *)to, CWI_RECORD_BYTES, "f %ju//%ju %ju//%ju %ju//%ju\n",
-                                 (uintmax_t)n[0], (uintmax_t)n[0], (uintmax_t)n[1],
-                                 (uintmax_t)n[1], (uintmax_t)n[2], (uintmax_t)n[2])
-                      : snprintf((char *)to, CWI_RECORD_BYTES, "f %ju %ju %ju\n",
-                                 (uintmax_t)n[0], (uintmax_t)n[1], (uintmax_t)n[2]);
+        part->mesh.normals
+            ? snprintf((char *)to, CWI_RECORD_BYTES, "f %ju//%ju %ju//%ju %ju//%ju\n",
+                       (uintmax_t)n[0], (uintmax_t)n[0], (uintmax_t)n[1], (uintmax_t)n[1],
+                       (uintmax_t)n[2], (uintmax_t)n[2])
+            : snprintf((char *)to, CWI_RECORD_BYTES, "f %ju %ju %ju\n", (uintmax_t)n[0],
+                       (uintmax_t)n[1], (uintmax_t)n[2]);
     return to + length;
 }
 
-static cw_status write_lines(const cw_mesh *mesh, cwi_mesh_output *out, cw_error *err)
+static cw_status write_object(const cwi_part *part, cwi_mesh_output *out, cw_error *err)
 {
-    const size_t normal_count = mesh->normals ? mesh->vertex_count : 0;
-    out->total = mesh->vertex_count + normal_count + mesh->triangle_count;
+    const cw_mesh *mesh = &part->mesh;
     cwi_record_encoder *encode_place = is_far(mesh) ? encode_far_place : encode_near_place;
-    char origin[CWI_ORIGIN_BYTES];
-    cwi_print_origin(out, "# origin", "\n", origin);
-    cw_status st = cwi_outfile_printf(out->file, err, "# cubewright %s, LPS, mm\n%so %s\n",
-                                      CW_VERSION, origin, out->name);
+    cw_status st = cwi_outfile_printf(out->file, err, "o %s\n", part->name);
     if (st == CW_OK)
-        st = cwi_write_records(mesh, out, encode_place, mesh->vertex_count, err);
+        st = cwi_write_records(part, out, encode_place, mesh->vertex_count, err);
+    if (st == CW_OK && mesh->normals)
+        st = cwi_write_records(part, out, encode_normal, mesh->vertex_count, err);
     if (st == CW_OK)
-        st = cwi_write_records(mesh, out, encode_normal, normal_count, err);
-    if (st == CW_OK)
-        st = cwi_write_records(mesh, out, encode_face, mesh->triangle_count, err);
+        st = cwi_write_records(part, out, encode_face, mesh->triangle_count, err);
     return st;
 }
 
-cw_status cwi_obj_write(const cw_mesh *mesh, cwi_mesh_output *out, cw_error *err)
+static cw_status write_objects(const cwi_parts *parts, cwi_mesh_output *out, cw_error *err)
 {
+    char origin[CWI_ORIGIN_BYTES];
+    cwi_print_origin(out, "# origin", "\n", origin);
+    cw_status st =
+        cwi_outfile_printf(out->file, err, "# cubewright %s, LPS, mm\n%s", CW_VERSION, origin);
+    for (size_t i = 0; i < parts->count && st == CW_OK; i++)
+        st = write_object(&parts->items[i], out, err);
+    return st;
+}
+
+cw_status cwi_obj_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *err)
+{
+    const uint64_t normals = parts->items[0].mesh.normals ? parts->vertices : 0;
+    out->total = (size_t)(parts->vertices + normals + parts->triangles);
     void *before = cwi_locale_c();
-    cw_status st = write_lines(mesh, out, err);
+    cw_status st = write_objects(parts, out, err);
     cwi_locale_restore(before);
     return st;
 }

@@ -1,12 +1,13 @@
 /* Binary little-endian PLY: everything a mesh holds but its affine. */
 #include "formats/mesh_writers.h"
 
-#include <cubewright/core.h>
+#include "core/status.h"
 
-static unsigned char *encode_vertex(const cw_mesh *mesh, size_t v, unsigned char *to)
+static unsigned char *encode_vertex(const cwi_part *part, size_t v, unsigned char *to)
 {
+    const cw_mesh *mesh = &part->mesh;
     for (int a = 0; a < 3; a++)
-        to = cwi_put_f32(to, (float)cwi_world_coordinate(mesh, v, a));
+        to = cwi_put_f32(to, (float)cwi_world_coordinate(part, v, a));
     if (mesh->normals)
         to = cwi_put_f32x3(to, mesh->normals + 3 * v);
     if (mesh->colors) {
@@ -20,44 +21,48 @@ static unsigned char *encode_vertex(const cw_mesh *mesh, size_t v, unsigned char
     return to;
 }
 
-static unsigned char *encode_face(const cw_mesh *mesh, size_t t, unsigned char *to)
+static unsigned char *encode_face(const cwi_part *part, size_t t, unsigned char *to)
 {
     *to++ = 3;
-    for (size_t c = 0; c < 3; c++)
-        to = cwi_put_u32(to, mesh->triangles[3 * t + c]);
+    for (int c = 0; c < 3; c++)
+        to = cwi_put_u32(to, (uint32_t)cwi_corner_number(part, t, c));
     return to;
 }
 
-static cw_status write_header(const cw_mesh *mesh, const cwi_mesh_output *out, cw_error *err)
+static cw_status write_header(const cwi_parts *parts, const cwi_mesh_output *out, cw_error *err)
 {
+    const cw_mesh *mesh = &parts->items[0].mesh; /* all have the same arrays */
     /* int is what readers expect; uint only when the numbers need it */
-    const char *index = mesh->vertex_count > INT32_MAX ? "uint" : "int";
+    const char *index = parts->vertices > INT32_MAX ? "uint" : "int";
     char origin[CWI_ORIGIN_BYTES];
     cwi_print_origin(out, "comment origin", "\n", origin);
     return cwi_outfile_printf(
         out->file, err,
         "ply\nformat binary_little_endian 1.0\n"
         "comment cubewright %s\ncomment object %s\ncomment unit mm\ncomment frame LPS\n%s"
-        "element vertex %zu\nproperty float x\nproperty float y\nproperty float z\n%s%s%s%s"
-        "element face %zu\nproperty list uchar %s vertex_indices\nend_header\n",
-        CW_VERSION, out->name, origin, mesh->vertex_count,
+        "element vertex %ju\nproperty float x\nproperty float y\nproperty float z\n%s%s%s%s"
+        "element face %ju\nproperty list uchar %s vertex_indices\nend_header\n",
+        CW_VERSION, out->name, origin, (uintmax_t)parts->vertices,
         mesh->normals ? "property float nx\nproperty float ny\nproperty float nz\n" : "",
         mesh->colors ? "property uchar red\nproperty uchar green\nproperty uchar blue\n"
                        "property uchar alpha\n"
                      : "",
         mesh->scalars ? "property float scalar\n" : "",
-        mesh->labels ? "property uint label\n" : "", mesh->triangle_count, index);
+        mesh->labels ? "property uint label\n" : "", (uintmax_t)parts->triangles, index);
 }
 
-cw_status cwi_ply_write(const cw_mesh *mesh, cwi_mesh_output *out, cw_error *err)
+cw_status cwi_ply_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *err)
 {
-    out->total = mesh->vertex_count + mesh->triangle_count;
-    cw_status st = cwi_check_single(mesh, err);
+    if (parts->vertices > UINT32_MAX)
+        return cw_fail(err, CW_ERR_LIMIT, "PLY counts at most %u vertices; the mesh has %llu",
+                       UINT32_MAX, (unsigned long long)parts->vertices);
+    out->total = (size_t)(parts->vertices + parts->triangles);
+    cw_status st = cwi_check_single(parts, err);
     if (st == CW_OK)
-        st = write_header(mesh, out, err);
+        st = write_header(parts, out, err);
     if (st == CW_OK)
-        st = cwi_write_records(mesh, out, encode_vertex, mesh->vertex_count, err);
+        st = cwi_write_vertices(parts, out, encode_vertex, err);
     if (st == CW_OK)
-        st = cwi_write_records(mesh, out, encode_face, mesh->triangle_count, err);
+        st = cwi_write_triangles(parts, out, encode_face, err);
     return st;
 }

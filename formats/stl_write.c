@@ -22,13 +22,13 @@ static void facet_normal(float corner[3][3], float normal[3])
         normal[a] = length > 0 ? (float)(n[a] / length) : 0;
 }
 
-static unsigned char *encode_facet(const cw_mesh *mesh, size_t i, unsigned char *to)
+static unsigned char *encode_facet(const cwi_part *part, size_t i, unsigned char *to)
 {
+    const uint32_t *vertex = part->mesh.triangles + 3 * i;
     float corner[3][3], normal[3];
     for (int c = 0; c < 3; c++)
         for (int a = 0; a < 3; a++)
-            corner[c][a] =
-                (float)cwi_world_coordinate(mesh, mesh->triangles[3 * i + (size_t)c], a);
+            corner[c][a] = (float)cwi_world_coordinate(part, vertex[c], a);
     facet_normal(corner, normal);
     to = cwi_put_f32x3(to, normal);
     for (int c = 0; c < 3; c++)
@@ -49,18 +49,18 @@ static void fill_header(const cwi_mesh_output *out, uint32_t count, unsigned cha
     cwi_put_u32(header + 80, count);
 }
 
-cw_status cwi_stl_write(const cw_mesh *mesh, cwi_mesh_output *out, cw_error *err)
+cw_status cwi_stl_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *err)
 {
     unsigned char header[84];
-    if (mesh->triangle_count > UINT32_MAX)
-        return cw_fail(err, CW_ERR_LIMIT, "STL counts at most %u triangles; the mesh has %zu",
-                       UINT32_MAX, mesh->triangle_count);
-    fill_header(out, (uint32_t)mesh->triangle_count, header);
-    out->total = mesh->triangle_count;
-    cw_status st = cwi_check_single(mesh, err);
+    if (parts->triangles > UINT32_MAX)
+        return cw_fail(err, CW_ERR_LIMIT, "STL counts at most %u triangles; the mesh has %llu",
+                       UINT32_MAX, (unsigned long long)parts->triangles);
+    fill_header(out, (uint32_t)parts->triangles, header);
+    out->total = (size_t)parts->triangles;
+    cw_status st = cwi_check_single(parts, err);
     if (st == CW_OK)
         st = cwi_outfile_write(out->file, header, sizeof header, err);
     if (st == CW_OK)
-        st = cwi_write_records(mesh, out, encode_facet, mesh->triangle_count, err);
+        st = cwi_write_triangles(parts, out, encode_facet, err);
     return st;
 }

@@ -204,6 +204,19 @@ CW_API cw_status cw_volume_write(const char *path, const cw_volume *volume,
 CW_API cw_status cw_mesh_write(const char *path, const cw_mesh *mesh, const cw_write_desc *desc,
                                cw_error *err);
 
+/* A mesh with a name, as one of several in a file. */
+typedef struct cw_part {
+    const cw_mesh *mesh; /* borrowed */
+    const char *name;    /* default: that of the file, with a number behind it */
+} cw_part;
+
+/* Writes parts into one file: OBJ gets an object for each. In the others they become one mesh,
+ * one behind the other, with the arrays that all of them have. Parts without triangles are left
+ * out. Of a local file the origin is that of the first part.
+ * Returns as cw_mesh_write() */
+CW_API cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
+                                const cw_write_desc *desc, cw_error *err);
+
 /* What single precision takes from the mesh in a file of world coordinates. */
 typedef struct cw_write_loss {
     double step_mm;         /* between neighbouring numbers, at the farthest coordinate */
@@ -212,14 +225,18 @@ typedef struct cw_write_loss {
 } cw_write_loss;
 
 /* Measures what a reader with single precision will not get of the file that cw_mesh_write()
- * would write. All zero for glTF, and for local files: those hold the positions as they are.
- * STL and PLY lose it in the file; OBJ holds every digit, but most of its readers do not.
+ * or cw_parts_write() would write. All zero for glTF, and for local files: those hold the
+ * positions as they are. STL and PLY lose it in the file; OBJ holds every digit, but most of
+ * its readers do not. Vertices of different parts are not compared.
  *
  * Returns  CW_ERR_ARGUMENT  no such writer, or as cw_mesh_check(); CW_ERR_NO_MEMORY
  * Cost     time in proportion to the triangles, and 28 bytes a vertex at most */
 CW_API cw_status cw_mesh_write_loss(const char *path, const cw_mesh *mesh,
                                     const cw_write_desc *desc, cw_write_loss *loss,
                                     cw_error *err);
+CW_API cw_status cw_parts_write_loss(const char *path, const cw_part *parts, size_t count,
+                                     const cw_write_desc *desc, cw_write_loss *loss,
+                                     cw_error *err);
 
 /* Whether cw_mesh_write() could write to a path, as far as can be known before there is a mesh:
  * writer and library at hand, folder there and writable, nothing in the way. Same errors. */

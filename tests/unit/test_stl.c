@@ -231,11 +231,11 @@ static void an_origin_too_long_for_the_header_is_only_hinted_at(void **state)
 static void more_triangles_than_stl_can_count_are_refused(void **state)
 {
     (void)state;
-    const cw_mesh mesh = {.triangle_count = (size_t)UINT32_MAX + 1};
+    const cwi_parts parts = {.count = 1, .triangles = (uint64_t)UINT32_MAX + 1};
     cwi_mesh_output out = {0};
     cw_error err = {0};
-    assert_fails(cwi_stl_write(&mesh, &out, &err), CW_ERR_LIMIT, "at most 4294967295 triangles",
-                 err);
+    assert_fails(cwi_stl_write(&parts, &out, &err), CW_ERR_LIMIT,
+                 "at most 4294967295 triangles", err);
 }
 
 #define CASE(test) cmocka_unit_test_setup_teardown(test, test_folder_make, test_folder_remove)

@@ -1,0 +1,132 @@
+#include "formats/parts.h"
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "core/text.h"
+
+#include <stdio.h>
+
+/* --- names ------------------------------------------------------------------------------- */
+
+/* Bytes of the character at text that a name may keep; 0 when it may not. */
+static size_t kept_length(const char *text)
+{
+    const unsigned char first = (unsigned char)text[0];
+    const bool printable = first >= 0x20 && first != 0x7f && first != '\\';
+    return printable ? cwi_utf8_length(text) : 0;
+}
+
+/* Copies size bytes of text; what is not a printable character of UTF-8 becomes '_', so that no
+ * name can break a line of OBJ or the JSON of glTF. */
+static void clean_name(const char *text, size_t size, char name[CWI_NAME_BYTES])
+{
+    size_t used = 0;
+    for (size_t i = 0; i < size;) {
+        const size_t length = kept_length(text + i);
+        const size_t step = length ? length : 1;
+        if (used + step >= CWI_NAME_BYTES || i + step > size)
+            break;
+        if (length)
+            memcpy(name + used, text + i, length);
+        else
+            name[used] = '_';
+        used += step;
+        i += step;
+    }
+    name[used] = '\0';
+}
+
+void cwi_choose_name(const char *path, const cw_part *parts, size_t count,
+                     const cw_write_desc *desc, char name[CWI_NAME_BYTES])
+{
+    const char *slash = strrchr(path, '/');
+    const char *asked = desc->name ? desc->name : count == 1 ? parts->name : NULL;
+    const char *stem = asked ? asked : slash ? slash + 1 : path;
+    const char *dot = asked ? NULL : strrchr(stem, '.');
+    clean_name(stem, dot && dot != stem ? (size_t)(dot - stem) : strlen(stem), name);
+}
+
+/* A part without a name has that of all, with its number behind it where there are several. */
+static void name_part(cwi_part *part, const char *given, const char *all, size_t number,
+                      size_t count)
+{
+    if (given && count > 1)
+        clean_name(given, strlen(given), part->name);
+    else if (count > 1)
+        snprintf(part->name, sizeof part->name, "%.200s %zu", all, number);
+    else
+        snprintf(part->name, sizeof part->name, "%s", all);
+}
+
+/* --- placing ----------------------------------------------------------------------------- */
+
+static cw_status check_parts(const cw_part *parts, size_t count, cw_error *err)
+{
+    bool empty = true;
+    for (size_t i = 0; i < count; i++) {
+        cw_status st = cw_mesh_check(parts[i].mesh, err);
+        if (st != CW_OK)
+            return st;
+        empty = empty && parts[i].mesh->triangle_count == 0;
+    }
+    return empty ? cw_fail(err, CW_ERR_ARGUMENT, "the mesh is empty") : CW_OK;
+}
+
+/* Arrays of which one part has none are of no use to the whole. */
+static void share_arrays(cwi_parts *parts)
+{
+    bool normals = true, scalars = true, colors = true, labels = true;
+    for (size_t i = 0; i < parts->count; i++) {
+        const cw_mesh *m = &parts->items[i].mesh;
+        normals = normals && m->normals;
+        scalars = scalars && m->scalars;
+        colors = colors && m->colors;
+        labels = labels && m->labels;
+    }
+    for (size_t i = 0; i < parts->count; i++) {
+        cw_mesh *m = &parts->items[i].mesh;
+        m->normals = normals ? m->normals : NULL;
+        m->scalars = scalars ? m->scalars : NULL;
+        m->colors = colors ? m->colors : NULL;
+        m->labels = labels ? m->labels : NULL;
+    }
+}
+
+static void add_part(cwi_parts *parts, const cw_mesh *mesh, const double origin[3])
+{
+    cwi_part *part = &parts->items[parts->count++];
+    part->mesh = *mesh;
+    part->first = parts->vertices;
+    for (int a = 0; a < 3; a++)
+        part->mesh.origin[a] -= origin[a];
+    parts->vertices += mesh->vertex_count;
+    parts->triangles += mesh->triangle_count;
+}
+
+cw_status cwi_parts_place(const cw_part *parts, size_t count, const cw_write_desc *desc,
+                          bool own_arrays, const char *name, cwi_parts *placed,
+                          double origin[3], cw_error *err)
+{
+    static const double zero[3] = {0};
+    cw_status st = check_parts(parts, count, err);
+    if (st != CW_OK)
+        return st;
+    placed->items = cwi_alloc_zeroed(count, sizeof *placed->items);
+    if (!placed->items)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", count);
+    memcpy(origin, desc->local ? parts->mesh->origin : zero, sizeof zero);
+    for (size_t i = 0; i < count; i++)
+        if (parts[i].mesh->triangle_count) {
+            add_part(placed, parts[i].mesh, origin);
+            name_part(&placed->items[placed->count - 1], parts[i].name, name, i + 1, count);
+        }
+    if (!own_arrays)
+        share_arrays(placed);
+    return CW_OK;
+}
+
+void cwi_parts_free(cwi_parts *parts)
+{
+    cwi_free(parts->items);
+    *parts = (cwi_parts){0};
+}

@@ -1,0 +1,246 @@
+/* Several meshes in one file: what becomes of their names, places and arrays. */
+#include "support/meshes.h"
+
+#include "core/module.h"
+#include "formats/mesh_writers.h"
+
+#include <math.h>
+
+/* A cube and a tetrahedron, apart from each other in the world and each with an origin. */
+typedef struct pair {
+    cw_mesh cube, tetrahedron;
+    cw_part parts[2];
+} pair;
+
+static pair *make_pair(pair *p)
+{
+    memset(p, 0, sizeof *p);
+    test_make_cube(&p->cube);
+    test_make_tetrahedron(&p->tetrahedron);
+    memcpy(p->cube.origin, (double[3]){10, 20, 30}, sizeof p->cube.origin);
+    memcpy(p->tetrahedron.origin, (double[3]){15.5, 20, 30}, sizeof p->tetrahedron.origin);
+    p->parts[0] = (cw_part){&p->cube, "cube"};
+    p->parts[1] = (cw_part){&p->tetrahedron, "four faces"};
+    return p;
+}
+
+static void free_pair(pair *p)
+{
+    cw_mesh_free(&p->cube);
+    cw_mesh_free(&p->tetrahedron);
+}
+
+static void write_pair(const char *name, const pair *p, bool local)
+{
+    cw_error err = {0};
+    const cw_write_desc desc = {.local = local};
+    assert_ok(cw_parts_write(test_path(name), p->parts, 2, &desc, &err), err);
+}
+
+/* The two behind each other: 8 + 4 vertices, 12 + 4 triangles, each where it was. */
+static void check_both(const cw_mesh *mesh)
+{
+    static const double low[3] = {10, 20, 30}, high[3] = {16.5, 21, 31};
+    double is_low[3], is_high[3];
+    cw_quality q;
+    cw_error err = {0};
+    assert_usable(mesh);
+    assert_int_equal(mesh->vertex_count, 12);
+    assert_int_equal(mesh->triangle_count, 16);
+    cw_mesh_bounds(mesh, is_low, is_high);
+    for (int a = 0; a < 3; a++) {
+        assert_true(is_low[a] == low[a]);
+        assert_true(is_high[a] == high[a]);
+    }
+    assert_ok(cw_quality_measure(mesh, NULL, &q, &err), err);
+    assert_int_equal(q.components, 2);
+    assert_int_equal(q.open_edges, 0);
+    assert_near(q.volume_mm3, 1 + 1.0 / 6, 1e-6);
+}
+
+static void parts_stand_in_one_file_where_they_are(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"a.stl", "a.ply", "a.obj", "a.glb"};
+    pair p;
+    make_pair(&p);
+    for (size_t i = 0; i < 8; i++) {
+        const char *name = names[i / 2];
+        cw_mesh back;
+        cw_mesh_file file;
+        cw_error err = {0};
+        if (strcmp(name, "a.glb") == 0 && !cwi_module_present("gltf"))
+            continue;
+        write_pair(name, &p, i % 2);
+        assert_ok(cw_mesh_read(test_path(name), NULL, &back, &file, &err), err);
+        assert_true(file.local == i % 2);
+        check_both(&back);
+        if (i % 2)
+            assert_true(back.origin[0] == 10 && back.origin[1] == 20 && back.origin[2] == 30);
+        cw_mesh_free(&back);
+    }
+    free_pair(&p);
+}
+
+static void objects_of_obj_have_their_names(void **state)
+{
+    (void)state;
+    pair p;
+    size_t size;
+    cw_error err = {0};
+    make_pair(&p);
+    write_pair("a.obj", &p, false);
+    char *text = test_file_read(test_path("a.obj"), &size);
+    assert_non_null(strstr(text, "\no cube\nv 10 20 30\n"));
+    const char *second = strstr(text, "\no four faces\nv 15.5 20 30\n");
+    assert_non_null(second);
+    assert_non_null(strstr(second, "\nf 9//9 11//11 10//10\n"));
+    free(text);
+    p.parts[0].name = p.parts[1].name = NULL;
+    assert_ok(cw_parts_write(test_path("a.obj"), p.parts, 2, NULL, &err), err);
+    text = test_file_read(test_path("a.obj"), &size);
+    assert_non_null(strstr(text, "\no a 1\n"));
+    assert_non_null(strstr(text, "\no a 2\n"));
+    free(text);
+    free_pair(&p);
+}
+
+/* The file's own name goes before that of its only part, and that before the path's. */
+static void one_part_is_named_by_the_call_or_itself(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *called, *part, *written;
+    } rows[] = {{"skull", "bone", "\no skull\n"},
+                {NULL, "bone", "\no bone\n"},
+                {NULL, NULL, "\no a\n"}};
+    pair p;
+    cw_error err = {0};
+    make_pair(&p);
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        const cw_write_desc desc = {.name = rows[i].called};
+        size_t size;
+        p.parts[0].name = rows[i].part;
+        assert_ok(cw_parts_write(test_path("a.obj"), p.parts, 1, &desc, &err), err);
+        char *text = test_file_read(test_path("a.obj"), &size);
+        assert_non_null(strstr(text, rows[i].written));
+        free(text);
+    }
+    free_pair(&p);
+}
+
+static void arrays_that_one_part_lacks_are_left_out(void **state)
+{
+    (void)state;
+    static uint8_t colors[4 * 8];
+    static float scalars[8];
+    pair p;
+    cw_mesh back;
+    cw_error err = {0};
+    make_pair(&p);
+    free(p.tetrahedron.normals);
+    p.tetrahedron.normals = NULL;
+    p.cube.colors = colors;
+    p.cube.scalars = p.tetrahedron.scalars = scalars;
+    write_pair("a.ply", &p, false);
+    assert_ok(cw_mesh_read(test_path("a.ply"), NULL, &back, NULL, &err), err);
+    assert_true(back.scalars && !back.normals && !back.colors && !back.labels);
+    cw_mesh_free(&back);
+    p.cube.colors = NULL;
+    p.cube.scalars = p.tetrahedron.scalars = NULL;
+    free_pair(&p);
+}
+
+static void empty_parts_are_left_out_and_alone_refused(void **state)
+{
+    (void)state;
+    const cw_mesh none = {0};
+    pair p;
+    size_t size;
+    cw_error err = {0};
+    make_pair(&p);
+    const cw_part parts[] = {{&none, "none"}, p.parts[0], {&none, "none"}};
+    assert_ok(cw_parts_write(test_path("a.obj"), parts, 3, NULL, &err), err);
+    char *text = test_file_read(test_path("a.obj"), &size);
+    assert_null(strstr(text, "none"));
+    free(text);
+    assert_fails(cw_parts_write(test_path("b.obj"), parts, 1, NULL, &err), CW_ERR_ARGUMENT,
+                 "b.obj: the mesh is empty", err);
+    assert_fails(cw_parts_write(test_path("b.obj"), NULL, 0, NULL, &err), CW_ERR_ARGUMENT,
+                 "b.obj: the mesh is empty", err);
+    p.cube.triangles[3] = 99;
+    assert_fails(cw_parts_write(test_path("b.obj"), parts, 3, NULL, &err), CW_ERR_ARGUMENT,
+                 "b.obj: triangle 1 names vertex 99 of 8", err);
+    assert_int_equal(test_folder_entries(), 1);
+    free_pair(&p);
+}
+
+/* Each part loses what it would lose alone; a local file keeps the first, whose origin it has.
+ */
+static void losses_of_parts_add_up(void **state)
+{
+    (void)state;
+    pair p;
+    cw_write_loss loss, one;
+    cw_error err = {0};
+    make_pair(&p);
+    p.cube.origin[2] = p.tetrahedron.origin[2] = 1e8;
+    assert_ok(cw_mesh_write_loss("a.stl", &p.cube, NULL, &one, &err), err);
+    assert_ok(cw_parts_write_loss("a.stl", p.parts, 2, NULL, &loss, &err), err);
+    assert_int_equal(one.merged_vertices, 4);
+    assert_int_equal(loss.merged_vertices, 4 + 1);
+    const cw_write_desc local = {.local = true};
+    assert_ok(cw_parts_write_loss("a.stl", p.parts, 2, &local, &loss, &err), err);
+    assert_int_equal(loss.merged_vertices, 0);
+    p.cube.origin[2] = 0;
+    assert_ok(cw_parts_write_loss("a.stl", p.parts, 2, &local, &loss, &err), err);
+    assert_int_equal(loss.merged_vertices, 1);
+    free_pair(&p);
+}
+
+/* More vertices than its numbers can say: counted before any of them is touched. */
+static void too_many_vertices_for_ply_are_refused(void **state)
+{
+    (void)state;
+    const cwi_parts parts = {.count = 2, .vertices = (uint64_t)UINT32_MAX + 1};
+    cwi_mesh_output out = {0};
+    cw_error err = {0};
+    assert_fails(cwi_ply_write(&parts, &out, &err), CW_ERR_LIMIT, "at most 4294967295 vertices",
+                 err);
+}
+
+static void memory_may_run_out_anywhere(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"a.stl", "a.obj", "a.glb"};
+    pair p;
+    make_pair(&p);
+    for (size_t i = 0; i < 3; i++) {
+        bool failed = strcmp(names[i], "a.glb") != 0 || cwi_module_present("gltf");
+        for (long n = 0; failed; n++) {
+            cw_error err = {0};
+            cwi_alloc_fail_after(n);
+            const cw_status st = cw_parts_write(test_path(names[i]), p.parts, 2, NULL, &err);
+            failed = cwi_alloc_fail_after(-1);
+            assert_int_equal(st, failed ? CW_ERR_NO_MEMORY : CW_OK);
+            assert_int_equal(test_folder_entries(), failed ? i : i + 1);
+        }
+    }
+    free_pair(&p);
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
+    const struct CMUnitTest tests[] = {
+        TEST(parts_stand_in_one_file_where_they_are),
+        TEST(objects_of_obj_have_their_names),
+        TEST(one_part_is_named_by_the_call_or_itself),
+        TEST(arrays_that_one_part_lacks_are_left_out),
+        TEST(empty_parts_are_left_out_and_alone_refused),
+        TEST(losses_of_parts_add_up),
+        TEST(too_many_vertices_for_ply_are_refused),
+        TEST(memory_may_run_out_anywhere),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
