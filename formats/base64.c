@@ -78,3 +78,19 @@ size_t cwi_base64_decode(cwi_base64 *b, const char *text, size_t size, size_t *u
     }
     return got;
 }
+
+size_t cwi_base64_encode(const unsigned char *bytes, size_t size, char *text)
+{
+    static const char digits[] =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    char *to = text;
+    for (size_t i = 0; i < size; i += 3) {
+        const size_t have = size - i < 3 ? size - i : 3;
+        const unsigned bits = (unsigned)bytes[i] << 16 |
+                              (have > 1 ? (unsigned)bytes[i + 1] << 8 : 0) |
+                              (have > 2 ? bytes[i + 2] : 0u);
+        for (size_t c = 0; c < 4; c++)
+            *to++ = c <= have ? digits[bits >> (18 - 6 * c) & 63] : '=';
+    }
+    return (size_t)(to - text);
+}

@@ -18,4 +18,8 @@ typedef struct cwi_base64 {
 size_t cwi_base64_decode(cwi_base64 *b, const char *text, size_t size, size_t *used,
                          unsigned char *to, size_t room);
 
+/* Encodes bytes; only the last portion of a text may be no multiple of 3. Returns the
+ * characters written: 4 for each 3 bytes begun. */
+size_t cwi_base64_encode(const unsigned char *bytes, size_t size, char *text);
+
 #endif

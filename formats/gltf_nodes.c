@@ -62,16 +62,14 @@ static cw_status set_place(cwi_gltf_instance *at, const double *world, cw_mesh_f
         if (!isfinite(place[i]))
             return cw_fail(err, CW_ERR_FORMAT, "a node's matrix is not finite");
     at->unturned = is_unturned(place);
-    const bool moved = place[3] != 0 || place[7] != 0 || place[11] != 0;
-    if (at->unturned && !moved && at->node->has_origin) {
-        for (int a = 0; a < 3; a++)
-            at->place[a][3] = at->node->origin[a];
-        said->local = true;
-    } else if (at->unturned) {
-        at->place[0][3] = from_metres(world[3]);
-        at->place[1][3] = from_metres(-world[11]);
-        at->place[2][3] = from_metres(world[7]);
-    }
+    if (!at->unturned)
+        return CW_OK;
+    at->place[0][3] = from_metres(world[3]);
+    at->place[1][3] = from_metres(-world[11]);
+    at->place[2][3] = from_metres(world[7]);
+    for (int a = 0; at->node->has_origin && a < 3; a++)
+        at->place[a][3] += at->node->origin[a]; /* a local file: the scene counts from there */
+    said->local = said->local || at->node->has_origin;
     return CW_OK;
 }
 

@@ -1,5 +1,5 @@
-// The only file that knows tinygltf. A mesh becomes a model of one scene, one node, one mesh;
-// and JSON becomes plain numbers.
+// The only file that knows tinygltf: JSON is made of plain numbers, and becomes plain numbers.
+// The bytes of buffers pass it by.
 #include "formats/gltf_wrap.h"
 
 #include "core/guard.hpp"
@@ -7,8 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ostream>
-#include <streambuf>
+#include <sstream>
 #include <string>
 #include <tiny_gltf.h>
 #include <vector>
@@ -16,217 +15,106 @@
 namespace
 {
 
-// Hands bytes to the outfile, a megabyte at a time so that a cancel is heard. Stops at the
-// first error and keeps it: a stream only knows that something went wrong.
-class OutfileBuffer : public std::streambuf
+// --- numbers to JSON ----------------------------------------------------------------------
+
+using Object = tinygltf::Value::Object;
+using Array = tinygltf::Value::Array;
+
+tinygltf::Value whole(uint64_t number)
 {
-public:
-    OutfileBuffer(cwi_mesh_output *out, cw_error *err) : out_(out), err_(err)
-    {
-    }
-    cw_status status() const
-    {
-        return status_;
-    }
-
-protected:
-    std::streamsize xsputn(const char *bytes, std::streamsize size) override
-    {
-        std::streamsize written = 0;
-        while (written < size && status_ == CW_OK) {
-            const std::streamsize step = std::min(size - written, std::streamsize(1 << 20));
-            write(bytes + written, static_cast<size_t>(step));
-            written += status_ == CW_OK ? step : 0;
-        }
-        return written;
-    }
-
-    int_type overflow(int_type c) override
-    {
-        const char byte = traits_type::to_char_type(c);
-        return xsputn(&byte, 1) == 1 ? c : traits_type::eof();
-    }
-
-private:
-    void write(const char *bytes, size_t size)
-    {
-        status_ = cwi_outfile_write(out_->file, bytes, size, err_);
-        out_->done = std::min(out_->done + size, out_->total);
-        if (status_ == CW_OK)
-            status_ = cwi_progress(out_->progress, "writing",
-                                   double(out_->done) / double(out_->total), err_);
-    }
-
-    cwi_mesh_output *out_;
-    cw_error *err_;
-    cw_status status_ = CW_OK;
-};
-
-// One array of the buffer; every one starts at a multiple of 4 bytes, as accessors demand.
-struct Part {
-    const char *attribute; // nullptr for the indices
-    size_t count, element_bytes;
-    int component, type;
-    size_t offset = 0;
-
-    size_t bytes() const
-    {
-        return count * element_bytes;
-    }
-};
-
-// 65535 as a 16-bit index means "restart" and must not name a vertex.
-bool has_short_indices(const cw_mesh &mesh)
-{
-    return mesh.vertex_count <= 65535;
+    return tinygltf::Value(int(number));
 }
 
-std::vector<Part> plan_parts(const cw_mesh &mesh)
+tinygltf::Value text(const std::string &words)
 {
-    const bool is_short = has_short_indices(mesh);
-    std::vector<Part> parts = {
-        {nullptr, 3 * mesh.triangle_count, is_short ? size_t(2) : size_t(4),
-         is_short ? TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT
-                  : TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT,
-         TINYGLTF_TYPE_SCALAR},
-        {"POSITION", mesh.vertex_count, 12, TINYGLTF_COMPONENT_TYPE_FLOAT, TINYGLTF_TYPE_VEC3}};
-    if (mesh.normals)
-        parts.push_back({"NORMAL", mesh.vertex_count, 12, TINYGLTF_COMPONENT_TYPE_FLOAT,
-                         TINYGLTF_TYPE_VEC3});
-    if (mesh.colors)
-        parts.push_back({"COLOR_0", mesh.vertex_count, 4, TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE,
-                         TINYGLTF_TYPE_VEC4});
-    size_t offset = 0;
-    for (Part &part : parts) {
-        part.offset = offset;
-        offset += (part.bytes() + 3) / 4 * 4;
-    }
-    return parts;
+    return tinygltf::Value(words);
 }
 
-// GLB says its lengths in 32 bits; the JSON in front takes a few kilobytes of that.
-cw_status check_size(const cw_mesh &mesh, cw_error *err)
-{
-    const double limit = 4294967295.0 - 65536.0;
-    const double bytes =
-        12.0 * double(mesh.triangle_count) +
-        (12.0 + (mesh.normals ? 12 : 0) + (mesh.colors ? 4 : 0)) * double(mesh.vertex_count);
-    if (mesh.vertex_count >= UINT32_MAX || bytes > limit)
-        return cw_fail(err, CW_ERR_LIMIT, "glTF holds at most 4 GiB; the mesh needs %.1f GiB",
-                       bytes / 1073741824.0);
-    return CW_OK;
-}
+const char *const attributes[CWI_GLTF_USES] = {"", "POSITION", "NORMAL", "COLOR_0"};
 
-unsigned char *put_indices(unsigned char *to, const cw_mesh &mesh)
+// Where an array's bytes are. meshopt's are packed; its view is of a buffer that no file has.
+int add_view(tinygltf::Model &model, const cwi_gltf_array &a)
 {
-    const bool is_short = has_short_indices(mesh);
-    for (size_t i = 0; i < 3 * mesh.triangle_count; i++)
-        to = is_short ? cwi_put_u16(to, uint16_t(mesh.triangles[i]))
-                      : cwi_put_u32(to, mesh.triangles[i]);
-    return to;
-}
-
-void put_floats(unsigned char *to, const float *values, size_t count)
-{
-    for (size_t i = 0; i < count; i++)
-        to = cwi_put_f32(to, values[i]);
-}
-
-// COLOR_0 is linear; alpha is linear already.
-void put_colors(unsigned char *to, const cw_mesh &mesh)
-{
-    unsigned char linear[256];
-    for (int i = 0; i < 256; i++) {
-        const double c = i / 255.0;
-        linear[i] = static_cast<unsigned char>(
-            std::lround(255 * (c <= 0.04045 ? c / 12.92 : std::pow((c + 0.055) / 1.055, 2.4))));
-    }
-    for (size_t i = 0; i < 4 * mesh.vertex_count; i++)
-        to[i] = i % 4 == 3 ? mesh.colors[i] : linear[mesh.colors[i]];
-}
-
-tinygltf::Buffer make_buffer(const cw_mesh &mesh, const std::vector<Part> &parts)
-{
-    tinygltf::Buffer buffer;
-    buffer.data.resize(parts.back().offset + parts.back().bytes());
-    for (const Part &part : parts) {
-        unsigned char *to = buffer.data.data() + part.offset;
-        const std::string attribute = part.attribute ? part.attribute : "";
-        if (attribute == "POSITION")
-            put_floats(to, mesh.positions, 3 * part.count);
-        else if (attribute == "NORMAL")
-            put_floats(to, mesh.normals, 3 * part.count);
-        else if (attribute == "COLOR_0")
-            put_colors(to, mesh);
-        else
-            put_indices(to, mesh);
-    }
-    return buffer;
-}
-
-// The format wants the box of the stored floats, to the bit; doubles hold them and the JSON
-// writer gives each the digits that bring it back.
-void set_bounds(tinygltf::Accessor &accessor, const cw_mesh &mesh)
-{
-    for (size_t a = 0; a < 3; a++) {
-        float low = mesh.positions[a], high = low;
-        for (size_t v = 1; v < mesh.vertex_count; v++) {
-            low = std::min(low, mesh.positions[3 * v + a]);
-            high = std::max(high, mesh.positions[3 * v + a]);
-        }
-        accessor.minValues.push_back(double(low));
-        accessor.maxValues.push_back(double(high));
-    }
-}
-
-int add_accessor(tinygltf::Model &model, const cw_mesh &mesh, const Part &part)
-{
+    const bool indices = a.use == CWI_GLTF_INDICES;
+    const size_t element =
+        size_t(a.numbers) * size_t(tinygltf::GetComponentSizeInBytes(uint32_t(a.component)));
     tinygltf::BufferView view;
-    view.buffer = 0;
-    view.byteOffset = part.offset;
-    view.byteLength = part.bytes();
-    view.target =
-        part.attribute ? TINYGLTF_TARGET_ARRAY_BUFFER : TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER;
+    view.buffer = a.packed ? 1 : 0;
+    view.byteOffset = size_t(a.at);
+    view.byteLength = size_t(a.count * a.stride);
+    view.byteStride = !indices && element != a.stride ? size_t(a.stride) : 0;
+    view.target = indices ? TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER : TINYGLTF_TARGET_ARRAY_BUFFER;
+    if (a.packed)
+        view.extensions["EXT_meshopt_compression"] =
+            tinygltf::Value(Object{{"buffer", whole(0)},
+                                   {"byteOffset", whole(a.packed_at)},
+                                   {"byteLength", whole(a.packed)},
+                                   {"byteStride", whole(a.stride)},
+                                   {"count", whole(a.count)},
+                                   {"mode", text(indices ? "TRIANGLES" : "ATTRIBUTES")}});
     model.bufferViews.push_back(view);
+    return int(model.bufferViews.size()) - 1;
+}
 
+// Draco's accessors say what comes out, and have no view.
+int add_accessor(tinygltf::Model &model, const cwi_gltf_piece &piece, const cwi_gltf_array &a)
+{
     tinygltf::Accessor accessor;
-    accessor.bufferView = int(model.bufferViews.size()) - 1;
-    accessor.componentType = part.component;
-    accessor.type = part.type;
-    accessor.count = part.count;
-    accessor.normalized = part.component == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE;
-    if (part.attribute && std::string(part.attribute) == "POSITION")
-        set_bounds(accessor, mesh);
+    accessor.bufferView = piece.draco ? -1 : add_view(model, a);
+    accessor.componentType = a.component;
+    accessor.type = a.numbers == 1   ? TINYGLTF_TYPE_SCALAR
+                    : a.numbers == 3 ? TINYGLTF_TYPE_VEC3
+                                     : TINYGLTF_TYPE_VEC4;
+    accessor.count = size_t(a.count);
+    accessor.normalized = a.normalized;
+    if (a.use == CWI_GLTF_POSITION) {
+        accessor.minValues.assign(piece.low, piece.low + 3);
+        accessor.maxValues.assign(piece.high, piece.high + 3);
+    }
     model.accessors.push_back(accessor);
     return int(model.accessors.size()) - 1;
 }
 
-bool is_translucent(const cw_mesh &mesh)
+tinygltf::Value draco_extension(tinygltf::Model &model, const cwi_gltf_piece &piece)
 {
-    for (size_t v = 0; mesh.colors && v < mesh.vertex_count; v++)
-        if (mesh.colors[4 * v + 3] != 255)
-            return true;
-    return false;
+    tinygltf::BufferView view;
+    view.buffer = 0;
+    view.byteOffset = size_t(piece.draco_at);
+    view.byteLength = size_t(piece.draco);
+    model.bufferViews.push_back(view);
+    Object ids = {{"POSITION", tinygltf::Value(piece.ids.position)}};
+    if (piece.ids.normal >= 0)
+        ids["NORMAL"] = tinygltf::Value(piece.ids.normal);
+    if (piece.ids.color >= 0)
+        ids["COLOR_0"] = tinygltf::Value(piece.ids.color);
+    return tinygltf::Value(Object{{"bufferView", whole(model.bufferViews.size() - 1)},
+                                  {"attributes", tinygltf::Value(ids)}});
 }
 
-// Vertex colours are multiplied with the base colour, so with them it is white.
-tinygltf::Material make_material(const cw_mesh &mesh)
+// Vertex colours are multiplied with the base colour, so with them it is white. Pieces that
+// look alike share a material.
+int find_material(tinygltf::Model &model, const cwi_gltf_piece &piece)
 {
-    const double grey = mesh.colors ? 1.0 : 0.8;
+    const double grey = piece.part->mesh.colors ? 1.0 : 0.8;
+    const std::string mode = piece.translucent ? "BLEND" : "OPAQUE";
+    for (size_t i = 0; i < model.materials.size(); i++)
+        if (model.materials[i].alphaMode == mode &&
+            model.materials[i].pbrMetallicRoughness.baseColorFactor[0] == grey)
+            return int(i);
     tinygltf::Material material;
     material.name = "surface";
     material.pbrMetallicRoughness.baseColorFactor = {grey, grey, grey, 1.0};
     material.pbrMetallicRoughness.metallicFactor = 0.0;
     material.pbrMetallicRoughness.roughnessFactor = 0.8;
-    material.alphaMode = is_translucent(mesh) ? "BLEND" : "OPAQUE";
-    return material;
+    material.alphaMode = mode;
+    model.materials.push_back(material);
+    return int(model.materials.size()) - 1;
 }
 
 tinygltf::Value make_extras(const cw_mesh &mesh, const double *origin)
 {
-    tinygltf::Value::Object extras = {{"frame", tinygltf::Value(std::string("LPS"))},
-                                      {"unit", tinygltf::Value(std::string("mm"))}};
-    tinygltf::Value::Array affine;
+    Object extras = {{"frame", text("LPS")}, {"unit", text("mm")}};
+    Array affine;
     bool has_affine = false;
     for (const double(&row)[4] : mesh.affine)
         for (double number : row) {
@@ -236,80 +124,113 @@ tinygltf::Value make_extras(const cw_mesh &mesh, const double *origin)
     if (has_affine)
         extras["affine"] = tinygltf::Value(affine);
     if (origin)
-        extras["origin"] = tinygltf::Value(tinygltf::Value::Array{tinygltf::Value(origin[0]),
-                                                                  tinygltf::Value(origin[1]),
-                                                                  tinygltf::Value(origin[2])});
+        extras["origin"] =
+            tinygltf::Value(Array{tinygltf::Value(origin[0]), tinygltf::Value(origin[1]),
+                                  tinygltf::Value(origin[2])});
     return tinygltf::Value(extras);
 }
 
 // LPS millimetres to glTF's metres, +Y up, front towards +Z: (x, y, z) goes to 0.001 (x, z,
-// -y). The node does it, so that the vertices stay as they are. Adding 0.0 turns -0 into 0. A
-// local scene is not moved: its origin is told, not applied.
-tinygltf::Node make_node(const cw_mesh &mesh, const cwi_mesh_output &out)
+// -y). The node does it, so that the vertices stay as they are. Adding 0.0 turns -0 into 0. Of
+// a local scene the origin is told, not applied.
+tinygltf::Node make_node(const cwi_gltf_piece &piece, const double *local_origin)
 {
-    const double half = std::sqrt(0.5);
+    const double half = std::sqrt(0.5), scale = 0.001 * piece.step, *t = piece.translation;
     tinygltf::Node node;
-    node.name = out.name;
-    node.mesh = 0;
+    node.name = piece.part->name;
     node.rotation = {-half, 0, 0, half};
-    node.scale = {0.001, 0.001, 0.001};
-    if (!out.local_origin)
-        node.translation = {0.001 * mesh.origin[0] + 0.0, 0.001 * mesh.origin[2] + 0.0,
-                            -0.001 * mesh.origin[1] + 0.0};
-    node.extras = make_extras(mesh, out.local_origin);
+    node.scale = {scale, scale, scale};
+    if (!local_origin || t[0] != 0 || t[1] != 0 || t[2] != 0)
+        node.translation = {0.001 * t[0] + 0.0, 0.001 * t[2] + 0.0, -0.001 * t[1] + 0.0};
+    node.extras = make_extras(piece.part->mesh, local_origin);
     return node;
 }
 
-tinygltf::Model make_model(const cw_mesh &mesh, const cwi_mesh_output &out)
+void add_piece(tinygltf::Model &model, const cwi_gltf_piece &piece, const double *local_origin)
 {
-    tinygltf::Model model;
     tinygltf::Primitive primitive;
-    const std::vector<Part> parts = plan_parts(mesh);
-    model.asset.version = "2.0";
-    model.asset.generator = std::string("cubewright ") + CW_VERSION;
-    for (const Part &part : parts) {
-        const int accessor = add_accessor(model, mesh, part);
-        if (part.attribute)
-            primitive.attributes[part.attribute] = accessor;
-        else
+    for (size_t n = 0; n < piece.array_count; n++) {
+        const cwi_gltf_array &a = piece.arrays[n];
+        const int accessor = add_accessor(model, piece, a);
+        if (a.use == CWI_GLTF_INDICES)
             primitive.indices = accessor;
+        else
+            primitive.attributes[attributes[a.use]] = accessor;
     }
-    primitive.material = 0;
+    if (piece.draco)
+        primitive.extensions["KHR_draco_mesh_compression"] = draco_extension(model, piece);
+    primitive.material = find_material(model, piece);
     primitive.mode = TINYGLTF_MODE_TRIANGLES;
 
-    tinygltf::Mesh named;
-    named.name = out.name;
-    named.primitives.push_back(primitive);
-    tinygltf::Scene scene;
-    scene.nodes.push_back(0);
-    model.meshes.push_back(named);
-    model.materials.push_back(make_material(mesh));
-    model.nodes.push_back(make_node(mesh, out));
-    model.scenes.push_back(scene);
+    tinygltf::Mesh mesh;
+    mesh.name = piece.part->name;
+    mesh.primitives.push_back(primitive);
+    model.meshes.push_back(mesh);
+    tinygltf::Node node = make_node(piece, local_origin);
+    node.mesh = int(model.meshes.size()) - 1;
+    model.nodes.push_back(node);
+    model.scenes[0].nodes.push_back(int(model.nodes.size()) - 1);
+}
+
+void use_extension(tinygltf::Model &model, const char *name)
+{
+    model.extensionsUsed.push_back(name);
+    model.extensionsRequired.push_back(name);
+}
+
+void set_asset(tinygltf::Model &model, const cwi_gltf_document &document)
+{
+    Object provenance;
+    model.asset.version = "2.0";
+    model.asset.generator = std::string("cubewright ") + CW_VERSION;
+    for (size_t i = 0; i < document.provenance_count; i++)
+        provenance[document.provenance[i].key] = text(document.provenance[i].value);
+    if (!provenance.empty())
+        model.asset.extras = tinygltf::Value(provenance);
+}
+
+tinygltf::Model make_model(const cwi_gltf_document &document)
+{
+    tinygltf::Model model;
+    set_asset(model, document);
+    model.scenes.resize(1);
     model.defaultScene = 0;
-    model.buffers.push_back(make_buffer(mesh, parts));
+    for (size_t p = 0; p < document.count; p++)
+        add_piece(model, document.pieces[p], document.local_origin);
+    if (document.quantized)
+        use_extension(model, "KHR_mesh_quantization");
+    if (document.unpacked)
+        use_extension(model, "EXT_meshopt_compression");
+    if (document.count && document.pieces[0].draco)
+        use_extension(model, "KHR_draco_mesh_compression");
     return model;
 }
 
-cw_status write_scene(const cw_mesh *mesh, cwi_mesh_output *out, bool binary,
-                      cw_error *err) noexcept
+// tinygltf keeps offsets of extensions in 31 bits.
+cw_status check_packed(const cwi_gltf_document &document, cw_error *err)
+{
+    if (document.unpacked && document.bytes > INT32_MAX)
+        return cw_fail(err, CW_ERR_LIMIT, "meshopt's bytes are more than 2 GiB");
+    return CW_OK;
+}
+
+cw_status make_document(const cwi_gltf_document *document, char **json, size_t *size,
+                        cw_error *err) noexcept
 {
     return cw::guard(err, "tinygltf", [&] {
-        const cw_status st = check_size(*mesh, err);
+        const cw_status st = check_packed(*document, err);
         if (st != CW_OK)
             return st;
-        const tinygltf::Model model = make_model(*mesh, *out);
-        const size_t bytes = model.buffers[0].data.size();
-        out->total = binary ? bytes : bytes + bytes / 3;
-        OutfileBuffer buffer(out, err);
-        std::ostream stream(&buffer);
-        const bool done =
-            tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, stream, !binary, binary);
-        if (buffer.status() != CW_OK)
-            return buffer.status();
-        if (!done || !stream)
+        const tinygltf::Model model = make_model(*document);
+        std::ostringstream stream;
+        if (!tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, stream, false, false))
             return cw_fail(err, CW_ERR_BACKEND, "tinygltf could not write the scene");
-        return CW_OK;
+        std::string words = stream.str();
+        while (!words.empty() && words.back() != '}')
+            words.pop_back();
+        *size = words.size();
+        *json = cwi_strdup(words.c_str());
+        return *json ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the JSON");
     });
 }
 
@@ -582,4 +503,4 @@ cw_status parse_scene(const char *json, size_t size, cwi_gltf_scene *scene,
 
 } // namespace
 
-extern "C" const cwi_gltf_functions cwi_module_gltf = {write_scene, parse_scene};
+extern "C" const cwi_gltf_functions cwi_module_gltf = {make_document, parse_scene};

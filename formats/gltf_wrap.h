@@ -2,17 +2,17 @@
 #ifndef FORMATS_GLTF_WRAP_H
 #define FORMATS_GLTF_WRAP_H
 
+#include "formats/gltf_document.h"
 #include "formats/gltf_scene.h"
-#include "formats/mesh_writers.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 typedef struct cwi_gltf_functions {
-    /* Writes the mesh as one node of one scene: GLB, or JSON with its buffer embedded.
-     * Returns CW_ERR_LIMIT when the buffer cannot be addressed with 32 bits. */
-    cw_status (*write)(const cw_mesh *mesh, cwi_mesh_output *out, bool binary, cw_error *err);
+    /* Makes the JSON of a file, but for its buffers; it is freed with cwi_free(). */
+    cw_status (*document)(const cwi_gltf_document *document, char **json, size_t *size,
+                          cw_error *err);
 
     /* Fills a zeroed scene from JSON that cwi_gltf_blind() has seen; no buffer is touched. The
      * caller frees the scene in any case.

@@ -18,8 +18,11 @@ typedef struct writer {
 } writer;
 
 static const writer writers[] = {
-    {.format = "glb", .write = cwi_glb_write, .prepare = cwi_gltf_prepare},
-    {.format = "gltf", .write = cwi_gltf_write, .prepare = cwi_gltf_prepare},
+    {.format = "glb", .write = cwi_glb_write, .prepare = cwi_gltf_prepare, .own_arrays = true},
+    {.format = "gltf",
+     .write = cwi_gltf_write,
+     .prepare = cwi_gltf_prepare,
+     .own_arrays = true},
     {.format = "stl", .write = cwi_stl_write, .world = true},
     {.format = "ply", .write = cwi_ply_write, .world = true},
     {.format = "obj", .write = cwi_obj_write, .world = true},
@@ -177,8 +180,10 @@ cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
     double origin[3];
     cwi_parts placed = {0};
     cwi_choose_name(path, parts, count, &d, name);
-    cwi_mesh_output out = {
-        .name = name, .local_origin = d.local ? origin : NULL, .progress = &d.progress};
+    cwi_mesh_output out = {.name = name,
+                           .local_origin = d.local ? origin : NULL,
+                           .desc = &d,
+                           .progress = &d.progress};
     cw_status st = find_writer(path, d.format, &w, err);
     if (st == CW_OK)
         st = cwi_parts_place(parts, count, &d, w->own_arrays, name, &placed, origin, err);

@@ -36,6 +36,7 @@ typedef struct cwi_mesh_output {
     const char *name; /* of all parts together; as that of a part */
     const double
         *local_origin; /* what gives the world's coordinates when added; NULL: nothing */
+    const cw_write_desc *desc;
     const cw_progress *progress;
     size_t done, total; /* records, for progress; a writer sets the total */
 } cwi_mesh_output;

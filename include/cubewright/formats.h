@@ -175,12 +175,46 @@ typedef struct cw_mesh_file {
 CW_API cw_status cw_mesh_read(const char *path, const cw_mesh_read_desc *desc, cw_mesh *mesh,
                               cw_mesh_file *file, cw_error *err);
 
+/* How glTF holds meshes. Each but the first needs an extension of glTF that viewers must know;
+ * all are written so that positions of all parts stand on one grid. */
+typedef enum cw_compression {
+    CW_COMPRESS_NONE,
+    CW_COMPRESS_QUANTIZE, /* 16 bits a coordinate: KHR_mesh_quantization */
+    CW_COMPRESS_DRACO,    /* KHR_draco_mesh_compression */
+    CW_COMPRESS_MESHOPT   /* EXT_meshopt_compression, and quantised where 16 bits are enough */
+} cw_compression;
+
+/* What compression did, measured on what was decoded again. */
+typedef struct cw_compressed {
+    int bits;                  /* of a coordinate; 0: positions are as they were */
+    double step_mm;            /* of the grid */
+    double error_mm;           /* the most that a vertex was moved */
+    double normal_degrees;     /* ... and a normal turned */
+    size_t merged;             /* vertices that fell onto another: only with bits stated */
+    size_t flat;               /* triangles that lost their area: only with bits stated */
+    uint64_t bytes;            /* of the arrays in the file */
+    double encode_s, decode_s; /* and to check what was decoded */
+} cw_compressed;
+
+/* A line of where a mesh comes from, for the file's own record. */
+typedef struct cw_provenance {
+    const char *key, *value;
+} cw_provenance;
+
 /* How to write a volume or mesh. Zero-initialise it. */
 typedef struct cw_write_desc {
-    const char *format;   /* a name of cw_formats(); default: by the path's extension */
-    const char *name;     /* of the object inside the file; default: the path's stem */
-    bool no_clobber;      /* fail when the path exists; default: replace it */
-    bool local;           /* mesh: relative to its origin; default: in the world */
+    const char *format;         /* a name of cw_formats(); default: by the path's extension */
+    const char *name;           /* of the object inside the file; default: the path's stem */
+    bool no_clobber;            /* fail when the path exists; default: replace it */
+    bool local;                 /* mesh: relative to its origin; default: in the world */
+    cw_compression compression; /* of glTF; CW_ERR_ARGUMENT for other formats */
+    double tolerance_mm; /* ... that it may move a vertex; default: 1/20,000 of the diagonal */
+    int bits;            /* ... of a coordinate, 1 to 30, whatever that does; default: as many
+                            as the tolerance and the shape ask for */
+    int level;           /* ... of Draco, 1 (fast) to 10 (small); default 7 */
+    cw_compressed *compressed;       /* filled in; default: none */
+    const cw_provenance *provenance; /* in the extras of a glTF file; default: none */
+    size_t provenance_count;
     cw_progress progress; /* default: none */
 } cw_write_desc;
 

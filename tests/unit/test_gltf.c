@@ -359,7 +359,7 @@ static void a_mesh_over_four_gigabytes_is_refused(void **state)
     (void)state;
     cwi_part part = {.mesh = {.vertex_count = 400000000, .triangle_count = 1}};
     const cwi_parts parts = {.items = &part, .count = 1};
-    cwi_mesh_output out = {0};
+    cwi_mesh_output out = {.desc = &(cw_write_desc){0}};
     cw_error err = {0};
     assert_fails(cwi_glb_write(&parts, &out, &err), CW_ERR_LIMIT, "needs 4.5 GiB", err);
     assert_fails(cwi_gltf_write(&parts, &out, &err), CW_ERR_LIMIT, "at most 4 GiB", err);

@@ -49,8 +49,8 @@ static void check_both(const cw_mesh *mesh)
     assert_int_equal(mesh->triangle_count, 16);
     cw_mesh_bounds(mesh, is_low, is_high);
     for (int a = 0; a < 3; a++) {
-        assert_true(is_low[a] == low[a]);
-        assert_true(is_high[a] == high[a]);
+        assert_near(is_low[a], low[a], 1e-5); /* nodes of glTF are multiplied out */
+        assert_near(is_high[a], high[a], 1e-5);
     }
     assert_ok(cw_quality_measure(mesh, NULL, &q, &err), err);
     assert_int_equal(q.components, 2);
@@ -75,7 +75,7 @@ static void parts_stand_in_one_file_where_they_are(void **state)
         assert_ok(cw_mesh_read(test_path(name), NULL, &back, &file, &err), err);
         assert_true(file.local == i % 2);
         check_both(&back);
-        if (i % 2)
+        if (i % 2 && strcmp(name, "a.glb") != 0) /* whose nodes stand apart */
             assert_true(back.origin[0] == 10 && back.origin[1] == 20 && back.origin[2] == 30);
         cw_mesh_free(&back);
     }

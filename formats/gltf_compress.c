@@ -1,0 +1,498 @@
+/* Compression that keeps its promise: a grid fine enough for the tolerance and the shape, one
+ * for all parts; and what was compressed is decoded and held against what it was made of. */
+#include "formats/gltf_pack.h"
+
+#include "core/memory.h"
+#include "core/mesh.h"
+#include "core/status.h"
+#include "formats/meshopt_wrap.h"
+#include "formats/verify.h"
+
+#include <math.h>
+#include <string.h>
+#include <time.h>
+
+enum { NORMAL_BITS = 10, LEVEL = 7, SHORT_BITS = 16, FLOAT = 5126 };
+static const double DIAGONALS = 20000; /* that the default tolerance goes into */
+
+static double now_s(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+
+static cw_status fail_memory(cw_error *err)
+{
+    return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to compress the mesh");
+}
+
+/* --- one origin, arrays of our own ---------------------------------------------------------
+ */
+
+/* A copy of a part that counts from another origin: parts on one grid need one. Normals and
+ * colours stay the caller's unless they are to be put into another order. */
+static cw_status copy_part(const cwi_part *part, const double origin[3], bool all, cw_mesh *own,
+                           cw_error *err)
+{
+    const cw_mesh *m = &part->mesh;
+    cw_status st =
+        cwi_mesh_alloc(own, m->vertex_count, m->triangle_count, all && m->normals, err);
+    if (st == CW_OK && all && m->colors && !(own->colors = cwi_alloc_array(m->vertex_count, 4)))
+        st = fail_memory(err);
+    if (st != CW_OK)
+        return st;
+    for (size_t i = 0; i < 3 * m->vertex_count; i++)
+        own->positions[i] = (float)(m->origin[i % 3] - origin[i % 3] + (double)m->positions[i]);
+    memcpy(own->triangles, m->triangles, 3 * m->triangle_count * sizeof *m->triangles);
+    if (own->normals)
+        memcpy(own->normals, m->normals, 3 * m->vertex_count * sizeof *m->normals);
+    if (own->colors)
+        memcpy(own->colors, m->colors, 4 * m->vertex_count);
+    return CW_OK;
+}
+
+static bool same_origin(const cwi_parts *parts)
+{
+    for (size_t p = 1; p < parts->count; p++)
+        if (memcmp(parts->items[p].mesh.origin, parts->items[0].mesh.origin,
+                   sizeof parts->items[0].mesh.origin) != 0)
+            return false;
+    return true;
+}
+
+/* The parts' arrays are the caller's; where they have to change, copies take their place. */
+static cw_status own_parts(cwi_gltf_plan *plan, bool all, cw_error *err)
+{
+    cwi_part *items = plan->parts.items;
+    double origin[3];
+    memcpy(origin, items[0].mesh.origin, sizeof origin);
+    plan->own = cwi_alloc_zeroed(plan->parts.count, sizeof *plan->own);
+    if (!plan->own)
+        return fail_memory(err);
+    for (size_t p = 0; p < plan->parts.count; p++) {
+        cw_mesh *own = &plan->own[p], *m = &items[p].mesh;
+        cw_status st = copy_part(&items[p], origin, all, own, err);
+        if (st != CW_OK)
+            return st;
+        m->positions = own->positions;
+        m->triangles = own->triangles;
+        m->normals = own->normals ? own->normals : m->normals;
+        m->colors = own->colors ? own->colors : m->colors;
+        memcpy(m->origin, origin, sizeof origin);
+    }
+    return CW_OK;
+}
+
+/* --- the grid ------------------------------------------------------------------------------
+ */
+
+static double default_tolerance(const cwi_parts *parts, const cwi_grid *grid)
+{
+    double squares = 0;
+    for (int a = 0; a < 3; a++) {
+        double high = -INFINITY;
+        for (size_t p = 0; p < parts->count; p++)
+            for (size_t v = 0; v < parts->items[p].mesh.vertex_count; v++)
+                high = fmax(high, (double)parts->items[p].mesh.positions[3 * v + (size_t)a]);
+        squares += (high - (double)grid->origin[a]) * (high - (double)grid->origin[a]);
+    }
+    return sqrt(squares) / DIAGONALS;
+}
+
+static cw_status fail_shape(const cwi_grid *grid, const cwi_grid_harm *harm, double tolerance,
+                            cw_error *err)
+{
+    if (cwi_grid_error(grid) > tolerance)
+        return cw_fail(
+            err, CW_ERR_CHECK,
+            "%d bits a coordinate, the most there are, move vertices by up to %.3g mm; "
+            "%.3g mm are allowed",
+            grid->bits, cwi_grid_error(grid), tolerance);
+    return cw_fail(
+        err, CW_ERR_CHECK,
+        "with %d bits a coordinate, the most there are, %zu vertices fall onto others "
+        "and %zu triangles lose their area",
+        grid->bits, harm->merged, harm->flat);
+}
+
+/* The coarsest grid that keeps tolerance and shape; *found is false when none does. */
+static cw_status find_grid(cwi_gltf_plan *plan, double tolerance, int most, bool *found,
+                           cwi_grid_harm *harm, cw_error *err)
+{
+    cwi_grid *grid = &plan->grid;
+    const int least = cwi_grid_bits(grid, tolerance);
+    *found = false;
+    *harm = (cwi_grid_harm){0};
+    for (grid->bits = least < most ? least : most; !*found; grid->bits++) {
+        cw_status st = cwi_grid_measure(grid, &plan->parts, harm, err);
+        if (st != CW_OK)
+            return st;
+        *found = harm->merged == 0 && harm->flat == 0 && grid->bits >= least;
+        if (*found || grid->bits == most)
+            break;
+    }
+    return CW_OK;
+}
+
+static cw_status choose_grid(cwi_gltf_plan *plan, const cw_write_desc *desc,
+                             cw_compressed *told, cw_error *err)
+{
+    const bool draco = desc->compression == CW_COMPRESS_DRACO;
+    const int most = draco ? CWI_MOST_GRID_BITS : SHORT_BITS;
+    cwi_grid_harm harm;
+    bool found;
+    cw_status st;
+    plan->grid = cwi_grid_around(&plan->parts);
+    if (desc->bits < 0 || desc->bits > most)
+        return cw_fail(err, CW_ERR_ARGUMENT, "%d bits a coordinate; there may be 1 to %d",
+                       desc->bits, most);
+    const double tolerance = desc->tolerance_mm > 0
+                                 ? desc->tolerance_mm
+                                 : default_tolerance(&plan->parts, &plan->grid);
+    if (desc->bits) {
+        plan->grid.bits = desc->bits;
+        st = cwi_grid_measure(&plan->grid, &plan->parts, &harm, err);
+        found = true;
+    } else {
+        st = find_grid(plan, tolerance, most, &found, &harm, err);
+    }
+    if (st == CW_OK && !found && desc->compression == CW_COMPRESS_MESHOPT)
+        plan->grid.bits = 0; /* then positions stay as they are */
+    else if (st == CW_OK && !found)
+        return fail_shape(&plan->grid, &harm, tolerance, err);
+    if (st == CW_OK && found) {
+        told->merged = harm.merged;
+        told->flat = harm.flat;
+        told->step_mm = cwi_grid_step(&plan->grid);
+    }
+    told->bits = plan->grid.bits;
+    return st;
+}
+
+/* The most that a vertex is moved, truly: from where it was to where it will be found. */
+static double measure_error(const cwi_gltf_plan *plan)
+{
+    const double step = cwi_grid_step(&plan->grid);
+    double worst = 0;
+    for (size_t p = 0; p < plan->parts.count; p++) {
+        const cw_mesh *m = &plan->parts.items[p].mesh;
+        for (size_t v = 0; v < m->vertex_count; v++) {
+            double squares = 0;
+            for (int a = 0; a < 3; a++) {
+                const float x = m->positions[3 * v + (size_t)a];
+                const double to =
+                    (double)plan->grid.origin[a] + step * cwi_grid_round(&plan->grid, x, a);
+                squares += ((double)x - to) * ((double)x - to);
+            }
+            worst = squares > worst ? squares : worst;
+        }
+    }
+    return sqrt(worst);
+}
+
+/* --- blocks --------------------------------------------------------------------------------
+ */
+
+/* Takes over bytes; they begin at a multiple of 8. */
+static cw_status add_block(cwi_gltf_plan *plan, unsigned char *bytes, size_t size, uint64_t *at,
+                           cw_error *err)
+{
+    if (plan->block_count == plan->block_room) {
+        const size_t room = plan->block_room ? 2 * plan->block_room : 8;
+        cwi_gltf_block *blocks = cwi_realloc_array(plan->blocks, room, sizeof *blocks);
+        if (!blocks) {
+            cwi_free(bytes);
+            return fail_memory(err);
+        }
+        plan->blocks = blocks;
+        plan->block_room = room;
+    }
+    plan->blocks[plan->block_count++] = (cwi_gltf_block){bytes, size};
+    *at = plan->document.bytes;
+    plan->document.bytes += (size + 7) / 8 * 8;
+    return CW_OK;
+}
+
+/* --- Draco ---------------------------------------------------------------------------------
+ */
+
+static cw_status verify_draco(const cwi_gltf_plan *plan, const cwi_gltf_piece *piece,
+                              const cwi_arrays *a, cw_compressed *told, cw_error *err)
+{
+    const double step = cwi_grid_step(&plan->grid);
+    uint32_t *places = cwi_alloc_array(a->vertex_count, 3 * sizeof *places);
+    if (!places)
+        return fail_memory(err);
+    for (size_t i = 0; i < 3 * a->vertex_count; i++) {
+        const double n = ((double)a->positions[i] - (double)plan->grid.origin[i % 3]) / step;
+        places[i] = n > 0 ? (uint32_t)(n + 0.5) : 0;
+    }
+    const cwi_decoded decoded = {.vertex_count = a->vertex_count,
+                                 .triangle_count = a->triangle_count,
+                                 .places = places,
+                                 .normals = a->normals,
+                                 .triangles = a->triangles};
+    cw_status st =
+        cwi_verify(&piece->part->mesh, &plan->grid, &decoded, &told->normal_degrees, err);
+    cwi_free(places);
+    return st;
+}
+
+static void describe_draco(cwi_gltf_piece *piece, const cwi_arrays *decoded)
+{
+    for (int a = 0; a < 3; a++) {
+        piece->low[a] = INFINITY;
+        piece->high[a] = -INFINITY;
+    }
+    for (size_t i = 0; i < 3 * decoded->vertex_count; i++) {
+        piece->low[i % 3] = fmin(piece->low[i % 3], (double)decoded->positions[i]);
+        piece->high[i % 3] = fmax(piece->high[i % 3], (double)decoded->positions[i]);
+    }
+    for (size_t n = 0; n < piece->array_count; n++)
+        if (piece->arrays[n].use != CWI_GLTF_INDICES)
+            piece->arrays[n].count = decoded->vertex_count;
+}
+
+static cw_status encode_draco(cwi_gltf_plan *plan, cwi_gltf_piece *piece,
+                              const cwi_draco_functions *draco, const cw_write_desc *desc,
+                              unsigned char *colors, cw_error *err)
+{
+    const cw_mesh *m = &piece->part->mesh;
+    const cwi_arrays arrays = {.vertex_count = m->vertex_count,
+                               .triangle_count = m->triangle_count,
+                               .positions = m->positions,
+                               .normals = m->normals,
+                               .colors = colors,
+                               .triangles = m->triangles};
+    const cwi_draco_settings settings = {.grid = plan->grid,
+                                         .normal_bits = NORMAL_BITS,
+                                         .level = desc->level ? desc->level : LEVEL};
+    unsigned char *bytes = NULL;
+    size_t size = 0;
+    cw_status st = draco->encode(&arrays, &settings, &bytes, &size, &piece->ids, err);
+    if (st == CW_OK)
+        st = add_block(plan, bytes, size, &piece->draco_at, err);
+    piece->draco = size;
+    return st;
+}
+
+static cw_status compress_draco(cwi_gltf_plan *plan, cwi_gltf_piece *piece,
+                                const cwi_draco_functions *draco, const cw_write_desc *desc,
+                                cw_compressed *told, cw_error *err)
+{
+    const size_t count = piece->part->mesh.vertex_count;
+    const double start = now_s();
+    unsigned char *colors = NULL;
+    cwi_arrays decoded = {0};
+    cwi_gltf_plan_arrays(plan, piece);
+    if (piece->part->mesh.colors && !(colors = cwi_alloc_array(count, 4)))
+        return fail_memory(err);
+    for (size_t n = 0; n < piece->array_count; n++)
+        for (size_t i = 0; piece->arrays[n].use == CWI_GLTF_COLOR && i < count; i++)
+            cwi_gltf_put(plan, piece, &piece->arrays[n], i, colors + 4 * i);
+    cw_status st = encode_draco(plan, piece, draco, desc, colors, err);
+    const double encoded = now_s();
+    cwi_free(colors);
+    if (st == CW_OK)
+        st = draco->decode(plan->blocks[plan->block_count - 1].bytes, piece->draco, &piece->ids,
+                           SIZE_MAX, &decoded, err);
+    if (st == CW_OK)
+        st = verify_draco(plan, piece, &decoded, told, err);
+    if (st == CW_OK)
+        describe_draco(piece, &decoded);
+    cwi_arrays_free(&decoded);
+    told->encode_s += encoded - start;
+    told->decode_s += now_s() - encoded;
+    return st;
+}
+
+/* --- meshopt -------------------------------------------------------------------------------
+ */
+
+static void permute(void *array, const void *from, const uint32_t *remap, size_t count,
+                    size_t size)
+{
+    for (size_t v = 0; v < count; v++)
+        memcpy((char *)array + remap[v] * size, (const char *)from + v * size, size);
+}
+
+/* Puts vertices where remap says. */
+static cw_status permute_array(void *array, const uint32_t *remap, size_t count, size_t size,
+                               cw_error *err)
+{
+    if (!array)
+        return CW_OK;
+    void *copy = cwi_alloc_array(count, size);
+    if (!copy)
+        return fail_memory(err);
+    memcpy(copy, array, count * size);
+    permute(array, copy, remap, count, size);
+    cwi_free(copy);
+    return CW_OK;
+}
+
+static cw_status reorder(cw_mesh *own, const cwi_meshopt_functions *meshopt, cw_error *err)
+{
+    uint32_t *remap = cwi_alloc_array(own->vertex_count, sizeof *remap);
+    if (!remap)
+        return fail_memory(err);
+    cw_status st =
+        meshopt->reorder(own->triangles, own->triangle_count, own->vertex_count, remap, err);
+    if (st == CW_OK)
+        st = permute_array(own->positions, remap, own->vertex_count, 12, err);
+    if (st == CW_OK)
+        st = permute_array(own->normals, remap, own->vertex_count, 12, err);
+    if (st == CW_OK)
+        st = permute_array(own->colors, remap, own->vertex_count, 4, err);
+    cwi_free(remap);
+    return st;
+}
+
+/* What was packed is unpacked, and must be the same to the byte; indices to the triangle, for
+ * their codec may turn them. */
+static cw_status check_packed(const cwi_meshopt_functions *meshopt, const cwi_gltf_array *a,
+                              const unsigned char *raw, const cwi_gltf_block *b, cw_error *err)
+{
+    unsigned char *back = cwi_alloc_array((size_t)a->count, (size_t)a->stride);
+    if (!back)
+        return fail_memory(err);
+    cw_status st = meshopt->decode_vertices(back, (size_t)a->count, (size_t)a->stride, b->bytes,
+                                            b->size, err);
+    if (st == CW_OK && memcmp(raw, back, (size_t)(a->count * a->stride)) != 0)
+        st = cw_fail(err, CW_ERR_CHECK, "the decoded vertices are not those encoded");
+    cwi_free(back);
+    return st;
+}
+
+static cw_status check_triangles(const cwi_meshopt_functions *meshopt, const cw_mesh *m,
+                                 const cwi_gltf_block *b, cw_error *err)
+{
+    const size_t count = 3 * m->triangle_count;
+    uint32_t *back = cwi_alloc_array(count, sizeof *back);
+    if (!back)
+        return fail_memory(err);
+    cw_status st = meshopt->decode_triangles(back, count, 4, b->bytes, b->size, err);
+    for (size_t t = 0; st == CW_OK && t < count; t += 3) {
+        const uint32_t *was = m->triangles + t;
+        int k = 0;
+        while (k < 3 && (back[t] != was[k] || back[t + 1] != was[(k + 1) % 3] ||
+                         back[t + 2] != was[(k + 2) % 3]))
+            k++;
+        if (k == 3)
+            st = cw_fail(err, CW_ERR_CHECK, "decoded triangle %zu is not the one encoded",
+                         t / 3);
+    }
+    cwi_free(back);
+    return st;
+}
+
+static cw_status pack_array(cwi_gltf_plan *plan, cwi_gltf_piece *piece, cwi_gltf_array *a,
+                            const cwi_meshopt_functions *meshopt, cw_error *err)
+{
+    const cw_mesh *m = &piece->part->mesh;
+    const bool indices = a->use == CWI_GLTF_INDICES;
+    cwi_gltf_block b = {0};
+    unsigned char *raw = NULL;
+    cw_status st = CW_OK;
+    if (indices) {
+        st = meshopt->encode_triangles(m->triangles, m->triangle_count, m->vertex_count,
+                                       &b.bytes, &b.size, err);
+    } else {
+        raw = cwi_alloc_array((size_t)a->count, (size_t)a->stride);
+        st = raw ? CW_OK : fail_memory(err);
+        for (size_t i = 0; raw && i < a->count; i++)
+            cwi_gltf_put(plan, piece, a, i, raw + i * a->stride);
+        if (st == CW_OK)
+            st = meshopt->encode_vertices(raw, (size_t)a->count, (size_t)a->stride, &b.bytes,
+                                          &b.size, err);
+    }
+    if (st == CW_OK)
+        st = indices ? check_triangles(meshopt, m, &b, err)
+                     : check_packed(meshopt, a, raw, &b, err);
+    cwi_free(raw);
+    if (st != CW_OK) {
+        cwi_free(b.bytes);
+        return st;
+    }
+    a->packed = b.size;
+    return add_block(plan, b.bytes, b.size, &a->packed_at, err);
+}
+
+static cw_status compress_meshopt(cwi_gltf_plan *plan, size_t p,
+                                  const cwi_meshopt_functions *meshopt, cw_error *err)
+{
+    cwi_gltf_piece *piece = &plan->pieces[p];
+    cw_status st = reorder(&plan->own[p], meshopt, err);
+    if (st == CW_OK)
+        cwi_gltf_plan_arrays(plan, piece);
+    for (size_t n = 0; st == CW_OK && n < piece->array_count; n++)
+        st = pack_array(plan, piece, &piece->arrays[n], meshopt, err);
+    plan->document.unpacked = 1; /* how large, is counted later */
+    return st;
+}
+
+/* Normals in bytes are the only thing that quantising moves beside positions. */
+static void measure_normals(const cwi_gltf_plan *plan, cw_compressed *told)
+{
+    for (size_t p = 0; p < plan->parts.count; p++) {
+        const cw_mesh *m = &plan->parts.items[p].mesh;
+        for (size_t v = 0; m->normals && v < m->vertex_count; v++) {
+            double is[3], was[3], cosine = 0, lengths[2] = {0, 0};
+            for (int a = 0; a < 3; a++) {
+                was[a] = (double)m->normals[3 * v + (size_t)a];
+                is[a] = rint(127 * fmax(-1, fmin(1, was[a])));
+                cosine += was[a] * is[a];
+                lengths[0] += was[a] * was[a];
+                lengths[1] += is[a] * is[a];
+            }
+            const double c = cosine / sqrt(lengths[0] * lengths[1]);
+            told->normal_degrees =
+                fmax(told->normal_degrees, c < 1 ? acos(c) * 180 / 3.14159265358979323846 : 0);
+        }
+    }
+}
+
+/* --- all -----------------------------------------------------------------------------------
+ */
+
+static cw_status compress_pieces(cwi_gltf_plan *plan, const cw_write_desc *desc,
+                                 cw_compressed *told, cw_error *err)
+{
+    const bool draco = desc->compression == CW_COMPRESS_DRACO;
+    const cwi_draco_functions *by_draco = NULL;
+    const cwi_meshopt_functions *by_meshopt = NULL;
+    const double start = now_s();
+    cw_status st = draco ? cwi_draco_functions_load(&by_draco, err)
+                         : cwi_meshopt_functions_load(&by_meshopt, err);
+    for (size_t p = 0; st == CW_OK && p < plan->parts.count; p++)
+        st = draco ? compress_draco(plan, &plan->pieces[p], by_draco, desc, told, err)
+                   : compress_meshopt(plan, p, by_meshopt, err);
+    if (!draco)
+        told->encode_s = now_s() - start;
+    told->bytes = plan->document.bytes;
+    return st;
+}
+
+cw_status cwi_gltf_compress(cwi_gltf_plan *plan, const cw_write_desc *desc, cw_error *err)
+{
+    const bool meshopt = desc->compression == CW_COMPRESS_MESHOPT;
+    cw_compressed told = {0};
+    cw_status st = CW_OK;
+    if (meshopt || !same_origin(&plan->parts))
+        st = own_parts(plan, meshopt, err);
+    if (st == CW_OK)
+        st = choose_grid(plan, desc, &told, err);
+    if (st != CW_OK)
+        return st;
+    plan->document.quantized = desc->compression != CW_COMPRESS_DRACO;
+    if (plan->grid.bits)
+        told.error_mm = measure_error(plan);
+    if (plan->document.quantized)
+        measure_normals(plan, &told);
+    if (desc->compression != CW_COMPRESS_QUANTIZE)
+        st = compress_pieces(plan, desc, &told, err);
+    if (st == CW_OK && desc->compressed)
+        *desc->compressed = told;
+    return st;
+}

@@ -1,0 +1,59 @@
+/* What is in a glTF file that we write: its arrays and where their bytes lie. The module "gltf"
+ * makes the JSON of it; the bytes are written beside. */
+#ifndef FORMATS_GLTF_DOCUMENT_H
+#define FORMATS_GLTF_DOCUMENT_H
+
+#include "formats/draco_wrap.h"
+#include "formats/mesh_writers.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum cwi_gltf_use {
+    CWI_GLTF_INDICES,
+    CWI_GLTF_POSITION,
+    CWI_GLTF_NORMAL,
+    CWI_GLTF_COLOR,
+    CWI_GLTF_USES
+} cwi_gltf_use;
+
+/* An accessor and its view. */
+typedef struct cwi_gltf_array {
+    cwi_gltf_use use;
+    int component, numbers; /* 5120 to 5126; of an element, 1 to 4 */
+    bool normalized;
+    uint64_t count, stride;     /* elements, and bytes from one to the next */
+    uint64_t at;                /* in the buffer, or (meshopt) in the one that is never there */
+    uint64_t packed_at, packed; /* meshopt: where its bytes are, and how many */
+} cwi_gltf_array;
+
+/* A node with a mesh of one primitive. */
+typedef struct cwi_gltf_piece {
+    const cwi_part *part;
+    cwi_gltf_array arrays[CWI_GLTF_USES];
+    size_t array_count;
+    double low[3], high[3]; /* of POSITION, as it is stored */
+    double translation[3];  /* mm, LPS: of the stored positions, ... */
+    double step;            /* ... which are multiples of this many mm */
+    bool translucent;
+    uint64_t draco_at, draco; /* where Draco's bytes are, and how many; 0: not Draco's */
+    cwi_draco_ids ids;
+} cwi_gltf_piece;
+
+typedef struct cwi_gltf_document {
+    const cwi_gltf_piece *pieces;
+    size_t count;
+    const cw_provenance *provenance;
+    size_t provenance_count;
+    const double *local_origin; /* told in the extras of nodes; NULL: applied */
+    bool quantized;             /* integers for positions: KHR_mesh_quantization */
+    uint64_t bytes;             /* of the buffer */
+    uint64_t unpacked;          /* meshopt: of the buffer that is never there; else 0 */
+} cwi_gltf_document;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,132 @@
+#include "formats/grid.h"
+
+#include "core/memory.h"
+#include "core/status.h"
+#include "core/weld.h"
+
+#include <math.h>
+#include <string.h>
+
+cwi_grid cwi_grid_around(const cwi_parts *parts)
+{
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    cwi_grid grid = {.bits = 1};
+    for (size_t p = 0; p < parts->count; p++) {
+        const cw_mesh *mesh = &parts->items[p].mesh;
+        for (size_t i = 0; i < 3 * mesh->vertex_count; i++) {
+            low[i % 3] = fminf(low[i % 3], mesh->positions[i]);
+            high[i % 3] = fmaxf(high[i % 3], mesh->positions[i]);
+        }
+    }
+    for (int a = 0; a < 3; a++) {
+        grid.origin[a] = low[a];
+        grid.range = fmaxf(grid.range, high[a] - low[a]);
+    }
+    if (!(grid.range > 0)) /* a single point */
+        grid.range = 1;
+    return grid;
+}
+
+double cwi_grid_step(const cwi_grid *grid)
+{
+    return (double)grid->range / (double)((1u << grid->bits) - 1);
+}
+
+double cwi_grid_error(const cwi_grid *grid)
+{
+    return cwi_grid_step(grid) * sqrt(3) / 2;
+}
+
+int cwi_grid_bits(const cwi_grid *grid, double max_error)
+{
+    cwi_grid g = *grid;
+    g.bits = 1;
+    while (g.bits <= CWI_MOST_GRID_BITS && cwi_grid_error(&g) > max_error)
+        g.bits++;
+    return g.bits;
+}
+
+/* --- harm -----------------------------------------------------------------------------------
+ */
+
+static void round_points(const cwi_grid *grid, const cw_mesh *mesh, uint32_t *rounded)
+{
+    for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
+        rounded[i] = cwi_grid_round(grid, mesh->positions[i], (int)(i % 3));
+}
+
+/* Whether two corners' differences from the third are not parallel: exact, below 2^62. */
+static bool has_area(const uint32_t *points, const uint32_t *t)
+{
+    const uint32_t *p = points + 3 * (size_t)t[0], *q = points + 3 * (size_t)t[1],
+                   *r = points + 3 * (size_t)t[2];
+    int64_t u[3], v[3];
+    for (int a = 0; a < 3; a++) {
+        u[a] = (int64_t)q[a] - p[a];
+        v[a] = (int64_t)r[a] - p[a];
+    }
+    return u[0] * v[1] != u[1] * v[0] || u[1] * v[2] != u[2] * v[1] ||
+           u[2] * v[0] != u[0] * v[2];
+}
+
+static bool had_area(const float *points, const uint32_t *t)
+{
+    const float *p = points + 3 * (size_t)t[0], *q = points + 3 * (size_t)t[1],
+                *r = points + 3 * (size_t)t[2];
+    double u[3], v[3];
+    for (int a = 0; a < 3; a++) {
+        u[a] = (double)q[a] - (double)p[a];
+        v[a] = (double)r[a] - (double)p[a];
+    }
+    return u[0] * v[1] != u[1] * v[0] || u[1] * v[2] != u[2] * v[1] ||
+           u[2] * v[0] != u[0] * v[2];
+}
+
+static bool is_elsewhere(const float *points, size_t v, size_t u)
+{
+    const float *p = points + 3 * v, *q = points + 3 * u;
+    return p[0] != q[0] || p[1] != q[1] || p[2] != q[2];
+}
+
+static void count_harm(const cw_mesh *mesh, const uint32_t *rounded, const uint32_t *map,
+                       cwi_grid_harm *harm)
+{
+    for (size_t v = 0; v < mesh->vertex_count; v++)
+        harm->merged += map[v] != v && is_elsewhere(mesh->positions, v, map[v]);
+    for (size_t t = 0; t < mesh->triangle_count; t++) {
+        const uint32_t *triangle = mesh->triangles + 3 * t;
+        harm->flat += !has_area(rounded, triangle) && had_area(mesh->positions, triangle);
+    }
+}
+
+static cw_status measure_part(const cwi_grid *grid, const cw_mesh *mesh, cwi_grid_harm *harm,
+                              cw_error *err)
+{
+    const size_t count = mesh->vertex_count;
+    uint32_t *rounded = cwi_alloc_array(count, 3 * sizeof *rounded);
+    float *bits = cwi_alloc_array(count, 3 * sizeof *bits);
+    uint32_t *map = cwi_alloc_array(count, sizeof *map);
+    bool ok = rounded && bits && map;
+    if (ok) {
+        round_points(grid, mesh, rounded);
+        memcpy(bits, rounded, 12 * count); /* below 2^30: as floats they are finite, too */
+        ok = cwi_weld(bits, count, map);
+    }
+    if (ok)
+        count_harm(mesh, rounded, map, harm);
+    cwi_free(rounded);
+    cwi_free(bits);
+    cwi_free(map);
+    return ok ? CW_OK
+              : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to compare %zu vertices", count);
+}
+
+cw_status cwi_grid_measure(const cwi_grid *grid, const cwi_parts *parts, cwi_grid_harm *harm,
+                           cw_error *err)
+{
+    cw_status st = CW_OK;
+    *harm = (cwi_grid_harm){0};
+    for (size_t p = 0; st == CW_OK && p < parts->count; p++)
+        st = measure_part(grid, &parts->items[p].mesh, harm, err);
+    return st;
+}
