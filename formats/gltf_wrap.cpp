@@ -30,6 +30,7 @@ tinygltf::Value text(const std::string &words)
     return tinygltf::Value(words);
 }
 
+const char *const MESHOPT = "EXT_meshopt_compression";
 const char *const attributes[CWI_GLTF_USES] = {"", "POSITION", "NORMAL", "COLOR_0"};
 
 // Where an array's bytes are. meshopt's are packed; its view is of a buffer that no file has.
@@ -44,14 +45,15 @@ int add_view(tinygltf::Model &model, const cwi_gltf_array &a)
     view.byteLength = size_t(a.count * a.stride);
     view.byteStride = !indices && element != a.stride ? size_t(a.stride) : 0;
     view.target = indices ? TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER : TINYGLTF_TARGET_ARRAY_BUFFER;
-    if (a.packed)
-        view.extensions["EXT_meshopt_compression"] =
-            tinygltf::Value(Object{{"buffer", whole(0)},
-                                   {"byteOffset", whole(a.packed_at)},
-                                   {"byteLength", whole(a.packed)},
-                                   {"byteStride", whole(a.stride)},
-                                   {"count", whole(a.count)},
-                                   {"mode", text(indices ? "TRIANGLES" : "ATTRIBUTES")}});
+    if (a.packed) // see name_extensions()
+        view.extras = tinygltf::Value(Object{
+            {MESHOPT,
+             tinygltf::Value(Object{{"buffer", whole(0)},
+                                    {"byteOffset", whole(a.packed_at)},
+                                    {"byteLength", whole(a.packed)},
+                                    {"byteStride", whole(a.stride)},
+                                    {"count", whole(a.count)},
+                                    {"mode", text(indices ? "TRIANGLES" : "ATTRIBUTES")}})}});
     model.bufferViews.push_back(view);
     return int(model.bufferViews.size()) - 1;
 }
@@ -200,10 +202,19 @@ tinygltf::Model make_model(const cwi_gltf_document &document)
     if (document.quantized)
         use_extension(model, "KHR_mesh_quantization");
     if (document.unpacked)
-        use_extension(model, "EXT_meshopt_compression");
+        use_extension(model, MESHOPT);
     if (document.count && document.pieces[0].draco)
         use_extension(model, "KHR_draco_mesh_compression");
     return model;
+}
+
+// tinygltf writes no extensions of views, but extras: those of meshopt are renamed.
+void name_extensions(std::string &json)
+{
+    const std::string from = std::string("\"extras\":{\"") + MESHOPT;
+    const std::string to = std::string("\"extensions\":{\"") + MESHOPT;
+    for (size_t at = json.find(from); at != std::string::npos; at = json.find(from, at))
+        json.replace(at, from.size(), to);
 }
 
 // tinygltf keeps offsets of extensions in 31 bits.
@@ -228,6 +239,7 @@ cw_status make_document(const cwi_gltf_document *document, char **json, size_t *
         std::string words = stream.str();
         while (!words.empty() && words.back() != '}')
             words.pop_back();
+        name_extensions(words);
         *size = words.size();
         *json = cwi_strdup(words.c_str());
         return *json ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the JSON");

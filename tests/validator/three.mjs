@@ -1,0 +1,114 @@
+// Loads GLB files with three.js in headless Chromium, Draco's and meshopt's decoders included:
+// node three.mjs [--picture OUT.png] FILE...
+// Prints for each file: its triangles, and its box in metres. Exit: 0 all loaded, 1 one did not, 2
+// usage, 77 no Chromium, three.js or puppeteer. NODE_PATH names where the latter two are.
+import { createReadStream, existsSync } from 'node:fs';
+import { createServer } from 'node:http';
+import { createRequire } from 'node:module';
+import { basename, dirname, extname, join } from 'node:path';
+
+const CHROMIUM = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'];
+const TYPES = { '.html': 'text/html', '.js': 'text/javascript', '.wasm': 'application/wasm' };
+
+function skip(what) {
+    console.error(`skip: ${what} is not installed`);
+    process.exit(77);
+}
+
+function find(name) {
+    try {
+        return createRequire(import.meta.url).resolve(name);
+    } catch {
+        return skip(name);
+    }
+}
+
+// The page and what it imports, from one server: modules and workers need an origin.
+const PAGE = `<!doctype html><body style="margin:0"><script type="importmap">
+{"imports": {"three": "/three/build/three.module.js", "three/addons/": "/three/examples/jsm/"}}
+</script><script type="module">
+import * as THREE from 'three';
+import { GLTFLoader } from 'three/addons/loaders/GLTFLoader.js';
+import { DRACOLoader } from 'three/addons/loaders/DRACOLoader.js';
+import { MeshoptDecoder } from 'three/addons/libs/meshopt_decoder.module.js';
+const draco = new DRACOLoader().setDecoderPath('/three/examples/jsm/libs/draco/gltf/');
+const loader = new GLTFLoader().setDRACOLoader(draco).setMeshoptDecoder(MeshoptDecoder);
+const renderer = new THREE.WebGLRenderer({ antialias: true, preserveDrawingBuffer: true });
+renderer.setSize(innerWidth, innerHeight);
+document.body.appendChild(renderer.domElement);
+function draw(scene, box) {
+    const size = box.getSize(new THREE.Vector3()).length(), middle = box.getCenter(new THREE.Vector3());
+    const camera = new THREE.PerspectiveCamera(35, innerWidth / innerHeight, size / 100, size * 10);
+    camera.position.set(middle.x + 0.2 * size, middle.y, middle.z + 1.6 * size);
+    camera.lookAt(middle);
+    scene.background = new THREE.Color(0xdddddd);
+    const light = new THREE.DirectionalLight(0xffffff, 2.5);
+    light.position.set(1, 1, 2);
+    scene.add(light, new THREE.AmbientLight(0xffffff, 0.6));
+    renderer.render(scene, camera);
+}
+window.load = async url => {
+    const { scene } = await loader.loadAsync(url);
+    let triangles = 0, nodes = 0;
+    scene.updateMatrixWorld(true);
+    scene.traverse(o => {
+        nodes += o.isMesh ? 1 : 0;
+        triangles += o.isMesh ? o.geometry.index.count / 3 : 0;
+    });
+    const box = new THREE.Box3().setFromObject(scene, true);
+    draw(scene, box);
+    return { triangles, nodes, low: box.min.toArray(), high: box.max.toArray() };
+};
+window.ready = true;
+</script>`;
+
+function serve(three, files) {
+    const server = createServer((request, response) => {
+        const name = decodeURIComponent(request.url);
+        const path = name.startsWith('/three/') ? join(three, name.slice(7)) : files[name.slice(6)];
+        response.setHeader('Content-Type', TYPES[extname(name)] ?? 'application/octet-stream');
+        if (name === '/page.html')
+            response.end(PAGE);
+        else if (path && existsSync(path))
+            createReadStream(path).pipe(response);
+        else
+            response.writeHead(404).end();
+    });
+    return new Promise(done => server.listen(0, '127.0.0.1', () => done(server)));
+}
+
+const words = process.argv.slice(2);
+const picture = words[0] === '--picture' ? words.splice(0, 2)[1] : null;
+if (words.length === 0) {
+    console.error('usage: three.mjs [--picture OUT.png] FILE...');
+    process.exit(2);
+}
+const chromium = CHROMIUM.find(existsSync) ?? skip('chromium');
+const three = dirname(dirname(find('three')));
+const puppeteer = createRequire(import.meta.url)(find('puppeteer-core'));
+const server = await serve(three, Object.fromEntries(words.map((f, i) => [String(i), f])));
+const browser = await (puppeteer.default ?? puppeteer).launch({
+    executablePath: chromium,
+    args: ['--no-sandbox', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'],
+});
+let failed = false;
+try {
+    const page = await browser.newPage();
+    await page.setViewport({ width: 640, height: 640 });
+    page.on('pageerror', e => console.error(`page: ${e.message}`));
+    await page.goto(`http://127.0.0.1:${server.address().port}/page.html`);
+    await page.waitForFunction('window.ready');
+    for (const [i, file] of words.entries()) {
+        const r = await page.evaluate(u => window.load(u).catch(e => ({ error: String(e) })), `/file/${i}`);
+        failed ||= Boolean(r.error);
+        console.log(r.error ? `${basename(file)}: ${r.error}`
+                            : `${basename(file)} ${r.nodes} ${r.triangles} ` +
+                              [...r.low, ...r.high].map(x => x.toFixed(6)).join(' '));
+        if (picture)
+            await page.screenshot({ path: picture.replace('{stem}', basename(file, '.glb')) });
+    }
+} finally {
+    await browser.close();
+    server.close();
+}
+process.exitCode = failed ? 1 : 0;
