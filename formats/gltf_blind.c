@@ -4,7 +4,11 @@
 
 #include <string.h>
 
-enum { MOST_DEPTH = 64, MOST_STRUCTURE = 32 << 20 };
+enum {
+    PRIMITIVE_DEPTH = 5, /* {"meshes": [{"primitives": [{ */
+    MOST_DEPTH = 64,
+    MOST_STRUCTURE = 32 << 20
+};
 
 /* The end of a string that starts at its first quote: behind the last one. */
 static size_t string_end(const char *json, size_t size, size_t at)
@@ -42,6 +46,25 @@ static void rename_key(char *key, size_t size)
         memset(key + 1, '_', size - 2);
 }
 
+static bool is_number(const char *json, size_t size, size_t at)
+{
+    while (at < size && strchr(" \t\r\n:", json[at]) && json[at])
+        at++;
+    return at < size && (json[at] == '-' || (json[at] >= '0' && json[at] <= '9'));
+}
+
+/* A key of a primitive: its indices are hidden from tinygltf, which refuses those that Draco
+ * compressed, in its "extras". Behind the key is at end. */
+static void hide_indices(char *json, size_t size, size_t at, size_t end)
+{
+    static const char indices[] = "\"indices\"", extras[] = "\"extras\"";
+    if (end - at == strlen(indices) && memcmp(json + at, indices, end - at) == 0 &&
+        is_number(json, size, end))
+        memcpy(json + at, "\"extras\" ", end - at);
+    else if (end - at == strlen(extras) && memcmp(json + at, extras, end - at) == 0)
+        memset(json + at + 1, '_', end - at - 2);
+}
+
 cw_status cwi_gltf_blind(char *json, size_t size, cw_error *err)
 {
     size_t depth = 0, structure = 0;
@@ -50,6 +73,8 @@ cw_status cwi_gltf_blind(char *json, size_t size, cw_error *err)
             const size_t end = string_end(json, size, i);
             if (depth == 1 && is_key(json, size, end))
                 rename_key(json + i, end - i);
+            if (depth == PRIMITIVE_DEPTH && is_key(json, size, end))
+                hide_indices(json, size, i, end);
             i = end - 1;
         } else {
             depth += json[i] == '{' || json[i] == '[';

@@ -2,6 +2,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "formats/gltf_scene.h"
+#include "formats/gltf_unpack.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -222,10 +223,69 @@ static cw_status check_accessor(const cwi_gltf_scene *scene, int accessor, const
     return CW_OK;
 }
 
+/* The numbers of a primitive that was decoded as a whole. */
+static cw_status open_unpacked(const cwi_gltf_bytes *from, const cwi_gltf_accessor *a,
+                               int accessor, cwi_gltf_numbers *numbers, cw_error *err)
+{
+    const cwi_gltf_primitive *p = from->unpacked;
+    const cwi_arrays *all = from->arrays;
+    const void *array = accessor == p->indices    ? (const void *)all->triangles
+                        : accessor == p->position ? (const void *)all->positions
+                        : accessor == p->normal   ? (const void *)all->normals
+                                                  : (const void *)all->colors;
+    const bool colors = array == all->colors, indices = array == all->triangles;
+    *numbers =
+        (cwi_gltf_numbers){.count = indices ? 3 * all->triangle_count : all->vertex_count,
+                           .stride = indices || colors ? 4 : 12,
+                           .component = indices  ? 5125
+                                        : colors ? 5121
+                                                 : 5126,
+                           .numbers = indices  ? 1
+                                      : colors ? 4
+                                               : 3,
+                           .normalized = colors};
+    if (!array || numbers->count != a->count)
+        return cw_fail(err, CW_ERR_FORMAT, "the Draco data are not what accessor %d says",
+                       accessor);
+    numbers->bytes = cwi_alloc_array(numbers->count, numbers->stride);
+    if (!numbers->bytes)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu elements", numbers->count);
+    memcpy(numbers->bytes, array, numbers->count * numbers->stride);
+    return CW_OK;
+}
+
+/* The bytes of a view from an offset on, decoded where they are compressed. */
+static cw_status load_view(const cwi_gltf_bytes *from, const cwi_gltf_scene *scene,
+                           const cwi_gltf_view *v, uint64_t offset, uint64_t size,
+                           unsigned char **bytes, cw_error *err)
+{
+    unsigned char *packed = NULL;
+    if (v->packed_buffer < 0)
+        return cwi_gltf_load(from, scene, (uint64_t)v->buffer, v->offset + offset, size, bytes,
+                             err);
+    cw_status st = cwi_gltf_load(from, scene, (uint64_t)v->packed_buffer, v->packed_offset,
+                                 v->packed_bytes, &packed, err);
+    if (st == CW_OK)
+        st = cwi_gltf_unpack_view(from->unpacker, v, packed, bytes, err);
+    cwi_free(packed);
+    if (st == CW_OK && !fits(offset, size, v->packed_count * v->packed_stride)) {
+        cwi_free(*bytes);
+        *bytes = NULL;
+        return cw_fail(err, CW_ERR_FORMAT, "an accessor needs %llu bytes of a compressed view",
+                       (unsigned long long)(offset + size));
+    }
+    if (st == CW_OK)
+        memmove(*bytes, *bytes + offset, (size_t)size);
+    return st;
+}
+
 cw_status cwi_gltf_open_numbers(const cwi_gltf_bytes *from, const cwi_gltf_scene *scene,
                                 int accessor, const char *what, cwi_gltf_numbers *numbers,
                                 cw_error *err)
 {
+    if (from->unpacked && accessor >= 0 && (size_t)accessor < scene->accessor_count &&
+        scene->accessors[accessor].view < 0)
+        return open_unpacked(from, &scene->accessors[accessor], accessor, numbers, err);
     cw_status st = check_accessor(scene, accessor, what, err);
     if (st != CW_OK)
         return st;
@@ -249,7 +309,7 @@ cw_status cwi_gltf_open_numbers(const cwi_gltf_bytes *from, const cwi_gltf_scene
                                   .component = a->component,
                                   .numbers = a->numbers,
                                   .normalized = a->normalized};
-    return cwi_gltf_load(from, scene, (uint64_t)v->buffer, offset, size, &numbers->bytes, err);
+    return load_view(from, scene, v, a->offset, size, &numbers->bytes, err);
 }
 
 double cwi_gltf_number(const cwi_gltf_numbers *n, size_t i, int c)

@@ -269,6 +269,42 @@ static bool same_vertices(const cwi_gltf_primitive *p, const cwi_gltf_primitive 
     return p->position == q->position && p->normal == q->normal && p->color == q->color;
 }
 
+static uint64_t count_of(const cwi_gltf_scene *scene, int accessor)
+{
+    return accessor >= 0 && (size_t)accessor < scene->accessor_count
+               ? scene->accessors[accessor].count
+               : 0;
+}
+
+/* Decodes what Draco compressed, unless the file has it in plain, too. */
+static cw_status unpack(cwi_gltf_reader *r, const cwi_gltf_primitive *p, cw_error *err)
+{
+    const cwi_gltf_scene *scene = &r->scene;
+    const cwi_draco_ids ids = {p->draco_position, p->draco_normal, p->draco_color};
+    const uint64_t points = count_of(scene, p->position), indices = count_of(scene, p->indices);
+    unsigned char *packed = NULL;
+    r->bytes.unpacked = NULL;
+    cwi_arrays_free(&r->arrays);
+    if (p->draco < 0 || (size_t)p->position >= scene->accessor_count ||
+        scene->accessors[p->position].view >= 0)
+        return CW_OK;
+    if ((size_t)p->draco >= scene->view_count)
+        return cw_fail(err, CW_ERR_FORMAT, "a primitive names bufferView %d; there are %zu",
+                       p->draco, scene->view_count);
+    const cwi_gltf_view *v = &scene->views[p->draco];
+    cw_status st = cwi_gltf_limit(r, points, err);
+    if (st == CW_OK)
+        st = cwi_gltf_load(&r->bytes, scene, (uint64_t)v->buffer, v->offset, v->bytes, &packed,
+                           err);
+    if (st == CW_OK)
+        st = cwi_gltf_unpack_draco(&r->unpacker, &ids, packed, (size_t)v->bytes, points,
+                                   indices, &r->arrays, err);
+    cwi_free(packed);
+    r->bytes.unpacked = st == CW_OK ? p : NULL;
+    r->bytes.arrays = &r->arrays;
+    return st;
+}
+
 /* The primitives of a mesh often share their vertices: those of the one before are used again,
  * so that what is closed stays closed. */
 cw_status cwi_gltf_add_instance(cwi_gltf_reader *r, const cwi_gltf_instance *at,
@@ -288,7 +324,8 @@ cw_status cwi_gltf_add_instance(cwi_gltf_reader *r, const cwi_gltf_instance *at,
         }
         if (p->position < 0)
             return cw_fail(err, CW_ERR_FORMAT, "a primitive has no POSITION");
-        if (!before || !same_vertices(before, p)) {
+        st = unpack(r, p, err);
+        if (st == CW_OK && (!before || p->draco >= 0 || !same_vertices(before, p))) {
             first = r->build.point_count;
             st = add_vertices(r, at, p, err);
         }

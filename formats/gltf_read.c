@@ -216,12 +216,16 @@ static cw_status read_scene(cwi_mesh_input *in, bool binary, cw_mesh *mesh, cw_m
 {
     cwi_gltf_reader r = {.in = in, .build = {.in = in}, .bytes = {.in = &in->file}};
     uint64_t json = 0, json_size = in->file.size;
+    r.unpacker.desc = &in->desc;
+    r.bytes.unpacker = &r.unpacker;
     cw_status st = binary ? find_chunks(&r, &json, &json_size, err) : CW_OK;
     if (st == CW_OK)
         st = parse_json(&r, json, json_size, err);
     if (st == CW_OK)
         st = build_scene(&r, mesh, said, err);
     cwi_build_free(&r.build);
+    cwi_arrays_free(&r.arrays);
+    cwi_gltf_unpacker_close(&r.unpacker);
     cwi_free(r.world);
     cwi_free(r.instances);
     cwi_free(r.normals);

@@ -3,6 +3,7 @@
 #define FORMATS_GLTF_READER_H
 
 #include "formats/gltf_scene.h"
+#include "formats/gltf_unpack.h"
 
 /* A node of the scene that has a mesh. */
 typedef struct cwi_gltf_instance {
@@ -15,6 +16,8 @@ typedef struct cwi_gltf_instance {
 typedef struct cwi_gltf_reader {
     cwi_mesh_input *in;
     cwi_gltf_bytes bytes;
+    cwi_gltf_unpacker unpacker;
+    cwi_arrays arrays; /* of the primitive that was decoded last */
     cwi_gltf_scene scene;
     double (*world)[12]; /* of each node */
     cwi_gltf_instance *instances;

@@ -13,9 +13,24 @@ typedef struct cwi_gltf_buffer {
     char *uri; /* NULL: the binary chunk */
 } cwi_gltf_buffer;
 
+typedef enum cwi_gltf_mode {
+    CWI_GLTF_ATTRIBUTES,
+    CWI_GLTF_TRIANGLES,
+    CWI_GLTF_SEQUENCE
+} cwi_gltf_mode;
+typedef enum cwi_gltf_filter {
+    CWI_GLTF_PLAIN,
+    CWI_GLTF_OCTAHEDRAL,
+    CWI_GLTF_QUATERNION,
+    CWI_GLTF_EXPONENTIAL
+} cwi_gltf_filter;
+
 typedef struct cwi_gltf_view {
     int64_t buffer;
     uint64_t offset, bytes, stride; /* stride 0: packed */
+    int64_t packed_buffer;          /* of EXT_meshopt_compression; -1: not compressed */
+    uint64_t packed_offset, packed_bytes, packed_stride, packed_count;
+    int packed_mode, packed_filter;
 } cwi_gltf_view;
 
 typedef struct cwi_gltf_accessor {
@@ -29,6 +44,8 @@ typedef struct cwi_gltf_accessor {
 typedef struct cwi_gltf_primitive {
     int mode; /* 0 to 6 */
     int indices, position, normal, color;
+    int draco; /* the view of KHR_draco_mesh_compression; -1: not compressed */
+    int draco_position, draco_normal, draco_color; /* Draco's numbers for attributes; or -1 */
 } cwi_gltf_primitive;
 
 typedef struct cwi_gltf_mesh {
@@ -66,7 +83,8 @@ CW_API cw_status cwi_gltf_take_scene(const void *from, size_t size, cwi_gltf_sce
 
 /* Makes JSON fit for a library that trusts it: refuses nesting deeper than 64 and more than 32
  * MiB beside strings, and renames what no mesh needs (images, materials, extensions, ...), so
- * that it is never looked at. "buffers" becomes "extras", which only describes: the bytes of
+ * that it is never looked at. The indices of primitives become their "extras", for those that
+ * Draco compressed have no view. "buffers" becomes "extras", which only describes: the bytes of
  * buffers are for cwi_gltf_load() alone. */
 cw_status cwi_gltf_blind(char *json, size_t size, cw_error *err);
 
@@ -74,6 +92,9 @@ cw_status cwi_gltf_blind(char *json, size_t size, cw_error *err);
 typedef struct cwi_gltf_bytes {
     const cwi_input *in;
     uint64_t chunk, chunk_size; /* the binary chunk of a .glb file */
+    struct cwi_gltf_unpacker *unpacker;
+    const cwi_gltf_primitive *unpacked; /* the one whose arrays are these, not the buffers' */
+    const struct cwi_arrays *arrays;
 } cwi_gltf_bytes;
 
 /* The bytes from an offset of a buffer on: copied, to be freed with cwi_free().

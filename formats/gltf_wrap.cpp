@@ -31,6 +31,7 @@ tinygltf::Value text(const std::string &words)
 }
 
 const char *const MESHOPT = "EXT_meshopt_compression";
+const char *const DRACO = "KHR_draco_mesh_compression";
 const char *const attributes[CWI_GLTF_USES] = {"", "POSITION", "NORMAL", "COLOR_0"};
 
 // Where an array's bytes are. meshopt's are packed; its view is of a buffer that no file has.
@@ -160,7 +161,7 @@ void add_piece(tinygltf::Model &model, const cwi_gltf_piece &piece, const double
             primitive.attributes[attributes[a.use]] = accessor;
     }
     if (piece.draco)
-        primitive.extensions["KHR_draco_mesh_compression"] = draco_extension(model, piece);
+        primitive.extensions[DRACO] = draco_extension(model, piece);
     primitive.material = find_material(model, piece);
     primitive.mode = TINYGLTF_MODE_TRIANGLES;
 
@@ -204,7 +205,7 @@ tinygltf::Model make_model(const cwi_gltf_document &document)
     if (document.unpacked)
         use_extension(model, MESHOPT);
     if (document.count && document.pieces[0].draco)
-        use_extension(model, "KHR_draco_mesh_compression");
+        use_extension(model, DRACO);
     return model;
 }
 
@@ -286,12 +287,53 @@ cw_status copy_buffers(const tinygltf::Value &list, cwi_gltf_scene &scene, cw_er
     return st;
 }
 
+// A whole number from 0 on; anything else becomes more than there can be.
+uint64_t number_of(const tinygltf::Value &value)
+{
+    const double number = value.IsNumber() ? value.GetNumberAsDouble() : -1;
+    return number >= 0 && number < 9e15 ? uint64_t(number) : UINT64_MAX / 2;
+}
+
+int id_of(const tinygltf::Value &value)
+{
+    const uint64_t id = number_of(value);
+    return id < INT32_MAX ? int(id) : -1;
+}
+
+int choice_of(const tinygltf::Value &value, const std::vector<std::string> &names)
+{
+    const std::string name = value.IsString() ? value.Get<std::string>() : names[0];
+    const auto found = std::find(names.begin(), names.end(), name);
+    return found == names.end() ? -1 : int(found - names.begin());
+}
+
+void copy_packed(const tinygltf::BufferView &from, cwi_gltf_view &to)
+{
+    const auto found = from.extensions.find(MESHOPT);
+    to.packed_buffer = -1;
+    if (found == from.extensions.end())
+        return;
+    const tinygltf::Value &ext = found->second, &offset = member(ext, "byteOffset");
+    to.packed_buffer = id_of(member(ext, "buffer"));
+    to.packed_offset = offset.IsNumber() ? number_of(offset) : 0;
+    to.packed_bytes = number_of(member(ext, "byteLength"));
+    to.packed_stride = number_of(member(ext, "byteStride"));
+    to.packed_count = number_of(member(ext, "count"));
+    to.packed_mode = choice_of(member(ext, "mode"), {"ATTRIBUTES", "TRIANGLES", "INDICES"});
+    to.packed_filter =
+        choice_of(member(ext, "filter"), {"NONE", "OCTAHEDRAL", "QUATERNION", "EXPONENTIAL"});
+}
+
 cw_status copy_views(const tinygltf::Model &model, cwi_gltf_scene &scene, cw_error *err)
 {
     const cw_status st = allocate(scene.views, scene.view_count, model.bufferViews.size(), err);
     for (size_t i = 0; i < scene.view_count; i++) {
         const tinygltf::BufferView &from = model.bufferViews[i];
-        scene.views[i] = {from.buffer, from.byteOffset, from.byteLength, from.byteStride};
+        scene.views[i].buffer = from.buffer;
+        scene.views[i].offset = from.byteOffset;
+        scene.views[i].bytes = from.byteLength;
+        scene.views[i].stride = from.byteStride;
+        copy_packed(from, scene.views[i]);
     }
     return st;
 }
@@ -323,6 +365,24 @@ int find_attribute(const tinygltf::Primitive &primitive, const char *name)
     return found == primitive.attributes.end() ? -1 : found->second;
 }
 
+void copy_primitive(const tinygltf::Primitive &from, cwi_gltf_primitive &to)
+{
+    to.mode = from.mode < 0 ? TINYGLTF_MODE_TRIANGLES : from.mode;
+    to.indices = from.extras.IsNumber() ? id_of(from.extras) : -1; // see cwi_gltf_blind()
+    to.position = find_attribute(from, "POSITION");
+    to.normal = find_attribute(from, "NORMAL");
+    to.color = find_attribute(from, "COLOR_0");
+    to.draco = -1;
+    const auto found = from.extensions.find(DRACO);
+    if (found == from.extensions.end())
+        return;
+    const tinygltf::Value &ids = member(found->second, "attributes");
+    to.draco = id_of(member(found->second, "bufferView"));
+    to.draco_position = id_of(member(ids, "POSITION"));
+    to.draco_normal = id_of(member(ids, "NORMAL"));
+    to.draco_color = id_of(member(ids, "COLOR_0"));
+}
+
 cw_status copy_meshes(const tinygltf::Model &model, cwi_gltf_scene &scene, cw_error *err)
 {
     size_t count = 0;
@@ -338,9 +398,7 @@ cw_status copy_meshes(const tinygltf::Model &model, cwi_gltf_scene &scene, cw_er
     cwi_gltf_primitive *to = scene.primitives;
     for (const tinygltf::Mesh &mesh : model.meshes)
         for (const tinygltf::Primitive &from : mesh.primitives)
-            *to++ = {from.mode < 0 ? TINYGLTF_MODE_TRIANGLES : from.mode, from.indices,
-                     find_attribute(from, "POSITION"), find_attribute(from, "NORMAL"),
-                     find_attribute(from, "COLOR_0")};
+            copy_primitive(from, *to++);
     return CW_OK;
 }
 
@@ -461,8 +519,12 @@ cw_status copy_roots(const tinygltf::Model &model, cwi_gltf_scene &scene, cw_err
 // Extensions that change how a scene looks, but not where its triangles are, do no harm.
 cw_status check_extensions(const tinygltf::Model &model, cw_error *err)
 {
-    const std::vector<std::string> harmless = {"KHR_mesh_quantization", "KHR_texture_transform",
-                                               "KHR_texture_basisu", "KHR_lights_punctual",
+    const std::vector<std::string> harmless = {"KHR_mesh_quantization",
+                                               MESHOPT,
+                                               DRACO,
+                                               "KHR_texture_transform",
+                                               "KHR_texture_basisu",
+                                               "KHR_lights_punctual",
                                                "EXT_texture_webp"};
     for (const std::string &name : model.extensionsRequired)
         if (name.compare(0, 14, "KHR_materials_") != 0 &&

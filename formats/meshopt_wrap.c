@@ -4,6 +4,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "formats/gltf_scene.h"
 
 #include <meshoptimizer.h>
 #include <string.h>
@@ -94,6 +95,16 @@ static cw_status decode_indices(void *to, size_t index_count, size_t index_size,
         meshopt_decodeIndexSequence(to, index_count, index_size, bytes, size), "indices", err);
 }
 
+static void filter(void *vertices, size_t count, size_t stride, int kind)
+{
+    if (kind == CWI_GLTF_OCTAHEDRAL && (stride == 4 || stride == 8))
+        meshopt_decodeFilterOct(vertices, count, stride);
+    else if (kind == CWI_GLTF_QUATERNION && stride == 8)
+        meshopt_decodeFilterQuat(vertices, count, stride);
+    else if (kind == CWI_GLTF_EXPONENTIAL && stride % 4 == 0)
+        meshopt_decodeFilterExp(vertices, count, stride);
+}
+
 const cwi_meshopt_functions cwi_module_meshopt = {
     .reorder = reorder,
     .encode_vertices = encode_vertices,
@@ -101,4 +112,5 @@ const cwi_meshopt_functions cwi_module_meshopt = {
     .decode_vertices = decode_vertices,
     .decode_triangles = decode_triangles,
     .decode_indices = decode_indices,
+    .filter = filter,
 };

@@ -29,6 +29,9 @@ typedef struct cwi_meshopt_functions {
                                   const void *bytes, size_t size, cw_error *err);
     cw_status (*decode_indices)(void *to, size_t index_count, size_t index_size,
                                 const void *bytes, size_t size, cw_error *err);
+
+    /* Undoes a cwi_gltf_filter in place; a stride that is not the filter's is left as it is. */
+    void (*filter)(void *vertices, size_t count, size_t stride, int filter);
 } cwi_meshopt_functions;
 
 /* Loads the module. CW_ERR_UNSUPPORTED: not in this build. */
