@@ -32,6 +32,7 @@ static const reader readers[] = {
      .parse = cwi_mrc_parse},
     {"inr", ".inr .inr.gz", true, cwi_inr_sniff, .parse = cwi_inr_parse},
     {"dicom", ".dcm .dicom .ima", false, cwi_dicom_sniff, .read = cwi_dicom_read},
+    {"tiff", ".tif .tiff", false, cwi_tiff_sniff, .read = cwi_tiff_read},
 };
 enum { READER_COUNT = sizeof readers / sizeof *readers };
 
