@@ -74,47 +74,55 @@ bool cwi_is_folder(const char *path)
 
 static const char DIGITS[] = "0123456789";
 
-/* Which number, counted from 0, is all that two names differ by; -1 where that is not so. */
+enum { UNLIKE = -2, SAME = -1 };
+
+/* Which number, counted from 0, is all that two names differ by; SAME where they differ by
+ * leading zeros at most. */
 static int differing_number(const char *a, const char *b)
 {
-    int found = -1, number = 0;
+    int found = SAME, number = 0;
     while (*a && *b) {
         if (is_digit(*a) && is_digit(*b)) {
             if (compare_numbers(&a, &b) != 0) {
-                if (found >= 0)
-                    return -1;
+                if (found != SAME)
+                    return UNLIKE;
                 found = number;
             }
             number++;
         } else if (*a++ != *b++) {
-            return -1;
+            return UNLIKE;
         }
     }
-    return *a || *b ? -1 : found;
+    return *a || *b ? UNLIKE : found;
 }
 
 static bool number_at(const char *name, int which, double *number)
 {
-    for (;; which--) {
+    for (; *name; which--) {
         name += strcspn(name, DIGITS);
         const size_t length = strspn(name, DIGITS);
         *number = 0;
         for (size_t i = 0; i < length; i++)
             *number = 10 * *number + (name[i] - '0');
         if (which == 0)
-            return length <= 15;
+            return length > 0 && length <= 15;
         name += length;
     }
+    return false;
 }
 
 bool cwi_files_numbers(const cwi_names *names, double *numbers)
 {
-    const int which =
-        names->count > 1 ? differing_number(names->items[0], names->items[1]) : -1;
-    bool good = which >= 0;
+    int which = SAME;
+    for (size_t i = 1; i < names->count; i++) {
+        const int here = differing_number(names->items[0], names->items[i]);
+        if (here == UNLIKE || (which != SAME && here != SAME && here != which))
+            return false;
+        which = here == SAME ? which : here;
+    }
+    bool good = true;
     for (size_t i = 0; good && i < names->count; i++)
-        good = (i == 0 || differing_number(names->items[0], names->items[i]) == which) &&
-               number_at(names->items[i], which, &numbers[i]);
+        good = number_at(names->items[i], which == SAME ? 0 : which, &numbers[i]);
     return good;
 }
 

@@ -115,6 +115,12 @@ static cw_status find_images(cwi_tiff_file *f, uint32_t images, cw_error *err)
                        "has %llu behind the first %llu",
                        images, (unsigned long long)bytes, (unsigned long long)(f->size - start),
                        (unsigned long long)start);
+    if (f->offsets[0] >= start && f->offsets[0] < start + bytes)
+        return cw_fail(
+            err, CW_ERR_FORMAT,
+            "'ImageDescription' says images=%u, which would be %llu bytes behind the "
+            "first %llu; the file's directory is among those",
+            images, (unsigned long long)bytes, (unsigned long long)start);
     f->behind = start;
     f->page_count = images;
     return CW_OK;

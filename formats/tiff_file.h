@@ -11,7 +11,7 @@
 typedef struct cwi_tiff_layout {
     uint32_t columns, rows;
     uint16_t samples, bits, format;
-    uint16_t compression, photometric, orientation;
+    uint16_t compression, photometric, orientation, predictor;
     cw_type type;
     bool tiled, turned, low_bit_first;
     uint16_t planes;     /* stored one behind another: 1, or one a sample */
@@ -36,8 +36,9 @@ typedef struct cwi_tiff_file {
     int64_t page;    /* the layout's; -1: none */
     cwi_tiff_layout layout;
     int64_t band; /* the one in pixels; -1: none */
-    unsigned char *pixels, *tile;
-    size_t pixel_room, tile_room;
+    unsigned char *pixels, *tile, *line;
+    size_t pixel_room, tile_room, line_room;
+    bool guessed;   /* libtiff makes up the bytes of the directory's strips */
     int complained; /* libtiff, since cwi_tiff_listen(): 1, it warned; 2, it failed */
     char complaint[200];
 } cwi_tiff_file;
@@ -56,8 +57,17 @@ cw_status cwi_tiff_turn_to(cwi_tiff_file *f, uint32_t page, cw_error *err);
 cw_status cwi_tiff_rows(cwi_tiff_file *f, uint32_t first, uint32_t count, unsigned char *to,
                         cw_error *err);
 
-/* A rational number of the first directory; false where there is none. Libtiff rounds them to
- * single precision. */
+/* Decodes a deflated strip or tile to rows of numbers of this machine. */
+cw_status cwi_tiff_inflate(cwi_tiff_file *f, uint32_t strile, unsigned char *to, size_t bytes,
+                           size_t row_bytes, cw_error *err);
+
+/* Makes a buffer large enough; what it held is lost. */
+cw_status cwi_tiff_make_room(unsigned char **buffer, size_t *room, uint64_t bytes,
+                             cw_error *err);
+
+/* What libtiff does not tell: a short of a directory, 0 where there is none; and a rational
+ * number of the first, which libtiff rounds to single precision; false where there is none. */
+uint16_t cwi_tiff_short(const cwi_tiff_file *f, uint32_t directory, uint16_t tag);
 bool cwi_tiff_rational(const cwi_tiff_file *f, uint16_t tag, double *value);
 
 /* What the first directory's description says of the pages: ImageJ's, OME's or nobody's. Fills

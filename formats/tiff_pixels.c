@@ -17,8 +17,8 @@ static cw_status fail_page(const cwi_tiff_file *f, const char *why, cw_error *er
                    (uint32_t)f->page + 1, why);
 }
 
-/* Room for rows of every plane. */
-static cw_status make_room(unsigned char **buffer, size_t *room, uint64_t bytes, cw_error *err)
+cw_status cwi_tiff_make_room(unsigned char **buffer, size_t *room, uint64_t bytes,
+                             cw_error *err)
 {
     if (bytes > MOST_AT_ONCE)
         return cw_fail(err, CW_ERR_LIMIT,
@@ -107,7 +107,7 @@ static cw_status read_raw(const cwi_tiff_file *f, uint16_t plane, uint32_t row, 
     return st;
 }
 
-/* --- what libtiff decodes ------------------------------------------------------------------
+/* --- what is compressed --------------------------------------------------------------------
  */
 
 /* Libtiff goes on over damage with a warning, and hands out what it has. */
@@ -119,13 +119,31 @@ static cw_status check_decoded(const cwi_tiff_file *f, tmsize_t got, size_t want
     return fail_page(f, f->complained ? f->complaint : "they are too few", err);
 }
 
-static cw_status decode_strip(cwi_tiff_file *f, uint32_t strip, unsigned char *to, size_t bytes,
-                              cw_error *err)
+static bool is_deflated(const cwi_tiff_layout *l)
 {
+    return (l->compression == COMPRESSION_DEFLATE ||
+            l->compression == COMPRESSION_ADOBE_DEFLATE) &&
+           !l->low_bit_first; /* which turns compressed bytes round, too: libtiff's */
+}
+
+/* A strip or tile. */
+static cw_status decode(cwi_tiff_file *f, uint32_t n, unsigned char *to, size_t bytes,
+                        size_t row_bytes, cw_error *err)
+{
+    cw_error why = {0};
     cwi_tiff_listen(f);
+    if (is_deflated(&f->layout)) {
+        cw_status st = cwi_tiff_inflate(f, n, to, bytes, row_bytes, &why);
+        return st == CW_ERR_FORMAT ? fail_page(f, why.message, err)
+               : st == CW_OK       ? st
+                                   : cw_fail(err, st, "%s", why.message);
+    }
     memset(to, 0, bytes);
-    return check_decoded(f, TIFFReadEncodedStrip(f->tiff, strip, to, (tmsize_t)bytes), bytes,
-                         err);
+    const tmsize_t size = (tmsize_t)bytes;
+    return check_decoded(f,
+                         f->layout.tiled ? TIFFReadEncodedTile(f->tiff, n, to, size)
+                                         : TIFFReadEncodedStrip(f->tiff, n, to, size),
+                         bytes, err);
 }
 
 /* A row of tiles, as far as they are in the image. */
@@ -135,7 +153,7 @@ static cw_status decode_tiles(cwi_tiff_file *f, uint32_t first, uint32_t rows,
     const cwi_tiff_layout *l = &f->layout;
     const size_t bytes = (size_t)TIFFTileSize64(f->tiff), tile_row = bytes / l->band_rows;
     const uint32_t across = (l->columns - 1) / l->tile_width + 1;
-    cw_status st = make_room(&f->tile, &f->tile_room, bytes, err);
+    cw_status st = cwi_tiff_make_room(&f->tile, &f->tile_room, bytes, err);
     for (uint32_t t = 0; st == CW_OK && t < across; t++) {
         const size_t from = t * tile_row, left = l->stored_row - from;
         cwi_tiff_listen(f);
@@ -165,11 +183,11 @@ static cw_status decode_band(cwi_tiff_file *f, uint32_t band, cw_error *err)
     if (f->band == band)
         return CW_OK;
     f->band = -1;
-    cw_status st = make_room(&f->pixels, &f->pixel_room, plane * l->planes, err);
+    cw_status st = cwi_tiff_make_room(&f->pixels, &f->pixel_room, plane * l->planes, err);
     for (uint16_t p = 0; st == CW_OK && p < l->planes; p++) {
         const uint32_t first = (p * l->bands + band) * across;
         st = l->tiled ? decode_tiles(f, first, rows, f->pixels + p * plane, err)
-                      : decode_strip(f, first, f->pixels + p * plane, plane, err);
+                      : decode(f, first, f->pixels + p * plane, plane, l->stored_row, err);
     }
     if (st == CW_OK)
         f->band = band;
@@ -267,7 +285,7 @@ static cw_status read_piece(cwi_tiff_file *f, uint32_t row, uint32_t most,
     const size_t fit = PIECE / (l->stored_row * l->planes);
     *count = fit < 1 ? 1 : fit < most ? (uint32_t)fit : most;
     *plane = *count * l->stored_row;
-    st = make_room(&f->pixels, &f->pixel_room, (uint64_t)*plane * l->planes, err);
+    st = cwi_tiff_make_room(&f->pixels, &f->pixel_room, (uint64_t)*plane * l->planes, err);
     for (uint16_t p = 0; st == CW_OK && p < l->planes; p++)
         st = read_raw(f, p, row, *count, f->pixels + p * *plane, err);
     *stored = f->pixels;
@@ -294,8 +312,8 @@ cw_status cwi_tiff_rows(cwi_tiff_file *f, uint32_t first, uint32_t count, unsign
         size_t plane;
         if (fits(l, row, end)) {
             n = rows_of_band(l, row / l->band_rows);
-            st = decode_strip(f, row / l->band_rows, to + (row - from) * l->row, n * l->row,
-                              err);
+            st = decode(f, row / l->band_rows, to + (row - from) * l->row, n * l->row, l->row,
+                        err);
             continue;
         }
         st = read_piece(f, row, end - row, &stored, &plane, &n, err);

@@ -15,6 +15,7 @@ enum {
     ENTRIES_AT_ONCE = 64,
     ENTRY = 12,
     BIG_ENTRY = 20,
+    SHORT = 3,
     RATIONAL = 5,
     FIRST_PRIVATE_TAG = 32768,
     UIC2_TAG = 33629 /* MetaMorph's: count tells the planes behind one directory */
@@ -83,21 +84,33 @@ static cw_status check_entry(const cwi_tiff_file *f, const unsigned char *entry,
                    (unsigned long long)f->size);
 }
 
+/* A row of tags, read a few at a time. */
+typedef struct tags {
+    uint64_t at, count, next;
+    unsigned char bytes[ENTRIES_AT_ONCE * BIG_ENTRY];
+} tags;
+
+/* The next tag; NULL: there is none, or the file ends. */
+static const unsigned char *next_tag(const cwi_tiff_file *f, tags *t)
+{
+    const size_t size = f->big ? BIG_ENTRY : ENTRY, n = t->next % ENTRIES_AT_ONCE;
+    const uint64_t left = t->count - t->next;
+    if (left == 0 ||
+        (n == 0 && !read_at(f, t->at + t->next * size, t->bytes,
+                            (left < ENTRIES_AT_ONCE ? left : ENTRIES_AT_ONCE) * size)))
+        return NULL;
+    t->next++;
+    return t->bytes + n * size;
+}
+
 static cw_status check_entries(const cwi_tiff_file *f, uint64_t at, uint64_t count,
                                uint32_t directory, cw_error *err)
 {
-    unsigned char entries[ENTRIES_AT_ONCE * BIG_ENTRY];
-    const size_t size = f->big ? BIG_ENTRY : ENTRY;
+    tags t = {.at = at, .count = count};
     cw_status st = CW_OK;
-    for (uint64_t i = 0; st == CW_OK && i < count; i++) {
-        const size_t n = i % ENTRIES_AT_ONCE;
-        const uint64_t left = count - i;
-        if (n == 0 && !read_at(f, at + i * size, entries,
-                               (left < ENTRIES_AT_ONCE ? left : ENTRIES_AT_ONCE) * size))
-            return fail_cut("a tag", directory, err);
-        st = check_entry(f, entries + n * size, directory, err);
-    }
-    return st;
+    for (const unsigned char *entry; st == CW_OK && (entry = next_tag(f, &t));)
+        st = check_entry(f, entry, directory, err);
+    return st == CW_OK && t.next < count ? fail_cut("a tag", directory, err) : st;
 }
 
 /* Checks the directory at an offset, and moves that to the next one. */
@@ -153,25 +166,41 @@ static bool add_offset(cwi_tiff_file *f, uint64_t offset, uint32_t *room)
     return true;
 }
 
+/* A single value of a type; NULL where there is none. */
+static const unsigned char *find_tag(const cwi_tiff_file *f, uint32_t directory, uint16_t tag,
+                                     uint16_t type, tags *t)
+{
+    const size_t head = f->big ? 8 : 2, word = f->big ? 8 : 4;
+    unsigned char bytes[8];
+    const uint64_t at = f->offsets[directory];
+    *t = (tags){.at = at + head};
+    if (!read_at(f, at, bytes, head))
+        return NULL;
+    t->count = number(f, bytes, head);
+    for (const unsigned char *entry; (entry = next_tag(f, t));)
+        if (number(f, entry, 2) == tag && number(f, entry + 2, 2) == type &&
+            number(f, entry + 4, word) == 1)
+            return entry + 4 + word;
+    return NULL;
+}
+
+uint16_t cwi_tiff_short(const cwi_tiff_file *f, uint32_t directory, uint16_t tag)
+{
+    tags t;
+    const unsigned char *value = find_tag(f, directory, tag, SHORT, &t);
+    return value ? (uint16_t)number(f, value, 2) : 0;
+}
+
 bool cwi_tiff_rational(const cwi_tiff_file *f, uint16_t tag, double *value)
 {
-    const size_t head = f->big ? 8 : 2, word = f->big ? 8 : 4,
-                 size = f->big ? BIG_ENTRY : ENTRY;
-    unsigned char bytes[BIG_ENTRY];
-    if (!read_at(f, f->offsets[0], bytes, head))
-        return false;
-    const uint64_t count = number(f, bytes, head);
-    for (uint64_t i = 0; i < count && read_at(f, f->offsets[0] + head + i * size, bytes, size);
-         i++) {
-        if (number(f, bytes, 2) != tag || number(f, bytes + 2, 2) != RATIONAL ||
-            number(f, bytes + 4, word) != 1)
-            continue;
-        if (!f->big && !read_at(f, number(f, bytes + 8, 4), bytes + 12, 8))
-            return false;
-        *value = (double)number(f, bytes + 12, 4) / (double)number(f, bytes + 16, 4);
-        return true;
-    }
-    return false;
+    tags t;
+    unsigned char bytes[8];
+    const unsigned char *at = find_tag(f, 0, tag, RATIONAL, &t);
+    if (at && !f->big)
+        at = read_at(f, number(f, at, 4), bytes, 8) ? bytes : NULL;
+    if (at)
+        *value = (double)number(f, at, 4) / (double)number(f, at + 4, 4);
+    return at != NULL;
 }
 
 /* A circle is found by a mark, which is moved on at every power of two. */

@@ -68,12 +68,16 @@ static int on_error(TIFF *tiff, void *user, const char *module, const char *form
     return complain(user, 2, format, arguments);
 }
 
-/* A form of LZW from before TIFF 6 is read as well as today's. */
+/* A form of LZW from before TIFF 6 is read as well as today's. Where 'StripByteCounts' are
+ * wrong, libtiff makes up others. */
 static int on_warning(TIFF *tiff, void *user, const char *module, const char *format,
                       va_list arguments)
 {
     (void)tiff, (void)module;
-    return strncmp(format, "Old-style LZW", 13) == 0 ? 1 : complain(user, 1, format, arguments);
+    if (strstr(format, "Old-style LZW"))
+        return 1;
+    return complain(user, strstr(format, "field, ignoring and calculating") ? 2 : 1, format,
+                    arguments);
 }
 
 void cwi_tiff_listen(cwi_tiff_file *f)
@@ -92,6 +96,7 @@ static void close_file(cwi_tiff_file *f)
     cwi_free(f->pages);
     cwi_free(f->pixels);
     cwi_free(f->tile);
+    cwi_free(f->line);
     *f = (cwi_tiff_file){.fd = -1, .page = -1, .band = -1};
 }
 
@@ -124,10 +129,11 @@ static cw_status open_directory(cwi_tiff_file *f, uint32_t n, cw_error *err)
 {
     f->page = f->band = -1;
     cwi_tiff_listen(f);
-    return TIFFSetSubDirectory(f->tiff, f->offsets[n])
-               ? CW_OK
-               : cw_fail(err, CW_ERR_FORMAT, "directory %u cannot be read: %s", n + 1,
-                         f->complaint);
+    const bool opened = TIFFSetSubDirectory(f->tiff, f->offsets[n]);
+    f->guessed = opened && f->complained == 2;
+    return opened ? CW_OK
+                  : cw_fail(err, CW_ERR_FORMAT, "directory %u cannot be read: %s", n + 1,
+                            f->complaint);
 }
 
 /* --- layouts -------------------------------------------------------------------------------
@@ -276,7 +282,9 @@ static cw_status find_layout(cwi_tiff_file *f, cw_error *err)
                                 fax ? PHOTOMETRIC_MINISWHITE : PHOTOMETRIC_MINISBLACK),
         .orientation = short_of(t, TIFFTAG_ORIENTATION, ORIENTATION_TOPLEFT),
         .low_bit_first = short_of(t, TIFFTAG_FILLORDER, FILLORDER_MSB2LSB) == FILLORDER_LSB2MSB,
+        .predictor = 1,
         .planes = 1};
+    TIFFGetField(t, TIFFTAG_PREDICTOR, &l->predictor);
     if (short_of(t, TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG) == PLANARCONFIG_SEPARATE)
         l->planes = l->samples;
     cw_status st = check_sizes(t, l, err);
@@ -331,6 +339,11 @@ static cw_status check_striles(const cwi_tiff_file *f, uint32_t page, cw_error *
     if (count != (uint64_t)l->bands * across * l->planes)
         return cw_fail(err, CW_ERR_FORMAT, "page %u has %u %ss, which are not all of it", page,
                        count, what);
+    if (f->guessed)
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "'StripByteCounts' of page %u are too few for its pixels, or more than "
+                       "the file has",
+                       page);
     for (uint32_t n = 0; n < count; n++) {
         int bad[2] = {0, 0};
         const uint64_t at = TIFFGetStrileOffsetWithErr(f->tiff, n, &bad[0]);
@@ -348,11 +361,15 @@ static cw_status check_striles(const cwi_tiff_file *f, uint32_t page, cw_error *
 }
 
 /* Thumbnails and masks are no slices. */
-static bool is_page(TIFF *tiff)
+static bool is_page(const cwi_tiff_file *f, uint32_t directory)
 {
-    const uint32_t kind = long_of(tiff, TIFFTAG_SUBFILETYPE, 0);
+    uint32_t kind;
+    if (TIFFGetField(f->tiff, TIFFTAG_SUBFILETYPE, &kind) != 1)
+        kind = cwi_tiff_short(f, directory, TIFFTAG_OSUBFILETYPE) == OFILETYPE_REDUCEDIMAGE
+                   ? FILETYPE_REDUCEDIMAGE
+                   : 0;
     return !(kind & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)) &&
-           short_of(tiff, TIFFTAG_PHOTOMETRIC, 0) != PHOTOMETRIC_MASK;
+           short_of(f->tiff, TIFFTAG_PHOTOMETRIC, 0) != PHOTOMETRIC_MASK;
 }
 
 static cw_status check_alike(const cwi_tiff_layout *a, const cwi_tiff_layout *b, uint32_t page,
@@ -375,7 +392,7 @@ static cw_status find_pages(cwi_tiff_file *f, cwi_tiff_facts *facts, cwi_tiff_la
     cw_status st = CW_OK;
     for (uint32_t n = 0; st == CW_OK && n < f->offset_count; n++) {
         st = open_directory(f, n, err);
-        if (st != CW_OK || !is_page(f->tiff))
+        if (st != CW_OK || !is_page(f, n))
             continue;
         st = find_layout(f, err);
         if (f->page_count == 0)
