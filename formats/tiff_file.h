@@ -57,6 +57,11 @@ cw_status cwi_tiff_turn_to(cwi_tiff_file *f, uint32_t page, cw_error *err);
 cw_status cwi_tiff_rows(cwi_tiff_file *f, uint32_t first, uint32_t count, unsigned char *to,
                         cw_error *err);
 
+static inline bool cwi_tiff_is_deflated(const cwi_tiff_layout *l)
+{
+    return l->compression == COMPRESSION_DEFLATE || l->compression == COMPRESSION_ADOBE_DEFLATE;
+}
+
 /* Decodes a deflated strip or tile to rows of numbers of this machine. */
 cw_status cwi_tiff_inflate(cwi_tiff_file *f, uint32_t strile, unsigned char *to, size_t bytes,
                            size_t row_bytes, cw_error *err);

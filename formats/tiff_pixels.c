@@ -119,20 +119,13 @@ static cw_status check_decoded(const cwi_tiff_file *f, tmsize_t got, size_t want
     return fail_page(f, f->complained ? f->complaint : "they are too few", err);
 }
 
-static bool is_deflated(const cwi_tiff_layout *l)
-{
-    return (l->compression == COMPRESSION_DEFLATE ||
-            l->compression == COMPRESSION_ADOBE_DEFLATE) &&
-           !l->low_bit_first; /* which turns compressed bytes round, too: libtiff's */
-}
-
 /* A strip or tile. */
 static cw_status decode(cwi_tiff_file *f, uint32_t n, unsigned char *to, size_t bytes,
                         size_t row_bytes, cw_error *err)
 {
     cw_error why = {0};
     cwi_tiff_listen(f);
-    if (is_deflated(&f->layout)) {
+    if (cwi_tiff_is_deflated(&f->layout)) {
         cw_status st = cwi_tiff_inflate(f, n, to, bytes, row_bytes, &why);
         return st == CW_ERR_FORMAT ? fail_page(f, why.message, err)
                : st == CW_OK       ? st

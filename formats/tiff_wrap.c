@@ -176,17 +176,21 @@ static cw_status find_type(cwi_tiff_layout *l, cw_error *err)
                    l->bits, l->format, l->format < 7 ? formats[l->format] : "unknown");
 }
 
-static cw_status check_compression(uint16_t c, cw_error *err)
+static cw_status check_compression(const cwi_tiff_layout *l, cw_error *err)
 {
+    const uint16_t c = l->compression;
     const char *name = c == COMPRESSION_OJPEG      ? " (JPEG as of TIFF 6)"
                        : c == COMPRESSION_PIXARLOG ? " (PixarLog)"
                        : c == COMPRESSION_SGILOG   ? " (LogLuv)"
                        : c == COMPRESSION_SGILOG24 ? " (LogLuv)"
                                                    : NULL;
-    if (!name && TIFFIsCODECConfigured(c))
-        return CW_OK;
-    return cw_fail(err, CW_ERR_FORMAT, "'Compression' is %u%s, which is not read", c,
-                   name ? name : "");
+    if (name || !TIFFIsCODECConfigured(c))
+        return cw_fail(err, CW_ERR_FORMAT, "'Compression' is %u%s, which is not read", c,
+                       name ? name : "");
+    if (l->low_bit_first && cwi_tiff_is_deflated(l))
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "'FillOrder' is 2 and 'Compression' %u (deflate), which is not read", c);
+    return CW_OK;
 }
 
 /* Libjpeg makes RGB of YCbCr; nothing else is converted. */
@@ -291,7 +295,7 @@ static cw_status find_layout(cwi_tiff_file *f, cw_error *err)
     if (st == CW_OK)
         st = find_type(l, err);
     if (st == CW_OK)
-        st = check_compression(l->compression, err);
+        st = check_compression(l, err);
     if (st == CW_OK)
         st = find_colours(t, l, err);
     if (st == CW_OK)

@@ -199,6 +199,16 @@ static void set_spacing(cw_volume *v, const double wanted[3])
     v->known |= CW_KNOWN_UNIT;
 }
 
+/* Files in a row hold whole slices, as many each. */
+static cw_status check_shares(const cw_volume *v, size_t files, cw_error *err)
+{
+    const size_t slices = v->dim[2] * v->steps;
+    return slices % files == 0
+               ? CW_OK
+               : cw_fail(err, CW_ERR_FORMAT, "'dims' asks for %zu slices; there are %zu files",
+                         slices, files);
+}
+
 /* Headers that a source describes, and layouts. */
 static cw_status read_source(opened *o, const cw_read_desc *desc, cw_volume *volume,
                              cw_error *err)
@@ -206,6 +216,8 @@ static cw_status read_source(opened *o, const cw_read_desc *desc, cw_volume *vol
     cwi_source src = {0};
     cw_status st = desc->raw ? cwi_raw_describe(desc->raw, &src, err)
                              : o->reader->parse(&o->in, &src, err);
+    if (st == CW_OK && o->many)
+        st = check_shares(&src.shape, o->names.count, err);
     if (o->many) {
         src.files = o->names;
         o->names = (cwi_names){0};

@@ -426,6 +426,89 @@ static void damaged_pixels_are_no_voxels(void **state)
     }
 }
 
+/* The bytes of predicted floats are sorted from the highest to the lowest in either order, but
+ * libtiff's writer gets that wrong in one: so its strips of the other are taken. */
+static void floats_are_predicted_alike_in_either_order(void **state)
+{
+    (void)state;
+    for (size_t n = 0; n < sizeof packed / sizeof *packed; n++) {
+        unsigned char strip[65536];
+        cw_volume v;
+        if (packed[n].predictor != 3)
+            continue;
+        write_packed("a.tif", n, false);
+        TIFF *from = open_tiff("a.tif", "r"), *to = open_tiff("b.tif", "wb");
+        for (size_t p = 0; p < PAGES; p++) {
+            TIFFSetDirectory(from, (tdir_t)p);
+            set_fields(to, packed[n].kind, 1, packed[n].compression, 3);
+            TIFFSetField(to, TIFFTAG_ROWSPERSTRIP, 8);
+            for (uint32_t i = 0; i < TIFFNumberOfStrips(from); i++) {
+                const tmsize_t size = TIFFReadRawStrip(from, i, strip, sizeof strip);
+                assert_true(TIFFWriteRawStrip(to, i, strip, size) == size);
+            }
+            assert_int_equal(TIFFWriteDirectory(to), 1);
+        }
+        TIFFClose(from);
+        TIFFClose(to);
+        read_good("b.tif", &v);
+        check_pixels(&v, packed[n].kind, 1);
+        cw_volume_free(&v);
+    }
+}
+
+/* One strip of 72 MB: it crosses from the other process in two goes, and is inflated once. */
+static void planes_may_be_larger_than_what_crosses_at_once(void **state)
+{
+    (void)state;
+    enum { EDGE = 9000, TALL = 8000 };
+    for (int way = 0; way < 2; way++) {
+        TIFF *tiff = open_tiff("a.tif", "w");
+        unsigned char *line = calloc(EDGE, 1);
+        cw_volume v;
+        set_fields(tiff, 1, 1, way ? COMPRESSION_ADOBE_DEFLATE : COMPRESSION_NONE, 1);
+        TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, EDGE);
+        TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, TALL);
+        TIFFSetField(tiff, TIFFTAG_ROWSPERSTRIP, TALL);
+        for (uint32_t y = 0; y < TALL; y++) {
+            line[0] = (unsigned char)(y / 32);
+            line[EDGE - 1] = (unsigned char)y;
+            assert_int_equal(TIFFWriteScanline(tiff, line, y, 0), 1);
+        }
+        TIFFClose(tiff);
+        free(line);
+        read_good("a.tif", &v);
+        for (size_t y = 0; y < TALL; y++) {
+            assert_true(cw_volume_value(&v, 0, y, 0) == (double)(unsigned char)(y / 32));
+            assert_true(cw_volume_value(&v, EDGE - 1, y, 0) == (double)(unsigned char)y);
+        }
+        cw_volume_free(&v);
+    }
+}
+
+/* A checksum tells what inflates all the same. */
+static void a_wrong_checksum_is_damage(void **state)
+{
+    (void)state;
+    cw_volume v;
+    cw_error err = {0};
+    size_t size;
+    TIFF *tiff = open_tiff("a.tif", "w");
+    char *pixels = make_pixels(1, 1);
+    set_fields(tiff, 1, 1, COMPRESSION_ADOBE_DEFLATE, 1);
+    write_rows(tiff, 1, pixels, 1);
+    TIFFClose(tiff);
+    free(pixels);
+    char *bytes = test_file_read(test_path("a.tif"), &size);
+    tiff = open_tiff("a.tif", "r");
+    bytes[TIFFGetStrileOffset(tiff, 0) + TIFFGetStrileByteCount(tiff, 0) - 1] ^= 1;
+    TIFFClose(tiff);
+    test_file_write(test_path("a.tif"), bytes, size);
+    free(bytes);
+    assert_fails(read_with("a.tif", (cw_read_desc){0}, &v, &err), CW_ERR_FORMAT,
+                 "the pixels of page 1 cannot be read: the compressed data are damaged after",
+                 err);
+}
+
 /* Lossy, so nearly: a slope of colours. */
 static void jpeg_in_ycbcr_arrives_as_rgb(void **state)
 {
@@ -578,6 +661,7 @@ static void what_is_not_read_is_refused_by_name(void **state)
         {{.photometric = 100, .bits = 32, .format = 3}, "how floats are to be turned round"},
         {{.orientation = 6}, "'Orientation' is 6; 1 to 4 are read"},
         {{.compression = 6}, "'Compression' is 6 (JPEG as of TIFF 6)"},
+        {{.compression = 8, .low_bit_first = true}, "'FillOrder' is 2 and 'Compression' 8"},
         {{.compression = 32909}, "'Compression' is 32909 (PixarLog)"},
         {{.compression = 12345}, "'Compression' is 12345"},
         {{.tags = {{32997, 4, 1, two}}}, "'ImageDepth' is 2"},
@@ -1232,6 +1316,9 @@ int main(void)
 #if CW_TEST_LIBTIFF
         TEST(compressed_pixels_are_what_was_compressed),
         TEST(damaged_pixels_are_no_voxels),
+        TEST(floats_are_predicted_alike_in_either_order),
+        TEST(planes_may_be_larger_than_what_crosses_at_once),
+        TEST(a_wrong_checksum_is_damage),
         TEST(jpeg_in_ycbcr_arrives_as_rgb),
         TEST(webp_without_loss_is_what_was_compressed),
         TEST(a_cut_of_compressed_pages_is_never_a_volume),
