@@ -10,13 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum {
-    MOST_DEPTH = 64,
-    MOST_ELEMENTS = 1 << 20,
-    LONGEST = 64 << 20,
-    CHUNK = 1 << 20,
-    NONE = UINT32_MAX
-};
+enum { MOST_DEPTH = 64, MOST_ELEMENTS = 1 << 20, LONGEST = 64 << 20, CHUNK = 1 << 20 };
+static const uint32_t NONE = UINT32_MAX;
 
 typedef enum axis { AXIS_Z, AXIS_C, AXIS_T, AXIS_COUNT } axis;
 

@@ -272,7 +272,8 @@ static cw_status read_piece(cwi_tiff_file *f, uint32_t row, uint32_t most,
         *count = rows_of_band(l, band) - from;
         *plane = rows_of_band(l, band) * l->stored_row;
         st = decode_band(f, band, err);
-        *stored = f->pixels + from * l->stored_row;
+        if (st == CW_OK)
+            *stored = f->pixels + from * l->stored_row;
         return st;
     }
     const size_t fit = PIECE / (l->stored_row * l->planes);

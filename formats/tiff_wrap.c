@@ -52,6 +52,7 @@ static toff_t on_size(thandle_t handle)
 }
 
 /* The first error counts, else the first warning. */
+CW_PRINTF(3, 0)
 static int complain(cwi_tiff_file *f, int how, const char *format, va_list arguments)
 {
     if (how > f->complained)
@@ -61,6 +62,7 @@ static int complain(cwi_tiff_file *f, int how, const char *format, va_list argum
     return 1; /* and no other handler is called */
 }
 
+CW_PRINTF(4, 0)
 static int on_error(TIFF *tiff, void *user, const char *module, const char *format,
                     va_list arguments)
 {
@@ -70,6 +72,7 @@ static int on_error(TIFF *tiff, void *user, const char *module, const char *form
 
 /* A form of LZW from before TIFF 6 is read as well as today's. Where 'StripByteCounts' are
  * wrong, libtiff makes up others. */
+CW_PRINTF(4, 0)
 static int on_warning(TIFF *tiff, void *user, const char *module, const char *format,
                       va_list arguments)
 {

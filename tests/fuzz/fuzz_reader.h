@@ -27,23 +27,28 @@ static inline double touch_voxels(const cw_volume *v)
 
 /* Reads the bytes as a file that lives in memory only. The path has no extension: the reader is
  * named, so that every input reaches it. */
-static inline int fuzz_reader(const char *reader, const uint8_t *bytes, size_t size)
+static inline int fuzz_with(const cw_read_desc *desc, const uint8_t *bytes, size_t size)
 {
     char path[32];
     cw_volume volume;
     cw_error err;
-    const cw_read_desc desc = {.reader = reader, .max_bytes = (uint64_t)64 << 20};
     const int fd = memfd_create("fuzz", MFD_CLOEXEC);
     if (fd < 0 || write(fd, bytes, size) != (ssize_t)size)
         return 0;
     snprintf(path, sizeof path, "/proc/self/fd/%d", fd);
-    if (cw_volume_read(path, &desc, &volume, NULL, &err) == CW_OK) {
+    if (cw_volume_read(path, desc, &volume, NULL, &err) == CW_OK) {
         volatile double sum = touch_voxels(&volume);
         (void)sum;
         cw_volume_free(&volume);
     }
     close(fd);
     return 0;
+}
+
+static inline int fuzz_reader(const char *reader, const uint8_t *bytes, size_t size)
+{
+    const cw_read_desc desc = {.reader = reader, .max_bytes = (uint64_t)64 << 20};
+    return fuzz_with(&desc, bytes, size);
 }
 
 #endif
