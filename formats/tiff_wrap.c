@@ -179,6 +179,7 @@ static cw_status find_type(cwi_tiff_layout *l, cw_error *err)
                    l->bits, l->format, l->format < 7 ? formats[l->format] : "unknown");
 }
 
+/* Libjbig takes the memory that a stream tells it to, and aborts where there is none. */
 static cw_status check_compression(const cwi_tiff_layout *l, cw_error *err)
 {
     const uint16_t c = l->compression;
@@ -186,6 +187,7 @@ static cw_status check_compression(const cwi_tiff_layout *l, cw_error *err)
                        : c == COMPRESSION_PIXARLOG ? " (PixarLog)"
                        : c == COMPRESSION_SGILOG   ? " (LogLuv)"
                        : c == COMPRESSION_SGILOG24 ? " (LogLuv)"
+                       : c == COMPRESSION_JBIG     ? " (JBIG)"
                                                    : NULL;
     if (name || !TIFFIsCODECConfigured(c))
         return cw_fail(err, CW_ERR_FORMAT, "'Compression' is %u%s, which is not read", c,
