@@ -316,7 +316,7 @@ static cw_status finish(parsing *p)
                          i / p->size[AXIS_Z] / p->size[AXIS_C]);
     if (st == CW_OK && plane_count(p) < p->file->page_count)
         snprintf(p->facts->note, sizeof p->facts->note,
-                 "%u pages left out: the OME-XML has no place for them",
+                 "left out, as the OME-XML has no place for them: %u pages",
                  p->file->page_count - plane_count(p));
     return st;
 }

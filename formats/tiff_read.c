@@ -231,7 +231,8 @@ static cw_status find_files(slices *s, const cwi_names *names, cw_error *err)
     if (st == CW_OK && s->files.count == 0)
         return cw_fail(err, CW_ERR_FORMAT, "it holds no TIFF file");
     if (st == CW_OK && s->files.count < names->count)
-        cwi_note(s->desc, "%zu files left out: no TIFF", names->count - s->files.count);
+        cwi_note(s->desc, "left out, as no TIFF: %zu of its files",
+                 names->count - s->files.count);
     return st;
 }
 

@@ -919,7 +919,7 @@ static void ome_places_pages_one_by_one(void **state)
     assert_true(cw_volume_value(&v, 0, 0, 0) == 30);
     assert_true(cw_volume_value(&v, 0, 0, 1) == 10);
     assert_true(cw_volume_value(&v, 0, 0, 2) == 20);
-    assert_non_null(strstr(notes, "2 pages left out: the OME-XML has no place for them"));
+    assert_non_null(strstr(notes, "left out, as the OME-XML has no place for them: 2 pages"));
     assert_int_equal(v.known, 0);
     cw_volume_free(&v);
 }
@@ -1036,7 +1036,7 @@ static void numbers_in_names_count_as_numbers(void **state)
         assert_int_equal(v.dim[2], 3);
         for (size_t z = 0; z < 3; z++)
             assert_true(cw_volume_value(&v, 0, 0, z) == 10 * (double)(z + 1));
-        assert_string_equal(notes, i == 1 ? "" : "1 files left out: no TIFF\n");
+        assert_string_equal(notes, i == 1 ? "" : "left out, as no TIFF: 1 of its files\n");
         cw_volume_free(&v);
     }
 }
