@@ -70,6 +70,62 @@ bool cwi_is_folder(const char *path)
     return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
 }
 
+/* --- numbers in names --------------------------------------------------------------------- */
+
+static const char DIGITS[] = "0123456789";
+
+enum { UNLIKE = -2, SAME = -1 };
+
+/* Which number, counted from 0, is all that two names differ by; SAME where they differ by
+ * leading zeros at most. */
+static int differing_number(const char *a, const char *b)
+{
+    int found = SAME, number = 0;
+    while (*a && *b) {
+        if (is_digit(*a) && is_digit(*b)) {
+            if (compare_numbers(&a, &b) != 0) {
+                if (found != SAME)
+                    return UNLIKE;
+                found = number;
+            }
+            number++;
+        } else if (*a++ != *b++) {
+            return UNLIKE;
+        }
+    }
+    return *a || *b ? UNLIKE : found;
+}
+
+static bool number_at(const char *name, int which, double *number)
+{
+    for (; *name; which--) {
+        name += strcspn(name, DIGITS);
+        const size_t length = strspn(name, DIGITS);
+        *number = 0;
+        for (size_t i = 0; i < length; i++)
+            *number = 10 * *number + (name[i] - '0');
+        if (which == 0)
+            return length > 0 && length <= 15;
+        name += length;
+    }
+    return false;
+}
+
+bool cwi_files_numbers(const cwi_names *names, double *numbers)
+{
+    int which = SAME;
+    for (size_t i = 1; i < names->count; i++) {
+        const int here = differing_number(names->items[0], names->items[i]);
+        if (here == UNLIKE || (which != SAME && here != SAME && here != which))
+            return false;
+        which = here == SAME ? which : here;
+    }
+    bool good = true;
+    for (size_t i = 0; good && i < names->count; i++)
+        good = number_at(names->items[i], which == SAME ? 0 : which, &numbers[i]);
+    return good;
+}
+
 /* --- a folder ---------------------------------------------------------------------------- */
 
 typedef struct listing {

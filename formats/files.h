@@ -23,6 +23,10 @@ cw_status cwi_files_find(cwi_input *in, const char *path, bool deep, cwi_names *
 /* Adds the files in the folder of an open input, and no deeper. */
 cw_status cwi_files_beside(const cwi_input *in, cwi_names *names, cw_error *err);
 
+/* The numbers in names that are alike but for one number; false where they are not, or where it
+ * has more than 15 digits. */
+bool cwi_files_numbers(const cwi_names *names, double *numbers);
+
 bool cwi_is_folder(const char *path);
 
 #endif

@@ -14,7 +14,8 @@ cw_status cwi_planes_open(cwi_planes *planes, const char *module, const char *op
     if (st != CW_OK)
         return st;
     planes->functions = functions;
-    planes->functions->prepare(); /* here, so that every child finds it done */
+    if (planes->functions->prepare)
+        planes->functions->prepare(); /* here, so that every child finds it done */
     planes->state = planes->functions->state_new();
     if (!planes->state)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %s", planes->functions->library);

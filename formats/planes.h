@@ -29,7 +29,8 @@ typedef struct cwi_plane_functions {
     const char *library;
     void *(*state_new)(void); /* NULL: out of memory */
     void (*state_free)(void *state);
-    void (*prepare)(void); /* once or more, while files may still be opened */
+    void (*prepare)(void); /* once or more, while files may still be opened;
+                                may be NULL */
     cwi_sandbox_work work; /* of cwi_plane_request */
 } cwi_plane_functions;
 

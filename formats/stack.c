@@ -75,19 +75,26 @@ static void put_label(const reading *r, const cwi_slot *slot, char *to)
 /* --- from files to pixels ------------------------------------------------------------------
  */
 
+/* NULL: the file that is open. */
+static const char *file_name(const cwi_stack *s, size_t file)
+{
+    return s->files.count ? s->files.items[file] : NULL;
+}
+
 static cw_status hand_over(reading *r, size_t file, cw_error *err)
 {
-    const char *name = r->stack->files.items[file];
+    const char *name = file_name(r->stack, file);
     const void *facts;
-    uint64_t size;
-    int fd = -1;
+    uint64_t size = r->in->size;
+    int fd = r->in->fd;
     if (file == r->file)
         return CW_OK;
-    cw_status st = cwi_input_open_side(r->in, name, &fd, &size, err);
-    if (st == CW_OK)
+    cw_status st = name ? cwi_input_open_side(r->in, name, &fd, &size, err) : CW_OK;
+    if (st == CW_OK) {
         st = cwi_planes_facts(r->planes, fd, size, &facts, err);
-    if (fd >= 0)
-        close(fd);
+        if (name)
+            close(fd);
+    }
     r->file = st == CW_OK ? file : SIZE_MAX;
     return st;
 }
@@ -113,9 +120,9 @@ static cw_status read_plane(reading *r, size_t index, void *to, cw_error *err)
                              s->shape.dim[0] * s->samples * cw_type_size(s->type), to, err);
     if (st == CW_OK)
         keep_columns(r, to);
-    return st == CW_OK || st == CW_ERR_CANCELLED
+    return st == CW_OK || st == CW_ERR_CANCELLED || !file_name(s, plane->file)
                ? st
-               : cwi_fail_in(err, st, s->files.items[plane->file]);
+               : cwi_fail_in(err, st, file_name(s, plane->file));
 }
 
 /* Whether voxels are the module's pixels and nothing else. */

@@ -30,7 +30,7 @@ typedef struct cwi_stack {
     bool has_padding;  /* pixels from low to high stand for no data */
     double padding[2]; /* ... and become shape.nodata */
     const char *size_field;
-    cwi_names files;
+    cwi_names files; /* none: the one that is open */
     cwi_plane *planes;
     size_t plane_count;
     cwi_slot *slots;

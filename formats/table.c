@@ -59,6 +59,11 @@ static const cw_format rows[] = {
      .about = "DICOM series: a folder, or any file of it",
      .reads_volume = true,
      .lost = ""},
+    {.name = "tiff",
+     .extensions = ".tif .tiff",
+     .about = "TIFF stack: pages of one file, or numbered slices",
+     .reads_volume = true,
+     .lost = ""},
     {.name = "raw",
      .extensions = ".raw",
      .about = "bytes without a header, laid out as the caller says",
@@ -116,7 +121,7 @@ static void fill_formats(void)
 {
     static const struct {
         const char *format, *module;
-    } modules[] = {{"glb", "gltf"}, {"gltf", "gltf"}, {"dicom", "dicom"}};
+    } modules[] = {{"glb", "gltf"}, {"gltf", "gltf"}, {"dicom", "dicom"}, {"tiff", "tiff"}};
     memcpy(formats, rows, sizeof rows);
     for (int i = 0; i < ROW_COUNT; i++)
         for (size_t m = 0; m < sizeof modules / sizeof *modules; m++)

@@ -32,6 +32,7 @@ static const reader readers[] = {
      .parse = cwi_mrc_parse},
     {"inr", ".inr .inr.gz", true, cwi_inr_sniff, .parse = cwi_inr_parse},
     {"dicom", ".dcm .dicom .ima", false, cwi_dicom_sniff, .read = cwi_dicom_read},
+    {"tiff", ".tif .tiff", false, cwi_tiff_sniff, .read = cwi_tiff_read},
 };
 enum { READER_COUNT = sizeof readers / sizeof *readers };
 
@@ -199,6 +200,16 @@ void cwi_set_spacing(cw_volume *v, const cw_read_desc *desc)
     v->known |= CW_KNOWN_UNIT;
 }
 
+/* Files in a row hold whole slices, as many each. */
+static cw_status check_shares(const cw_volume *v, size_t files, cw_error *err)
+{
+    const size_t slices = v->dim[2] * v->steps;
+    return slices % files == 0
+               ? CW_OK
+               : cw_fail(err, CW_ERR_FORMAT, "'dims' asks for %zu slices; there are %zu files",
+                         slices, files);
+}
+
 /* Headers that a source describes, and layouts. */
 static cw_status read_source(opened *o, const cw_read_desc *desc, cw_volume *volume,
                              cw_error *err)
@@ -206,6 +217,8 @@ static cw_status read_source(opened *o, const cw_read_desc *desc, cw_volume *vol
     cwi_source src = {0};
     cw_status st = desc->raw ? cwi_raw_describe(desc->raw, &src, err)
                              : o->reader->parse(&o->in, &src, err);
+    if (st == CW_OK && o->many)
+        st = check_shares(&src.shape, o->names.count, err);
     if (o->many) {
         src.files = o->names;
         o->names = (cwi_names){0};

@@ -122,7 +122,7 @@ static void the_table_of_formats_is_whole_and_always_the_same(void **state)
 {
     (void)state;
     static const char wanted[] =
-        "nrrd nifti metaimage vtk vti mrc inr dicom raw glb gltf stl ply obj off ";
+        "nrrd nifti metaimage vtk vti mrc inr dicom tiff raw glb gltf stl ply obj off ";
     char names[128] = "";
     size_t count, again;
     const cw_format *formats = cw_formats(&count);

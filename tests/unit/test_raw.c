@@ -3,6 +3,9 @@
 
 #include <math.h>
 
+#include <stdio.h>
+#include <sys/stat.h>
+
 static void a_layout_is_read_from_text(void **state)
 {
     (void)state;
@@ -138,13 +141,67 @@ static void a_layout_larger_than_the_file_fails(void **state)
                  CW_ERR_ARGUMENT, "'raw' needs a layout", err);
 }
 
+/* Two pixels a slice: 10 n and 10 n + 1. */
+static void save_slice(const char *folder, const char *ending, int number)
+{
+    char name[64];
+    const unsigned char bytes[4] = {0, (unsigned char)(10 * number), 0,
+                                    (unsigned char)(10 * number + 1)};
+    snprintf(name, sizeof name, "%s/q.%d%s", folder, number, ending);
+    put_file(name, "", bytes, sizeof bytes);
+}
+
+static cw_status read_layout(const char *path, const char *text, cw_volume *v, cw_error *err)
+{
+    cw_raw_layout l;
+    assert_ok(cw_raw_layout_parse(text, &l, err), *err);
+    const cw_read_desc desc = {.raw = &l};
+    return cw_volume_read(test_path(path), &desc, v, NULL, err);
+}
+
+static void slices_may_have_files_of_their_own(void **state)
+{
+    (void)state;
+    static const char *const paths[] = {"s", "s/q.*", "s/q.[0-9]*"};
+    cw_volume v;
+    cw_error err = {0};
+    assert_int_equal(mkdir(test_path("s"), 0700), 0);
+    for (int n = 8; n <= 12; n++)
+        save_slice("s", "", n);
+    for (int i = 0; i < 3; i++) {
+        assert_ok(read_layout(paths[i], "dims=2x1x5,type=u16be", &v, &err), err);
+        for (size_t z = 0; z < 5; z++)
+            assert_true(cw_volume_value(&v, 1, 0, z) == 10 * (double)(z + 8) + 1);
+        cw_volume_free(&v);
+    }
+    assert_ok(read_layout("s", "dims=2x1x1,type=u16be,steps=5", &v, &err), err);
+    assert_int_equal(v.steps, 5);
+    cw_volume_free(&v);
+    assert_fails(read_layout("s", "dims=2x1x4,type=u16be", &v, &err), CW_ERR_FORMAT,
+                 "'dims' asks for 4 slices; there are 5 files", err);
+    assert_ok(read_layout("s", "dims=2x1x10,type=u8", &v, &err), err); /* two in each */
+    assert_true(cw_volume_value(&v, 1, 0, 3) == 91);
+    cw_volume_free(&v);
+    assert_fails(read_layout("s", "dims=2x1x10,type=u16be", &v, &err), CW_ERR_FORMAT,
+                 "q.8: 'dims' asks for 8 bytes of voxels in each file; the file holds 4", err);
+    save_slice("s", "b", 9);
+    assert_fails(read_layout("s", "dims=2x1x5,type=u16be", &v, &err), CW_ERR_FORMAT,
+                 "'dims' asks for 5 slices; there are 6 files", err);
+    assert_fails(read_layout("s/r*", "dims=2x1x5,type=u16be", &v, &err), CW_ERR_IO,
+                 "no file matches", err);
+}
+
 int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
     const struct CMUnitTest tests[] = {
-        TEST(a_layout_is_read_from_text), TEST(every_type_is_known_by_name),
-        TEST(wrong_keys_are_named),       TEST(bytes_behind_an_offset_become_voxels),
-        TEST(spacings_must_be_lengths),   TEST(a_layout_larger_than_the_file_fails),
+        TEST(a_layout_is_read_from_text),
+        TEST(every_type_is_known_by_name),
+        TEST(wrong_keys_are_named),
+        TEST(bytes_behind_an_offset_become_voxels),
+        TEST(spacings_must_be_lengths),
+        TEST(a_layout_larger_than_the_file_fails),
+        TEST(slices_may_have_files_of_their_own),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
