@@ -158,22 +158,11 @@ static void print_levels(const facts *f, bool predicted)
 
 static void json_series(cli_json *j, const cw_series *s)
 {
-    const double dims[3] = {(double)s->shape.dim[0], (double)s->shape.dim[1],
-                            (double)s->shape.dim[2]};
-    double spacing[3];
     cli_json_text(j, "label", s->label);
     cli_json_text(j, "modality", s->modality);
     cli_json_count(j, "images", s->images);
-    cli_json_numbers(j, "dims", dims, 3);
-    cli_json_text(j, "type", cw_type_name(s->shape.type));
-    if (s->status == CW_OK) {
-        cw_volume_spacing(&s->shape, spacing);
-        cli_json_numbers(j, "spacing", spacing, 3);
-        cli_json_count(j, "steps", s->shape.steps);
+    if (s->status == CW_OK)
         cli_json_number(j, "tilt_degrees", s->tilt_degrees);
-    }
-    cli_json_text(j, "status", cw_status_name(s->status));
-    cli_json_text(j, "finding", s->finding);
 }
 
 static void print_json(const facts *f, bool predicted)
@@ -244,6 +233,22 @@ static void print_series(const char *path, const cw_series *series, size_t count
     }
 }
 
+static void json_shape(cli_json *j, const cw_series *s)
+{
+    const double dims[3] = {(double)s->shape.dim[0], (double)s->shape.dim[1],
+                            (double)s->shape.dim[2]};
+    double spacing[3];
+    cli_json_numbers(j, "dims", dims, 3);
+    cli_json_text(j, "type", cw_type_name(s->shape.type));
+    if (s->status == CW_OK) {
+        cw_volume_spacing(&s->shape, spacing);
+        cli_json_numbers(j, "spacing", spacing, 3);
+        cli_json_count(j, "steps", s->shape.steps);
+    }
+    cli_json_text(j, "status", cw_status_name(s->status));
+    cli_json_text(j, "finding", s->finding);
+}
+
 static void print_series_json(const char *path, const cw_series *series, size_t count)
 {
     cli_json j = {.out = stdout};
@@ -255,6 +260,7 @@ static void print_series_json(const char *path, const cw_series *series, size_t 
     for (size_t n = 0; n < count; n++) {
         cli_json_open(&j, NULL, '{');
         json_series(&j, &series[n]);
+        json_shape(&j, &series[n]);
         cli_json_close(&j, '}');
     }
     cli_json_close(&j, ']');
