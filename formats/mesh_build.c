@@ -42,6 +42,30 @@ cw_status cwi_mesh_grow(cwi_mesh_input *in, void *array, size_t *room, size_t co
     return CW_OK;
 }
 
+cw_status cwi_mesh_begin_part(cwi_mesh_input *in, const char *name, size_t triangle,
+                              cw_error *err)
+{
+    cwi_marks *m = &in->marks;
+    const bool empty = m->count && m->items[m->count - 1].triangle == triangle;
+    const bool untitled = m->count == 0 && triangle > 0; /* what was there before */
+    const size_t length = strlen(name);
+    if (empty)
+        m->name_bytes = m->items[--m->count].name;
+    cw_status st = cwi_mesh_grow(in, &m->items, &m->room, m->count + 2, sizeof *m->items, err);
+    if (st == CW_OK)
+        st = cwi_mesh_grow(in, &m->names, &m->name_room, m->name_bytes + length + 2, 1, err);
+    if (st != CW_OK)
+        return st;
+    if (untitled) {
+        m->items[m->count++] = (cwi_mark){0, m->name_bytes};
+        m->names[m->name_bytes++] = '\0';
+    }
+    m->items[m->count++] = (cwi_mark){triangle, m->name_bytes};
+    memcpy(m->names + m->name_bytes, name, length + 1);
+    m->name_bytes += length + 1;
+    return CW_OK;
+}
+
 cw_status cwi_mesh_limit_triangles(const cwi_mesh_input *in, uint64_t count, cw_error *err)
 {
     if (count <= in->desc.max_triangles)

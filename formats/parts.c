@@ -16,9 +16,7 @@ static size_t kept_length(const char *text)
     return printable ? cwi_utf8_length(text) : 0;
 }
 
-/* Copies size bytes of text; what is not a printable character of UTF-8 becomes '_', so that no
- * name can break a line of OBJ or the JSON of glTF. */
-static void clean_name(const char *text, size_t size, char name[CWI_NAME_BYTES])
+void cwi_clean_name(const char *text, size_t size, char name[CWI_NAME_BYTES])
 {
     size_t used = 0;
     for (size_t i = 0; i < size;) {
@@ -43,7 +41,7 @@ void cwi_choose_name(const char *path, const cw_part *parts, size_t count,
     const char *asked = desc->name ? desc->name : count == 1 ? parts->name : NULL;
     const char *stem = asked ? asked : slash ? slash + 1 : path;
     const char *dot = asked ? NULL : strrchr(stem, '.');
-    clean_name(stem, dot && dot != stem ? (size_t)(dot - stem) : strlen(stem), name);
+    cwi_clean_name(stem, dot && dot != stem ? (size_t)(dot - stem) : strlen(stem), name);
 }
 
 /* A part without a name has that of all, with its number behind it where there are several. */
@@ -51,7 +49,7 @@ static void name_part(cwi_part *part, const char *given, const char *all, size_t
                       size_t count)
 {
     if (given && count > 1)
-        clean_name(given, strlen(given), part->name);
+        cwi_clean_name(given, strlen(given), part->name);
     else if (count > 1)
         snprintf(part->name, sizeof part->name, "%.200s %zu", all, number);
     else

@@ -1,7 +1,9 @@
-/* Parts of a mesh on their way into a file: named, placed, stripped of what it cannot hold. */
+/* Parts of a mesh: out of a file, and on their way into one, where they are named, placed and
+ * stripped of what it cannot hold. */
 #ifndef FORMATS_PARTS_H
 #define FORMATS_PARTS_H
 
+#include "formats/mesh_readers.h"
 #include "formats/mesh_writers.h"
 
 /* Fills in the parts with triangles, and the origin that all of them count from (zeros unless
@@ -18,5 +20,14 @@ void cwi_parts_free(cwi_parts *parts);
  * part without its extension. */
 void cwi_choose_name(const char *path, const cw_part *parts, size_t count,
                      const cw_write_desc *desc, char name[CWI_NAME_BYTES]);
+
+/* Copies size bytes of text; what is not a printable character of UTF-8 becomes '_', so that no
+ * name can break a line of OBJ, the JSON of glTF, or a terminal. */
+void cwi_clean_name(const char *text, size_t size, char name[CWI_NAME_BYTES]);
+
+/* Takes a mesh that was read apart where its marks say. Parts that share vertices are one. A
+ * mesh of one part is emptied. Returns CW_ERR_NO_MEMORY, CW_ERR_LIMIT */
+cw_status cwi_parts_split(const cwi_mesh_input *in, cw_mesh *mesh, cw_part **parts,
+                          size_t *count, cw_error *err);
 
 #endif

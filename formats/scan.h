@@ -47,6 +47,9 @@ bool cwi_word_is(const cwi_word *word, const char *text);
 bool cwi_word_double(const cwi_word *word, double *value);
 bool cwi_word_integer(const cwi_word *word, int64_t *value);
 
+/* The rest of the line, without blanks around it and as far as it fits, and a zero. */
+cw_status cwi_scan_rest(cwi_scan *s, char text[CWI_SCAN_AHEAD], cw_error *err);
+
 /* Leaves out the rest of the line. */
 cw_status cwi_scan_end_line(cwi_scan *s, cw_error *err);
 

@@ -199,10 +199,16 @@ static cw_status read_text_facet(facets *f, cwi_scan *s, cw_error *err)
     return st == CW_OK ? add_facets(f, corners, 1, err) : st;
 }
 
+/* Behind the word "solid"; its name may be any words. */
 static cw_status read_solid(facets *f, cwi_scan *s, cw_error *err)
 {
+    char name[CWI_SCAN_AHEAD];
     cwi_word word = {0};
-    cw_status st = cwi_scan_end_line(s, err); /* the name may be any words */
+    cw_status st = cwi_scan_rest(s, name, err);
+    if (st == CW_OK)
+        st = cwi_mesh_begin_part(f->in, name, f->count, err);
+    if (st == CW_OK)
+        st = cwi_scan_end_line(s, err);
     while (st == CW_OK) {
         st = cwi_scan_word(s, &word, err);
         if (st == CW_OK && is_keyword(&word, "facet"))

@@ -135,7 +135,7 @@ typedef struct cw_mesh_file {
     const char *format; /* the reader's name (static) */
     unsigned known;     /* cw_known flags; what is not known was taken as LPS millimetres */
     bool local;         /* coordinates were relative to an origin that the file names */
-    size_t parts;       /* glTF: the primitives that were merged; else 1 */
+    size_t parts;       /* that were merged: objects of OBJ, primitives of glTF; else 1 */
     size_t polygons;    /* faces of more than three corners, cut into fans of triangles */
     size_t skipped;     /* points, lines and faces of fewer than three corners: left out */
 } cw_mesh_file;
@@ -175,6 +175,27 @@ typedef struct cw_mesh_file {
 CW_API cw_status cw_mesh_read(const char *path, const cw_mesh_read_desc *desc, cw_mesh *mesh,
                               cw_mesh_file *file, cw_error *err);
 
+/* A mesh with a name, as one of several in a file. */
+typedef struct cw_part {
+    const cw_mesh *mesh; /* borrowed */
+    const char *name;    /* default: that of the file, with a number behind it */
+} cw_part;
+
+/* Reads the parts of a file, each as a mesh: the objects of OBJ, or its groups if it has no
+ * objects; the solids of an STL text; the nodes of glTF. Groups that share vertices are one
+ * part, so that none is cut from its neighbours. Vertices that no triangle names are left out,
+ * if there are several parts; other formats, and files without parts, give one.
+ *
+ * parts    set to an array of *count, which owns the meshes: free it with cw_parts_free().
+ *          Names are NULL where the file has none; what is no printable UTF-8 in them is '_'.
+ * Returns  as cw_mesh_read()
+ * Cost     that of cw_mesh_read() and, if there are several, as much memory once more */
+CW_API cw_status cw_parts_read(const char *path, const cw_mesh_read_desc *desc, cw_part **parts,
+                               size_t *count, cw_mesh_file *file, cw_error *err);
+
+/* Harmless on NULL. */
+CW_API void cw_parts_free(cw_part *parts, size_t count);
+
 /* How to write a volume or mesh. Zero-initialise it. */
 typedef struct cw_write_desc {
     const char *format;   /* a name of cw_formats(); default: by the path's extension */
@@ -203,12 +224,6 @@ CW_API cw_status cw_volume_write(const char *path, const cw_volume *volume,
  *          CW_ERR_LIMIT when the format's own sizes are too small for the mesh. */
 CW_API cw_status cw_mesh_write(const char *path, const cw_mesh *mesh, const cw_write_desc *desc,
                                cw_error *err);
-
-/* A mesh with a name, as one of several in a file. */
-typedef struct cw_part {
-    const cw_mesh *mesh; /* borrowed */
-    const char *name;    /* default: that of the file, with a number behind it */
-} cw_part;
 
 /* Writes parts into one file: OBJ gets an object for each. In the others they become one mesh,
  * one behind the other, with the arrays that all of them have. Parts without triangles are left
