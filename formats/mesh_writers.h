@@ -6,8 +6,7 @@
 #include <cubewright/formats.h>
 
 #include "core/outfile.h"
-
-#include <string.h>
+#include "formats/decimals.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -20,6 +19,7 @@ typedef struct cwi_part {
     cw_mesh mesh;   /* borrows its arrays; those that the file does not keep are NULL. For a
                        local file its origin counts from that of the file. */
     uint64_t first; /* vertices of the parts before it */
+    int digits;     /* that a place is written with in text */
     char name[CWI_NAME_BYTES]; /* printable UTF-8 on one line */
 } cwi_part;
 
@@ -108,6 +108,16 @@ static inline unsigned char *cwi_put_f32x3(unsigned char *to, const float value[
 static inline double cwi_world_coordinate(const cwi_part *part, size_t vertex, int axis)
 {
     return part->mesh.origin[axis] + (double)part->mesh.positions[3 * vertex + (size_t)axis];
+}
+
+/* The place of a vertex as text, a blank in front of each number. */
+static inline unsigned char *cwi_put_place(unsigned char *to, const cwi_part *part, size_t v)
+{
+    for (int a = 0; a < 3; a++) {
+        *to++ = ' ';
+        to = cwi_put_decimal(to, cwi_world_coordinate(part, v, a), part->digits);
+    }
+    return to;
 }
 
 /* A triangle's corner, counted through all parts from 0. */

@@ -4,6 +4,7 @@
 #include "core/status.h"
 #include "core/text.h"
 
+#include <math.h>
 #include <stdio.h>
 
 /* --- names ------------------------------------------------------------------------------- */
@@ -90,6 +91,19 @@ static void share_arrays(cwi_parts *parts)
     }
 }
 
+/* Nine digits give a float back to the bit, the tenth is room for the origin. Where the mesh
+ * stands more than ten times its own size from zero, 17 give a double. */
+static int digits_of(const cw_mesh *mesh)
+{
+    double low[3], high[3], distance = 0, size = 0;
+    cw_mesh_bounds(mesh, low, high);
+    for (int a = 0; a < 3; a++) {
+        distance = fmax(distance, fmax(fabs(low[a]), fabs(high[a])));
+        size = fmax(size, high[a] - low[a]);
+    }
+    return distance > 10 * size ? 17 : 10;
+}
+
 static void add_part(cwi_parts *parts, const cw_mesh *mesh, const double origin[3])
 {
     cwi_part *part = &parts->items[parts->count++];
@@ -97,6 +111,7 @@ static void add_part(cwi_parts *parts, const cw_mesh *mesh, const double origin[
     part->first = parts->vertices;
     for (int a = 0; a < 3; a++)
         part->mesh.origin[a] -= origin[a];
+    part->digits = digits_of(&part->mesh);
     parts->vertices += mesh->vertex_count;
     parts->triangles += mesh->triangle_count;
 }
