@@ -28,7 +28,7 @@ static void append_part(cw_mesh *all, const cwi_part *part)
     const size_t at = all->vertex_count;
     for (size_t i = 0; i < 3 * m->vertex_count; i++)
         all->positions[3 * at + i] =
-            (float)(cwi_world_coordinate(part, i / 3, (int)(i % 3)) - all->origin[i % 3]);
+            (float)(cwi_coordinate(part, i / 3, (int)(i % 3)) - all->origin[i % 3]);
     for (size_t i = 0; i < 3 * m->triangle_count; i++)
         all->triangles[3 * all->triangle_count + i] = m->triangles[i] + (uint32_t)at;
     if (all->normals)

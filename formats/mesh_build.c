@@ -3,6 +3,7 @@
 #include "core/status.h"
 #include "core/text.h"
 #include "core/vector.h"
+#include "formats/axes.h"
 #include "formats/mesh_readers.h"
 
 #include <float.h>
@@ -267,6 +268,18 @@ void cwi_build_free(cwi_mesh_build *b)
     cwi_free(b->points);
     cwi_free(b->triangles);
     *b = (cwi_mesh_build){0};
+}
+
+void cwi_take_comment(const char *text, bool *ours, cw_mesh *mesh, cw_mesh_file *said)
+{
+    static const char name[] = "cubewright ", origin[] = "origin ";
+    if (strncmp(text, name, strlen(name)) == 0) {
+        const char *comma = strchr(text, ',');
+        const char *axes = comma ? comma + 1 + strspn(comma + 1, " ") : "";
+        *ours = cwi_parse_axes(&axes, said) || *ours;
+    } else if (*ours && strncmp(text, origin, strlen(origin)) == 0) {
+        said->local = cwi_parse_origin(text + strlen(origin), mesh->origin) || said->local;
+    }
 }
 
 bool cwi_parse_origin(const char *text, double origin[3])

@@ -112,6 +112,8 @@ static cw_status read_open_file(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file 
     st = found->read(in, mesh, said, err);
     if (st == CW_OK)
         drop_broken_normals(mesh);
+    if (st == CW_OK)
+        st = cwi_turn_back(mesh, &said->axes, err);
     const size_t parts = count_marks(&in->marks, mesh);
     if (said->parts < parts)
         said->parts = parts;

@@ -29,8 +29,9 @@ typedef struct cwi_mesh_input {
     cwi_marks marks;
 } cwi_mesh_input;
 
-/* Fills a zeroed mesh and what the file says of itself (parts is 1 beforehand). The caller
- * frees the mesh of a reader that failed, and puts the file's name in front of its message. */
+/* Fills a zeroed mesh and what the file says of itself (parts is 1 beforehand). Coordinates are
+ * as they stand in the file, if said->axes tells what they are. The caller turns them, frees
+ * the mesh of a reader that failed, and puts the file's name in front of its message. */
 typedef cw_status cwi_mesh_reader(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said,
                                   cw_error *err);
 
@@ -95,6 +96,10 @@ void cwi_build_end_face(cwi_mesh_build *b, cw_mesh_file *said);
  * Returns CW_ERR_FORMAT for a point that is not finite, an index that names none. */
 cw_status cwi_build_finish(cwi_mesh_build *b, cw_mesh *mesh, cw_error *err);
 void cwi_build_free(cwi_mesh_build *b);
+
+/* What our writers leave in a comment of text files: "cubewright VERSION, LPS, mm", and behind
+ * that (*ours) "origin X Y Z" of a local file. */
+void cwi_take_comment(const char *text, bool *ours, cw_mesh *mesh, cw_mesh_file *said);
 
 /* Reads three numbers, for the origin that our writers leave in a line of text; false, and the
  * origin as it was, when they are not there or not finite. */

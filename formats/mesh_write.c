@@ -14,12 +14,13 @@ typedef struct writer {
     cwi_mesh_writer *write;
     cw_status (*prepare)(cw_error *err); /* loads what it needs; NULL: nothing */
     bool world;                          /* coordinates hold the origin, unless local */
+    bool own_axes;                       /* unit and frame are those of the format */
     bool own_arrays;                     /* of each part; else those that all parts have */
 } writer;
 
 static const writer writers[] = {
-    {.format = "glb", .write = cwi_glb_write, .prepare = cwi_gltf_prepare},
-    {.format = "gltf", .write = cwi_gltf_write, .prepare = cwi_gltf_prepare},
+    {.format = "glb", .write = cwi_glb_write, .prepare = cwi_gltf_prepare, .own_axes = true},
+    {.format = "gltf", .write = cwi_gltf_write, .prepare = cwi_gltf_prepare, .own_axes = true},
     {.format = "stl", .write = cwi_stl_write, .world = true},
     {.format = "ply", .write = cwi_ply_write, .world = true},
     {.format = "obj", .write = cwi_obj_write, .world = true},
@@ -62,15 +63,15 @@ cw_status cwi_write_triangles(const cwi_parts *parts, cwi_mesh_output *out,
     return st;
 }
 
-static cw_status check_single(const cw_mesh *mesh, cw_error *err)
+static cw_status check_single(const cwi_part *part, cw_error *err)
 {
     double low[3], high[3];
-    cw_mesh_bounds(mesh, low, high);
+    cwi_part_bounds(part, low, high);
     for (int a = 0; a < 3; a++)
         if (low[a] < -(double)FLT_MAX || high[a] > (double)FLT_MAX)
             return cw_fail(err, CW_ERR_LIMIT,
-                           "the mesh stands at %g mm, which the format's single "
-                           "precision cannot say",
+                           "the mesh stands at %g, which the format's single precision cannot "
+                           "say",
                            high[a]);
     return CW_OK;
 }
@@ -79,7 +80,7 @@ cw_status cwi_check_single(const cwi_parts *parts, cw_error *err)
 {
     cw_status st = CW_OK;
     for (size_t i = 0; i < parts->count && st == CW_OK; i++)
-        st = check_single(&parts->items[i].mesh, err);
+        st = check_single(&parts->items[i], err);
     return st;
 }
 
@@ -143,17 +144,31 @@ static cw_status fail_unknown(const char *name, cw_error *err)
                    list);
 }
 
-/* The writer of a path, with what it needs loaded. */
-static cw_status find_writer(const char *path, const char *name, const writer **out,
+/* glTF may be asked for what it is in any case. */
+static cw_status check_axes(const writer *w, const cw_axes *axes, cw_error *err)
+{
+    const bool metres = axes->unit == CW_UNIT_MM || axes->unit == CW_UNIT_M;
+    if (axes->unit >= CW_UNIT_COUNT)
+        return cw_fail(err, CW_ERR_ARGUMENT, "%d is no unit", (int)axes->unit);
+    if (w->own_axes && (!metres || axes->ras))
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "%s is in metres, +Y up and facing +Z: it has no other unit or frame",
+                       w->format);
+    return CW_OK;
+}
+
+/* The writer of a path, with what it needs loaded; it can do what is asked for. */
+static cw_status find_writer(const char *path, const cw_write_desc *d, const writer **out,
                              cw_error *err)
 {
-    const cw_format *format = find_format(path, name);
+    const cw_format *format = find_format(path, d->format);
     if (!format)
-        return fail_unknown(name, err);
+        return fail_unknown(d->format, err);
     *out = writers;
     while (strcmp((*out)->format, format->name) != 0)
         (*out)++; /* every format that says it writes meshes has its row */
-    return (*out)->prepare ? (*out)->prepare(err) : CW_OK;
+    cw_status st = check_axes(*out, &d->axes, err);
+    return st == CW_OK && (*out)->prepare ? (*out)->prepare(err) : st;
 }
 
 static cw_status write_parts(const char *path, const cwi_parts *parts, const writer *w,
@@ -171,15 +186,19 @@ static cw_status write_parts(const char *path, const cwi_parts *parts, const wri
 cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
                          const cw_write_desc *desc, cw_error *err)
 {
-    const cw_write_desc d = desc ? *desc : (cw_write_desc){0};
+    cw_write_desc d = desc ? *desc : (cw_write_desc){0};
     const writer *w;
     char name[CWI_NAME_BYTES];
     double origin[3];
     cwi_parts placed = {0};
     cwi_choose_name(path, parts, count, &d, name);
-    cwi_mesh_output out = {
-        .name = name, .local_origin = d.local ? origin : NULL, .progress = &d.progress};
-    cw_status st = find_writer(path, d.format, &w, err);
+    cwi_mesh_output out = {.name = name,
+                           .local_origin = d.local ? origin : NULL,
+                           .axes = &d.axes,
+                           .progress = &d.progress};
+    cw_status st = find_writer(path, &d, &w, err);
+    if (st == CW_OK && w->own_axes)
+        d.axes = (cw_axes){0};
     if (st == CW_OK)
         st = cwi_parts_place(parts, count, &d, w->own_arrays, name, &placed, origin, err);
     if (st == CW_OK)
@@ -209,7 +228,7 @@ cw_status cw_parts_write_loss(const char *path, const cw_part *parts, size_t cou
     double origin[3];
     cwi_parts placed = {0};
     memset(loss, 0, sizeof *loss);
-    cw_status st = find_writer(path, d.format, &w, err);
+    cw_status st = find_writer(path, &d, &w, err);
     if (st == CW_OK)
         st = cwi_parts_place(parts, count, &d, w->own_arrays, "", &placed, origin, err);
     for (size_t i = 0; i < placed.count && st == CW_OK; i++)
@@ -230,7 +249,7 @@ cw_status cw_mesh_write_check(const char *path, const cw_write_desc *desc, cw_er
     const cw_write_desc d = desc ? *desc : (cw_write_desc){0};
     cwi_outfile *file = NULL;
     const writer *w;
-    cw_status st = find_writer(path, d.format, &w, err);
+    cw_status st = find_writer(path, &d, &w, err);
     if (st == CW_OK) /* to make a file and drop it is the only sure way to know */
         st = cwi_outfile_open(&file, path, d.no_clobber, err);
     cwi_outfile_abort(&file);

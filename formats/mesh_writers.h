@@ -6,6 +6,7 @@
 #include <cubewright/formats.h>
 
 #include "core/outfile.h"
+#include "formats/axes.h"
 #include "formats/decimals.h"
 
 #ifdef __cplusplus
@@ -18,6 +19,7 @@ enum { CWI_NAME_BYTES = 256, CWI_RECORD_BYTES = 256 };
 typedef struct cwi_part {
     cw_mesh mesh;   /* borrows its arrays; those that the file does not keep are NULL. For a
                        local file its origin counts from that of the file. */
+    cwi_turn turn;  /* from its coordinates to those of the file */
     uint64_t first; /* vertices of the parts before it */
     int digits;     /* that a place is written with in text */
     char name[CWI_NAME_BYTES]; /* printable UTF-8 on one line */
@@ -33,9 +35,10 @@ typedef struct cwi_parts {
 
 typedef struct cwi_mesh_output {
     cwi_outfile *file;
-    const char *name; /* of all parts together; as that of a part */
-    const double
-        *local_origin; /* what gives the world's coordinates when added; NULL: nothing */
+    const char *name;           /* of all parts together; as that of a part */
+    const double *local_origin; /* what gives the world's coordinates when added, as the file
+                                   counts them; NULL: nothing */
+    const cw_axes *axes;
     const cw_progress *progress;
     size_t done, total; /* records, for progress; a writer sets the total */
 } cwi_mesh_output;
@@ -74,7 +77,10 @@ void cwi_print_origin(const cwi_mesh_output *out, const char *before, const char
 /* Adds what a part loses in a file that holds its coordinates in single precision. */
 cw_status cwi_measure_loss(const cwi_part *part, cw_write_loss *loss, cw_error *err);
 
-/* CW_ERR_LIMIT when a world coordinate is beyond single precision's largest number. */
+/* The part's box in the file. */
+void cwi_part_bounds(const cwi_part *part, double low[3], double high[3]);
+
+/* CW_ERR_LIMIT when a coordinate is beyond single precision's largest number. */
 cw_status cwi_check_single(const cwi_parts *parts, cw_error *err);
 
 /* Little endian on any machine; each returns the end of what it put. */
@@ -104,10 +110,21 @@ static inline unsigned char *cwi_put_f32x3(unsigned char *to, const float value[
     return to;
 }
 
-/* Summed in double: a position keeps its micrometres until the format takes them. */
-static inline double cwi_world_coordinate(const cwi_part *part, size_t vertex, int axis)
+/* As it stands in the file. Summed in double: a position keeps its micrometres until the format
+ * takes them. Adding 0.0 turns -0 into 0. */
+static inline double cwi_coordinate(const cwi_part *part, size_t vertex, int axis)
 {
-    return part->mesh.origin[axis] + (double)part->mesh.positions[3 * vertex + (size_t)axis];
+    const int a = part->turn.from[axis];
+    const double world =
+        part->mesh.origin[a] + (double)part->mesh.positions[3 * vertex + (size_t)a];
+    return part->turn.factor[axis] * world + 0.0;
+}
+
+static inline void cwi_normal(const cwi_part *part, size_t vertex, float normal[3])
+{
+    for (int a = 0; a < 3; a++)
+        normal[a] = (float)part->turn.sign[a] *
+                    part->mesh.normals[3 * vertex + (size_t)part->turn.from[a]];
 }
 
 /* The place of a vertex as text, a blank in front of each number. */
@@ -115,7 +132,7 @@ static inline unsigned char *cwi_put_place(unsigned char *to, const cwi_part *pa
 {
     for (int a = 0; a < 3; a++) {
         *to++ = ' ';
-        to = cwi_put_decimal(to, cwi_world_coordinate(part, v, a), part->digits);
+        to = cwi_put_decimal(to, cwi_coordinate(part, v, a), part->digits);
     }
     return to;
 }

@@ -16,7 +16,7 @@ typedef struct obj {
     uint32_t *normal_of; /* a vertex's normal, or NONE; for the first named of them */
     size_t normal_count, normal_room, named, named_room;
     bool mixed;       /* some vertex has two normals, or a corner none: then none are kept */
-    bool ours;        /* the first line is that of our writer */
+    bool ours;        /* a comment is that of our writer */
     bool has_objects; /* then groups are no parts */
 } obj;
 
@@ -155,24 +155,13 @@ static cw_status read_vertex(obj *o, cwi_scan *s, cw_error *err)
     return st == CW_OK ? cwi_scan_end_line(s, err) : st;
 }
 
-/* The lines that our writer leaves: "# cubewright VERSION, LPS, mm", "# origin X Y Z". */
 static cw_status read_comment(obj *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *said,
                               cw_error *err)
 {
-    static const char *const words[4] = {"cubewright", NULL, "LPS,", "mm"};
-    cwi_word word;
-    cw_status st = cwi_scan_word(s, &word, err);
-    bool same = st == CW_OK && word.size;
-    if (same && o->ours && cwi_word_is(&word, "origin")) {
-        said->local = cwi_parse_origin(word.text + word.size, mesh->origin);
-    } else if (same && s->line == 1) {
-        for (int i = 0; i < 4 && same && st == CW_OK; i++) {
-            same = !words[i] || cwi_word_is(&word, words[i]);
-            st = i < 3 ? cwi_scan_word(s, &word, err) : CW_OK;
-        }
-        o->ours = same;
-        said->known |= same ? CW_KNOWN_UNIT | CW_KNOWN_FRAME : 0u;
-    }
+    char text[CWI_SCAN_AHEAD];
+    cw_status st = cwi_scan_rest(s, text, err);
+    if (st == CW_OK)
+        cwi_take_comment(text, &o->ours, mesh, said);
     return st == CW_OK ? cwi_scan_end_line(s, err) : st;
 }
 

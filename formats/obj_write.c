@@ -9,7 +9,9 @@ static unsigned char *encode_place(const cwi_part *part, size_t v, unsigned char
 
 static unsigned char *encode_normal(const cwi_part *part, size_t v, unsigned char *to)
 {
-    to = cwi_put_floats(cwi_put_text(to, "vn"), part->mesh.normals + 3 * v, 3);
+    float normal[3];
+    cwi_normal(part, v, normal);
+    to = cwi_put_floats(cwi_put_text(to, "vn"), normal, 3);
     return cwi_put_text(to, "\n");
 }
 
@@ -43,11 +45,12 @@ static cw_status write_object(const cwi_part *part, cwi_mesh_output *out, cw_err
 cw_status cwi_obj_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *err)
 {
     const uint64_t normals = parts->items[0].mesh.normals ? parts->vertices : 0;
-    char origin[CWI_ORIGIN_BYTES];
+    char axes[CWI_AXES_BYTES], origin[CWI_ORIGIN_BYTES];
+    cwi_print_axes(out->axes, axes);
     cwi_print_origin(out, "# origin", "\n", origin);
     out->total = (size_t)(parts->vertices + normals + parts->triangles);
     cw_status st =
-        cwi_outfile_printf(out->file, err, "# cubewright %s, LPS, mm\n%s", CW_VERSION, origin);
+        cwi_outfile_printf(out->file, err, "# cubewright %s, %s\n%s", CW_VERSION, axes, origin);
     for (size_t i = 0; i < parts->count && st == CW_OK; i++)
         st = write_object(&parts->items[i], out, err);
     return st;

@@ -91,12 +91,24 @@ static void share_arrays(cwi_parts *parts)
     }
 }
 
+void cwi_part_bounds(const cwi_part *part, double low[3], double high[3])
+{
+    double min[3], max[3], p[3], q[3];
+    cw_mesh_bounds(&part->mesh, min, max);
+    cwi_turn_point(&part->turn, min, p);
+    cwi_turn_point(&part->turn, max, q);
+    for (int a = 0; a < 3; a++) {
+        low[a] = fmin(p[a], q[a]);
+        high[a] = fmax(p[a], q[a]);
+    }
+}
+
 /* Nine digits give a float back to the bit, the tenth is room for the origin. Where the mesh
  * stands more than ten times its own size from zero, 17 give a double. */
-static int digits_of(const cw_mesh *mesh)
+static int digits_of(const cwi_part *part)
 {
     double low[3], high[3], distance = 0, size = 0;
-    cw_mesh_bounds(mesh, low, high);
+    cwi_part_bounds(part, low, high);
     for (int a = 0; a < 3; a++) {
         distance = fmax(distance, fmax(fabs(low[a]), fabs(high[a])));
         size = fmax(size, high[a] - low[a]);
@@ -104,14 +116,16 @@ static int digits_of(const cw_mesh *mesh)
     return distance > 10 * size ? 17 : 10;
 }
 
-static void add_part(cwi_parts *parts, const cw_mesh *mesh, const double origin[3])
+static void add_part(cwi_parts *parts, const cw_mesh *mesh, const double origin[3],
+                     const cw_axes *axes)
 {
     cwi_part *part = &parts->items[parts->count++];
     part->mesh = *mesh;
+    part->turn = cwi_turn_to(axes);
     part->first = parts->vertices;
     for (int a = 0; a < 3; a++)
         part->mesh.origin[a] -= origin[a];
-    part->digits = digits_of(&part->mesh);
+    part->digits = digits_of(part);
     parts->vertices += mesh->vertex_count;
     parts->triangles += mesh->triangle_count;
 }
@@ -127,14 +141,15 @@ cw_status cwi_parts_place(const cw_part *parts, size_t count, const cw_write_des
     placed->items = cwi_alloc_zeroed(count, sizeof *placed->items);
     if (!placed->items)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", count);
-    memcpy(origin, desc->local ? parts->mesh->origin : zero, sizeof zero);
+    const double *from = desc->local ? parts->mesh->origin : zero;
     for (size_t i = 0; i < count; i++)
         if (parts[i].mesh->triangle_count) {
-            add_part(placed, parts[i].mesh, origin);
+            add_part(placed, parts[i].mesh, from, &desc->axes);
             name_part(&placed->items[placed->count - 1], parts[i].name, name, i + 1, count);
         }
     if (!own_arrays)
         share_arrays(placed);
+    cwi_turn_point(&placed->items->turn, from, origin);
     return CW_OK;
 }
 

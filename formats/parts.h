@@ -6,10 +6,10 @@
 #include "formats/mesh_readers.h"
 #include "formats/mesh_writers.h"
 
-/* Fills in the parts with triangles, and the origin that all of them count from (zeros unless
- * desc->local). Unless each may have arrays of its own, those that one of them lacks are left
- * out. Free them with cwi_parts_free().
- * Returns CW_ERR_ARGUMENT as cw_mesh_check(), and when no part has triangles; CW_ERR_NO_MEMORY
+/* Fills in the parts with triangles, and the origin that all of them count from, as the file
+ * counts it (zeros unless desc->local). Unless each may have arrays of its own, those that one
+ * of them lacks are left out. Free them with cwi_parts_free(). Returns CW_ERR_ARGUMENT as
+ * cw_mesh_check(), and when no part has triangles; CW_ERR_NO_MEMORY
  */
 cw_status cwi_parts_place(const cw_part *parts, size_t count, const cw_write_desc *desc,
                           bool own_arrays, const char *name, cwi_parts *placed,

@@ -7,9 +7,12 @@ static unsigned char *encode_vertex(const cwi_part *part, size_t v, unsigned cha
 {
     const cw_mesh *mesh = &part->mesh;
     for (int a = 0; a < 3; a++)
-        to = cwi_put_f32(to, (float)cwi_world_coordinate(part, v, a));
-    if (mesh->normals)
-        to = cwi_put_f32x3(to, mesh->normals + 3 * v);
+        to = cwi_put_f32(to, (float)cwi_coordinate(part, v, a));
+    if (mesh->normals) {
+        float normal[3];
+        cwi_normal(part, v, normal);
+        to = cwi_put_f32x3(to, normal);
+    }
     if (mesh->colors) {
         memcpy(to, mesh->colors + 4 * v, 4);
         to += 4;
@@ -39,10 +42,11 @@ static cw_status write_header(const cwi_parts *parts, const cwi_mesh_output *out
     return cwi_outfile_printf(
         out->file, err,
         "ply\nformat binary_little_endian 1.0\n"
-        "comment cubewright %s\ncomment object %s\ncomment unit mm\ncomment frame LPS\n%s"
+        "comment cubewright %s\ncomment object %s\ncomment unit %s\ncomment frame %s\n%s%s"
         "element vertex %ju\nproperty float x\nproperty float y\nproperty float z\n%s%s%s%s"
         "element face %ju\nproperty list uchar %s vertex_indices\nend_header\n",
-        CW_VERSION, out->name, origin, (uintmax_t)parts->vertices,
+        CW_VERSION, out->name, cw_unit_name(out->axes->unit), out->axes->ras ? "RAS" : "LPS",
+        out->axes->y_up ? "comment up Y\n" : "", origin, (uintmax_t)parts->vertices,
         mesh->normals ? "property float nx\nproperty float ny\nproperty float nz\n" : "",
         mesh->colors ? "property uchar red\nproperty uchar green\nproperty uchar blue\n"
                        "property uchar alpha\n"

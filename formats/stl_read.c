@@ -2,6 +2,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "core/weld.h"
+#include "formats/axes.h"
 #include "formats/mesh_readers.h"
 
 #include <float.h>
@@ -110,15 +111,15 @@ static cw_status read_binary_facets(facets *f, cwi_scan *s, size_t count, cw_err
 /* The header that our writer leaves: frame and unit, and the origin of a local file. */
 static void read_header(const unsigned char *head, cw_mesh *mesh, cw_mesh_file *said)
 {
-    static const char ours[] = "cubewright, LPS, mm", from[] = " from ";
+    static const char ours[] = "cubewright, ", from[] = " from ";
     char text[HEADER + 1] = "";
     memcpy(text, head, HEADER);
-    if (strncmp(text, ours, strlen(ours)) != 0)
-        return;
     const char *rest = text + strlen(ours);
+    if (strncmp(text, ours, strlen(ours)) != 0 || !cwi_parse_axes(&rest, said))
+        return;
     said->local = strncmp(rest, from, strlen(from)) == 0;
-    const bool placed = !said->local || cwi_parse_origin(rest + strlen(from), mesh->origin);
-    said->known = CW_KNOWN_UNIT | (placed ? CW_KNOWN_FRAME : 0u);
+    if (said->local && !cwi_parse_origin(rest + strlen(from), mesh->origin))
+        said->known = CW_KNOWN_UNIT;
 }
 
 static cw_status read_binary(facets *f, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *said,

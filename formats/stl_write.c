@@ -28,7 +28,7 @@ static unsigned char *encode_facet(const cwi_part *part, size_t i, unsigned char
     float corner[3][3], normal[3];
     for (int c = 0; c < 3; c++)
         for (int a = 0; a < 3; a++)
-            corner[c][a] = (float)cwi_world_coordinate(part, vertex[c], a);
+            corner[c][a] = (float)cwi_coordinate(part, vertex[c], a);
     facet_normal(corner, normal);
     to = cwi_put_f32x3(to, normal);
     for (int c = 0; c < 3; c++)
@@ -39,11 +39,12 @@ static unsigned char *encode_facet(const cwi_part *part, size_t i, unsigned char
 /* Not "solid ...": readers take that for the text form. */
 static void fill_header(const cwi_mesh_output *out, uint32_t count, unsigned char header[84])
 {
-    char origin[CWI_ORIGIN_BYTES], text[80 + CWI_ORIGIN_BYTES];
+    char axes[CWI_AXES_BYTES], origin[CWI_ORIGIN_BYTES], text[80 + CWI_ORIGIN_BYTES];
+    cwi_print_axes(out->axes, axes);
     cwi_print_origin(out, " from", "", origin);
-    int length = snprintf(text, sizeof text, "cubewright, LPS, mm%s", origin);
+    int length = snprintf(text, sizeof text, "cubewright, %s%s", axes, origin);
     if (length >= 80)
-        length = snprintf(text, sizeof text, "cubewright, LPS, mm from an origin of its own");
+        length = snprintf(text, sizeof text, "cubewright, %s from an origin of its own", axes);
     memset(header, 0, 84);
     memcpy(header, text, (size_t)length);
     cwi_put_u32(header + 80, count);

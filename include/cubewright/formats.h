@@ -119,6 +119,32 @@ CW_API void cw_series_free(cw_series *series);
  * Returns CW_ERR_ARGUMENT naming the key that is wrong. */
 CW_API cw_status cw_raw_layout_parse(const char *text, cw_raw_layout *layout, cw_error *err);
 
+/* Units of coordinates in mesh files: constant, name, millimetres. */
+#define CW_UNIT_TABLE(X)                                                                       \
+    X(CW_UNIT_MM, "mm", 1)                                                                     \
+    X(CW_UNIT_UM, "um", 1e-3)                                                                  \
+    X(CW_UNIT_CM, "cm", 10)                                                                    \
+    X(CW_UNIT_M, "m", 1000)                                                                    \
+    X(CW_UNIT_IN, "in", 25.4)                                                                  \
+    X(CW_UNIT_FT, "ft", 304.8)
+
+typedef enum cw_unit {
+#define CW_UNIT_ENUM(constant, name, mm) constant,
+    CW_UNIT_TABLE(CW_UNIT_ENUM)
+#undef CW_UNIT_ENUM
+        CW_UNIT_COUNT
+} cw_unit;
+
+CW_API const char *cw_unit_name(cw_unit unit);
+CW_API double cw_unit_mm(cw_unit unit);
+
+/* What coordinates in a mesh file mean. Zeroed: LPS millimetres, +Z up. */
+typedef struct cw_axes {
+    cw_unit unit;
+    bool ras;  /* x to the right and y to the front; default: to the left and to the back */
+    bool y_up; /* (x, y, z) stands as (x, z, -y) */
+} cw_axes;
+
 /* How to read a mesh. Zero-initialise it; a zero field means the default named beside it. */
 typedef struct cw_mesh_read_desc {
     const char *reader;     /* a name of cw_formats(); default: by content, then extension */
@@ -134,6 +160,7 @@ typedef struct cw_mesh_read_desc {
 typedef struct cw_mesh_file {
     const char *format; /* the reader's name (static) */
     unsigned known;     /* cw_known flags; what is not known was taken as LPS millimetres */
+    cw_axes axes;       /* from which it was turned; zeroed for glTF and where not known */
     bool local;         /* coordinates were relative to an origin that the file names */
     size_t parts;       /* that were merged: objects of OBJ, primitives of glTF; else 1 */
     size_t polygons;    /* faces of more than three corners, cut into fans of triangles */
@@ -202,6 +229,7 @@ typedef struct cw_write_desc {
     const char *name;     /* of the object inside the file; default: the path's stem */
     bool no_clobber;      /* fail when the path exists; default: replace it */
     bool local;           /* mesh: relative to its origin; default: in the world */
+    cw_axes axes;         /* mesh: default LPS millimetres; glTF is in metres, +Y up */
     cw_progress progress; /* default: none */
 } cw_write_desc;
 
@@ -220,7 +248,10 @@ CW_API cw_status cw_volume_write(const char *path, const cw_volume *volume,
  * local leaves the origin out: coordinates are the mesh's positions, and the glTF node has no
  * translation. The file names the origin, which gives the world's coordinates when added: PLY
  * and OBJ in a comment, STL in its header when it fits there, glTF in the node's extras.
- * Returns  as cw_volume_write(); CW_ERR_ARGUMENT as cw_mesh_check(), and for an empty mesh;
+ *
+ * Those comments name unit and frame (axes), too; cw_mesh_read() turns them back.
+ * Returns  as cw_volume_write(); CW_ERR_ARGUMENT as cw_mesh_check(), for an empty mesh, and
+ *          for glTF in another unit or frame than its own;
  *          CW_ERR_LIMIT when the format's own sizes are too small for the mesh. */
 CW_API cw_status cw_mesh_write(const char *path, const cw_mesh *mesh, const cw_write_desc *desc,
                                cw_error *err);
