@@ -19,12 +19,14 @@ static inline unsigned char *cwi_put_text(unsigned char *to, const char *text)
     return to + size;
 }
 
-/* A blank in front of each of count numbers. */
-static inline unsigned char *cwi_put_floats(unsigned char *to, const float *values, int count)
+/* Three numbers with a blank between them. */
+static inline unsigned char *cwi_put_decimals(unsigned char *to, const double values[3],
+                                              int digits)
 {
-    for (int i = 0; i < count; i++) {
-        *to++ = ' ';
-        to = cwi_put_decimal(to, (double)values[i], 9);
+    for (int i = 0; i < 3; i++) {
+        if (i > 0)
+            *to++ = ' ';
+        to = cwi_put_decimal(to, values[i], digits);
     }
     return to;
 }

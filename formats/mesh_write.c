@@ -13,17 +13,16 @@ typedef struct writer {
     const char *format;
     cwi_mesh_writer *write;
     cw_status (*prepare)(cw_error *err); /* loads what it needs; NULL: nothing */
-    bool world;                          /* coordinates hold the origin, unless local */
     bool own_axes;                       /* unit and frame are those of the format */
-    bool own_arrays;                     /* of each part; else those that all parts have */
 } writer;
 
 static const writer writers[] = {
     {.format = "glb", .write = cwi_glb_write, .prepare = cwi_gltf_prepare, .own_axes = true},
     {.format = "gltf", .write = cwi_gltf_write, .prepare = cwi_gltf_prepare, .own_axes = true},
-    {.format = "stl", .write = cwi_stl_write, .world = true},
-    {.format = "ply", .write = cwi_ply_write, .world = true},
-    {.format = "obj", .write = cwi_obj_write, .world = true},
+    {.format = "stl", .write = cwi_stl_write},
+    {.format = "ply", .write = cwi_ply_write},
+    {.format = "obj", .write = cwi_obj_write},
+    {.format = "off", .write = cwi_off_write},
 };
 
 enum { PROGRESS_STEP = 65536 };
@@ -157,26 +156,30 @@ static cw_status check_axes(const writer *w, const cw_axes *axes, cw_error *err)
     return CW_OK;
 }
 
-/* The writer of a path, with what it needs loaded; it can do what is asked for. */
-static cw_status find_writer(const char *path, const cw_write_desc *d, const writer **out,
-                             cw_error *err)
+/* How a file will be written. */
+typedef struct target {
+    const cw_format *format;
+    const writer *writer;
+} target;
+
+/* The format and writer of a path, with what it needs loaded; it can do what is asked for. */
+static cw_status find_writer(const char *path, const cw_write_desc *d, target *t, cw_error *err)
 {
-    const cw_format *format = find_format(path, d->format);
-    if (!format)
+    *t = (target){find_format(path, d->format), writers};
+    if (!t->format)
         return fail_unknown(d->format, err);
-    *out = writers;
-    while (strcmp((*out)->format, format->name) != 0)
-        (*out)++; /* every format that says it writes meshes has its row */
-    cw_status st = check_axes(*out, &d->axes, err);
-    return st == CW_OK && (*out)->prepare ? (*out)->prepare(err) : st;
+    while (strcmp(t->writer->format, t->format->name) != 0)
+        t->writer++; /* every format that says it writes meshes has its row */
+    cw_status st = check_axes(t->writer, &d->axes, err);
+    return st == CW_OK && t->writer->prepare ? t->writer->prepare(err) : st;
 }
 
-static cw_status write_parts(const char *path, const cwi_parts *parts, const writer *w,
+static cw_status write_parts(const char *path, const cwi_parts *parts, const target *t,
                              const cw_write_desc *d, cwi_mesh_output *out, cw_error *err)
 {
     cw_status st = cwi_outfile_open(&out->file, path, d->no_clobber, err);
     if (st == CW_OK)
-        st = w->write(parts, out, err);
+        st = t->writer->write(parts, out, err);
     if (st == CW_OK)
         st = cwi_outfile_commit(&out->file, err);
     cwi_outfile_abort(&out->file);
@@ -187,7 +190,7 @@ cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
                          const cw_write_desc *desc, cw_error *err)
 {
     cw_write_desc d = desc ? *desc : (cw_write_desc){0};
-    const writer *w;
+    target t;
     char name[CWI_NAME_BYTES];
     double origin[3];
     cwi_parts placed = {0};
@@ -196,13 +199,13 @@ cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
                            .local_origin = d.local ? origin : NULL,
                            .axes = &d.axes,
                            .progress = &d.progress};
-    cw_status st = find_writer(path, &d, &w, err);
-    if (st == CW_OK && w->own_axes)
+    cw_status st = find_writer(path, &d, &t, err);
+    if (st == CW_OK && t.writer->own_axes)
         d.axes = (cw_axes){0};
     if (st == CW_OK)
-        st = cwi_parts_place(parts, count, &d, w->own_arrays, name, &placed, origin, err);
+        st = cwi_parts_place(parts, count, &d, t.format->keeps, name, &placed, origin, err);
     if (st == CW_OK)
-        st = write_parts(path, &placed, w, &d, &out, err);
+        st = write_parts(path, &placed, &t, &d, &out, err);
     cwi_parts_free(&placed);
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
 }
@@ -220,20 +223,36 @@ static bool is_exact(const cwi_part *part, const cw_write_desc *d)
     return d->local && origin[0] == 0 && origin[1] == 0 && origin[2] == 0;
 }
 
+static unsigned find_dropped(const cw_part *parts, size_t count, const cwi_parts *placed,
+                             unsigned keeps, const cw_write_loss *loss)
+{
+    unsigned had = CW_KEEPS_SHARING | (placed->count > 1 ? CW_KEEPS_PARTS : 0u);
+    unsigned has = keeps & (CW_KEEPS_SHARING | CW_KEEPS_PARTS | CW_KEEPS_AFFINE);
+    for (size_t i = 0; i < count; i++)
+        had |= cwi_arrays_of(parts[i].mesh);
+    for (size_t i = 0; i < placed->count; i++)
+        has |= cwi_arrays_of(&placed->items[i].mesh) & ~(unsigned)CW_KEEPS_AFFINE;
+    if (loss->merged_vertices || loss->flat_triangles)
+        had |= CW_KEEPS_PLACES;
+    return had & ~has;
+}
+
 cw_status cw_parts_write_loss(const char *path, const cw_part *parts, size_t count,
                               const cw_write_desc *desc, cw_write_loss *loss, cw_error *err)
 {
     const cw_write_desc d = desc ? *desc : (cw_write_desc){0};
-    const writer *w;
+    target t;
     double origin[3];
     cwi_parts placed = {0};
     memset(loss, 0, sizeof *loss);
-    cw_status st = find_writer(path, &d, &w, err);
+    cw_status st = find_writer(path, &d, &t, err);
     if (st == CW_OK)
-        st = cwi_parts_place(parts, count, &d, w->own_arrays, "", &placed, origin, err);
+        st = cwi_parts_place(parts, count, &d, t.format->keeps, "", &placed, origin, err);
     for (size_t i = 0; i < placed.count && st == CW_OK; i++)
-        if (w->world && !is_exact(&placed.items[i], &d))
+        if (!(t.format->keeps & CW_KEEPS_PLACES) && !is_exact(&placed.items[i], &d))
             st = cwi_measure_loss(&placed.items[i], loss, err);
+    if (st == CW_OK)
+        loss->dropped = find_dropped(parts, count, &placed, t.format->keeps, loss);
     cwi_parts_free(&placed);
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
 }
@@ -248,8 +267,8 @@ cw_status cw_mesh_write_check(const char *path, const cw_write_desc *desc, cw_er
 {
     const cw_write_desc d = desc ? *desc : (cw_write_desc){0};
     cwi_outfile *file = NULL;
-    const writer *w;
-    cw_status st = find_writer(path, &d, &w, err);
+    target t;
+    cw_status st = find_writer(path, &d, &t, err);
     if (st == CW_OK) /* to make a file and drop it is the only sure way to know */
         st = cwi_outfile_open(&file, path, d.no_clobber, err);
     cwi_outfile_abort(&file);

@@ -17,16 +17,15 @@ enum { CWI_NAME_BYTES = 256, CWI_RECORD_BYTES = 256 };
 
 /* A part as a writer gets it: checked, with triangles. */
 typedef struct cwi_part {
-    cw_mesh mesh;   /* borrows its arrays; those that the file does not keep are NULL. For a
-                       local file its origin counts from that of the file. */
-    cwi_turn turn;  /* from its coordinates to those of the file */
-    uint64_t first; /* vertices of the parts before it */
-    int digits;     /* that a place is written with in text */
-    char name[CWI_NAME_BYTES]; /* printable UTF-8 on one line */
+    cw_mesh mesh;  /* borrows its arrays; those that the file does not keep are NULL. For a
+                      local file its origin counts from that of the file. */
+    cwi_turn turn; /* from its coordinates to those of the file */
+    uint64_t first, first_normal; /* vertices, and normals, of the parts before it */
+    int digits;                   /* that a place is written with in text */
+    char name[CWI_NAME_BYTES];    /* printable UTF-8 on one line */
 } cwi_part;
 
-/* Formats that hold one mesh write them one behind the other. All have the same arrays, unless
- * the writer's row says that each may have its own. */
+/* Formats that hold one mesh write them one behind the other; all have the same arrays then. */
 typedef struct cwi_parts {
     cwi_part *items;
     size_t count;
@@ -48,6 +47,7 @@ typedef cw_status cwi_mesh_writer(const cwi_parts *parts, cwi_mesh_output *out, 
 CW_API cwi_mesh_writer cwi_stl_write;
 CW_API cwi_mesh_writer cwi_ply_write;
 CW_API cwi_mesh_writer cwi_obj_write;
+CW_API cwi_mesh_writer cwi_off_write;
 CW_API cwi_mesh_writer cwi_glb_write;
 CW_API cwi_mesh_writer cwi_gltf_write;
 
@@ -127,14 +127,23 @@ static inline void cwi_normal(const cwi_part *part, size_t vertex, float normal[
                     part->mesh.normals[3 * vertex + (size_t)part->turn.from[a]];
 }
 
-/* The place of a vertex as text, a blank in front of each number. */
+/* A vertex's place and its normal as text: three numbers each. */
 static inline unsigned char *cwi_put_place(unsigned char *to, const cwi_part *part, size_t v)
 {
-    for (int a = 0; a < 3; a++) {
-        *to++ = ' ';
-        to = cwi_put_decimal(to, cwi_coordinate(part, v, a), part->digits);
-    }
-    return to;
+    double place[3];
+    for (int a = 0; a < 3; a++)
+        place[a] = cwi_coordinate(part, v, a);
+    return cwi_put_decimals(to, place, part->digits);
+}
+
+static inline unsigned char *cwi_put_normal(unsigned char *to, const cwi_part *part, size_t v)
+{
+    float single[3];
+    double normal[3];
+    cwi_normal(part, v, single);
+    for (int a = 0; a < 3; a++)
+        normal[a] = (double)single[a];
+    return cwi_put_decimals(to, normal, 9);
 }
 
 /* A triangle's corner, counted through all parts from 0. */

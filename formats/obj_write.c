@@ -3,28 +3,24 @@
 
 static unsigned char *encode_place(const cwi_part *part, size_t v, unsigned char *to)
 {
-    to = cwi_put_place(cwi_put_text(to, "v"), part, v);
-    return cwi_put_text(to, "\n");
+    return cwi_put_text(cwi_put_place(cwi_put_text(to, "v "), part, v), "\n");
 }
 
 static unsigned char *encode_normal(const cwi_part *part, size_t v, unsigned char *to)
 {
-    float normal[3];
-    cwi_normal(part, v, normal);
-    to = cwi_put_floats(cwi_put_text(to, "vn"), normal, 3);
-    return cwi_put_text(to, "\n");
+    return cwi_put_text(cwi_put_normal(cwi_put_text(to, "vn "), part, v), "\n");
 }
 
-/* Numbers start at 1; a vertex and its normal share one, as all parts have normals or none. */
+/* Numbers start at 1, and go on from object to object. */
 static unsigned char *encode_face(const cwi_part *part, size_t t, unsigned char *to)
 {
     *to++ = 'f';
     for (int c = 0; c < 3; c++) {
         const uint64_t number = cwi_corner_number(part, t, c) + 1;
-        *to++ = ' ';
-        to = cwi_put_integer(to, number);
+        to = cwi_put_integer(cwi_put_text(to, " "), number);
         if (part->mesh.normals)
-            to = cwi_put_integer(cwi_put_text(to, "//"), number);
+            to = cwi_put_integer(cwi_put_text(to, "//"),
+                                 number - part->first + part->first_normal);
     }
     return cwi_put_text(to, "\n");
 }
@@ -44,11 +40,12 @@ static cw_status write_object(const cwi_part *part, cwi_mesh_output *out, cw_err
 
 cw_status cwi_obj_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *err)
 {
-    const uint64_t normals = parts->items[0].mesh.normals ? parts->vertices : 0;
+    const cwi_part *last = &parts->items[parts->count - 1];
     char axes[CWI_AXES_BYTES], origin[CWI_ORIGIN_BYTES];
     cwi_print_axes(out->axes, axes);
     cwi_print_origin(out, "# origin", "\n", origin);
-    out->total = (size_t)(parts->vertices + normals + parts->triangles);
+    out->total = (size_t)(parts->vertices + last->first_normal + parts->triangles);
+    out->total += last->mesh.normals ? last->mesh.vertex_count : 0;
     cw_status st =
         cwi_outfile_printf(out->file, err, "# cubewright %s, %s\n%s", CW_VERSION, axes, origin);
     for (size_t i = 0; i < parts->count && st == CW_OK; i++)

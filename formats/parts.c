@@ -71,23 +71,36 @@ static cw_status check_parts(const cw_part *parts, size_t count, cw_error *err)
     return empty ? cw_fail(err, CW_ERR_ARGUMENT, "the mesh is empty") : CW_OK;
 }
 
-/* Arrays of which one part has none are of no use to the whole. */
-static void share_arrays(cwi_parts *parts)
+unsigned cwi_arrays_of(const cw_mesh *mesh)
 {
-    bool normals = true, scalars = true, colors = true, labels = true;
+    unsigned has =
+        (mesh->normals ? CW_KEEPS_NORMALS : 0u) | (mesh->colors ? CW_KEEPS_COLORS : 0u) |
+        (mesh->scalars ? CW_KEEPS_SCALARS : 0u) | (mesh->labels ? CW_KEEPS_LABELS : 0u);
+    for (int i = 0; i < 12; i++)
+        has |= mesh->affine[i / 4][i % 4] != 0 ? CW_KEEPS_AFFINE : 0u;
+    return has;
+}
+
+static void keep_arrays(cw_mesh *m, unsigned keeps)
+{
+    m->normals = keeps & CW_KEEPS_NORMALS ? m->normals : NULL;
+    m->colors = keeps & CW_KEEPS_COLORS ? m->colors : NULL;
+    m->scalars = keeps & CW_KEEPS_SCALARS ? m->scalars : NULL;
+    m->labels = keeps & CW_KEEPS_LABELS ? m->labels : NULL;
+}
+
+/* Arrays of which one part has none are of no use where all parts share them. */
+static void choose_arrays(cwi_parts *parts, unsigned keeps)
+{
+    unsigned shared = keeps;
+    uint64_t normals = 0;
+    for (size_t i = 0; i < parts->count; i++)
+        shared &= cwi_arrays_of(&parts->items[i].mesh);
     for (size_t i = 0; i < parts->count; i++) {
-        const cw_mesh *m = &parts->items[i].mesh;
-        normals = normals && m->normals;
-        scalars = scalars && m->scalars;
-        colors = colors && m->colors;
-        labels = labels && m->labels;
-    }
-    for (size_t i = 0; i < parts->count; i++) {
-        cw_mesh *m = &parts->items[i].mesh;
-        m->normals = normals ? m->normals : NULL;
-        m->scalars = scalars ? m->scalars : NULL;
-        m->colors = colors ? m->colors : NULL;
-        m->labels = labels ? m->labels : NULL;
+        cwi_part *part = &parts->items[i];
+        keep_arrays(&part->mesh, keeps & CW_KEEPS_PARTS ? keeps : shared);
+        part->first_normal = normals;
+        normals += part->mesh.normals ? part->mesh.vertex_count : 0;
     }
 }
 
@@ -131,8 +144,8 @@ static void add_part(cwi_parts *parts, const cw_mesh *mesh, const double origin[
 }
 
 cw_status cwi_parts_place(const cw_part *parts, size_t count, const cw_write_desc *desc,
-                          bool own_arrays, const char *name, cwi_parts *placed,
-                          double origin[3], cw_error *err)
+                          unsigned keeps, const char *name, cwi_parts *placed, double origin[3],
+                          cw_error *err)
 {
     static const double zero[3] = {0};
     cw_status st = check_parts(parts, count, err);
@@ -147,8 +160,7 @@ cw_status cwi_parts_place(const cw_part *parts, size_t count, const cw_write_des
             add_part(placed, parts[i].mesh, from, &desc->axes);
             name_part(&placed->items[placed->count - 1], parts[i].name, name, i + 1, count);
         }
-    if (!own_arrays)
-        share_arrays(placed);
+    choose_arrays(placed, keeps);
     cwi_turn_point(&placed->items->turn, from, origin);
     return CW_OK;
 }

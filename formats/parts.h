@@ -12,14 +12,17 @@
  * cw_mesh_check(), and when no part has triangles; CW_ERR_NO_MEMORY
  */
 cw_status cwi_parts_place(const cw_part *parts, size_t count, const cw_write_desc *desc,
-                          bool own_arrays, const char *name, cwi_parts *placed,
-                          double origin[3], cw_error *err);
+                          unsigned keeps, const char *name, cwi_parts *placed, double origin[3],
+                          cw_error *err);
 void cwi_parts_free(cwi_parts *parts);
 
 /* The name that desc gives to all parts together, or that of the only one, or the path's last
  * part without its extension. */
 void cwi_choose_name(const char *path, const cw_part *parts, size_t count,
                      const cw_write_desc *desc, char name[CWI_NAME_BYTES]);
+
+/* What a mesh has of arrays, and whether an affine: cw_keeps flags. */
+unsigned cwi_arrays_of(const cw_mesh *mesh);
 
 /* Copies size bytes of text; what is not a printable character of UTF-8 becomes '_', so that no
  * name can break a line of OBJ, the JSON of glTF, or a terminal. */

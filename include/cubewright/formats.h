@@ -241,13 +241,13 @@ typedef struct cw_write_desc {
 CW_API cw_status cw_volume_write(const char *path, const cw_volume *volume,
                                  const cw_write_desc *desc, cw_error *err);
 
-/* Writes a mesh in the same way: .glb, .gltf, .stl, .ply or .obj.
+/* Writes a mesh in the same way: .glb, .gltf, .stl, .ply, .obj or .off.
  * glTF goes out in metres, +Y up and facing +Z, by the node's transform: vertices stay exact.
  * The others hold world coordinates (origin added), LPS millimetres: see cw_mesh_write_loss().
  *
  * local leaves the origin out: coordinates are the mesh's positions, and the glTF node has no
- * translation. The file names the origin, which gives the world's coordinates when added: PLY
- * and OBJ in a comment, STL in its header when it fits there, glTF in the node's extras.
+ * translation. The file names the origin, which gives the world's coordinates when added: PLY,
+ * OBJ and OFF in a comment, STL in its header when it fits there, glTF in the node's extras.
  *
  * Those comments name unit and frame (axes), too; cw_mesh_read() turns them back.
  * Returns  as cw_volume_write(); CW_ERR_ARGUMENT as cw_mesh_check(), for an empty mesh, and
@@ -263,17 +263,20 @@ CW_API cw_status cw_mesh_write(const char *path, const cw_mesh *mesh, const cw_w
 CW_API cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
                                 const cw_write_desc *desc, cw_error *err);
 
-/* What single precision takes from the mesh in a file of world coordinates. */
+/* What a file will not hold of a mesh, above all what single precision takes from world
+ * coordinates. */
 typedef struct cw_write_loss {
     double step_mm;         /* between neighbouring numbers, at the farthest coordinate */
     size_t merged_vertices; /* that fall onto another one, from which they were apart */
     size_t flat_triangles;  /* that had an area and have none */
+    unsigned dropped;       /* what the meshes have and the file will not: cw_keeps flags */
 } cw_write_loss;
 
 /* Measures what a reader with single precision will not get of the file that cw_mesh_write()
- * or cw_parts_write() would write. All zero for glTF, and for local files: those hold the
- * positions as they are. STL and PLY lose it in the file; OBJ holds every digit, but most of
- * its readers do not. Vertices of different parts are not compared.
+ * or cw_parts_write() would write. No vertex or triangle for glTF, and for local files: those
+ * hold the positions as they are. STL and PLY lose it in the file; OBJ and OFF hold every
+ * digit, but most of their readers do not. Vertices of different parts are not compared.
+ * CW_KEEPS_PLACES is dropped where some vertex or triangle is lost.
  *
  * Returns  CW_ERR_ARGUMENT  no such writer, or as cw_mesh_check(); CW_ERR_NO_MEMORY
  * Cost     time in proportion to the triangles, and 28 bytes a vertex at most */
@@ -289,6 +292,19 @@ CW_API cw_status cw_parts_write_loss(const char *path, const cw_part *parts, siz
 CW_API cw_status cw_mesh_write_check(const char *path, const cw_write_desc *desc,
                                      cw_error *err);
 
+/* What of a mesh a file of a format holds. */
+typedef enum cw_keeps {
+    CW_KEEPS_SHARING = 1, /* vertices that triangles share */
+    CW_KEEPS_PLACES = 2,  /* positions to the bit however far from zero: the origin is apart */
+    CW_KEEPS_NORMALS = 4,
+    CW_KEEPS_COLORS = 8,
+    CW_KEEPS_SCALARS = 16,
+    CW_KEEPS_LABELS = 32,
+    CW_KEEPS_AFFINE = 64,
+    CW_KEEPS_PARTS = 128, /* several meshes, with names */
+    CW_KEEPS_ALL = 255
+} cw_keeps;
+
 /* One row of what this build reads and writes. */
 typedef struct cw_format {
     const char *name;       /* "nrrd" */
@@ -297,6 +313,7 @@ typedef struct cw_format {
     bool reads_volume, writes_volume, reads_mesh, writes_mesh;
     bool in_this_build;
     const char *lost; /* what writing drops; "" for nothing */
+    unsigned keeps;   /* of a mesh that is written: cw_keeps flags */
 } cw_format;
 
 /* All formats, in_this_build or not; *count rows, static. */

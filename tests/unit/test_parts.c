@@ -146,6 +146,19 @@ static void arrays_that_one_part_lacks_are_left_out(void **state)
     assert_ok(cw_mesh_read(test_path("a.ply"), NULL, &back, NULL, &err), err);
     assert_true(back.scalars && !back.normals && !back.colors && !back.labels);
     cw_mesh_free(&back);
+    write_pair("a.obj", &p, false); /* whose objects may have normals or none */
+    size_t size;
+    char *text = test_file_read(test_path("a.obj"), &size);
+    assert_non_null(strstr(text, "\nf 1//1 "));
+    assert_non_null(strstr(text, "\nf 9 11 10\n"));
+    free(text);
+    p.parts[0] = p.parts[1];
+    p.parts[1] = (cw_part){&p.cube, NULL};
+    write_pair("a.obj", &p, false);
+    text = test_file_read(test_path("a.obj"), &size);
+    assert_non_null(strstr(text, "\nf 1 3 2\n"));
+    assert_non_null(strstr(text, "\nf 5//1 "));
+    free(text);
     p.cube.colors = NULL;
     p.cube.scalars = p.tetrahedron.scalars = NULL;
     free_pair(&p);
