@@ -31,4 +31,12 @@ static inline unsigned char *cwi_put_decimals(unsigned char *to, const double va
     return to;
 }
 
+static inline unsigned char *cwi_put_singles(unsigned char *to, const float values[3])
+{
+    double exact[3];
+    for (int i = 0; i < 3; i++)
+        exact[i] = (double)values[i];
+    return cwi_put_decimals(to, exact, 9);
+}
+
 #endif

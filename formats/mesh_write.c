@@ -14,15 +14,20 @@ typedef struct writer {
     cwi_mesh_writer *write;
     cw_status (*prepare)(cw_error *err); /* loads what it needs; NULL: nothing */
     bool own_axes;                       /* unit and frame are those of the format */
+    bool text;                           /* it is text, or can be */
 } writer;
 
 static const writer writers[] = {
     {.format = "glb", .write = cwi_glb_write, .prepare = cwi_gltf_prepare, .own_axes = true},
-    {.format = "gltf", .write = cwi_gltf_write, .prepare = cwi_gltf_prepare, .own_axes = true},
-    {.format = "stl", .write = cwi_stl_write},
-    {.format = "ply", .write = cwi_ply_write},
-    {.format = "obj", .write = cwi_obj_write},
-    {.format = "off", .write = cwi_off_write},
+    {.format = "gltf",
+     .write = cwi_gltf_write,
+     .prepare = cwi_gltf_prepare,
+     .own_axes = true,
+     .text = true},
+    {.format = "stl", .write = cwi_stl_write, .text = true},
+    {.format = "ply", .write = cwi_ply_write, .text = true},
+    {.format = "obj", .write = cwi_obj_write, .text = true},
+    {.format = "off", .write = cwi_off_write, .text = true},
 };
 
 enum { PROGRESS_STEP = 65536 };
@@ -156,6 +161,19 @@ static cw_status check_axes(const writer *w, const cw_axes *axes, cw_error *err)
     return CW_OK;
 }
 
+static cw_status check_text(const writer *w, const cw_write_desc *d, cw_error *err)
+{
+    char list[128] = "";
+    size_t used = 0;
+    if (!d->text || w->text)
+        return CW_OK;
+    for (size_t i = 0; i < sizeof writers / sizeof *writers; i++)
+        if (writers[i].text && used < sizeof list)
+            used += (size_t)snprintf(list + used, sizeof list - used, " %s", writers[i].format);
+    return cw_fail(err, CW_ERR_ARGUMENT, "%s has no form as text; those that have are%s",
+                   w->format, list);
+}
+
 /* How a file will be written. */
 typedef struct target {
     const cw_format *format;
@@ -171,6 +189,8 @@ static cw_status find_writer(const char *path, const cw_write_desc *d, target *t
     while (strcmp(t->writer->format, t->format->name) != 0)
         t->writer++; /* every format that says it writes meshes has its row */
     cw_status st = check_axes(t->writer, &d->axes, err);
+    if (st == CW_OK)
+        st = check_text(t->writer, d, err);
     return st == CW_OK && t->writer->prepare ? t->writer->prepare(err) : st;
 }
 
@@ -198,6 +218,7 @@ cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
     cwi_mesh_output out = {.name = name,
                            .local_origin = d.local ? origin : NULL,
                            .axes = &d.axes,
+                           .text = d.text,
                            .progress = &d.progress};
     cw_status st = find_writer(path, &d, &t, err);
     if (st == CW_OK && t.writer->own_axes)

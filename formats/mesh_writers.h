@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-enum { CWI_NAME_BYTES = 256, CWI_RECORD_BYTES = 256 };
+enum { CWI_NAME_BYTES = 256, CWI_RECORD_BYTES = 512 };
 
 /* A part as a writer gets it: checked, with triangles. */
 typedef struct cwi_part {
@@ -38,6 +38,7 @@ typedef struct cwi_mesh_output {
     const double *local_origin; /* what gives the world's coordinates when added, as the file
                                    counts them; NULL: nothing */
     const cw_axes *axes;
+    bool text;
     const cw_progress *progress;
     size_t done, total; /* records, for progress; a writer sets the total */
 } cwi_mesh_output;
@@ -138,18 +139,25 @@ static inline unsigned char *cwi_put_place(unsigned char *to, const cwi_part *pa
 
 static inline unsigned char *cwi_put_normal(unsigned char *to, const cwi_part *part, size_t v)
 {
-    float single[3];
-    double normal[3];
-    cwi_normal(part, v, single);
-    for (int a = 0; a < 3; a++)
-        normal[a] = (double)single[a];
-    return cwi_put_decimals(to, normal, 9);
+    float normal[3];
+    cwi_normal(part, v, normal);
+    return cwi_put_singles(to, normal);
 }
 
 /* A triangle's corner, counted through all parts from 0. */
 static inline uint64_t cwi_corner_number(const cwi_part *part, size_t triangle, int corner)
 {
     return part->first + part->mesh.triangles[3 * triangle + (size_t)corner];
+}
+
+/* "3 0 1 2": a face of PLY as text, and of OFF. */
+static inline unsigned char *cwi_put_face_line(const cwi_part *part, size_t triangle,
+                                               unsigned char *to)
+{
+    *to++ = '3';
+    for (int c = 0; c < 3; c++)
+        to = cwi_put_integer(cwi_put_text(to, " "), cwi_corner_number(part, triangle, c));
+    return cwi_put_text(to, "\n");
 }
 
 #ifdef __cplusplus

@@ -158,7 +158,7 @@ static cw_status read_vertex(obj *o, cwi_scan *s, cw_error *err)
 static cw_status read_comment(obj *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *said,
                               cw_error *err)
 {
-    char text[CWI_SCAN_AHEAD];
+    char text[CWI_REST_BYTES];
     cw_status st = cwi_scan_rest(s, text, err);
     if (st == CW_OK)
         cwi_take_comment(text, &o->ours, mesh, said);
@@ -167,7 +167,7 @@ static cw_status read_comment(obj *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *
 
 static cw_status read_part(obj *o, cwi_scan *s, bool is_object, cw_error *err)
 {
-    char name[CWI_SCAN_AHEAD];
+    char name[CWI_REST_BYTES];
     if (!is_object && o->has_objects)
         return cwi_scan_end_line(s, err);
     o->has_objects = is_object;

@@ -81,7 +81,7 @@ static cw_status check_counts(const cwi_scan *s, int64_t vertices, int64_t faces
 static cw_status first_word(cwi_scan *s, cwi_word *word, cw_mesh *mesh, cw_mesh_file *said,
                             cw_error *err)
 {
-    char text[CWI_SCAN_AHEAD];
+    char text[CWI_REST_BYTES];
     bool found, ours = false;
     cw_status st = CW_OK;
     s->comments = false;

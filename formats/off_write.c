@@ -12,17 +12,6 @@ static unsigned char *encode_vertex(const cwi_part *part, size_t v, unsigned cha
     return cwi_put_text(to, "\n");
 }
 
-static unsigned char *encode_face(const cwi_part *part, size_t t, unsigned char *to)
-{
-    *to++ = '3';
-    for (int c = 0; c < 3; c++) {
-        *to++ = ' ';
-        to = cwi_put_integer(to, cwi_corner_number(part, t, c));
-    }
-    *to++ = '\n';
-    return to;
-}
-
 cw_status cwi_off_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *err)
 {
     const cw_mesh *mesh = &parts->items[0].mesh; /* all have the same arrays */
@@ -37,6 +26,6 @@ cw_status cwi_off_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *
     if (st == CW_OK)
         st = cwi_write_vertices(parts, out, encode_vertex, err);
     if (st == CW_OK)
-        st = cwi_write_triangles(parts, out, encode_face, err);
+        st = cwi_write_triangles(parts, out, cwi_put_face_line, err);
     return st;
 }

@@ -144,13 +144,13 @@ bool cwi_word_is(const cwi_word *word, const char *text)
     return strlen(text) == word->size && memcmp(word->text, text, word->size) == 0;
 }
 
-cw_status cwi_scan_rest(cwi_scan *s, char text[CWI_SCAN_AHEAD], cw_error *err)
+cw_status cwi_scan_rest(cwi_scan *s, char text[CWI_REST_BYTES], cw_error *err)
 {
     size_t used = 0;
     cw_status st = hold(s, 1, err);
     while (st == CW_OK && s->next < s->end && s->text[s->next] != '\n') {
         const char c = s->text[s->next++];
-        if (used + 1 < CWI_SCAN_AHEAD && (used || !is_blank(c)))
+        if (used + 1 < CWI_REST_BYTES && (used || !is_blank(c)))
             text[used++] = c;
         st = hold(s, 1, err);
     }

@@ -230,12 +230,14 @@ typedef struct cw_write_desc {
     bool no_clobber;      /* fail when the path exists; default: replace it */
     bool local;           /* mesh: relative to its origin; default: in the world */
     cw_axes axes;         /* mesh: default LPS millimetres; glTF is in metres, +Y up */
+    bool text;            /* STL, PLY: numbers as text; default: binary */
     cw_progress progress; /* default: none */
 } cw_write_desc;
 
 /* Writes beside the path, flushes, then renames: the path holds the old file or the whole new
  * one. The format is the path's extension (.nrrd, .nii, .nii.gz, .mha, .mhd is not written).
- * Returns  CW_ERR_ARGUMENT     no writer of that name or extension; local, which is for meshes
+ * Returns  CW_ERR_ARGUMENT     no writer of that name or extension; local, text or axes, which
+ *                              are for meshes
  *          CW_ERR_OUTPUT       folder missing, disk full, path exists and no_clobber
  *          CW_ERR_UNSUPPORTED  the format is not in this build; CW_ERR_CANCELLED */
 CW_API cw_status cw_volume_write(const char *path, const cw_volume *volume,
@@ -250,8 +252,8 @@ CW_API cw_status cw_volume_write(const char *path, const cw_volume *volume,
  * OBJ and OFF in a comment, STL in its header when it fits there, glTF in the node's extras.
  *
  * Those comments name unit and frame (axes), too; cw_mesh_read() turns them back.
- * Returns  as cw_volume_write(); CW_ERR_ARGUMENT as cw_mesh_check(), for an empty mesh, and
- *          for glTF in another unit or frame than its own;
+ * Returns  as cw_volume_write(); CW_ERR_ARGUMENT as cw_mesh_check(), for an empty mesh, for
+ *          glTF in another unit or frame than its own, for text of a format that has none;
  *          CW_ERR_LIMIT when the format's own sizes are too small for the mesh. */
 CW_API cw_status cw_mesh_write(const char *path, const cw_mesh *mesh, const cw_write_desc *desc,
                                cw_error *err);

@@ -57,6 +57,27 @@ static void a_named_format_wins_over_the_extension(void **state)
     cw_mesh_free(&mesh);
 }
 
+/* Formats that are text anyway take the wish, too; volumes have no such choices. */
+static void text_is_refused_where_there_is_none(void **state)
+{
+    (void)state;
+    const cw_write_desc text = {.text = true}, ras = {.axes = {.ras = true}};
+    const cw_volume none = {0};
+    cw_mesh mesh = {0};
+    cw_error err = {0};
+    test_make_tetrahedron(&mesh);
+    assert_ok(cw_mesh_write(test_path("a.obj"), &mesh, &text, &err), err);
+    assert_fails(cw_mesh_write(test_path("a.glb"), &mesh, &text, &err), CW_ERR_ARGUMENT,
+                 "a.glb: glb has no form as text; those that have are gltf stl ply obj off",
+                 err);
+    assert_fails(cw_volume_write(test_path("a.nrrd"), &none, &text, &err), CW_ERR_ARGUMENT,
+                 "for meshes only", err);
+    assert_fails(cw_volume_write(test_path("a.nrrd"), &none, &ras, &err), CW_ERR_ARGUMENT,
+                 "for meshes only", err);
+    assert_int_equal(test_folder_entries(), 1);
+    cw_mesh_free(&mesh);
+}
+
 static bool refuse(void *user, const char *step, double done)
 {
     assert_string_equal(step, "writing");
@@ -288,6 +309,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         CASE(mistakes_are_named_with_the_path),
         CASE(a_named_format_wins_over_the_extension),
+        CASE(text_is_refused_where_there_is_none),
         CASE(a_cancelled_write_leaves_nothing),
         CASE(running_out_of_memory_leaves_nothing),
         CASE(the_table_of_formats_is_whole_and_always_the_same),
