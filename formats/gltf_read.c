@@ -197,6 +197,8 @@ static cw_status build_scene(cwi_gltf_reader *r, cw_mesh *mesh, cw_mesh_file *sa
         st = cwi_progress(&r->in->desc.progress, "reading",
                           (double)i / (double)r->instance_count, err);
         if (st == CW_OK)
+            st = cwi_mesh_begin_part(r->in, "", r->build.triangle_count, err);
+        if (st == CW_OK)
             st = cwi_gltf_add_instance(r, &r->instances[i], said, err);
     }
     if (st != CW_OK)

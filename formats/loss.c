@@ -12,18 +12,18 @@
 static void round_points(const cwi_part *part, float *rounded)
 {
     for (size_t i = 0; i < 3 * part->mesh.vertex_count; i++) {
-        const double world = cwi_world_coordinate(part, i / 3, (int)(i % 3));
+        const double world = cwi_coordinate(part, i / 3, (int)(i % 3));
         rounded[i] = (float)fmax(fmin(world, (double)FLT_MAX), -(double)FLT_MAX);
     }
 }
 
-static double step_of(const cw_mesh *mesh)
+static double step_of(const cwi_part *part)
 {
     double low[3], high[3], farthest = 0;
-    cw_mesh_bounds(mesh, low, high);
+    cwi_part_bounds(part, low, high);
     for (int a = 0; a < 3; a++)
         farthest = fmax(farthest, fmax(fabs(low[a]), fabs(high[a])));
-    return farthest > 0 ? ldexp(1, ilogb(farthest) - 23) : 0;
+    return farthest > 0 ? ldexp(1, ilogb(farthest) - 23) / fabs(part->turn.factor[0]) : 0;
 }
 
 static bool has_area(const float *points, const uint32_t *t)
@@ -76,7 +76,7 @@ cw_status cwi_measure_loss(const cwi_part *part, cw_write_loss *loss, cw_error *
         ok = cwi_weld(rounded, count, map);
     }
     if (ok) {
-        loss->step_mm = fmax(loss->step_mm, step_of(mesh));
+        loss->step_mm = fmax(loss->step_mm, step_of(part));
         loss->merged_vertices += count_merged(mesh, map);
         loss->flat_triangles += count_flat(mesh, rounded);
     }

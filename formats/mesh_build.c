@@ -3,6 +3,7 @@
 #include "core/status.h"
 #include "core/text.h"
 #include "core/vector.h"
+#include "formats/axes.h"
 #include "formats/mesh_readers.h"
 
 #include <float.h>
@@ -39,6 +40,30 @@ cw_status cwi_mesh_grow(cwi_mesh_input *in, void *array, size_t *room, size_t co
     memcpy(array, &memory, sizeof memory);
     in->bytes += (next - *room) * size;
     *room = next;
+    return CW_OK;
+}
+
+cw_status cwi_mesh_begin_part(cwi_mesh_input *in, const char *name, size_t triangle,
+                              cw_error *err)
+{
+    cwi_marks *m = &in->marks;
+    const bool empty = m->count && m->items[m->count - 1].triangle == triangle;
+    const bool untitled = m->count == 0 && triangle > 0; /* what was there before */
+    const size_t length = strlen(name);
+    if (empty)
+        m->name_bytes = m->items[--m->count].name;
+    cw_status st = cwi_mesh_grow(in, &m->items, &m->room, m->count + 2, sizeof *m->items, err);
+    if (st == CW_OK)
+        st = cwi_mesh_grow(in, &m->names, &m->name_room, m->name_bytes + length + 2, 1, err);
+    if (st != CW_OK)
+        return st;
+    if (untitled) {
+        m->items[m->count++] = (cwi_mark){0, m->name_bytes};
+        m->names[m->name_bytes++] = '\0';
+    }
+    m->items[m->count++] = (cwi_mark){triangle, m->name_bytes};
+    memcpy(m->names + m->name_bytes, name, length + 1);
+    m->name_bytes += length + 1;
     return CW_OK;
 }
 
@@ -243,6 +268,18 @@ void cwi_build_free(cwi_mesh_build *b)
     cwi_free(b->points);
     cwi_free(b->triangles);
     *b = (cwi_mesh_build){0};
+}
+
+void cwi_take_comment(const char *text, bool *ours, cw_mesh *mesh, cw_mesh_file *said)
+{
+    static const char name[] = "cubewright ", origin[] = "origin ";
+    if (strncmp(text, name, strlen(name)) == 0) {
+        const char *comma = strchr(text, ',');
+        const char *axes = comma ? comma + 1 + strspn(comma + 1, " ") : "";
+        *ours = cwi_parse_axes(&axes, said) || *ours;
+    } else if (*ours && strncmp(text, origin, strlen(origin)) == 0) {
+        said->local = cwi_parse_origin(text + strlen(origin), mesh->origin) || said->local;
+    }
 }
 
 bool cwi_parse_origin(const char *text, double origin[3])

@@ -1,6 +1,6 @@
 #include "core/memory.h"
 #include "core/status.h"
-#include "formats/mesh_readers.h"
+#include "formats/parts.h"
 #include "formats/readers.h"
 #include "formats/table.h"
 
@@ -93,6 +93,13 @@ static void drop_broken_normals(cw_mesh *mesh)
     mesh->normals = NULL;
 }
 
+/* The last one may have no triangles. */
+static size_t count_marks(const cwi_marks *marks, const cw_mesh *mesh)
+{
+    const size_t n = marks->count;
+    return n && marks->items[n - 1].triangle == mesh->triangle_count ? n - 1 : n;
+}
+
 static cw_status read_open_file(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said,
                                 cw_error *err)
 {
@@ -105,7 +112,33 @@ static cw_status read_open_file(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file 
     st = found->read(in, mesh, said, err);
     if (st == CW_OK)
         drop_broken_normals(mesh);
+    if (st == CW_OK)
+        st = cwi_turn_back(mesh, &said->axes, err);
+    const size_t parts = count_marks(&in->marks, mesh);
+    if (said->parts < parts)
+        said->parts = parts;
     return st;
+}
+
+/* Reads the mesh, and leaves the marks of its parts to be freed. */
+static cw_status read_file(const char *path, cwi_mesh_input *in, cw_mesh *mesh,
+                           cw_mesh_file *said, cw_error *err)
+{
+    memset(mesh, 0, sizeof *mesh);
+    cw_status st = cwi_input_open(&in->file, path, err);
+    in->file.allow_external = in->desc.allow_external;
+    if (st == CW_OK)
+        st = read_open_file(in, mesh, said, err);
+    cwi_input_close(&in->file);
+    if (st != CW_OK)
+        cw_mesh_free(mesh);
+    return st;
+}
+
+static void free_marks(cwi_marks *marks)
+{
+    cwi_free(marks->items);
+    cwi_free(marks->names);
 }
 
 cw_status cw_mesh_read(const char *path, const cw_mesh_read_desc *desc, cw_mesh *mesh,
@@ -113,16 +146,27 @@ cw_status cw_mesh_read(const char *path, const cw_mesh_read_desc *desc, cw_mesh 
 {
     cwi_mesh_input in = {.desc = resolve_desc(desc)};
     cw_mesh_file said = {0};
-    memset(mesh, 0, sizeof *mesh);
-    cw_status st = cwi_input_open(&in.file, path, err);
-    in.file.allow_external = in.desc.allow_external;
-    if (st == CW_OK)
-        st = read_open_file(&in, mesh, &said, err);
-    cwi_input_close(&in.file);
+    cw_status st = read_file(path, &in, mesh, &said, err);
+    free_marks(&in.marks);
     if (file)
         *file = said;
+    return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
+}
+
+cw_status cw_parts_read(const char *path, const cw_mesh_read_desc *desc, cw_part **parts,
+                        size_t *count, cw_mesh_file *file, cw_error *err)
+{
+    cwi_mesh_input in = {.desc = resolve_desc(desc)};
+    cw_mesh_file said = {0};
+    cw_mesh mesh;
+    *parts = NULL;
+    *count = 0;
+    cw_status st = read_file(path, &in, &mesh, &said, err);
     if (st == CW_OK)
-        return CW_OK;
-    cw_mesh_free(mesh);
-    return cwi_fail_in(err, st, path);
+        st = cwi_parts_split(&in, &mesh, parts, count, err);
+    cw_mesh_free(&mesh);
+    free_marks(&in.marks);
+    if (file)
+        *file = said;
+    return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
 }

@@ -9,15 +9,29 @@
 extern "C" {
 #endif
 
+/* Where a part of the file begins. */
+typedef struct cwi_mark {
+    size_t triangle; /* the first of it */
+    size_t name;     /* where it starts among the names */
+} cwi_mark;
+
+typedef struct cwi_marks {
+    cwi_mark *items;
+    char *names; /* each ends with a zero */
+    size_t count, room, name_bytes, name_room;
+} cwi_marks;
+
 /* An open file, and how much may be made of it. */
 typedef struct cwi_mesh_input {
     cwi_input file;
     cw_mesh_read_desc desc; /* defaults filled in */
     uint64_t bytes;         /* of arrays so far */
+    cwi_marks marks;
 } cwi_mesh_input;
 
-/* Fills a zeroed mesh and what the file says of itself (parts is 1 beforehand). The caller
- * frees the mesh of a reader that failed, and puts the file's name in front of its message. */
+/* Fills a zeroed mesh and what the file says of itself (parts is 1 beforehand). Coordinates are
+ * as they stand in the file, if said->axes tells what they are. The caller turns them, frees
+ * the mesh of a reader that failed, and puts the file's name in front of its message. */
 typedef cw_status cwi_mesh_reader(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said,
                                   cw_error *err);
 
@@ -42,6 +56,11 @@ cwi_mesh_reader cwi_gltf_read;
  * Returns CW_ERR_LIMIT past desc.max_bytes, CW_ERR_NO_MEMORY; the array is then as before. */
 cw_status cwi_mesh_grow(cwi_mesh_input *in, void *array, size_t *room, size_t count,
                         size_t size, cw_error *err);
+
+/* The triangles from this one on are of another part, of that name ("": none); it takes the
+ * place of one that has no triangles. Returns as cwi_mesh_grow() */
+cw_status cwi_mesh_begin_part(cwi_mesh_input *in, const char *name, size_t triangle,
+                              cw_error *err);
 
 /* CW_ERR_LIMIT for more triangles than desc.max_triangles. */
 cw_status cwi_mesh_limit_triangles(const cwi_mesh_input *in, uint64_t count, cw_error *err);
@@ -77,6 +96,10 @@ void cwi_build_end_face(cwi_mesh_build *b, cw_mesh_file *said);
  * Returns CW_ERR_FORMAT for a point that is not finite, an index that names none. */
 cw_status cwi_build_finish(cwi_mesh_build *b, cw_mesh *mesh, cw_error *err);
 void cwi_build_free(cwi_mesh_build *b);
+
+/* What our writers leave in a comment of text files: "cubewright VERSION, LPS, mm", and behind
+ * that (*ours) "origin X Y Z" of a local file. */
+void cwi_take_comment(const char *text, bool *ours, cw_mesh *mesh, cw_mesh_file *said);
 
 /* Reads three numbers, for the origin that our writers leave in a line of text; false, and the
  * origin as it was, when they are not there or not finite. */

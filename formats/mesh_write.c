@@ -13,19 +13,27 @@ typedef struct writer {
     const char *format;
     cwi_mesh_writer *write;
     cw_status (*prepare)(cw_error *err); /* loads what it needs; NULL: nothing */
-    bool world;                          /* coordinates hold the origin, unless local */
-    bool own_arrays;                     /* of each part; else those that all parts have */
+    bool own_axes;                       /* unit and frame are those of the format */
+    bool text;                           /* it is text, or can be */
+    bool compresses;                     /* it has compressed forms */
 } writer;
 
 static const writer writers[] = {
-    {.format = "glb", .write = cwi_glb_write, .prepare = cwi_gltf_prepare, .own_arrays = true},
+    {.format = "glb",
+     .write = cwi_glb_write,
+     .prepare = cwi_gltf_prepare,
+     .own_axes = true,
+     .compresses = true},
     {.format = "gltf",
      .write = cwi_gltf_write,
      .prepare = cwi_gltf_prepare,
-     .own_arrays = true},
-    {.format = "stl", .write = cwi_stl_write, .world = true},
-    {.format = "ply", .write = cwi_ply_write, .world = true},
-    {.format = "obj", .write = cwi_obj_write, .world = true},
+     .own_axes = true,
+     .compresses = true,
+     .text = true},
+    {.format = "stl", .write = cwi_stl_write, .text = true},
+    {.format = "ply", .write = cwi_ply_write, .text = true},
+    {.format = "obj", .write = cwi_obj_write, .text = true},
+    {.format = "off", .write = cwi_off_write, .text = true},
 };
 
 enum { PROGRESS_STEP = 65536 };
@@ -65,15 +73,15 @@ cw_status cwi_write_triangles(const cwi_parts *parts, cwi_mesh_output *out,
     return st;
 }
 
-static cw_status check_single(const cw_mesh *mesh, cw_error *err)
+static cw_status check_single(const cwi_part *part, cw_error *err)
 {
     double low[3], high[3];
-    cw_mesh_bounds(mesh, low, high);
+    cwi_part_bounds(part, low, high);
     for (int a = 0; a < 3; a++)
         if (low[a] < -(double)FLT_MAX || high[a] > (double)FLT_MAX)
             return cw_fail(err, CW_ERR_LIMIT,
-                           "the mesh stands at %g mm, which the format's single "
-                           "precision cannot say",
+                           "the mesh stands at %g, which the format's single precision cannot "
+                           "say",
                            high[a]);
     return CW_OK;
 }
@@ -82,7 +90,7 @@ cw_status cwi_check_single(const cwi_parts *parts, cw_error *err)
 {
     cw_status st = CW_OK;
     for (size_t i = 0; i < parts->count && st == CW_OK; i++)
-        st = check_single(&parts->items[i].mesh, err);
+        st = check_single(&parts->items[i], err);
     return st;
 }
 
@@ -146,25 +154,68 @@ static cw_status fail_unknown(const char *name, cw_error *err)
                    list);
 }
 
-/* The writer of a path, with what it needs loaded. */
-static cw_status find_writer(const char *path, const char *name, const writer **out,
-                             cw_error *err)
+/* glTF may be asked for what it is in any case. */
+static cw_status check_axes(const writer *w, const cw_axes *axes, cw_error *err)
 {
-    const cw_format *format = find_format(path, name);
-    if (!format)
-        return fail_unknown(name, err);
-    *out = writers;
-    while (strcmp((*out)->format, format->name) != 0)
-        (*out)++; /* every format that says it writes meshes has its row */
-    return (*out)->prepare ? (*out)->prepare(err) : CW_OK;
+    const bool metres = axes->unit == CW_UNIT_MM || axes->unit == CW_UNIT_M;
+    if (axes->unit >= CW_UNIT_COUNT)
+        return cw_fail(err, CW_ERR_ARGUMENT, "%d is no unit", (int)axes->unit);
+    if (w->own_axes && (!metres || axes->ras))
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "%s is in metres, +Y up and facing +Z: it has no other unit or frame",
+                       w->format);
+    return CW_OK;
 }
 
-static cw_status write_parts(const char *path, const cwi_parts *parts, const writer *w,
+static cw_status check_text(const writer *w, const cw_write_desc *d, cw_error *err)
+{
+    char list[128] = "";
+    size_t used = 0;
+    if (!d->text || w->text)
+        return CW_OK;
+    for (size_t i = 0; i < sizeof writers / sizeof *writers; i++)
+        if (writers[i].text && used < sizeof list)
+            used += (size_t)snprintf(list + used, sizeof list - used, " %s", writers[i].format);
+    return cw_fail(err, CW_ERR_ARGUMENT, "%s has no form as text; those that have are%s",
+                   w->format, list);
+}
+
+static cw_status check_compression(const writer *w, const cw_write_desc *d, cw_error *err)
+{
+    if (d->compression == CW_COMPRESS_NONE || w->compresses)
+        return CW_OK;
+    return cw_fail(err, CW_ERR_ARGUMENT, "%s has no compressed form; glTF (.glb, .gltf) has",
+                   w->format);
+}
+
+/* How a file will be written. */
+typedef struct target {
+    const cw_format *format;
+    const writer *writer;
+} target;
+
+/* The format and writer of a path, with what it needs loaded; it can do what is asked for. */
+static cw_status find_writer(const char *path, const cw_write_desc *d, target *t, cw_error *err)
+{
+    *t = (target){find_format(path, d->format), writers};
+    if (!t->format)
+        return fail_unknown(d->format, err);
+    while (strcmp(t->writer->format, t->format->name) != 0)
+        t->writer++; /* every format that says it writes meshes has its row */
+    cw_status st = check_axes(t->writer, &d->axes, err);
+    if (st == CW_OK)
+        st = check_text(t->writer, d, err);
+    if (st == CW_OK)
+        st = check_compression(t->writer, d, err);
+    return st == CW_OK && t->writer->prepare ? t->writer->prepare(err) : st;
+}
+
+static cw_status write_parts(const char *path, const cwi_parts *parts, const target *t,
                              const cw_write_desc *d, cwi_mesh_output *out, cw_error *err)
 {
     cw_status st = cwi_outfile_open(&out->file, path, d->no_clobber, err);
     if (st == CW_OK)
-        st = w->write(parts, out, err);
+        st = t->writer->write(parts, out, err);
     if (st == CW_OK)
         st = cwi_outfile_commit(&out->file, err);
     cwi_outfile_abort(&out->file);
@@ -174,8 +225,8 @@ static cw_status write_parts(const char *path, const cwi_parts *parts, const wri
 cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
                          const cw_write_desc *desc, cw_error *err)
 {
-    const cw_write_desc d = desc ? *desc : (cw_write_desc){0};
-    const writer *w;
+    cw_write_desc d = desc ? *desc : (cw_write_desc){0};
+    target t;
     char name[CWI_NAME_BYTES];
     double origin[3];
     cwi_parts placed = {0};
@@ -183,12 +234,16 @@ cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
     cwi_mesh_output out = {.name = name,
                            .local_origin = d.local ? origin : NULL,
                            .desc = &d,
+                           .axes = &d.axes,
+                           .text = d.text,
                            .progress = &d.progress};
-    cw_status st = find_writer(path, d.format, &w, err);
+    cw_status st = find_writer(path, &d, &t, err);
+    if (st == CW_OK && t.writer->own_axes)
+        d.axes = (cw_axes){0};
     if (st == CW_OK)
-        st = cwi_parts_place(parts, count, &d, w->own_arrays, name, &placed, origin, err);
+        st = cwi_parts_place(parts, count, &d, t.format->keeps, name, &placed, origin, err);
     if (st == CW_OK)
-        st = write_parts(path, &placed, w, &d, &out, err);
+        st = write_parts(path, &placed, &t, &d, &out, err);
     cwi_parts_free(&placed);
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
 }
@@ -206,20 +261,36 @@ static bool is_exact(const cwi_part *part, const cw_write_desc *d)
     return d->local && origin[0] == 0 && origin[1] == 0 && origin[2] == 0;
 }
 
+static unsigned find_dropped(const cw_part *parts, size_t count, const cwi_parts *placed,
+                             unsigned keeps, const cw_write_loss *loss)
+{
+    unsigned had = CW_KEEPS_SHARING | (placed->count > 1 ? CW_KEEPS_PARTS : 0u);
+    unsigned has = keeps & (CW_KEEPS_SHARING | CW_KEEPS_PARTS | CW_KEEPS_AFFINE);
+    for (size_t i = 0; i < count; i++)
+        had |= cwi_arrays_of(parts[i].mesh);
+    for (size_t i = 0; i < placed->count; i++)
+        has |= cwi_arrays_of(&placed->items[i].mesh) & ~(unsigned)CW_KEEPS_AFFINE;
+    if (loss->merged_vertices || loss->flat_triangles)
+        had |= CW_KEEPS_PLACES;
+    return had & ~has;
+}
+
 cw_status cw_parts_write_loss(const char *path, const cw_part *parts, size_t count,
                               const cw_write_desc *desc, cw_write_loss *loss, cw_error *err)
 {
     const cw_write_desc d = desc ? *desc : (cw_write_desc){0};
-    const writer *w;
+    target t;
     double origin[3];
     cwi_parts placed = {0};
     memset(loss, 0, sizeof *loss);
-    cw_status st = find_writer(path, d.format, &w, err);
+    cw_status st = find_writer(path, &d, &t, err);
     if (st == CW_OK)
-        st = cwi_parts_place(parts, count, &d, w->own_arrays, "", &placed, origin, err);
+        st = cwi_parts_place(parts, count, &d, t.format->keeps, "", &placed, origin, err);
     for (size_t i = 0; i < placed.count && st == CW_OK; i++)
-        if (w->world && !is_exact(&placed.items[i], &d))
+        if (!(t.format->keeps & CW_KEEPS_PLACES) && !is_exact(&placed.items[i], &d))
             st = cwi_measure_loss(&placed.items[i], loss, err);
+    if (st == CW_OK)
+        loss->dropped = find_dropped(parts, count, &placed, t.format->keeps, loss);
     cwi_parts_free(&placed);
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
 }
@@ -234,8 +305,8 @@ cw_status cw_mesh_write_check(const char *path, const cw_write_desc *desc, cw_er
 {
     const cw_write_desc d = desc ? *desc : (cw_write_desc){0};
     cwi_outfile *file = NULL;
-    const writer *w;
-    cw_status st = find_writer(path, d.format, &w, err);
+    target t;
+    cw_status st = find_writer(path, &d, &t, err);
     if (st == CW_OK) /* to make a file and drop it is the only sure way to know */
         st = cwi_outfile_open(&file, path, d.no_clobber, err);
     cwi_outfile_abort(&file);

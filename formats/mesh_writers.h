@@ -6,25 +6,26 @@
 #include <cubewright/formats.h>
 
 #include "core/outfile.h"
-
-#include <string.h>
+#include "formats/axes.h"
+#include "formats/decimals.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
-enum { CWI_NAME_BYTES = 256, CWI_RECORD_BYTES = 256 };
+enum { CWI_NAME_BYTES = 256, CWI_RECORD_BYTES = 512 };
 
 /* A part as a writer gets it: checked, with triangles. */
 typedef struct cwi_part {
-    cw_mesh mesh;   /* borrows its arrays; those that the file does not keep are NULL. For a
-                       local file its origin counts from that of the file. */
-    uint64_t first; /* vertices of the parts before it */
-    char name[CWI_NAME_BYTES]; /* printable UTF-8 on one line */
+    cw_mesh mesh;  /* borrows its arrays; those that the file does not keep are NULL. For a
+                      local file its origin counts from that of the file. */
+    cwi_turn turn; /* from its coordinates to those of the file */
+    uint64_t first, first_normal; /* vertices, and normals, of the parts before it */
+    int digits;                   /* that a place is written with in text */
+    char name[CWI_NAME_BYTES];    /* printable UTF-8 on one line */
 } cwi_part;
 
-/* Formats that hold one mesh write them one behind the other. All have the same arrays, unless
- * the writer's row says that each may have its own. */
+/* Formats that hold one mesh write them one behind the other; all have the same arrays then. */
 typedef struct cwi_parts {
     cwi_part *items;
     size_t count;
@@ -33,10 +34,12 @@ typedef struct cwi_parts {
 
 typedef struct cwi_mesh_output {
     cwi_outfile *file;
-    const char *name; /* of all parts together; as that of a part */
-    const double
-        *local_origin; /* what gives the world's coordinates when added; NULL: nothing */
+    const char *name;           /* of all parts together; as that of a part */
+    const double *local_origin; /* what gives the world's coordinates when added, as the file
+                                   counts them; NULL: nothing */
     const cw_write_desc *desc;
+    const cw_axes *axes;
+    bool text;
     const cw_progress *progress;
     size_t done, total; /* records, for progress; a writer sets the total */
 } cwi_mesh_output;
@@ -46,6 +49,7 @@ typedef cw_status cwi_mesh_writer(const cwi_parts *parts, cwi_mesh_output *out, 
 CW_API cwi_mesh_writer cwi_stl_write;
 CW_API cwi_mesh_writer cwi_ply_write;
 CW_API cwi_mesh_writer cwi_obj_write;
+CW_API cwi_mesh_writer cwi_off_write;
 CW_API cwi_mesh_writer cwi_glb_write;
 CW_API cwi_mesh_writer cwi_gltf_write;
 
@@ -75,7 +79,10 @@ void cwi_print_origin(const cwi_mesh_output *out, const char *before, const char
 /* Adds what a part loses in a file that holds its coordinates in single precision. */
 cw_status cwi_measure_loss(const cwi_part *part, cw_write_loss *loss, cw_error *err);
 
-/* CW_ERR_LIMIT when a world coordinate is beyond single precision's largest number. */
+/* The part's box in the file. */
+void cwi_part_bounds(const cwi_part *part, double low[3], double high[3]);
+
+/* CW_ERR_LIMIT when a coordinate is beyond single precision's largest number. */
 cw_status cwi_check_single(const cwi_parts *parts, cw_error *err);
 
 /* Little endian on any machine; each returns the end of what it put. */
@@ -105,16 +112,53 @@ static inline unsigned char *cwi_put_f32x3(unsigned char *to, const float value[
     return to;
 }
 
-/* Summed in double: a position keeps its micrometres until the format takes them. */
-static inline double cwi_world_coordinate(const cwi_part *part, size_t vertex, int axis)
+/* As it stands in the file. Summed in double: a position keeps its micrometres until the format
+ * takes them. Adding 0.0 turns -0 into 0. */
+static inline double cwi_coordinate(const cwi_part *part, size_t vertex, int axis)
 {
-    return part->mesh.origin[axis] + (double)part->mesh.positions[3 * vertex + (size_t)axis];
+    const int a = part->turn.from[axis];
+    const double world =
+        part->mesh.origin[a] + (double)part->mesh.positions[3 * vertex + (size_t)a];
+    return part->turn.factor[axis] * world + 0.0;
+}
+
+static inline void cwi_normal(const cwi_part *part, size_t vertex, float normal[3])
+{
+    for (int a = 0; a < 3; a++)
+        normal[a] = (float)part->turn.sign[a] *
+                    part->mesh.normals[3 * vertex + (size_t)part->turn.from[a]];
+}
+
+/* A vertex's place and its normal as text: three numbers each. */
+static inline unsigned char *cwi_put_place(unsigned char *to, const cwi_part *part, size_t v)
+{
+    double place[3];
+    for (int a = 0; a < 3; a++)
+        place[a] = cwi_coordinate(part, v, a);
+    return cwi_put_decimals(to, place, part->digits);
+}
+
+static inline unsigned char *cwi_put_normal(unsigned char *to, const cwi_part *part, size_t v)
+{
+    float normal[3];
+    cwi_normal(part, v, normal);
+    return cwi_put_singles(to, normal);
 }
 
 /* A triangle's corner, counted through all parts from 0. */
 static inline uint64_t cwi_corner_number(const cwi_part *part, size_t triangle, int corner)
 {
     return part->first + part->mesh.triangles[3 * triangle + (size_t)corner];
+}
+
+/* "3 0 1 2": a face of PLY as text, and of OFF. */
+static inline unsigned char *cwi_put_face_line(const cwi_part *part, size_t triangle,
+                                               unsigned char *to)
+{
+    *to++ = '3';
+    for (int c = 0; c < 3; c++)
+        to = cwi_put_integer(cwi_put_text(to, " "), cwi_corner_number(part, triangle, c));
+    return cwi_put_text(to, "\n");
 }
 
 #ifdef __cplusplus

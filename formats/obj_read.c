@@ -1,4 +1,4 @@
-/* Wavefront OBJ: vertices, normals and faces; groups, objects and materials do not matter. */
+/* Wavefront OBJ: vertices, normals and faces, in objects or groups; materials do not matter. */
 #include "core/memory.h"
 #include "core/status.h"
 #include "core/text.h"
@@ -15,8 +15,9 @@ typedef struct obj {
     float *normals;      /* normal_count x 3 */
     uint32_t *normal_of; /* a vertex's normal, or NONE; for the first named of them */
     size_t normal_count, normal_room, named, named_room;
-    bool mixed; /* some vertex has two normals, or a corner none: then none are kept */
-    bool ours;  /* the first line is that of our writer */
+    bool mixed;       /* some vertex has two normals, or a corner none: then none are kept */
+    bool ours;        /* a comment is that of our writer */
+    bool has_objects; /* then groups are no parts */
 } obj;
 
 /* --- normals ----------------------------------------------------------------------------- */
@@ -154,24 +155,25 @@ static cw_status read_vertex(obj *o, cwi_scan *s, cw_error *err)
     return st == CW_OK ? cwi_scan_end_line(s, err) : st;
 }
 
-/* The lines that our writer leaves: "# cubewright VERSION, LPS, mm", "# origin X Y Z". */
 static cw_status read_comment(obj *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *said,
                               cw_error *err)
 {
-    static const char *const words[4] = {"cubewright", NULL, "LPS,", "mm"};
-    cwi_word word;
-    cw_status st = cwi_scan_word(s, &word, err);
-    bool same = st == CW_OK && word.size;
-    if (same && o->ours && cwi_word_is(&word, "origin")) {
-        said->local = cwi_parse_origin(word.text + word.size, mesh->origin);
-    } else if (same && s->line == 1) {
-        for (int i = 0; i < 4 && same && st == CW_OK; i++) {
-            same = !words[i] || cwi_word_is(&word, words[i]);
-            st = i < 3 ? cwi_scan_word(s, &word, err) : CW_OK;
-        }
-        o->ours = same;
-        said->known |= same ? CW_KNOWN_UNIT | CW_KNOWN_FRAME : 0u;
-    }
+    char text[CWI_REST_BYTES];
+    cw_status st = cwi_scan_rest(s, text, err);
+    if (st == CW_OK)
+        cwi_take_comment(text, &o->ours, mesh, said);
+    return st == CW_OK ? cwi_scan_end_line(s, err) : st;
+}
+
+static cw_status read_part(obj *o, cwi_scan *s, bool is_object, cw_error *err)
+{
+    char name[CWI_REST_BYTES];
+    if (!is_object && o->has_objects)
+        return cwi_scan_end_line(s, err);
+    o->has_objects = is_object;
+    cw_status st = cwi_scan_rest(s, name, err);
+    if (st == CW_OK)
+        st = cwi_mesh_begin_part(o->build.in, name, o->build.triangle_count, err);
     return st == CW_OK ? cwi_scan_end_line(s, err) : st;
 }
 
@@ -190,6 +192,8 @@ static cw_status read_line(obj *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *sai
         return read_face(o, s, said, err);
     else if (cwi_word_is(&word, "#"))
         return read_comment(o, s, mesh, said, err);
+    else if (cwi_word_is(&word, "o") || cwi_word_is(&word, "g"))
+        return read_part(o, s, word.text[0] == 'o', err);
     else if (cwi_word_is(&word, "l") || cwi_word_is(&word, "p"))
         said->skipped++;
     return st == CW_OK ? cwi_scan_end_line(s, err) : st;

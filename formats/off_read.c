@@ -77,15 +77,36 @@ static cw_status check_counts(const cwi_scan *s, int64_t vertices, int64_t faces
     return CW_OK;
 }
 
-/* Vertices, faces and (never used, at times left out) edges: behind the keyword or below. */
-static cw_status read_counts(off *o, cwi_scan *s, cw_error *err)
+/* The first word that is no comment; of those ours are looked at. */
+static cw_status first_word(cwi_scan *s, cwi_word *word, cw_mesh *mesh, cw_mesh_file *said,
+                            cw_error *err)
 {
-    bool found;
+    char text[CWI_REST_BYTES];
+    bool found, ours = false;
+    cw_status st = CW_OK;
+    s->comments = false;
+    while (st == CW_OK) {
+        st = cwi_scan_next_line(s, &found, err);
+        if (st == CW_OK)
+            st = cwi_scan_word(s, word, err);
+        if (st != CW_OK || !found || word->text[0] != '#')
+            break;
+        const bool alone = word->size == 1;
+        st = cwi_scan_rest(s, text, err);
+        if (st == CW_OK && alone)
+            cwi_take_comment(text, &ours, mesh, said);
+    }
+    s->comments = true;
+    return st;
+}
+
+/* Vertices, faces and (never used, at times left out) edges: behind the keyword or below. */
+static cw_status read_counts(off *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *said,
+                             cw_error *err)
+{
     int64_t vertices = 0, faces = 0;
     cwi_word word = {0};
-    cw_status st = cwi_scan_next_line(s, &found, err);
-    if (st == CW_OK)
-        st = cwi_scan_word(s, &word, err);
+    cw_status st = first_word(s, &word, mesh, said, err);
     if (st == CW_OK && cwi_word_is(&word, "BINARY"))
         return cw_fail(err, CW_ERR_FORMAT, "binary OFF is not read, only its text form");
     if (st == CW_OK && !cwi_word_integer(&word, &vertices))
@@ -209,7 +230,7 @@ cw_status cwi_off_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw
     if (st == CW_OK)
         st = read_keyword(&o, &s, err);
     if (st == CW_OK)
-        st = read_counts(&o, &s, err);
+        st = read_counts(&o, &s, mesh, said, err);
     if (st == CW_OK)
         st = make_room(&o, mesh, err);
     if (st == CW_OK)

@@ -4,6 +4,7 @@
 #include "core/status.h"
 #include "core/text.h"
 
+#include <math.h>
 #include <stdio.h>
 
 /* --- names ------------------------------------------------------------------------------- */
@@ -16,9 +17,7 @@ static size_t kept_length(const char *text)
     return printable ? cwi_utf8_length(text) : 0;
 }
 
-/* Copies size bytes of text; what is not a printable character of UTF-8 becomes '_', so that no
- * name can break a line of OBJ or the JSON of glTF. */
-static void clean_name(const char *text, size_t size, char name[CWI_NAME_BYTES])
+void cwi_clean_name(const char *text, size_t size, char name[CWI_NAME_BYTES])
 {
     size_t used = 0;
     for (size_t i = 0; i < size;) {
@@ -43,7 +42,7 @@ void cwi_choose_name(const char *path, const cw_part *parts, size_t count,
     const char *asked = desc->name ? desc->name : count == 1 ? parts->name : NULL;
     const char *stem = asked ? asked : slash ? slash + 1 : path;
     const char *dot = asked ? NULL : strrchr(stem, '.');
-    clean_name(stem, dot && dot != stem ? (size_t)(dot - stem) : strlen(stem), name);
+    cwi_clean_name(stem, dot && dot != stem ? (size_t)(dot - stem) : strlen(stem), name);
 }
 
 /* A part without a name has that of all, with its number behind it where there are several. */
@@ -51,7 +50,7 @@ static void name_part(cwi_part *part, const char *given, const char *all, size_t
                       size_t count)
 {
     if (given && count > 1)
-        clean_name(given, strlen(given), part->name);
+        cwi_clean_name(given, strlen(given), part->name);
     else if (count > 1)
         snprintf(part->name, sizeof part->name, "%.200s %zu", all, number);
     else
@@ -72,40 +71,81 @@ static cw_status check_parts(const cw_part *parts, size_t count, cw_error *err)
     return empty ? cw_fail(err, CW_ERR_ARGUMENT, "the mesh is empty") : CW_OK;
 }
 
-/* Arrays of which one part has none are of no use to the whole. */
-static void share_arrays(cwi_parts *parts)
+unsigned cwi_arrays_of(const cw_mesh *mesh)
 {
-    bool normals = true, scalars = true, colors = true, labels = true;
+    unsigned has =
+        (mesh->normals ? CW_KEEPS_NORMALS : 0u) | (mesh->colors ? CW_KEEPS_COLORS : 0u) |
+        (mesh->scalars ? CW_KEEPS_SCALARS : 0u) | (mesh->labels ? CW_KEEPS_LABELS : 0u);
+    for (int i = 0; i < 12; i++)
+        has |= mesh->affine[i / 4][i % 4] != 0 ? CW_KEEPS_AFFINE : 0u;
+    return has;
+}
+
+static void keep_arrays(cw_mesh *m, unsigned keeps)
+{
+    m->normals = keeps & CW_KEEPS_NORMALS ? m->normals : NULL;
+    m->colors = keeps & CW_KEEPS_COLORS ? m->colors : NULL;
+    m->scalars = keeps & CW_KEEPS_SCALARS ? m->scalars : NULL;
+    m->labels = keeps & CW_KEEPS_LABELS ? m->labels : NULL;
+}
+
+/* Arrays of which one part has none are of no use where all parts share them. */
+static void choose_arrays(cwi_parts *parts, unsigned keeps)
+{
+    unsigned shared = keeps;
+    uint64_t normals = 0;
+    for (size_t i = 0; i < parts->count; i++)
+        shared &= cwi_arrays_of(&parts->items[i].mesh);
     for (size_t i = 0; i < parts->count; i++) {
-        const cw_mesh *m = &parts->items[i].mesh;
-        normals = normals && m->normals;
-        scalars = scalars && m->scalars;
-        colors = colors && m->colors;
-        labels = labels && m->labels;
-    }
-    for (size_t i = 0; i < parts->count; i++) {
-        cw_mesh *m = &parts->items[i].mesh;
-        m->normals = normals ? m->normals : NULL;
-        m->scalars = scalars ? m->scalars : NULL;
-        m->colors = colors ? m->colors : NULL;
-        m->labels = labels ? m->labels : NULL;
+        cwi_part *part = &parts->items[i];
+        keep_arrays(&part->mesh, keeps & CW_KEEPS_PARTS ? keeps : shared);
+        part->first_normal = normals;
+        normals += part->mesh.normals ? part->mesh.vertex_count : 0;
     }
 }
 
-static void add_part(cwi_parts *parts, const cw_mesh *mesh, const double origin[3])
+void cwi_part_bounds(const cwi_part *part, double low[3], double high[3])
+{
+    double min[3], max[3], p[3], q[3];
+    cw_mesh_bounds(&part->mesh, min, max);
+    cwi_turn_point(&part->turn, min, p);
+    cwi_turn_point(&part->turn, max, q);
+    for (int a = 0; a < 3; a++) {
+        low[a] = fmin(p[a], q[a]);
+        high[a] = fmax(p[a], q[a]);
+    }
+}
+
+/* Nine digits give a float back to the bit, the tenth is room for the origin. Where the mesh
+ * stands more than ten times its own size from zero, 17 give a double. */
+static int digits_of(const cwi_part *part)
+{
+    double low[3], high[3], distance = 0, size = 0;
+    cwi_part_bounds(part, low, high);
+    for (int a = 0; a < 3; a++) {
+        distance = fmax(distance, fmax(fabs(low[a]), fabs(high[a])));
+        size = fmax(size, high[a] - low[a]);
+    }
+    return distance > 10 * size ? 17 : 10;
+}
+
+static void add_part(cwi_parts *parts, const cw_mesh *mesh, const double origin[3],
+                     const cw_axes *axes)
 {
     cwi_part *part = &parts->items[parts->count++];
     part->mesh = *mesh;
+    part->turn = cwi_turn_to(axes);
     part->first = parts->vertices;
     for (int a = 0; a < 3; a++)
         part->mesh.origin[a] -= origin[a];
+    part->digits = digits_of(part);
     parts->vertices += mesh->vertex_count;
     parts->triangles += mesh->triangle_count;
 }
 
 cw_status cwi_parts_place(const cw_part *parts, size_t count, const cw_write_desc *desc,
-                          bool own_arrays, const char *name, cwi_parts *placed,
-                          double origin[3], cw_error *err)
+                          unsigned keeps, const char *name, cwi_parts *placed, double origin[3],
+                          cw_error *err)
 {
     static const double zero[3] = {0};
     cw_status st = check_parts(parts, count, err);
@@ -114,14 +154,14 @@ cw_status cwi_parts_place(const cw_part *parts, size_t count, const cw_write_des
     placed->items = cwi_alloc_zeroed(count, sizeof *placed->items);
     if (!placed->items)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", count);
-    memcpy(origin, desc->local ? parts->mesh->origin : zero, sizeof zero);
+    const double *from = desc->local ? parts->mesh->origin : zero;
     for (size_t i = 0; i < count; i++)
         if (parts[i].mesh->triangle_count) {
-            add_part(placed, parts[i].mesh, origin);
+            add_part(placed, parts[i].mesh, from, &desc->axes);
             name_part(&placed->items[placed->count - 1], parts[i].name, name, i + 1, count);
         }
-    if (!own_arrays)
-        share_arrays(placed);
+    choose_arrays(placed, keeps);
+    cwi_turn_point(&placed->items->turn, from, origin);
     return CW_OK;
 }
 

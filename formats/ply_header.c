@@ -2,6 +2,7 @@
 
 #include "core/status.h"
 #include "core/text.h"
+#include "formats/axes.h"
 #include "formats/header.h"
 
 #include <stdio.h>
@@ -138,20 +139,22 @@ static cw_status parse_property(cwi_ply_header *h, const char *rest, const char 
     return st;
 }
 
-/* What our writer says of unit, frame and origin; the latter is only taken from a file that is
- * ours, as others may mean something else. */
+/* What our writer says of unit, frame, up and origin; the latter two are only taken from a file
+ * that is ours, as others may mean something else. */
 static void parse_comment(cwi_ply_header *h, const char *rest, bool *ours, cw_mesh_file *said)
 {
     char word[CWI_WORD_BYTES] = "", value[CWI_WORD_BYTES] = "";
     cwi_next_word(&rest, word);
-    const char *numbers = rest;
+    const char *numbers = rest, *name = value;
     cwi_next_word(&rest, value);
     if (strcmp(word, "cubewright") == 0)
         *ours = true;
-    else if (strcmp(word, "unit") == 0 && strcmp(value, "mm") == 0)
-        said->known |= CW_KNOWN_UNIT;
-    else if (strcmp(word, "frame") == 0 && strcmp(value, "LPS") == 0)
-        said->known |= CW_KNOWN_FRAME;
+    else if (strcmp(word, "unit") == 0)
+        cwi_parse_unit(&name, said);
+    else if (strcmp(word, "frame") == 0)
+        cwi_parse_frame(&name, said);
+    else if (strcmp(word, "up") == 0 && *ours)
+        said->axes.y_up = strcmp(value, "Y") == 0;
     else if (strcmp(word, "origin") == 0 && *ours)
         said->local = cwi_parse_origin(numbers, h->origin);
 }

@@ -144,6 +144,22 @@ bool cwi_word_is(const cwi_word *word, const char *text)
     return strlen(text) == word->size && memcmp(word->text, text, word->size) == 0;
 }
 
+cw_status cwi_scan_rest(cwi_scan *s, char text[CWI_REST_BYTES], cw_error *err)
+{
+    size_t used = 0;
+    cw_status st = hold(s, 1, err);
+    while (st == CW_OK && s->next < s->end && s->text[s->next] != '\n') {
+        const char c = s->text[s->next++];
+        if (used + 1 < CWI_REST_BYTES && (used || !is_blank(c)))
+            text[used++] = c;
+        st = hold(s, 1, err);
+    }
+    while (used && is_blank(text[used - 1]))
+        used--;
+    text[used] = '\0';
+    return st;
+}
+
 cw_status cwi_scan_end_line(cwi_scan *s, cw_error *err)
 {
     cw_status st = skip_to_line_end(s, err);

@@ -5,7 +5,7 @@
 #include "formats/input.h"
 
 /* Words are shorter than this, and records taken at once not longer. */
-enum { CWI_SCAN_AHEAD = 256 };
+enum { CWI_SCAN_AHEAD = 256, CWI_REST_BYTES = 512 };
 
 /* A zeroed scan is closed. */
 typedef struct cwi_scan {
@@ -46,6 +46,9 @@ bool cwi_word_is(const cwi_word *word, const char *text);
 /* Whether the whole word is a number, and which. */
 bool cwi_word_double(const cwi_word *word, double *value);
 bool cwi_word_integer(const cwi_word *word, int64_t *value);
+
+/* The rest of the line, without blanks around it and as far as it fits, and a zero. */
+cw_status cwi_scan_rest(cwi_scan *s, char text[CWI_REST_BYTES], cw_error *err);
 
 /* Leaves out the rest of the line. */
 cw_status cwi_scan_end_line(cwi_scan *s, cw_error *err);

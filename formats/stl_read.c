@@ -2,6 +2,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "core/weld.h"
+#include "formats/axes.h"
 #include "formats/mesh_readers.h"
 
 #include <float.h>
@@ -90,6 +91,19 @@ static cw_status make_room(facets *f, uint64_t count, cw_error *err)
     return st;
 }
 
+/* "cubewright, LPS, mm from 1 2 3", as our writer leaves it: frame and unit, and the origin of
+ * a local file. */
+static void take_words(const char *text, cw_mesh *mesh, cw_mesh_file *said)
+{
+    static const char ours[] = "cubewright, ", from[] = " from ";
+    const char *rest = text + strlen(ours);
+    if (strncmp(text, ours, strlen(ours)) != 0 || !cwi_parse_axes(&rest, said))
+        return;
+    said->local = strncmp(rest, from, strlen(from)) == 0;
+    if (said->local && !cwi_parse_origin(rest + strlen(from), mesh->origin))
+        said->known = CW_KNOWN_UNIT;
+}
+
 /* --- binary ------------------------------------------------------------------------------ */
 
 static cw_status read_binary_facets(facets *f, cwi_scan *s, size_t count, cw_error *err)
@@ -107,20 +121,6 @@ static cw_status read_binary_facets(facets *f, cwi_scan *s, size_t count, cw_err
     return st == CW_OK ? add_facets(f, corners, count, err) : st;
 }
 
-/* The header that our writer leaves: frame and unit, and the origin of a local file. */
-static void read_header(const unsigned char *head, cw_mesh *mesh, cw_mesh_file *said)
-{
-    static const char ours[] = "cubewright, LPS, mm", from[] = " from ";
-    char text[HEADER + 1] = "";
-    memcpy(text, head, HEADER);
-    if (strncmp(text, ours, strlen(ours)) != 0)
-        return;
-    const char *rest = text + strlen(ours);
-    said->local = strncmp(rest, from, strlen(from)) == 0;
-    const bool placed = !said->local || cwi_parse_origin(rest + strlen(from), mesh->origin);
-    said->known = CW_KNOWN_UNIT | (placed ? CW_KNOWN_FRAME : 0u);
-}
-
 static cw_status read_binary(facets *f, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *said,
                              cw_error *err)
 {
@@ -128,9 +128,11 @@ static cw_status read_binary(facets *f, cwi_scan *s, cw_mesh *mesh, cw_mesh_file
     cw_status st = cwi_scan_take(s, START, "the header", &head, err);
     if (st != CW_OK)
         return st;
+    char text[HEADER + 1] = "";
     const uint32_t count = u32_at(head + HEADER);
     const uint64_t held = cwi_scan_left(s) / FACET;
-    read_header(head, mesh, said);
+    memcpy(text, head, HEADER);
+    take_words(text, mesh, said);
     if (count > held)
         return cw_fail(err, CW_ERR_FORMAT,
                        "the header counts %u facets; the file has room for %llu", count,
@@ -199,10 +201,33 @@ static cw_status read_text_facet(facets *f, cwi_scan *s, cw_error *err)
     return st == CW_OK ? add_facets(f, corners, 1, err) : st;
 }
 
-static cw_status read_solid(facets *f, cwi_scan *s, cw_error *err)
+/* Takes our words off the end of a solid's name. */
+static void take_name(char *name, cw_mesh *mesh, cw_mesh_file *said)
 {
+    static const char ours[] = "cubewright, ";
+    char *at = name + strlen(name);
+    while (at > name && strncmp(at, ours, strlen(ours)) != 0)
+        at--;
+    take_words(at, mesh, said);
+    while (said->known && at > name && at[-1] == ' ')
+        at--;
+    if (said->known)
+        *at = '\0';
+}
+
+/* Behind the word "solid"; its name may be any words. */
+static cw_status read_solid(facets *f, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *said,
+                            cw_error *err)
+{
+    char name[CWI_REST_BYTES];
     cwi_word word = {0};
-    cw_status st = cwi_scan_end_line(s, err); /* the name may be any words */
+    cw_status st = cwi_scan_rest(s, name, err);
+    if (st == CW_OK && f->count == 0)
+        take_name(name, mesh, said);
+    if (st == CW_OK)
+        st = cwi_mesh_begin_part(f->in, name, f->count, err);
+    if (st == CW_OK)
+        st = cwi_scan_end_line(s, err);
     while (st == CW_OK) {
         st = cwi_scan_word(s, &word, err);
         if (st == CW_OK && is_keyword(&word, "facet"))
@@ -215,14 +240,15 @@ static cw_status read_solid(facets *f, cwi_scan *s, cw_error *err)
     return st;
 }
 
-static cw_status read_text(facets *f, cwi_scan *s, cw_error *err)
+static cw_status read_text(facets *f, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *said,
+                           cw_error *err)
 {
     cwi_word word;
     cw_status st = cwi_scan_word(s, &word, err);
     while (st == CW_OK && word.size) {
         if (!is_keyword(&word, "solid"))
             return cwi_scan_fail(s, &word, "the next word", "solid", err);
-        st = read_solid(f, s, err);
+        st = read_solid(f, s, mesh, said, err);
         if (st == CW_OK)
             st = cwi_scan_word(s, &word, err);
     }
@@ -253,7 +279,7 @@ cw_status cwi_stl_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw
         st = cwi_scan_open(&s, &in->file, 0, &in->desc.progress, err);
     if (st == CW_OK) {
         const bool text = is_text(head, size) && !is_binary(head, size, in->file.size);
-        st = text ? read_text(&f, &s, err) : read_binary(&f, &s, mesh, said, err);
+        st = text ? read_text(&f, &s, mesh, said, err) : read_binary(&f, &s, mesh, said, err);
     }
     if (st == CW_OK)
         st = move_arrays(&f, mesh, err);

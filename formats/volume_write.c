@@ -167,6 +167,8 @@ cw_status cw_volume_write(const char *path, const cw_volume *volume, const cw_wr
     cw_status st = find_writer(path, desc->format, &w, err);
     if (st == CW_OK && desc->local)
         st = cw_fail(err, CW_ERR_ARGUMENT, "a volume has no local form: its frame stays");
+    if (st == CW_OK && (desc->text || desc->axes.unit || desc->axes.ras || desc->axes.y_up))
+        st = cw_fail(err, CW_ERR_ARGUMENT, "text, unit and frame are chosen for meshes only");
     if (st == CW_OK)
         st = cw_volume_resolve(volume, &v, err);
     if (st == CW_OK)

@@ -119,6 +119,32 @@ CW_API void cw_series_free(cw_series *series);
  * Returns CW_ERR_ARGUMENT naming the key that is wrong. */
 CW_API cw_status cw_raw_layout_parse(const char *text, cw_raw_layout *layout, cw_error *err);
 
+/* Units of coordinates in mesh files: constant, name, millimetres. */
+#define CW_UNIT_TABLE(X)                                                                       \
+    X(CW_UNIT_MM, "mm", 1)                                                                     \
+    X(CW_UNIT_UM, "um", 1e-3)                                                                  \
+    X(CW_UNIT_CM, "cm", 10)                                                                    \
+    X(CW_UNIT_M, "m", 1000)                                                                    \
+    X(CW_UNIT_IN, "in", 25.4)                                                                  \
+    X(CW_UNIT_FT, "ft", 304.8)
+
+typedef enum cw_unit {
+#define CW_UNIT_ENUM(constant, name, mm) constant,
+    CW_UNIT_TABLE(CW_UNIT_ENUM)
+#undef CW_UNIT_ENUM
+        CW_UNIT_COUNT
+} cw_unit;
+
+CW_API const char *cw_unit_name(cw_unit unit);
+CW_API double cw_unit_mm(cw_unit unit);
+
+/* What coordinates in a mesh file mean. Zeroed: LPS millimetres, +Z up. */
+typedef struct cw_axes {
+    cw_unit unit;
+    bool ras;  /* x to the right and y to the front; default: to the left and to the back */
+    bool y_up; /* (x, y, z) stands as (x, z, -y) */
+} cw_axes;
+
 /* How to read a mesh. Zero-initialise it; a zero field means the default named beside it. */
 typedef struct cw_mesh_read_desc {
     const char *reader;     /* a name of cw_formats(); default: by content, then extension */
@@ -134,8 +160,9 @@ typedef struct cw_mesh_read_desc {
 typedef struct cw_mesh_file {
     const char *format; /* the reader's name (static) */
     unsigned known;     /* cw_known flags; what is not known was taken as LPS millimetres */
+    cw_axes axes;       /* from which it was turned; zeroed for glTF and where not known */
     bool local;         /* coordinates were relative to an origin that the file names */
-    size_t parts;       /* glTF: the primitives that were merged; else 1 */
+    size_t parts;       /* that were merged: objects of OBJ, primitives of glTF; else 1 */
     size_t polygons;    /* faces of more than three corners, cut into fans of triangles */
     size_t skipped;     /* points, lines and faces of fewer than three corners: left out */
 } cw_mesh_file;
@@ -175,6 +202,27 @@ typedef struct cw_mesh_file {
 CW_API cw_status cw_mesh_read(const char *path, const cw_mesh_read_desc *desc, cw_mesh *mesh,
                               cw_mesh_file *file, cw_error *err);
 
+/* A mesh with a name, as one of several in a file. */
+typedef struct cw_part {
+    const cw_mesh *mesh; /* borrowed */
+    const char *name;    /* default: that of the file, with a number behind it */
+} cw_part;
+
+/* Reads the parts of a file, each as a mesh: the objects of OBJ, or its groups if it has no
+ * objects; the solids of an STL text; the nodes of glTF. Groups that share vertices are one
+ * part, so that none is cut from its neighbours. Vertices that no triangle names are left out,
+ * if there are several parts; other formats, and files without parts, give one.
+ *
+ * parts    set to an array of *count, which owns the meshes: free it with cw_parts_free().
+ *          Names are NULL where the file has none; what is no printable UTF-8 in them is '_'.
+ * Returns  as cw_mesh_read()
+ * Cost     that of cw_mesh_read() and, if there are several, as much memory once more */
+CW_API cw_status cw_parts_read(const char *path, const cw_mesh_read_desc *desc, cw_part **parts,
+                               size_t *count, cw_mesh_file *file, cw_error *err);
+
+/* Harmless on NULL. */
+CW_API void cw_parts_free(cw_part *parts, size_t count);
+
 /* How glTF holds meshes. Each but the first needs an extension of glTF that viewers must know;
  * all are written so that positions of all parts stand on one grid. */
 typedef enum cw_compression {
@@ -207,6 +255,8 @@ typedef struct cw_write_desc {
     const char *name;           /* of the object inside the file; default: the path's stem */
     bool no_clobber;            /* fail when the path exists; default: replace it */
     bool local;                 /* mesh: relative to its origin; default: in the world */
+    cw_axes axes;               /* mesh: default LPS millimetres; glTF is in metres, +Y up */
+    bool text;                  /* STL, PLY: numbers as text; default: binary */
     cw_compression compression; /* of glTF; CW_ERR_ARGUMENT for other formats */
     double tolerance_mm; /* ... that it may move a vertex; default: 1/20,000 of the diagonal */
     int bits;            /* ... of a coordinate, 1 to 30, whatever that does; default: as many
@@ -220,29 +270,27 @@ typedef struct cw_write_desc {
 
 /* Writes beside the path, flushes, then renames: the path holds the old file or the whole new
  * one. The format is the path's extension (.nrrd, .nii, .nii.gz, .mha, .mhd is not written).
- * Returns  CW_ERR_ARGUMENT     no writer of that name or extension; local, which is for meshes
+ * Returns  CW_ERR_ARGUMENT     no writer of that name or extension; local, text or axes, which
+ *                              are for meshes
  *          CW_ERR_OUTPUT       folder missing, disk full, path exists and no_clobber
  *          CW_ERR_UNSUPPORTED  the format is not in this build; CW_ERR_CANCELLED */
 CW_API cw_status cw_volume_write(const char *path, const cw_volume *volume,
                                  const cw_write_desc *desc, cw_error *err);
 
-/* Writes a mesh in the same way: .glb, .gltf, .stl, .ply or .obj.
+/* Writes a mesh in the same way: .glb, .gltf, .stl, .ply, .obj or .off.
  * glTF goes out in metres, +Y up and facing +Z, by the node's transform: vertices stay exact.
  * The others hold world coordinates (origin added), LPS millimetres: see cw_mesh_write_loss().
  *
  * local leaves the origin out: coordinates are the mesh's positions, and the glTF node has no
- * translation. The file names the origin, which gives the world's coordinates when added: PLY
- * and OBJ in a comment, STL in its header when it fits there, glTF in the node's extras.
- * Returns  as cw_volume_write(); CW_ERR_ARGUMENT as cw_mesh_check(), and for an empty mesh;
+ * translation. The file names the origin, which gives the world's coordinates when added: PLY,
+ * OBJ and OFF in a comment, STL in its header when it fits there, glTF in the node's extras.
+ *
+ * Those comments name unit and frame (axes), too; cw_mesh_read() turns them back.
+ * Returns  as cw_volume_write(); CW_ERR_ARGUMENT as cw_mesh_check(), for an empty mesh, for
+ *          glTF in another unit or frame than its own, for text of a format that has none;
  *          CW_ERR_LIMIT when the format's own sizes are too small for the mesh. */
 CW_API cw_status cw_mesh_write(const char *path, const cw_mesh *mesh, const cw_write_desc *desc,
                                cw_error *err);
-
-/* A mesh with a name, as one of several in a file. */
-typedef struct cw_part {
-    const cw_mesh *mesh; /* borrowed */
-    const char *name;    /* default: that of the file, with a number behind it */
-} cw_part;
 
 /* Writes parts into one file: OBJ gets an object for each. In the others they become one mesh,
  * one behind the other, with the arrays that all of them have. Parts without triangles are left
@@ -251,17 +299,20 @@ typedef struct cw_part {
 CW_API cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
                                 const cw_write_desc *desc, cw_error *err);
 
-/* What single precision takes from the mesh in a file of world coordinates. */
+/* What a file will not hold of a mesh, above all what single precision takes from world
+ * coordinates. */
 typedef struct cw_write_loss {
     double step_mm;         /* between neighbouring numbers, at the farthest coordinate */
     size_t merged_vertices; /* that fall onto another one, from which they were apart */
     size_t flat_triangles;  /* that had an area and have none */
+    unsigned dropped;       /* what the meshes have and the file will not: cw_keeps flags */
 } cw_write_loss;
 
 /* Measures what a reader with single precision will not get of the file that cw_mesh_write()
- * or cw_parts_write() would write. All zero for glTF, and for local files: those hold the
- * positions as they are. STL and PLY lose it in the file; OBJ holds every digit, but most of
- * its readers do not. Vertices of different parts are not compared.
+ * or cw_parts_write() would write. No vertex or triangle for glTF, and for local files: those
+ * hold the positions as they are. STL and PLY lose it in the file; OBJ and OFF hold every
+ * digit, but most of their readers do not. Vertices of different parts are not compared.
+ * CW_KEEPS_PLACES is dropped where some vertex or triangle is lost.
  *
  * Returns  CW_ERR_ARGUMENT  no such writer, or as cw_mesh_check(); CW_ERR_NO_MEMORY
  * Cost     time in proportion to the triangles, and 28 bytes a vertex at most */
@@ -277,6 +328,19 @@ CW_API cw_status cw_parts_write_loss(const char *path, const cw_part *parts, siz
 CW_API cw_status cw_mesh_write_check(const char *path, const cw_write_desc *desc,
                                      cw_error *err);
 
+/* What of a mesh a file of a format holds. */
+typedef enum cw_keeps {
+    CW_KEEPS_SHARING = 1, /* vertices that triangles share */
+    CW_KEEPS_PLACES = 2,  /* positions to the bit however far from zero: the origin is apart */
+    CW_KEEPS_NORMALS = 4,
+    CW_KEEPS_COLORS = 8,
+    CW_KEEPS_SCALARS = 16,
+    CW_KEEPS_LABELS = 32,
+    CW_KEEPS_AFFINE = 64,
+    CW_KEEPS_PARTS = 128, /* several meshes, with names */
+    CW_KEEPS_ALL = 255
+} cw_keeps;
+
 /* One row of what this build reads and writes. */
 typedef struct cw_format {
     const char *name;       /* "nrrd" */
@@ -285,6 +349,7 @@ typedef struct cw_format {
     bool reads_volume, writes_volume, reads_mesh, writes_mesh;
     bool in_this_build;
     const char *lost; /* what writing drops; "" for nothing */
+    unsigned keeps;   /* of a mesh that is written: cw_keeps flags */
 } cw_format;
 
 /* All formats, in_this_build or not; *count rows, static. */

@@ -1,8 +1,6 @@
 /* What holds for every mesh reader: what we write comes back; limits, names, starvation. */
 #include "support/meshes.h"
 
-#include "core/module.h"
-
 #include <math.h>
 #include <stdio.h>
 
@@ -59,48 +57,57 @@ static void check_same_floats(const float *a, const float *b, size_t count)
             fail_msg("number %zu is %.9g, not %.9g", i, (double)a[i], (double)b[i]);
 }
 
-/* Formats that this build writes and reads. */
-static size_t mesh_names(const char *names[5])
+/* The n-th format that this build writes and reads, and a name for a file of it; NULL after the
+ * last. */
+static const cw_format *written(size_t n, const char **name)
 {
-    static const char *const all[] = {"a.ply", "a.obj", "a.stl", "a.glb", "a.gltf"};
-    const bool gltf = cwi_module_present("gltf");
-    memcpy(names, all, sizeof all);
-    return gltf ? 5 : 3;
+    static char names[16][16];
+    size_t count;
+    const cw_format *formats = cw_formats(&count);
+    for (size_t i = 0; i < count; i++)
+        if (formats[i].writes_mesh && formats[i].reads_mesh && formats[i].in_this_build &&
+            n-- == 0) {
+            snprintf(names[i % 16], sizeof *names, "a%s", formats[i].extensions);
+            *name = names[i % 16];
+            return &formats[i];
+        }
+    return NULL;
+}
+
+/* The arrays that the format keeps; others are not made up. */
+static void check_arrays(const cw_mesh *back, const cw_mesh *mesh, unsigned keeps)
+{
+    const size_t n = mesh->vertex_count;
+    check_same_floats(back->normals, keeps & CW_KEEPS_NORMALS ? mesh->normals : NULL, 3 * n);
+    check_same_floats(back->scalars, keeps & CW_KEEPS_SCALARS ? mesh->scalars : NULL, n);
+    assert_true(!back->colors == !(keeps & CW_KEEPS_COLORS));
+    assert_true(!back->labels == !(keeps & CW_KEEPS_LABELS));
+    for (size_t i = 0; back->colors && i < 4 * n; i++) /* glTF's are linear, of 8 bits */
+        if (abs(back->colors[i] - mesh->colors[i]) > (keeps & CW_KEEPS_AFFINE ? 7 : 0))
+            fail_msg("colour %zu is %d, not %d", i, back->colors[i], mesh->colors[i]);
+    if (back->labels)
+        assert_memory_equal(back->labels, mesh->labels, 4 * n);
 }
 
 static void local_files_come_back_to_the_bit(void **state)
 {
     (void)state;
-    const char *names[5];
-    const size_t count = mesh_names(names);
+    const char *name;
+    const cw_format *format;
     cw_mesh mesh, back;
     cw_mesh_file file;
     make_full_mesh(&mesh);
-    for (size_t i = 0; i < count; i++) {
-        if (strcmp(names[i], "a.stl") == 0)
+    for (size_t i = 0; (format = written(i, &name)); i++) {
+        if (!(format->keeps & CW_KEEPS_SHARING))
             continue; /* welds in another order */
-        read_written(names[i], &mesh, true, &back, &file);
+        read_written(name, &mesh, true, &back, &file);
+        assert_string_equal(file.format, format->name);
         check_same_origin(&back, &mesh);
         check_positions(&back, mesh.vertex_count, mesh.positions);
         check_triangles(&back, mesh.triangle_count, mesh.triangles);
-        check_same_floats(back.normals, mesh.normals, 3 * mesh.vertex_count);
+        check_arrays(&back, &mesh, format->keeps);
         cw_mesh_free(&back);
     }
-    cw_mesh_free(&mesh);
-}
-
-static void a_ply_file_keeps_colors_scalars_and_labels(void **state)
-{
-    (void)state;
-    cw_mesh mesh, back;
-    cw_mesh_file file;
-    make_full_mesh(&mesh);
-    read_written("a.ply", &mesh, false, &back, &file);
-    assert_string_equal(file.format, "ply");
-    assert_memory_equal(back.colors, mesh.colors, 4 * mesh.vertex_count);
-    check_same_floats(back.scalars, mesh.scalars, mesh.vertex_count);
-    assert_memory_equal(back.labels, mesh.labels, 4 * mesh.vertex_count);
-    cw_mesh_free(&back);
     cw_mesh_free(&mesh);
 }
 
@@ -108,20 +115,21 @@ static void a_ply_file_keeps_colors_scalars_and_labels(void **state)
 static void files_of_the_world_come_back_where_they_were(void **state)
 {
     (void)state;
-    const char *names[5];
-    const size_t count = mesh_names(names);
+    const char *name;
+    const cw_format *format;
     double low[3], high[3], low_back[3], high_back[3];
     cw_mesh mesh, back;
     cw_mesh_file file;
     make_full_mesh(&mesh);
     cw_mesh_bounds(&mesh, low, high);
-    for (size_t i = 0; i < count; i++) {
-        read_written(names[i], &mesh, false, &back, &file);
+    for (size_t i = 0; (format = written(i, &name)); i++) {
+        const bool apart = format->keeps & CW_KEEPS_PLACES;
+        read_written(name, &mesh, false, &back, &file);
         assert_int_equal(back.vertex_count, mesh.vertex_count);
         assert_int_equal(back.triangle_count, mesh.triangle_count);
         cw_mesh_bounds(&back, low_back, high_back);
         for (int a = 0; a < 3; a++) {
-            assert_true(back.origin[a] == (i < 3 ? 0 : mesh.origin[a]));
+            assert_true(back.origin[a] == (apart ? mesh.origin[a] : 0));
             assert_near(low_back[a], low[a], 3e-5);
             assert_near(high_back[a], high[a], 3e-5);
         }
@@ -197,22 +205,21 @@ static void content_decides_then_the_extension(void **state)
 static void limits_hold(void **state)
 {
     (void)state;
-    const char *names[5];
-    const size_t count = mesh_names(names);
+    const char *name;
     cw_mesh mesh, back;
     cw_error err = {0};
     make_full_mesh(&mesh);
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; written(i, &name); i++) {
         const cw_mesh_read_desc few = {.max_triangles = mesh.triangle_count - 1};
         const cw_mesh_read_desc enough = {.max_triangles = mesh.triangle_count,
                                           .max_bytes = 1 << 20};
         const cw_mesh_read_desc small = {.max_bytes = 10000};
-        assert_ok(cw_mesh_write(test_path(names[i]), &mesh, NULL, &err), err);
-        assert_fails(cw_mesh_read(test_path(names[i]), &few, &back, NULL, &err), CW_ERR_LIMIT,
+        assert_ok(cw_mesh_write(test_path(name), &mesh, NULL, &err), err);
+        assert_fails(cw_mesh_read(test_path(name), &few, &back, NULL, &err), CW_ERR_LIMIT,
                      "triangles, the most allowed", err);
-        assert_fails(cw_mesh_read(test_path(names[i]), &small, &back, NULL, &err), CW_ERR_LIMIT,
+        assert_fails(cw_mesh_read(test_path(name), &small, &back, NULL, &err), CW_ERR_LIMIT,
                      "the 10000 bytes allowed", err);
-        assert_ok(cw_mesh_read(test_path(names[i]), &enough, &back, NULL, &err), err);
+        assert_ok(cw_mesh_read(test_path(name), &enough, &back, NULL, &err), err);
         cw_mesh_free(&back);
     }
     cw_mesh_free(&mesh);
@@ -221,17 +228,16 @@ static void limits_hold(void **state)
 static void reading_may_be_stopped(void **state)
 {
     (void)state;
-    const char *names[5];
-    const size_t count = mesh_names(names);
+    const char *name;
     cw_mesh mesh, back;
     cw_error err = {0};
     make_full_mesh(&mesh);
-    for (size_t i = 0; i < count; i++) {
+    for (size_t i = 0; written(i, &name); i++) {
         int polls = 0;
         const cw_mesh_read_desc desc = {.progress = {test_stop_after, &polls}};
-        assert_ok(cw_mesh_write(test_path(names[i]), &mesh, NULL, &err), err);
-        assert_fails(cw_mesh_read(test_path(names[i]), &desc, &back, NULL, &err),
-                     CW_ERR_CANCELLED, "", err);
+        assert_ok(cw_mesh_write(test_path(name), &mesh, NULL, &err), err);
+        assert_fails(cw_mesh_read(test_path(name), &desc, &back, NULL, &err), CW_ERR_CANCELLED,
+                     "", err);
     }
     cw_mesh_free(&mesh);
 }
@@ -239,14 +245,13 @@ static void reading_may_be_stopped(void **state)
 static void memory_may_run_out_anywhere(void **state)
 {
     (void)state;
-    const char *names[5];
-    const size_t count = mesh_names(names);
+    const char *name;
     cw_mesh mesh;
     cw_error err = {0};
     make_full_mesh(&mesh);
-    for (size_t i = 0; i < count; i++) {
-        assert_ok(cw_mesh_write(test_path(names[i]), &mesh, NULL, &err), err);
-        check_starved_mesh_reads(names[i]);
+    for (size_t i = 0; written(i, &name); i++) {
+        assert_ok(cw_mesh_write(test_path(name), &mesh, NULL, &err), err);
+        check_starved_mesh_reads(name);
     }
     cw_mesh_free(&mesh);
 }
@@ -256,7 +261,6 @@ int main(void)
 #define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
     const struct CMUnitTest tests[] = {
         TEST(local_files_come_back_to_the_bit),
-        TEST(a_ply_file_keeps_colors_scalars_and_labels),
         TEST(files_of_the_world_come_back_where_they_were),
         TEST(a_local_stl_file_keeps_every_corner),
         TEST(a_far_obj_file_keeps_its_shape),

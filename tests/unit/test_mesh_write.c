@@ -22,7 +22,7 @@ static void mistakes_are_named_with_the_path(void **state)
         const char *words;
     } rows[] = {
         {"a.xyz", NULL, &mesh, CW_ERR_ARGUMENT, "a.xyz: its extension is of no mesh format"},
-        {"a.nrrd", NULL, &mesh, CW_ERR_ARGUMENT, "there are .glb .gltf .stl .ply .obj"},
+        {"a.nrrd", NULL, &mesh, CW_ERR_ARGUMENT, "there are .glb .gltf .stl .ply .obj .off"},
         {"a.stl", "nrrd", &mesh, CW_ERR_ARGUMENT,
          "no mesh format is named 'nrrd'; there are glb"},
         {"a.stl", NULL, &empty, CW_ERR_ARGUMENT, "a.stl: the mesh is empty"},
@@ -54,6 +54,27 @@ static void a_named_format_wins_over_the_extension(void **state)
     assert_ok(cw_mesh_write(test_path("a.ply"), &mesh, &desc, &err), err);
     free(test_file_read(test_path("a.ply"), &size));
     assert_int_equal(size, 84 + 4 * 50);
+    cw_mesh_free(&mesh);
+}
+
+/* Formats that are text anyway take the wish, too; volumes have no such choices. */
+static void text_is_refused_where_there_is_none(void **state)
+{
+    (void)state;
+    const cw_write_desc text = {.text = true}, ras = {.axes = {.ras = true}};
+    const cw_volume none = {0};
+    cw_mesh mesh = {0};
+    cw_error err = {0};
+    test_make_tetrahedron(&mesh);
+    assert_ok(cw_mesh_write(test_path("a.obj"), &mesh, &text, &err), err);
+    assert_fails(cw_mesh_write(test_path("a.glb"), &mesh, &text, &err), CW_ERR_ARGUMENT,
+                 "a.glb: glb has no form as text; those that have are gltf stl ply obj off",
+                 err);
+    assert_fails(cw_volume_write(test_path("a.nrrd"), &none, &text, &err), CW_ERR_ARGUMENT,
+                 "for meshes only", err);
+    assert_fails(cw_volume_write(test_path("a.nrrd"), &none, &ras, &err), CW_ERR_ARGUMENT,
+                 "for meshes only", err);
+    assert_int_equal(test_folder_entries(), 1);
     cw_mesh_free(&mesh);
 }
 
@@ -205,6 +226,45 @@ static void loss_is_counted_where_the_format_has_it(void **state)
     cw_mesh_free(&mesh);
 }
 
+static void what_a_format_does_not_keep_is_told(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *path;
+        unsigned dropped;
+    } rows[] = {
+        {"a.ply", CW_KEEPS_AFFINE},
+        {"a.off", CW_KEEPS_SCALARS | CW_KEEPS_LABELS | CW_KEEPS_AFFINE},
+        {"a.obj", CW_KEEPS_COLORS | CW_KEEPS_SCALARS | CW_KEEPS_LABELS | CW_KEEPS_AFFINE},
+        {"a.stl", CW_KEEPS_ALL & ~(unsigned)(CW_KEEPS_PLACES | CW_KEEPS_PARTS)},
+    };
+    static uint8_t colors[32];
+    static float scalars[8];
+    static uint32_t labels[8];
+    cw_mesh mesh = {0};
+    cw_error err = {0};
+    cw_write_loss loss;
+    test_make_cube(&mesh);
+    assert_ok(cw_mesh_write_loss("a.ply", &mesh, NULL, &loss, &err), err);
+    assert_int_equal(loss.dropped, 0);
+    mesh.colors = colors;
+    mesh.scalars = scalars;
+    mesh.labels = labels;
+    mesh.affine[1][3] = 1;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        assert_ok(cw_mesh_write_loss(rows[i].path, &mesh, NULL, &loss, &err), err);
+        assert_int_equal(loss.dropped, rows[i].dropped);
+    }
+    mesh.origin[0] = 1e9;
+    const cw_part parts[] = {{&mesh, "one"}, {&mesh, "two"}};
+    assert_ok(cw_parts_write_loss("a.stl", parts, 2, NULL, &loss, &err), err);
+    assert_int_equal(loss.dropped, CW_KEEPS_ALL);
+    mesh.colors = NULL;
+    mesh.scalars = NULL;
+    mesh.labels = NULL;
+    cw_mesh_free(&mesh);
+}
+
 /* What was at one place, or flat, before the rounding is no loss. */
 static void what_was_not_there_cannot_be_lost(void **state)
 {
@@ -249,11 +309,13 @@ int main(void)
     const struct CMUnitTest tests[] = {
         CASE(mistakes_are_named_with_the_path),
         CASE(a_named_format_wins_over_the_extension),
+        CASE(text_is_refused_where_there_is_none),
         CASE(a_cancelled_write_leaves_nothing),
         CASE(running_out_of_memory_leaves_nothing),
         CASE(the_table_of_formats_is_whole_and_always_the_same),
         CASE(names_are_made_safe_for_every_format),
         CASE(loss_is_counted_where_the_format_has_it),
+        CASE(what_a_format_does_not_keep_is_told),
         CASE(what_was_not_there_cannot_be_lost),
         CASE(loss_fails_as_writing_does),
     };

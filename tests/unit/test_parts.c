@@ -146,6 +146,19 @@ static void arrays_that_one_part_lacks_are_left_out(void **state)
     assert_ok(cw_mesh_read(test_path("a.ply"), NULL, &back, NULL, &err), err);
     assert_true(back.scalars && !back.normals && !back.colors && !back.labels);
     cw_mesh_free(&back);
+    write_pair("a.obj", &p, false); /* whose objects may have normals or none */
+    size_t size;
+    char *text = test_file_read(test_path("a.obj"), &size);
+    assert_non_null(strstr(text, "\nf 1//1 "));
+    assert_non_null(strstr(text, "\nf 9 11 10\n"));
+    free(text);
+    p.parts[0] = p.parts[1];
+    p.parts[1] = (cw_part){&p.cube, NULL};
+    write_pair("a.obj", &p, false);
+    text = test_file_read(test_path("a.obj"), &size);
+    assert_non_null(strstr(text, "\nf 1 3 2\n"));
+    assert_non_null(strstr(text, "\nf 5//1 "));
+    free(text);
     p.cube.colors = NULL;
     p.cube.scalars = p.tetrahedron.scalars = NULL;
     free_pair(&p);
@@ -198,6 +211,142 @@ static void losses_of_parts_add_up(void **state)
     free_pair(&p);
 }
 
+/* --- reading ----------------------------------------------------------------------------- */
+
+typedef struct read_parts {
+    cw_part *items;
+    size_t count;
+    cw_mesh_file file;
+} read_parts;
+
+static read_parts read_all(const char *name)
+{
+    read_parts r;
+    cw_error err = {0};
+    assert_ok(cw_parts_read(test_path(name), NULL, &r.items, &r.count, &r.file, &err), err);
+    for (size_t i = 0; i < r.count; i++)
+        assert_usable(r.items[i].mesh);
+    return r;
+}
+
+static void check_part(const cw_part *part, const char *name, size_t vertices, size_t triangles)
+{
+    if (name)
+        assert_string_equal(part->name, name);
+    else
+        assert_null(part->name);
+    assert_int_equal(part->mesh->vertex_count, vertices);
+    assert_int_equal(part->mesh->triangle_count, triangles);
+}
+
+static void objects_come_back_as_they_were(void **state)
+{
+    (void)state;
+    pair p;
+    make_pair(&p);
+    write_pair("a.obj", &p, true);
+    read_parts r = read_all("a.obj");
+    assert_int_equal(r.count, 2);
+    assert_int_equal(r.file.parts, 2);
+    check_part(&r.items[0], "cube", 8, 12);
+    check_part(&r.items[1], "four faces", 4, 4);
+    check_triangles(r.items[1].mesh, 4, p.tetrahedron.triangles);
+    check_positions(r.items[0].mesh, 8, p.cube.positions);
+    for (size_t i = 0; i < 12; i++)
+        assert_true(r.items[1].mesh->normals[i] == p.tetrahedron.normals[i]);
+    for (int a = 0; a < 3; a++)
+        assert_true(r.items[1].mesh->origin[a] == p.cube.origin[a]);
+    cw_parts_free(r.items, r.count);
+    free_pair(&p);
+}
+
+#define FOUR "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 9 9 9\nv 8 8 8\nv 7 8 9\n"
+
+/* Rows of files, with the names of the parts and how many triangles each has. */
+static void groups_are_parts_where_there_are_no_objects(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *text, *names[3];
+        size_t triangles[3];
+    } rows[] = {
+        {FOUR "f 1 2 3\nf 5 6 7\n", {NULL}, {2}},
+        {FOUR "g  a  b \r\nf 1 2 3\ng\nf 5 6 7", {"a  b", NULL}, {1, 1}},
+        {FOUR "g a\nf 1 2 3\ng b\nf 2 3 4\n", {"a"}, {2}}, /* they share 2, 3 */
+        {FOUR "g a\nf 1 2 3\ng b\nf 5 6 7\ng c\nf 3 4 1\n", {"a", "b"}, {2, 1}},
+        {FOUR "f 1 2 3\no late\nf 5 6 7\n", {NULL, "late"}, {1, 1}},
+        {FOUR "g none\no one\ng x\nf 1 2 3\ng y\nf 5 6 7\n", {"one"}, {2}},
+        {FOUR "o one\no\tt\033wo\\\nf 1 2 3\no three\nl 1 2\n", {"t_wo_"}, {1}},
+        {FOUR "o nothing\n", {NULL}, {0}},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        test_file_write(test_path("a.obj"), rows[i].text, strlen(rows[i].text));
+        read_parts r = read_all("a.obj");
+        const size_t count = rows[i].triangles[1] ? 2 : 1;
+        if (r.count != count)
+            fail_msg("row %zu has %zu parts", i, r.count);
+        for (size_t p = 0; p < count && rows[i].triangles[p]; p++)
+            check_part(&r.items[p], rows[i].names[p],
+                       count == 1 ? r.items[p].mesh->vertex_count : rows[i].triangles[p] + 2,
+                       rows[i].triangles[p]);
+        cw_parts_free(r.items, r.count);
+    }
+}
+
+#define FACET(z)                                                                               \
+    "facet normal 0 0 1\nouter loop\nvertex 0 0 " z "\nvertex 1 0 " z "\nvertex 0 1 " z        \
+    "\nendloop\nendfacet\n"
+
+static void solids_are_parts_and_other_formats_have_one(void **state)
+{
+    (void)state;
+    static const char text[] =
+        "solid two words\n" FACET("0") "endsolid two words\n"
+                                       "solid\n" FACET("1") FACET("2") "endsolid\n";
+    pair p;
+    make_pair(&p);
+    test_file_write(test_path("a.stl"), text, strlen(text));
+    read_parts r = read_all("a.stl");
+    assert_int_equal(r.count, 2);
+    check_part(&r.items[0], "two words", 3, 1);
+    check_part(&r.items[1], NULL, 6, 2);
+    cw_parts_free(r.items, r.count);
+    write_pair("a.ply", &p, false);
+    r = read_all("a.ply");
+    assert_int_equal(r.count, 1);
+    check_part(&r.items[0], NULL, 12, 16);
+    cw_parts_free(r.items, r.count);
+    free_pair(&p);
+}
+
+static void no_parts_are_left_of_a_file_that_is_refused(void **state)
+{
+    (void)state;
+    static const char text[] = FOUR "o a\nf 1 2 3\no b\nf 5 6 7\n";
+    const cw_mesh_read_desc desc = {.max_bytes = 400};
+    cw_part *parts = (cw_part *)&desc;
+    size_t count = 9;
+    cw_error err = {0};
+    assert_fails(cw_parts_read(test_path("none"), NULL, &parts, &count, NULL, &err), CW_ERR_IO,
+                 "none", err);
+    assert_true(!parts && count == 0);
+    test_file_write(test_path("a.obj"), text, strlen(text));
+    assert_fails(cw_parts_read(test_path("a.obj"), &desc, &parts, &count, NULL, &err),
+                 CW_ERR_LIMIT, "400 bytes allowed", err);
+    assert_true(!parts && count == 0);
+    bool failed = true;
+    for (long n = 0; failed; n++) {
+        cwi_alloc_fail_after(n);
+        const cw_status st =
+            cw_parts_read(test_path("a.obj"), NULL, &parts, &count, NULL, &err);
+        failed = cwi_alloc_fail_after(-1);
+        assert_int_equal(st, failed ? CW_ERR_NO_MEMORY : CW_OK);
+        assert_int_equal(count, failed ? 0 : 2);
+    }
+    cw_parts_free(parts, count);
+    cw_parts_free(NULL, 0);
+}
+
 /* More vertices than its numbers can say: counted before any of them is touched. */
 static void too_many_vertices_for_ply_are_refused(void **state)
 {
@@ -239,6 +388,10 @@ int main(void)
         TEST(arrays_that_one_part_lacks_are_left_out),
         TEST(empty_parts_are_left_out_and_alone_refused),
         TEST(losses_of_parts_add_up),
+        TEST(objects_come_back_as_they_were),
+        TEST(groups_are_parts_where_there_are_no_objects),
+        TEST(solids_are_parts_and_other_formats_have_one),
+        TEST(no_parts_are_left_of_a_file_that_is_refused),
         TEST(too_many_vertices_for_ply_are_refused),
         TEST(memory_may_run_out_anywhere),
     };

@@ -1,5 +1,6 @@
 #include "support/support.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -169,6 +170,34 @@ static void a_local_file_holds_positions_and_names_the_origin(void **state)
     cw_mesh_free(&mesh);
 }
 
+static void text_holds_the_same_numbers(void **state)
+{
+    (void)state;
+    const cw_write_desc desc = {.text = true};
+    cw_mesh mesh = {0}, back;
+    cw_error err = {0};
+    size_t size;
+    test_make_cube(&mesh);
+    give_attributes(&mesh);
+    for (size_t i = 0; i < 24; i++)
+        mesh.positions[i] = 1.0f / (float)(i + 3) - 0.1f * (float)i;
+    mesh.scalars[3] = NAN;
+    assert_ok(cw_mesh_write(test_path("a.ply"), &mesh, &desc, &err), err);
+    char *text = test_file_read(test_path("a.ply"), &size);
+    assert_memory_equal(text, "ply\nformat ascii 1.0\n", 21);
+    free(text);
+    assert_ok(cw_mesh_read(test_path("a.ply"), NULL, &back, NULL, &err), err);
+    assert_memory_equal(back.positions, mesh.positions, 24 * sizeof(float));
+    assert_memory_equal(back.normals, mesh.normals, 24 * sizeof(float));
+    assert_memory_equal(back.colors, mesh.colors, 32);
+    assert_memory_equal(back.labels, mesh.labels, 32);
+    assert_memory_equal(back.triangles, mesh.triangles, 144);
+    for (size_t v = 0; v < 8; v++)
+        assert_true(back.scalars[v] == mesh.scalars[v] || (v == 3 && isnan(back.scalars[v])));
+    cw_mesh_free(&back);
+    cw_mesh_free(&mesh);
+}
+
 #define CASE(test) cmocka_unit_test_setup_teardown(test, test_folder_make, test_folder_remove)
 
 int main(void)
@@ -177,6 +206,7 @@ int main(void)
         CASE(everything_a_mesh_holds_comes_back),
         CASE(only_what_is_there_is_written),
         CASE(the_header_is_as_the_format_wants_it),
+        CASE(text_holds_the_same_numbers),
         CASE(a_local_file_holds_positions_and_names_the_origin),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

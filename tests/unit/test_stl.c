@@ -231,11 +231,41 @@ static void an_origin_too_long_for_the_header_is_only_hinted_at(void **state)
 static void more_triangles_than_stl_can_count_are_refused(void **state)
 {
     (void)state;
-    const cwi_parts parts = {.count = 1, .triangles = (uint64_t)UINT32_MAX + 1};
+    const cwi_parts parts = {.triangles = (uint64_t)UINT32_MAX + 1};
     cwi_mesh_output out = {0};
     cw_error err = {0};
     assert_fails(cwi_stl_write(&parts, &out, &err), CW_ERR_LIMIT,
                  "at most 4294967295 triangles", err);
+}
+
+static void text_is_one_solid_with_its_name(void **state)
+{
+    (void)state;
+    static const char head[] = "solid two words cubewright, LPS, mm from 0.1 0 0\n"
+                               "facet normal 0 0 -1\nouter loop\nvertex 0 0 0\n"
+                               "vertex 0 1 0\nvertex 1 0 0\nendloop\nendfacet\n";
+    const cw_write_desc desc = {.text = true, .local = true, .name = "two words"};
+    cw_mesh mesh = {0}, back;
+    cw_mesh_file file;
+    cw_part *parts;
+    cw_error err = {0};
+    size_t size, count;
+    test_make_tetrahedron(&mesh);
+    mesh.origin[0] = 0.1;
+    assert_ok(cw_mesh_write(test_path("a.stl"), &mesh, &desc, &err), err);
+    char *text = test_file_read(test_path("a.stl"), &size);
+    assert_memory_equal(text, head, strlen(head));
+    assert_string_equal(text + size - 19, "endsolid two words\n");
+    assert_ok(cw_mesh_read(test_path("a.stl"), NULL, &back, &file, &err), err);
+    assert_int_equal(file.known, CW_KNOWN_UNIT | CW_KNOWN_FRAME);
+    assert_true(file.local && back.origin[0] == 0.1);
+    assert_int_equal(back.triangle_count, 4);
+    assert_ok(cw_parts_read(test_path("a.stl"), NULL, &parts, &count, NULL, &err), err);
+    assert_string_equal(parts[0].name, "two words");
+    cw_parts_free(parts, count);
+    free(text);
+    cw_mesh_free(&back);
+    cw_mesh_free(&mesh);
 }
 
 #define CASE(test) cmocka_unit_test_setup_teardown(test, test_folder_make, test_folder_remove)
@@ -251,6 +281,7 @@ int main(void)
         CASE(far_from_zero_the_loss_is_told_and_true),
         CASE(a_local_file_keeps_a_far_mesh),
         CASE(an_origin_too_long_for_the_header_is_only_hinted_at),
+        CASE(text_is_one_solid_with_its_name),
         CASE(more_triangles_than_stl_can_count_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
