@@ -298,15 +298,12 @@ static cw_status compare_with_reference(run_state *s, cw_error *err)
 /* The diagonal is that of the mesh's box, a voxel the cube root of its volume. */
 static double tolerance_mm(const run_state *s)
 {
-    const cli_length *t = &s->args->tolerance;
     const double *spacing = s->volume.spacing;
     double low[3], high[3];
     cw_mesh_bounds(&s->mesh.mesh, low, high);
     const double diagonal = hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
     const double voxel = cbrt(spacing[0] * spacing[1] * spacing[2]);
-    return t->value * (t->unit == CLI_PERCENT  ? diagonal / 100
-                       : t->unit == CLI_VOXELS ? voxel
-                                               : 1);
+    return cli_length_mm(&s->args->tolerance, diagonal, voxel);
 }
 
 /* Without triangles there is nothing to measure from or to: the verdict says so. */

@@ -6,11 +6,13 @@
 #include "cli/surface.h"
 #include "core/status.h"
 
+#include <math.h>
 #include <string.h>
 
 typedef struct extract_args {
     cli_common common;
     cli_input input;
+    cli_compress compress;
     const char *output, *name, *format, *json;
     cli_numbers iso;
     cli_number snap;
@@ -67,6 +69,7 @@ static const cli_option options[] = {
      CLI_INPUT_ROW(extract_args, preview)},
     {"coarsen", 0, CLI_COUNT, "N", "a preview of every N-th voxel (4 with --preview, else 1)",
      CLI_INPUT_ROW(extract_args, coarsen)},
+    CLI_COMPRESS_OPTIONS(extract_args),
     CLI_INPUT_OPTIONS(extract_args),
 };
 
@@ -105,7 +108,8 @@ static cw_write_desc write_desc(const extract_args *args)
     return (cw_write_desc){.format = args->format,
                            .name = args->name,
                            .no_clobber = args->no_clobber,
-                           .local = args->local};
+                           .local = args->local,
+                           .compression = (cw_compression)args->compress.kind};
 }
 
 static cw_status check_outputs(run_state *s, cw_error *err)
@@ -131,6 +135,9 @@ static cw_status check_args(run_state *s, cw_error *err)
     if (st != CW_OK)
         return st;
     s->report.path = args->json;
+    st = cli_check_compress(&args->compress, true, err);
+    if (st != CW_OK)
+        return st;
     if (!args->output)
         return cw_fail(err, CW_ERR_ARGUMENT, "extract needs an output: -o FILE");
     if (!args->iso.count)
@@ -170,8 +177,11 @@ static cw_status extract(run_state *s, double iso, cw_mesh *mesh, cw_extract_cou
 
 static cw_status make_surface(run_state *s, size_t n, cw_error *err)
 {
+    const double *spacing = s->volume.spacing;
     const cli_delivery how = {.input = s->volume.path,
                               .write = write_desc(s->args),
+                              .compress = &s->args->compress,
+                              .voxel_mm = cbrt(spacing[0] * spacing[1] * spacing[2]),
                               .unchecked = !s->args->check,
                               .open = s->args->open,
                               .preview = cli_is_preview(&s->volume)};

@@ -53,6 +53,8 @@ static cw_status write_mesh(cli_report *report, const cli_delivery *how, const c
     cw_write_desc desc = how->write;
     cw_write_loss loss;
     desc.progress = cli_progress((double)mesh->triangle_count / 1e6, "Mtriangle");
+    desc.compressed = &made->compressed;
+    cli_set_compress(how->compress, mesh, how->voxel_mm, &desc);
     cli_report_begin(report);
     cw_status st = cw_mesh_write_loss(made->path, mesh, &desc, &loss, err);
     if (st == CW_OK)
@@ -61,6 +63,7 @@ static cw_status write_mesh(cli_report *report, const cli_delivery *how, const c
         return st;
     made->written = true;
     made->local = desc.local;
+    made->compression = desc.compression;
     memcpy(made->origin, mesh->origin, sizeof made->origin);
     warn_of_loss(report, made, mesh, &loss);
     cli_report_end(report, "write", mesh->triangle_count, mesh->triangle_count);
@@ -81,6 +84,17 @@ static void print_topology(const cli_delivery *how, const cw_quality *q, size_t 
                q->max[1] - q->min[1], q->max[2] - q->min[2]);
 }
 
+static void print_compressed(const cli_made *made)
+{
+    const cw_compressed *c = &made->compressed;
+    cli_result("; %s", cli_compression_name(made->compression));
+    if (c->bits)
+        cli_result(" of %d bits, off by at most %.3g mm", c->bits, c->error_mm);
+    else
+        cli_result(", positions as they were");
+    cli_result(", decoded and checked");
+}
+
 static void print_summary(const cli_delivery *how, const cli_made *made, const cw_mesh *mesh,
                           size_t border_loops, double start)
 {
@@ -97,9 +111,24 @@ static void print_summary(const cli_delivery *how, const cli_made *made, const c
     if (made->local)
         cli_result("; relative to %.15g, %.15g, %.15g mm", made->origin[0], made->origin[1],
                    made->origin[2]);
+    if (made->compression)
+        print_compressed(made);
     if (how->preview)
         cli_result("; a preview");
     cli_result("; %.2f s\n", cli_seconds() - start);
+}
+
+/* Bits that were stated are used, whatever they do to the shape; but it is told. */
+static cw_status hold_to_shape(const cli_made *made, cw_error *err)
+{
+    const cw_compressed *c = &made->compressed;
+    if (!c->merged && !c->flat)
+        return CW_OK;
+    return cw_fail(err, CW_ERR_CHECK,
+                   "%s: with %d bits %s vertices fall onto others and %s triangles lose their "
+                   "area; without --bits there are as many as it takes",
+                   cli_shown_path(made->path), c->bits, cli_count(c->merged),
+                   cli_count(c->flat));
 }
 
 cw_status cli_deliver(cli_report *report, const cli_delivery *how, const cw_mesh *mesh,
@@ -111,5 +140,5 @@ cw_status cli_deliver(cli_report *report, const cli_delivery *how, const cw_mesh
         st = write_mesh(report, how, mesh, made, err);
     if (st == CW_OK)
         print_summary(how, made, mesh, border_loops, start);
-    return st;
+    return st == CW_OK ? hold_to_shape(made, err) : st;
 }

@@ -76,6 +76,13 @@ bool cli_parse_length(const char *text, cli_length *out)
     return out->given = *text == '\0' || out->unit != CLI_MM;
 }
 
+double cli_length_mm(const cli_length *length, double diagonal_mm, double voxel_mm)
+{
+    return length->value * (length->unit == CLI_PERCENT  ? diagonal_mm / 100
+                            : length->unit == CLI_VOXELS ? voxel_mm
+                                                         : 1);
+}
+
 bool cli_parse_sizes(const char *text, cli_sizes *out)
 {
     for (out->count = 0; out->count < 3; text++) {

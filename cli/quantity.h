@@ -8,6 +8,9 @@ bool cli_parse_number(const char *text, cli_number *out);
 bool cli_parse_numbers(const char *text, cli_numbers *out);
 bool cli_parse_lengths(const char *text, cli_lengths *out);
 bool cli_parse_length(const char *text, cli_length *out);
+
+/* In millimetres, shares of a diagonal and voxels resolved. */
+double cli_length_mm(const cli_length *length, double diagonal_mm, double voxel_mm);
 bool cli_parse_sizes(const char *text, cli_sizes *out);
 bool cli_parse_ranges(const char *text, cli_ranges *out);
 

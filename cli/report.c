@@ -1,6 +1,7 @@
 #define _GNU_SOURCE /* open_memstream */
 #include "cli/report.h"
 
+#include "cli/compress.h"
 #include "cli/console.h"
 #include "cli/quantity.h"
 #include "core/outfile.h"
@@ -152,6 +153,17 @@ static void put_surfaces(cli_json *j, const cli_report *r)
     cli_json_close(j, ']');
 }
 
+static void put_compressed(cli_json *j, const cw_compressed *c)
+{
+    cli_json_count(j, "bits", (size_t)c->bits);
+    cli_json_number(j, "step_mm", c->step_mm);
+    cli_json_number(j, "error_mm", c->error_mm);
+    cli_json_number(j, "normal_degrees", c->normal_degrees);
+    cli_json_count(j, "merged_vertices", c->merged);
+    cli_json_count(j, "flat_triangles", c->flat);
+    cli_json_bool(j, "decoded_checked", true);
+}
+
 static void put_output(cli_json *j, const cli_made *made)
 {
     struct stat info;
@@ -160,7 +172,9 @@ static void put_output(cli_json *j, const cli_made *made)
     cli_json_open(j, NULL, '{');
     cli_json_text(j, "path", cli_shown_path(made->path));
     cli_json_count(j, "bytes", (size_t)info.st_size);
-    cli_json_text(j, "compression", "none");
+    cli_json_text(j, "compression", cli_compression_name(made->compression));
+    if (made->compression)
+        put_compressed(j, &made->compressed);
     cli_json_bool(j, "local", made->local);
     if (made->local)
         cli_json_numbers(j, "origin", made->origin, 3);

@@ -26,9 +26,11 @@ typedef struct cli_made {
     bool shells;                   /* whether that tells which way shells face */
     const cw_crossings *crossings; /* NULL: not looked for */
     cw_snap_counts snap;           /* when it is snapped */
-    double origin[3];  /* when it is local: the places in the file are relative to it */
-    char warning[512]; /* "": none */
-    cw_error error;    /* with the status CW_OK: none */
+    cw_compression compression;
+    cw_compressed compressed; /* when there is any */
+    double origin[3];         /* when it is local: the places in the file are relative to it */
+    char warning[512];        /* "": none */
+    cw_error error;           /* with the status CW_OK: none */
 } cli_made;
 
 typedef struct cli_report {

@@ -1,0 +1,50 @@
+#include "cli/compress.h"
+
+#include "cli/quantity.h"
+#include "core/status.h"
+
+#include <math.h>
+
+const char *cli_compression_name(cw_compression kind)
+{
+    static const char *const names[] = {"none", "quantize", "draco", "meshopt"};
+    return names[kind];
+}
+
+cw_status cli_check_compress(const cli_compress *c, bool voxels, cw_error *err)
+{
+    const char *lonely = c->kind              ? NULL
+                         : c->tolerance.given ? "tolerance"
+                         : c->bits            ? "bits"
+                         : c->level           ? "level"
+                                              : NULL;
+    if (lonely)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--%s is for --compress", lonely);
+    if (c->bits && c->tolerance.given)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--bits and --tolerance: one of the two decides");
+    if (c->level && (c->kind != CW_COMPRESS_DRACO || c->level > 10))
+        return cw_fail(err, CW_ERR_ARGUMENT, "--level %zu: it is 1 to 10, and for Draco",
+                       c->level);
+    if (c->bits > 30)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--bits %zu: there are 1 to 30", c->bits);
+    if (c->tolerance.given && !(c->tolerance.value > 0))
+        return cw_fail(err, CW_ERR_ARGUMENT, "--tolerance: it must be above 0");
+    if (c->tolerance.unit == CLI_VOXELS && !voxels)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--tolerance: a mesh has no voxels");
+    return CW_OK;
+}
+
+void cli_set_compress(const cli_compress *c, const cw_mesh *mesh, double voxel_mm,
+                      cw_write_desc *desc)
+{
+    double low[3], high[3];
+    desc->compression = (cw_compression)c->kind;
+    desc->bits = (int)c->bits;
+    desc->level = (int)c->level;
+    if (!c->tolerance.given)
+        return;
+    cw_mesh_bounds(mesh, low, high);
+    desc->tolerance_mm = cli_length_mm(
+        &c->tolerance, hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]),
+        voxel_mm);
+}

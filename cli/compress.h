@@ -1,0 +1,50 @@
+/* The options that say how a mesh is compressed, for every command that writes one. */
+#ifndef CLI_COMPRESS_H
+#define CLI_COMPRESS_H
+
+#include "cli/options.h"
+
+#include <cubewright/formats.h>
+
+typedef struct cli_compress {
+    int kind; /* cw_compression */
+    cli_length tolerance;
+    size_t bits, level;
+} cli_compress;
+
+/* Rows for a command whose struct has the field `compress`. */
+#define CLI_COMPRESS_ROW(args, field) offsetof(args, compress) + offsetof(cli_compress, field)
+#define CLI_COMPRESS_OPTIONS(args)                                                             \
+    {"compress",                                                                               \
+     0,                                                                                        \
+     CLI_CHOICE,                                                                               \
+     "none/quantize/draco/meshopt",                                                            \
+     "glTF that viewers need an extension for; decoded and checked (none)",                    \
+     CLI_COMPRESS_ROW(args, kind)},                                                            \
+        {"tolerance",                                                                          \
+         0,                                                                                    \
+         CLI_LENGTH,                                                                           \
+         "L",                                                                                  \
+         "compression may move a vertex so far, e.g. 0.05mm or 0.01% (0.005% of the box)",     \
+         CLI_COMPRESS_ROW(args, tolerance)},                                                   \
+        {"bits",                                                                               \
+         0,                                                                                    \
+         CLI_COUNT,                                                                            \
+         "N",                                                                                  \
+         "of a coordinate, whatever that does (as tolerance and shape ask for)",               \
+         CLI_COMPRESS_ROW(args, bits)},                                                        \
+    {                                                                                          \
+        "level", 0, CLI_COUNT, "N", "of Draco, 1 (fast) to 10 (small) (7)",                    \
+            CLI_COMPRESS_ROW(args, level)                                                      \
+    }
+
+/* Refuses what contradicts itself. voxels: whether a tolerance may be told in them. */
+cw_status cli_check_compress(const cli_compress *compress, bool voxels, cw_error *err);
+
+/* Fills in what a mesh is to be written with. */
+void cli_set_compress(const cli_compress *compress, const cw_mesh *mesh, double voxel_mm,
+                      cw_write_desc *desc);
+
+const char *cli_compression_name(cw_compression kind);
+
+#endif
