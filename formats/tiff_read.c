@@ -7,6 +7,7 @@
 #include "formats/readers.h"
 #include "formats/slices.h"
 #include "formats/stack.h"
+#include "formats/table.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -204,30 +205,28 @@ typedef struct slices {
     uint32_t *order;
 } slices;
 
-static cw_status is_tiff(const cwi_input *in, const char *name, bool *yes, cw_error *err)
+/* By name, else by content: a slice that is damaged is no stranger. */
+static bool is_tiff(const cwi_input *in, const char *name)
 {
     unsigned char head[4];
     uint64_t size;
-    size_t got;
+    size_t got = 0;
     int fd;
-    cw_status st = cwi_input_open_side(in, name, &fd, &size, err);
-    if (st != CW_OK)
-        return st;
-    st = cwi_input_read_at(fd, 0, head, sizeof head, &got, err);
+    if (cwi_has_extension(name, ".tif .tiff"))
+        return true;
+    if (cwi_input_open_side(in, name, &fd, &size, NULL) != CW_OK)
+        return false;
+    const bool read = cwi_input_read_at(fd, 0, head, sizeof head, &got, NULL) == CW_OK;
     close(fd);
-    *yes = st == CW_OK && cwi_tiff_sniff(head, got);
-    return st;
+    return read && cwi_tiff_sniff(head, got);
 }
 
 static cw_status find_files(slices *s, const cwi_names *names, cw_error *err)
 {
     cw_status st = CW_OK;
-    for (size_t i = 0; st == CW_OK && i < names->count; i++) {
-        cw_error why = {0};
-        bool yes = false;
-        if (is_tiff(s->in, names->items[i], &yes, &why) == CW_OK && yes)
+    for (size_t i = 0; st == CW_OK && i < names->count; i++)
+        if (is_tiff(s->in, names->items[i]))
             st = cwi_names_add(&s->files, names->items[i], err);
-    }
     if (st == CW_OK && s->files.count == 0)
         return cw_fail(err, CW_ERR_FORMAT, "it holds no TIFF file");
     if (st == CW_OK && s->files.count < names->count)
@@ -254,7 +253,7 @@ static cw_status check_folder(const slices *s, cw_error *err)
         if (folder_length(name) != length || memcmp(name, first, length) != 0)
             return cw_fail(err, CW_ERR_UNSAFE,
                            "it has TIFF files in several folders, as are '%.80s' and '%.80s'; "
-                           "name one of the folders",
+                           "name one of the folders, or a pattern",
                            first, name);
     }
     return CW_OK;

@@ -1137,6 +1137,12 @@ static void slices_that_do_not_belong_together_are_named(void **state)
     save_slice("s/deep/2.tif", 1);
     assert_fails(read_with("s", (cw_read_desc){0}, &v, &err), CW_ERR_UNSAFE,
                  "in several folders, as are '1.tif' and 'deep/2.tif'", err);
+    put_file("s/2.tif", "", NULL, 0);
+    assert_fails(read_with("s/*.tif", (cw_read_desc){0}, &v, &err), CW_ERR_IO,
+                 "2.tif: the file is empty", err);
+    put_file("s/2.tif", "no TIFF at all", NULL, 0);
+    assert_fails(read_with("s/*.tif", (cw_read_desc){0}, &v, &err), CW_ERR_FORMAT,
+                 "2.tif: it does not start as a TIFF file does", err);
     put_file("s/deep/2.tif", "II*", "\0", 1);
     assert_fails(read_with("s/deep", (cw_read_desc){0}, &v, &err), CW_ERR_FORMAT,
                  "2.tif: the file ends within its header", err);
