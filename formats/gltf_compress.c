@@ -112,8 +112,9 @@ static cw_status fail_shape(const cwi_grid *grid, const cwi_grid_harm *harm, dou
     return cw_fail(
         err, CW_ERR_CHECK,
         "with %d bits a coordinate, the most there are, %zu vertices fall onto others "
-        "and %zu triangles lose their area",
-        grid->bits, harm->merged, harm->flat);
+        "and %zu triangles lose their area%s",
+        grid->bits, harm->merged, harm->flat,
+        grid->bits < CWI_MOST_GRID_BITS ? "; Draco has up to 30" : "");
 }
 
 /* The coarsest grid that keeps tolerance and shape; *found is false when none does. */
