@@ -20,8 +20,8 @@ install_packages "the scan that the README shows" data ||
 install_packages "other people's readers" validator ||
     echo "== some readers are missing: their tests will be skipped"
 validator=build/validator
-if command -v npm >/dev/null && [ ! -d $validator/node_modules/gltf-validator ]; then
-    echo "== installing the glTF validator (npm) in $validator"
+if command -v npm >/dev/null && [ ! -d $validator/node_modules/three ]; then
+    echo "== installing the glTF validator and three.js (npm) in $validator"
     mkdir -p $validator
     cp tests/validator/package.json $validator/
     npm install --prefix $validator --no-audit --no-fund --no-package-lock --silent ||

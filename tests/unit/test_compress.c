@@ -1,0 +1,279 @@
+/* Compressed glTF: what comes back is what went in, as near as was asked for, and whole. */
+#include "support/surface.h"
+
+#include "core/memory.h"
+#include "core/module.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const cw_compression kinds[] = {CW_COMPRESS_QUANTIZE, CW_COMPRESS_DRACO,
+                                       CW_COMPRESS_MESHOPT};
+enum { KINDS = sizeof kinds / sizeof *kinds };
+
+static bool is_there(cw_compression kind)
+{
+    return kind == CW_COMPRESS_DRACO     ? cwi_module_present("draco")
+           : kind == CW_COMPRESS_MESHOPT ? cwi_module_present("meshopt")
+                                         : true;
+}
+
+/* A coloured gyroid, far from zero; free it. */
+static cw_mesh make_gyroid(size_t n)
+{
+    cw_volume v = test_sample(CW_FIELD_GYROID, n, CW_F32);
+    for (int r = 0; r < 3; r++)
+        v.affine[r][3] += 1000 * (r + 1);
+    cw_mesh mesh = test_extract(&v, &(cw_extract_desc){.isovalue = 0}, NULL);
+    mesh.colors = cwi_alloc_array(mesh.vertex_count, 4);
+    assert_non_null(mesh.colors);
+    for (size_t i = 0; i < 4 * mesh.vertex_count; i++)
+        mesh.colors[i] = (uint8_t)(i % 4 == 3 ? 255 : 40 + i / 4 % 200);
+    cw_volume_free(&v);
+    return mesh;
+}
+
+static cw_mesh write_and_read(const cw_mesh *mesh, cw_write_desc desc, cw_compressed *told,
+                              const char *name)
+{
+    cw_mesh back;
+    cw_error err = {0};
+    desc.compressed = told;
+    assert_ok(cw_mesh_write(test_path(name), mesh, &desc, &err), err);
+    assert_ok(cw_mesh_read(test_path(name), NULL, &back, NULL, &err), err);
+    return back;
+}
+
+/* How far each is from the other at most. */
+static double distance_between(const cw_mesh *a, const cw_mesh *b)
+{
+    double most = 0;
+    cw_error err = {0};
+    for (int way = 0; way < 2; way++) {
+        cw_distance d;
+        assert_ok(cw_distance_to_mesh(way ? a : b, way ? b : a, NULL, &d, NULL, &err), err);
+        most = fmax(most, d.max_mm);
+    }
+    return most;
+}
+
+static void every_kind_keeps_the_mesh(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"a.glb", "a.gltf"};
+    cw_mesh mesh = make_gyroid(20);
+    const cw_quality was = test_check_promise(&mesh, false);
+    for (int k = 0; k < KINDS; k++)
+        for (int n = 0; n < 2 && is_there(kinds[k]); n++) {
+            cw_compressed told = {0};
+            cw_mesh back = write_and_read(&mesh, (cw_write_desc){.compression = kinds[k]},
+                                          &told, names[n]);
+            const cw_quality is = test_check_promise(&back, false);
+            assert_int_equal(is.triangles, was.triangles);
+            assert_int_equal(is.euler, was.euler);
+            assert_int_equal(is.components, was.components);
+            assert_true(told.bits > 8 && told.merged == 0 && told.flat == 0);
+            assert_true(told.error_mm > 0 && told.error_mm <= 0.8661 * told.step_mm);
+            assert_true(distance_between(&mesh, &back) <= told.error_mm * 1.01 + 1e-4);
+            assert_true(told.normal_degrees > 0 && told.normal_degrees < 0.7);
+            assert_non_null(back.colors);
+            assert_int_equal(test_normals_agree(&back), test_normals_agree(&mesh));
+            cw_mesh_free(&back);
+        }
+    cw_mesh_free(&mesh);
+}
+
+/* The colour of each vertex is that of the vertex at its place. */
+static void colors_stay_with_their_vertices(void **state)
+{
+    (void)state;
+    cw_mesh mesh = make_gyroid(12);
+    for (int k = 0; k < KINDS; k++) {
+        if (!is_there(kinds[k]))
+            continue;
+        cw_compressed told;
+        cw_mesh back =
+            write_and_read(&mesh, (cw_write_desc){.compression = kinds[k]}, &told, "a.glb");
+        for (size_t v = 0; v < back.vertex_count; v += 7) {
+            size_t nearest = 0;
+            double least = INFINITY;
+            for (size_t u = 0; u < mesh.vertex_count; u++) {
+                double squares = 0;
+                for (size_t a = 0; a < 3; a++) {
+                    const double d = mesh.origin[a] + (double)mesh.positions[3 * u + a] -
+                                     back.origin[a] - (double)back.positions[3 * v + a];
+                    squares += d * d;
+                }
+                nearest = squares < least ? u : nearest;
+                least = fmin(least, squares);
+            }
+            for (size_t c = 0; c < 4; c++) /* linear light in bytes is coarse in the dark */
+                assert_near(back.colors[4 * v + c], mesh.colors[4 * nearest + c], 7);
+        }
+        cw_mesh_free(&back);
+    }
+    cw_mesh_free(&mesh);
+}
+
+static void a_tolerance_is_kept(void **state)
+{
+    (void)state;
+    static const double wanted[] = {0.1, 0.01, 0.0005};
+    cw_mesh mesh = make_gyroid(20);
+    int bits = 0;
+    for (size_t n = 0; n < 3; n++) {
+        cw_compressed told;
+        if (!is_there(CW_COMPRESS_DRACO))
+            break;
+        cw_mesh back = write_and_read(
+            &mesh, (cw_write_desc){.compression = CW_COMPRESS_DRACO, .tolerance_mm = wanted[n]},
+            &told, "a.glb");
+        assert_true(told.error_mm <= wanted[n]);
+        assert_true(told.bits >= bits);
+        bits = told.bits;
+        cw_mesh_free(&back);
+    }
+    cw_mesh_free(&mesh);
+}
+
+/* Two slivers, a thousandth of a millimetre high on a base of 100 m. */
+static void put_sliver(cw_mesh *mesh, float positions[18], uint32_t triangles[12])
+{
+    static const uint32_t corners[12] = {0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2};
+    const float points[12] = {0, 0, 0, 1e5f, 0, 0, 0, 1e5f, 0, 0.001f, 0.001f, 0.001f};
+    memcpy(positions, points, sizeof points);
+    memcpy(triangles, corners, sizeof corners);
+    *mesh = (cw_mesh){
+        .positions = positions, .vertex_count = 4, .triangles = triangles, .triangle_count = 4};
+}
+
+static void what_cannot_be_kept_is_not_promised(void **state)
+{
+    (void)state;
+    cw_mesh mesh;
+    float positions[18];
+    uint32_t triangles[12];
+    cw_compressed told = {0};
+    cw_error err = {0};
+    put_sliver(&mesh, positions, triangles);
+    assert_fails(cw_mesh_write(test_path("a.glb"), &mesh,
+                               &(cw_write_desc){.compression = CW_COMPRESS_QUANTIZE}, &err),
+                 CW_ERR_CHECK, "1 vertices fall onto others", err);
+    assert_int_equal(test_folder_entries(), 0); /* nothing is half-written */
+    assert_fails(cw_mesh_write(test_path("a.glb"), &mesh,
+                               &(cw_write_desc){.compression = CW_COMPRESS_QUANTIZE,
+                                                .tolerance_mm = 1e-6},
+                               &err),
+                 CW_ERR_CHECK, "move vertices by up to", err);
+    cw_mesh back =
+        write_and_read(&mesh, (cw_write_desc){.compression = CW_COMPRESS_QUANTIZE, .bits = 12},
+                       &told, "a.glb");
+    assert_true(told.bits == 12 && told.merged == 1 && told.flat == 2);
+    cw_mesh_free(&back);
+    if (!is_there(CW_COMPRESS_MESHOPT))
+        return;
+    back = write_and_read(&mesh, (cw_write_desc){.compression = CW_COMPRESS_MESHOPT}, &told,
+                          "a.glb");
+    assert_int_equal(told.bits, 0); /* as they were */
+    assert_true(distance_between(&mesh, &back) < 1e-6);
+    cw_mesh_free(&back);
+}
+
+static void what_makes_no_sense_is_refused(void **state)
+{
+    (void)state;
+    cw_mesh mesh = {0};
+    cw_error err = {0};
+    test_make_cube(&mesh);
+    const cw_write_desc quantize = {.compression = CW_COMPRESS_QUANTIZE};
+    assert_fails(cw_mesh_write(test_path("a.stl"), &mesh, &quantize, &err), CW_ERR_ARGUMENT,
+                 "stl has no compressed form", err);
+    const cw_write_desc many = {.compression = CW_COMPRESS_QUANTIZE, .bits = 17};
+    assert_fails(cw_mesh_write(test_path("a.glb"), &mesh, &many, &err), CW_ERR_ARGUMENT,
+                 "there may be 1 to 16", err);
+    cw_mesh_free(&mesh);
+}
+
+/* Two cubes with a common face, each with an origin of its own: the face stays common. */
+static void parts_share_a_grid(void **state)
+{
+    (void)state;
+    cw_mesh a = {0}, b = {0};
+    cw_error err = {0};
+    test_make_cube(&a);
+    test_make_cube(&b);
+    for (size_t i = 0; i < 24; i++) {
+        a.positions[i] =
+            (i % 3 == 0 ? 0.7f : 0.5f) * a.positions[i] + (i % 3 == 0 ? 0.0f : 0.1f);
+        b.positions[i] =
+            (i % 3 == 0 ? 0.7f : 0.5f) * b.positions[i] + (i % 3 == 0 ? 0.7f : 0.1f);
+    }
+    b.origin[1] = 0.25;
+    for (size_t i = 1; i < 24; i += 3)
+        b.positions[i] -= 0.25f;
+    const cw_part parts[] = {{&a, "left"}, {&b, "right"}};
+    for (int k = 0; k < KINDS; k++) {
+        if (!is_there(kinds[k]))
+            continue;
+        cw_mesh back;
+        cw_quality q;
+        const cw_write_desc desc = {.compression = kinds[k], .bits = 7};
+        assert_ok(cw_parts_write(test_path("a.glb"), parts, 2, &desc, &err), err);
+        assert_ok(cw_mesh_read(test_path("a.glb"), NULL, &back, NULL, &err), err);
+        const cw_quality_desc weld = {.weld = CW_WELD_LOCAL};
+        assert_ok(cw_quality_measure(&back, &weld, &q, &err), err);
+        assert_int_equal(q.components, 1); /* joined by the corners of the face */
+        assert_int_equal(q.merged_vertices, 4);
+        cw_mesh_free(&back);
+    }
+    cw_mesh_free(&a);
+    cw_mesh_free(&b);
+}
+
+/* Any byte behind the JSON turned round: an error or a mesh, in a process of its own or not. */
+static void damage_is_an_error_or_a_mesh(void **state)
+{
+    (void)state;
+    cw_mesh mesh = make_gyroid(6);
+    for (int k = 0; k < KINDS; k++) {
+        cw_compressed told;
+        if (!is_there(kinds[k]))
+            continue;
+        cw_mesh back =
+            write_and_read(&mesh, (cw_write_desc){.compression = kinds[k]}, &told, "a.glb");
+        size_t size;
+        char *bytes = test_file_read(test_path("a.glb"), &size);
+        cw_mesh_free(&back);
+        for (size_t i = 20 + (unsigned char)bytes[12] + 256u * (unsigned char)bytes[13];
+             i < size; i += 13) {
+            const cw_mesh_read_desc desc = {.no_sandbox = i % 64 != 0, .max_bytes = 64 << 20};
+            cw_error err = {0};
+            bytes[i] = (char)~bytes[i];
+            test_file_write(test_path("b.glb"), bytes, size);
+            if (cw_mesh_read(test_path("b.glb"), &desc, &back, NULL, &err) == CW_OK) {
+                assert_ok(cw_mesh_check(&back, &err), err);
+                cw_mesh_free(&back);
+            }
+            bytes[i] = (char)~bytes[i];
+        }
+        free(bytes);
+    }
+    cw_mesh_free(&mesh);
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
+    const struct CMUnitTest tests[] = {
+        TEST(every_kind_keeps_the_mesh),
+        TEST(colors_stay_with_their_vertices),
+        TEST(a_tolerance_is_kept),
+        TEST(what_cannot_be_kept_is_not_promised),
+        TEST(what_makes_no_sense_is_refused),
+        TEST(parts_share_a_grid),
+        TEST(damage_is_an_error_or_a_mesh),
+    };
+    return cwi_module_present("gltf") ? cmocka_run_group_tests(tests, NULL, NULL) : 0;
+}
