@@ -7,6 +7,7 @@
 #include "core/status.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 typedef struct extract_args {
@@ -20,6 +21,8 @@ typedef struct extract_args {
     bool open, no_clobber, local, check;
     size_t max_triangles;
 } extract_args;
+
+enum { PROVENANCE_LINES = 4 };
 
 static const extract_args defaults = {.check = true};
 
@@ -175,16 +178,34 @@ static cw_status extract(run_state *s, double iso, cw_mesh *mesh, cw_extract_cou
     return st;
 }
 
+/* How a surface was made, for the file's own record. Not of what: names of files may be names
+ * of patients. */
+static void tell_provenance(const run_state *s, size_t n, char level[32],
+                            cw_provenance lines[PROVENANCE_LINES])
+{
+    const extract_args *args = s->args;
+    snprintf(level, 32, "%.9g", args->iso.value[n]);
+    lines[0] = (cw_provenance){"isovalue", level};
+    lines[1] = (cw_provenance){"inside", args->inside ? "below" : "above"};
+    lines[2] = (cw_provenance){"topology", args->topology ? "simple" : "field"};
+    lines[3] = (cw_provenance){"placement", args->placement ? "cubic" : "linear"};
+}
+
 static cw_status make_surface(run_state *s, size_t n, cw_error *err)
 {
+    char level[32];
+    cw_provenance provenance[PROVENANCE_LINES];
     const double *spacing = s->volume.spacing;
-    const cli_delivery how = {.input = s->volume.path,
-                              .write = write_desc(s->args),
-                              .compress = &s->args->compress,
-                              .voxel_mm = cbrt(spacing[0] * spacing[1] * spacing[2]),
-                              .unchecked = !s->args->check,
-                              .open = s->args->open,
-                              .preview = cli_is_preview(&s->volume)};
+    tell_provenance(s, n, level, provenance);
+    cli_delivery how = {.input = s->volume.path,
+                        .write = write_desc(s->args),
+                        .compress = &s->args->compress,
+                        .voxel_mm = cbrt(spacing[0] * spacing[1] * spacing[2]),
+                        .unchecked = !s->args->check,
+                        .open = s->args->open,
+                        .preview = cli_is_preview(&s->volume)};
+    how.write.provenance = provenance;
+    how.write.provenance_count = PROVENANCE_LINES;
     cli_made *made = cli_report_next(&s->report, s->outputs.path[n], s->args->iso.value[n]);
     cw_mesh mesh = {0};
     cw_extract_counts counts;
