@@ -277,6 +277,20 @@ static void colours_become_linear_and_translucent_ones_blend(void **state)
     cw_mesh_free(&mesh);
 }
 
+static void provenance_stands_in_the_asset(void **state)
+{
+    (void)state;
+    const cw_provenance lines[] = {{"isovalue", "50"}, {"quote", "a \"b\" \\ c"}};
+    cw_mesh mesh = {0};
+    glb g;
+    test_make_cube(&mesh);
+    write_glb_as(&mesh, &(cw_write_desc){.provenance = lines, .provenance_count = 2}, &g);
+    assert_non_null(
+        strstr(g.json, "\"extras\":{\"isovalue\":\"50\",\"quote\":\"a \\\"b\\\" \\\\ c\"}"));
+    glb_free(&g);
+    cw_mesh_free(&mesh);
+}
+
 static void extras_name_frame_unit_and_affine(void **state)
 {
     (void)state;
@@ -432,6 +446,7 @@ int main(void)
         CASE(a_local_scene_is_not_moved_but_tells_its_origin),
         CASE(indices_are_short_as_long_as_they_may_be),
         CASE(colours_become_linear_and_translucent_ones_blend),
+        CASE(provenance_stands_in_the_asset),
         CASE(extras_name_frame_unit_and_affine),
         CASE(the_same_mesh_gives_the_same_bytes),
         CASE(text_gltf_embeds_the_buffer_of_the_glb),
