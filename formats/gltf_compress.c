@@ -1,3 +1,4 @@
+#define _GNU_SOURCE /* clock_gettime */
 /* Compression that keeps its promise: a grid fine enough for the tolerance and the shape, one
  * for all parts; and what was compressed is decoded and held against what it was made of. */
 #define _GNU_SOURCE /* clock_gettime */

@@ -137,12 +137,11 @@ static cw_status read_slot(reading *r, const cwi_slot *slot, cw_error *err)
 {
     const cwi_stack *s = r->stack;
     const size_t slices = s->shape.dim[2], z = slot->place % slices - r->box.first[2];
-    const size_t place = slot->place / slices * r->box.count[2] + z,
-                 bytes = r->pixels * cw_type_size(s->shape.type);
-    char *to = r->voxels + place * bytes;
+    const size_t bytes = r->pixels * cw_type_size(s->shape.type);
     const bool plain = is_plain(s, slot);
     if (z >= r->box.count[2]) /* in front of it, too */
         return CW_OK;
+    char *to = r->voxels + (slot->place / slices * r->box.count[2] + z) * bytes;
     if (plain && r->box.count[0] == s->shape.dim[0])
         return read_plane(r, slot->low, to, err);
     cw_status st = read_plane(r, slot->low, r->low, err);

@@ -1,5 +1,5 @@
 # Numbered slices: a folder, a pattern, and one missing.
-cubewright formats | grep -q '^tiff .*r-' || { echo "this build reads no TIFF" >&2; exit 77; }
+cubewright formats | grep '^tiff' | grep -qv 'not in this' || { echo "this build reads no TIFF" >&2; exit 77; }
 # slice NUMBER FILE: so many planes into a volume of 24 x 24 floats, one page of one strip
 slice() {
     {

@@ -1022,10 +1022,24 @@ static void make_folder(const char *name)
     assert_int_equal(mkdir(test_path(name), 0700), 0);
 }
 
-/* Of pages with channels and frames, of strips, of tiles, of slices in files. */
+/* Of strips, tiles, rows that run backwards, channels and frames, and slices in files. */
 static void regions_are_crops(void **state)
 {
     (void)state;
+    const cw_read_desc here = {
+        .no_sandbox = true, .gaps = CW_GAPS_INTERPOLATE, .spacing_mm = {1, 2, 3}};
+    const test_page pages[] = {{.rows_per_strip = 2},
+                               {.rows_per_strip = 16, .tile_width = 16},
+                               {.orientation = 3, .rows_per_strip = 1},
+                               {.orientation = 4, .rows_per_strip = 16, .tile_width = 16},
+                               {.photometric = 100}};
+    for (size_t i = 0; i < sizeof pages / sizeof *pages; i++) {
+        test_tiff t = {0};
+        for (unsigned char p = 0; p < 3; p++)
+            add_bytes(&t, pages[i], (unsigned char)(20 * p));
+        save(&t, "a.tif");
+        check_regions("a.tif", &here);
+    }
     save_described("a.tif",
                    "ImageJ=1.53t\nimages=12\nchannels=2\nslices=3\nframes=2\nunit=mm\n", 12);
     check_regions("a.tif", NULL);
@@ -1033,7 +1047,7 @@ static void regions_are_crops(void **state)
     save_slice("s/cut_8.tif", 10);
     save_slice("s/cut_9.tif", 20);
     save_slice("s/cut_11.tif", 30);
-    check_regions("s", &(cw_read_desc){.gaps = CW_GAPS_INTERPOLATE, .spacing_mm = {1, 2, 3}});
+    check_regions("s", &here);
 }
 
 static void numbers_in_names_count_as_numbers(void **state)
@@ -1308,21 +1322,9 @@ static void memory_may_run_out_anywhere(void **state)
     save_slice("s/1.tif", 1);
     save_slice("s/2.tif", 1);
     save_slice("s/4.tif", 1);
+    const cw_read_desc here = {.no_sandbox = true, .gaps = CW_GAPS_INTERPOLATE};
     for (size_t i = 0; i < 3; i++)
-        for (long n = 0;; n++) {
-            cw_volume v;
-            cw_error err = {0};
-            cwi_alloc_fail_after(n);
-            const cw_status st = read_with(
-                names[i], (cw_read_desc){.no_sandbox = true, .gaps = CW_GAPS_INTERPOLATE}, &v,
-                &err);
-            if (!cwi_alloc_fail_after(-1)) {
-                assert_ok(st, err);
-                cw_volume_free(&v);
-                break;
-            }
-            assert_fails(st, CW_ERR_NO_MEMORY, "no memory", err);
-        }
+        check_starved(names[i], &here);
 }
 
 int main(void)
