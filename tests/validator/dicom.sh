@@ -11,7 +11,7 @@ trap 'rm -rf "$folder"' EXIT
 cd "$folder" || exit 1
 command -v dcmconv >/dev/null || command -v gdcmconv >/dev/null ||
     { echo "skip: neither dcmtk nor libgdcm-tools is installed" >&2; exit 77; }
-cubewright formats | grep -q '^dicom .*r-' ||
+cubewright formats | grep '^dicom' | grep -qv 'not in this' ||
     { echo "skip: this build reads no DICOM" >&2; exit 77; }
 
 mkdir plain
