@@ -225,7 +225,7 @@ static cw_status wait_for_answer(const cwi_sandbox *box, cw_error *err)
         if (now_s() - start > timeout_s(box))
             return cw_fail(err, CW_ERR_BACKEND,
                            "%s was stopped after %.6g s without a result; the file is damaged, "
-                           "or needs a longer timeout",
+                           "or needs a longer --timeout",
                            box->desc.library, timeout_s(box));
     }
     return CW_OK;
@@ -332,11 +332,10 @@ cw_status cwi_sandbox_open(cwi_sandbox *box, const cwi_sandbox_desc *desc, cw_er
     if (receive_parcel(box->socket, &ready, 1, NULL))
         return CW_OK;
     cwi_sandbox_close(box);
-    return cw_fail(
-        err, CW_ERR_BACKEND,
-        "the process that is to read with %s cannot be shut in (seccomp); reading in "
-        "this process has to be asked for",
-        desc->library);
+    return cw_fail(err, CW_ERR_BACKEND,
+                   "the process that is to read with %s cannot be shut in (seccomp); "
+                   "--no-sandbox reads in this one",
+                   desc->library);
 }
 
 void cwi_sandbox_close(cwi_sandbox *box)
