@@ -333,6 +333,7 @@ const cli_command cli_extract = {
     .option_count = sizeof options / sizeof *options,
     .min_inputs = 1,
     .max_inputs = 1,
+    .slices = true,
     .size = sizeof(extract_args),
     .defaults = &defaults,
     .run = run,

@@ -338,6 +338,7 @@ const cli_command cli_info = {
     .option_count = sizeof options / sizeof *options,
     .min_inputs = 1,
     .max_inputs = 1,
+    .slices = true,
     .size = sizeof(info_args),
     .run = run,
 };

@@ -144,6 +144,7 @@ const cli_command cli_render = {
     .option_count = sizeof options / sizeof *options,
     .min_inputs = 1,
     .max_inputs = 1,
+    .slices = true,
     .size = sizeof(render_args),
     .defaults = &defaults,
     .run = run,

@@ -244,8 +244,12 @@ static cw_status check_inputs(const cli_command *c, const cli_common *args, cw_e
         return cw_fail(err, CW_ERR_ARGUMENT, "too few arguments; usage: cubewright %s %s",
                        c->name, c->usage);
     return cw_fail(err, CW_ERR_ARGUMENT,
-                   "'%s' is one argument too many; usage: cubewright %s %s",
-                   args->inputs[c->max_inputs], c->name, c->usage);
+                   "'%s' is one argument too many%s; usage: cubewright %s %s",
+                   args->inputs[c->max_inputs],
+                   c->slices ? " (slices in files of their own: name their folder, or put "
+                               "quotes around a pattern)"
+                             : "",
+                   c->name, c->usage);
 }
 
 cw_status cli_parse(const cli_command *command, int count, char **words, void *args,

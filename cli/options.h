@@ -83,7 +83,8 @@ typedef struct cli_command {
     const cli_option *options;
     size_t option_count;
     size_t min_inputs, max_inputs;
-    size_t size;          /* of the struct that options fill in; it begins with cli_common */
+    bool slices; /* the input may be slices, which a shell may make many arguments of */
+    size_t size; /* of the struct that options fill in; it begins with cli_common */
     const void *defaults; /* that struct before any option; NULL: zeros */
     cw_status (*run)(void *args, cw_error *err);
 } cli_command;
