@@ -244,17 +244,20 @@ static cw_status run(void *p, cw_error *err)
     const extract_args *args = p;
     run_state s = {.args = args, .start = cli_seconds()};
     s.report.command = "extract";
-    s.report.several = args->iso.count > 1;
+    s.report.several = args->iso.count > 1 ? "surfaces" : NULL;
     s.report.params = put_params;
     s.report.args = &s;
     cli_console_start(&args->common, (cli_progress_mode)args->progress);
     if (args->json && strcmp(args->json, "-") == 0)
         cli_results_to_stderr();
-    cw_status st = pipeline(&s, err);
+    cw_status st = cli_report_reserve(&s.report, args->iso.count ? args->iso.count : 1, err);
+    if (st == CW_OK)
+        st = pipeline(&s, err);
     st = cli_report_write(&s.report, st, err);
     cw_extractor_free(s.extractor);
     cli_free_volume(&s.volume);
     cli_free_outputs(&s.outputs);
+    cli_report_free(&s.report);
     return st;
 }
 

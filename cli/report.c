@@ -1,4 +1,4 @@
-#define _GNU_SOURCE /* open_memstream */
+#define _GNU_SOURCE /* open_memstream, reallocarray */
 #include "cli/report.h"
 
 #include "cli/console.h"
@@ -11,6 +11,25 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+
+cw_status cli_report_reserve(cli_report *report, size_t meshes, cw_error *err)
+{
+    const size_t steps = (meshes + 1) * CLI_MOST_STEPS;
+    cli_made *made = reallocarray(report->made, meshes, sizeof *made);
+    report->made = made ? made : report->made;
+    cli_step *step = reallocarray(report->steps, steps, sizeof *step);
+    report->steps = step ? step : report->steps;
+    if (!made || !step)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the report of %zu meshes", meshes);
+    report->step_room = steps;
+    return CW_OK;
+}
+
+void cli_report_free(cli_report *report)
+{
+    free(report->made);
+    free(report->steps);
+}
 
 cli_made *cli_report_next(cli_report *report, const char *path, double iso)
 {
@@ -26,14 +45,15 @@ void cli_report_begin(cli_report *report)
 
 void cli_report_end(cli_report *report, const char *name, size_t in, size_t out)
 {
-    cli_step *s = &report->steps[report->step_count++];
-    *s = (cli_step){.name = name,
-                    .made = report->made_count - 1,
-                    .seconds = cli_seconds() - report->step_start,
-                    .peak_bytes = cli_peak_bytes(),
-                    .in = in,
-                    .out = out};
-    cli_say_v("%-8s %8.3f s, peak %s", s->name, s->seconds, cli_bytes((double)s->peak_bytes));
+    const cli_step s = {.name = name,
+                        .made = report->made_count - 1,
+                        .seconds = cli_seconds() - report->step_start,
+                        .peak_bytes = cli_peak_bytes(),
+                        .in = in,
+                        .out = out};
+    if (report->step_count < report->step_room)
+        report->steps[report->step_count++] = s;
+    cli_say_v("%-8s %8.3f s, peak %s", s.name, s.seconds, cli_bytes((double)s.peak_bytes));
 }
 
 void cli_report_warn(cli_report *report, const char *format, ...)
@@ -135,12 +155,15 @@ static void put_facts(cli_json *j, const cli_made *m)
         put_snap(j, &m->snap);
 }
 
-static void put_surfaces(cli_json *j, const cli_report *r)
+static void put_several(cli_json *j, const cli_report *r)
 {
-    cli_json_open(j, "surfaces", '[');
+    cli_json_open(j, r->several, '[');
     for (const cli_made *m = r->made; m < r->made + r->made_count; m++) {
         cli_json_open(j, NULL, '{');
-        cli_json_number(j, "iso", m->iso);
+        if (m->name)
+            cli_json_text(j, "name", m->name);
+        else
+            cli_json_number(j, "iso", m->iso);
         if (m->written)
             cli_json_text(j, "path", cli_shown_path(m->path));
         put_facts(j, m);
@@ -170,8 +193,8 @@ static void put_output(cli_json *j, const cli_made *made)
 static void put_made(cli_json *j, const cli_report *r)
 {
     if (r->several)
-        put_surfaces(j, r);
-    else
+        put_several(j, r);
+    else if (r->made_count)
         put_facts(j, &r->made[0]);
     cli_json_open(j, "output", '[');
     for (size_t n = 0; n < r->made_count; n++)

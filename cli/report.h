@@ -8,8 +8,6 @@
 #include <cubewright/extract.h>
 #include <cubewright/quality.h>
 
-enum { CLI_MAX_MADE = CLI_MAX_NUMBERS, CLI_MAX_STEPS = 4 * CLI_MAX_MADE };
-
 typedef struct cli_step {
     const char *name;
     size_t made; /* which mesh it is about; nothing to go by before the first */
@@ -20,6 +18,7 @@ typedef struct cli_step {
 /* One mesh of a run, as far as it has come. */
 typedef struct cli_made {
     const char *path; /* where it goes */
+    const char *name; /* of a part; NULL: it is the surface at an isovalue */
     double iso;
     bool measured, written, local, snapped;
     cw_quality quality;            /* when it is measured */
@@ -35,18 +34,24 @@ typedef struct cli_report {
     const char *path; /* of the report; "-" is stdout; NULL: none is written */
     const char *command;
     const cli_volume *input; /* NULL: not read */
-    cli_made made[CLI_MAX_MADE];
-    size_t made_count; /* meshes begun so far */
-    bool several;      /* meshes were asked for: the report lists them */
+    cli_made *made;
+    size_t made_count;   /* meshes begun so far */
+    const char *several; /* what the list of meshes is called; NULL: one was asked for */
     /* Writes the settings of the main step, for one mesh. */
     void (*params)(cli_json *j, const void *args, const cli_made *made);
     /* Writes what only this command has to say, behind the input; NULL: nothing. */
     void (*facts)(cli_json *j, const void *args);
     const void *args;
-    cli_step steps[CLI_MAX_STEPS];
-    size_t step_count;
+    cli_step *steps;
+    size_t step_count, step_room;
     double step_start;
 } cli_report;
+
+enum { CLI_MOST_STEPS = 8 }; /* of one mesh */
+
+/* Room for so many meshes; before the first step, or for more. CW_ERR_NO_MEMORY */
+cw_status cli_report_reserve(cli_report *report, size_t meshes, cw_error *err);
+void cli_report_free(cli_report *report);
 
 /* The next mesh of a run: steps and warnings from now on are about it. */
 cli_made *cli_report_next(cli_report *report, const char *path, double iso);
