@@ -423,8 +423,8 @@ static cw_status judge(run_state *s, double start, cw_error *err)
 static void free_state(run_state *s)
 {
     cw_crossings_free(&s->crossings);
-    cw_mesh_free(&s->mesh.mesh);
-    cw_mesh_free(&s->reference.mesh);
+    cli_free_mesh(&s->mesh);
+    cli_free_mesh(&s->reference);
     cli_free_volume(&s->volume);
     free(s->defects);
     free(s->distances);

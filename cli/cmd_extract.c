@@ -182,7 +182,8 @@ static cw_status make_surface(run_state *s, size_t n, cw_error *err)
     made->snapped = st == CW_OK && s->args->snap.value > 0;
     made->snap = made->snapped ? counts.snap : (cw_snap_counts){0};
     if (st == CW_OK)
-        st = cli_deliver(&s->report, &how, &mesh, counts.border_loops, s->start, err);
+        st = cli_deliver(&s->report, &how, &(cw_part){.mesh = &mesh}, 1, counts.border_loops,
+                         s->start, err);
     cw_mesh_free(&mesh);
     s->start = cli_seconds();
     if (st != CW_OK)

@@ -12,6 +12,14 @@
 #include <string.h>
 #include <sys/stat.h>
 
+const struct cli_kept cli_kept[] = {
+    {CW_KEEPS_PARTS, "parts"},     {CW_KEEPS_SHARING, "shared vertices"},
+    {CW_KEEPS_NORMALS, "normals"}, {CW_KEEPS_COLORS, "colours"},
+    {CW_KEEPS_SCALARS, "scalars"}, {CW_KEEPS_LABELS, "labels"},
+    {CW_KEEPS_AFFINE, "affine"},
+};
+const size_t cli_kept_count = sizeof cli_kept / sizeof *cli_kept;
+
 cw_status cli_report_reserve(cli_report *report, size_t meshes, cw_error *err)
 {
     const size_t steps = (meshes + 1) * CLI_MOST_STEPS;
@@ -81,12 +89,13 @@ static void put_features(cli_json *j)
 
 static void put_steps(cli_json *j, const cli_report *r)
 {
+    const char *main_step = r->main_step ? r->main_step : r->command;
     cli_json_open(j, "steps", '[');
     for (size_t i = 0; i < r->step_count; i++) {
         const cli_step *s = &r->steps[i];
         cli_json_open(j, NULL, '{');
         cli_json_text(j, "name", s->name);
-        if (strcmp(s->name, r->command) == 0) {
+        if (strcmp(s->name, main_step) == 0) {
             cli_json_open(j, "params", '{');
             r->params(j, r->args, &r->made[s->made]);
             cli_json_close(j, '}');
@@ -175,6 +184,20 @@ static void put_several(cli_json *j, const cli_report *r)
     cli_json_close(j, ']');
 }
 
+static void put_dropped(cli_json *j, unsigned dropped)
+{
+    bool any = false;
+    for (size_t i = 0; i < cli_kept_count; i++)
+        if (dropped & cli_kept[i].flag) {
+            if (!any)
+                cli_json_open(j, "dropped", '[');
+            any = true;
+            cli_json_text(j, NULL, cli_kept[i].name);
+        }
+    if (any)
+        cli_json_close(j, ']');
+}
+
 static void put_output(cli_json *j, const cli_made *made)
 {
     struct stat info;
@@ -187,6 +210,7 @@ static void put_output(cli_json *j, const cli_made *made)
     cli_json_bool(j, "local", made->local);
     if (made->local)
         cli_json_numbers(j, "origin", made->origin, 3);
+    put_dropped(j, made->dropped);
     cli_json_close(j, '}');
 }
 

@@ -25,6 +25,7 @@ typedef struct cli_made {
     bool shells;                   /* whether that tells which way shells face */
     const cw_crossings *crossings; /* NULL: not looked for */
     cw_snap_counts snap;           /* when it is snapped */
+    unsigned dropped;              /* what the file does not hold of it: cw_keeps flags */
     double origin[3];  /* when it is local: the places in the file are relative to it */
     char warning[512]; /* "": none */
     cw_error error;    /* with the status CW_OK: none */
@@ -35,8 +36,9 @@ typedef struct cli_report {
     const char *command;
     const cli_volume *input; /* NULL: not read */
     cli_made *made;
-    size_t made_count;   /* meshes begun so far */
-    const char *several; /* what the list of meshes is called; NULL: one was asked for */
+    size_t made_count;     /* meshes begun so far */
+    const char *several;   /* what the list of meshes is called; NULL: one was asked for */
+    const char *main_step; /* the one with the settings; default: that named as the command */
     /* Writes the settings of the main step, for one mesh. */
     void (*params)(cli_json *j, const void *args, const cli_made *made);
     /* Writes what only this command has to say, behind the input; NULL: nothing. */
@@ -52,6 +54,14 @@ enum { CLI_MOST_STEPS = 8 }; /* of one mesh */
 /* Room for so many meshes; before the first step, or for more. CW_ERR_NO_MEMORY */
 cw_status cli_report_reserve(cli_report *report, size_t meshes, cw_error *err);
 void cli_report_free(cli_report *report);
+
+/* What meshes have and formats may not keep, by name; places are told by a warning of theirs.
+ */
+extern const struct cli_kept {
+    unsigned flag; /* cw_keeps */
+    const char *name;
+} cli_kept[];
+extern const size_t cli_kept_count;
 
 /* The next mesh of a run: steps and warnings from now on are about it. */
 cli_made *cli_report_next(cli_report *report, const char *path, double iso);

@@ -122,7 +122,7 @@ static bool is_wanted(const cw_format *format, const char *path, const char *nam
     return name ? strcmp(format->name, name) == 0 : cwi_has_extension(path, format->extensions);
 }
 
-static const cw_format *find_format(const char *path, const char *name)
+const cw_format *cw_mesh_format(const char *path, const char *name)
 {
     size_t count;
     const cw_format *all = cw_formats(&count);
@@ -183,7 +183,7 @@ typedef struct target {
 /* The format and writer of a path, with what it needs loaded; it can do what is asked for. */
 static cw_status find_writer(const char *path, const cw_write_desc *d, target *t, cw_error *err)
 {
-    *t = (target){find_format(path, d->format), writers};
+    *t = (target){cw_mesh_format(path, d->format), writers};
     if (!t->format)
         return fail_unknown(d->format, err);
     while (strcmp(t->writer->format, t->format->name) != 0)
