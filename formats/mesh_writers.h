@@ -8,6 +8,7 @@
 #include "core/outfile.h"
 #include "formats/axes.h"
 #include "formats/decimals.h"
+#include "formats/put.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -83,33 +84,6 @@ void cwi_part_bounds(const cwi_part *part, double low[3], double high[3]);
 
 /* CW_ERR_LIMIT when a coordinate is beyond single precision's largest number. */
 cw_status cwi_check_single(const cwi_parts *parts, cw_error *err);
-
-/* Little endian on any machine; each returns the end of what it put. */
-static inline unsigned char *cwi_put_u16(unsigned char *to, uint16_t value)
-{
-    to[0] = (unsigned char)(value & 255);
-    to[1] = (unsigned char)(value >> 8);
-    return to + 2;
-}
-
-static inline unsigned char *cwi_put_u32(unsigned char *to, uint32_t value)
-{
-    return cwi_put_u16(cwi_put_u16(to, (uint16_t)(value & 65535)), (uint16_t)(value >> 16));
-}
-
-static inline unsigned char *cwi_put_f32(unsigned char *to, float value)
-{
-    uint32_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    return cwi_put_u32(to, bits);
-}
-
-static inline unsigned char *cwi_put_f32x3(unsigned char *to, const float value[3])
-{
-    for (int a = 0; a < 3; a++)
-        to = cwi_put_f32(to, value[a]);
-    return to;
-}
 
 /* As it stands in the file. Summed in double: a position keeps its micrometres until the format
  * takes them. Adding 0.0 turns -0 into 0. */
