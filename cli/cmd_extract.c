@@ -23,7 +23,7 @@ static const extract_args defaults = {.check = true};
 
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE",
-     "the mesh: .glb, .gltf, .stl, .ply, .obj or .off; may hold {level} and {stem}",
+     "the mesh, in the format of its extension; may hold {level} and {stem}",
      offsetof(extract_args, output)},
     {"iso", 'i', CLI_NUMBERS, "V[,V...]",
      "the isovalue, or some, in the unit of the values (required)",
