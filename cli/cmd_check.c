@@ -420,11 +420,12 @@ static cw_status judge(run_state *s, double start, cw_error *err)
 static void free_state(run_state *s)
 {
     cw_crossings_free(&s->crossings);
-    cw_mesh_free(&s->mesh.mesh);
-    cw_mesh_free(&s->reference.mesh);
+    cli_free_mesh(&s->mesh);
+    cli_free_mesh(&s->reference);
     cli_free_volume(&s->volume);
     free(s->defects);
     free(s->distances);
+    cli_report_free(&s->report);
 }
 
 static cw_status run(void *p, cw_error *err)
@@ -436,11 +437,14 @@ static cw_status run(void *p, cw_error *err)
     s.report.params = put_params;
     s.report.facts = put_facts;
     s.report.args = &s;
-    cli_report_next(&s.report, args->defects, args->iso.value);
     cli_console_start(&args->common, (cli_progress_mode)args->progress);
     if (args->json && strcmp(args->json, "-") == 0)
         cli_results_to_stderr();
-    cw_status st = check_args_of(&s, err);
+    cw_status st = cli_report_reserve(&s.report, 1, err);
+    if (st == CW_OK) {
+        cli_report_next(&s.report, args->defects, args->iso.value);
+        st = check_args_of(&s, err);
+    }
     if (st == CW_OK)
         st = read_inputs(&s, err);
     if (st == CW_OK)

@@ -28,7 +28,7 @@ static const extract_args defaults = {.check = true};
 
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE",
-     "the mesh: .glb, .gltf, .stl, .ply, .obj or .off; may hold {level} and {stem}",
+     "the mesh, in the format of its extension; may hold {level} and {stem}",
      offsetof(extract_args, output)},
     {"iso", 'i', CLI_NUMBERS, "V[,V...]",
      "the isovalue, or some, in the unit of the values (required)",
@@ -213,7 +213,8 @@ static cw_status make_surface(run_state *s, size_t n, cw_error *err)
     made->snapped = st == CW_OK && s->args->snap.value > 0;
     made->snap = made->snapped ? counts.snap : (cw_snap_counts){0};
     if (st == CW_OK)
-        st = cli_deliver(&s->report, &how, &mesh, counts.border_loops, s->start, err);
+        st = cli_deliver(&s->report, &how, &(cw_part){.mesh = &mesh}, 1, counts.border_loops,
+                         s->start, err);
     cw_mesh_free(&mesh);
     s->start = cli_seconds();
     if (st != CW_OK)
@@ -275,17 +276,20 @@ static cw_status run(void *p, cw_error *err)
     const extract_args *args = p;
     run_state s = {.args = args, .start = cli_seconds()};
     s.report.command = "extract";
-    s.report.several = args->iso.count > 1;
+    s.report.several = args->iso.count > 1 ? "surfaces" : NULL;
     s.report.params = put_params;
     s.report.args = &s;
     cli_console_start(&args->common, (cli_progress_mode)args->progress);
     if (args->json && strcmp(args->json, "-") == 0)
         cli_results_to_stderr();
-    cw_status st = pipeline(&s, err);
+    cw_status st = cli_report_reserve(&s.report, args->iso.count ? args->iso.count : 1, err);
+    if (st == CW_OK)
+        st = pipeline(&s, err);
     st = cli_report_write(&s.report, st, err);
     cw_extractor_free(s.extractor);
     cli_free_volume(&s.volume);
     cli_free_outputs(&s.outputs);
+    cli_report_free(&s.report);
     return st;
 }
 

@@ -34,17 +34,26 @@ cw_status cli_check_compress(const cli_compress *c, bool voxels, cw_error *err)
     return CW_OK;
 }
 
-void cli_set_compress(const cli_compress *c, const cw_mesh *mesh, double voxel_mm,
-                      cw_write_desc *desc)
+static double diagonal_of(const cw_part *parts, size_t count)
 {
-    double low[3], high[3];
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t p = 0; p < count; p++) {
+        double from[3], to[3];
+        cw_mesh_bounds(parts[p].mesh, from, to);
+        for (int a = 0; a < 3 && parts[p].mesh->vertex_count; a++) {
+            low[a] = fmin(low[a], from[a]);
+            high[a] = fmax(high[a], to[a]);
+        }
+    }
+    return hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
+}
+
+void cli_set_compress(const cli_compress *c, const cw_part *parts, size_t count,
+                      double voxel_mm, cw_write_desc *desc)
+{
     desc->compression = (cw_compression)c->kind;
     desc->bits = (int)c->bits;
     desc->level = (int)c->level;
-    if (!c->tolerance.given)
-        return;
-    cw_mesh_bounds(mesh, low, high);
-    desc->tolerance_mm = cli_length_mm(
-        &c->tolerance, hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]),
-        voxel_mm);
+    if (c->tolerance.given)
+        desc->tolerance_mm = cli_length_mm(&c->tolerance, diagonal_of(parts, count), voxel_mm);
 }

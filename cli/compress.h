@@ -42,8 +42,8 @@ typedef struct cli_compress {
 cw_status cli_check_compress(const cli_compress *compress, bool voxels, cw_error *err);
 
 /* Fills in what a mesh is to be written with. */
-void cli_set_compress(const cli_compress *compress, const cw_mesh *mesh, double voxel_mm,
-                      cw_write_desc *desc);
+void cli_set_compress(const cli_compress *compress, const cw_part *parts, size_t count,
+                      double voxel_mm, cw_write_desc *desc);
 
 const char *cli_compression_name(cw_compression kind);
 

@@ -4,15 +4,36 @@
 #include "cli/quantity.h"
 #include "core/status.h"
 
+#include <math.h>
+#include <stdio.h>
 #include <string.h>
 #include <sys/stat.h>
+
+/* What is delivered. */
+typedef struct load {
+    const cw_part *parts;
+    size_t part_count, vertices, triangles;
+} load;
+
+static load count_load(const cw_part *parts, size_t part_count)
+{
+    load l = {.parts = parts, .part_count = part_count};
+    for (size_t p = 0; p < part_count; p++) {
+        l.vertices += parts[p].mesh->vertex_count;
+        l.triangles += parts[p].mesh->triangle_count;
+    }
+    return l;
+}
+
+/* --- checking ---------------------------------------------------------------------------- */
 
 /* The promise: closed unless --open, and a manifold without zero-area triangles in any case. */
 static cw_status hold_to_promise(const cli_delivery *how, const cli_made *made, cw_error *err)
 {
     const cw_quality *q = &made->quality;
-    if (!q->nonmanifold_edges && !q->nonmanifold_vertices && !q->misoriented_edges &&
-        !q->degenerate && (!q->open_edges || how->open))
+    if (how->unpromised ||
+        (!q->nonmanifold_edges && !q->nonmanifold_vertices && !q->misoriented_edges &&
+         !q->degenerate && (!q->open_edges || how->open)))
         return CW_OK;
     return cw_fail(err, CW_ERR_CHECK,
                    "%s: the surface at %g is not as promised: %zu open, %zu non-manifold, %zu "
@@ -22,19 +43,62 @@ static cw_status hold_to_promise(const cli_delivery *how, const cli_made *made, 
                    q->misoriented_edges, q->nonmanifold_vertices, q->degenerate);
 }
 
-static cw_status check(cli_report *report, const cli_delivery *how, const cw_mesh *mesh,
+/* Parts share no vertices, so what is counted adds up. */
+static void add_quality(cw_quality *sum, const cw_quality *q)
+{
+#define COUNT(field) offsetof(cw_quality, field)
+    static const size_t counts[] = {COUNT(vertices),
+                                    COUNT(triangles),
+                                    COUNT(edges),
+                                    COUNT(components),
+                                    COUNT(unused_vertices),
+                                    COUNT(merged_vertices),
+                                    COUNT(open_edges),
+                                    COUNT(border_loops),
+                                    COUNT(nonmanifold_edges),
+                                    COUNT(misoriented_edges),
+                                    COUNT(nonmanifold_vertices),
+                                    COUNT(duplicates),
+                                    COUNT(degenerate),
+                                    COUNT(needles),
+                                    COUNT(caps)};
+#undef COUNT
+    for (size_t i = 0; i < sizeof counts / sizeof *counts; i++)
+        *(size_t *)((char *)sum + counts[i]) += *(const size_t *)((const char *)q + counts[i]);
+    sum->euler += q->euler;
+    sum->genus = sum->genus < 0 || q->genus < 0 ? -1 : sum->genus + q->genus;
+    sum->area_mm2 += q->area_mm2;
+    sum->volume_mm3 += q->volume_mm3;
+    for (int a = 0; a < 3; a++) {
+        sum->min[a] = fmin(sum->min[a], q->min[a]);
+        sum->max[a] = fmax(sum->max[a], q->max[a]);
+    }
+}
+
+static cw_status check(cli_report *report, const cli_delivery *how, const load *l,
                        cli_made *made, cw_error *err)
 {
+    const cw_quality_desc desc = {.threads = how->threads};
+    cw_status st = CW_OK;
     cli_report_begin(report);
-    cw_status st = cw_quality_measure(mesh, NULL, &made->quality, err);
+    for (size_t p = 0; p < l->part_count && st == CW_OK; p++) {
+        cw_quality q;
+        st = cw_quality_measure(l->parts[p].mesh, &desc, &q, err);
+        if (st == CW_OK && p == 0)
+            made->quality = q;
+        else if (st == CW_OK)
+            add_quality(&made->quality, &q);
+    }
     if (st != CW_OK)
         return st;
-    cli_report_end(report, "check", mesh->triangle_count, mesh->triangle_count);
+    cli_report_end(report, "check", l->triangles, l->triangles);
     made->measured = true;
     return hold_to_promise(how, made, err);
 }
 
-static void warn_of_loss(cli_report *report, const cli_made *made, const cw_mesh *mesh,
+/* --- writing ----------------------------------------------------------------------------- */
+
+static void warn_of_loss(cli_report *report, const cli_made *made, const load *l,
                          const cw_write_loss *loss)
 {
     if (loss->merged_vertices || loss->flat_triangles)
@@ -43,34 +107,71 @@ static void warn_of_loss(cli_report *report, const cli_made *made, const cw_mesh
             "%s: so far from zero single precision has steps of %.3g mm: %s of %s vertices "
             "fall together, %s of %s triangles lose their area; --local or .glb keeps them",
             cli_shown_path(made->path), loss->step_mm, cli_count(loss->merged_vertices),
-            cli_count(mesh->vertex_count), cli_count(loss->flat_triangles),
-            cli_count(mesh->triangle_count));
+            cli_count(l->vertices), cli_count(loss->flat_triangles), cli_count(l->triangles));
 }
 
-static cw_status write_mesh(cli_report *report, const cli_delivery *how, const cw_mesh *mesh,
+static void tell_dropped(const cli_made *made)
+{
+    char list[128] = "";
+    size_t used = 0;
+    for (size_t i = 0; i < cli_kept_count; i++)
+        if (made->dropped & cli_kept[i].flag)
+            used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "",
+                                     cli_kept[i].name);
+    if (used)
+        cli_say("%s: not in it, as its format has no place for them: %s", made->path, list);
+}
+
+static cw_status write_mesh(cli_report *report, const cli_delivery *how, const load *l,
                             cli_made *made, cw_error *err)
 {
     cw_write_desc desc = how->write;
     cw_write_loss loss;
-    desc.progress = cli_progress((double)mesh->triangle_count / 1e6, "Mtriangle");
+    desc.progress = cli_progress((double)l->triangles / 1e6, "Mtriangle");
     desc.compressed = &made->compressed;
-    cli_set_compress(how->compress, mesh, how->voxel_mm, &desc);
+    cli_set_compress(how->compress, l->parts, l->part_count, how->voxel_mm, &desc);
     cli_report_begin(report);
-    cw_status st = cw_mesh_write_loss(made->path, mesh, &desc, &loss, err);
+    cw_status st = cw_parts_write_loss(made->path, l->parts, l->part_count, &desc, &loss, err);
     if (st == CW_OK)
-        st = cw_mesh_write(made->path, mesh, &desc, err);
+        st = cw_parts_write(made->path, l->parts, l->part_count, &desc, err);
     if (st != CW_OK)
         return st;
     made->written = true;
     made->local = desc.local;
     made->compression = desc.compression;
-    memcpy(made->origin, mesh->origin, sizeof made->origin);
-    warn_of_loss(report, made, mesh, &loss);
-    cli_report_end(report, "write", mesh->triangle_count, mesh->triangle_count);
+    memcpy(made->origin, l->parts->mesh->origin, sizeof made->origin);
+    made->dropped = how->tell_dropped ? loss.dropped : 0;
+    warn_of_loss(report, made, l, &loss);
+    tell_dropped(made);
+    cli_report_end(report, "write", l->triangles, l->triangles);
     return CW_OK;
 }
 
-static void print_topology(const cli_delivery *how, const cw_quality *q, size_t border_loops)
+/* --- the line ---------------------------------------------------------------------------- */
+
+/* What holds of a mesh of which nothing was promised. */
+static void print_findings(const cw_quality *q)
+{
+    const struct {
+        size_t count;
+        const char *what;
+    } faults[] = {
+        {q->open_edges, "open edges"},
+        {q->nonmanifold_edges, "non-manifold edges"},
+        {q->nonmanifold_vertices, "non-manifold vertices"},
+        {q->misoriented_edges, "misoriented edges"},
+        {q->degenerate, "triangles without area"},
+    };
+    cli_result("%s%s", q->open_edges ? "" : "; closed",
+               q->nonmanifold_edges || q->nonmanifold_vertices || q->misoriented_edges ? ""
+               : q->open_edges ? "; manifold"
+                               : ", manifold");
+    for (size_t i = 0; i < sizeof faults / sizeof *faults; i++)
+        if (faults[i].count)
+            cli_result("; %s %s", cli_count(faults[i].count), faults[i].what);
+}
+
+static void print_promise(const cli_delivery *how, const cw_quality *q, size_t border_loops)
 {
     if (how->open)
         cli_result("; manifold, %s", q->open_edges ? "open at the volume's border" : "closed");
@@ -79,6 +180,14 @@ static void print_topology(const cli_delivery *how, const cw_quality *q, size_t 
                    cli_count(border_loops), border_loops == 1 ? "loop" : "loops");
     else
         cli_result("; closed, manifold");
+}
+
+static void print_topology(const cli_delivery *how, const cw_quality *q, size_t border_loops)
+{
+    if (how->unpromised)
+        print_findings(q);
+    else
+        print_promise(how, q, border_loops);
     cli_result("; %s %s; box %.6g x %.6g x %.6g mm", cli_count(q->components),
                q->components == 1 ? "component" : "components", q->max[0] - q->min[0],
                q->max[1] - q->min[1], q->max[2] - q->min[2]);
@@ -95,13 +204,16 @@ static void print_compressed(const cli_made *made)
     cli_result(", decoded and checked");
 }
 
-static void print_summary(const cli_delivery *how, const cli_made *made, const cw_mesh *mesh,
+static void print_summary(const cli_delivery *how, const cli_made *made, const load *l,
                           size_t border_loops, double start)
 {
     struct stat info = {0};
     stat(made->path, &info);
-    cli_result("%s: %s vertices, %s triangles, %s", made->path, cli_count(mesh->vertex_count),
-               cli_count(mesh->triangle_count), cli_bytes((double)info.st_size));
+    cli_result("%s: %s vertices, %s triangles", made->path, cli_count(l->vertices),
+               cli_count(l->triangles));
+    if (l->part_count > 1)
+        cli_result(" in %zu parts", l->part_count);
+    cli_result(", %s", cli_bytes((double)info.st_size));
     if (made->measured)
         print_topology(how, &made->quality, border_loops);
     if (made->snapped)
@@ -131,14 +243,15 @@ static cw_status hold_to_shape(const cli_made *made, cw_error *err)
                    cli_count(c->flat));
 }
 
-cw_status cli_deliver(cli_report *report, const cli_delivery *how, const cw_mesh *mesh,
-                      size_t border_loops, double start, cw_error *err)
+cw_status cli_deliver(cli_report *report, const cli_delivery *how, const cw_part *parts,
+                      size_t part_count, size_t border_loops, double start, cw_error *err)
 {
+    const load l = count_load(parts, part_count);
     cli_made *made = &report->made[report->made_count - 1];
-    cw_status st = how->unchecked ? CW_OK : check(report, how, mesh, made, err);
+    cw_status st = how->unchecked ? CW_OK : check(report, how, &l, made, err);
     if (st == CW_OK)
-        st = write_mesh(report, how, mesh, made, err);
+        st = write_mesh(report, how, &l, made, err);
     if (st == CW_OK)
-        print_summary(how, made, mesh, border_loops, start);
+        print_summary(how, made, &l, border_loops, start);
     return st == CW_OK ? hold_to_shape(made, err) : st;
 }

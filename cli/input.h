@@ -16,7 +16,7 @@ typedef struct cli_input {
     cli_lengths spacing;
     cli_ranges crop;
     size_t component, step;
-    size_t threads, memory, max_voxels;
+    size_t threads, memory, max_voxels, max_triangles;
     bool allow_external, preview;
     size_t coarsen; /* 0: 4 for a preview, else 1 */
 } cli_input;

@@ -6,16 +6,73 @@
 
 #include <cubewright/formats.h>
 
+/* Rows for a command that reads meshes and no volumes; its struct has the field `input`. */
+#define CLI_MESH_INPUT_OPTIONS(args)                                                           \
+    {"reader",                                                                                 \
+     0,                                                                                        \
+     CLI_TEXT,                                                                                 \
+     "NAME",                                                                                   \
+     "read as this format of 'formats' (by content)",                                          \
+     CLI_INPUT_ROW(args, reader)},                                                             \
+        {"allow-external",                                                                     \
+         0,                                                                                    \
+         CLI_FLAG,                                                                             \
+         NULL,                                                                                 \
+         "follow a .gltf to buffers outside its own folder (off)",                             \
+         CLI_INPUT_ROW(args, allow_external)},                                                 \
+        {"no-sandbox",                                                                         \
+         0,                                                                                    \
+         CLI_FLAG,                                                                             \
+         NULL,                                                                                 \
+         "let libraries read in this process, not in one without rights (off)",                \
+         CLI_INPUT_ROW(args, no_sandbox)},                                                     \
+        {"timeout",                                                                            \
+         0,                                                                                    \
+         CLI_COUNT,                                                                            \
+         "SECONDS",                                                                            \
+         "that a library may take for one file (60)",                                          \
+         CLI_INPUT_ROW(args, timeout_s)},                                                      \
+        {"threads",                                                                            \
+         't',                                                                                  \
+         CLI_COUNT,                                                                            \
+         "N",                                                                                  \
+         "to use; results do not depend on it (0: all)",                                       \
+         CLI_INPUT_ROW(args, threads)},                                                        \
+        {"max-triangles",                                                                      \
+         0,                                                                                    \
+         CLI_COUNT,                                                                            \
+         "N",                                                                                  \
+         "stop before reading more, e.g. 100M (no limit)",                                     \
+         CLI_INPUT_ROW(args, max_triangles)},                                                  \
+    {                                                                                          \
+        "memory", 0, CLI_BYTES, "SIZE",                                                        \
+            "stop before the mesh needs more, e.g. 8G (75 % of the machine's)",                \
+            CLI_INPUT_ROW(args, memory)                                                        \
+    }
+
+/* A mesh file: merged, or its parts. */
 typedef struct cli_mesh {
     const char *path;
-    cw_mesh mesh; /* owned */
+    cw_mesh mesh;   /* of all parts; owned */
+    cw_part *parts; /* owned; NULL when they are merged */
+    size_t part_count;
     cw_mesh_file file;
 } cli_mesh;
 
-/* Reads a mesh and says what was found. Errors name the file.
+/* Reads a mesh, all parts merged, and says what was found. Errors name the file.
  * reader  a name of 'formats'; NULL: by content        input  for its memory and safety */
 cw_status cli_read_mesh(const char *path, const char *reader, const cli_input *input,
                         cli_mesh *mesh, cw_error *err);
+
+/* Reads the parts of a file, each as a mesh, and says what was found. */
+cw_status cli_read_parts(const char *path, const char *reader, const cli_input *input,
+                         cli_mesh *mesh, cw_error *err);
+
+/* Of all parts. */
+size_t cli_mesh_triangles(const cli_mesh *mesh);
+
+/* Harmless on a zeroed one. */
+void cli_free_mesh(cli_mesh *mesh);
 
 /* An object of reports; sha256 of the file, when it can be read again. */
 void cli_json_mesh_file(cli_json *j, const char *key, const cli_mesh *mesh);

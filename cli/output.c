@@ -1,17 +1,39 @@
+#define _GNU_SOURCE /* dev_t, ino_t */
 #include "cli/output.h"
 
 #include "cli/quantity.h"
 #include "cli/template.h"
 #include "core/status.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
+/* What stands at a path. */
+typedef struct place {
+    bool exists;
+    dev_t device;
+    ino_t inode;
+} place;
+
+static place find_place(const char *path)
+{
+    struct stat info;
+    if (stat(path, &info) != 0)
+        return (place){0};
+    return (place){true, info.st_dev, info.st_ino};
+}
+
+static bool same_place(const place *a, const place *b)
+{
+    return a->exists && b->exists && a->device == b->device && a->inode == b->inode;
+}
+
 static bool same_file(const char *a, const char *b)
 {
-    struct stat x, y;
-    return stat(a, &x) == 0 && stat(b, &y) == 0 && x.st_dev == y.st_dev && x.st_ino == y.st_ino;
+    const place x = find_place(a), y = find_place(b);
+    return same_place(&x, &y);
 }
 
 cw_status cli_check_output(const char *output, const char *const *inputs, size_t input_count,
@@ -25,12 +47,15 @@ cw_status cli_check_output(const char *output, const char *const *inputs, size_t
     return CW_OK;
 }
 
-cw_status cli_check_apart(const char *a, const char *b, cw_error *err)
+static cw_status fail_same(const char *a, const char *b, cw_error *err)
 {
-    if (strcmp(a, b) != 0 && !same_file(a, b))
-        return CW_OK;
     return cw_fail(err, CW_ERR_ARGUMENT,
                    "%s and %s are the same file; each output needs its own", a, b);
+}
+
+cw_status cli_check_apart(const char *a, const char *b, cw_error *err)
+{
+    return strcmp(a, b) != 0 && !same_file(a, b) ? CW_OK : fail_same(a, b, err);
 }
 
 static cw_status check_levels(const cli_numbers *levels, cw_error *err)
@@ -44,31 +69,89 @@ static cw_status check_levels(const cli_numbers *levels, cw_error *err)
 }
 
 /* "out-{level}.glb" for the user who wrote "out.glb". */
-static cw_status ask_for_level(const char *text, size_t levels, cw_error *err)
+static cw_status ask_for(const char *what, const char *text, const char *why, cw_error *err)
 {
     const char *slash = strrchr(text, '/'), *dot = strrchr(text, '.');
     const char *end = dot && (!slash || dot > slash) ? dot : text + strlen(text);
-    return cw_fail(
-        err, CW_ERR_ARGUMENT,
-        "--iso lists %zu levels: the output must hold {level}, as in '%.*s-{level}%s'", levels,
-        (int)(end - text), text, end);
+    return cw_fail(err, CW_ERR_ARGUMENT, "%s: the output must hold {%s}, as in '%.*s-{%s}%s'",
+                   why, what, (int)(end - text), text, what, end);
+}
+
+static cw_status reserve(cli_outputs *outputs, size_t count, char **stem, const char *input,
+                         cw_error *err)
+{
+    outputs->path = calloc(count ? count : 1, sizeof *outputs->path);
+    *stem = cli_stem(input);
+    if (outputs->path && *stem)
+        return CW_OK;
+    return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of an output");
+}
+
+/* The next name, of the parts as they are now. */
+static cw_status add_output(cli_outputs *outputs, const char *text, cli_part *parts,
+                            size_t part_count, cw_error *err)
+{
+    return cli_fill_template(text, parts, part_count, &outputs->path[outputs->count++], err);
 }
 
 cw_status cli_name_outputs(cli_outputs *outputs, const char *text, const char *input,
                            const cli_numbers *levels, cw_error *err)
 {
-    char *stem = cli_stem(input);
-    cli_part parts[] = {{.name = "stem", .value = stem}, {.name = "level"}};
+    char *stem = NULL, why[64];
     cw_status st = check_levels(levels, err);
-    if (st == CW_OK && !stem)
-        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of an output");
+    if (st == CW_OK)
+        st = reserve(outputs, levels->count, &stem, input, err);
+    cli_part parts[] = {{.name = "stem", .value = stem}, {.name = "level"}};
     for (size_t n = 0; n < levels->count && st == CW_OK; n++) {
         parts[1].value = cli_number_text(levels->value[n]);
-        st = cli_fill_template(text, parts, 2, &outputs->path[n], err);
-        outputs->count = n + 1;
+        st = add_output(outputs, text, parts, 2, err);
     }
+    snprintf(why, sizeof why, "--iso lists %zu levels", levels->count);
     if (st == CW_OK && levels->count > 1 && !parts[1].used)
-        st = ask_for_level(text, levels->count, err);
+        st = ask_for("level", text, why, err);
+    free(stem);
+    return st;
+}
+
+/* As part of a file name: no folder, nothing hidden. */
+static void to_file_name(const char *name, size_t number, char text[256])
+{
+    if (name)
+        snprintf(text, 256, "%s", name);
+    else
+        snprintf(text, 256, "part%zu", number);
+    for (char *c = text; *c; c++)
+        if (*c == '/' || (c == text && *c == '.'))
+            *c = '_';
+}
+
+cw_status cli_name_part_outputs(cli_outputs *outputs, const char *text, const char *input,
+                                const cw_part *parts, size_t count, cw_error *err)
+{
+    char *stem = NULL, name[256], number[24], why[64];
+    cw_status st = reserve(outputs, count, &stem, input, err);
+    cli_part fields[] = {{.name = "stem", .value = stem},
+                         {.name = "name", .value = name},
+                         {.name = "part", .value = number}};
+    for (size_t n = 0; n < count && st == CW_OK; n++) {
+        to_file_name(parts[n].name, n + 1, name);
+        snprintf(number, sizeof number, "%zu", n + 1);
+        st = add_output(outputs, text, fields, 3, err);
+    }
+    snprintf(why, sizeof why, "--split makes %zu files", count);
+    if (st == CW_OK && count > 1 && !fields[1].used && !fields[2].used)
+        st = ask_for("name", text, why, err);
+    free(stem);
+    return st;
+}
+
+cw_status cli_name_output(cli_outputs *outputs, const char *text, const char *input,
+                          cw_error *err)
+{
+    char *stem = NULL;
+    cw_status st = reserve(outputs, 1, &stem, input, err);
+    if (st == CW_OK)
+        st = add_output(outputs, text, &(cli_part){.name = "stem", .value = stem}, 1, err);
     free(stem);
     return st;
 }
@@ -77,19 +160,38 @@ void cli_free_outputs(cli_outputs *outputs)
 {
     for (size_t n = 0; n < outputs->count; n++)
         free(outputs->path[n]);
-    outputs->count = 0;
+    free(outputs->path);
+    *outputs = (cli_outputs){0};
+}
+
+/* Each output needs its own file, by name and by link. */
+static cw_status check_all_apart(const cli_outputs *outputs, cw_error *err)
+{
+    cw_status st = CW_OK;
+    place *places = calloc(outputs->count ? outputs->count : 1, sizeof *places);
+    if (!places)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to compare %zu outputs",
+                       outputs->count);
+    for (size_t n = 0; n < outputs->count && st == CW_OK; n++) {
+        places[n] = find_place(outputs->path[n]);
+        for (size_t m = 0; m < n && st == CW_OK; m++)
+            if (same_place(&places[m], &places[n]) ||
+                strcmp(outputs->path[m], outputs->path[n]) == 0)
+                st = fail_same(outputs->path[m], outputs->path[n], err);
+    }
+    free(places);
+    return st;
 }
 
 cw_status cli_check_outputs(const cli_outputs *outputs, const char *input,
                             const cw_write_desc *desc, cw_error *err)
 {
     cw_status st = CW_OK;
-    for (size_t n = 0; n < outputs->count && st == CW_OK; n++) {
+    for (size_t n = 0; n < outputs->count && st == CW_OK; n++)
         st = cli_check_output(outputs->path[n], &input, 1, err);
-        for (size_t m = 0; m < n && st == CW_OK; m++)
-            st = cli_check_apart(outputs->path[m], outputs->path[n], err);
-        if (st == CW_OK)
-            st = cw_mesh_write_check(outputs->path[n], desc, err);
-    }
+    if (st == CW_OK)
+        st = check_all_apart(outputs, err);
+    for (size_t n = 0; n < outputs->count && st == CW_OK; n++)
+        st = cw_mesh_write_check(outputs->path[n], desc, err);
     return st;
 }

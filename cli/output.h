@@ -14,10 +14,10 @@ cw_status cli_check_output(const char *output, const char *const *inputs, size_t
 /* Fails when two outputs are the same file, by name or by a link. */
 cw_status cli_check_apart(const char *a, const char *b, cw_error *err);
 
-/* One output a level. */
+/* The files of a run. */
 typedef struct cli_outputs {
     size_t count;
-    char *path[CLI_MAX_NUMBERS];
+    char **path;
 } cli_outputs;
 
 /* Names them: {level} and {stem} (the input's) of the text are filled in. Free, also after
@@ -26,6 +26,17 @@ typedef struct cli_outputs {
  * levels come without {level}; CW_ERR_NO_MEMORY */
 cw_status cli_name_outputs(cli_outputs *outputs, const char *text, const char *input,
                            const cli_numbers *levels, cw_error *err);
+
+/* Names one output a part: {name} (that of the part, with what no file name may hold as '_'),
+ * {part} (its number, from 1) and {stem} of the text are filled in. Free it likewise.
+ * Returns CW_ERR_ARGUMENT for an unknown {part}, and when several parts come without {name} or
+ * {part}; CW_ERR_NO_MEMORY */
+cw_status cli_name_part_outputs(cli_outputs *outputs, const char *text, const char *input,
+                                const cw_part *parts, size_t count, cw_error *err);
+
+/* Names the only output of a run: {stem} is filled in. Free it likewise. */
+cw_status cli_name_output(cli_outputs *outputs, const char *text, const char *input,
+                          cw_error *err);
 void cli_free_outputs(cli_outputs *outputs);
 
 /* Fails when one of them could not be written, is the input or another of them. */

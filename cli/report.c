@@ -1,4 +1,4 @@
-#define _GNU_SOURCE /* open_memstream */
+#define _GNU_SOURCE /* open_memstream, reallocarray */
 #include "cli/report.h"
 
 #include "cli/compress.h"
@@ -12,6 +12,33 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+
+const struct cli_kept cli_kept[] = {
+    {CW_KEEPS_PARTS, "parts"},     {CW_KEEPS_SHARING, "shared vertices"},
+    {CW_KEEPS_NORMALS, "normals"}, {CW_KEEPS_COLORS, "colours"},
+    {CW_KEEPS_SCALARS, "scalars"}, {CW_KEEPS_LABELS, "labels"},
+    {CW_KEEPS_AFFINE, "affine"},
+};
+const size_t cli_kept_count = sizeof cli_kept / sizeof *cli_kept;
+
+cw_status cli_report_reserve(cli_report *report, size_t meshes, cw_error *err)
+{
+    const size_t steps = (meshes + 1) * CLI_MOST_STEPS;
+    cli_made *made = reallocarray(report->made, meshes, sizeof *made);
+    report->made = made ? made : report->made;
+    cli_step *step = reallocarray(report->steps, steps, sizeof *step);
+    report->steps = step ? step : report->steps;
+    if (!made || !step)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the report of %zu meshes", meshes);
+    report->step_room = steps;
+    return CW_OK;
+}
+
+void cli_report_free(cli_report *report)
+{
+    free(report->made);
+    free(report->steps);
+}
 
 cli_made *cli_report_next(cli_report *report, const char *path, double iso)
 {
@@ -27,14 +54,15 @@ void cli_report_begin(cli_report *report)
 
 void cli_report_end(cli_report *report, const char *name, size_t in, size_t out)
 {
-    cli_step *s = &report->steps[report->step_count++];
-    *s = (cli_step){.name = name,
-                    .made = report->made_count - 1,
-                    .seconds = cli_seconds() - report->step_start,
-                    .peak_bytes = cli_peak_bytes(),
-                    .in = in,
-                    .out = out};
-    cli_say_v("%-8s %8.3f s, peak %s", s->name, s->seconds, cli_bytes((double)s->peak_bytes));
+    const cli_step s = {.name = name,
+                        .made = report->made_count - 1,
+                        .seconds = cli_seconds() - report->step_start,
+                        .peak_bytes = cli_peak_bytes(),
+                        .in = in,
+                        .out = out};
+    if (report->step_count < report->step_room)
+        report->steps[report->step_count++] = s;
+    cli_say_v("%-8s %8.3f s, peak %s", s.name, s.seconds, cli_bytes((double)s.peak_bytes));
 }
 
 void cli_report_warn(cli_report *report, const char *format, ...)
@@ -62,12 +90,13 @@ static void put_features(cli_json *j)
 
 static void put_steps(cli_json *j, const cli_report *r)
 {
+    const char *main_step = r->main_step ? r->main_step : r->command;
     cli_json_open(j, "steps", '[');
     for (size_t i = 0; i < r->step_count; i++) {
         const cli_step *s = &r->steps[i];
         cli_json_open(j, NULL, '{');
         cli_json_text(j, "name", s->name);
-        if (strcmp(s->name, r->command) == 0) {
+        if (strcmp(s->name, main_step) == 0) {
             cli_json_open(j, "params", '{');
             r->params(j, r->args, &r->made[s->made]);
             cli_json_close(j, '}');
@@ -136,12 +165,15 @@ static void put_facts(cli_json *j, const cli_made *m)
         put_snap(j, &m->snap);
 }
 
-static void put_surfaces(cli_json *j, const cli_report *r)
+static void put_several(cli_json *j, const cli_report *r)
 {
-    cli_json_open(j, "surfaces", '[');
+    cli_json_open(j, r->several, '[');
     for (const cli_made *m = r->made; m < r->made + r->made_count; m++) {
         cli_json_open(j, NULL, '{');
-        cli_json_number(j, "iso", m->iso);
+        if (m->name)
+            cli_json_text(j, "name", m->name);
+        else
+            cli_json_number(j, "iso", m->iso);
         if (m->written)
             cli_json_text(j, "path", cli_shown_path(m->path));
         put_facts(j, m);
@@ -164,6 +196,20 @@ static void put_compressed(cli_json *j, const cw_compressed *c)
     cli_json_bool(j, "decoded_checked", true);
 }
 
+static void put_dropped(cli_json *j, unsigned dropped)
+{
+    bool any = false;
+    for (size_t i = 0; i < cli_kept_count; i++)
+        if (dropped & cli_kept[i].flag) {
+            if (!any)
+                cli_json_open(j, "dropped", '[');
+            any = true;
+            cli_json_text(j, NULL, cli_kept[i].name);
+        }
+    if (any)
+        cli_json_close(j, ']');
+}
+
 static void put_output(cli_json *j, const cli_made *made)
 {
     struct stat info;
@@ -178,14 +224,15 @@ static void put_output(cli_json *j, const cli_made *made)
     cli_json_bool(j, "local", made->local);
     if (made->local)
         cli_json_numbers(j, "origin", made->origin, 3);
+    put_dropped(j, made->dropped);
     cli_json_close(j, '}');
 }
 
 static void put_made(cli_json *j, const cli_report *r)
 {
     if (r->several)
-        put_surfaces(j, r);
-    else
+        put_several(j, r);
+    else if (r->made_count)
         put_facts(j, &r->made[0]);
     cli_json_open(j, "output", '[');
     for (size_t n = 0; n < r->made_count; n++)

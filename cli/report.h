@@ -8,8 +8,6 @@
 #include <cubewright/extract.h>
 #include <cubewright/quality.h>
 
-enum { CLI_MAX_MADE = CLI_MAX_NUMBERS, CLI_MAX_STEPS = 4 * CLI_MAX_MADE };
-
 typedef struct cli_step {
     const char *name;
     size_t made; /* which mesh it is about; nothing to go by before the first */
@@ -20,6 +18,7 @@ typedef struct cli_step {
 /* One mesh of a run, as far as it has come. */
 typedef struct cli_made {
     const char *path; /* where it goes */
+    const char *name; /* of a part; NULL: it is the surface at an isovalue */
     double iso;
     bool measured, written, local, snapped;
     cw_quality quality;            /* when it is measured */
@@ -28,6 +27,7 @@ typedef struct cli_made {
     cw_snap_counts snap;           /* when it is snapped */
     cw_compression compression;
     cw_compressed compressed; /* when there is any */
+    unsigned dropped;         /* what the file does not hold of it: cw_keeps flags */
     double origin[3];         /* when it is local: the places in the file are relative to it */
     char warning[512];        /* "": none */
     cw_error error;           /* with the status CW_OK: none */
@@ -37,18 +37,33 @@ typedef struct cli_report {
     const char *path; /* of the report; "-" is stdout; NULL: none is written */
     const char *command;
     const cli_volume *input; /* NULL: not read */
-    cli_made made[CLI_MAX_MADE];
-    size_t made_count; /* meshes begun so far */
-    bool several;      /* meshes were asked for: the report lists them */
+    cli_made *made;
+    size_t made_count;     /* meshes begun so far */
+    const char *several;   /* what the list of meshes is called; NULL: one was asked for */
+    const char *main_step; /* the one with the settings; default: that named as the command */
     /* Writes the settings of the main step, for one mesh. */
     void (*params)(cli_json *j, const void *args, const cli_made *made);
     /* Writes what only this command has to say, behind the input; NULL: nothing. */
     void (*facts)(cli_json *j, const void *args);
     const void *args;
-    cli_step steps[CLI_MAX_STEPS];
-    size_t step_count;
+    cli_step *steps;
+    size_t step_count, step_room;
     double step_start;
 } cli_report;
+
+enum { CLI_MOST_STEPS = 8 }; /* of one mesh */
+
+/* Room for so many meshes; before the first step, or for more. CW_ERR_NO_MEMORY */
+cw_status cli_report_reserve(cli_report *report, size_t meshes, cw_error *err);
+void cli_report_free(cli_report *report);
+
+/* What meshes have and formats may not keep, by name; places are told by a warning of theirs.
+ */
+extern const struct cli_kept {
+    unsigned flag; /* cw_keeps */
+    const char *name;
+} cli_kept[];
+extern const size_t cli_kept_count;
 
 /* The next mesh of a run: steps and warnings from now on are about it. */
 cli_made *cli_report_next(cli_report *report, const char *path, double iso);

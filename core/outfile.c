@@ -25,8 +25,9 @@ struct cwi_outfile {
     char temporary[NAME_MAX +
                    1]; /* in the same folder; "" before it exists and once it is gone */
     bool no_clobber;
-    int failure; /* errno of the first write that failed */
-    int slot;    /* in the registry; -1 for none */
+    int failure;   /* errno of the first write that failed */
+    int slot;      /* in the registry; -1 for none */
+    uint64_t size; /* bytes so far, those in the buffer too */
     size_t used;
     unsigned char *buffer;
 };
@@ -210,14 +211,16 @@ static cw_status fail_write(const cwi_outfile *f, cw_error *err)
     return fail_system(err, "it cannot be written", f->failure);
 }
 
+/* At the end of the file, or (at is not negative) over what stands there. */
 static cw_status write_through(cwi_outfile *f, const unsigned char *bytes, size_t size,
-                               cw_error *err)
+                               off_t at, cw_error *err)
 {
     while (size && !f->failure) {
-        const ssize_t n = write(f->fd, bytes, size);
+        const ssize_t n = at < 0 ? write(f->fd, bytes, size) : pwrite(f->fd, bytes, size, at);
         if (n > 0) {
             bytes += n;
             size -= (size_t)n;
+            at += at < 0 ? 0 : n;
         } else if (n == 0) {
             f->failure = ENOSPC; /* a regular file takes nothing only when there is no room */
         } else if (errno != EINTR) {
@@ -231,22 +234,35 @@ static cw_status flush(cwi_outfile *f, cw_error *err)
 {
     const size_t size = f->used;
     f->used = 0;
-    return write_through(f, f->buffer, size, err);
+    return write_through(f, f->buffer, size, -1, err);
 }
 
 cw_status cwi_outfile_write(cwi_outfile *f, const void *bytes, size_t size, cw_error *err)
 {
     if (f->failure)
         return fail_write(f, err);
+    f->size += size;
     if (size > BUFFER_BYTES - f->used) {
         cw_status st = flush(f, err);
         if (st != CW_OK || size >= BUFFER_BYTES)
-            return st == CW_OK ? write_through(f, bytes, size, err) : st;
+            return st == CW_OK ? write_through(f, bytes, size, -1, err) : st;
     }
     if (size)
         memcpy(f->buffer + f->used, bytes, size);
     f->used += size;
     return CW_OK;
+}
+
+uint64_t cwi_outfile_size(const cwi_outfile *f)
+{
+    return f->size;
+}
+
+cw_status cwi_outfile_patch(cwi_outfile *f, uint64_t at, const void *bytes, size_t size,
+                            cw_error *err)
+{
+    cw_status st = f->failure ? fail_write(f, err) : flush(f, err);
+    return st == CW_OK ? write_through(f, bytes, size, (off_t)at, err) : st;
 }
 
 /* Formats straight into the buffer; what does not fit is formatted again into its own. */
@@ -262,6 +278,7 @@ static cw_status print_args(cwi_outfile *f, cw_error *err, const char *format, v
         st = fail_system(err, "text cannot be formatted", errno);
     } else if ((size_t)length < room) {
         f->used += (size_t)length;
+        f->size += (size_t)length;
     } else {
         char *text = cwi_alloc_array((size_t)length + 1, 1);
         if (text)

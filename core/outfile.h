@@ -30,6 +30,14 @@ CW_API cw_status cwi_outfile_write(cwi_outfile *f, const void *bytes, size_t siz
 CW_API cw_status cwi_outfile_printf(cwi_outfile *f, cw_error *err, const char *format, ...)
     CW_PRINTF(3, 4);
 
+/* Bytes appended so far. */
+CW_API uint64_t cwi_outfile_size(const cwi_outfile *f);
+
+/* Writes over bytes that were appended before: for what is known only later, such as sizes. The
+ * next bytes are appended as before. Same errors as cwi_outfile_write(). */
+CW_API cw_status cwi_outfile_patch(cwi_outfile *f, uint64_t at, const void *bytes, size_t size,
+                                   cw_error *err);
+
 /* Flushes to the disk and renames. Frees and NULLs the file, on failure too: the temporary is
  * then gone and the path as it was. */
 CW_API cw_status cwi_outfile_commit(cwi_outfile **f, cw_error *err);

@@ -33,15 +33,16 @@ cwi_turn cwi_turn_to(const cw_axes *axes)
     cwi_turn t = {.from = {0, 1, 2}, .sign = {ras, ras, 1}};
     if (axes->y_up)
         t = (cwi_turn){.from = {0, 2, 1}, .sign = {ras, 1, -ras}};
-    for (int a = 0; a < 3; a++)
-        t.factor[a] = t.sign[a] / cw_unit_mm(axes->unit);
+    const double mm = cw_unit_mm(axes->unit);
+    t.times = mm < 1 ? rint(1 / mm) : 1;
+    t.over = mm < 1 ? 1 : mm;
     return t;
 }
 
 void cwi_turn_point(const cwi_turn *turn, const double world[3], double file[3])
 {
     for (int a = 0; a < 3; a++)
-        file[a] = turn->factor[a] * world[turn->from[a]] + 0.0; /* no negative zero */
+        file[a] = cwi_turn_coordinate(turn, a, world[turn->from[a]]);
 }
 
 void cwi_print_axes(const cw_axes *axes, char text[CWI_AXES_BYTES])
@@ -104,7 +105,7 @@ bool cwi_parse_axes(const char **text, cw_mesh_file *said)
 static void turn_back(const cwi_turn *t, const double file[3], double world[3])
 {
     for (int a = 0; a < 3; a++)
-        world[t->from[a]] = file[a] / t->factor[a] + 0.0;
+        world[t->from[a]] = t->sign[a] * file[a] * t->over / t->times + 0.0;
 }
 
 static bool turn_floats(const cwi_turn *t, float *points, size_t count)
@@ -137,7 +138,7 @@ cw_status cwi_turn_back(cw_mesh *mesh, const cw_axes *axes, cw_error *err)
         return cw_fail(err, CW_ERR_FORMAT,
                        "its unit is '%s'; single precision cannot say its places in mm",
                        cw_unit_name(axes->unit));
-    memcpy(t.factor, t.sign, sizeof t.factor);
+    t.times = t.over = 1;
     if (mesh->normals)
         turn_floats(&t, mesh->normals, mesh->vertex_count);
     return CW_OK;

@@ -8,13 +8,20 @@
 extern "C" {
 #endif
 
-/* Coordinate a of the file is factor[a] times coordinate from[a] of the world. */
+/* Coordinate a of the file is sign[a] * times / over of coordinate from[a] of the world. One of
+ * times and over is 1, so that short decimals stay short. */
 typedef struct cwi_turn {
     int from[3];
-    double sign[3], factor[3];
+    double sign[3], times, over;
 } cwi_turn;
 
 cwi_turn cwi_turn_to(const cw_axes *axes);
+/* Adding 0.0 turns -0 into 0. */
+static inline double cwi_turn_coordinate(const cwi_turn *turn, int axis, double world)
+{
+    return turn->sign[axis] * world * turn->times / turn->over + 0.0;
+}
+
 void cwi_turn_point(const cwi_turn *turn, const double world[3], double file[3]);
 
 enum { CWI_AXES_BYTES = 32 };

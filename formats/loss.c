@@ -23,7 +23,8 @@ static double step_of(const cwi_part *part)
     cwi_part_bounds(part, low, high);
     for (int a = 0; a < 3; a++)
         farthest = fmax(farthest, fmax(fabs(low[a]), fabs(high[a])));
-    return farthest > 0 ? ldexp(1, ilogb(farthest) - 23) / fabs(part->turn.factor[0]) : 0;
+    return farthest > 0 ? ldexp(1, ilogb(farthest) - 23) * part->turn.over / part->turn.times
+                        : 0;
 }
 
 static bool has_area(const float *points, const uint32_t *t)

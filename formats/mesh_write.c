@@ -34,18 +34,29 @@ static const writer writers[] = {
     {.format = "ply", .write = cwi_ply_write, .text = true},
     {.format = "obj", .write = cwi_obj_write, .text = true},
     {.format = "off", .write = cwi_off_write, .text = true},
+    {.format = "3mf", .write = cwi_3mf_write},
 };
 
-enum { PROGRESS_STEP = 65536 };
+enum { PROGRESS_STEP = 65536, BATCH_BYTES = 16 << 10 };
+
+static cw_status drain(const cwi_mesh_output *out, const void *bytes, size_t size,
+                       cw_error *err)
+{
+    return out->drain ? out->drain(out->drain_to, bytes, size, err)
+                      : cwi_outfile_write(out->file, bytes, size, err);
+}
 
 cw_status cwi_write_records(const cwi_part *part, cwi_mesh_output *out,
                             cwi_record_encoder *encode, size_t count, cw_error *err)
 {
-    unsigned char record[CWI_RECORD_BYTES];
+    unsigned char batch[BATCH_BYTES], *to = batch;
     cw_status st = CW_OK;
     for (size_t i = 0; i < count && st == CW_OK; i++) {
-        const unsigned char *end = encode(part, i, record);
-        st = cwi_outfile_write(out->file, record, (size_t)(end - record), err);
+        to = encode(part, i, to);
+        if (to > batch + BATCH_BYTES - CWI_RECORD_BYTES || i + 1 == count) {
+            st = drain(out, batch, (size_t)(to - batch), err);
+            to = batch;
+        }
         if (st == CW_OK && out->done++ % PROGRESS_STEP == 0)
             st = cwi_progress(out->progress, "writing", (double)out->done / (double)out->total,
                               err);
@@ -106,19 +117,27 @@ static int print_shortest(char *text, size_t size, double value)
     return length;
 }
 
-void cwi_print_origin(const cwi_mesh_output *out, const char *before, const char *after,
-                      char text[CWI_ORIGIN_BYTES])
+void cwi_print_point(const double point[3], char text[CWI_POINT_BYTES])
 {
     void *locale = cwi_locale_c();
     size_t used = 0;
-    text[0] = '\0';
-    for (int a = 0; a < 3 && out->local_origin; a++) {
-        used += (size_t)snprintf(text + used, CWI_ORIGIN_BYTES - used, "%s ", a ? "" : before);
-        used +=
-            (size_t)print_shortest(text + used, CWI_ORIGIN_BYTES - used, out->local_origin[a]);
+    for (int a = 0; a < 3; a++) {
+        if (a > 0)
+            text[used++] = ' ';
+        used += (size_t)print_shortest(text + used, CWI_POINT_BYTES - used, point[a]);
     }
-    snprintf(text + used, CWI_ORIGIN_BYTES - used, "%s", out->local_origin ? after : "");
     cwi_locale_restore(locale);
+}
+
+void cwi_print_origin(const cwi_mesh_output *out, const char *before, const char *after,
+                      char text[CWI_ORIGIN_BYTES])
+{
+    char point[CWI_POINT_BYTES];
+    text[0] = '\0';
+    if (!out->local_origin)
+        return;
+    cwi_print_point(out->local_origin, point);
+    snprintf(text, CWI_ORIGIN_BYTES, "%s%s%s", before, point, after);
 }
 
 static bool is_wanted(const cw_format *format, const char *path, const char *name)
@@ -128,7 +147,7 @@ static bool is_wanted(const cw_format *format, const char *path, const char *nam
     return name ? strcmp(format->name, name) == 0 : cwi_has_extension(path, format->extensions);
 }
 
-static const cw_format *find_format(const char *path, const char *name)
+const cw_format *cw_mesh_format(const char *path, const char *name)
 {
     size_t count;
     const cw_format *all = cw_formats(&count);
@@ -197,7 +216,7 @@ typedef struct target {
 /* The format and writer of a path, with what it needs loaded; it can do what is asked for. */
 static cw_status find_writer(const char *path, const cw_write_desc *d, target *t, cw_error *err)
 {
-    *t = (target){find_format(path, d->format), writers};
+    *t = (target){cw_mesh_format(path, d->format), writers};
     if (!t->format)
         return fail_unknown(d->format, err);
     while (strcmp(t->writer->format, t->format->name) != 0)

@@ -8,6 +8,7 @@
 #include "core/outfile.h"
 #include "formats/axes.h"
 #include "formats/decimals.h"
+#include "formats/put.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -22,6 +23,8 @@ typedef struct cwi_part {
     cwi_turn turn; /* from its coordinates to those of the file */
     uint64_t first, first_normal; /* vertices, and normals, of the parts before it */
     int digits;                   /* that a place is written with in text */
+    const uint32_t *numbers;      /* of each vertex, for a writer's own use */
+    size_t group;                 /* likewise */
     char name[CWI_NAME_BYTES];    /* printable UTF-8 on one line */
 } cwi_part;
 
@@ -32,8 +35,13 @@ typedef struct cwi_parts {
     uint64_t vertices, triangles; /* of all */
 } cwi_parts;
 
+/* Takes bytes on their way into a file; to is its own. */
+typedef cw_status cwi_drain(void *to, const void *bytes, size_t size, cw_error *err);
+
 typedef struct cwi_mesh_output {
     cwi_outfile *file;
+    cwi_drain *drain; /* where records go; NULL: to the file as they are */
+    void *drain_to;
     const char *name;           /* of all parts together; as that of a part */
     const double *local_origin; /* what gives the world's coordinates when added, as the file
                                    counts them; NULL: nothing */
@@ -50,6 +58,7 @@ CW_API cwi_mesh_writer cwi_stl_write;
 CW_API cwi_mesh_writer cwi_ply_write;
 CW_API cwi_mesh_writer cwi_obj_write;
 CW_API cwi_mesh_writer cwi_off_write;
+CW_API cwi_mesh_writer cwi_3mf_write;
 CW_API cwi_mesh_writer cwi_glb_write;
 CW_API cwi_mesh_writer cwi_gltf_write;
 
@@ -69,10 +78,13 @@ cw_status cwi_write_vertices(const cwi_parts *parts, cwi_mesh_output *out,
 cw_status cwi_write_triangles(const cwi_parts *parts, cwi_mesh_output *out,
                               cwi_record_encoder *encode, cw_error *err);
 
-enum { CWI_ORIGIN_BYTES = 128 };
+enum { CWI_POINT_BYTES = 80, CWI_ORIGIN_BYTES = 160 };
 
-/* The origin of a local file as text, first what stands before it: " from 1 2 3.5". Empty for a
- * file of world coordinates. */
+/* "1 2 3.5": the fewest digits that read back the same. */
+void cwi_print_point(const double point[3], char text[CWI_POINT_BYTES]);
+
+/* The origin of a local file as text, between what stands before and after it: " from 1 2 3.5".
+ * Empty for a file of world coordinates. */
 void cwi_print_origin(const cwi_mesh_output *out, const char *before, const char *after,
                       char text[CWI_ORIGIN_BYTES]);
 
@@ -85,41 +97,14 @@ void cwi_part_bounds(const cwi_part *part, double low[3], double high[3]);
 /* CW_ERR_LIMIT when a coordinate is beyond single precision's largest number. */
 cw_status cwi_check_single(const cwi_parts *parts, cw_error *err);
 
-/* Little endian on any machine; each returns the end of what it put. */
-static inline unsigned char *cwi_put_u16(unsigned char *to, uint16_t value)
-{
-    to[0] = (unsigned char)(value & 255);
-    to[1] = (unsigned char)(value >> 8);
-    return to + 2;
-}
-
-static inline unsigned char *cwi_put_u32(unsigned char *to, uint32_t value)
-{
-    return cwi_put_u16(cwi_put_u16(to, (uint16_t)(value & 65535)), (uint16_t)(value >> 16));
-}
-
-static inline unsigned char *cwi_put_f32(unsigned char *to, float value)
-{
-    uint32_t bits;
-    memcpy(&bits, &value, sizeof bits);
-    return cwi_put_u32(to, bits);
-}
-
-static inline unsigned char *cwi_put_f32x3(unsigned char *to, const float value[3])
-{
-    for (int a = 0; a < 3; a++)
-        to = cwi_put_f32(to, value[a]);
-    return to;
-}
-
 /* As it stands in the file. Summed in double: a position keeps its micrometres until the format
- * takes them. Adding 0.0 turns -0 into 0. */
+ * takes them. */
 static inline double cwi_coordinate(const cwi_part *part, size_t vertex, int axis)
 {
     const int a = part->turn.from[axis];
     const double world =
         part->mesh.origin[a] + (double)part->mesh.positions[3 * vertex + (size_t)a];
-    return part->turn.factor[axis] * world + 0.0;
+    return cwi_turn_coordinate(&part->turn, axis, world);
 }
 
 static inline void cwi_normal(const cwi_part *part, size_t vertex, float normal[3])

@@ -43,7 +43,7 @@ cw_status cwi_obj_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *
     const cwi_part *last = &parts->items[parts->count - 1];
     char axes[CWI_AXES_BYTES], origin[CWI_ORIGIN_BYTES];
     cwi_print_axes(out->axes, axes);
-    cwi_print_origin(out, "# origin", "\n", origin);
+    cwi_print_origin(out, "# origin ", "\n", origin);
     out->total = (size_t)(parts->vertices + last->first_normal + parts->triangles);
     out->total += last->mesh.normals ? last->mesh.vertex_count : 0;
     cw_status st =

@@ -17,7 +17,7 @@ cw_status cwi_off_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *
     const cw_mesh *mesh = &parts->items[0].mesh; /* all have the same arrays */
     char axes[CWI_AXES_BYTES], origin[CWI_ORIGIN_BYTES];
     cwi_print_axes(out->axes, axes);
-    cwi_print_origin(out, "# origin", "\n", origin);
+    cwi_print_origin(out, "# origin ", "\n", origin);
     out->total = (size_t)(parts->vertices + parts->triangles);
     cw_status st = cwi_outfile_printf(
         out->file, err, "%s%sOFF\n# cubewright %s, %s\n%s# object %s\n%ju %ju 0\n",

@@ -56,7 +56,7 @@ static cw_status write_header(const cwi_parts *parts, const cwi_mesh_output *out
     /* int is what readers expect; uint only when the numbers need it */
     const char *index = parts->vertices > INT32_MAX ? "uint" : "int";
     char origin[CWI_ORIGIN_BYTES];
-    cwi_print_origin(out, "comment origin", "\n", origin);
+    cwi_print_origin(out, "comment origin ", "\n", origin);
     return cwi_outfile_printf(
         out->file, err,
         "ply\nformat %s 1.0\n"

@@ -13,7 +13,9 @@ cw_status cwi_sink_open(cwi_sink *s, cwi_outfile *file, cwi_packing packing, cw_
         return CW_OK;
     cwi_zlib_use_memory(&s->z);
     s->buffer = cwi_alloc_array(BUFFER_BYTES, 1);
-    const int bits = MAX_WBITS + (packing == CWI_GZIP ? 16 : 0), memory_level = 8;
+    const int memory_level = 8, bits = packing == CWI_DEFLATE ? -MAX_WBITS
+                                       : packing == CWI_GZIP  ? MAX_WBITS + 16
+                                                              : MAX_WBITS;
     s->deflates = s->buffer && deflateInit2(&s->z, LEVEL, Z_DEFLATED, bits, memory_level,
                                             Z_DEFAULT_STRATEGY) == Z_OK;
     if (s->deflates)

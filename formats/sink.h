@@ -9,7 +9,8 @@
 #endif
 #include <zlib.h>
 
-typedef enum cwi_packing { CWI_STORED, CWI_GZIP, CWI_ZLIB } cwi_packing;
+/* CWI_DEFLATE has neither header nor checksum. */
+typedef enum cwi_packing { CWI_STORED, CWI_GZIP, CWI_ZLIB, CWI_DEFLATE } cwi_packing;
 
 /* A zeroed sink is closed. */
 typedef struct cwi_sink {

@@ -1,5 +1,6 @@
 /* A mesh taken apart where its marks say. */
 #include "core/memory.h"
+#include "core/sets.h"
 #include "core/status.h"
 #include "formats/parts.h"
 
@@ -32,30 +33,18 @@ static size_t run_start(const split *s, size_t run)
 
 /* --- which runs are one part ------------------------------------------------------------- */
 
-/* The first of those that a run is joined with; the way there is halved. */
-static uint32_t root_of(uint32_t *joined, uint32_t run)
-{
-    while (joined[run] != run)
-        run = joined[run] = joined[joined[run]];
-    return run;
-}
-
-/* Runs that share a vertex are joined, the later with the earlier. */
+/* Runs that share a vertex are one set. */
 static void join_runs(split *s)
 {
-    uint32_t *joined = s->part_of;
     for (size_t v = 0; v < s->whole->vertex_count; v++)
         s->run_of[v] = NONE;
-    for (uint32_t run = 0; run < s->run_count; run++) {
-        joined[run] = run;
+    for (uint32_t run = 0; run < s->run_count; run++)
         for (size_t i = 3 * run_start(s, run); i < 3 * run_start(s, run + 1); i++) {
             uint32_t *first = &s->run_of[s->whole->triangles[i]];
             if (*first == NONE)
                 *first = run;
-            const uint32_t a = root_of(joined, *first), b = root_of(joined, run);
-            joined[a < b ? b : a] = a < b ? a : b;
+            cwi_sets_join(s->part_of, *first, run);
         }
-    }
 }
 
 /* Numbers them in the order of the file; runs without triangles are none. A root is met before
@@ -161,8 +150,6 @@ static bool make_parts(split *s)
     if (s->run_count > 1) {
         join_runs(s);
         number_parts(s);
-    } else {
-        s->part_of[0] = 0;
     }
     const size_t count = s->count ? s->count : 1; /* a mesh of nothing is one, too */
     s->parts = cwi_alloc_zeroed(count, sizeof *s->parts + sizeof *s->held);
@@ -201,7 +188,7 @@ cw_status cwi_parts_split(const cwi_mesh_input *in, cw_mesh *mesh, cw_part **par
     cw_status st = limit_memory(in, mesh, err);
     if (st != CW_OK)
         return st;
-    s.part_of = cwi_alloc_array(s.run_count, sizeof *s.part_of);
+    s.part_of = cwi_sets_alloc(s.run_count);
     s.run_of = cwi_alloc_array(vertices, sizeof *s.run_of);
     s.new = cwi_alloc_array(vertices, sizeof *s.new);
     const bool ok = s.part_of && s.run_of && s.new &&make_parts(&s);

@@ -58,7 +58,7 @@ static void fill_header(const cwi_mesh_output *out, uint32_t count, unsigned cha
 {
     char axes[CWI_AXES_BYTES], origin[CWI_ORIGIN_BYTES], text[80 + CWI_ORIGIN_BYTES];
     cwi_print_axes(out->axes, axes);
-    cwi_print_origin(out, " from", "", origin);
+    cwi_print_origin(out, " from ", "", origin);
     int length = snprintf(text, sizeof text, "cubewright, %s%s", axes, origin);
     if (length >= 80)
         length = snprintf(text, sizeof text, "cubewright, %s from an origin of its own", axes);
@@ -71,7 +71,7 @@ static cw_status write_text(const cwi_parts *parts, cwi_mesh_output *out, cw_err
 {
     char axes[CWI_AXES_BYTES], origin[CWI_ORIGIN_BYTES];
     cwi_print_axes(out->axes, axes);
-    cwi_print_origin(out, " from", "", origin);
+    cwi_print_origin(out, " from ", "", origin);
     cw_status st = cwi_outfile_printf(out->file, err, "solid %s cubewright, %s%s\n", out->name,
                                       axes, origin);
     if (st == CW_OK)

@@ -119,6 +119,13 @@ static const cw_format rows[] = {
      .in_this_build = true,
      .lost = "scalars, labels, affine",
      .keeps = CW_KEEPS_SHARING | CW_KEEPS_NORMALS | CW_KEEPS_COLORS},
+    {.name = "3mf",
+     .extensions = ".3mf",
+     .about = "3MF for printing: objects with colours, LPS millimetres",
+     .writes_mesh = true,
+     .in_this_build = true,
+     .lost = "normals, scalars, labels, affine",
+     .keeps = CW_KEEPS_SHARING | CW_KEEPS_PLACES | CW_KEEPS_COLORS | CW_KEEPS_PARTS},
 };
 
 enum { ROW_COUNT = sizeof rows / sizeof *rows };

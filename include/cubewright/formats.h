@@ -352,6 +352,10 @@ typedef struct cw_format {
     unsigned keeps;   /* of a mesh that is written: cw_keeps flags */
 } cw_format;
 
+/* The format that a mesh is written in: of that name, or (name is NULL) by the path's
+ * extension. NULL when there is none. */
+CW_API const cw_format *cw_mesh_format(const char *path, const char *name);
+
 /* All formats, in_this_build or not; *count rows, static. */
 CW_API const cw_format *cw_formats(size_t *count);
 

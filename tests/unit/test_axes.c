@@ -157,7 +157,7 @@ static void loss_is_that_of_the_file(void **state)
     assert_int_equal(mm.merged_vertices, 4);
     assert_int_equal(um.merged_vertices, 4);
     assert_true(mm.step_mm == 8);
-    assert_within(um.step_mm, 8.192, 1e-6);
+    assert_within(um.step_mm, 8.192, 1e-9);
     cw_mesh_free(&mesh);
 }
 

@@ -22,7 +22,8 @@ static void mistakes_are_named_with_the_path(void **state)
         const char *words;
     } rows[] = {
         {"a.xyz", NULL, &mesh, CW_ERR_ARGUMENT, "a.xyz: its extension is of no mesh format"},
-        {"a.nrrd", NULL, &mesh, CW_ERR_ARGUMENT, "there are .glb .gltf .stl .ply .obj .off"},
+        {"a.nrrd", NULL, &mesh, CW_ERR_ARGUMENT,
+         "there are .glb .gltf .stl .ply .obj .off .3mf"},
         {"a.stl", "nrrd", &mesh, CW_ERR_ARGUMENT,
          "no mesh format is named 'nrrd'; there are glb"},
         {"a.stl", NULL, &empty, CW_ERR_ARGUMENT, "a.stl: the mesh is empty"},
@@ -143,7 +144,7 @@ static void the_table_of_formats_is_whole_and_always_the_same(void **state)
 {
     (void)state;
     static const char wanted[] =
-        "nrrd nifti metaimage vtk vti mrc inr dicom tiff raw glb gltf stl ply obj off ";
+        "nrrd nifti metaimage vtk vti mrc inr dicom tiff raw glb gltf stl ply obj off 3mf ";
     char names[128] = "";
     size_t count, again;
     const cw_format *formats = cw_formats(&count);
@@ -236,6 +237,7 @@ static void what_a_format_does_not_keep_is_told(void **state)
         {"a.ply", CW_KEEPS_AFFINE},
         {"a.off", CW_KEEPS_SCALARS | CW_KEEPS_LABELS | CW_KEEPS_AFFINE},
         {"a.obj", CW_KEEPS_COLORS | CW_KEEPS_SCALARS | CW_KEEPS_LABELS | CW_KEEPS_AFFINE},
+        {"a.3mf", CW_KEEPS_NORMALS | CW_KEEPS_SCALARS | CW_KEEPS_LABELS | CW_KEEPS_AFFINE},
         {"a.stl", CW_KEEPS_ALL & ~(unsigned)(CW_KEEPS_PLACES | CW_KEEPS_PARTS)},
     };
     static uint8_t colors[32];

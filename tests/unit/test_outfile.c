@@ -137,6 +137,34 @@ static void printed_text_may_be_longer_than_the_buffer(void **state)
     free(text);
 }
 
+static void what_was_written_may_be_written_over(void **state)
+{
+    (void)state;
+    const char *path = test_path("patched");
+    static char bytes[600000];
+    cwi_outfile *file = NULL;
+    cw_error err = {0};
+    size_t size;
+    memset(bytes, '.', sizeof bytes);
+    assert_ok(cwi_outfile_open(&file, path, false, &err), err);
+    assert_int_equal(cwi_outfile_size(file), 0);
+    assert_ok(cwi_outfile_printf(file, &err, "size: %s\n", "????"), err);
+    assert_int_equal(cwi_outfile_size(file), 11);
+    assert_ok(cwi_outfile_patch(file, 6, "1234", 4, &err), err);
+    assert_ok(cwi_outfile_write(file, bytes, sizeof bytes, &err), err);
+    assert_ok(cwi_outfile_write(file, "end", 3, &err), err);
+    assert_int_equal(cwi_outfile_size(file), sizeof bytes + 14);
+    assert_ok(cwi_outfile_patch(file, sizeof bytes + 10, "|END", 4, &err), err);
+    assert_ok(cwi_outfile_patch(file, 0, "S", 1, &err), err);
+    assert_ok(cwi_outfile_printf(file, &err, "."), err);
+    assert_ok(cwi_outfile_commit(&file, &err), err);
+    char *back = test_file_read(path, &size);
+    assert_int_equal(size, sizeof bytes + 15);
+    assert_memory_equal(back, "Size: 1234\n...", 14);
+    assert_string_equal(back + size - 7, "..|END.");
+    free(back);
+}
+
 static void numbers_have_points_in_every_locale(void **state)
 {
     (void)state;
@@ -262,6 +290,7 @@ static int write_too_much(const char *path)
         !strstr(err.message, "File too large"))
         return 2;
     if (cwi_outfile_printf(file, &later, "x") != CW_ERR_OUTPUT ||
+        cwi_outfile_patch(file, 0, "x", 1, &later) != CW_ERR_OUTPUT ||
         cwi_outfile_commit(&file, &later) != CW_ERR_OUTPUT || file)
         return 3;
     return strcmp(err.message, later.message) == 0 ? 0 : 4;
@@ -331,6 +360,7 @@ int main(void)
         CASE(an_abort_leaves_nothing_and_can_be_repeated),
         CASE(buffered_and_large_writes_keep_their_order),
         CASE(printed_text_may_be_longer_than_the_buffer),
+        CASE(what_was_written_may_be_written_over),
         CASE(numbers_have_points_in_every_locale),
         CASE(only_regular_files_are_replaced),
         CASE(a_link_is_followed_and_stays_a_link),
