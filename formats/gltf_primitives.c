@@ -292,10 +292,8 @@ static cw_status unpack(cwi_gltf_reader *r, const cwi_gltf_primitive *p, cw_erro
         return cw_fail(err, CW_ERR_FORMAT, "a primitive names bufferView %d; there are %zu",
                        p->draco, scene->view_count);
     const cwi_gltf_view *v = &scene->views[p->draco];
-    cw_status st = cwi_gltf_limit(r, points, err);
-    if (st == CW_OK)
-        st = cwi_gltf_load(&r->bytes, scene, (uint64_t)v->buffer, v->offset, v->bytes, &packed,
-                           err);
+    cw_status st =
+        cwi_gltf_load(&r->bytes, scene, (uint64_t)v->buffer, v->offset, v->bytes, &packed, err);
     if (st == CW_OK)
         st = cwi_gltf_unpack_draco(&r->unpacker, &ids, packed, (size_t)v->bytes, points,
                                    indices, &r->arrays, err);

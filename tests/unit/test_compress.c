@@ -263,6 +263,49 @@ static void damage_is_an_error_or_a_mesh(void **state)
     cw_mesh_free(&mesh);
 }
 
+/* The JSON may say what it likes of what comes out. */
+static void claims_are_held_against_what_is_decoded(void **state)
+{
+    (void)state;
+    static const struct {
+        cw_compression kind;
+        const char *from, *to, *words;
+    } rows[] = {
+        {CW_COMPRESS_DRACO, "\"count\":8,", "\"count\":9,", "their accessors say"},
+        {CW_COMPRESS_DRACO, "\"count\":36,", "\"count\":99,", "their accessors say"},
+        {CW_COMPRESS_DRACO, "\"POSITION\":0}", "\"POSITION\":7}", "lack an attribute"},
+        {CW_COMPRESS_DRACO, "{\"POSITION\":0", "{\"POSITION\":7", "lack an attribute"},
+        {CW_COMPRESS_MESHOPT, "\"byteStride\":8,\"count\"", "\"byteStride\":7,\"count\"",
+         "a byteStride of 7"},
+        {CW_COMPRESS_MESHOPT, "\"ATTRIBUTES\"", "\"TRIANGLES\" ", "a byteStride of"},
+    };
+    cw_mesh cube = {0};
+    test_make_cube(&cube);
+    size_t told = 0;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows && is_there(rows[i].kind); i++) {
+        cw_mesh back;
+        cw_error err = {0};
+        size_t size;
+        const size_t length = strlen(rows[i].from);
+        assert_ok(cw_mesh_write(test_path("a.glb"), &cube,
+                                &(cw_write_desc){.compression = rows[i].kind}, &err),
+                  err);
+        char *bytes = test_file_read(test_path("a.glb"), &size), *at = NULL;
+        for (size_t b = 0; b + length < size && !at; b++)
+            at = memcmp(bytes + b, rows[i].from, length) == 0 ? bytes + b : NULL;
+        if (at) {
+            memcpy(at, rows[i].to, length);
+            test_file_write(test_path("a.glb"), bytes, size);
+            assert_fails(cw_mesh_read(test_path("a.glb"), NULL, &back, NULL, &err),
+                         CW_ERR_FORMAT, rows[i].words, err);
+            told++;
+        }
+        free(bytes);
+    }
+    assert_true(told >= 5 || !is_there(CW_COMPRESS_DRACO) || !is_there(CW_COMPRESS_MESHOPT));
+    cw_mesh_free(&cube);
+}
+
 int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
@@ -274,6 +317,7 @@ int main(void)
         TEST(what_makes_no_sense_is_refused),
         TEST(parts_share_a_grid),
         TEST(damage_is_an_error_or_a_mesh),
+        TEST(claims_are_held_against_what_is_decoded),
     };
     return cwi_module_present("gltf") ? cmocka_run_group_tests(tests, NULL, NULL) : 0;
 }
