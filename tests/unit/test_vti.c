@@ -462,7 +462,7 @@ static void endless_files_come_to_an_end(void **state)
     for (size_t i = 0; i + 3 <= SIZE; i += 3)
         memcpy(text + i, "<a>", 3);
     put_file("a.vti", FILE_TAG, text, SIZE / 3 * 3);
-    check_told("a.vti", 2, "or 64 inside each other");
+    check_told("a.vti", 2, "more than 64 elements inside each other");
     free(text);
 }
 
