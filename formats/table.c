@@ -124,6 +124,7 @@ static const cw_format rows[] = {
     {.name = "vtp",
      .extensions = ".vtp",
      .about = "VTK surface as XML, LPS millimetres",
+     .reads_mesh = true,
      .writes_mesh = true,
      .in_this_build = true,
      .lost = "affine; places beyond single precision, unless local",
