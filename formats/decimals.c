@@ -4,6 +4,7 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 enum { LONGEST = 25, MOST_DIGITS = 15 };
 
@@ -65,4 +66,25 @@ unsigned char *cwi_put_decimal(unsigned char *to, double value, int digits)
         return to;
     *to++ = '.';
     return put_fraction(to, all % unit, places);
+}
+
+void cwi_print_number(double value, char text[CWI_NUMBER_BYTES])
+{
+    void *before = cwi_locale_c();
+    for (int digits = 15; digits <= 17; digits++) {
+        snprintf(text, CWI_NUMBER_BYTES, "%.*g", digits, value);
+        if (strtod(text, NULL) == value)
+            break;
+    }
+    cwi_locale_restore(before);
+}
+
+void cwi_print_point(const double point[3], char text[CWI_POINT_BYTES])
+{
+    for (int a = 0; a < 3; a++) {
+        if (a > 0)
+            *text++ = ' ';
+        cwi_print_number(point[a], text);
+        text += strlen(text);
+    }
 }

@@ -12,6 +12,12 @@
 CW_API unsigned char *cwi_put_decimal(unsigned char *to, double value, int digits);
 CW_API unsigned char *cwi_put_integer(unsigned char *to, uint64_t value);
 
+enum { CWI_NUMBER_BYTES = 26, CWI_POINT_BYTES = 3 * CWI_NUMBER_BYTES };
+
+/* "1.5", "1 2 3.5": the fewest digits that read back the same, and a zero behind them. */
+void cwi_print_number(double value, char text[CWI_NUMBER_BYTES]);
+void cwi_print_point(const double point[3], char text[CWI_POINT_BYTES]);
+
 static inline unsigned char *cwi_put_text(unsigned char *to, const char *text)
 {
     const size_t size = strlen(text);

@@ -22,6 +22,21 @@ static size_t next_room(const cwi_mesh_input *in, size_t room, size_t count, siz
     return more;
 }
 
+static cw_status fail_limit(const cwi_mesh_input *in, cw_error *err)
+{
+    return cw_fail(err, CW_ERR_LIMIT,
+                   "the mesh needs more memory than the %llu bytes allowed (--memory)",
+                   (unsigned long long)in->desc.max_bytes);
+}
+
+cw_status cwi_mesh_take_bytes(cwi_mesh_input *in, uint64_t bytes, cw_error *err)
+{
+    if (in->desc.max_bytes && bytes > in->desc.max_bytes - in->bytes)
+        return fail_limit(in, err);
+    in->bytes += bytes;
+    return CW_OK;
+}
+
 cw_status cwi_mesh_grow(cwi_mesh_input *in, void *array, size_t *room, size_t count,
                         size_t size, cw_error *err)
 {
@@ -30,9 +45,7 @@ cw_status cwi_mesh_grow(cwi_mesh_input *in, void *array, size_t *room, size_t co
         return CW_OK;
     const size_t next = next_room(in, *room, count, size);
     if (next < count)
-        return cw_fail(err, CW_ERR_LIMIT,
-                       "the mesh needs more memory than the %llu bytes allowed (--memory)",
-                       (unsigned long long)in->desc.max_bytes);
+        return fail_limit(in, err);
     memcpy(&memory, array, sizeof memory);
     memory = cwi_realloc_array(memory, next, size);
     if (!memory)

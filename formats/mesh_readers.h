@@ -43,6 +43,7 @@ cwi_mesh_sniffer cwi_ply_sniff;
 cwi_mesh_sniffer cwi_off_sniff;
 cwi_mesh_sniffer cwi_glb_sniff;
 cwi_mesh_sniffer cwi_gltf_sniff;
+cwi_mesh_sniffer cwi_vtp_sniff;
 
 cwi_mesh_reader cwi_stl_read;
 cwi_mesh_reader cwi_ply_read;
@@ -50,6 +51,7 @@ cwi_mesh_reader cwi_obj_read;
 cwi_mesh_reader cwi_off_read;
 cwi_mesh_reader cwi_glb_read;
 cwi_mesh_reader cwi_gltf_read;
+cwi_mesh_reader cwi_vtp_read;
 
 /* Makes an array (array is the address of its pointer) hold at least count elements of a size;
  * what is new is not initialised. room is how many it holds.
@@ -61,6 +63,10 @@ cw_status cwi_mesh_grow(cwi_mesh_input *in, void *array, size_t *room, size_t co
  * place of one that has no triangles. Returns as cwi_mesh_grow() */
 cw_status cwi_mesh_begin_part(cwi_mesh_input *in, const char *name, size_t triangle,
                               cw_error *err);
+
+/* Counts memory that is used for a while, until the caller takes it off in->bytes again.
+ * Returns CW_ERR_LIMIT past desc.max_bytes; it is not counted then. */
+cw_status cwi_mesh_take_bytes(cwi_mesh_input *in, uint64_t bytes, cw_error *err);
 
 /* CW_ERR_LIMIT for more triangles than desc.max_triangles. */
 cw_status cwi_mesh_limit_triangles(const cwi_mesh_input *in, uint64_t count, cw_error *err);

@@ -35,6 +35,7 @@ static const writer writers[] = {
     {.format = "obj", .write = cwi_obj_write, .text = true},
     {.format = "off", .write = cwi_off_write, .text = true},
     {.format = "3mf", .write = cwi_3mf_write},
+    {.format = "vtp", .write = cwi_vtp_write},
 };
 
 enum { PROGRESS_STEP = 65536, BATCH_BYTES = 16 << 10 };
@@ -103,30 +104,6 @@ cw_status cwi_check_single(const cwi_parts *parts, cw_error *err)
     for (size_t i = 0; i < parts->count && st == CW_OK; i++)
         st = check_single(&parts->items[i], err);
     return st;
-}
-
-/* The fewest digits that read back the same. */
-static int print_shortest(char *text, size_t size, double value)
-{
-    int length = 0;
-    for (int digits = 15; digits <= 17; digits++) {
-        length = snprintf(text, size, "%.*g", digits, value);
-        if (strtod(text, NULL) == value)
-            break;
-    }
-    return length;
-}
-
-void cwi_print_point(const double point[3], char text[CWI_POINT_BYTES])
-{
-    void *locale = cwi_locale_c();
-    size_t used = 0;
-    for (int a = 0; a < 3; a++) {
-        if (a > 0)
-            text[used++] = ' ';
-        used += (size_t)print_shortest(text + used, CWI_POINT_BYTES - used, point[a]);
-    }
-    cwi_locale_restore(locale);
 }
 
 void cwi_print_origin(const cwi_mesh_output *out, const char *before, const char *after,

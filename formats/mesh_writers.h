@@ -21,11 +21,11 @@ typedef struct cwi_part {
     cw_mesh mesh;  /* borrows its arrays; those that the file does not keep are NULL. For a
                       local file its origin counts from that of the file. */
     cwi_turn turn; /* from its coordinates to those of the file */
-    uint64_t first, first_normal; /* vertices, and normals, of the parts before it */
-    int digits;                   /* that a place is written with in text */
-    const uint32_t *numbers;      /* of each vertex, for a writer's own use */
-    size_t group;                 /* likewise */
-    char name[CWI_NAME_BYTES];    /* printable UTF-8 on one line */
+    uint64_t first, first_normal, first_triangle; /* what the parts before it have */
+    int digits;                                   /* that a place is written with in text */
+    const uint32_t *numbers;                      /* of each vertex, for a writer's own use */
+    size_t group;                                 /* likewise */
+    char name[CWI_NAME_BYTES];                    /* printable UTF-8 on one line */
 } cwi_part;
 
 /* Formats that hold one mesh write them one behind the other; all have the same arrays then. */
@@ -59,8 +59,12 @@ CW_API cwi_mesh_writer cwi_ply_write;
 CW_API cwi_mesh_writer cwi_obj_write;
 CW_API cwi_mesh_writer cwi_off_write;
 CW_API cwi_mesh_writer cwi_3mf_write;
+CW_API cwi_mesh_writer cwi_vtp_write;
 CW_API cwi_mesh_writer cwi_glb_write;
 CW_API cwi_mesh_writer cwi_gltf_write;
+
+/* As VTP with indices of 64 bits, which cwi_vtp_write() takes for meshes that need them. */
+CW_API cwi_mesh_writer cwi_vtp_write_wide;
 
 /* Loads the module that both glTF writers need. CW_ERR_UNSUPPORTED: not in this build. */
 CW_API cw_status cwi_gltf_prepare(cw_error *err);
@@ -81,10 +85,7 @@ cw_status cwi_write_vertices(const cwi_parts *parts, cwi_mesh_output *out,
 cw_status cwi_write_triangles(const cwi_parts *parts, cwi_mesh_output *out,
                               cwi_record_encoder *encode, cw_error *err);
 
-enum { CWI_POINT_BYTES = 80, CWI_ORIGIN_BYTES = 160 };
-
-/* "1 2 3.5": the fewest digits that read back the same. */
-void cwi_print_point(const double point[3], char text[CWI_POINT_BYTES]);
+enum { CWI_ORIGIN_BYTES = 160 };
 
 /* The origin of a local file as text, between what stands before and after it: " from 1 2 3.5".
  * Empty for a file of world coordinates. */

@@ -9,6 +9,7 @@
 /* Blank-separated numbers of a plain stream, one after another. Zeroed but for its stream. */
 typedef struct cwi_numbers {
     cwi_stream *stream; /* borrowed */
+    const char *noun;   /* for what the numbers are, in messages */
     uint64_t count;     /* numbers read so far, for messages */
     size_t next, size;  /* in text */
     char text[4096];

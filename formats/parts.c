@@ -136,6 +136,7 @@ static void add_part(cwi_parts *parts, const cw_mesh *mesh, const double origin[
     part->mesh = *mesh;
     part->turn = cwi_turn_to(axes);
     part->first = parts->vertices;
+    part->first_triangle = parts->triangles;
     for (int a = 0; a < 3; a++)
         part->mesh.origin[a] -= origin[a];
     part->digits = digits_of(part);

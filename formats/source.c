@@ -16,6 +16,11 @@
 
 enum { SLAB_BYTES = 1 << 20, MOST_COMPONENTS = 16 };
 
+static const char *noun(const cwi_source *src)
+{
+    return src->noun ? src->noun : "voxels";
+}
+
 cw_status cwi_fail_type(cw_error *err, const char *field, const char *name)
 {
 #define NAME(constant, ctype, text) " " text
@@ -92,8 +97,8 @@ cw_status cwi_source_set_axes(cwi_source *src, const cwi_axis *axes, size_t coun
         strides[axes[i].role] = bytes;
         if (!cwi_size_mul(bytes, axes[i].size, &bytes) || bytes > PTRDIFF_MAX)
             return cw_fail(err, CW_ERR_LIMIT,
-                           "'%s' asks for more voxels than an address space holds",
-                           src->size_field);
+                           "'%s' asks for more %s than an address space holds", src->size_field,
+                           noun(src));
     }
     if (sizes[CWI_AXIS_COMPONENT] > MOST_COMPONENTS)
         return cw_fail(err, CW_ERR_FORMAT,
@@ -214,13 +219,13 @@ static cw_status check_share(const cwi_source *src, part *p, cw_error *err)
     if (!__builtin_add_overflow(decoded_skip(src), share, &wanted) &&
         wanted <= most_bytes(src, encoded))
         return CW_OK;
-    return cw_fail(
-        err, CW_ERR_FORMAT,
-        "'%s' asks for %zu bytes of voxels%s%s; the file holds %llu bytes behind the "
-        "first %llu",
-        src->size_field, share, src->encoding == CWI_RAW ? "" : ", encoded",
-        src->files.count > 1 ? " in each file" : "", (unsigned long long)encoded,
-        (unsigned long long)p->start);
+    return cw_fail(err, CW_ERR_FORMAT,
+                   "'%s' asks for %zu bytes of %s%s%s; the file holds %llu bytes behind the "
+                   "first %llu",
+                   src->size_field, share, noun(src),
+                   src->encoding == CWI_RAW ? "" : ", encoded",
+                   src->files.count > 1 ? " in each file" : "", (unsigned long long)encoded,
+                   (unsigned long long)p->start);
 }
 
 /* A stream over the encoded voxels of a part, and the table of their blocks where they are in
@@ -380,7 +385,7 @@ static cw_status read_part(reading *r, const part *p, size_t index, cw_error *er
 {
     const uint64_t share = share_bytes(r->src);
     r->at = index * share;
-    r->numbers = (cwi_numbers){.stream = &r->stream};
+    r->numbers = (cwi_numbers){.stream = &r->stream, .noun = noun(r->src)};
     cw_status st = open_stream(r->src, p, &r->stream, &r->blocks, err);
     if (st == CW_OK)
         st = read_runs(r, r->at + share, err);
@@ -465,8 +470,8 @@ static cw_status load_voxels(const cwi_source *src, const cwi_source *wanted,
     cw_volume v = wanted->shape;
     v.owned = cwi_alloc_large(wanted->bytes, 1);
     if (!v.owned)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of voxels",
-                       wanted->bytes);
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of %s", wanted->bytes,
+                       noun(wanted));
     v.data = v.owned;
     reading r = {.src = src, .progress = &desc->progress, .to = v.owned};
     cwi_runs_plan(&r.runs, src, desc->region);

@@ -38,6 +38,7 @@ typedef struct cwi_source {
     size_t axis_count;
     const char *size_field;  /* the header's name for the sizes, for messages */
     const char *frame_field; /* ... and for directions, spacing and origin */
+    const char *noun;        /* for what is stored, in messages; NULL: voxels */
 
     cwi_names files; /* data files, each with an equal share; none: the header's own file */
     cwi_encoding encoding;

@@ -126,6 +126,15 @@ static const cw_format rows[] = {
      .in_this_build = true,
      .lost = "normals, scalars, labels, affine",
      .keeps = CW_KEEPS_SHARING | CW_KEEPS_PLACES | CW_KEEPS_COLORS | CW_KEEPS_PARTS},
+    {.name = "vtp",
+     .extensions = ".vtp",
+     .about = "VTK surface as XML, LPS millimetres",
+     .reads_mesh = true,
+     .writes_mesh = true,
+     .in_this_build = true,
+     .lost = "affine; places beyond single precision, unless local",
+     .keeps = CW_KEEPS_SHARING | CW_KEEPS_NORMALS | CW_KEEPS_COLORS | CW_KEEPS_SCALARS |
+              CW_KEEPS_LABELS},
 };
 
 enum { ROW_COUNT = sizeof rows / sizeof *rows };

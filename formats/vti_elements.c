@@ -6,81 +6,17 @@
 #include <stdio.h>
 #include <string.h>
 
-static const struct {
-    const char *name;
-    cw_type type;
-} types[] = {
-    {"Int8", CW_I8},   {"UInt8", CW_U8},   {"Int16", CW_I16},   {"UInt16", CW_U16},
-    {"Int32", CW_I32}, {"UInt32", CW_U32}, {"Float32", CW_F32}, {"Float64", CW_F64},
-};
-
-static const char *attribute(cwi_attributes a, const char *name)
-{
-    for (; *a; a += 2)
-        if (strcmp(a[0], name) == 0)
-            return a[1];
-    return NULL;
-}
-
-/* Sets *found to the row of a word that must be one of them; it keeps its value when there is
- * no such attribute. */
-static cw_status one_of(cwi_attributes a, const char *name, const char *const *rows, int count,
-                        int *found, cw_error *err)
-{
-    const char *value = attribute(a, name);
-    for (int i = 0; value && i < count; i++)
-        if (strcmp(rows[i], value) == 0) {
-            *found = i;
-            return CW_OK;
-        }
-    if (!value)
-        return CW_OK;
-    char words[120] = "";
-    for (int i = 0; i < count; i++)
-        snprintf(words + strlen(words), sizeof words - strlen(words), "%s%s",
-                 *words ? ", " : "", rows[i]);
-    return cw_fail(err, CW_ERR_FORMAT, "'%s' is '%.40s'; those that are read are %s", name,
-                   value, words);
-}
-
-cw_status cwi_vti_file(cwi_vti *v, cwi_attributes a, cw_error *err)
-{
-    static const char *const orders[] = {"LittleEndian", "BigEndian"};
-    static const char *const words[] = {"UInt32", "UInt64"};
-    static const char *const compressors[] = {
-        [CWI_VTI_PLAIN] = "", "vtkZLibDataCompressor", "vtkLZ4DataCompressor"};
-    int order = 0, word = 0, compressor = 0;
-    const char *type = attribute(a, "type");
-    v->has_order = attribute(a, "byte_order");
-    if (!type || strcmp(type, "ImageData") != 0)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "the VTK file is '%.40s'; only ImageData is a volume", type ? type : "");
-    cw_status st = one_of(a, "byte_order", orders, 2, &order, err);
-    if (st == CW_OK)
-        st = one_of(a, "header_type", words, 2, &word, err);
-    if (st == CW_OK)
-        st = one_of(a, "compressor", compressors, 3, &compressor, err);
-    if (st == CW_OK && compressor == CWI_VTI_LZ4 && !cwi_lz4_present())
-        return cw_fail(err, CW_ERR_UNSUPPORTED,
-                       "'compressor' is vtkLZ4DataCompressor; this build has no LZ4 "
-                       "(liblz4-dev, CUBEWRIGHT_LZ4)");
-    v->big_endian = order;
-    v->word_bytes = word ? 8 : 4;
-    v->compressor = (cwi_vti_compressor)compressor;
-    return st;
-}
-
 static cw_status numbers(cwi_attributes a, const char *name, size_t count, double *out,
                          cw_error *err)
 {
-    const char *value = attribute(a, name);
+    const char *value = cwi_attribute(a, name);
     return value ? cwi_field_doubles(name, value, count, "ImageData", out, err) : CW_OK;
 }
 
 cw_status cwi_vti_image(cwi_vti *v, cwi_attributes a, cw_error *err)
 {
     static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-    const char *times = attribute(a, "TimeValues");
+    const char *times = cwi_attribute(a, "TimeValues");
     for (int i = 0; i < 3; i++)
         v->spacing[i] = 1;
     memcpy(v->direction, identity, sizeof identity);
@@ -96,7 +32,7 @@ cw_status cwi_vti_image(cwi_vti *v, cwi_attributes a, cw_error *err)
 
 cw_status cwi_vti_piece(cwi_vti *v, cwi_attributes a, cw_error *err)
 {
-    const char *extent = attribute(a, "Extent"), *s = extent ? extent : "";
+    const char *extent = cwi_attribute(a, "Extent"), *s = extent ? extent : "";
     if (v->pieces++)
         return cw_fail(err, CW_ERR_FORMAT,
                        "the file has several Piece elements; files of one are read");
@@ -115,93 +51,38 @@ cw_status cwi_vti_piece(cwi_vti *v, cwi_attributes a, cw_error *err)
     return CW_OK;
 }
 
-static void keep_word(char word[CWI_WORD_BYTES], const char *text)
-{
-    snprintf(word, CWI_WORD_BYTES, "%s", text ? text : "");
-}
-
 cw_status cwi_vti_point_data(cwi_vti *v, cwi_attributes a, cw_error *err)
 {
+    const char *scalars = cwi_attribute(a, "Scalars");
     (void)err;
-    keep_word(v->scalars, attribute(a, "Scalars"));
+    snprintf(v->scalars, sizeof v->scalars, "%s", scalars ? scalars : "");
     return CW_OK;
 }
 
-/* --- arrays ------------------------------------------------------------------------------ */
-
-static cw_status integer(cwi_attributes a, const char *name, int64_t low, int64_t high,
-                         int64_t *out, cw_error *err)
-{
-    const char *value = attribute(a, name);
-    return value ? cwi_field_integer(name, value, low, high, out, err) : CW_OK;
-}
-
-static void note_other(cwi_vti *v, const char *name, const char *type, int64_t components)
+static void note_other(cwi_vti *v, const cwi_vtk_array *array)
 {
     const size_t used = strlen(v->others);
-    snprintf(v->others + used, sizeof v->others - used, "%s'%s' (%lld %s)", used ? ", " : "",
-             name, (long long)components, type);
-}
-
-/* Whether the array can be a volume at all. */
-static bool find_type(const char *name, cw_type *type)
-{
-    for (size_t i = 0; i < sizeof types / sizeof *types; i++)
-        if (strcmp(types[i].name, name) == 0) {
-            *type = types[i].type;
-            return true;
-        }
-    return false;
-}
-
-static cw_status read_array(cwi_vti_array *array, cwi_attributes a, int64_t *components,
-                            cw_error *err)
-{
-    static const char *const forms[] = {"ascii", "binary", "appended"};
-    int form = CWI_VTI_ASCII;
-    int64_t offset = 0;
-    keep_word(array->name, attribute(a, "Name"));
-    cw_status st = one_of(a, "format", forms, 3, &form, err);
-    if (st == CW_OK)
-        st = integer(a, "NumberOfComponents", 1, INT32_MAX, components, err);
-    if (st == CW_OK && form == CWI_VTI_APPENDED && !attribute(a, "offset"))
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "the array '%s' is appended; its 'offset' is missing", array->name);
-    if (st == CW_OK)
-        st = integer(a, "offset", 0, INT64_MAX, &offset, err);
-    array->form = (cwi_vti_form)form;
-    array->offset = (uint64_t)offset;
-    array->components = (size_t)*components;
-    return st;
+    snprintf(v->others + used, sizeof v->others - used, "%s'%s' (%zu %s)", used ? ", " : "",
+             array->name, array->components,
+             *array->type_name ? array->type_name : "of no type");
 }
 
 cw_status cwi_vti_data_array(cwi_vti *v, cwi_attributes a, bool *kept, cw_error *err)
 {
-    const char *type = attribute(a, "type");
     cwi_vti_array array = {0};
-    int64_t components = 1;
-    cw_status st = read_array(&array, a, &components, err);
+    cw_status st = cwi_vtk_xml_array(&array.data, a, err);
     *kept = false;
     if (st != CW_OK)
         return st;
-    const bool named = *array.name && strcmp(array.name, v->scalars) == 0;
+    const bool named = *array.data.name && strcmp(array.data.name, v->scalars) == 0;
+    const size_t components = array.data.components;
     array.rank = named ? CWI_VTI_SCALARS : components == 1 ? CWI_VTI_ONE : CWI_VTI_SEVERAL;
-    if (!type || !find_type(type, &array.type) || components > 16) {
-        note_other(v, array.name, type ? type : "of no type", components);
+    if (!array.data.is_known || array.data.wide || components > 16) {
+        note_other(v, &array.data);
         return CW_OK;
     }
     *kept = array.rank > v->best.rank;
     if (*kept)
         v->best = array;
     return CW_OK;
-}
-
-cw_status cwi_vti_appended(cwi_vti *v, cwi_attributes a, cw_error *err)
-{
-    static const char *const encodings[] = {"raw", "base64"};
-    int encoding = 1; /* VTK's own default */
-    v->has_appended = true;
-    cw_status st = one_of(a, "encoding", encodings, 2, &encoding, err);
-    v->base64 = encoding;
-    return st;
 }

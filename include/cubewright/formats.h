@@ -277,13 +277,15 @@ typedef struct cw_write_desc {
 CW_API cw_status cw_volume_write(const char *path, const cw_volume *volume,
                                  const cw_write_desc *desc, cw_error *err);
 
-/* Writes a mesh in the same way: .glb, .gltf, .stl, .ply, .obj or .off.
- * glTF goes out in metres, +Y up and facing +Z, by the node's transform: vertices stay exact.
- * The others hold world coordinates (origin added), LPS millimetres: see cw_mesh_write_loss().
+/* Writes a mesh in the same way: .glb, .gltf, .stl, .ply, .obj, .off, .3mf or .vtp.
+ * glTF goes out in metres, +Y up and facing +Z, by the node's transform: vertices stay exact,
+ * as they do in 3MF, whose build items hold the origin. The others hold world coordinates
+ * (origin added), LPS millimetres: see cw_mesh_write_loss().
  *
  * local leaves the origin out: coordinates are the mesh's positions, and the glTF node has no
  * translation. The file names the origin, which gives the world's coordinates when added: PLY,
- * OBJ and OFF in a comment, STL in its header when it fits there, glTF in the node's extras.
+ * OBJ, OFF and VTP in a comment, STL in its header when it fits there, glTF in the node's
+ * extras, 3MF in its metadata.
  *
  * Those comments name unit and frame (axes), too; cw_mesh_read() turns them back.
  * Returns  as cw_volume_write(); CW_ERR_ARGUMENT as cw_mesh_check(), for an empty mesh, for
@@ -292,9 +294,9 @@ CW_API cw_status cw_volume_write(const char *path, const cw_volume *volume,
 CW_API cw_status cw_mesh_write(const char *path, const cw_mesh *mesh, const cw_write_desc *desc,
                                cw_error *err);
 
-/* Writes parts into one file: OBJ gets an object for each. In the others they become one mesh,
- * one behind the other, with the arrays that all of them have. Parts without triangles are left
- * out. Of a local file the origin is that of the first part.
+/* Writes parts into one file: OBJ and 3MF get an object for each. In the others they become one
+ * mesh, one behind the other, with the arrays that all of them have. Parts without triangles
+ * are left out. Of a local file the origin is that of the first part.
  * Returns as cw_mesh_write() */
 CW_API cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
                                 const cw_write_desc *desc, cw_error *err);
@@ -327,6 +329,21 @@ CW_API cw_status cw_parts_write_loss(const char *path, const cw_part *parts, siz
  * writer and library at hand, folder there and writable, nothing in the way. Same errors. */
 CW_API cw_status cw_mesh_write_check(const char *path, const cw_write_desc *desc,
                                      cw_error *err);
+
+/* A file of a time series. */
+typedef struct cw_pvd_entry {
+    const char *path; /* as this program names it */
+    double time;
+} cw_pvd_entry;
+
+/* Writes a .pvd file, which ParaView opens as a time series: it lists files, such as .vtp, with
+ * the time of each, by names relative to its own folder. Files of one time in a row are parts
+ * of it. The files need not be there. Of desc only no_clobber counts.
+ * Returns  CW_ERR_ARGUMENT  no entries, a time that is not finite, a file that cannot be named
+ *                           from the .pvd's folder because one of both paths goes up by ".."
+ *          CW_ERR_OUTPUT as cw_mesh_write() */
+CW_API cw_status cw_pvd_write(const char *path, const cw_pvd_entry *entries, size_t count,
+                              const cw_write_desc *desc, cw_error *err);
 
 /* What of a mesh a file of a format holds. */
 typedef enum cw_keeps {

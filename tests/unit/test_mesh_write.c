@@ -23,7 +23,7 @@ static void mistakes_are_named_with_the_path(void **state)
     } rows[] = {
         {"a.xyz", NULL, &mesh, CW_ERR_ARGUMENT, "a.xyz: its extension is of no mesh format"},
         {"a.nrrd", NULL, &mesh, CW_ERR_ARGUMENT,
-         "there are .glb .gltf .stl .ply .obj .off .3mf"},
+         "there are .glb .gltf .stl .ply .obj .off .3mf .vtp"},
         {"a.stl", "nrrd", &mesh, CW_ERR_ARGUMENT,
          "no mesh format is named 'nrrd'; there are glb"},
         {"a.stl", NULL, &empty, CW_ERR_ARGUMENT, "a.stl: the mesh is empty"},
@@ -144,7 +144,7 @@ static void the_table_of_formats_is_whole_and_always_the_same(void **state)
 {
     (void)state;
     static const char wanted[] =
-        "nrrd nifti metaimage vtk vti mrc inr dicom tiff raw glb gltf stl ply obj off 3mf ";
+        "nrrd nifti metaimage vtk vti mrc inr dicom tiff raw glb gltf stl ply obj off 3mf vtp ";
     char names[128] = "";
     size_t count, again;
     const cw_format *formats = cw_formats(&count);
@@ -235,6 +235,7 @@ static void what_a_format_does_not_keep_is_told(void **state)
         unsigned dropped;
     } rows[] = {
         {"a.ply", CW_KEEPS_AFFINE},
+        {"a.vtp", CW_KEEPS_AFFINE},
         {"a.off", CW_KEEPS_SCALARS | CW_KEEPS_LABELS | CW_KEEPS_AFFINE},
         {"a.obj", CW_KEEPS_COLORS | CW_KEEPS_SCALARS | CW_KEEPS_LABELS | CW_KEEPS_AFFINE},
         {"a.3mf", CW_KEEPS_NORMALS | CW_KEEPS_SCALARS | CW_KEEPS_LABELS | CW_KEEPS_AFFINE},
