@@ -48,6 +48,14 @@ build_and_test dev -LE scans # the next build reads them three times as fast
 quietly cmake --build --preset dev --target format-check
 build_and_test release
 build_and_test fuzz -L 'unit|fuzz'
+# Mutants of every corpus, the same ones each time.
+echo "== mutants"
+for target in build/fuzz/bin/fuzz_*; do
+    new=$(mktemp -d)
+    quietly "$target" -seed=1 -runs=5000 -max_total_time=20 -rss_limit_mb=4000 \
+        "$new" "tests/fuzz/corpus/${target##*/}"
+    rm -rf "$new"
+done
 build_and_test tsan -R 'extract|volume|quality|render|distance_mesh|oracle|intersections'
 build_and_test minimal -R 'unit|fuzz|install'
 echo "== all tests passed"
