@@ -43,6 +43,7 @@ cwi_mesh_sniffer cwi_ply_sniff;
 cwi_mesh_sniffer cwi_off_sniff;
 cwi_mesh_sniffer cwi_glb_sniff;
 cwi_mesh_sniffer cwi_gltf_sniff;
+cwi_mesh_sniffer cwi_3mf_sniff;
 cwi_mesh_sniffer cwi_vtp_sniff;
 
 cwi_mesh_reader cwi_stl_read;
@@ -51,6 +52,7 @@ cwi_mesh_reader cwi_obj_read;
 cwi_mesh_reader cwi_off_read;
 cwi_mesh_reader cwi_glb_read;
 cwi_mesh_reader cwi_gltf_read;
+cwi_mesh_reader cwi_3mf_read;
 cwi_mesh_reader cwi_vtp_read;
 
 /* Makes an array (array is the address of its pointer) hold at least count elements of a size;

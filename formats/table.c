@@ -122,6 +122,7 @@ static const cw_format rows[] = {
     {.name = "3mf",
      .extensions = ".3mf",
      .about = "3MF for printing: objects with colours, LPS millimetres",
+     .reads_mesh = true,
      .writes_mesh = true,
      .in_this_build = true,
      .lost = "normals, scalars, labels, affine",

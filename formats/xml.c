@@ -45,6 +45,11 @@ uint64_t cwi_xml_tag_end(const cwi_xml *x)
     return (uint64_t)(XML_GetCurrentByteIndex(x->expat) + XML_GetCurrentByteCount(x->expat));
 }
 
+unsigned long cwi_xml_line(const cwi_xml *x)
+{
+    return (unsigned long)XML_GetCurrentLineNumber(x->expat);
+}
+
 void cwi_xml_stop(cwi_xml *x)
 {
     x->stopped = true;

@@ -53,6 +53,9 @@ cw_status cwi_xml_read_file(const cwi_xml_rules *rules, void *user, const cwi_in
 uint64_t cwi_xml_tag_start(const cwi_xml *x);
 uint64_t cwi_xml_tag_end(const cwi_xml *x);
 
+/* The line that reading has come to, from 1; for messages. */
+unsigned long cwi_xml_line(const cwi_xml *x);
+
 /* Within start: nothing behind this tag is read, which need be no XML. */
 void cwi_xml_stop(cwi_xml *x);
 

@@ -162,7 +162,8 @@ typedef struct cw_mesh_file {
     unsigned known;     /* cw_known flags; what is not known was taken as LPS millimetres */
     cw_axes axes;       /* from which it was turned; zeroed for glTF and where not known */
     bool local;         /* coordinates were relative to an origin that the file names */
-    size_t parts;       /* that were merged: objects of OBJ, primitives of glTF; else 1 */
+    size_t parts;       /* that were merged: objects of OBJ, items of 3MF, primitives of
+                           glTF; else 1 */
     size_t polygons;    /* faces of more than three corners, cut into fans of triangles */
     size_t skipped;     /* points, lines and faces of fewer than three corners: left out */
 } cw_mesh_file;
@@ -185,18 +186,24 @@ typedef struct cw_mesh_file {
  * winding turned round, so that triangles stay counter-clockwise from outside. Materials,
  * skins, morph targets and animations are ignored, images never looked at.
  *
+ * 3MF places the objects of its build, components and all, in the unit that it names; a
+ * mirrored one likewise has its winding turned round. Colours of 3MF are kept when no vertex
+ * has two.
+ *
  * mesh     filled on success, emptied on failure; free it with cw_mesh_free()
  * file     filled on success; may be NULL
  * Returns  CW_ERR_IO           missing, empty, not a regular file, unreadable
  *          CW_ERR_FORMAT       not understood, damaged or truncated; an index beyond the
  *                              vertices, a coordinate that is not finite; names the place
- *          CW_ERR_UNSAFE       a .gltf file names a buffer outside its own folder
- *          CW_ERR_UNSUPPORTED  glTF is not in this build, or the file needs an extension of
- *                              it that is not read
+ *          CW_ERR_UNSAFE       a .gltf file names a buffer outside its own folder, a .3mf file
+ *                              a model outside itself; an XML document type
+ *          CW_ERR_UNSUPPORTED  glTF or LZ4 is not in this build, or the file needs an extension
+ *                              of glTF or 3MF that is not read
  *          CW_ERR_BACKEND      a library died of the file, or took too long
- *          CW_ERR_LIMIT        more triangles, vertices or bytes than allowed; glTF that draws
- *                              its meshes so often that 2^26 triangles and the bytes of its
- *                              files are exceeded, unless max_triangles is stated
+ *          CW_ERR_LIMIT        more triangles, vertices or bytes than allowed; glTF or 3MF that
+ *                              draws its meshes so often that 2^26 triangles and the bytes of
+ *                              its files are exceeded, 3MF whose text is 64 MiB and 100 times
+ *                              its archive, unless max_triangles is stated
  *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED; CW_ERR_ARGUMENT: no such reader
  * Cost     one pass over the file; 24 bytes a vertex and 12 a triangle while it is read */
 CW_API cw_status cw_mesh_read(const char *path, const cw_mesh_read_desc *desc, cw_mesh *mesh,
@@ -209,9 +216,10 @@ typedef struct cw_part {
 } cw_part;
 
 /* Reads the parts of a file, each as a mesh: the objects of OBJ, or its groups if it has no
- * objects; the solids of an STL text; the nodes of glTF. Groups that share vertices are one
- * part, so that none is cut from its neighbours. Vertices that no triangle names are left out,
- * if there are several parts; other formats, and files without parts, give one.
+ * objects; the solids of an STL text; the build items of 3MF; the nodes of glTF. Groups that
+ * share vertices are one part, so that none is cut from its neighbours. Vertices that no
+ * triangle names are left out, if there are several parts; other formats, and files without
+ * parts, give one.
  *
  * parts    set to an array of *count, which owns the meshes: free it with cw_parts_free().
  *          Names are NULL where the file has none; what is no printable UTF-8 in them is '_'.

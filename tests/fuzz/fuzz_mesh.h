@@ -30,6 +30,25 @@ static inline double touch_mesh(const cw_mesh *m)
     return sum;
 }
 
+/* Takes the file apart, too; what its parts have is part of the whole. */
+static inline void fuzz_parts(const char *path, const cw_mesh_read_desc *desc,
+                              const cw_mesh *all)
+{
+    cw_part *parts;
+    size_t count, triangles = 0;
+    cw_error err;
+    if (cw_parts_read(path, desc, &parts, &count, NULL, &err) != CW_OK)
+        return; /* over the limit of memory */
+    for (size_t i = 0; i < count; i++) {
+        volatile double sum = touch_mesh(parts[i].mesh);
+        (void)sum;
+        triangles += parts[i].mesh->triangle_count;
+    }
+    if (triangles != all->triangle_count)
+        __builtin_trap();
+    cw_parts_free(parts, count);
+}
+
 /* Reads the bytes as a file that lives in memory only, by a reader that is named. */
 static inline int fuzz_mesh(const char *reader, const uint8_t *bytes, size_t size)
 {
@@ -46,6 +65,7 @@ static inline int fuzz_mesh(const char *reader, const uint8_t *bytes, size_t siz
     if (cw_mesh_read(path, &desc, &mesh, &file, &err) == CW_OK) {
         volatile double sum = touch_mesh(&mesh);
         (void)sum;
+        fuzz_parts(path, &desc, &mesh);
         cw_mesh_free(&mesh);
     }
     close(fd);
