@@ -140,7 +140,7 @@ static cw_status find_color(parsing *p, uint32_t group, uint32_t index, uint32_t
 static cw_status start_group(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
     parsing *p = user;
-    uint32_t id;
+    uint32_t id = 0;
     (void)x;
     cw_status st = read_whole(p, "'id'", cwi_attribute(a, "id"), &id, err);
     if (st == CW_OK)
