@@ -1,10 +1,16 @@
+#define _GNU_SOURCE /* mkfifo, setrlimit */
 #include "support/support.h"
 
 #include "core/memory.h"
 
 #include <math.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 /* What can go wrong before a writer is asked, as one row a mistake. */
 static void mistakes_are_named_with_the_path(void **state)
@@ -112,6 +118,96 @@ static void a_cancelled_write_leaves_nothing(void **state)
     assert_true(formats >= 3);
     assert_int_equal(calls, formats);
     assert_int_equal(test_folder_entries(), 0);
+    cw_mesh_free(&mesh);
+}
+
+/* Runs in a child: a write that the system ends. 0 when it was told as it should be. */
+static int write_to_full_disk(const cw_mesh *mesh, const char *format)
+{
+    const struct rlimit limit = {4096, 4096};
+    const cw_write_desc desc = {.format = format};
+    cw_error err = {0};
+    signal(SIGXFSZ, SIG_IGN);
+    if (setrlimit(RLIMIT_FSIZE, &limit) != 0)
+        return 1;
+    if (cw_mesh_write(test_path("a"), mesh, &desc, &err) != CW_ERR_OUTPUT)
+        return 2;
+    return strstr(err.message, "it cannot be written: File too large") ? 0 : 3;
+}
+
+static bool kill_process(void *user, const char *step, double done)
+{
+    (void)user, (void)step;
+    if (done > 0)
+        raise(SIGKILL);
+    return true;
+}
+
+static int write_until_killed(const cw_mesh *mesh, const char *format)
+{
+    const cw_write_desc desc = {.format = format, .progress = {kill_process, NULL}};
+    cw_error err = {0};
+    return cw_mesh_write(test_path("a"), mesh, &desc, &err) == CW_OK ? 1 : 2;
+}
+
+/* Whatever ends a write, the old file stays: whole, under its name. */
+static void writes_that_are_ended_keep_the_old_file(void **state)
+{
+    (void)state;
+    static int (*const ends[])(const cw_mesh *, const char *) = {write_to_full_disk,
+                                                                 write_until_killed};
+    const cw_field_desc field = {.field = CW_FIELD_GYROID, .dim = {40, 40, 40}, .type = CW_F32};
+    cw_volume v;
+    cw_mesh mesh;
+    cw_error err = {0};
+    assert_ok(cw_field_sample(&field, &v, &err), err);
+    assert_ok(cw_extract(&v, NULL, &mesh, NULL, &err), err);
+    test_file_write(test_path("a"), "old", 3);
+    for (size_t i = 0; mesh_format(i / 2); i++) {
+        int status;
+        size_t size;
+        const pid_t child = fork();
+        assert_true(child >= 0);
+        if (child == 0)
+            _exit(ends[i % 2](&mesh, mesh_format(i / 2)));
+        assert_int_equal(waitpid(child, &status, 0), child);
+        if (i % 2 ? !WIFSIGNALED(status) : !WIFEXITED(status) || WEXITSTATUS(status) != 0)
+            fail_msg("%s, %zu: status %d", mesh_format(i / 2), i % 2, status);
+        char *bytes = test_file_read(test_path("a"), &size);
+        assert_string_equal(bytes, "old");
+        free(bytes);
+        if (i % 2 == 0)
+            assert_int_equal(test_folder_entries(), 1 + i / 2); /* what was killed left some */
+    }
+    cw_mesh_free(&mesh);
+    cw_volume_free(&v);
+}
+
+/* What stands at the path is looked at before anything is written, whatever the format. */
+static void only_files_are_replaced(void **state)
+{
+    (void)state;
+    cw_mesh mesh = {0};
+    cw_error err = {0};
+    test_make_tetrahedron(&mesh);
+    assert_int_equal(mkdir(test_path("folder"), 0700), 0);
+    assert_int_equal(mkfifo(test_path("pipe"), 0600), 0);
+    for (size_t i = 0; mesh_format(i); i++) {
+        const cw_write_desc desc = {.format = mesh_format(i)},
+                            kept = {.format = mesh_format(i), .no_clobber = true};
+        assert_fails(cw_mesh_write(test_path("folder"), &mesh, &desc, &err), CW_ERR_OUTPUT,
+                     "it is a folder", err);
+        assert_fails(cw_mesh_write(test_path("pipe"), &mesh, &desc, &err), CW_ERR_OUTPUT,
+                     "it is a device, pipe or socket", err);
+        assert_fails(cw_mesh_write(test_path("none/a"), &mesh, &desc, &err), CW_ERR_OUTPUT,
+                     "does not exist", err);
+        assert_fails(cw_mesh_write("/proc/a", &mesh, &desc, &err), CW_ERR_OUTPUT,
+                     "no file can be made in its folder", err);
+        assert_ok(cw_mesh_write(test_path("a"), &mesh, &desc, &err), err);
+        assert_fails(cw_mesh_write(test_path("a"), &mesh, &kept, &err), CW_ERR_OUTPUT,
+                     "it exists", err);
+    }
+    assert_int_equal(test_folder_entries(), 3);
     cw_mesh_free(&mesh);
 }
 
@@ -314,6 +410,8 @@ int main(void)
         CASE(a_named_format_wins_over_the_extension),
         CASE(text_is_refused_where_there_is_none),
         CASE(a_cancelled_write_leaves_nothing),
+        CASE(writes_that_are_ended_keep_the_old_file),
+        CASE(only_files_are_replaced),
         CASE(running_out_of_memory_leaves_nothing),
         CASE(the_table_of_formats_is_whole_and_always_the_same),
         CASE(names_are_made_safe_for_every_format),
