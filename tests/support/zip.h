@@ -22,7 +22,7 @@ static inline void zip_put(zip *z, uint64_t value, size_t size)
 {
     assert_true(z->size + size <= ZIP_MOST);
     for (size_t i = 0; i < size; i++)
-        z->bytes[z->size++] = (unsigned char)(value >> (8 * i));
+        z->bytes[z->size++] = (unsigned char)(i < 8 ? value >> (8 * i) : 0);
 }
 
 static inline void zip_put_bytes(zip *z, const void *bytes, size_t size)
