@@ -28,6 +28,7 @@ typedef struct cwi_3mf_resource {
     size_t first, end; /* among the colours */
 } cwi_3mf_resource;
 
+/* Few enough that even ids made to collide are found in no time. */
 enum { CWI_3MF_MODELS = 1024, CWI_3MF_RESOURCES = 1 << 16 };
 
 typedef struct cwi_3mf {
@@ -56,8 +57,8 @@ typedef struct cwi_3mf {
     size_t item_count, item_room;
     char *names; /* each ends with a zero */
     size_t name_bytes, name_room;
-    cwi_3mf_resource *resources; /* a hash table of twice CWI_3MF_RESOURCES */
-    size_t resource_count;
+    cwi_3mf_resource *resources; /* a hash table */
+    size_t resource_count, slots;
     uint64_t text_left; /* bytes of XML that may still be read */
 } cwi_3mf;
 

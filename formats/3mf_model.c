@@ -85,32 +85,59 @@ static uint64_t key_of(size_t model, uint32_t id)
     return ((uint64_t)model + 1) << 32 | id;
 }
 
-/* Where a key is, or would be. */
-static cwi_3mf_resource *find_slot(const cwi_3mf *m, uint64_t key)
+/* Where a key is, or would be; some slot is free. */
+static cwi_3mf_resource *find_slot(cwi_3mf_resource *resources, size_t slots, uint64_t key)
 {
-    const size_t slots = 2 * (size_t)CWI_3MF_RESOURCES;
-    size_t slot = (size_t)(key * 0x9e3779b97f4a7c15u >> 40) % slots;
-    while (m->resources[slot].key && m->resources[slot].key != key)
+    size_t slot = (size_t)(key * 0x9e3779b97f4a7c15u >> 32) % slots;
+    while (resources[slot].key && resources[slot].key != key)
         slot = (slot + 1) % slots;
-    return &m->resources[slot];
+    return &resources[slot];
 }
 
 cwi_3mf_resource *cwi_3mf_find(const cwi_3mf *m, size_t model, uint32_t id)
 {
-    cwi_3mf_resource *r = find_slot(m, key_of(model, id));
+    if (m->slots == 0)
+        return NULL;
+    cwi_3mf_resource *r = find_slot(m->resources, m->slots, key_of(model, id));
     return r->key ? r : NULL;
+}
+
+/* Twice as many slots, so that half of them are free. */
+static cw_status make_slots(parsing *p, cw_error *err)
+{
+    cwi_3mf *m = p->m;
+    const size_t slots = m->slots ? 2 * m->slots : 32;
+    if (2 * m->resource_count < m->slots)
+        return CW_OK;
+    cw_status st = cwi_mesh_take_bytes(m->in, slots * sizeof *m->resources, err);
+    if (st != CW_OK)
+        return st;
+    cwi_3mf_resource *more = cwi_alloc_zeroed(slots, sizeof *more);
+    if (!more)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu resources", slots);
+    for (size_t i = 0; i < m->slots; i++)
+        if (m->resources[i].key)
+            *find_slot(more, slots, m->resources[i].key) = m->resources[i];
+    cwi_free(m->resources);
+    m->resources = more;
+    m->slots = slots;
+    p->used = NULL;
+    return CW_OK;
 }
 
 static cw_status add_resource(parsing *p, uint32_t id, cwi_3mf_resource **added, cw_error *err)
 {
     cwi_3mf *m = p->m;
-    cwi_3mf_resource *r = find_slot(m, key_of(p->model, id));
-    if (r->key)
-        return cw_fail(err, CW_ERR_FORMAT, "'%s', line %lu: the id %u is there twice",
-                       m->models[p->model], cwi_xml_line(p->xml), id);
     if (m->resource_count == CWI_3MF_RESOURCES)
         return cw_fail(err, CW_ERR_LIMIT, "more than %d objects and groups of colours",
                        CWI_3MF_RESOURCES);
+    cw_status st = make_slots(p, err);
+    if (st != CW_OK)
+        return st;
+    cwi_3mf_resource *r = find_slot(m->resources, m->slots, key_of(p->model, id));
+    if (r->key)
+        return cw_fail(err, CW_ERR_FORMAT, "'%s', line %lu: the id %u is there twice",
+                       m->models[p->model], cwi_xml_line(p->xml), id);
     m->resource_count++;
     r->key = key_of(p->model, id);
     *added = r;

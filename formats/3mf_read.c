@@ -151,9 +151,7 @@ cw_status cwi_3mf_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw
     m->mesh = mesh;
     m->said = said;
     m->text_left = stated ? UINT64_MAX : FREE_TEXT + MOST_RATIO * in->file.size;
-    m->resources = cwi_alloc_zeroed(2 * (size_t)CWI_3MF_RESOURCES, sizeof *m->resources);
-    cw_status st = m->resources ? cwi_unzip_open(&m->zip, &in->file, err)
-                                : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a package");
+    cw_status st = cwi_unzip_open(&m->zip, &in->file, err);
     if (st == CW_OK)
         st = read_models(m, err);
     if (st == CW_OK)

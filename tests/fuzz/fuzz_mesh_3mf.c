@@ -16,7 +16,7 @@ typedef struct archive {
 static void put(archive *a, uint64_t value, size_t size)
 {
     for (size_t i = 0; i < size; i++)
-        a->bytes[a->size++] = i < 8 ? (uint8_t)(value >> (8 * i)) : 0;
+        a->bytes[a->size++] = (uint8_t)(i < 8 ? value >> (8 * i) : 0);
 }
 
 static void put_bytes(archive *a, const void *bytes, size_t size)
