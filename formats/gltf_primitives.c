@@ -54,6 +54,8 @@ static cw_status add_points(cwi_gltf_reader *r, const cwi_gltf_instance *at,
     return st;
 }
 
+enum { FLOAT = 5126 };
+
 /* Normals turn by the inverse transpose, which keeps them outward in a mirror, too. */
 static void turn_normal(double cofactor[3][3], double sign, const double n[3], float out[3])
 {
@@ -83,14 +85,15 @@ static cw_status add_normals(cwi_gltf_reader *r, const cwi_gltf_instance *at, in
                            3 * sizeof *r->normals, err);
     cwi_affine_cofactor(at->place[0], cofactor);
     const double sign = cwi_affine_determinant(at->place[0]) < 0 ? -1 : 1;
+    const bool exact = at->unturned && numbers.component == FLOAT; /* integers are rounded */
     for (size_t i = 0; i < numbers.count && st == CW_OK; i++) {
         double n[3];
         float *to = r->normals + 3 * (first + i);
         for (int a = 0; a < 3; a++)
             n[a] = cwi_gltf_number(&numbers, i, a);
-        for (int a = 0; a < 3 && at->unturned; a++)
+        for (int a = 0; a < 3 && exact; a++)
             to[a] = (float)n[a];
-        if (!at->unturned)
+        if (!exact)
             turn_normal(cofactor, sign, n, to);
     }
     cwi_free(numbers.bytes);
