@@ -75,6 +75,7 @@ static cw_write_desc write_desc(const run_state *s)
         .local = args->local,
         .text = args->ascii,
         .compression = (cw_compression)args->compress.kind,
+        .bits = (int)args->compress.bits,
         .axes = {.unit = (cw_unit)args->unit, .ras = ras, .y_up = args->up},
     };
 }

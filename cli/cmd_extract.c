@@ -112,7 +112,8 @@ static cw_write_desc write_desc(const extract_args *args)
                            .name = args->name,
                            .no_clobber = args->no_clobber,
                            .local = args->local,
-                           .compression = (cw_compression)args->compress.kind};
+                           .compression = (cw_compression)args->compress.kind,
+                           .bits = (int)args->compress.bits};
 }
 
 static cw_status check_outputs(run_state *s, cw_error *err)

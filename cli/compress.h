@@ -31,7 +31,7 @@ typedef struct cli_compress {
          0,                                                                                    \
          CLI_COUNT,                                                                            \
          "N",                                                                                  \
-         "of a coordinate, whatever that does (as tolerance and shape ask for)",               \
+         "of a coordinate: to 16, meshopt 24, draco 30; whatever that does (as it takes)",     \
          CLI_COMPRESS_ROW(args, bits)},                                                        \
     {                                                                                          \
         "level", 0, CLI_COUNT, "N", "of Draco, 1 (fast) to 10 (small) (7)",                    \

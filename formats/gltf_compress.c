@@ -1,4 +1,3 @@
-#define _GNU_SOURCE /* clock_gettime */
 /* Compression that keeps its promise: a grid fine enough for the tolerance and the shape, one
  * for all parts; and what was compressed is decoded and held against what it was made of. */
 #define _GNU_SOURCE /* clock_gettime */
@@ -7,6 +6,7 @@
 #include "core/memory.h"
 #include "core/mesh.h"
 #include "core/status.h"
+#include "formats/gltf_scene.h"
 #include "formats/meshopt_wrap.h"
 #include "formats/verify.h"
 
@@ -14,7 +14,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { NORMAL_BITS = 10, LEVEL = 7, SHORT_BITS = 16, FLOAT = 5126 };
+enum { NORMAL_BITS = 10, LEVEL = 7, SHORT_BITS = 16, EXPONENTIAL_BITS = 24 };
 static const double DIAGONALS = 20000; /* that the default tolerance goes into */
 
 static double now_s(void)
@@ -27,6 +27,29 @@ static double now_s(void)
 static cw_status fail_memory(cw_error *err)
 {
     return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to compress the mesh");
+}
+
+static const struct {
+    const char *name;
+    int most_bits;
+} kinds[] = {[CW_COMPRESS_QUANTIZE] = {"quantize", SHORT_BITS},
+             [CW_COMPRESS_DRACO] = {"Draco", CWI_MOST_GRID_BITS},
+             [CW_COMPRESS_MESHOPT] = {"meshopt", EXPONENTIAL_BITS}};
+
+cw_status cwi_gltf_prepare_codec(const cw_write_desc *desc, cw_error *err)
+{
+    const cwi_draco_functions *draco;
+    const cwi_meshopt_functions *meshopt;
+    const cw_compression kind = desc->compression;
+    if ((size_t)kind >= sizeof kinds / sizeof *kinds)
+        return cw_fail(err, CW_ERR_ARGUMENT, "%d is no compression", (int)kind);
+    if (desc->bits < 0 || desc->bits > kinds[kind].most_bits)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "%d bits a coordinate; there may be 1 to %d with %s", desc->bits,
+                       kinds[kind].most_bits, kinds[kind].name);
+    return kind == CW_COMPRESS_DRACO     ? cwi_draco_functions_load(&draco, err)
+           : kind == CW_COMPRESS_MESHOPT ? cwi_meshopt_functions_load(&meshopt, err)
+                                         : CW_OK;
 }
 
 /* --- one origin, arrays of our own ---------------------------------------------------------
@@ -97,7 +120,7 @@ static double default_tolerance(const cwi_parts *parts, const cwi_grid *grid)
         for (size_t p = 0; p < parts->count; p++)
             for (size_t v = 0; v < parts->items[p].mesh.vertex_count; v++)
                 high = fmax(high, (double)parts->items[p].mesh.positions[3 * v + (size_t)a]);
-        squares += (high - (double)grid->origin[a]) * (high - (double)grid->origin[a]);
+        squares += (high - (double)grid->low[a]) * (high - (double)grid->low[a]);
     }
     return sqrt(squares) / DIAGONALS;
 }
@@ -116,49 +139,50 @@ static cw_status fail_shape(const cwi_grid *grid, const cwi_grid_harm *harm, dou
         "with %d bits a coordinate, the most there are, %zu vertices fall onto others "
         "and %zu triangles lose their area%s",
         grid->bits, harm->merged, harm->flat,
-        grid->bits < CWI_MOST_GRID_BITS ? "; Draco has up to 30" : "");
+        grid->bits < CWI_MOST_GRID_BITS ? "; meshopt has up to 24, Draco up to 30" : "");
+}
+
+/* Beyond integers of 16 bits, meshopt's exponential filter makes multiples of a power of two.
+ */
+static void lay_grid(cwi_gltf_plan *plan, cw_compression kind, int bits)
+{
+    cwi_grid_refine(&plan->grid, bits, kind == CW_COMPRESS_MESHOPT && bits > SHORT_BITS);
 }
 
 /* The coarsest grid that keeps tolerance and shape; *found is false when none does. */
-static cw_status find_grid(cwi_gltf_plan *plan, double tolerance, int most, bool *found,
-                           cwi_grid_harm *harm, cw_error *err)
+static cw_status find_grid(cwi_gltf_plan *plan, cw_compression kind, double tolerance,
+                           bool *found, cwi_grid_harm *harm, cw_error *err)
 {
-    cwi_grid *grid = &plan->grid;
-    const int least = cwi_grid_bits(grid, tolerance);
+    const int most = kinds[kind].most_bits;
+    cw_status st = CW_OK;
     *found = false;
-    *harm = (cwi_grid_harm){0};
-    for (grid->bits = least < most ? least : most; !*found; grid->bits++) {
-        cw_status st = cwi_grid_measure(grid, &plan->parts, harm, err);
-        if (st != CW_OK)
-            return st;
-        *found = harm->merged == 0 && harm->flat == 0 && grid->bits >= least;
-        if (*found || grid->bits == most)
-            break;
+    for (int bits = 1; bits <= most && st == CW_OK && !*found; bits++) {
+        lay_grid(plan, kind, bits);
+        const bool fine = cwi_grid_error(&plan->grid) <= tolerance;
+        if (fine || bits == most)
+            st = cwi_grid_measure(&plan->grid, &plan->parts, harm, err);
+        *found = fine && harm->merged == 0 && harm->flat == 0;
     }
-    return CW_OK;
+    return st;
 }
 
 static cw_status choose_grid(cwi_gltf_plan *plan, const cw_write_desc *desc,
                              cw_compressed *told, cw_error *err)
 {
-    const bool draco = desc->compression == CW_COMPRESS_DRACO;
-    const int most = draco ? CWI_MOST_GRID_BITS : SHORT_BITS;
-    cwi_grid_harm harm;
-    bool found;
+    cwi_grid_harm harm = {0};
+    bool found = true;
     cw_status st;
     plan->grid = cwi_grid_around(&plan->parts);
-    if (desc->bits < 0 || desc->bits > most)
-        return cw_fail(err, CW_ERR_ARGUMENT, "%d bits a coordinate; there may be 1 to %d",
-                       desc->bits, most);
+    if (!isfinite(plan->grid.range))
+        return cw_fail(err, CW_ERR_LIMIT, "the box is too large to be divided into steps");
     const double tolerance = desc->tolerance_mm > 0
                                  ? desc->tolerance_mm
                                  : default_tolerance(&plan->parts, &plan->grid);
     if (desc->bits) {
-        plan->grid.bits = desc->bits;
+        lay_grid(plan, desc->compression, desc->bits);
         st = cwi_grid_measure(&plan->grid, &plan->parts, &harm, err);
-        found = true;
     } else {
-        st = find_grid(plan, tolerance, most, &found, &harm, err);
+        st = find_grid(plan, desc->compression, tolerance, &found, &harm, err);
     }
     if (st == CW_OK && !found && desc->compression == CW_COMPRESS_MESHOPT)
         plan->grid.bits = 0; /* then positions stay as they are */
@@ -167,7 +191,7 @@ static cw_status choose_grid(cwi_gltf_plan *plan, const cw_write_desc *desc,
     if (st == CW_OK && found) {
         told->merged = harm.merged;
         told->flat = harm.flat;
-        told->step_mm = cwi_grid_step(&plan->grid);
+        told->step_mm = plan->grid.step;
     }
     told->bits = plan->grid.bits;
     return st;
@@ -176,7 +200,7 @@ static cw_status choose_grid(cwi_gltf_plan *plan, const cw_write_desc *desc,
 /* The most that a vertex is moved, truly: from where it was to where it will be found. */
 static double measure_error(const cwi_gltf_plan *plan)
 {
-    const double step = cwi_grid_step(&plan->grid);
+    const double step = plan->grid.step;
     double worst = 0;
     for (size_t p = 0; p < plan->parts.count; p++) {
         const cw_mesh *m = &plan->parts.items[p].mesh;
@@ -223,7 +247,7 @@ static cw_status add_block(cwi_gltf_plan *plan, unsigned char *bytes, size_t siz
 static cw_status verify_draco(const cwi_gltf_plan *plan, const cwi_gltf_piece *piece,
                               const cwi_arrays *a, cw_compressed *told, cw_error *err)
 {
-    const double step = cwi_grid_step(&plan->grid);
+    const double step = plan->grid.step;
     uint32_t *places = cwi_alloc_array(a->vertex_count, 3 * sizeof *places);
     if (!places)
         return fail_memory(err);
@@ -352,17 +376,36 @@ static cw_status reorder(cw_mesh *own, const cwi_meshopt_functions *meshopt, cw_
     return st;
 }
 
+/* Whether the filter makes of the bytes what their accessor says. */
+static bool are_stored(const cwi_meshopt_functions *meshopt, const cwi_gltf_plan *plan,
+                       const float *positions, unsigned char *bytes, size_t count)
+{
+    meshopt->filter(bytes, count, 12, CWI_GLTF_EXPONENTIAL);
+    for (size_t i = 0; i < 3 * count; i++) {
+        float is;
+        memcpy(&is, bytes + 4 * i, sizeof is);
+        if ((double)is != cwi_gltf_stored(plan, positions[i], (int)(i % 3)))
+            return false;
+    }
+    return true;
+}
+
 /* What was packed is unpacked, and must be the same to the byte; indices to the triangle, for
  * their codec may turn them. */
-static cw_status check_packed(const cwi_meshopt_functions *meshopt, const cwi_gltf_array *a,
+static cw_status check_packed(const cwi_meshopt_functions *meshopt, const cwi_gltf_plan *plan,
+                              const cwi_gltf_piece *piece, const cwi_gltf_array *a,
                               const unsigned char *raw, const cwi_gltf_block *b, cw_error *err)
 {
+    const float *positions = piece->part->mesh.positions;
     unsigned char *back = cwi_alloc_array((size_t)a->count, (size_t)a->stride);
     if (!back)
         return fail_memory(err);
     cw_status st = meshopt->decode_vertices(back, (size_t)a->count, (size_t)a->stride, b->bytes,
                                             b->size, err);
-    if (st == CW_OK && memcmp(raw, back, (size_t)(a->count * a->stride)) != 0)
+    bool same = st == CW_OK && memcmp(raw, back, (size_t)(a->count * a->stride)) == 0;
+    if (same && a->exponential)
+        same = are_stored(meshopt, plan, positions, back, (size_t)a->count);
+    if (st == CW_OK && !same)
         st = cw_fail(err, CW_ERR_CHECK, "the decoded vertices are not those encoded");
     cwi_free(back);
     return st;
@@ -412,7 +455,7 @@ static cw_status pack_array(cwi_gltf_plan *plan, cwi_gltf_piece *piece, cwi_gltf
     }
     if (st == CW_OK)
         st = indices ? check_triangles(meshopt, m, &b, err)
-                     : check_packed(meshopt, a, raw, &b, err);
+                     : check_packed(meshopt, plan, piece, a, raw, &b, err);
     cwi_free(raw);
     if (st != CW_OK) {
         cwi_free(b.bytes);
@@ -488,10 +531,10 @@ cw_status cwi_gltf_compress(cwi_gltf_plan *plan, const cw_write_desc *desc, cw_e
         st = choose_grid(plan, desc, &told, err);
     if (st != CW_OK)
         return st;
-    plan->document.quantized = desc->compression != CW_COMPRESS_DRACO;
+    plan->rounded = desc->compression != CW_COMPRESS_DRACO;
     if (plan->grid.bits)
         told.error_mm = measure_error(plan);
-    if (plan->document.quantized)
+    if (plan->rounded)
         measure_normals(plan, &told);
     if (desc->compression != CW_COMPRESS_QUANTIZE)
         st = compress_pieces(plan, desc, &told, err);

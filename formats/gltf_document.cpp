@@ -26,6 +26,19 @@ tinygltf::Value text(const std::string &words)
 
 const char *const attributes[CWI_GLTF_USES] = {"", "POSITION", "NORMAL", "COLOR_0"};
 
+tinygltf::Value meshopt_extension(const cwi_gltf_array &a)
+{
+    Object extension = {{"buffer", whole(0)},
+                        {"byteOffset", whole(a.packed_at)},
+                        {"byteLength", whole(a.packed)},
+                        {"byteStride", whole(a.stride)},
+                        {"count", whole(a.count)},
+                        {"mode", text(a.use == CWI_GLTF_INDICES ? "TRIANGLES" : "ATTRIBUTES")}};
+    if (a.exponential)
+        extension["filter"] = text("EXPONENTIAL");
+    return tinygltf::Value(extension);
+}
+
 // Where an array's bytes are. meshopt's are packed; its view is of a buffer that no file has.
 int add_view(tinygltf::Model &model, const cwi_gltf_array &a)
 {
@@ -39,14 +52,7 @@ int add_view(tinygltf::Model &model, const cwi_gltf_array &a)
     view.byteStride = !indices && element != a.stride ? size_t(a.stride) : 0;
     view.target = indices ? TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER : TINYGLTF_TARGET_ARRAY_BUFFER;
     if (a.packed) // see name_extensions()
-        view.extras = tinygltf::Value(Object{
-            {GLTF_MESHOPT,
-             tinygltf::Value(Object{{"buffer", whole(0)},
-                                    {"byteOffset", whole(a.packed_at)},
-                                    {"byteLength", whole(a.packed)},
-                                    {"byteStride", whole(a.stride)},
-                                    {"count", whole(a.count)},
-                                    {"mode", text(indices ? "TRIANGLES" : "ATTRIBUTES")}})}});
+        view.extras = tinygltf::Value(Object{{GLTF_MESHOPT, meshopt_extension(a)}});
     model.bufferViews.push_back(view);
     return int(model.bufferViews.size()) - 1;
 }

@@ -23,6 +23,7 @@ typedef struct cwi_gltf_array {
     cwi_gltf_use use;
     int component, numbers; /* 5120 to 5126; of an element, 1 to 4 */
     bool normalized;
+    bool exponential;           /* meshopt: a filter makes its numbers floats */
     uint64_t count, stride;     /* elements, and bytes from one to the next */
     uint64_t at;                /* in the buffer, or (meshopt) in the one that is never there */
     uint64_t packed_at, packed; /* meshopt: where its bytes are, and how many */
@@ -47,7 +48,7 @@ typedef struct cwi_gltf_document {
     const cw_provenance *provenance;
     size_t provenance_count;
     const double *local_origin; /* told in the extras of nodes; NULL: applied */
-    bool quantized;             /* integers for positions: KHR_mesh_quantization */
+    bool quantized;             /* integers for positions or normals: KHR_mesh_quantization */
     uint64_t bytes;             /* of the buffer */
     uint64_t unpacked;          /* meshopt: of the buffer that is never there; else 0 */
 } cwi_gltf_document;

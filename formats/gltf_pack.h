@@ -17,7 +17,8 @@ typedef struct cwi_gltf_plan {
     cw_mesh *own;    /* the arrays of those parts that are not the caller's */
     cwi_gltf_piece *pieces;
     cwi_gltf_document document;
-    cwi_grid grid;          /* of positions that are rounded; bits 0: they are not */
+    bool rounded;           /* positions are on the grid, and normals are bytes */
+    cwi_grid grid;          /* bits 0: positions are as they were */
     cwi_gltf_block *blocks; /* of the whole buffer, one behind another; NULL: as planned */
     size_t block_count, block_room;
     unsigned char linear[256]; /* of sRGB */
@@ -30,7 +31,8 @@ cw_status cwi_gltf_plan_make(cwi_gltf_plan *plan, const cwi_parts *parts,
                              const cwi_mesh_output *out, cw_error *err);
 void cwi_gltf_plan_free(cwi_gltf_plan *plan);
 
-/* Arrays for a part, uncompressed: as they are, or on the plan's grid. */
+/* Arrays for a part, uncompressed: as they are, or on the plan's grid (a dyadic one: as the
+ * exponential filter of EXT_meshopt_compression has them). */
 void cwi_gltf_plan_arrays(const cwi_gltf_plan *plan, cwi_gltf_piece *piece);
 
 /* Rounds, compresses and verifies; fills pieces and blocks. As cwi_gltf_plan_make(). */
@@ -39,5 +41,8 @@ cw_status cwi_gltf_compress(cwi_gltf_plan *plan, const cw_write_desc *desc, cw_e
 /* Puts element i of an array at to: array->stride bytes. */
 void cwi_gltf_put(const cwi_gltf_plan *plan, const cwi_gltf_piece *piece,
                   const cwi_gltf_array *array, size_t i, unsigned char *to);
+
+/* The number that the accessor of positions holds for a coordinate, filters undone. */
+double cwi_gltf_stored(const cwi_gltf_plan *plan, float coordinate, int axis);
 
 #endif

@@ -44,10 +44,15 @@ static void add_array(cwi_gltf_piece *piece, cwi_gltf_array array)
     piece->arrays[piece->array_count++] = array;
 }
 
+static bool on_grid(const cwi_gltf_plan *plan)
+{
+    return plan->rounded && plan->grid.bits;
+}
+
 void cwi_gltf_plan_arrays(const cwi_gltf_plan *plan, cwi_gltf_piece *piece)
 {
     const cw_mesh *m = &piece->part->mesh;
-    const bool rounded = plan->document.quantized, on_grid = rounded && plan->grid.bits;
+    const bool rounded = plan->rounded, shorts = on_grid(plan) && !plan->grid.dyadic;
     const int index = index_component(m);
     piece->array_count = 0;
     add_array(piece, (cwi_gltf_array){.use = CWI_GLTF_INDICES,
@@ -56,10 +61,11 @@ void cwi_gltf_plan_arrays(const cwi_gltf_plan *plan, cwi_gltf_piece *piece)
                                       .count = 3 * m->triangle_count,
                                       .stride = index == UNSIGNED_SHORT ? 2 : 4});
     add_array(piece, (cwi_gltf_array){.use = CWI_GLTF_POSITION,
-                                      .component = on_grid ? UNSIGNED_SHORT : FLOAT,
+                                      .component = shorts ? UNSIGNED_SHORT : FLOAT,
                                       .numbers = 3,
+                                      .exponential = on_grid(plan) && plan->grid.dyadic,
                                       .count = m->vertex_count,
-                                      .stride = on_grid ? 8 : 12});
+                                      .stride = shorts ? 8 : 12});
     if (m->normals)
         add_array(piece, (cwi_gltf_array){.use = CWI_GLTF_NORMAL,
                                           .component = rounded ? BYTE : FLOAT,
@@ -76,19 +82,25 @@ void cwi_gltf_plan_arrays(const cwi_gltf_plan *plan, cwi_gltf_piece *piece)
                                           .stride = 4});
 }
 
+double cwi_gltf_stored(const cwi_gltf_plan *plan, float coordinate, int axis)
+{
+    const cwi_grid *g = &plan->grid;
+    return !on_grid(plan) ? (double)coordinate
+           : g->dyadic    ? cwi_grid_round_signed(g, coordinate, axis) * g->step
+                          : cwi_grid_round(g, coordinate, axis);
+}
+
 /* The box of positions as they are stored: of single precision, to the bit. */
 static void find_bounds(const cwi_gltf_plan *plan, cwi_gltf_piece *piece)
 {
     const cw_mesh *m = &piece->part->mesh;
-    const bool on_grid = plan->document.quantized && plan->grid.bits;
     for (int a = 0; a < 3; a++) {
         piece->low[a] = INFINITY;
         piece->high[a] = -INFINITY;
     }
     for (size_t i = 0; i < 3 * m->vertex_count; i++) {
         const int a = (int)(i % 3);
-        const double x = on_grid ? (double)cwi_grid_round(&plan->grid, m->positions[i], a)
-                                 : (double)m->positions[i];
+        const double x = cwi_gltf_stored(plan, m->positions[i], a);
         piece->low[a] = x < piece->low[a] ? x : piece->low[a];
         piece->high[a] = x > piece->high[a] ? x : piece->high[a];
     }
@@ -97,11 +109,13 @@ static void find_bounds(const cwi_gltf_plan *plan, cwi_gltf_piece *piece)
 /* Where the stored positions stand: the node says so. */
 static void place(const cwi_gltf_plan *plan, cwi_gltf_piece *piece)
 {
-    const bool on_grid = plan->document.quantized && plan->grid.bits;
-    piece->step = on_grid ? cwi_grid_step(&plan->grid) : 1;
-    for (int a = 0; a < 3; a++)
-        piece->translation[a] =
-            piece->part->mesh.origin[a] + (on_grid ? (double)plan->grid.origin[a] : 0);
+    const cwi_grid *g = &plan->grid;
+    piece->step = on_grid(plan) && !g->dyadic ? g->step : 1;
+    for (int a = 0; a < 3; a++) {
+        piece->translation[a] = piece->part->mesh.origin[a];
+        if (on_grid(plan))
+            piece->translation[a] += g->dyadic ? cwi_grid_middle(g, a) : (double)g->origin[a];
+    }
 }
 
 static bool is_translucent(const cw_mesh *mesh)
@@ -128,12 +142,19 @@ static void fill_linear(unsigned char linear[256])
 static void put_position(const cwi_gltf_plan *plan, const cwi_gltf_array *a, const float *p,
                          unsigned char *to)
 {
+    const cwi_grid *g = &plan->grid;
+    if (a->exponential) { /* 24 bits of mantissa, 8 of exponent, both signed */
+        for (int c = 0; c < 3; c++)
+            to = cwi_put_u32(to, ((uint32_t)cwi_grid_round_signed(g, p[c], c) & 0xffffff) |
+                                     (uint32_t)g->exponent << 24);
+        return;
+    }
     if (a->component == FLOAT) {
         cwi_put_f32x3(to, p);
         return;
     }
     for (int c = 0; c < 3; c++)
-        to = cwi_put_u16(to, (uint16_t)cwi_grid_round(&plan->grid, p[c], c));
+        to = cwi_put_u16(to, (uint16_t)cwi_grid_round(g, p[c], c));
     cwi_put_u16(to, 0);
 }
 
@@ -195,6 +216,17 @@ static cw_status lay_out(cwi_gltf_plan *plan, cw_error *err)
                          (double)d->bytes / 1073741824.0);
 }
 
+/* glTF without extensions has floats for positions and normals. */
+static bool is_quantized(const cwi_gltf_piece *piece)
+{
+    for (size_t n = 0; n < piece->array_count; n++) {
+        const cwi_gltf_array *a = &piece->arrays[n];
+        if ((a->use == CWI_GLTF_POSITION || a->use == CWI_GLTF_NORMAL) && a->component != FLOAT)
+            return true;
+    }
+    return false;
+}
+
 /* Copies the list of parts: compression may put others in their place. */
 static cw_status make_pieces(cwi_gltf_plan *plan, const cwi_parts *parts, cw_error *err)
 {
@@ -246,6 +278,7 @@ cw_status cwi_gltf_plan_make(cwi_gltf_plan *plan, const cwi_parts *parts,
         if (!piece->draco)
             find_bounds(plan, piece);
         place(plan, piece);
+        d->quantized = d->quantized || is_quantized(piece);
         piece->translucent = is_translucent(&piece->part->mesh);
     }
     return st;

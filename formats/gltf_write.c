@@ -54,15 +54,6 @@ cw_status cwi_gltf_prepare(cw_error *err)
     return cwi_gltf_functions_load(&functions, err);
 }
 
-cw_status cwi_gltf_prepare_codec(cw_compression kind, cw_error *err)
-{
-    const cwi_draco_functions *draco;
-    const cwi_meshopt_functions *meshopt;
-    return kind == CW_COMPRESS_DRACO     ? cwi_draco_functions_load(&draco, err)
-           : kind == CW_COMPRESS_MESHOPT ? cwi_meshopt_functions_load(&meshopt, err)
-                                         : CW_OK;
-}
-
 /* --- the buffer's bytes --------------------------------------------------------------------
  */
 

@@ -7,10 +7,12 @@
 #include <math.h>
 #include <string.h>
 
+enum { LEAST_EXPONENT = -126 }; /* decoders make the power in single precision */
+
 cwi_grid cwi_grid_around(const cwi_parts *parts)
 {
     float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    cwi_grid grid = {.bits = 1};
+    cwi_grid grid = {0};
     for (size_t p = 0; p < parts->count; p++) {
         const cw_mesh *mesh = &parts->items[p].mesh;
         for (size_t i = 0; i < 3 * mesh->vertex_count; i++) {
@@ -19,7 +21,7 @@ cwi_grid cwi_grid_around(const cwi_parts *parts)
         }
     }
     for (int a = 0; a < 3; a++) {
-        grid.origin[a] = low[a];
+        grid.low[a] = low[a];
         grid.range = fmaxf(grid.range, high[a] - low[a]);
     }
     if (!(grid.range > 0)) /* a single point */
@@ -27,23 +29,31 @@ cwi_grid cwi_grid_around(const cwi_parts *parts)
     return grid;
 }
 
-double cwi_grid_step(const cwi_grid *grid)
+/* The box ends between multiples of the step, and range is rounded itself: that takes up to
+ * three places. */
+static void lay_dyadic(cwi_grid *grid)
 {
-    return (double)grid->range / (double)((1u << grid->bits) - 1);
+    frexp((double)grid->range / (double)((1u << grid->bits) - 4), &grid->exponent);
+    if (grid->exponent < LEAST_EXPONENT)
+        grid->exponent = LEAST_EXPONENT;
+    grid->step = ldexp(1, grid->exponent);
+    for (int a = 0; a < 3; a++)
+        grid->origin[a] = (float)(floor((double)grid->low[a] / grid->step) * grid->step);
+}
+
+void cwi_grid_refine(cwi_grid *grid, int bits, bool dyadic)
+{
+    grid->bits = bits;
+    grid->dyadic = dyadic;
+    grid->step = (double)grid->range / (double)((1u << bits) - 1);
+    memcpy(grid->origin, grid->low, sizeof grid->origin);
+    if (dyadic)
+        lay_dyadic(grid);
 }
 
 double cwi_grid_error(const cwi_grid *grid)
 {
-    return cwi_grid_step(grid) * sqrt(3) / 2;
-}
-
-int cwi_grid_bits(const cwi_grid *grid, double max_error)
-{
-    cwi_grid g = *grid;
-    g.bits = 1;
-    while (g.bits <= CWI_MOST_GRID_BITS && cwi_grid_error(&g) > max_error)
-        g.bits++;
-    return g.bits;
+    return grid->step * sqrt(3) / 2;
 }
 
 /* --- harm -----------------------------------------------------------------------------------

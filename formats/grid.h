@@ -11,11 +11,16 @@ extern "C" {
 
 enum { CWI_MOST_GRID_BITS = 30 };
 
-/* Positions are origin + n * range / (2^bits - 1), n from 0 to 2^bits - 1, along each axis. */
+/* Positions are origin + n * step, n from 0 to 2^bits - 1, along each axis. The step is
+ * range / (2^bits - 1); or it is dyadic: a power of two, of which the origin is a multiple. */
 typedef struct cwi_grid {
+    float low[3]; /* of the box */
     float origin[3];
-    float range;
+    float range; /* the longest edge of the box */
     int bits;
+    bool dyadic;
+    int exponent; /* of a dyadic step */
+    double step;
 } cwi_grid;
 
 /* What rounding to a grid does to meshes. */
@@ -27,20 +32,44 @@ typedef struct cwi_grid_harm {
 /* The box of the positions (origins left out) of all meshes, as a grid of no bits yet. */
 cwi_grid cwi_grid_around(const cwi_parts *parts);
 
-/* The distance of neighbouring places, and the most that rounding moves a point. */
-double cwi_grid_step(const cwi_grid *grid);
+/* Lays the grid anew, as fine as so many bits allow; dyadic takes 17 to 24 of them. */
+void cwi_grid_refine(cwi_grid *grid, int bits, bool dyadic);
+
+/* The most that rounding moves a point. */
 double cwi_grid_error(const cwi_grid *grid);
 
-/* The fewest bits with which no point moves farther than max_error; more than there can be when
- * even the most are not enough. */
-int cwi_grid_bits(const cwi_grid *grid, double max_error);
-
-/* Where a coordinate goes, counted from 0: by the arithmetic of glTF's and Draco's encoders. */
-static inline uint32_t cwi_grid_round(const cwi_grid *grid, float coordinate, int axis)
+/* By the arithmetic of glTF's and Draco's encoders. */
+static inline uint32_t cwi_grid_round_even(const cwi_grid *grid, float coordinate, int axis)
 {
     const float most = (float)((1u << grid->bits) - 1), inverse = most / grid->range;
     const float at = (coordinate - grid->origin[axis]) * inverse + 0.5f;
     return at <= 0 ? 0 : at >= most ? (uint32_t)most : (uint32_t)at;
+}
+
+/* Single precision has no digit left to round 24 bits with. */
+static inline uint32_t cwi_grid_round_dyadic(const cwi_grid *grid, float coordinate, int axis)
+{
+    const double most = (double)((1u << grid->bits) - 1);
+    const double at = ((double)coordinate - (double)grid->origin[axis]) / grid->step + 0.5;
+    return at <= 0 ? 0 : at >= most ? (uint32_t)most : (uint32_t)at;
+}
+
+/* Where a coordinate goes, counted from 0. */
+static inline uint32_t cwi_grid_round(const cwi_grid *grid, float coordinate, int axis)
+{
+    return grid->dyadic ? cwi_grid_round_dyadic(grid, coordinate, axis)
+                        : cwi_grid_round_even(grid, coordinate, axis);
+}
+
+/* The same counted from the middle of the places: a signed number of as many bits. */
+static inline int32_t cwi_grid_round_signed(const cwi_grid *grid, float coordinate, int axis)
+{
+    return (int32_t)cwi_grid_round(grid, coordinate, axis) - (1 << (grid->bits - 1));
+}
+
+static inline double cwi_grid_middle(const cwi_grid *grid, int axis)
+{
+    return (double)grid->origin[axis] + (double)(1 << (grid->bits - 1)) * grid->step;
 }
 
 /* Counts the harm over all meshes together. CW_ERR_NO_MEMORY. */

@@ -181,7 +181,7 @@ static cw_status check_compression(const writer *w, const cw_write_desc *d, cw_e
     if (d->compression == CW_COMPRESS_NONE)
         return CW_OK;
     if (w->compresses)
-        return cwi_gltf_prepare_codec(d->compression, err);
+        return cwi_gltf_prepare_codec(d, err);
     return cw_fail(err, CW_ERR_ARGUMENT, "%s has no compressed form; glTF (.glb, .gltf) has",
                    w->format);
 }

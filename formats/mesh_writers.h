@@ -69,8 +69,9 @@ CW_API cwi_mesh_writer cwi_vtp_write_wide;
 /* Loads the module that both glTF writers need. CW_ERR_UNSUPPORTED: not in this build. */
 CW_API cw_status cwi_gltf_prepare(cw_error *err);
 
-/* Loads the module of a codec, before there is anything to compress. CW_ERR_UNSUPPORTED. */
-cw_status cwi_gltf_prepare_codec(cw_compression kind, cw_error *err);
+/* Loads the module of the codec that is asked for, before there is anything to compress.
+ * CW_ERR_ARGUMENT: it has not so many bits; CW_ERR_UNSUPPORTED. */
+cw_status cwi_gltf_prepare_codec(const cw_write_desc *desc, cw_error *err);
 
 /* Puts record i of a part at to, where there is room for CWI_RECORD_BYTES; returns its end. */
 typedef unsigned char *cwi_record_encoder(const cwi_part *part, size_t i, unsigned char *to);

@@ -237,7 +237,7 @@ typedef enum cw_compression {
     CW_COMPRESS_NONE,
     CW_COMPRESS_QUANTIZE, /* 16 bits a coordinate: KHR_mesh_quantization */
     CW_COMPRESS_DRACO,    /* KHR_draco_mesh_compression */
-    CW_COMPRESS_MESHOPT   /* EXT_meshopt_compression, and quantised where 16 bits are enough */
+    CW_COMPRESS_MESHOPT /* EXT_meshopt_compression: 16 bits are quantised, up to 24 filtered */
 } cw_compression;
 
 /* What compression did, measured on what was decoded again. */
@@ -267,8 +267,9 @@ typedef struct cw_write_desc {
     bool text;                  /* STL, PLY: numbers as text; default: binary */
     cw_compression compression; /* of glTF; CW_ERR_ARGUMENT for other formats */
     double tolerance_mm; /* ... that it may move a vertex; default: 1/20,000 of the diagonal */
-    int bits;            /* ... of a coordinate, 1 to 30, whatever that does; default: as many
-                            as the tolerance and the shape ask for */
+    int bits;            /* ... of a coordinate, 1 to 16 (quantize), 24 (meshopt) or 30 (Draco),
+                            whatever that does; default: as many as the tolerance and the shape
+                            ask for */
     int level;           /* ... of Draco, 1 (fast) to 10 (small); default 7 */
     cw_compressed *compressed;       /* filled in; default: none */
     const cw_provenance *provenance; /* in the extras of a glTF file; default: none */

@@ -9,9 +9,15 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const cw_compression kinds[] = {CW_COMPRESS_QUANTIZE, CW_COMPRESS_DRACO,
-                                       CW_COMPRESS_MESHOPT};
-enum { KINDS = sizeof kinds / sizeof *kinds };
+/* meshopt has two: integers, and the exponential filter where 16 bits are not enough. */
+static const struct {
+    cw_compression kind;
+    int bits;
+} ways[] = {{CW_COMPRESS_QUANTIZE, 0},
+            {CW_COMPRESS_DRACO, 0},
+            {CW_COMPRESS_MESHOPT, 0},
+            {CW_COMPRESS_MESHOPT, 20}};
+enum { WAYS = sizeof ways / sizeof *ways };
 
 static bool is_there(cw_compression kind)
 {
@@ -65,11 +71,12 @@ static void every_kind_keeps_the_mesh(void **state)
     static const char *const names[] = {"a.glb", "a.gltf"};
     cw_mesh mesh = make_gyroid(20);
     const cw_quality was = test_check_promise(&mesh, false);
-    for (int k = 0; k < KINDS; k++)
-        for (int n = 0; n < 2 && is_there(kinds[k]); n++) {
+    for (int k = 0; k < WAYS; k++)
+        for (int n = 0; n < 2 && is_there(ways[k].kind); n++) {
             cw_compressed told = {0};
-            cw_mesh back = write_and_read(&mesh, (cw_write_desc){.compression = kinds[k]},
-                                          &told, names[n]);
+            cw_mesh back = write_and_read(
+                &mesh, (cw_write_desc){.compression = ways[k].kind, .bits = ways[k].bits},
+                &told, names[n]);
             const cw_quality is = test_check_promise(&back, false);
             assert_int_equal(is.triangles, was.triangles);
             assert_int_equal(is.euler, was.euler);
@@ -90,12 +97,13 @@ static void colors_stay_with_their_vertices(void **state)
 {
     (void)state;
     cw_mesh mesh = make_gyroid(12);
-    for (int k = 0; k < KINDS; k++) {
-        if (!is_there(kinds[k]))
+    for (int k = 0; k < WAYS; k++) {
+        if (!is_there(ways[k].kind))
             continue;
         cw_compressed told;
-        cw_mesh back =
-            write_and_read(&mesh, (cw_write_desc){.compression = kinds[k]}, &told, "a.glb");
+        cw_mesh back = write_and_read(
+            &mesh, (cw_write_desc){.compression = ways[k].kind, .bits = ways[k].bits}, &told,
+            "a.glb");
         for (size_t v = 0; v < back.vertex_count; v += 7) {
             size_t nearest = 0;
             double least = INFINITY;
@@ -120,29 +128,31 @@ static void colors_stay_with_their_vertices(void **state)
 static void a_tolerance_is_kept(void **state)
 {
     (void)state;
-    static const double wanted[] = {0.1, 0.01, 0.0005};
+    static const double wanted[] = {0.1, 0.01, 0.0005, 0.00002};
     cw_mesh mesh = make_gyroid(20);
-    int bits = 0;
-    for (size_t n = 0; n < 3; n++) {
-        cw_compressed told;
-        if (!is_there(CW_COMPRESS_DRACO))
-            break;
-        cw_mesh back = write_and_read(
-            &mesh, (cw_write_desc){.compression = CW_COMPRESS_DRACO, .tolerance_mm = wanted[n]},
-            &told, "a.glb");
-        assert_true(told.error_mm <= wanted[n]);
-        assert_true(told.bits >= bits);
-        bits = told.bits;
-        cw_mesh_free(&back);
+    for (int k = 0; k < WAYS; k++) {
+        int bits = 0;
+        for (size_t n = 0; n < sizeof wanted / sizeof *wanted; n++) {
+            cw_compressed told;
+            if (!is_there(ways[k].kind) || ways[k].kind == CW_COMPRESS_QUANTIZE)
+                break;
+            cw_mesh back = write_and_read(
+                &mesh, (cw_write_desc){.compression = ways[k].kind, .tolerance_mm = wanted[n]},
+                &told, "a.glb");
+            assert_true(told.error_mm <= wanted[n] && told.step_mm <= 1.1548 * wanted[n]);
+            assert_true(told.bits >= bits && told.merged == 0 && told.flat == 0);
+            bits = told.bits;
+            cw_mesh_free(&back);
+        }
     }
     cw_mesh_free(&mesh);
 }
 
-/* Two slivers, a thousandth of a millimetre high on a base of 100 m. */
-static void put_sliver(cw_mesh *mesh, float positions[18], uint32_t triangles[12])
+/* Two slivers, a thousandth of a millimetre high on a base as long as told. */
+static void put_sliver(cw_mesh *mesh, float base, float positions[18], uint32_t triangles[12])
 {
     static const uint32_t corners[12] = {0, 1, 2, 0, 2, 3, 0, 3, 1, 1, 3, 2};
-    const float points[12] = {0, 0, 0, 1e5f, 0, 0, 0, 1e5f, 0, 0.001f, 0.001f, 0.001f};
+    const float points[12] = {0, 0, 0, base, 0, 0, 0, base, 0, 0.001f, 0.001f, 0.001f};
     memcpy(positions, points, sizeof points);
     memcpy(triangles, corners, sizeof corners);
     *mesh = (cw_mesh){
@@ -157,7 +167,7 @@ static void what_cannot_be_kept_is_not_promised(void **state)
     uint32_t triangles[12];
     cw_compressed told = {0};
     cw_error err = {0};
-    put_sliver(&mesh, positions, triangles);
+    put_sliver(&mesh, 1e5f, positions, triangles); /* 100 m */
     assert_fails(cw_mesh_write(test_path("a.glb"), &mesh,
                                &(cw_write_desc){.compression = CW_COMPRESS_QUANTIZE}, &err),
                  CW_ERR_CHECK, "1 vertices fall onto others", err);
@@ -172,6 +182,12 @@ static void what_cannot_be_kept_is_not_promised(void **state)
                        &told, "a.glb");
     assert_true(told.bits == 12 && told.merged == 1 && told.flat == 2);
     cw_mesh_free(&back);
+    positions[4] = -3e38f;
+    positions[7] = 3e38f;
+    assert_fails(cw_mesh_write(test_path("a.glb"), &mesh,
+                               &(cw_write_desc){.compression = CW_COMPRESS_QUANTIZE}, &err),
+                 CW_ERR_LIMIT, "a.glb: the box is too large", err);
+    put_sliver(&mesh, 1e5f, positions, triangles);
     if (!is_there(CW_COMPRESS_MESHOPT))
         return;
     back = write_and_read(&mesh, (cw_write_desc){.compression = CW_COMPRESS_MESHOPT}, &told,
@@ -179,6 +195,49 @@ static void what_cannot_be_kept_is_not_promised(void **state)
     assert_int_equal(told.bits, 0); /* as they were */
     assert_true(distance_between(&mesh, &back) < 1e-6);
     cw_mesh_free(&back);
+}
+
+static void read_three(const char *json, const char *key, double numbers[3])
+{
+    const char *at = strstr(json, key);
+    assert_non_null(at);
+    assert_int_equal(
+        sscanf(at + strlen(key), "\":[%lf,%lf,%lf]", numbers, numbers + 1, numbers + 2), 3);
+}
+
+/* Where 16 bits are too few, meshopt's filter makes floats: no other extension is needed, steps
+ * are powers of two, and the accessor's box is that of the floats. */
+static void meshopt_has_more_than_16_bits(void **state)
+{
+    (void)state;
+    cw_mesh mesh;
+    float positions[18];
+    uint32_t triangles[12];
+    cw_compressed told;
+    size_t size;
+    int exponent;
+    double low[3], high[3], to[3];
+    if (!is_there(CW_COMPRESS_MESHOPT))
+        return;
+    put_sliver(&mesh, 5e3f, positions, triangles);
+    cw_mesh back = write_and_read(&mesh, (cw_write_desc){.compression = CW_COMPRESS_MESHOPT},
+                                  &told, "a.glb");
+    assert_true(told.bits > 16 && told.merged == 0 && told.flat == 0);
+    assert_true(frexp(told.step_mm, &exponent) == 0.5);
+    assert_true(told.error_mm > 0 && told.error_mm <= 0.8661 * told.step_mm);
+    assert_true(distance_between(&mesh, &back) <= told.error_mm + 1e-6);
+    cw_mesh_free(&back);
+    char *json = test_file_read(test_path("a.glb"), &size);
+    memmove(json, json + 20, size - 20);
+    assert_non_null(strstr(json, "\"filter\":\"EXPONENTIAL\""));
+    assert_null(strstr(json, "KHR_mesh_quantization"));
+    read_three(json, "min", low);
+    read_three(json, "max", high);
+    read_three(json, "translation", to); /* of metres, +Y up */
+    free(json);
+    assert_true(fabs(low[0] + 1000 * to[0]) < 1e-9 && fabs(low[2] + 1000 * to[1]) < 1e-9);
+    assert_true(fabs(high[1] - 1000 * to[2] - 5000) <= told.error_mm);
+    assert_true(fabs(high[2] + 1000 * to[1] - 0.001) <= told.error_mm);
 }
 
 static void what_makes_no_sense_is_refused(void **state)
@@ -190,9 +249,23 @@ static void what_makes_no_sense_is_refused(void **state)
     const cw_write_desc quantize = {.compression = CW_COMPRESS_QUANTIZE};
     assert_fails(cw_mesh_write(test_path("a.stl"), &mesh, &quantize, &err), CW_ERR_ARGUMENT,
                  "stl has no compressed form", err);
-    const cw_write_desc many = {.compression = CW_COMPRESS_QUANTIZE, .bits = 17};
-    assert_fails(cw_mesh_write(test_path("a.glb"), &mesh, &many, &err), CW_ERR_ARGUMENT,
-                 "there may be 1 to 16", err);
+    static const struct {
+        cw_write_desc desc;
+        const char *words;
+    } rows[] = {
+        {{.compression = CW_COMPRESS_QUANTIZE, .bits = 17},
+         "there may be 1 to 16 with quantize"},
+        {{.compression = CW_COMPRESS_MESHOPT, .bits = 25}, "there may be 1 to 24 with meshopt"},
+        {{.compression = CW_COMPRESS_DRACO, .bits = 31}, "there may be 1 to 30 with Draco"},
+        {{.compression = CW_COMPRESS_DRACO, .bits = -1}, "-1 bits a coordinate"},
+        {{.compression = CW_COMPRESS_MESHOPT + 1}, "4 is no compression"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        assert_fails(cw_mesh_write_check(test_path("a.glb"), &rows[i].desc, &err),
+                     CW_ERR_ARGUMENT, rows[i].words, err);
+        assert_fails(cw_mesh_write(test_path("a.glb"), &mesh, &rows[i].desc, &err),
+                     CW_ERR_ARGUMENT, rows[i].words, err);
+    }
     cw_mesh_free(&mesh);
 }
 
@@ -214,12 +287,13 @@ static void parts_share_a_grid(void **state)
     for (size_t i = 1; i < 24; i += 3)
         b.positions[i] -= 0.25f;
     const cw_part parts[] = {{&a, "left"}, {&b, "right"}};
-    for (int k = 0; k < KINDS; k++) {
-        if (!is_there(kinds[k]))
+    for (int k = 0; k < WAYS; k++) {
+        if (!is_there(ways[k].kind))
             continue;
         cw_mesh back;
         cw_quality q;
-        const cw_write_desc desc = {.compression = kinds[k], .bits = 7};
+        const cw_write_desc desc = {.compression = ways[k].kind,
+                                    .bits = ways[k].bits ? ways[k].bits : 7};
         assert_ok(cw_parts_write(test_path("a.glb"), parts, 2, &desc, &err), err);
         assert_ok(cw_mesh_read(test_path("a.glb"), NULL, &back, NULL, &err), err);
         const cw_quality_desc weld = {.weld = CW_WELD_LOCAL};
@@ -237,12 +311,13 @@ static void damage_is_an_error_or_a_mesh(void **state)
 {
     (void)state;
     cw_mesh mesh = make_gyroid(6);
-    for (int k = 0; k < KINDS; k++) {
+    for (int k = 0; k < WAYS; k++) {
         cw_compressed told;
-        if (!is_there(kinds[k]))
+        if (!is_there(ways[k].kind))
             continue;
-        cw_mesh back =
-            write_and_read(&mesh, (cw_write_desc){.compression = kinds[k]}, &told, "a.glb");
+        cw_mesh back = write_and_read(
+            &mesh, (cw_write_desc){.compression = ways[k].kind, .bits = ways[k].bits}, &told,
+            "a.glb");
         size_t size;
         char *bytes = test_file_read(test_path("a.glb"), &size);
         cw_mesh_free(&back);
@@ -314,6 +389,7 @@ int main(void)
         TEST(colors_stay_with_their_vertices),
         TEST(a_tolerance_is_kept),
         TEST(what_cannot_be_kept_is_not_promised),
+        TEST(meshopt_has_more_than_16_bits),
         TEST(what_makes_no_sense_is_refused),
         TEST(parts_share_a_grid),
         TEST(damage_is_an_error_or_a_mesh),

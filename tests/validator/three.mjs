@@ -55,7 +55,9 @@ window.load = async url => {
         nodes += o.isMesh ? 1 : 0;
         triangles += o.isMesh ? o.geometry.index.count / 3 : 0;
     });
-    const box = new THREE.Box3().setFromObject(scene, true);
+    const box = new THREE.Box3().setFromObject(scene, true), stated = new THREE.Box3().setFromObject(scene);
+    if (box.min.distanceTo(stated.min) > 1e-6 || box.max.distanceTo(stated.max) > 1e-6)
+        throw new Error('the box that the accessors state is not that of their positions');
     draw(scene, box);
     return { triangles, nodes, low: box.min.toArray(), high: box.max.toArray() };
 };
