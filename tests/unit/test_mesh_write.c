@@ -2,6 +2,7 @@
 #include "support/support.h"
 
 #include "core/memory.h"
+#include "core/module.h"
 
 #include <math.h>
 #include <signal.h>
@@ -93,15 +94,22 @@ static bool refuse(void *user, const char *step, double done)
     return false;
 }
 
-/* The n-th format of meshes that this build writes; NULL after the last. */
-static const char *mesh_format(size_t n)
+/* The n-th way to write a mesh that this build has: its formats, then GLB by each compression.
+ * No format after the last. */
+static cw_write_desc way_to_write(size_t n)
 {
+    static const char *const modules[] = {[CW_COMPRESS_QUANTIZE] = "gltf",
+                                          [CW_COMPRESS_DRACO] = "draco",
+                                          [CW_COMPRESS_MESHOPT] = "meshopt"};
     size_t count;
     const cw_format *formats = cw_formats(&count);
     for (size_t i = 0; i < count; i++)
         if (formats[i].writes_mesh && formats[i].in_this_build && n-- == 0)
-            return formats[i].name;
-    return NULL;
+            return (cw_write_desc){.format = formats[i].name};
+    for (int k = CW_COMPRESS_QUANTIZE; k <= CW_COMPRESS_MESHOPT; k++)
+        if (cwi_module_present("gltf") && cwi_module_present(modules[k]) && n-- == 0)
+            return (cw_write_desc){.format = "glb", .compression = (cw_compression)k};
+    return (cw_write_desc){0};
 }
 
 static void a_cancelled_write_leaves_nothing(void **state)
@@ -109,23 +117,23 @@ static void a_cancelled_write_leaves_nothing(void **state)
     (void)state;
     cw_mesh mesh = {0};
     cw_error err = {0};
-    int calls = 0, formats = 0;
+    int calls = 0, ways = 0;
     test_make_cube(&mesh);
-    for (cw_write_desc desc = {.progress = {refuse, &calls}};
-         (desc.format = mesh_format((size_t)formats)); formats++)
+    for (cw_write_desc desc; (desc = way_to_write((size_t)ways)).format; ways++) {
+        desc.progress = (cw_progress){refuse, &calls};
         assert_fails(cw_mesh_write(test_path("a"), &mesh, &desc, &err), CW_ERR_CANCELLED,
                      "interrupted while writing", err);
-    assert_true(formats >= 3);
-    assert_int_equal(calls, formats);
+    }
+    assert_true(ways >= 3);
+    assert_int_equal(calls, ways);
     assert_int_equal(test_folder_entries(), 0);
     cw_mesh_free(&mesh);
 }
 
 /* Runs in a child: a write that the system ends. 0 when it was told as it should be. */
-static int write_to_full_disk(const cw_mesh *mesh, const char *format)
+static int write_to_full_disk(const cw_mesh *mesh, cw_write_desc desc)
 {
     const struct rlimit limit = {4096, 4096};
-    const cw_write_desc desc = {.format = format};
     cw_error err = {0};
     signal(SIGXFSZ, SIG_IGN);
     if (setrlimit(RLIMIT_FSIZE, &limit) != 0)
@@ -143,10 +151,10 @@ static bool kill_process(void *user, const char *step, double done)
     return true;
 }
 
-static int write_until_killed(const cw_mesh *mesh, const char *format)
+static int write_until_killed(const cw_mesh *mesh, cw_write_desc desc)
 {
-    const cw_write_desc desc = {.format = format, .progress = {kill_process, NULL}};
     cw_error err = {0};
+    desc.progress = (cw_progress){kill_process, NULL};
     return cw_mesh_write(test_path("a"), mesh, &desc, &err) == CW_OK ? 1 : 2;
 }
 
@@ -154,8 +162,8 @@ static int write_until_killed(const cw_mesh *mesh, const char *format)
 static void writes_that_are_ended_keep_the_old_file(void **state)
 {
     (void)state;
-    static int (*const ends[])(const cw_mesh *, const char *) = {write_to_full_disk,
-                                                                 write_until_killed};
+    static int (*const ends[])(const cw_mesh *, cw_write_desc) = {write_to_full_disk,
+                                                                  write_until_killed};
     const cw_field_desc field = {.field = CW_FIELD_GYROID, .dim = {40, 40, 40}, .type = CW_F32};
     cw_volume v;
     cw_mesh mesh;
@@ -163,16 +171,17 @@ static void writes_that_are_ended_keep_the_old_file(void **state)
     assert_ok(cw_field_sample(&field, &v, &err), err);
     assert_ok(cw_extract(&v, NULL, &mesh, NULL, &err), err);
     test_file_write(test_path("a"), "old", 3);
-    for (size_t i = 0; mesh_format(i / 2); i++) {
+    for (size_t i = 0; way_to_write(i / 2).format; i++) {
+        const cw_write_desc way = way_to_write(i / 2);
         int status;
         size_t size;
         const pid_t child = fork();
         assert_true(child >= 0);
         if (child == 0)
-            _exit(ends[i % 2](&mesh, mesh_format(i / 2)));
+            _exit(ends[i % 2](&mesh, way));
         assert_int_equal(waitpid(child, &status, 0), child);
         if (i % 2 ? !WIFSIGNALED(status) : !WIFEXITED(status) || WEXITSTATUS(status) != 0)
-            fail_msg("%s, %zu: status %d", mesh_format(i / 2), i % 2, status);
+            fail_msg("%s, %d, %zu: status %d", way.format, way.compression, i % 2, status);
         char *bytes = test_file_read(test_path("a"), &size);
         assert_string_equal(bytes, "old");
         free(bytes);
@@ -192,9 +201,10 @@ static void only_files_are_replaced(void **state)
     test_make_tetrahedron(&mesh);
     assert_int_equal(mkdir(test_path("folder"), 0700), 0);
     assert_int_equal(mkfifo(test_path("pipe"), 0600), 0);
-    for (size_t i = 0; mesh_format(i); i++) {
-        const cw_write_desc desc = {.format = mesh_format(i)},
-                            kept = {.format = mesh_format(i), .no_clobber = true};
+    for (size_t i = 0; way_to_write(i).format; i++) {
+        const cw_write_desc desc = way_to_write(i);
+        cw_write_desc kept = desc;
+        kept.no_clobber = true;
         assert_fails(cw_mesh_write(test_path("folder"), &mesh, &desc, &err), CW_ERR_OUTPUT,
                      "it is a folder", err);
         assert_fails(cw_mesh_write(test_path("pipe"), &mesh, &desc, &err), CW_ERR_OUTPUT,
@@ -211,15 +221,14 @@ static void only_files_are_replaced(void **state)
     cw_mesh_free(&mesh);
 }
 
-static void starve(const cw_mesh *mesh, const char *format)
+static void starve(const cw_mesh *mesh, cw_write_desc desc, const char *name)
 {
-    const cw_write_desc desc = {.format = format};
     const size_t before = test_folder_entries();
     cw_error err = {0};
     bool failed = true;
     for (long n = 0; failed; n++) {
         cwi_alloc_fail_after(n);
-        cw_status st = cw_mesh_write(test_path(format), mesh, &desc, &err);
+        cw_status st = cw_mesh_write(test_path(name), mesh, &desc, &err);
         failed = cwi_alloc_fail_after(-1);
         assert_int_equal(st, failed ? CW_ERR_NO_MEMORY : CW_OK);
         assert_int_equal(test_folder_entries(), failed ? before : before + 1);
@@ -231,8 +240,8 @@ static void running_out_of_memory_leaves_nothing(void **state)
     (void)state;
     cw_mesh mesh = {0};
     test_make_cube(&mesh);
-    for (size_t i = 0; mesh_format(i); i++)
-        starve(&mesh, mesh_format(i));
+    for (size_t i = 0; way_to_write(i).format; i++)
+        starve(&mesh, way_to_write(i), (char[]){(char)('a' + i), '\0'});
     cw_mesh_free(&mesh);
 }
 
