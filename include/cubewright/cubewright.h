@@ -10,6 +10,7 @@
 #include <cubewright/formats.h>
 #include <cubewright/mesh.h>
 #include <cubewright/quality.h>
+#include <cubewright/simplify.h>
 #include <cubewright/volume.h>
 
 #endif

@@ -67,14 +67,6 @@ static bool sort_keys(keyed **keys, size_t count)
     return ok;
 }
 
-static void put(cwi_boxes_node *nodes, size_t child, const float box[6])
-{
-    for (int a = 0; a < 3; a++) {
-        nodes[child / CWI_WIDTH].low[a][child % CWI_WIDTH] = box[a];
-        nodes[child / CWI_WIDTH].high[a][child % CWI_WIDTH] = box[a + 3];
-    }
-}
-
 void cwi_boxes_around(const cwi_boxes_node *n, float box[6])
 {
     for (int a = 0; a < 3; a++) {
@@ -95,13 +87,13 @@ static void fill_level(cwi_boxes *t, const float (*boxes)[6], int level, size_t 
     size_t c = 0;
     for (; c < children; c++)
         if (level == 0) {
-            put(nodes, c, boxes[t->order[c]]);
+            cwi_boxes_put(nodes, c, boxes[t->order[c]]);
         } else {
             cwi_boxes_around(t->nodes + t->first[level - 1] + c, box);
-            put(nodes, c, box);
+            cwi_boxes_put(nodes, c, box);
         }
     for (; c % CWI_WIDTH; c++)
-        put(nodes, c, empty);
+        cwi_boxes_put(nodes, c, empty);
 }
 
 static void fill(cwi_boxes *t, const float (*boxes)[6])

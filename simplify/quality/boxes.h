@@ -7,6 +7,10 @@
 #include <math.h>
 #include <string.h>
 
+#ifdef __cplusplus
+extern "C" {
+#endif
+
 enum { CWI_WIDTH = 8, CWI_LEVELS = 12 };
 
 /* The boxes of eight neighbours, side by side for arithmetic on several at a time; those that
@@ -32,9 +36,9 @@ typedef struct cwi_boxes {
  * Returns  CW_ERR_NO_MEMORY; free with cwi_boxes_free()
  * Cost     28 bytes an item, 32 more meanwhile
  * Source   the curve [Morton1966] */
-cw_status cwi_boxes_build(cwi_boxes *tree, const float (*boxes)[6], size_t count,
-                          cw_error *err);
-void cwi_boxes_free(cwi_boxes *tree);
+CW_API cw_status cwi_boxes_build(cwi_boxes *tree, const float (*boxes)[6], size_t count,
+                                 cw_error *err);
+CW_API void cwi_boxes_free(cwi_boxes *tree);
 
 /* Calls visit for each node of level 0, from node `first` on and in rising order, that may hold
  * boxes sharing a point with this one, until it returns false. Item s of the tree's order is
@@ -45,6 +49,23 @@ void cwi_boxes_visit(const cwi_boxes *tree, const float box[6], size_t first,
 
 /* The box around a node's boxes. */
 void cwi_boxes_around(const cwi_boxes_node *node, float box[6]);
+
+/* Sets box `child` of a row of nodes. */
+static inline void cwi_boxes_put(cwi_boxes_node *nodes, size_t child, const float box[6])
+{
+    for (int a = 0; a < 3; a++) {
+        nodes[child / CWI_WIDTH].low[a][child % CWI_WIDTH] = box[a];
+        nodes[child / CWI_WIDTH].high[a][child % CWI_WIDTH] = box[a + 3];
+    }
+}
+
+/* A node of empty boxes. */
+static inline void cwi_boxes_clear(cwi_boxes_node *node)
+{
+    const float empty[6] = {INFINITY, INFINITY, INFINITY, -INFINITY, -INFINITY, -INFINITY};
+    for (size_t c = 0; c < CWI_WIDTH; c++)
+        cwi_boxes_put(node, c, empty);
+}
 
 /* Four numbers at a time, said so: compilers make jumps of loops this short. */
 typedef float cwi_lanes __attribute__((vector_size(16)));
@@ -102,20 +123,20 @@ static inline void cwi_boxes_nearest(const cwi_boxes *tree, const double point[3
                                                      double *square),
                                      void *context, double *square)
 {
-    typedef struct entry {
+    struct entry {
         float square;
         int level;
         size_t node;
-    } entry;
-    entry stack[CWI_LEVELS * CWI_WIDTH];
+    } stack[CWI_LEVELS * CWI_WIDTH];
+    const struct entry root = {0, tree->levels - 1, 0};
     const float p[3] = {(float)point[0], (float)point[1], (float)point[2]};
     const float far = fmaxf(fmaxf(fabsf(p[0]), fabsf(p[1])), fmaxf(fabsf(p[2]), tree->most));
     const float slack = far * 0x1p-21f;
     size_t depth = 0;
     if (tree->count)
-        stack[depth++] = (entry){0, tree->levels - 1, 0};
+        stack[depth++] = root;
     while (depth) {
-        const entry e = stack[--depth];
+        const struct entry e = stack[--depth];
         if ((double)e.square * (1 - 0x1p-20) >= *square)
             continue;
         float squares[CWI_WIDTH];
@@ -128,12 +149,17 @@ static inline void cwi_boxes_nearest(const cwi_boxes *tree, const double point[3
                 measure(context, child + c, square);
                 continue;
             }
+            const struct entry found = {squares[c], e.level - 1, child + c};
             size_t s = depth++; /* the nearest one comes last, and is taken first */
             for (; s > base && stack[s - 1].square < squares[c]; s--)
                 stack[s] = stack[s - 1];
-            stack[s] = (entry){squares[c], e.level - 1, child + c};
+            stack[s] = found;
         }
     }
 }
+
+#ifdef __cplusplus
+}
+#endif
 
 #endif

@@ -13,6 +13,7 @@
 #include "core/status.h"
 #include "core/vector.h"
 #include "simplify/quality/boxes.h"
+#include "simplify/quality/facet.h"
 #include "simplify/quality/sampling.h"
 
 #include <math.h>
@@ -39,44 +40,9 @@ typedef struct query {
     size_t slot; /* of the nearest facet found */
 } query;
 
-static double segment_square(const double from[3], const double along[3])
-{
-    const double square = cwi_dot(along, along);
-    double t = square > 0 ? cwi_dot(from, along) / square : 0, way[3];
-    t = cwi_lesser(cwi_greater(t, 0), 1);
-    for (int k = 0; k < 3; k++)
-        way[k] = from[k] - t * along[k];
-    return cwi_dot(way, way);
-}
-
-/* The nearest point is in the triangle's plane or on a side that the point is beyond: which are
- * the signs of three areas. Without an area all sides are asked. */
 static double facet_square(const facet *f, const double p[3])
 {
-    double ab[3], ac[3], ap[3], bc[3], bp[3], n[3], x[3], y[3], best = INFINITY;
-    for (int k = 0; k < 3; k++) {
-        ab[k] = (double)f->b[k] - (double)f->a[k];
-        ac[k] = (double)f->c[k] - (double)f->a[k];
-        ap[k] = p[k] - (double)f->a[k];
-        bc[k] = ac[k] - ab[k];
-        bp[k] = ap[k] - ab[k];
-    }
-    cwi_cross(ab, ac, n);
-    cwi_cross(ab, ap, x);
-    cwi_cross(ap, ac, y);
-    const double square = cwi_dot(n, n), in_c = cwi_dot(x, n), in_b = cwi_dot(y, n),
-                 in_a = square - in_b - in_c;
-    if (square > 0 && in_a >= 0 && in_b >= 0 && in_c >= 0) {
-        const double height = cwi_dot(ap, n);
-        return height * height / square;
-    }
-    if (!(in_c >= 0) || !(square > 0))
-        best = segment_square(ap, ab);
-    if (!(in_b >= 0) || !(square > 0))
-        best = cwi_lesser(best, segment_square(ap, ac));
-    if (!(in_a >= 0) || !(square > 0))
-        best = cwi_lesser(best, segment_square(bp, bc));
-    return best;
+    return cwi_facet_square(f->a, f->b, f->c, p);
 }
 
 static void measure_facet(void *context, size_t slot, double *square)

@@ -1,0 +1,79 @@
+/* Mesh to smaller mesh, under a promise. */
+#ifndef CUBEWRIGHT_SIMPLIFY_H
+#define CUBEWRIGHT_SIMPLIFY_H
+
+#include <cubewright/distance.h>
+#include <cubewright/mesh.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* How far to simplify, and what to spare. Zero-initialise it and set what you need; a zero
+ * field means the default named beside it. At least one of error_mm, triangles and ratio is
+ * needed; what is met first ends it. */
+typedef struct cw_simplify_desc {
+    double error_mm;  /* no point of the input or of the result is farther than this from
+                         the other one; default: no such promise */
+    size_t triangles; /* stop when there are so many; default: no limit */
+    double ratio;     /* the same as a share of the input's, above 0, below 1; default: none */
+    bool allow_crossings; /* default: no triangles meet that did not meet before */
+    int threads;          /* default: all that OpenMP offers */
+    cw_progress progress; /* default: none */
+} cw_simplify_desc;
+
+/* What a simplification made. */
+typedef struct cw_simplify_facts {
+    size_t vertices, triangles;
+    size_t cut;      /* vertices of the input whose triangles are no single fan: they stay where
+                        they are, and all that is around them */
+    size_t passes;   /* 1, and 1 more for each time that error_mm took more care to keep */
+    double bound_mm; /* with error_mm: no point of either mesh is farther from the other one */
+} cw_simplify_facts;
+
+/* Simplifies a mesh by collapsing edges, those first that move the surface least.
+ *
+ * The result has as many components, handles and border loops as the input, and no edge of
+ * three triangles that had none before; none of its triangles is without area, and none meets
+ * another that is not its neighbour, unless triangles of the input did. Scalars, colours and
+ * labels, and normals, are those of the closest point of the input.
+ *
+ * With triangles or ratio alone the result may have more triangles than asked for: where every
+ * edge that is left would break one of these rules.
+ *
+ * mesh     borrowed; vertices at equal positions count as different ones: weld them first
+ * desc     borrowed
+ * out      filled on success, emptied on failure; free it with cw_mesh_free()
+ * facts    may be NULL
+ *
+ * Returns  CW_ERR_ARGUMENT     no target, one that is negative or not finite, or as
+ *                              cw_mesh_check()
+ *          CW_ERR_UNSUPPORTED  this build has no OpenMesh
+ *          CW_ERR_LIMIT        more than 2^30 vertices or triangles
+ *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
+ * Cost     about two microseconds of one processor for a triangle that goes
+ * Threads  reentrant; the same to the bit for any number of threads
+ * Source   quadrics [Garland1997] */
+CW_API cw_status cw_simplify(const cw_mesh *mesh, const cw_simplify_desc *desc, cw_mesh *out,
+                             cw_simplify_facts *facts, cw_error *err);
+
+/* The same with several numbers of triangles: each level is made from the one before, so that
+ * all take hardly longer than the last.
+ *
+ * triangles  levels, each fewer than the one before; desc has neither triangles nor ratio
+ * out        levels; filled on success, emptied on failure
+ * facts      levels, or NULL
+ *
+ * Returns    CW_ERR_ARGUMENT when the numbers are not so; else as cw_simplify() */
+CW_API cw_status cw_simplify_levels(const cw_mesh *mesh, const cw_simplify_desc *desc,
+                                    const size_t *triangles, size_t levels, cw_mesh *out,
+                                    cw_simplify_facts *facts, cw_error *err);
+
+/* Whether this build can: whether it has OpenMesh. */
+CW_API bool cw_simplify_available(void);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

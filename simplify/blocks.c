@@ -1,0 +1,362 @@
+#include "simplify/blocks.h"
+
+#include "core/memory.h"
+#include "core/status.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { BINS = 1024, NOT_THERE = UINT32_MAX };
+
+/* A box of space and the triangles whose middle is in it: low <= x < high. */
+typedef struct leaf {
+    size_t begin, end; /* in order */
+    float low[3], high[3];
+} leaf;
+
+/* All that is needed to share triangles out. */
+typedef struct plan {
+    const cwi_block *whole;
+    uint32_t *order; /* of the triangles, by leaf */
+    uint32_t *spare;
+    leaf *leaves;
+    size_t count;
+    uint8_t *held;
+    uint32_t *obstacles; /* triangles by leaf, from first[leaf] on */
+    size_t *first;
+} plan;
+
+void cwi_block_free(cwi_block *block)
+{
+    cwi_free(block->points);
+    cwi_free(block->corners);
+    cwi_free(block->names);
+    cwi_free(block->held);
+    cwi_free(block->seam);
+    cwi_free(block->quadrics);
+    cwi_free(block->lists);
+    *block = (cwi_block){0};
+}
+
+static float coordinate(const cwi_block *b, size_t corner, int axis)
+{
+    return b->points[3 * (size_t)b->corners[corner] + (size_t)axis];
+}
+
+static float middle(const cwi_block *b, size_t triangle, int axis)
+{
+    return (coordinate(b, 3 * triangle, axis) + coordinate(b, 3 * triangle + 1, axis) +
+            coordinate(b, 3 * triangle + 2, axis)) /
+           3;
+}
+
+static int longest_axis(const plan *p, const leaf *l, float low[3], float high[3])
+{
+    int longest = 0;
+    for (int a = 0; a < 3; a++) {
+        low[a] = INFINITY;
+        high[a] = -INFINITY;
+        for (size_t i = l->begin; i < l->end; i++) {
+            const float x = middle(p->whole, p->order[i], a);
+            low[a] = x < low[a] ? x : low[a];
+            high[a] = x > high[a] ? x : high[a];
+        }
+        if (high[a] - low[a] > high[longest] - low[longest])
+            longest = a;
+    }
+    return longest;
+}
+
+/* A place along the axis with about half of the triangles below. */
+static float find_half(const plan *p, const leaf *l, int axis, float low, float high)
+{
+    size_t bins[BINS] = {0}, below = 0;
+    const float scale = high > low ? BINS / (high - low) : 0;
+    for (size_t i = l->begin; i < l->end; i++) {
+        const float place = (middle(p->whole, p->order[i], axis) - low) * scale;
+        bins[place < BINS - 1 ? (size_t)place : BINS - 1]++;
+    }
+    size_t b = 0;
+    while (b < BINS - 1 && 2 * (below + bins[b]) <= l->end - l->begin)
+        below += bins[b++];
+    return low + (float)(b + (b == 0)) * (high - low) / BINS;
+}
+
+/* Divides a leaf; the second half becomes *other. */
+static void halve(plan *p, leaf *l, leaf *other)
+{
+    float low[3], high[3];
+    const int axis = longest_axis(p, l, low, high);
+    const float at = find_half(p, l, axis, low[axis], high[axis]);
+    size_t kept = l->begin, gone = 0;
+    for (size_t i = l->begin; i < l->end; i++) {
+        const uint32_t t = p->order[i];
+        if (middle(p->whole, t, axis) < at)
+            p->order[kept++] = t;
+        else
+            p->spare[gone++] = t;
+    }
+    memcpy(p->order + kept, p->spare, gone * sizeof *p->spare);
+    *other = *l;
+    other->begin = l->end = kept;
+    other->low[axis] = l->high[axis] = at;
+}
+
+static void make_leaves(plan *p)
+{
+    size_t step = p->count;
+    p->leaves[0] = (leaf){.end = p->whole->triangles};
+    for (int a = 0; a < 3; a++) {
+        p->leaves[0].low[a] = -INFINITY;
+        p->leaves[0].high[a] = INFINITY;
+    }
+    for (; step > 1; step /= 2)
+        for (size_t n = 0; n < p->count; n += step)
+            halve(p, p->leaves + n, p->leaves + n + step / 2);
+}
+
+static void bound(const cwi_block *b, size_t triangle, float box[6])
+{
+    for (int a = 0; a < 3; a++) {
+        const float x = coordinate(b, 3 * triangle, a), y = coordinate(b, 3 * triangle + 1, a),
+                    z = coordinate(b, 3 * triangle + 2, a);
+        box[a] = fminf(x, fminf(y, z));
+        box[a + 3] = fmaxf(x, fmaxf(y, z));
+    }
+}
+
+static bool lies_in(const leaf *l, const float box[6])
+{
+    for (int a = 0; a < 3; a++)
+        if (!(box[a] >= l->low[a] && box[a + 3] < l->high[a]))
+            return false;
+    return true;
+}
+
+static bool reaches(const leaf *l, const float box[6])
+{
+    for (int a = 0; a < 3; a++)
+        if (box[a + 3] < l->low[a] || box[a] > l->high[a])
+            return false;
+    return true;
+}
+
+/* Calls put for each triangle that leaves a leaf, and each other leaf that it reaches. */
+static void each_obstacle(plan *p, void (*put)(plan *p, size_t to, uint32_t triangle))
+{
+    float box[6];
+    for (size_t n = 0; n < p->count; n++)
+        for (size_t i = p->leaves[n].begin; i < p->leaves[n].end; i++) {
+            bound(p->whole, p->order[i], box);
+            if (lies_in(p->leaves + n, box))
+                continue;
+            for (int k = 0; k < 3; k++)
+                p->held[p->whole->corners[3 * (size_t)p->order[i] + (size_t)k]] = 1;
+            for (size_t m = 0; m < p->count; m++)
+                if (m != n && reaches(p->leaves + m, box))
+                    put(p, m, p->order[i]);
+        }
+}
+
+static void count_obstacle(plan *p, size_t to, uint32_t triangle)
+{
+    (void)triangle;
+    p->first[to + 2]++;
+}
+
+static void put_obstacle(plan *p, size_t to, uint32_t triangle)
+{
+    p->obstacles[p->first[to + 1]++] = triangle;
+}
+
+static bool find_obstacles(plan *p)
+{
+    each_obstacle(p, count_obstacle);
+    for (size_t n = 0; n < p->count; n++)
+        p->first[n + 2] += p->first[n + 1];
+    p->obstacles = cwi_alloc_array(p->first[p->count + 1], sizeof *p->obstacles);
+    if (!p->obstacles)
+        return false;
+    each_obstacle(p, put_obstacle);
+    return true;
+}
+
+static uint32_t triangle_of(const plan *p, size_t n, size_t i)
+{
+    const leaf *l = p->leaves + n;
+    return i < l->end - l->begin ? p->order[l->begin + i]
+                                 : p->obstacles[p->first[n] + i - (l->end - l->begin)];
+}
+
+/* Numbers the vertices of leaf n as they come; *place must be NOT_THERE everywhere, and is so
+ * again. */
+static cw_status fill_block(const plan *p, size_t n, uint32_t *place, cwi_block *b,
+                            cw_error *err)
+{
+    const cwi_block *w = p->whole;
+    b->own = p->leaves[n].end - p->leaves[n].begin;
+    b->triangles = b->own + p->first[n + 1] - p->first[n];
+    memcpy(b->low, p->leaves[n].low, sizeof b->low);
+    memcpy(b->high, p->leaves[n].high, sizeof b->high);
+    b->corners = cwi_alloc_array(3 * b->triangles, sizeof *b->corners);
+    b->names = cwi_alloc_array(3 * b->triangles, sizeof *b->names);
+    b->lists = cwi_alloc_array(b->own, sizeof *b->lists);
+    if (!b->corners || !b->names || !b->lists)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %zu triangles",
+                       b->triangles);
+    for (size_t i = 0; i < b->triangles; i++)
+        for (size_t k = 0; k < 3; k++) {
+            const uint32_t v = w->corners[3 * (size_t)triangle_of(p, n, i) + k];
+            if (place[v] == NOT_THERE) {
+                place[v] = (uint32_t)b->vertices;
+                b->names[b->vertices++] = v;
+            }
+            b->corners[3 * i + k] = place[v];
+        }
+    b->points = cwi_alloc_array(3 * b->vertices, sizeof *b->points);
+    b->held = cwi_alloc_array(b->vertices, sizeof *b->held);
+    for (size_t v = 0; v < b->vertices; v++) {
+        const size_t from = b->names[v];
+        place[from] = NOT_THERE;
+        if (b->points && b->held) {
+            memcpy(b->points + 3 * v, w->points + 3 * from, 3 * sizeof *b->points);
+            b->held[v] = p->held[from];
+        }
+    }
+    if (w->lists)
+        for (size_t i = 0; i < b->own; i++)
+            b->lists[i] = w->lists[triangle_of(p, n, i)];
+    else {
+        cwi_free(b->lists);
+        b->lists = NULL;
+    }
+    return b->points && b->held
+               ? CW_OK
+               : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %zu triangles",
+                         b->triangles);
+}
+
+static cw_status fill_blocks(const plan *p, cwi_block *blocks, cw_error *err)
+{
+    uint32_t *place = cwi_alloc_array(p->whole->vertices, sizeof *place);
+    if (!place)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to cut a mesh into blocks");
+    memset(place, 0xff, p->whole->vertices * sizeof *place);
+    cw_status st = CW_OK;
+    for (size_t n = 0; n < p->count && st == CW_OK; n++)
+        st = fill_block(p, n, place, blocks + n, err);
+    cwi_free(place);
+    return st;
+}
+
+cw_status cwi_blocks_cut(const cwi_block *whole, size_t most, cwi_block **out, size_t *count,
+                         cw_error *err)
+{
+    plan p = {.whole = whole, .count = 1};
+    while (p.count * most < whole->triangles)
+        p.count *= 2;
+    *count = p.count;
+    p.order = cwi_alloc_array(whole->triangles, sizeof *p.order);
+    p.spare = cwi_alloc_array(whole->triangles, sizeof *p.spare);
+    p.leaves = cwi_alloc_array(p.count, sizeof *p.leaves);
+    p.held = cwi_alloc_zeroed(whole->vertices, sizeof *p.held);
+    p.first = cwi_alloc_zeroed(p.count + 2, sizeof *p.first);
+    *out = cwi_alloc_zeroed(p.count, sizeof **out);
+    bool ok = p.order && p.spare && p.leaves && p.held && p.first && *out;
+    for (size_t t = 0; t < whole->triangles && ok; t++)
+        p.order[t] = (uint32_t)t;
+    if (ok)
+        make_leaves(&p);
+    ok = ok && find_obstacles(&p);
+    cw_status st = ok ? fill_blocks(&p, *out, err)
+                      : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to cut a mesh into blocks");
+    for (size_t n = 0; n < p.count && st != CW_OK && *out; n++)
+        cwi_block_free(*out + n);
+    if (st != CW_OK) {
+        cwi_free(*out);
+        *out = NULL;
+    }
+    cwi_free(p.order);
+    cwi_free(p.spare);
+    cwi_free(p.leaves);
+    cwi_free(p.held);
+    cwi_free(p.first);
+    cwi_free(p.obstacles);
+    return st;
+}
+
+/* Where the vertices of a block go: held ones of one name to one place. */
+static void join_vertices(const cwi_block *b, uint32_t *place, uint32_t *to, cwi_block *whole)
+{
+    for (size_t v = 0; v < b->vertices; v++) {
+        const size_t name = b->names[v];
+        const bool known = b->held[v] && place[name] != NOT_THERE;
+        const size_t n = known ? place[name] : whole->vertices++;
+        place[name] = to[v] = (uint32_t)n;
+        whole->names[n] = (uint32_t)name;
+        whole->seam[n] = b->held[v];
+        memcpy(whole->points + 3 * n, b->points + 3 * v, 3 * sizeof *whole->points);
+        if (!known) {
+            whole->quadrics[n] = b->quadrics[v];
+            continue;
+        }
+        float *sum = whole->quadrics[n].a; /* all of its numbers in a row */
+        for (int k = 0; k < 6; k++)
+            sum[k] += b->quadrics[v].a[k];
+        for (int k = 0; k < 3; k++)
+            whole->quadrics[n].b[k] += b->quadrics[v].b[k];
+        whole->quadrics[n].c += b->quadrics[v].c;
+    }
+}
+
+static bool alloc_joined(const cwi_block *blocks, size_t count, cwi_block *whole)
+{
+    size_t vertices = 0, triangles = 0;
+    for (size_t n = 0; n < count; n++) {
+        vertices += blocks[n].vertices;
+        triangles += blocks[n].triangles;
+    }
+    whole->points = cwi_alloc_array(3 * vertices, sizeof *whole->points);
+    whole->names = cwi_alloc_array(vertices, sizeof *whole->names);
+    whole->seam = cwi_alloc_array(vertices, sizeof *whole->seam);
+    whole->quadrics = cwi_alloc_array(vertices, sizeof *whole->quadrics);
+    whole->corners = cwi_alloc_array(3 * triangles, sizeof *whole->corners);
+    if (count && blocks[0].lists)
+        whole->lists = cwi_alloc_array(triangles, sizeof *whole->lists);
+    return whole->points && whole->names && whole->seam && whole->quadrics && whole->corners &&
+           (!count || !blocks[0].lists || whole->lists);
+}
+
+cw_status cwi_blocks_join(const cwi_block *blocks, size_t count, size_t names, cwi_block *whole,
+                          cw_error *err)
+{
+    *whole = (cwi_block){0};
+    size_t most = 0;
+    for (size_t n = 0; n < count; n++)
+        most = blocks[n].vertices > most ? blocks[n].vertices : most;
+    uint32_t *place = cwi_alloc_array(names, sizeof *place);
+    uint32_t *to = cwi_alloc_array(most, sizeof *to);
+    const bool ok = alloc_joined(blocks, count, whole) && place && to;
+    if (ok)
+        memset(place, 0xff, names * sizeof *place);
+    for (size_t n = 0; n < count && ok; n++) {
+        const cwi_block *b = blocks + n;
+        join_vertices(b, place, to, whole);
+        for (size_t c = 0; c < 3 * b->triangles; c++)
+            whole->corners[3 * whole->triangles + c] = to[b->corners[c]];
+        if (whole->lists)
+            memcpy(whole->lists + whole->triangles, b->lists, b->triangles * sizeof *b->lists);
+        whole->triangles += b->triangles;
+    }
+    whole->own = whole->triangles;
+    for (int a = 0; a < 3; a++) {
+        whole->low[a] = -INFINITY;
+        whole->high[a] = INFINITY;
+    }
+    cwi_free(place);
+    cwi_free(to);
+    if (ok)
+        return CW_OK;
+    cwi_block_free(whole);
+    return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to join blocks of a mesh");
+}

@@ -1,0 +1,26 @@
+/* A mesh cut into blocks, each with a box of space of its own, that are simplified apart. */
+#ifndef SIMPLIFY_BLOCKS_H
+#define SIMPLIFY_BLOCKS_H
+
+#include "simplify/openmesh_wrap.h"
+
+void cwi_block_free(cwi_block *block);
+
+/* Shares the triangles of a block out to blocks of about `most` at the most: boxes that fill
+ * space, halved where half of the triangles are on either side. Triangles that do not lie in
+ * one box are held: they stay in one block, and are in the way in the others that they reach.
+ * What moves inside one box then never meets what moves inside another.
+ *
+ * whole      its triangles are all its own; vertices are named by their numbers
+ * out        *count blocks; free each, and the array with cwi_free()
+ * Returns    CW_ERR_NO_MEMORY */
+cw_status cwi_blocks_cut(const cwi_block *whole, size_t most, cwi_block **out, size_t *count,
+                         cw_error *err);
+
+/* The blocks' own triangles as one block; held vertices of the same name become one, whose
+ * quadric is the sum. `seam` is what was held.
+ * names    how many there may be */
+cw_status cwi_blocks_join(const cwi_block *blocks, size_t count, size_t names, cwi_block *whole,
+                          cw_error *err);
+
+#endif

@@ -1,0 +1,339 @@
+// Edge collapse by quadric error [Garland1997] on OpenMesh's kernel. Costs are looked at again
+// only when their edge comes up: a quadric that was added to never costs less, so what stands
+// in the queue is a lower bound, and the order is that of the true costs.
+#include "simplify/openmesh_wrap.h"
+
+#include "core/guard.hpp"
+#include "core/memory.h"
+#include "simplify/checks.hpp"
+#include "simplify/queue.hpp"
+#include "simplify/surface.hpp"
+
+#include <cmath>
+#include <memory>
+
+using namespace cw;
+
+namespace
+{
+
+// All that a cost needs of a vertex, in one line of a cache.
+struct alignas(64) Node {
+    cwi_quadric quadric;
+    Vec point;
+    uint32_t changed; // when it last did
+    bool held, border;
+};
+
+} // namespace
+
+struct cwi_decimater {
+    cwi_decimater(const cwi_block &block, const cwi_block_desc &desc,
+                  const cwi_original *original)
+        : names(block.names, block.names + block.vertices), nodes(block.vertices),
+          live(block.own), shape(block), bound(block, surface, original, desc.error)
+    {
+        const std::vector<uint8_t> unsound = connect(block, surface);
+        if (!desc.allow_crossings)
+            contact = std::make_unique<Contact>(block, surface);
+        for (size_t v = 0; v < block.vertices; v++) {
+            const VertexHandle handle{int(v)};
+            cut += unsound[v];
+            nodes[v].point = surface.point(handle);
+            nodes[v].held = unsound[v] || (block.held && block.held[v]);
+            nodes[v].border = surface.is_boundary(handle);
+        }
+        add_quadrics(block);
+        fill_queue();
+    }
+
+    void run(float most, size_t least_triangles)
+    {
+        while (!queue.empty() && Queue::cost(queue.top()) <= most && live > least_triangles) {
+            const uint32_t e = Queue::edge(queue.top());
+            if (surface.status(EdgeHandle(int(e))).deleted()) {
+                queue.pop();
+                continue;
+            }
+            const Proposal p = propose(EdgeHandle(int(e)));
+            if (p.changed > looked_at[e]) {
+                looked_at[e] = tick;
+                const uint64_t now =
+                    Queue::entry(std::max(p.cost, Queue::cost(queue.top())), e);
+                if (now > queue.top()) {
+                    queue.replace_top(now);
+                    continue;
+                }
+            }
+            queue.pop();
+            waiting[e] = false;
+            try_to_collapse(p);
+        }
+    }
+
+    Surface surface;
+    std::vector<uint32_t> names;
+    std::vector<Node> nodes;
+    size_t cut = 0;
+    Queue queue;
+    std::vector<uint32_t> looked_at; // edges: when their cost was
+    std::vector<bool> waiting;       // edges that are in the queue
+    uint32_t tick = 0;
+    size_t live;
+    Shape shape;
+    Bound bound;
+    std::unique_ptr<Contact> contact;
+    Star star;
+
+private:
+    struct Proposal {
+        HalfedgeHandle halfedge; // from the vertex that goes to the one that stays
+        cwi_quadric quadric;     // about where the halfedge starts
+        Vec place;
+        float cost;
+        uint32_t changed; // the later of the two vertices
+    };
+
+    Node &node(VertexHandle v)
+    {
+        return nodes[size_t(v.idx())];
+    }
+
+    cwi_quadric &quadric(VertexHandle v)
+    {
+        return node(v).quadric;
+    }
+
+    void add_face(FaceHandle f)
+    {
+        VertexHandle v[3];
+        int n = 0;
+        for (auto it = surface.cfv_iter(f); it.is_valid(); ++it)
+            v[n++] = *it;
+        const Vec a = surface.point(v[0]);
+        Vec normal = (surface.point(v[1]) - a) % (surface.point(v[2]) - a);
+        const float length = normal.norm();
+        if (length > 0)
+            normal /= length;
+        for (VertexHandle corner : v)
+            add_plane(quadric(corner), normal, length / 2);
+    }
+
+    // The plane through an edge of the border, square to its triangle.
+    void add_border(HalfedgeHandle h)
+    {
+        const HalfedgeHandle inner = surface.opposite_halfedge_handle(h);
+        const VertexHandle a = surface.from_vertex_handle(inner),
+                           b = surface.to_vertex_handle(inner),
+                           c = surface.to_vertex_handle(surface.next_halfedge_handle(inner));
+        const Vec along = surface.point(b) - surface.point(a),
+                  face = along % (surface.point(c) - surface.point(a));
+        Vec normal = along % face;
+        const float length = normal.norm();
+        if (!(length > 0))
+            return;
+        normal /= length;
+        add_plane(quadric(a), normal, along.sqrnorm());
+        add_plane(quadric(b), normal, along.sqrnorm());
+    }
+
+    // Between two vertices held for a seam no border is known; it is when that is released.
+    void add_quadrics(const cwi_block &block)
+    {
+        if (block.quadrics)
+            for (size_t v = 0; v < block.vertices; v++)
+                nodes[v].quadric = block.quadrics[v];
+        else
+            for (auto f : surface.faces())
+                add_face(f);
+        const uint8_t *seam = block.quadrics ? block.seam : block.held;
+        for (int i = 0; i < int(surface.n_halfedges()); i++) {
+            const HalfedgeHandle h(i);
+            if (!surface.is_boundary(h))
+                continue;
+            const auto a = size_t(surface.from_vertex_handle(h).idx()),
+                       b = size_t(surface.to_vertex_handle(h).idx());
+            if ((seam && seam[a] && seam[b]) == (block.quadrics != nullptr))
+                add_border(h);
+        }
+    }
+
+    void fill_queue()
+    {
+        const size_t edges = surface.n_edges();
+        looked_at.assign(edges, 0);
+        waiting.assign(edges, false);
+        queue.reserve(edges);
+        for (uint32_t e = 0; e < edges; e++) {
+            const HalfedgeHandle h = surface.halfedge_handle(EdgeHandle(int(e)), 0);
+            if (node(surface.from_vertex_handle(h)).held ||
+                node(surface.to_vertex_handle(h)).held)
+                continue;
+            queue.append(Queue::entry(propose(EdgeHandle(int(e))).cost, e));
+            waiting[e] = true;
+        }
+        queue.build();
+    }
+
+    // A vertex of the border moves along it only, with another one.
+    Proposal propose(EdgeHandle e)
+    {
+        Proposal p;
+        p.halfedge = surface.halfedge_handle(e, 0);
+        const Node &u = node(surface.from_vertex_handle(p.halfedge)),
+                   &v = node(surface.to_vertex_handle(p.halfedge));
+        const Vec way = v.point - u.point;
+        p.quadric = moved(v.quadric, -way);
+        add(p.quadric, u.quadric);
+        const Vec d = u.border == v.border ? least(p.quadric, 0.5f * way)
+                      : u.border           ? Vec(0)
+                                           : way;
+        p.place = u.point + d;
+        p.cost = error_at(p.quadric, d) + 1e-4f * trace(p.quadric) * way.sqrnorm();
+        p.changed = std::max(u.changed, v.changed);
+        return p;
+    }
+
+    void try_to_collapse(const Proposal &p)
+    {
+        if (!surface.is_collapse_ok(p.halfedge) || !star.gather(surface, p.halfedge, p.place) ||
+            !shape.is_kept(surface, star) || !bound.is_kept(surface, star) ||
+            (contact && contact->arises(surface, star)))
+            return;
+        const VertexHandle kept = surface.to_vertex_handle(p.halfedge);
+        const Node &gone = node(surface.from_vertex_handle(p.halfedge));
+        Node &stays = node(kept);
+        bound.change(star);
+        surface.set_point(kept, p.place);
+        surface.collapse(p.halfedge);
+        if (contact)
+            contact->change(surface, star);
+        stays.quadric = moved(p.quadric, p.place - gone.point);
+        stays.point = p.place;
+        stays.border |= gone.border;
+        stays.changed = ++tick;
+        live -= star.gone.size();
+        for (auto e = surface.cve_iter(kept); e.is_valid(); ++e)
+            wait_again(*e, kept, p.cost);
+    }
+
+    // What was refused before may be fine now.
+    void wait_again(EdgeHandle e, VertexHandle kept, float cost)
+    {
+        const auto i = size_t(e.idx());
+        const HalfedgeHandle h = surface.halfedge_handle(e, 0);
+        const VertexHandle other = surface.to_vertex_handle(h) == kept
+                                       ? surface.from_vertex_handle(h)
+                                       : surface.to_vertex_handle(h);
+        if (waiting[i] || node(other).held)
+            return;
+        waiting[i] = true;
+        queue.push(Queue::entry(cost, uint32_t(i)));
+    }
+};
+
+namespace
+{
+
+cw_status open(const cwi_block *block, const cwi_block_desc *desc, const cwi_original *original,
+               cwi_decimater **out, cw_error *err)
+{
+    return guard(err, "OpenMesh", [&] {
+        *out = new cwi_decimater(*block, *desc, original);
+        return CW_OK;
+    });
+}
+
+cw_status run(cwi_decimater *decimater, float cost, size_t least, cw_error *err)
+{
+    return guard(err, "OpenMesh", [&] {
+        decimater->run(cost, least);
+        return CW_OK;
+    });
+}
+
+size_t triangles(const cwi_decimater *decimater)
+{
+    return decimater->live;
+}
+
+float next(const cwi_decimater *decimater)
+{
+    return decimater->queue.empty() ? INFINITY : Queue::cost(decimater->queue.top());
+}
+
+size_t cut(const cwi_decimater *decimater)
+{
+    return decimater->cut;
+}
+
+void close(cwi_decimater *decimater)
+{
+    delete decimater;
+}
+
+template <typename T> T *array(size_t count)
+{
+    T *memory = static_cast<T *>(cwi_alloc_array(count, sizeof(T)));
+    if (!memory)
+        throw std::bad_alloc();
+    return memory;
+}
+
+// Vertices that triangles are left around, in their old order.
+void take_vertices(const cwi_decimater &d, cwi_block &out, std::vector<uint32_t> &numbers)
+{
+    numbers.assign(d.surface.n_vertices(), UINT32_MAX);
+    for (const auto v : d.surface.vertices())
+        if (!v.deleted() && v.halfedge().is_valid())
+            numbers[size_t(v.idx())] = uint32_t(out.vertices++);
+    out.points = array<float>(3 * out.vertices);
+    out.names = array<uint32_t>(out.vertices);
+    out.held = array<uint8_t>(out.vertices);
+    out.quadrics = array<cwi_quadric>(out.vertices);
+    for (size_t v = 0; v < numbers.size(); v++) {
+        const size_t n = numbers[v];
+        if (n == UINT32_MAX)
+            continue;
+        for (unsigned k = 0; k < 3; k++)
+            out.points[3 * n + k] = d.surface.point(VertexHandle(int(v)))[k];
+        out.names[n] = d.names[v];
+        out.held[n] = d.nodes[v].held;
+        out.quadrics[n] = d.nodes[v].quadric;
+    }
+}
+
+void take_triangles(const cwi_decimater &d, cwi_block &out,
+                    const std::vector<uint32_t> &numbers)
+{
+    out.corners = array<uint32_t>(3 * d.live);
+    if (d.bound.is_asked())
+        out.lists = array<uint32_t>(d.live);
+    for (const auto f : d.surface.faces()) {
+        if (f.deleted())
+            continue;
+        uint32_t *corner = out.corners + 3 * out.triangles;
+        for (const auto v : f.vertices())
+            *corner++ = numbers[size_t(v.idx())];
+        if (out.lists)
+            out.lists[out.triangles] = d.bound.list(uint32_t(f.idx()));
+        out.triangles++;
+    }
+    out.own = out.triangles;
+}
+
+cw_status take(const cwi_decimater *decimater, cwi_block *out, cw_error *err)
+{
+    *out = cwi_block{};
+    return guard(err, "OpenMesh", [&] {
+        std::vector<uint32_t> numbers;
+        take_vertices(*decimater, *out, numbers);
+        take_triangles(*decimater, *out, numbers);
+        return CW_OK;
+    });
+}
+
+} // namespace
+
+const cwi_openmesh_functions cwi_module_openmesh = {open, run,  triangles, next,
+                                                    cut,  take, close};
