@@ -329,8 +329,8 @@ void Contact::change(const Surface &surface, const Star &star)
 // --- Bound ---------------------------------------------------------------------------------
 
 Bound::Bound(const cwi_block &block, const Surface &, const cwi_original *original_,
-             double error)
-    : original(original_), square(float(error * error))
+             double error_)
+    : original(original_), error(float(error_))
 {
     if (original && block.lists)
         heads.assign(block.lists, block.lists + block.own);
@@ -366,8 +366,17 @@ void Bound::collect(uint32_t face)
         points.push_back(p);
 }
 
+// The square of the distance that holds for all of the points.
+float Bound::allowed() const
+{
+    uint8_t care = 0;
+    for (uint32_t p : points)
+        care = std::max(care, original->care[p]);
+    return care < CWI_MOST_CARE ? std::ldexp(error * error, -2 * care) : -1;
+}
+
 // The distance from the triangles around the nearest point is one that is not too small.
-bool Bound::is_near_points(const Vec &place) const
+bool Bound::is_near_points(const Vec &place, float square) const
 {
     float least = INFINITY;
     uint32_t nearest = 0;
@@ -396,6 +405,7 @@ bool Bound::is_kept(const Surface &, const Star &star)
         collect(f);
     for (const Spoke &s : star.spokes)
         collect(s.face);
+    const float square = allowed();
     for (uint32_t p : points) {
         const Vec place(original->points + 3 * size_t(p));
         float least = INFINITY;
@@ -412,11 +422,11 @@ bool Bound::is_kept(const Surface &, const Star &star)
     }
     if (points.empty())
         return true;
-    if (!is_near_points(star.place))
+    if (!is_near_points(star.place, square))
         return false;
     for (const Spoke &s : star.spokes)
-        if (!is_near_points(0.5f * (star.place + s.pa)) ||
-            !is_near_points((star.place + s.pa + s.pb) / 3.0f))
+        if (!is_near_points(0.5f * (star.place + s.pa), square) ||
+            !is_near_points((star.place + s.pa + s.pb) / 3.0f, square))
             return false;
     return true;
 }

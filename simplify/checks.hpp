@@ -104,10 +104,11 @@ public:
 
 private:
     void collect(uint32_t face);
-    bool is_near_points(const Vec &place) const;
+    float allowed() const;
+    bool is_near_points(const Vec &place, float square) const;
 
     const cwi_original *original;
-    float square;                // of the distance
+    float error;                 // the distance
     std::vector<uint32_t> heads; // first point of a face's list
     std::vector<uint32_t> points, spoke_of;
 };

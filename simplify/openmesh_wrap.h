@@ -17,6 +17,9 @@ typedef struct cwi_quadric {
     float c;
 } cwi_quadric;
 
+/* Around points that are given so much care nothing is changed. */
+enum { CWI_MOST_CARE = 4 };
+
 /* What a surface was before it was simplified: each of its points belongs to the list of a
  * triangle that it lies near, and must stay within a distance of the surface. */
 typedef struct cwi_original {
@@ -25,6 +28,7 @@ typedef struct cwi_original {
     const uint32_t *first;   /* vertices + 1: the triangles around a vertex are */
     const uint32_t *around;  /* around[first[v]] .. around[first[v + 1] - 1] */
     uint32_t *next;          /* vertices: the next point in a list; UINT32_MAX ends it */
+    const uint8_t *care;     /* vertices: how often the distance is halved around them */
 } cwi_original;
 
 typedef struct cwi_block {

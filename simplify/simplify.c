@@ -8,6 +8,7 @@
 #include "simplify/blocks.h"
 #include "simplify/carry.h"
 #include "simplify/openmesh_wrap.h"
+#include "simplify/quality/within.h"
 
 #include <math.h>
 #include <string.h>
@@ -42,6 +43,8 @@ typedef struct job {
     cw_simplify_facts *facts; /* the same */
     cwi_original original;    /* next is NULL without an error to keep */
     uint32_t *first, *around;
+    uint8_t *care;
+    uint32_t *lists, *names; /* of the result's triangles and vertices, with an error to keep */
     cwi_block whole;
     /* the blocks of the first pass */
     cwi_block *blocks;
@@ -138,11 +141,12 @@ static cw_status remember(job *j, cw_error *err)
         j->first = cwi_alloc_array(m->vertex_count + 2, sizeof *j->first);
         j->around = cwi_alloc_array(3 * m->triangle_count, sizeof *j->around);
         j->original.next = cwi_alloc_array(m->vertex_count, sizeof *j->original.next);
+        j->care = cwi_alloc_zeroed(m->vertex_count, sizeof *j->care);
         if (j->first && j->around)
             sort_around(j);
     }
     j->whole.lists = cwi_alloc_array(j->whole.triangles, sizeof *j->whole.lists);
-    if (!j->first || !j->around || !j->original.next || !j->whole.lists)
+    if (!j->first || !j->around || !j->care || !j->original.next || !j->whole.lists)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error of %zu triangles",
                        m->triangle_count);
     list_points(j);
@@ -150,6 +154,7 @@ static cw_status remember(job *j, cw_error *err)
     j->original.corners = m->triangles;
     j->original.first = j->first;
     j->original.around = j->around;
+    j->original.care = j->care;
     return CW_OK;
 }
 
@@ -292,6 +297,11 @@ static cw_status second_pass(job *j, cw_error *err)
             st = j->openmesh->take(d, &left, err);
         if (st == CW_OK)
             st = finish(j, &left, j->out + n, err);
+        cwi_free(j->lists);
+        cwi_free(j->names);
+        j->lists = left.lists;
+        j->names = left.names;
+        left.lists = left.names = NULL;
         cwi_block_free(&left);
         j->facts[n].cut = j->openmesh->cut(d);
         j->facts[n].vertices = j->out[n].vertex_count;
@@ -315,40 +325,70 @@ static cw_status simplify_once(job *j, cw_error *err)
     return st;
 }
 
-/* The largest distance between two meshes, from either side; never too small. */
-static cw_status measure(const cw_mesh *a, const cw_mesh *b, const cw_simplify_desc *d,
-                         double *bound, cw_error *err)
+enum { MARK = 0x80 };
+
+/* More care for the points of the input that are too far from the result, and for those near to
+ * which the result is too far from the input. Counts the triangles of either where that is so.
+ */
+static size_t take_care(const job *j, const uint8_t *input_beyond, const uint8_t *beyond)
 {
-    const cw_mesh_distance_desc how = {
-        .tolerance_mm = 0.01 * d->error_mm, .threads = d->threads, .progress = d->progress};
-    cw_distance ab = {0}, ba = {0};
-    cw_status st = CW_OK;
-    if (a->triangle_count && b->triangle_count)
-        st = cw_distance_to_mesh(a, b, &how, &ab, NULL, err);
-    if (st == CW_OK && a->triangle_count && b->triangle_count)
-        st = cw_distance_to_mesh(b, a, &how, &ba, NULL, err);
-    *bound = fmax(ab.bound_mm, ba.bound_mm);
+    const cw_mesh *m = j->mesh, *out = j->out;
+    size_t broken = 0;
+    for (size_t t = 0; t < m->triangle_count; t++) {
+        broken += input_beyond[t];
+        for (size_t k = 0; k < 3 && input_beyond[t]; k++)
+            j->care[m->triangles[3 * t + k]] |= MARK;
+    }
+    for (size_t t = 0; t < out->triangle_count; t++) {
+        broken += beyond[t];
+        for (size_t k = 0; k < 3 && beyond[t]; k++)
+            j->care[j->names[out->triangles[3 * t + k]]] |= MARK;
+        for (uint32_t p = beyond[t] ? j->lists[t] : UINT32_MAX; p != UINT32_MAX;
+             p = j->original.next[p])
+            j->care[p] |= MARK;
+    }
+    for (size_t v = 0; v < m->vertex_count; v++)
+        if (j->care[v] & MARK)
+            j->care[v] = (uint8_t)((j->care[v] & ~MARK) + 1);
+    return broken;
+}
+
+/* Whether the result keeps the distance; where it does not, more care is taken the next time.
+ */
+static cw_status judge(job *j, bool *kept, cw_error *err)
+{
+    const cw_mesh *m = j->mesh, *out = j->out;
+    const cw_simplify_desc *d = j->desc;
+    uint8_t *input_beyond = cwi_alloc_array(m->triangle_count, 1);
+    uint8_t *beyond = cwi_alloc_array(out->triangle_count, 1);
+    cw_status st = input_beyond && beyond
+                       ? CW_OK
+                       : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error");
+    if (st == CW_OK)
+        st = cwi_mesh_within(m, out, d->error_mm, d->threads, &d->progress, input_beyond, err);
+    if (st == CW_OK)
+        st = cwi_mesh_within(out, m, d->error_mm, d->threads, &d->progress, beyond, err);
+    if (st == CW_OK)
+        *kept = take_care(j, input_beyond, beyond) == 0;
+    cwi_free(input_beyond);
+    cwi_free(beyond);
     return st;
 }
 
-/* Distances are looked at in some points only, between which they are a little more: so a
- * little less is allowed there, and where that was not enough, all is done again with less. */
+/* Distances are looked at in some points only, and between them may be larger. Where they are,
+ * all is done again with more care in those places; after some times there is nothing left to
+ * change there. */
 static cw_status simplify_all(job *j, cw_error *err)
 {
-    const double error = j->desc->error_mm;
     cw_status st = CW_OK;
-    j->block_desc.error = 0.95 * error;
+    j->block_desc.error = j->desc->error_mm * 0.99;
     for (bool kept = false; st == CW_OK && !kept;) {
-        double most = 0;
         for (size_t n = 0; n < j->levels; n++)
             cw_mesh_free(j->out + n);
         st = simplify_once(j, err);
-        for (size_t n = 0; n < j->levels && st == CW_OK && error > 0; n++) {
-            st = measure(j->mesh, j->out + n, j->desc, &j->facts[n].bound_mm, err);
-            most = fmax(most, j->facts[n].bound_mm);
-        }
-        kept = most <= error;
-        j->block_desc.error *= 0.98 * error / fmax(most, error);
+        kept = j->desc->error_mm == 0 || j->out->triangle_count == 0;
+        if (st == CW_OK && !kept)
+            st = judge(j, &kept, err);
     }
     for (size_t n = 0; n < j->levels && st == CW_OK; n++)
         st = cwi_carry(j->mesh, j->desc->threads, j->out + n, err);
@@ -376,6 +416,9 @@ static cw_status simplify_levels(const cw_mesh *mesh, const cw_simplify_desc *de
     cwi_free(j.facts);
     cwi_free(j.first);
     cwi_free(j.around);
+    cwi_free(j.care);
+    cwi_free(j.lists);
+    cwi_free(j.names);
     cwi_free(j.original.next);
     for (size_t n = 0; n < levels && st != CW_OK; n++)
         cw_mesh_free(out + n);
@@ -405,8 +448,8 @@ cw_status cw_simplify_levels(const cw_mesh *mesh, const cw_simplify_desc *desc,
                            "level %zu has %zu triangles; each must have some, and fewer than "
                            "the one before",
                            n, triangles[n]);
-    if (levels == 0 || desc->triangles || desc->ratio > 0)
+    if (levels == 0 || desc->triangles || desc->ratio > 0 || desc->error_mm > 0)
         return cw_fail(err, CW_ERR_ARGUMENT,
-                       "levels need their own numbers of triangles, and no other");
+                       "levels need their own numbers of triangles, and nothing else");
     return simplify_levels(mesh, desc, triangles, levels, out, facts, err);
 }

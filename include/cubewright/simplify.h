@@ -25,10 +25,9 @@ typedef struct cw_simplify_desc {
 /* What a simplification made. */
 typedef struct cw_simplify_facts {
     size_t vertices, triangles;
-    size_t cut;      /* vertices of the input whose triangles are no single fan: they stay where
-                        they are, and all that is around them */
-    size_t passes;   /* 1, and 1 more for each time that error_mm took more care to keep */
-    double bound_mm; /* with error_mm: no point of either mesh is farther from the other one */
+    size_t cut;    /* vertices of the input whose triangles are no single fan: they stay where
+                      they are, and all that is around them */
+    size_t passes; /* 1, and 1 more for each time that error_mm took more care to keep */
 } cw_simplify_facts;
 
 /* Simplifies a mesh by collapsing edges, those first that move the surface least.
@@ -60,7 +59,7 @@ CW_API cw_status cw_simplify(const cw_mesh *mesh, const cw_simplify_desc *desc, 
 /* The same with several numbers of triangles: each level is made from the one before, so that
  * all take hardly longer than the last.
  *
- * triangles  levels, each fewer than the one before; desc has neither triangles nor ratio
+ * triangles  levels, each fewer than the one before; desc has neither these, nor ratio or error
  * out        levels; filled on success, emptied on failure
  * facts      levels, or NULL
  *

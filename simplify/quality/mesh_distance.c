@@ -15,6 +15,7 @@
 #include "simplify/quality/boxes.h"
 #include "simplify/quality/facet.h"
 #include "simplify/quality/sampling.h"
+#include "simplify/quality/within.h"
 
 #include <math.h>
 #include <string.h>
@@ -249,6 +250,18 @@ static void search_triangle(const search *s, const corner c[3], size_t t, int de
     search_triangle(s, (corner[]){ca, bc, c[2]}, t, depth + 1, e);
 }
 
+static void begin_triangle(const search *s, size_t t, corner c[3])
+{
+    double p[3][3];
+    cwi_corners(s->mesh, t, p);
+    for (size_t n = 0; n < 3; n++) {
+        const size_t v = s->mesh->triangles[3 * t + n];
+        memcpy(c[n].p, p[n], sizeof c[n].p);
+        c[n].slot = s->slots[v];
+        c[n].distance = sqrt(square_from(s, p[n], c[n].slot));
+    }
+}
+
 /* A chunk begins with the largest distance of all points measured before, and sees its own only
  * from there on: what others find meanwhile would make it depend on chance. */
 static void search_chunk(void *context, size_t chunk)
@@ -258,15 +271,8 @@ static void search_chunk(void *context, size_t chunk)
     *e = (extreme){.max = s->floor, .triangle = SIZE_MAX};
     for (size_t t = CHUNK * chunk; t < CHUNK * (chunk + 1) && t < s->mesh->triangle_count;
          t++) {
-        double p[3][3];
         corner c[3];
-        cwi_corners(s->mesh, t, p);
-        for (size_t n = 0; n < 3; n++) {
-            const size_t v = s->mesh->triangles[3 * t + n];
-            memcpy(c[n].p, p[n], sizeof c[n].p);
-            c[n].slot = s->slots[v];
-            c[n].distance = sqrt(square_from(s, p[n], c[n].slot));
-        }
+        begin_triangle(s, t, c);
         search_triangle(s, c, t, 0, e);
     }
 }
@@ -439,5 +445,72 @@ cw_status cw_distance_to_mesh(const cw_mesh *mesh, const cw_mesh *reference_mesh
         memset(out, 0, sizeof *out);
     cwi_free(r.facets);
     cwi_boxes_free(&r.tree);
+    return st;
+}
+
+/* Whether no point of a triangle is farther than e->max was at first, which is then the same
+ * still. */
+static bool is_within(const search *s, const corner c[3], size_t t, int depth, extreme *e)
+{
+    const double limit = s->floor;
+    if (bound_of(s, c, t, e) <= limit)
+        return true;
+    if (e->max > limit || depth == DEEPEST)
+        return false;
+    const corner ab = middle(s, c, c + 1, t, e), bc = middle(s, c + 1, c + 2, t, e),
+                 ca = middle(s, c + 2, c, t, e);
+    return is_within(s, (corner[]){ab, bc, ca}, t, depth + 1, e) &&
+           is_within(s, (corner[]){c[0], ab, ca}, t, depth + 1, e) &&
+           is_within(s, (corner[]){ab, c[1], bc}, t, depth + 1, e) &&
+           is_within(s, (corner[]){ca, bc, c[2]}, t, depth + 1, e);
+}
+
+typedef struct judgement {
+    search search;
+    uint8_t *beyond;
+} judgement;
+
+static void judge_chunk(void *context, size_t chunk)
+{
+    const judgement *j = context;
+    const search *s = &j->search;
+    for (size_t t = CHUNK * chunk; t < CHUNK * (chunk + 1) && t < s->mesh->triangle_count;
+         t++) {
+        extreme e = {.max = s->floor};
+        corner c[3];
+        begin_triangle(s, t, c);
+        j->beyond[t] = c[0].distance > s->floor || c[1].distance > s->floor ||
+                       c[2].distance > s->floor || !is_within(s, c, t, 0, &e);
+    }
+}
+
+cw_status cwi_mesh_within(const cw_mesh *mesh, const cw_mesh *mesh_reference, double limit_mm,
+                          int threads, const cw_progress *progress, uint8_t *beyond,
+                          cw_error *err)
+{
+    reference r = {0};
+    cw_distance out;
+    uint32_t *slots = cwi_alloc_array(mesh->vertex_count, sizeof *slots);
+    const cwi_sampling vertices = {.mesh = mesh,
+                                   .measure = measure,
+                                   .context = &r,
+                                   .hints = slots,
+                                   .vertices_only = true,
+                                   .name = "keeping the error",
+                                   .threads = threads,
+                                   .progress = progress};
+    judgement j = {.search = {.r = &r, .mesh = mesh, .slots = slots, .floor = limit_mm},
+                   .beyond = beyond};
+    cw_status st = slots ? make_reference(&r, mesh_reference, mesh->origin, err)
+                         : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu vertices",
+                                   mesh->vertex_count);
+    if (st == CW_OK)
+        st = cwi_sample_mesh(&vertices, &out, NULL, err);
+    if (st == CW_OK)
+        st = cwi_each_layer((mesh->triangle_count + CHUNK - 1) / CHUNK, CHUNK * CHUNK, threads,
+                            progress, "keeping the error", judge_chunk, &j, err);
+    cwi_boxes_free(&r.tree);
+    cwi_free(r.facets);
+    cwi_free(slots);
     return st;
 }
