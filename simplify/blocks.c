@@ -6,7 +6,9 @@
 #include <math.h>
 #include <string.h>
 
-enum { BINS = 1024, NOT_THERE = UINT32_MAX };
+enum { BINS = 1024 };
+
+static const uint32_t NOT_THERE = UINT32_MAX;
 
 /* A box of space and the triangles whose middle is in it: low <= x < high. */
 typedef struct leaf {

@@ -35,6 +35,8 @@ public:
         : slots(most)
     {
         cw_error err;
+        if (boxes.empty())
+            return;
         const float(*sides)[6] = &boxes.data()->side;
         if (cwi_boxes_build(&tree, sides, boxes.size(), &err) != CW_OK)
             throw std::bad_alloc();

@@ -72,7 +72,8 @@ static cw_status check(const cw_mesh *mesh, const cw_simplify_desc *d, cw_error 
 
 static size_t target_of(const cw_simplify_desc *d, size_t triangles)
 {
-    const size_t share = (size_t)(d->ratio * (double)triangles);
+    const bool is_share = d->ratio > 0 && d->ratio < 1;
+    const size_t share = is_share ? (size_t)(d->ratio * (double)triangles) : 0;
     return share > d->triangles ? share : d->triangles;
 }
 
@@ -89,7 +90,8 @@ static cw_status begin(job *j, cw_error *err)
     if (!w->points || !w->names || !w->corners)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to simplify %zu triangles",
                        m->triangle_count);
-    memcpy(w->points, m->positions, 3 * w->vertices * sizeof *w->points);
+    if (w->vertices)
+        memcpy(w->points, m->positions, 3 * w->vertices * sizeof *w->points);
     for (size_t v = 0; v < w->vertices; v++)
         w->names[v] = (uint32_t)v;
     for (size_t t = 0; t < m->triangle_count; t++) {

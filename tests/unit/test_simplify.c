@@ -89,18 +89,14 @@ static cw_mesh noisy_gyroid(size_t n, double noise, bool open)
 static void topology_stays(void **state)
 {
     (void)state;
-    for (int open = 0; open < 2; open++) {
-        cw_mesh mesh = noisy_gyroid(56, 0.1, open);
-        assert_true(mesh.triangle_count > 70000);
-        static const double ratios[] = {0.5, 0.1, 0.02};
-        for (int n = 0; n < 3; n++) {
-            cw_mesh out = reduce(&mesh, ratios[n]);
-            assert_sound(&mesh, &out);
-            if (n < 2)
-                assert_within((double)out.triangle_count,
-                              ratios[n] * (double)mesh.triangle_count, 0.01);
-            cw_mesh_free(&out);
-        }
+    static const double ratios[] = {0.3, 0.02};
+    for (int n = 0; n < 2; n++) {
+        cw_mesh mesh = noisy_gyroid(42, 0.1, n), out = reduce(&mesh, ratios[n]);
+        assert_true(mesh.triangle_count > 1 << 15);
+        assert_sound(&mesh, &out);
+        if (n == 0)
+            assert_within((double)out.triangle_count, 0.3 * (double)mesh.triangle_count, 0.01);
+        cw_mesh_free(&out);
         cw_mesh_free(&mesh);
     }
 }
@@ -161,7 +157,7 @@ static void bounds_are_kept(const cw_mesh *a, const cw_mesh *b, double error)
 static void the_error_is_never_exceeded(void **state)
 {
     (void)state;
-    cw_mesh mesh = noisy_gyroid(20, 0.1, false);
+    cw_mesh mesh = noisy_gyroid(16, 0.1, false);
     double low[3], high[3];
     assert_true(cw_mesh_bounds(&mesh, low, high));
     size_t before = mesh.triangle_count;
@@ -259,9 +255,9 @@ static void nothing_vanishes(void **state)
 static void threads_change_nothing(void **state)
 {
     (void)state;
-    cw_mesh mesh = noisy_gyroid(56, 0.1, false);
+    cw_mesh mesh = noisy_gyroid(42, 0.1, false);
     for (int kind = 0; kind < 2; kind++) {
-        cw_simplify_desc desc = {.threads = 1, .ratio = kind ? 0.4 : 0.1};
+        cw_simplify_desc desc = {.threads = 1, .ratio = kind ? 0.6 : 0.2};
         desc.error_mm = kind ? 0.5 : 0;
         cw_mesh one = simplify(&mesh, &desc);
         desc.threads = 3;
