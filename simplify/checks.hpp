@@ -81,38 +81,6 @@ private:
     std::vector<Eight> spokes;
 };
 
-// Each point of the original stays within a distance of the triangles around, and new vertices,
-// and the middles of new sides and triangles, within the distance of the original.
-class Bound
-{
-public:
-    Bound(const cwi_block &block, const Surface &surface, const cwi_original *original,
-          double error);
-
-    bool is_asked() const
-    {
-        return !heads.empty();
-    }
-
-    uint32_t list(uint32_t face) const
-    {
-        return heads[face];
-    }
-
-    bool is_kept(const Surface &surface, const Star &star);
-    void change(const Star &star);
-
-private:
-    void collect(uint32_t face);
-    float allowed() const;
-    bool is_near_points(const Vec &place, float square) const;
-
-    const cwi_original *original;
-    float error;                 // the distance
-    std::vector<uint32_t> heads; // first point of a face's list
-    std::vector<uint32_t> points, spoke_of;
-};
-
 } // namespace cw
 
 #endif

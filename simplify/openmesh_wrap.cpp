@@ -5,7 +5,7 @@
 
 #include "core/guard.hpp"
 #include "core/memory.h"
-#include "simplify/checks.hpp"
+#include "simplify/bound.hpp"
 #include "simplify/queue.hpp"
 #include "simplify/surface.hpp"
 
@@ -31,7 +31,7 @@ struct cwi_decimater {
     cwi_decimater(const cwi_block &block, const cwi_block_desc &desc,
                   const cwi_original *original)
         : names(block.names, block.names + block.vertices), nodes(block.vertices),
-          live(block.own), shape(block), bound(block, surface, original, desc.error)
+          live(block.own), shape(block), bound(block, original, desc.error)
     {
         const std::vector<uint8_t> unsound = connect(block, surface);
         if (!desc.allow_crossings)
@@ -197,7 +197,7 @@ private:
     void try_to_collapse(const Proposal &p)
     {
         if (!surface.is_collapse_ok(p.halfedge) || !star.gather(surface, p.halfedge, p.place) ||
-            !shape.is_kept(surface, star) || !bound.is_kept(surface, star) ||
+            !shape.is_kept(surface, star) || !bound.is_kept(star) ||
             (contact && contact->arises(surface, star)))
             return;
         const VertexHandle kept = surface.to_vertex_handle(p.halfedge);
