@@ -55,17 +55,14 @@ cw_status cw_mesh_weld(cw_mesh *mesh, size_t *merged, cw_error *err)
     size_t count = 0, kept = 0;
     for (size_t v = 0; v < mesh->vertex_count; v++)
         count += map[v] != v;
-    for (size_t t = 0; t < mesh->triangle_count && count; t++) {
+    for (size_t t = 0; t < mesh->triangle_count; t++) {
         const uint32_t *from = mesh->triangles + 3 * t;
         const uint32_t c[3] = {map[from[0]], map[from[1]], map[from[2]]};
-        const bool was = from[0] != from[1] && from[1] != from[2] && from[2] != from[0];
-        if (!was || (c[0] != c[1] && c[1] != c[2] && c[2] != c[0]))
+        if (c[0] != c[1] && c[1] != c[2] && c[2] != c[0])
             memcpy(mesh->triangles + 3 * kept++, c, sizeof c);
     }
-    if (count) {
-        mesh->triangle_count = kept;
-        drop_unused(mesh, map);
-    }
+    mesh->triangle_count = kept;
+    drop_unused(mesh, map);
     cwi_free(map);
     if (merged)
         *merged = count;

@@ -37,8 +37,8 @@ CW_API cw_status cw_mesh_check(const cw_mesh *mesh, cw_error *err);
 CW_API bool cw_mesh_bounds(const cw_mesh *mesh, double min[3], double max[3]);
 
 /* Makes one vertex of those at equal positions (0 equals -0): the first of them, with its
- * normal, colour and whatever else it has. Where there are any, triangles that come to name a
- * vertex twice are left out, and then vertices that no triangle names.
+ * normal, colour and whatever else it has. Triangles that name a vertex twice are left out, and
+ * then vertices that no triangle names.
  *
  * mesh     in place: its arrays stay where they are, and only get shorter; as it was on failure
  * merged   vertices that were at the place of another; may be NULL

@@ -1,0 +1,504 @@
+#include "cli/commands.h"
+#include "cli/compare.h"
+#include "cli/console.h"
+#include "cli/deliver.h"
+#include "cli/output.h"
+#include "cli/quantity.h"
+#include "cli/written.h"
+#include "core/status.h"
+
+#include <cubewright/simplify.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct simplify_args {
+    cli_common common;
+    cli_input input; /* of the source volume; limits and safety are the mesh's, too */
+    cli_compress compress;
+    cli_written written;
+    const char *output, *json, *source, *mesh_reader;
+    cli_length error;
+    cli_number ratio, iso;
+    size_t triangles;
+    int inside, progress;
+    bool allow_intersections, merge, measure;
+} simplify_args;
+
+static const simplify_args defaults = {.measure = true};
+
+static const cli_option options[] = {
+    {"output", 'o', CLI_TEXT, "FILE",
+     "the mesh, in the format of its extension; may hold {stem}",
+     offsetof(simplify_args, output)},
+    {"error", 'e', CLI_LENGTH, "L",
+     "as far as this allows: 0.1mm, or 0.05% of the box's diagonal",
+     offsetof(simplify_args, error)},
+    {"triangles", 'n', CLI_COUNT, "N", "down to so many triangles, e.g. 50k",
+     offsetof(simplify_args, triangles)},
+    {"ratio", 0, CLI_NUMBER, "R", "down to this share of the triangles, e.g. 0.25",
+     offsetof(simplify_args, ratio)},
+    {"allow-intersections", 0, CLI_FLAG, NULL,
+     "triangles may meet that did not: faster (none may)",
+     offsetof(simplify_args, allow_intersections)},
+    {"merge", 0, CLI_FLAG, NULL,
+     "all parts as one mesh (each by itself, where the format has parts)",
+     offsetof(simplify_args, merge)},
+    {"source", 's', CLI_TEXT, "VOLUME",
+     "normals from this volume's field (those of the input, carried over)",
+     offsetof(simplify_args, source)},
+    {"iso", 'i', CLI_NUMBER, "V",
+     "measure the distance to the source's surface at this isovalue, too",
+     offsetof(simplify_args, iso)},
+    {"inside", 0, CLI_CHOICE, "above/below", "which of the source's values are inside (above)",
+     offsetof(simplify_args, inside)},
+    {"measure", 0, CLI_FLAG, NULL,
+     "measure the error, which takes longer than simplifying (on; --no-measure)",
+     offsetof(simplify_args, measure)},
+    {"json", 0, CLI_TEXT, "FILE", "write a report; - is the standard output",
+     offsetof(simplify_args, json)},
+    {"progress", 0, CLI_CHOICE, "auto/plain/json/none", "how to show it, on stderr (auto)",
+     offsetof(simplify_args, progress)},
+    {"mesh-reader", 0, CLI_TEXT, "NAME",
+     "read the mesh as this format of 'formats' (by content)",
+     offsetof(simplify_args, mesh_reader)},
+    {"max-triangles", 0, CLI_COUNT, "N", "stop before reading more, e.g. 100M (no limit)",
+     CLI_INPUT_ROW(simplify_args, max_triangles)},
+    CLI_WRITTEN_OPTIONS(simplify_args),
+    CLI_COMPRESS_OPTIONS(simplify_args),
+    CLI_INPUT_OPTIONS(simplify_args),
+};
+
+/* A part of the input: by itself, as components are, so that parts stay apart. */
+typedef struct piece {
+    cw_mesh input; /* its arrays are those of run_state.mesh, welded */
+    const char *name;
+    cw_quality before;
+    cw_mesh out;
+} piece;
+
+typedef struct run_state {
+    const simplify_args *args;
+    cli_mesh mesh;
+    cli_volume source;
+    piece *pieces;
+    size_t piece_count, triangles; /* of all pieces, before */
+    double diagonal_mm, error_mm;
+    cli_outputs outputs;
+    cli_report report;
+    double start;
+} run_state;
+
+static void put_params(cli_json *j, const void *p, const cli_made *made)
+{
+    const run_state *s = p;
+    const simplify_args *args = s->args;
+    if (args->error.given)
+        cli_json_number(j, "error_mm", s->error_mm);
+    if (args->triangles)
+        cli_json_count(j, "triangles", args->triangles);
+    if (args->ratio.given)
+        cli_json_number(j, "ratio", args->ratio.value);
+    cli_json_bool(j, "allow_intersections", args->allow_intersections);
+    cli_json_bool(j, "merge", args->merge);
+    cli_json_text(j, "normals", args->source ? "field" : "carried");
+    if (args->source)
+        cli_json_text(j, "inside", args->inside ? "below" : "above");
+    if (args->iso.given)
+        cli_json_number(j, "iso", args->iso.value);
+    cli_json_written(j, &args->written, made->path);
+}
+
+static void put_facts(cli_json *j, const void *p)
+{
+    const run_state *s = p;
+    if (s->mesh.file.format)
+        cli_json_mesh_file(j, "input", &s->mesh);
+    if (s->source.format)
+        cli_json_input(j, "source", &s->source);
+}
+
+/* --- arguments --------------------------------------------------------------------------- */
+
+static cw_status check_targets(const simplify_args *args, cw_error *err)
+{
+    if (!args->error.given && !args->triangles && !args->ratio.given)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "simplify needs to know how far to go: --error 0.1mm, --triangles 50k "
+                       "or --ratio 0.25");
+    if (args->error.unit == CLI_VOXELS)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--error: a mesh has no voxels; give mm, or %% of its box's diagonal");
+    if (args->ratio.given && !(args->ratio.value > 0 && args->ratio.value < 1))
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--ratio is a share of the triangles, above 0 and below 1, and not %g",
+                       args->ratio.value);
+    if (args->iso.given && !args->source)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--iso needs the volume it is of: --source VOLUME");
+    if (args->iso.given && !args->measure)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--iso is there to be measured from: not with --no-measure");
+    return CW_OK;
+}
+
+static cw_status check_against_inputs(const run_state *s, const char *output, cw_error *err)
+{
+    const char *inputs[2] = {s->args->common.inputs[0], s->args->source};
+    return cli_check_output(output, inputs, s->args->source ? 2 : 1, err);
+}
+
+/* The report is an output, too: none is written when it is an input or a mesh. */
+static cw_status check_outputs(run_state *s, cw_error *err)
+{
+    const simplify_args *args = s->args;
+    const cw_write_desc desc = cli_written_desc(&args->written, &args->compress, &s->mesh);
+    cw_status st = CW_OK;
+    for (size_t n = 0; n < s->outputs.count && st == CW_OK; n++) {
+        st = args->json ? cli_check_apart(args->json, s->outputs.path[n], err) : CW_OK;
+        s->report.path = st == CW_OK ? args->json : NULL;
+        if (st == CW_OK)
+            st = check_against_inputs(s, s->outputs.path[n], err);
+    }
+    return st == CW_OK ? cli_check_outputs(&s->outputs, args->common.inputs[0], &desc, err)
+                       : st;
+}
+
+/* What can be refused before the input is read. */
+static cw_status check_args(run_state *s, cw_error *err)
+{
+    const simplify_args *args = s->args;
+    cw_status st = args->json ? check_against_inputs(s, args->json, err) : CW_OK;
+    if (st != CW_OK)
+        return st;
+    s->report.path = args->json;
+    st = check_targets(args, err);
+    if (st == CW_OK)
+        st = cli_check_compress(&args->compress, false, err);
+    if (st != CW_OK)
+        return st;
+    if (!args->output)
+        return cw_fail(err, CW_ERR_ARGUMENT, "simplify needs an output: -o FILE");
+    if (!cw_simplify_available())
+        return cw_fail(err, CW_ERR_UNSUPPORTED,
+                       "simplify needs OpenMesh, which this build is without: install "
+                       "libopenmesh-dev and build again");
+    st = cli_name_output(&s->outputs, args->output, args->common.inputs[0], err);
+    return st == CW_OK ? check_outputs(s, err) : st;
+}
+
+/* --- input ------------------------------------------------------------------------------- */
+
+static cw_status take_piece(run_state *s, const cw_mesh *mesh, const char *name, size_t *merged,
+                            cw_error *err)
+{
+    piece *p = &s->pieces[s->piece_count];
+    const cw_quality_desc desc = {.weld = CW_WELD_LOCAL,
+                                  .threads = (int)s->args->input.threads};
+    size_t here;
+    *p = (piece){.input = *mesh, .name = name};
+    cw_status st = cw_mesh_weld(&p->input, &here, err);
+    if (st == CW_OK && p->input.triangle_count)
+        st = cw_quality_measure(&p->input, &desc, &p->before, err);
+    if (st != CW_OK || !p->input.triangle_count)
+        return st;
+    *merged += here;
+    s->triangles += p->input.triangle_count;
+    s->piece_count++;
+    return CW_OK;
+}
+
+static void measure_box(run_state *s)
+{
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (const piece *p = s->pieces; p < s->pieces + s->piece_count; p++)
+        for (int a = 0; a < 3; a++) {
+            low[a] = fmin(low[a], p->before.min[a]);
+            high[a] = fmax(high[a], p->before.max[a]);
+        }
+    s->diagonal_mm = hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
+    s->error_mm = s->args->error.given ? cli_length_mm(&s->args->error, s->diagonal_mm, 0) : 0;
+}
+
+static cw_status take_pieces(run_state *s, cw_error *err)
+{
+    const cli_mesh *m = &s->mesh;
+    const size_t count = m->parts ? m->part_count : 1;
+    size_t merged = 0;
+    cw_status st = CW_OK;
+    s->pieces = calloc(count ? count : 1, sizeof *s->pieces);
+    if (!s->pieces)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", count);
+    for (size_t n = 0; n < count && st == CW_OK; n++)
+        st = take_piece(s, m->parts ? m->parts[n].mesh : &m->mesh,
+                        m->parts ? m->parts[n].name : NULL, &merged, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, m->path);
+    if (!s->piece_count)
+        return cw_fail(err, CW_ERR_EMPTY, "%s: there are no triangles in it", m->path);
+    if (merged)
+        cli_say("%s: %s vertices were at the place of another and made one with it", m->path,
+                cli_count(merged));
+    measure_box(s);
+    return CW_OK;
+}
+
+static cw_status read_inputs(run_state *s, cw_error *err)
+{
+    const simplify_args *args = s->args;
+    const char *path = args->common.inputs[0];
+    const cw_format *format = cw_mesh_format(args->output, args->written.format);
+    const bool parts = !args->merge && format && format->keeps & CW_KEEPS_PARTS;
+    cli_report_begin(&s->report);
+    cw_status st = parts ? cli_read_parts(path, args->mesh_reader, &args->input, &s->mesh, err)
+                         : cli_read_mesh(path, args->mesh_reader, &args->input, &s->mesh, err);
+    if (st == CW_OK && args->source)
+        st = cli_read_volume(args->source, &args->input, false, &s->source, err);
+    if (st == CW_OK)
+        st = take_pieces(s, err);
+    for (size_t n = 0; n < s->piece_count && st == CW_OK && args->source; n++)
+        st = cli_check_place(&s->source, &s->pieces[n].input, err);
+    if (st == CW_OK)
+        cli_report_end(&s->report, "read", 1, s->triangles);
+    return st;
+}
+
+/* --- work -------------------------------------------------------------------------------- */
+
+/* Parts share the triangles in proportion to what they have. */
+static size_t share_of(const run_state *s, const piece *p)
+{
+    const double share = (double)p->input.triangle_count / (double)s->triangles;
+    const size_t triangles = (size_t)(share * (double)s->args->triangles);
+    return s->args->triangles && !triangles ? 1 : triangles;
+}
+
+/* What the result was to have, at most; 0: nothing was said. */
+static size_t target_of(const run_state *s)
+{
+    const double share = s->args->ratio.given ? s->args->ratio.value : 0;
+    const size_t rest = (size_t)(share * (double)s->triangles);
+    return rest > s->args->triangles ? rest : s->args->triangles;
+}
+
+static void tell_missed(run_state *s, size_t triangles)
+{
+    const size_t target = target_of(s);
+    if (!target || triangles <= target)
+        return;
+    if (s->args->error.given)
+        cli_say("%s: %s triangles, and not %s: with fewer it would be more than %.6g mm off",
+                s->mesh.path, cli_count(triangles), cli_count(target), s->error_mm);
+    else
+        cli_report_warn(&s->report,
+                        "%s triangles were asked for, %s are left: where more would go, the "
+                        "surface would tear, turn over or meet itself",
+                        cli_count(target), cli_count(triangles));
+}
+
+static cw_status simplify(run_state *s, cw_error *err)
+{
+    const simplify_args *args = s->args;
+    size_t triangles = 0;
+    cw_status st = CW_OK;
+    cli_report_begin(&s->report);
+    for (piece *p = s->pieces; p < s->pieces + s->piece_count && st == CW_OK; p++) {
+        const cw_simplify_desc desc = {
+            .error_mm = s->error_mm,
+            .triangles = share_of(s, p),
+            .ratio = args->ratio.given ? args->ratio.value : 0,
+            .allow_crossings = args->allow_intersections,
+            .threads = (int)args->input.threads,
+            .progress = cli_progress((double)p->input.triangle_count / 1e6, "Mtriangle")};
+        st = cw_simplify(&p->input, &desc, &p->out, NULL, err);
+        triangles += p->out.triangle_count;
+    }
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, s->mesh.path);
+    cli_report_end(&s->report, "simplify", s->triangles, triangles);
+    tell_missed(s, triangles);
+    return CW_OK;
+}
+
+/* The promise that holds in any case. */
+static cw_status hold_to_topology(run_state *s, cw_error *err)
+{
+    const cw_quality_desc desc = {.weld = CW_WELD_LOCAL,
+                                  .threads = (int)s->args->input.threads};
+    cw_status st = CW_OK;
+    for (const piece *p = s->pieces; p < s->pieces + s->piece_count && st == CW_OK; p++) {
+        cw_quality after;
+        st = cw_quality_measure(&p->out, &desc, &after, err);
+        if (st == CW_OK)
+            st = cli_hold_to_topology(&p->before, &after, err);
+    }
+    return st == CW_OK ? CW_OK : cwi_fail_in(err, st, s->mesh.path);
+}
+
+/* How far from the source's surface: of all parts the farthest, as they are on one surface. */
+static cw_status measure_from_field(run_state *s, const cw_mesh *mesh, cli_comparison *c,
+                                    cw_error *err)
+{
+    const cw_field_distance_desc desc = {
+        .isovalue = s->args->iso.value,
+        .inside_is_low = s->args->inside,
+        .threads = (int)s->args->input.threads,
+        .progress = cli_progress((double)mesh->triangle_count / 1e6, "Mtriangle")};
+    cw_distance d;
+    cw_status st = cw_distance_to_field(mesh, &s->source.view, &desc, &d, NULL, err);
+    if (st == CW_OK && (!c->has_field || d.max_mm > c->to_field.max_mm))
+        c->to_field = d;
+    c->has_field = st == CW_OK;
+    return st;
+}
+
+static cw_status measure(run_state *s, cli_made *made, cw_error *err)
+{
+    cli_comparison *c = &made->compared;
+    double area[2] = {0, 0};
+    cw_status st = CW_OK;
+    if (!s->args->measure)
+        return CW_OK;
+    c->diagonal_mm = s->diagonal_mm;
+    c->promised_mm = s->error_mm;
+    cli_report_begin(&s->report);
+    for (const piece *p = s->pieces; p < s->pieces + s->piece_count && st == CW_OK; p++) {
+        st = cli_compare(&p->out, &p->input, s->error_mm / 100, (int)s->args->input.threads, c,
+                         area, err);
+        if (st == CW_OK && s->args->iso.given)
+            st = measure_from_field(s, &p->out, c, err);
+    }
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, s->mesh.path);
+    cli_report_end(&s->report, "measure", c->from_input.triangles, c->to_input.triangles);
+    const double most = fmax(c->to_input.max_mm, c->from_input.max_mm);
+    return s->error_mm > 0 && most > s->error_mm
+               ? cw_fail(err, CW_ERR_CHECK,
+                         "%s: not as promised: %.6g mm from the input, and not %.6g; nothing "
+                         "is written",
+                         s->mesh.path, most, s->error_mm)
+               : CW_OK;
+}
+
+static cw_status shade(run_state *s, cw_error *err)
+{
+    const cw_normals_desc desc = {.inside_is_low = s->args->inside,
+                                  .threads = (int)s->args->input.threads};
+    cw_status st = CW_OK;
+    if (!s->args->source)
+        return CW_OK;
+    cli_report_begin(&s->report);
+    for (piece *p = s->pieces; p < s->pieces + s->piece_count && st == CW_OK; p++)
+        st = cw_extract_normals(&s->source.view, &desc, &p->out, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, s->source.path);
+    cli_report_end(&s->report, "normals", 1, s->piece_count);
+    return CW_OK;
+}
+
+static cw_status deliver(run_state *s, cw_error *err)
+{
+    const cli_delivery how = {
+        .input = s->mesh.path,
+        .write = cli_written_desc(&s->args->written, &s->args->compress, &s->mesh),
+        .compress = &s->args->compress,
+        .threads = (int)s->args->input.threads,
+        .unpromised = true,
+        .tell_dropped = true};
+    cw_part *parts = calloc(s->piece_count, sizeof *parts);
+    if (!parts)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", s->piece_count);
+    for (size_t n = 0; n < s->piece_count; n++)
+        parts[n] = (cw_part){.mesh = &s->pieces[n].out, .name = s->pieces[n].name};
+    cw_status st = cli_deliver(&s->report, &how, parts, s->piece_count, 0, s->start, err);
+    free(parts);
+    return st;
+}
+
+static cw_status pipeline(run_state *s, cw_error *err)
+{
+    cw_status st = check_args(s, err);
+    if (st == CW_OK)
+        st = read_inputs(s, err);
+    if (st != CW_OK)
+        return st;
+    cli_made *made = cli_report_next(&s->report, s->outputs.path[0], 0);
+    st = simplify(s, err);
+    if (st == CW_OK)
+        st = hold_to_topology(s, err);
+    if (st == CW_OK)
+        st = measure(s, made, err);
+    if (st == CW_OK)
+        st = shade(s, err);
+    return st == CW_OK ? deliver(s, err) : st;
+}
+
+static void free_state(run_state *s)
+{
+    for (size_t n = 0; n < s->piece_count; n++)
+        cw_mesh_free(&s->pieces[n].out);
+    free(s->pieces);
+    cli_free_mesh(&s->mesh);
+    cli_free_volume(&s->source);
+    cli_free_outputs(&s->outputs);
+    cli_report_free(&s->report);
+}
+
+static cw_status run(void *p, cw_error *err)
+{
+    const simplify_args *args = p;
+    run_state s = {.args = args, .start = cli_seconds()};
+    s.report.command = "simplify";
+    s.report.params = put_params;
+    s.report.facts = put_facts;
+    s.report.args = &s;
+    cli_console_start(&args->common, (cli_progress_mode)args->progress);
+    if (args->json && strcmp(args->json, "-") == 0)
+        cli_results_to_stderr();
+    cw_status st = cli_report_reserve(&s.report, 1, err);
+    if (st == CW_OK)
+        st = pipeline(&s, err);
+    st = cli_report_write(&s.report, st, err);
+    free_state(&s);
+    return st;
+}
+
+const cli_command cli_simplify = {
+    .name = "simplify",
+    .usage = "MESH -o MESH --error L|--triangles N|--ratio R [options]",
+    .about = "a mesh with fewer triangles, under a promise of how far it is from the input",
+    .more =
+        "Reads a mesh, collapses edges, those first that move the surface least, measures how\n"
+        "far the result is from the input, and writes it. Of several targets the one that is\n"
+        "met first ends it.\n\n"
+        "With --error no point of the result is farther from the input, and none of the input\n"
+        "farther from the result. In any case components, handles and border loops stay what\n"
+        "they are, nothing turns over, and no triangles meet that did not meet before\n"
+        "(--allow-intersections drops the last). Where that leaves more triangles than asked\n"
+        "for, it is told. Exit code 1, and no file, when the result should not be as "
+        "promised.\n\n"
+        "The error that is printed, and in the report, is measured both ways over the whole\n"
+        "surfaces: the largest distance, the root of the mean square, the 99th percentile.\n"
+        "--no-measure skips it.\n\n"
+        "Vertices at equal positions are made one first. Parts (of OBJ, 3MF, glTF) stay parts\n"
+        "where the output's format has them: each is simplified by itself, with its share of\n"
+        "the triangles; crossings are looked for within each. --merge makes them one mesh.\n\n"
+        "Normals, colours, scalars and labels are those of the closest point of the input.\n"
+        "--source takes normals from the field of the volume that the mesh is a surface of, "
+        "so\n"
+        "that it shades as the full one does; with --iso the distance to the field's surface\n"
+        "is measured, too.\n\n"
+        "Examples\n"
+        "  cubewright simplify bone.stl --error 0.1mm -o small.stl\n"
+        "  cubewright simplify bone.glb --triangles 50k --error 0.05% -o web.glb \\\n"
+        "      --compress meshopt\n"
+        "  cubewright simplify bone.glb --ratio 0.1 -o tenth.glb --source ct.nrrd --iso 300\n",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .min_inputs = 1,
+    .max_inputs = 1,
+    .size = sizeof(simplify_args),
+    .defaults = &defaults,
+    .run = run,
+};
