@@ -19,7 +19,7 @@ typedef struct simplify_args {
     cli_compress compress;
     cli_written written;
     const char *output, *json, *source, *mesh_reader;
-    cli_length error;
+    cli_length error, drop;
     cli_number ratio, iso;
     size_t triangles;
     int inside, progress;
@@ -42,6 +42,9 @@ static const cli_option options[] = {
     {"allow-intersections", 0, CLI_FLAG, NULL,
      "triangles may meet that did not: faster (none may)",
      offsetof(simplify_args, allow_intersections)},
+    {"drop-components", 0, CLI_LENGTH, "L",
+     "leave out components whose box has a shorter diagonal, e.g. 2mm, before all (none)",
+     offsetof(simplify_args, drop)},
     {"merge", 0, CLI_FLAG, NULL,
      "all parts as one mesh (each by itself, where the format has parts)",
      offsetof(simplify_args, merge)},
@@ -84,7 +87,8 @@ typedef struct run_state {
     cli_volume source;
     piece *pieces;
     size_t piece_count, triangles; /* of all pieces, before */
-    double diagonal_mm, error_mm;
+    size_t merged, dropped, kept;  /* vertices; components */
+    double diagonal_mm, error_mm, drop_mm;
     cli_outputs outputs;
     cli_report report;
     double start;
@@ -100,6 +104,11 @@ static void put_params(cli_json *j, const void *p, const cli_made *made)
         cli_json_count(j, "triangles", args->triangles);
     if (args->ratio.given)
         cli_json_number(j, "ratio", args->ratio.value);
+    if (args->drop.given) {
+        cli_json_number(j, "drop_components_mm", s->drop_mm);
+        cli_json_count(j, "dropped_components", s->dropped);
+    }
+    cli_json_count(j, "merged_vertices", s->merged);
     cli_json_bool(j, "allow_intersections", args->allow_intersections);
     cli_json_bool(j, "merge", args->merge);
     cli_json_text(j, "normals", args->source ? "field" : "carried");
@@ -127,9 +136,10 @@ static cw_status check_targets(const simplify_args *args, cw_error *err)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "simplify needs to know how far to go: --error 0.1mm, --triangles 50k "
                        "or --ratio 0.25");
-    if (args->error.unit == CLI_VOXELS)
+    if (args->error.unit == CLI_VOXELS || args->drop.unit == CLI_VOXELS)
         return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--error: a mesh has no voxels; give mm, or %% of its box's diagonal");
+                       "--%s: a mesh has no voxels; give mm, or %% of its box's diagonal",
+                       args->error.unit == CLI_VOXELS ? "error" : "drop-components");
     if (args->ratio.given && !(args->ratio.value > 0 && args->ratio.value < 1))
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "--ratio is a share of the triangles, above 0 and below 1, and not %g",
@@ -190,58 +200,96 @@ static cw_status check_args(run_state *s, cw_error *err)
 
 /* --- input ------------------------------------------------------------------------------- */
 
-static cw_status take_piece(run_state *s, const cw_mesh *mesh, const char *name, size_t *merged,
-                            cw_error *err)
-{
-    piece *p = &s->pieces[s->piece_count];
-    const cw_quality_desc desc = {.weld = CW_WELD_LOCAL,
-                                  .threads = (int)s->args->input.threads};
-    size_t here;
-    *p = (piece){.input = *mesh, .name = name};
-    cw_status st = cw_mesh_weld(&p->input, &here, err);
-    if (st == CW_OK && p->input.triangle_count)
-        st = cw_quality_measure(&p->input, &desc, &p->before, err);
-    if (st != CW_OK || !p->input.triangle_count)
-        return st;
-    *merged += here;
-    s->triangles += p->input.triangle_count;
-    s->piece_count++;
-    return CW_OK;
-}
-
+/* The parts as they are read: their box is what shares are of. */
 static void measure_box(run_state *s)
 {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    for (const piece *p = s->pieces; p < s->pieces + s->piece_count; p++)
+    for (const piece *p = s->pieces; p < s->pieces + s->piece_count; p++) {
+        double from[3], to[3];
+        cw_mesh_bounds(&p->input, from, to);
         for (int a = 0; a < 3; a++) {
-            low[a] = fmin(low[a], p->before.min[a]);
-            high[a] = fmax(high[a], p->before.max[a]);
+            low[a] = fmin(low[a], from[a]);
+            high[a] = fmax(high[a], to[a]);
         }
+    }
     s->diagonal_mm = hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
     s->error_mm = s->args->error.given ? cli_length_mm(&s->args->error, s->diagonal_mm, 0) : 0;
+    s->drop_mm = s->args->drop.given ? cli_length_mm(&s->args->drop, s->diagonal_mm, 0) : 0;
 }
 
-static cw_status take_pieces(run_state *s, cw_error *err)
+/* Welds all parts; those without triangles go. */
+static cw_status weld_pieces(run_state *s, cw_error *err)
 {
     const cli_mesh *m = &s->mesh;
     const size_t count = m->parts ? m->part_count : 1;
-    size_t merged = 0;
     cw_status st = CW_OK;
     s->pieces = calloc(count ? count : 1, sizeof *s->pieces);
     if (!s->pieces)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", count);
-    for (size_t n = 0; n < count && st == CW_OK; n++)
-        st = take_piece(s, m->parts ? m->parts[n].mesh : &m->mesh,
-                        m->parts ? m->parts[n].name : NULL, &merged, err);
-    if (st != CW_OK)
-        return cwi_fail_in(err, st, m->path);
-    if (!s->piece_count)
-        return cw_fail(err, CW_ERR_EMPTY, "%s: there are no triangles in it", m->path);
-    if (merged)
+    for (size_t n = 0; n < count && st == CW_OK; n++) {
+        size_t merged;
+        piece *p = &s->pieces[s->piece_count];
+        *p = (piece){.input = m->parts ? *m->parts[n].mesh : m->mesh,
+                     .name = m->parts ? m->parts[n].name : NULL};
+        st = cw_mesh_weld(&p->input, &merged, err);
+        s->merged += merged;
+        s->piece_count += st == CW_OK && p->input.triangle_count > 0;
+    }
+    if (st == CW_OK && s->merged)
         cli_say("%s: %s vertices were at the place of another and made one with it", m->path,
-                cli_count(merged));
-    measure_box(s);
-    return CW_OK;
+                cli_count(s->merged));
+    return st;
+}
+
+static cw_status drop_components(run_state *s, cw_error *err)
+{
+    const size_t count = s->piece_count;
+    cw_status st = CW_OK;
+    if (!s->args->drop.given)
+        return CW_OK;
+    s->piece_count = 0;
+    for (size_t n = 0; n < count && st == CW_OK; n++) {
+        size_t dropped = 0, kept = 0;
+        piece *p = &s->pieces[s->piece_count];
+        *p = s->pieces[n];
+        st = cw_mesh_drop_components(&p->input, s->drop_mm, &dropped, &kept, err);
+        s->dropped += dropped;
+        s->kept += kept;
+        s->piece_count += kept > 0;
+    }
+    if (st == CW_OK && !s->piece_count)
+        return cw_fail(err, CW_ERR_EMPTY,
+                       "no component has a diagonal of %.6g mm: nothing is left", s->drop_mm);
+    if (st == CW_OK)
+        cli_say("%s: %s component%s kept, %s dropped (< %.6g mm)", s->mesh.path,
+                cli_count(s->kept), s->kept == 1 ? "" : "s", cli_count(s->dropped), s->drop_mm);
+    return st;
+}
+
+static cw_status measure_pieces(run_state *s, cw_error *err)
+{
+    const cw_quality_desc desc = {.weld = CW_WELD_LOCAL,
+                                  .threads = (int)s->args->input.threads};
+    cw_status st = CW_OK;
+    for (piece *p = s->pieces; p < s->pieces + s->piece_count && st == CW_OK; p++) {
+        st = cw_quality_measure(&p->input, &desc, &p->before, err);
+        s->triangles += p->input.triangle_count;
+    }
+    return st;
+}
+
+static cw_status take_pieces(run_state *s, cw_error *err)
+{
+    cw_status st = weld_pieces(s, err);
+    if (st == CW_OK && !s->piece_count)
+        st = cw_fail(err, CW_ERR_EMPTY, "there are no triangles in it");
+    if (st == CW_OK)
+        measure_box(s);
+    if (st == CW_OK)
+        st = drop_components(s, err);
+    if (st == CW_OK)
+        st = measure_pieces(s, err);
+    return st == CW_OK ? CW_OK : cwi_fail_in(err, st, s->mesh.path);
 }
 
 static cw_status read_inputs(run_state *s, cw_error *err)
@@ -481,9 +529,11 @@ const cli_command cli_simplify = {
         "The error that is printed, and in the report, is measured both ways over the whole\n"
         "surfaces: the largest distance, the root of the mean square, the 99th percentile.\n"
         "--no-measure skips it.\n\n"
-        "Vertices at equal positions are made one first. Parts (of OBJ, 3MF, glTF) stay parts\n"
-        "where the output's format has them: each is simplified by itself, with its share of\n"
-        "the triangles; crossings are looked for within each. --merge makes them one mesh.\n\n"
+        "Vertices at equal positions are made one first. --drop-components then leaves out\n"
+        "specks; the error is measured against what is left.\n\n"
+        "Parts (of OBJ, 3MF, glTF) stay parts where the output's format has them: each is\n"
+        "simplified by itself, with its share of the triangles, and crossings are looked for\n"
+        "within each. --merge makes them one mesh.\n\n"
         "Normals, colours, scalars and labels are those of the closest point of the input.\n"
         "--source takes normals from the field of the volume that the mesh is a surface of, "
         "so\n"
@@ -493,6 +543,7 @@ const cli_command cli_simplify = {
         "  cubewright simplify bone.stl --error 0.1mm -o small.stl\n"
         "  cubewright simplify bone.glb --triangles 50k --error 0.05% -o web.glb \\\n"
         "      --compress meshopt\n"
+        "  cubewright simplify scan.ply --drop-components 2mm --error 0.2mm -o scan.glb\n"
         "  cubewright simplify bone.glb --ratio 0.1 -o tenth.glb --source ct.nrrd --iso 300\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,

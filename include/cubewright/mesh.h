@@ -45,6 +45,16 @@ CW_API bool cw_mesh_bounds(const cw_mesh *mesh, double min[3], double max[3]);
  * Returns  CW_ERR_ARGUMENT as cw_mesh_check(); CW_ERR_NO_MEMORY */
 CW_API cw_status cw_mesh_weld(cw_mesh *mesh, size_t *merged, cw_error *err);
 
+/* Leaves out components (sets of triangles joined by vertices) whose box has a diagonal shorter
+ * than so much, and then vertices that no triangle names.
+ *
+ * mesh     in place, as in cw_mesh_weld()
+ * dropped, kept   components; may be NULL
+ * Returns  CW_ERR_ARGUMENT  diagonal_mm is negative or NaN, or as cw_mesh_check();
+ *          CW_ERR_NO_MEMORY */
+CW_API cw_status cw_mesh_drop_components(cw_mesh *mesh, double diagonal_mm, size_t *dropped,
+                                         size_t *kept, cw_error *err);
+
 #ifdef __cplusplus
 }
 #endif

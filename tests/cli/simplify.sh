@@ -56,3 +56,9 @@ OFF
 3 9 10 11
 END2
 cubewright simplify soup.off -o soup.stl --ratio 0.5
+
+# specks are left out, and told
+{ cat a.obj; awk -v n="$(grep -c '^v ' a.obj)" 'END { print "v 90 0 0\nv 91 0 0\nv 90 1 0\nf", n + 1, n + 2, n + 3 }' a.obj; } | grep -v ^vn |
+    sed 's|//[0-9]*||g' >speck.obj
+cubewright simplify speck.obj -o clean.obj --ratio 0.5 --drop-components 2mm --no-measure
+cubewright simplify speck.obj -o clean.obj --ratio 0.5 --drop-components 1% --json - -q | grep -e dropped_c -e drop_c -e '"components"'

@@ -42,4 +42,6 @@ try empty.off -o x.stl --ratio 0.5
 try none.off -o x.stl --ratio 0.5
 try s.off s.off -o x.stl --ratio 0.5
 try s.off -o x.stl --triangels 5
+try s.off -o x.stl --ratio 0.5 --drop-components 1vox
+try s.off -o x.stl --ratio 0.5 --drop-components 101%
 ls -A
