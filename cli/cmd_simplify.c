@@ -4,12 +4,14 @@
 #include "cli/deliver.h"
 #include "cli/output.h"
 #include "cli/quantity.h"
+#include "cli/template.h"
 #include "cli/written.h"
 #include "core/status.h"
 
 #include <cubewright/simplify.h>
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -22,6 +24,7 @@ typedef struct simplify_args {
     cli_length error, drop;
     cli_number ratio, iso;
     size_t triangles;
+    cli_counts lod;
     int inside, progress;
     bool allow_intersections, merge, measure;
 } simplify_args;
@@ -30,7 +33,7 @@ static const simplify_args defaults = {.measure = true};
 
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE",
-     "the mesh, in the format of its extension; may hold {stem}",
+     "the mesh, in the format of its extension; may hold {stem}, with --lod {lod}",
      offsetof(simplify_args, output)},
     {"error", 'e', CLI_LENGTH, "L",
      "as far as this allows: 0.1mm, or 0.05% of the box's diagonal",
@@ -39,6 +42,10 @@ static const cli_option options[] = {
      offsetof(simplify_args, triangles)},
     {"ratio", 0, CLI_NUMBER, "R", "down to this share of the triangles, e.g. 0.25",
      offsetof(simplify_args, ratio)},
+    {"lod", 0, CLI_COUNTS, "N[,N...]",
+     "levels of detail of so many triangles, e.g. 50k,12k,3k: a file each, glTF also one of "
+     "all",
+     offsetof(simplify_args, lod)},
     {"allow-intersections", 0, CLI_FLAG, NULL,
      "triangles may meet that did not: faster (none may)",
      offsetof(simplify_args, allow_intersections)},
@@ -87,7 +94,10 @@ typedef struct run_state {
     cli_volume source;
     piece *pieces;
     size_t piece_count, triangles; /* of all pieces, before */
-    size_t merged, dropped, kept;  /* vertices; components */
+    cw_mesh lod[CLI_MAX_COUNTS];   /* levels of the only piece, until they are its result */
+    char lod_names[CLI_MAX_COUNTS][8];
+    bool unordered;               /* it was told that meshoptimizer is not there */
+    size_t merged, dropped, kept; /* vertices; components */
     double diagonal_mm, error_mm, drop_mm;
     cli_outputs outputs;
     cli_report report;
@@ -104,6 +114,12 @@ static void put_params(cli_json *j, const void *p, const cli_made *made)
         cli_json_count(j, "triangles", args->triangles);
     if (args->ratio.given)
         cli_json_number(j, "ratio", args->ratio.value);
+    if (args->lod.count) {
+        cli_json_open(j, "lod", '[');
+        for (size_t n = 0; n < args->lod.count; n++)
+            cli_json_count(j, NULL, args->lod.n[n]);
+        cli_json_close(j, ']');
+    }
     if (args->drop.given) {
         cli_json_number(j, "drop_components_mm", s->drop_mm);
         cli_json_count(j, "dropped_components", s->dropped);
@@ -130,12 +146,33 @@ static void put_facts(cli_json *j, const void *p)
 
 /* --- arguments --------------------------------------------------------------------------- */
 
+static cw_status check_lod(const simplify_args *args, cw_error *err)
+{
+    const cli_counts *lod = &args->lod;
+    if (args->error.given || args->triangles || args->ratio.given)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--lod says how far to go: --error, --triangles and --ratio are for one "
+                       "mesh");
+    for (size_t n = 0; n < lod->count; n++)
+        if (!lod->n[n] || (n && lod->n[n] >= lod->n[n - 1]))
+            return cw_fail(err, CW_ERR_ARGUMENT,
+                           "--lod lists %zu triangles%s; each level needs some, and fewer than "
+                           "the one before",
+                           lod->n[n], n ? " behind as many or fewer" : "");
+    return CW_OK;
+}
+
 static cw_status check_targets(const simplify_args *args, cw_error *err)
 {
-    if (!args->error.given && !args->triangles && !args->ratio.given)
+    if (args->lod.count) {
+        cw_status st = check_lod(args, err);
+        if (st != CW_OK)
+            return st;
+    } else if (!args->error.given && !args->triangles && !args->ratio.given) {
         return cw_fail(err, CW_ERR_ARGUMENT,
-                       "simplify needs to know how far to go: --error 0.1mm, --triangles 50k "
-                       "or --ratio 0.25");
+                       "simplify needs to know how far to go: --error 0.1mm, --triangles 50k, "
+                       "--ratio 0.25 or --lod 50k,12k,3k");
+    }
     if (args->error.unit == CLI_VOXELS || args->drop.unit == CLI_VOXELS)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "--%s: a mesh has no voxels; give mm, or %% of its box's diagonal",
@@ -175,6 +212,12 @@ static cw_status check_outputs(run_state *s, cw_error *err)
                        : st;
 }
 
+static bool is_gltf(const simplify_args *args)
+{
+    const cw_format *format = cw_mesh_format(args->output, args->written.format);
+    return format && (strcmp(format->name, "glb") == 0 || strcmp(format->name, "gltf") == 0);
+}
+
 /* What can be refused before the input is read. */
 static cw_status check_args(run_state *s, cw_error *err)
 {
@@ -194,7 +237,10 @@ static cw_status check_args(run_state *s, cw_error *err)
         return cw_fail(err, CW_ERR_UNSUPPORTED,
                        "simplify needs OpenMesh, which this build is without: install "
                        "libopenmesh-dev and build again");
-    st = cli_name_output(&s->outputs, args->output, args->common.inputs[0], err);
+    st = args->lod.count
+             ? cli_name_lod_outputs(&s->outputs, args->output, args->common.inputs[0],
+                                    args->lod.count, is_gltf(args), err)
+             : cli_name_output(&s->outputs, args->output, args->common.inputs[0], err);
     return st == CW_OK ? check_outputs(s, err) : st;
 }
 
@@ -297,7 +343,8 @@ static cw_status read_inputs(run_state *s, cw_error *err)
     const simplify_args *args = s->args;
     const char *path = args->common.inputs[0];
     const cw_format *format = cw_mesh_format(args->output, args->written.format);
-    const bool parts = !args->merge && format && format->keeps & CW_KEEPS_PARTS;
+    const bool parts =
+        !args->merge && !args->lod.count && format && format->keeps & CW_KEEPS_PARTS;
     cli_report_begin(&s->report);
     cw_status st = parts ? cli_read_parts(path, args->mesh_reader, &args->input, &s->mesh, err)
                          : cli_read_mesh(path, args->mesh_reader, &args->input, &s->mesh, err);
@@ -330,9 +377,11 @@ static size_t target_of(const run_state *s)
     return rest > s->args->triangles ? rest : s->args->triangles;
 }
 
-static void tell_missed(run_state *s, size_t triangles)
+static void tell_missed(run_state *s, size_t target, size_t triangles)
 {
-    const size_t target = target_of(s);
+    if (target && s->triangles <= target)
+        cli_say("%s: has no more than the %s triangles asked for: they stay", s->mesh.path,
+                cli_count(target));
     if (!target || triangles <= target)
         return;
     if (s->args->error.given)
@@ -365,7 +414,26 @@ static cw_status simplify(run_state *s, cw_error *err)
     if (st != CW_OK)
         return cwi_fail_in(err, st, s->mesh.path);
     cli_report_end(&s->report, "simplify", s->triangles, triangles);
-    tell_missed(s, triangles);
+    tell_missed(s, target_of(s), triangles);
+    return CW_OK;
+}
+
+static cw_status simplify_levels(run_state *s, cw_error *err)
+{
+    const simplify_args *args = s->args;
+    const cw_simplify_desc desc = {.allow_crossings = args->allow_intersections,
+                                   .threads = (int)args->input.threads,
+                                   .progress =
+                                       cli_progress((double)s->triangles / 1e6, "Mtriangle")};
+    size_t triangles = 0;
+    cli_report_begin(&s->report);
+    cw_status st = cw_simplify_levels(&s->pieces->input, &desc, args->lod.n, args->lod.count,
+                                      s->lod, NULL, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, s->mesh.path);
+    for (size_t n = 0; n < args->lod.count; n++)
+        triangles += s->lod[n].triangle_count;
+    cli_report_end(&s->report, "simplify", s->triangles, triangles);
     return CW_OK;
 }
 
@@ -445,23 +513,115 @@ static cw_status shade(run_state *s, cw_error *err)
     return CW_OK;
 }
 
-static cw_status deliver(run_state *s, cw_error *err)
+/* Levels are for drawing: their triangles and vertices are put in the order that is fast. */
+static cw_status order(run_state *s, cw_error *err)
+{
+    cw_error why = {0};
+    const cw_status st = cw_mesh_optimize(&s->pieces->out, &why);
+    if (st == CW_ERR_UNSUPPORTED) {
+        if (!s->unordered)
+            cli_say("levels are not put in the order that draws fast: %s", why.message);
+        s->unordered = true;
+        return CW_OK;
+    }
+    return st == CW_OK ? CW_OK : cw_fail(err, st, "%s: %s", s->mesh.path, why.message);
+}
+
+static cw_status deliver_parts(run_state *s, const cw_part *parts, size_t count, bool levels,
+                               cw_error *err)
 {
     const cli_delivery how = {
         .input = s->mesh.path,
         .write = cli_written_desc(&s->args->written, &s->args->compress, &s->mesh),
         .compress = &s->args->compress,
         .threads = (int)s->args->input.threads,
+        .unchecked = levels, /* each was by itself */
         .unpromised = true,
+        .levels = levels,
         .tell_dropped = true};
+    return cli_deliver(&s->report, &how, parts, count, 0, s->start, err);
+}
+
+static cw_status deliver(run_state *s, cw_error *err)
+{
     cw_part *parts = calloc(s->piece_count, sizeof *parts);
     if (!parts)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", s->piece_count);
     for (size_t n = 0; n < s->piece_count; n++)
         parts[n] = (cw_part){.mesh = &s->pieces[n].out, .name = s->pieces[n].name};
-    cw_status st = cli_deliver(&s->report, &how, parts, s->piece_count, 0, s->start, err);
+    cw_status st = deliver_parts(s, parts, s->piece_count, false, err);
     free(parts);
     return st;
+}
+
+/* Measures what became of the pieces, shades it and writes it. */
+static cw_status finish(run_state *s, cli_made *made, cw_error *err)
+{
+    cw_status st = hold_to_topology(s, err);
+    if (st == CW_OK)
+        st = measure(s, made, err);
+    if (st == CW_OK)
+        st = shade(s, err);
+    if (st == CW_OK && s->args->lod.count)
+        st = order(s, err);
+    if (st == CW_OK)
+        st = deliver(s, err);
+    if (st != CW_OK)
+        made->error = *err;
+    return st;
+}
+
+/* One file with all levels; names of nodes are as those of the files. */
+static cw_status deliver_levels(run_state *s, cw_error *err)
+{
+    const size_t count = s->args->lod.count;
+    const char *path = s->outputs.path[count];
+    char names[CLI_MAX_COUNTS][256],
+        *stem = cli_stem(s->args->written.name ? s->args->written.name : path);
+    cw_part parts[CLI_MAX_COUNTS];
+    cli_made *made = cli_report_next(&s->report, path, 0);
+    made->name = "all";
+    if (!stem)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for names");
+    for (size_t n = 0; n < count; n++) {
+        const cli_comparison *c = &s->report.made[n].compared;
+        snprintf(names[n], sizeof names[n], "%.200s-lod%zu", stem, n);
+        parts[n] = (cw_part){
+            .mesh = &s->lod[n],
+            .name = names[n],
+            .level = n,
+            .max_error_mm = fmax(c->to_input.max_mm, c->from_input.max_mm),
+            .rms_error_mm = cli_both_rms(c),
+        };
+    }
+    cw_status st = deliver_parts(s, parts, count, true, err);
+    if (st != CW_OK)
+        made->error = *err;
+    free(stem);
+    return st;
+}
+
+/* Each level is the result of the only piece for a while. */
+static cw_status make_levels(run_state *s, cw_error *err)
+{
+    const size_t count = s->args->lod.count;
+    cw_status st = CW_OK;
+    for (size_t n = 0; n < count && st == CW_OK; n++) {
+        cli_made *made = cli_report_next(&s->report, s->outputs.path[n], 0);
+        snprintf(s->lod_names[n], sizeof s->lod_names[n], "lod%zu", n);
+        made->name = s->lod_names[n];
+        if (n == 0)
+            st = simplify_levels(s, err);
+        if (st != CW_OK)
+            return st;
+        tell_missed(s, s->args->lod.n[n], s->lod[n].triangle_count);
+        s->pieces->out = s->lod[n];
+        st = finish(s, made, err);
+        s->lod[n] = s->pieces->out;
+        s->pieces->out = (cw_mesh){0};
+        s->start = cli_seconds();
+    }
+    return st == CW_OK && s->outputs.count > count ? deliver_levels(s, err) : st;
 }
 
 static cw_status pipeline(run_state *s, cw_error *err)
@@ -471,21 +631,19 @@ static cw_status pipeline(run_state *s, cw_error *err)
         st = read_inputs(s, err);
     if (st != CW_OK)
         return st;
+    if (s->args->lod.count)
+        return make_levels(s, err);
     cli_made *made = cli_report_next(&s->report, s->outputs.path[0], 0);
     st = simplify(s, err);
-    if (st == CW_OK)
-        st = hold_to_topology(s, err);
-    if (st == CW_OK)
-        st = measure(s, made, err);
-    if (st == CW_OK)
-        st = shade(s, err);
-    return st == CW_OK ? deliver(s, err) : st;
+    return st == CW_OK ? finish(s, made, err) : st;
 }
 
 static void free_state(run_state *s)
 {
     for (size_t n = 0; n < s->piece_count; n++)
         cw_mesh_free(&s->pieces[n].out);
+    for (size_t n = 0; n < CLI_MAX_COUNTS; n++)
+        cw_mesh_free(&s->lod[n]);
     free(s->pieces);
     cli_free_mesh(&s->mesh);
     cli_free_volume(&s->source);
@@ -498,13 +656,14 @@ static cw_status run(void *p, cw_error *err)
     const simplify_args *args = p;
     run_state s = {.args = args, .start = cli_seconds()};
     s.report.command = "simplify";
+    s.report.several = args->lod.count ? "levels" : NULL;
     s.report.params = put_params;
     s.report.facts = put_facts;
     s.report.args = &s;
     cli_console_start(&args->common, (cli_progress_mode)args->progress);
     if (args->json && strcmp(args->json, "-") == 0)
         cli_results_to_stderr();
-    cw_status st = cli_report_reserve(&s.report, 1, err);
+    cw_status st = cli_report_reserve(&s.report, args->lod.count + 1, err);
     if (st == CW_OK)
         st = pipeline(&s, err);
     st = cli_report_write(&s.report, st, err);
@@ -514,7 +673,7 @@ static cw_status run(void *p, cw_error *err)
 
 const cli_command cli_simplify = {
     .name = "simplify",
-    .usage = "MESH -o MESH --error L|--triangles N|--ratio R [options]",
+    .usage = "MESH -o MESH --error L|--triangles N|--ratio R|--lod N,... [options]",
     .about = "a mesh with fewer triangles, under a promise of how far it is from the input",
     .more =
         "Reads a mesh, collapses edges, those first that move the surface least, measures how\n"
@@ -534,6 +693,13 @@ const cli_command cli_simplify = {
         "Parts (of OBJ, 3MF, glTF) stay parts where the output's format has them: each is\n"
         "simplified by itself, with its share of the triangles, and crossings are looked for\n"
         "within each. --merge makes them one mesh.\n\n"
+        "--lod makes levels of detail, each from the one before, of all parts merged: a file\n"
+        "each, whose names tell them apart by {lod}, or by -lod0, -lod1, ... without it. "
+        "Where\n"
+        "that is glTF, the file named itself holds them all: its scene shows level 0, and the\n"
+        "extension MSFT_lod names the others, with the share of the screen below which each\n"
+        "is enough. Most engines read a file a level; few know MSFT_lod. Triangles and errors\n"
+        "of each are in the report and in the extras of its node.\n\n"
         "Normals, colours, scalars and labels are those of the closest point of the input.\n"
         "--source takes normals from the field of the volume that the mesh is a surface of, "
         "so\n"
@@ -544,6 +710,7 @@ const cli_command cli_simplify = {
         "  cubewright simplify bone.glb --triangles 50k --error 0.05% -o web.glb \\\n"
         "      --compress meshopt\n"
         "  cubewright simplify scan.ply --drop-components 2mm --error 0.2mm -o scan.glb\n"
+        "  cubewright simplify cloud.glb --lod 50k,12k,3k -o cloud-web.glb\n"
         "  cubewright simplify bone.glb --ratio 0.1 -o tenth.glb --source ct.nrrd --iso 300\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,

@@ -68,6 +68,12 @@ cw_status cli_compare(const cw_mesh *mesh, const cw_mesh *input, double toleranc
     return CW_OK;
 }
 
+double cli_both_rms(const cli_comparison *c)
+{
+    const double to = c->to_input.rms_mm, from = c->from_input.rms_mm;
+    return sqrt(0.5 * (to * to + from * from));
+}
+
 cw_status cli_hold_to_topology(const cw_quality *before, const cw_quality *after, cw_error *err)
 {
     const struct {

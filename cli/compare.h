@@ -10,6 +10,9 @@
 cw_status cli_compare(const cw_mesh *mesh, const cw_mesh *input, double tolerance_mm,
                       int threads, cli_comparison *sum, double area_mm2[2], cw_error *err);
 
+/* The root of the mean of the squares both ways. */
+double cli_both_rms(const cli_comparison *c);
+
 /* Fails, naming the first thing, when a mesh has not the components, handles and borders of the
  * one it was made of, or more flaws. Both were measured with CW_WELD_LOCAL. */
 cw_status cli_hold_to_topology(const cw_quality *before, const cw_quality *after,
