@@ -189,7 +189,7 @@ private:
                       : u.border           ? Vec(0)
                                            : way;
         p.place = u.point + d;
-        p.cost = error_at(p.quadric, d) + 1e-4f * trace(p.quadric) * way.sqrnorm();
+        p.cost = error_at(p.quadric, d) + 1e-5f * trace(p.quadric) * way.sqrnorm();
         p.changed = std::max(u.changed, v.changed);
         return p;
     }
