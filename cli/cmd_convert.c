@@ -1,8 +1,8 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/deliver.h"
-#include "cli/mesh.h"
 #include "cli/output.h"
+#include "cli/written.h"
 #include "core/status.h"
 
 #include <string.h>
@@ -11,13 +11,11 @@ typedef struct convert_args {
     cli_common common;
     cli_input input;
     cli_compress compress;
-    const char *output, *name, *format, *json;
-    int unit, up, frame, progress; /* unit: cw_unit */
-    bool ascii, merge, split, local, no_clobber, check;
+    cli_written written;
+    const char *output, *json;
+    int progress;
+    bool merge, split, check;
 } convert_args;
-
-enum { KEEP_FRAME, LPS, RAS };
-static const char *const frames[] = {"keep", "lps", "ras"};
 
 static const convert_args defaults = {.check = true};
 
@@ -25,32 +23,16 @@ static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE",
      "the mesh, in the format of its extension; may hold {stem}, with --split {name}, {part}",
      offsetof(convert_args, output)},
-    {"format", 0, CLI_TEXT, "NAME", "write this format of 'formats' (by extension)",
-     offsetof(convert_args, format)},
-    {"ascii", 0, CLI_FLAG, NULL, "STL and PLY as text (binary)", offsetof(convert_args, ascii)},
-    {"unit", 0, CLI_CHOICE, "mm/um/cm/m/in/ft", "of the coordinates in the file (mm)",
-     offsetof(convert_args, unit)},
-    {"up", 0, CLI_CHOICE, "z/y", "which axis points to the head (z; glTF: always y)",
-     offsetof(convert_args, up)},
-    {"frame", 0, CLI_CHOICE, "keep/lps/ras",
-     "what x and y of a patient mean (as the input says, else lps)",
-     offsetof(convert_args, frame)},
     {"merge", 0, CLI_FLAG, NULL, "all parts as one mesh (parts, where the format has them)",
      offsetof(convert_args, merge)},
     {"split", 0, CLI_FLAG, NULL, "a file for each part", offsetof(convert_args, split)},
-    {"local", 0, CLI_FLAG, NULL,
-     "coordinates relative to the mesh's origin, which is printed (the world's)",
-     offsetof(convert_args, local)},
-    {"name", 0, CLI_TEXT, "TEXT", "of the object inside the file (the part's, or the stem)",
-     offsetof(convert_args, name)},
-    {"no-clobber", 0, CLI_FLAG, NULL, "fail when the output exists (replace it)",
-     offsetof(convert_args, no_clobber)},
     {"check", 0, CLI_FLAG, NULL, "measure the mesh: closed, manifold, size (on; --no-check)",
      offsetof(convert_args, check)},
     {"json", 0, CLI_TEXT, "FILE", "write a report; - is the standard output",
      offsetof(convert_args, json)},
     {"progress", 0, CLI_CHOICE, "auto/plain/json/none", "how to show it, on stderr (auto)",
      offsetof(convert_args, progress)},
+    CLI_WRITTEN_OPTIONS(convert_args),
     CLI_COMPRESS_OPTIONS(convert_args),
     CLI_MESH_INPUT_OPTIONS(convert_args),
 };
@@ -63,36 +45,18 @@ typedef struct run_state {
     double start;
 } run_state;
 
-/* The axes of the file: with --frame keep those of the input, as far as it says. */
 static cw_write_desc write_desc(const run_state *s)
 {
-    const convert_args *args = s->args;
-    const bool ras = args->frame == KEEP_FRAME ? s->mesh.file.axes.ras : args->frame == RAS;
-    return (cw_write_desc){
-        .format = args->format,
-        .name = args->name,
-        .no_clobber = args->no_clobber,
-        .local = args->local,
-        .text = args->ascii,
-        .compression = (cw_compression)args->compress.kind,
-        .bits = (int)args->compress.bits,
-        .axes = {.unit = (cw_unit)args->unit, .ras = ras, .y_up = args->up},
-    };
+    return cli_written_desc(&s->args->written, &s->args->compress, &s->mesh);
 }
 
 static void put_params(cli_json *j, const void *p, const cli_made *made)
 {
     const run_state *s = p;
     const convert_args *args = s->args;
-    const cw_format *format = cw_mesh_format(made->path, args->format);
-    cli_json_text(j, "format", format ? format->name : "");
-    cli_json_bool(j, "ascii", args->ascii);
-    cli_json_text(j, "unit", cw_unit_name((cw_unit)args->unit));
-    cli_json_text(j, "up", args->up ? "y" : "z");
-    cli_json_text(j, "frame", frames[args->frame]);
+    cli_json_written(j, &args->written, made->path);
     cli_json_bool(j, "merge", args->merge);
     cli_json_bool(j, "split", args->split);
-    cli_json_bool(j, "local", args->local);
 }
 
 static void put_facts(cli_json *j, const void *p)
@@ -142,7 +106,7 @@ static cw_status read_input(run_state *s, cw_error *err)
 {
     const convert_args *args = s->args;
     const char *path = args->common.inputs[0];
-    const cw_format *format = cw_mesh_format(args->output, args->format);
+    const cw_format *format = cw_mesh_format(args->output, args->written.format);
     const bool parts =
         args->split || (!args->merge && format && format->keeps & CW_KEEPS_PARTS);
     cli_report_begin(&s->report);

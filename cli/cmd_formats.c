@@ -5,6 +5,7 @@
 
 #include <cubewright/formats.h>
 #include <cubewright/quality.h>
+#include <cubewright/simplify.h>
 
 #include <stdio.h>
 
@@ -77,8 +78,10 @@ static cw_status run_version(void *p, cw_error *err)
         return CW_OK;
     }
     printf("cubewright %s\n", cw_version());
-    if (args->features)
+    if (args->features) {
         printf("%-11s%s\n", "cgal", cw_quality_has_cgal() ? "yes" : "no");
+        printf("%-11s%s\n", "simplify", cw_simplify_available() ? "yes" : "no");
+    }
     for (size_t i = 0; i < count && args->features; i++)
         printf("%-11s%s\n", formats[i].name, formats[i].in_this_build ? "yes" : "no");
     return CW_OK;

@@ -1,5 +1,6 @@
 #include "cli/deliver.h"
 
+#include "cli/compare.h"
 #include "cli/console.h"
 #include "cli/quantity.h"
 #include "core/status.h"
@@ -204,6 +205,23 @@ static void print_compressed(const cli_made *made)
     cli_result(", decoded and checked");
 }
 
+/* Of both ways the one that is farther; the mean square of both. */
+static void print_comparison(const cli_comparison *c)
+{
+    const cw_distance *to = &c->to_input, *from = &c->from_input;
+    const double percent = c->diagonal_mm > 0 ? 100 / c->diagonal_mm : 0;
+    const double most = fmax(to->max_mm, from->max_mm), p99 = fmax(to->p99_mm, from->p99_mm);
+    const double rms = cli_both_rms(c);
+    cli_result("; at most %.3g mm (%.2g %% of the diagonal) from the input and back, "
+               "rms %.3g mm (%.2g %%), 99 %% within %.3g mm (%.2g %%)",
+               most, percent * most, rms, percent * rms, p99, percent * p99);
+    if (c->promised_mm > 0)
+        cli_result(", within the %.6g mm asked for", c->promised_mm);
+    if (c->has_field)
+        cli_result("; at most %.3g mm from the field's surface, rms %.3g mm",
+                   c->to_field.max_mm, c->to_field.rms_mm);
+}
+
 static void print_summary(const cli_delivery *how, const cli_made *made, const load *l,
                           size_t border_loops, double start)
 {
@@ -212,7 +230,7 @@ static void print_summary(const cli_delivery *how, const cli_made *made, const l
     cli_result("%s: %s vertices, %s triangles", made->path, cli_count(l->vertices),
                cli_count(l->triangles));
     if (l->part_count > 1)
-        cli_result(" in %zu parts", l->part_count);
+        cli_result(" in %zu %s", l->part_count, how->levels ? "levels" : "parts");
     cli_result(", %s", cli_bytes((double)info.st_size));
     if (made->measured)
         print_topology(how, &made->quality, border_loops);
@@ -220,6 +238,8 @@ static void print_summary(const cli_delivery *how, const cli_made *made, const l
         cli_result("; %s vertices merged, off by at most %.3g mm, %.2g voxels",
                    cli_count(made->snap.vertices), made->snap.max_error_mm,
                    made->snap.max_error_voxels);
+    if (made->compared.made)
+        print_comparison(&made->compared);
     if (made->local)
         cli_result("; relative to %.15g, %.15g, %.15g mm", made->origin[0], made->origin[1],
                    made->origin[2]);

@@ -15,6 +15,7 @@ typedef struct cli_delivery {
     bool unpromised;   /* measured, and written whatever it is: the line says what */
     bool tell_dropped; /* say what of the mesh the file does not hold */
     bool open;         /* the surface may end at the volume's border */
+    bool levels;       /* the parts are levels of detail of one mesh */
     bool preview;      /* not of all voxels: the line says so */
 } cli_delivery;
 

@@ -133,6 +133,8 @@ static bool store(const cli_option *o, const char *text, void *field)
         return cli_parse_numbers(text, field);
     case CLI_COUNT:
         return cli_parse_count(text, 1000, field);
+    case CLI_COUNTS:
+        return cli_parse_counts(text, field);
     case CLI_BYTES:
         return cli_parse_count(text, 1024, field);
     case CLI_LENGTHS:
@@ -159,6 +161,8 @@ static const char *expectation(const cli_option *o)
         return "a number, or up to 64 by comma such as 50,300";
     case CLI_COUNT:
         return "a whole number such as 500, 50k or 2M";
+    case CLI_COUNTS:
+        return "up to 16 whole numbers by comma such as 50k,12k,3k";
     case CLI_BYTES:
         return "a size such as 512M or 8G";
     case CLI_LENGTHS:

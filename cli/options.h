@@ -11,6 +11,7 @@ typedef enum cli_kind {
     CLI_NUMBER,  /* cli_number */
     CLI_NUMBERS, /* cli_numbers: 300 or 50,300 */
     CLI_COUNT,   /* size_t: 50k, 100M */
+    CLI_COUNTS,  /* cli_counts: 50k,12k,3k */
     CLI_BYTES,   /* size_t: 512M, 8G (1024s) */
     CLI_LENGTHS, /* cli_lengths: one for all axes or three; 0.5mm,12um, bare is mm */
     CLI_LENGTH,  /* cli_length: 0.1mm, 0.05% of the box's diagonal, 0.5vox; bare is mm */
@@ -30,6 +31,13 @@ typedef struct cli_numbers {
     size_t count; /* 0: none given */
     double value[CLI_MAX_NUMBERS];
 } cli_numbers;
+
+enum { CLI_MAX_COUNTS = 16 };
+
+typedef struct cli_counts {
+    size_t count; /* 0: none given */
+    size_t n[CLI_MAX_COUNTS];
+} cli_counts;
 
 typedef struct cli_lengths {
     bool given;

@@ -68,11 +68,17 @@ static cw_status check_levels(const cli_numbers *levels, cw_error *err)
     return CW_OK;
 }
 
+/* Where the extension of a name begins. */
+static const char *end_of_name(const char *text)
+{
+    const char *slash = strrchr(text, '/'), *dot = strrchr(text, '.');
+    return dot && (!slash || dot > slash) ? dot : text + strlen(text);
+}
+
 /* "out-{level}.glb" for the user who wrote "out.glb". */
 static cw_status ask_for(const char *what, const char *text, const char *why, cw_error *err)
 {
-    const char *slash = strrchr(text, '/'), *dot = strrchr(text, '.');
-    const char *end = dot && (!slash || dot > slash) ? dot : text + strlen(text);
+    const char *end = end_of_name(text);
     return cw_fail(err, CW_ERR_ARGUMENT, "%s: the output must hold {%s}, as in '%.*s-{%s}%s'",
                    why, what, (int)(end - text), text, what, end);
 }
@@ -141,6 +147,40 @@ cw_status cli_name_part_outputs(cli_outputs *outputs, const char *text, const ch
     snprintf(why, sizeof why, "--split makes %zu files", count);
     if (st == CW_OK && count > 1 && !fields[1].used && !fields[2].used)
         st = ask_for("name", text, why, err);
+    free(stem);
+    return st;
+}
+
+/* "out.glb" is "out-lod{lod}.glb"; free it with free(). */
+static char *with_lod(const char *text)
+{
+    static const char what[] = "-lod{lod}";
+    const size_t head = (size_t)(end_of_name(text) - text);
+    char *name = malloc(strlen(text) + sizeof what);
+    if (name)
+        sprintf(name, "%.*s%s%s", (int)head, text, what, text + head);
+    return name;
+}
+
+cw_status cli_name_lod_outputs(cli_outputs *outputs, const char *text, const char *input,
+                               size_t levels, bool together, cw_error *err)
+{
+    char *stem = NULL, *plain = NULL, *made = NULL, number[24] = "0";
+    cw_status st = reserve(outputs, levels + 1, &stem, input, err);
+    cli_part parts[] = {{.name = "stem", .value = stem}, {.name = "lod", .value = number}};
+    if (st == CW_OK) /* only to see whether there is a {lod} in it */
+        st = cli_fill_template(text, parts, 2, &plain, err);
+    const bool apart = parts[1].used;
+    if (st == CW_OK && !apart && !(made = with_lod(text)))
+        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of an output");
+    for (size_t n = 0; n < levels && st == CW_OK; n++) {
+        snprintf(number, sizeof number, "%zu", n);
+        st = add_output(outputs, apart ? text : made, parts, 2, err);
+    }
+    if (st == CW_OK && !apart && together)
+        st = add_output(outputs, text, parts, 2, err);
+    free(made);
+    free(plain);
     free(stem);
     return st;
 }

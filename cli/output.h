@@ -34,6 +34,12 @@ cw_status cli_name_outputs(cli_outputs *outputs, const char *text, const char *i
 cw_status cli_name_part_outputs(cli_outputs *outputs, const char *text, const char *input,
                                 const cw_part *parts, size_t count, cw_error *err);
 
+/* Names one output a level of detail: {lod} (its number, from 0) and {stem} are filled in. A
+ * text without {lod} gets "-lod0" and so on in front of its extension, and, with together, is
+ * itself the name of one more output, the last. Free it likewise. */
+cw_status cli_name_lod_outputs(cli_outputs *outputs, const char *text, const char *input,
+                               size_t levels, bool together, cw_error *err);
+
 /* Names the only output of a run: {stem} is filled in. Free it likewise. */
 cw_status cli_name_output(cli_outputs *outputs, const char *text, const char *input,
                           cw_error *err);

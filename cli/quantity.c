@@ -6,6 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
+enum { LONGEST = 32 }; /* number as text */
+
 bool cli_parse_number(const char *text, cli_number *out)
 {
     out->given = cwi_parse_double(&text, &out->value) && *text == '\0' && isfinite(out->value);
@@ -134,7 +136,25 @@ bool cli_parse_count(const char *text, double thousand, size_t *out)
     return true;
 }
 
-enum { KEPT = 8, LONGEST = 32 };
+bool cli_parse_counts(const char *text, cli_counts *out)
+{
+    for (out->count = 0; out->count < CLI_MAX_COUNTS;) {
+        char number[LONGEST];
+        const size_t length = strcspn(text, ",");
+        if (length >= sizeof number)
+            return false;
+        memcpy(number, text, length);
+        number[length] = '\0';
+        if (!cli_parse_count(number, 1000, &out->n[out->count++]))
+            return false;
+        if (text[length] == '\0')
+            return true;
+        text += length + 1;
+    }
+    return false;
+}
+
+enum { KEPT = 8 };
 
 static char *next_buffer(void)
 {

@@ -17,6 +17,8 @@ bool cli_parse_ranges(const char *text, cli_ranges *out);
 /* A count with an optional k, M, G or T of the given thousand: 1000, or 1024 for bytes. */
 bool cli_parse_count(const char *text, double thousand, size_t *out);
 
+bool cli_parse_counts(const char *text, cli_counts *out);
+
 /* "12.3 MB", "1 234 567", and a number as people would type it: the shortest text that reads
  * back the same, whole numbers without an exponent. In static memory; the last eight results
  * are kept.

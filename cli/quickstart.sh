@@ -11,7 +11,7 @@ set -- # the packages' functions look at $0 alone
 install_packages "what the build needs" needed ||
     { echo "quickstart: the packages above could not be installed" >&2; exit 1; }
 install_packages "what brings glTF and LZ4" optional ||
-    echo "== without libtinygltf-dev there will be no GLB, without liblz4-dev less of VTK's files"
+    echo "== without libtinygltf-dev there will be no GLB, without libopenmesh-dev no simplification"
 install_packages "a real scan" data || echo "== mricron-data cannot be had"
 
 echo "== building (release) in $root/build/release"

@@ -4,8 +4,11 @@
 #include "cli/compress.h"
 #include "cli/console.h"
 #include "cli/quantity.h"
+#include "cli/verdicts.h"
 #include "core/outfile.h"
 #include "core/status.h"
+
+#include <cubewright/simplify.h>
 
 #include <math.h>
 #include <stdarg.h>
@@ -68,11 +71,14 @@ void cli_report_end(cli_report *report, const char *name, size_t in, size_t out)
 void cli_report_warn(cli_report *report, const char *format, ...)
 {
     cli_made *made = &report->made[report->made_count - 1];
+    char text[sizeof *made->warning];
     va_list args;
     va_start(args, format);
-    vsnprintf(made->warning, sizeof made->warning, format, args);
+    vsnprintf(text, sizeof text, format, args);
     va_end(args);
-    cli_say("cubewright: warning: %s", made->warning);
+    cli_say("cubewright: warning: %s", text);
+    if (made->warning_count < CLI_MOST_WARNINGS)
+        memcpy(made->warning[made->warning_count++], text, sizeof text);
 }
 
 static void put_features(cli_json *j)
@@ -82,6 +88,8 @@ static void put_features(cli_json *j)
     cli_json_open(j, "features", '[');
     if (cw_quality_has_cgal())
         cli_json_text(j, NULL, "cgal");
+    if (cw_simplify_available())
+        cli_json_text(j, NULL, "simplify");
     for (size_t i = 0; i < count; i++)
         if (formats[i].in_this_build)
             cli_json_text(j, NULL, formats[i].name);
@@ -157,12 +165,21 @@ static void put_snap(cli_json *j, const cw_snap_counts *c)
     cli_json_close(j, '}');
 }
 
+static void put_comparison(cli_json *j, const cli_comparison *c)
+{
+    cli_json_errors(j, &(cw_findings){.to_field = c->has_field ? &c->to_field : NULL,
+                                      .to_reference = &c->to_input,
+                                      .from_reference = &c->from_input});
+}
+
 static void put_facts(cli_json *j, const cli_made *m)
 {
     if (m->measured)
         put_mesh(j, m);
     if (m->snapped)
         put_snap(j, &m->snap);
+    if (m->compared.made)
+        put_comparison(j, &m->compared);
 }
 
 static void put_several(cli_json *j, const cli_report *r)
@@ -246,8 +263,8 @@ static void put_warnings(cli_json *j, const cli_report *r)
     if (r->input && !(r->input->whole.known & CW_KNOWN_UNIT))
         cli_json_text(j, NULL, "the input names no unit: taken as mm");
     for (size_t n = 0; n < r->made_count; n++)
-        if (r->made[n].warning[0])
-            cli_json_text(j, NULL, r->made[n].warning);
+        for (size_t w = 0; w < r->made[n].warning_count; w++)
+            cli_json_text(j, NULL, r->made[n].warning[w]);
     cli_json_close(j, ']');
 }
 

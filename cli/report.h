@@ -5,8 +5,8 @@
 
 #include "cli/input.h"
 
+#include <cubewright/check.h>
 #include <cubewright/extract.h>
-#include <cubewright/quality.h>
 
 typedef struct cli_step {
     const char *name;
@@ -14,6 +14,17 @@ typedef struct cli_step {
     double seconds;
     size_t peak_bytes, in, out;
 } cli_step;
+
+enum { CLI_MOST_WARNINGS = 3 }; /* about one mesh */
+
+/* How far a mesh is from the one that it was made of, and that from it. */
+typedef struct cli_comparison {
+    bool made, has_field;
+    cw_distance to_input, from_input;
+    cw_distance to_field; /* when there is a field */
+    double diagonal_mm;   /* of the input's box */
+    double promised_mm;   /* 0: no error was promised */
+} cli_comparison;
 
 /* One mesh of a run, as far as it has come. */
 typedef struct cli_made {
@@ -29,8 +40,10 @@ typedef struct cli_made {
     cw_compressed compressed; /* when there is any */
     unsigned dropped;         /* what the file does not hold of it: cw_keeps flags */
     double origin[3];         /* when it is local: the places in the file are relative to it */
-    char warning[512];        /* "": none */
-    cw_error error;           /* with the status CW_OK: none */
+    cli_comparison compared;
+    char warning[CLI_MOST_WARNINGS][512];
+    size_t warning_count;
+    cw_error error; /* with the status CW_OK: none */
 } cli_made;
 
 typedef struct cli_report {

@@ -121,9 +121,11 @@ static void put_error(cli_json *j, const char *to, const cw_distance *there,
     cli_json_text(j, "to", to);
     put_distance(j, there);
     cli_json_count(j, "triangle", there->triangle);
-    cli_json_open(j, "back", '{');
-    put_distance(j, back);
-    cli_json_close(j, '}');
+    if (back) {
+        cli_json_open(j, "back", '{');
+        put_distance(j, back);
+        cli_json_close(j, '}');
+    }
     cli_json_close(j, '}');
 }
 

@@ -5,9 +5,9 @@
 #include "core/memory.h"
 #include "core/mesh.h"
 #include "core/status.h"
-#include "core/vector.h"
 #include "extract/cases.h"
 #include "extract/engine.h"
+#include "extract/normals.h"
 #include "extract/snap.h"
 
 #include <math.h>
@@ -137,88 +137,14 @@ static cw_status make_plan(plan *p, const cw_extract_desc *d, cw_error *err)
     return st == CW_OK ? check_limits(d, &p->counts, err) : st;
 }
 
-static void add_triangle_normal(const cw_mesh *mesh, double scale, const uint32_t *t,
-                                float *normal)
-{
-    const float *p = mesh->positions;
-    double u[3], v[3], across[3];
-    for (size_t a = 0; a < 3; a++) {
-        u[a] = scale * ((double)p[3 * (size_t)t[1] + a] - (double)p[3 * (size_t)t[0] + a]);
-        v[a] = scale * ((double)p[3 * (size_t)t[2] + a] - (double)p[3 * (size_t)t[0] + a]);
-    }
-    cwi_cross(u, v, across);
-    for (int a = 0; a < 3; a++)
-        normal[a] += (float)across[a];
-}
-
-static void normalise(float *n)
-{
-    const double length = sqrt((double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2]);
-    for (int a = 0; a < 3; a++)
-        n[a] = length > 0 ? (float)(n[a] / length) : a == 2;
-}
-
-/* A power of two that makes voxels about 1 large, so that no product of sides leaves the range
- * of floats. */
-static double voxel_scale(const cw_volume *v)
-{
-    double largest = 0;
-    int exponent;
-    for (int r = 0; r < 3; r++)
-        for (int c = 0; c < 3; c++)
-            largest = fmax(largest, fabs(v->affine[r][c]));
-    frexp(largest, &exponent);
-    return ldexp(1, -exponent);
-}
-
-/* Where the gradient vanished the normal is zero; the triangles around the vertex give it one.
- * One thread, in the order of triangles: sums do not depend on the number of threads. */
-static cw_status mend_normals(cw_mesh *mesh, double scale, cw_error *err)
-{
-    size_t count = 0;
-    for (size_t v = 0; v < mesh->vertex_count; v++) {
-        const float *n = mesh->normals + 3 * v;
-        count += n[0] == 0 && n[1] == 0 && n[2] == 0;
-    }
-    if (!count)
-        return CW_OK;
-    bool *missing = cwi_alloc_zeroed(mesh->vertex_count, sizeof *missing);
-    if (!missing)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to mend %zu normals", count);
-    for (size_t v = 0; v < mesh->vertex_count; v++) {
-        const float *n = mesh->normals + 3 * v;
-        missing[v] = n[0] == 0 && n[1] == 0 && n[2] == 0;
-    }
-    for (size_t t = 0; t < mesh->triangle_count; t++) {
-        const uint32_t *triangle = mesh->triangles + 3 * t;
-        for (int c = 0; c < 3; c++)
-            if (missing[triangle[c]])
-                add_triangle_normal(mesh, scale, triangle,
-                                    mesh->normals + 3 * (size_t)triangle[c]);
-    }
-    for (size_t v = 0; v < mesh->vertex_count; v++)
-        if (missing[v])
-            normalise(mesh->normals + 3 * v);
-    cwi_free(missing);
-    return CW_OK;
-}
-
-/* Index gradients become outward world normals through the inverse transpose of the affine,
- * here as its cofactors; the sign holds the determinant's and the side that is inside. */
 static cwi_vertex_sink make_sink(const cwi_grid *g, cw_mesh *mesh)
 {
     const cw_volume *v = &g->volume;
-    const double sign = (cwi_affine_determinant(v->affine[0]) < 0) != g->invert ? 1 : -1;
     cwi_vertex_sink sink = {.positions = mesh->positions, .normals = mesh->normals};
-    double largest = 0;
-    cwi_affine_cofactor(v->affine[0], sink.cofactor);
-    for (int i = 0; i < 9; i++)
-        largest = fmax(largest, fabs(sink.cofactor[i / 3][i % 3]));
+    cwi_outward(v, g->invert, sink.cofactor);
     for (int r = 0; r < 3; r++) {
-        for (int c = 0; c < 3; c++) {
+        for (int c = 0; c < 3; c++)
             sink.affine[r][c] = v->affine[r][c];
-            sink.cofactor[r][c] *= sign / largest;
-        }
         sink.centre[r] = 0.5 * (double)(v->dim[r] - 1);
     }
     for (int a = 0; a < 3; a++) {
@@ -280,7 +206,7 @@ static cw_status write_mesh(plan *p, const cw_extract_desc *d, cw_mesh *mesh, cw
     st = cwi_each_layer((g->rows_z + SHARE - 1) / SHARE, SHARE * g->rows_y * g->words * 64,
                         d->threads, &d->progress, "marching", write_layers, &w, err);
     if (st == CW_OK && w.sink.missing)
-        st = mend_normals(mesh, voxel_scale(&p->grid.volume), err);
+        st = cwi_mend_normals(mesh, cwi_voxel_scale(&p->grid.volume), err);
     if (st == CW_OK)
         memcpy(mesh->affine, p->grid.volume.affine, sizeof mesh->affine);
     if (st == CW_OK && d->snap > 0)

@@ -337,45 +337,6 @@ static cw_status compress_draco(cwi_gltf_plan *plan, cwi_gltf_piece *piece,
 /* --- meshopt -------------------------------------------------------------------------------
  */
 
-static void permute(void *array, const void *from, const uint32_t *remap, size_t count,
-                    size_t size)
-{
-    for (size_t v = 0; v < count; v++)
-        memcpy((char *)array + remap[v] * size, (const char *)from + v * size, size);
-}
-
-/* Puts vertices where remap says. */
-static cw_status permute_array(void *array, const uint32_t *remap, size_t count, size_t size,
-                               cw_error *err)
-{
-    if (!array)
-        return CW_OK;
-    void *copy = cwi_alloc_array(count, size);
-    if (!copy)
-        return fail_memory(err);
-    memcpy(copy, array, count * size);
-    permute(array, copy, remap, count, size);
-    cwi_free(copy);
-    return CW_OK;
-}
-
-static cw_status reorder(cw_mesh *own, const cwi_meshopt_functions *meshopt, cw_error *err)
-{
-    uint32_t *remap = cwi_alloc_array(own->vertex_count, sizeof *remap);
-    if (!remap)
-        return fail_memory(err);
-    cw_status st =
-        meshopt->reorder(own->triangles, own->triangle_count, own->vertex_count, remap, err);
-    if (st == CW_OK)
-        st = permute_array(own->positions, remap, own->vertex_count, 12, err);
-    if (st == CW_OK)
-        st = permute_array(own->normals, remap, own->vertex_count, 12, err);
-    if (st == CW_OK)
-        st = permute_array(own->colors, remap, own->vertex_count, 4, err);
-    cwi_free(remap);
-    return st;
-}
-
 /* Whether the filter makes of the bytes what their accessor says. */
 static bool are_stored(const cwi_meshopt_functions *meshopt, const cwi_gltf_plan *plan,
                        const float *positions, unsigned char *bytes, size_t count)
@@ -469,7 +430,7 @@ static cw_status compress_meshopt(cwi_gltf_plan *plan, size_t p,
                                   const cwi_meshopt_functions *meshopt, cw_error *err)
 {
     cwi_gltf_piece *piece = &plan->pieces[p];
-    cw_status st = reorder(&plan->own[p], meshopt, err);
+    cw_status st = cwi_mesh_reorder(&plan->own[p], meshopt, false, err);
     if (st == CW_OK)
         cwi_gltf_plan_arrays(plan, piece);
     for (size_t n = 0; st == CW_OK && n < piece->array_count; n++)

@@ -112,7 +112,7 @@ int find_material(tinygltf::Model &model, const cwi_gltf_piece &piece)
     return int(model.materials.size()) - 1;
 }
 
-tinygltf::Value make_extras(const cw_mesh &mesh, const double *origin)
+Object make_extras(const cw_mesh &mesh, const double *origin)
 {
     Object extras = {{"frame", text("LPS")}, {"unit", text("mm")}};
     Array affine;
@@ -128,7 +128,16 @@ tinygltf::Value make_extras(const cw_mesh &mesh, const double *origin)
         extras["origin"] =
             tinygltf::Value(Array{tinygltf::Value(origin[0]), tinygltf::Value(origin[1]),
                                   tinygltf::Value(origin[2])});
-    return tinygltf::Value(extras);
+    return extras;
+}
+
+void tell_level(const cwi_part &part, Object &extras)
+{
+    extras["triangles"] = whole(part.mesh.triangle_count);
+    if (part.max_error_mm > 0) {
+        extras["max_error_mm"] = tinygltf::Value(part.max_error_mm);
+        extras["rms_error_mm"] = tinygltf::Value(part.rms_error_mm);
+    }
 }
 
 // LPS millimetres to glTF's metres, +Y up, front towards +Z: (x, y, z) goes to 0.001 (x, z,
@@ -143,11 +152,38 @@ tinygltf::Node make_node(const cwi_gltf_piece &piece, const double *local_origin
     node.scale = {scale, scale, scale};
     if (!local_origin || t[0] != 0 || t[1] != 0 || t[2] != 0)
         node.translation = {0.001 * t[0] + 0.0, 0.001 * t[2] + 0.0, -0.001 * t[1] + 0.0};
-    node.extras = make_extras(piece.part->mesh, local_origin);
     return node;
 }
 
-void add_piece(tinygltf::Model &model, const cwi_gltf_piece &piece, const double *local_origin)
+// The node of level 0 names those of the others, and the shares of the screen down to which
+// each is shown: where the next one would have as many triangles to an area as level 0 has on
+// all of it. The last is shown down to nothing.
+void add_levels(tinygltf::Node &node, const cwi_gltf_piece *levels, size_t count, int first,
+                Object &extras)
+{
+    Array ids, coverage;
+    for (size_t n = 1; n < count; n++) {
+        ids.push_back(tinygltf::Value(first + int(n)));
+        coverage.push_back(tinygltf::Value(double(levels[n].part->mesh.triangle_count) /
+                                           double(levels[0].part->mesh.triangle_count)));
+    }
+    coverage.push_back(tinygltf::Value(0.0));
+    node.extensions[GLTF_LOD] = tinygltf::Value(Object{{"ids", tinygltf::Value(ids)}});
+    extras["MSFT_screencoverage"] = tinygltf::Value(coverage);
+}
+
+// How many pieces are levels of the first one, with it.
+size_t count_levels(const cwi_gltf_piece *pieces, size_t count)
+{
+    size_t n = 1;
+    while (n < count && pieces[n].part->level > 0)
+        n++;
+    return n;
+}
+
+// One of `left` pieces, of which the others come next.
+void add_piece(tinygltf::Model &model, const cwi_gltf_piece &piece, size_t left,
+               const double *local_origin)
 {
     tinygltf::Primitive primitive;
     for (size_t n = 0; n < piece.array_count; n++) {
@@ -169,8 +205,18 @@ void add_piece(tinygltf::Model &model, const cwi_gltf_piece &piece, const double
     model.meshes.push_back(mesh);
     tinygltf::Node node = make_node(piece, local_origin);
     node.mesh = int(model.meshes.size()) - 1;
+    const bool is_level = piece.part->level > 0;
+    const size_t levels = is_level ? 1 : count_levels(&piece, left);
+    const int index = int(model.nodes.size());
+    Object extras = make_extras(piece.part->mesh, local_origin);
+    if (is_level || levels > 1)
+        tell_level(*piece.part, extras);
+    if (levels > 1)
+        add_levels(node, &piece, levels, index, extras);
+    node.extras = tinygltf::Value(extras);
     model.nodes.push_back(node);
-    model.scenes[0].nodes.push_back(int(model.nodes.size()) - 1);
+    if (!is_level)
+        model.scenes[0].nodes.push_back(index);
 }
 
 void use_extension(tinygltf::Model &model, const char *name)
@@ -190,6 +236,14 @@ void set_asset(tinygltf::Model &model, const cwi_gltf_document &document)
         model.asset.extras = tinygltf::Value(provenance);
 }
 
+bool has_levels(const cwi_gltf_document &document)
+{
+    for (size_t p = 0; p < document.count; p++)
+        if (document.pieces[p].part->level > 0)
+            return true;
+    return false;
+}
+
 tinygltf::Model make_model(const cwi_gltf_document &document)
 {
     tinygltf::Model model;
@@ -197,7 +251,9 @@ tinygltf::Model make_model(const cwi_gltf_document &document)
     model.scenes.resize(1);
     model.defaultScene = 0;
     for (size_t p = 0; p < document.count; p++)
-        add_piece(model, document.pieces[p], document.local_origin);
+        add_piece(model, document.pieces[p], document.count - p, document.local_origin);
+    if (has_levels(document))
+        model.extensionsUsed.push_back(GLTF_LOD); // readers may do without
     if (document.quantized)
         use_extension(model, "KHR_mesh_quantization");
     if (document.unpacked)

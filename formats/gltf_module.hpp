@@ -7,6 +7,7 @@
 #include <tiny_gltf.h>
 
 constexpr const char *GLTF_MESHOPT = "EXT_meshopt_compression";
+constexpr const char *GLTF_LOD = "MSFT_lod";
 constexpr const char *GLTF_DRACO = "KHR_draco_mesh_compression";
 
 // cwi_gltf_functions.document.

@@ -16,6 +16,7 @@ typedef struct writer {
     bool own_axes;                       /* unit and frame are those of the format */
     bool text;                           /* it is text, or can be */
     bool compresses;                     /* it has compressed forms */
+    bool levels;                         /* it has levels of detail */
 } writer;
 
 static const writer writers[] = {
@@ -23,12 +24,14 @@ static const writer writers[] = {
      .write = cwi_glb_write,
      .prepare = cwi_gltf_prepare,
      .own_axes = true,
-     .compresses = true},
+     .compresses = true,
+     .levels = true},
     {.format = "gltf",
      .write = cwi_gltf_write,
      .prepare = cwi_gltf_prepare,
      .own_axes = true,
      .compresses = true,
+     .levels = true,
      .text = true},
     {.format = "stl", .write = cwi_stl_write, .text = true},
     {.format = "ply", .write = cwi_ply_write, .text = true},
@@ -208,6 +211,27 @@ static cw_status find_writer(const char *path, const cw_write_desc *d, target *t
     return st == CW_OK && t->writer->prepare ? t->writer->prepare(err) : st;
 }
 
+static cw_status check_levels(const writer *w, const cw_part *parts, size_t count,
+                              cw_error *err)
+{
+    for (size_t i = 0; i < count; i++) {
+        const size_t level = parts[i].level;
+        if (level == 0)
+            continue;
+        if (!w->levels)
+            return cw_fail(err, CW_ERR_ARGUMENT,
+                           "%s has no levels of detail; glTF (.glb, .gltf) has", w->format);
+        if (i == 0 || parts[i - 1].level != level - 1)
+            return cw_fail(err, CW_ERR_ARGUMENT,
+                           "part %zu is of level %zu: one of level %zu must be "
+                           "in front of it",
+                           i, level, level - 1);
+        if (!parts[i].mesh->triangle_count || !parts[i - 1].mesh->triangle_count)
+            return cw_fail(err, CW_ERR_ARGUMENT, "a level of detail has no triangles");
+    }
+    return CW_OK;
+}
+
 static cw_status write_parts(const char *path, const cwi_parts *parts, const target *t,
                              const cw_write_desc *d, cwi_mesh_output *out, cw_error *err)
 {
@@ -236,6 +260,8 @@ cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
                            .text = d.text,
                            .progress = &d.progress};
     cw_status st = find_writer(path, &d, &t, err);
+    if (st == CW_OK)
+        st = check_levels(t.writer, parts, count, err);
     if (st == CW_OK && t.writer->own_axes)
         d.axes = (cw_axes){0};
     if (st == CW_OK)

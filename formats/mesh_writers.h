@@ -25,6 +25,8 @@ typedef struct cwi_part {
     int digits;                                   /* that a place is written with in text */
     const uint32_t *numbers;                      /* of each vertex, for a writer's own use */
     size_t group;                                 /* likewise */
+    size_t level;                                 /* of detail, as in cw_part */
+    double max_error_mm, rms_error_mm;            /* the same */
     char name[CWI_NAME_BYTES];                    /* printable UTF-8 on one line */
 } cwi_part;
 

@@ -15,13 +15,16 @@ static cw_status fail_memory(cw_error *err)
 }
 
 static cw_status reorder(uint32_t *triangles, size_t triangle_count, size_t vertex_count,
-                         uint32_t *remap, cw_error *err)
+                         bool draw, uint32_t *remap, cw_error *err)
 {
     const size_t count = 3 * triangle_count;
     uint32_t *ordered = cwi_alloc_array(count, sizeof *ordered);
     if (!ordered)
         return fail_memory(err);
-    meshopt_optimizeVertexCacheStrip(ordered, triangles, count, vertex_count);
+    if (draw)
+        meshopt_optimizeVertexCache(ordered, triangles, count, vertex_count);
+    else
+        meshopt_optimizeVertexCacheStrip(ordered, triangles, count, vertex_count);
     size_t next = meshopt_optimizeVertexFetchRemap(remap, ordered, count, vertex_count);
     for (size_t v = 0; v < vertex_count; v++)
         if (remap[v] == ~0u) /* no triangle names it: last */

@@ -2,17 +2,17 @@
 #ifndef FORMATS_MESHOPT_WRAP_H
 #define FORMATS_MESHOPT_WRAP_H
 
-#include <cubewright/core.h>
+#include <cubewright/mesh.h>
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 typedef struct cwi_meshopt_functions {
-    /* An order of triangles and vertices that codes well: triangles are rewritten, remap (for
-     * each vertex) says where it goes. CW_ERR_NO_MEMORY. */
+    /* An order of triangles and vertices that codes well, or (draw) draws fast: triangles are
+     * rewritten, remap (for each vertex) says where it goes. CW_ERR_NO_MEMORY. */
     cw_status (*reorder)(uint32_t *triangles, size_t triangle_count, size_t vertex_count,
-                         uint32_t *remap, cw_error *err);
+                         bool draw, uint32_t *remap, cw_error *err);
 
     /* The bytes are freed with cwi_free(). CW_ERR_NO_MEMORY. */
     cw_status (*encode_vertices)(const void *vertices, size_t count, size_t stride,
@@ -36,6 +36,11 @@ typedef struct cwi_meshopt_functions {
 
 /* Loads the module. CW_ERR_UNSUPPORTED: not in this build. */
 cw_status cwi_meshopt_functions_load(const cwi_meshopt_functions **functions, cw_error *err);
+
+/* Puts triangles and vertices, with all that they have, in one of the orders of reorder(). The
+ * mesh is as it was on failure. CW_ERR_NO_MEMORY. */
+cw_status cwi_mesh_reorder(cw_mesh *mesh, const cwi_meshopt_functions *meshopt, bool draw,
+                           cw_error *err);
 
 extern CW_API const cwi_meshopt_functions cwi_module_meshopt;
 

@@ -129,10 +129,14 @@ static int digits_of(const cwi_part *part)
     return distance > 10 * size ? 17 : 10;
 }
 
-static void add_part(cwi_parts *parts, const cw_mesh *mesh, const double origin[3],
+static void add_part(cwi_parts *parts, const cw_part *given, const double origin[3],
                      const cw_axes *axes)
 {
+    const cw_mesh *mesh = given->mesh;
     cwi_part *part = &parts->items[parts->count++];
+    part->level = given->level;
+    part->max_error_mm = given->max_error_mm;
+    part->rms_error_mm = given->rms_error_mm;
     part->mesh = *mesh;
     part->turn = cwi_turn_to(axes);
     part->first = parts->vertices;
@@ -158,7 +162,7 @@ cw_status cwi_parts_place(const cw_part *parts, size_t count, const cw_write_des
     const double *from = desc->local ? parts->mesh->origin : zero;
     for (size_t i = 0; i < count; i++)
         if (parts[i].mesh->triangle_count) {
-            add_part(placed, parts[i].mesh, from, &desc->axes);
+            add_part(placed, &parts[i], from, &desc->axes);
             name_part(&placed->items[placed->count - 1], parts[i].name, name, i + 1, count);
         }
     choose_arrays(placed, keeps);

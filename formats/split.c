@@ -142,7 +142,8 @@ static void name_parts(split *s)
             cwi_clean_name(name, strlen(name), s->held[s->part_of[run]].name);
         }
     for (size_t p = 0; p < s->count; p++)
-        s->parts[p] = (cw_part){&s->held[p].mesh, s->held[p].name[0] ? s->held[p].name : NULL};
+        s->parts[p] = (cw_part){.mesh = &s->held[p].mesh,
+                                .name = s->held[p].name[0] ? s->held[p].name : NULL};
 }
 
 static bool make_parts(split *s)

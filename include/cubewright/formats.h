@@ -213,6 +213,10 @@ CW_API cw_status cw_mesh_read(const char *path, const cw_mesh_read_desc *desc, c
 typedef struct cw_part {
     const cw_mesh *mesh; /* borrowed */
     const char *name;    /* default: that of the file, with a number behind it */
+    size_t level; /* of detail: n + 1 is a coarser form of level n, right before it, to be
+                     shown where that is seen small; default: 0, a part by itself */
+    double max_error_mm, rms_error_mm; /* of a level: how far it is from the truth; default: 0,
+                                          not told */
 } cw_part;
 
 /* Reads the parts of a file, each as a mesh: the objects of OBJ, or its groups if it has no
@@ -306,7 +310,14 @@ CW_API cw_status cw_mesh_write(const char *path, const cw_mesh *mesh, const cw_w
 /* Writes parts into one file: OBJ and 3MF get an object for each. In the others they become one
  * mesh, one behind the other, with the arrays that all of them have. Parts without triangles
  * are left out. Of a local file the origin is that of the first part.
- * Returns as cw_mesh_write() */
+ *
+ * Levels of detail are for glTF: its scene holds level 0, whose node names those of the others
+ * (MSFT_lod), with the share of the screen below which each is enough: that at which it has as
+ * many triangles to an area as level 0 has on all of it. Readers without the extension see
+ * level 0 alone, and so does cw_mesh_read().
+ *
+ * Returns as cw_mesh_write(); CW_ERR_ARGUMENT for levels that do not follow one another, have
+ * no triangles, or are for another format */
 CW_API cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
                                 const cw_write_desc *desc, cw_error *err);
 
@@ -338,6 +349,15 @@ CW_API cw_status cw_parts_write_loss(const char *path, const cw_part *parts, siz
  * writer and library at hand, folder there and writable, nothing in the way. Same errors. */
 CW_API cw_status cw_mesh_write_check(const char *path, const cw_write_desc *desc,
                                      cw_error *err);
+
+/* Orders the triangles of a mesh for the caches of graphics processors, and its vertices in the
+ * order in which triangles name them.
+ *
+ * mesh     in place; as it was on failure
+ * Returns  CW_ERR_UNSUPPORTED  this build has no meshoptimizer; CW_ERR_ARGUMENT as
+ *                              cw_mesh_check(); CW_ERR_NO_MEMORY
+ * Source   meshoptimizer: optimizeVertexCache, optimizeVertexFetch */
+CW_API cw_status cw_mesh_optimize(cw_mesh *mesh, cw_error *err);
 
 /* A file of a time series. */
 typedef struct cw_pvd_entry {

@@ -36,6 +36,25 @@ CW_API cw_status cw_mesh_check(const cw_mesh *mesh, cw_error *err);
 /* World box of the vertices; false (and zeros) for a mesh without vertices. */
 CW_API bool cw_mesh_bounds(const cw_mesh *mesh, double min[3], double max[3]);
 
+/* Makes one vertex of those at equal positions (0 equals -0): the first of them, with its
+ * normal, colour and whatever else it has. Triangles that name a vertex twice are left out, and
+ * then vertices that no triangle names.
+ *
+ * mesh     in place: its arrays stay where they are, and only get shorter; as it was on failure
+ * merged   vertices that were at the place of another; may be NULL
+ * Returns  CW_ERR_ARGUMENT as cw_mesh_check(); CW_ERR_NO_MEMORY */
+CW_API cw_status cw_mesh_weld(cw_mesh *mesh, size_t *merged, cw_error *err);
+
+/* Leaves out components (sets of triangles joined by vertices) whose box has a diagonal shorter
+ * than so much, and then vertices that no triangle names.
+ *
+ * mesh     in place, as in cw_mesh_weld()
+ * dropped, kept   components; may be NULL
+ * Returns  CW_ERR_ARGUMENT  diagonal_mm is negative or NaN, or as cw_mesh_check();
+ *          CW_ERR_NO_MEMORY */
+CW_API cw_status cw_mesh_drop_components(cw_mesh *mesh, double diagonal_mm, size_t *dropped,
+                                         size_t *kept, cw_error *err);
+
 #ifdef __cplusplus
 }
 #endif

@@ -97,7 +97,8 @@ static void parts_are_objects_with_escaped_names(void **state)
     test_make_cube(&cube);
     test_make_tetrahedron(&tetrahedron);
     tetrahedron.origin[1] = 3;
-    const cw_part parts[] = {{&cube, "<a & \"b\">"}, {&tetrahedron, NULL}};
+    const cw_part parts[] = {{.mesh = &cube, .name = "<a & \"b\">"},
+                             {.mesh = &tetrahedron, .name = NULL}};
     char *text = write_model(parts, 2, &(cw_write_desc){.name = "skull & jaw"});
     assert_holds(text, "<metadata name=\"Title\">skull &amp; jaw</metadata>");
     assert_holds(text,
@@ -131,7 +132,8 @@ static void colors_are_a_group_of_the_object(void **state)
     assert_holds(text,
                  "<triangle v1=\"1\" v2=\"2\" v3=\"3\" pid=\"1\" p1=\"1\" p2=\"2\" p3=\"0\"/>");
     free(text);
-    const cw_part parts[] = {{&plain, "plain"}, {&mesh, "coloured"}};
+    const cw_part parts[] = {{.mesh = &plain, .name = "plain"},
+                             {.mesh = &mesh, .name = "coloured"}};
     text = write_model(parts, 2, NULL);
     assert_null(strstr(text, "colorgroup id=\"1\""));
     assert_holds(text, "<m:colorgroup id=\"3\">");

@@ -286,7 +286,7 @@ static void parts_share_a_grid(void **state)
     b.origin[1] = 0.25;
     for (size_t i = 1; i < 24; i += 3)
         b.positions[i] -= 0.25f;
-    const cw_part parts[] = {{&a, "left"}, {&b, "right"}};
+    const cw_part parts[] = {{.mesh = &a, .name = "left"}, {.mesh = &b, .name = "right"}};
     for (int k = 0; k < WAYS; k++) {
         if (!is_there(ways[k].kind))
             continue;

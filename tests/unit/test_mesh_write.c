@@ -364,7 +364,7 @@ static void what_a_format_does_not_keep_is_told(void **state)
         assert_int_equal(loss.dropped, rows[i].dropped);
     }
     mesh.origin[0] = 1e9;
-    const cw_part parts[] = {{&mesh, "one"}, {&mesh, "two"}};
+    const cw_part parts[] = {{.mesh = &mesh, .name = "one"}, {.mesh = &mesh, .name = "two"}};
     assert_ok(cw_parts_write_loss("a.stl", parts, 2, NULL, &loss, &err), err);
     assert_int_equal(loss.dropped, CW_KEEPS_ALL);
     mesh.colors = NULL;

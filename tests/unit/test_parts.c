@@ -19,8 +19,8 @@ static pair *make_pair(pair *p)
     test_make_tetrahedron(&p->tetrahedron);
     memcpy(p->cube.origin, (double[3]){10, 20, 30}, sizeof p->cube.origin);
     memcpy(p->tetrahedron.origin, (double[3]){15.5, 20, 30}, sizeof p->tetrahedron.origin);
-    p->parts[0] = (cw_part){&p->cube, "cube"};
-    p->parts[1] = (cw_part){&p->tetrahedron, "four faces"};
+    p->parts[0] = (cw_part){.mesh = &p->cube, .name = "cube"};
+    p->parts[1] = (cw_part){.mesh = &p->tetrahedron, .name = "four faces"};
     return p;
 }
 
@@ -154,7 +154,7 @@ static void arrays_that_one_part_lacks_are_left_out(void **state)
     assert_non_null(strstr(text, "\nf 9 11 10\n"));
     free(text);
     p.parts[0] = p.parts[1];
-    p.parts[1] = (cw_part){&p.cube, NULL};
+    p.parts[1] = (cw_part){.mesh = &p.cube, .name = NULL};
     write_pair("a.obj", &p, false);
     text = test_file_read(test_path("a.obj"), &size);
     assert_non_null(strstr(text, "\nf 1 3 2\n"));
@@ -173,7 +173,8 @@ static void empty_parts_are_left_out_and_alone_refused(void **state)
     size_t size;
     cw_error err = {0};
     make_pair(&p);
-    const cw_part parts[] = {{&none, "none"}, p.parts[0], {&none, "none"}};
+    const cw_part parts[] = {
+        {.mesh = &none, .name = "none"}, p.parts[0], {.mesh = &none, .name = "none"}};
     assert_ok(cw_parts_write(test_path("a.obj"), parts, 3, NULL, &err), err);
     char *text = test_file_read(test_path("a.obj"), &size);
     assert_null(strstr(text, "none"));
@@ -382,6 +383,109 @@ static void memory_may_run_out_anywhere(void **state)
     free_pair(&p);
 }
 
+/* A cube with a tetrahedron for its coarser form, and a part by itself behind them. */
+static void levels_are_named_by_their_first_and_not_read(void **state)
+{
+    (void)state;
+    pair p;
+    cw_error err = {0};
+    size_t size, count;
+    cw_part *back;
+    cw_mesh mesh;
+    make_pair(&p);
+    cw_part parts[] = {
+        {.mesh = &p.cube, .name = "fine", .max_error_mm = 0.25, .rms_error_mm = 0.125},
+        {.mesh = &p.tetrahedron, .name = "coarse", .level = 1},
+        {.mesh = &p.tetrahedron, .name = "other"}};
+    if (!cwi_module_present("gltf")) {
+        free_pair(&p);
+        return;
+    }
+    assert_ok(cw_parts_write(test_path("a.gltf"), parts, 3, NULL, &err), err);
+    char *text = test_file_read(test_path("a.gltf"), &size);
+    assert_non_null(strstr(text, "\"extensionsUsed\":[\"MSFT_lod\"]"));
+    assert_null(strstr(text, "extensionsRequired"));
+    assert_non_null(strstr(text, "\"MSFT_lod\":{\"ids\":[1]}"));
+    assert_non_null(strstr(text, "\"MSFT_screencoverage\":[0.3333333333333333,0.0]"));
+    assert_non_null(strstr(text, "\"max_error_mm\":0.25"));
+    assert_non_null(strstr(text, "\"rms_error_mm\":0.125"));
+    assert_non_null(strstr(text, "\"scenes\":[{\"nodes\":[0,2]}]"));
+    free(text);
+    assert_ok(cw_mesh_read(test_path("a.gltf"), NULL, &mesh, NULL, &err), err);
+    check_both(&mesh);
+    cw_mesh_free(&mesh);
+    assert_ok(cw_parts_read(test_path("a.gltf"), NULL, &back, &count, NULL, &err), err);
+    assert_int_equal(count, 2);
+    assert_int_equal(back[0].mesh->triangle_count, 12);
+    assert_int_equal(back[1].mesh->triangle_count, 4);
+    cw_parts_free(back, count);
+    free_pair(&p);
+}
+
+static void levels_out_of_place_are_refused(void **state)
+{
+    (void)state;
+    const cw_mesh none = {0};
+    pair p;
+    cw_error err = {0};
+    make_pair(&p);
+    cw_part parts[] = {{.mesh = &p.cube}, {.mesh = &p.tetrahedron, .level = 1}};
+    assert_fails(cw_parts_write(test_path("a.obj"), parts, 2, NULL, &err), CW_ERR_ARGUMENT,
+                 "obj has no levels of detail", err);
+    if (cwi_module_present("gltf")) {
+        parts[1].level = 2;
+        assert_fails(cw_parts_write(test_path("a.glb"), parts, 2, NULL, &err), CW_ERR_ARGUMENT,
+                     "part 1 is of level 2: one of level 1 must be in front of it", err);
+        assert_fails(cw_parts_write(test_path("a.glb"), parts + 1, 1, NULL, &err),
+                     CW_ERR_ARGUMENT, "part 0 is of level 2", err);
+        parts[1].level = 1;
+        parts[0].mesh = &none;
+        assert_fails(cw_parts_write(test_path("a.glb"), parts, 2, NULL, &err), CW_ERR_ARGUMENT,
+                     "no triangles", err);
+    }
+    assert_int_equal(test_folder_entries(), 0);
+    free_pair(&p);
+}
+
+/* Another order, and the same triangles with what their vertices have. */
+static void an_order_for_drawing_changes_nothing_else(void **state)
+{
+    (void)state;
+    cw_mesh mesh, plain;
+    cw_error err = {0};
+    cw_quality a, b;
+    test_make_far_sphere(&mesh);
+    test_make_far_sphere(&plain);
+    const size_t count = mesh.vertex_count;
+    mesh.labels = malloc(count * sizeof *mesh.labels);
+    for (size_t v = 0; v < count; v++)
+        mesh.labels[v] = (uint32_t)v;
+    const cw_status st = cw_mesh_optimize(&mesh, &err);
+    if (!cwi_module_present("meshopt")) {
+        assert_int_equal(st, CW_ERR_UNSUPPORTED);
+        assert_memory_equal(mesh.triangles, plain.triangles, 12 * plain.triangle_count);
+    } else {
+        assert_ok(st, err);
+        assert_memory_not_equal(mesh.triangles, plain.triangles, 12 * plain.triangle_count);
+        for (size_t v = 0; v < count; v++) {
+            const size_t from = mesh.labels[v];
+            assert_memory_equal(mesh.positions + 3 * v, plain.positions + 3 * from, 12);
+            assert_memory_equal(mesh.normals + 3 * v, plain.normals + 3 * from, 12);
+        }
+        uint32_t next = 0; /* vertices come in the order in which they are named */
+        for (size_t c = 0; c < 3 * mesh.triangle_count; c++) {
+            assert_true(mesh.triangles[c] <= next);
+            next += mesh.triangles[c] == next;
+        }
+        assert_ok(cw_quality_measure(&mesh, NULL, &a, &err), err);
+        assert_ok(cw_quality_measure(&plain, NULL, &b, &err), err);
+        assert_true(cw_quality_is_closed_manifold(&a) && a.euler == b.euler);
+        assert_within(a.volume_mm3, b.volume_mm3, 1e-9);
+    }
+    cw_mesh_free(&mesh);
+    cw_mesh_free(&plain);
+}
+
 int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
@@ -398,6 +502,9 @@ int main(void)
         TEST(no_parts_are_left_of_a_file_that_is_refused),
         TEST(too_many_vertices_for_ply_are_refused),
         TEST(memory_may_run_out_anywhere),
+        TEST(levels_are_named_by_their_first_and_not_read),
+        TEST(levels_out_of_place_are_refused),
+        TEST(an_order_for_drawing_changes_nothing_else),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -1,0 +1,177 @@
+/* Meshes edited in place: what is left is as it was. */
+#include "support/support.h"
+
+#include "core/memory.h"
+#include "core/mesh.h"
+
+#include <string.h>
+
+/* A cube whose triangles share no vertices, with every array; vertex v of triangle t is the
+ * cube's vertex in labels. */
+static void make_soup(const cw_mesh *cube, cw_mesh *soup)
+{
+    cw_error err = {0};
+    const size_t count = 3 * cube->triangle_count;
+    assert_ok(cwi_mesh_alloc(soup, count, cube->triangle_count, true, &err), err);
+    soup->colors = cwi_alloc_zeroed(count, 4);
+    soup->scalars = cwi_alloc_array(count, sizeof *soup->scalars);
+    soup->labels = cwi_alloc_array(count, sizeof *soup->labels);
+    for (size_t c = 0; c < count; c++) {
+        const size_t v = cube->triangles[c];
+        memcpy(soup->positions + 3 * c, cube->positions + 3 * v, 3 * sizeof(float));
+        memcpy(soup->normals + 3 * c, cube->normals + 3 * v, 3 * sizeof(float));
+        soup->colors[4 * c] = (uint8_t)c;
+        soup->scalars[c] = (float)c;
+        soup->labels[c] = (uint32_t)v;
+        soup->triangles[c] = (uint32_t)c;
+    }
+}
+
+static void soup_becomes_a_closed_cube(void **state)
+{
+    (void)state;
+    cw_mesh cube, soup;
+    cw_error err = {0};
+    cw_quality q;
+    size_t merged;
+    test_make_cube(&cube);
+    make_soup(&cube, &soup);
+    soup.positions[0] = -0.0f; /* at the same place as 0 */
+    assert_ok(cw_mesh_weld(&soup, &merged, &err), err);
+    assert_int_equal(merged, 28);
+    assert_int_equal(soup.vertex_count, 8);
+    assert_int_equal(soup.triangle_count, 12);
+    assert_ok(cw_quality_measure(&soup, NULL, &q, &err), err);
+    assert_true(cw_quality_is_closed_manifold(&q));
+    for (size_t v = 0; v < 8; v++) {
+        const size_t from = soup.labels[v];
+        assert_memory_equal(soup.normals + 3 * v, cube.normals + 3 * from, 3 * sizeof(float));
+        assert_int_equal(cube.triangles[(size_t)soup.scalars[v]], from); /* the first there */
+        assert_int_equal(soup.colors[4 * v], (int)soup.scalars[v]);
+    }
+    assert_ok(cw_mesh_weld(&soup, &merged, &err), err);
+    assert_int_equal(merged, 0);
+    assert_int_equal(soup.vertex_count, 8);
+    cw_mesh_free(&cube);
+    cw_mesh_free(&soup);
+}
+
+/* A needle of two vertices at one place is no triangle any more; what was none before stays,
+ * for others to count. */
+static void triangles_that_collapse_are_left_out(void **state)
+{
+    (void)state;
+    static const float points[5][3] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 0, 0}, {7, 7, 7}};
+    static const uint32_t triangles[4][3] = {{0, 1, 2}, {1, 3, 2}, {0, 3, 2}, {0, 0, 2}};
+    cw_mesh mesh;
+    cw_error err = {0};
+    assert_ok(cwi_mesh_alloc(&mesh, 5, 4, false, &err), err);
+    memcpy(mesh.positions, points, sizeof points);
+    memcpy(mesh.triangles, triangles, sizeof triangles);
+    assert_ok(cw_mesh_weld(&mesh, NULL, &err), err);
+    assert_int_equal(mesh.vertex_count, 3);
+    assert_int_equal(mesh.triangle_count, 2);
+    static const uint32_t left[2][3] = {{0, 1, 2}, {0, 1, 2}};
+    assert_memory_equal(mesh.triangles, left, sizeof left);
+    cw_mesh_free(&mesh);
+}
+
+/* Two cubes of edge 1 and 3, far apart, and a triangle far from either. */
+static void make_three(cw_mesh *mesh)
+{
+    cw_mesh cube;
+    cw_error err = {0};
+    test_make_cube(&cube);
+    assert_ok(cwi_mesh_alloc(mesh, 20, 25, false, &err), err);
+    mesh->labels = cwi_alloc_zeroed(20, sizeof *mesh->labels);
+    for (size_t n = 0; n < 24; n++) {
+        mesh->positions[n] = cube.positions[n];
+        mesh->positions[24 + n] = 10 + 3 * cube.positions[n];
+        mesh->labels[n / 3] = 1;
+        mesh->labels[8 + n / 3] = 3;
+    }
+    for (size_t n = 0; n < 36; n++) {
+        mesh->triangles[n] = 8 + cube.triangles[n];
+        mesh->triangles[36 + n] = cube.triangles[n];
+    }
+    static const float triangle[4][3] = {{50, 0, 0}, {50, 4, 0}, {50, 0, 3}, {99, 99, 99}};
+    static const uint32_t corners[3] = {16, 17, 18};
+    memcpy(mesh->positions + 48, triangle, sizeof triangle);
+    memcpy(mesh->triangles + 72, corners, sizeof corners);
+    cw_mesh_free(&cube);
+}
+
+static void small_components_go_and_others_stay(void **state)
+{
+    (void)state;
+    static const struct {
+        double diagonal;
+        size_t dropped, kept, vertices;
+    } rows[] = {{0, 0, 3, 19}, {1.7, 0, 3, 19}, {1.8, 1, 2, 11},
+                {5, 1, 2, 11}, {5.01, 2, 1, 8}, {6, 3, 0, 0}};
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
+        cw_mesh mesh;
+        cw_error err = {0};
+        cw_quality q;
+        size_t dropped, kept;
+        make_three(&mesh);
+        assert_ok(cw_mesh_drop_components(&mesh, rows[r].diagonal, &dropped, &kept, &err), err);
+        assert_int_equal(dropped, rows[r].dropped);
+        assert_int_equal(kept, rows[r].kept);
+        assert_int_equal(mesh.vertex_count, rows[r].vertices);
+        assert_ok(cw_quality_measure(&mesh, NULL, &q, &err), err);
+        assert_int_equal(q.components, kept);
+        if (kept == 1)
+            assert_true(cw_quality_is_closed_manifold(&q) && q.min[0] == 10);
+        for (size_t v = 0; v < mesh.vertex_count; v++)
+            assert_int_equal(mesh.labels[v], mesh.positions[3 * v] >= 50   ? 0
+                                             : mesh.positions[3 * v] >= 10 ? 3
+                                                                           : 1);
+        cw_mesh_free(&mesh);
+    }
+}
+
+static void failures_leave_the_mesh_as_it_was(void **state)
+{
+    (void)state;
+    cw_mesh cube, soup, empty = {0};
+    cw_error err = {0};
+    size_t merged = 9;
+    test_make_cube(&cube);
+    make_soup(&cube, &soup);
+    for (long n = 0; n < 2; n++) {
+        cwi_alloc_fail_after(n);
+        const cw_status st = cw_mesh_weld(&soup, NULL, &err);
+        cwi_alloc_fail_after(-1);
+        assert_int_equal(st, CW_ERR_NO_MEMORY);
+        assert_int_equal(soup.vertex_count, 36);
+    }
+    for (long n = 0; n < 3; n++) {
+        cwi_alloc_fail_after(n);
+        const cw_status st = cw_mesh_drop_components(&soup, 9, NULL, NULL, &err);
+        cwi_alloc_fail_after(-1);
+        assert_int_equal(st, CW_ERR_NO_MEMORY);
+        assert_int_equal(soup.vertex_count, 36);
+    }
+    assert_fails(cw_mesh_drop_components(&soup, -1, NULL, NULL, &err), CW_ERR_ARGUMENT, "-1",
+                 err);
+    soup.triangles[4] = 36;
+    assert_fails(cw_mesh_drop_components(&soup, 1, NULL, NULL, &err), CW_ERR_ARGUMENT,
+                 "names vertex 36", err);
+    assert_fails(cw_mesh_weld(&soup, NULL, &err), CW_ERR_ARGUMENT, "names vertex 36", err);
+    assert_ok(cw_mesh_weld(&empty, &merged, &err), err);
+    assert_int_equal(merged, 0);
+    cw_mesh_free(&cube);
+    cw_mesh_free(&soup);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(soup_becomes_a_closed_cube),
+        cmocka_unit_test(triangles_that_collapse_are_left_out),
+        cmocka_unit_test(small_components_go_and_others_stay),
+        cmocka_unit_test(failures_leave_the_mesh_as_it_was),
+    };
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
