@@ -95,7 +95,7 @@ typedef struct run_state {
     piece *pieces;
     size_t piece_count, triangles; /* of all pieces, before */
     cw_mesh lod[CLI_MAX_COUNTS];   /* levels of the only piece, until they are its result */
-    char lod_names[CLI_MAX_COUNTS][8];
+    char lod_names[CLI_MAX_COUNTS][24];
     bool unordered;               /* it was told that meshoptimizer is not there */
     size_t merged, dropped, kept; /* vertices; components */
     double diagonal_mm, error_mm, drop_mm;
