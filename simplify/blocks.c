@@ -40,6 +40,15 @@ void cwi_block_free(cwi_block *block)
     *block = (cwi_block){0};
 }
 
+void cwi_block_span(cwi_block *block)
+{
+    block->own = block->triangles;
+    for (int a = 0; a < 3; a++) {
+        block->low[a] = -INFINITY;
+        block->high[a] = INFINITY;
+    }
+}
+
 static float coordinate(const cwi_block *b, size_t corner, int axis)
 {
     return b->points[3 * (size_t)b->corners[corner] + (size_t)axis];
@@ -202,8 +211,9 @@ static cw_status fill_block(const plan *p, size_t n, uint32_t *place, cwi_block 
     memcpy(b->high, p->leaves[n].high, sizeof b->high);
     b->corners = cwi_alloc_array(3 * b->triangles, sizeof *b->corners);
     b->names = cwi_alloc_array(3 * b->triangles, sizeof *b->names);
-    b->lists = cwi_alloc_array(b->own, sizeof *b->lists);
-    if (!b->corners || !b->names || !b->lists)
+    if (w->lists)
+        b->lists = cwi_alloc_array(b->own, sizeof *b->lists);
+    if (!b->corners || !b->names || !b->lists != !w->lists)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %zu triangles",
                        b->triangles);
     for (size_t i = 0; i < b->triangles; i++)
@@ -225,13 +235,8 @@ static cw_status fill_block(const plan *p, size_t n, uint32_t *place, cwi_block 
             b->held[v] = p->held[from];
         }
     }
-    if (w->lists)
-        for (size_t i = 0; i < b->own; i++)
-            b->lists[i] = w->lists[triangle_of(p, n, i)];
-    else {
-        cwi_free(b->lists);
-        b->lists = NULL;
-    }
+    for (size_t i = 0; i < b->own && w->lists; i++)
+        b->lists[i] = w->lists[triangle_of(p, n, i)];
     return b->points && b->held
                ? CW_OK
                : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %zu triangles",
@@ -298,16 +303,10 @@ static void join_vertices(const cwi_block *b, uint32_t *place, uint32_t *to, cwi
         whole->names[n] = (uint32_t)name;
         whole->seam[n] = b->held[v];
         memcpy(whole->points + 3 * n, b->points + 3 * v, 3 * sizeof *whole->points);
-        if (!known) {
+        if (known)
+            cwi_quadric_add(whole->quadrics + n, b->quadrics + v);
+        else
             whole->quadrics[n] = b->quadrics[v];
-            continue;
-        }
-        float *sum = whole->quadrics[n].a; /* all of its numbers in a row */
-        for (int k = 0; k < 6; k++)
-            sum[k] += b->quadrics[v].a[k];
-        for (int k = 0; k < 3; k++)
-            whole->quadrics[n].b[k] += b->quadrics[v].b[k];
-        whole->quadrics[n].c += b->quadrics[v].c;
     }
 }
 
@@ -350,11 +349,7 @@ cw_status cwi_blocks_join(const cwi_block *blocks, size_t count, size_t names, c
             memcpy(whole->lists + whole->triangles, b->lists, b->triangles * sizeof *b->lists);
         whole->triangles += b->triangles;
     }
-    whole->own = whole->triangles;
-    for (int a = 0; a < 3; a++) {
-        whole->low[a] = -INFINITY;
-        whole->high[a] = INFINITY;
-    }
+    cwi_block_span(whole);
     cwi_free(place);
     cwi_free(to);
     if (ok)

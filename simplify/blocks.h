@@ -6,6 +6,9 @@
 
 void cwi_block_free(cwi_block *block);
 
+/* All of the block's triangles are its own, and its box is all of space. */
+void cwi_block_span(cwi_block *block);
+
 /* Shares the triangles of a block out to blocks of about `most` at the most: boxes that fill
  * space, halved where half of the triangles are on either side. Triangles that do not lie in
  * one box are held: they stay in one block, and are in the way in the others that they reach.

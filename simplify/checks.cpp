@@ -79,7 +79,7 @@ Box Star::box(const Spoke &spoke) const
     return box;
 }
 
-bool Shape::is_kept(const Surface &, const Star &star) const
+bool Shape::is_kept(const Star &star) const
 {
     for (unsigned k = 0; k < 3; k++)
         if (!(star.place[k] >= low[k] && star.place[k] < high[k]))

@@ -41,7 +41,7 @@ public:
     {
     }
 
-    bool is_kept(const Surface &surface, const Star &star) const;
+    bool is_kept(const Star &star) const;
 
 private:
     Vec low, high;

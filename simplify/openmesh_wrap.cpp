@@ -184,7 +184,7 @@ private:
                    &v = node(surface.to_vertex_handle(p.halfedge));
         const Vec way = v.point - u.point;
         p.quadric = moved(v.quadric, -way);
-        add(p.quadric, u.quadric);
+        cwi_quadric_add(&p.quadric, &u.quadric);
         const Vec d = u.border == v.border ? least(p.quadric, 0.5f * way)
                       : u.border           ? Vec(0)
                                            : way;
@@ -197,7 +197,7 @@ private:
     void try_to_collapse(const Proposal &p)
     {
         if (!surface.is_collapse_ok(p.halfedge) || !star.gather(surface, p.halfedge, p.place) ||
-            !shape.is_kept(surface, star) || !bound.is_kept(star) ||
+            !shape.is_kept(star) || !bound.is_kept(star) ||
             (contact && contact->arises(surface, star)))
             return;
         const VertexHandle kept = surface.to_vertex_handle(p.halfedge);

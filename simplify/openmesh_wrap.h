@@ -17,6 +17,16 @@ typedef struct cwi_quadric {
     float c;
 } cwi_quadric;
 
+/* Of two about one place, the sum. */
+static inline void cwi_quadric_add(cwi_quadric *q, const cwi_quadric *other)
+{
+    for (int k = 0; k < 6; k++)
+        q->a[k] += other->a[k];
+    for (int k = 0; k < 3; k++)
+        q->b[k] += other->b[k];
+    q->c += other->c;
+}
+
 /* Around points that are given so much care nothing is changed. */
 enum { CWI_MOST_CARE = 4 };
 

@@ -54,15 +54,6 @@ inline cwi_quadric moved(const cwi_quadric &q, const Vec &way)
     return r;
 }
 
-inline void add(cwi_quadric &q, const cwi_quadric &other)
-{
-    for (int k = 0; k < 6; k++)
-        q.a[k] += other.a[k];
-    for (int k = 0; k < 3; k++)
-        q.b[k] += other.b[k];
-    q.c += other.c;
-}
-
 // Where the error is least, with a slight pull towards a place, so that there is always one.
 inline Vec least(const cwi_quadric &q, const Vec &towards)
 {

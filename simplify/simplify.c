@@ -99,11 +99,7 @@ static cw_status begin(job *j, cw_error *err)
         if (c[0] != c[1] && c[1] != c[2] && c[2] != c[0])
             memcpy(w->corners + 3 * w->triangles++, c, 3 * sizeof *c);
     }
-    w->own = w->triangles;
-    for (int a = 0; a < 3; a++) {
-        w->low[a] = -INFINITY;
-        w->high[a] = INFINITY;
-    }
+    cwi_block_span(w);
     return CW_OK;
 }
 
