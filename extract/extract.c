@@ -243,7 +243,7 @@ static cw_status extract(plan *p, const cw_extract_desc *desc, cw_mesh *mesh,
 
 /* --- a slab at a time -------------------------------------------------------------------- */
 
-enum { LEAST_LAYERS = 8 };
+enum { LEAST_LAYERS = 16 };
 
 static size_t triangles_before(const plan *p, size_t layer)
 {

@@ -8,6 +8,9 @@
 
 enum { BINS = 1024 };
 
+/* What becomes of a vertex. */
+enum { FREE, HELD, GIVEN }; /* the last: held, and some block has its quadric */
+
 static const uint32_t NOT_THERE = UINT32_MAX;
 
 /* A box of space and the triangles whose middle is in it: low <= x < high. */
@@ -23,7 +26,7 @@ typedef struct plan {
     uint32_t *spare;
     leaf *leaves;
     size_t count;
-    uint8_t *held;
+    uint8_t *held;       /* vertices: as above */
     uint32_t *obstacles; /* triangles by leaf, from first[leaf] on */
     size_t *first;
 } plan;
@@ -165,7 +168,7 @@ static void each_obstacle(plan *p, void (*put)(plan *p, size_t to, uint32_t tria
             if (lies_in(p->leaves + n, box))
                 continue;
             for (int k = 0; k < 3; k++)
-                p->held[p->whole->corners[3 * (size_t)p->order[i] + (size_t)k]] = 1;
+                p->held[p->whole->corners[3 * (size_t)p->order[i] + (size_t)k]] = HELD;
             for (size_t m = 0; m < p->count; m++)
                 if (m != n && reaches(p->leaves + m, box))
                     put(p, m, p->order[i]);
@@ -202,6 +205,33 @@ static uint32_t triangle_of(const plan *p, size_t n, size_t i)
                                  : p->obstacles[p->first[n] + i - (l->end - l->begin)];
 }
 
+static bool alloc_vertices(cwi_block *b, const cwi_block *whole)
+{
+    b->points = cwi_alloc_array(3 * b->vertices, sizeof *b->points);
+    b->held = cwi_alloc_array(b->vertices, sizeof *b->held);
+    if (whole->quadrics)
+        b->quadrics = cwi_alloc_array(b->vertices, sizeof *b->quadrics);
+    if (whole->seam)
+        b->seam = cwi_alloc_array(b->vertices, sizeof *b->seam);
+    return b->points && b->held && !b->quadrics == !whole->quadrics && !b->seam == !whole->seam;
+}
+
+/* The quadric of a vertex goes to one block only, one of which is left what names it. */
+static void copy_vertex(const plan *p, cwi_block *b, size_t v, bool own)
+{
+    const cwi_block *w = p->whole;
+    const size_t from = b->names[v];
+    memcpy(b->points + 3 * v, w->points + 3 * from, 3 * sizeof *b->points);
+    b->held[v] = p->held[from] != FREE;
+    if (b->seam)
+        b->seam[v] = w->seam[from];
+    if (!b->quadrics)
+        return;
+    b->quadrics[v] = own && p->held[from] != GIVEN ? w->quadrics[from] : (cwi_quadric){.c = 0};
+    if (own && p->held[from] == HELD)
+        p->held[from] = GIVEN;
+}
+
 /* Numbers the vertices of leaf n as they come; *place must be NOT_THERE everywhere, and is so
  * again. */
 static cw_status fill_block(const plan *p, size_t n, uint32_t *place, cwi_block *b,
@@ -222,7 +252,8 @@ static cw_status fill_block(const plan *p, size_t n, uint32_t *place, cwi_block 
     if (!b->corners || !b->names || !b->lists != !w->lists)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %zu triangles",
                        b->triangles);
-    for (size_t i = 0; i < b->triangles; i++)
+    size_t own = 0; /* vertices of own triangles come first */
+    for (size_t i = 0; i < b->triangles; i++) {
         for (size_t k = 0; k < 3; k++) {
             const uint32_t v = w->corners[3 * (size_t)triangle_of(p, n, i) + k];
             if (place[v] == NOT_THERE) {
@@ -231,22 +262,19 @@ static cw_status fill_block(const plan *p, size_t n, uint32_t *place, cwi_block 
             }
             b->corners[3 * i + k] = place[v];
         }
-    b->points = cwi_alloc_array(3 * b->vertices, sizeof *b->points);
-    b->held = cwi_alloc_array(b->vertices, sizeof *b->held);
-    for (size_t v = 0; v < b->vertices; v++) {
-        const size_t from = b->names[v];
-        place[from] = NOT_THERE;
-        if (b->points && b->held) {
-            memcpy(b->points + 3 * v, w->points + 3 * from, 3 * sizeof *b->points);
-            b->held[v] = p->held[from] || (w->held && w->held[from]);
-        }
+        own = i < b->own ? b->vertices : own;
     }
     for (size_t i = 0; i < b->own && w->lists; i++)
         b->lists[i] = w->lists[triangle_of(p, n, i)];
-    return b->points && b->held
-               ? CW_OK
-               : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %zu triangles",
-                         b->triangles);
+    const bool ok = alloc_vertices(b, w);
+    for (size_t v = 0; v < b->vertices; v++) {
+        if (ok)
+            copy_vertex(p, b, v, v < own);
+        place[b->names[v]] = NOT_THERE;
+    }
+    return ok ? CW_OK
+              : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %zu triangles",
+                        b->triangles);
 }
 
 static cw_status fill_blocks(const plan *p, cwi_block *blocks, cw_error *err)
@@ -278,6 +306,8 @@ cw_status cwi_blocks_cut(const cwi_block *whole, size_t most, cwi_block **out, s
     bool ok = p.order && p.spare && p.leaves && p.held && p.first && *out;
     for (size_t t = 0; t < whole->triangles && ok; t++)
         p.order[t] = (uint32_t)t;
+    for (size_t v = 0; v < whole->vertices && ok && whole->held; v++)
+        p.held[v] = whole->held[v] ? HELD : FREE;
     if (ok)
         make_leaves(&p);
     ok = ok && find_obstacles(&p);
@@ -305,9 +335,11 @@ static void join_vertices(const cwi_block *b, uint32_t *place, uint32_t *to, cwi
         const size_t name = b->names[v];
         const bool known = b->held[v] && place[name] != NOT_THERE;
         const size_t n = known ? place[name] : whole->vertices++;
-        place[name] = to[v] = (uint32_t)n;
+        to[v] = (uint32_t)n;
+        if (b->held[v])
+            place[name] = (uint32_t)n;
         whole->names[n] = (uint32_t)name;
-        whole->seam[n] = b->held[v];
+        whole->seam[n] = b->held[v] || (b->seam && b->seam[v]);
         memcpy(whole->points + 3 * n, b->points + 3 * v, 3 * sizeof *whole->points);
         if (known)
             cwi_quadric_add(whole->quadrics + n, b->quadrics + v);

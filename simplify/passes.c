@@ -214,6 +214,8 @@ static bool take_care(const cwi_passes *p, const part *x)
                     more = true;
                 }
             }
+    for (size_t v = 0; v < p->input.vertex_count && !x->names; v++)
+        p->care[v] &= (uint8_t)~MARK; /* listed elsewhere */
     return more;
 }
 

@@ -100,7 +100,7 @@ CW_API cw_status cw_extract(const cw_volume *volume, const cw_extract_desc *desc
  *
  * desc       as in cw_extract(), but without snap
  * triangles  of a slab, at least, where there are so many: slabs are whole layers of cells,
- *            and 8 of them at least
+ *            and 16 of them at least
  * sink       called on the calling thread; not at all for a volume without a crossing
  * counts     what was made; bytes are those of the largest slab and the working memory
  *

@@ -68,6 +68,43 @@ CW_API cw_status cw_simplify_levels(const cw_mesh *mesh, const cw_simplify_desc 
                                     const size_t *triangles, size_t levels, cw_mesh *out,
                                     cw_simplify_facts *facts, cw_error *err);
 
+/* Simplifies a surface that comes a slab at a time, such as from cw_extract_slabs(), in tandem
+ * with what makes it, so that all of it never is in memory:
+ *
+ *     cw_simplifier_new(&(cw_simplify_desc){.error_mm = 0.1}, &simplifier, &err);
+ *     cw_extract_slabs(&volume, &extract_desc, CW_SIMPLIFIER_SLAB,
+ *                      (cw_slab_sink){cw_simplifier_take, simplifier}, NULL, &err);
+ *     cw_simplifier_finish(simplifier, &mesh, NULL, &err);
+ *     cw_simplifier_free(simplifier);
+ *
+ * What cw_simplify() promises holds across seams, too. With an error to keep a slab and the
+ * half of the one before are simplified as one, against the surface that came: the result is as
+ * good as from the whole. With a number of triangles to meet slabs go to three times their
+ * share, each by itself, and then all together on.
+ *
+ * Source  [Attali2005] */
+typedef struct cw_simplifier cw_simplifier;
+
+/* Triangles of a slab: so many that seams are few among them. */
+#define CW_SIMPLIFIER_SLAB ((size_t)1 << 19)
+
+/* desc      copied; an error, or else triangles or a ratio. Free with cw_simplifier_free().
+ * Returns   CW_ERR_ARGUMENT for both or none, and as cw_simplify() */
+CW_API cw_status cw_simplifier_new(const cw_simplify_desc *desc, cw_simplifier **out,
+                                   cw_error *err);
+CW_API void cw_simplifier_free(cw_simplifier *simplifier); /* harmless on NULL */
+
+/* Takes the next slab; for cw_slab_sink. After an error only freeing is of use. */
+CW_API cw_status cw_simplifier_take(void *simplifier, const cw_slab *slab, cw_error *err);
+
+/* The result, without normals: cw_extract_normals() has them. Empty when no slab came.
+ *
+ * out       filled on success, emptied on failure; free it with cw_mesh_free()
+ * facts     may be NULL
+ * Returns   CW_ERR_ARGUMENT when the last slab is missing; else as cw_simplify() */
+CW_API cw_status cw_simplifier_finish(cw_simplifier *simplifier, cw_mesh *out,
+                                      cw_simplify_facts *facts, cw_error *err);
+
 /* Whether this build can: whether it has OpenMesh. */
 CW_API bool cw_simplify_available(void);
 

@@ -129,7 +129,9 @@ void test_assert_same_mesh(const cw_mesh *a, const cw_mesh *b)
     assert_int_equal(a->triangle_count, b->triangle_count);
     assert_memory_equal(a->origin, b->origin, sizeof a->origin);
     assert_memory_equal(a->positions, b->positions, 12 * a->vertex_count);
-    assert_memory_equal(a->normals, b->normals, 12 * a->vertex_count);
+    assert_int_equal(!a->normals, !b->normals);
+    if (a->normals)
+        assert_memory_equal(a->normals, b->normals, 12 * a->vertex_count);
     assert_memory_equal(a->triangles, b->triangles, 12 * a->triangle_count);
 }
 
@@ -141,4 +143,66 @@ void test_turn(cw_volume *volume, int round)
     if (round % 3 == 0)
         for (int r = 0; r < 3; r++)
             volume->affine[r][0] *= -1;
+}
+
+size_t test_count_crossings(const cw_mesh *mesh)
+{
+    cw_crossings crossings = {0};
+    cw_error err = {0};
+    assert_ok(cw_self_intersections(mesh, NULL, &crossings, &err), err);
+    assert_false(crossings.undecided);
+    const size_t count = crossings.count;
+    cw_crossings_free(&crossings);
+    return count;
+}
+
+cw_quality test_measure(const cw_mesh *mesh)
+{
+    cw_quality quality;
+    cw_error err = {0};
+    assert_ok(cw_quality_measure(mesh, NULL, &quality, &err), err);
+    return quality;
+}
+
+const char *test_reduced_fault(const cw_mesh *before, const cw_mesh *after)
+{
+    const cw_quality a = test_measure(before), b = test_measure(after);
+    if (b.triangles > a.triangles)
+        return "has more triangles";
+    if (a.components != b.components)
+        return "has not as many components";
+    if (a.euler != b.euler)
+        return "has another Euler number";
+    if (a.border_loops != b.border_loops)
+        return "has not as many border loops";
+    if (b.nonmanifold_edges || b.nonmanifold_vertices || b.misoriented_edges || b.duplicates)
+        return "is no manifold";
+    if (b.degenerate)
+        return "has triangles without area";
+    if (b.unused_vertices)
+        return "has vertices in no triangle";
+    return test_count_crossings(after) ? "crosses itself" : NULL;
+}
+
+void test_assert_sound(const cw_mesh *before, const cw_mesh *after)
+{
+    const char *fault = test_reduced_fault(before, after);
+    if (fault)
+        fail_msg("the result %s", fault);
+}
+
+void test_bound_is_kept(const cw_mesh *a, const cw_mesh *b, double error)
+{
+    const cw_mesh_distance_desc how = {.tolerance_mm = 0.01 * error};
+    cw_distance distance;
+    cw_error err = {0};
+    assert_ok(cw_distance_to_mesh(a, b, &how, &distance, NULL, &err), err);
+    if (distance.max_mm > error)
+        fail_msg("%g mm where %g are promised", distance.max_mm, error);
+    if (cw_quality_has_cgal()) {
+        double by_cgal;
+        assert_ok(cw_distance_by_cgal(a, b, 0.05 * error, &by_cgal, &err), err);
+        if (by_cgal > 1.05 * error)
+            fail_msg("%g mm by CGAL where %g are promised", by_cgal, error);
+    }
 }

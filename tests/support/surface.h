@@ -25,6 +25,20 @@ bool test_normals_agree(const cw_mesh *mesh);
 
 void test_assert_same_mesh(const cw_mesh *a, const cw_mesh *b);
 
+/* Its quality, with default settings. */
+cw_quality test_measure(const cw_mesh *mesh);
+
+/* Pairs of triangles that meet and should not. */
+size_t test_count_crossings(const cw_mesh *mesh);
+
+/* What of a sound mesh's topology and soundness a reduced one has lost, in words; or NULL. */
+const char *test_reduced_fault(const cw_mesh *before, const cw_mesh *after);
+void test_assert_sound(const cw_mesh *before, const cw_mesh *after);
+
+/* No point of a is farther than so much from b: by our measure, and where it is there by
+ * CGAL's. */
+void test_bound_is_kept(const cw_mesh *a, const cw_mesh *b, double error_mm);
+
 /* A random affine with shear; every third one a mirror. */
 void test_turn(cw_volume *volume, int round);
 

@@ -27,53 +27,6 @@ static cw_mesh reduce(const cw_mesh *mesh, double ratio)
     return simplify(mesh, &(cw_simplify_desc){.ratio = ratio});
 }
 
-static size_t count_crossings(const cw_mesh *mesh)
-{
-    cw_crossings crossings = {0};
-    cw_error err = {0};
-    assert_ok(cw_self_intersections(mesh, NULL, &crossings, &err), err);
-    assert_false(crossings.undecided);
-    const size_t count = crossings.count;
-    cw_crossings_free(&crossings);
-    return count;
-}
-
-static cw_quality measure(const cw_mesh *mesh)
-{
-    cw_quality quality;
-    cw_error err = {0};
-    assert_ok(cw_quality_measure(mesh, NULL, &quality, &err), err);
-    return quality;
-}
-
-/* Of a sound mesh: the same topology, as sound as before. NULL, or what is wrong. */
-static const char *fault_of(const cw_mesh *before, const cw_mesh *after)
-{
-    const cw_quality a = measure(before), b = measure(after);
-    if (b.triangles > a.triangles)
-        return "has more triangles";
-    if (a.components != b.components)
-        return "has not as many components";
-    if (a.euler != b.euler)
-        return "has another Euler number";
-    if (a.border_loops != b.border_loops)
-        return "has not as many border loops";
-    if (b.nonmanifold_edges || b.nonmanifold_vertices || b.misoriented_edges || b.duplicates)
-        return "is no manifold";
-    if (b.degenerate)
-        return "has triangles without area";
-    if (b.unused_vertices)
-        return "has vertices in no triangle";
-    return count_crossings(after) ? "crosses itself" : NULL;
-}
-
-static void assert_sound(const cw_mesh *before, const cw_mesh *after)
-{
-    const char *fault = fault_of(before, after);
-    if (fault)
-        fail_msg("the result %s", fault);
-}
-
 static cw_mesh noisy_gyroid(size_t n, double noise, bool open)
 {
     const cw_field_desc field = {
@@ -94,7 +47,7 @@ static void topology_stays(void **state)
     for (int n = 0; n < 2; n++) {
         cw_mesh mesh = noisy_gyroid(42, 0.1, n), out = reduce(&mesh, ratios[n]);
         assert_true(mesh.triangle_count > 1 << 15);
-        assert_sound(&mesh, &out);
+        test_assert_sound(&mesh, &out);
         if (n == 0)
             assert_within((double)out.triangle_count, 0.3 * (double)mesh.triangle_count, 0.01);
         cw_mesh_free(&out);
@@ -113,7 +66,7 @@ static void hostile_surfaces_stay_sound(void **state)
         assert_ok(test_hostile_make(h, &volume, &err), err);
         const cw_extract_desc desc = {.isovalue = h->isovalue, .leave_open = n % 2};
         cw_mesh mesh = test_extract(&volume, &desc, NULL), out = reduce(&mesh, 0.1);
-        const char *fault = fault_of(&mesh, &out);
+        const char *fault = test_reduced_fault(&mesh, &out);
         if (fault)
             fail_msg("%s: the result %s", h->name, fault);
         cw_mesh_free(&out);
@@ -128,30 +81,15 @@ static void broken_meshes_become_no_worse(void **state)
     (void)state;
     for (size_t n = 0; n < test_planted_count; n++) {
         cw_mesh mesh = test_plant(test_planted_meshes + n), out = reduce(&mesh, 0.01);
-        const cw_quality a = measure(&mesh), b = measure(&out);
+        const cw_quality a = test_measure(&mesh), b = test_measure(&out);
         if (b.nonmanifold_edges > a.nonmanifold_edges ||
             b.nonmanifold_vertices > a.nonmanifold_vertices || b.degenerate > a.degenerate ||
             b.duplicates > a.duplicates || b.components > a.components ||
-            b.border_loops > a.border_loops || count_crossings(&out) > count_crossings(&mesh))
+            b.border_loops > a.border_loops ||
+            test_count_crossings(&out) > test_count_crossings(&mesh))
             fail_msg("%s is worse than before", test_planted_meshes[n].name);
         cw_mesh_free(&out);
         cw_mesh_free(&mesh);
-    }
-}
-
-static void bounds_are_kept(const cw_mesh *a, const cw_mesh *b, double error)
-{
-    const cw_mesh_distance_desc how = {.tolerance_mm = 0.01 * error};
-    cw_distance distance;
-    cw_error err = {0};
-    assert_ok(cw_distance_to_mesh(a, b, &how, &distance, NULL, &err), err);
-    if (distance.max_mm > error)
-        fail_msg("%g mm where %g are promised", distance.max_mm, error);
-    if (cw_quality_has_cgal()) {
-        double by_cgal;
-        assert_ok(cw_distance_by_cgal(a, b, 0.05 * error, &by_cgal, &err), err);
-        if (by_cgal > 1.05 * error)
-            fail_msg("%g mm by CGAL where %g are promised", by_cgal, error);
     }
 }
 
@@ -165,9 +103,9 @@ static void the_error_is_never_exceeded(void **state)
     for (double error = 0.001 * (high[0] - low[0]); error < 0.03 * (high[0] - low[0]);
          error *= 5) {
         cw_mesh out = simplify(&mesh, &(cw_simplify_desc){.error_mm = error});
-        bounds_are_kept(&mesh, &out, error);
-        bounds_are_kept(&out, &mesh, error);
-        assert_sound(&mesh, &out);
+        test_bound_is_kept(&mesh, &out, error);
+        test_bound_is_kept(&out, &mesh, error);
+        test_assert_sound(&mesh, &out);
         assert_true(out.triangle_count < before);
         before = out.triangle_count;
         cw_mesh_free(&out);
@@ -197,7 +135,7 @@ static void a_sphere_stays_round(void **state)
     (void)state;
     cw_volume volume = test_sample(CW_FIELD_SPHERE, 64, CW_F32);
     cw_mesh mesh = test_extract(&volume, NULL, NULL), out = reduce(&mesh, 0.05);
-    const double before = measure(&mesh).volume_mm3, after = measure(&out).volume_mm3;
+    const double before = test_measure(&mesh).volume_mm3, after = test_measure(&out).volume_mm3;
     assert_within(after, before, 5e-3);
     assert_true(test_normals_agree(&out));
     cw_mesh_free(&out);
@@ -228,11 +166,11 @@ static void a_flat_square_becomes_two_triangles(void **state)
         }
     cw_mesh out = simplify(&mesh, &(cw_simplify_desc){.triangles = 2});
     assert_int_equal(out.triangle_count, 2);
-    assert_near(measure(&out).area_mm2, N * N, 0.01 * N * N);
+    assert_near(test_measure(&out).area_mm2, N * N, 0.01 * N * N);
     cw_mesh_free(&out);
     out = simplify(&mesh, &(cw_simplify_desc){.error_mm = 0.01});
     assert_true(out.triangle_count < 20);
-    assert_near(measure(&out).area_mm2, N * N, 4 * N * 0.01);
+    assert_near(test_measure(&out).area_mm2, N * N, 4 * N * 0.01);
     cw_mesh_free(&out);
     cw_mesh_free(&mesh);
 }
@@ -245,7 +183,7 @@ static void nothing_vanishes(void **state)
     test_make_cube(&cube);
     cw_mesh out = simplify(&cube, &(cw_simplify_desc){.triangles = 1});
     assert_true(out.triangle_count >= 4);
-    assert_sound(&cube, &out);
+    test_assert_sound(&cube, &out);
     cw_mesh_free(&out);
     cw_mesh_free(&cube);
     out = simplify(&empty, &(cw_simplify_desc){.error_mm = 1});
@@ -284,7 +222,7 @@ static void levels_follow_each_other(void **state)
         assert_int_equal(facts[n].triangles, levels[n].triangle_count);
         if (n < 2)
             assert_int_equal(levels[n].triangle_count, triangles[n]);
-        assert_sound(&mesh, levels + n);
+        test_assert_sound(&mesh, levels + n);
     }
     cw_mesh first = simplify(&mesh, &(cw_simplify_desc){.triangles = triangles[0]});
     test_assert_same_mesh(&first, levels);
@@ -336,11 +274,11 @@ static void crossings_may_be_allowed(void **state)
     (void)state;
     cw_mesh mesh = noisy_gyroid(40, 0.2, false);
     cw_mesh out = simplify(&mesh, &(cw_simplify_desc){.ratio = 0.05, .allow_crossings = true});
-    const cw_quality a = measure(&mesh), b = measure(&out);
+    const cw_quality a = test_measure(&mesh), b = test_measure(&out);
     assert_int_equal(a.euler, b.euler);
     assert_int_equal(a.components, b.components);
     assert_int_equal(b.nonmanifold_edges, 0);
-    assert_true(count_crossings(&out) > 0);
+    assert_true(test_count_crossings(&out) > 0);
     cw_mesh_free(&out);
     cw_mesh_free(&mesh);
 }

@@ -89,7 +89,7 @@ static void slabs_are_the_surface(void **state)
         cw_extract_counts counts;
         const cw_extract_desc desc = {
             .isovalue = 0.5, .leave_open = round & 8, .no_normals = true, .threads = round % 3};
-        assert_ok(cw_volume_alloc(&v, CW_F32, (size_t[3]){9, 14, 60}, 1, 1, &err), err);
+        assert_ok(cw_volume_alloc(&v, CW_F32, (size_t[3]){9, 14, 100}, 1, 1, &err), err);
         fill(&v, round);
         assert_ok(cw_extract(&v, &desc, &whole, NULL, &err), err);
         taken t = {.whole = &whole};
@@ -114,7 +114,7 @@ static void what_the_sink_says_is_returned(void **state)
     cw_mesh whole;
     cw_error err = {0};
     cw_extract_desc desc = {.isovalue = 0.5};
-    assert_ok(cw_volume_alloc(&v, CW_F32, (size_t[3]){9, 14, 60}, 1, 1, &err), err);
+    assert_ok(cw_volume_alloc(&v, CW_F32, (size_t[3]){9, 14, 100}, 1, 1, &err), err);
     fill(&v, 0);
     assert_ok(cw_extract(&v, &desc, &whole, NULL, &err), err);
     taken t = {.whole = &whole, .stop_at = 2};
