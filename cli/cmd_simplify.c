@@ -22,6 +22,9 @@ static const cli_option options[] = {
     {"allow-intersections", 0, CLI_FLAG, NULL,
      "triangles may meet that did not: faster (none may)",
      offsetof(cli_simplify_args, allow_intersections)},
+    {"keep-border", 0, CLI_FLAG, NULL,
+     "borders of open surfaces stay as they are, so that tiles still fit (simplified, too)",
+     offsetof(cli_simplify_args, keep_border)},
     {"drop-components", 0, CLI_LENGTH, "L",
      "leave out components whose box has a shorter diagonal, e.g. 2mm, before all (none)",
      offsetof(cli_simplify_args, drop)},
@@ -125,6 +128,8 @@ const cli_command cli_simplify = {
         "(--allow-intersections drops the last). Where that leaves more triangles than asked\n"
         "for, it is told. Exit code 1, and no file, when the result should not be as "
         "promised.\n\n"
+        "--keep-border leaves borders of open surfaces to the bit as they are: what was cut\n"
+        "from one whole, as tiles are, fits together again when each piece is simplified.\n\n"
         "The error that is printed, and in the report, is measured both ways over the whole\n"
         "surfaces: the largest distance, the root of the mean square, the 99th percentile.\n"
         "--no-measure skips it.\n\n"

@@ -53,6 +53,7 @@ static void put_params(cli_json *j, const void *p, const cli_made *made)
     }
     cli_json_count(j, "merged_vertices", s->pieces.merged);
     cli_json_bool(j, "allow_intersections", args->allow_intersections);
+    cli_json_bool(j, "keep_border", args->keep_border);
     cli_json_bool(j, "merge", args->merge);
     cli_json_text(j, "normals", args->source ? "field" : "carried");
     if (args->source)
@@ -191,14 +192,16 @@ static void tell_missed(run_state *s, size_t target, size_t triangles)
     else
         cli_report_warn(&s->report,
                         "%s triangles were asked for, %s are left: where more would go, the "
-                        "surface would tear, turn over or meet itself",
-                        cli_count(target), cli_count(triangles));
+                        "surface would tear, turn over%s or meet itself",
+                        cli_count(target), cli_count(triangles),
+                        s->args->keep_border ? ", lose its border" : "");
 }
 
 /* How to simplify a mesh of so many triangles: all but how far. */
 static cw_simplify_desc simplify_desc(const run_state *s, size_t triangles)
 {
     return (cw_simplify_desc){.allow_crossings = s->args->allow_intersections,
+                              .keep_border = s->args->keep_border,
                               .threads = s->threads,
                               .progress = cli_progress((double)triangles / 1e6, "Mtriangle")};
 }

@@ -16,7 +16,7 @@ typedef struct cli_simplify_args {
     size_t triangles;
     cli_counts lod;
     int inside, progress;
-    bool allow_intersections, merge, measure;
+    bool allow_intersections, keep_border, merge, measure;
 } cli_simplify_args;
 
 /* Fails when they contradict each other, or lack what is needed; looks at no file. */

@@ -40,8 +40,9 @@ struct cwi_decimater {
             const VertexHandle handle{int(v)};
             cut += unsound[v];
             nodes[v].point = surface.point(handle);
-            nodes[v].held = unsound[v] || (block.held && block.held[v]);
             nodes[v].border = surface.is_boundary(handle);
+            nodes[v].held = unsound[v] || (block.held && block.held[v]) ||
+                            (desc.keep_border && nodes[v].border);
         }
         add_quadrics(block);
         fill_queue();

@@ -57,7 +57,7 @@ typedef struct cwi_block {
 
 typedef struct cwi_block_desc {
     double error; /* the distance to keep; 0: none */
-    bool allow_crossings;
+    bool allow_crossings, keep_border;
 } cwi_block_desc;
 
 typedef struct cwi_decimater cwi_decimater;

@@ -407,6 +407,7 @@ static cw_status simplify_levels(const cw_mesh *mesh, const cw_simplify_desc *de
     if (st == CW_OK && !j.facts)
         st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu levels", levels);
     j.block_desc.allow_crossings = desc->allow_crossings;
+    j.block_desc.keep_border = desc->keep_border;
     if (st == CW_OK)
         st = simplify_all(&j, err);
     if (st == CW_OK && facts)

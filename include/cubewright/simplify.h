@@ -18,6 +18,8 @@ typedef struct cw_simplify_desc {
     size_t triangles; /* stop when there are so many; default: no limit */
     double ratio;     /* the same as a share of the input's, above 0, below 1; default: none */
     bool allow_crossings; /* default: no triangles meet that did not meet before */
+    bool keep_border;     /* borders of open surfaces stay to the bit, so that what was cut from
+                             one whole still fits together; default: they are simplified, too */
     int threads;          /* default: all that OpenMP offers */
     cw_progress progress; /* default: none */
 } cw_simplify_desc;

@@ -62,3 +62,19 @@ cubewright simplify soup.off -o soup.stl --ratio 0.5
     sed 's|//[0-9]*||g' >speck.obj
 cubewright simplify speck.obj -o clean.obj --ratio 0.5 --drop-components 2mm --no-measure
 cubewright simplify speck.obj -o clean.obj --ratio 0.5 --drop-components 1% --json - -q | grep -e dropped_c -e drop_c -e '"components"'
+
+# a sphere cut in two: each half by itself, and then they still make one
+cubewright extract s.nrrd --iso 0 -o whole.off -q
+for half in low high; do
+    awk -v n="$half" '!/^#/ && NF { line[++k] = $0 } END {
+        split(line[2], count)
+        for (i = 3; i < 3 + count[1]; i++) { split(line[i], p); z[i - 3] = p[3] }
+        for (; i <= k; i++) { split(line[i], c); low = z[c[2]] + z[c[3]] + z[c[4]] < 0
+            if (low == (n == "low")) face[++m] = line[i] }
+        print "OFF"; print count[1], m, 0
+        for (i = 3; i < 3 + count[1]; i++) print line[i]
+        for (i = 1; i <= m; i++) print face[i] }' whole.off >half.off
+    cubewright simplify half.off -o $half.obj --ratio 0.2 --keep-border -q
+done
+{ cat low.obj; awk -v n="$(grep -c '^v ' low.obj)" '/^f/ { for (i = 2; i <= 4; i++) $i += n } { print }' high.obj; } >both.obj
+cubewright check both.obj --json - -q | grep -e '"components"' -e open_edges

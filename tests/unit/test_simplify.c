@@ -191,6 +191,94 @@ static void what_is_met_first_ends_it(void **state)
     cw_volume_free(&volume);
 }
 
+static int by_number(const void *a, const void *b)
+{
+    const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+    return (x > y) - (x < y);
+}
+
+static int by_bytes(const void *a, const void *b)
+{
+    return memcmp(a, b, sizeof(float[6]));
+}
+
+static void put_place(float *to, const cw_mesh *mesh, uint64_t vertex)
+{
+    memcpy(to, mesh->positions + 3 * vertex, 3 * sizeof *to);
+}
+
+/* Sides of one triangle only, from place to place, in an order that numbers do not change. */
+static float (*border_of(const cw_mesh *mesh, size_t *count))[6]
+{
+    const size_t sides = 3 * mesh->triangle_count;
+    uint64_t *side = malloc(sides * sizeof *side);
+    float(*border)[6] = malloc(sides * sizeof *border);
+    assert_true(side && border);
+    for (size_t c = 0; c < sides; c++) {
+        const uint64_t a = mesh->triangles[c], b = mesh->triangles[c % 3 == 2 ? c - 2 : c + 1];
+        side[c] = a < b ? a << 32 | b : b << 32 | a;
+    }
+    qsort(side, sides, sizeof *side, by_number);
+    *count = 0;
+    for (size_t c = 0; c < sides; c++) {
+        if ((c > 0 && side[c - 1] == side[c]) || (c + 1 < sides && side[c + 1] == side[c]))
+            continue;
+        float(*to)[6] = border + (*count)++;
+        put_place(*to, mesh, side[c] >> 32);
+        put_place(*to + 3, mesh, side[c] & UINT32_MAX);
+        if (memcmp(*to, *to + 3, sizeof(float[3])) > 0) {
+            put_place(*to + 3, mesh, side[c] >> 32);
+            put_place(*to, mesh, side[c] & UINT32_MAX);
+        }
+    }
+    free(side);
+    qsort(border, *count, sizeof *border, by_bytes);
+    return border;
+}
+
+static void assert_same_border(const cw_mesh *a, const cw_mesh *b)
+{
+    size_t count, other;
+    float(*before)[6] = border_of(a, &count), (*after)[6] = border_of(b, &other);
+    assert_true(count > 0);
+    assert_int_equal(count, other);
+    assert_memory_equal(before, after, count * sizeof *before);
+    free(before);
+    free(after);
+}
+
+/* In one block and in several, by number, error and level. */
+static void a_border_can_be_kept(void **state)
+{
+    (void)state;
+    static const cw_simplify_desc ways[] = {
+        {.keep_border = true, .ratio = 0.3},
+        {.keep_border = true, .ratio = 0.7, .error_mm = 0.5},
+    };
+    static const size_t levels[] = {20000, 15000};
+    cw_mesh large = noisy_gyroid(42, 0.05, true), small = noisy_gyroid(20, 0, true), out[2];
+    cw_error err = {0};
+    for (int n = 0; n < 4; n++) {
+        const cw_mesh *mesh = n % 2 ? &small : &large;
+        out[0] = simplify(mesh, &ways[n / 2]);
+        assert_same_border(mesh, out);
+        assert_sound(mesh, out);
+        assert_within((double)out->triangle_count,
+                      ways[n / 2].ratio * (double)mesh->triangle_count, 0.01);
+        cw_mesh_free(out);
+    }
+    assert_ok(cw_simplify_levels(&large, &(cw_simplify_desc){.keep_border = true}, levels, 2,
+                                 out, NULL, &err),
+              err);
+    for (int n = 0; n < 2; n++) {
+        assert_within((double)out[n].triangle_count, (double)levels[n], 1e-3);
+        assert_same_border(&large, out + n);
+        cw_mesh_free(out + n);
+    }
+    cw_mesh_free(&large);
+    cw_mesh_free(&small);
+}
+
 /* Vertices of a simplified sphere are as near to it as those of a good approximation. */
 static void a_sphere_stays_round(void **state)
 {
@@ -454,6 +542,7 @@ int main(void)
         cmocka_unit_test(broken_meshes_become_no_worse),
         cmocka_unit_test(the_error_is_never_exceeded),
         cmocka_unit_test(what_is_met_first_ends_it),
+        cmocka_unit_test(a_border_can_be_kept),
         cmocka_unit_test(a_sphere_stays_round),
         cmocka_unit_test(a_flat_square_becomes_two_triangles),
         cmocka_unit_test(nothing_vanishes),
