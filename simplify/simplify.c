@@ -37,11 +37,13 @@ typedef struct job {
     const cwi_openmesh_functions *openmesh;
     const cw_simplify_desc *desc;
     cwi_block_desc block_desc;
+    double scale;          /* from the mesh's places to those that are worked with */
     const size_t *targets; /* triangles of each level, falling */
     size_t levels;
     cw_mesh *out;             /* one a level */
     cw_simplify_facts *facts; /* the same */
     cwi_original original;    /* next is NULL without an error to keep */
+    float *points;            /* the original's */
     uint32_t *first, *around;
     uint8_t *care;
     uint32_t *lists, *names; /* of the result's triangles and vertices, with an error to keep */
@@ -77,6 +79,31 @@ static size_t target_of(const cw_simplify_desc *d, size_t triangles)
     return share > d->triangles ? share : d->triangles;
 }
 
+/* Lengths to the fourth power, and more, are worked with in single precision: those of a mesh
+ * whose box is about 1 wide. A power of two, so that nothing is rounded. */
+static double scale_of(const cw_mesh *m)
+{
+    double widest = 0;
+    int exponent;
+    for (size_t a = 0; a < 3 && m->vertex_count; a++) {
+        float low = m->positions[a], high = low;
+        for (size_t v = 1; v < m->vertex_count; v++) {
+            const float x = m->positions[3 * v + a];
+            low = x < low ? x : low;
+            high = x > high ? x : high;
+        }
+        widest = fmax(widest, (double)high - (double)low);
+    }
+    frexp(widest, &exponent);
+    return widest > 0 ? ldexp(1, -exponent) : 1;
+}
+
+static void scale_points(const float *from, size_t vertices, double scale, float *to)
+{
+    for (size_t i = 0; i < 3 * vertices; i++)
+        to[i] = (float)(scale * (double)from[i]);
+}
+
 /* Triangles that name a vertex twice are no part of any surface. */
 static cw_status begin(job *j, cw_error *err)
 {
@@ -90,8 +117,7 @@ static cw_status begin(job *j, cw_error *err)
     if (!w->points || !w->names || !w->corners)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to simplify %zu triangles",
                        m->triangle_count);
-    if (w->vertices)
-        memcpy(w->points, m->positions, 3 * w->vertices * sizeof *w->points);
+    scale_points(m->positions, w->vertices, j->scale, w->points);
     for (size_t v = 0; v < w->vertices; v++)
         w->names[v] = (uint32_t)v;
     for (size_t t = 0; t < m->triangle_count; t++) {
@@ -140,15 +166,19 @@ static cw_status remember(job *j, cw_error *err)
         j->around = cwi_alloc_array(3 * m->triangle_count, sizeof *j->around);
         j->original.next = cwi_alloc_array(m->vertex_count, sizeof *j->original.next);
         j->care = cwi_alloc_zeroed(m->vertex_count, sizeof *j->care);
+        j->points = cwi_alloc_array(3 * m->vertex_count, sizeof *j->points);
         if (j->first && j->around)
             sort_around(j);
+        if (j->points)
+            scale_points(m->positions, m->vertex_count, j->scale, j->points);
     }
     j->whole.lists = cwi_alloc_array(j->whole.triangles, sizeof *j->whole.lists);
-    if (!j->first || !j->around || !j->care || !j->original.next || !j->whole.lists)
+    if (!j->first || !j->around || !j->care || !j->points || !j->original.next ||
+        !j->whole.lists)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error of %zu triangles",
                        m->triangle_count);
     list_points(j);
-    j->original.points = m->positions;
+    j->original.points = j->points;
     j->original.corners = m->triangles;
     j->original.first = j->first;
     j->original.around = j->around;
@@ -276,7 +306,7 @@ static cw_status finish(const job *j, const cwi_block *from, cw_mesh *out, cw_er
         return st;
     memcpy(out->origin, j->mesh->origin, sizeof out->origin);
     memcpy(out->affine, j->mesh->affine, sizeof out->affine);
-    memcpy(out->positions, from->points, 3 * from->vertices * sizeof *from->points);
+    scale_points(from->points, from->vertices, 1 / j->scale, out->positions);
     memcpy(out->triangles, from->corners, 3 * from->triangles * sizeof *from->corners);
     return CW_OK;
 }
@@ -379,7 +409,8 @@ static cw_status judge(job *j, bool *kept, cw_error *err)
 static cw_status simplify_all(job *j, cw_error *err)
 {
     cw_status st = CW_OK;
-    j->block_desc.error = 0.9 * j->desc->error_mm;
+    j->scale = scale_of(j->mesh);
+    j->block_desc.error = 0.9 * j->desc->error_mm * j->scale;
     for (bool kept = false; st == CW_OK && !kept;) {
         for (size_t n = 0; n < j->levels; n++)
             cw_mesh_free(j->out + n);
@@ -416,6 +447,7 @@ static cw_status simplify_levels(const cw_mesh *mesh, const cw_simplify_desc *de
     cwi_free(j.first);
     cwi_free(j.around);
     cwi_free(j.care);
+    cwi_free(j.points);
     cwi_free(j.lists);
     cwi_free(j.names);
     cwi_free(j.original.next);

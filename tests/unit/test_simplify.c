@@ -293,6 +293,36 @@ static void a_sphere_stays_round(void **state)
     cw_volume_free(&volume);
 }
 
+static void scale(cw_mesh *mesh, int exponent)
+{
+    for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
+        mesh->positions[i] = ldexpf(mesh->positions[i], exponent);
+}
+
+/* Squares of squares of such lengths are no floats. */
+static void size_does_not_matter(void **state)
+{
+    (void)state;
+    static const int exponents[] = {-60, 60};
+    cw_volume volume = test_sample(CW_FIELD_SPHERE, 32, CW_F32);
+    cw_mesh mesh = test_extract(&volume, NULL, NULL);
+    for (int n = 0; n < 4; n++) {
+        const int exponent = exponents[n / 2];
+        const double error = n % 2 ? 0.1 : 0;
+        cw_mesh plain = simplify(&mesh, &(cw_simplify_desc){.ratio = 0.1, .error_mm = error});
+        scale(&mesh, exponent);
+        cw_mesh scaled = simplify(
+            &mesh, &(cw_simplify_desc){.ratio = 0.1, .error_mm = ldexp(error, exponent)});
+        scale(&mesh, -exponent);
+        scale(&plain, exponent);
+        test_assert_same_mesh(&plain, &scaled);
+        cw_mesh_free(&plain);
+        cw_mesh_free(&scaled);
+    }
+    cw_mesh_free(&mesh);
+    cw_volume_free(&volume);
+}
+
 /* A flat square with a grid on it: nothing is lost until two triangles are left. */
 static void a_flat_square_becomes_two_triangles(void **state)
 {
@@ -544,6 +574,7 @@ int main(void)
         cmocka_unit_test(what_is_met_first_ends_it),
         cmocka_unit_test(a_border_can_be_kept),
         cmocka_unit_test(a_sphere_stays_round),
+        cmocka_unit_test(size_does_not_matter),
         cmocka_unit_test(a_flat_square_becomes_two_triangles),
         cmocka_unit_test(nothing_vanishes),
         cmocka_unit_test(threads_change_nothing),
