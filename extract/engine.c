@@ -34,7 +34,7 @@ static bool has_avx512(void)
 #define DECLARE(engine, test, compare, march)                                                  \
     void cwi_classify_layer_##engine(const cwi_grid *, size_t, cwi_range *, bool *, bool *);   \
     void cwi_count_layer_##engine(const cwi_grid *, size_t, cwi_row *);                        \
-    void cwi_write_layers_##engine(const cwi_grid *, size_t, size_t, const cwi_row *,          \
+    void cwi_write_layers_##engine(const cwi_grid *, size_t, size_t, size_t, const cwi_row *,  \
                                    const cwi_emission *, cwi_vertex_sink *, uint32_t *);
 ENGINES(DECLARE)
 

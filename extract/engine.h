@@ -35,10 +35,11 @@ struct cwi_engine {
                            bool *out);
     /* Leaves a layer's counts, not yet first numbers, in its rows. */
     void (*count_layer)(const cwi_grid *grid, size_t k, cwi_row *rows);
-    /* Writes the vertices and triangles of the layers begin to end to their places. */
-    void (*write_layers)(const cwi_grid *grid, size_t begin, size_t end, const cwi_row *rows,
-                         const cwi_emission *emission, cwi_vertex_sink *sink,
-                         uint32_t *triangles);
+    /* Writes the vertices of the layers begin to end, and the triangles of those begin to
+     * cells, to their places. */
+    void (*write_layers)(const cwi_grid *grid, size_t begin, size_t end, size_t cells,
+                         const cwi_row *rows, const cwi_emission *emission,
+                         cwi_vertex_sink *sink, uint32_t *triangles);
 };
 
 /* The n-th engine this machine can use, the plain one first; NULL when there are fewer. */
@@ -74,8 +75,9 @@ CW_API cw_status cwi_extractor_new_with(const cwi_engine *engine, size_t leaf_by
 
 void cwi_classify_layer(const cwi_grid *grid, size_t b, cwi_range *leaves, bool *in, bool *out);
 void cwi_count_layer(const cwi_grid *grid, size_t k, cwi_row *rows);
-void cwi_write_layers(const cwi_grid *grid, size_t begin, size_t end, const cwi_row *rows,
-                      const cwi_emission *emission, cwi_vertex_sink *sink, uint32_t *triangles);
+void cwi_write_layers(const cwi_grid *grid, size_t begin, size_t end, size_t cells,
+                      const cwi_row *rows, const cwi_emission *emission, cwi_vertex_sink *sink,
+                      uint32_t *triangles);
 void cwi_write_vertices(const cwi_grid *grid, size_t begin, size_t end, const cwi_row *rows,
                         cwi_vertex_sink *sink);
 #endif

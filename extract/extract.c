@@ -6,6 +6,7 @@
 #include "core/mesh.h"
 #include "core/status.h"
 #include "extract/cases.h"
+#include "extract/crossing.h"
 #include "extract/engine.h"
 #include "extract/normals.h"
 #include "extract/snap.h"
@@ -175,21 +176,31 @@ static cwi_emission make_emission(const cwi_grid *g)
 
 enum { SHARE = 8 }; /* layers that a thread writes at a time */
 
+/* Layers of cells from begin to end, and the layer of samples that ends them. */
 typedef struct writing {
     const plan *plan;
+    size_t begin, end;
     cwi_emission emission;
     cwi_vertex_sink sink;
     uint32_t *triangles;
 } writing;
 
-static void write_layers(void *context, size_t share)
+static void write_share(void *context, size_t share)
 {
     writing *w = context;
-    const cwi_grid *g = &w->plan->grid;
-    const size_t begin = share * SHARE,
-                 end = begin + SHARE < g->rows_z ? begin + SHARE : g->rows_z;
-    w->plan->engine->write_layers(g, begin, end, w->plan->rows, &w->emission, &w->sink,
+    const size_t begin = w->begin + share * SHARE, end = begin + SHARE;
+    const bool last = end >= w->end;
+    w->plan->engine->write_layers(&w->plan->grid, begin, last ? w->end + 1 : end,
+                                  last ? w->end : end, w->plan->rows, &w->emission, &w->sink,
                                   w->triangles);
+}
+
+static cw_status write_layers(writing *w, const cw_extract_desc *d, cw_error *err)
+{
+    const cwi_grid *g = &w->plan->grid;
+    return cwi_each_layer((w->end - w->begin + SHARE - 1) / SHARE,
+                          SHARE * g->rows_y * g->words * 64, d->threads, &d->progress,
+                          "marching", write_share, w, err);
 }
 
 static cw_status write_mesh(plan *p, const cw_extract_desc *d, cw_mesh *mesh, cw_error *err)
@@ -199,12 +210,11 @@ static cw_status write_mesh(plan *p, const cw_extract_desc *d, cw_mesh *mesh, cw
     if (st != CW_OK)
         return st;
     writing w = {.plan = p,
+                 .end = p->grid.rows_z - 1,
                  .emission = make_emission(&p->grid),
                  .sink = make_sink(&p->grid, mesh),
                  .triangles = mesh->triangles};
-    const cwi_grid *g = &p->grid;
-    st = cwi_each_layer((g->rows_z + SHARE - 1) / SHARE, SHARE * g->rows_y * g->words * 64,
-                        d->threads, &d->progress, "marching", write_layers, &w, err);
+    st = write_layers(&w, d, err);
     if (st == CW_OK && w.sink.missing)
         st = cwi_mend_normals(mesh, cwi_voxel_scale(&p->grid.volume), err);
     if (st == CW_OK)
@@ -228,6 +238,165 @@ static cw_status extract(plan *p, const cw_extract_desc *desc, cw_mesh *mesh,
         *counts = p->counts;
     if (st != CW_OK)
         cw_mesh_free(mesh);
+    return st;
+}
+
+/* --- a slab at a time -------------------------------------------------------------------- */
+
+enum { LEAST_LAYERS = 8 };
+
+static size_t triangles_before(const plan *p, size_t layer)
+{
+    return p->grid.layers[layer].triangles;
+}
+
+static size_t vertices_before(const plan *p, size_t layer)
+{
+    return layer < p->grid.rows_z ? p->grid.layers[layer].vertices : p->counts.vertices;
+}
+
+/* Where the slab that begins with a layer ends. What is left behind it is a slab of half the
+ * size at least. */
+static size_t end_of_slab(const plan *p, size_t begin, size_t triangles)
+{
+    const size_t last = p->grid.rows_z - 1;
+    size_t end = begin + LEAST_LAYERS;
+    while (end < last && triangles_before(p, end) - triangles_before(p, begin) < triangles)
+        end++;
+    return end >= last || p->counts.triangles - triangles_before(p, end) < triangles / 2 ? last
+                                                                                         : end;
+}
+
+/* Vertices and triangles of the largest slab. */
+static cw_extract_counts largest_slab(const plan *p, size_t triangles)
+{
+    cw_extract_counts most = {0};
+    for (size_t k = 0, end; k + 1 < p->grid.rows_z; k = end) {
+        end = end_of_slab(p, k, triangles);
+        const size_t v = vertices_before(p, end + 1) - vertices_before(p, k),
+                     t = triangles_before(p, end) - triangles_before(p, k);
+        most.vertices = v > most.vertices ? v : most.vertices;
+        most.triangles = t > most.triangles ? t : most.triangles;
+    }
+    return most;
+}
+
+/* Numbers in the slab become those in the mesh, or, negative, the other way round. */
+static void shift_rows(plan *p, const writing *w, uint32_t vertices, size_t triangles)
+{
+    const size_t rows = p->grid.rows_y;
+    for (cwi_row *row = p->rows + w->begin * rows; row <= p->rows + (w->end + 1) * rows;
+         row++) {
+        for (int kind = 0; kind < 4; kind++)
+            row->first[kind] += vertices;
+        row->triangle += triangles;
+    }
+}
+
+/* Crossings of edges that lie in the plane of a layer of samples. */
+static void mark_seam(const plan *p, size_t layer, uint8_t mark, uint8_t *seam)
+{
+    const cwi_row *row = p->rows + layer * p->grid.rows_y;
+    for (size_t j = 0; j < p->grid.rows_y; j++)
+        memset(seam + row[j].first[0], mark, row[j].first[2] - row[j].first[0]);
+}
+
+/* What stands in the last layer, but belongs to the next slab, was written in part. */
+static void clear_beyond(const plan *p, size_t layer, float *positions)
+{
+    const cwi_row *row = p->rows + layer * p->grid.rows_y;
+    for (size_t j = 0; j < p->grid.rows_y; j++)
+        memset(positions + 3 * (size_t)row[j].first[2], 0,
+               (size_t)(row[j + 1].first[0] - row[j].first[2]) * 3 * sizeof *positions);
+}
+
+/* The layers' own index along the slab, counted from the mesh's origin. Vertices are kept
+ * CWI_NUDGE away from planes; half of that allows for rounding. */
+static void set_planes(const plan *p, const writing *w, cw_slab *slab)
+{
+    double cofactor[3][3];
+    const double *affine = p->grid.volume.affine[0],
+                 determinant = cwi_affine_determinant(affine), zero = w->sink.centre[2] + 1;
+    cwi_affine_cofactor(affine, cofactor);
+    for (int a = 0; a < 3; a++)
+        slab->along[a] = cofactor[a][2] / determinant;
+    slab->low = w->begin ? (double)w->begin - zero + CWI_NUDGE / 2 : -INFINITY;
+    slab->high = slab->last ? INFINITY : (double)w->end - zero - CWI_NUDGE / 2;
+}
+
+static cw_status write_slab(plan *p, writing *w, const cw_extract_desc *d, cw_mesh *mesh,
+                            uint8_t *seam, cw_slab_sink sink, cw_error *err)
+{
+    const size_t vertices = vertices_before(p, w->begin),
+                 triangles = triangles_before(p, w->begin);
+    cw_slab slab = {.mesh = mesh,
+                    .seam = seam,
+                    .triangles = p->counts.triangles,
+                    .last = w->end + 1 == p->grid.rows_z};
+    mesh->vertex_count = vertices_before(p, w->end + 1) - vertices;
+    mesh->triangle_count = triangles_before(p, w->end) - triangles;
+    shift_rows(p, w, -(uint32_t)vertices, -triangles);
+    cw_status st = write_layers(w, d, err);
+    memset(seam, 0, mesh->vertex_count);
+    if (w->begin)
+        mark_seam(p, w->begin, 1, seam);
+    if (!slab.last)
+        mark_seam(p, w->end, 2, seam);
+    clear_beyond(p, w->end, mesh->positions);
+    shift_rows(p, w, (uint32_t)vertices, triangles);
+    set_planes(p, w, &slab);
+    return st == CW_OK ? sink.take(sink.user, &slab, err) : st;
+}
+
+static cw_status write_slabs(plan *p, const cw_extract_desc *d, size_t triangles,
+                             cw_slab_sink sink, cw_error *err)
+{
+    const cw_extract_counts most = largest_slab(p, triangles);
+    cw_mesh mesh;
+    p->counts.bytes = mesh_bytes(&most, false) + most.vertices + cwi_grid_bytes(&p->grid);
+    cw_status st = check_limits(d, &p->counts, err);
+    if (st == CW_OK)
+        st = cwi_mesh_alloc(&mesh, most.vertices, most.triangles, false, err);
+    if (st != CW_OK)
+        return st;
+    uint8_t *seam = cwi_alloc_array(most.vertices, 1);
+    if (!seam)
+        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", most.vertices);
+    memcpy(mesh.affine, p->grid.volume.affine, sizeof mesh.affine);
+    writing w = {.plan = p,
+                 .emission = make_emission(&p->grid),
+                 .sink = make_sink(&p->grid, &mesh),
+                 .triangles = mesh.triangles};
+    for (; w.begin + 1 < p->grid.rows_z && st == CW_OK; w.begin = w.end) {
+        w.end = end_of_slab(p, w.begin, triangles);
+        st = write_slab(p, &w, d, &mesh, seam, sink, err);
+    }
+    cw_mesh_free(&mesh);
+    cwi_free(seam);
+    return st;
+}
+
+cw_status cw_extract_slabs(const cw_volume *volume, const cw_extract_desc *desc,
+                           size_t triangles, cw_slab_sink sink, cw_extract_counts *counts,
+                           cw_error *err)
+{
+    cw_extract_desc d = desc ? *desc : (cw_extract_desc){0};
+    const size_t max_bytes = d.max_bytes;
+    plan p = {0};
+    d.no_normals = true;
+    d.max_bytes = 0; /* is for slabs, not for all of it */
+    cw_status st = d.snap == 0
+                       ? init_plan(&p, cwi_engine_best(), volume, err)
+                       : cw_fail(err, CW_ERR_ARGUMENT,
+                                 "snap is %g; a surface made by slabs is not snapped", d.snap);
+    if (st == CW_OK)
+        st = make_plan(&p, &d, err);
+    d.max_bytes = max_bytes;
+    if (st == CW_OK && p.counts.triangles)
+        st = write_slabs(&p, &d, triangles, sink, err);
+    if (st == CW_OK && counts)
+        *counts = p.counts;
+    free_plan(&p);
     return st;
 }
 

@@ -471,11 +471,12 @@ static void write_triangles(const cwi_grid *g, size_t j, size_t k, const cwi_row
     }
 }
 
-void cwi_write_layers(const cwi_grid *g, size_t begin, size_t end, const cwi_row *rows,
-                      const cwi_emission *emission, cwi_vertex_sink *sink, uint32_t *triangles)
+void cwi_write_layers(const cwi_grid *g, size_t begin, size_t end, size_t cells,
+                      const cwi_row *rows, const cwi_emission *emission, cwi_vertex_sink *sink,
+                      uint32_t *triangles)
 {
     cwi_write_vertices(g, begin, end, rows, sink);
-    for (size_t k = begin; k < end && k + 1 < g->rows_z; k++) {
+    for (size_t k = begin; k < cells; k++) {
         cwi_cursor to = {.plan = 0};
         for (size_t j = 0; j + 1 < g->rows_y; j++) {
             const cwi_row *row = rows + k * g->rows_y + j;

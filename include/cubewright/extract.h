@@ -94,6 +94,21 @@ typedef struct cw_extract_counts {
 CW_API cw_status cw_extract(const cw_volume *volume, const cw_extract_desc *desc, cw_mesh *mesh,
                             cw_extract_counts *counts, cw_error *err);
 
+/* The same surface a slab at a time, so that all of it never is in memory: what is left of one
+ * slab is the sink's business before the next is made. Vertices are those of cw_extract(),
+ * without normals; where slabs end depends on the surface and on `triangles` only.
+ *
+ * desc       as in cw_extract(), but without snap
+ * triangles  of a slab, at least, where there are so many: slabs are whole layers of cells,
+ *            and 8 of them at least
+ * sink       called on the calling thread; not at all for a volume without a crossing
+ * counts     what was made; bytes are those of the largest slab and the working memory
+ *
+ * Returns    as cw_extract(); CW_ERR_ARGUMENT also for snap; or what the sink returned */
+CW_API cw_status cw_extract_slabs(const cw_volume *volume, const cw_extract_desc *desc,
+                                  size_t triangles, cw_slab_sink sink,
+                                  cw_extract_counts *counts, cw_error *err);
+
 /* Counts what cw_extract() would make, without making it; same arguments and errors. */
 CW_API cw_status cw_extract_predict(const cw_volume *volume, const cw_extract_desc *desc,
                                     cw_extract_counts *counts, cw_error *err);

@@ -55,6 +55,26 @@ CW_API cw_status cw_mesh_weld(cw_mesh *mesh, size_t *merged, cw_error *err);
 CW_API cw_status cw_mesh_drop_components(cw_mesh *mesh, double diagonal_mm, size_t *dropped,
                                          size_t *kept, cw_error *err);
 
+/* A part of a surface that is made from one end to the other: what lies between two parallel
+ * planes. Slabs that follow each other have the vertices in the plane between them in common:
+ * the n-th with seam 2 in one is the n-th with seam 1 in the next, at the same place. */
+typedef struct cw_slab {
+    const cw_mesh *mesh; /* without normals; some vertices may be in no triangle */
+    const uint8_t *seam; /* vertices: 1 in the plane to the slab before, 2 in the plane to the
+                            one after, else 0 */
+    double along[3];     /* of the mesh's positions x: all vertices that are in neither plane */
+    double low, high;    /* have low < along . x < high; infinite at the ends */
+    size_t triangles;    /* of the whole surface */
+    bool last;
+} cw_slab;
+
+/* Who takes slabs, one after the other; what is not CW_OK ends it, and is what the maker then
+ * returns. The slab is the maker's, and gone after the call. */
+typedef struct cw_slab_sink {
+    cw_status (*take)(void *user, const cw_slab *slab, cw_error *err);
+    void *user;
+} cw_slab_sink;
+
 #ifdef __cplusplus
 }
 #endif
