@@ -31,6 +31,17 @@ typedef struct run_state {
     double start;
 } run_state;
 
+static const char *const attribute_names[3] = {"normal", "color", "scalar"};
+
+static void put_attributes(cli_json *j, const cli_weights *weights)
+{
+    cli_json_open(j, "attributes", '{');
+    for (int k = 0; k < 3; k++)
+        if (weights->of[k] > 0)
+            cli_json_number(j, attribute_names[k], weights->of[k]);
+    cli_json_close(j, '}');
+}
+
 static void put_params(cli_json *j, const void *p, const cli_made *made)
 {
     const run_state *s = p;
@@ -54,6 +65,8 @@ static void put_params(cli_json *j, const void *p, const cli_made *made)
     cli_json_count(j, "merged_vertices", s->pieces.merged);
     cli_json_bool(j, "allow_intersections", args->allow_intersections);
     cli_json_bool(j, "keep_border", args->keep_border);
+    if (args->attributes.given)
+        put_attributes(j, &args->attributes);
     cli_json_bool(j, "merge", args->merge);
     cli_json_text(j, "normals", args->source ? "field" : "carried");
     if (args->source)
@@ -141,6 +154,20 @@ static cw_status take_pieces(run_state *s, cw_error *err)
     return st == CW_OK ? cli_measure_pieces(&s->pieces, s->threads, err) : st;
 }
 
+static cw_status check_attributes(const run_state *s, cw_error *err)
+{
+    for (size_t n = 0; n < s->pieces.count; n++) {
+        const cw_mesh *m = &s->pieces.piece[n].input;
+        const void *const array[3] = {m->normals, m->colors, m->scalars};
+        for (int k = 0; k < 3; k++)
+            if (s->args->attributes.of[k] > 0 && !array[k])
+                return cw_fail(err, CW_ERR_ARGUMENT, "%s: --attributes: it has no %ss%s",
+                               s->mesh.path, attribute_names[k],
+                               s->pieces.count > 1 ? " in one of its parts" : "");
+    }
+    return CW_OK;
+}
+
 static cw_status read_inputs(run_state *s, cw_error *err)
 {
     const cli_simplify_args *args = s->args;
@@ -157,6 +184,8 @@ static cw_status read_inputs(run_state *s, cw_error *err)
         st = take_pieces(s, err);
     for (size_t n = 0; n < s->pieces.count && st == CW_OK && args->source; n++)
         st = cli_check_place(&s->source, &s->pieces.piece[n].input, err);
+    if (st == CW_OK)
+        st = check_attributes(s, err);
     if (st == CW_OK)
         cli_report_end(&s->report, "read", 1, s->pieces.triangles);
     return st;
@@ -202,6 +231,9 @@ static cw_simplify_desc simplify_desc(const run_state *s, size_t triangles)
 {
     return (cw_simplify_desc){.allow_crossings = s->args->allow_intersections,
                               .keep_border = s->args->keep_border,
+                              .normal_weight = (float)s->args->attributes.of[0],
+                              .color_weight = (float)s->args->attributes.of[1],
+                              .scalar_weight = (float)s->args->attributes.of[2],
                               .threads = s->threads,
                               .progress = cli_progress((double)triangles / 1e6, "Mtriangle")};
 }

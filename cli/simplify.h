@@ -15,6 +15,7 @@ typedef struct cli_simplify_args {
     cli_number ratio, iso;
     size_t triangles;
     cli_counts lod;
+    cli_weights attributes; /* normal, color, scalar */
     int inside, progress;
     bool allow_intersections, keep_border, merge, measure;
 } cli_simplify_args;

@@ -5,6 +5,7 @@
 #include "core/mesh.h"
 #include "core/module.h"
 #include "core/status.h"
+#include "simplify/attributes.h"
 #include "simplify/blocks.h"
 #include "simplify/carry.h"
 #include "simplify/openmesh_wrap.h"
@@ -69,7 +70,8 @@ static cw_status check(const cw_mesh *mesh, const cw_simplify_desc *d, cw_error 
         return cw_fail(err, CW_ERR_LIMIT,
                        "%zu triangles and %zu vertices; at most 2^30 of either are simplified",
                        mesh->triangle_count, mesh->vertex_count);
-    return cw_mesh_check(mesh, err);
+    cw_status st = cw_mesh_check(mesh, err);
+    return st == CW_OK ? cwi_attributes_check(mesh, d, err) : st;
 }
 
 static size_t target_of(const cw_simplify_desc *d, size_t triangles)
@@ -118,6 +120,14 @@ static cw_status begin(job *j, cw_error *err)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to simplify %zu triangles",
                        m->triangle_count);
     scale_points(m->positions, w->vertices, j->scale, w->points);
+    w->attributes = cwi_attributes_count(j->desc);
+    if (w->attributes) {
+        w->values = cwi_alloc_array(w->attributes * w->vertices, sizeof *w->values);
+        if (!w->values)
+            return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for attributes of %zu vertices",
+                           w->vertices);
+        cwi_attributes_weigh(m, j->desc, j->scale, w->values);
+    }
     for (size_t v = 0; v < w->vertices; v++)
         w->names[v] = (uint32_t)v;
     for (size_t t = 0; t < m->triangle_count; t++) {

@@ -78,3 +78,19 @@ for half in low high; do
 done
 { cat low.obj; awk -v n="$(grep -c '^v ' low.obj)" '/^f/ { for (i = 2; i <= 4; i++) $i += n } { print }' high.obj; } >both.obj
 cubewright check both.obj --json - -q | grep -e '"components"' -e open_edges
+
+# a flat square, half red, half blue: with a weight the step from one to the other stays
+awk 'BEGIN { print "ply\nformat ascii 1.0\nelement vertex 1681\nproperty float x\nproperty float y\nproperty float z"
+    print "property uchar red\nproperty uchar green\nproperty uchar blue"
+    print "element face 3200\nproperty list uchar uint vertex_indices\nend_header"
+    for (y = 0; y <= 40; y++) for (x = 0; x <= 40; x++) print x, y, 0, 255 * (x < 20), 0, 255 * (x > 19)
+    for (y = 0; y < 40; y++) for (x = 0; x < 40; x++) { v = 41 * y + x
+        print 3, v, v + 1, v + 42; print 3, v, v + 42, v + 41 } }' >halves.ply
+mixed() { # the area between both, of 40 at first
+    sed '1,/end_header/d' "$1" | awk 'NF > 4 { x[n] = $1; y[n] = $2; red[n++] = $4 > 127 }
+        NF == 4 && (red[$2] != red[$3] || red[$2] != red[$4]) {
+            sum += ((x[$3] - x[$2]) * (y[$4] - y[$2]) - (x[$4] - x[$2]) * (y[$3] - y[$2])) / 2 }
+        END { print (sum < 45 ? "sharp" : "dull") }'
+}
+cubewright simplify halves.ply -o plain.ply --triangles 150 --no-measure --ascii -q && mixed plain.ply
+cubewright simplify halves.ply -o sharp.ply --triangles 150 --attributes color:1 --ascii --json - -q | grep -A2 '"attributes"' && mixed sharp.ply
