@@ -52,10 +52,9 @@ static double range_of(const float *numbers, size_t count)
     return high > low ? (double)high - (double)low : 1;
 }
 
-void cwi_attributes_weigh(const cw_mesh *m, const cw_simplify_desc *d, double scale,
-                          float *values)
+void cwi_attributes_weigh(const cw_mesh *m, const cw_simplify_desc *d, float *values)
 {
-    const double unit = unit_of(m) * scale, normal = (double)d->normal_weight * unit,
+    const double unit = unit_of(m), normal = (double)d->normal_weight * unit,
                  color = (double)d->color_weight * unit / 255,
                  range = d->scalar_weight > 0 ? range_of(m->scalars, m->vertex_count) : 1,
                  scalar = (double)d->scalar_weight * unit / range;

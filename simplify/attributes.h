@@ -11,9 +11,7 @@ size_t cwi_attributes_count(const cw_simplify_desc *desc);
 cw_status cwi_attributes_check(const cw_mesh *mesh, const cw_simplify_desc *desc,
                                cw_error *err);
 
-/* Fills in vertices x count: the numbers, such that differences compare with lengths of the
- * mesh times scale. */
-void cwi_attributes_weigh(const cw_mesh *mesh, const cw_simplify_desc *desc, double scale,
-                          float *values);
+/* Fills in vertices x count: the numbers, such that differences compare with lengths. */
+void cwi_attributes_weigh(const cw_mesh *mesh, const cw_simplify_desc *desc, float *values);
 
 #endif

@@ -49,7 +49,10 @@ void cwi_block_span(cwi_block *block)
     for (int a = 0; a < 3; a++) {
         block->low[a] = -INFINITY;
         block->high[a] = INFINITY;
+        block->along[a] = 0;
     }
+    block->from = -INFINITY;
+    block->to = INFINITY;
 }
 
 static float coordinate(const cwi_block *b, size_t corner, int axis)
@@ -225,6 +228,9 @@ static cw_status fill_block(const plan *p, size_t n, uint32_t *place, cwi_block 
     b->triangles = b->own + p->first[n + 1] - p->first[n];
     memcpy(b->low, p->leaves[n].low, sizeof b->low);
     memcpy(b->high, p->leaves[n].high, sizeof b->high);
+    memcpy(b->along, w->along, sizeof b->along);
+    b->from = w->from;
+    b->to = w->to;
     b->corners = cwi_alloc_array(3 * b->triangles, sizeof *b->corners);
     b->names = cwi_alloc_array(3 * b->triangles, sizeof *b->names);
     if (w->lists)
@@ -248,7 +254,7 @@ static cw_status fill_block(const plan *p, size_t n, uint32_t *place, cwi_block 
         place[from] = NOT_THERE;
         if (b->points && b->held) {
             memcpy(b->points + 3 * v, w->points + 3 * from, 3 * sizeof *b->points);
-            b->held[v] = p->held[from];
+            b->held[v] = p->held[from] || (w->held && w->held[from]);
         }
     }
     for (size_t i = 0; i < b->own && w->lists; i++)

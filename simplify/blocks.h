@@ -6,7 +6,7 @@
 
 void cwi_block_free(cwi_block *block);
 
-/* All of the block's triangles are its own, and its box is all of space. */
+/* All of the block's triangles are its own, and they may be anywhere. */
 void cwi_block_span(cwi_block *block);
 
 /* Shares the triangles of a block out to blocks of about `most` at the most: boxes that fill
@@ -22,7 +22,7 @@ cw_status cwi_blocks_cut(const cwi_block *whole, size_t most, cwi_block **out, s
 
 /* The blocks' own triangles as one block; held vertices of the same name become one, whose
  * quadric is the sum. `seam` is what was held.
- * names    how many there may be */
+ * names    are below this */
 cw_status cwi_blocks_join(const cwi_block *blocks, size_t count, size_t names, cwi_block *whole,
                           cw_error *err);
 

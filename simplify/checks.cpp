@@ -84,6 +84,9 @@ bool Shape::is_kept(const Star &star) const
     for (unsigned k = 0; k < 3; k++)
         if (!(star.place[k] >= low[k] && star.place[k] < high[k]))
             return false;
+    const float height = star.place | along;
+    if (!(height >= from && height <= to))
+        return false;
     for (const Spoke &s : star.spokes) {
         const float now = s.normal.sqrnorm(), before = s.old_normal.sqrnorm(),
                     turn = s.normal | s.old_normal;

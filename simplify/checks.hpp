@@ -37,14 +37,17 @@ struct Star {
 class Shape
 {
 public:
-    explicit Shape(const cwi_block &block) : low(Vec(block.low)), high(Vec(block.high))
+    explicit Shape(const cwi_block &block)
+        : low(Vec(block.low)), high(Vec(block.high)), along(Vec(block.along)), from(block.from),
+          to(block.to)
     {
     }
 
     bool is_kept(const Star &star) const;
 
 private:
-    Vec low, high;
+    Vec low, high, along;
+    float from, to;
 };
 
 // Eight spokes side by side, for arithmetic on several at a time: their boxes, planes through

@@ -143,7 +143,7 @@ private:
         add_plane(quadric(b), normal, along.sqrnorm());
     }
 
-    // Between two vertices held for a seam no border is known; it is when that is released.
+    // Between two vertices held for a seam no border is known; it is when one is released.
     void add_quadrics(const cwi_block &block)
     {
         if (block.quadrics)
@@ -152,14 +152,15 @@ private:
         else
             for (auto f : surface.faces())
                 add_face(f, block.values);
-        const uint8_t *seam = block.quadrics ? block.seam : block.held;
         for (int i = 0; i < int(surface.n_halfedges()); i++) {
             const HalfedgeHandle h(i);
             if (!surface.is_boundary(h))
                 continue;
             const auto a = size_t(surface.from_vertex_handle(h).idx()),
                        b = size_t(surface.to_vertex_handle(h).idx());
-            if ((seam && seam[a] && seam[b]) == (block.quadrics != nullptr))
+            const bool both_held = block.held && block.held[a] && block.held[b],
+                       unknown = block.seam ? block.seam[a] && block.seam[b] : true;
+            if (unknown && !both_held)
                 add_border(h);
         }
     }

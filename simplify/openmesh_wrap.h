@@ -79,10 +79,10 @@ typedef struct cwi_block {
     size_t own;            /* triangles; those behind them are in the way, and stay */
     float *points;         /* vertices x 3 */
     uint32_t *corners;     /* triangles x 3 */
-    uint32_t *names;       /* vertices: a vertex of the input that it came from */
-    uint8_t *held;         /* vertices: must stay, with all edges to them */
-    uint8_t *seam;         /* vertices: were held in another block, where borders between two
-                              of them were not counted. NULL: none */
+    uint32_t *names;       /* vertices: they keep them; of those that are joined, the same */
+    uint8_t *held;         /* vertices: must stay, with all edges to them. NULL: none */
+    uint8_t *seam;         /* vertices: were held before, when borders between two of them were
+                              not counted. NULL: none */
     cwi_quadric *quadrics; /* vertices; NULL: from the triangles */
     size_t attributes;     /* that count; 0: the next three are NULL */
     float *values;         /* vertices x attributes; NULL where there are trends */
@@ -90,6 +90,7 @@ typedef struct cwi_block {
     cwi_trend *trends;     /* vertices x attributes; NULL: from the triangles */
     uint32_t *lists;       /* own: first point of a list; NULL without an original */
     float low[3], high[3]; /* vertices are moved to low <= x < high only */
+    float along[3], from, to; /* and to from <= along . x <= to */
 } cwi_block;
 
 typedef struct cwi_block_desc {

@@ -467,8 +467,23 @@ static bool is_within(const search *s, const corner c[3], size_t t, int depth, e
 
 typedef struct judgement {
     search search;
+    uint32_t *slots; /* the search's, to be written */
     uint8_t *beyond;
 } judgement;
+
+static void find_chunk(void *context, size_t chunk)
+{
+    const judgement *j = context;
+    const cw_mesh *m = j->search.mesh;
+    uint32_t hint = UINT32_MAX;
+    bool missed;
+    for (size_t v = CHUNK * chunk; v < CHUNK * (chunk + 1) && v < m->vertex_count; v++) {
+        const float *x = m->positions + 3 * v;
+        const double p[3] = {(double)x[0], (double)x[1], (double)x[2]};
+        measure(j->search.r, p, &hint, &missed);
+        j->slots[v] = hint;
+    }
+}
 
 static void judge_chunk(void *context, size_t chunk)
 {
@@ -489,23 +504,16 @@ cw_status cwi_mesh_within(const cw_mesh *mesh, const cw_mesh *mesh_reference, do
                           cw_error *err)
 {
     reference r = {0};
-    cw_distance out;
     uint32_t *slots = cwi_alloc_array(mesh->vertex_count, sizeof *slots);
-    const cwi_sampling vertices = {.mesh = mesh,
-                                   .measure = measure,
-                                   .context = &r,
-                                   .hints = slots,
-                                   .vertices_only = true,
-                                   .name = "keeping the error",
-                                   .threads = threads,
-                                   .progress = progress};
     judgement j = {.search = {.r = &r, .mesh = mesh, .slots = slots, .floor = limit_mm},
+                   .slots = slots,
                    .beyond = beyond};
     cw_status st = slots ? make_reference(&r, mesh_reference, mesh->origin, err)
                          : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu vertices",
                                    mesh->vertex_count);
     if (st == CW_OK)
-        st = cwi_sample_mesh(&vertices, &out, NULL, err);
+        st = cwi_each_layer((mesh->vertex_count + CHUNK - 1) / CHUNK, CHUNK * CHUNK, threads,
+                            progress, "keeping the error", find_chunk, &j, err);
     if (st == CW_OK)
         st = cwi_each_layer((mesh->triangle_count + CHUNK - 1) / CHUNK, CHUNK * CHUNK, threads,
                             progress, "keeping the error", judge_chunk, &j, err);

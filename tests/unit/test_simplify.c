@@ -324,6 +324,23 @@ static void size_does_not_matter(void **state)
     cw_volume_free(&volume);
 }
 
+/* An origin is far from the mesh, here. */
+static void place_does_not_matter(void **state)
+{
+    (void)state;
+    const cw_simplify_desc desc = {.error_mm = 0.1};
+    cw_volume volume = test_sample(CW_FIELD_SPHERE, 32, CW_F32);
+    cw_mesh mesh = test_extract(&volume, NULL, NULL), near = simplify(&mesh, &desc);
+    for (int a = 0; a < 3; a++)
+        mesh.origin[a] = near.origin[a] = 12345.678 * (a + 1);
+    cw_mesh far = simplify(&mesh, &desc);
+    test_assert_same_mesh(&near, &far);
+    cw_mesh_free(&far);
+    cw_mesh_free(&near);
+    cw_mesh_free(&mesh);
+    cw_volume_free(&volume);
+}
+
 /* A flat square, a unit wide, with n x n squares of two triangles on it. */
 static cw_mesh make_flat(uint32_t n)
 {
@@ -704,6 +721,7 @@ int main(void)
         cmocka_unit_test(a_border_can_be_kept),
         cmocka_unit_test(a_sphere_stays_round),
         cmocka_unit_test(size_does_not_matter),
+        cmocka_unit_test(place_does_not_matter),
         cmocka_unit_test(a_flat_square_becomes_two_triangles),
         cmocka_unit_test(what_has_a_weight_stays_sharp),
         cmocka_unit_test(nothing_vanishes),

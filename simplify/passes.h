@@ -1,0 +1,63 @@
+/* What every way to simplify is made of: passes over blocks that keep a distance. */
+#ifndef SIMPLIFY_PASSES_H
+#define SIMPLIFY_PASSES_H
+
+#include "simplify/openmesh_wrap.h"
+
+#include <cubewright/simplify.h>
+
+/* Triangles of a block: as few as pay for its seams, as many as a cache holds. */
+enum { CWI_BLOCK = 1 << 15 };
+
+/* What passes over one surface share. */
+typedef struct cwi_passes {
+    const cwi_openmesh_functions *openmesh;
+    const cw_simplify_desc *desc;
+    cwi_block_desc block_desc;
+    double error;          /* to keep; 0: none */
+    cw_mesh input;         /* a view of what the distance is kept from */
+    cwi_original original; /* the same; next is NULL without an error to keep */
+    uint32_t *first, *around, *next;
+    uint8_t *care;
+    uint32_t *lists; /* next as it was before the pass */
+    size_t repeats;  /* with more care */
+} cwi_passes;
+
+/* Free with cwi_passes_free(), also after an error.
+ * desc      borrowed
+ * Returns   CW_ERR_ARGUMENT for what is out of range; CW_ERR_UNSUPPORTED without OpenMesh */
+cw_status cwi_passes_init(cwi_passes *passes, const cw_simplify_desc *desc, cw_error *err);
+void cwi_passes_free(cwi_passes *passes);
+
+/* All places that follow are those meant by desc times so much. */
+void cwi_passes_scale(cwi_passes *passes, double scale);
+
+/* Remembers the surface that the error is kept from, with no care so far.
+ * input     borrowed, with its arrays */
+cw_status cwi_passes_remember(cwi_passes *passes, const cw_mesh *input, cw_error *err);
+
+/* Puts every point of the input that is no vertex of another list into the list of one of the
+ * triangles around it. points tells which vertex of the input each of the block's is. */
+cw_status cwi_passes_list(cwi_passes *passes, cwi_block *block, const uint32_t *points,
+                          cw_error *err);
+
+/* Simplifies a block in smaller ones, each by itself, and joins them: a seam between them stays
+ * as it was. Down to `target` triangles or so; 0: as far as the error allows.
+ * whole    vertices have their numbers for names; replaced */
+cw_status cwi_passes_blocks(cwi_passes *passes, cwi_block *whole, size_t target, cw_error *err);
+
+/* Simplifies all of a block, seams included, down to each of the targets in turn.
+ * targets  levels, falling; 0: as far as the error allows
+ * left     levels; with an error to keep, one
+ * cut      vertices that are no single fan */
+cw_status cwi_passes_whole(cwi_passes *passes, const cwi_block *whole, const size_t *targets,
+                           size_t levels, cwi_block *left, size_t *cut, cw_error *err);
+
+/* How many triangles are asked for, of so many; 0: nothing is said of it. */
+size_t cwi_simplify_target(const cw_simplify_desc *desc, size_t triangles);
+
+/* A block's triangles as a mesh in the frame of another one. */
+cw_status cwi_finish_mesh(const cw_mesh *frame, const cwi_block *block, cw_mesh *out,
+                          cw_error *err);
+
+#endif
