@@ -152,7 +152,7 @@ const cli_command cli_simplify = {
         "--attributes spends triangles on what they would lose otherwise: with a weight of 1 "
         "as\n"
         "large a difference as there can be (a colour from none to full, scalars from the\n"
-        "lowest to the highest, normals by 60 degrees) counts as 1 % of the box's diagonal.\n"
+        "lowest to the highest, normals by 60 degrees) counts as 1 % of its box's diagonal.\n"
         "--source takes normals from the field of the volume that the mesh is a surface of, "
         "so\n"
         "that it shades as the full one does; with --iso the distance to the field's surface\n"
