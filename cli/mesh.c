@@ -30,6 +30,9 @@ static void say_what_was_found(const cli_mesh *m)
         cli_say("%s: %s polygons cut into triangles", m->path, cli_count(m->file.polygons));
     if (m->file.skipped)
         cli_say("%s: %s points and lines left out", m->path, cli_count(m->file.skipped));
+    if (m->file.levels)
+        cli_say("%s: %zu coarser level%s of detail left out", m->path, m->file.levels,
+                m->file.levels == 1 ? "" : "s");
 }
 
 static double file_bytes(const char *path)

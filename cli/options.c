@@ -118,6 +118,38 @@ static int find_choice(const char *choices, const char *word)
     return -1;
 }
 
+static bool store_weight(const char *names, char *item, cli_weights *out)
+{
+    cli_number weight;
+    char *colon = strchr(item, ':');
+    if (!colon || !cli_parse_number(colon + 1, &weight) || !(weight.value > 0))
+        return false;
+    *colon = '\0';
+    const int n = find_choice(names, item);
+    if (n < 0 || out->of[n] > 0)
+        return false;
+    out->of[n] = weight.value;
+    return true;
+}
+
+static bool store_weights(const char *names, const char *text, cli_weights *out)
+{
+    *out = (cli_weights){.given = true};
+    for (;; text++) {
+        char item[64];
+        const size_t length = strcspn(text, ",");
+        if (length >= sizeof item)
+            return false;
+        memcpy(item, text, length);
+        item[length] = '\0';
+        if (!store_weight(names, item, out))
+            return false;
+        text += length;
+        if (!*text)
+            return true;
+    }
+}
+
 /* Stores a value in its field; false when the text is not one of its kind. */
 static bool store(const cli_option *o, const char *text, void *field)
 {
@@ -145,6 +177,8 @@ static bool store(const cli_option *o, const char *text, void *field)
         return cli_parse_sizes(text, field);
     case CLI_RANGES:
         return cli_parse_ranges(text, field);
+    case CLI_WEIGHTS:
+        return store_weights(o->value, text, field);
     default:
         return false;
     }
@@ -173,6 +207,8 @@ static const char *expectation(const cli_option *o)
         return "whole numbers above 0 joined by x";
     case CLI_RANGES:
         return "three ranges such as 10:50,0:99,20:40 (voxels) or -30mm:30mm,... (world)";
+    case CLI_WEIGHTS:
+        return "weights above 0, each once, such as normal:0.5,color:1,scalar:1";
     default:
         return "a text that is not empty";
     }

@@ -17,6 +17,7 @@ typedef enum cli_kind {
     CLI_LENGTH,  /* cli_length: 0.1mm, 0.05% of the box's diagonal, 0.5vox; bare is mm */
     CLI_SIZES,   /* cli_sizes: 64, 1280x720 or 512x512x300 */
     CLI_RANGES,  /* cli_ranges: 10:50,0:99,20:40 in voxels, -30mm:30mm,... in the world */
+    CLI_WEIGHTS, /* cli_weights: normal:0.5,color:1; value has the names, parted by '/' */
     CLI_LOUDER,  /* int, counts up */
 } cli_kind;
 
@@ -52,6 +53,13 @@ typedef struct cli_length {
     double value;
     cli_length_unit unit; /* millimetres, % of a box's diagonal, or voxels */
 } cli_length;
+
+enum { CLI_MAX_WEIGHTS = 4 };
+
+typedef struct cli_weights {
+    bool given;
+    double of[CLI_MAX_WEIGHTS]; /* the name at that position; 0: it was not named */
+} cli_weights;
 
 typedef struct cli_sizes {
     int count; /* 1 to 3 given, 0: none */

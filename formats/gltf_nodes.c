@@ -94,6 +94,7 @@ static cw_status enter_node(cwi_gltf_reader *r, visit v, bool *visited, cw_mesh_
         return cw_fail(err, CW_ERR_FORMAT, "nodes are nested deeper than %d", DEEPEST_NODE);
     visited[v.node] = true;
     const cwi_gltf_node *n = &scene->nodes[v.node];
+    said->levels = n->levels > said->levels ? n->levels : said->levels;
     multiply(v.parent < 0 ? unit : r->world[v.parent], n->local[0], r->world[v.node]);
     if (n->mesh < 0)
         return CW_OK;

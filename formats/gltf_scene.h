@@ -58,6 +58,7 @@ typedef struct cwi_gltf_node {
     double local[3][4];               /* to the parent's frame */
     bool lps, has_origin, has_affine; /* what our writer leaves in extras */
     double origin[3], affine[3][4];
+    size_t levels; /* that MSFT_lod names */
 } cwi_gltf_node;
 
 /* A zeroed scene is empty. */

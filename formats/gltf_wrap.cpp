@@ -189,6 +189,15 @@ void copy_extras(const tinygltf::Value &extras, cwi_gltf_node &node)
     node.has_affine = node.lps && copy_numbers(member(extras, "affine"), node.affine[0], 12);
 }
 
+size_t count_levels(const tinygltf::Node &node)
+{
+    const auto found = node.extensions.find(GLTF_LOD);
+    if (found == node.extensions.end())
+        return 0;
+    const tinygltf::Value &ids = member(found->second, "ids");
+    return ids.IsArray() ? ids.ArrayLen() : 0;
+}
+
 // Translation times rotation times scale. The quaternion need not have unit length.
 void set_matrix(const tinygltf::Node &from, double to[3][4])
 {
@@ -230,6 +239,7 @@ cw_status copy_node(const tinygltf::Node &from, size_t index, cwi_gltf_node &to,
         return cw_fail(err, CW_ERR_FORMAT, "'matrix' of node %zu is not affine", index);
     to.mesh = from.mesh;
     set_matrix(from, to.local);
+    to.levels = count_levels(from);
     copy_extras(from.extras, to);
     return CW_OK;
 }

@@ -39,6 +39,9 @@ void cwi_block_free(cwi_block *block)
     cwi_free(block->held);
     cwi_free(block->seam);
     cwi_free(block->quadrics);
+    cwi_free(block->values);
+    cwi_free(block->areas);
+    cwi_free(block->trends);
     cwi_free(block->lists);
     *block = (cwi_block){0};
 }
@@ -232,6 +235,19 @@ static void copy_vertex(const plan *p, cwi_block *b, size_t v, bool own)
         p->held[from] = GIVEN;
 }
 
+/* For vertices that have names. */
+static bool fill_values(const cwi_block *whole, cwi_block *b)
+{
+    const size_t count = b->attributes = whole->attributes;
+    if (!count)
+        return true;
+    b->values = cwi_alloc_array(count * b->vertices, sizeof *b->values);
+    for (size_t v = 0; v < b->vertices && b->values; v++)
+        memcpy(b->values + count * v, whole->values + count * b->names[v],
+               count * sizeof *b->values);
+    return b->values;
+}
+
 /* Numbers the vertices of leaf n as they come; *place must be NOT_THERE everywhere, and is so
  * again. */
 static cw_status fill_block(const plan *p, size_t n, uint32_t *place, cwi_block *b,
@@ -266,7 +282,7 @@ static cw_status fill_block(const plan *p, size_t n, uint32_t *place, cwi_block 
     }
     for (size_t i = 0; i < b->own && w->lists; i++)
         b->lists[i] = w->lists[triangle_of(p, n, i)];
-    const bool ok = alloc_vertices(b, w);
+    const bool ok = alloc_vertices(b, w) && fill_values(w, b);
     for (size_t v = 0; v < b->vertices; v++) {
         if (ok)
             copy_vertex(p, b, v, v < own);
@@ -328,6 +344,24 @@ cw_status cwi_blocks_cut(const cwi_block *whole, size_t most, cwi_block **out, s
     return st;
 }
 
+/* Vertex v of a block has become n of the whole, which may know it from another block. */
+static void join_vertex(const cwi_block *b, size_t v, cwi_block *whole, size_t n, bool known)
+{
+    const size_t count = whole->attributes;
+    if (known) {
+        cwi_quadric_add(whole->quadrics + n, b->quadrics + v);
+        if (count)
+            cwi_trends_join(whole->quadrics + n, whole->areas + n, whole->trends + count * n,
+                            b->areas[v], b->trends + count * v, count);
+        return;
+    }
+    whole->quadrics[n] = b->quadrics[v];
+    if (count) {
+        whole->areas[n] = b->areas[v];
+        memcpy(whole->trends + count * n, b->trends + count * v, count * sizeof *b->trends);
+    }
+}
+
 /* Where the vertices of a block go: held ones of one name to one place. */
 static void join_vertices(const cwi_block *b, uint32_t *place, uint32_t *to, cwi_block *whole)
 {
@@ -341,10 +375,7 @@ static void join_vertices(const cwi_block *b, uint32_t *place, uint32_t *to, cwi
         whole->names[n] = (uint32_t)name;
         whole->seam[n] = b->held[v] || (b->seam && b->seam[v]);
         memcpy(whole->points + 3 * n, b->points + 3 * v, 3 * sizeof *whole->points);
-        if (known)
-            cwi_quadric_add(whole->quadrics + n, b->quadrics + v);
-        else
-            whole->quadrics[n] = b->quadrics[v];
+        join_vertex(b, v, whole, n, known);
     }
 }
 
@@ -362,6 +393,13 @@ static bool alloc_joined(const cwi_block *blocks, size_t count, cwi_block *whole
     whole->corners = cwi_alloc_array(3 * triangles, sizeof *whole->corners);
     if (count && blocks[0].lists)
         whole->lists = cwi_alloc_array(triangles, sizeof *whole->lists);
+    whole->attributes = count ? blocks[0].attributes : 0;
+    if (whole->attributes) {
+        whole->areas = cwi_alloc_array(vertices, sizeof *whole->areas);
+        whole->trends = cwi_alloc_array(whole->attributes * vertices, sizeof *whole->trends);
+        if (!whole->areas || !whole->trends)
+            return false;
+    }
     return whole->points && whole->names && whole->seam && whole->quadrics && whole->corners &&
            (!count || !blocks[0].lists || whole->lists);
 }

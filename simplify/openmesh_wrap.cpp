@@ -8,6 +8,7 @@
 #include "simplify/bound.hpp"
 #include "simplify/queue.hpp"
 #include "simplify/surface.hpp"
+#include "simplify/trends.hpp"
 
 #include <cmath>
 #include <memory>
@@ -31,7 +32,7 @@ struct cwi_decimater {
     cwi_decimater(const cwi_block &block, const cwi_block_desc &desc,
                   const cwi_original *original)
         : names(block.names, block.names + block.vertices), nodes(block.vertices),
-          live(block.own), shape(block), bound(block, original, desc.error)
+          trends(block), live(block.own), shape(block), bound(block, original, desc.error)
     {
         const std::vector<uint8_t> unsound = connect(block, surface);
         if (!desc.allow_crossings)
@@ -40,8 +41,9 @@ struct cwi_decimater {
             const VertexHandle handle{int(v)};
             cut += unsound[v];
             nodes[v].point = surface.point(handle);
-            nodes[v].held = unsound[v] || (block.held && block.held[v]);
             nodes[v].border = surface.is_boundary(handle);
+            nodes[v].held = unsound[v] || (block.held && block.held[v]) ||
+                            (desc.keep_border && nodes[v].border);
         }
         add_quadrics(block);
         fill_queue();
@@ -74,6 +76,7 @@ struct cwi_decimater {
     Surface surface;
     std::vector<uint32_t> names;
     std::vector<Node> nodes;
+    Trends trends;
     size_t cut = 0;
     Queue queue;
     std::vector<uint32_t> looked_at; // edges: when their cost was
@@ -104,19 +107,22 @@ private:
         return node(v).quadric;
     }
 
-    void add_face(FaceHandle f)
+    void add_face(FaceHandle f, const float *values)
     {
-        VertexHandle v[3];
-        int n = 0;
+        size_t corner[3], n = 0;
         for (auto it = surface.cfv_iter(f); it.is_valid(); ++it)
-            v[n++] = *it;
-        const Vec a = surface.point(v[0]);
-        Vec normal = (surface.point(v[1]) - a) % (surface.point(v[2]) - a);
+            corner[n++] = size_t(it->idx());
+        const Vec a = nodes[corner[0]].point, ab = nodes[corner[1]].point - a,
+                  ac = nodes[corner[2]].point - a;
+        Vec normal = ab % ac;
         const float length = normal.norm();
         if (length > 0)
             normal /= length;
-        for (VertexHandle corner : v)
-            add_plane(quadric(corner), normal, length / 2);
+        for (size_t v : corner)
+            add_plane(nodes[v].quadric, normal, length / 2);
+        if (trends.is_asked())
+            trends.add_face(corner, ab, ac, values,
+                            [&](size_t v) -> cwi_quadric & { return nodes[v].quadric; });
     }
 
     // The plane through an edge of the border, square to its triangle.
@@ -145,7 +151,7 @@ private:
                 nodes[v].quadric = block.quadrics[v];
         else
             for (auto f : surface.faces())
-                add_face(f);
+                add_face(f, block.values);
         for (int i = 0; i < int(surface.n_halfedges()); i++) {
             const HalfedgeHandle h(i);
             if (!surface.is_boundary(h))
@@ -186,6 +192,8 @@ private:
         const Vec way = v.point - u.point;
         p.quadric = moved(v.quadric, -way);
         cwi_quadric_add(&p.quadric, &u.quadric);
+        if (trends.is_asked())
+            join_trends(p.halfedge, p.quadric);
         const Vec d = u.border == v.border ? least(p.quadric, 0.5f * way)
                       : u.border           ? Vec(0)
                                            : way;
@@ -193,6 +201,20 @@ private:
         p.cost = error_at(p.quadric, d) + 1e-5f * trace(p.quadric) * way.sqrnorm();
         p.changed = std::max(u.changed, v.changed);
         return p;
+    }
+
+    void join_trends(HalfedgeHandle h, cwi_quadric &quadric)
+    {
+        const VertexHandle u = surface.from_vertex_handle(h), v = surface.to_vertex_handle(h);
+        trends.join(size_t(u.idx()), size_t(v.idx()), node(v).point - node(u).point, quadric);
+    }
+
+    void keep_trends(const Proposal &p)
+    {
+        cwi_quadric known = p.quadric;
+        join_trends(p.halfedge, known);
+        trends.put(size_t(surface.to_vertex_handle(p.halfedge).idx()),
+                   p.place - node(surface.from_vertex_handle(p.halfedge)).point);
     }
 
     void try_to_collapse(const Proposal &p)
@@ -205,6 +227,8 @@ private:
         const Node &gone = node(surface.from_vertex_handle(p.halfedge));
         Node &stays = node(kept);
         bound.change(star);
+        if (trends.is_asked())
+            keep_trends(p);
         surface.set_point(kept, p.place);
         surface.collapse(p.halfedge);
         if (contact)
@@ -281,6 +305,19 @@ template <typename T> T *array(size_t count)
     return memory;
 }
 
+void take_trends(const cwi_decimater &d, cwi_block &out, const std::vector<uint32_t> &numbers)
+{
+    out.attributes = d.trends.size();
+    out.areas = array<float>(out.vertices);
+    out.trends = array<cwi_trend>(out.attributes * out.vertices);
+    for (size_t v = 0; v < numbers.size(); v++) {
+        if (numbers[v] == UINT32_MAX)
+            continue;
+        out.areas[numbers[v]] = d.trends.area(v);
+        std::copy_n(d.trends.of(v), out.attributes, out.trends + out.attributes * numbers[v]);
+    }
+}
+
 // Vertices that triangles are left around, in their old order.
 void take_vertices(const cwi_decimater &d, cwi_block &out, std::vector<uint32_t> &numbers)
 {
@@ -302,6 +339,8 @@ void take_vertices(const cwi_decimater &d, cwi_block &out, std::vector<uint32_t>
         out.held[n] = d.nodes[v].held;
         out.quadrics[n] = d.nodes[v].quadric;
     }
+    if (d.trends.is_asked())
+        take_trends(d, out, numbers);
 }
 
 void take_triangles(const cwi_decimater &d, cwi_block &out,

@@ -27,6 +27,39 @@ static inline void cwi_quadric_add(cwi_quadric *q, const cwi_quadric *other)
     q->c += other->c;
 }
 
+/* An attribute about a vertex's own position: at d it is d slope + value. */
+typedef struct cwi_trend {
+    float slope[3], value;
+} cwi_trend;
+
+enum { CWI_MOST_ATTRIBUTES = 8 };
+
+/* The mean over an area of `count` trends, and those of another area about the same place,
+ * become the mean over both; the quadric gets what they differ by, squared and times area. */
+static inline void cwi_trends_join(cwi_quadric *q, float *area, cwi_trend *mean,
+                                   float other_area, const cwi_trend *other, size_t count)
+{
+    static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
+    if (!(other_area > 0))
+        return;
+    const float share = other_area / (*area + other_area), weight = share * *area;
+    for (size_t n = 0; n < count; n++) {
+        const float value = other[n].value - mean[n].value;
+        float slope[3];
+        for (int k = 0; k < 3; k++)
+            slope[k] = other[n].slope[k] - mean[n].slope[k];
+        for (int k = 0; k < 6; k++)
+            q->a[k] += weight * slope[row[k]] * slope[column[k]];
+        for (int k = 0; k < 3; k++)
+            q->b[k] += weight * slope[k] * value;
+        q->c += weight * value * value;
+        for (int k = 0; k < 3; k++)
+            mean[n].slope[k] += share * slope[k];
+        mean[n].value += share * value;
+    }
+    *area += other_area;
+}
+
 /* Around points that are given so much care nothing is changed. */
 enum { CWI_MOST_CARE = 4 };
 
@@ -51,6 +84,10 @@ typedef struct cwi_block {
     uint8_t *seam;         /* vertices: were held before, when borders between two of them were
                               not counted. NULL: none */
     cwi_quadric *quadrics; /* vertices; NULL: from the triangles */
+    size_t attributes;     /* that count; 0: the next three are NULL */
+    float *values;         /* vertices x attributes; NULL where there are trends */
+    float *areas;          /* vertices: of the triangles whose mean the trends are */
+    cwi_trend *trends;     /* vertices x attributes; NULL: from the triangles */
     uint32_t *lists;       /* own: first point of a list; NULL without an original */
     float low[3], high[3]; /* vertices are moved to low <= x < high only */
     float along[3], from, to; /* and to from <= along . x <= to */
@@ -58,7 +95,7 @@ typedef struct cwi_block {
 
 typedef struct cwi_block_desc {
     double error; /* the distance to keep; 0: none */
-    bool allow_crossings;
+    bool allow_crossings, keep_border;
 } cwi_block_desc;
 
 typedef struct cwi_decimater cwi_decimater;

@@ -30,8 +30,10 @@ cw_status cwi_passes_init(cwi_passes *p, const cw_simplify_desc *desc, cw_error 
 {
     const void *module;
     *p = (cwi_passes){.desc = desc,
+                      .error = desc->error_mm,
                       .block_desc = {.error = 0.9 * desc->error_mm,
-                                     .allow_crossings = desc->allow_crossings}};
+                                     .allow_crossings = desc->allow_crossings,
+                                     .keep_border = desc->keep_border}};
     cw_status st = check(desc, err);
     if (st == CW_OK)
         st =
@@ -39,6 +41,12 @@ cw_status cwi_passes_init(cwi_passes *p, const cw_simplify_desc *desc, cw_error 
     if (st == CW_OK)
         p->openmesh = module;
     return st;
+}
+
+void cwi_passes_scale(cwi_passes *p, double scale)
+{
+    p->error *= scale;
+    p->block_desc.error *= scale;
 }
 
 static void forget(cwi_passes *p)
@@ -244,7 +252,7 @@ static cw_status add_obstacles(const part *x, cw_mesh *mesh, cw_error *err)
 static cw_status judge(const cwi_passes *p, const part *x, bool *kept, bool *hope,
                        cw_error *err)
 {
-    const double limit = p->desc->error_mm;
+    const double limit = p->error;
     const cw_mesh result = view(x->left);
     cw_mesh all = {0};
     uint8_t *input_beyond = cwi_alloc_array(x->input.triangle_count, 1);

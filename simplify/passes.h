@@ -14,6 +14,7 @@ typedef struct cwi_passes {
     const cwi_openmesh_functions *openmesh;
     const cw_simplify_desc *desc;
     cwi_block_desc block_desc;
+    double error;          /* to keep; 0: none */
     cw_mesh input;         /* a view of what the distance is kept from */
     cwi_original original; /* the same; next is NULL without an error to keep */
     uint32_t *first, *around, *next;
@@ -27,6 +28,9 @@ typedef struct cwi_passes {
  * Returns   CW_ERR_ARGUMENT for what is out of range; CW_ERR_UNSUPPORTED without OpenMesh */
 cw_status cwi_passes_init(cwi_passes *passes, const cw_simplify_desc *desc, cw_error *err);
 void cwi_passes_free(cwi_passes *passes);
+
+/* All places that follow are those meant by desc times so much. */
+void cwi_passes_scale(cwi_passes *passes, double scale);
 
 /* Remembers the surface that the error is kept from, with no care so far.
  * input     borrowed, with its arrays */
@@ -51,6 +55,11 @@ cw_status cwi_passes_whole(cwi_passes *passes, const cwi_block *whole, const siz
 
 /* How many triangles are asked for, of so many; 0: nothing is said of it. */
 size_t cwi_simplify_target(const cw_simplify_desc *desc, size_t triangles);
+
+/* Lengths to the fourth power, and more, are worked with in single precision: those of a mesh
+ * whose box is about 1 wide. A power of two, so that nothing is rounded. */
+double cwi_simplify_scale(const cw_mesh *mesh);
+void cwi_scale_points(const float *from, size_t vertices, double scale, float *to);
 
 /* A block's triangles as a mesh in the frame of another one. */
 cw_status cwi_finish_mesh(const cw_mesh *frame, const cwi_block *block, cw_mesh *out,

@@ -4,10 +4,12 @@
 #include "core/mesh.h"
 #include "core/module.h"
 #include "core/status.h"
+#include "simplify/attributes.h"
 #include "simplify/blocks.h"
 #include "simplify/carry.h"
 #include "simplify/passes.h"
 
+#include <math.h>
 #include <string.h>
 
 enum { MOST = 1 << 30 };
@@ -17,13 +19,64 @@ bool cw_simplify_available(void)
     return cwi_module_present("openmesh");
 }
 
-static cw_status check(const cw_mesh *mesh, cw_error *err)
+static cw_status check(const cw_mesh *mesh, const cw_simplify_desc *d, cw_error *err)
 {
     if (mesh->triangle_count > MOST || mesh->vertex_count > MOST)
         return cw_fail(err, CW_ERR_LIMIT,
                        "%zu triangles and %zu vertices; at most 2^30 of either are simplified",
                        mesh->triangle_count, mesh->vertex_count);
-    return cw_mesh_check(mesh, err);
+    cw_status st = cw_mesh_check(mesh, err);
+    return st == CW_OK ? cwi_attributes_check(mesh, d, err) : st;
+}
+
+double cwi_simplify_scale(const cw_mesh *m)
+{
+    double widest = 0;
+    int exponent;
+    for (size_t a = 0; a < 3 && m->vertex_count; a++) {
+        float low = m->positions[a], high = low;
+        for (size_t v = 1; v < m->vertex_count; v++) {
+            const float x = m->positions[3 * v + a];
+            low = x < low ? x : low;
+            high = x > high ? x : high;
+        }
+        widest = fmax(widest, (double)high - (double)low);
+    }
+    frexp(widest, &exponent);
+    return widest > 0 ? ldexp(1, -exponent) : 1;
+}
+
+void cwi_scale_points(const float *from, size_t vertices, double scale, float *to)
+{
+    for (size_t i = 0; i < 3 * vertices; i++)
+        to[i] = (float)(scale * (double)from[i]);
+}
+
+/* Borrows all but the positions, which stand around no origin. */
+static cw_status scale_mesh(const cw_mesh *mesh, double *scale, cw_mesh *scaled, cw_error *err)
+{
+    *scale = cwi_simplify_scale(mesh);
+    *scaled = *mesh;
+    memset(scaled->origin, 0, sizeof scaled->origin);
+    scaled->positions = cwi_alloc_array(3 * mesh->vertex_count, sizeof(float));
+    if (!scaled->positions)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to simplify %zu triangles",
+                       mesh->triangle_count);
+    cwi_scale_points(mesh->positions, mesh->vertex_count, *scale, scaled->positions);
+    return CW_OK;
+}
+
+static cw_status weigh(const cw_mesh *m, const cw_simplify_desc *d, cwi_block *w, cw_error *err)
+{
+    w->attributes = cwi_attributes_count(d);
+    if (!w->attributes)
+        return CW_OK;
+    w->values = cwi_alloc_array(w->attributes * w->vertices, sizeof *w->values);
+    if (!w->values)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for attributes of %zu vertices",
+                       w->vertices);
+    cwi_attributes_weigh(m, d, w->values);
+    return CW_OK;
 }
 
 /* Triangles that name a vertex twice are no part of any surface. */
@@ -67,6 +120,8 @@ static cw_status run_passes(cwi_passes *p, const cw_mesh *mesh, const size_t *ta
 {
     cwi_block whole = {0};
     cw_status st = begin(mesh, &whole, err);
+    if (st == CW_OK)
+        st = weigh(mesh, p->desc, &whole, err);
     if (st == CW_OK && p->desc->error_mm > 0)
         st = cwi_passes_remember(p, mesh, err);
     if (st == CW_OK && p->next)
@@ -84,15 +139,23 @@ static cw_status simplify_levels(const cw_mesh *mesh, const cw_simplify_desc *de
                                  cw_simplify_facts *facts, cw_error *err)
 {
     cwi_passes p = {0};
+    cw_mesh scaled = {0};
+    double scale = 1;
     cwi_block *left = cwi_alloc_zeroed(levels, sizeof *left);
     size_t cut = 0;
-    cw_status st = left ? check(mesh, err)
+    cw_status st = left ? check(mesh, desc, err)
                         : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu levels", levels);
     if (st == CW_OK)
         st = cwi_passes_init(&p, desc, err);
     if (st == CW_OK)
-        st = run_passes(&p, mesh, targets, levels, left, &cut, err);
+        st = scale_mesh(mesh, &scale, &scaled, err);
+    if (st == CW_OK)
+        cwi_passes_scale(&p, scale);
+    if (st == CW_OK)
+        st = run_passes(&p, &scaled, targets, levels, left, &cut, err);
+    cwi_free(scaled.positions);
     for (size_t n = 0; n < levels && st == CW_OK; n++) {
+        cwi_scale_points(left[n].points, left[n].vertices, 1 / scale, left[n].points);
         st = cwi_finish_mesh(mesh, left + n, out + n, err);
         cwi_block_free(left + n);
         if (st == CW_OK)

@@ -15,7 +15,8 @@ struct cw_simplifier {
     cw_simplify_desc desc;
     cwi_passes passes;
     cw_mesh frame; /* where positions are; no arrays */
-    bool begun, ended;
+    double scale;  /* of what follows; 0 until a slab came. As in cw_simplify() */
+    bool ended;
     /* with an error to keep */
     cwi_window window;
     /* with a number of triangles to meet */
@@ -50,7 +51,8 @@ static void number_vertices(cwi_slab_block *s, const cw_mesh *m, uint32_t *numbe
     s->vertices = b->vertices;
 }
 
-static void place_vertices(cwi_slab_block *s, const cw_slab *from, const uint32_t *number)
+static void place_vertices(cwi_slab_block *s, const cw_slab *from, double scale,
+                           const uint32_t *number)
 {
     cwi_block *b = &s->block;
     for (size_t v = 0; v < from->mesh->vertex_count; v++) {
@@ -61,7 +63,7 @@ static void place_vertices(cwi_slab_block *s, const cw_slab *from, const uint32_
             s->below[rank] = number[v];
         if (n == UINT32_MAX)
             continue;
-        memcpy(b->points + 3 * n, from->mesh->positions + 3 * v, 3 * sizeof *b->points);
+        cwi_scale_points(from->mesh->positions + 3 * v, 1, scale, b->points + 3 * n);
         b->names[n] = (uint32_t)n;
         b->held[n] = s->seam[n] = seam;
         s->rank[n] = (uint32_t)rank;
@@ -82,19 +84,20 @@ static double longest_edge(const cwi_block *b)
     return sqrt(longest);
 }
 
-/* Heights in the unit of the positions. */
-static void set_planes(cwi_block *b, const cw_slab *from)
+/* Heights in the unit of the points. */
+static void set_planes(cwi_block *b, const cw_slab *from, double scale)
 {
     const double length =
         sqrt(from->along[0] * from->along[0] + from->along[1] * from->along[1] +
              from->along[2] * from->along[2]);
     for (int a = 0; a < 3; a++)
         b->along[a] = (float)(from->along[a] / length);
-    b->from = (float)(from->low / length);
-    b->to = (float)(from->high / length);
+    b->from = (float)(from->low / length * scale);
+    b->to = (float)(from->high / length * scale);
 }
 
-cw_status cwi_slab_block_init(cwi_slab_block *s, const cw_slab *from, cw_error *err)
+cw_status cwi_slab_block_init(cwi_slab_block *s, const cw_slab *from, double scale,
+                              cw_error *err)
 {
     const cw_mesh *m = from->mesh;
     *s = (cwi_slab_block){.last = from->last};
@@ -112,10 +115,10 @@ cw_status cwi_slab_block_init(cwi_slab_block *s, const cw_slab *from, cw_error *
     const bool ok = number && b->corners && b->points && b->names && b->held && s->seam &&
                     s->rank && s->below;
     if (ok)
-        place_vertices(s, from, number);
+        place_vertices(s, from, scale, number);
     cwi_free(number);
     cwi_block_span(b);
-    set_planes(b, from);
+    set_planes(b, from, scale);
     s->longest = ok ? longest_edge(b) : 0;
     return ok ? CW_OK
               : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to simplify a slab of %zu triangles",
@@ -188,6 +191,9 @@ cw_status cw_simplifier_new(const cw_simplify_desc *desc, cw_simplifier **out, c
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "slabs are simplified to an error, or to a number of triangles or a "
                        "ratio: one of these");
+    if (desc->normal_weight != 0 || desc->color_weight != 0 || desc->scalar_weight != 0)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "slabs have neither normals, nor colours or scalars to weigh");
     cw_simplifier *s = cwi_alloc_zeroed(1, sizeof *s);
     if (!s)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a simplifier");
@@ -221,9 +227,12 @@ cw_status cw_simplifier_take(void *simplifier, const cw_slab *from, cw_error *er
     memcpy(s->frame.origin, from->mesh->origin, sizeof s->frame.origin);
     memcpy(s->frame.affine, from->mesh->affine, sizeof s->frame.affine);
     s->triangles = from->triangles;
-    s->begun = true;
     s->ended = from->last;
-    cw_status st = cwi_slab_block_init(&slab, from, err);
+    if (s->scale == 0) {
+        s->scale = cwi_simplify_scale(from->mesh);
+        cwi_passes_scale(&s->passes, s->scale);
+    }
+    cw_status st = cwi_slab_block_init(&slab, from, s->scale, err);
     if (st == CW_OK)
         st = s->desc.error_mm > 0 ? cwi_window_take(&s->window, &s->passes, &slab, err)
                                   : add_slab(s, &slab, err);
@@ -244,6 +253,7 @@ static cw_status finish(cw_simplifier *s, cw_mesh *out, size_t *cut, cw_error *e
         st = join_slabs(s, &left, cut, err);
     if (st == CW_OK)
         st = cwi_finish_mesh(&s->frame, &left, out, err);
+    cwi_scale_points(out->positions, out->vertex_count, 1 / s->scale, out->positions);
     if (s->desc.error_mm == 0)
         cwi_block_free(&left);
     return st;
@@ -255,9 +265,9 @@ cw_status cw_simplifier_finish(cw_simplifier *s, cw_mesh *out, cw_simplify_facts
     size_t cut = 0;
     cw_status st = CW_OK;
     *out = (cw_mesh){0};
-    if (s->begun && !s->ended)
+    if (s->scale > 0 && !s->ended)
         return cw_fail(err, CW_ERR_ARGUMENT, "slabs are missing: there was no last one");
-    if (s->begun)
+    if (s->scale > 0)
         st = finish(s, out, &cut, err);
     if (st == CW_OK && facts)
         *facts = (cw_simplify_facts){.vertices = out->vertex_count,

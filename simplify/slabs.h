@@ -4,8 +4,8 @@
 
 #include "simplify/passes.h"
 
-/* A slab as a block: vertices of its triangles, with their numbers for names. Held are those in
- * seams to other slabs. */
+/* A slab as a block: vertices of its triangles, scaled, with their numbers for names. Held are
+ * those in seams to other slabs. */
 typedef struct cwi_slab_block {
     cwi_block block;
     size_t vertices; /* of the block as it was at first */
@@ -17,7 +17,8 @@ typedef struct cwi_slab_block {
     bool last;
 } cwi_slab_block;
 
-cw_status cwi_slab_block_init(cwi_slab_block *slab, const cw_slab *from, cw_error *err);
+cw_status cwi_slab_block_init(cwi_slab_block *slab, const cw_slab *from, double scale,
+                              cw_error *err);
 void cwi_slab_block_free(cwi_slab_block *slab);
 
 /* Keeps an error across slabs: what is simplified is a window, the slab that came last and the

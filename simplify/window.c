@@ -132,7 +132,7 @@ static cw_status merge_input(cwi_window *w, cwi_passes *p, const cwi_slab_block 
     m.wanted = cwi_alloc_zeroed(w->input.vertex_count, 1);
     cw_status st = m.number && m.wanted ? CW_OK : no_memory(err);
     if (st == CW_OK) {
-        choose_old(w, &m, w->end - 2 * p->desc->error_mm);
+        choose_old(w, &m, w->end - 2 * p->error);
         number_old(&m, w);
         st = fill_merged(&m, err);
     }
@@ -401,7 +401,7 @@ static cw_status shut_window(cwi_window *w, const cwi_passes *p, const joiner *j
         if (!is_rest(w, left, t))
             place_triangle(w, left, t, placed);
     if (st == CW_OK)
-        st = keep_near(w, left, w->end - 3 * p->desc->error_mm - 2 * w->reach, err);
+        st = keep_near(w, left, w->end - 3 * p->error - 2 * w->reach, err);
     if (st == CW_OK)
         st = take_rest(w, j, left, placed, number, err);
     cwi_free(placed);

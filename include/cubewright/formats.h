@@ -166,6 +166,8 @@ typedef struct cw_mesh_file {
                            glTF; else 1 */
     size_t polygons;    /* faces of more than three corners, cut into fans of triangles */
     size_t skipped;     /* points, lines and faces of fewer than three corners: left out */
+    size_t levels;      /* coarser levels of detail of what was read, at most (MSFT_lod of
+                           glTF): no part of its scene, left out */
 } cw_mesh_file;
 
 /* Reads a mesh: all parts of the file, merged, in LPS millimetres.

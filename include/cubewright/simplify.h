@@ -18,6 +18,13 @@ typedef struct cw_simplify_desc {
     size_t triangles; /* stop when there are so many; default: no limit */
     double ratio;     /* the same as a share of the input's, above 0, below 1; default: none */
     bool allow_crossings; /* default: no triangles meet that did not meet before */
+    bool keep_border;     /* borders of open surfaces stay to the bit, so that what was cut from
+                             one whole still fits together; default: they are simplified, too */
+    /* Attributes whose loss counts, too: what as large a difference as there can be (of a
+       colour from none to full, of scalars from the lowest to the highest, of normals by a
+       length of 1) counts as a distance, in percent of the diagonal of the mesh's box. Default:
+       0. */
+    float normal_weight, color_weight, scalar_weight;
     int threads;          /* default: all that OpenMP offers */
     cw_progress progress; /* default: none */
 } cw_simplify_desc;
@@ -45,14 +52,14 @@ typedef struct cw_simplify_facts {
  * out      filled on success, emptied on failure; free it with cw_mesh_free()
  * facts    may be NULL
  *
- * Returns  CW_ERR_ARGUMENT     no target, one that is negative or not finite, or as
- *                              cw_mesh_check()
+ * Returns  CW_ERR_ARGUMENT     no target, one that is negative or not finite; so a weight, or
+ *                              one of what the mesh has not; or as cw_mesh_check()
  *          CW_ERR_UNSUPPORTED  this build has no OpenMesh
  *          CW_ERR_LIMIT        more than 2^30 vertices or triangles
  *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
  * Cost     about two microseconds of one processor for a triangle that goes
  * Threads  reentrant; the same to the bit for any number of threads
- * Source   quadrics [Garland1997] */
+ * Source   quadrics [Garland1997], of attributes [Hoppe1999] */
 CW_API cw_status cw_simplify(const cw_mesh *mesh, const cw_simplify_desc *desc, cw_mesh *out,
                              cw_simplify_facts *facts, cw_error *err);
 

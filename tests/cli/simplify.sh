@@ -62,3 +62,35 @@ cubewright simplify soup.off -o soup.stl --ratio 0.5
     sed 's|//[0-9]*||g' >speck.obj
 cubewright simplify speck.obj -o clean.obj --ratio 0.5 --drop-components 2mm --no-measure
 cubewright simplify speck.obj -o clean.obj --ratio 0.5 --drop-components 1% --json - -q | grep -e dropped_c -e drop_c -e '"components"'
+
+# a sphere cut in two: each half by itself, and then they still make one
+cubewright extract s.nrrd --iso 0 -o whole.off -q
+for half in low high; do
+    awk -v n="$half" '!/^#/ && NF { line[++k] = $0 } END {
+        split(line[2], count)
+        for (i = 3; i < 3 + count[1]; i++) { split(line[i], p); z[i - 3] = p[3] }
+        for (; i <= k; i++) { split(line[i], c); low = z[c[2]] + z[c[3]] + z[c[4]] < 0
+            if (low == (n == "low")) face[++m] = line[i] }
+        print "OFF"; print count[1], m, 0
+        for (i = 3; i < 3 + count[1]; i++) print line[i]
+        for (i = 1; i <= m; i++) print face[i] }' whole.off >half.off
+    cubewright simplify half.off -o $half.obj --ratio 0.2 --keep-border -q
+done
+{ cat low.obj; awk -v n="$(grep -c '^v ' low.obj)" '/^f/ { for (i = 2; i <= 4; i++) $i += n } { print }' high.obj; } >both.obj
+cubewright check both.obj --json - -q | grep -e '"components"' -e open_edges
+
+# a flat square, half red, half blue: with a weight the step from one to the other stays
+awk 'BEGIN { print "ply\nformat ascii 1.0\nelement vertex 1681\nproperty float x\nproperty float y\nproperty float z"
+    print "property uchar red\nproperty uchar green\nproperty uchar blue"
+    print "element face 3200\nproperty list uchar uint vertex_indices\nend_header"
+    for (y = 0; y <= 40; y++) for (x = 0; x <= 40; x++) print x, y, 0, 255 * (x < 20), 0, 255 * (x > 19)
+    for (y = 0; y < 40; y++) for (x = 0; x < 40; x++) { v = 41 * y + x
+        print 3, v, v + 1, v + 42; print 3, v, v + 42, v + 41 } }' >halves.ply
+mixed() { # the area between both, of 40 at first
+    sed '1,/end_header/d' "$1" | awk 'NF > 4 { x[n] = $1; y[n] = $2; red[n++] = $4 > 127 }
+        NF == 4 && (red[$2] != red[$3] || red[$2] != red[$4]) {
+            sum += ((x[$3] - x[$2]) * (y[$4] - y[$2]) - (x[$4] - x[$2]) * (y[$3] - y[$2])) / 2 }
+        END { print (sum < 45 ? "sharp" : "dull") }'
+}
+cubewright simplify halves.ply -o plain.ply --triangles 150 --no-measure --ascii -q && mixed plain.ply
+cubewright simplify halves.ply -o sharp.ply --triangles 150 --attributes color:1 --ascii --json - -q | grep -A2 '"attributes"' && mixed sharp.ply

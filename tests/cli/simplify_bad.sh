@@ -44,4 +44,10 @@ try s.off s.off -o x.stl --ratio 0.5
 try s.off -o x.stl --triangels 5
 try s.off -o x.stl --ratio 0.5 --drop-components 1vox
 try s.off -o x.stl --ratio 0.5 --drop-components 101%
+try s.off -o x.stl --ratio 0.5 --attributes color:1
+try s.off -o x.stl --ratio 0.5 --attributes colour:1
+try s.off -o x.stl --ratio 0.5 --attributes normal
+try s.off -o x.stl --ratio 0.5 --attributes normal:0
+try s.off -o x.stl --ratio 0.5 --attributes normal:1,normal:2
+try s.off -o x.stl --ratio 0.5 --attributes normal:1,
 ls -A

@@ -267,6 +267,31 @@ static void nodes_place_meshes_and_mirrors_turn_the_winding(void **state)
     cw_mesh_free(&mesh);
 }
 
+/* The most that a node of the scene names; what is no list names none. */
+static void levels_of_detail_are_counted_and_left_out(void **state)
+{
+    (void)state;
+    static const struct {
+        const char *extension;
+        size_t levels;
+    } rows[] = {{"{\"ids\":[1,2]}", 2}, {"{\"ids\":[]}", 0}, {"{\"ids\":7}", 0}, {"3", 0}};
+    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
+        char nodes[512];
+        cw_mesh mesh;
+        cw_mesh_file file;
+        cw_error err = {0};
+        snprintf(nodes, sizeof nodes,
+                 "\"scenes\":[{\"nodes\":[0,3]}],\"nodes\":["
+                 "{\"mesh\":0,\"extensions\":{\"MSFT_lod\":%s}},{\"mesh\":0},{\"mesh\":0},"
+                 "{\"mesh\":0}]",
+                 rows[n].extension);
+        assert_ok(read_nodes(nodes, &mesh, &file, &err), err);
+        assert_int_equal(file.levels, rows[n].levels);
+        assert_int_equal(mesh.triangle_count, 2);
+        cw_mesh_free(&mesh);
+    }
+}
+
 /* A quarter turn about +Y, and normals that follow; a mirror leaves them outward. */
 static void normals_turn_with_their_node(void **state)
 {
@@ -630,6 +655,7 @@ int main(void)
         TEST(colors_are_turned_to_srgb),
         TEST(quantized_positions_are_shares_of_the_largest),
         TEST(nodes_place_meshes_and_mirrors_turn_the_winding),
+        TEST(levels_of_detail_are_counted_and_left_out),
         TEST(normals_turn_with_their_node),
         TEST(far_nodes_get_an_origin),
         TEST(what_we_wrote_comes_back_to_the_bit),

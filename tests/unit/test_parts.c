@@ -392,6 +392,7 @@ static void levels_are_named_by_their_first_and_not_read(void **state)
     size_t size, count;
     cw_part *back;
     cw_mesh mesh;
+    cw_mesh_file file;
     make_pair(&p);
     cw_part parts[] = {
         {.mesh = &p.cube, .name = "fine", .max_error_mm = 0.25, .rms_error_mm = 0.125},
@@ -411,10 +412,12 @@ static void levels_are_named_by_their_first_and_not_read(void **state)
     assert_non_null(strstr(text, "\"rms_error_mm\":0.125"));
     assert_non_null(strstr(text, "\"scenes\":[{\"nodes\":[0,2]}]"));
     free(text);
-    assert_ok(cw_mesh_read(test_path("a.gltf"), NULL, &mesh, NULL, &err), err);
+    assert_ok(cw_mesh_read(test_path("a.gltf"), NULL, &mesh, &file, &err), err);
     check_both(&mesh);
     cw_mesh_free(&mesh);
-    assert_ok(cw_parts_read(test_path("a.gltf"), NULL, &back, &count, NULL, &err), err);
+    assert_int_equal(file.levels, 1);
+    assert_ok(cw_parts_read(test_path("a.gltf"), NULL, &back, &count, &file, &err), err);
+    assert_int_equal(file.levels, 1);
     assert_int_equal(count, 2);
     assert_int_equal(back[0].mesh->triangle_count, 12);
     assert_int_equal(back[1].mesh->triangle_count, 4);

@@ -129,6 +129,94 @@ static void what_is_met_first_ends_it(void **state)
     cw_volume_free(&volume);
 }
 
+static int by_number(const void *a, const void *b)
+{
+    const uint64_t x = *(const uint64_t *)a, y = *(const uint64_t *)b;
+    return (x > y) - (x < y);
+}
+
+static int by_bytes(const void *a, const void *b)
+{
+    return memcmp(a, b, sizeof(float[6]));
+}
+
+static void put_place(float *to, const cw_mesh *mesh, uint64_t vertex)
+{
+    memcpy(to, mesh->positions + 3 * vertex, 3 * sizeof *to);
+}
+
+/* Sides of one triangle only, from place to place, in an order that numbers do not change. */
+static float (*border_of(const cw_mesh *mesh, size_t *count))[6]
+{
+    const size_t sides = 3 * mesh->triangle_count;
+    uint64_t *side = malloc(sides * sizeof *side);
+    float(*border)[6] = malloc(sides * sizeof *border);
+    assert_true(side && border);
+    for (size_t c = 0; c < sides; c++) {
+        const uint64_t a = mesh->triangles[c], b = mesh->triangles[c % 3 == 2 ? c - 2 : c + 1];
+        side[c] = a < b ? a << 32 | b : b << 32 | a;
+    }
+    qsort(side, sides, sizeof *side, by_number);
+    *count = 0;
+    for (size_t c = 0; c < sides; c++) {
+        if ((c > 0 && side[c - 1] == side[c]) || (c + 1 < sides && side[c + 1] == side[c]))
+            continue;
+        float(*to)[6] = border + (*count)++;
+        put_place(*to, mesh, side[c] >> 32);
+        put_place(*to + 3, mesh, side[c] & UINT32_MAX);
+        if (memcmp(*to, *to + 3, sizeof(float[3])) > 0) {
+            put_place(*to + 3, mesh, side[c] >> 32);
+            put_place(*to, mesh, side[c] & UINT32_MAX);
+        }
+    }
+    free(side);
+    qsort(border, *count, sizeof *border, by_bytes);
+    return border;
+}
+
+static void assert_same_border(const cw_mesh *a, const cw_mesh *b)
+{
+    size_t count, other;
+    float(*before)[6] = border_of(a, &count), (*after)[6] = border_of(b, &other);
+    assert_true(count > 0);
+    assert_int_equal(count, other);
+    assert_memory_equal(before, after, count * sizeof *before);
+    free(before);
+    free(after);
+}
+
+/* In one block and in several, by number, error and level. */
+static void a_border_can_be_kept(void **state)
+{
+    (void)state;
+    static const cw_simplify_desc ways[] = {
+        {.keep_border = true, .ratio = 0.3},
+        {.keep_border = true, .ratio = 0.7, .error_mm = 0.5},
+    };
+    static const size_t levels[] = {20000, 15000};
+    cw_mesh large = noisy_gyroid(42, 0.05, true), small = noisy_gyroid(20, 0, true), out[2];
+    cw_error err = {0};
+    for (int n = 0; n < 4; n++) {
+        const cw_mesh *mesh = n % 2 ? &small : &large;
+        out[0] = simplify(mesh, &ways[n / 2]);
+        assert_same_border(mesh, out);
+        test_assert_sound(mesh, out);
+        assert_within((double)out->triangle_count,
+                      ways[n / 2].ratio * (double)mesh->triangle_count, 0.01);
+        cw_mesh_free(out);
+    }
+    assert_ok(cw_simplify_levels(&large, &(cw_simplify_desc){.keep_border = true}, levels, 2,
+                                 out, NULL, &err),
+              err);
+    for (int n = 0; n < 2; n++) {
+        assert_within((double)out[n].triangle_count, (double)levels[n], 1e-3);
+        assert_same_border(&large, out + n);
+        cw_mesh_free(out + n);
+    }
+    cw_mesh_free(&large);
+    cw_mesh_free(&small);
+}
+
 /* Vertices of a simplified sphere are as near to it as those of a good approximation. */
 static void a_sphere_stays_round(void **state)
 {
@@ -143,36 +231,206 @@ static void a_sphere_stays_round(void **state)
     cw_volume_free(&volume);
 }
 
-/* A flat square with a grid on it: nothing is lost until two triangles are left. */
-static void a_flat_square_becomes_two_triangles(void **state)
+static void scale(cw_mesh *mesh, int exponent)
+{
+    for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
+        mesh->positions[i] = ldexpf(mesh->positions[i], exponent);
+}
+
+/* Squares of squares of such lengths are no floats. */
+static void size_does_not_matter(void **state)
 {
     (void)state;
-    enum { N = 20 };
-    cw_mesh mesh = {.vertex_count = (N + 1) * (N + 1), .triangle_count = 2 * N * N};
+    static const int exponents[] = {-60, 60};
+    cw_volume volume = test_sample(CW_FIELD_SPHERE, 32, CW_F32);
+    cw_mesh mesh = test_extract(&volume, NULL, NULL);
+    for (int n = 0; n < 4; n++) {
+        const int exponent = exponents[n / 2];
+        cw_simplify_desc desc = {
+            .ratio = 0.1, .error_mm = n % 2 ? 0.1 : 0, .normal_weight = (float)(n % 2)};
+        cw_mesh plain = simplify(&mesh, &desc);
+        scale(&mesh, exponent);
+        desc.error_mm = ldexp(desc.error_mm, exponent);
+        cw_mesh scaled = simplify(&mesh, &desc);
+        scale(&mesh, -exponent);
+        scale(&plain, exponent);
+        test_assert_same_mesh(&plain, &scaled);
+        cw_mesh_free(&plain);
+        cw_mesh_free(&scaled);
+    }
+    cw_mesh_free(&mesh);
+    cw_volume_free(&volume);
+}
+
+/* An origin is far from the mesh, here. */
+static void place_does_not_matter(void **state)
+{
+    (void)state;
+    const cw_simplify_desc desc = {.error_mm = 0.1};
+    cw_volume volume = test_sample(CW_FIELD_SPHERE, 32, CW_F32);
+    cw_mesh mesh = test_extract(&volume, NULL, NULL), near = simplify(&mesh, &desc);
+    for (int a = 0; a < 3; a++)
+        mesh.origin[a] = near.origin[a] = 12345.678 * (a + 1);
+    cw_mesh far = simplify(&mesh, &desc);
+    test_assert_same_mesh(&near, &far);
+    cw_mesh_free(&far);
+    cw_mesh_free(&near);
+    cw_mesh_free(&mesh);
+    cw_volume_free(&volume);
+}
+
+/* A flat square, a unit wide, with n x n squares of two triangles on it. */
+static cw_mesh make_flat(uint32_t n)
+{
+    cw_mesh mesh = {.vertex_count = (n + 1) * (n + 1), .triangle_count = 2 * n * n};
     mesh.positions = cwi_alloc_array(3 * mesh.vertex_count, sizeof *mesh.positions);
     mesh.triangles = cwi_alloc_array(3 * mesh.triangle_count, sizeof *mesh.triangles);
     assert_true(mesh.positions && mesh.triangles);
     for (uint32_t v = 0; v < mesh.vertex_count; v++) {
-        mesh.positions[3 * v] = (float)(v % (N + 1));
-        mesh.positions[3 * v + 1] = (float)(v / (N + 1));
+        mesh.positions[3 * v] = (float)(v % (n + 1)) / (float)n;
+        mesh.positions[3 * v + 1] = (float)(v / (n + 1)) / (float)n;
         mesh.positions[3 * v + 2] = 0;
     }
     uint32_t *t = mesh.triangles;
-    for (uint32_t y = 0; y < N; y++)
-        for (uint32_t x = 0; x < N; x++, t += 6) {
-            const uint32_t v = y * (N + 1) + x;
-            const uint32_t corners[6] = {v, v + 1, v + N + 2, v, v + N + 2, v + N + 1};
+    for (uint32_t y = 0; y < n; y++)
+        for (uint32_t x = 0; x < n; x++, t += 6) {
+            const uint32_t v = y * (n + 1) + x;
+            const uint32_t corners[6] = {v, v + 1, v + n + 2, v, v + n + 2, v + n + 1};
             memcpy(t, corners, sizeof corners);
         }
+    return mesh;
+}
+
+/* Nothing is lost until two triangles are left. */
+static void a_flat_square_becomes_two_triangles(void **state)
+{
+    (void)state;
+    cw_mesh mesh = make_flat(20);
     cw_mesh out = simplify(&mesh, &(cw_simplify_desc){.triangles = 2});
     assert_int_equal(out.triangle_count, 2);
-    assert_near(test_measure(&out).area_mm2, N * N, 0.01 * N * N);
+    assert_near(test_measure(&out).area_mm2, 1, 0.01);
     cw_mesh_free(&out);
-    out = simplify(&mesh, &(cw_simplify_desc){.error_mm = 0.01});
+    out = simplify(&mesh, &(cw_simplify_desc){.error_mm = 0.0005});
     assert_true(out.triangle_count < 20);
-    assert_near(test_measure(&out).area_mm2, N * N, 4 * N * 0.01);
+    assert_near(test_measure(&out).area_mm2, 1, 0.002);
     cw_mesh_free(&out);
     cw_mesh_free(&mesh);
+}
+
+/* What a circle of radius 0.3 parts, on a flat mesh: both sides; a dent where a cone stands. */
+static double in_circle(double x, double y)
+{
+    return hypot(x - 0.5, y - 0.5) < 0.3 ? 1 : 0;
+}
+
+static double on_cone(double x, double y)
+{
+    return fmax(0, 0.3 - hypot(x - 0.5, y - 0.5));
+}
+
+static void paint(cw_mesh *mesh, double (*what)(double x, double y), const char *how)
+{
+    const size_t count = mesh->vertex_count;
+    mesh->scalars = cwi_alloc_zeroed(count, sizeof *mesh->scalars);
+    mesh->colors = cwi_alloc_zeroed(4 * count, sizeof *mesh->colors);
+    mesh->normals = cwi_alloc_zeroed(3 * count, sizeof *mesh->normals);
+    assert_true(mesh->scalars && mesh->colors && mesh->normals);
+    for (size_t v = 0; v < count; v++) {
+        const double x =
+            what((double)mesh->positions[3 * v], (double)mesh->positions[3 * v + 1]);
+        if (how[0] == 's')
+            mesh->scalars[v] = (float)(1000 + 500 * x);
+        else if (how[0] == 'c')
+            mesh->colors[4 * v + 1] = (uint8_t)(20 + 200 * x);
+        mesh->normals[3 * v] = how[0] == 'n' ? (float)sin(x) : 0;
+        mesh->normals[3 * v + 2] = how[0] == 'n' ? (float)cos(x) : 1;
+    }
+}
+
+/* The attribute in a corner, from 0 to 1. */
+static double painted(const cw_mesh *mesh, size_t v, const char *how)
+{
+    if (how[0] == 's')
+        return ((double)mesh->scalars[v] - 1000) / 500;
+    return how[0] == 'c' ? (mesh->colors[4 * v + 1] - 20) / 200.0
+                         : asin((double)mesh->normals[3 * v]);
+}
+
+/* The share of a corner in a place of a flat triangle. */
+static double share_in(const float *place, const float *b, const float *c, const float *a)
+{
+    const double u = (double)(b[0] - place[0]), v = (double)(b[1] - place[1]),
+                 w = (double)(c[0] - place[0]), z = (double)(c[1] - place[1]);
+    const double all = (double)(b[0] - a[0]) * (double)(c[1] - a[1]) -
+                       (double)(b[1] - a[1]) * (double)(c[0] - a[0]);
+    return (u * z - v * w) / all;
+}
+
+/* The root of the mean square of what a result is off in the vertices of the original. */
+static double painted_wrong(const cw_mesh *mesh, const cw_mesh *out, const char *how)
+{
+    double sum = 0;
+    size_t seen = 0;
+    for (size_t v = 0; v < mesh->vertex_count; v++) {
+        const float *place = mesh->positions + 3 * v;
+        for (size_t t = 0; t < out->triangle_count; t++) {
+            const uint32_t *c = out->triangles + 3 * t;
+            const float *p[3];
+            double at = 0;
+            bool inside = true;
+            for (int k = 0; k < 3; k++)
+                p[k] = out->positions + 3 * (size_t)c[k];
+            for (int k = 0; k < 3 && inside; k++) {
+                const double share = share_in(place, p[(k + 1) % 3], p[(k + 2) % 3], p[k]);
+                inside = share >= -1e-4;
+                at += share * painted(out, c[k], how);
+            }
+            if (!inside)
+                continue;
+            sum += pow(at - painted(mesh, v, how), 2);
+            seen++;
+            break;
+        }
+    }
+    assert_true(seen > 0.9 * (double)mesh->vertex_count);
+    return sqrt(sum / (double)seen);
+}
+
+/* A flat mesh has nothing to lose but what is painted on it. */
+static void what_has_a_weight_stays_sharp(void **state)
+{
+    (void)state;
+    static const struct {
+        uint32_t edge;
+        const char *how;
+        double (*what)(double x, double y);
+        double times;
+        cw_simplify_desc desc;
+    } rows[] = {
+        {60, "scalar", in_circle, 10, {.scalar_weight = 1}},
+        {60, "scalar", on_cone, 2, {.scalar_weight = 1}},
+        {60, "color", in_circle, 10, {.color_weight = 1}},
+        {60, "normal", in_circle, 10, {.normal_weight = 1}},
+        {140, "scalar", in_circle, 10, {.scalar_weight = 1}}, /* of several blocks */
+    };
+    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
+        cw_mesh mesh = make_flat(rows[n].edge);
+        paint(&mesh, rows[n].what, rows[n].how);
+        cw_simplify_desc desc = rows[n].desc;
+        cw_mesh without = simplify(&mesh, &(cw_simplify_desc){.ratio = 0.1});
+        desc.triangles = without.triangle_count;
+        cw_mesh with = simplify(&mesh, &desc);
+        const double sharp = painted_wrong(&mesh, &with, rows[n].how),
+                     dull = painted_wrong(&mesh, &without, rows[n].how);
+        if (!(sharp * rows[n].times < dull))
+            fail_msg("%s of row %zu is off by %g, and by %g without a weight", rows[n].how, n,
+                     sharp, dull);
+        test_assert_sound(&mesh, &with);
+        assert_within((double)with.triangle_count, (double)without.triangle_count, 2e-3);
+        cw_mesh_free(&with);
+        cw_mesh_free(&without);
+        cw_mesh_free(&mesh);
+    }
 }
 
 /* The least closed surface is a tetrahedron. */
@@ -195,9 +453,10 @@ static void threads_change_nothing(void **state)
 {
     (void)state;
     cw_mesh mesh = noisy_gyroid(42, 0.1, false);
-    for (int kind = 0; kind < 2; kind++) {
-        cw_simplify_desc desc = {.threads = 1, .ratio = kind ? 0.6 : 0.2};
-        desc.error_mm = kind ? 0.5 : 0;
+    for (int kind = 0; kind < 3; kind++) {
+        cw_simplify_desc desc = {.threads = 1, .ratio = kind == 1 ? 0.6 : 0.2};
+        desc.error_mm = kind == 1 ? 0.5 : 0;
+        desc.normal_weight = kind == 2 ? 0.5f : 0;
         cw_mesh one = simplify(&mesh, &desc);
         desc.threads = 3;
         cw_mesh three = simplify(&mesh, &desc);
@@ -296,6 +555,10 @@ static void wishes_that_make_no_sense_are_refused(void **state)
         {{.error_mm = NAN}, "error_mm is"},
         {{.ratio = 1}, "ratio is 1; it must be at least 0 and below 1"},
         {{.ratio = -0.5}, "ratio is -0.5"},
+        {{.ratio = 0.5, .normal_weight = -1}, "normal_weight is -1; it must be 0 or more"},
+        {{.ratio = 0.5, .color_weight = NAN}, "color_weight is"},
+        {{.ratio = 0.5, .color_weight = 1}, "color_weight is 1; the mesh has no colors"},
+        {{.ratio = 0.5, .scalar_weight = 2}, "scalar_weight is 2; the mesh has no scalars"},
     };
     static const size_t rising[] = {10, 20}, none[] = {10, 0}, falling[] = {20, 10};
     cw_mesh mesh = {0}, out[2];
@@ -366,7 +629,8 @@ static void running_out_of_memory_is_told(void **state)
             small = noisy_gyroid(10, 0.1, false);
     assert_true(several_blocks.triangle_count > 40000);
     starve(&several_blocks,
-           &(cw_simplify_desc){.ratio = 0.95, .allow_crossings = true, .threads = 1});
+           &(cw_simplify_desc){
+               .ratio = 0.95, .allow_crossings = true, .normal_weight = 1, .threads = 1});
     starve(&small, &(cw_simplify_desc){.error_mm = 1, .threads = 1});
     cw_mesh_free(&several_blocks);
     cw_mesh_free(&small);
@@ -392,8 +656,12 @@ int main(void)
         cmocka_unit_test(broken_meshes_become_no_worse),
         cmocka_unit_test(the_error_is_never_exceeded),
         cmocka_unit_test(what_is_met_first_ends_it),
+        cmocka_unit_test(a_border_can_be_kept),
         cmocka_unit_test(a_sphere_stays_round),
+        cmocka_unit_test(size_does_not_matter),
+        cmocka_unit_test(place_does_not_matter),
         cmocka_unit_test(a_flat_square_becomes_two_triangles),
+        cmocka_unit_test(what_has_a_weight_stays_sharp),
         cmocka_unit_test(nothing_vanishes),
         cmocka_unit_test(threads_change_nothing),
         cmocka_unit_test(levels_follow_each_other),

@@ -164,6 +164,9 @@ static void wishes_that_make_no_sense_are_refused(void **state)
                  CW_ERR_ARGUMENT, "one of these", err);
     assert_fails(cw_simplifier_new(&(cw_simplify_desc){.error_mm = NAN}, &s, &err),
                  CW_ERR_ARGUMENT, "nan", err);
+    assert_fails(
+        cw_simplifier_new(&(cw_simplify_desc){.error_mm = 1, .normal_weight = 1}, &s, &err),
+        CW_ERR_ARGUMENT, "normals", err);
     cw_simplifier_free(NULL);
     /* nothing came */
     assert_ok(cw_simplifier_new(&(cw_simplify_desc){.error_mm = 1}, &s, &err), err);
