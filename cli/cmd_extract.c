@@ -1,4 +1,5 @@
 #include "cli/commands.h"
+#include "cli/compare.h"
 #include "cli/console.h"
 #include "cli/deliver.h"
 #include "cli/output.h"
@@ -17,12 +18,13 @@ typedef struct extract_args {
     const char *output, *name, *format, *json;
     cli_numbers iso;
     cli_number snap;
+    cli_reduction simplify;
     int inside, normals, progress, topology, placement, accel;
     bool open, no_clobber, local, check;
     size_t max_triangles;
 } extract_args;
 
-enum { PROVENANCE_LINES = 4 };
+enum { PROVENANCE_LINES = 5 };
 
 static const extract_args defaults = {.check = true};
 
@@ -46,6 +48,10 @@ static const cli_option options[] = {
     {"snap", 0, CLI_NUMBER, "SHARE",
      "merge crossings within this share of an edge from one sample, to 0.5; try 0.3 (off)",
      offsetof(extract_args, snap)},
+    {"simplify", 0, CLI_REDUCTION, "L|N",
+     "while extracting, as far as an error allows (0.1mm, 0.05%, 0.5vox) or to so many "
+     "triangles (50k) (off)",
+     offsetof(extract_args, simplify)},
     {"normals", 0, CLI_CHOICE, "field/none", "normals from the field's gradient (field)",
      offsetof(extract_args, normals)},
     {"accel", 0, CLI_CHOICE, "octree/none",
@@ -85,6 +91,28 @@ typedef struct run_state {
     double start; /* of the surface at hand */
 } run_state;
 
+static double voxel_mm(const run_state *s)
+{
+    const double *spacing = s->volume.spacing;
+    return cbrt(spacing[0] * spacing[1] * spacing[2]);
+}
+
+/* Shares are of the diagonal of the volume's box. */
+static double error_mm(const run_state *s)
+{
+    double square = 0;
+    for (int a = 0; a < 3; a++) {
+        const double side = s->volume.spacing[a] * (double)(s->volume.view.dim[a] - 1);
+        square += side * side;
+    }
+    return cli_length_mm(&s->args->simplify.error, sqrt(square), voxel_mm(s));
+}
+
+static bool is_simplified(const extract_args *args)
+{
+    return args->simplify.error.given || args->simplify.triangles;
+}
+
 static void put_params(cli_json *j, const void *p, const cli_made *made)
 {
     const run_state *s = p;
@@ -96,6 +124,10 @@ static void put_params(cli_json *j, const void *p, const cli_made *made)
     cli_json_text(j, "topology", args->topology ? "simple" : "field");
     cli_json_text(j, "placement", args->placement ? "cubic" : "linear");
     cli_json_number(j, "snap", args->snap.value);
+    if (args->simplify.error.given)
+        cli_json_number(j, "simplify_error_mm", error_mm(s));
+    else if (args->simplify.triangles)
+        cli_json_count(j, "simplify_triangles", args->simplify.triangles);
     cli_json_text(j, "normals", args->normals ? "none" : "field");
     if (args->iso.count > 1)
         cli_json_text(j, "accel", args->accel ? "none" : "octree");
@@ -152,6 +184,13 @@ static cw_status check_args(run_state *s, cw_error *err)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "--snap is a share of an edge, 0 to %g, and not %g", CW_EXTRACT_MAX_SNAP,
                        args->snap.value);
+    if (is_simplified(args) && args->snap.value > 0)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--snap and --simplify both remove needles: give one of them");
+    if (is_simplified(args) && !cw_simplify_available())
+        return cw_fail(err, CW_ERR_UNSUPPORTED,
+                       "--simplify needs OpenMesh, which this build is without: install "
+                       "libopenmesh-dev and build again");
     st = cli_name_outputs(&s->outputs, args->output, input[0], &args->iso, err);
     return st == CW_OK ? check_outputs(s, err) : st;
 }
@@ -171,18 +210,50 @@ static cw_status extract(run_state *s, double iso, cw_mesh *mesh, cw_extract_cou
         .threads = (int)s->args->input.threads,
         .max_triangles = s->args->max_triangles,
     };
+    const cw_simplify_desc simplify = {
+        .error_mm = s->args->simplify.error.given ? error_mm(s) : 0,
+        .triangles = s->args->simplify.triangles,
+        .threads = desc.threads,
+    };
     cli_report_begin(&s->report);
-    cw_status st = cli_extract_surface(&s->volume, s->extractor, &desc, mesh, counts, err);
+    cw_status st =
+        is_simplified(s->args)
+            ? cli_extract_simplified(&s->volume, &desc, &simplify, mesh, counts, err)
+            : cli_extract_surface(&s->volume, s->extractor, &desc, mesh, counts, err);
     if (st == CW_OK)
         cli_report_end(&s->report, "extract", v->dim[0] * v->dim[1] * v->dim[2],
                        mesh->triangle_count);
     return st;
 }
 
+/* What became of all the triangles, and how far from the field the result is: from a field of
+ * cubic crossings that would not tell. */
+static cw_status judge_simplified(run_state *s, cli_made *made, const cw_mesh *mesh,
+                                  const cw_extract_counts *counts, cw_error *err)
+{
+    const extract_args *args = s->args;
+    cli_say("%s: %s triangles were extracted, and simplified to %s", s->volume.path,
+            cli_count(counts->triangles), cli_count(mesh->triangle_count));
+    if (args->simplify.triangles && mesh->triangle_count > args->simplify.triangles)
+        cli_report_warn(&s->report,
+                        "%s triangles were asked for, %s are left: where more would go, the "
+                        "surface would tear, turn over or meet itself",
+                        cli_count(args->simplify.triangles), cli_count(mesh->triangle_count));
+    if (!args->check || args->placement)
+        return CW_OK;
+    cli_report_begin(&s->report);
+    cw_status st = cli_compare_with_field(mesh, &s->volume, made->iso, args->inside,
+                                          (int)args->input.threads, &made->compared, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, s->volume.path);
+    cli_report_end(&s->report, "measure", mesh->triangle_count, mesh->triangle_count);
+    return CW_OK;
+}
+
 /* How a surface was made, for the file's own record. Not of what: names of files may be names
  * of patients. */
-static void tell_provenance(const run_state *s, size_t n, char level[32],
-                            cw_provenance lines[PROVENANCE_LINES])
+static size_t tell_provenance(const run_state *s, size_t n, char level[32], char simplify[64],
+                              cw_provenance lines[PROVENANCE_LINES])
 {
     const extract_args *args = s->args;
     snprintf(level, 32, "%.9g", args->iso.value[n]);
@@ -190,29 +261,35 @@ static void tell_provenance(const run_state *s, size_t n, char level[32],
     lines[1] = (cw_provenance){"inside", args->inside ? "below" : "above"};
     lines[2] = (cw_provenance){"topology", args->topology ? "simple" : "field"};
     lines[3] = (cw_provenance){"placement", args->placement ? "cubic" : "linear"};
+    if (args->simplify.error.given)
+        snprintf(simplify, 64, "to %.9g mm", error_mm(s));
+    else
+        snprintf(simplify, 64, "to %zu triangles", args->simplify.triangles);
+    lines[4] = (cw_provenance){"simplified", simplify};
+    return is_simplified(args) ? 5 : 4;
 }
 
 static cw_status make_surface(run_state *s, size_t n, cw_error *err)
 {
-    char level[32];
+    char level[32], simplify[64];
     cw_provenance provenance[PROVENANCE_LINES];
-    const double *spacing = s->volume.spacing;
-    tell_provenance(s, n, level, provenance);
     cli_delivery how = {.input = s->volume.path,
                         .write = write_desc(s->args),
                         .compress = &s->args->compress,
-                        .voxel_mm = cbrt(spacing[0] * spacing[1] * spacing[2]),
+                        .voxel_mm = voxel_mm(s),
                         .unchecked = !s->args->check,
                         .open = s->args->open,
                         .preview = cli_is_preview(&s->volume)};
     how.write.provenance = provenance;
-    how.write.provenance_count = PROVENANCE_LINES;
+    how.write.provenance_count = tell_provenance(s, n, level, simplify, provenance);
     cli_made *made = cli_report_next(&s->report, s->outputs.path[n], s->args->iso.value[n]);
     cw_mesh mesh = {0};
     cw_extract_counts counts;
     cw_status st = extract(s, made->iso, &mesh, &counts, err);
     made->snapped = st == CW_OK && s->args->snap.value > 0;
     made->snap = made->snapped ? counts.snap : (cw_snap_counts){0};
+    if (st == CW_OK && is_simplified(s->args))
+        st = judge_simplified(s, made, &mesh, &counts, err);
     if (st == CW_OK)
         st = cli_deliver(&s->report, &how, &(cw_part){.mesh = &mesh}, 1, counts.border_loops,
                          s->start, err);
@@ -265,7 +342,7 @@ static cw_status pipeline(run_state *s, cw_error *err)
     cw_status st = check_args(s, err);
     if (st == CW_OK)
         st = read_volume(s, err);
-    if (st == CW_OK && args->iso.count > 1 && !args->accel) {
+    if (st == CW_OK && args->iso.count > 1 && !args->accel && !is_simplified(args)) {
         st = cw_extractor_new(&s->volume.view, &s->extractor, err);
         st = st == CW_OK ? st : cwi_fail_in(err, st, s->volume.path);
     }
@@ -318,6 +395,13 @@ const cli_command cli_extract = {
         "to\n"
         "keep the topology and to cross nothing stays. The error is printed, and in the "
         "report.\n\n"
+        "With --simplify the surface is simplified slab by slab while it is extracted, so "
+        "that\n"
+        "all of it never is in memory: no point of the result is farther from the surface as\n"
+        "it came than the error, nor the other way round, or about so many triangles are "
+        "left.\n"
+        "Topology stays, and no triangles meet: as with the command simplify, whose other\n"
+        "options need the whole mesh. How far the result is from the field is printed.\n\n"
         "STL, PLY and OBJ hold world coordinates; far from the world's zero single precision\n"
         "loses them, and extract warns. With --local they are relative to the mesh's origin:\n"
         "add it to get the world's. It is printed, and named in the report and in the file.\n"
@@ -332,6 +416,7 @@ const cli_command cli_extract = {
         "  cubewright extract head.nii.gz --iso 50 -o head.glb\n"
         "  cubewright extract ct.nrrd --iso -400,300 -o '{stem}-{level}.glb'\n"
         "  cubewright extract ct.nrrd --iso 300 -o bone.stl --json report.json\n"
+        "  cubewright extract ct.nrrd --iso 300 -o bone.glb --simplify 0.1mm\n"
         "  cubewright extract slab.raw --raw dims=512x512x300,type=u16le --spacing 0.5mm \\\n"
         "      --iso 1200 -o part.ply\n",
     .options = options,

@@ -68,6 +68,23 @@ cw_status cli_compare(const cw_mesh *mesh, const cw_mesh *input, double toleranc
     return CW_OK;
 }
 
+cw_status cli_compare_with_field(const cw_mesh *mesh, const cli_volume *volume, double iso,
+                                 bool inside_is_low, int threads, cli_comparison *c,
+                                 cw_error *err)
+{
+    const cw_field_distance_desc desc = {
+        .isovalue = iso,
+        .inside_is_low = inside_is_low,
+        .threads = threads,
+        .progress = cli_progress((double)mesh->triangle_count / 1e6, "Mtriangle")};
+    cw_distance d;
+    cw_status st = cw_distance_to_field(mesh, &volume->view, &desc, &d, NULL, err);
+    if (st == CW_OK && (!c->has_field || d.max_mm > c->to_field.max_mm))
+        c->to_field = d;
+    c->has_field = st == CW_OK;
+    return st;
+}
+
 double cli_both_rms(const cli_comparison *c)
 {
     const double to = c->to_input.rms_mm, from = c->from_input.rms_mm;

@@ -10,6 +10,12 @@
 cw_status cli_compare(const cw_mesh *mesh, const cw_mesh *input, double tolerance_mm,
                       int threads, cli_comparison *sum, double area_mm2[2], cw_error *err);
 
+/* Measures how far a mesh is from the surface of a volume's field; of several the farthest is
+ * kept. Errors do not name a file. */
+cw_status cli_compare_with_field(const cw_mesh *mesh, const cli_volume *volume, double iso,
+                                 bool inside_is_low, int threads, cli_comparison *c,
+                                 cw_error *err);
+
 /* The root of the mean of the squares both ways. */
 double cli_both_rms(const cli_comparison *c);
 

@@ -206,7 +206,7 @@ static void print_compressed(const cli_made *made)
 }
 
 /* Of both ways the one that is farther; the mean square of both. */
-static void print_comparison(const cli_comparison *c)
+static void print_distance(const cli_comparison *c)
 {
     const cw_distance *to = &c->to_input, *from = &c->from_input;
     const double percent = c->diagonal_mm > 0 ? 100 / c->diagonal_mm : 0;
@@ -217,6 +217,12 @@ static void print_comparison(const cli_comparison *c)
                most, percent * most, rms, percent * rms, p99, percent * p99);
     if (c->promised_mm > 0)
         cli_result(", within the %.6g mm asked for", c->promised_mm);
+}
+
+static void print_comparison(const cli_comparison *c)
+{
+    if (c->made)
+        print_distance(c);
     if (c->has_field)
         cli_result("; at most %.3g mm from the field's surface, rms %.3g mm",
                    c->to_field.max_mm, c->to_field.rms_mm);
@@ -238,8 +244,7 @@ static void print_summary(const cli_delivery *how, const cli_made *made, const l
         cli_result("; %s vertices merged, off by at most %.3g mm, %.2g voxels",
                    cli_count(made->snap.vertices), made->snap.max_error_mm,
                    made->snap.max_error_voxels);
-    if (made->compared.made)
-        print_comparison(&made->compared);
+    print_comparison(&made->compared);
     if (made->local)
         cli_result("; relative to %.15g, %.15g, %.15g mm", made->origin[0], made->origin[1],
                    made->origin[2]);

@@ -173,6 +173,8 @@ static bool store(const cli_option *o, const char *text, void *field)
         return cli_parse_lengths(text, field);
     case CLI_LENGTH:
         return cli_parse_length(text, field);
+    case CLI_REDUCTION:
+        return cli_parse_reduction(text, field);
     case CLI_SIZES:
         return cli_parse_sizes(text, field);
     case CLI_RANGES:
@@ -203,6 +205,9 @@ static const char *expectation(const cli_option *o)
         return "a length above 0 such as 0.5mm or 12um, or three of them by comma";
     case CLI_LENGTH:
         return "a length above 0 such as 0.1mm, 0.05% (of the box's diagonal) or 0.5vox";
+    case CLI_REDUCTION:
+        return "an error with its unit such as 0.1mm, 0.05% (of the box's diagonal) or 0.5vox, "
+               "or a number of triangles such as 50k";
     case CLI_SIZES:
         return "whole numbers above 0 joined by x";
     case CLI_RANGES:

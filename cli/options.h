@@ -5,20 +5,21 @@
 #include <cubewright/core.h>
 
 typedef enum cli_kind {
-    CLI_FLAG,    /* bool; --x and --no-x */
-    CLI_TEXT,    /* const char * */
-    CLI_CHOICE,  /* int: the position in value, names parted by '/' */
-    CLI_NUMBER,  /* cli_number */
-    CLI_NUMBERS, /* cli_numbers: 300 or 50,300 */
-    CLI_COUNT,   /* size_t: 50k, 100M */
-    CLI_COUNTS,  /* cli_counts: 50k,12k,3k */
-    CLI_BYTES,   /* size_t: 512M, 8G (1024s) */
-    CLI_LENGTHS, /* cli_lengths: one for all axes or three; 0.5mm,12um, bare is mm */
-    CLI_LENGTH,  /* cli_length: 0.1mm, 0.05% of the box's diagonal, 0.5vox; bare is mm */
-    CLI_SIZES,   /* cli_sizes: 64, 1280x720 or 512x512x300 */
-    CLI_RANGES,  /* cli_ranges: 10:50,0:99,20:40 in voxels, -30mm:30mm,... in the world */
-    CLI_WEIGHTS, /* cli_weights: normal:0.5,color:1; value has the names, parted by '/' */
-    CLI_LOUDER,  /* int, counts up */
+    CLI_FLAG,      /* bool; --x and --no-x */
+    CLI_TEXT,      /* const char * */
+    CLI_CHOICE,    /* int: the position in value, names parted by '/' */
+    CLI_NUMBER,    /* cli_number */
+    CLI_NUMBERS,   /* cli_numbers: 300 or 50,300 */
+    CLI_COUNT,     /* size_t: 50k, 100M */
+    CLI_COUNTS,    /* cli_counts: 50k,12k,3k */
+    CLI_BYTES,     /* size_t: 512M, 8G (1024s) */
+    CLI_LENGTHS,   /* cli_lengths: one for all axes or three; 0.5mm,12um, bare is mm */
+    CLI_LENGTH,    /* cli_length: 0.1mm, 0.05% of the box's diagonal, 0.5vox; bare is mm */
+    CLI_SIZES,     /* cli_sizes: 64, 1280x720 or 512x512x300 */
+    CLI_RANGES,    /* cli_ranges: 10:50,0:99,20:40 in voxels, -30mm:30mm,... in the world */
+    CLI_REDUCTION, /* cli_reduction */
+    CLI_WEIGHTS,   /* cli_weights: normal:0.5,color:1; value has the names, parted by '/' */
+    CLI_LOUDER,    /* int, counts up */
 } cli_kind;
 
 typedef struct cli_number {
@@ -60,6 +61,12 @@ typedef struct cli_weights {
     bool given;
     double of[CLI_MAX_WEIGHTS]; /* the name at that position; 0: it was not named */
 } cli_weights;
+
+/* How far to simplify: to an error, or to a number of triangles. */
+typedef struct cli_reduction {
+    cli_length error; /* given, or else: */
+    size_t triangles; /* 0: neither was said */
+} cli_reduction;
 
 typedef struct cli_sizes {
     int count; /* 1 to 3 given, 0: none */

@@ -78,6 +78,16 @@ bool cli_parse_length(const char *text, cli_length *out)
     return out->given = *text == '\0' || out->unit != CLI_MM;
 }
 
+bool cli_parse_reduction(const char *text, cli_reduction *out)
+{
+    const char *end = text;
+    double value;
+    if (cli_parse_count(text, 1000, &out->triangles))
+        return out->triangles > 0;
+    return cwi_parse_double(&end, &value) && *end != '\0' &&
+           cli_parse_length(text, &out->error);
+}
+
 double cli_length_mm(const cli_length *length, double diagonal_mm, double voxel_mm)
 {
     return length->value * (length->unit == CLI_PERCENT  ? diagonal_mm / 100

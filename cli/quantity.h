@@ -9,6 +9,9 @@ bool cli_parse_numbers(const char *text, cli_numbers *out);
 bool cli_parse_lengths(const char *text, cli_lengths *out);
 bool cli_parse_length(const char *text, cli_length *out);
 
+/* A length with a unit, or a count above 0 with k, M or G. */
+bool cli_parse_reduction(const char *text, cli_reduction *out);
+
 /* In millimetres, shares of a diagonal and voxels resolved. */
 double cli_length_mm(const cli_length *length, double diagonal_mm, double voxel_mm);
 bool cli_parse_sizes(const char *text, cli_sizes *out);

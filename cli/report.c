@@ -168,8 +168,8 @@ static void put_snap(cli_json *j, const cw_snap_counts *c)
 static void put_comparison(cli_json *j, const cli_comparison *c)
 {
     cli_json_errors(j, &(cw_findings){.to_field = c->has_field ? &c->to_field : NULL,
-                                      .to_reference = &c->to_input,
-                                      .from_reference = &c->from_input});
+                                      .to_reference = c->made ? &c->to_input : NULL,
+                                      .from_reference = c->made ? &c->from_input : NULL});
 }
 
 static void put_facts(cli_json *j, const cli_made *m)
@@ -178,7 +178,7 @@ static void put_facts(cli_json *j, const cli_made *m)
         put_mesh(j, m);
     if (m->snapped)
         put_snap(j, &m->snap);
-    if (m->compared.made)
+    if (m->compared.made || m->compared.has_field)
         put_comparison(j, &m->compared);
 }
 

@@ -19,11 +19,11 @@ enum { CLI_MOST_WARNINGS = 3 }; /* about one mesh */
 
 /* How far a mesh is from the one that it was made of, and that from it. */
 typedef struct cli_comparison {
-    bool made, has_field;
+    bool made, has_field; /* there are the first two, the third */
     cw_distance to_input, from_input;
-    cw_distance to_field; /* when there is a field */
-    double diagonal_mm;   /* of the input's box */
-    double promised_mm;   /* 0: no error was promised */
+    cw_distance to_field;
+    double diagonal_mm; /* of the input's box */
+    double promised_mm; /* 0: no error was promised */
 } cli_comparison;
 
 /* One mesh of a run, as far as it has come. */

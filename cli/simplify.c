@@ -275,22 +275,6 @@ static cw_status simplify_levels(run_state *s, cw_error *err)
     return CW_OK;
 }
 
-static cw_status measure_from_field(run_state *s, const cw_mesh *mesh, cli_comparison *c,
-                                    cw_error *err)
-{
-    const cw_field_distance_desc desc = {
-        .isovalue = s->args->iso.value,
-        .inside_is_low = s->args->inside,
-        .threads = s->threads,
-        .progress = cli_progress((double)mesh->triangle_count / 1e6, "Mtriangle")};
-    cw_distance d;
-    cw_status st = cw_distance_to_field(mesh, &s->source.view, &desc, &d, NULL, err);
-    if (st == CW_OK && (!c->has_field || d.max_mm > c->to_field.max_mm))
-        c->to_field = d;
-    c->has_field = st == CW_OK;
-    return st == CW_OK ? CW_OK : cwi_fail_in(err, st, s->mesh.path);
-}
-
 /* How far from the input, and from the source's surface: of all parts the farthest there, as
  * they are on one surface. */
 static cw_status measure(run_state *s, cli_made *made, cw_error *err)
@@ -301,8 +285,11 @@ static cw_status measure(run_state *s, cli_made *made, cw_error *err)
     cli_report_begin(&s->report);
     c->promised_mm = s->error_mm;
     cw_status st = cli_compare_pieces(&s->pieces, s->threads, c, err);
-    for (size_t n = 0; n < s->pieces.count && st == CW_OK && s->args->iso.given; n++)
-        st = measure_from_field(s, &s->pieces.piece[n].out, c, err);
+    for (size_t n = 0; n < s->pieces.count && st == CW_OK && s->args->iso.given; n++) {
+        st = cli_compare_with_field(&s->pieces.piece[n].out, &s->source, s->args->iso.value,
+                                    s->args->inside, s->threads, c, err);
+        st = st == CW_OK ? st : cwi_fail_in(err, st, s->mesh.path);
+    }
     if (st == CW_OK)
         cli_report_end(&s->report, "measure", c->from_input.triangles, c->to_input.triangles);
     return st;

@@ -19,18 +19,46 @@ static cw_status explain_empty(const cli_volume *volume, const cw_extract_desc *
         desc->isovalue, cli_is_preview(volume) ? " of the preview" : "", range.min, range.max);
 }
 
+static cw_progress progress_of(const cli_volume *volume)
+{
+    const size_t *n = volume->view.dim;
+    return cli_progress((double)n[0] * (double)n[1] * (double)n[2] / 1e6, "Mvoxel");
+}
+
 cw_status cli_extract_surface(const cli_volume *volume, cw_extractor *extractor,
                               const cw_extract_desc *desc, cw_mesh *mesh,
                               cw_extract_counts *counts, cw_error *err)
 {
-    const cw_volume *v = &volume->view;
-    const double voxels = (double)v->dim[0] * (double)v->dim[1] * (double)v->dim[2];
     cw_extract_desc d = *desc;
     d.max_bytes = volume->memory_left;
-    d.progress = cli_progress(voxels / 1e6, "Mvoxel");
+    d.progress = progress_of(volume);
     cw_status st = extractor ? cw_extractor_extract(extractor, &d, mesh, counts, err)
-                             : cw_extract(v, &d, mesh, counts, err);
+                             : cw_extract(&volume->view, &d, mesh, counts, err);
     if (st == CW_OK && mesh->triangle_count == 0)
         st = explain_empty(volume, desc, err);
+    return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
+}
+
+cw_status cli_extract_simplified(const cli_volume *volume, const cw_extract_desc *desc,
+                                 const cw_simplify_desc *simplify, cw_mesh *mesh,
+                                 cw_extract_counts *counts, cw_error *err)
+{
+    cw_extract_desc d = *desc;
+    cw_simplifier *simplifier;
+    const cw_normals_desc normals = {.inside_is_low = d.inside_is_low, .threads = d.threads};
+    d.max_bytes = volume->memory_left;
+    d.progress = progress_of(volume);
+    *mesh = (cw_mesh){0};
+    cw_status st = cw_simplifier_new(simplify, &simplifier, err);
+    if (st == CW_OK)
+        st = cw_extract_slabs(&volume->view, &d, CW_SIMPLIFIER_SLAB,
+                              (cw_slab_sink){cw_simplifier_take, simplifier}, counts, err);
+    if (st == CW_OK)
+        st = cw_simplifier_finish(simplifier, mesh, NULL, err);
+    cw_simplifier_free(simplifier);
+    if (st == CW_OK && mesh->triangle_count == 0)
+        st = explain_empty(volume, desc, err);
+    if (st == CW_OK && !d.no_normals)
+        st = cw_extract_normals(&volume->view, &normals, mesh, err);
     return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
 }

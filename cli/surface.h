@@ -5,6 +5,7 @@
 #include "cli/input.h"
 
 #include <cubewright/extract.h>
+#include <cubewright/simplify.h>
 
 /* cw_extract() with progress, within the memory that is left, and with an empty result turned
  * into CW_ERR_EMPTY that tells the range of the values. Errors name the file.
@@ -12,5 +13,13 @@
 cw_status cli_extract_surface(const cli_volume *volume, cw_extractor *extractor,
                               const cw_extract_desc *desc, cw_mesh *mesh,
                               cw_extract_counts *counts, cw_error *err);
+
+/* The same surface, simplified slab by slab while it is extracted, so that all of it never is
+ * in memory; with normals of the field, unless desc says that there are to be none.
+ * simplify  as for cw_simplifier_new()
+ * counts    of the surface as it came */
+cw_status cli_extract_simplified(const cli_volume *volume, const cw_extract_desc *desc,
+                                 const cw_simplify_desc *simplify, cw_mesh *mesh,
+                                 cw_extract_counts *counts, cw_error *err);
 
 #endif
