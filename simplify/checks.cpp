@@ -132,11 +132,6 @@ void Contact::build(const Surface &surface)
 namespace
 {
 
-} // namespace
-
-namespace
-{
-
 struct Corners {
     uint32_t id[3];
     Vec at[3];
@@ -179,11 +174,6 @@ bool is_apart(const Corners &t, const Corners &other)
     }
     return false;
 }
-
-} // namespace
-
-namespace
-{
 
 void put(Eight &eight, size_t lane, const Star &star, const Spoke &s)
 {
