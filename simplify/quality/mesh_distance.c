@@ -21,7 +21,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { CHUNK = 512, DEEPEST = 40, MOST_PIECES = 1 << 16 };
+enum { CHUNK = 512, DEEPEST = 40 };
 
 /* The corners of a triangle of the reference, relative to its origin. */
 typedef struct facet {
@@ -154,7 +154,8 @@ static double cut_side(const search *s, const double a[3], const double b[3],
     return best;
 }
 
-/* A bound by two facets: the corners nearer to the first one are cut off from the others. */
+/* A bound by two facets: the corners nearer to the first one are cut off from the others.
+ * Infinite where it exceeds the limit: what was found by then is no bound. */
 static double bound_by_two(const search *s, const corner c[3], const choice *h, int i, int j,
                            double limit)
 {
@@ -169,7 +170,7 @@ static double bound_by_two(const search *s, const corner c[3], const choice *h, 
             square = cwi_greater(square, cut_side(s, c[a].p, c[b].p, slots,
                                                   first[a] - second[a], first[b] - second[b]));
     }
-    return sqrt(square);
+    return square <= limit * limit ? sqrt(square) : INFINITY;
 }
 
 /* The least of the bounds by one or two of the chosen facets; what is below the limit will do.
@@ -456,21 +457,21 @@ cw_status cw_distance_to_mesh(const cw_mesh *mesh, const cw_mesh *reference_mesh
     return st;
 }
 
-/* What covers a triangle: facets of a reference, from the one found before. */
+/* Where facets of a reference are looked for: from the one found before. */
 typedef struct covering {
     const reference *r;
     uint32_t slot;
 } covering;
 
-static void nearest_facet(void *context, const double p[3], const float *corners[3],
-                          double *square)
+static double nearest_facet(void *context, const double p[3], const float *corners[3])
 {
     covering *c = context;
-    *square = seek(c->r, p, &c->slot);
+    const double square = seek(c->r, p, &c->slot);
     const facet *f = c->r->facets + c->slot;
     corners[0] = f->a;
     corners[1] = f->b;
     corners[2] = f->c;
+    return square;
 }
 
 typedef struct judgement {
@@ -478,14 +479,18 @@ typedef struct judgement {
     uint8_t *beyond;
 } judgement;
 
+static bool is_near_facet(const search *s, const corner c[3], uint32_t slot)
+{
+    const double square = s->floor * s->floor;
+    return square_from(s, c[0].p, slot) <= square && square_from(s, c[1].p, slot) <= square &&
+           square_from(s, c[2].p, slot) <= square;
+}
+
 static bool is_within(const search *s, const corner c[3])
 {
     covering facets = {s->r, c[0].slot};
-    cwi_cover cover = {.nearest = nearest_facet,
-                       .context = &facets,
-                       .square = s->floor * s->floor,
-                       .left = MOST_PIECES,
-                       .depth = DEEPEST};
+    cwi_cover cover = {
+        .nearest = nearest_facet, .context = &facets, .square = s->floor * s->floor};
     double p[3][3];
     for (int n = 0; n < 3; n++) {
         if (c[n].distance > s->floor)
@@ -493,13 +498,10 @@ static bool is_within(const search *s, const corner c[3])
         for (int k = 0; k < 3; k++)
             p[n][k] = c[n].p[k] - s->r->shift[k];
     }
-    const cwi_piece whole = cwi_piece_of(p[0], p[1], p[2], cover.normal);
-    for (int n = 0; n < 3; n++) {
-        const facet *f = s->r->facets + c[n].slot;
-        if (cwi_piece_near(&whole, (const float *const[3]){f->a, f->b, f->c}, cover.square))
+    for (int n = 0; n < 3; n++)
+        if (is_near_facet(s, c, c[n].slot))
             return true;
-    }
-    return cwi_is_covered(&cover, &whole);
+    return cwi_is_covered(&cover, (const double(*)[3])p);
 }
 
 static void judge_chunk(void *context, size_t chunk)

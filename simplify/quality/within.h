@@ -8,8 +8,8 @@
  * for certain; else to 1. Nothing is looked for beyond the limit: so this takes a fraction of
  * the time of cw_distance_to_mesh().
  * mesh, reference  with triangles; every vertex of the mesh is in one */
-cw_status cwi_mesh_within(const cw_mesh *mesh, const cw_mesh *reference, double limit_mm,
-                          int threads, const cw_progress *progress, uint8_t *beyond,
-                          cw_error *err);
+CW_API cw_status cwi_mesh_within(const cw_mesh *mesh, const cw_mesh *reference, double limit_mm,
+                                 int threads, const cw_progress *progress, uint8_t *beyond,
+                                 cw_error *err);
 
 #endif
