@@ -379,7 +379,7 @@ static cw_status judge(job *j, bool *kept, cw_error *err)
 static cw_status simplify_all(job *j, cw_error *err)
 {
     cw_status st = CW_OK;
-    j->block_desc.error = 0.9 * j->desc->error_mm;
+    j->block_desc.error = 0.95 * j->desc->error_mm; /* others may bound it by 5 % more */
     for (bool kept = false; st == CW_OK && !kept;) {
         for (size_t n = 0; n < j->levels; n++)
             cw_mesh_free(j->out + n);
