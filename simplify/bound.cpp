@@ -1,5 +1,8 @@
 #include "simplify/bound.hpp"
 
+#include "simplify/walk.hpp"
+
+#include <algorithm>
 #include <cmath>
 
 namespace cw
@@ -34,11 +37,35 @@ float triangle_square(const Vec &p, const Vec &a, const Vec &b, const Vec &c)
 
 } // namespace
 
+// Room for at most so many, half of it empty.
+void Numbers::clear(size_t most)
+{
+    size_t size = 64;
+    while (size < 2 * most)
+        size *= 2;
+    slots.assign(size, {UINT32_MAX, 0});
+    count = 0;
+}
+
+uint32_t Numbers::of(uint32_t vertex, bool *fresh)
+{
+    const size_t mask = slots.size() - 1;
+    size_t at = (vertex * 2654435769u >> 7) & mask;
+    while (slots[at].vertex != UINT32_MAX && slots[at].vertex != vertex)
+        at = (at + 1) & mask;
+    *fresh = slots[at].vertex == UINT32_MAX;
+    if (*fresh)
+        slots[at] = {vertex, count++};
+    return slots[at].number;
+}
+
 Bound::Bound(const cwi_block &block, const cwi_original *original_, double error_)
     : original(original_), error(float(error_))
 {
-    if (original && block.lists)
-        heads.assign(block.lists, block.lists + block.own);
+    if (!original || !block.lists)
+        return;
+    heads.assign(block.lists, block.lists + block.own);
+    marks.resize(block.own);
 }
 
 void Bound::collect(uint32_t face)
@@ -47,134 +74,150 @@ void Bound::collect(uint32_t face)
         points.push_back(p);
 }
 
-// The square of the distance that holds for all of the points; negative: nothing may change.
-float Bound::allowed() const
+void Bound::collect(const Star &star)
 {
-    uint8_t care = 0;
-    for (uint32_t p : points)
-        care = std::max(care, original->care[p]);
-    return care < CWI_MOST_CARE ? std::ldexp(error * error, -2 * care) : -1;
-}
-
-// From the triangles around the nearest point: a distance that is not too small.
-bool Bound::is_near(const Vec &place, float square) const
-{
-    float least = INFINITY;
-    uint32_t nearest = 0;
-    for (uint32_t p : points) {
-        const float s = (point(p) - place).sqrnorm();
-        nearest = s < least ? p : nearest;
-        least = std::min(least, s);
-    }
-    for (uint32_t i = original->first[nearest];
-         i < original->first[nearest + 1] && least > square; i++) {
-        const uint32_t *c = original->corners + 3 * size_t(original->around[i]);
-        least = std::min(least, triangle_square(place, point(c[0]), point(c[1]), point(c[2])));
-    }
-    return least <= square;
-}
-
-// The square of the distance from the triangles of the star, and the nearest.
-float Bound::square_from(const Star &star, const Vec &place, uint32_t *nearest)
-{
-    float least = INFINITY;
-    for (size_t i = 0; i < star.spokes.size(); i++) {
-        const Spoke &s = star.spokes[i];
-        const float d = triangle_square(place, star.place, s.pa, s.pb);
-        *nearest = d < least ? uint32_t(i) : *nearest;
-        least = std::min(least, d);
-    }
-    return least;
-}
-
-// Whether every point is near a spoke.
-bool Bound::are_listed(const Star &star, float square)
-{
-    for (uint32_t p : points) {
-        uint32_t nearest = 0;
-        if (square_from(star, point(p), &nearest) > square)
-            return false;
-        spoke_of.push_back(nearest);
-    }
-    return true;
-}
-
-void Bound::set_sides(const Star &star)
-{
-    const size_t count = star.spokes.size();
-    sides.x.resize(count);
-    sides.y.resize(count);
-    sides.z.resize(count);
-    sides.at.resize(count);
-    for (size_t i = 0; i < count; i++) {
-        const Vec side = star.spokes[i].pa - star.place;
-        sides.x[i] = side[0];
-        sides.y[i] = side[1];
-        sides.z[i] = side[2];
-    }
-}
-
-// Where an edge of the original, `way` from the moved vertex, comes nearest to the sides that
-// it crosses, between the ends of both, but stays farther than allowed: its share there; else a
-// negative number.
-void Bound::find_crossings(const Vec &edge, const Vec &way, float square)
-{
-    const float *x = sides.x.data(), *y = sides.y.data(), *z = sides.z.data();
-    const float ex = edge[0], ey = edge[1], ez = edge[2], wx = way[0], wy = way[1], wz = way[2],
-                mx = wy * ez - wz * ey, my = wz * ex - wx * ez, mz = wx * ey - wy * ex;
-    for (size_t k = 0; k < sides.at.size(); k++) {
-        const float nx = ey * z[k] - ez * y[k], ny = ez * x[k] - ex * z[k],
-                    nz = ex * y[k] - ey * x[k], n = nx * nx + ny * ny + nz * nz,
-                    height = wx * nx + wy * ny + wz * nz,
-                    // shares of the edge and of the side, times n
-            s = -((wy * z[k] - wz * y[k]) * nx + (wz * x[k] - wx * z[k]) * ny +
-                  (wx * y[k] - wy * x[k]) * nz),
-                    t = -(mx * nx + my * ny + mz * nz);
-        const bool crosses =
-            (s > 0) & (s < n) & (t > 0) & (t < n) & (height * height > n * square);
-        sides.at[k] = crosses ? s / n : -1;
-    }
-}
-
-// Whether the original's edges at the points pass near the sides that they cross. Two lines may
-// come nearest elsewhere than where the surfaces lie over each other: what seems far is
-// measured from all of the other surface.
-bool Bound::cross_near(const Star &star, float square)
-{
-    uint32_t nearest;
-    set_sides(star);
-    for (uint32_t p : points)
-        for (uint32_t i = original->first[p]; i < original->first[p + 1]; i++) {
-            const uint32_t *c = original->corners + 3 * size_t(original->around[i]);
-            const uint32_t q = c[0] == p ? c[1] : c[1] == p ? c[2] : c[0];
-            const Vec edge = point(q) - point(p);
-            find_crossings(edge, point(p) - star.place, square);
-            for (size_t k = 0; k < sides.at.size(); k++) {
-                if (sides.at[k] < 0)
-                    continue;
-                const Vec on_edge = point(p) + sides.at[k] * edge,
-                          side = star.spokes[k].pa - star.place,
-                          on_side = star.place + share_near(on_edge - star.place, side) * side;
-                if (square_from(star, on_edge, &nearest) > square || !is_near(on_side, square))
-                    return false;
-            }
-        }
-    return true;
-}
-
-bool Bound::is_kept(const Star &star)
-{
-    if (!is_asked())
-        return true;
     points.clear();
-    spoke_of.clear();
     for (uint32_t f : star.gone)
         collect(f);
     for (const Spoke &s : star.spokes)
         collect(s.face);
-    const float square = allowed();
-    return points.empty() || (is_near(star.place, square) && are_listed(star, square) &&
-                              cross_near(star, square));
+}
+
+// The distance that holds for all of the points; negative: nothing may change. Without a point
+// nothing tells where the original is.
+float Bound::allowed() const
+{
+    uint8_t care = points.empty() ? uint8_t(CWI_MOST_CARE) : 0;
+    for (uint32_t p : points)
+        care = std::max(care, original->care[p]);
+    return care < CWI_MOST_CARE ? std::ldexp(error, -care) : -1;
+}
+
+// From the triangles around the nearest point: a distance that is not too small.
+bool Bound::is_near(const Vec &place, float square)
+{
+    float least = INFINITY;
+    uint32_t start = points[0];
+    for (uint32_t p : points) {
+        const float s = (point(p) - place).sqrnorm();
+        start = s < least ? p : start;
+        least = std::min(least, s);
+    }
+    least = INFINITY;
+    for (uint32_t i = original->first[start]; i < original->first[start + 1]; i++) {
+        const uint32_t t = original->around[i], *c = corners(t);
+        const float s = triangle_square(place, point(c[0]), point(c[1]), point(c[2]));
+        nearest = s < least ? t : nearest;
+        least = std::min(least, s);
+    }
+    return least <= square;
+}
+
+// Whether every point is near a spoke.
+bool Bound::are_listed(const Star &star, float distance)
+{
+    facets.clear(distance);
+    spoke_of.clear();
+    for (const Spoke &s : star.spokes)
+        facets.add(Vec(0), s.pa - star.place, s.pb - star.place);
+    for (uint32_t p : points) {
+        float square;
+        spoke_of.push_back(uint32_t(facets.nearest(point(p) - star.place, &square)));
+        if (!(square <= distance * distance))
+            return false;
+    }
+    return true;
+}
+
+bool Bound::is_star_near(const Star &star, float distance)
+{
+    Walk walk(original, nearest, distance);
+    for (const Spoke &s : star.spokes) {
+        const float *const corner[3] = {star.place.data(), s.pa.data(), s.pb.data()};
+        if (!walk.is_near(corner))
+            return false;
+    }
+    under.swap(walk.passed);
+    std::sort(under.begin(), under.end());
+    under.erase(std::unique(under.begin(), under.end()), under.end());
+    return true;
+}
+
+void Bound::add_around(const Surface &surface, const Star &star)
+{
+    mark++;
+    for (uint32_t f : star.gone)
+        marks[f] = mark;
+    for (const Spoke &s : star.spokes)
+        marks[s.face] = mark;
+    for (const Spoke &s : star.spokes)
+        for (uint32_t v : {s.a, s.b})
+            for (auto f = surface.cvf_iter(VertexHandle(int(v))); f.is_valid(); ++f) {
+                uint32_t &last = marks[size_t(f->idx())];
+                if (last == mark)
+                    continue;
+                last = mark;
+                Vec corner[3];
+                size_t n = 0;
+                for (auto c = surface.cfv_iter(*f); c.is_valid(); ++c)
+                    corner[n++] = surface.point(*c) - star.place;
+                facets.add(corner[0], corner[1], corner[2]);
+            }
+}
+
+void Bound::see_points(const Vec &place)
+{
+    size_t most = 3 * under.size();
+    bool fresh;
+    for (uint32_t p : points)
+        most += 1 + 2 * (original->first[p + 1] - original->first[p]);
+    numbers.clear(most);
+    seen.clear();
+    for (uint32_t p : points) {
+        numbers.of(p, &fresh);
+        seen.push_back(facets.look(point(p) - place));
+    }
+}
+
+// True, too, for a triangle with a point listed before the `first`: it was asked about then.
+bool Bound::is_triangle_near(uint32_t triangle, uint32_t first, const Vec &place)
+{
+    uint32_t n[3];
+    for (int k = 0; k < 3; k++) {
+        bool fresh;
+        const uint32_t p = corners(triangle)[k];
+        n[k] = numbers.of(p, &fresh);
+        if (fresh)
+            seen.push_back(facets.look(point(p) - place));
+    }
+    return n[0] < first || n[1] < first || n[2] < first ||
+           facets.are_near(seen[n[0]], seen[n[1]], seen[n[2]]);
+}
+
+bool Bound::is_original_near(const Surface &surface, const Star &star)
+{
+    add_around(surface, star);
+    see_points(star.place);
+    for (uint32_t n = 0; n < points.size(); n++)
+        for (uint32_t i = original->first[points[n]]; i < original->first[points[n] + 1]; i++)
+            if (!is_triangle_near(original->around[i], n, star.place))
+                return false;
+    for (uint32_t t : under)
+        if (!is_triangle_near(t, uint32_t(points.size()), star.place))
+            return false;
+    return true;
+}
+
+// What refuses most for the least work comes first.
+bool Bound::is_kept(const Surface &surface, const Star &star)
+{
+    if (!is_asked())
+        return true;
+    collect(star);
+    const float distance = allowed();
+    return distance > 0 && is_near(star.place, distance * distance) &&
+           are_listed(star, distance) && is_star_near(star, distance) &&
+           is_original_near(surface, star);
 }
 
 void Bound::change(const Star &star)

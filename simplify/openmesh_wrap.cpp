@@ -220,7 +220,7 @@ private:
     void try_to_collapse(const Proposal &p)
     {
         if (!surface.is_collapse_ok(p.halfedge) || !star.gather(surface, p.halfedge, p.place) ||
-            !shape.is_kept(star) || !bound.is_kept(star) ||
+            !shape.is_kept(star) || !bound.is_kept(surface, star) ||
             (contact && contact->arises(surface, star)))
             return;
         const VertexHandle kept = surface.to_vertex_handle(p.halfedge);

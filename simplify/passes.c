@@ -13,6 +13,9 @@
 
 static const cw_progress silent = {0};
 
+/* The share of the error that is kept: others may measure it by bounds that are wider. */
+static const double TIGHTER = 0.95;
+
 /* --- what passes share ------------------------------------------------------------------- */
 
 static cw_status check(const cw_simplify_desc *d, cw_error *err)
@@ -31,7 +34,7 @@ cw_status cwi_passes_init(cwi_passes *p, const cw_simplify_desc *desc, cw_error 
     const void *module;
     *p = (cwi_passes){.desc = desc,
                       .error = desc->error_mm,
-                      .block_desc = {.error = 0.9 * desc->error_mm,
+                      .block_desc = {.error = TIGHTER * desc->error_mm,
                                      .allow_crossings = desc->allow_crossings,
                                      .keep_border = desc->keep_border}};
     cw_status st = check(desc, err);
@@ -277,9 +280,8 @@ static cw_status judge(const cwi_passes *p, const part *x, bool *kept, bool *hop
     return st;
 }
 
-/* Distances are looked at in some points only, and between them may be larger. Where they are,
- * the part is done again with more care in those places; when that does not help, it stays as
- * it was. */
+/* Collapses look at what is near them only. Where that was not enough the part is done again
+ * with more care; when that does not help, it stays as it was. */
 static cw_status keep(const cwi_passes *p, const part *x, size_t *repeats, cw_error *err)
 {
     cw_status st = CW_OK;

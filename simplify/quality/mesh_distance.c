@@ -13,6 +13,7 @@
 #include "core/status.h"
 #include "core/vector.h"
 #include "simplify/quality/boxes.h"
+#include "simplify/quality/cover.h"
 #include "simplify/quality/facet.h"
 #include "simplify/quality/sampling.h"
 #include "simplify/quality/within.h"
@@ -56,18 +57,25 @@ static void measure_facet(void *context, size_t slot, double *square)
     }
 }
 
-/* From the whole reference; *hint is the slot of a facet to begin with, then of the nearest. */
+/* The square of a distance from the whole reference, in its own frame; *hint is the slot of a
+ * facet to begin with, then of the nearest. */
+static double seek(const reference *r, const double p[3], uint32_t *hint)
+{
+    query q = {.r = r, .slot = *hint == UINT32_MAX ? r->tree.count / 2 : *hint};
+    memcpy(q.point, p, sizeof q.point);
+    double square = facet_square(r->facets + q.slot, p);
+    cwi_boxes_nearest(&r->tree, p, measure_facet, &q, &square);
+    *hint = (uint32_t)q.slot;
+    return square;
+}
+
+/* From the whole reference; *hint as in seek(). */
 static double measure(const void *context, const double p[3], uint32_t *hint, bool *missed)
 {
     const reference *r = context;
-    query q = {.r = r, .slot = *hint == UINT32_MAX ? r->tree.count / 2 : *hint};
-    for (int k = 0; k < 3; k++)
-        q.point[k] = p[k] - r->shift[k];
-    double square = facet_square(r->facets + q.slot, q.point);
-    cwi_boxes_nearest(&r->tree, q.point, measure_facet, &q, &square);
-    *hint = (uint32_t)q.slot;
+    const double x[3] = {p[0] - r->shift[0], p[1] - r->shift[1], p[2] - r->shift[2]};
     *missed = false;
-    return sqrt(square);
+    return sqrt(seek(r, x, hint));
 }
 
 /* A point of the mesh, its distance, and the nearest facet. */
@@ -146,7 +154,8 @@ static double cut_side(const search *s, const double a[3], const double b[3],
     return best;
 }
 
-/* A bound by two facets: the corners nearer to the first one are cut off from the others. */
+/* A bound by two facets: the corners nearer to the first one are cut off from the others.
+ * Infinite where it exceeds the limit: what was found by then is no bound. */
 static double bound_by_two(const search *s, const corner c[3], const choice *h, int i, int j,
                            double limit)
 {
@@ -161,7 +170,7 @@ static double bound_by_two(const search *s, const corner c[3], const choice *h, 
             square = cwi_greater(square, cut_side(s, c[a].p, c[b].p, slots,
                                                   first[a] - second[a], first[b] - second[b]));
     }
-    return sqrt(square);
+    return square <= limit * limit ? sqrt(square) : INFINITY;
 }
 
 /* The least of the bounds by one or two of the chosen facets; what is below the limit will do.
@@ -448,21 +457,21 @@ cw_status cw_distance_to_mesh(const cw_mesh *mesh, const cw_mesh *reference_mesh
     return st;
 }
 
-/* Whether no point of a triangle is farther than e->max was at first, which is then the same
- * still. */
-static bool is_within(const search *s, const corner c[3], size_t t, int depth, extreme *e)
+/* Where facets of a reference are looked for: from the one found before. */
+typedef struct covering {
+    const reference *r;
+    uint32_t slot;
+} covering;
+
+static double nearest_facet(void *context, const double p[3], const float *corners[3])
 {
-    const double limit = s->floor;
-    if (bound_of(s, c, t, e) <= limit)
-        return true;
-    if (e->max > limit || depth == DEEPEST)
-        return false;
-    const corner ab = middle(s, c, c + 1, t, e), bc = middle(s, c + 1, c + 2, t, e),
-                 ca = middle(s, c + 2, c, t, e);
-    return is_within(s, (corner[]){ab, bc, ca}, t, depth + 1, e) &&
-           is_within(s, (corner[]){c[0], ab, ca}, t, depth + 1, e) &&
-           is_within(s, (corner[]){ab, c[1], bc}, t, depth + 1, e) &&
-           is_within(s, (corner[]){ca, bc, c[2]}, t, depth + 1, e);
+    covering *c = context;
+    const double square = seek(c->r, p, &c->slot);
+    const facet *f = c->r->facets + c->slot;
+    corners[0] = f->a;
+    corners[1] = f->b;
+    corners[2] = f->c;
+    return square;
 }
 
 typedef struct judgement {
@@ -485,17 +494,40 @@ static void find_chunk(void *context, size_t chunk)
     }
 }
 
+static bool is_near_facet(const search *s, const corner c[3], uint32_t slot)
+{
+    const double square = s->floor * s->floor;
+    return square_from(s, c[0].p, slot) <= square && square_from(s, c[1].p, slot) <= square &&
+           square_from(s, c[2].p, slot) <= square;
+}
+
+static bool is_within(const search *s, const corner c[3])
+{
+    covering facets = {s->r, c[0].slot};
+    cwi_cover cover = {
+        .nearest = nearest_facet, .context = &facets, .square = s->floor * s->floor};
+    double p[3][3];
+    for (int n = 0; n < 3; n++) {
+        if (c[n].distance > s->floor)
+            return false;
+        for (int k = 0; k < 3; k++)
+            p[n][k] = c[n].p[k] - s->r->shift[k];
+    }
+    for (int n = 0; n < 3; n++)
+        if (is_near_facet(s, c, c[n].slot))
+            return true;
+    return cwi_is_covered(&cover, (const double(*)[3])p);
+}
+
 static void judge_chunk(void *context, size_t chunk)
 {
     const judgement *j = context;
     const search *s = &j->search;
     for (size_t t = CHUNK * chunk; t < CHUNK * (chunk + 1) && t < s->mesh->triangle_count;
          t++) {
-        extreme e = {.max = s->floor};
         corner c[3];
         begin_triangle(s, t, c);
-        j->beyond[t] = c[0].distance > s->floor || c[1].distance > s->floor ||
-                       c[2].distance > s->floor || !is_within(s, c, t, 0, &e);
+        j->beyond[t] = !is_within(s, c);
     }
 }
 

@@ -5,11 +5,11 @@
 #include <cubewright/mesh.h>
 
 /* Sets beyond[t] to 0 where no point of triangle t is farther than limit_mm from the reference,
- * for certain; else to 1. Bounds are as in cw_distance_to_mesh(), but nothing is looked for
- * beyond the limit: so this takes a fraction of the time.
+ * for certain; else to 1. Nothing is looked for beyond the limit: so this takes a fraction of
+ * the time of cw_distance_to_mesh().
  * mesh, reference  with triangles; every vertex of the mesh is in one */
-cw_status cwi_mesh_within(const cw_mesh *mesh, const cw_mesh *reference, double limit_mm,
-                          int threads, const cw_progress *progress, uint8_t *beyond,
-                          cw_error *err);
+CW_API cw_status cwi_mesh_within(const cw_mesh *mesh, const cw_mesh *reference, double limit_mm,
+                                 int threads, const cw_progress *progress, uint8_t *beyond,
+                                 cw_error *err);
 
 #endif

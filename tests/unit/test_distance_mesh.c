@@ -3,6 +3,7 @@
 
 #include "core/memory.h"
 #include "simplify/quality/boxes.h"
+#include "simplify/quality/within.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -152,6 +153,67 @@ static void the_largest_distance_is_between_its_bounds(void **state)
         cw_mesh_free(&mesh);
         cw_mesh_free(&reference);
     }
+}
+
+/* What is told of each triangle of a mesh, against the bounds of its largest distance when it
+ * is alone. Counts those that are beyond. */
+static size_t verdicts_agree(const cw_mesh *mesh, const cw_mesh *reference, double limit)
+{
+    const cw_mesh_distance_desc how = {.tolerance_mm = 2e-3 * limit, .step_mm = 100};
+    const cw_progress none = {0};
+    uint8_t *beyond = calloc(mesh->triangle_count, 1);
+    size_t count = 0;
+    cw_error err = {0};
+    assert_non_null(beyond);
+    assert_ok(cwi_mesh_within(mesh, reference, limit, 1, &none, beyond, &err), err);
+    for (size_t t = 0; t < mesh->triangle_count; t++) {
+        float positions[9];
+        uint32_t corners[3] = {0, 1, 2};
+        cw_mesh alone = {.vertex_count = 3, .triangle_count = 1};
+        cw_distance d;
+        for (size_t k = 0; k < 3; k++)
+            memcpy(positions + 3 * k, mesh->positions + 3 * (size_t)mesh->triangles[3 * t + k],
+                   3 * sizeof *positions);
+        memcpy(alone.origin, mesh->origin, sizeof alone.origin);
+        alone.positions = positions;
+        alone.triangles = corners;
+        assert_ok(cw_distance_to_mesh(&alone, reference, &how, &d, NULL, &err), err);
+        if (beyond[t] ? d.bound_mm < limit : d.max_mm > limit)
+            fail_msg("triangle %zu: %g to %g mm, but it is %s %g mm", t, d.max_mm, d.bound_mm,
+                     beyond[t] ? "beyond" : "within", limit);
+        count += beyond[t];
+    }
+    free(beyond);
+    return count;
+}
+
+static void what_is_within_is_so_everywhere(void **state)
+{
+    (void)state;
+    srand(9);
+    cw_mesh soup = make_soup(60, 3), other = make_soup(40, 2);
+    soup.origin[1] = 1e6 - 1; /* each mesh with a zero of its own */
+    other.origin[1] = 1e6;
+    size_t beyond = 0, asked = 0;
+    for (double limit = 0.5; limit < 5; limit *= 1.5) {
+        beyond += verdicts_agree(&other, &soup, limit);
+        asked += other.triangle_count;
+    }
+    assert_true(beyond > 0 && beyond < asked);
+    const cw_field_desc field = {
+        .field = CW_FIELD_GYROID, .dim = {7, 7, 7}, .type = CW_F32, .noise = 0.3};
+    cw_volume v;
+    cw_error err = {0};
+    assert_ok(cw_field_sample(&field, &v, &err), err);
+    cw_mesh rough = test_extract(&v, NULL, NULL),
+            level = test_extract(&v, &(cw_extract_desc){.isovalue = 0.1f}, NULL);
+    for (double limit = 0.4; limit < 5; limit *= 3)
+        verdicts_agree(&rough, &level, limit);
+    cw_mesh_free(&level);
+    cw_mesh_free(&rough);
+    cw_mesh_free(&other);
+    cw_mesh_free(&soup);
+    cw_volume_free(&v);
 }
 
 static void a_mesh_is_where_itself_is(void **state)
@@ -395,6 +457,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(vertices_are_as_far_as_a_slow_search_finds),
         cmocka_unit_test(the_largest_distance_is_between_its_bounds),
+        cmocka_unit_test(what_is_within_is_so_everywhere),
         cmocka_unit_test(a_mesh_is_where_itself_is),
         cmocka_unit_test(shells_are_as_far_apart_as_their_levels),
         cmocka_unit_test(what_cannot_be_measured_is_refused_by_name),
