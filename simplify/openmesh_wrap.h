@@ -63,8 +63,8 @@ static inline void cwi_trends_join(cwi_quadric *q, float *area, cwi_trend *mean,
 /* Around points that are given so much care nothing is changed. */
 enum { CWI_MOST_CARE = 4 };
 
-/* What a surface was before it was simplified: each of its points belongs to the list of a
- * triangle that it lies near, and must stay within a distance of the surface. */
+/* What a surface was before it was simplified, and must stay near: each of its points belongs
+ * to the list of a triangle that it is near to. */
 typedef struct cwi_original {
     const float *points;     /* vertices x 3 */
     const uint32_t *corners; /* of its triangles, x 3 */

@@ -1,6 +1,7 @@
 /* Simplified while it is extracted: as good as afterwards. */
 #include "support/surface.h"
 
+#include "core/memory.h"
 #include "core/sandbox.h"
 
 #include <math.h>
@@ -62,7 +63,7 @@ static void a_number_of_triangles_is_met(void **state)
     (void)state;
     srand(11);
     for (int round = 0; round < 4; round++) {
-        cw_volume v = noisy_gyroid(64, 0.05);
+        cw_volume v = noisy_gyroid(48, 0.05);
         const cw_extract_desc extract = {.leave_open = round & 1};
         const cw_simplify_desc desc = {.ratio = 0.1};
         test_turn(&v, round);
@@ -89,7 +90,7 @@ static void an_error_is_kept(void **state)
     (void)state;
     srand(12);
     for (int round = 0; round < 4; round++) {
-        cw_volume v = noisy_gyroid(36, round ? 0.02 : 0);
+        cw_volume v = noisy_gyroid(28, round ? 0.02 : 0);
         const cw_extract_desc extract = {.leave_open = round & 1};
         const cw_simplify_desc desc = {.error_mm = round & 2 ? 0.8 : 0.3};
         if (round & 2)
@@ -115,7 +116,7 @@ static void an_error_is_kept(void **state)
 static void thin_slabs_stay_sound(void **state)
 {
     (void)state;
-    cw_volume v = noisy_gyroid(24, 0.1);
+    cw_volume v = noisy_gyroid(18, 0.1);
     static const double errors[] = {0.05, 0.5, 5, 0};
     cw_mesh whole = test_extract(&v, NULL, NULL);
     for (int n = 0; n < 4; n++) {
@@ -135,14 +136,14 @@ static void thin_slabs_stay_sound(void **state)
 static void threads_change_nothing(void **state)
 {
     (void)state;
-    cw_volume v = noisy_gyroid(44, 0.05);
+    cw_volume v = noisy_gyroid(40, 0.05);
     for (int kind = 0; kind < 2; kind++) {
         cw_mesh out[2];
         for (int n = 0; n < 2; n++) {
             const cw_extract_desc extract = {.threads = n ? 3 : 1};
             const cw_simplify_desc desc = {
                 .error_mm = kind ? 0.5 : 0, .ratio = kind ? 0 : 0.2, .threads = n ? 3 : 1};
-            out[n] = run(&v, &extract, &desc, 20000);
+            out[n] = run(&v, &extract, &desc, 15000);
         }
         test_assert_same_mesh(out, out + 1);
         cw_mesh_free(out);
@@ -199,6 +200,35 @@ static void slabs_that_are_missing_are_noticed(void **state)
     cw_mesh_free(&cube);
 }
 
+#if !CWI_SANITIZED
+/* Whatever allocation fails: the later ones in larger and larger steps, as they are many. */
+static void running_out_of_memory_is_told(void **state)
+{
+    (void)state;
+    cw_volume v = noisy_gyroid(8, 0.1);
+    for (int kind = 0; kind < 2; kind++)
+        for (long n = 0, failed = 1; failed; n += 1 + n / 50) {
+            const cw_simplify_desc desc = {
+                .error_mm = kind, .ratio = kind ? 0 : 0.3, .threads = 1};
+            const cw_extract_desc extract = {.threads = 1};
+            tandem t = {0};
+            cw_mesh out = {0};
+            cw_error err = {0};
+            cwi_alloc_fail_after(n);
+            cw_status st = cw_simplifier_new(&desc, &t.simplifier, &err);
+            if (st == CW_OK)
+                st = cw_extract_slabs(&v, &extract, 1, (cw_slab_sink){take, &t}, NULL, &err);
+            if (st == CW_OK)
+                st = cw_simplifier_finish(t.simplifier, &out, NULL, &err);
+            failed = cwi_alloc_fail_after(-1);
+            assert_int_equal(st, failed ? CW_ERR_NO_MEMORY : CW_OK);
+            cw_simplifier_free(t.simplifier);
+            cw_mesh_free(&out);
+        }
+    cw_volume_free(&v);
+}
+#endif
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -208,6 +238,9 @@ int main(void)
         cmocka_unit_test(threads_change_nothing),
         cmocka_unit_test(wishes_that_make_no_sense_are_refused),
         cmocka_unit_test(slabs_that_are_missing_are_noticed),
+#if !CWI_SANITIZED /* asan in a C program knows of no exceptions */
+        cmocka_unit_test(running_out_of_memory_is_told),
+#endif
     };
     if (!cw_simplify_available())
         return 0;
