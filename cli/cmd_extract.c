@@ -7,6 +7,7 @@
 #include "core/status.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -16,6 +17,7 @@ typedef struct extract_args {
     cli_compress compress;
     const char *output, *name, *format, *json;
     cli_numbers iso;
+    cli_steps steps;
     cli_number snap;
     int inside, normals, progress, topology, placement, accel;
     bool open, no_clobber, local, check;
@@ -28,11 +30,14 @@ static const extract_args defaults = {.check = true};
 
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE",
-     "the mesh, in the format of its extension; may hold {level} and {stem}",
+     "the mesh, in the format of its extension; may hold {level}, {step} and {stem}",
      offsetof(extract_args, output)},
     {"iso", 'i', CLI_NUMBERS, "V[,V...]",
      "the isovalue, or some, in the unit of the values (required)",
      offsetof(extract_args, iso)},
+    {"steps", 0, CLI_STEPS, "A:B:S/N,.../all",
+     "steps of a time series, from 0, a mesh each (of one file: --step; of files: all)",
+     offsetof(extract_args, steps)},
     {"inside", 0, CLI_CHOICE, "above/below", "which values are inside the solid (above)",
      offsetof(extract_args, inside)},
     {"open", 0, CLI_FLAG, NULL, "leave the surface open where the volume ends (closed)",
@@ -78,6 +83,8 @@ static const cli_option options[] = {
 
 typedef struct run_state {
     const extract_args *args;
+    cli_series series;
+    cli_volume first; /* of a series of files, without voxels: what the report shows */
     cli_volume volume;
     cw_extractor *extractor; /* NULL: every surface by itself */
     cli_outputs outputs;
@@ -100,7 +107,7 @@ static void put_params(cli_json *j, const void *p, const cli_made *made)
     if (args->iso.count > 1)
         cli_json_text(j, "accel", args->accel ? "none" : "octree");
     cli_json_count(j, "component", args->input.component);
-    cli_json_count(j, "step", args->input.step);
+    cli_json_count(j, "step", made->moment ? made->moment->number : args->input.step);
     if (cli_is_preview(&s->volume))
         cli_json_numbers(j, "coarsen",
                          (double[3]){(double)step[0], (double)step[1], (double)step[2]}, 3);
@@ -116,30 +123,42 @@ static cw_write_desc write_desc(const extract_args *args)
                            .bits = (int)args->compress.bits};
 }
 
+/* The report is an output too: none is written when it is an input or a mesh. */
+static cw_status check_report(run_state *s, const char *const *inputs, size_t count,
+                              cw_error *err)
+{
+    const char *json = s->args->json;
+    s->report.path = NULL;
+    cw_status st = json ? cli_check_output(json, inputs, count, err) : CW_OK;
+    for (size_t n = 0; n < s->outputs.count && json && st == CW_OK; n++)
+        st = cli_check_apart(json, s->outputs.path[n], err);
+    s->report.path = st == CW_OK ? json : NULL;
+    return st;
+}
+
+/* Of the outputs, once it is known of which steps there will be one. */
 static cw_status check_outputs(run_state *s, cw_error *err)
 {
     const extract_args *args = s->args;
     const cw_write_desc desc = write_desc(args);
-    for (size_t n = 0; n < s->outputs.count && args->json; n++) {
-        cw_status st = cli_check_apart(args->json, s->outputs.path[n], err);
-        s->report.path = st == CW_OK ? args->json : NULL;
-        if (st != CW_OK)
-            return st;
-    }
-    return cli_check_outputs(&s->outputs, args->common.inputs[0], &desc, err);
+    const size_t files = s->series.files.count;
+    const char *const *inputs =
+        files ? (const char *const *)s->series.files.path : args->common.inputs;
+    cw_status st = cli_name_outputs(&s->outputs, args->output, &s->series, &args->iso, err);
+    if (st == CW_OK)
+        st = check_report(s, inputs, files ? files : 1, err);
+    return st == CW_OK ? cli_check_outputs(&s->outputs, inputs, files ? files : 1, &desc, err)
+                       : st;
 }
 
-/* Everything about the arguments that can be refused before the input is touched. The report is
- * an output too: none is written when it is the input or a mesh. */
+/* Everything about the arguments that can be refused before the input is touched. */
 static cw_status check_args(run_state *s, cw_error *err)
 {
     const extract_args *args = s->args;
     const char *const *input = args->common.inputs;
-    cw_status st = args->json ? cli_check_output(args->json, input, 1, err) : CW_OK;
-    if (st != CW_OK)
-        return st;
-    s->report.path = args->json;
-    st = cli_check_compress(&args->compress, true, err);
+    cw_status st = check_report(s, input, args->common.input_count, err);
+    if (st == CW_OK)
+        st = cli_check_compress(&args->compress, true, err);
     if (st != CW_OK)
         return st;
     if (!args->output)
@@ -152,8 +171,7 @@ static cw_status check_args(run_state *s, cw_error *err)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "--snap is a share of an edge, 0 to %g, and not %g", CW_EXTRACT_MAX_SNAP,
                        args->snap.value);
-    st = cli_name_outputs(&s->outputs, args->output, input[0], &args->iso, err);
-    return st == CW_OK ? check_outputs(s, err) : st;
+    return CW_OK;
 }
 
 static cw_status extract(run_state *s, double iso, cw_mesh *mesh, cw_extract_counts *counts,
@@ -192,7 +210,25 @@ static void tell_provenance(const run_state *s, size_t n, char level[32],
     lines[3] = (cw_provenance){"placement", args->placement ? "cubic" : "linear"};
 }
 
-static cw_status make_surface(run_state *s, size_t n, cw_error *err)
+/* The next surface of the report. */
+static cli_made *begin_surface(run_state *s, const cli_moment *moment, size_t level)
+{
+    const size_t n = s->report.made_count;
+    cli_made *made = cli_report_next(&s->report, s->outputs.path[n], s->args->iso.value[level]);
+    made->moment = s->series.given ? moment : NULL;
+    made->timed = s->series.timed;
+    return made;
+}
+
+/* An error of one step among several says of which. */
+static void name_step(const run_state *s, const cli_moment *moment, cw_error *err)
+{
+    const cw_error why = *err;
+    if (s->series.given)
+        cw_fail(err, why.status, "step %zu: %s", moment->number, why.message);
+}
+
+static cw_status make_surface(run_state *s, const cli_moment *moment, size_t n, cw_error *err)
 {
     char level[32];
     cw_provenance provenance[PROVENANCE_LINES];
@@ -207,7 +243,7 @@ static cw_status make_surface(run_state *s, size_t n, cw_error *err)
                         .preview = cli_is_preview(&s->volume)};
     how.write.provenance = provenance;
     how.write.provenance_count = PROVENANCE_LINES;
-    cli_made *made = cli_report_next(&s->report, s->outputs.path[n], s->args->iso.value[n]);
+    cli_made *made = begin_surface(s, moment, n);
     cw_mesh mesh = {0};
     cw_extract_counts counts;
     cw_status st = extract(s, made->iso, &mesh, &counts, err);
@@ -218,40 +254,44 @@ static cw_status make_surface(run_state *s, size_t n, cw_error *err)
                          s->start, err);
     cw_mesh_free(&mesh);
     s->start = cli_seconds();
-    if (st != CW_OK)
-        made->error = *err;
+    if (st == CW_OK)
+        return CW_OK;
+    name_step(s, moment, err);
+    made->error = *err;
     return st;
 }
 
-/* An empty level among several is told and passed over; any other failure ends the run. */
-static cw_status make_surfaces(run_state *s, cw_error *err)
+/* The levels of a step. An empty surface among several is told and counted; any other failure
+ * ends the run. */
+static cw_status make_surfaces(run_state *s, const cli_moment *moment, size_t *empty,
+                               cw_error *err)
 {
-    const size_t count = s->args->iso.count;
-    size_t empty = 0;
-    for (size_t n = 0; n < count; n++) {
-        cw_status st = make_surface(s, n, err);
-        if (st != CW_OK && (st != CW_ERR_EMPTY || count == 1))
+    const size_t levels = s->args->iso.count;
+    for (size_t n = 0; n < levels; n++) {
+        cw_status st = make_surface(s, moment, n, err);
+        if (st != CW_OK && (st != CW_ERR_EMPTY || levels * s->series.count == 1))
             return st;
         if (st == CW_ERR_EMPTY) {
             cli_say_error(err->message);
-            empty++;
+            ++*empty;
         }
     }
-    return empty ? cw_fail(err, CW_ERR_EMPTY, "%s: empty levels: %zu of %zu", s->volume.path,
-                           empty, count)
-                 : CW_OK;
+    return CW_OK;
 }
 
-static cw_status read_volume(run_state *s, cw_error *err)
+static cw_status read_volume(run_state *s, const cli_moment *moment, cw_error *err)
 {
-    const extract_args *args = s->args;
+    cli_input input = s->args->input;
+    input.step = moment->step;
+    cli_free_volume(&s->volume);
     cli_report_begin(&s->report);
-    cw_status st =
-        cli_read_volume(args->common.inputs[0], &args->input, false, &s->volume, err);
+    cw_status st = cli_read_volume(moment->path, &input, false, &s->volume, err);
     if (st != CW_OK)
         return st;
     const cw_volume *v = &s->volume.view;
-    s->report.input = &s->volume;
+    if (!s->report.input)
+        s->first = s->volume;
+    s->report.input = &s->first;
     cli_report_end(&s->report, "read", 1, v->dim[0] * v->dim[1] * v->dim[2]);
     for (int r = 0; r < 3; r++)
         cli_say_vv("affine   %12.6g %12.6g %12.6g %12.6g", v->affine[r][0], v->affine[r][1],
@@ -259,17 +299,64 @@ static cw_status read_volume(run_state *s, cw_error *err)
     return CW_OK;
 }
 
+/* The voxels of a step: those of one file are all in memory. */
+static cw_status open_step(run_state *s, const cli_moment *moment, cw_error *err)
+{
+    const bool held = s->volume.voxels.data && s->volume.path == moment->path;
+    cw_status st = held ? cli_choose_step(&s->args->input, moment->step, &s->volume, err)
+                        : read_volume(s, moment, err);
+    cw_extractor_free(s->extractor);
+    s->extractor = NULL;
+    if (st != CW_OK || s->args->iso.count == 1 || s->args->accel)
+        return st;
+    st = cw_extractor_new(&s->volume.view, &s->extractor, err);
+    return st == CW_OK ? st : cwi_fail_in(err, st, s->volume.path);
+}
+
+static cw_status make_steps(run_state *s, cw_error *err)
+{
+    const size_t count = s->series.count * s->args->iso.count;
+    size_t empty = 0;
+    cw_status st = CW_OK;
+    for (size_t n = 0; n < s->series.count && st == CW_OK; n++) {
+        st = open_step(s, &s->series.moments[n], err);
+        if (st == CW_OK)
+            st = make_surfaces(s, &s->series.moments[n], &empty, err);
+    }
+    if (st != CW_OK || !empty)
+        return st;
+    const char *what = s->series.count == 1      ? "levels"
+                       : s->args->iso.count == 1 ? "steps"
+                                                 : "surfaces";
+    return cw_fail(err, CW_ERR_EMPTY, "%s: empty %s: %zu of %zu", s->args->common.inputs[0],
+                   what, empty, count);
+}
+
 static cw_status pipeline(run_state *s, cw_error *err)
 {
     const extract_args *args = s->args;
     cw_status st = check_args(s, err);
     if (st == CW_OK)
-        st = read_volume(s, err);
-    if (st == CW_OK && args->iso.count > 1 && !args->accel) {
-        st = cw_extractor_new(&s->volume.view, &s->extractor, err);
-        st = st == CW_OK ? st : cwi_fail_in(err, st, s->volume.path);
-    }
-    return st == CW_OK ? make_surfaces(s, err) : st;
+        st = cli_find_series(&s->series, &args->common, &args->input, &args->steps, err);
+    if (st == CW_OK)
+        st = check_outputs(s, err);
+    const size_t surfaces = s->series.count * args->iso.count;
+    s->report.several = surfaces > 1 || s->series.given ? "surfaces" : s->report.several;
+    if (st == CW_OK)
+        st = cli_report_reserve(&s->report, surfaces, err);
+    return st == CW_OK ? make_steps(s, err) : st;
+}
+
+/* The files of a series; "input" is the first of them. */
+static void put_series(cli_json *j, const void *p)
+{
+    const run_state *s = p;
+    if (!s->series.files.count)
+        return;
+    cli_json_open(j, "files", '[');
+    for (size_t n = 0; n < s->series.files.count; n++)
+        cli_json_text(j, NULL, cli_shown_path(s->series.files.path[n]));
+    cli_json_close(j, ']');
 }
 
 static cw_status run(void *p, cw_error *err)
@@ -279,24 +366,26 @@ static cw_status run(void *p, cw_error *err)
     s.report.command = "extract";
     s.report.several = args->iso.count > 1 ? "surfaces" : NULL;
     s.report.params = put_params;
+    s.report.facts = put_series;
     s.report.args = &s;
     cli_console_start(&args->common, (cli_progress_mode)args->progress);
     if (args->json && strcmp(args->json, "-") == 0)
         cli_results_to_stderr();
-    cw_status st = cli_report_reserve(&s.report, args->iso.count ? args->iso.count : 1, err);
+    cw_status st = cli_report_reserve(&s.report, 1, err);
     if (st == CW_OK)
         st = pipeline(&s, err);
     st = cli_report_write(&s.report, st, err);
     cw_extractor_free(s.extractor);
     cli_free_volume(&s.volume);
     cli_free_outputs(&s.outputs);
+    cli_free_series(&s.series);
     cli_report_free(&s.report);
     return st;
 }
 
 const cli_command cli_extract = {
     .name = "extract",
-    .usage = "VOLUME --iso V -o MESH [options]",
+    .usage = "VOLUME... --iso V -o MESH [options]",
     .about = "a volume to a mesh: the surface where the values equal an isovalue",
     .more =
         "Reads a volume, extracts the surface of its trilinear field at the isovalue, checks "
@@ -328,17 +417,30 @@ const cli_command cli_extract = {
         "and passed over, and the exit code is then 9; after any other failure the files that\n"
         "were finished stay. The report lists every level under 'surfaces', each with what\n"
         "'mesh' is for a single one; 'output' lists the files in either case.\n\n"
+        "Of a volume with time steps --steps 0:20:2, --steps 0,3,7 or --steps all make a mesh "
+        "of\n"
+        "each, all at the same isovalue, in files whose names tell them apart by {step}, or "
+        "with\n"
+        "leading zeros {step:04d}. Several volumes, or a quoted pattern, are a series too: a "
+        "file\n"
+        "a step, in natural order (2 before 10), read one at a time. They must agree in the "
+        "number\n"
+        "of values a voxel and in whether they name a unit and a frame. Slices, which are "
+        "DICOM\n"
+        "images and TIFF files of one page, are no steps but one volume. A step that crosses\n"
+        "nothing is told, has no file, and makes the exit code 9.\n\n"
         "Examples\n"
         "  cubewright extract head.nii.gz --iso 50 -o head.glb\n"
         "  cubewright extract ct.nrrd --iso -400,300 -o '{stem}-{level}.glb'\n"
         "  cubewright extract ct.nrrd --iso 300 -o bone.stl --json report.json\n"
+        "  cubewright extract heart.nii.gz --iso 90 --steps all -o 'heart-{step:02d}.ply'\n"
+        "  cubewright extract 'scan-*.nrrd' --iso 300 -o '{stem}.glb'\n"
         "  cubewright extract slab.raw --raw dims=512x512x300,type=u16le --spacing 0.5mm \\\n"
         "      --iso 1200 -o part.ply\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .min_inputs = 1,
-    .max_inputs = 1,
-    .slices = true,
+    .max_inputs = SIZE_MAX,
     .size = sizeof(extract_args),
     .defaults = &defaults,
     .run = run,

@@ -234,6 +234,8 @@ static void print_summary(const cli_delivery *how, const cli_made *made, const l
     cli_result(", %s", cli_bytes((double)info.st_size));
     if (made->measured)
         print_topology(how, &made->quality, border_loops);
+    if (made->timed)
+        cli_result("; at %.6g s", made->moment->time_s);
     if (made->snapped)
         cli_result("; %s vertices merged, off by at most %.3g mm, %.2g voxels",
                    cli_count(made->snap.vertices), made->snap.max_error_mm,

@@ -105,7 +105,7 @@ static cw_status check_outputs(run_state *s, cw_error *err)
         if (st == CW_OK)
             st = check_against_inputs(s, s->outputs.path[n], err);
     }
-    return st == CW_OK ? cli_check_outputs(&s->outputs, args->common.inputs[0], &desc, err)
+    return st == CW_OK ? cli_check_outputs(&s->outputs, args->common.inputs, 1, &desc, err)
                        : st;
 }
 

@@ -91,6 +91,23 @@ typedef struct cw_read_desc {
 CW_API cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *volume,
                                 const char **format, cw_error *err);
 
+/* Lists the files of a time series, of which each is a volume, and a step. Paths name files or
+ * folders of slices, patterns stand for the files that match; numbers in names count as
+ * numbers, so that 2 comes before 10.
+ *
+ * No series, but one volume for cw_volume_read(), is a path that is no pattern, a pattern of
+ * slices (DICOM images, TIFF files of one page), and a pattern with a layout (raw): *count is
+ * 0.
+ *
+ * files    set to an array of *count, to be freed with cw_steps_free()
+ * Returns  CW_ERR_ARGUMENT  several paths, and one is a slice, or there is a layout
+ *          CW_ERR_IO        a pattern among several paths that nothing matches; CW_ERR_LIMIT;
+ *                           CW_ERR_NO_MEMORY */
+CW_API cw_status cw_steps_list(const char *const *paths, size_t path_count,
+                               const cw_read_desc *desc, char ***files, size_t *count,
+                               cw_error *err);
+CW_API void cw_steps_free(char **files, size_t count);
+
 /* One series of images in a folder of DICOM files. */
 typedef struct cw_series {
     char label[32];    /* what cw_read_desc.series takes: its number, and .1, .2 ... when
