@@ -1,6 +1,7 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/deliver.h"
+#include "cli/frames.h"
 #include "cli/output.h"
 #include "cli/quantity.h"
 #include "cli/surface.h"
@@ -18,13 +19,13 @@ typedef struct extract_args {
     const char *output, *name, *format, *json;
     cli_numbers iso;
     cli_steps steps;
-    cli_number snap;
+    cli_number snap, fps;
     int inside, normals, progress, topology, placement, accel;
-    bool open, no_clobber, local, check;
+    bool open, no_clobber, local, check, animate;
     size_t max_triangles;
 } extract_args;
 
-enum { PROVENANCE_LINES = 4 };
+enum { PROVENANCE_LINES = 4, DEFAULT_FPS = 10 };
 
 static const extract_args defaults = {.check = true};
 
@@ -38,6 +39,10 @@ static const cli_option options[] = {
     {"steps", 0, CLI_STEPS, "A:B:S/N,.../all",
      "steps of a time series, from 0, a mesh each (of one file: --step; of files: all)",
      offsetof(extract_args, steps)},
+    {"animate", 0, CLI_FLAG, NULL, "one glTF file that shows the steps one after another",
+     offsetof(extract_args, animate)},
+    {"fps", 0, CLI_NUMBER, "N", "steps a second of --animate (as the file times them, else 10)",
+     offsetof(extract_args, fps)},
     {"inside", 0, CLI_CHOICE, "above/below", "which values are inside the solid (above)",
      offsetof(extract_args, inside)},
     {"open", 0, CLI_FLAG, NULL, "leave the surface open where the volume ends (closed)",
@@ -87,6 +92,9 @@ typedef struct run_state {
     cli_volume first; /* of a series of files, without voxels: what the report shows */
     cli_volume volume;
     cw_extractor *extractor; /* NULL: every surface by itself */
+    cli_frames frames;       /* of --animate */
+    double fps;              /* of those; 0: as the file times them */
+    size_t memory;           /* left when the voxels were read */
     cli_outputs outputs;
     cli_report report;
     double start; /* of the surface at hand */
@@ -119,6 +127,7 @@ static cw_write_desc write_desc(const extract_args *args)
                            .name = args->name,
                            .no_clobber = args->no_clobber,
                            .local = args->local,
+                           .animated = args->animate,
                            .compression = (cw_compression)args->compress.kind,
                            .bits = (int)args->compress.bits};
 }
@@ -144,11 +153,25 @@ static cw_status check_outputs(run_state *s, cw_error *err)
     const size_t files = s->series.files.count;
     const char *const *inputs =
         files ? (const char *const *)s->series.files.path : args->common.inputs;
-    cw_status st = cli_name_outputs(&s->outputs, args->output, &s->series, &args->iso, err);
+    cli_series named = s->series;
+    named.count = args->animate ? 1 : named.count;
+    cw_status st = cli_name_outputs(&s->outputs, args->output, &named, &args->iso, err);
     if (st == CW_OK)
         st = check_report(s, inputs, files ? files : 1, err);
     return st == CW_OK ? cli_check_outputs(&s->outputs, inputs, files ? files : 1, &desc, err)
                        : st;
+}
+
+static cw_status check_animation(const extract_args *args, cw_error *err)
+{
+    if (args->fps.given && !args->animate)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--fps is for --animate");
+    if (args->fps.given && !(args->fps.value > 0))
+        return cw_fail(err, CW_ERR_ARGUMENT, "--fps %g: it must be above 0", args->fps.value);
+    if (args->animate && args->iso.count > 1)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--animate shows one level; --iso lists %zu",
+                       args->iso.count);
+    return CW_OK;
 }
 
 /* Everything about the arguments that can be refused before the input is touched. */
@@ -171,7 +194,7 @@ static cw_status check_args(run_state *s, cw_error *err)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "--snap is a share of an edge, 0 to %g, and not %g", CW_EXTRACT_MAX_SNAP,
                        args->snap.value);
-    return CW_OK;
+    return check_animation(args, err);
 }
 
 static cw_status extract(run_state *s, double iso, cw_mesh *mesh, cw_extract_counts *counts,
@@ -210,11 +233,12 @@ static void tell_provenance(const run_state *s, size_t n, char level[32],
     lines[3] = (cw_provenance){"placement", args->placement ? "cubic" : "linear"};
 }
 
-/* The next surface of the report. */
+/* The next surface of the report; frames have no file of their own. */
 static cli_made *begin_surface(run_state *s, const cli_moment *moment, size_t level)
 {
     const size_t n = s->report.made_count;
-    cli_made *made = cli_report_next(&s->report, s->outputs.path[n], s->args->iso.value[level]);
+    const char *path = s->args->animate ? NULL : s->outputs.path[n];
+    cli_made *made = cli_report_next(&s->report, path, s->args->iso.value[level]);
     made->moment = s->series.given ? moment : NULL;
     made->timed = s->series.timed;
     return made;
@@ -228,30 +252,48 @@ static void name_step(const run_state *s, const cli_moment *moment, cw_error *er
         cw_fail(err, why.status, "step %zu: %s", moment->number, why.message);
 }
 
-static cw_status make_surface(run_state *s, const cli_moment *moment, size_t n, cw_error *err)
+static cli_delivery delivery(const run_state *s)
 {
-    char level[32];
-    cw_provenance provenance[PROVENANCE_LINES];
     const double *spacing = s->volume.spacing;
-    tell_provenance(s, n, level, provenance);
-    cli_delivery how = {.input = s->volume.path,
-                        .write = write_desc(s->args),
-                        .compress = &s->args->compress,
-                        .voxel_mm = cbrt(spacing[0] * spacing[1] * spacing[2]),
-                        .unchecked = !s->args->check,
-                        .open = s->args->open,
-                        .preview = cli_is_preview(&s->volume)};
+    return (cli_delivery){.input = s->volume.path,
+                          .write = write_desc(s->args),
+                          .compress = &s->args->compress,
+                          .voxel_mm = cbrt(spacing[0] * spacing[1] * spacing[2]),
+                          .unchecked = !s->args->check,
+                          .open = s->args->open,
+                          .preview = cli_is_preview(&s->volume)};
+}
+
+/* Into its file, with the record of how it was made. */
+static cw_status deliver(run_state *s, size_t level, const cw_part *parts, size_t count,
+                         size_t border_loops, cw_error *err)
+{
+    char text[32];
+    cw_provenance provenance[PROVENANCE_LINES];
+    cli_delivery how = delivery(s);
+    tell_provenance(s, level, text, provenance);
     how.write.provenance = provenance;
     how.write.provenance_count = PROVENANCE_LINES;
+    how.unchecked = how.unchecked || how.write.animated; /* each was by itself */
+    how.parts = how.write.animated ? "steps" : NULL;
+    return cli_deliver(&s->report, &how, parts, count, border_loops, s->start, err);
+}
+
+static cw_status make_surface(run_state *s, const cli_moment *moment, size_t n, cw_error *err)
+{
     cli_made *made = begin_surface(s, moment, n);
+    const cli_delivery how = delivery(s);
     cw_mesh mesh = {0};
     cw_extract_counts counts;
     cw_status st = extract(s, made->iso, &mesh, &counts, err);
     made->snapped = st == CW_OK && s->args->snap.value > 0;
     made->snap = made->snapped ? counts.snap : (cw_snap_counts){0};
     if (st == CW_OK)
-        st = cli_deliver(&s->report, &how, &(cw_part){.mesh = &mesh}, 1, counts.border_loops,
-                         s->start, err);
+        st = s->args->animate
+                 ? cli_deliver_step(&s->report, &how, &mesh, counts.border_loops, s->start, err)
+                 : deliver(s, n, &(cw_part){.mesh = &mesh}, 1, counts.border_loops, err);
+    if (s->args->animate && (st == CW_OK || st == CW_ERR_EMPTY))
+        cli_frames_add(&s->frames, &mesh, moment, s->fps);
     cw_mesh_free(&mesh);
     s->start = cli_seconds();
     if (st == CW_OK)
@@ -271,10 +313,11 @@ static cw_status make_surfaces(run_state *s, const cli_moment *moment, size_t *e
         cw_status st = make_surface(s, moment, n, err);
         if (st != CW_OK && (st != CW_ERR_EMPTY || levels * s->series.count == 1))
             return st;
-        if (st == CW_ERR_EMPTY) {
+        if (st == CW_ERR_EMPTY && s->args->animate)
+            cli_report_warn(&s->report, "%s; nothing is shown in its time", err->message);
+        else if (st == CW_ERR_EMPTY)
             cli_say_error(err->message);
-            ++*empty;
-        }
+        *empty += st == CW_ERR_EMPTY;
     }
     return CW_OK;
 }
@@ -305,6 +348,8 @@ static cw_status open_step(run_state *s, const cli_moment *moment, cw_error *err
     const bool held = s->volume.voxels.data && s->volume.path == moment->path;
     cw_status st = held ? cli_choose_step(&s->args->input, moment->step, &s->volume, err)
                         : read_volume(s, moment, err);
+    s->memory = held ? s->memory : s->volume.memory_left;
+    s->volume.memory_left = s->memory > s->frames.bytes ? s->memory - s->frames.bytes : 1;
     cw_extractor_free(s->extractor);
     s->extractor = NULL;
     if (st != CW_OK || s->args->iso.count == 1 || s->args->accel)
@@ -313,18 +358,8 @@ static cw_status open_step(run_state *s, const cli_moment *moment, cw_error *err
     return st == CW_OK ? st : cwi_fail_in(err, st, s->volume.path);
 }
 
-static cw_status make_steps(run_state *s, cw_error *err)
+static cw_status fail_empty(const run_state *s, size_t empty, size_t count, cw_error *err)
 {
-    const size_t count = s->series.count * s->args->iso.count;
-    size_t empty = 0;
-    cw_status st = CW_OK;
-    for (size_t n = 0; n < s->series.count && st == CW_OK; n++) {
-        st = open_step(s, &s->series.moments[n], err);
-        if (st == CW_OK)
-            st = make_surfaces(s, &s->series.moments[n], &empty, err);
-    }
-    if (st != CW_OK || !empty)
-        return st;
     const char *what = s->series.count == 1      ? "levels"
                        : s->args->iso.count == 1 ? "steps"
                                                  : "surfaces";
@@ -332,19 +367,76 @@ static cw_status make_steps(run_state *s, cw_error *err)
                    what, empty, count);
 }
 
-static cw_status pipeline(run_state *s, cw_error *err)
+static cw_status make_steps(run_state *s, size_t *empty, cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (size_t n = 0; n < s->series.count && st == CW_OK; n++) {
+        st = open_step(s, &s->series.moments[n], err);
+        if (st == CW_OK)
+            st = make_surfaces(s, &s->series.moments[n], empty, err);
+    }
+    return st;
+}
+
+/* An animation has a place for steps that are empty: only nothing but such is no result. */
+static cw_status animate(run_state *s, cw_error *err)
+{
+    const cli_frames *f = &s->frames;
+    if (f->empty == f->count)
+        return fail_empty(s, f->empty, f->count, err);
+    cli_made *made = cli_report_next(&s->report, s->outputs.path[0], 0);
+    made->name = "all";
+    cw_status st = deliver(s, 0, f->parts, f->count, 0, err);
+    if (st != CW_OK)
+        made->error = *err;
+    return st;
+}
+
+/* A file that times its steps is believed unless --fps says otherwise. */
+static cw_status plan_frames(run_state *s, cw_error *err)
 {
     const extract_args *args = s->args;
-    cw_status st = check_args(s, err);
-    if (st == CW_OK)
-        st = cli_find_series(&s->series, &args->common, &args->input, &args->steps, err);
+    if (!args->animate)
+        return CW_OK;
+    if (s->series.count < 2)
+        return cw_fail(err, CW_ERR_ARGUMENT, "%s: --animate shows several steps, and here is 1",
+                       args->common.inputs[0]);
+    s->fps = args->fps.given ? args->fps.value : s->series.timed ? 0 : DEFAULT_FPS;
+    if (!args->fps.given && !s->series.timed)
+        cli_say("%s: steps have no times: %d a second are shown (--fps)",
+                args->common.inputs[0], DEFAULT_FPS);
+    return cli_frames_reserve(&s->frames, s->series.count, err);
+}
+
+static cw_status plan_steps(run_state *s, cw_error *err)
+{
+    const extract_args *args = s->args;
+    cli_steps steps = args->steps;
+    steps.all = steps.all || (args->animate && !steps.given);
+    steps.given = steps.given || args->animate;
+    cw_status st = cli_find_series(&s->series, &args->common, &args->input, &steps, err);
     if (st == CW_OK)
         st = check_outputs(s, err);
     const size_t surfaces = s->series.count * args->iso.count;
-    s->report.several = surfaces > 1 || s->series.given ? "surfaces" : s->report.several;
+    s->report.several = surfaces > 1 || s->series.given ? "surfaces" : NULL;
     if (st == CW_OK)
-        st = cli_report_reserve(&s->report, surfaces, err);
-    return st == CW_OK ? make_steps(s, err) : st;
+        st = cli_report_reserve(&s->report, surfaces + args->animate, err);
+    return st == CW_OK ? plan_frames(s, err) : st;
+}
+
+static cw_status pipeline(run_state *s, cw_error *err)
+{
+    size_t empty = 0;
+    cw_status st = check_args(s, err);
+    if (st == CW_OK)
+        st = plan_steps(s, err);
+    if (st == CW_OK)
+        st = make_steps(s, &empty, err);
+    if (st == CW_OK && s->args->animate)
+        return animate(s, err);
+    return st == CW_OK && empty
+               ? fail_empty(s, empty, s->series.count * s->args->iso.count, err)
+               : st;
 }
 
 /* The files of a series; "input" is the first of them. */
@@ -376,6 +468,7 @@ static cw_status run(void *p, cw_error *err)
         st = pipeline(&s, err);
     st = cli_report_write(&s.report, st, err);
     cw_extractor_free(s.extractor);
+    cli_frames_free(&s.frames);
     cli_free_volume(&s.volume);
     cli_free_outputs(&s.outputs);
     cli_free_series(&s.series);
@@ -429,12 +522,20 @@ const cli_command cli_extract = {
         "DICOM\n"
         "images and TIFF files of one page, are no steps but one volume. A step that crosses\n"
         "nothing is told, has no file, and makes the exit code 9.\n\n"
+        "--animate writes one GLB or glTF of a node a step, of which an animation shows one at "
+        "a\n"
+        "time, as the file times its steps, or --fps of them a second; the last one as long as "
+        "the\n"
+        "one before it. Whether it begins again is the player's choice; without one the first\n"
+        "surface is seen. A step that crosses nothing is told, and shows nothing in its "
+        "time.\n\n"
         "Examples\n"
         "  cubewright extract head.nii.gz --iso 50 -o head.glb\n"
         "  cubewright extract ct.nrrd --iso -400,300 -o '{stem}-{level}.glb'\n"
         "  cubewright extract ct.nrrd --iso 300 -o bone.stl --json report.json\n"
         "  cubewright extract heart.nii.gz --iso 90 --steps all -o 'heart-{step:02d}.ply'\n"
         "  cubewright extract 'scan-*.nrrd' --iso 300 -o '{stem}.glb'\n"
+        "  cubewright extract 'scan-*.nrrd' --iso 300 --animate --fps 4 -o scan.glb\n"
         "  cubewright extract slab.raw --raw dims=512x512x300,type=u16le --spacing 0.5mm \\\n"
         "      --iso 1200 -o part.ply\n",
     .options = options,

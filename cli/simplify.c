@@ -347,7 +347,7 @@ static cw_status deliver_parts(run_state *s, const cw_part *parts, size_t count,
         .threads = s->threads,
         .unchecked = levels, /* each was by itself */
         .unpromised = true,
-        .levels = levels,
+        .parts = levels ? "levels" : NULL,
         .tell_dropped = true};
     return cli_deliver(&s->report, &how, parts, count, 0, s->start, err);
 }

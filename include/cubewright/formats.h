@@ -185,6 +185,8 @@ typedef struct cw_mesh_file {
     size_t skipped;     /* points, lines and faces of fewer than three corners: left out */
     size_t levels;      /* coarser levels of detail of what was read, at most (MSFT_lod of
                            glTF): no part of its scene, left out */
+    size_t hidden;      /* meshes of glTF that a scale of 0 hides, as those that an animation
+                           shows later: left out */
 } cw_mesh_file;
 
 /* Reads a mesh: all parts of the file, merged, in LPS millimetres.
@@ -203,7 +205,8 @@ typedef struct cw_mesh_file {
  * glTF is in metres, +Y up: its scene is turned to LPS millimetres, (x, y, z) to (1000 x,
  * -1000 z, 1000 y). Nodes place their meshes as often as they say; a mirrored one has its
  * winding turned round, so that triangles stay counter-clockwise from outside. Materials,
- * skins, morph targets and animations are ignored, images never looked at.
+ * skins, morph targets and animations are ignored, images never looked at; what has a scale of
+ * 0 along all axes is hidden, and left out.
  *
  * 3MF places the objects of its build, components and all, in the unit that it names; a
  * mirrored one likewise has its winding turned round. Colours of 3MF are kept when no vertex
@@ -236,6 +239,7 @@ typedef struct cw_part {
                      shown where that is seen small; default: 0, a part by itself */
     double max_error_mm, rms_error_mm; /* of a level: how far it is from the truth; default: 0,
                                           not told */
+    double time_s; /* animated: when it comes into sight, in place of the part before it */
 } cw_part;
 
 /* Reads the parts of a file, each as a mesh: the objects of OBJ, or its groups if it has no
@@ -294,7 +298,9 @@ typedef struct cw_write_desc {
                             whatever that does; default: as many as the tolerance and the shape
                             ask for */
     int level;           /* ... of Draco, 1 (fast) to 10 (small); default 7 */
-    cw_compressed *compressed;       /* filled in; default: none */
+    cw_compressed *compressed; /* filled in; default: none */
+    bool animated; /* of glTF: parts are shown one after another, each at its time_s; default:
+                      all of them at once; CW_ERR_ARGUMENT for other formats */
     const cw_provenance *provenance; /* in the extras of a glTF file; default: none */
     size_t provenance_count;
     cw_progress progress; /* default: none */
@@ -335,8 +341,14 @@ CW_API cw_status cw_mesh_write(const char *path, const cw_mesh *mesh, const cw_w
  * many triangles to an area as level 0 has on all of it. Readers without the extension see
  * level 0 alone, and so does cw_mesh_read().
  *
+ * Animated parts each have a node whose scale an animation holds at 1 from its time until that
+ * of the next, and else at 0; the last stays as long as the one before it. The animation starts
+ * with the first part. One without triangles shows nothing for its time. Who plays no
+ * animation, cw_mesh_read() too, sees the first part that has triangles.
+ *
  * Returns as cw_mesh_write(); CW_ERR_ARGUMENT for levels that do not follow one another, have
- * no triangles, or are for another format */
+ * no triangles, or are for another format; for an animation of fewer than two parts, of levels,
+ * or of times that do not ascend in single precision */
 CW_API cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
                                 const cw_write_desc *desc, cw_error *err);
 
