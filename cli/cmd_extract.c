@@ -3,6 +3,7 @@
 #include "cli/deliver.h"
 #include "cli/frames.h"
 #include "cli/output.h"
+#include "cli/pvd.h"
 #include "cli/quantity.h"
 #include "cli/surface.h"
 #include "core/status.h"
@@ -16,7 +17,7 @@ typedef struct extract_args {
     cli_common common;
     cli_input input;
     cli_compress compress;
-    const char *output, *name, *format, *json;
+    const char *output, *name, *format, *json, *pvd;
     cli_numbers iso;
     cli_steps steps;
     cli_number snap, fps;
@@ -41,6 +42,9 @@ static const cli_option options[] = {
      offsetof(extract_args, steps)},
     {"animate", 0, CLI_FLAG, NULL, "one glTF file that shows the steps one after another",
      offsetof(extract_args, animate)},
+    {"pvd", 0, CLI_TEXT, "FILE",
+     "list the .vtp files of the steps, with their times, for ParaView",
+     offsetof(extract_args, pvd)},
     {"fps", 0, CLI_NUMBER, "N", "steps a second of --animate (as the file times them, else 10)",
      offsetof(extract_args, fps)},
     {"inside", 0, CLI_CHOICE, "above/below", "which values are inside the solid (above)",
@@ -145,25 +149,44 @@ static cw_status check_report(run_state *s, const char *const *inputs, size_t co
     return st;
 }
 
-/* Of the outputs, once it is known of which steps there will be one. */
+static cw_status check_pvd(const run_state *s, const char *const *inputs, size_t count,
+                           cw_error *err)
+{
+    const extract_args *args = s->args;
+    const cw_write_desc desc = write_desc(args);
+    cw_status st = CW_OK;
+    if (!args->pvd)
+        return CW_OK;
+    if (!s->series.given)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--pvd is for the steps of a series: --steps");
+    if (args->json)
+        st = cli_check_apart(args->pvd, args->json, err);
+    return st == CW_OK ? cli_check_pvd(args->pvd, &s->outputs, inputs, count, &desc, err) : st;
+}
+
+/* Names and checks the outputs, once it is known of which steps there will be one. */
 static cw_status check_outputs(run_state *s, cw_error *err)
 {
     const extract_args *args = s->args;
     const cw_write_desc desc = write_desc(args);
-    const size_t files = s->series.files.count;
+    const size_t files = s->series.files.count, count = files ? files : 1;
     const char *const *inputs =
         files ? (const char *const *)s->series.files.path : args->common.inputs;
     cli_series named = s->series;
     named.count = args->animate ? 1 : named.count;
     cw_status st = cli_name_outputs(&s->outputs, args->output, &named, &args->iso, err);
     if (st == CW_OK)
-        st = check_report(s, inputs, files ? files : 1, err);
-    return st == CW_OK ? cli_check_outputs(&s->outputs, inputs, files ? files : 1, &desc, err)
-                       : st;
+        st = check_report(s, inputs, count, err);
+    if (st == CW_OK)
+        st = cli_check_outputs(&s->outputs, inputs, count, &desc, err);
+    return st == CW_OK ? check_pvd(s, inputs, count, err) : st;
 }
 
 static cw_status check_animation(const extract_args *args, cw_error *err)
 {
+    if (args->pvd && args->animate)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--pvd lists files, and --animate writes only one");
     if (args->fps.given && !args->animate)
         return cw_fail(err, CW_ERR_ARGUMENT, "--fps is for --animate");
     if (args->fps.given && !(args->fps.value > 0))
@@ -392,6 +415,12 @@ static cw_status animate(run_state *s, cw_error *err)
     return st;
 }
 
+static cw_status write_pvd(run_state *s, cw_error *err)
+{
+    const cw_write_desc desc = write_desc(s->args);
+    return cli_write_pvd(&s->report, s->args->pvd, &desc, err);
+}
+
 /* A file that times its steps is believed unless --fps says otherwise. */
 static cw_status plan_frames(run_state *s, cw_error *err)
 {
@@ -420,7 +449,7 @@ static cw_status plan_steps(run_state *s, cw_error *err)
     const size_t surfaces = s->series.count * args->iso.count;
     s->report.several = surfaces > 1 || s->series.given ? "surfaces" : NULL;
     if (st == CW_OK)
-        st = cli_report_reserve(&s->report, surfaces + args->animate, err);
+        st = cli_report_reserve(&s->report, surfaces + 1, err);
     return st == CW_OK ? plan_frames(s, err) : st;
 }
 
@@ -434,6 +463,8 @@ static cw_status pipeline(run_state *s, cw_error *err)
         st = make_steps(s, &empty, err);
     if (st == CW_OK && s->args->animate)
         return animate(s, err);
+    if (st == CW_OK && s->args->pvd)
+        st = write_pvd(s, err);
     return st == CW_OK && empty
                ? fail_empty(s, empty, s->series.count * s->args->iso.count, err)
                : st;
@@ -522,6 +553,9 @@ const cli_command cli_extract = {
         "DICOM\n"
         "images and TIFF files of one page, are no steps but one volume. A step that crosses\n"
         "nothing is told, has no file, and makes the exit code 9.\n\n"
+        "--pvd FILE lists the .vtp files of the steps and their times, or numbers where the "
+        "input\n"
+        "names no times; ParaView opens it as a series.\n\n"
         "--animate writes one GLB or glTF of a node a step, of which an animation shows one at "
         "a\n"
         "time, as the file times its steps, or --fps of them a second; the last one as long as "
@@ -535,6 +569,8 @@ const cli_command cli_extract = {
         "  cubewright extract ct.nrrd --iso 300 -o bone.stl --json report.json\n"
         "  cubewright extract heart.nii.gz --iso 90 --steps all -o 'heart-{step:02d}.ply'\n"
         "  cubewright extract 'scan-*.nrrd' --iso 300 -o '{stem}.glb'\n"
+        "  cubewright extract heart.nii.gz --iso 90 --steps all -o 'out/{step}.vtp' --pvd "
+        "h.pvd\n"
         "  cubewright extract 'scan-*.nrrd' --iso 300 --animate --fps 4 -o scan.glb\n"
         "  cubewright extract slab.raw --raw dims=512x512x300,type=u16le --spacing 0.5mm \\\n"
         "      --iso 1200 -o part.ply\n",

@@ -17,6 +17,14 @@ cubewright extract 4d.nrrd --iso 0.5 --steps 1 -o none.stl -q
 echo $?
 ls *.glb *.stl && rm ./*.glb ./*.stl r.json
 
+# A list of the files for ParaView.
+mkdir vtp
+cubewright extract 4d.nrrd --iso 0.5,9 --steps 0:2 -o 'vtp/{step}_{level}.vtp' --pvd run.pvd --json r.json | tail -n 1
+grep DataSet run.pvd
+sed -n '/"pvd"/,/}/p' r.json
+cubewright extract 4d.nrrd --iso 99 --steps 0:1 -o 'vtp/{step}.vtp' --pvd none.pvd -q
+ls *.pvd
+
 # Files of a series, in the order of their numbers; a pattern, or arguments.
 for n in 1 2 10; do
     cubewright make sphere -o f$n.nrrd --dims $((10 + n)) -q
@@ -62,4 +70,12 @@ sed 's/^kinds.*//;s/^sizes.*/sizes: 4 16 16 16/;s/^space directions.*/space dire
     sed 's/^endian/kinds: vector domain domain domain\nendian/' >vector.nrrd
 try f1.nrrd vector.nrrd --iso 0 -o 'x-{step}.stl'
 try f1.nrrd 'no*.nrrd' --iso 0 -o 'x-{step}.stl'
-ls x-*
+try 4d.nrrd --iso 0.5 --steps all -o 'x-{step}.ply' --pvd x.pvd
+try 4d.nrrd --iso 0.5 --steps all -o 'x-{step}.vtp' --pvd x-2.vtp
+try 4d.nrrd --iso 0.5 --steps all -o 'x-{step}.vtp' --pvd 4d.nrrd
+try 4d.nrrd --iso 0.5 --steps all -o 'x-{step}.vtp' --pvd no/x.pvd
+try 4d.nrrd --iso 0.5 --steps all -o 'x-{step}.vtp' --pvd run.pvd --no-clobber
+try 4d.nrrd --iso 0.5 --steps all -o 'x-{step}.vtp' --pvd x.json --json x.json
+try 4d.nrrd --iso 0.5 --animate -o x.vtp --pvd x.pvd
+try 4d.nrrd --iso 0.5 -o x.vtp --pvd x.pvd
+ls x-* *.pvd
