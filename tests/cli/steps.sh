@@ -79,3 +79,12 @@ try 4d.nrrd --iso 0.5 --steps all -o 'x-{step}.vtp' --pvd x.json --json x.json
 try 4d.nrrd --iso 0.5 --animate -o x.vtp --pvd x.pvd
 try 4d.nrrd --iso 0.5 -o x.vtp --pvd x.pvd
 ls x-* *.pvd
+
+# What is in them: of one file, of several, and of those that are no series.
+cubewright info 4d.nrrd --step 3 | grep -e steps -e values
+cubewright info 'f*.nrrd'
+cubewright info f2.nrrd bare.nrrd
+echo $?
+cubewright info f2.nrrd vector.nrrd --json | grep -e schema -e '"path"' -e range -e agree -e finding
+cubewright info f2.nrrd f1.nrrd --levels
+echo $?
