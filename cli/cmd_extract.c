@@ -8,6 +8,9 @@
 #include "cli/surface.h"
 #include "core/status.h"
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
@@ -345,11 +348,21 @@ static cw_status make_surfaces(run_state *s, const cli_moment *moment, size_t *e
     return CW_OK;
 }
 
+/* What a step took goes back to the system: left to itself glibc keeps blocks of this size, and
+ * those of the next step do not quite fit between what else there is. */
+static void free_step(run_state *s)
+{
+    cli_free_volume(&s->volume);
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
+}
+
 static cw_status read_volume(run_state *s, const cli_moment *moment, cw_error *err)
 {
     cli_input input = s->args->input;
     input.step = moment->step;
-    cli_free_volume(&s->volume);
+    free_step(s);
     cli_report_begin(&s->report);
     cw_status st = cli_read_volume(moment->path, &input, false, &s->volume, err);
     if (st != CW_OK)
