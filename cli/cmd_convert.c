@@ -76,7 +76,7 @@ static cw_status check_outputs(run_state *s, cw_error *err)
         st = cli_check_apart(args->json, s->outputs.path[n], err);
     if (st != CW_OK)
         s->report.path = NULL;
-    return st == CW_OK ? cli_check_outputs(&s->outputs, args->common.inputs[0], &desc, err)
+    return st == CW_OK ? cli_check_outputs(&s->outputs, args->common.inputs, 1, &desc, err)
                        : st;
 }
 

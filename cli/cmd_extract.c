@@ -2,12 +2,18 @@
 #include "cli/compare.h"
 #include "cli/console.h"
 #include "cli/deliver.h"
+#include "cli/frames.h"
 #include "cli/output.h"
+#include "cli/pvd.h"
 #include "cli/quantity.h"
 #include "cli/surface.h"
 #include "core/status.h"
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -15,26 +21,37 @@ typedef struct extract_args {
     cli_common common;
     cli_input input;
     cli_compress compress;
-    const char *output, *name, *format, *json;
+    const char *output, *name, *format, *json, *pvd;
     cli_numbers iso;
-    cli_number snap;
+    cli_steps steps;
+    cli_number snap, fps;
     cli_reduction simplify;
     int inside, normals, progress, topology, placement, accel;
-    bool open, no_clobber, local, check;
+    bool open, no_clobber, local, check, animate;
     size_t max_triangles;
 } extract_args;
 
-enum { PROVENANCE_LINES = 5 };
+enum { PROVENANCE_LINES = 5, DEFAULT_FPS = 10 };
 
 static const extract_args defaults = {.check = true};
 
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE",
-     "the mesh, in the format of its extension; may hold {level} and {stem}",
+     "the mesh, in the format of its extension; may hold {level}, {step} and {stem}",
      offsetof(extract_args, output)},
     {"iso", 'i', CLI_NUMBERS, "V[,V...]",
      "the isovalue, or some, in the unit of the values (required)",
      offsetof(extract_args, iso)},
+    {"steps", 0, CLI_STEPS, "A:B:S/N,.../all",
+     "steps of a time series, from 0, a mesh each (of one file: --step; of files: all)",
+     offsetof(extract_args, steps)},
+    {"animate", 0, CLI_FLAG, NULL, "one glTF file that shows the steps one after another",
+     offsetof(extract_args, animate)},
+    {"pvd", 0, CLI_TEXT, "FILE",
+     "list the .vtp files of the steps, with their times, for ParaView",
+     offsetof(extract_args, pvd)},
+    {"fps", 0, CLI_NUMBER, "N", "steps a second of --animate (as the file times them, else 10)",
+     offsetof(extract_args, fps)},
     {"inside", 0, CLI_CHOICE, "above/below", "which values are inside the solid (above)",
      offsetof(extract_args, inside)},
     {"open", 0, CLI_FLAG, NULL, "leave the surface open where the volume ends (closed)",
@@ -84,8 +101,13 @@ static const cli_option options[] = {
 
 typedef struct run_state {
     const extract_args *args;
+    cli_series series;
+    cli_volume first; /* of a series of files, without voxels: what the report shows */
     cli_volume volume;
     cw_extractor *extractor; /* NULL: every surface by itself */
+    cli_frames frames;       /* of --animate */
+    double fps;              /* of those; 0: as the file times them */
+    size_t memory;           /* left when the voxels were read */
     cli_outputs outputs;
     cli_report report;
     double start; /* of the surface at hand */
@@ -132,7 +154,7 @@ static void put_params(cli_json *j, const void *p, const cli_made *made)
     if (args->iso.count > 1)
         cli_json_text(j, "accel", args->accel ? "none" : "octree");
     cli_json_count(j, "component", args->input.component);
-    cli_json_count(j, "step", args->input.step);
+    cli_json_count(j, "step", made->moment ? made->moment->number : args->input.step);
     if (cli_is_preview(&s->volume))
         cli_json_numbers(j, "coarsen",
                          (double[3]){(double)step[0], (double)step[1], (double)step[2]}, 3);
@@ -144,34 +166,80 @@ static cw_write_desc write_desc(const extract_args *args)
                            .name = args->name,
                            .no_clobber = args->no_clobber,
                            .local = args->local,
+                           .animated = args->animate,
                            .compression = (cw_compression)args->compress.kind,
                            .bits = (int)args->compress.bits};
 }
 
+/* The report is an output too: none is written when it is an input or a mesh. */
+static cw_status check_report(run_state *s, const char *const *inputs, size_t count,
+                              cw_error *err)
+{
+    const char *json = s->args->json;
+    s->report.path = NULL;
+    cw_status st = json ? cli_check_output(json, inputs, count, err) : CW_OK;
+    for (size_t n = 0; n < s->outputs.count && json && st == CW_OK; n++)
+        st = cli_check_apart(json, s->outputs.path[n], err);
+    s->report.path = st == CW_OK ? json : NULL;
+    return st;
+}
+
+static cw_status check_pvd(const run_state *s, const char *const *inputs, size_t count,
+                           cw_error *err)
+{
+    const extract_args *args = s->args;
+    const cw_write_desc desc = write_desc(args);
+    cw_status st = CW_OK;
+    if (!args->pvd)
+        return CW_OK;
+    if (!s->series.given)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--pvd is for the steps of a series: --steps");
+    if (args->json)
+        st = cli_check_apart(args->pvd, args->json, err);
+    return st == CW_OK ? cli_check_pvd(args->pvd, &s->outputs, inputs, count, &desc, err) : st;
+}
+
+/* Names and checks the outputs, once it is known of which steps there will be one. */
 static cw_status check_outputs(run_state *s, cw_error *err)
 {
     const extract_args *args = s->args;
     const cw_write_desc desc = write_desc(args);
-    for (size_t n = 0; n < s->outputs.count && args->json; n++) {
-        cw_status st = cli_check_apart(args->json, s->outputs.path[n], err);
-        s->report.path = st == CW_OK ? args->json : NULL;
-        if (st != CW_OK)
-            return st;
-    }
-    return cli_check_outputs(&s->outputs, args->common.inputs[0], &desc, err);
+    const size_t files = s->series.files.count, count = files ? files : 1;
+    const char *const *inputs =
+        files ? (const char *const *)s->series.files.path : args->common.inputs;
+    cli_series named = s->series;
+    named.count = args->animate ? 1 : named.count;
+    cw_status st = cli_name_outputs(&s->outputs, args->output, &named, &args->iso, err);
+    if (st == CW_OK)
+        st = check_report(s, inputs, count, err);
+    if (st == CW_OK)
+        st = cli_check_outputs(&s->outputs, inputs, count, &desc, err);
+    return st == CW_OK ? check_pvd(s, inputs, count, err) : st;
 }
 
-/* Everything about the arguments that can be refused before the input is touched. The report is
- * an output too: none is written when it is the input or a mesh. */
+static cw_status check_animation(const extract_args *args, cw_error *err)
+{
+    if (args->pvd && args->animate)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--pvd lists files, and --animate writes only one");
+    if (args->fps.given && !args->animate)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--fps is for --animate");
+    if (args->fps.given && !(args->fps.value > 0))
+        return cw_fail(err, CW_ERR_ARGUMENT, "--fps %g: it must be above 0", args->fps.value);
+    if (args->animate && args->iso.count > 1)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--animate shows one level; --iso lists %zu",
+                       args->iso.count);
+    return CW_OK;
+}
+
+/* Everything about the arguments that can be refused before the input is touched. */
 static cw_status check_args(run_state *s, cw_error *err)
 {
     const extract_args *args = s->args;
     const char *const *input = args->common.inputs;
-    cw_status st = args->json ? cli_check_output(args->json, input, 1, err) : CW_OK;
-    if (st != CW_OK)
-        return st;
-    s->report.path = args->json;
-    st = cli_check_compress(&args->compress, true, err);
+    cw_status st = check_report(s, input, args->common.input_count, err);
+    if (st == CW_OK)
+        st = cli_check_compress(&args->compress, true, err);
     if (st != CW_OK)
         return st;
     if (!args->output)
@@ -191,8 +259,7 @@ static cw_status check_args(run_state *s, cw_error *err)
         return cw_fail(err, CW_ERR_UNSUPPORTED,
                        "--simplify needs OpenMesh, which this build is without: install "
                        "libopenmesh-dev and build again");
-    st = cli_name_outputs(&s->outputs, args->output, input[0], &args->iso, err);
-    return st == CW_OK ? check_outputs(s, err) : st;
+    return check_animation(args, err);
 }
 
 static cw_status extract(run_state *s, double iso, cw_mesh *mesh, cw_extract_counts *counts,
@@ -269,20 +336,54 @@ static size_t tell_provenance(const run_state *s, size_t n, char level[32], char
     return is_simplified(args) ? 5 : 4;
 }
 
-static cw_status make_surface(run_state *s, size_t n, cw_error *err)
+/* The next surface of the report; frames have no file of their own. */
+static cli_made *begin_surface(run_state *s, const cli_moment *moment, size_t level)
 {
-    char level[32], simplify[64];
+    const size_t n = s->report.made_count;
+    const char *path = s->args->animate ? NULL : s->outputs.path[n];
+    cli_made *made = cli_report_next(&s->report, path, s->args->iso.value[level]);
+    made->moment = s->series.given ? moment : NULL;
+    made->timed = s->series.timed;
+    return made;
+}
+
+/* An error of one step among several says of which. */
+static void name_step(const run_state *s, const cli_moment *moment, cw_error *err)
+{
+    const cw_error why = *err;
+    if (s->series.given)
+        cw_fail(err, why.status, "step %zu: %s", moment->number, why.message);
+}
+
+static cli_delivery delivery(const run_state *s)
+{
+    return (cli_delivery){.input = s->volume.path,
+                          .write = write_desc(s->args),
+                          .compress = &s->args->compress,
+                          .voxel_mm = voxel_mm(s),
+                          .unchecked = !s->args->check,
+                          .open = s->args->open,
+                          .preview = cli_is_preview(&s->volume)};
+}
+
+/* Into its file, with the record of how it was made. */
+static cw_status deliver(run_state *s, size_t level, const cw_part *parts, size_t count,
+                         size_t border_loops, cw_error *err)
+{
+    char text[32], simplify[64];
     cw_provenance provenance[PROVENANCE_LINES];
-    cli_delivery how = {.input = s->volume.path,
-                        .write = write_desc(s->args),
-                        .compress = &s->args->compress,
-                        .voxel_mm = voxel_mm(s),
-                        .unchecked = !s->args->check,
-                        .open = s->args->open,
-                        .preview = cli_is_preview(&s->volume)};
+    cli_delivery how = delivery(s);
     how.write.provenance = provenance;
-    how.write.provenance_count = tell_provenance(s, n, level, simplify, provenance);
-    cli_made *made = cli_report_next(&s->report, s->outputs.path[n], s->args->iso.value[n]);
+    how.write.provenance_count = tell_provenance(s, level, text, simplify, provenance);
+    how.unchecked = how.unchecked || how.write.animated; /* each was by itself */
+    how.parts = how.write.animated ? "steps" : NULL;
+    return cli_deliver(&s->report, &how, parts, count, border_loops, s->start, err);
+}
+
+static cw_status make_surface(run_state *s, const cli_moment *moment, size_t n, cw_error *err)
+{
+    cli_made *made = begin_surface(s, moment, n);
+    const cli_delivery how = delivery(s);
     cw_mesh mesh = {0};
     cw_extract_counts counts;
     cw_status st = extract(s, made->iso, &mesh, &counts, err);
@@ -291,44 +392,62 @@ static cw_status make_surface(run_state *s, size_t n, cw_error *err)
     if (st == CW_OK && is_simplified(s->args))
         st = judge_simplified(s, made, &mesh, &counts, err);
     if (st == CW_OK)
-        st = cli_deliver(&s->report, &how, &(cw_part){.mesh = &mesh}, 1, counts.border_loops,
-                         s->start, err);
+        st = s->args->animate
+                 ? cli_deliver_step(&s->report, &how, &mesh, counts.border_loops, s->start, err)
+                 : deliver(s, n, &(cw_part){.mesh = &mesh}, 1, counts.border_loops, err);
+    if (s->args->animate && (st == CW_OK || st == CW_ERR_EMPTY))
+        cli_frames_add(&s->frames, &mesh, moment, s->fps);
     cw_mesh_free(&mesh);
     s->start = cli_seconds();
-    if (st != CW_OK)
-        made->error = *err;
+    if (st == CW_OK)
+        return CW_OK;
+    name_step(s, moment, err);
+    made->error = *err;
     return st;
 }
 
-/* An empty level among several is told and passed over; any other failure ends the run. */
-static cw_status make_surfaces(run_state *s, cw_error *err)
+/* The levels of a step. An empty surface among several is told and counted; any other failure
+ * ends the run. */
+static cw_status make_surfaces(run_state *s, const cli_moment *moment, size_t *empty,
+                               cw_error *err)
 {
-    const size_t count = s->args->iso.count;
-    size_t empty = 0;
-    for (size_t n = 0; n < count; n++) {
-        cw_status st = make_surface(s, n, err);
-        if (st != CW_OK && (st != CW_ERR_EMPTY || count == 1))
+    const size_t levels = s->args->iso.count;
+    for (size_t n = 0; n < levels; n++) {
+        cw_status st = make_surface(s, moment, n, err);
+        if (st != CW_OK && (st != CW_ERR_EMPTY || levels * s->series.count == 1))
             return st;
-        if (st == CW_ERR_EMPTY) {
+        if (st == CW_ERR_EMPTY && s->args->animate)
+            cli_report_warn(&s->report, "%s; nothing is shown in its time", err->message);
+        else if (st == CW_ERR_EMPTY)
             cli_say_error(err->message);
-            empty++;
-        }
+        *empty += st == CW_ERR_EMPTY;
     }
-    return empty ? cw_fail(err, CW_ERR_EMPTY, "%s: empty levels: %zu of %zu", s->volume.path,
-                           empty, count)
-                 : CW_OK;
+    return CW_OK;
 }
 
-static cw_status read_volume(run_state *s, cw_error *err)
+/* What a step took goes back to the system: left to itself glibc keeps blocks of this size, and
+ * those of the next step do not quite fit between what else there is. */
+static void free_step(run_state *s)
 {
-    const extract_args *args = s->args;
+    cli_free_volume(&s->volume);
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
+}
+
+static cw_status read_volume(run_state *s, const cli_moment *moment, cw_error *err)
+{
+    cli_input input = s->args->input;
+    input.step = moment->step;
+    free_step(s);
     cli_report_begin(&s->report);
-    cw_status st =
-        cli_read_volume(args->common.inputs[0], &args->input, false, &s->volume, err);
+    cw_status st = cli_read_volume(moment->path, &input, false, &s->volume, err);
     if (st != CW_OK)
         return st;
     const cw_volume *v = &s->volume.view;
-    s->report.input = &s->volume;
+    if (!s->report.input)
+        s->first = s->volume;
+    s->report.input = &s->first;
     cli_report_end(&s->report, "read", 1, v->dim[0] * v->dim[1] * v->dim[2]);
     for (int r = 0; r < 3; r++)
         cli_say_vv("affine   %12.6g %12.6g %12.6g %12.6g", v->affine[r][0], v->affine[r][1],
@@ -336,17 +455,121 @@ static cw_status read_volume(run_state *s, cw_error *err)
     return CW_OK;
 }
 
-static cw_status pipeline(run_state *s, cw_error *err)
+/* The voxels of a step: those of one file are all in memory. */
+static cw_status open_step(run_state *s, const cli_moment *moment, cw_error *err)
+{
+    const bool held = s->volume.voxels.data && s->volume.path == moment->path;
+    cw_status st = held ? cli_choose_step(&s->args->input, moment->step, &s->volume, err)
+                        : read_volume(s, moment, err);
+    s->memory = held ? s->memory : s->volume.memory_left;
+    s->volume.memory_left = s->memory > s->frames.bytes ? s->memory - s->frames.bytes : 1;
+    cw_extractor_free(s->extractor);
+    s->extractor = NULL;
+    if (st != CW_OK || s->args->iso.count == 1 || s->args->accel || is_simplified(s->args))
+        return st;
+    st = cw_extractor_new(&s->volume.view, &s->extractor, err);
+    return st == CW_OK ? st : cwi_fail_in(err, st, s->volume.path);
+}
+
+static cw_status fail_empty(const run_state *s, size_t empty, size_t count, cw_error *err)
+{
+    const char *what = s->series.count == 1      ? "levels"
+                       : s->args->iso.count == 1 ? "steps"
+                                                 : "surfaces";
+    return cw_fail(err, CW_ERR_EMPTY, "%s: empty %s: %zu of %zu", s->args->common.inputs[0],
+                   what, empty, count);
+}
+
+static cw_status make_steps(run_state *s, size_t *empty, cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (size_t n = 0; n < s->series.count && st == CW_OK; n++) {
+        st = open_step(s, &s->series.moments[n], err);
+        if (st == CW_OK)
+            st = make_surfaces(s, &s->series.moments[n], empty, err);
+    }
+    return st;
+}
+
+/* An animation has a place for steps that are empty: only nothing but such is no result. */
+static cw_status animate(run_state *s, cw_error *err)
+{
+    const cli_frames *f = &s->frames;
+    if (f->empty == f->count)
+        return fail_empty(s, f->empty, f->count, err);
+    cli_made *made = cli_report_next(&s->report, s->outputs.path[0], 0);
+    made->name = "all";
+    cw_status st = deliver(s, 0, f->parts, f->count, 0, err);
+    if (st != CW_OK)
+        made->error = *err;
+    return st;
+}
+
+static cw_status write_pvd(run_state *s, cw_error *err)
+{
+    const cw_write_desc desc = write_desc(s->args);
+    return cli_write_pvd(&s->report, s->args->pvd, &desc, err);
+}
+
+/* A file that times its steps is believed unless --fps says otherwise. */
+static cw_status plan_frames(run_state *s, cw_error *err)
 {
     const extract_args *args = s->args;
+    if (!args->animate)
+        return CW_OK;
+    if (s->series.count < 2)
+        return cw_fail(err, CW_ERR_ARGUMENT, "%s: --animate shows several steps, and here is 1",
+                       args->common.inputs[0]);
+    s->fps = args->fps.given ? args->fps.value : s->series.timed ? 0 : DEFAULT_FPS;
+    if (!args->fps.given && !s->series.timed)
+        cli_say("%s: steps have no times: %d a second are shown (--fps)",
+                args->common.inputs[0], DEFAULT_FPS);
+    return cli_frames_reserve(&s->frames, s->series.count, err);
+}
+
+static cw_status plan_steps(run_state *s, cw_error *err)
+{
+    const extract_args *args = s->args;
+    cli_steps steps = args->steps;
+    steps.all = steps.all || (args->animate && !steps.given);
+    steps.given = steps.given || args->animate;
+    cw_status st = cli_find_series(&s->series, &args->common, &args->input, &steps, err);
+    if (st == CW_OK)
+        st = check_outputs(s, err);
+    const size_t surfaces = s->series.count * args->iso.count;
+    s->report.several = surfaces > 1 || s->series.given ? "surfaces" : NULL;
+    if (st == CW_OK)
+        st = cli_report_reserve(&s->report, surfaces + 1, err);
+    return st == CW_OK ? plan_frames(s, err) : st;
+}
+
+static cw_status pipeline(run_state *s, cw_error *err)
+{
+    size_t empty = 0;
     cw_status st = check_args(s, err);
     if (st == CW_OK)
-        st = read_volume(s, err);
-    if (st == CW_OK && args->iso.count > 1 && !args->accel && !is_simplified(args)) {
-        st = cw_extractor_new(&s->volume.view, &s->extractor, err);
-        st = st == CW_OK ? st : cwi_fail_in(err, st, s->volume.path);
-    }
-    return st == CW_OK ? make_surfaces(s, err) : st;
+        st = plan_steps(s, err);
+    if (st == CW_OK)
+        st = make_steps(s, &empty, err);
+    if (st == CW_OK && s->args->animate)
+        return animate(s, err);
+    if (st == CW_OK && s->args->pvd)
+        st = write_pvd(s, err);
+    return st == CW_OK && empty
+               ? fail_empty(s, empty, s->series.count * s->args->iso.count, err)
+               : st;
+}
+
+/* The files of a series; "input" is the first of them. */
+static void put_series(cli_json *j, const void *p)
+{
+    const run_state *s = p;
+    if (!s->series.files.count)
+        return;
+    cli_json_open(j, "files", '[');
+    for (size_t n = 0; n < s->series.files.count; n++)
+        cli_json_text(j, NULL, cli_shown_path(s->series.files.path[n]));
+    cli_json_close(j, ']');
 }
 
 static cw_status run(void *p, cw_error *err)
@@ -356,24 +579,27 @@ static cw_status run(void *p, cw_error *err)
     s.report.command = "extract";
     s.report.several = args->iso.count > 1 ? "surfaces" : NULL;
     s.report.params = put_params;
+    s.report.facts = put_series;
     s.report.args = &s;
     cli_console_start(&args->common, (cli_progress_mode)args->progress);
     if (args->json && strcmp(args->json, "-") == 0)
         cli_results_to_stderr();
-    cw_status st = cli_report_reserve(&s.report, args->iso.count ? args->iso.count : 1, err);
+    cw_status st = cli_report_reserve(&s.report, 1, err);
     if (st == CW_OK)
         st = pipeline(&s, err);
     st = cli_report_write(&s.report, st, err);
     cw_extractor_free(s.extractor);
+    cli_frames_free(&s.frames);
     cli_free_volume(&s.volume);
     cli_free_outputs(&s.outputs);
+    cli_free_series(&s.series);
     cli_report_free(&s.report);
     return st;
 }
 
 const cli_command cli_extract = {
     .name = "extract",
-    .usage = "VOLUME --iso V -o MESH [options]",
+    .usage = "VOLUME... --iso V -o MESH [options]",
     .about = "a volume to a mesh: the surface where the values equal an isovalue",
     .more =
         "Reads a volume, extracts the surface of its trilinear field at the isovalue, checks "
@@ -412,18 +638,44 @@ const cli_command cli_extract = {
         "and passed over, and the exit code is then 9; after any other failure the files that\n"
         "were finished stay. The report lists every level under 'surfaces', each with what\n"
         "'mesh' is for a single one; 'output' lists the files in either case.\n\n"
+        "Of a volume with time steps --steps 0:20:2, --steps 0,3,7 or --steps all make a mesh "
+        "of\n"
+        "each, all at the same isovalue, in files whose names tell them apart by {step}, or "
+        "with\n"
+        "leading zeros {step:04d}. Several volumes, or a quoted pattern, are a series too: a "
+        "file\n"
+        "a step, in natural order (2 before 10), read one at a time. They must agree in the "
+        "number\n"
+        "of values a voxel and in whether they name a unit and a frame. Slices, which are "
+        "DICOM\n"
+        "images and TIFF files of one page, are no steps but one volume. A step that crosses\n"
+        "nothing is told, has no file, and makes the exit code 9.\n\n"
+        "--pvd FILE lists the .vtp files of the steps and their times, or numbers where the "
+        "input\n"
+        "names no times; ParaView opens it as a series.\n\n"
+        "--animate writes one GLB or glTF of a node a step, of which an animation shows one at "
+        "a\n"
+        "time, as the file times its steps, or --fps of them a second; the last one as long as "
+        "the\n"
+        "one before it. Whether it begins again is the player's choice; without one the first\n"
+        "surface is seen. A step that crosses nothing is told, and shows nothing in its "
+        "time.\n\n"
         "Examples\n"
         "  cubewright extract head.nii.gz --iso 50 -o head.glb\n"
         "  cubewright extract ct.nrrd --iso -400,300 -o '{stem}-{level}.glb'\n"
         "  cubewright extract ct.nrrd --iso 300 -o bone.stl --json report.json\n"
         "  cubewright extract ct.nrrd --iso 300 -o bone.glb --simplify 0.1mm\n"
+        "  cubewright extract heart.nii.gz --iso 90 --steps all -o 'heart-{step:02d}.ply'\n"
+        "  cubewright extract 'scan-*.nrrd' --iso 300 -o '{stem}.glb'\n"
+        "  cubewright extract heart.nii.gz --iso 90 --steps all -o 'out/{step}.vtp' --pvd "
+        "h.pvd\n"
+        "  cubewright extract 'scan-*.nrrd' --iso 300 --animate --fps 4 -o scan.glb\n"
         "  cubewright extract slab.raw --raw dims=512x512x300,type=u16le --spacing 0.5mm \\\n"
         "      --iso 1200 -o part.ply\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .min_inputs = 1,
-    .max_inputs = 1,
-    .slices = true,
+    .max_inputs = SIZE_MAX,
     .size = sizeof(extract_args),
     .defaults = &defaults,
     .run = run,

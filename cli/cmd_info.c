@@ -2,11 +2,13 @@
 #include "cli/console.h"
 #include "cli/input.h"
 #include "cli/quantity.h"
+#include "cli/series.h"
 #include "core/status.h"
 
 #include <cubewright/extract.h>
 
 #include <math.h>
+#include <stdint.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -105,6 +107,14 @@ static const char *axis_letters(const cw_volume *v)
     return text;
 }
 
+static void print_steps(const cw_volume *v)
+{
+    if (v->step_seconds > 0)
+        printf("  steps    %zu, %.6g s apart\n", v->steps, v->step_seconds);
+    else
+        printf("  steps    %zu, no times named\n", v->steps);
+}
+
 static void print_geometry(const facts *f)
 {
     const cw_volume *v = &f->volume.whole;
@@ -121,6 +131,8 @@ static void print_geometry(const facts *f)
            "%.6g)\n",
            v->known & CW_KNOWN_FRAME ? "LPS" : "not named, taken as LPS", axis_letters(v),
            from[0], from[1], from[2], to[0], to[1], to[2]);
+    if (v->steps > 1)
+        print_steps(v);
     if (v->slope != 1 || v->intercept != 0)
         printf("  scaling  value = %.10g * voxel + %.10g\n", v->slope, v->intercept);
     if (f->series.images)
@@ -130,10 +142,12 @@ static void print_geometry(const facts *f)
         printf("  note     %s\n", f->volume.notes[n]);
 }
 
-static void print_values(const facts *f)
+static void print_values(const info_args *args, const facts *f)
 {
     const cw_statistics *r = &f->range;
     printf("  values   %.10g to %.10g", r->min, r->max);
+    if (f->volume.whole.steps > 1)
+        printf(" in step %zu", args->input.step);
     if (r->not_finite)
         printf(", %s not finite", cli_count(r->not_finite));
     if (r->nodata)
@@ -267,6 +281,117 @@ static void print_series_json(const char *path, const cw_series *series, size_t 
     cli_json_close(&j, '}');
 }
 
+/* --- time series of files ------------------------------------------------------------------
+ */
+
+/* A step: what is in its file, and the range of its values. */
+typedef struct step_facts {
+    cli_volume volume;
+    cw_statistics range;
+} step_facts;
+
+static cw_status read_step(const info_args *args, const char *path, step_facts *step,
+                           cw_error *err)
+{
+    const int threads = (int)args->input.threads;
+    cw_status st = cli_read_volume(path, &args->input, false, &step->volume, err);
+    if (st != CW_OK)
+        return st;
+    st = cw_volume_statistics(&step->volume.view, 0, threads, &step->range, err);
+    cli_free_volume(&step->volume);
+    return st == CW_OK ? st : cwi_fail_in(err, st, path);
+}
+
+static void print_step(size_t n, const step_facts *step)
+{
+    printf("  step %-4zu%s  %s, values %.10g to %.10g\n", n, step->volume.path,
+           cli_describe(&step->volume), step->range.min, step->range.max);
+}
+
+static void json_step(cli_json *j, const step_facts *step)
+{
+    cli_json_open(j, NULL, '{');
+    cli_json_input(j, "input", &step->volume);
+    cli_json_numbers(j, "range", (const double[2]){step->range.min, step->range.max}, 2);
+    cli_json_close(j, '}');
+}
+
+/* Reads every file, also behind one that does not agree: the first such is the finding. */
+static cw_status list_files(const info_args *args, char *const *files, size_t count,
+                            cli_json *j, cw_error *finding, cw_error *err)
+{
+    cw_volume first = {0};
+    for (size_t n = 0; n < count; n++) {
+        step_facts step = {0};
+        cw_status st = read_step(args, files[n], &step, err);
+        if (st != CW_OK)
+            return st;
+        first = n ? first : step.volume.whole;
+        if (finding->status == CW_OK &&
+            (st = cli_agree(&first, files[0], &step.volume.whole, finding)) != CW_OK)
+            cwi_fail_in(finding, st, files[n]);
+        if (args->json)
+            json_step(j, &step);
+        else
+            print_step(n, &step);
+    }
+    return CW_OK;
+}
+
+static void open_list(const info_args *args, size_t count, cli_json *j)
+{
+    if (!args->json) {
+        printf("%zu files, a time step each\n", count);
+        return;
+    }
+    cli_json_open(j, NULL, '{');
+    cli_json_text(j, "schema", "cubewright-steps-1");
+    cli_json_text(j, "version", cw_version());
+    cli_json_open(j, "steps", '[');
+}
+
+static void close_list(const info_args *args, const cw_error *finding, cli_json *j)
+{
+    if (!args->json)
+        return;
+    cli_json_close(j, ']');
+    cli_json_bool(j, "agree", finding->status == CW_OK);
+    cli_json_text(j, "finding", finding->message);
+    cli_json_close(j, '}');
+}
+
+static cw_status print_files(const info_args *args, char *const *files, size_t count,
+                             cw_error *err)
+{
+    cli_json j = {.out = stdout};
+    cw_error finding = {0};
+    if (args->histogram || args->levels)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--histogram and --levels are of one file, and these are %zu", count);
+    open_list(args, count, &j);
+    cw_status st = list_files(args, files, count, &j, &finding, err);
+    close_list(args, st == CW_OK ? &finding : err, &j);
+    if (st == CW_OK && finding.status != CW_OK)
+        *err = finding;
+    return st == CW_OK ? finding.status : st;
+}
+
+static cw_status list_steps(const info_args *args, bool *listed, cw_error *err)
+{
+    const cw_raw_layout raw = {0}; /* only whether there is one counts here */
+    cw_read_desc desc = cli_read_desc(&args->input);
+    char **files;
+    size_t count;
+    desc.raw = args->input.raw ? &raw : NULL;
+    cw_status st = cw_steps_list(args->common.inputs, args->common.input_count, &desc, &files,
+                                 &count, err);
+    *listed = count > 0;
+    if (st == CW_OK && count)
+        st = print_files(args, files, count, err);
+    cw_steps_free(files, count);
+    return st;
+}
+
 static bool is_named(const cw_series *s, const char *name)
 {
     return name && strcmp(s->label, name) == 0;
@@ -306,7 +431,9 @@ static cw_status run(void *p, cw_error *err)
     cli_common silent = args->common;
     silent.quiet = true; /* the found line is part of the result here */
     cli_console_start(&silent, CLI_PROGRESS_AUTO);
-    cw_status st = list_series(args, &f, &listed, err);
+    cw_status st = list_steps(args, &listed, err);
+    if (st == CW_OK && !listed)
+        st = list_series(args, &f, &listed, err);
     if (st != CW_OK || listed)
         return st;
     st = find_facts(args, &f, err);
@@ -314,7 +441,7 @@ static cw_status run(void *p, cw_error *err)
         print_json(&f, args->levels);
     } else if (st == CW_OK) {
         print_geometry(&f);
-        print_values(&f);
+        print_values(args, &f);
         print_levels(&f, args->levels);
     }
     cw_statistics_free(&f.range);
@@ -324,21 +451,26 @@ static cw_status run(void *p, cw_error *err)
 
 const cli_command cli_info = {
     .name = "info",
-    .usage = "VOLUME [options]",
+    .usage = "VOLUME... [options]",
     .about = "what is in a file: size, type, frame, values, suggested levels",
     .more =
-        "Several series of DICOM images are listed, and --series chooses one.\n\n"
+        "Several series of DICOM images are listed, and --series chooses one.\n"
+        "Several volumes, or a quoted pattern, are the steps of a time series: each is listed "
+        "with\n"
+        "the range of its values, and the first that cannot be of one series with the others "
+        "is\n"
+        "named.\n\n"
         "Suggested levels part the histogram into two (otsu) or four classes (dark, medium,\n"
         "bright) with the largest variance between them.\n\n"
         "Examples\n"
         "  cubewright info head.nii.gz --levels\n"
         "  cubewright info ct.nrrd --histogram 16 --json\n"
-        "  cubewright info dicom/ --series 3\n",
+        "  cubewright info dicom/ --series 3\n"
+        "  cubewright info 'scan-*.nrrd'\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .min_inputs = 1,
-    .max_inputs = 1,
-    .slices = true,
+    .max_inputs = SIZE_MAX,
     .size = sizeof(info_args),
     .run = run,
 };

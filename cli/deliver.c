@@ -228,18 +228,32 @@ static void print_comparison(const cli_comparison *c)
                    c->to_field.max_mm, c->to_field.rms_mm);
 }
 
+/* The last step is shown as long as the one before it. */
+static void print_times(const load *l)
+{
+    const cw_part *first = l->parts, *last = first + l->part_count - 1;
+    cli_result(", shown in %.6g s", 2 * last->time_s - last[-1].time_s - first->time_s);
+}
+
 static void print_summary(const cli_delivery *how, const cli_made *made, const load *l,
                           size_t border_loops, double start)
 {
     struct stat info = {0};
-    stat(made->path, &info);
-    cli_result("%s: %s vertices, %s triangles", made->path, cli_count(l->vertices),
-               cli_count(l->triangles));
+    if (made->written)
+        cli_result("%s", made->path);
+    else
+        cli_result("step %zu", made->moment->number);
+    cli_result(": %s vertices, %s triangles", cli_count(l->vertices), cli_count(l->triangles));
     if (l->part_count > 1)
-        cli_result(" in %zu %s", l->part_count, how->levels ? "levels" : "parts");
-    cli_result(", %s", cli_bytes((double)info.st_size));
+        cli_result(" in %zu %s", l->part_count, how->parts ? how->parts : "parts");
+    if (made->written && stat(made->path, &info) == 0)
+        cli_result(", %s", cli_bytes((double)info.st_size));
+    if (how->write.animated && made->written)
+        print_times(l);
     if (made->measured)
         print_topology(how, &made->quality, border_loops);
+    if (made->timed)
+        cli_result("; at %.6g s", made->moment->time_s);
     if (made->snapped)
         cli_result("; %s vertices merged, off by at most %.3g mm, %.2g voxels",
                    cli_count(made->snap.vertices), made->snap.max_error_mm,
@@ -279,4 +293,16 @@ cw_status cli_deliver(cli_report *report, const cli_delivery *how, const cw_part
     if (st == CW_OK)
         print_summary(how, made, &l, border_loops, start);
     return st == CW_OK ? hold_to_shape(made, err) : st;
+}
+
+cw_status cli_deliver_step(cli_report *report, const cli_delivery *how, const cw_mesh *mesh,
+                           size_t border_loops, double start, cw_error *err)
+{
+    const cw_part part = {.mesh = mesh};
+    const load l = count_load(&part, 1);
+    cli_made *made = &report->made[report->made_count - 1];
+    cw_status st = how->unchecked ? CW_OK : check(report, how, &l, made, err);
+    if (st == CW_OK)
+        print_summary(how, made, &l, border_loops, start);
+    return st;
 }

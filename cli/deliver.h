@@ -15,7 +15,7 @@ typedef struct cli_delivery {
     bool unpromised;   /* measured, and written whatever it is: the line says what */
     bool tell_dropped; /* say what of the mesh the file does not hold */
     bool open;         /* the surface may end at the volume's border */
-    bool levels;       /* the parts are levels of detail of one mesh */
+    const char *parts; /* what the parts are: "levels" of detail, "steps"; default: "parts" */
     bool preview;      /* not of all voxels: the line says so */
 } cli_delivery;
 
@@ -30,5 +30,10 @@ typedef struct cli_delivery {
  *          or as cw_quality_measure(), cw_parts_write() */
 cw_status cli_deliver(cli_report *report, const cli_delivery *how, const cw_part *parts,
                       size_t part_count, size_t border_loops, double start, cw_error *err);
+
+/* Checks the report's latest mesh, a step of an animation that has no file of its own, and
+ * tells of it in a line: the first half of cli_deliver(). */
+cw_status cli_deliver_step(cli_report *report, const cli_delivery *how, const cw_mesh *mesh,
+                           size_t border_loops, double start, cw_error *err);
 
 #endif

@@ -117,25 +117,31 @@ static cw_status find_box(const cli_input *input, const cw_volume *v, cw_box *bo
     return st;
 }
 
+static size_t coarsening(const cli_input *input)
+{
+    return input->coarsen ? input->coarsen : input->preview ? 4 : 1;
+}
+
 /* Every so many-th voxel of what was chosen so far; along thin axes fewer are passed over, so
  * that two are left. */
 static cw_status coarsen(const cli_input *input, cli_volume *volume, cw_error *err)
 {
-    const size_t asked = input->coarsen ? input->coarsen : input->preview ? 4 : 1;
+    const size_t asked = coarsening(input);
     size_t *step = volume->coarsen;
     cw_volume all = volume->view, *v = &volume->view;
     for (int a = 0; a < 3; a++)
         step[a] = asked < all.dim[a] ? asked : all.dim[a] > 2 ? all.dim[a] - 1 : 1;
     if (asked == 1)
         return CW_OK;
-    cw_status st = cw_volume_coarsen(&all, step, v, err);
-    if (st == CW_OK)
-        cli_say(
-            "preview: one voxel in %zu x %zu x %zu, %zu x %zu x %zu of %zu x %zu x %zu; what "
+    return cw_volume_coarsen(&all, step, v, err);
+}
+
+static void tell_preview(const cli_volume *volume)
+{
+    const size_t *step = volume->coarsen, *dim = volume->view.dim, *all = volume->voxels.dim;
+    cli_say("preview: one voxel in %zu x %zu x %zu, %zu x %zu x %zu of %zu x %zu x %zu; what "
             "is thinner may be lost",
-            step[0], step[1], step[2], v->dim[0], v->dim[1], v->dim[2], all.dim[0], all.dim[1],
-            all.dim[2]);
-    return st;
+            step[0], step[1], step[2], dim[0], dim[1], dim[2], all[0], all[1], all[2]);
 }
 
 bool cli_is_preview(const cli_volume *volume)
@@ -145,14 +151,20 @@ bool cli_is_preview(const cli_volume *volume)
 }
 
 /* The limits are for what will be read: perhaps only a part. */
-static cw_status read_header(const char *path, const cw_read_desc *voxels,
-                             const cli_input *input, cli_volume *volume, cw_error *err)
+static cw_status read_shape(const char *path, const cw_read_desc *voxels, cw_volume *shape,
+                            const char **format, cw_error *err)
 {
     cw_read_desc desc = *voxels;
     desc.header_only = true;
     desc.max_bytes = 0;
     desc.max_voxels = UINT64_MAX;
-    cw_status st = cw_volume_read(path, &desc, &volume->whole, &volume->format, err);
+    return cw_volume_read(path, &desc, shape, format, err);
+}
+
+static cw_status read_header(const char *path, const cw_read_desc *voxels,
+                             const cli_input *input, cli_volume *volume, cw_error *err)
+{
+    cw_status st = read_shape(path, voxels, &volume->whole, &volume->format, err);
     if (st != CW_OK)
         return st;
     cw_volume_spacing(&volume->whole, volume->spacing);
@@ -174,6 +186,16 @@ static cw_status read_part(const char *path, cw_read_desc *desc, const cw_volume
     return cw_volume_read(path, desc, &volume->voxels, &volume->format, err);
 }
 
+cw_status cli_choose_step(const cli_input *input, size_t step, cli_volume *volume,
+                          cw_error *err)
+{
+    cw_status st =
+        cw_volume_select(&volume->voxels, input->component, step, &volume->view, err);
+    if (st == CW_OK)
+        st = coarsen(input, volume, err);
+    return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
+}
+
 static cw_status read_voxels(const char *path, cw_read_desc *desc, const cli_input *input,
                              cli_volume *volume, cw_error *err)
 {
@@ -188,12 +210,11 @@ static cw_status read_voxels(const char *path, cw_read_desc *desc, const cli_inp
         return cwi_fail_in(err, st, path);
     desc->region = input->crop.given ? &box : NULL;
     st = read_part(path, desc, &part, volume, err);
-    if (st != CW_OK)
-        return st;
-    st = cw_volume_select(&volume->voxels, input->component, input->step, &volume->view, err);
     if (st == CW_OK)
-        st = coarsen(input, volume, err);
-    return st == CW_OK ? st : cwi_fail_in(err, st, path);
+        st = cli_choose_step(input, input->step, volume, err);
+    if (st == CW_OK && coarsening(input) > 1)
+        tell_preview(volume);
+    return st;
 }
 
 /* Says what the reader decided, and keeps it for reports. */
@@ -226,6 +247,26 @@ void cli_free_volume(cli_volume *volume)
     cw_volume_free(&volume->voxels);
 }
 
+/* The layout that --raw states, if it does, for the description. */
+static cw_status set_raw(const cli_input *input, cw_raw_layout *raw, cw_read_desc *desc,
+                         cw_error *err)
+{
+    if (!input->raw)
+        return CW_OK;
+    cw_status st = cw_raw_layout_parse(input->raw, raw, err);
+    desc->raw = raw;
+    return st == CW_OK ? st : cwi_fail_in(err, st, "--raw");
+}
+
+cw_status cli_read_shape(const char *path, const cli_input *input, cw_volume *shape,
+                         cw_error *err)
+{
+    cw_raw_layout raw;
+    cw_read_desc desc = cli_read_desc(input);
+    cw_status st = set_raw(input, &raw, &desc, err);
+    return st == CW_OK ? read_shape(path, &desc, shape, NULL, err) : st;
+}
+
 cw_status cli_read_volume(const char *path, const cli_input *input, bool header_only,
                           cli_volume *volume, cw_error *err)
 {
@@ -235,13 +276,9 @@ cw_status cli_read_volume(const char *path, const cli_input *input, bool header_
     volume->path = path;
     desc.note = take_note;
     desc.note_user = volume;
-    if (input->raw) {
-        cw_status st = cw_raw_layout_parse(input->raw, &raw, err);
-        if (st != CW_OK)
-            return cwi_fail_in(err, st, "--raw");
-        desc.raw = &raw;
-    }
-    cw_status st = read_header(path, &desc, input, volume, err);
+    cw_status st = set_raw(input, &raw, &desc, err);
+    if (st == CW_OK)
+        st = read_header(path, &desc, input, volume, err);
     if (st == CW_OK && !header_only)
         st = read_voxels(path, &desc, input, volume, err);
     if (st != CW_OK)

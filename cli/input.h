@@ -132,7 +132,15 @@ cw_read_desc cli_read_desc(const cli_input *input);
 cw_status cli_read_volume(const char *path, const cli_input *input, bool header_only,
                           cli_volume *volume, cw_error *err);
 
+/* The header alone, without a word. */
+cw_status cli_read_shape(const char *path, const cli_input *input, cw_volume *shape,
+                         cw_error *err);
+
 void cli_free_volume(cli_volume *volume);
+
+/* Makes the volume's view that of another of its time steps. */
+cw_status cli_choose_step(const cli_input *input, size_t step, cli_volume *volume,
+                          cw_error *err);
 
 /* Whether the view leaves voxels out between those it has. */
 bool cli_is_preview(const cli_volume *volume);

@@ -33,6 +33,9 @@ static void say_what_was_found(const cli_mesh *m)
     if (m->file.levels)
         cli_say("%s: %zu coarser level%s of detail left out", m->path, m->file.levels,
                 m->file.levels == 1 ? "" : "s");
+    if (m->file.hidden)
+        cli_say("%s: %zu part%s hidden by a scale of 0, as an animation does, left out",
+                m->path, m->file.hidden, m->file.hidden == 1 ? "" : "s");
 }
 
 static double file_bytes(const char *path)

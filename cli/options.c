@@ -179,6 +179,8 @@ static bool store(const cli_option *o, const char *text, void *field)
         return cli_parse_sizes(text, field);
     case CLI_RANGES:
         return cli_parse_ranges(text, field);
+    case CLI_STEPS:
+        return cli_parse_steps(text, field);
     case CLI_WEIGHTS:
         return store_weights(o->value, text, field);
     default:
@@ -212,6 +214,8 @@ static const char *expectation(const cli_option *o)
         return "whole numbers above 0 joined by x";
     case CLI_RANGES:
         return "three ranges such as 10:50,0:99,20:40 (voxels) or -30mm:30mm,... (world)";
+    case CLI_STEPS:
+        return "steps in ascending order such as 0:20:2 (ends included), 0,3,7 or all";
     case CLI_WEIGHTS:
         return "weights above 0, each once, such as normal:0.5,color:1,scalar:1";
     default:

@@ -18,6 +18,7 @@ typedef enum cli_kind {
     CLI_SIZES,     /* cli_sizes: 64, 1280x720 or 512x512x300 */
     CLI_RANGES,    /* cli_ranges: 10:50,0:99,20:40 in voxels, -30mm:30mm,... in the world */
     CLI_REDUCTION, /* cli_reduction */
+    CLI_STEPS,     /* cli_steps: 0:20:2, 0,3,7 or all */
     CLI_WEIGHTS,   /* cli_weights: normal:0.5,color:1; value has the names, parted by '/' */
     CLI_LOUDER,    /* int, counts up */
 } cli_kind;
@@ -79,6 +80,17 @@ typedef struct cli_ranges {
     bool world; /* LPS millimetres; else voxel indices */
     double low[3], high[3];
 } cli_ranges;
+
+enum { CLI_MAX_STEPS = 64 };
+
+/* Steps of a time series, ascending; each row runs from first to last, both included. */
+typedef struct cli_steps {
+    bool given, all;
+    size_t count;
+    struct {
+        size_t first, last, by;
+    } rows[CLI_MAX_STEPS];
+} cli_steps;
 
 typedef struct cli_option {
     const char *name; /* without the dashes */

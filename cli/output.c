@@ -78,9 +78,9 @@ static const char *end_of_name(const char *text)
 /* "out-{level}.glb" for the user who wrote "out.glb". */
 static cw_status ask_for(const char *what, const char *text, const char *why, cw_error *err)
 {
-    const char *end = end_of_name(text);
-    return cw_fail(err, CW_ERR_ARGUMENT, "%s: the output must hold {%s}, as in '%.*s-{%s}%s'",
-                   why, what, (int)(end - text), text, what, end);
+    const char *end = end_of_name(text), *width = strcmp(what, "step") == 0 ? ":04d" : "";
+    return cw_fail(err, CW_ERR_ARGUMENT, "%s: the output must hold {%s}, as in '%.*s-{%s%s}%s'",
+                   why, what, (int)(end - text), text, what, width, end);
 }
 
 static cw_status reserve(cli_outputs *outputs, size_t count, char **stem, const char *input,
@@ -100,23 +100,51 @@ static cw_status add_output(cli_outputs *outputs, const char *text, cli_part *pa
     return cli_fill_template(text, parts, part_count, &outputs->path[outputs->count++], err);
 }
 
-cw_status cli_name_outputs(cli_outputs *outputs, const char *text, const char *input,
-                           const cli_numbers *levels, cw_error *err)
+enum { STEM, LEVEL, STEP, PARTS };
+
+static cw_status name_levels(cli_outputs *outputs, const char *text, const cli_moment *moment,
+                             const cli_numbers *levels, cli_part parts[PARTS], cw_error *err)
 {
-    char *stem = NULL, why[64];
-    cw_status st = check_levels(levels, err);
-    if (st == CW_OK)
-        st = reserve(outputs, levels->count, &stem, input, err);
-    cli_part parts[] = {{.name = "stem", .value = stem}, {.name = "level"}};
+    char number[24], *stem = cli_stem(moment->path);
+    cw_status st = stem ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a name");
+    snprintf(number, sizeof number, "%zu", moment->number);
+    parts[STEM].value = stem;
+    parts[STEP].value = number;
     for (size_t n = 0; n < levels->count && st == CW_OK; n++) {
-        parts[1].value = cli_number_text(levels->value[n]);
-        st = add_output(outputs, text, parts, 2, err);
+        parts[LEVEL].value = cli_number_text(levels->value[n]);
+        st = add_output(outputs, text, parts, PARTS, err);
     }
-    snprintf(why, sizeof why, "--iso lists %zu levels", levels->count);
-    if (st == CW_OK && levels->count > 1 && !parts[1].used)
-        st = ask_for("level", text, why, err);
     free(stem);
     return st;
+}
+
+static cw_status check_told_apart(const char *text, const cli_series *series,
+                                  const cli_numbers *levels, const cli_part parts[PARTS],
+                                  cw_error *err)
+{
+    char why[64];
+    snprintf(why, sizeof why, "--iso lists %zu levels", levels->count);
+    if (levels->count > 1 && !parts[LEVEL].used)
+        return ask_for("level", text, why, err);
+    snprintf(why, sizeof why, "there are %zu steps", series->count);
+    if (series->count > 1 && !parts[STEP].used && !(series->files.count && parts[STEM].used))
+        return ask_for("step", text, why, err);
+    return CW_OK;
+}
+
+cw_status cli_name_outputs(cli_outputs *outputs, const char *text, const cli_series *series,
+                           const cli_numbers *levels, cw_error *err)
+{
+    cli_part parts[PARTS] = {[STEM] = {.name = "stem"},
+                             [LEVEL] = {.name = "level"},
+                             [STEP] = {.name = "step", .number = true}};
+    cw_status st = check_levels(levels, err);
+    outputs->path = calloc(levels->count * series->count + 1, sizeof *outputs->path);
+    if (st == CW_OK && !outputs->path)
+        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the names of outputs");
+    for (size_t n = 0; n < series->count && st == CW_OK; n++)
+        st = name_levels(outputs, text, &series->moments[n], levels, parts, err);
+    return st == CW_OK ? check_told_apart(text, series, levels, parts, err) : st;
 }
 
 /* As part of a file name: no folder, nothing hidden. */
@@ -223,12 +251,12 @@ static cw_status check_all_apart(const cli_outputs *outputs, cw_error *err)
     return st;
 }
 
-cw_status cli_check_outputs(const cli_outputs *outputs, const char *input,
-                            const cw_write_desc *desc, cw_error *err)
+cw_status cli_check_outputs(const cli_outputs *outputs, const char *const *inputs,
+                            size_t input_count, const cw_write_desc *desc, cw_error *err)
 {
     cw_status st = CW_OK;
     for (size_t n = 0; n < outputs->count && st == CW_OK; n++)
-        st = cli_check_output(outputs->path[n], &input, 1, err);
+        st = cli_check_output(outputs->path[n], inputs, input_count, err);
     if (st == CW_OK)
         st = check_all_apart(outputs, err);
     for (size_t n = 0; n < outputs->count && st == CW_OK; n++)

@@ -4,6 +4,7 @@
 #define CLI_OUTPUT_H
 
 #include "cli/options.h"
+#include "cli/series.h"
 
 #include <cubewright/formats.h>
 
@@ -20,11 +21,12 @@ typedef struct cli_outputs {
     char **path;
 } cli_outputs;
 
-/* Names them: {level} and {stem} (the input's) of the text are filled in. Free, also after
- * failure, with cli_free_outputs().
- * Returns CW_ERR_ARGUMENT for a level that is there twice, an unknown {part}, and when several
- * levels come without {level}; CW_ERR_NO_MEMORY */
-cw_status cli_name_outputs(cli_outputs *outputs, const char *text, const char *input,
+/* Names them, all levels of a step and then those of the next: {level}, {step} and {stem} (of
+ * the step's file) of the text are filled in. Free, also after failure, with
+ * cli_free_outputs(). Returns CW_ERR_ARGUMENT for a level that is there twice, an unknown
+ * {part}, and when several levels or steps come without a part that tells them apart;
+ * CW_ERR_NO_MEMORY */
+cw_status cli_name_outputs(cli_outputs *outputs, const char *text, const cli_series *series,
                            const cli_numbers *levels, cw_error *err);
 
 /* Names one output a part: {name} (that of the part, with what no file name may hold as '_'),
@@ -45,8 +47,8 @@ cw_status cli_name_output(cli_outputs *outputs, const char *text, const char *in
                           cw_error *err);
 void cli_free_outputs(cli_outputs *outputs);
 
-/* Fails when one of them could not be written, is the input or another of them. */
-cw_status cli_check_outputs(const cli_outputs *outputs, const char *input,
-                            const cw_write_desc *desc, cw_error *err);
+/* Fails when one of them could not be written, is an input or another of them. */
+cw_status cli_check_outputs(const cli_outputs *outputs, const char *const *inputs,
+                            size_t input_count, const cw_write_desc *desc, cw_error *err);
 
 #endif

@@ -127,6 +127,49 @@ bool cli_parse_ranges(const char *text, cli_ranges *out)
     return out->given = true;
 }
 
+static bool parse_step(const char **text, size_t *step)
+{
+    int64_t n;
+    if (!cwi_parse_int(text, &n) || n < 0 || n > INT32_MAX)
+        return false;
+    *step = (size_t)n;
+    return true;
+}
+
+/* "a", "a:b" or "a:b:by". */
+static bool parse_row(const char **text, size_t *first, size_t *last, size_t *by)
+{
+    *by = 1;
+    if (!parse_step(text, first))
+        return false;
+    *last = *first;
+    if (**text != ':')
+        return true;
+    ++*text;
+    if (!parse_step(text, last) || *last < *first)
+        return false;
+    if (**text != ':')
+        return true;
+    ++*text;
+    return parse_step(text, by) && *by > 0;
+}
+
+bool cli_parse_steps(const char *text, cli_steps *out)
+{
+    *out = (cli_steps){.given = true, .all = strcmp(text, "all") == 0};
+    if (out->all)
+        return true;
+    for (; out->count < CLI_MAX_STEPS; text++) {
+        const size_t n = out->count++;
+        if (!parse_row(&text, &out->rows[n].first, &out->rows[n].last, &out->rows[n].by) ||
+            (n > 0 && out->rows[n].first <= out->rows[n - 1].last))
+            return false;
+        if (*text != ',')
+            return *text == '\0';
+    }
+    return false;
+}
+
 bool cli_parse_count(const char *text, double thousand, size_t *out)
 {
     static const char prefixes[] = "kMGT";

@@ -182,6 +182,14 @@ static void put_facts(cli_json *j, const cli_made *m)
         put_comparison(j, &m->compared);
 }
 
+static void put_moment(cli_json *j, const cli_made *m)
+{
+    cli_json_count(j, "step", m->moment->number);
+    if (m->timed)
+        cli_json_number(j, "time", m->moment->time_s);
+    cli_json_text(j, "input", cli_shown_path(m->moment->path));
+}
+
 static void put_several(cli_json *j, const cli_report *r)
 {
     cli_json_open(j, r->several, '[');
@@ -191,6 +199,8 @@ static void put_several(cli_json *j, const cli_report *r)
             cli_json_text(j, "name", m->name);
         else
             cli_json_number(j, "iso", m->iso);
+        if (m->moment)
+            put_moment(j, m);
         if (m->written)
             cli_json_text(j, "path", cli_shown_path(m->path));
         put_facts(j, m);

@@ -3,7 +3,7 @@
 #ifndef CLI_REPORT_H
 #define CLI_REPORT_H
 
-#include "cli/input.h"
+#include "cli/series.h"
 
 #include <cubewright/check.h>
 #include <cubewright/extract.h>
@@ -31,6 +31,8 @@ typedef struct cli_made {
     const char *path; /* where it goes */
     const char *name; /* of a part; NULL: it is the surface at an isovalue */
     double iso;
+    const cli_moment *moment; /* of a time series; NULL: of the only step */
+    bool timed;               /* it says when that is */
     bool measured, written, local, snapped;
     cw_quality quality;            /* when it is measured */
     bool shells;                   /* whether that tells which way shells face */

@@ -105,7 +105,7 @@ static cw_status check_outputs(run_state *s, cw_error *err)
         if (st == CW_OK)
             st = check_against_inputs(s, s->outputs.path[n], err);
     }
-    return st == CW_OK ? cli_check_outputs(&s->outputs, args->common.inputs[0], &desc, err)
+    return st == CW_OK ? cli_check_outputs(&s->outputs, args->common.inputs, 1, &desc, err)
                        : st;
 }
 
@@ -334,7 +334,7 @@ static cw_status deliver_parts(run_state *s, const cw_part *parts, size_t count,
         .threads = s->threads,
         .unchecked = levels, /* each was by itself */
         .unpromised = true,
-        .levels = levels,
+        .parts = levels ? "levels" : NULL,
         .tell_dropped = true};
     return cli_deliver(&s->report, &how, parts, count, 0, s->start, err);
 }

@@ -21,15 +21,38 @@ static cw_status unknown_part(const char *text, const char *name, size_t length,
                    (int)length, name, names);
 }
 
+/* Up to the brace: nothing, or ":04d", as many digits as that; -1 for anything else. */
+static int width_of(const char *text, bool number)
+{
+    int width, used = 0;
+    if (*text == '}')
+        return 0;
+    const bool read = sscanf(text, ":%2dd%n", &width, &used) == 1 && text[1] == '0';
+    return number && read && used > 0 && text[used] == '}' ? width : -1;
+}
+
+static cw_status put_value(FILE *out, const char *text, const char *width, cli_part *part,
+                           cw_error *err)
+{
+    const int digits = width_of(width, part->number);
+    if (digits < 0)
+        return cw_fail(err, CW_ERR_ARGUMENT, "%s: behind {%s was expected }%s", text,
+                       part->name, part->number ? ", or a width as in {step:04d}" : "");
+    for (int length = (int)strlen(part->value); length < digits; length++)
+        fputc('0', out);
+    fputs(part->value, out);
+    part->used = true;
+    return CW_OK;
+}
+
 static cw_status put_part(FILE *out, const char *text, const char *name, size_t length,
                           cli_part *parts, size_t part_count, cw_error *err)
 {
+    const char *colon = memchr(name, ':', length);
+    const size_t bare = colon ? (size_t)(colon - name) : length;
     for (size_t p = 0; p < part_count; p++)
-        if (strlen(parts[p].name) == length && strncmp(parts[p].name, name, length) == 0) {
-            fputs(parts[p].value, out);
-            parts[p].used = true;
-            return CW_OK;
-        }
+        if (strlen(parts[p].name) == bare && strncmp(parts[p].name, name, bare) == 0)
+            return put_value(out, text, name + bare, &parts[p], err);
     return unknown_part(text, name, length, parts, part_count, err);
 }
 

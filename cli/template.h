@@ -8,13 +8,14 @@
  */
 typedef struct cli_part {
     const char *name, *value;
+    bool number; /* it may have a width: {step:04d} */
     bool used;
 } cli_part;
 
 /* The text with every {name} replaced by its value; {{ stands for a brace. Free it with free().
  * Sets used of the parts it holds.
- * Returns CW_ERR_ARGUMENT, with the names there are, for one that is none of the parts;
- *         CW_ERR_NO_MEMORY */
+ * Returns CW_ERR_ARGUMENT, with the names there are, for one that is none of the parts, and for
+ *         a width that is none; CW_ERR_NO_MEMORY */
 cw_status cli_fill_template(const char *text, cli_part *parts, size_t part_count, char **out,
                             cw_error *err);
 

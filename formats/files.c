@@ -53,7 +53,7 @@ static int compare_names(const void *a, const void *b)
     return cwi_natural_order(*(char *const *)a, *(char *const *)b);
 }
 
-static void sort(cwi_names *names)
+void cwi_files_sort(cwi_names *names)
 {
     if (names->count)
         qsort(names->items, names->count, sizeof *names->items, compare_names);
@@ -185,7 +185,7 @@ static cw_status list(listing *l, const char *prefix, int depth, cw_error *err)
 static cw_status list_all(listing *l, cw_error *err)
 {
     cw_status st = list(l, "", 0, err);
-    sort(l->names);
+    cwi_files_sort(l->names);
     return st;
 }
 
@@ -211,7 +211,7 @@ static cw_status match(const char *pattern, cwi_names *names, cw_error *err)
     globfree(&found);
     if (st == CW_OK && names->count == 0)
         return cw_fail(err, CW_ERR_IO, "no file matches");
-    sort(names);
+    cwi_files_sort(names);
     return st;
 }
 

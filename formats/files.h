@@ -20,6 +20,9 @@ bool cwi_files_is_pattern(const char *path);
 cw_status cwi_files_find(cwi_input *in, const char *path, bool deep, cwi_names *names,
                          size_t *links, cw_error *err);
 
+/* Puts names into natural order. */
+void cwi_files_sort(cwi_names *names);
+
 /* Adds the files in the folder of an open input, and no deeper. */
 cw_status cwi_files_beside(const cwi_input *in, cwi_names *names, cw_error *err);
 

@@ -219,6 +219,91 @@ void add_piece(tinygltf::Model &model, const cwi_gltf_piece &piece, size_t left,
         model.scenes[0].nodes.push_back(index);
 }
 
+// A view of floats that are no attributes.
+int add_key_view(tinygltf::Model &model, uint64_t at, uint64_t floats)
+{
+    tinygltf::BufferView view;
+    view.buffer = 0;
+    view.byteOffset = size_t(at);
+    view.byteLength = size_t(floats * sizeof(float));
+    model.bufferViews.push_back(view);
+    return int(model.bufferViews.size()) - 1;
+}
+
+int add_key_accessor(tinygltf::Model &model, int view, size_t first, size_t count, int numbers)
+{
+    tinygltf::Accessor accessor;
+    accessor.bufferView = view;
+    accessor.byteOffset = first * size_t(numbers) * sizeof(float);
+    accessor.componentType = TINYGLTF_COMPONENT_TYPE_FLOAT;
+    accessor.type = numbers == 1 ? TINYGLTF_TYPE_SCALAR : TINYGLTF_TYPE_VEC3;
+    accessor.count = count;
+    model.accessors.push_back(accessor);
+    return int(model.accessors.size()) - 1;
+}
+
+// Pieces that begin and end alike share the accessor of their scales.
+int find_scales(tinygltf::Model &model, int view, const cwi_gltf_piece &piece)
+{
+    const size_t offset = piece.first_scale * 3 * sizeof(float);
+    for (size_t i = 0; i < model.accessors.size(); i++)
+        if (model.accessors[i].bufferView == view && model.accessors[i].byteOffset == offset)
+            return int(i);
+    return add_key_accessor(model, view, piece.first_scale, piece.time_count, 3);
+}
+
+// A node above that of a piece, which the animation scales: the piece's own stays exact. Who
+// plays no animation sees the first.
+void add_step(tinygltf::Model &model, const cwi_gltf_piece &piece, int child)
+{
+    tinygltf::Node node;
+    node.name = piece.part->name;
+    node.children = {child};
+    if (child > 0)
+        node.scale = {0, 0, 0};
+    node.extras = tinygltf::Value(Object{{"time_s", tinygltf::Value(piece.part->time_s)}});
+    model.nodes.push_back(node);
+    model.scenes[0].nodes.push_back(int(model.nodes.size()) - 1);
+}
+
+void add_channel(tinygltf::Animation &animation, int times, int scales, int node)
+{
+    tinygltf::AnimationSampler sampler;
+    sampler.input = times;
+    sampler.output = scales;
+    sampler.interpolation = "STEP";
+    animation.samplers.push_back(sampler);
+    tinygltf::AnimationChannel channel;
+    channel.sampler = int(animation.samplers.size()) - 1;
+    channel.target_node = node;
+    channel.target_path = "scale";
+    animation.channels.push_back(channel);
+}
+
+void add_animation(tinygltf::Model &model, const cwi_gltf_document &document)
+{
+    const size_t scales = document.scale_count * 3;
+    const int scale_view = add_key_view(model, document.keys_at, scales);
+    size_t first = 0, total = 0;
+    for (size_t p = 0; p < document.count; p++)
+        total += document.pieces[p].time_count;
+    const int time_view = add_key_view(model, document.keys_at + scales * sizeof(float), total);
+    tinygltf::Animation animation;
+    animation.name = "steps";
+    model.scenes[0].nodes.clear();
+    for (size_t p = 0; p < document.count; p++) {
+        const cwi_gltf_piece &piece = document.pieces[p];
+        const int times = add_key_accessor(model, time_view, first, piece.time_count, 1);
+        model.accessors.back().minValues = {double(piece.times[0])};
+        model.accessors.back().maxValues = {double(piece.times[piece.time_count - 1])};
+        add_step(model, piece, int(p));
+        add_channel(animation, times, find_scales(model, scale_view, piece),
+                    int(model.nodes.size()) - 1);
+        first += piece.time_count;
+    }
+    model.animations.push_back(animation);
+}
+
 void use_extension(tinygltf::Model &model, const char *name)
 {
     model.extensionsUsed.push_back(name);
@@ -252,6 +337,8 @@ tinygltf::Model make_model(const cwi_gltf_document &document)
     model.defaultScene = 0;
     for (size_t p = 0; p < document.count; p++)
         add_piece(model, document.pieces[p], document.count - p, document.local_origin);
+    if (document.end_s > 0)
+        add_animation(model, document);
     if (has_levels(document))
         model.extensionsUsed.push_back(GLTF_LOD); // readers may do without
     if (document.quantized)

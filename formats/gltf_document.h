@@ -40,6 +40,8 @@ typedef struct cwi_gltf_piece {
     bool translucent;
     uint64_t draco_at, draco; /* where Draco's bytes are, and how many; 0: not Draco's */
     cwi_draco_ids ids;
+    float times[4]; /* keys of its scale, if there is an animation: seconds, ... */
+    size_t time_count, first_scale; /* ... and which of the scales belongs to the first */
 } cwi_gltf_piece;
 
 typedef struct cwi_gltf_document {
@@ -48,9 +50,12 @@ typedef struct cwi_gltf_document {
     const cw_provenance *provenance;
     size_t provenance_count;
     const double *local_origin; /* told in the extras of nodes; NULL: applied */
-    bool quantized;             /* integers for positions or normals: KHR_mesh_quantization */
-    uint64_t bytes;             /* of the buffer */
-    uint64_t unpacked;          /* meshopt: of the buffer that is never there; else 0 */
+    double end_s;               /* of the animation that shows one piece at a time; 0: none */
+    uint64_t keys_at;   /* where its numbers are: so many scales, then the times of ... */
+    size_t scale_count; /* ... every piece */
+    bool quantized;     /* integers for positions or normals: KHR_mesh_quantization */
+    uint64_t bytes;     /* of the buffer */
+    uint64_t unpacked;  /* meshopt: of the buffer that is never there; else 0 */
 } cwi_gltf_document;
 
 #ifdef __cplusplus

@@ -73,6 +73,15 @@ static cw_status set_place(cwi_gltf_instance *at, const double *world, cw_mesh_f
     return CW_OK;
 }
 
+/* A scale of 0 along all axes is how an animation hides what is not to be seen now. */
+static bool is_hidden(const double *world)
+{
+    for (int i = 0; i < 12; i++)
+        if (i % 4 != 3 && world[i] != 0)
+            return false;
+    return true;
+}
+
 /* A node with its children to be visited. */
 typedef struct visit {
     int node, parent;
@@ -101,6 +110,10 @@ static cw_status enter_node(cwi_gltf_reader *r, visit v, bool *visited, cw_mesh_
     if ((size_t)n->mesh >= scene->mesh_count)
         return cw_fail(err, CW_ERR_FORMAT, "node %d names mesh %d; there are %zu", v.node,
                        n->mesh, scene->mesh_count);
+    if (is_hidden(r->world[v.node])) {
+        said->hidden++;
+        return CW_OK;
+    }
     cwi_gltf_instance *at = &r->instances[r->instance_count++];
     *at = (cwi_gltf_instance){.mesh = n->mesh, .node = n};
     return set_place(at, r->world[v.node], said, err);

@@ -21,6 +21,8 @@ typedef struct cwi_gltf_plan {
     cwi_grid grid;          /* bits 0: positions are as they were */
     cwi_gltf_block *blocks; /* of the whole buffer, one behind another; NULL: as planned */
     size_t block_count, block_room;
+    unsigned char *keys; /* of the animation: behind all else in the buffer; NULL: none */
+    size_t keys_size;
     unsigned char linear[256]; /* of sRGB */
 } cwi_gltf_plan;
 
@@ -37,6 +39,9 @@ void cwi_gltf_plan_arrays(const cwi_gltf_plan *plan, cwi_gltf_piece *piece);
 
 /* Rounds, compresses and verifies; fills pieces and blocks. As cwi_gltf_plan_make(). */
 cw_status cwi_gltf_compress(cwi_gltf_plan *plan, const cw_write_desc *desc, cw_error *err);
+
+/* Plans the animation that shows the parts, if there is one, behind what is planned already. */
+cw_status cwi_gltf_plan_animation(cwi_gltf_plan *plan, cw_error *err);
 
 /* Puts element i of an array at to: array->stride bytes. */
 void cwi_gltf_put(const cwi_gltf_plan *plan, const cwi_gltf_piece *piece,

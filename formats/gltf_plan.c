@@ -24,6 +24,7 @@ void cwi_gltf_plan_free(cwi_gltf_plan *plan)
     for (size_t i = 0; plan->own && i < plan->parts.count; i++)
         cw_mesh_free(&plan->own[i]);
     cwi_free(plan->blocks);
+    cwi_free(plan->keys);
     cwi_free(plan->own);
     cwi_free(plan->pieces);
     cwi_free(plan->parts.items);
@@ -273,6 +274,8 @@ cw_status cwi_gltf_plan_make(cwi_gltf_plan *plan, const cwi_parts *parts,
             cwi_gltf_plan_arrays(plan, &plan->pieces[p]);
     if (st == CW_OK)
         st = lay_out(plan, err);
+    if (st == CW_OK)
+        st = cwi_gltf_plan_animation(plan, err);
     for (size_t p = 0; st == CW_OK && p < parts->count; p++) {
         cwi_gltf_piece *piece = &plan->pieces[p];
         if (!piece->draco)

@@ -122,6 +122,8 @@ static cw_status push_buffer(pipe *p, const cwi_gltf_plan *plan, cw_error *err)
     for (size_t n = 0; !plan->blocks && n < plan->parts.count; n++)
         for (size_t a = 0; st == CW_OK && a < plan->pieces[n].array_count; a++)
             st = push_array(p, plan, &plan->pieces[n], &plan->pieces[n].arrays[a], err);
+    if (st == CW_OK)
+        st = push(p, plan->keys, plan->keys_size, err);
     return st == CW_OK ? flush(p, err) : st;
 }
 

@@ -17,6 +17,7 @@ typedef struct writer {
     bool text;                           /* it is text, or can be */
     bool compresses;                     /* it has compressed forms */
     bool levels;                         /* it has levels of detail */
+    bool animates;                       /* it can show parts one after another */
 } writer;
 
 static const writer writers[] = {
@@ -25,13 +26,15 @@ static const writer writers[] = {
      .prepare = cwi_gltf_prepare,
      .own_axes = true,
      .compresses = true,
-     .levels = true},
+     .levels = true,
+     .animates = true},
     {.format = "gltf",
      .write = cwi_gltf_write,
      .prepare = cwi_gltf_prepare,
      .own_axes = true,
      .compresses = true,
      .levels = true,
+     .animates = true,
      .text = true},
     {.format = "stl", .write = cwi_stl_write, .text = true},
     {.format = "ply", .write = cwi_ply_write, .text = true},
@@ -189,6 +192,14 @@ static cw_status check_compression(const writer *w, const cw_write_desc *d, cw_e
                    w->format);
 }
 
+static cw_status check_animation(const writer *w, const cw_write_desc *d, cw_error *err)
+{
+    return !d->animated || w->animates
+               ? CW_OK
+               : cw_fail(err, CW_ERR_ARGUMENT, "%s has no animation; glTF (.glb, .gltf) has",
+                         w->format);
+}
+
 /* How a file will be written. */
 typedef struct target {
     const cw_format *format;
@@ -206,6 +217,8 @@ static cw_status find_writer(const char *path, const cw_write_desc *d, target *t
     cw_status st = check_axes(t->writer, &d->axes, err);
     if (st == CW_OK)
         st = check_text(t->writer, d, err);
+    if (st == CW_OK)
+        st = check_animation(t->writer, d, err);
     if (st == CW_OK)
         st = check_compression(t->writer, d, err);
     return st == CW_OK && t->writer->prepare ? t->writer->prepare(err) : st;

@@ -27,6 +27,8 @@ typedef struct cwi_part {
     size_t group;                                 /* likewise */
     size_t level;                                 /* of detail, as in cw_part */
     double max_error_mm, rms_error_mm;            /* the same */
+    double time_s;                                /* the same */
+    double from_s, until_s;                       /* in sight; from the animation's start */
     char name[CWI_NAME_BYTES];                    /* printable UTF-8 on one line */
 } cwi_part;
 
@@ -35,6 +37,7 @@ typedef struct cwi_parts {
     cwi_part *items;
     size_t count;
     uint64_t vertices, triangles; /* of all */
+    double end_s;                 /* of the animation that shows them; 0: there is none */
 } cwi_parts;
 
 /* Takes bytes on their way into a file; to is its own. */

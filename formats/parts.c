@@ -137,6 +137,7 @@ static void add_part(cwi_parts *parts, const cw_part *given, const double origin
     part->level = given->level;
     part->max_error_mm = given->max_error_mm;
     part->rms_error_mm = given->rms_error_mm;
+    part->time_s = given->time_s;
     part->mesh = *mesh;
     part->turn = cwi_turn_to(axes);
     part->first = parts->vertices;
@@ -148,12 +149,47 @@ static void add_part(cwi_parts *parts, const cw_part *given, const double origin
     parts->triangles += mesh->triangle_count;
 }
 
+/* When a part comes into sight, or all is over, counted from the start. */
+static double begin_s(const cw_part *parts, size_t count, size_t i)
+{
+    const double last = parts[count - 1].time_s - parts[0].time_s;
+    return i < count ? parts[i].time_s - parts[0].time_s
+                     : last + (parts[count - 1].time_s - parts[count - 2].time_s);
+}
+
+static void set_sight(cwi_part *placed, const cw_part *parts, size_t count, size_t i)
+{
+    placed->from_s = begin_s(parts, count, i);
+    placed->until_s = begin_s(parts, count, i + 1);
+}
+
+static cw_status check_times(const cw_part *parts, size_t count, cw_error *err)
+{
+    if (count < 2)
+        return cw_fail(err, CW_ERR_ARGUMENT, "an animation of %zu part; it has at least two",
+                       count);
+    for (size_t i = 0; i < count; i++) {
+        if (parts[i].level > 0)
+            return cw_fail(err, CW_ERR_ARGUMENT, "an animation of levels of detail");
+        const float here = (float)begin_s(parts, count, i);
+        const float next = (float)begin_s(parts, count, i + 1);
+        if (!isfinite(next) || !(next > here))
+            return cw_fail(err, CW_ERR_ARGUMENT,
+                           "part %zu of an animation stands at %g s and the next at %g s after "
+                           "the first; times must ascend",
+                           i, (double)here, (double)next);
+    }
+    return CW_OK;
+}
+
 cw_status cwi_parts_place(const cw_part *parts, size_t count, const cw_write_desc *desc,
                           unsigned keeps, const char *name, cwi_parts *placed, double origin[3],
                           cw_error *err)
 {
     static const double zero[3] = {0};
     cw_status st = check_parts(parts, count, err);
+    if (st == CW_OK && desc->animated)
+        st = check_times(parts, count, err);
     if (st != CW_OK)
         return st;
     placed->items = cwi_alloc_zeroed(count, sizeof *placed->items);
@@ -164,7 +200,10 @@ cw_status cwi_parts_place(const cw_part *parts, size_t count, const cw_write_des
         if (parts[i].mesh->triangle_count) {
             add_part(placed, &parts[i], from, &desc->axes);
             name_part(&placed->items[placed->count - 1], parts[i].name, name, i + 1, count);
+            if (desc->animated)
+                set_sight(&placed->items[placed->count - 1], parts, count, i);
         }
+    placed->end_s = desc->animated ? begin_s(parts, count, count) : 0;
     choose_arrays(placed, keeps);
     cwi_turn_point(&placed->items->turn, from, origin);
     return CW_OK;

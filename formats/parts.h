@@ -9,7 +9,8 @@
 /* Fills in the parts with triangles, and the origin that all of them count from, as the file
  * counts it (zeros unless desc->local). Unless each may have arrays of its own, those that one
  * of them lacks are left out. Free them with cwi_parts_free(). Returns CW_ERR_ARGUMENT as
- * cw_mesh_check(), and when no part has triangles; CW_ERR_NO_MEMORY
+ * cw_mesh_check(), and when no part has triangles, and for parts that no
+ * animation can show; CW_ERR_NO_MEMORY
  */
 cw_status cwi_parts_place(const cw_part *parts, size_t count, const cw_write_desc *desc,
                           unsigned keeps, const char *name, cwi_parts *placed, double origin[3],

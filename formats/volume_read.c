@@ -280,3 +280,104 @@ cw_status cw_series_list(const char *path, const cw_read_desc *desc, cw_series *
     close_path(&o);
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
 }
+
+/* --- time series ---------------------------------------------------------------------------
+ */
+
+typedef enum kind { UNKNOWN, SLICE, VOLUME } kind;
+
+/* A DICOM image is a slice of its series; a TIFF file is one when it has a single page. */
+static kind kind_of(const char *path, const cw_read_desc *desc)
+{
+    cw_read_desc d = *desc;
+    opened o;
+    cw_volume shape;
+    if (cwi_is_folder(path))
+        return VOLUME;
+    const bool known = open_path(&o, path, desc, NULL) == CW_OK;
+    const bool slices = known && o.reader->read;
+    const bool pages = slices && o.reader->read == cwi_tiff_read;
+    close_path(&o);
+    d.header_only = true;
+    d.note = NULL;
+    if (!pages)
+        return slices ? SLICE : known ? VOLUME : UNKNOWN;
+    const cw_status st = cw_volume_read(path, &d, &shape, NULL, NULL);
+    return st == CW_OK && shape.dim[2] * shape.steps > 1 ? VOLUME : SLICE;
+}
+
+static cw_status add_path(const char *path, cwi_names *names, cw_error *err)
+{
+    cwi_input in = {0};
+    cwi_names found = {0};
+    size_t links;
+    if (!cwi_files_is_pattern(path))
+        return cwi_names_add(names, path, err);
+    cw_status st = cwi_files_find(&in, path, false, &found, &links, err);
+    cwi_input_close(&in);
+    if (st != CW_OK)
+        st = cwi_fail_in(err, st, path);
+    for (size_t i = 0; i < found.count && st == CW_OK; i++)
+        st = cwi_names_add(names, found.items[i], err);
+    cwi_names_free(&found);
+    return st;
+}
+
+/* What a pattern stands for is a series when none of it is a slice, and the first file is a
+ * volume. What is neither is for cw_volume_read() to refuse. */
+static bool is_series(const cwi_names *names, const cw_read_desc *desc)
+{
+    for (size_t i = 0; i < names->count; i++)
+        if (kind_of(names->items[i], desc) == SLICE)
+            return false;
+    return names->count > 0 && kind_of(names->items[0], desc) == VOLUME;
+}
+
+static cw_status refuse_slices(const cwi_names *names, const cw_read_desc *desc, cw_error *err)
+{
+    static const char hint[] = "slices in files of their own are one argument: name their "
+                               "folder, or put quotes around a pattern";
+    if (desc->raw)
+        return cw_fail(err, CW_ERR_ARGUMENT, "%zu files with one layout: %s", names->count,
+                       hint);
+    for (size_t i = 0; i < names->count; i++)
+        if (kind_of(names->items[i], desc) == SLICE)
+            return cw_fail(err, CW_ERR_ARGUMENT,
+                           "%s: is a slice, and of several files each must be a volume; %s",
+                           names->items[i], hint);
+    return CW_OK;
+}
+
+cw_status cw_steps_list(const char *const *paths, size_t path_count, const cw_read_desc *desc,
+                        char ***files, size_t *count, cw_error *err)
+{
+    const cw_read_desc d = desc ? *desc : (cw_read_desc){0};
+    const bool several = path_count > 1;
+    cwi_names names = {0};
+    cw_status st = CW_OK;
+    *files = NULL;
+    *count = 0;
+    if (!several && (d.raw || !cwi_files_is_pattern(paths[0])))
+        return CW_OK;
+    for (size_t i = 0; i < path_count && st == CW_OK; i++)
+        st = add_path(paths[i], &names, err);
+    if (!several && (st != CW_OK || !is_series(&names, &d))) {
+        cwi_names_free(&names);
+        return CW_OK;
+    }
+    if (st == CW_OK)
+        st = refuse_slices(&names, &d, err);
+    if (st != CW_OK) {
+        cwi_names_free(&names);
+        return st;
+    }
+    cwi_files_sort(&names);
+    *files = names.items;
+    *count = names.count;
+    return CW_OK;
+}
+
+void cw_steps_free(char **files, size_t count)
+{
+    cwi_names_free(&(cwi_names){files, count});
+}

@@ -91,6 +91,23 @@ typedef struct cw_read_desc {
 CW_API cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *volume,
                                 const char **format, cw_error *err);
 
+/* Lists the files of a time series, of which each is a volume, and a step. Paths name files or
+ * folders of slices, patterns stand for the files that match; numbers in names count as
+ * numbers, so that 2 comes before 10.
+ *
+ * No series, but one volume for cw_volume_read(), is a path that is no pattern, a pattern of
+ * slices (DICOM images, TIFF files of one page), and a pattern with a layout (raw): *count is
+ * 0.
+ *
+ * files    set to an array of *count, to be freed with cw_steps_free()
+ * Returns  CW_ERR_ARGUMENT  several paths, and one is a slice, or there is a layout
+ *          CW_ERR_IO        a pattern among several paths that nothing matches; CW_ERR_LIMIT;
+ *                           CW_ERR_NO_MEMORY */
+CW_API cw_status cw_steps_list(const char *const *paths, size_t path_count,
+                               const cw_read_desc *desc, char ***files, size_t *count,
+                               cw_error *err);
+CW_API void cw_steps_free(char **files, size_t count);
+
 /* One series of images in a folder of DICOM files. */
 typedef struct cw_series {
     char label[32];    /* what cw_read_desc.series takes: its number, and .1, .2 ... when
@@ -168,6 +185,8 @@ typedef struct cw_mesh_file {
     size_t skipped;     /* points, lines and faces of fewer than three corners: left out */
     size_t levels;      /* coarser levels of detail of what was read, at most (MSFT_lod of
                            glTF): no part of its scene, left out */
+    size_t hidden;      /* meshes of glTF that a scale of 0 hides, as those that an animation
+                           shows later: left out */
 } cw_mesh_file;
 
 /* Reads a mesh: all parts of the file, merged, in LPS millimetres.
@@ -186,7 +205,8 @@ typedef struct cw_mesh_file {
  * glTF is in metres, +Y up: its scene is turned to LPS millimetres, (x, y, z) to (1000 x,
  * -1000 z, 1000 y). Nodes place their meshes as often as they say; a mirrored one has its
  * winding turned round, so that triangles stay counter-clockwise from outside. Materials,
- * skins, morph targets and animations are ignored, images never looked at.
+ * skins, morph targets and animations are ignored, images never looked at; what has a scale of
+ * 0 along all axes is hidden, and left out.
  *
  * 3MF places the objects of its build, components and all, in the unit that it names; a
  * mirrored one likewise has its winding turned round. Colours of 3MF are kept when no vertex
@@ -219,6 +239,7 @@ typedef struct cw_part {
                      shown where that is seen small; default: 0, a part by itself */
     double max_error_mm, rms_error_mm; /* of a level: how far it is from the truth; default: 0,
                                           not told */
+    double time_s; /* animated: when it comes into sight, in place of the part before it */
 } cw_part;
 
 /* Reads the parts of a file, each as a mesh: the objects of OBJ, or its groups if it has no
@@ -277,7 +298,9 @@ typedef struct cw_write_desc {
                             whatever that does; default: as many as the tolerance and the shape
                             ask for */
     int level;           /* ... of Draco, 1 (fast) to 10 (small); default 7 */
-    cw_compressed *compressed;       /* filled in; default: none */
+    cw_compressed *compressed; /* filled in; default: none */
+    bool animated; /* of glTF: parts are shown one after another, each at its time_s; default:
+                      all of them at once; CW_ERR_ARGUMENT for other formats */
     const cw_provenance *provenance; /* in the extras of a glTF file; default: none */
     size_t provenance_count;
     cw_progress progress; /* default: none */
@@ -318,8 +341,14 @@ CW_API cw_status cw_mesh_write(const char *path, const cw_mesh *mesh, const cw_w
  * many triangles to an area as level 0 has on all of it. Readers without the extension see
  * level 0 alone, and so does cw_mesh_read().
  *
+ * Animated parts each have a node whose scale an animation holds at 1 from its time until that
+ * of the next, and else at 0; the last stays as long as the one before it. The animation starts
+ * with the first part. One without triangles shows nothing for its time. Who plays no
+ * animation, cw_mesh_read() too, sees the first part that has triangles.
+ *
  * Returns as cw_mesh_write(); CW_ERR_ARGUMENT for levels that do not follow one another, have
- * no triangles, or are for another format */
+ * no triangles, or are for another format; for an animation of fewer than two parts, of levels,
+ * or of times that do not ascend in single precision */
 CW_API cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
                                 const cw_write_desc *desc, cw_error *err);
 

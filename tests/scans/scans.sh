@@ -65,6 +65,23 @@ check_volume() {
     find . -name '*.ply' -exec rm {} +
 }
 
+# check_series START INPUT OPTIONS...: the steps of a series, in one run, have the areas that the rows
+# whose paths start so have one by one, as near as compare.awk asks.
+check_series() {
+    path=$1 options=--steps
+    input=$data/$2
+    shift 2
+    cubewright extract "$input" "$@" --open --local -q --json mesh.json -o '{step}-{level}.ply' 2>err ||
+        { fail "$(cat err)"; return; }
+    awk -F '\t' -v path="$path" '
+        FNR == NR && index($2, path) == 1 { n = split($18, row, ";"); for (i = 1; i <= n; i++) area[++want] = row[i] }
+        FNR != NR && / "area": / { sub(/.*: /, ""); ++got; if ($0 + 0 < 0.95 * area[got] || $0 + 0 > 1.01 * area[got]) {
+            print path ": surface " got " of the series has " $0 + 0 " mm2, alone " area[got]; bad = 1 } }
+        END { if (got != want) print path ": " got + 0 " surfaces, " want " rows"; exit bad || got != want }' \
+        "$here/truth.tsv" mesh.json || failed=1
+    find . -name '*.ply' -exec rm {} +
+}
+
 # Files that look like volumes and are in no row: no failure, but worth a row.
 name_others() {
     find "$data" -type f | awk -F '\t' -v data="$data/" '
@@ -94,6 +111,9 @@ while IFS=$tab read -r reader path options check iso box rest; do
     *) check_volume ;;
     esac
 done <"$here/truth.tsv"
+
+check_series fmri-4d/ fmri-4d/example4d.nii.gz --iso 300 --steps all
+grep -qx vti readers && check_series fingers-series/ 'fingers-series/*.vti' --iso 20,30
 
 name_others
 [ -z "$unread" ] || echo "no reader for:$unread"

@@ -292,6 +292,32 @@ static void levels_of_detail_are_counted_and_left_out(void **state)
     }
 }
 
+/* A scale of 0 hides a node and what is below it; a flat one hides nothing. */
+static void what_has_no_scale_is_hidden(void **state)
+{
+    (void)state;
+    cw_mesh mesh;
+    cw_mesh_file file;
+    cw_error err = {0};
+    assert_ok(read_nodes("\"scenes\":[{\"nodes\":[0,1,3,4]}],\"nodes\":["
+                         "{\"mesh\":0,\"scale\":[0,0,0],\"translation\":[1,2,3]},"
+                         "{\"scale\":[0,0,0],\"children\":[2]},{\"mesh\":0},"
+                         "{\"mesh\":0,\"scale\":[1,0,1]},{\"mesh\":0}]",
+                         &mesh, &file, &err),
+              err);
+    assert_int_equal(file.hidden, 2);
+    assert_int_equal(file.parts, 2);
+    assert_int_equal(mesh.triangle_count, 2);
+    cw_mesh_free(&mesh);
+    assert_ok(read_nodes("\"scenes\":[{\"nodes\":[0]}],"
+                         "\"nodes\":[{\"mesh\":0,\"scale\":[0,0,0]}]",
+                         &mesh, &file, &err),
+              err);
+    assert_int_equal(file.hidden, 1);
+    assert_int_equal(mesh.vertex_count, 0);
+    cw_mesh_free(&mesh);
+}
+
 /* A quarter turn about +Y, and normals that follow; a mirror leaves them outward. */
 static void normals_turn_with_their_node(void **state)
 {
@@ -656,6 +682,7 @@ int main(void)
         TEST(quantized_positions_are_shares_of_the_largest),
         TEST(nodes_place_meshes_and_mirrors_turn_the_winding),
         TEST(levels_of_detail_are_counted_and_left_out),
+        TEST(what_has_no_scale_is_hidden),
         TEST(normals_turn_with_their_node),
         TEST(far_nodes_get_an_origin),
         TEST(what_we_wrote_comes_back_to_the_bit),

@@ -369,12 +369,14 @@ static void memory_may_run_out_anywhere(void **state)
     static const char *const names[] = {"a.stl", "a.obj", "a.glb"};
     pair p;
     make_pair(&p);
+    p.parts[1].time_s = 1;
     for (size_t i = 0; i < 3; i++) {
+        const cw_write_desc desc = {.animated = i == 2};
         bool failed = strcmp(names[i], "a.glb") != 0 || cwi_module_present("gltf");
         for (long n = 0; failed; n++) {
             cw_error err = {0};
             cwi_alloc_fail_after(n);
-            const cw_status st = cw_parts_write(test_path(names[i]), p.parts, 2, NULL, &err);
+            const cw_status st = cw_parts_write(test_path(names[i]), p.parts, 2, &desc, &err);
             failed = cwi_alloc_fail_after(-1);
             assert_int_equal(st, failed ? CW_ERR_NO_MEMORY : CW_OK);
             assert_int_equal(test_folder_entries(), failed ? i : i + 1);
@@ -422,6 +424,176 @@ static void levels_are_named_by_their_first_and_not_read(void **state)
     assert_int_equal(back[0].mesh->triangle_count, 12);
     assert_int_equal(back[1].mesh->triangle_count, 4);
     cw_parts_free(back, count);
+    free_pair(&p);
+}
+
+/* --- animations --------------------------------------------------------------------------- */
+
+enum { SHOWN = 4, NUMBERS = 21 + 10 };
+
+/* A tetrahedron, nothing, a cube, and the tetrahedron again. */
+static void make_frames(const pair *p, const cw_mesh *nothing, cw_part frames[SHOWN])
+{
+    frames[0] = (cw_part){.mesh = &p->tetrahedron, .name = "a", .time_s = 10};
+    frames[1] = (cw_part){.mesh = nothing, .name = "b", .time_s = 10.5};
+    frames[2] = (cw_part){.mesh = &p->cube, .name = "c", .time_s = 11.5};
+    frames[3] = (cw_part){.mesh = &p->tetrahedron, .name = "d", .time_s = 12};
+}
+
+/* The floats at the end of a .glb file. */
+static void last_floats(const char *name, float numbers[NUMBERS])
+{
+    size_t size;
+    char *bytes = test_file_read(test_path(name), &size);
+    memcpy(numbers, bytes + size - NUMBERS * sizeof *numbers, NUMBERS * sizeof *numbers);
+    free(bytes);
+}
+
+/* Scales of a node that is shown in the middle or at the end, each for x, y and z; then times:
+ * the first is seen to 0.5, the cube from 1.5 to 2, the last to 2.5, as long as the one before.
+ */
+static void check_keys(const char *name)
+{
+    static const float scales[] = {0, 1, 0, 0, 0, 1, 1};
+    static const float times[] = {0, 0.5f, 2.5f, 0, 1.5f, 2, 2.5f, 0, 2, 2.5f};
+    float is[NUMBERS];
+    last_floats(name, is);
+    for (size_t i = 0; i < NUMBERS; i++)
+        assert_true(is[i] == (i < 21 ? scales[i / 3] : times[i - 21]));
+}
+
+/* Each sampler: its times, and which of the scales it begins with. */
+static void check_animation(const char *text)
+{
+    static const char *const said[] = {
+        "\"scenes\":[{\"nodes\":[3,4,5]}]",
+        "{\"children\":[0],\"extras\":{\"time_s\":10.0},\"name\":\"a\"}",
+        "{\"children\":[1],\"extras\":{\"time_s\":11.5},\"name\":\"c\",\"scale\":[0.0,0.0,0.0]"
+        "}",
+        "{\"children\":[2],\"extras\":{\"time_s\":12.0},\"name\":\"d\",\"scale\":[0.0,0.0,0.0]"
+        "}",
+        "\"channels\":[{\"sampler\":0,\"target\":{\"node\":3,\"path\":\"scale\"}},"
+        "{\"sampler\":1,\"target\":{\"node\":4,\"path\":\"scale\"}},"
+        "{\"sampler\":2,\"target\":{\"node\":5,\"path\":\"scale\"}}]",
+        "\"byteOffset\":12,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}",
+        "\"componentType\":5126,\"count\":4,\"type\":\"VEC3\"}",
+        "\"byteOffset\":48,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}",
+        "\"componentType\":5126,\"count\":3,\"max\":[2.5],\"min\":[0.0],\"type\":\"SCALAR\"}",
+        "\"byteOffset\":12,\"componentType\":5126,\"count\":4,\"max\":[2.5],\"min\":[0.0]",
+        "\"byteOffset\":28,\"componentType\":5126,\"count\":3,\"max\":[2.5],\"min\":[0.0]",
+        "\"interpolation\":\"STEP\"",
+    };
+    for (size_t i = 0; i < sizeof said / sizeof *said; i++)
+        if (!strstr(text, said[i]))
+            fail_msg("%s is not in %s", said[i], text);
+    assert_null(strstr(text, "extensionsRequired"));
+}
+
+static void an_animation_shows_one_part_after_another(void **state)
+{
+    (void)state;
+    const cw_mesh nothing = {0};
+    const cw_write_desc desc = {.animated = true};
+    pair p;
+    cw_part frames[SHOWN], *back;
+    cw_mesh mesh;
+    cw_mesh_file file;
+    cw_error err = {0};
+    size_t size, count;
+    if (!cwi_module_present("gltf"))
+        return;
+    make_frames(make_pair(&p), &nothing, frames);
+    assert_ok(cw_parts_write(test_path("a.glb"), frames, SHOWN, &desc, &err), err);
+    check_keys("a.glb");
+    assert_ok(cw_parts_write(test_path("a.gltf"), frames, SHOWN, &desc, &err), err);
+    char *text = test_file_read(test_path("a.gltf"), &size);
+    check_animation(text);
+    free(text);
+    assert_ok(cw_mesh_read(test_path("a.glb"), NULL, &mesh, &file, &err), err);
+    assert_int_equal(file.hidden, 2);
+    assert_int_equal(file.parts, 1);
+    assert_int_equal(mesh.triangle_count, 4);
+    assert_memory_equal(mesh.positions, p.tetrahedron.positions, 4 * 12);
+    assert_memory_equal(mesh.origin, p.tetrahedron.origin, sizeof mesh.origin);
+    cw_mesh_free(&mesh);
+    assert_ok(cw_parts_read(test_path("a.gltf"), NULL, &back, &count, &file, &err), err);
+    assert_int_equal(count, 1);
+    assert_int_equal(file.hidden, 2);
+    cw_parts_free(back, count);
+    free_pair(&p);
+}
+
+/* One that is empty comes first: then nothing is seen, and who plays nothing sees the next. */
+static void an_animation_may_begin_with_nothing_and_be_compressed(void **state)
+{
+    (void)state;
+    static const float times[] = {0, 0.5f, 1, 2, 0, 1, 1.5f, 2}; /* of a cube, and another */
+    const cw_mesh nothing = {0};
+    pair p;
+    cw_part frames[SHOWN];
+    cw_error err = {0};
+    make_frames(make_pair(&p), &nothing, frames);
+    frames[3].mesh = &nothing;
+    frames[0] = frames[1];
+    frames[1] = frames[2];
+    frames[1].time_s = 11;
+    for (int kind = CW_COMPRESS_NONE; kind <= CW_COMPRESS_MESHOPT; kind++) {
+        const cw_write_desc desc = {.animated = true, .compression = (cw_compression)kind};
+        float is[NUMBERS];
+        cw_mesh mesh;
+        cw_mesh_file file;
+        const cw_status st = cw_parts_write(test_path("a.glb"), frames, SHOWN, &desc, &err);
+        if (st == CW_ERR_UNSUPPORTED)
+            continue;
+        assert_ok(st, err);
+        last_floats("a.glb", is);
+        for (size_t i = 0; i < 8; i++)
+            assert_true(is[NUMBERS - 8 + i] == times[i]);
+        assert_ok(cw_mesh_read(test_path("a.glb"), NULL, &mesh, &file, &err), err);
+        assert_int_equal(file.hidden, 1);
+        assert_int_equal(mesh.triangle_count, 12);
+        cw_mesh_free(&mesh);
+    }
+    free_pair(&p);
+}
+
+static void animations_that_cannot_be_are_refused(void **state)
+{
+    (void)state;
+    const cw_mesh nothing = {0};
+    const cw_write_desc desc = {.animated = true};
+    pair p;
+    cw_part frames[SHOWN];
+    cw_error err = {0};
+    make_frames(make_pair(&p), &nothing, frames);
+    assert_fails(cw_parts_write(test_path("a.stl"), frames, SHOWN, &desc, &err),
+                 CW_ERR_ARGUMENT, "stl has no animation; glTF (.glb, .gltf) has", err);
+    assert_fails(cw_mesh_write_check(test_path("a.vtp"), &desc, &err), CW_ERR_ARGUMENT,
+                 "vtp has no animation", err);
+    if (cwi_module_present("gltf")) {
+        const struct {
+            size_t part, count;
+            double time_s;
+            const char *words;
+        } rows[] = {
+            {2, SHOWN, 10.5, "part 1 of an animation stands at 0.5 s and the next at 0.5"},
+            {1, SHOWN, 9, "part 0 of an animation stands at 0 s and the next at -1"},
+            {3, SHOWN, 11.5 + 1e-9, "times must ascend"},
+            {3, SHOWN, 1e300, "part 2 of an animation"},
+            {2, SHOWN, NAN, "times must ascend"},
+            {0, 1, 10, "an animation of 1 part; it has at least two"}};
+        for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+            make_frames(&p, &nothing, frames);
+            frames[rows[i].part].time_s = rows[i].time_s;
+            assert_fails(cw_parts_write(test_path("a.glb"), frames, rows[i].count, &desc, &err),
+                         CW_ERR_ARGUMENT, rows[i].words, err);
+        }
+        make_frames(&p, &nothing, frames);
+        frames[3].level = 1;
+        assert_fails(cw_parts_write(test_path("a.glb"), frames, SHOWN, &desc, &err),
+                     CW_ERR_ARGUMENT, "an animation of levels", err);
+    }
+    assert_int_equal(test_folder_entries(), 0);
     free_pair(&p);
 }
 
@@ -507,6 +679,9 @@ int main(void)
         TEST(memory_may_run_out_anywhere),
         TEST(levels_are_named_by_their_first_and_not_read),
         TEST(levels_out_of_place_are_refused),
+        TEST(an_animation_shows_one_part_after_another),
+        TEST(an_animation_may_begin_with_nothing_and_be_compressed),
+        TEST(animations_that_cannot_be_are_refused),
         TEST(an_order_for_drawing_changes_nothing_else),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

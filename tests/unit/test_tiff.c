@@ -1070,6 +1070,53 @@ static void numbers_in_names_count_as_numbers(void **state)
     }
 }
 
+/* Files of one page are slices, those of several are volumes: the steps of a series. */
+static void slices_are_one_volume_and_stacks_are_steps(void **state)
+{
+    (void)state;
+    const cw_raw_layout layout = {.dim = {COLUMNS, ROWS, 2}};
+    const cw_read_desc raw = {.raw = &layout};
+    char slices[256], slice[256], one[256], other[256], stacks[256], **files;
+    size_t count;
+    cw_error err = {0};
+    save_slice("cut_8.tif", 10);
+    save_slice("cut_9.tif", 20);
+    for (int n = 2; n <= 10; n += 8) {
+        char name[32];
+        test_tiff t = {0};
+        snprintf(name, sizeof name, "stack%d.tif", n);
+        add_bytes(&t, (test_page){0}, 1);
+        add_bytes(&t, (test_page){0}, 2);
+        save(&t, name);
+    }
+    snprintf(slices, sizeof slices, "%s", test_path("cut_*.tif"));
+    snprintf(slice, sizeof slice, "%s", test_path("cut_8.tif"));
+    snprintf(one, sizeof one, "%s", test_path("stack2.tif"));
+    snprintf(other, sizeof other, "%s", test_path("stack10.tif"));
+    snprintf(stacks, sizeof stacks, "%s", test_path("stack*.tif"));
+    const char *const single[] = {slices, one, test_path("."), test_path("nothing*.tif")};
+    for (size_t i = 0; i < 4; i++) {
+        assert_ok(cw_steps_list(&single[i], 1, NULL, &files, &count, &err), err);
+        assert_int_equal(count, 0);
+        assert_null(files);
+    }
+    const char *const series[][2] = {{stacks, NULL}, {other, one}};
+    for (size_t i = 0; i < 2; i++) {
+        assert_ok(cw_steps_list(series[i], i + 1, NULL, &files, &count, &err), err);
+        assert_int_equal(count, 2);
+        assert_string_equal(files[0], one);
+        assert_string_equal(files[1], other);
+        cw_steps_free(files, count);
+    }
+    const char *const mixed[] = {one, slice};
+    assert_fails(cw_steps_list(mixed, 2, NULL, &files, &count, &err), CW_ERR_ARGUMENT,
+                 "cut_8.tif: is a slice, and of several files each must be a volume", err);
+    assert_fails(cw_steps_list(series[1], 2, &raw, &files, &count, &err), CW_ERR_ARGUMENT,
+                 "2 files with one layout", err);
+    assert_ok(cw_steps_list(series[0], 1, &raw, &files, &count, &err), err);
+    assert_int_equal(count, 0);
+}
+
 static void missing_slices_are_for_gaps_to_decide(void **state)
 {
     (void)state;
@@ -1363,6 +1410,7 @@ int main(void)
         TEST(ome_counts_samples_as_channels),
         TEST(ome_that_contradicts_the_file_is_not_believed),
         TEST(numbers_in_names_count_as_numbers),
+        TEST(slices_are_one_volume_and_stacks_are_steps),
         TEST(missing_slices_are_for_gaps_to_decide),
         TEST(names_that_are_no_row_are_taken_in_their_order),
         TEST(slices_that_do_not_belong_together_are_named),
