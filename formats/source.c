@@ -475,7 +475,9 @@ static cw_status load_voxels(const cwi_source *src, const cwi_source *wanted,
     v.data = v.owned;
     reading r = {.src = src, .progress = &desc->progress, .to = v.owned};
     cwi_runs_plan(&r.runs, src, desc->region);
-    cw_status st = walk_parts(src, in, &r, err);
+    cw_status st = cwi_volume_own_coordinates(&v, err);
+    if (st == CW_OK)
+        st = walk_parts(src, in, &r, err);
     if (st == CW_OK)
         st = cwi_progress(&desc->progress, "reading", 1, err);
     if (st == CW_OK)
