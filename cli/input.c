@@ -45,7 +45,8 @@ const char *cli_describe(const cli_volume *volume)
         n += snprintf(text + n, sizeof text - (size_t)n, ", %zu components", v->components);
     if (v->steps > 1)
         n += snprintf(text + n, sizeof text - (size_t)n, ", %zu time steps", v->steps);
-    snprintf(text + n, sizeof text - (size_t)n, ", %.6g x %.6g x %.6g %s", s[0], s[1], s[2],
+    snprintf(text + n, sizeof text - (size_t)n, ", %s%.6g x %.6g x %.6g %s",
+             cwi_is_rectilinear(v) ? "rectilinear, on average " : "", s[0], s[1], s[2],
              v->known & CW_KNOWN_UNIT ? "mm" : "(no unit given: taken as mm)");
     return text;
 }
@@ -210,6 +211,7 @@ cw_read_desc cli_read_desc(const cli_input *input)
     cw_read_desc desc = {.reader = input->reader,
                          .allow_external = input->allow_external,
                          .series = input->series,
+                         .array = input->array,
                          .gaps = (cw_gaps)input->gaps,
                          .tilt = (cw_tilt)input->tilt,
                          .no_sandbox = input->no_sandbox,

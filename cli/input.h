@@ -9,7 +9,7 @@
 #include <cubewright/formats.h>
 
 typedef struct cli_input {
-    const char *reader, *raw, *series;
+    const char *reader, *raw, *series, *array;
     int gaps, tilt; /* cw_gaps, cw_tilt */
     bool no_sandbox;
     size_t timeout_s;
@@ -48,6 +48,12 @@ typedef struct cli_input {
          "N",                                                                                  \
          "of a DICOM folder: its number as 'info' lists it, or UID (the only one)",            \
          CLI_INPUT_ROW(args, series)},                                                         \
+        {"array",                                                                              \
+         0,                                                                                    \
+         CLI_TEXT,                                                                             \
+         "NAME",                                                                               \
+         "of files with several: that one (the file's choice, else the first of one value)",   \
+         CLI_INPUT_ROW(args, array)},                                                          \
         {"gaps",                                                                               \
          0,                                                                                    \
          CLI_CHOICE,                                                                           \

@@ -183,6 +183,7 @@ cw_status cw_volume_resolve(const cw_volume *in, cw_volume *out, cw_error *err)
 
 cw_status cwi_volume_own_coordinates(cw_volume *v, cw_error *err)
 {
+    v->owned_coordinates = NULL;
     if (!cwi_is_rectilinear(v))
         return CW_OK;
     double *all = cwi_alloc_array(v->dim[0] + v->dim[1] + v->dim[2], sizeof *all), *to = all;

@@ -71,7 +71,7 @@ static inline double cwi_coordinate(const cw_volume *v, int axis, ptrdiff_t i, d
 /* The (fractional) index of a coordinate, the other way round. */
 CW_API double cwi_coordinate_index(const cw_volume *v, int axis, double coordinate);
 
-/* Makes coordinates that a volume borrows its own. CW_ERR_NO_MEMORY */
+/* Gives a volume, the copy of another, coordinates of its own. CW_ERR_NO_MEMORY */
 CW_API cw_status cwi_volume_own_coordinates(cw_volume *v, cw_error *err);
 
 /* Fails with CW_ERR_UNSUPPORTED for what is not made for rectilinear grids. */

@@ -44,6 +44,8 @@ typedef struct cw_read_desc {
     uint64_t max_voxels;      /* default 2^40 */
     uint64_t max_bytes;       /* of voxels in memory; default: no limit */
     double spacing_mm[3];     /* in place of the file's; default: all 0, the file's */
+    const char *array;        /* by its name, where files have several; default: the one that
+                                 the file names, else the first of one value */
 
     /* Slices in files of their own (TIFF, DICOM). */
     const char *series; /* label or UID, as of cw_series_list(); default: the only one */
