@@ -225,6 +225,7 @@ cw_read_desc cli_read_desc(const cli_input *input)
 
 void cli_free_volume(cli_volume *volume)
 {
+    cw_volume_free(&volume->whole);
     cw_volume_free(&volume->voxels);
 }
 

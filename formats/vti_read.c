@@ -1,14 +1,11 @@
 /* VTK's XML image data (.vti) and rectilinear grids (.vtr). The elements are read as a stream:
  * the text of arrays only passes through, and reading stops where appended data start, which
  * need be no XML at all. */
-#include "core/memory.h"
 #include "core/status.h"
-#include "core/volume.h"
 #include "formats/readers.h"
 #include "formats/vti.h"
+#include "formats/vtk_grid.h"
 
-#include <math.h>
-#include <stdio.h>
 #include <string.h>
 
 enum { MOST_ELEMENTS = 10000 };
@@ -201,84 +198,23 @@ static cw_status check_found(const cwi_vti *v, cw_error *err)
 
 /* --- coordinates -------------------------------------------------------------------------- */
 
-/* All that an array of numbers holds: a volume of one row. */
-static cw_status load_numbers(const cwi_vti *v, const cwi_vtk_array *array, size_t count,
-                              const cwi_input *in, cw_volume *numbers, cw_error *err)
-{
-    const cw_read_desc desc = {0};
-    const cwi_axis axis = {CWI_AXIS_X, count};
-    cwi_source src = {.size_field = "Extent",
-                      .noun = "coordinates",
-                      .shape = {.slope = 1, .type = array->type}};
-    cw_status st = cwi_source_set_axes(&src, &axis, 1, err);
-    if (st == CW_OK)
-        st = cwi_vtk_xml_place(&v->file, array, in, &src, err);
-    return st == CW_OK ? cwi_source_load(&src, in, &desc, numbers, err) : st;
-}
-
-/* Grids may be written from their far end: then the axis points the other way, and numbers
- * rise. */
-static cw_status raise(double *at, size_t count, int axis, cw_volume *shape, cw_error *err)
-{
-    const double sign = count > 1 && at[1] < at[0] ? -1 : 1;
-    for (size_t i = 0; i < count; i++) {
-        at[i] *= sign;
-        if (!isfinite(at[i]) || (i && !(at[i] > at[i - 1])))
-            return cw_fail(
-                err, CW_ERR_FORMAT,
-                "Coordinates along %c: number %zu, %g, follows %g; all must rise, or "
-                "all fall",
-                "xyz"[axis], i, sign * at[i], i ? sign * at[i - 1] : 0);
-    }
-    shape->affine[axis][axis] = sign;
-    return CW_OK;
-}
-
-/* Values of cells stand in their middles. */
-static void to_middles(double *at, size_t count)
-{
-    for (size_t i = 0; i + 1 < count; i++)
-        at[i] = 0.5 * at[i] + 0.5 * at[i + 1];
-}
-
 static size_t points_along(const cwi_vti *v, int axis)
 {
     return (size_t)(v->extent[2 * axis + 1] - v->extent[2 * axis] + 1);
 }
 
-static cw_status take_coordinates(const cwi_vti *v, const cw_volume numbers[3],
-                                  cw_volume *shape, cw_error *err)
-{
-    double *to =
-        cwi_alloc_array(numbers[0].dim[0] + numbers[1].dim[0] + numbers[2].dim[0], sizeof *to);
-    if (!to)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for coordinates");
-    cw_status st = CW_OK;
-    shape->owned_coordinates = to;
-    for (int a = 0; a < 3 && st == CW_OK; to += numbers[a++].dim[0]) {
-        const size_t count = numbers[a].dim[0];
-        for (size_t i = 0; i < count; i++)
-            to[i] = cwi_voxel_at(numbers[a].type, cwi_voxel_address(&numbers[a], i, 0, 0));
-        st = raise(to, count, a, shape, err);
-        if (st == CW_OK && is_of_cells(v))
-            to_middles(to, count);
-        shape->coordinates[a] = to;
-    }
-    return st;
-}
-
 static cw_status set_coordinates(const cwi_vti *v, const cwi_input *in, cw_volume *shape,
                                  cw_error *err)
 {
-    cw_volume numbers[3] = {0};
+    cwi_source rows[3];
     cw_status st = CW_OK;
-    for (int a = 0; a < 3 && st == CW_OK; a++)
-        st = load_numbers(v, &v->coordinates[a], points_along(v, a), in, numbers + a, err);
-    if (st == CW_OK)
-        st = take_coordinates(v, numbers, shape, err);
-    for (int a = 0; a < 3; a++)
-        cw_volume_free(numbers + a);
-    return st;
+    for (int a = 0; a < 3 && st == CW_OK; a++) {
+        const cwi_vtk_array *array = &v->coordinates[a];
+        st = cwi_vtk_grid_row(&rows[a], "Extent", array->type, points_along(v, a), err);
+        if (st == CW_OK)
+            st = cwi_vtk_xml_place(&v->file, array, in, &rows[a], err);
+    }
+    return st == CW_OK ? cwi_vtk_grid_place(rows, in, is_of_cells(v), shape, err) : st;
 }
 
 /* --- to a source ------------------------------------------------------------------------- */
@@ -286,28 +222,16 @@ static cw_status set_coordinates(const cwi_vti *v, const cwi_input *in, cw_volum
 static cw_status set_sizes(const cwi_vti *v, cwi_source *src, cw_error *err)
 {
     const cwi_vtk_array *array = &choose(v)->data;
-    cwi_axis axes[] = {{CWI_AXIS_COMPONENT, array->components},
-                       {CWI_AXIS_X, 0},
-                       {CWI_AXIS_Y, 0},
-                       {CWI_AXIS_Z, 0}};
-    for (int a = 0; a < 3; a++) {
-        axes[1 + a].size = points_along(v, a) - is_of_cells(v);
-        if (!axes[1 + a].size)
-            return cw_fail(
-                err, CW_ERR_FORMAT,
-                "'Extent' has one plane of points along %c: no cells, which have the "
-                "values",
-                "xyz"[a]);
-    }
+    size_t dim[3] = {points_along(v, 0), points_along(v, 1), points_along(v, 2)};
+    cw_status st = is_of_cells(v) ? cwi_vtk_grid_to_cells(src, array->name, dim, err) : CW_OK;
+    const cwi_axis axes[] = {{CWI_AXIS_COMPONENT, array->components},
+                             {CWI_AXIS_X, dim[0]},
+                             {CWI_AXIS_Y, dim[1]},
+                             {CWI_AXIS_Z, dim[2]}};
     src->shape.type = array->type;
     src->shape.slope = 1;
     src->has_arrays = true;
-    if (is_of_cells(v))
-        snprintf(
-            src->note, sizeof src->note,
-            "'%s' has a value for each cell: they are taken as samples in the cells' middles",
-            array->name);
-    return cwi_source_set_axes(src, axes, 4, err);
+    return st == CW_OK ? cwi_source_set_axes(src, axes, 4, err) : st;
 }
 
 /* World = Origin + Direction (Spacing * index), the index counted from the extent's; of cells

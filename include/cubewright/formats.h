@@ -79,6 +79,7 @@ typedef struct cw_read_desc {
  * are not wanted, compressed ones inflated and dropped, and then the checksum at their end is
  * verified only if the region reaches it.
  *
+ * volume   filled on success, else emptied; free it with cw_volume_free(), a header's too
  * format   set to the reader's name (static); may be NULL
  * Returns  CW_ERR_IO           missing, not a regular file, unreadable
  *          CW_ERR_FORMAT       not understood, damaged, or truncated; names the field
