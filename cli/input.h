@@ -130,6 +130,9 @@ typedef struct cli_volume {
     size_t note_count;
 } cli_volume;
 
+/* The least and the largest step along an axis of a rectilinear grid. */
+void cli_spacing_range(const cli_volume *volume, int axis, double mm[2]);
+
 /* What the options say of reading. */
 cw_read_desc cli_read_desc(const cli_input *input);
 
