@@ -89,8 +89,8 @@ typedef struct cw_read_desc {
  *          CW_ERR_UNSUPPORTED  compressed with a library that is not in this build
  *          CW_ERR_BACKEND      a library died of the file, or took too long
  *          CW_ERR_LIMIT        more voxels or bytes than allowed; CW_ERR_NO_MEMORY
- *          CW_ERR_ARGUMENT     no such reader; a region that is empty or leaves the volume;
- *                              CW_ERR_CANCELLED */
+ *          CW_ERR_ARGUMENT     no such reader or array; a region that is empty or leaves the
+ *                              volume; CW_ERR_CANCELLED */
 CW_API cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *volume,
                                 const char **format, cw_error *err);
 
@@ -291,7 +291,8 @@ typedef struct cw_write_desc {
  * Returns  CW_ERR_ARGUMENT     no writer of that name or extension; local, text or axes, which
  *                              are for meshes
  *          CW_ERR_OUTPUT       folder missing, disk full, path exists and no_clobber
- *          CW_ERR_UNSUPPORTED  the format is not in this build; CW_ERR_CANCELLED */
+ *          CW_ERR_UNSUPPORTED  the format is not in this build; the grid is rectilinear
+ *          CW_ERR_CANCELLED */
 CW_API cw_status cw_volume_write(const char *path, const cw_volume *volume,
                                  const cw_write_desc *desc, cw_error *err);
 
