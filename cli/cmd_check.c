@@ -256,6 +256,8 @@ static cw_status compare_with_field(run_state *s, cw_error *err)
         .progress = cli_progress((double)mesh->triangle_count / 1e6, "Mtriangle")};
     cli_report_begin(&s->report);
     cw_status st = cw_distance_to_field(mesh, &s->volume.view, &desc, &s->to_field, NULL, err);
+    if (st == CW_ERR_UNSUPPORTED) /* it is the volume that is of no such kind */
+        return cwi_fail_in(err, st, s->volume.path);
     if (st != CW_OK)
         return in_mesh(s, st, err);
     s->findings.to_field = &s->to_field;

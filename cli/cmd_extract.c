@@ -8,6 +8,7 @@
 #include "cli/quantity.h"
 #include "cli/surface.h"
 #include "core/status.h"
+#include "core/volume.h"
 
 #ifdef __GLIBC__
 #include <malloc.h>
@@ -308,6 +309,11 @@ static cw_status judge_simplified(run_state *s, cli_made *made, const cw_mesh *m
                         cli_count(args->simplify.triangles), cli_count(mesh->triangle_count));
     if (!args->check || args->placement)
         return CW_OK;
+    if (cwi_is_rectilinear(&s->volume.view)) {
+        cli_say("%s: a rectilinear grid: the distance to its field is not measured",
+                s->volume.path);
+        return CW_OK;
+    }
     cli_report_begin(&s->report);
     cw_status st = cli_compare_with_field(mesh, &s->volume, made->iso, args->inside,
                                           (int)args->input.threads, &made->compared, err);
@@ -628,6 +634,11 @@ const cli_command cli_extract = {
         "left.\n"
         "Topology stays, and no triangles meet: as with the command simplify, whose other\n"
         "options need the whole mesh. How far the result is from the field is printed.\n\n"
+        "On a rectilinear grid (.vtr, .vtk) the surface is where the grid's coordinates say. "
+        "What\n"
+        "needs even steps is refused there: --snap, --preview, --coarsen, --placement cubic; "
+        "and\n"
+        "how far a simplified surface is from the field is not measured.\n\n"
         "STL, PLY and OBJ hold world coordinates; far from the world's zero single precision\n"
         "loses them, and extract warns. With --local they are relative to the mesh's origin:\n"
         "add it to get the world's. It is printed, and named in the report and in the file.\n"

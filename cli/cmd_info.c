@@ -4,6 +4,7 @@
 #include "cli/quantity.h"
 #include "cli/series.h"
 #include "core/status.h"
+#include "core/volume.h"
 
 #include <cubewright/extract.h>
 
@@ -115,6 +116,18 @@ static void print_steps(const cw_volume *v)
         printf("  steps    %zu, no times named\n", v->steps);
 }
 
+/* Of a rectilinear grid: the steps that the line above gives the mean of. */
+static void print_spacing(const cli_volume *volume)
+{
+    double range[3][2];
+    if (!cwi_is_rectilinear(&volume->whole))
+        return;
+    for (int a = 0; a < 3; a++)
+        cli_spacing_range(volume, a, range[a]);
+    printf("  spacing  x %.6g to %.6g, y %.6g to %.6g, z %.6g to %.6g mm\n", range[0][0],
+           range[0][1], range[1][0], range[1][1], range[2][0], range[2][1]);
+}
+
 static void print_geometry(const facts *f)
 {
     const cw_volume *v = &f->volume.whole;
@@ -125,6 +138,7 @@ static void print_geometry(const facts *f)
     cw_volume_to_world(v, (const double[3]){0, 0, 0}, from);
     cw_volume_to_world(v, last, to);
     printf("%s\n  %s\n", f->volume.path, cli_describe(&f->volume));
+    print_spacing(&f->volume);
     printf("  size     %.6g x %.6g x %.6g mm\n", last[0] * s[0], last[1] * s[1],
            last[2] * s[2]);
     printf("  frame    %s, axes run to %s; first voxel (%.6g, %.6g, %.6g), last (%.6g, %.6g, "

@@ -127,7 +127,7 @@ cw_status cli_check_place(const cli_volume *volume, const cw_mesh *mesh, cw_erro
         double index[3], p[3];
         for (int a = 0; a < 3; a++)
             index[a] = corner >> a & 1 ? (double)(v->dim[a] - 1) : 0;
-        cwi_affine_apply(v->affine[0], index, p);
+        cw_volume_to_world(v, index, p);
         for (int a = 0; a < 3; a++) {
             from[a] = fmin(from[a], p[a]);
             to[a] = fmax(to[a], p[a]);

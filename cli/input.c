@@ -45,9 +45,23 @@ const char *cli_describe(const cli_volume *volume)
         n += snprintf(text + n, sizeof text - (size_t)n, ", %zu components", v->components);
     if (v->steps > 1)
         n += snprintf(text + n, sizeof text - (size_t)n, ", %zu time steps", v->steps);
-    snprintf(text + n, sizeof text - (size_t)n, ", %.6g x %.6g x %.6g %s", s[0], s[1], s[2],
+    snprintf(text + n, sizeof text - (size_t)n, ", %s%.6g x %.6g x %.6g %s",
+             cwi_is_rectilinear(v) ? "rectilinear, on average " : "", s[0], s[1], s[2],
              v->known & CW_KNOWN_UNIT ? "mm" : "(no unit given: taken as mm)");
     return text;
+}
+
+void cli_spacing_range(const cli_volume *volume, int axis, double mm[2])
+{
+    const cw_volume *v = &volume->whole;
+    const double *at = v->coordinates[axis], (*m)[4] = v->affine;
+    const double scale = hypot(hypot(m[0][axis], m[1][axis]), m[2][axis]);
+    mm[0] = v->dim[axis] > 1 ? INFINITY : volume->spacing[axis];
+    mm[1] = v->dim[axis] > 1 ? 0 : volume->spacing[axis];
+    for (size_t i = 1; i < v->dim[axis]; i++) {
+        mm[0] = fmin(mm[0], scale * (at[i] - at[i - 1]));
+        mm[1] = fmax(mm[1], scale * (at[i] - at[i - 1]));
+    }
 }
 
 static cw_status check_choice(const cli_input *input, const cw_volume *v, cw_error *err)
@@ -231,6 +245,7 @@ cw_read_desc cli_read_desc(const cli_input *input)
     cw_read_desc desc = {.reader = input->reader,
                          .allow_external = input->allow_external,
                          .series = input->series,
+                         .array = input->array,
                          .gaps = (cw_gaps)input->gaps,
                          .tilt = (cw_tilt)input->tilt,
                          .no_sandbox = input->no_sandbox,
@@ -244,6 +259,7 @@ cw_read_desc cli_read_desc(const cli_input *input)
 
 void cli_free_volume(cli_volume *volume)
 {
+    cw_volume_free(&volume->whole);
     cw_volume_free(&volume->voxels);
 }
 
@@ -292,6 +308,24 @@ const char *cli_shown_path(const char *path)
     return path[0] == '/' && slash ? slash + 1 : path;
 }
 
+static void json_coordinates(cli_json *j, const cli_volume *volume)
+{
+    const cw_volume *v = &volume->whole;
+    double range[2];
+    cli_json_open(j, "coordinates", '[');
+    for (int a = 0; a < 3; a++) {
+        const double *at = v->coordinates[a];
+        cli_json_numbers(j, NULL, (double[2]){at[0], at[v->dim[a] - 1]}, 2);
+    }
+    cli_json_close(j, ']');
+    cli_json_open(j, "spacing_ranges", '[');
+    for (int a = 0; a < 3; a++) {
+        cli_spacing_range(volume, a, range);
+        cli_json_numbers(j, NULL, range, 2);
+    }
+    cli_json_close(j, ']');
+}
+
 void cli_json_input(cli_json *j, const char *key, const cli_volume *volume)
 {
     const cw_volume *v = &volume->whole;
@@ -305,6 +339,9 @@ void cli_json_input(cli_json *j, const char *key, const cli_volume *volume)
     cli_json_count(j, "components", v->components);
     cli_json_count(j, "steps", v->steps);
     cli_json_numbers(j, "spacing", volume->spacing, 3);
+    cli_json_bool(j, "rectilinear", cwi_is_rectilinear(v));
+    if (cwi_is_rectilinear(v))
+        json_coordinates(j, volume);
     cli_json_text(j, "unit", v->known & CW_KNOWN_UNIT ? "mm" : "unknown");
     cli_json_text(j, "frame", v->known & CW_KNOWN_FRAME ? "LPS" : "unknown");
     cli_json_open(j, "affine", '[');

@@ -9,7 +9,7 @@
 #include <cubewright/formats.h>
 
 typedef struct cli_input {
-    const char *reader, *raw, *series;
+    const char *reader, *raw, *series, *array;
     int gaps, tilt; /* cw_gaps, cw_tilt */
     bool no_sandbox;
     size_t timeout_s;
@@ -48,6 +48,12 @@ typedef struct cli_input {
          "N",                                                                                  \
          "of a DICOM folder: its number as 'info' lists it, or UID (the only one)",            \
          CLI_INPUT_ROW(args, series)},                                                         \
+        {"array",                                                                              \
+         0,                                                                                    \
+         CLI_TEXT,                                                                             \
+         "NAME",                                                                               \
+         "of files with several: that one (the file's choice, else the first of one value)",   \
+         CLI_INPUT_ROW(args, array)},                                                          \
         {"gaps",                                                                               \
          0,                                                                                    \
          CLI_CHOICE,                                                                           \
@@ -123,6 +129,9 @@ typedef struct cli_volume {
     char notes[CLI_MOST_NOTES][256]; /* what the reader found and decided on */
     size_t note_count;
 } cli_volume;
+
+/* The least and the largest step along an axis of a rectilinear grid. */
+void cli_spacing_range(const cli_volume *volume, int axis, double mm[2]);
 
 /* What the options say of reading. */
 cw_read_desc cli_read_desc(const cli_input *input);

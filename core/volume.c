@@ -95,6 +95,7 @@ cw_status cw_volume_alloc(cw_volume *volume, cw_type type, const size_t dim[3],
 void cw_volume_free(cw_volume *volume)
 {
     cwi_free(volume->owned);
+    cwi_free(volume->owned_coordinates);
     memset(volume, 0, sizeof *volume);
 }
 
@@ -115,6 +116,23 @@ static cw_status check_numbers(const cw_volume *v, cw_error *err)
     if (!isfinite(v->slope) || !isfinite(v->intercept))
         return cw_fail(err, CW_ERR_ARGUMENT, "slope %g and intercept %g must be finite",
                        v->slope, v->intercept);
+    return CW_OK;
+}
+
+static cw_status check_coordinates(const cw_volume *v, cw_error *err)
+{
+    for (int a = 0; a < 3; a++) {
+        const double *at = v->coordinates[a];
+        if (!at != !v->coordinates[0])
+            return cw_fail(err, CW_ERR_ARGUMENT, "coordinates along %c are missing",
+                           "xyz"[at ? 0 : a]);
+        for (size_t i = 0; at && i < v->dim[a]; i++)
+            if (!isfinite(at[i]) || (i && !(at[i] > at[i - 1])))
+                return cw_fail(err, CW_ERR_ARGUMENT,
+                               "coordinate %zu along %c is %g; finite, rising ones were "
+                               "expected",
+                               i, "xyz"[a], at[i]);
+    }
     return CW_OK;
 }
 
@@ -157,8 +175,53 @@ cw_status cw_volume_resolve(const cw_volume *in, cw_volume *out, cw_error *err)
     if (st == CW_OK)
         st = check_strides(&v, err);
     if (st == CW_OK)
+        st = check_coordinates(&v, err);
+    if (st == CW_OK)
         *out = v;
     return st;
+}
+
+cw_status cwi_volume_own_coordinates(cw_volume *v, cw_error *err)
+{
+    v->owned_coordinates = NULL;
+    if (!cwi_is_rectilinear(v))
+        return CW_OK;
+    double *all = cwi_alloc_array(v->dim[0] + v->dim[1] + v->dim[2], sizeof *all), *to = all;
+    if (!all)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for coordinates");
+    for (int a = 0; a < 3; to += v->dim[a++]) {
+        memcpy(to, v->coordinates[a], v->dim[a] * sizeof *to);
+        v->coordinates[a] = to;
+    }
+    v->owned_coordinates = all;
+    return CW_OK;
+}
+
+cw_status cwi_volume_refuse_rectilinear(const cw_volume *v, const char *what, cw_error *err)
+{
+    return cwi_is_rectilinear(v)
+               ? cw_fail(err, CW_ERR_UNSUPPORTED,
+                         "%s on a rectilinear grid is not supported: an even one was expected",
+                         what)
+               : CW_OK;
+}
+
+double cwi_coordinate_index(const cw_volume *v, int axis, double coordinate)
+{
+    const double *at = v->coordinates[axis];
+    size_t low = 0, high = v->dim[axis] - 1;
+    if (!at)
+        return coordinate;
+    if (high == 0)
+        return 0;
+    while (high - low > 1) {
+        const size_t middle = low + (high - low) / 2;
+        if (at[middle] <= coordinate)
+            low = middle;
+        else
+            high = middle;
+    }
+    return (double)low + (coordinate - at[low]) / (at[high] - at[low]);
 }
 
 cw_status cw_volume_select(const cw_volume *in, size_t component, size_t step, cw_volume *out,
@@ -175,7 +238,7 @@ cw_status cw_volume_select(const cw_volume *in, size_t component, size_t step, c
     v.data = (const char *)v.data + (ptrdiff_t)component * v.component_stride +
              (ptrdiff_t)step * v.step_stride;
     v.components = v.steps = 1;
-    v.owned = NULL;
+    v.owned = v.owned_coordinates = NULL;
     *out = v;
     return CW_OK;
 }
@@ -194,7 +257,10 @@ cw_status cwi_volume_shrink(cw_volume *v, const cw_box *box, cw_error *err)
     cwi_affine_apply(v->affine[0], corner, world);
     for (int a = 0; a < 3; a++) {
         v->dim[a] = box->count[a];
-        v->affine[a][3] = world[a];
+        if (v->coordinates[a])
+            v->coordinates[a] += box->first[a];
+        else
+            v->affine[a][3] = world[a];
     }
     return CW_OK;
 }
@@ -208,7 +274,7 @@ cw_status cw_volume_crop(const cw_volume *in, const cw_box *box, cw_volume *out,
     if (st != CW_OK)
         return st;
     v.data = cwi_voxel_address(&v, box->first[0], box->first[1], box->first[2]);
-    v.owned = NULL;
+    v.owned = v.owned_coordinates = NULL;
     *out = v;
     return CW_OK;
 }
@@ -218,6 +284,8 @@ cw_status cw_volume_coarsen(const cw_volume *in, const size_t step[3], cw_volume
 {
     cw_volume v;
     cw_status st = cw_volume_resolve(in, &v, err);
+    if (st == CW_OK && (step[0] > 1 || step[1] > 1 || step[2] > 1))
+        st = cwi_volume_refuse_rectilinear(&v, "a preview", err);
     if (st != CW_OK)
         return st;
     for (int a = 0; a < 3; a++) {
@@ -231,7 +299,7 @@ cw_status cw_volume_coarsen(const cw_volume *in, const size_t step[3], cw_volume
         for (int r = 0; r < 3; r++)
             v.affine[r][a] *= (double)step[a];
     }
-    v.owned = NULL;
+    v.owned = v.owned_coordinates = NULL;
     return cw_volume_resolve(&v, out, err);
 }
 
@@ -246,10 +314,17 @@ double cw_volume_value(const cw_volume *volume, size_t i, size_t j, size_t k)
 
 void cw_volume_to_world(const cw_volume *volume, const double index[3], double world[3])
 {
+    double at[3] = {index[0], index[1], index[2]};
+    for (int a = 0; a < 3 && cwi_is_rectilinear(volume); a++) {
+        const double last = (double)volume->dim[a] - 1,
+                     low = floor(fmin(fmax(index[a], 0), last - (last > 0)));
+        at[a] = last > 0 ? cwi_coordinate(volume, a, (ptrdiff_t)low, index[a] - low)
+                         : volume->coordinates[a][0];
+    }
     if (is_zero(volume->affine[0]))
-        memcpy(world, index, 3 * sizeof *world);
+        memcpy(world, at, 3 * sizeof *world);
     else
-        cwi_affine_apply(volume->affine[0], index, world);
+        cwi_affine_apply(volume->affine[0], at, world);
 }
 
 cw_status cw_volume_to_index(const cw_volume *volume, const double world[3], double index[3],
@@ -268,6 +343,7 @@ cw_status cw_volume_to_index(const cw_volume *volume, const double world[3], dou
         index[c] = 0;
         for (int r = 0; r < 3; r++)
             index[c] += cofactor[r][c] * (world[r] - a[r][3]) / det;
+        index[c] = cwi_coordinate_index(volume, c, index[c]);
     }
     return CW_OK;
 }
@@ -275,8 +351,13 @@ cw_status cw_volume_to_index(const cw_volume *volume, const double world[3], dou
 void cw_volume_spacing(const cw_volume *volume, double spacing_mm[3])
 {
     const bool identity = is_zero(volume->affine[0]);
-    for (int c = 0; c < 3; c++)
-        spacing_mm[c] = identity ? 1
-                                 : hypot(hypot(volume->affine[0][c], volume->affine[1][c]),
-                                         volume->affine[2][c]);
+    for (int c = 0; c < 3; c++) {
+        const size_t last = volume->dim[c] - 1;
+        const double *at = volume->coordinates[c],
+                     step = at && last ? (at[last] - at[0]) / (double)last : 1;
+        spacing_mm[c] =
+            step * (identity ? 1
+                             : hypot(hypot(volume->affine[0][c], volume->affine[1][c]),
+                                     volume->affine[2][c]));
+    }
 }

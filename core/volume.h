@@ -51,6 +51,33 @@ static inline void cwi_voxel_put(cw_type type, void *p, double value)
  * Returns CW_ERR_ARGUMENT when the box is empty or leaves the volume. */
 CW_API cw_status cwi_volume_shrink(cw_volume *v, const cw_box *box, cw_error *err);
 
+static inline bool cwi_is_rectilinear(const cw_volume *v)
+{
+    return v->coordinates[0] != NULL;
+}
+
+/* Where index i + share stands along an axis of at least 2: the coordinate, or the index
+ * itself. Beyond the ends it goes on as between the last two. i: -1 to dim - 1 */
+static inline double cwi_coordinate(const cw_volume *v, int axis, ptrdiff_t i, double share)
+{
+    const double *at = v->coordinates[axis];
+    const ptrdiff_t last = (ptrdiff_t)v->dim[axis] - 1;
+    if (!at)
+        return (double)i + share;
+    const ptrdiff_t low = i < 0 ? 0 : i < last ? i : last - 1;
+    return at[i < 0 ? 0 : i] + (i < 0 ? share - 1 : share) * (at[low + 1] - at[low]);
+}
+
+/* The (fractional) index of a coordinate, the other way round. */
+CW_API double cwi_coordinate_index(const cw_volume *v, int axis, double coordinate);
+
+/* Gives a volume, the copy of another, coordinates of its own. CW_ERR_NO_MEMORY */
+CW_API cw_status cwi_volume_own_coordinates(cw_volume *v, cw_error *err);
+
+/* Fails with CW_ERR_UNSUPPORTED for what is not made for rectilinear grids. */
+CW_API cw_status cwi_volume_refuse_rectilinear(const cw_volume *v, const char *what,
+                                               cw_error *err);
+
 static inline const void *cwi_voxel_address(const cw_volume *v, size_t i, size_t j, size_t k)
 {
     return (const char *)v->data + (ptrdiff_t)i * v->stride[0] + (ptrdiff_t)j * v->stride[1] +

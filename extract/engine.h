@@ -18,7 +18,8 @@ typedef struct cwi_emission {
 typedef struct cwi_vertex_sink {
     float *positions, *normals; /* normals may be NULL */
     double affine[3][3];        /* index to world directions */
-    double centre[3];           /* index that stands at the mesh's origin */
+    double centre[3];           /* index, or coordinate, that stands at the mesh's origin */
+    const cw_volume *grid;      /* whose coordinates these are */
     double cofactor[3][3];      /* index gradient to outward world direction */
     float cap[3][2][3];         /* normals of caps across an axis, low and high side */
     bool missing;               /* some normal is zero as the gradient vanished */

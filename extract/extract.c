@@ -5,6 +5,7 @@
 #include "core/memory.h"
 #include "core/mesh.h"
 #include "core/status.h"
+#include "core/volume.h"
 #include "extract/cases.h"
 #include "extract/crossing.h"
 #include "extract/engine.h"
@@ -116,6 +117,10 @@ static cw_status make_plan(plan *p, const cw_extract_desc *d, cw_error *err)
 {
     memset(&p->counts, 0, sizeof p->counts);
     cw_status st = check_snap(d, err);
+    if (st == CW_OK && d->snap > 0)
+        st = cwi_volume_refuse_rectilinear(&p->grid.volume, "snap", err);
+    if (st == CW_OK && d->cubic_placement)
+        st = cwi_volume_refuse_rectilinear(&p->grid.volume, "cubic placement", err);
     if (st == CW_OK)
         st = cwi_grid_classify(&p->grid, p->engine, p->tree.levels ? &p->tree : NULL, d, err);
     if (st != CW_OK || !p->grid.crossed)
@@ -141,12 +146,13 @@ static cw_status make_plan(plan *p, const cw_extract_desc *d, cw_error *err)
 static cwi_vertex_sink make_sink(const cwi_grid *g, cw_mesh *mesh)
 {
     const cw_volume *v = &g->volume;
-    cwi_vertex_sink sink = {.positions = mesh->positions, .normals = mesh->normals};
+    cwi_vertex_sink sink = {.positions = mesh->positions, .normals = mesh->normals, .grid = v};
     cwi_outward(v, g->invert, sink.cofactor);
     for (int r = 0; r < 3; r++) {
         for (int c = 0; c < 3; c++)
             sink.affine[r][c] = v->affine[r][c];
-        sink.centre[r] = 0.5 * (double)(v->dim[r] - 1);
+        sink.centre[r] = 0.5 * (cwi_coordinate(v, r, 0, 0) +
+                                cwi_coordinate(v, r, (ptrdiff_t)v->dim[r] - 1, 0));
     }
     for (int a = 0; a < 3; a++) {
         double square = 0;
@@ -203,10 +209,20 @@ static cw_status write_layers(writing *w, const cw_extract_desc *d, cw_error *er
                           "marching", write_share, w, err);
 }
 
+/* On a rectilinear grid differences are not those of neighbours alone. */
+static cw_status shade_by_coordinates(const plan *p, const cw_extract_desc *d, cw_mesh *mesh,
+                                      cw_error *err)
+{
+    const cw_normals_desc desc = {.inside_is_low = d->inside_is_low, .threads = d->threads};
+    return cwi_is_rectilinear(&p->grid.volume) && !d->no_normals
+               ? cw_extract_normals(&p->grid.volume, &desc, mesh, err)
+               : CW_OK;
+}
+
 static cw_status write_mesh(plan *p, const cw_extract_desc *d, cw_mesh *mesh, cw_error *err)
 {
-    cw_status st =
-        cwi_mesh_alloc(mesh, p->counts.vertices, p->counts.triangles, !d->no_normals, err);
+    const bool normals = !d->no_normals && !cwi_is_rectilinear(&p->grid.volume);
+    cw_status st = cwi_mesh_alloc(mesh, p->counts.vertices, p->counts.triangles, normals, err);
     if (st != CW_OK)
         return st;
     writing w = {.plan = p,
@@ -219,6 +235,8 @@ static cw_status write_mesh(plan *p, const cw_extract_desc *d, cw_mesh *mesh, cw
         st = cwi_mend_normals(mesh, cwi_voxel_scale(&p->grid.volume), err);
     if (st == CW_OK)
         memcpy(mesh->affine, p->grid.volume.affine, sizeof mesh->affine);
+    if (st == CW_OK)
+        st = shade_by_coordinates(p, d, mesh, err);
     if (st == CW_OK && d->snap > 0)
         st = cwi_snap(&p->grid, p->rows, d, mesh, &p->counts.snap, err);
     p->counts.vertices = mesh->vertex_count;
@@ -310,18 +328,24 @@ static void clear_beyond(const plan *p, size_t layer, float *positions)
                (size_t)(row[j + 1].first[0] - row[j].first[2]) * 3 * sizeof *positions);
 }
 
-/* The layers' own index along the slab, counted from the mesh's origin. Vertices are kept
- * CWI_NUDGE away from planes; half of that allows for rounding. */
+/* The height of a share of the way from a layer of samples to the next, from the origin. */
+static double height_of(const writing *w, size_t layer, double share)
+{
+    const cw_volume *v = &w->plan->grid.volume;
+    return cwi_coordinate(v, 2, (ptrdiff_t)layer - 1, share) - w->sink.centre[2];
+}
+
+/* Vertices are kept CWI_NUDGE away from planes; half of that allows for rounding. */
 static void set_planes(const plan *p, const writing *w, cw_slab *slab)
 {
     double cofactor[3][3];
     const double *affine = p->grid.volume.affine[0],
-                 determinant = cwi_affine_determinant(affine), zero = w->sink.centre[2] + 1;
+                 determinant = cwi_affine_determinant(affine);
     cwi_affine_cofactor(affine, cofactor);
     for (int a = 0; a < 3; a++)
         slab->along[a] = cofactor[a][2] / determinant;
-    slab->low = w->begin ? (double)w->begin - zero + CWI_NUDGE / 2 : -INFINITY;
-    slab->high = slab->last ? INFINITY : (double)w->end - zero - CWI_NUDGE / 2;
+    slab->low = w->begin ? height_of(w, w->begin, CWI_NUDGE / 2) : -INFINITY;
+    slab->high = slab->last ? INFINITY : height_of(w, w->end - 1, 1 - CWI_NUDGE / 2);
 }
 
 static cw_status write_slab(plan *p, writing *w, const cw_extract_desc *d, cw_mesh *mesh,

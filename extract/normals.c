@@ -116,6 +116,22 @@ static bool fetch(const cw_volume *v, const size_t at[3], int axis, int step, do
     return !isnan(*value) && !(v->has_nodata && *value == v->nodata);
 }
 
+/* The derivative along an axis where distances differ: the slopes on both sides, each by the
+ * distance on the other one, which is exact for parabolas. Values are halves; NaN: none. */
+static double uneven(const cw_volume *v, int axis, size_t i, double before, double centre,
+                     double after)
+{
+    const double *x = v->coordinates[axis];
+    const double low = i > 0 ? x[i] - x[i - 1] : 1,
+                 high = i + 1 < v->dim[axis] ? x[i + 1] - x[i] : 1;
+    const double below = 2 * (centre - before) / low, above = 2 * (after - centre) / high;
+    if (!isfinite(centre) || (isnan(before) && isnan(after)))
+        return 0;
+    if (isnan(before) || isnan(after))
+        return isnan(before) ? above : below;
+    return (below * high + above * low) / (low + high);
+}
+
 /* As extraction does at a sample: central differences of the stored numbers, one-sided where a
  * neighbour is missing or infinite. False at a sample without value. */
 static bool gradient(const cw_volume *v, const size_t at[3], double g[3])
@@ -129,7 +145,10 @@ static bool gradient(const cw_volume *v, const size_t at[3], double g[3])
         const bool has_after = fetch(v, at, a, 1, &after) && isfinite(after);
         before *= 0.5; /* halves first, so that differences of huge doubles stay finite */
         after *= 0.5;
-        if (has_before && has_after)
+        if (cwi_is_rectilinear(v))
+            g[a] = uneven(v, a, at[a], has_before ? before : NAN, centre * 0.5,
+                          has_after ? after : NAN);
+        else if (has_before && has_after)
             g[a] = after - before;
         else if (isfinite(centre) && (has_before || has_after))
             g[a] = has_after ? 2 * (after - centre * 0.5) : 2 * (centre * 0.5 - before);
@@ -149,7 +168,7 @@ static bool find_cell(const shading *s, size_t vertex, size_t cell[3], double sh
             s->mesh->origin[r] - v->affine[r][3] + (double)s->mesh->positions[3 * vertex + r];
     for (int a = 0; a < 3; a++) {
         const double last = (double)(v->dim[a] - 1);
-        double x = cwi_dot(s->inverse[a], p);
+        double x = cwi_coordinate_index(v, a, cwi_dot(s->inverse[a], p));
         if (!(x >= -REACH && x <= last + REACH))
             return false;
         x = x < 0 ? 0 : x > last ? last : x;

@@ -2,21 +2,29 @@
 #ifndef EXTRACT_SINK_H
 #define EXTRACT_SINK_H
 
+#include "core/volume.h"
 #include "extract/engine.h"
 
 #include <math.h>
 
 /* x: cell coordinates from padded sample at[]. */
-static inline void cwi_store_position(const cwi_vertex_sink *sink, const size_t at[3],
-                                      const double x[3], size_t n)
+static inline void cwi_position(const cwi_vertex_sink *sink, const size_t at[3],
+                                const double x[3], float position[3])
 {
     double p[3];
     for (int a = 0; a < 3; a++)
-        p[a] = (double)at[a] - 1 - sink->centre[a] + x[a];
+        p[a] = cwi_is_rectilinear(sink->grid)
+                   ? cwi_coordinate(sink->grid, a, (ptrdiff_t)at[a] - 1, x[a]) - sink->centre[a]
+                   : (double)at[a] - 1 - sink->centre[a] + x[a];
     for (int r = 0; r < 3; r++)
-        sink->positions[3 * n + (size_t)r] =
-            (float)(sink->affine[r][0] * p[0] + sink->affine[r][1] * p[1] +
-                    sink->affine[r][2] * p[2]);
+        position[r] = (float)(sink->affine[r][0] * p[0] + sink->affine[r][1] * p[1] +
+                              sink->affine[r][2] * p[2]);
+}
+
+static inline void cwi_store_position(const cwi_vertex_sink *sink, const size_t at[3],
+                                      const double x[3], size_t n)
+{
+    cwi_position(sink, at, x, sink->positions + 3 * n);
 }
 
 /* Scales by the largest component first: squares of tiny or huge ones do not survive. */

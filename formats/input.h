@@ -12,6 +12,7 @@ typedef struct cwi_input {
     int fd;
     uint64_t size;       /* bytes, as the system says */
     bool allow_external; /* side files may lie elsewhere */
+    const char *array;   /* that is asked for; NULL: any */
 } cwi_input;
 
 /* Opens the file a user named; links are followed, as the user may well have made them.

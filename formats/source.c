@@ -80,6 +80,7 @@ void cwi_swap_bytes(void *numbers, size_t count, size_t size)
 void cwi_source_free(cwi_source *src)
 {
     cwi_names_free(&src->files);
+    cwi_free(src->shape.owned_coordinates);
     *src = (cwi_source){0};
 }
 
@@ -475,7 +476,9 @@ static cw_status load_voxels(const cwi_source *src, const cwi_source *wanted,
     v.data = v.owned;
     reading r = {.src = src, .progress = &desc->progress, .to = v.owned};
     cwi_runs_plan(&r.runs, src, desc->region);
-    cw_status st = walk_parts(src, in, &r, err);
+    cw_status st = cwi_volume_own_coordinates(&v, err);
+    if (st == CW_OK)
+        st = walk_parts(src, in, &r, err);
     if (st == CW_OK)
         st = cwi_progress(&desc->progress, "reading", 1, err);
     if (st == CW_OK)
@@ -494,9 +497,10 @@ cw_status cwi_source_load(const cwi_source *src, const cwi_input *in, const cw_r
         st = narrow(src, desc->region, &wanted, err);
     if (st == CW_OK)
         st = cwi_check_limits(&wanted.shape, wanted.bytes, wanted.size_field, desc, err);
-    if (st == CW_OK && desc->header_only)
+    if (st != CW_OK || !desc->header_only)
+        return st == CW_OK ? load_voxels(src, &wanted, in, desc, volume, err) : st;
+    st = cwi_volume_own_coordinates(&wanted.shape, err);
+    if (st == CW_OK)
         *volume = wanted.shape;
-    else if (st == CW_OK)
-        st = load_voxels(src, &wanted, in, desc, volume, err);
     return st;
 }

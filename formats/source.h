@@ -50,6 +50,8 @@ typedef struct cwi_source {
     uint64_t lines;  /* lines behind the offset to leave out */
     uint64_t skip;   /* decoded bytes in front of the first voxel */
     bool at_end;     /* raw: the voxels are the last bytes of the file instead */
+    bool has_arrays; /* with names: it is the one that was asked for, if any was */
+    char note[200];  /* what the user should know; empty: nothing */
 } cwi_source;
 
 /* Sets axes, sizes, strides and bytes from the file's axes, the fastest first; roles left out
@@ -83,9 +85,10 @@ cw_status cwi_check_limits(const cw_volume *shape, size_t bytes, const char *fie
 
 /* Checks the source, but its frame, against its files and the limits, then reads the voxels
  * (unless desc->header_only), all of them or desc->region. Nothing is allocated before every
- * size is known to be possible. volume   filled on success, else untouched Returns  as
- * cw_volume_read()
- */
+ * size is known to be possible.
+ *
+ * volume   filled on success, else untouched
+ * Returns  as cw_volume_read() */
 cw_status cwi_source_load(const cwi_source *src, const cwi_input *in, const cw_read_desc *desc,
                           cw_volume *volume, cw_error *err);
 

@@ -27,7 +27,7 @@ static const reader readers[] = {
      .parse = cwi_nifti_parse},
     {"metaimage", ".mha .mhd", false, cwi_metaimage_sniff, .parse = cwi_metaimage_parse},
     {"vtk", ".vtk", false, cwi_vtk_sniff, .parse = cwi_vtk_parse},
-    {"vti", ".vti", false, cwi_vti_sniff, .parse = cwi_vti_parse},
+    {"vti", ".vti .vtr", false, cwi_vti_sniff, .parse = cwi_vti_parse},
     {"mrc", ".mrc .map .ccp4 .rec .mrc.gz .map.gz", true, cwi_mrc_sniff,
      .parse = cwi_mrc_parse},
     {"inr", ".inr .inr.gz", true, cwi_inr_sniff, .parse = cwi_inr_parse},
@@ -170,6 +170,7 @@ static cw_status open_path(opened *o, const char *path, const cw_read_desc *desc
     o->many = cwi_files_is_pattern(path) || cwi_is_folder(path);
     cw_status st = o->many ? open_names(o, path, desc, err) : cwi_input_open(&o->in, path, err);
     o->in.allow_external |= desc->allow_external;
+    o->in.array = desc->array;
     return st == CW_OK && !desc->raw ? find_reader(o, desc, err) : st;
 }
 
@@ -217,6 +218,12 @@ static cw_status read_source(opened *o, const cw_read_desc *desc, cw_volume *vol
     cwi_source src = {0};
     cw_status st = desc->raw ? cwi_raw_describe(desc->raw, &src, err)
                              : o->reader->parse(&o->in, &src, err);
+    if (st == CW_OK && desc->array && !src.has_arrays)
+        st = cw_fail(err, CW_ERR_ARGUMENT,
+                     "'%s' was asked for; files of this format have no arrays with names",
+                     desc->array);
+    if (st == CW_OK && *src.note)
+        cwi_note(desc, "%s", src.note);
     if (st == CW_OK && o->many)
         st = check_shares(&src.shape, o->names.count, err);
     if (o->many) {
@@ -255,7 +262,11 @@ cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *
     cw_status st = check_spacing(desc->spacing_mm, err);
     if (st == CW_OK)
         st = open_path(&o, path, desc, err);
-    if (st == CW_OK && o.reader && o.reader->read)
+    if (st == CW_OK && o.reader && o.reader->read && desc->array)
+        st = cw_fail(err, CW_ERR_ARGUMENT,
+                     "'%s' was asked for; files of this format have no arrays with names",
+                     desc->array);
+    else if (st == CW_OK && o.reader && o.reader->read)
         st = o.reader->read(&o.in, o.many ? &o.names : NULL, desc, volume, err);
     else if (st == CW_OK)
         st = read_source(&o, desc, volume, err);

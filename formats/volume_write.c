@@ -1,5 +1,6 @@
 #include "core/memory.h"
 #include "core/status.h"
+#include "core/volume.h"
 #include "formats/table.h"
 #include "formats/volume_writers.h"
 
@@ -171,6 +172,8 @@ cw_status cw_volume_write(const char *path, const cw_volume *volume, const cw_wr
         st = cw_fail(err, CW_ERR_ARGUMENT, "text, unit and frame are chosen for meshes only");
     if (st == CW_OK)
         st = cw_volume_resolve(volume, &v, err);
+    if (st == CW_OK)
+        st = cwi_volume_refuse_rectilinear(&v, "writing a volume", err);
     if (st == CW_OK)
         st = check_scaling(w, &v, err);
     if (st == CW_OK)

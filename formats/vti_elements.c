@@ -51,12 +51,10 @@ cw_status cwi_vti_piece(cwi_vti *v, cwi_attributes a, cw_error *err)
     return CW_OK;
 }
 
-cw_status cwi_vti_point_data(cwi_vti *v, cwi_attributes a, cw_error *err)
+void cwi_vti_data_start(cwi_vti_data *data, cwi_attributes a)
 {
     const char *scalars = cwi_attribute(a, "Scalars");
-    (void)err;
-    snprintf(v->scalars, sizeof v->scalars, "%s", scalars ? scalars : "");
-    return CW_OK;
+    snprintf(data->scalars, sizeof data->scalars, "%s", scalars ? scalars : "");
 }
 
 static void note_other(cwi_vti *v, const cwi_vtk_array *array)
@@ -67,22 +65,46 @@ static void note_other(cwi_vti *v, const cwi_vtk_array *array)
              *array->type_name ? array->type_name : "of no type");
 }
 
-cw_status cwi_vti_data_array(cwi_vti *v, cwi_attributes a, bool *kept, cw_error *err)
+static cwi_vti_rank rank_of(const cwi_vti *v, const cwi_vti_data *data,
+                            const cwi_vtk_array *array)
+{
+    if (v->wanted)
+        return strcmp(array->name, v->wanted) == 0 ? CWI_VTI_ASKED_FOR : CWI_VTI_NONE;
+    if (*array->name && strcmp(array->name, data->scalars) == 0)
+        return CWI_VTI_SCALARS;
+    return array->components == 1 ? CWI_VTI_ONE : CWI_VTI_SEVERAL;
+}
+
+cw_status cwi_vti_data_array(cwi_vti *v, cwi_vti_data *data, cwi_attributes a, bool *kept,
+                             cw_error *err)
 {
     cwi_vti_array array = {0};
     cw_status st = cwi_vtk_xml_array(&array.data, a, err);
     *kept = false;
     if (st != CW_OK)
         return st;
-    const bool named = *array.data.name && strcmp(array.data.name, v->scalars) == 0;
-    const size_t components = array.data.components;
-    array.rank = named ? CWI_VTI_SCALARS : components == 1 ? CWI_VTI_ONE : CWI_VTI_SEVERAL;
-    if (!array.data.is_known || array.data.wide || components > 16) {
+    const bool is_read = array.data.is_known && !array.data.wide && array.data.components <= 16;
+    array.rank = is_read ? rank_of(v, data, &array.data) : CWI_VTI_NONE;
+    if (array.rank == CWI_VTI_NONE)
         note_other(v, &array.data);
-        return CW_OK;
-    }
-    *kept = array.rank > v->best.rank;
+    *kept = array.rank > data->best.rank;
     if (*kept)
-        v->best = array;
+        data->best = array;
     return CW_OK;
+}
+
+cw_status cwi_vti_coordinates(cwi_vti *v, cwi_attributes a, size_t *n, cw_error *err)
+{
+    *n = v->coordinate_arrays++;
+    if (*n > 2)
+        return cw_fail(err, CW_ERR_FORMAT, "Coordinates has more than three arrays");
+    cwi_vtk_array *array = &v->coordinates[*n];
+    cw_status st = cwi_vtk_xml_array(array, a, err);
+    if (st == CW_OK && (!array->is_known || array->wide || array->components != 1))
+        return cw_fail(
+            err, CW_ERR_FORMAT,
+            "coordinates along %c are %zu of type '%s' each; one number of a type of "
+            "up to 32 bits, or Float64, was expected",
+            "xyz"[*n], array -> components, array -> type_name);
+    return st;
 }

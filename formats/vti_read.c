@@ -1,8 +1,10 @@
-/* VTK's XML image data (.vti). The elements are read as a stream: the text of arrays only
- * passes through, and reading stops where appended data start, which need be no XML at all. */
+/* VTK's XML image data (.vti) and rectilinear grids (.vtr). The elements are read as a stream:
+ * the text of arrays only passes through, and reading stops where appended data start, which
+ * need be no XML at all. */
 #include "core/status.h"
 #include "formats/readers.h"
 #include "formats/vti.h"
+#include "formats/vtk_grid.h"
 
 #include <string.h>
 
@@ -22,15 +24,22 @@ bool cwi_vti_sniff(const unsigned char *head, size_t size)
 
 typedef struct parsing {
     cwi_vti vti;
-    bool in_array; /* the best one: the next tag ends its text */
+    cwi_vtk_array *open; /* the next tag ends its text; NULL: none that is wanted */
 } parsing;
 
 static cw_status start_file(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
-    static const char *const kind[2] = {"ImageData", "a volume"};
+    static const char *const kinds[3][2] = {{"ImageData", "a volume"},
+                                            {"RectilinearGrid", "a volume"},
+                                            {"ImageData or RectilinearGrid", "a volume"}};
     parsing *p = user;
+    const char *type = cwi_attribute(a, "type");
+    int kind = 0;
     (void)x;
-    return cwi_vtk_xml_file(&p->vti.file, a, kind, err);
+    while (kind < 2 && !(type && strcmp(type, kinds[kind][0]) == 0))
+        kind++;
+    p->vti.rectilinear = kind == 1;
+    return cwi_vtk_xml_file(&p->vti.file, a, kinds[kind], err);
 }
 
 static cw_status start_image(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
@@ -45,26 +54,56 @@ static cw_status start_piece(void *user, cwi_xml *x, cwi_attributes a, cw_error 
     return cwi_vti_piece(&((parsing *)user)->vti, a, err);
 }
 
-static cw_status start_point_data(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
+static cw_status start_points(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
-    (void)x;
-    return cwi_vti_point_data(&((parsing *)user)->vti, a, err);
+    (void)x, (void)err;
+    cwi_vti_data_start(&((parsing *)user)->vti.points, a);
+    return CW_OK;
+}
+
+static cw_status start_cells(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
+{
+    (void)x, (void)err;
+    cwi_vti_data_start(&((parsing *)user)->vti.cells, a);
+    return CW_OK;
+}
+
+static void open_text(parsing *p, cwi_xml *x, cwi_vtk_array *array)
+{
+    p->open = array;
+    array->start = cwi_xml_tag_end(x);
+}
+
+static cw_status start_data_array(parsing *p, cwi_vti_data *data, cwi_xml *x, cwi_attributes a,
+                                  cw_error *err)
+{
+    bool kept;
+    cw_status st = cwi_vti_data_array(&p->vti, data, a, &kept, err);
+    if (kept)
+        open_text(p, x, &data->best.data);
+    return st;
 }
 
 static cw_status start_array(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
     parsing *p = user;
-    cw_status st = cwi_vti_data_array(&p->vti, a, &p->in_array, err);
-    if (p->in_array)
-        p->vti.best.data.start = cwi_xml_tag_end(x);
-    return st;
+    return start_data_array(p, &p->vti.points, x, a, err);
 }
 
 static cw_status start_cell_array(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
-    (void)x, (void)a, (void)err;
-    ((parsing *)user)->vti.cell_arrays++;
-    return CW_OK;
+    parsing *p = user;
+    return start_data_array(p, &p->vti.cells, x, a, err);
+}
+
+static cw_status start_coordinates(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
+{
+    parsing *p = user;
+    size_t n;
+    cw_status st = cwi_vti_coordinates(&p->vti, a, &n, err);
+    if (st == CW_OK)
+        open_text(p, x, &p->vti.coordinates[n]);
+    return st;
 }
 
 static cw_status start_appended(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
@@ -79,20 +118,28 @@ static cw_status end_text(void *user, cwi_xml *x, cw_error *err)
 {
     parsing *p = user;
     (void)err;
-    if (p->in_array)
-        p->vti.best.data.end = cwi_xml_tag_start(x);
-    p->in_array = false;
+    if (p->open)
+        p->open->end = cwi_xml_tag_start(x);
+    p->open = NULL;
     return CW_OK;
 }
 
 typedef enum element {
     E_FILE,
     E_IMAGE,
-    E_PIECE,
-    E_POINT_DATA,
-    E_CELL_DATA,
-    E_ARRAY,
-    E_CELL_ARRAY,
+    E_IMAGE_PIECE,
+    E_IMAGE_POINTS,
+    E_IMAGE_CELLS,
+    E_GRID,
+    E_GRID_PIECE,
+    E_GRID_POINTS,
+    E_GRID_CELLS,
+    E_COORDINATES,
+    E_COORDINATE_ARRAY,
+    E_IMAGE_ARRAY,
+    E_IMAGE_CELL_ARRAY,
+    E_GRID_ARRAY,
+    E_GRID_CELL_ARRAY,
     E_APPENDED,
     ELEMENT_COUNT
 } element;
@@ -100,11 +147,19 @@ typedef enum element {
 static const cwi_xml_element elements[ELEMENT_COUNT] = {
     [E_FILE] = {"VTKFile", CWI_XML_ROOT, start_file, NULL},
     [E_IMAGE] = {"ImageData", E_FILE, start_image, NULL},
-    [E_PIECE] = {"Piece", E_IMAGE, start_piece, NULL},
-    [E_POINT_DATA] = {"PointData", E_PIECE, start_point_data, NULL},
-    [E_CELL_DATA] = {"CellData", E_PIECE, NULL, NULL},
-    [E_ARRAY] = {"DataArray", E_POINT_DATA, start_array, NULL},
-    [E_CELL_ARRAY] = {"DataArray", E_CELL_DATA, start_cell_array, NULL},
+    [E_IMAGE_PIECE] = {"Piece", E_IMAGE, start_piece, NULL},
+    [E_IMAGE_POINTS] = {"PointData", E_IMAGE_PIECE, start_points, NULL},
+    [E_IMAGE_CELLS] = {"CellData", E_IMAGE_PIECE, start_cells, NULL},
+    [E_GRID] = {"RectilinearGrid", E_FILE, start_image, NULL},
+    [E_GRID_PIECE] = {"Piece", E_GRID, start_piece, NULL},
+    [E_GRID_POINTS] = {"PointData", E_GRID_PIECE, start_points, NULL},
+    [E_GRID_CELLS] = {"CellData", E_GRID_PIECE, start_cells, NULL},
+    [E_COORDINATES] = {"Coordinates", E_GRID_PIECE, NULL, NULL},
+    [E_COORDINATE_ARRAY] = {"DataArray", E_COORDINATES, start_coordinates, NULL},
+    [E_IMAGE_ARRAY] = {"DataArray", E_IMAGE_POINTS, start_array, NULL},
+    [E_IMAGE_CELL_ARRAY] = {"DataArray", E_IMAGE_CELLS, start_cell_array, NULL},
+    [E_GRID_ARRAY] = {"DataArray", E_GRID_POINTS, start_array, NULL},
+    [E_GRID_CELL_ARRAY] = {"DataArray", E_GRID_CELLS, start_cell_array, NULL},
     [E_APPENDED] = {"AppendedData", E_FILE, start_appended, NULL},
 };
 
@@ -113,33 +168,74 @@ static const cwi_xml_rules rules = {.elements = elements,
                                     .most_elements = MOST_ELEMENTS,
                                     .tag = end_text};
 
-/* --- to a source ------------------------------------------------------------------------- */
+/* --- the array ---------------------------------------------------------------------------- */
+
+/* The array that is the volume: at points, unless only cells have one. */
+static const cwi_vti_array *choose(const cwi_vti *v)
+{
+    return v->points.best.rank != CWI_VTI_NONE ? &v->points.best : &v->cells.best;
+}
+
+static bool is_of_cells(const cwi_vti *v)
+{
+    return choose(v) == &v->cells.best;
+}
 
 static cw_status check_found(const cwi_vti *v, cw_error *err)
 {
-    if (v->best.rank != CWI_VTI_NONE)
-        return CW_OK;
-    if (v->cell_arrays && !*v->others)
+    if (v->rectilinear && v->coordinate_arrays != 3)
         return cw_fail(err, CW_ERR_FORMAT,
-                       "the arrays are CellData; only values at points (PointData) are read");
-    return cw_fail(err, CW_ERR_FORMAT, "PointData holds no array that is read%s%s",
+                       "Coordinates has %zu arrays; one for x, y and z each was expected",
+                       v->coordinate_arrays);
+    if (choose(v)->rank != CWI_VTI_NONE)
+        return CW_OK;
+    if (v->wanted)
+        return cw_fail(err, CW_ERR_ARGUMENT, "there is no array '%.100s' that is read%s%s",
+                       v->wanted, *v->others ? "; there are " : "", v->others);
+    return cw_fail(err, CW_ERR_FORMAT, "PointData and CellData hold no array that is read%s%s",
                    *v->others ? "; there are " : "", v->others);
 }
 
-static cw_status set_sizes(const cwi_vti *v, cwi_source *src, cw_error *err)
+/* --- coordinates -------------------------------------------------------------------------- */
+
+static size_t points_along(const cwi_vti *v, int axis)
 {
-    cwi_axis axes[] = {{CWI_AXIS_COMPONENT, v->best.data.components},
-                       {CWI_AXIS_X, 0},
-                       {CWI_AXIS_Y, 0},
-                       {CWI_AXIS_Z, 0}};
-    for (int a = 0; a < 3; a++)
-        axes[1 + a].size = (size_t)(v->extent[2 * a + 1] - v->extent[2 * a] + 1);
-    src->shape.type = v->best.data.type;
-    src->shape.slope = 1;
-    return cwi_source_set_axes(src, axes, 4, err);
+    return (size_t)(v->extent[2 * axis + 1] - v->extent[2 * axis] + 1);
 }
 
-/* World = Origin + Direction (Spacing * index), the index counted from the extent's. */
+static cw_status set_coordinates(const cwi_vti *v, const cwi_input *in, cw_volume *shape,
+                                 cw_error *err)
+{
+    cwi_source rows[3];
+    cw_status st = CW_OK;
+    for (int a = 0; a < 3 && st == CW_OK; a++) {
+        const cwi_vtk_array *array = &v->coordinates[a];
+        st = cwi_vtk_grid_row(&rows[a], "Extent", array->type, points_along(v, a), err);
+        if (st == CW_OK)
+            st = cwi_vtk_xml_place(&v->file, array, in, &rows[a], err);
+    }
+    return st == CW_OK ? cwi_vtk_grid_place(rows, in, is_of_cells(v), shape, err) : st;
+}
+
+/* --- to a source ------------------------------------------------------------------------- */
+
+static cw_status set_sizes(const cwi_vti *v, cwi_source *src, cw_error *err)
+{
+    const cwi_vtk_array *array = &choose(v)->data;
+    size_t dim[3] = {points_along(v, 0), points_along(v, 1), points_along(v, 2)};
+    cw_status st = is_of_cells(v) ? cwi_vtk_grid_to_cells(src, array->name, dim, err) : CW_OK;
+    const cwi_axis axes[] = {{CWI_AXIS_COMPONENT, array->components},
+                             {CWI_AXIS_X, dim[0]},
+                             {CWI_AXIS_Y, dim[1]},
+                             {CWI_AXIS_Z, dim[2]}};
+    src->shape.type = array->type;
+    src->shape.slope = 1;
+    src->has_arrays = true;
+    return st == CW_OK ? cwi_source_set_axes(src, axes, 4, err) : st;
+}
+
+/* World = Origin + Direction (Spacing * index), the index counted from the extent's; of cells
+ * half a step on. */
 static void set_frame(const cwi_vti *v, cw_volume *shape)
 {
     for (int r = 0; r < 3; r++)
@@ -148,14 +244,15 @@ static void set_frame(const cwi_vti *v, cw_volume *shape)
         const double spacing = shape->dim[c] == 1 && v->spacing[c] == 0 ? 1 : v->spacing[c];
         for (int r = 0; r < 3; r++) {
             shape->affine[r][c] = v->direction[3 * r + c] * spacing;
-            shape->affine[r][3] += shape->affine[r][c] * (double)v->extent[2 * c];
+            shape->affine[r][3] +=
+                shape->affine[r][c] * ((double)v->extent[2 * c] + (is_of_cells(v) ? 0.5 : 0));
         }
     }
 }
 
 cw_status cwi_vti_parse(const cwi_input *in, cwi_source *src, cw_error *err)
 {
-    parsing p = {.in_array = false};
+    parsing p = {.vti = {.wanted = in->array}};
     cwi_vti *v = &p.vti;
     src->size_field = "Extent";
     src->frame_field = "Direction, Spacing, Origin";
@@ -168,6 +265,9 @@ cw_status cwi_vti_parse(const cwi_input *in, cwi_source *src, cw_error *err)
         st = set_sizes(v, src, err);
     if (st != CW_OK)
         return st;
-    set_frame(v, &src->shape);
-    return cwi_vtk_xml_place(&v->file, &v->best.data, in, src, err);
+    if (v->rectilinear)
+        st = set_coordinates(v, in, &src->shape, err);
+    else
+        set_frame(v, &src->shape);
+    return st == CW_OK ? cwi_vtk_xml_place(&v->file, &choose(v)->data, in, src, err) : st;
 }

@@ -6,6 +6,7 @@
 
 #include <ctype.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { MOST_LINES = 10000, MOST_COMPONENTS = 1 << 16 };
@@ -166,7 +167,38 @@ static void note_other(cwi_vtk *v, const char *name, const char *type)
              type);
 }
 
-/* One array starts here: keeps it when it is better than those before, and goes behind it. */
+static cwi_vtk_rank rank_of(const cwi_vtk *v, const cwi_vtk_array *said, const vtk_type *type)
+{
+    if (type->type < 0 || said->components < 1 || said->components > 16)
+        return CWI_VTK_NONE;
+    if (v->wanted)
+        return strcmp(said->name, v->wanted) == 0 ? CWI_VTK_ASKED_FOR : CWI_VTK_NONE;
+    return said->rank == CWI_VTK_SCALARS || said->components == 1 ? said->rank
+                                                                  : CWI_VTK_SEVERAL;
+}
+
+/* Keeps an array that starts here when it is better than those before. */
+static void consider(cwi_vtk *v, const cwi_vtk_array *said, const vtk_type *type,
+                     const char *type_name)
+{
+    const cwi_vtk_rank rank = rank_of(v, said, type);
+    if (rank == CWI_VTK_NONE)
+        note_other(v, said->name, type_name);
+    if (rank <= v->best->rank)
+        return;
+    *v->best = *said;
+    v->best->type = (cw_type)type->type;
+    v->best->rank = rank;
+    v->best->offset = v->offset;
+}
+
+static cw_status pass_numbers(cwi_vtk *v, const char *name, size_t count, size_t bits,
+                              cw_error *err)
+{
+    return v->binary ? skip_bytes(v, name, count, bits, err) : skip_text(v, name, count, err);
+}
+
+/* One array starts here: perhaps it is kept; goes behind it, if there is a reason to. */
 static cw_status pass_array(cwi_vtk *v, const cwi_vtk_array *said, const char *type_name,
                             size_t tuples, cw_error *err)
 {
@@ -175,23 +207,60 @@ static cw_status pass_array(cwi_vtk *v, const cwi_vtk_array *said, const char *t
     if (!type)
         return cw_fail(err, CW_ERR_FORMAT, "the array '%s' is of type '%s', which is not known",
                        said->name, type_name);
-    const bool fits = v->at_points && tuples == v->count && said->components <= 16;
-    const bool single = said->rank == CWI_VTK_SCALARS || said->components == 1;
-    if (fits && type->type < 0)
-        note_other(v, said->name, type_name);
-    if (fits && type->type >= 0 && (single ? said->rank : CWI_VTK_SEVERAL) > v->best.rank) {
-        v->best = *said;
-        v->best.type = (cw_type)type->type;
-        v->best.rank = single ? said->rank : CWI_VTK_SEVERAL;
-        v->best.offset = v->offset;
-        if (v->best.rank == CWI_VTK_SCALARS) /* none is better */
-            return CW_OK;
-    }
+    if (v->best && tuples == v->count)
+        consider(v, said, type, type_name);
+    if (cwi_vtk_is_settled(v))
+        return CW_OK;
     if (!cwi_size_mul(tuples, said->components, &count))
         return cw_fail(err, CW_ERR_LIMIT, "the array '%s' is larger than an address space",
                        said->name);
-    return v->binary ? skip_bytes(v, said->name, count, type->bits, err)
-                     : skip_text(v, said->name, count, err);
+    return pass_numbers(v, said->name, count, type->bits, err);
+}
+
+static cw_status fail_cut_short(const cwi_vtk *v, cw_error *err)
+{
+    return cw_fail(err, CW_ERR_FORMAT, "line %zu, '%.60s', is cut short", v->number, v->line);
+}
+
+cw_status cwi_vtk_coordinates(cwi_vtk *v, int axis, cw_error *err)
+{
+    char field[] = "X_COORDINATES", word[CWI_WORD_BYTES], type_name[CWI_WORD_BYTES];
+    const char *text = cwi_vtk_value(v);
+    int64_t count;
+    field[0] = "XYZ"[axis];
+    if (!cwi_next_word(&text, word) || !cwi_next_word(&text, type_name))
+        return fail_cut_short(v, err);
+    cw_status st = cwi_field_integer(field, word, 1, INT32_MAX, &count, err);
+    if (st != CW_OK)
+        return st;
+    const vtk_type *type = find_type(type_name);
+    if (!type || type->type < 0)
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "'%s' is of type '%s'; numbers of up to 32 bits, or double, were "
+                       "expected",
+                       field, type_name);
+    v->coordinates[axis] = (cwi_vtk_row){(cw_type)type->type, (size_t)count, v->offset};
+    return pass_numbers(v, field, (size_t)count, type->bits, err);
+}
+
+/* The byte that "%20" or the like stands for; 0: none. */
+static char decode(const char *s)
+{
+    if (s[0] != '%' || !isxdigit((unsigned char)s[1]) || !isxdigit((unsigned char)s[2]))
+        return 0;
+    return (char)strtol((const char[]){s[1], s[2], '\0'}, NULL, 16);
+}
+
+/* Names have their blanks, and more, as %20 and the like. */
+static bool next_name(const char **text, char name[CWI_WORD_BYTES])
+{
+    char word[CWI_WORD_BYTES];
+    if (!cwi_next_word(text, word))
+        return false;
+    for (const char *s = word; *s; s += decode(s) ? 3 : 1)
+        *name++ = decode(s) ? decode(s) : *s;
+    *name = '\0';
+    return true;
 }
 
 /* Behind SCALARS stands "LOOKUP_TABLE name", which some writers leave out. */
@@ -218,7 +287,7 @@ static cw_status read_attribute(cwi_vtk *v, int row, cw_error *err)
     const char *text = cwi_vtk_value(v);
     int64_t components = (int64_t)array.components;
     cw_status st = CW_OK;
-    bool whole = cwi_next_word(&text, array.name);
+    bool whole = next_name(&text, array.name);
     for (const char *w = attributes[row].words; whole && st == CW_OK && *w; w++) {
         whole = cwi_next_word(&text, *w == 't' ? type : word);
         if (whole && *w != 't')
@@ -226,8 +295,7 @@ static cw_status read_attribute(cwi_vtk *v, int row, cw_error *err)
         whole |= *w == 'C';
     }
     if (st == CW_OK && !whole)
-        return cw_fail(err, CW_ERR_FORMAT, "line %zu, '%.60s', is cut short", v->number,
-                       v->line);
+        return fail_cut_short(v, err);
     if (st == CW_OK && row == 0)
         st = skip_lookup_name(v, err);
     if (st != CW_OK)
@@ -256,8 +324,7 @@ static cw_status read_lookup_table(cwi_vtk *v, cw_error *err)
     cw_status st = cwi_field_integer("LOOKUP_TABLE", text, 0, INT32_MAX, &size, err);
     if (st != CW_OK)
         return st;
-    return v->binary ? skip_bytes(v, name, 4 * (size_t)size, 8, err)
-                     : skip_text(v, name, 4 * (size_t)size, err);
+    return pass_numbers(v, name, 4 * (size_t)size, 8, err);
 }
 
 /* "name components tuples type" */
@@ -267,7 +334,7 @@ static cw_status read_field_array(cwi_vtk *v, cw_error *err)
     char words[3][CWI_WORD_BYTES];
     const char *text = v->line;
     int64_t components, tuples;
-    bool whole = cwi_next_word(&text, array.name);
+    bool whole = next_name(&text, array.name);
     for (int i = 0; i < 3; i++)
         whole = whole && cwi_next_word(&text, words[i]);
     if (!whole)
@@ -294,7 +361,7 @@ static cw_status read_field(cwi_vtk *v, cw_error *err)
     bool more = true;
     skip_name(&text, name);
     cw_status st = cwi_field_integer("FIELD", text, 0, MOST_LINES, &count, err);
-    while (st == CW_OK && count > 0) {
+    while (st == CW_OK && count > 0 && !cwi_vtk_is_settled(v)) {
         st = cwi_vtk_full_line(v, &more, err);
         if (st == CW_OK && !more)
             return cw_fail(err, CW_ERR_FORMAT,

@@ -1,24 +1,35 @@
-/* Legacy VTK image data: "VTK File Formats", the simple legacy formats, version 1.0 to 5.1. */
+/* Legacy VTK image data and rectilinear grids: "VTK File Formats", the simple legacy formats,
+ * version 1.0 to 5.1. */
 #include "core/memory.h"
 #include "core/status.h"
 #include "formats/readers.h"
 #include "formats/vtk.h"
+#include "formats/vtk_grid.h"
 
 #include <string.h>
 #include <strings.h>
 
 static const char magic[] = "# vtk DataFile Version ";
 
-typedef enum grid_field { G_DIMENSIONS, G_ORIGIN, G_SPACING, GRID_FIELD_COUNT } grid_field;
+typedef enum grid_field {
+    G_DIMENSIONS,
+    G_ORIGIN,
+    G_SPACING,
+    G_COORDINATES,
+    GRID_FIELD_COUNT = G_COORDINATES + 3
+} grid_field;
+
 static const char *const grid_names[GRID_FIELD_COUNT] = {
-    [G_DIMENSIONS] = "dimensions", [G_ORIGIN] = "origin", [G_SPACING] = "spacing|aspect_ratio"};
+    [G_DIMENSIONS] = "dimensions",         [G_ORIGIN] = "origin",
+    [G_SPACING] = "spacing|aspect_ratio",  [G_COORDINATES] = "x_coordinates",
+    [G_COORDINATES + 1] = "y_coordinates", [G_COORDINATES + 2] = "z_coordinates"};
 
 /* The grid of points, as far as the file has told of it. */
 typedef struct grid {
+    bool rectilinear;
     size_t dim[3];
     double origin[3], spacing[3];
     bool seen[GRID_FIELD_COUNT];
-    bool has_cells, has_points;
 } grid;
 
 bool cwi_vtk_sniff(const unsigned char *head, size_t size)
@@ -62,7 +73,7 @@ static bool is_keyword(const cwi_vtk *v, const char *names)
 }
 
 /* A FIELD may stand in front. */
-static cw_status read_dataset(cwi_vtk *v, cw_error *err)
+static cw_status read_dataset(cwi_vtk *v, grid *g, cw_error *err)
 {
     bool more = true, known = true;
     cw_status st = CW_OK;
@@ -75,20 +86,33 @@ static cw_status read_dataset(cwi_vtk *v, cw_error *err)
         if (st == CW_OK)
             st = cwi_vtk_section(v, &known, err);
     }
-    if (st != CW_OK || strcasecmp(cwi_vtk_value(v), "structured_points") == 0)
+    g->rectilinear = strcasecmp(cwi_vtk_value(v), "rectilinear_grid") == 0;
+    if (st != CW_OK || g->rectilinear || strcasecmp(cwi_vtk_value(v), "structured_points") == 0)
         return st;
     return cw_fail(err, CW_ERR_FORMAT,
-                   "line %zu is '%.60s'; only DATASET STRUCTURED_POINTS is a volume", v->number,
-                   v->line);
+                   "line %zu is '%.60s'; only DATASET STRUCTURED_POINTS or RECTILINEAR_GRID is "
+                   "a volume",
+                   v->number, v->line);
 }
 
 /* --- the grid ---------------------------------------------------------------------------- */
 
-static cw_status read_grid_field(const cwi_vtk *v, int field, grid *g, cw_error *err)
+/* The field that v->line starts; -1: none of such a grid. */
+static int find_field(const cwi_vtk *v, const grid *g)
 {
-    static const char by[] = "STRUCTURED_POINTS";
+    const int field =
+        cwi_field_find(grid_names, GRID_FIELD_COUNT, v->line, strcspn(v->line, " \t"));
+    const bool fits = field == G_DIMENSIONS || (field >= G_COORDINATES) == g->rectilinear;
+    return fits ? field : -1;
+}
+
+static cw_status read_grid_field(cwi_vtk *v, int field, grid *g, cw_error *err)
+{
+    const char *by = g->rectilinear ? "RECTILINEAR_GRID" : "STRUCTURED_POINTS";
     const char *value = cwi_vtk_value(v);
     g->seen[field] = true;
+    if (field >= G_COORDINATES)
+        return cwi_vtk_coordinates(v, field - G_COORDINATES, err);
     if (field == G_DIMENSIONS)
         return cwi_field_sizes("DIMENSIONS", value, 3, by, g->dim, err);
     if (field == G_ORIGIN)
@@ -96,38 +120,38 @@ static cw_status read_grid_field(const cwi_vtk *v, int field, grid *g, cw_error 
     return cwi_field_doubles("SPACING", value, 3, by, g->spacing, err);
 }
 
-static cw_status start_points(const cwi_vtk *v, const grid *g, cw_error *err)
+/* Of a plane of points, or a line, there are cells too. */
+static cw_status check_count(const cwi_vtk *v, const char *field, const grid *g, cw_error *err)
 {
-    size_t wanted;
+    const size_t cells = v->best == &v->cells;
+    size_t wanted = 1;
     if (!g->seen[G_DIMENSIONS])
-        return cw_fail(err, CW_ERR_FORMAT, "'DIMENSIONS' is missing in front of POINT_DATA");
-    if (!cwi_size_mul(g->dim[0], g->dim[1], &wanted) ||
-        !cwi_size_mul(wanted, g->dim[2], &wanted))
-        return cw_fail(err, CW_ERR_LIMIT,
-                       "'DIMENSIONS' asks for more voxels than an address space holds");
+        return cw_fail(err, CW_ERR_FORMAT, "'DIMENSIONS' is missing in front of %s", field);
+    for (int a = 0; a < 3; a++)
+        if (!cwi_size_mul(wanted, g->dim[a] > 1 ? g->dim[a] - cells : 1, &wanted))
+            return cw_fail(err, CW_ERR_LIMIT,
+                           "'DIMENSIONS' asks for more voxels than an address space holds");
     if (v->count == wanted)
         return CW_OK;
-    return cw_fail(err, CW_ERR_FORMAT, "'POINT_DATA' is %zu; 'DIMENSIONS' asks for %zu",
+    return cw_fail(err, CW_ERR_FORMAT, "'%s' is %zu; 'DIMENSIONS' asks for %zu", field,
                    v->count, wanted);
 }
 
 /* "POINT_DATA n" or "CELL_DATA n": what the arrays behind it are for. */
-static cw_status start_data(cwi_vtk *v, grid *g, cw_error *err)
+static cw_status start_data(cwi_vtk *v, const grid *g, cw_error *err)
 {
+    const bool points = is_keyword(v, "point_data");
+    const char *field = points ? "POINT_DATA" : "CELL_DATA";
     int64_t count = 0;
-    v->at_points = is_keyword(v, "point_data");
-    cw_status st = cwi_field_integer(v->at_points ? "POINT_DATA" : "CELL_DATA",
-                                     cwi_vtk_value(v), 0, INT64_MAX, &count, err);
+    cw_status st = cwi_field_integer(field, cwi_vtk_value(v), 0, INT64_MAX, &count, err);
+    v->best = points ? &v->points : &v->cells;
     v->count = (size_t)count;
-    g->has_points |= v->at_points;
-    g->has_cells |= !v->at_points;
-    return st == CW_OK && v->at_points ? start_points(v, g, err) : st;
+    return st == CW_OK ? check_count(v, field, g, err) : st;
 }
 
 static cw_status read_line(cwi_vtk *v, grid *g, cw_error *err)
 {
-    const int field =
-        cwi_field_find(grid_names, GRID_FIELD_COUNT, v->line, strcspn(v->line, " \t"));
+    const int field = find_field(v, g);
     bool known;
     if (field >= 0)
         return read_grid_field(v, field, g, err);
@@ -140,12 +164,12 @@ static cw_status read_line(cwi_vtk *v, grid *g, cw_error *err)
     return st;
 }
 
-/* Walks the file until SCALARS are found, or to its end. */
+/* Walks the file until nothing better can come, or to its end. */
 static cw_status read_lines(cwi_vtk *v, grid *g, cw_error *err)
 {
     bool more = true;
     cw_status st = CW_OK;
-    while (st == CW_OK && v->best.rank < CWI_VTK_SCALARS) {
+    while (st == CW_OK && !cwi_vtk_is_settled(v)) {
         st = cwi_vtk_full_line(v, &more, err);
         if (!more)
             break;
@@ -155,17 +179,23 @@ static cw_status read_lines(cwi_vtk *v, grid *g, cw_error *err)
     return st;
 }
 
-static cw_status check_found(const cwi_vtk *v, const grid *g, cw_error *err)
+/* The array that is the volume: at points, unless only cells have one. */
+static const cwi_vtk_array *choose(const cwi_vtk *v)
 {
-    if (v->best.rank != CWI_VTK_NONE)
+    return v->points.rank != CWI_VTK_NONE ? &v->points : &v->cells;
+}
+
+static cw_status check_found(const cwi_vtk *v, cw_error *err)
+{
+    if (choose(v)->rank != CWI_VTK_NONE)
         return CW_OK;
-    if (g->has_cells && !g->has_points)
-        return cw_fail(
-            err, CW_ERR_FORMAT,
-            "the file has CELL_DATA and no POINT_DATA; only values at points are read");
-    if (!g->has_points)
-        return cw_fail(err, CW_ERR_FORMAT, "'POINT_DATA' is missing");
-    return cw_fail(err, CW_ERR_FORMAT, "'POINT_DATA' holds no array that is read%s%s",
+    if (!v->best)
+        return cw_fail(err, CW_ERR_FORMAT, "'POINT_DATA' is missing, and 'CELL_DATA' too");
+    if (v->wanted)
+        return cw_fail(err, CW_ERR_ARGUMENT, "there is no array '%.100s' that is read%s%s",
+                       v->wanted, *v->others ? "; there are " : "", v->others);
+    return cw_fail(err, CW_ERR_FORMAT,
+                   "'POINT_DATA' and 'CELL_DATA' hold no array that is read%s%s",
                    *v->others ? "; there are " : "", v->others);
 }
 
@@ -173,26 +203,56 @@ static cw_status check_found(const cwi_vtk *v, const grid *g, cw_error *err)
 
 static cw_status describe(const cwi_vtk *v, const grid *g, cwi_source *src, cw_error *err)
 {
-    const cwi_axis axes[] = {{CWI_AXIS_COMPONENT, v->best.components},
-                             {CWI_AXIS_X, g->dim[0]},
-                             {CWI_AXIS_Y, g->dim[1]},
-                             {CWI_AXIS_Z, g->dim[2]}};
-    cw_volume *shape = &src->shape;
-    shape->type = v->best.type;
-    shape->slope = 1;
+    const cwi_vtk_array *array = choose(v);
+    size_t dim[3] = {g->dim[0], g->dim[1], g->dim[2]};
+    cw_status st =
+        array == &v->cells ? cwi_vtk_grid_to_cells(src, array->name, dim, err) : CW_OK;
+    const cwi_axis axes[] = {{CWI_AXIS_COMPONENT, array->components},
+                             {CWI_AXIS_X, dim[0]},
+                             {CWI_AXIS_Y, dim[1]},
+                             {CWI_AXIS_Z, dim[2]}};
+    src->shape.type = array->type;
+    src->shape.slope = 1;
+    src->has_arrays = true;
     src->encoding = v->binary ? CWI_RAW : CWI_ASCII;
     src->big_endian = true;
-    src->offset = v->best.offset;
-    for (int a = 0; a < 3; a++) { /* flat data may have no thickness */
-        shape->affine[a][a] = g->dim[a] == 1 && g->spacing[a] == 0 ? 1 : g->spacing[a];
-        shape->affine[a][3] = g->origin[a];
+    src->offset = array->offset;
+    return st == CW_OK ? cwi_source_set_axes(src, axes, sizeof axes / sizeof *axes, err) : st;
+}
+
+static cw_status set_coordinates(const cwi_vtk *v, const grid *g, cwi_source *src,
+                                 cw_error *err)
+{
+    static const char *const fields[] = {"X_COORDINATES", "Y_COORDINATES", "Z_COORDINATES"};
+    cwi_source rows[3];
+    for (int a = 0; a < 3; a++) {
+        const cwi_vtk_row *row = &v->coordinates[a];
+        if (row->count != g->dim[a])
+            return cw_fail(err, CW_ERR_FORMAT, "'%s' lists %zu numbers; 'DIMENSIONS' says %zu",
+                           fields[a], row->count, g->dim[a]);
+        cw_status st = cwi_vtk_grid_row(&rows[a], fields[a], row->type, row->count, err);
+        if (st != CW_OK)
+            return st;
+        rows[a].encoding = src->encoding;
+        rows[a].big_endian = true;
+        rows[a].offset = row->offset;
     }
-    return cwi_source_set_axes(src, axes, sizeof axes / sizeof *axes, err);
+    return cwi_vtk_grid_place(rows, v->in, choose(v) == &v->cells, &src->shape, err);
+}
+
+/* Flat data may have no thickness. Cells are half a step on. */
+static void set_frame(const cwi_vtk *v, const grid *g, cw_volume *shape)
+{
+    for (int a = 0; a < 3; a++) {
+        const double step = g->dim[a] == 1 && g->spacing[a] == 0 ? 1 : g->spacing[a];
+        shape->affine[a][a] = step;
+        shape->affine[a][3] = g->origin[a] + (choose(v) == &v->cells ? 0.5 * step : 0);
+    }
 }
 
 cw_status cwi_vtk_parse(const cwi_input *in, cwi_source *src, cw_error *err)
 {
-    cwi_vtk v = {.in = in};
+    cwi_vtk v = {.in = in, .wanted = in->array};
     grid g = {.spacing = {1, 1, 1}};
     src->size_field = "DIMENSIONS";
     src->frame_field = "SPACING, ORIGIN";
@@ -200,12 +260,15 @@ cw_status cwi_vtk_parse(const cwi_input *in, cwi_source *src, cw_error *err)
     if (st == CW_OK)
         st = read_form(&v, err);
     if (st == CW_OK)
-        st = read_dataset(&v, err);
+        st = read_dataset(&v, &g, err);
     if (st == CW_OK)
         st = read_lines(&v, &g, err);
     if (st == CW_OK)
-        st = check_found(&v, &g, err);
+        st = check_found(&v, err);
     if (st == CW_OK)
         st = describe(&v, &g, src, err);
+    if (st == CW_OK && g.rectilinear)
+        return set_coordinates(&v, &g, src, err);
+    set_frame(&v, &g, &src->shape);
     return st;
 }

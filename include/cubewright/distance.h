@@ -58,6 +58,7 @@ typedef struct cw_field_distance_desc {
  *
  * Returns  CW_ERR_ARGUMENT  isovalue not finite, reach or step negative or not finite, volume
  *                           too thin, or as cw_mesh_check() and cw_volume_resolve()
+ *          CW_ERR_UNSUPPORTED  the grid is rectilinear
  *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
  * Cost     about half a microsecond for a point near the surface; where there is none, time in
  *          proportion to the voxels within reach

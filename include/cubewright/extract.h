@@ -82,6 +82,7 @@ typedef struct cw_extract_counts {
  * Returns  CW_ERR_ARGUMENT  isovalue is not finite, volume too thin, voxels too small or large
  *                           for single precision (1e-38, 1e38 mm), snap out of range, or as
  *                           cw_volume_resolve()
+ *          CW_ERR_UNSUPPORTED  snap or cubic_placement on a rectilinear grid
  *          CW_ERR_LIMIT     more than 2^32 - 1 vertices, or a limit of desc
  *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
  * Cost     two passes over the voxels' sign bits after one over the voxels; snapping takes some

@@ -44,6 +44,8 @@ typedef struct cw_read_desc {
     uint64_t max_voxels;      /* default 2^40 */
     uint64_t max_bytes;       /* of voxels in memory; default: no limit */
     double spacing_mm[3];     /* in place of the file's; default: all 0, the file's */
+    const char *array;        /* by its name, where files have several; default: the one that
+                                 the file names, else the first of one value */
 
     /* Slices in files of their own (TIFF, DICOM). */
     const char *series; /* label or UID, as of cw_series_list(); default: the only one */
@@ -77,6 +79,7 @@ typedef struct cw_read_desc {
  * are not wanted, compressed ones inflated and dropped, and then the checksum at their end is
  * verified only if the region reaches it.
  *
+ * volume   filled on success, else emptied; free it with cw_volume_free(), a header's too
  * format   set to the reader's name (static); may be NULL
  * Returns  CW_ERR_IO           missing, not a regular file, unreadable
  *          CW_ERR_FORMAT       not understood, damaged, or truncated; names the field
@@ -86,8 +89,8 @@ typedef struct cw_read_desc {
  *          CW_ERR_UNSUPPORTED  compressed with a library that is not in this build
  *          CW_ERR_BACKEND      a library died of the file, or took too long
  *          CW_ERR_LIMIT        more voxels or bytes than allowed; CW_ERR_NO_MEMORY
- *          CW_ERR_ARGUMENT     no such reader; a region that is empty or leaves the volume;
- *                              CW_ERR_CANCELLED */
+ *          CW_ERR_ARGUMENT     no such reader or array; a region that is empty or leaves the
+ *                              volume; CW_ERR_CANCELLED */
 CW_API cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *volume,
                                 const char **format, cw_error *err);
 
@@ -311,7 +314,8 @@ typedef struct cw_write_desc {
  * Returns  CW_ERR_ARGUMENT     no writer of that name or extension; local, text or axes, which
  *                              are for meshes
  *          CW_ERR_OUTPUT       folder missing, disk full, path exists and no_clobber
- *          CW_ERR_UNSUPPORTED  the format is not in this build; CW_ERR_CANCELLED */
+ *          CW_ERR_UNSUPPORTED  the format is not in this build; the grid is rectilinear
+ *          CW_ERR_CANCELLED */
 CW_API cw_status cw_volume_write(const char *path, const cw_volume *volume,
                                  const cw_write_desc *desc, cw_error *err);
 

@@ -23,7 +23,7 @@ typedef struct cw_mesh {
     float *scalars;      /* vertex_count; or NULL */
     uint8_t *colors;     /* vertex_count x 4, sRGB and linear alpha; or NULL */
     uint32_t *labels;    /* vertex_count; or NULL */
-    double affine[3][4]; /* index to world of the volume it came from; all 0: none */
+    double affine[3][4]; /* of the volume it came from, see cw_volume; all 0: none */
 } cw_mesh;
 
 /* Frees the arrays and zeroes the struct. Harmless on a zeroed or already freed mesh. */

@@ -35,24 +35,28 @@ typedef enum cw_known { CW_KNOWN_UNIT = 1, CW_KNOWN_FRAME = 2 } cw_known;
  *
  * The voxel (i, j, k) of component c at time step t stands at
  *     data + i stride[0] + j stride[1] + k stride[2] + c component_stride + t step_stride
- * and stands for the value  slope * voxel + intercept  at the world point  affine * (i j k 1).
+ * and stands for the value  slope * voxel + intercept  at the world point  affine * (i j k 1),
+ * on a rectilinear grid at  affine * (coordinates[0][i] coordinates[1][j] coordinates[2][k] 1).
  */
 typedef struct cw_volume {
-    const void *data;           /* first voxel; aligned for its type, native byte order */
-    cw_type type;               /* default CW_U8 */
-    size_t dim[3];              /* voxels along x, y, z; x varies fastest in packed data */
-    ptrdiff_t stride[3];        /* bytes from voxel to voxel; all 0: packed */
-    size_t components;          /* values per voxel (vectors, colours); 0 means 1 */
-    ptrdiff_t component_stride; /* bytes; 0: interleaved before x in packed data */
-    size_t steps;               /* time steps; 0 means 1 */
-    ptrdiff_t step_stride;      /* bytes; 0: one packed volume after another */
-    double step_seconds;        /* time between steps; 0: unknown */
-    double affine[3][4];        /* index to world, LPS millimetres; all 0: identity */
-    double slope, intercept;    /* value = slope * voxel + intercept; slope 0 means 1 */
+    const void *data;             /* first voxel; aligned for its type, native byte order */
+    cw_type type;                 /* default CW_U8 */
+    size_t dim[3];                /* voxels along x, y, z; x varies fastest in packed data */
+    ptrdiff_t stride[3];          /* bytes from voxel to voxel; all 0: packed */
+    size_t components;            /* values per voxel (vectors, colours); 0 means 1 */
+    ptrdiff_t component_stride;   /* bytes; 0: interleaved before x in packed data */
+    size_t steps;                 /* time steps; 0 means 1 */
+    ptrdiff_t step_stride;        /* bytes; 0: one packed volume after another */
+    double step_seconds;          /* time between steps; 0: unknown */
+    double affine[3][4];          /* index to world, LPS millimetres; all 0: identity */
+    const double *coordinates[3]; /* dim[0], dim[1], dim[2], rising: where planes of samples
+                                     stand, in place of their index. All three, or NULL */
+    double slope, intercept;      /* value = slope * voxel + intercept; slope 0 means 1 */
     bool has_nodata; /* voxels equal to nodata, before scaling, are outside the domain */
     double nodata;
-    unsigned known; /* cw_known flags */
-    void *owned;    /* memory freed by cw_volume_free(); NULL for a borrowed view */
+    unsigned known;                  /* cw_known flags */
+    void *owned, *owned_coordinates; /* memory freed by cw_volume_free(); NULL for a borrowed
+                                        view */
 } cw_volume;
 
 /* An index box: first voxel and number of voxels along each axis. */
@@ -80,7 +84,8 @@ CW_API void *cw_volume_voxels(cw_volume *volume);
 /* Copies *in to *out with every defaulted field filled in, so that code below needs no special
  * cases. Borrowed like *in: free only one of them.
  * Returns CW_ERR_ARGUMENT for an unknown type, a zero dim, a missing pointer, an affine or
- * scaling that is not finite or cannot be inverted, strides that break the type's alignment. */
+ * scaling that is not finite or cannot be inverted, strides that break the type's alignment,
+ * coordinates that do not rise or are not all there. */
 CW_API cw_status cw_volume_resolve(const cw_volume *in, cw_volume *out, cw_error *err);
 
 /* A borrowed view of one component at one time step.
@@ -96,8 +101,8 @@ CW_API cw_status cw_volume_crop(const cw_volume *in, const cw_box *box, cw_volum
 /* A borrowed view of every step[a]-th voxel along axis a, from the first one on, each where it
  * was: for a quick look. Values are picked, not averaged. Up to step[a] - 1 voxels at the far
  * end are beyond the view. Returns CW_ERR_ARGUMENT for a step of 0 and for one, other than 1,
- * that leaves a single voxel: at most dim[a] - 1; when the affine leaves the range of doubles.
- */
+ * that leaves a single voxel: at most dim[a] - 1; when the affine leaves the range of doubles;
+ * CW_ERR_UNSUPPORTED on a rectilinear grid. */
 CW_API cw_status cw_volume_coarsen(const cw_volume *in, const size_t step[3], cw_volume *out,
                                    cw_error *err);
 
@@ -105,8 +110,8 @@ CW_API cw_status cw_volume_coarsen(const cw_volume *in, const size_t step[3], cw
  */
 CW_API double cw_volume_value(const cw_volume *volume, size_t i, size_t j, size_t k);
 
-/* World point of a (fractional) index; and the millimetres between neighbours along each axis.
- */
+/* World point of a (fractional) index; and the millimetres between neighbours along each axis,
+ * on a rectilinear grid the mean. */
 CW_API void cw_volume_to_world(const cw_volume *volume, const double index[3], double world[3]);
 CW_API void cw_volume_spacing(const cw_volume *volume, double spacing_mm[3]);
 

@@ -27,13 +27,23 @@ static bool same_voxels(const cw_volume *a, const cw_volume *b)
     return true;
 }
 
+static bool same_coordinates(const cw_volume *a, const cw_volume *b)
+{
+    for (int i = 0; i < 3; i++)
+        if (!a->coordinates[i] != !b->coordinates[i] ||
+            (a->coordinates[i] && memcmp(a->coordinates[i], b->coordinates[i],
+                                         a->dim[i] * sizeof *a->coordinates[i]) != 0))
+            return false;
+    return true;
+}
+
 static bool same_shape(const cw_volume *a, const cw_volume *b)
 {
     return a->type == b->type && memcmp(a->dim, b->dim, sizeof a->dim) == 0 &&
            a->components == b->components && a->steps == b->steps &&
            a->step_seconds == b->step_seconds && a->slope == b->slope &&
            a->intercept == b->intercept && a->known == b->known &&
-           a->has_nodata == b->has_nodata &&
+           a->has_nodata == b->has_nodata && same_coordinates(a, b) &&
            memcmp(a->affine, b->affine, sizeof a->affine) == 0;
 }
 
@@ -83,6 +93,7 @@ static void check_box(const char *name, const cw_read_desc *desc, const cw_volum
                  box->first[0], box->count[0], box->first[1], box->count[1], box->first[2],
                  box->count[2]);
     cw_volume_free(&part);
+    cw_volume_free(&shape);
 }
 
 /* Range n of those that lie in an axis: from each voxel to it, or to one behind it. */

@@ -76,6 +76,12 @@ static void fill(cw_volume *v, int round)
     v->affine[0][0] = round & 4 ? -0.7 : 0.7;
     v->affine[2][2] = 2.5;
     v->affine[2][3] = 1000;
+    static double uneven[3][100];
+    for (int a = 0; a < 3 && round & 16; a++) {
+        for (size_t i = 0; i < v->dim[a]; i++)
+            uneven[a][i] = (double)i + 0.3 * sin((double)i);
+        v->coordinates[a] = uneven[a];
+    }
 }
 
 static void slabs_are_the_surface(void **state)

@@ -248,7 +248,7 @@ static void damaged_files_are_told_where(void **state)
          "'Extent' asks for 16 bytes of voxels"},
         {PIECE "</Piece><Piece Extent='1 2 0 0 0 0'/>", "several Piece elements"},
         {PIECE "<CellData><DataArray type='UInt8'/></CellData></Piece></ImageData></VTKFile>",
-         "the arrays are CellData; only values at points"},
+         "one plane of points along y: no cells"},
         {ARRAY("type='Int64'>1 2</DataArray>") END,
          "no array that is read; there are 's' (1 Int64)"},
         {ARRAY("type='UInt8' NumberOfComponents='17'>1</DataArray>") END, "'s' (17 UInt8)"},
