@@ -312,7 +312,7 @@ static cw_status read_step(const info_args *args, const char *path, step_facts *
     if (st != CW_OK)
         return st;
     st = cw_volume_statistics(&step->volume.view, 0, threads, &step->range, err);
-    cli_free_volume(&step->volume);
+    cw_volume_free(&step->volume.voxels);
     return st == CW_OK ? st : cwi_fail_in(err, st, path);
 }
 
@@ -338,9 +338,11 @@ static cw_status list_files(const info_args *args, char *const *files, size_t co
     for (size_t n = 0; n < count; n++) {
         step_facts step = {0};
         cw_status st = read_step(args, files[n], &step, err);
-        if (st != CW_OK)
+        if (st != CW_OK) {
+            cli_free_volume(&step.volume);
             return st;
-        first = n ? first : step.volume.whole;
+        }
+        first = n ? first : step.volume.whole; /* whose coordinates soon are gone */
         if (finding->status == CW_OK &&
             (st = cli_agree(&first, files[0], &step.volume.whole, finding)) != CW_OK)
             cwi_fail_in(finding, st, files[n]);
@@ -348,6 +350,7 @@ static cw_status list_files(const info_args *args, char *const *files, size_t co
             json_step(j, &step);
         else
             print_step(n, &step);
+        cli_free_volume(&step.volume);
     }
     return CW_OK;
 }

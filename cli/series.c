@@ -42,14 +42,17 @@ cw_status cli_agree(const cw_volume *first, const char *first_path, const cw_vol
 
 static cw_status check_files(const cli_series *series, const cli_input *input, cw_error *err)
 {
-    cw_volume first = {0}, other;
+    cw_volume first = {0};
     cw_status st = CW_OK;
     for (size_t n = 0; n < series->files.count && st == CW_OK; n++) {
         const char *path = series->files.path[n];
-        st = cli_read_shape(path, input, n ? &other : &first, err);
+        cw_volume other;
+        st = cli_read_shape(path, input, &other, err);
         if (st != CW_OK)
             return st;
-        st = cli_agree(&first, series->files.path[0], n ? &other : &first, err);
+        first = n ? first : other; /* whose coordinates soon are gone */
+        st = cli_agree(&first, series->files.path[0], &other, err);
+        cw_volume_free(&other);
         if (st != CW_OK)
             return cwi_fail_in(err, st, path);
     }
