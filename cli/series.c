@@ -104,19 +104,21 @@ static cw_status find_in_file(cli_series *series, const char *path, const cli_in
     if (input->step)
         return cw_fail(err, CW_ERR_ARGUMENT, "--step or --steps, not both");
     cw_status st = cli_read_shape(path, input, &shape, err);
-    if (st == CW_OK) {
-        st = choose(series, steps, shape.steps, err);
-        if (st != CW_OK)
-            return cwi_fail_in(err, st, path);
-    }
-    series->timed = st == CW_OK && shape.step_seconds > 0;
+    if (st != CW_OK)
+        return st;
+    st = choose(series, steps, shape.steps, err);
+    const double step_s = shape.step_seconds;
+    cw_volume_free(&shape);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, path);
+    series->timed = step_s > 0;
     for (size_t n = 0; n < series->count; n++) {
         cli_moment *m = &series->moments[n];
         m->path = path;
         m->step = m->number;
-        m->time_s = series->timed ? (double)m->step * shape.step_seconds : 0;
+        m->time_s = series->timed ? (double)m->step * step_s : 0;
     }
-    return st;
+    return CW_OK;
 }
 
 static cw_status take_one(cli_series *series, const char *path, size_t step, cw_error *err)
