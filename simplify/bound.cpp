@@ -64,6 +64,7 @@ Bound::Bound(const cwi_block &block, const cwi_original *original_, double error
 {
     if (!original || !block.lists)
         return;
+    asked = true;
     heads.assign(block.lists, block.lists + block.own);
     marks.resize(block.own);
 }

@@ -36,7 +36,7 @@ public:
 
     bool is_asked() const
     {
-        return !heads.empty();
+        return asked;
     }
 
     uint32_t list(uint32_t face) const
@@ -71,6 +71,7 @@ private:
 
     const cwi_original *original;
     float error;
+    bool asked = false;                     // also of a block without triangles
     std::vector<uint32_t> heads;            // first point of a face's list
     std::vector<uint32_t> points, spoke_of; // of the star; the nearest spoke
     std::vector<uint32_t> under;            // triangles of the original under the star

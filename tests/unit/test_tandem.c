@@ -90,7 +90,7 @@ static void an_error_is_kept(void **state)
     (void)state;
     srand(12);
     for (int round = 0; round < 4; round++) {
-        cw_volume v = noisy_gyroid(28, round ? 0.02 : 0);
+        cw_volume v = noisy_gyroid(22, round ? 0.02 : 0);
         const cw_extract_desc extract = {.leave_open = round & 1};
         const cw_simplify_desc desc = {.error_mm = round & 2 ? 0.8 : 0.3};
         if (round & 2)
@@ -117,10 +117,10 @@ static void thin_slabs_stay_sound(void **state)
 {
     (void)state;
     cw_volume v = noisy_gyroid(18, 0.1);
-    static const double errors[] = {0.05, 0.5, 5, 0};
+    static const double errors[] = {0.5, 5, 0};
     cw_mesh whole = test_extract(&v, NULL, NULL);
-    for (int n = 0; n < 4; n++) {
-        const cw_simplify_desc desc = {.error_mm = errors[n], .triangles = n == 3 ? 500 : 0};
+    for (int n = 0; n < 3; n++) {
+        const cw_simplify_desc desc = {.error_mm = errors[n], .triangles = n == 2 ? 500 : 0};
         cw_mesh out = run(&v, NULL, &desc, 1);
         test_assert_sound(&whole, &out);
         if (errors[n] > 0) {
