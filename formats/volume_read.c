@@ -211,6 +211,12 @@ static cw_status check_shares(const cw_volume *v, size_t files, cw_error *err)
                          slices, files);
 }
 
+static cw_status refuse_array(const char *array, cw_error *err)
+{
+    return cw_fail(err, CW_ERR_ARGUMENT,
+                   "'%s' was asked for; files of this format have no arrays with names", array);
+}
+
 /* Headers that a source describes, and layouts. */
 static cw_status read_source(opened *o, const cw_read_desc *desc, cw_volume *volume,
                              cw_error *err)
@@ -219,9 +225,7 @@ static cw_status read_source(opened *o, const cw_read_desc *desc, cw_volume *vol
     cw_status st = desc->raw ? cwi_raw_describe(desc->raw, &src, err)
                              : o->reader->parse(&o->in, &src, err);
     if (st == CW_OK && desc->array && !src.has_arrays)
-        st = cw_fail(err, CW_ERR_ARGUMENT,
-                     "'%s' was asked for; files of this format have no arrays with names",
-                     desc->array);
+        st = refuse_array(desc->array, err);
     if (st == CW_OK && *src.note)
         cwi_note(desc, "%s", src.note);
     if (st == CW_OK && o->many)
@@ -263,9 +267,7 @@ cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *
     if (st == CW_OK)
         st = open_path(&o, path, desc, err);
     if (st == CW_OK && o.reader && o.reader->read && desc->array)
-        st = cw_fail(err, CW_ERR_ARGUMENT,
-                     "'%s' was asked for; files of this format have no arrays with names",
-                     desc->array);
+        st = refuse_array(desc->array, err);
     else if (st == CW_OK && o.reader && o.reader->read)
         st = o.reader->read(&o.in, o.many ? &o.names : NULL, desc, volume, err);
     else if (st == CW_OK)

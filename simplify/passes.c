@@ -106,7 +106,7 @@ cw_status cwi_passes_remember(cwi_passes *p, const cw_mesh *input, cw_error *err
     return CW_OK;
 }
 
-cw_status cwi_passes_list(cwi_passes *p, cwi_block *b, const uint32_t *points, cw_error *err)
+cw_status cwi_passes_list(cwi_passes *p, cwi_block *b, cw_error *err)
 {
     b->lists = cwi_alloc_array(b->triangles, sizeof *b->lists);
     if (!b->lists)
@@ -114,7 +114,7 @@ cw_status cwi_passes_list(cwi_passes *p, cwi_block *b, const uint32_t *points, c
                        b->triangles);
     memset(b->lists, 0xff, b->triangles * sizeof *b->lists);
     for (size_t c = 0; c < 3 * b->triangles; c++) {
-        const uint32_t point = points ? points[b->corners[c]] : b->corners[c];
+        const uint32_t point = b->corners[c];
         if (p->next[point] != point)
             continue;
         p->next[point] = b->lists[c / 3];

@@ -36,10 +36,9 @@ void cwi_passes_scale(cwi_passes *passes, double scale);
  * input     borrowed, with its arrays */
 cw_status cwi_passes_remember(cwi_passes *passes, const cw_mesh *input, cw_error *err);
 
-/* Puts every point of the input that is no vertex of another list into the list of one of the
- * triangles around it. points tells which vertex of the input each of the block's is. */
-cw_status cwi_passes_list(cwi_passes *passes, cwi_block *block, const uint32_t *points,
-                          cw_error *err);
+/* Puts every point of a block that is in no list yet into that of a triangle around it. The
+ * block's vertices have the numbers that they have in the input. */
+cw_status cwi_passes_list(cwi_passes *passes, cwi_block *block, cw_error *err);
 
 /* Simplifies a block in smaller ones, each by itself, and joins them: a seam between them stays
  * as it was. Down to `target` triangles or so; 0: as far as the error allows.

@@ -125,7 +125,7 @@ static cw_status run_passes(cwi_passes *p, const cw_mesh *mesh, const size_t *ta
     if (st == CW_OK && p->desc->error_mm > 0)
         st = cwi_passes_remember(p, mesh, err);
     if (st == CW_OK && p->next)
-        st = cwi_passes_list(p, &whole, NULL, err);
+        st = cwi_passes_list(p, &whole, err);
     if (st == CW_OK && whole.triangles > CWI_BLOCK)
         st = cwi_passes_blocks(p, &whole, targets[0], err);
     if (st == CW_OK)

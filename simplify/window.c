@@ -27,10 +27,14 @@ static cw_status no_memory(cw_error *err)
     return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to simplify across slabs");
 }
 
+static double height_along(const float along[3], const float x[3])
+{
+    return (double)(x[0] * along[0] + x[1] * along[1] + x[2] * along[2]);
+}
+
 static double height(const cwi_block *b, size_t vertex)
 {
-    const float *x = b->points + 3 * vertex;
-    return (double)(x[0] * b->along[0] + x[1] * b->along[1] + x[2] * b->along[2]);
+    return height_along(b->along, b->points + 3 * vertex);
 }
 
 /* --- the input near the window -------------------------------------------------------------
@@ -54,11 +58,9 @@ static void choose_old(const cwi_window *w, merger *m, double lowest)
     for (size_t t = 0; t < w->rest.triangles; t++)
         for (uint32_t v = w->rest.lists[t]; v != NONE; v = m->next[v])
             m->wanted[v] = 1;
-    for (size_t v = 0; v < old->vertex_count; v++) {
-        const float *x = old->positions + 3 * v;
-        if ((double)(x[0] * along[0] + x[1] * along[1] + x[2] * along[2]) >= lowest)
+    for (size_t v = 0; v < old->vertex_count; v++)
+        if (height_along(along, old->positions + 3 * v) >= lowest)
             m->wanted[v] = 1;
-    }
 }
 
 /* Triangles with a vertex that is wanted, and their vertices: none reaches farther down than by
@@ -311,10 +313,9 @@ static cw_status keep_near(cwi_window *w, const cwi_block *left, double lowest, 
         for (size_t k = 0; k < 3 && n >= w->finished_count; k++)
             memcpy(to + 3 * k, left->points + 3 * (size_t)left->corners[3 * t + k],
                    3 * sizeof *to);
-        const cwi_block triangle = {.points = to,
-                                    .along = {left->along[0], left->along[1], left->along[2]}};
-        kept += height(&triangle, 0) >= lowest || height(&triangle, 1) >= lowest ||
-                height(&triangle, 2) >= lowest;
+        kept += height_along(left->along, to) >= lowest ||
+                height_along(left->along, to + 3) >= lowest ||
+                height_along(left->along, to + 6) >= lowest;
     }
     cwi_free(w->finished);
     w->finished = near;
@@ -429,7 +430,7 @@ cw_status cwi_window_take(cwi_window *w, cwi_passes *p, cwi_slab_block *slab, cw
     size_t cut = 0;
     cw_status st = merge_input(w, p, slab, err);
     if (st == CW_OK)
-        st = cwi_passes_list(p, b, NULL, err);
+        st = cwi_passes_list(p, b, err);
     if (st == CW_OK)
         st = cwi_passes_blocks(p, b, 0, err);
     if (st == CW_OK)

@@ -48,6 +48,17 @@ static inline cw_status read_back(const char *name, cw_volume *volume, cw_error 
     return cw_volume_read(test_path(name), NULL, volume, NULL, err);
 }
 
+/* An index stands at a place of the world. */
+static inline void assert_place(const cw_volume *v, double i, double j, double k, double x,
+                                double y, double z)
+{
+    double world[3];
+    cw_volume_to_world(v, (double[3]){i, j, k}, world);
+    assert_near(world[0], x, 1e-12);
+    assert_near(world[1], y, 1e-12);
+    assert_near(world[2], z, 1e-12);
+}
+
 /* The affine is these 12 numbers, row by row, to the bit. */
 static inline void check_affine(const cw_volume *volume, const double *wanted)
 {

@@ -27,16 +27,6 @@ static cw_status read_array(const char *name, cw_volume *v, cw_error *err)
     return cw_volume_read(test_path("a.vtk"), &(cw_read_desc){.array = name}, v, NULL, err);
 }
 
-static void assert_place(const cw_volume *v, double i, double j, double k, double x, double y,
-                         double z)
-{
-    double world[3];
-    cw_volume_to_world(v, (double[3]){i, j, k}, world);
-    assert_near(world[0], x, 1e-12);
-    assert_near(world[1], y, 1e-12);
-    assert_near(world[2], z, 1e-12);
-}
-
 /* Numbers along y fall: they are taken from the other end. */
 static void check_points(void)
 {

@@ -27,16 +27,6 @@ static void put(const char *text)
     test_file_write(test_path("a.vtr"), text, strlen(text));
 }
 
-static void assert_place(const cw_volume *v, double i, double j, double k, double x, double y,
-                         double z)
-{
-    double world[3];
-    cw_volume_to_world(v, (double[3]){i, j, k}, world);
-    assert_near(world[0], x, 1e-12);
-    assert_near(world[1], y, 1e-12);
-    assert_near(world[2], z, 1e-12);
-}
-
 /* Numbers along y fall: they are taken from the other end. */
 static void points_stand_at_their_coordinates(void **state)
 {
