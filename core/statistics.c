@@ -116,6 +116,10 @@ cw_status cw_volume_statistics(const cw_volume *volume, size_t bin_count, int th
     cw_status st = cw_volume_select(volume, 0, 0, &v, err);
     if (st != CW_OK)
         return st;
+    if (v.sparse) { /* leaves stand one behind another */
+        v.dim[0] = v.dim[1] = CWI_LEAF;
+        v.dim[2] = CWI_LEAF * v.sparse->leaf_count;
+    }
     cw_statistics s = {.min = INFINITY, .max = -INFINITY};
     s.quantum = is_integer(v.type) ? fabs(v.slope) : 0;
     st = each_row(&v, threads, false, &s, err);

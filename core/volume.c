@@ -28,24 +28,27 @@ const char *cw_type_name(cw_type type)
 
 static bool packed_bytes(const cw_volume *v, size_t *bytes)
 {
+    const size_t in_leaves[3] = {CWI_LEAF_VOXELS, v->sparse ? v->sparse->leaf_count : 0, 1};
+    const size_t *dim = v->sparse ? in_leaves : v->dim;
     size_t n = cw_type_size(v->type);
     bool fits = true;
     for (int a = 0; a < 3; a++)
-        fits = fits && cwi_size_mul(n, v->dim[a], &n);
+        fits = fits && cwi_size_mul(n, dim[a], &n);
     fits = fits && cwi_size_mul(n, v->components, &n) && cwi_size_mul(n, v->steps, &n);
     *bytes = n;
     return fits && n <= PTRDIFF_MAX;
 }
 
-/* x fastest, components interleaved in front of it, time slowest. */
+/* x fastest, components interleaved in front of it, time slowest; in a sparse grid's leaves. */
 static void set_packed_strides(cw_volume *v)
 {
+    const size_t leaf[3] = {CWI_LEAF, CWI_LEAF, CWI_LEAF}, *dim = v->sparse ? leaf : v->dim;
     const ptrdiff_t size = (ptrdiff_t)cw_type_size(v->type);
     v->component_stride = size;
     v->stride[0] = size * (ptrdiff_t)v->components;
-    v->stride[1] = v->stride[0] * (ptrdiff_t)v->dim[0];
-    v->stride[2] = v->stride[1] * (ptrdiff_t)v->dim[1];
-    v->step_stride = v->stride[2] * (ptrdiff_t)v->dim[2];
+    v->stride[1] = v->stride[0] * (ptrdiff_t)dim[0];
+    v->stride[2] = v->stride[1] * (ptrdiff_t)dim[1];
+    v->step_stride = v->stride[2] * (ptrdiff_t)dim[2];
 }
 
 static void set_identity(double affine[3][4])
@@ -95,7 +98,7 @@ cw_status cw_volume_alloc(cw_volume *volume, cw_type type, const size_t dim[3],
 void cw_volume_free(cw_volume *volume)
 {
     cwi_free(volume->owned);
-    cwi_free(volume->owned_coordinates);
+    cwi_free(volume->owned_grid);
     memset(volume, 0, sizeof *volume);
 }
 
@@ -136,6 +139,28 @@ static cw_status check_coordinates(const cw_volume *v, cw_error *err)
     return CW_OK;
 }
 
+/* What describes the grid is there, and nothing contradicts it. */
+static cw_status check_grid(const cw_volume *v, cw_error *err)
+{
+    const cw_cells *c = v->cells;
+    const cw_sparse *s = v->sparse;
+    if ((c != NULL) + (s != NULL) + cwi_is_rectilinear(v) > 1)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "the volume has more than one of coordinates, cells and leaves");
+    if (c && (v->dim[1] != 1 || v->dim[2] != 1 || v->dim[0] > UINT32_MAX))
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "an irregular grid has size %zu x %zu x %zu; samples x 1 x 1 was "
+                       "expected, at most 2^32 - 1 of them",
+                       v->dim[0], v->dim[1], v->dim[2]);
+    if (c && (!c->points || (c->count && (!c->shapes || !c->corners))))
+        return cw_fail(err, CW_ERR_ARGUMENT, "an irregular grid lacks points or cells");
+    if (s && ((s->leaf_count && !s->leaves) || (s->tile_count && !s->tiles)))
+        return cw_fail(err, CW_ERR_ARGUMENT, "a sparse grid lacks its leaves or tiles");
+    if (s && (v->components > 1 || v->steps > 1))
+        return cw_fail(err, CW_ERR_ARGUMENT, "a sparse grid has one component and one step");
+    return check_coordinates(v, err);
+}
+
 static cw_status check_strides(const cw_volume *v, cw_error *err)
 {
     const ptrdiff_t size = (ptrdiff_t)cw_type_size(v->type);
@@ -160,7 +185,7 @@ cw_status cw_volume_resolve(const cw_volume *in, cw_volume *out, cw_error *err)
     if (!v.dim[0] || !v.dim[1] || !v.dim[2])
         return cw_fail(err, CW_ERR_ARGUMENT, "the volume is empty: %zu x %zu x %zu", v.dim[0],
                        v.dim[1], v.dim[2]);
-    if (!v.data)
+    if (!v.data && !(v.sparse && !v.sparse->leaf_count))
         return cw_fail(err, CW_ERR_ARGUMENT, "the volume has no voxels");
     v.components = v.components ? v.components : 1;
     v.steps = v.steps ? v.steps : 1;
@@ -175,7 +200,7 @@ cw_status cw_volume_resolve(const cw_volume *in, cw_volume *out, cw_error *err)
     if (st == CW_OK)
         st = check_strides(&v, err);
     if (st == CW_OK)
-        st = check_coordinates(&v, err);
+        st = check_grid(&v, err);
     if (st == CW_OK)
         *out = v;
     return st;
@@ -183,7 +208,7 @@ cw_status cw_volume_resolve(const cw_volume *in, cw_volume *out, cw_error *err)
 
 cw_status cwi_volume_own_coordinates(cw_volume *v, cw_error *err)
 {
-    v->owned_coordinates = NULL;
+    v->owned_grid = NULL;
     if (!cwi_is_rectilinear(v))
         return CW_OK;
     double *all = cwi_alloc_array(v->dim[0] + v->dim[1] + v->dim[2], sizeof *all), *to = all;
@@ -193,17 +218,33 @@ cw_status cwi_volume_own_coordinates(cw_volume *v, cw_error *err)
         memcpy(to, v->coordinates[a], v->dim[a] * sizeof *to);
         v->coordinates[a] = to;
     }
-    v->owned_coordinates = all;
+    v->owned_grid = all;
     return CW_OK;
 }
 
-cw_status cwi_volume_refuse_rectilinear(const cw_volume *v, const char *what, cw_error *err)
+const char *cwi_volume_kind(const cw_volume *v)
 {
-    return cwi_is_rectilinear(v)
-               ? cw_fail(err, CW_ERR_UNSUPPORTED,
-                         "%s on a rectilinear grid is not supported: an even one was expected",
-                         what)
-               : CW_OK;
+    return v->cells                ? "an irregular grid"
+           : v->sparse             ? "a sparse grid"
+           : cwi_is_rectilinear(v) ? "a rectilinear grid"
+                                   : NULL;
+}
+
+static cw_status refuse_kind(const cw_volume *v, const char *what, cw_error *err)
+{
+    return cw_fail(err, CW_ERR_UNSUPPORTED,
+                   "%s on %s is not supported: an even one was expected", what,
+                   cwi_volume_kind(v));
+}
+
+cw_status cwi_volume_expect_even(const cw_volume *v, const char *what, cw_error *err)
+{
+    return cwi_volume_kind(v) ? refuse_kind(v, what, err) : CW_OK;
+}
+
+cw_status cwi_volume_expect_dense(const cw_volume *v, const char *what, cw_error *err)
+{
+    return v->cells || v->sparse ? refuse_kind(v, what, err) : CW_OK;
 }
 
 double cwi_coordinate_index(const cw_volume *v, int axis, double coordinate)
@@ -238,7 +279,7 @@ cw_status cw_volume_select(const cw_volume *in, size_t component, size_t step, c
     v.data = (const char *)v.data + (ptrdiff_t)component * v.component_stride +
              (ptrdiff_t)step * v.step_stride;
     v.components = v.steps = 1;
-    v.owned = v.owned_coordinates = NULL;
+    v.owned = v.owned_grid = NULL;
     *out = v;
     return CW_OK;
 }
@@ -270,11 +311,13 @@ cw_status cw_volume_crop(const cw_volume *in, const cw_box *box, cw_volume *out,
     cw_volume v;
     cw_status st = cw_volume_resolve(in, &v, err);
     if (st == CW_OK)
+        st = cwi_volume_expect_dense(&v, "a crop", err);
+    if (st == CW_OK)
         st = cwi_volume_shrink(&v, box, err);
     if (st != CW_OK)
         return st;
     v.data = cwi_voxel_address(&v, box->first[0], box->first[1], box->first[2]);
-    v.owned = v.owned_coordinates = NULL;
+    v.owned = v.owned_grid = NULL;
     *out = v;
     return CW_OK;
 }
@@ -285,7 +328,7 @@ cw_status cw_volume_coarsen(const cw_volume *in, const size_t step[3], cw_volume
     cw_volume v;
     cw_status st = cw_volume_resolve(in, &v, err);
     if (st == CW_OK && (step[0] > 1 || step[1] > 1 || step[2] > 1))
-        st = cwi_volume_refuse_rectilinear(&v, "a preview", err);
+        st = cwi_volume_expect_even(&v, "a preview", err);
     if (st != CW_OK)
         return st;
     for (int a = 0; a < 3; a++) {
@@ -299,15 +342,15 @@ cw_status cw_volume_coarsen(const cw_volume *in, const size_t step[3], cw_volume
         for (int r = 0; r < 3; r++)
             v.affine[r][a] *= (double)step[a];
     }
-    v.owned = v.owned_coordinates = NULL;
+    v.owned = v.owned_grid = NULL;
     return cw_volume_resolve(&v, out, err);
 }
 
 double cw_volume_value(const cw_volume *volume, size_t i, size_t j, size_t k)
 {
     cw_volume v;
-    if (cw_volume_resolve(volume, &v, NULL) != CW_OK || i >= v.dim[0] || j >= v.dim[1] ||
-        k >= v.dim[2])
+    if (cw_volume_resolve(volume, &v, NULL) != CW_OK || v.sparse || i >= v.dim[0] ||
+        j >= v.dim[1] || k >= v.dim[2])
         return NAN;
     return v.slope * cwi_voxel_at(v.type, cwi_voxel_address(&v, i, j, k)) + v.intercept;
 }

@@ -6,6 +6,9 @@
 
 #include <math.h>
 
+/* Of a sparse grid: voxels along a side of a leaf, and in it. */
+enum { CWI_LEAF = 8, CWI_LEAF_VOXELS = CWI_LEAF * CWI_LEAF * CWI_LEAF };
+
 /* The stored number at an address, as it stands in memory; exact, as every type fits a double.
  */
 static inline double cwi_voxel_at(cw_type type, const void *p)
@@ -74,9 +77,13 @@ CW_API double cwi_coordinate_index(const cw_volume *v, int axis, double coordina
 /* Gives a volume, the copy of another, coordinates of its own. CW_ERR_NO_MEMORY */
 CW_API cw_status cwi_volume_own_coordinates(cw_volume *v, cw_error *err);
 
-/* Fails with CW_ERR_UNSUPPORTED for what is not made for rectilinear grids. */
-CW_API cw_status cwi_volume_refuse_rectilinear(const cw_volume *v, const char *what,
-                                               cw_error *err);
+/* "a rectilinear grid", or another kind that is not evenly spaced; NULL for one that is. */
+CW_API const char *cwi_volume_kind(const cw_volume *v);
+
+/* Fails with CW_ERR_UNSUPPORTED for what is made for evenly spaced grids only, and for what is
+ * made for dense grids, even and rectilinear ones. */
+CW_API cw_status cwi_volume_expect_even(const cw_volume *v, const char *what, cw_error *err);
+CW_API cw_status cwi_volume_expect_dense(const cw_volume *v, const char *what, cw_error *err);
 
 static inline const void *cwi_voxel_address(const cw_volume *v, size_t i, size_t j, size_t k)
 {

@@ -118,9 +118,9 @@ static cw_status make_plan(plan *p, const cw_extract_desc *d, cw_error *err)
     memset(&p->counts, 0, sizeof p->counts);
     cw_status st = check_snap(d, err);
     if (st == CW_OK && d->snap > 0)
-        st = cwi_volume_refuse_rectilinear(&p->grid.volume, "snap", err);
+        st = cwi_volume_expect_even(&p->grid.volume, "snap", err);
     if (st == CW_OK && d->cubic_placement)
-        st = cwi_volume_refuse_rectilinear(&p->grid.volume, "cubic placement", err);
+        st = cwi_volume_expect_even(&p->grid.volume, "cubic placement", err);
     if (st == CW_OK)
         st = cwi_grid_classify(&p->grid, p->engine, p->tree.levels ? &p->tree : NULL, d, err);
     if (st != CW_OK || !p->grid.crossed)

@@ -3,6 +3,7 @@
 #include "core/layers.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "core/volume.h"
 #include "extract/engine.h"
 
 #include <float.h>
@@ -68,6 +69,8 @@ cw_status cwi_grid_init(cwi_grid *g, const cw_volume *volume, cw_error *err)
 {
     memset(g, 0, sizeof *g);
     cw_status st = cw_volume_select(volume, 0, 0, &g->volume, err);
+    if (st == CW_OK)
+        st = cwi_volume_expect_dense(&g->volume, "extraction", err);
     for (int a = 0; a < 3 && st == CW_OK; a++)
         if (g->volume.dim[a] < 2)
             st = cw_fail(err, CW_ERR_ARGUMENT,

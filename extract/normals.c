@@ -224,6 +224,8 @@ static cw_status begin(shading *s, const cw_volume *volume, const cw_normals_des
     double cofactor[3][3];
     cw_status st = cw_volume_select(volume, 0, 0, &s->volume, err);
     const cw_volume *v = &s->volume;
+    if (st == CW_OK)
+        st = cwi_volume_expect_dense(v, "shading by the field", err);
     for (int a = 0; a < 3 && st == CW_OK; a++)
         if (v->dim[a] < 2)
             st = cw_fail(err, CW_ERR_ARGUMENT,

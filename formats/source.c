@@ -80,7 +80,7 @@ void cwi_swap_bytes(void *numbers, size_t count, size_t size)
 void cwi_source_free(cwi_source *src)
 {
     cwi_names_free(&src->files);
-    cwi_free(src->shape.owned_coordinates);
+    cwi_free(src->shape.owned_grid);
     *src = (cwi_source){0};
 }
 

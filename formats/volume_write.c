@@ -173,7 +173,7 @@ cw_status cw_volume_write(const char *path, const cw_volume *volume, const cw_wr
     if (st == CW_OK)
         st = cw_volume_resolve(volume, &v, err);
     if (st == CW_OK)
-        st = cwi_volume_refuse_rectilinear(&v, "writing a volume", err);
+        st = cwi_volume_expect_even(&v, "writing a volume", err);
     if (st == CW_OK)
         st = check_scaling(w, &v, err);
     if (st == CW_OK)

@@ -48,7 +48,7 @@ static cw_status take(const cw_volume numbers[3], bool of_cells, cw_volume *shap
     if (!to)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for coordinates");
     cw_status st = CW_OK;
-    shape->owned_coordinates = to;
+    shape->owned_grid = to;
     for (int a = 0; a < 3 && st == CW_OK; to += numbers[a++].dim[0]) {
         const size_t count = numbers[a].dim[0];
         for (size_t i = 0; i < count; i++)

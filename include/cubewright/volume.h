@@ -30,6 +30,40 @@ typedef enum cw_type {
  * nothing said, numbers are taken as millimetres and axes as LPS, and these flags tell so. */
 typedef enum cw_known { CW_KNOWN_UNIT = 1, CW_KNOWN_FRAME = 2 } cw_known;
 
+/* Cells of an irregular grid; their corners are numbered as VTK's cells of that name. */
+typedef enum cw_shape {
+    CW_TETRAHEDRON, /* three corners, then one that sees them run counter-clockwise */
+    CW_PYRAMID,     /* four around its base, then the tip */
+    CW_WEDGE,       /* three, then the three opposite */
+    CW_HEXAHEDRON,  /* four around its base, then the four above them */
+    CW_SHAPE_COUNT
+} cw_shape;
+
+/* An irregular grid: samples that stand anywhere, and the cells between them. */
+typedef struct cw_cells {
+    const double *points;    /* 3 a sample */
+    size_t count;            /* of cells */
+    const uint8_t *shapes;   /* cw_shape, one a cell */
+    const uint32_t *corners; /* numbers of samples, one cell's after another's: 4, 5, 6, 8 */
+} cw_cells;
+
+/* A cube of voxels with one value; in leaves, as are all sizes and places here. */
+typedef struct cw_tile {
+    uint32_t at[3], size;
+    double value; /* as stored, before slope and intercept */
+} cw_tile;
+
+/* A sparse grid: voxels are kept in leaves of 8 x 8 x 8, regions of one value in tiles, and
+ * everything else, beyond dim too, has the background's value. Nothing is kept twice. */
+typedef struct cw_sparse {
+    size_t leaf_count;
+    const uint32_t (*leaves)[3]; /* the voxels of leaf n are data + n * 512 voxels, x fastest;
+                                    the first of them is voxel 8 * leaves[n] */
+    size_t tile_count;
+    const cw_tile *tiles;
+    double background; /* as stored */
+} cw_sparse;
+
 /* A view of voxels. A zeroed struct is a valid empty volume; fields left zero mean the default
  * named beside them. Copying the struct copies the view, not the voxels.
  *
@@ -37,6 +71,8 @@ typedef enum cw_known { CW_KNOWN_UNIT = 1, CW_KNOWN_FRAME = 2 } cw_known;
  *     data + i stride[0] + j stride[1] + k stride[2] + c component_stride + t step_stride
  * and stands for the value  slope * voxel + intercept  at the world point  affine * (i j k 1),
  * on a rectilinear grid at  affine * (coordinates[0][i] coordinates[1][j] coordinates[2][k] 1).
+ * On an irregular grid dim is {samples, 1, 1}, and sample n stands at  affine * (point n, 1).
+ * On a sparse grid dim is a box around all leaves and tiles, and strides are those in a leaf.
  */
 typedef struct cw_volume {
     const void *data;             /* first voxel; aligned for its type, native byte order */
@@ -51,12 +87,14 @@ typedef struct cw_volume {
     double affine[3][4];          /* index to world, LPS millimetres; all 0: identity */
     const double *coordinates[3]; /* dim[0], dim[1], dim[2], rising: where planes of samples
                                      stand, in place of their index. All three, or NULL */
+    const cw_cells *cells;        /* an irregular grid's; else NULL */
+    const cw_sparse *sparse;      /* a sparse grid's; else NULL */
     double slope, intercept;      /* value = slope * voxel + intercept; slope 0 means 1 */
     bool has_nodata; /* voxels equal to nodata, before scaling, are outside the domain */
     double nodata;
-    unsigned known;                  /* cw_known flags */
-    void *owned, *owned_coordinates; /* memory freed by cw_volume_free(); NULL for a borrowed
-                                        view */
+    unsigned known;           /* cw_known flags */
+    void *owned, *owned_grid; /* memory freed by cw_volume_free(), of voxels and of coordinates,
+                                 cells or leaves; NULL for a borrowed view */
 } cw_volume;
 
 /* An index box: first voxel and number of voxels along each axis. */
@@ -85,7 +123,8 @@ CW_API void *cw_volume_voxels(cw_volume *volume);
  * cases. Borrowed like *in: free only one of them.
  * Returns CW_ERR_ARGUMENT for an unknown type, a zero dim, a missing pointer, an affine or
  * scaling that is not finite or cannot be inverted, strides that break the type's alignment,
- * coordinates that do not rise or are not all there. */
+ * coordinates that do not rise or are not all there, more than one of coordinates, cells and
+ * leaves. Corners of cells and places of leaves are checked where they are used. */
 CW_API cw_status cw_volume_resolve(const cw_volume *in, cw_volume *out, cw_error *err);
 
 /* A borrowed view of one component at one time step.
@@ -107,7 +146,7 @@ CW_API cw_status cw_volume_coarsen(const cw_volume *in, const size_t step[3], cw
                                    cw_error *err);
 
 /* The value (scaled) of one voxel of the first component and step; slow, for tests and probes.
- */
+ * NaN outside the volume, and on a sparse grid. */
 CW_API double cw_volume_value(const cw_volume *volume, size_t i, size_t j, size_t k);
 
 /* World point of a (fractional) index; and the millimetres between neighbours along each axis,
@@ -132,7 +171,8 @@ typedef struct cw_statistics {
     uint64_t *bins;   /* bin_count counts; the last bin holds max too */
 } cw_statistics;
 
-/* Counts the values of the first component and step into bin_count bins (0: range only).
+/* Counts the values of the first component and step into bin_count bins (0: range only); of a
+ * sparse grid those in leaves.
  * threads  0 means all
  * Returns  CW_ERR_ARGUMENT as cw_volume_resolve(); CW_ERR_NO_MEMORY; free with
  *          cw_statistics_free(). The result is the same for any number of threads. */

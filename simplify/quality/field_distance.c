@@ -231,7 +231,7 @@ static cw_status make_field(field *f, const cw_volume *volume, const cw_field_di
 {
     cw_status st = cw_volume_resolve(volume, &f->volume, err);
     if (st == CW_OK)
-        st = cwi_volume_refuse_rectilinear(&f->volume, "the distance to a field", err);
+        st = cwi_volume_expect_even(&f->volume, "the distance to a field", err);
     for (int a = 0; a < 3 && st == CW_OK; a++)
         if (f->volume.dim[a] < 2)
             st = cw_fail(err, CW_ERR_ARGUMENT,
