@@ -221,7 +221,7 @@ static void clear_padding(const cwi_grid *g, uint64_t *plane, size_t k)
 /* Rows of bricks whose samples stay near the processor until they are measured. */
 enum { TOGETHER = 4 };
 
-void cwi_classify_layer(const cwi_grid *g, size_t b, cwi_range *leaves, bool *in, bool *out)
+void cwi_classify_rows(const cwi_grid *g, size_t j, size_t k, size_t rows, bool *in, bool *out)
 {
     static void (*const classify[CW_TYPE_COUNT])(const cwi_grid *, size_t, size_t, size_t,
                                                  bool *, bool *) = {
@@ -229,6 +229,11 @@ void cwi_classify_layer(const cwi_grid *g, size_t b, cwi_range *leaves, bool *in
         [CW_I16] = classify_i16, [CW_U32] = classify_u32, [CW_I32] = classify_i32,
         [CW_F32] = classify_f32, [CW_F64] = classify_f64,
     };
+    classify[g->volume.type](g, j, k, rows, in, out);
+}
+
+void cwi_classify_layer(const cwi_grid *g, size_t b, cwi_range *leaves, bool *in, bool *out)
+{
     static void (*const measure[CW_TYPE_COUNT])(const cwi_grid *, size_t, size_t,
                                                 cwi_range *) = {
         [CW_U8] = measure_u8,   [CW_I8] = measure_i8,   [CW_U16] = measure_u16,
@@ -246,7 +251,7 @@ void cwi_classify_layer(const cwi_grid *g, size_t b, cwi_range *leaves, bool *in
     }
     if (g->everything && !leaves) { /* as memory lies */
         for (size_t k = begin ? begin : 1; k < end && k + 1 < g->rows_z; k++)
-            classify[type](g, 1, k, g->rows_y - 2, in, out);
+            cwi_classify_rows(g, 1, k, g->rows_y - 2, in, out);
         return;
     }
     for (size_t jb = 0; jb < g->bricks_y; jb += TOGETHER) {
@@ -254,8 +259,19 @@ void cwi_classify_layer(const cwi_grid *g, size_t b, cwi_range *leaves, bool *in
         const size_t first = jb ? jb * CWI_BRICK : 1;
         const size_t last = next == g->bricks_y ? g->rows_y - 1 : next * CWI_BRICK;
         for (size_t k = begin ? begin : 1; k < end && k + 1 < g->rows_z; k++)
-            classify[type](g, first, k, last - first, in, out);
+            cwi_classify_rows(g, first, k, last - first, in, out);
         for (size_t row = jb; row < next && leaves; row++)
             measure[type](g, row, b, leaves + row * leaves_x);
     }
+}
+
+void cwi_find_sides(const cwi_grid *g, const void *voxels, size_t count, bool *in, bool *out)
+{
+    static void (*const find[CW_TYPE_COUNT])(const cwi_grid *, const void *, size_t, bool *,
+                                             bool *) = {
+        [CW_U8] = find_sides_u8,   [CW_I8] = find_sides_i8,   [CW_U16] = find_sides_u16,
+        [CW_I16] = find_sides_i16, [CW_U32] = find_sides_u32, [CW_I32] = find_sides_i32,
+        [CW_F32] = find_sides_f32, [CW_F64] = find_sides_f64,
+    };
+    find[g->volume.type](g, voxels, count, in, out);
 }

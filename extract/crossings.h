@@ -30,6 +30,8 @@ static inline uint64_t cwi_edge_vertices(const cwi_grid *g, int axis, size_t j, 
                                          size_t w)
 {
     const uint64_t crossed = cwi_grid_crossed(g, axis, j, k, w);
+    if (g->window)
+        return crossed & g->window[((size_t)axis + 1) * g->rows + k * g->rows_y + j];
     return g->live ? crossed & cwi_live_edges(g, axis, j, k, w) : crossed;
 }
 

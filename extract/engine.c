@@ -33,6 +33,8 @@ static bool has_avx512(void)
 
 #define DECLARE(engine, test, compare, march)                                                  \
     void cwi_classify_layer_##engine(const cwi_grid *, size_t, cwi_range *, bool *, bool *);   \
+    void cwi_classify_rows_##engine(const cwi_grid *, size_t, size_t, size_t, bool *, bool *); \
+    void cwi_find_sides_##engine(const cwi_grid *, const void *, size_t, bool *, bool *);      \
     void cwi_count_layer_##engine(const cwi_grid *, size_t, cwi_row *);                        \
     void cwi_write_layers_##engine(const cwi_grid *, size_t, size_t, size_t, const cwi_row *,  \
                                    const cwi_emission *, cwi_vertex_sink *, uint32_t *);
@@ -40,7 +42,12 @@ ENGINES(DECLARE)
 
 static const cwi_engine engines[] = {
 #define ROW(engine, test, compare, march)                                                      \
-    {#engine, test, cwi_classify_layer_##compare, cwi_count_layer_##march,                     \
+    {#engine,                                                                                  \
+     test,                                                                                     \
+     cwi_classify_layer_##compare,                                                             \
+     cwi_classify_rows_##compare,                                                              \
+     cwi_find_sides_##compare,                                                                 \
+     cwi_count_layer_##march,                                                                  \
      cwi_write_layers_##march},
     ENGINES(ROW)
 #undef ROW

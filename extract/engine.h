@@ -34,6 +34,14 @@ struct cwi_engine {
      * saw samples with values on each side. */
     void (*classify_layer)(const cwi_grid *grid, size_t b, cwi_range *leaves, bool *in,
                            bool *out);
+    /* Writes the inside bits of so many rows of layer k, from row j on, all of them wanted; and
+     * tells as classify_layer. */
+    void (*classify_rows)(const cwi_grid *grid, size_t j, size_t k, size_t rows, bool *in,
+                          bool *out);
+    /* Tells, in addition, whether some of so many packed voxels, a multiple of 64, are inside,
+     * and some are not. */
+    void (*find_sides)(const cwi_grid *grid, const void *voxels, size_t count, bool *in,
+                       bool *out);
     /* Leaves a layer's counts, not yet first numbers, in its rows. */
     void (*count_layer)(const cwi_grid *grid, size_t k, cwi_row *rows);
     /* Writes the vertices of the layers begin to end, and the triangles of those begin to
@@ -70,11 +78,17 @@ CW_API cw_status cwi_extractor_new_with(const cwi_engine *engine, size_t leaf_by
 #define CWI_EXPAND(a, b)   CWI_PASTE(a, b)
 #define CWI_OF_ENGINE(a)   CWI_EXPAND(a, CWI_ENGINE)
 #define cwi_classify_layer CWI_OF_ENGINE(cwi_classify_layer)
+#define cwi_classify_rows  CWI_OF_ENGINE(cwi_classify_rows)
+#define cwi_find_sides     CWI_OF_ENGINE(cwi_find_sides)
 #define cwi_count_layer    CWI_OF_ENGINE(cwi_count_layer)
 #define cwi_write_layers   CWI_OF_ENGINE(cwi_write_layers)
 #define cwi_write_vertices CWI_OF_ENGINE(cwi_write_vertices)
 
 void cwi_classify_layer(const cwi_grid *grid, size_t b, cwi_range *leaves, bool *in, bool *out);
+void cwi_classify_rows(const cwi_grid *grid, size_t j, size_t k, size_t rows, bool *in,
+                       bool *out);
+void cwi_find_sides(const cwi_grid *grid, const void *voxels, size_t count, bool *in,
+                    bool *out);
 void cwi_count_layer(const cwi_grid *grid, size_t k, cwi_row *rows);
 void cwi_write_layers(const cwi_grid *grid, size_t begin, size_t end, size_t cells,
                       const cwi_row *rows, const cwi_emission *emission, cwi_vertex_sink *sink,

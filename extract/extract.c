@@ -8,29 +8,19 @@
 #include "core/volume.h"
 #include "extract/cases.h"
 #include "extract/crossing.h"
-#include "extract/engine.h"
 #include "extract/normals.h"
+#include "extract/plan.h"
 #include "extract/snap.h"
+#include "extract/sparse.h"
 
 #include <math.h>
 #include <string.h>
 
-/* What is kept from one extraction to the next, and what one holds between counting and
- * writing. */
-struct cw_extractor {
-    const cwi_engine *engine;
-    cwi_grid grid;
-    cwi_octree tree; /* no levels: not asked for */
-    cwi_row *rows;   /* and one after the last, with the totals */
-    cw_extract_counts counts;
-};
+typedef cwi_plan plan;
 
-typedef struct cw_extractor plan;
-
-static size_t mesh_bytes(const cw_extract_counts *c, bool normals)
+size_t cwi_mesh_bytes(size_t vertices, size_t triangles, bool normals)
 {
-    return c->vertices * 3 * sizeof(float) * (normals ? 2 : 1) +
-           c->triangles * 3 * sizeof(uint32_t);
+    return vertices * 3 * sizeof(float) * (normals ? 2 : 1) + triangles * 3 * sizeof(uint32_t);
 }
 
 static cw_status check_snap(const cw_extract_desc *d, cw_error *err)
@@ -42,8 +32,8 @@ static cw_status check_snap(const cw_extract_desc *d, cw_error *err)
                    CW_EXTRACT_MAX_SNAP, d->snap);
 }
 
-static cw_status check_limits(const cw_extract_desc *d, const cw_extract_counts *c,
-                              cw_error *err)
+cw_status cwi_extract_check_limits(const cw_extract_desc *d, const cw_extract_counts *c,
+                                   cw_error *err)
 {
     if (d->max_triangles && c->triangles > d->max_triangles)
         return cw_fail(err, CW_ERR_LIMIT,
@@ -75,7 +65,7 @@ static void number_layer(void *context, size_t k)
     }
 }
 
-static cw_status number_rows(plan *p, const cw_extract_desc *d, cw_error *err)
+static cw_status number_rows(plan *p, int threads, cw_error *err)
 {
     const cwi_grid *g = &p->grid;
     size_t v = 0, t = 0;
@@ -87,14 +77,26 @@ static cw_status number_rows(plan *p, const cw_extract_desc *d, cw_error *err)
         v += vertices;
         t += triangles;
     }
-    p->rows[p->grid.rows] = (cwi_row){.first = {(uint32_t)v}, .triangle = t};
+    p->rows[g->rows] = (cwi_row){.first = {(uint32_t)v}, .triangle = t};
     p->counts.vertices = v;
     p->counts.triangles = t;
     if (v > UINT32_MAX)
         return cw_fail(err, CW_ERR_LIMIT, "the surface has %zu vertices; a mesh holds %u", v,
                        UINT32_MAX);
-    return cwi_each_layer(g->rows_z, g->rows_y * g->words * 64, d->threads, &(cw_progress){0},
+    return cwi_each_layer(g->rows_z, g->rows_y * g->words * 64, threads, &(cw_progress){0},
                           "numbering", number_layer, p, err);
+}
+
+cw_status cwi_plan_count(plan *p, int threads, const cw_progress *progress, cw_error *err)
+{
+    const cwi_grid *g = &p->grid;
+    if (!p->rows)
+        p->rows = cwi_alloc_large(g->rows + 1, sizeof *p->rows);
+    if (!p->rows)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu rows", g->rows);
+    cw_status st = cwi_each_layer(g->rows_z, g->rows_y * g->words * 64, threads, progress,
+                                  "counting", count_layer, p, err);
+    return st == CW_OK ? number_rows(p, threads, err) : st;
 }
 
 static cw_status init_plan(plan *p, const cwi_engine *engine, const cw_volume *volume,
@@ -102,10 +104,24 @@ static cw_status init_plan(plan *p, const cwi_engine *engine, const cw_volume *v
 {
     memset(p, 0, sizeof *p);
     p->engine = engine;
-    return cwi_grid_init(&p->grid, volume, err);
+    return volume->sparse ? cw_volume_select(volume, 0, 0, &p->grid.volume, err)
+                          : cwi_grid_init(&p->grid, volume, err);
 }
 
-static void free_plan(plan *p)
+/* Sparse grids are extracted at one go; mesh NULL: counted. */
+static bool is_dense(const plan *p)
+{
+    return !p->grid.volume.sparse;
+}
+
+static cw_status extract_at_once(plan *p, const cw_extract_desc *d, cw_mesh *mesh,
+                                 cw_error *err)
+{
+    memset(&p->counts, 0, sizeof p->counts);
+    return cwi_extract_sparse(p->engine, &p->grid.volume, d, mesh, &p->counts, err);
+}
+
+void cwi_plan_free(plan *p)
 {
     cwi_grid_free(&p->grid);
     cwi_octree_free(&p->tree);
@@ -125,29 +141,21 @@ static cw_status make_plan(plan *p, const cw_extract_desc *d, cw_error *err)
         st = cwi_grid_classify(&p->grid, p->engine, p->tree.levels ? &p->tree : NULL, d, err);
     if (st != CW_OK || !p->grid.crossed)
         return st;
-    if (!p->rows)
-        p->rows = cwi_alloc_large(p->grid.rows + 1, sizeof *p->rows);
-    if (!p->rows)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu rows", p->grid.rows);
     const cwi_grid *g = &p->grid;
-    st = cwi_each_layer(g->rows_z, g->rows_y * g->words * 64, d->threads, &d->progress,
-                        "counting", count_layer, p, err);
-    if (st == CW_OK)
-        st = number_rows(p, d, err);
+    st = cwi_plan_count(p, d->threads, &d->progress, err);
     if (st == CW_OK)
         st = cwi_grid_border_loops(&p->grid, &p->counts.border_loops, err);
-    p->counts.bytes = mesh_bytes(&p->counts, !d->no_normals) + cwi_grid_bytes(&p->grid) +
-                      cwi_octree_bytes(&p->tree);
+    p->counts.bytes = cwi_mesh_bytes(p->counts.vertices, p->counts.triangles, !d->no_normals) +
+                      cwi_grid_bytes(&p->grid) + cwi_octree_bytes(&p->tree);
     if (d->snap > 0)
         p->counts.bytes += cwi_snap_bytes(g, p->counts.vertices, p->counts.triangles);
-    return st == CW_OK ? check_limits(d, &p->counts, err) : st;
+    return st == CW_OK ? cwi_extract_check_limits(d, &p->counts, err) : st;
 }
 
-static cwi_vertex_sink make_sink(const cwi_grid *g, cw_mesh *mesh)
+cwi_vertex_sink cwi_make_sink(const cw_volume *v, bool invert, cw_mesh *mesh)
 {
-    const cw_volume *v = &g->volume;
     cwi_vertex_sink sink = {.positions = mesh->positions, .normals = mesh->normals, .grid = v};
-    cwi_outward(v, g->invert, sink.cofactor);
+    cwi_outward(v, invert, sink.cofactor);
     for (int r = 0; r < 3; r++) {
         for (int c = 0; c < 3; c++)
             sink.affine[r][c] = v->affine[r][c];
@@ -159,7 +167,7 @@ static cwi_vertex_sink make_sink(const cwi_grid *g, cw_mesh *mesh)
         for (int r = 0; r < 3; r++)
             square += sink.cofactor[r][a] * sink.cofactor[r][a];
         for (int r = 0; r < 3; r++) {
-            const double n = sink.cofactor[r][a] / sqrt(square) * (g->invert ? 1 : -1);
+            const double n = sink.cofactor[r][a] / sqrt(square) * (invert ? 1 : -1);
             sink.cap[a][0][r] = (float)-n;
             sink.cap[a][1][r] = (float)n;
         }
@@ -169,9 +177,9 @@ static cwi_vertex_sink make_sink(const cwi_grid *g, cw_mesh *mesh)
 }
 
 /* A mirroring affine turns triangles inside out: two corners change places. */
-static cwi_emission make_emission(const cwi_grid *g)
+cwi_emission cwi_make_emission(const cw_volume *v)
 {
-    const bool flip = cwi_affine_determinant(g->volume.affine[0]) < 0;
+    const bool flip = cwi_affine_determinant(v->affine[0]) < 0;
     cwi_emission emission = {.flip = flip};
     for (int c = 0; c < 256; c++)
         for (int n = 0; n < 3 * cwi_case_count[c]; n++)
@@ -227,8 +235,8 @@ static cw_status write_mesh(plan *p, const cw_extract_desc *d, cw_mesh *mesh, cw
         return st;
     writing w = {.plan = p,
                  .end = p->grid.rows_z - 1,
-                 .emission = make_emission(&p->grid),
-                 .sink = make_sink(&p->grid, mesh),
+                 .emission = cwi_make_emission(&p->grid.volume),
+                 .sink = cwi_make_sink(&p->grid.volume, p->grid.invert, mesh),
                  .triangles = mesh->triangles};
     st = write_layers(&w, d, err);
     if (st == CW_OK && w.sink.missing)
@@ -249,8 +257,8 @@ static cw_status extract(plan *p, const cw_extract_desc *desc, cw_mesh *mesh,
 {
     const cw_extract_desc d = desc ? *desc : (cw_extract_desc){0};
     memset(mesh, 0, sizeof *mesh);
-    cw_status st = make_plan(p, &d, err);
-    if (st == CW_OK && p->counts.triangles)
+    cw_status st = is_dense(p) ? make_plan(p, &d, err) : extract_at_once(p, &d, mesh, err);
+    if (st == CW_OK && p->counts.triangles && is_dense(p))
         st = write_mesh(p, &d, mesh, err);
     if (st == CW_OK && counts)
         *counts = p->counts;
@@ -377,8 +385,9 @@ static cw_status write_slabs(plan *p, const cw_extract_desc *d, size_t triangles
 {
     const cw_extract_counts most = largest_slab(p, triangles);
     cw_mesh mesh;
-    p->counts.bytes = mesh_bytes(&most, false) + most.vertices + cwi_grid_bytes(&p->grid);
-    cw_status st = check_limits(d, &p->counts, err);
+    p->counts.bytes = cwi_mesh_bytes(most.vertices, most.triangles, false) + most.vertices +
+                      cwi_grid_bytes(&p->grid);
+    cw_status st = cwi_extract_check_limits(d, &p->counts, err);
     if (st == CW_OK)
         st = cwi_mesh_alloc(&mesh, most.vertices, most.triangles, false, err);
     if (st != CW_OK)
@@ -388,8 +397,8 @@ static cw_status write_slabs(plan *p, const cw_extract_desc *d, size_t triangles
         st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", most.vertices);
     memcpy(mesh.affine, p->grid.volume.affine, sizeof mesh.affine);
     writing w = {.plan = p,
-                 .emission = make_emission(&p->grid),
-                 .sink = make_sink(&p->grid, &mesh),
+                 .emission = cwi_make_emission(&p->grid.volume),
+                 .sink = cwi_make_sink(&p->grid.volume, p->grid.invert, &mesh),
                  .triangles = mesh.triangles};
     for (; w.begin + 1 < p->grid.rows_z && st == CW_OK; w.begin = w.end) {
         w.end = end_of_slab(p, w.begin, triangles);
@@ -397,6 +406,24 @@ static cw_status write_slabs(plan *p, const cw_extract_desc *d, size_t triangles
     }
     cw_mesh_free(&mesh);
     cwi_free(seam);
+    return st;
+}
+
+static cw_status give_whole(plan *p, const cw_extract_desc *d, cw_slab_sink sink, cw_error *err)
+{
+    cw_mesh mesh = {0};
+    uint8_t *seam = NULL;
+    cw_slab slab = {.mesh = &mesh, .low = -INFINITY, .high = INFINITY, .last = true};
+    cw_status st = extract_at_once(p, d, &mesh, err);
+    if (st == CW_OK && mesh.triangle_count) {
+        slab.seam = seam = cwi_alloc_zeroed(mesh.vertex_count, 1);
+        slab.triangles = mesh.triangle_count;
+        st = seam ? sink.take(sink.user, &slab, err)
+                  : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices",
+                            mesh.vertex_count);
+    }
+    cwi_free(seam);
+    cw_mesh_free(&mesh);
     return st;
 }
 
@@ -413,14 +440,16 @@ cw_status cw_extract_slabs(const cw_volume *volume, const cw_extract_desc *desc,
                        ? init_plan(&p, cwi_engine_best(), volume, err)
                        : cw_fail(err, CW_ERR_ARGUMENT,
                                  "snap is %g; a surface made by slabs is not snapped", d.snap);
-    if (st == CW_OK)
+    if (st == CW_OK && is_dense(&p))
         st = make_plan(&p, &d, err);
     d.max_bytes = max_bytes;
-    if (st == CW_OK && p.counts.triangles)
+    if (st == CW_OK && !is_dense(&p))
+        st = give_whole(&p, &d, sink, err);
+    else if (st == CW_OK && p.counts.triangles)
         st = write_slabs(&p, &d, triangles, sink, err);
     if (st == CW_OK && counts)
         *counts = p.counts;
-    free_plan(&p);
+    cwi_plan_free(&p);
     return st;
 }
 
@@ -428,7 +457,7 @@ static cw_status predict(plan *p, const cw_extract_desc *desc, cw_extract_counts
                          cw_error *err)
 {
     const cw_extract_desc d = desc ? *desc : (cw_extract_desc){0};
-    cw_status st = make_plan(p, &d, err);
+    cw_status st = is_dense(p) ? make_plan(p, &d, err) : extract_at_once(p, &d, NULL, err);
     if (st == CW_OK)
         *counts = p->counts;
     return st;
@@ -443,7 +472,7 @@ cw_status cwi_extract_with(const cwi_engine *engine, const cw_volume *volume,
     cw_status st = init_plan(&p, engine, volume, err);
     if (st == CW_OK)
         st = extract(&p, desc, mesh, counts, err);
-    free_plan(&p);
+    cwi_plan_free(&p);
     return st;
 }
 
@@ -460,7 +489,7 @@ cw_status cw_extract_predict(const cw_volume *volume, const cw_extract_desc *des
     cw_status st = init_plan(&p, cwi_engine_best(), volume, err);
     if (st == CW_OK)
         st = predict(&p, desc, counts, err);
-    free_plan(&p);
+    cwi_plan_free(&p);
     return st;
 }
 
@@ -472,7 +501,7 @@ cw_status cwi_extractor_new_with(const cwi_engine *engine, size_t leaf_bytes,
     if (!e)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for an extractor");
     cw_status st = init_plan(e, engine, volume, err);
-    if (st == CW_OK)
+    if (st == CW_OK && is_dense(e))
         st = cwi_octree_init(&e->tree, &e->grid, err);
     e->tree.leaf_bytes = leaf_bytes;
     if (st == CW_OK)
@@ -490,7 +519,7 @@ cw_status cw_extractor_new(const cw_volume *volume, cw_extractor **out, cw_error
 void cw_extractor_free(cw_extractor *e)
 {
     if (e)
-        free_plan(e);
+        cwi_plan_free(e);
     cwi_free(e);
 }
 

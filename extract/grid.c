@@ -13,7 +13,7 @@
 /* Words after the last row that loads of several words may reach: 0. */
 enum { BEYOND = 8 };
 
-static uint64_t *alloc_plane(const cwi_grid *g)
+uint64_t *cwi_grid_plane(const cwi_grid *g)
 {
     const size_t words = g->rows * g->words;
     uint64_t *plane = cwi_alloc_large(words + BEYOND, sizeof *plane);
@@ -43,7 +43,7 @@ static cw_status allocate(cwi_grid *g, cw_error *err)
     if (!cwi_size_mul(g->rows_y, g->rows_z, &g->rows) ||
         !cwi_size_mul(g->rows, 64 * g->words, &samples))
         return no_memory(g, err);
-    g->inside = alloc_plane(g);
+    g->inside = cwi_grid_plane(g);
     g->busy = cwi_alloc_large(g->rows * g->masks, sizeof *g->busy);
     g->filled = cwi_alloc_zeroed(g->rows, sizeof *g->filled);
     g->layers = cwi_alloc_zeroed(g->rows_z, sizeof *g->layers);
@@ -52,7 +52,7 @@ static cw_status allocate(cwi_grid *g, cw_error *err)
 
 /* Positions are floats: they cannot tell voxels apart that are too small, and cannot reach the
  * ends of volumes that are too large. */
-static cw_status check_range(const cw_volume *v, cw_error *err)
+cw_status cwi_extract_check_range(const cw_volume *v, cw_error *err)
 {
     double spacing[3];
     cw_volume_spacing(v, spacing);
@@ -77,7 +77,7 @@ cw_status cwi_grid_init(cwi_grid *g, const cw_volume *volume, cw_error *err)
                          "the volume has %zu voxel along %c; a surface needs 2",
                          g->volume.dim[a], "xyz"[a]);
     if (st == CW_OK)
-        st = check_range(&g->volume, err);
+        st = cwi_extract_check_range(&g->volume, err);
     return st == CW_OK ? allocate(g, err) : st;
 }
 
@@ -160,8 +160,7 @@ static bool drop_pinched(cwi_grid *g)
     return changed;
 }
 
-/* The isovalue in stored numbers, and which side of it is inside. */
-static cw_status set_level(cwi_grid *g, const cw_extract_desc *desc, cw_error *err)
+cw_status cwi_grid_set_level(cwi_grid *g, const cw_extract_desc *desc, cw_error *err)
 {
     const double slope = g->volume.slope;
     g->level = (desc->isovalue - g->volume.intercept) / slope;
@@ -184,7 +183,7 @@ static cw_status set_live(cwi_grid *g, bool leave_open, bool keep_domain, cw_err
     if (!leave_open)
         return CW_OK;
     if (keep_domain) {
-        g->live = alloc_plane(g);
+        g->live = cwi_grid_plane(g);
         if (!g->live)
             return no_memory(g, err);
         memcpy(g->live, g->domain, g->rows * g->words * sizeof *g->live);
@@ -231,7 +230,7 @@ static cw_status plan_classification(classification *c, cwi_grid *g, cwi_octree 
     if (tree && !g->leaves)
         g->leaves = cwi_alloc_array(bricks * g->words, sizeof *g->leaves);
     if (g->find_domain)
-        g->domain = alloc_plane(g);
+        g->domain = cwi_grid_plane(g);
     if ((tree && (!g->wanted || !g->leaves)) || (g->find_domain && !g->domain))
         return no_memory(g, err);
     c->grow = tree && !tree->grown ? tree : NULL;
@@ -256,7 +255,7 @@ cw_status cwi_grid_classify(cwi_grid *g, const cwi_engine *engine, cwi_octree *t
 {
     classification c = {.grid = g, .engine = engine};
     g->find_domain = desc->leave_open && !g->domain;
-    cw_status st = set_level(g, desc, err);
+    cw_status st = cwi_grid_set_level(g, desc, err);
     if (st == CW_OK)
         st = plan_classification(&c, g, tree, err);
     if (st == CW_OK)
@@ -283,6 +282,7 @@ void cwi_grid_free(cwi_grid *g)
     cwi_free(g->inside);
     cwi_free(g->domain);
     cwi_free(g->live);
+    cwi_free(g->window);
     cwi_free(g->busy);
     cwi_free(g->filled);
     cwi_free(g->wanted);

@@ -42,6 +42,10 @@ typedef struct cwi_grid {
     bool *filled;     /* rows: some sample of it is inside; known where everything is wanted */
     uint64_t *domain; /* rows x words: cells whose eight samples have values; NULL: not known */
     uint64_t *live;   /* rows x words: the domain without pinched cells; NULL: all cells */
+    uint64_t *window; /* of a block, whose rows are one word: four planes, of cells that are
+                         live or beside a live one, and of edges of live cells along x, y and z.
+                         NULL: to be found out from `live` */
+    bool roomy;       /* wherever a row of voxels begins, 64 may be read */
     size_t masks;     /* words of a mask that has a bit for every word of a row */
     uint64_t *busy;   /* rows x masks, found when a row is counted: bit w is set where a cell of
                          word w has corners on both sides. No other word holds crossings */
@@ -75,6 +79,16 @@ void cwi_grid_free(cwi_grid *grid);
 cw_status cwi_grid_classify(cwi_grid *grid, const cwi_engine *engine, cwi_octree *tree,
                             const cw_extract_desc *desc, cw_error *err);
 size_t cwi_grid_bytes(const cwi_grid *grid);
+
+/* What of classification is the same for every sample: the isovalue in stored numbers, and
+ * which side of it is inside. */
+cw_status cwi_grid_set_level(cwi_grid *grid, const cw_extract_desc *desc, cw_error *err);
+
+/* Whether positions can tell the voxels apart and reach all of them. */
+cw_status cwi_extract_check_range(const cw_volume *volume, cw_error *err);
+
+/* A plane of bits for the grid, not cleared; NULL without memory. */
+uint64_t *cwi_grid_plane(const cwi_grid *grid);
 
 /* Closed curves along which the surface meets the sides of the volume's box. */
 cw_status cwi_grid_border_loops(const cwi_grid *grid, size_t *loops, cw_error *err);

@@ -204,6 +204,11 @@ static bool find_busy(const cwi_grid *g, size_t j, size_t k)
     uint64_t *busy = g->busy + (k * g->rows_y + j) * g->masks, any = 0;
     for (size_t n = 0; n < 4; n++)
         rows[n] = cwi_grid_row(g, (k + (n >> 1)) * g->rows_y + j + (n & 1));
+    if (g->window) {
+        const uint64_t window = g->window[k * g->rows_y + j];
+        *busy = window && load_cells(g, j, k, 0).mixed & window;
+        return *busy;
+    }
     const uint64_t *wanted = g->everything ? NULL : cwi_grid_wanted(g, j, k);
     const bool *filled = g->filled + k * g->rows_y + j;
     memset(busy, 0, g->masks * sizeof *busy);

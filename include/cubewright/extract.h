@@ -73,6 +73,10 @@ typedef struct cw_extract_counts {
  * left farther from the surface than a quarter of the share (in voxels), and along open
  * borders.
  *
+ * Of a sparse grid leaves and tiles are read near the surface only, and the surface is that of
+ * the dense grid, in another order; it has no border, and what has no value (NaN, no-data) is
+ * capped.
+ *
  * volume   borrowed; at least 2 voxels along each axis; first component and step are used
  * desc     borrowed; NULL means all defaults
  * mesh     filled on success, emptied on failure; free it with cw_mesh_free()
@@ -82,7 +86,8 @@ typedef struct cw_extract_counts {
  * Returns  CW_ERR_ARGUMENT  isovalue is not finite, volume too thin, voxels too small or large
  *                           for single precision (1e-38, 1e38 mm), snap out of range, or as
  *                           cw_volume_resolve()
- *          CW_ERR_UNSUPPORTED  snap or cubic_placement on a rectilinear grid
+ *          CW_ERR_UNSUPPORTED  snap on a grid that is not even, cubic_placement on a
+ *                           rectilinear one
  *          CW_ERR_LIMIT     more than 2^32 - 1 vertices, or a limit of desc
  *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
  * Cost     two passes over the voxels' sign bits after one over the voxels; snapping takes some
@@ -105,6 +110,7 @@ CW_API cw_status cw_extract(const cw_volume *volume, const cw_extract_desc *desc
  * sink       called on the calling thread; not at all for a volume without a crossing
  * counts     what was made; bytes are those of the largest slab and the working memory
  *
+ * A sparse grid's surface comes as one slab.
  * Returns    as cw_extract(); CW_ERR_ARGUMENT also for snap; or what the sink returned */
 CW_API cw_status cw_extract_slabs(const cw_volume *volume, const cw_extract_desc *desc,
                                   size_t triangles, cw_slab_sink sink,
@@ -114,10 +120,10 @@ CW_API cw_status cw_extract_slabs(const cw_volume *volume, const cw_extract_desc
 CW_API cw_status cw_extract_predict(const cw_volume *volume, const cw_extract_desc *desc,
                                     cw_extract_counts *counts, cw_error *err);
 
-/* A volume that is asked for several surfaces. The first extraction reads all voxels, and on
- * the way builds an octree of the lowest and highest value in each brick of 8 x 8 x 8 cells;
- * later ones read the bricks that their isovalue passes through, and no others. Meshes are the
- * same to the bit as those of cw_extract().
+/* A volume that is asked for several surfaces. Of dense grids the first extraction reads all
+ * voxels, and on the way builds an octree of the lowest and highest value in each brick of 8 x
+ * 8 x 8 cells; later ones read the bricks that their isovalue passes through, and no others.
+ * Meshes are the same to the bit as those of cw_extract().
  *
  * Holds planes of bits and the tree: at most 1/8 of the bytes of a volume of floats. One
  * extraction at a time; several extractors may share a volume.

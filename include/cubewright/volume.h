@@ -47,9 +47,9 @@ typedef struct cw_cells {
     const uint32_t *corners; /* numbers of samples, one cell's after another's: 4, 5, 6, 8 */
 } cw_cells;
 
-/* A cube of voxels with one value; in leaves, as are all sizes and places here. */
+/* A box of voxels with one value; in leaves, as are all sizes and places here. */
 typedef struct cw_tile {
-    uint32_t at[3], size;
+    uint32_t at[3], size[3];
     double value; /* as stored, before slope and intercept */
 } cw_tile;
 

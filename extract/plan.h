@@ -1,0 +1,33 @@
+/* What an extraction holds between counting and writing. */
+#ifndef EXTRACT_PLAN_H
+#define EXTRACT_PLAN_H
+
+#include "extract/engine.h"
+
+/* Also what an extractor keeps from one extraction to the next. */
+typedef struct cw_extractor {
+    const cwi_engine *engine;
+    cwi_grid grid;
+    cwi_octree tree; /* no levels: not asked for */
+    cwi_row *rows;   /* and one after the last, with the totals */
+    cw_extract_counts counts;
+} cwi_plan;
+
+/* Counts the rows of a classified grid, and gives them their first numbers. */
+cw_status cwi_plan_count(cwi_plan *plan, int threads, const cw_progress *progress,
+                         cw_error *err);
+void cwi_plan_free(cwi_plan *plan);
+
+/* Fails with CW_ERR_LIMIT where counts are beyond the description's limits. */
+cw_status cwi_extract_check_limits(const cw_extract_desc *desc, const cw_extract_counts *counts,
+                                   cw_error *err);
+
+/* Bytes of a mesh. */
+size_t cwi_mesh_bytes(size_t vertices, size_t triangles, bool normals);
+
+/* Where vertices of a volume go: the mesh's arrays, relative to an origin, which it gets, in
+ * the middle of the volume. invert: as in cwi_grid */
+cwi_vertex_sink cwi_make_sink(const cw_volume *volume, bool invert, cw_mesh *mesh);
+cwi_emission cwi_make_emission(const cw_volume *volume);
+
+#endif
