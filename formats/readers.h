@@ -16,6 +16,7 @@ bool cwi_mrc_sniff(const unsigned char *head, size_t size);
 bool cwi_inr_sniff(const unsigned char *head, size_t size);
 bool cwi_dicom_sniff(const unsigned char *head, size_t size);
 bool cwi_tiff_sniff(const unsigned char *head, size_t size);
+bool cwi_vdb_sniff(const unsigned char *head, size_t size);
 
 /* Stretches the axes to the spacing that a description states; directions and origin stay. */
 void cwi_set_spacing(cw_volume *v, const cw_read_desc *desc);
@@ -40,6 +41,10 @@ cw_status cwi_dicom_read(const cwi_input *in, cwi_names *names, const cw_read_de
                          cw_volume *volume, cw_error *err);
 cw_status cwi_tiff_read(const cwi_input *in, cwi_names *names, const cw_read_desc *desc,
                         cw_volume *volume, cw_error *err);
+
+/* Reads one file, shut in likewise. */
+cw_status cwi_vdb_read(const cwi_input *in, const cw_read_desc *desc, cw_volume *volume,
+                       cw_error *err);
 
 cw_status cwi_dicom_list(const cwi_input *in, cwi_names *names, const cw_read_desc *desc,
                          cw_series **series, size_t *count, cw_error *err);

@@ -19,6 +19,9 @@ typedef struct reader {
     /* or, for slices in files of their own, the whole reading */
     cw_status (*read)(const cwi_input *in, cwi_names *names, const cw_read_desc *desc,
                       cw_volume *volume, cw_error *err);
+    /* or that of one file */
+    cw_status (*read_one)(const cwi_input *in, const cw_read_desc *desc, cw_volume *volume,
+                          cw_error *err);
 } reader;
 
 static const reader readers[] = {
@@ -33,6 +36,7 @@ static const reader readers[] = {
     {"inr", ".inr .inr.gz", true, cwi_inr_sniff, .parse = cwi_inr_parse},
     {"dicom", ".dcm .dicom .ima", false, cwi_dicom_sniff, .read = cwi_dicom_read},
     {"tiff", ".tif .tiff", false, cwi_tiff_sniff, .read = cwi_tiff_read},
+    {"vdb", ".vdb", false, cwi_vdb_sniff, .read_one = cwi_vdb_read},
 };
 enum { READER_COUNT = sizeof readers / sizeof *readers };
 
@@ -270,6 +274,8 @@ cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *
         st = refuse_array(desc->array, err);
     else if (st == CW_OK && o.reader && o.reader->read)
         st = o.reader->read(&o.in, o.many ? &o.names : NULL, desc, volume, err);
+    else if (st == CW_OK && o.reader && o.reader->read_one)
+        st = o.reader->read_one(&o.in, desc, volume, err);
     else if (st == CW_OK)
         st = read_source(&o, desc, volume, err);
     if (format)

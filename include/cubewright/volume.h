@@ -28,7 +28,11 @@ typedef enum cw_type {
 
 /* What the file said of its unit and frame. The affine is LPS millimetres in any case: with
  * nothing said, numbers are taken as millimetres and axes as LPS, and these flags tell so. */
-typedef enum cw_known { CW_KNOWN_UNIT = 1, CW_KNOWN_FRAME = 2 } cw_known;
+typedef enum cw_known {
+    CW_KNOWN_UNIT = 1,
+    CW_KNOWN_FRAME = 2,
+    CW_KNOWN_LEVEL_SET = 4 /* values are distances from the surface at 0, negative inside */
+} cw_known;
 
 /* Cells of an irregular grid; their corners are numbered as VTK's cells of that name. */
 typedef enum cw_shape {
