@@ -41,7 +41,7 @@ static const cli_option options[] = {
      "the mesh, in the format of its extension; may hold {level}, {step} and {stem}",
      offsetof(extract_args, output)},
     {"iso", 'i', CLI_NUMBERS, "V[,V...]",
-     "the isovalue, or some, in the unit of the values (required)",
+     "the isovalue, or some, in the unit of the values (required; of level sets 0)",
      offsetof(extract_args, iso)},
     {"steps", 0, CLI_STEPS, "A:B:S/N,.../all",
      "steps of a time series, from 0, a mesh each (of one file: --step; of files: all)",
@@ -53,7 +53,8 @@ static const cli_option options[] = {
      offsetof(extract_args, pvd)},
     {"fps", 0, CLI_NUMBER, "N", "steps a second of --animate (as the file times them, else 10)",
      offsetof(extract_args, fps)},
-    {"inside", 0, CLI_CHOICE, "above/below", "which values are inside the solid (above)",
+    {"inside", 0, CLI_CHOICE, CLI_INSIDE_CHOICES,
+     "which values are inside the solid (auto: above, of level sets below)",
      offsetof(extract_args, inside)},
     {"open", 0, CLI_FLAG, NULL, "leave the surface open where the volume ends (closed)",
      offsetof(extract_args, open)},
@@ -131,6 +132,11 @@ static double error_mm(const run_state *s)
     return cli_length_mm(&s->args->simplify.error, sqrt(square), voxel_mm(s));
 }
 
+static bool is_low(const run_state *s)
+{
+    return cli_inside_is_low(s->args->inside, &s->volume.whole);
+}
+
 static bool is_simplified(const extract_args *args)
 {
     return args->simplify.error.given || args->simplify.triangles;
@@ -142,7 +148,7 @@ static void put_params(cli_json *j, const void *p, const cli_made *made)
     const extract_args *args = s->args;
     const size_t *step = s->volume.coarsen;
     cli_json_number(j, "iso", made->iso);
-    cli_json_text(j, "inside", args->inside ? "below" : "above");
+    cli_json_text(j, "inside", is_low(s) ? "below" : "above");
     cli_json_bool(j, "open", args->open);
     cli_json_text(j, "topology", args->topology ? "simple" : "field");
     cli_json_text(j, "placement", args->placement ? "cubic" : "linear");
@@ -269,7 +275,7 @@ static cw_status extract(run_state *s, double iso, cw_mesh *mesh, cw_extract_cou
     const cw_volume *v = &s->volume.view;
     const cw_extract_desc desc = {
         .isovalue = iso,
-        .inside_is_low = s->args->inside,
+        .inside_is_low = is_low(s),
         .leave_open = s->args->open,
         .simple_topology = s->args->topology,
         .cubic_placement = s->args->placement,
@@ -309,13 +315,13 @@ static cw_status judge_simplified(run_state *s, cli_made *made, const cw_mesh *m
                         cli_count(args->simplify.triangles), cli_count(mesh->triangle_count));
     if (!args->check || args->placement)
         return CW_OK;
-    if (cwi_is_rectilinear(&s->volume.view)) {
-        cli_say("%s: a rectilinear grid: the distance to its field is not measured",
-                s->volume.path);
+    if (cwi_volume_kind(&s->volume.view)) {
+        cli_say("%s: %s: the distance to its field is not measured", s->volume.path,
+                cwi_volume_kind(&s->volume.view));
         return CW_OK;
     }
     cli_report_begin(&s->report);
-    cw_status st = cli_compare_with_field(mesh, &s->volume, made->iso, args->inside,
+    cw_status st = cli_compare_with_field(mesh, &s->volume, made->iso, is_low(s),
                                           (int)args->input.threads, &made->compared, err);
     if (st != CW_OK)
         return cwi_fail_in(err, st, s->volume.path);
@@ -331,7 +337,7 @@ static size_t tell_provenance(const run_state *s, size_t n, char level[32], char
     const extract_args *args = s->args;
     snprintf(level, 32, "%.9g", args->iso.value[n]);
     lines[0] = (cw_provenance){"isovalue", level};
-    lines[1] = (cw_provenance){"inside", args->inside ? "below" : "above"};
+    lines[1] = (cw_provenance){"inside", is_low(s) ? "below" : "above"};
     lines[2] = (cw_provenance){"topology", args->topology ? "simple" : "field"};
     lines[3] = (cw_provenance){"placement", args->placement ? "cubic" : "linear"};
     if (args->simplify.error.given)
@@ -580,8 +586,11 @@ static void put_series(cli_json *j, const void *p)
 
 static cw_status run(void *p, cw_error *err)
 {
-    const extract_args *args = p;
+    extract_args *args = p;
     run_state s = {.args = args, .start = cli_seconds()};
+    if (!args->iso.count && args->output &&
+        cli_is_level_set(args->common.inputs[0], &args->input))
+        args->iso.count = 1; /* 0 */
     s.report.command = "extract";
     s.report.several = args->iso.count > 1 ? "surfaces" : NULL;
     s.report.params = put_params;

@@ -42,7 +42,7 @@ typedef struct facts {
     cli_volume volume;
     cw_series series;    /* of a DICOM image; else no images */
     cw_statistics range; /* and the bins asked for */
-    level levels[MAX_LEVELS + 1];
+    level levels[MAX_LEVELS + 2];
     int level_count;
 } facts;
 
@@ -55,13 +55,13 @@ static cw_status find_levels(facts *f, int threads, cw_error *err)
     cw_status st = cw_volume_statistics(&f->volume.view, OTSU_BINS, threads, &s, err);
     if (st != CW_OK)
         return st;
-    if (cw_statistics_otsu(&s, 1, values)) {
-        f->level_count = 1;
-        if (cw_statistics_otsu(&s, MAX_LEVELS, values + 1))
-            f->level_count = 1 + MAX_LEVELS;
-    }
-    for (int n = 0; n < f->level_count; n++)
-        f->levels[n] = (level){.name = names[n], .value = values[n]};
+    int count = cw_statistics_otsu(&s, 1, values) ? 1 : 0;
+    if (count && cw_statistics_otsu(&s, MAX_LEVELS, values + 1))
+        count += MAX_LEVELS;
+    if (f->volume.whole.known & CW_KNOWN_LEVEL_SET)
+        f->levels[f->level_count++] = (level){.name = "surface", .value = 0};
+    for (int n = 0; n < count; n++)
+        f->levels[f->level_count++] = (level){.name = names[n], .value = values[n]};
     cw_statistics_free(&s);
     return CW_OK;
 }
@@ -71,7 +71,10 @@ static cw_status predict(facts *f, int threads, cw_error *err)
     cw_extractor *extractor;
     cw_status st = cw_extractor_new(&f->volume.view, &extractor, err);
     for (int n = 0; n < f->level_count && st == CW_OK; n++) {
-        const cw_extract_desc desc = {.isovalue = f->levels[n].value, .threads = threads};
+        const cw_extract_desc desc = {.isovalue = f->levels[n].value,
+                                      .inside_is_low =
+                                          cli_inside_is_low(CLI_INSIDE_AUTO, &f->volume.whole),
+                                      .threads = threads};
         st = cw_extractor_predict(extractor, &desc, &f->levels[n].counts, err);
     }
     cw_extractor_free(extractor);

@@ -26,7 +26,8 @@ static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE", "the picture, a .png", offsetof(render_args, output)},
     {"iso", 'i', CLI_NUMBER, "V", "the isovalue of a volume's surface (required for one)",
      offsetof(render_args, iso)},
-    {"inside", 0, CLI_CHOICE, "above/below", "which values are inside the solid (above)",
+    {"inside", 0, CLI_CHOICE, CLI_INSIDE_CHOICES,
+     "which values are inside the solid (auto: above, of level sets below)",
      offsetof(render_args, inside)},
     {"size", 0, CLI_SIZES, "WxH", "of the picture, in pixels (1280x720)",
      offsetof(render_args, size)},
@@ -85,7 +86,7 @@ static cw_status get_mesh(const render_args *args, cw_mesh *mesh, cw_error *err)
 {
     const char *path = args->common.inputs[0];
     cli_volume volume = {0};
-    if (!args->iso.given) {
+    if (!args->iso.given && !cli_is_level_set(path, &args->input)) {
         cli_mesh file;
         cw_status st = cli_read_mesh(path, args->input.reader, &args->input, &file, err);
         *mesh = file.mesh;
@@ -96,11 +97,12 @@ static cw_status get_mesh(const render_args *args, cw_mesh *mesh, cw_error *err)
     }
     cw_status st = cli_read_volume(path, &args->input, false, &volume, err);
     if (st == CW_OK)
-        st = cli_extract_surface(&volume, NULL,
-                                 &(cw_extract_desc){.isovalue = args->iso.value,
-                                                    .inside_is_low = args->inside,
-                                                    .threads = (int)args->input.threads},
-                                 mesh, NULL, err);
+        st = cli_extract_surface(
+            &volume, NULL,
+            &(cw_extract_desc){.isovalue = args->iso.value,
+                               .inside_is_low = cli_inside_is_low(args->inside, &volume.whole),
+                               .threads = (int)args->input.threads},
+            mesh, NULL, err);
     cli_free_volume(&volume);
     return st;
 }

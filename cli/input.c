@@ -302,6 +302,21 @@ cw_status cli_read_volume(const char *path, const cli_input *input, bool header_
     return st;
 }
 
+bool cli_inside_is_low(int inside, const cw_volume *volume)
+{
+    return inside == CLI_INSIDE_BELOW ||
+           (inside == CLI_INSIDE_AUTO && volume->known & CW_KNOWN_LEVEL_SET);
+}
+
+bool cli_is_level_set(const char *path, const cli_input *input)
+{
+    cw_volume shape = {0};
+    const bool read = cli_read_shape(path, input, &shape, NULL) == CW_OK;
+    const bool is = read && shape.known & CW_KNOWN_LEVEL_SET;
+    cw_volume_free(&shape);
+    return is;
+}
+
 const char *cli_shown_path(const char *path)
 {
     const char *slash = strrchr(path, '/');
@@ -340,6 +355,8 @@ void cli_json_input(cli_json *j, const char *key, const cli_volume *volume)
     cli_json_count(j, "steps", v->steps);
     cli_json_numbers(j, "spacing", volume->spacing, 3);
     cli_json_bool(j, "rectilinear", cwi_is_rectilinear(v));
+    cli_json_bool(j, "sparse", v->sparse);
+    cli_json_bool(j, "level_set", v->known & CW_KNOWN_LEVEL_SET);
     if (cwi_is_rectilinear(v))
         json_coordinates(j, volume);
     cli_json_text(j, "unit", v->known & CW_KNOWN_UNIT ? "mm" : "unknown");

@@ -54,6 +54,12 @@ typedef struct cli_input {
          "NAME",                                                                               \
          "of files with several: that one (the file's choice, else the first of one value)",   \
          CLI_INPUT_ROW(args, array)},                                                          \
+        {"grid",                                                                               \
+         0,                                                                                    \
+         CLI_TEXT,                                                                             \
+         "NAME",                                                                               \
+         "of OpenVDB files: that one (the first level set, else the first of one value)",      \
+         CLI_INPUT_ROW(args, array)},                                                          \
         {"gaps",                                                                               \
          0,                                                                                    \
          CLI_CHOICE,                                                                           \
@@ -146,6 +152,14 @@ cw_status cli_read_shape(const char *path, const cli_input *input, cw_volume *sh
                          cw_error *err);
 
 void cli_free_volume(cli_volume *volume);
+
+/* --inside, and what it means for a volume. */
+#define CLI_INSIDE_CHOICES "auto/above/below"
+enum { CLI_INSIDE_AUTO, CLI_INSIDE_ABOVE, CLI_INSIDE_BELOW };
+bool cli_inside_is_low(int inside, const cw_volume *volume);
+
+/* Whether a file is a level set, which needs no isovalue: its surface is at 0. */
+bool cli_is_level_set(const char *path, const cli_input *input);
 
 /* Makes the volume's view that of another of its time steps. */
 cw_status cli_choose_step(const cli_input *input, size_t step, cli_volume *volume,

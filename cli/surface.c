@@ -2,6 +2,7 @@
 
 #include "cli/console.h"
 #include "core/status.h"
+#include "core/volume.h"
 
 static cw_status explain_empty(const cli_volume *volume, const cw_extract_desc *desc,
                                cw_error *err)
@@ -39,12 +40,29 @@ cw_status cli_extract_surface(const cli_volume *volume, cw_extractor *extractor,
     return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
 }
 
+/* Not by slabs: the surface as a whole, whose normals are carried over. */
+static cw_status simplify_whole(const cli_volume *volume, const cw_extract_desc *desc,
+                                const cw_simplify_desc *simplify, cw_mesh *mesh,
+                                cw_extract_counts *counts, cw_error *err)
+{
+    cw_mesh whole;
+    *mesh = (cw_mesh){0};
+    cw_status st = cli_extract_surface(volume, NULL, desc, &whole, counts, err);
+    if (st != CW_OK)
+        return st;
+    st = cw_simplify(&whole, simplify, mesh, NULL, err);
+    cw_mesh_free(&whole);
+    return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
+}
+
 cw_status cli_extract_simplified(const cli_volume *volume, const cw_extract_desc *desc,
                                  const cw_simplify_desc *simplify, cw_mesh *mesh,
                                  cw_extract_counts *counts, cw_error *err)
 {
     cw_extract_desc d = *desc;
     cw_simplifier *simplifier;
+    if (cwi_volume_expect_dense(&volume->view, "slabs", NULL) != CW_OK)
+        return simplify_whole(volume, desc, simplify, mesh, counts, err);
     const cw_normals_desc normals = {.inside_is_low = d.inside_is_low, .threads = d.threads};
     d.max_bytes = volume->memory_left;
     d.progress = progress_of(volume);

@@ -288,7 +288,7 @@ void put_facts(const GridBase &grid, const openvdb::io::GridDescriptor &about, c
     const openvdb::GridClass kind = grid.getGridClass();
     put_text(grid.getName().empty() ? about.gridName() : grid.getName(), f.name, sizeof f.name);
     if (kind != openvdb::GRID_UNKNOWN)
-        put_text(GridBase::gridClassToMenuName(kind), f.kind, sizeof f.kind);
+        put_text(GridBase::gridClassToString(kind), f.kind, sizeof f.kind);
     f.level_set = kind == openvdb::GRID_LEVEL_SET;
     f.half = about.saveFloatAsHalf();
     if (about.isInstance())
