@@ -341,6 +341,16 @@ static void json_coordinates(cli_json *j, const cli_volume *volume)
     cli_json_close(j, ']');
 }
 
+static void json_sparse(cli_json *j, const cw_volume *v)
+{
+    cli_json_open(j, "sparse", '{');
+    cli_json_count(j, "leaves", v->sparse->leaf_count);
+    cli_json_count(j, "tiles", v->sparse->tile_count);
+    cli_json_number(j, "background", v->sparse->background);
+    cli_json_bool(j, "level_set", v->known & CW_KNOWN_LEVEL_SET);
+    cli_json_close(j, '}');
+}
+
 void cli_json_input(cli_json *j, const char *key, const cli_volume *volume)
 {
     const cw_volume *v = &volume->whole;
@@ -355,8 +365,8 @@ void cli_json_input(cli_json *j, const char *key, const cli_volume *volume)
     cli_json_count(j, "steps", v->steps);
     cli_json_numbers(j, "spacing", volume->spacing, 3);
     cli_json_bool(j, "rectilinear", cwi_is_rectilinear(v));
-    cli_json_bool(j, "sparse", v->sparse);
-    cli_json_bool(j, "level_set", v->known & CW_KNOWN_LEVEL_SET);
+    if (v->sparse)
+        json_sparse(j, v);
     if (cwi_is_rectilinear(v))
         json_coordinates(j, volume);
     cli_json_text(j, "unit", v->known & CW_KNOWN_UNIT ? "mm" : "unknown");

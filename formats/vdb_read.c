@@ -151,43 +151,42 @@ static cw_status set_shape(const cwi_vdb_grid *g, const cw_read_desc *desc, cw_v
     return st;
 }
 
-/* Leaves' places and tiles, in memory of the volume's own. */
-static cw_status read_grid(cwi_planes *planes, size_t number, const cwi_vdb_grid *g,
-                           cw_volume *v, cw_error *err)
+/* What describes the grid, in memory of the volume's own; of a header the counts alone. */
+static cw_status make_grid(const cwi_vdb_grid *g, bool header, cw_volume *v, cw_error *err)
 {
-    const uint32_t plane = (uint32_t)number * CWI_VDB_PLANES;
-    char *memory = cwi_alloc_array(sizeof(cw_sparse) + g->tile_count * sizeof(cw_tile) +
-                                       g->leaf_count * sizeof(uint32_t[3]),
-                                   1);
+    const size_t leaves = header ? 0 : g->leaf_count, tiles = header ? 0 : g->tile_count;
+    char *memory = cwi_alloc_array(
+        sizeof(cw_sparse) + tiles * sizeof(cw_tile) + leaves * sizeof(uint32_t[3]), 1);
     v->owned_grid = memory;
     if (!memory)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %llu leaves",
-                       (unsigned long long)g->leaf_count);
-    cw_tile *tiles = (cw_tile *)(void *)(memory + sizeof(cw_sparse));
-    uint32_t(*leaves)[3] = (uint32_t(*)[3])(void *)(tiles + g->tile_count);
-    *(cw_sparse *)(void *)memory = (cw_sparse){.leaf_count = g->leaf_count,
-                                               .leaves = (const uint32_t(*)[3])leaves,
-                                               .tile_count = g->tile_count,
-                                               .tiles = tiles,
-                                               .background = g->background};
-    v->sparse = (const cw_sparse *)(void *)memory;
-    cw_status st = cwi_planes_read(planes, plane + CWI_VDB_LEAVES, 0, g->leaf_count,
-                                   sizeof *leaves, leaves, err);
-    return st == CW_OK ? cwi_planes_read(planes, plane + CWI_VDB_TILES, 0, g->tile_count,
-                                         sizeof *tiles, tiles, err)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", leaves);
+    cw_sparse *s = v->owned_grid;
+    s->leaf_count = g->leaf_count;
+    s->tile_count = g->tile_count;
+    s->background = g->background;
+    s->tiles = header ? NULL : (cw_tile *)(void *)(s + 1);
+    s->leaves = header ? NULL : (const uint32_t(*)[3])(const void *)(s->tiles + tiles);
+    v->sparse = s;
+    return CW_OK;
+}
+
+static cw_status read_grid(cwi_planes *planes, uint32_t plane, cw_volume *v, cw_error *err)
+{
+    const cw_sparse *s = v->sparse;
+    cw_status st = cwi_planes_read(planes, plane + CWI_VDB_LEAVES, 0, s->leaf_count,
+                                   sizeof *s->leaves, (void *)(uintptr_t)s->leaves, err);
+    return st == CW_OK ? cwi_planes_read(planes, plane + CWI_VDB_TILES, 0, s->tile_count,
+                                         sizeof *s->tiles, (void *)(uintptr_t)s->tiles, err)
                        : st;
 }
 
-static cw_status read_voxels(cwi_planes *planes, size_t number, const cwi_vdb_grid *g,
-                             cw_volume *v, cw_error *err)
+static cw_status read_voxels(cwi_planes *planes, uint32_t plane, cw_volume *v, cw_error *err)
 {
-    const size_t leaf = CWI_LEAF_VOXELS * cw_type_size(g->type);
-    v->data = v->owned = cwi_alloc_large(g->leaf_count, leaf);
-    if (!v->owned)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %llu leaves",
-                       (unsigned long long)g->leaf_count);
-    return cwi_planes_read(planes, (uint32_t)number * CWI_VDB_PLANES + CWI_VDB_VOXELS, 0,
-                           g->leaf_count, leaf, v->owned, err);
+    const size_t count = v->sparse->leaf_count, leaf = CWI_LEAF_VOXELS * cw_type_size(v->type);
+    v->data = v->owned = cwi_alloc_large(count, leaf);
+    return v->owned
+               ? cwi_planes_read(planes, plane + CWI_VDB_VOXELS, 0, count, leaf, v->owned, err)
+               : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", count);
 }
 
 static cw_status read_chosen(cwi_planes *planes, const cwi_input *in, const cwi_vdb_facts *f,
@@ -197,18 +196,21 @@ static cw_status read_chosen(cwi_planes *planes, const cwi_input *in, const cwi_
     cw_volume v = {0};
     cw_status st = choose(f, desc->array, &number, err);
     const cwi_vdb_grid *g = &f->grid[number];
+    const uint32_t plane = (uint32_t)number * CWI_VDB_PLANES;
     if (st == CW_OK)
         st = check_counts(g, in->size, desc, err);
     if (st == CW_OK)
         st = set_shape(g, desc, &v, err);
     if (st == CW_OK)
         tell(desc, f, g);
+    if (st == CW_OK)
+        st = make_grid(g, desc->header_only, &v, err);
     if (st == CW_OK && desc->region)
-        st = cw_fail(err, CW_ERR_UNSUPPORTED, "a crop on a sparse grid is not supported");
+        st = cwi_volume_expect_dense(&v, "a crop", err);
     if (st == CW_OK && !desc->header_only)
-        st = read_grid(planes, number, g, &v, err);
+        st = read_grid(planes, plane, &v, err);
     if (st == CW_OK && !desc->header_only)
-        st = read_voxels(planes, number, g, &v, err);
+        st = read_voxels(planes, plane, &v, err);
     if (st == CW_OK)
         *volume = v;
     else

@@ -15,6 +15,7 @@ extern "C" {
 #include <memory>
 #include <streambuf>
 #include <tuple>
+#include <type_traits>
 #include <unistd.h>
 #include <vector>
 
@@ -168,15 +169,20 @@ void join_tiles(std::vector<cw_tile> &tiles, int axis)
     tiles.resize(kept);
 }
 
+// Masks have no values but whether they are on; in leaves that is what they give out.
+template <typename Tree>
+constexpr bool is_mask = std::is_same<typename Tree::BuildType, openvdb::ValueMask>::value;
+
 template <typename Tree> void take_tiles(const Tree &tree, content &c)
 {
     auto it = tree.cbeginValueAll();
     it.setMaxDepth(Tree::ValueAllCIter::LEAF_DEPTH - 1);
     for (; it; ++it) {
         const openvdb::CoordBBox box = it.getBoundingBox();
-        const double value = double(it.getValue());
+        const bool on = it.isValueOn();
+        const double value = is_mask<Tree> ? double(on) : double(it.getValue());
         const uint32_t size = uint32_t(box.dim()[0]) >> 3;
-        if (it.isValueOn())
+        if (on)
             c.active += uint64_t(size) * size * size * 512;
         if (std::memcmp(&value, &c.background, sizeof value) == 0)
             continue;
