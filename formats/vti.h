@@ -49,6 +49,7 @@ typedef struct cwi_vti {
 
 /* The elements that mean something, each filling in what its attributes say. */
 cw_status cwi_vti_image(cwi_vti *v, cwi_attributes a, cw_error *err);
+cw_status cwi_vti_extent(cwi_attributes a, int64_t extent[6], cw_error *err);
 cw_status cwi_vti_piece(cwi_vti *v, cwi_attributes a, cw_error *err);
 void cwi_vti_data_start(cwi_vti_data *data, cwi_attributes a);
 

@@ -37,25 +37,29 @@ cw_status cwi_vti_image(cwi_vti *v, cwi_attributes a, cw_error *err)
     return st == CW_OK ? numbers(a, "Direction", 9, v->direction, err) : st;
 }
 
-cw_status cwi_vti_piece(cwi_vti *v, cwi_attributes a, cw_error *err)
+cw_status cwi_vti_extent(cwi_attributes a, int64_t extent[6], cw_error *err)
 {
-    const char *extent = cwi_attribute(a, "Extent"), *s = extent ? extent : "";
-    if (v->pieces++)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "the file has several Piece elements; files of one are read");
+    const char *text = cwi_attribute(a, "Extent"), *s = text ? text : "";
     for (int i = 0; i < 6; i++)
-        if (!cwi_parse_int(&s, &v->extent[i]) || v->extent[i] > INT32_MAX ||
-            v->extent[i] < INT32_MIN)
+        if (!cwi_parse_int(&s, &extent[i]) || extent[i] > INT32_MAX || extent[i] < INT32_MIN)
             return cw_fail(err, CW_ERR_FORMAT,
                            "'Extent' is '%.60s'; six whole numbers were expected",
-                           extent ? extent : "");
+                           text ? text : "");
     for (int i = 0; i < 6; i += 2)
-        if (v->extent[i + 1] < v->extent[i] || v->extent[i + 1] - v->extent[i] >= INT32_MAX)
+        if (extent[i + 1] < extent[i] || extent[i + 1] - extent[i] >= INT32_MAX)
             return cw_fail(err, CW_ERR_FORMAT,
                            "'Extent' is '%.60s'; it must hold 1 to 2147483647 points along "
                            "each axis",
-                           extent);
+                           text);
     return CW_OK;
+}
+
+cw_status cwi_vti_piece(cwi_vti *v, cwi_attributes a, cw_error *err)
+{
+    if (v->pieces++)
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "the file has several Piece elements; files of one are read");
+    return cwi_vti_extent(a, v->extent, err);
 }
 
 void cwi_vti_data_start(cwi_vti_data *data, cwi_attributes a)

@@ -29,9 +29,11 @@ typedef struct parsing {
 
 static cw_status start_file(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
-    static const char *const kinds[3][2] = {{"ImageData", "a volume"},
-                                            {"RectilinearGrid", "a volume"},
-                                            {"ImageData or RectilinearGrid", "a volume"}};
+    static const char *const kinds[3][2] = {
+        {"ImageData", "a volume"},
+        {"RectilinearGrid", "a volume"},
+        {"ImageData, RectilinearGrid (vti), StructuredGrid or UnstructuredGrid (vtu)",
+         "a volume"}};
     parsing *p = user;
     const char *type = cwi_attribute(a, "type");
     int kind = 0;
