@@ -126,7 +126,10 @@ static double error_mm(const run_state *s)
 {
     double square = 0;
     for (int a = 0; a < 3; a++) {
-        const double side = s->volume.spacing[a] * (double)(s->volume.view.dim[a] - 1);
+        const cli_grid *g = &s->volume.grid;
+        const double side = s->volume.view.cells
+                                ? g->high[a] - g->low[a]
+                                : s->volume.spacing[a] * (double)(s->volume.view.dim[a] - 1);
         square += side * side;
     }
     return cli_length_mm(&s->args->simplify.error, sqrt(square), voxel_mm(s));

@@ -131,23 +131,47 @@ static void print_spacing(const cli_volume *volume)
            range[0][1], range[1][0], range[1][1], range[2][0], range[2][1]);
 }
 
-static void print_geometry(const facts *f)
+static const char *frame_of(const cw_volume *v)
 {
-    const cw_volume *v = &f->volume.whole;
-    const double *s = f->volume.spacing;
+    return v->known & CW_KNOWN_FRAME ? "LPS" : "not named, taken as LPS";
+}
+
+static void print_frame(const cli_volume *volume)
+{
+    const cw_volume *v = &volume->whole;
+    const double *s = volume->spacing;
     const double last[3] = {(double)(v->dim[0] - 1), (double)(v->dim[1] - 1),
                             (double)(v->dim[2] - 1)};
     double from[3], to[3];
     cw_volume_to_world(v, (const double[3]){0, 0, 0}, from);
     cw_volume_to_world(v, last, to);
-    printf("%s\n  %s\n", f->volume.path, cli_describe(&f->volume));
-    print_spacing(&f->volume);
+    print_spacing(volume);
     printf("  size     %.6g x %.6g x %.6g mm\n", last[0] * s[0], last[1] * s[1],
            last[2] * s[2]);
     printf("  frame    %s, axes run to %s; first voxel (%.6g, %.6g, %.6g), last (%.6g, %.6g, "
            "%.6g)\n",
-           v->known & CW_KNOWN_FRAME ? "LPS" : "not named, taken as LPS", axis_letters(v),
-           from[0], from[1], from[2], to[0], to[1], to[2]);
+           frame_of(v), axis_letters(v), from[0], from[1], from[2], to[0], to[1], to[2]);
+}
+
+/* Of an irregular grid, which has no axes. */
+static void print_box(const cli_volume *volume)
+{
+    const double *low = volume->grid.low, *high = volume->grid.high;
+    printf("  size     %.6g x %.6g x %.6g mm\n", high[0] - low[0], high[1] - low[1],
+           high[2] - low[2]);
+    printf("  cells    edges of %.6g mm on average\n", volume->spacing[0]);
+    printf("  frame    %s; box from (%.6g, %.6g, %.6g) to (%.6g, %.6g, %.6g)\n",
+           frame_of(&volume->whole), low[0], low[1], low[2], high[0], high[1], high[2]);
+}
+
+static void print_geometry(const facts *f)
+{
+    const cw_volume *v = &f->volume.whole;
+    printf("%s\n  %s\n", f->volume.path, cli_describe(&f->volume));
+    if (v->cells)
+        print_box(&f->volume);
+    else
+        print_frame(&f->volume);
     if (v->steps > 1)
         print_steps(v);
     if (v->slope != 1 || v->intercept != 0)

@@ -5,6 +5,7 @@
 #include "core/status.h"
 
 #include <math.h>
+#include <string.h>
 
 static double area_of(const cw_mesh *m)
 {
@@ -123,7 +124,11 @@ cw_status cli_check_place(const cli_volume *volume, const cw_mesh *mesh, cw_erro
     double low[3], high[3], from[3] = {INFINITY, INFINITY, INFINITY},
                             to[3] = {-INFINITY, -INFINITY, -INFINITY};
     cw_mesh_bounds(mesh, low, high);
-    for (int corner = 0; corner < 8; corner++) {
+    if (v->cells) {
+        memcpy(from, volume->grid.low, sizeof from);
+        memcpy(to, volume->grid.high, sizeof to);
+    }
+    for (int corner = 0; corner < 8 && !v->cells; corner++) {
         double index[3], p[3];
         for (int a = 0; a < 3; a++)
             index[a] = corner >> a & 1 ? (double)(v->dim[a] - 1) : 0;

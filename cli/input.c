@@ -34,11 +34,44 @@ size_t cli_memory_limit(const cli_input *input)
     return input->memory ? input->memory : default_memory();
 }
 
+static const char *shape_name(int shape, size_t count)
+{
+    static const char *const names[CW_SHAPE_COUNT][2] = {
+        [CW_TETRAHEDRON] = {"tetrahedra", "tetrahedron"},
+        [CW_PYRAMID] = {"pyramids", "pyramid"},
+        [CW_WEDGE] = {"wedges", "wedge"},
+        [CW_HEXAHEDRON] = {"hexahedra", "hexahedron"}};
+    return names[shape][count == 1];
+}
+
+static const char *unit_of(const cw_volume *v)
+{
+    return v->known & CW_KNOWN_UNIT ? "mm" : "(no unit given: taken as mm)";
+}
+
+static const char *describe_grid(const cli_volume *volume)
+{
+    static char text[256];
+    const cw_volume *v = &volume->whole;
+    int n = snprintf(text, sizeof text, "%s, %zu samples %s", volume->format, v->dim[0],
+                     cw_type_name(v->type));
+    if (v->components > 1)
+        n += snprintf(text + n, sizeof text - (size_t)n, ", %zu components", v->components);
+    for (int s = 0; s < CW_SHAPE_COUNT; s++)
+        if (volume->grid.cells[s])
+            n += snprintf(text + n, sizeof text - (size_t)n, ", %zu %s", volume->grid.cells[s],
+                          shape_name(s, volume->grid.cells[s]));
+    snprintf(text + n, sizeof text - (size_t)n, " %s", unit_of(v));
+    return text;
+}
+
 const char *cli_describe(const cli_volume *volume)
 {
     static char text[256];
     const cw_volume *v = &volume->whole;
     const double *s = volume->spacing;
+    if (v->cells)
+        return describe_grid(volume);
     int n = snprintf(text, sizeof text, "%s, %zu x %zu x %zu %s", volume->format, v->dim[0],
                      v->dim[1], v->dim[2], cw_type_name(v->type));
     if (v->components > 1)
@@ -47,8 +80,41 @@ const char *cli_describe(const cli_volume *volume)
         n += snprintf(text + n, sizeof text - (size_t)n, ", %zu time steps", v->steps);
     snprintf(text + n, sizeof text - (size_t)n, ", %s%.6g x %.6g x %.6g %s",
              cwi_is_rectilinear(v) ? "rectilinear, on average " : "", s[0], s[1], s[2],
-             v->known & CW_KNOWN_UNIT ? "mm" : "(no unit given: taken as mm)");
+             unit_of(v));
     return text;
+}
+
+/* From the first corner of cells to the second, on average. */
+static double mean_edge(const cw_cells *c)
+{
+    static const size_t corners_of[CW_SHAPE_COUNT] = {
+        [CW_TETRAHEDRON] = 4, [CW_PYRAMID] = 5, [CW_WEDGE] = 6, [CW_HEXAHEDRON] = 8};
+    const uint32_t *corner = c->corners;
+    double sum = 0;
+    for (size_t n = 0; n < c->count; corner += corners_of[c->shapes[n++]]) {
+        const double *p = c->points + 3 * (size_t)corner[0],
+                     *q = c->points + 3 * (size_t)corner[1];
+        sum += hypot(hypot(q[0] - p[0], q[1] - p[1]), q[2] - p[2]);
+    }
+    return sum / (double)c->count;
+}
+
+/* What the cells are, once more where samples were merged, and their box. */
+static void find_grid(const cw_volume *v, cli_volume *volume)
+{
+    cli_grid *g = &volume->grid;
+    const cw_cells *c = v->cells;
+    *g = (cli_grid){.has_box = c->points != NULL};
+    volume->whole.dim[0] = v->dim[0];
+    for (size_t n = 0; n < c->count; n++)
+        g->cells[c->shapes[n]]++;
+    for (size_t n = 0; c->points && n < 3 * v->dim[0]; n++) {
+        const double x = c->points[n];
+        g->low[n % 3] = n < 3 ? x : fmin(g->low[n % 3], x);
+        g->high[n % 3] = n < 3 ? x : fmax(g->high[n % 3], x);
+    }
+    for (int a = 0; a < 3 && c->points; a++)
+        volume->spacing[a] = mean_edge(c);
 }
 
 void cli_spacing_range(const cli_volume *volume, int axis, double mm[2])
@@ -182,9 +248,17 @@ static cw_status read_header(const char *path, const cw_read_desc *voxels,
     if (st != CW_OK)
         return st;
     cw_volume_spacing(&volume->whole, volume->spacing);
+    if (volume->whole.cells)
+        find_grid(&volume->whole, volume);
     cli_say("%s: %s", path, cli_describe(volume));
     st = check_choice(input, &volume->whole, err);
     return st == CW_OK ? st : cwi_fail_in(err, st, path);
+}
+
+/* Of points and corners, at most. */
+static double grid_bytes(const cw_volume *v)
+{
+    return 3 * sizeof(double) * (double)v->dim[0] + 33 * (double)v->cells->count;
 }
 
 /* Reads what has the shape `part`, and counts what memory is left. */
@@ -192,9 +266,10 @@ static cw_status read_part(const char *path, cw_read_desc *desc, const cw_volume
                            cli_volume *volume, cw_error *err)
 {
     const double bytes = (double)cw_type_size(part->type) * (double)part->dim[0] *
-                         (double)part->dim[1] * (double)part->dim[2] *
-                         (double)part->components * (double)part->steps;
-    desc->note = NULL; /* said already */
+                             (double)part->dim[1] * (double)part->dim[2] *
+                             (double)part->components * (double)part->steps +
+                         (part->cells ? grid_bytes(part) : 0);
+    desc->note = part->cells ? desc->note : NULL; /* said already */
     desc->progress = cli_progress(bytes / 1e6, "MB");
     volume->memory_left = (double)desc->max_bytes > bytes ? desc->max_bytes - (size_t)bytes : 1;
     return cw_volume_read(path, desc, &volume->voxels, &volume->format, err);
@@ -215,8 +290,8 @@ static cw_status read_voxels(const char *path, cw_read_desc *desc, const cli_inp
 {
     cw_volume part = volume->whole;
     cw_box box;
-    cw_status st = CW_OK;
-    if (input->crop.given)
+    cw_status st = input->crop.given ? cwi_volume_expect_dense(&part, "a crop", err) : CW_OK;
+    if (st == CW_OK && input->crop.given)
         st = find_box(input, &part, &box, err);
     if (st == CW_OK && input->crop.given)
         st = cwi_volume_shrink(&part, &box, err);
@@ -224,6 +299,8 @@ static cw_status read_voxels(const char *path, cw_read_desc *desc, const cli_inp
         return cwi_fail_in(err, st, path);
     desc->region = input->crop.given ? &box : NULL;
     st = read_part(path, desc, &part, volume, err);
+    if (st == CW_OK && volume->voxels.cells)
+        find_grid(&volume->voxels, volume);
     if (st == CW_OK)
         st = cli_choose_step(input, input->step, volume, err);
     if (st == CW_OK && coarsening(input) > 1)
@@ -231,10 +308,14 @@ static cw_status read_voxels(const char *path, cw_read_desc *desc, const cli_inp
     return st;
 }
 
-/* Says what the reader decided, and keeps it for reports. */
+/* Says what the reader decided, and keeps it for reports. Irregular grids are known only once
+ * they are read, and tell then what their header told, too. */
 static void take_note(void *user, const char *text)
 {
     cli_volume *volume = user;
+    for (size_t n = 0; n < volume->note_count; n++)
+        if (strcmp(volume->notes[n], text) == 0)
+            return;
     cli_say("%s: %s", volume->path, text);
     if (volume->note_count < CLI_MOST_NOTES)
         snprintf(volume->notes[volume->note_count++], sizeof *volume->notes, "%s", text);
@@ -351,6 +432,21 @@ static void json_sparse(cli_json *j, const cw_volume *v)
     cli_json_close(j, '}');
 }
 
+static void json_grid(cli_json *j, const cli_grid *grid, double spacing)
+{
+    cli_json_open(j, "cells", '{');
+    for (int s = 0; s < CW_SHAPE_COUNT; s++)
+        cli_json_count(j, shape_name(s, 0), grid->cells[s]);
+    cli_json_close(j, '}');
+    if (!grid->has_box)
+        return;
+    cli_json_open(j, "box", '[');
+    cli_json_numbers(j, NULL, grid->low, 3);
+    cli_json_numbers(j, NULL, grid->high, 3);
+    cli_json_close(j, ']');
+    cli_json_number(j, "mean_edge", spacing);
+}
+
 void cli_json_input(cli_json *j, const char *key, const cli_volume *volume)
 {
     const cw_volume *v = &volume->whole;
@@ -363,7 +459,10 @@ void cli_json_input(cli_json *j, const char *key, const cli_volume *volume)
     cli_json_text(j, "type", cw_type_name(v->type));
     cli_json_count(j, "components", v->components);
     cli_json_count(j, "steps", v->steps);
-    cli_json_numbers(j, "spacing", volume->spacing, 3);
+    if (v->cells)
+        json_grid(j, &volume->grid, volume->spacing[0]);
+    else
+        cli_json_numbers(j, "spacing", volume->spacing, 3);
     cli_json_bool(j, "rectilinear", cwi_is_rectilinear(v));
     if (v->sparse)
         json_sparse(j, v);

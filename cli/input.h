@@ -123,15 +123,24 @@ typedef struct cli_input {
 
 enum { CLI_MOST_NOTES = 8 };
 
+/* What an irregular grid has: cells of each shape and, once it was read, the box of its points.
+ */
+typedef struct cli_grid {
+    size_t cells[CW_SHAPE_COUNT];
+    bool has_box;
+    double low[3], high[3];
+} cli_grid;
+
 /* A volume as a command uses it. */
 typedef struct cli_volume {
     const char *path, *format;
-    cw_volume whole;  /* as the file has it, spacing applied; without the voxels */
-    cw_volume voxels; /* what was read of it: all, or what --crop leaves */
-    cw_volume view;   /* of that the chosen component, step and samples */
-    double spacing[3];
-    size_t memory_left;              /* of the limit, after the voxels */
-    size_t coarsen[3];               /* the view's step along each axis */
+    cw_volume whole;    /* as the file has it, spacing applied; without the voxels */
+    cw_volume voxels;   /* what was read of it: all, or what --crop leaves */
+    cw_volume view;     /* of that the chosen component, step and samples */
+    double spacing[3];  /* of an irregular grid the mean length of cells' edges */
+    cli_grid grid;      /* zeroed for other volumes */
+    size_t memory_left; /* of the limit, after the voxels */
+    size_t coarsen[3];  /* the view's step along each axis */
     char notes[CLI_MOST_NOTES][256]; /* what the reader found and decided on */
     size_t note_count;
 } cli_volume;
@@ -168,7 +177,8 @@ cw_status cli_choose_step(const cli_input *input, size_t step, cli_volume *volum
 /* Whether the view leaves voxels out between those it has. */
 bool cli_is_preview(const cli_volume *volume);
 
-/* "nifti, 181 x 217 x 181 u8, 1 x 1 x 1 mm" into static memory. */
+/* "nifti, 181 x 217 x 181 u8, 1 x 1 x 1 mm", or "vtu, 21332 samples f64, 63008 tetrahedra,
+ * ..." into static memory. */
 const char *cli_describe(const cli_volume *volume);
 
 /* An object of reports, such as "input". sha256 of the file, when it can be read again. */

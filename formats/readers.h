@@ -11,6 +11,7 @@ bool cwi_nrrd_sniff(const unsigned char *head, size_t size);
 bool cwi_nifti_sniff(const unsigned char *head, size_t size);
 bool cwi_metaimage_sniff(const unsigned char *head, size_t size);
 bool cwi_vtk_sniff(const unsigned char *head, size_t size);
+bool cwi_vtu_sniff(const unsigned char *head, size_t size);
 bool cwi_vti_sniff(const unsigned char *head, size_t size);
 bool cwi_mrc_sniff(const unsigned char *head, size_t size);
 bool cwi_inr_sniff(const unsigned char *head, size_t size);
@@ -33,6 +34,13 @@ cw_status cwi_vtk_parse(const cwi_input *in, cwi_source *src, cw_error *err);
 cw_status cwi_vti_parse(const cwi_input *in, cwi_source *src, cw_error *err);
 cw_status cwi_mrc_parse(const cwi_input *in, cwi_source *src, cw_error *err);
 cw_status cwi_inr_parse(const cwi_input *in, cwi_source *src, cw_error *err);
+
+/* Reads an irregular grid; *is_grid is false when the file holds something else, which
+ * cwi_..._parse() then knows. */
+cw_status cwi_vtk_read_grid(const cwi_input *in, const cw_read_desc *desc, bool *is_grid,
+                            cw_volume *volume, cw_error *err);
+cw_status cwi_vtu_read(const cwi_input *in, const cw_read_desc *desc, bool *is_grid,
+                       cw_volume *volume, cw_error *err);
 
 /* Reads slices in files of their own, shut in with the library that knows them.
  * in     the folder, or one file and its folder

@@ -16,6 +16,9 @@ typedef struct reader {
     bool gzipped; /* the whole file may be a gzip file */
     bool (*sniff)(const unsigned char *head, size_t size);
     cw_status (*parse)(const cwi_input *in, cwi_source *src, cw_error *err);
+    /* where files may hold irregular grids */
+    cw_status (*read_grid)(const cwi_input *in, const cw_read_desc *desc, bool *is_grid,
+                           cw_volume *volume, cw_error *err);
     /* or, for slices in files of their own, the whole reading */
     cw_status (*read)(const cwi_input *in, cwi_names *names, const cw_read_desc *desc,
                       cw_volume *volume, cw_error *err);
@@ -29,7 +32,9 @@ static const reader readers[] = {
     {"nifti", ".nii .nii.gz .hdr .hdr.gz .img .img.gz", true, cwi_nifti_sniff,
      .parse = cwi_nifti_parse},
     {"metaimage", ".mha .mhd", false, cwi_metaimage_sniff, .parse = cwi_metaimage_parse},
-    {"vtk", ".vtk", false, cwi_vtk_sniff, .parse = cwi_vtk_parse},
+    {"vtk", ".vtk", false, cwi_vtk_sniff, .parse = cwi_vtk_parse,
+     .read_grid = cwi_vtk_read_grid},
+    {"vtu", ".vtu .vts", false, cwi_vtu_sniff, .read_grid = cwi_vtu_read},
     {"vti", ".vti .vtr", false, cwi_vti_sniff, .parse = cwi_vti_parse},
     {"mrc", ".mrc .map .ccp4 .rec .mrc.gz .map.gz", true, cwi_mrc_sniff,
      .parse = cwi_mrc_parse},
@@ -248,6 +253,16 @@ static cw_status read_source(opened *o, const cw_read_desc *desc, cw_volume *vol
     return st;
 }
 
+/* What a file by itself holds. */
+static cw_status read_one(opened *o, const cw_read_desc *desc, cw_volume *volume, cw_error *err)
+{
+    bool is_grid = false;
+    cw_status st = CW_OK;
+    if (o->reader && o->reader->read_grid)
+        st = o->reader->read_grid(&o->in, desc, &is_grid, volume, err);
+    return st == CW_OK && !is_grid ? read_source(o, desc, volume, err) : st;
+}
+
 static cw_status check_spacing(const double *s, cw_error *err)
 {
     if (s[0] == 0 && s[1] == 0 && s[2] == 0)
@@ -277,7 +292,7 @@ cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *
     else if (st == CW_OK && o.reader && o.reader->read_one)
         st = o.reader->read_one(&o.in, desc, volume, err);
     else if (st == CW_OK)
-        st = read_source(&o, desc, volume, err);
+        st = read_one(&o, desc, volume, err);
     if (format)
         *format = o.reader ? o.reader->name : desc->raw ? "raw" : NULL;
     close_path(&o);

@@ -29,27 +29,39 @@ typedef struct cwi_vti_data {
     cwi_vti_array best;
 } cwi_vti_data;
 
+/* What there is to choose from. */
+typedef struct cwi_vti_choice {
+    const char *wanted; /* the name of the array that was asked for; NULL: none */
+    char others[400];   /* names and types of arrays that are not read, for messages */
+} cwi_vti_choice;
+
 /* What the elements say, as far as they have been seen. */
 typedef struct cwi_vti {
     cwi_vtk_xml file;
-    const char *wanted; /* the name of the array that was asked for; NULL: none */
-    int64_t extent[6];  /* of the piece: first and last index along x, y, z */
+    cwi_vti_choice choice;
+    int64_t extent[6]; /* of the piece: first and last index along x, y, z */
     double origin[3], spacing[3], direction[9];
     bool rectilinear;
     cwi_vtk_array coordinates[3];
     size_t pieces, coordinate_arrays;
     cwi_vti_data points, cells;
-    char others[400]; /* names and types of arrays that are not read, for messages */
 } cwi_vti;
 
 /* The elements that mean something, each filling in what its attributes say. */
 cw_status cwi_vti_image(cwi_vti *v, cwi_attributes a, cw_error *err);
+cw_status cwi_vti_extent(cwi_attributes a, int64_t extent[6], cw_error *err);
 cw_status cwi_vti_piece(cwi_vti *v, cwi_attributes a, cw_error *err);
 void cwi_vti_data_start(cwi_vti_data *data, cwi_attributes a);
 
 /* One array; *kept when it is the best so far, and is now data->best. */
-cw_status cwi_vti_data_array(cwi_vti *v, cwi_vti_data *data, cwi_attributes a, bool *kept,
-                             cw_error *err);
+cw_status cwi_vti_data_array(cwi_vti_choice *choice, cwi_vti_data *data, cwi_attributes a,
+                             bool *kept, cw_error *err);
+
+/* Says that none of the arrays will do. */
+cw_status cwi_vti_fail_choice(const cwi_vti_choice *choice, cw_error *err);
+
+/* Several time steps in one file are refused. */
+cw_status cwi_vti_check_times(cwi_attributes a, cw_error *err);
 
 /* One array of coordinates, v->coordinates[*n]. */
 cw_status cwi_vti_coordinates(cwi_vti *v, cwi_attributes a, size_t *n, cw_error *err);

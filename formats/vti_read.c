@@ -29,9 +29,11 @@ typedef struct parsing {
 
 static cw_status start_file(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
-    static const char *const kinds[3][2] = {{"ImageData", "a volume"},
-                                            {"RectilinearGrid", "a volume"},
-                                            {"ImageData or RectilinearGrid", "a volume"}};
+    static const char *const kinds[3][2] = {
+        {"ImageData", "a volume"},
+        {"RectilinearGrid", "a volume"},
+        {"ImageData, RectilinearGrid (vti), StructuredGrid or UnstructuredGrid (vtu)",
+         "a volume"}};
     parsing *p = user;
     const char *type = cwi_attribute(a, "type");
     int kind = 0;
@@ -78,7 +80,7 @@ static cw_status start_data_array(parsing *p, cwi_vti_data *data, cwi_xml *x, cw
                                   cw_error *err)
 {
     bool kept;
-    cw_status st = cwi_vti_data_array(&p->vti, data, a, &kept, err);
+    cw_status st = cwi_vti_data_array(&p->vti.choice, data, a, &kept, err);
     if (kept)
         open_text(p, x, &data->best.data);
     return st;
@@ -187,13 +189,7 @@ static cw_status check_found(const cwi_vti *v, cw_error *err)
         return cw_fail(err, CW_ERR_FORMAT,
                        "Coordinates has %zu arrays; one for x, y and z each was expected",
                        v->coordinate_arrays);
-    if (choose(v)->rank != CWI_VTI_NONE)
-        return CW_OK;
-    if (v->wanted)
-        return cw_fail(err, CW_ERR_ARGUMENT, "there is no array '%.100s' that is read%s%s",
-                       v->wanted, *v->others ? "; there are " : "", v->others);
-    return cw_fail(err, CW_ERR_FORMAT, "PointData and CellData hold no array that is read%s%s",
-                   *v->others ? "; there are " : "", v->others);
+    return choose(v)->rank != CWI_VTI_NONE ? CW_OK : cwi_vti_fail_choice(&v->choice, err);
 }
 
 /* --- coordinates -------------------------------------------------------------------------- */
@@ -252,7 +248,7 @@ static void set_frame(const cwi_vti *v, cw_volume *shape)
 
 cw_status cwi_vti_parse(const cwi_input *in, cwi_source *src, cw_error *err)
 {
-    parsing p = {.vti = {.wanted = in->array}};
+    parsing p = {.vti = {.choice = {.wanted = in->array}}};
     cwi_vti *v = &p.vti;
     src->size_field = "Extent";
     src->frame_field = "Direction, Spacing, Origin";

@@ -173,6 +173,8 @@ static cwi_vtk_rank rank_of(const cwi_vtk *v, const cwi_vtk_array *said, const v
         return CWI_VTK_NONE;
     if (v->wanted)
         return strcmp(said->name, v->wanted) == 0 ? CWI_VTK_ASKED_FOR : CWI_VTK_NONE;
+    if (strcmp(said->name, "vtkGhostType") == 0)
+        return CWI_VTK_NONE;
     return said->rank == CWI_VTK_SCALARS || said->components == 1 ? said->rank
                                                                   : CWI_VTK_SEVERAL;
 }
@@ -198,6 +200,14 @@ static cw_status pass_numbers(cwi_vtk *v, const char *name, size_t count, size_t
     return v->binary ? skip_bytes(v, name, count, bits, err) : skip_text(v, name, count, err);
 }
 
+/* Marks say which points or cells are hidden. */
+static void keep_marks(cwi_vtk *v, const cwi_vtk_array *said, const vtk_type *type)
+{
+    if (strcmp(said->name, "vtkGhostType") == 0 && said->components == 1 && type->type >= 0)
+        v->grid.marks[v->best == &v->cells] =
+            (cwi_vtk_row){.type = (cw_type)type->type, .count = v->count, .offset = v->offset};
+}
+
 /* One array starts here: perhaps it is kept; goes behind it, if there is a reason to. */
 static cw_status pass_array(cwi_vtk *v, const cwi_vtk_array *said, const char *type_name,
                             size_t tuples, cw_error *err)
@@ -207,8 +217,10 @@ static cw_status pass_array(cwi_vtk *v, const cwi_vtk_array *said, const char *t
     if (!type)
         return cw_fail(err, CW_ERR_FORMAT, "the array '%s' is of type '%s', which is not known",
                        said->name, type_name);
-    if (v->best && tuples == v->count)
+    if (v->best && tuples == v->count) {
+        keep_marks(v, said, type);
         consider(v, said, type, type_name);
+    }
     if (cwi_vtk_is_settled(v))
         return CW_OK;
     if (!cwi_size_mul(tuples, said->components, &count))
@@ -217,9 +229,25 @@ static cw_status pass_array(cwi_vtk *v, const cwi_vtk_array *said, const char *t
     return pass_numbers(v, said->name, count, type->bits, err);
 }
 
-static cw_status fail_cut_short(const cwi_vtk *v, cw_error *err)
+cw_status cwi_vtk_fail_cut_short(const cwi_vtk *v, cw_error *err)
 {
     return cw_fail(err, CW_ERR_FORMAT, "line %zu, '%.60s', is cut short", v->number, v->line);
+}
+
+cw_status cwi_vtk_row_pass(cwi_vtk *v, const char *field, const char *type_name, size_t skipped,
+                           size_t count, cwi_vtk_row *row, cw_error *err)
+{
+    const vtk_type *type = find_type(type_name);
+    if (!type || type->bits == 1)
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "'%s' is of type '%s'; whole or real numbers were expected", field,
+                       type_name);
+    cw_status st = pass_numbers(v, field, skipped, type->bits, err);
+    row->wide = type->type < 0 && v->binary; /* in text they are numbers like any other */
+    row->type = type->type >= 0 ? (cw_type)type->type : v->binary ? CW_U32 : CW_F64;
+    row->count = count;
+    row->offset = v->offset;
+    return st == CW_OK ? pass_numbers(v, field, count, type->bits, err) : st;
 }
 
 cw_status cwi_vtk_coordinates(cwi_vtk *v, int axis, cw_error *err)
@@ -229,7 +257,7 @@ cw_status cwi_vtk_coordinates(cwi_vtk *v, int axis, cw_error *err)
     int64_t count;
     field[0] = "XYZ"[axis];
     if (!cwi_next_word(&text, word) || !cwi_next_word(&text, type_name))
-        return fail_cut_short(v, err);
+        return cwi_vtk_fail_cut_short(v, err);
     cw_status st = cwi_field_integer(field, word, 1, INT32_MAX, &count, err);
     if (st != CW_OK)
         return st;
@@ -239,8 +267,7 @@ cw_status cwi_vtk_coordinates(cwi_vtk *v, int axis, cw_error *err)
                        "'%s' is of type '%s'; numbers of up to 32 bits, or double, were "
                        "expected",
                        field, type_name);
-    v->coordinates[axis] = (cwi_vtk_row){(cw_type)type->type, (size_t)count, v->offset};
-    return pass_numbers(v, field, (size_t)count, type->bits, err);
+    return cwi_vtk_row_pass(v, field, type_name, 0, (size_t)count, &v->coordinates[axis], err);
 }
 
 /* The byte that "%20" or the like stands for; 0: none. */
@@ -295,7 +322,7 @@ static cw_status read_attribute(cwi_vtk *v, int row, cw_error *err)
         whole |= *w == 'C';
     }
     if (st == CW_OK && !whole)
-        return fail_cut_short(v, err);
+        return cwi_vtk_fail_cut_short(v, err);
     if (st == CW_OK && row == 0)
         st = skip_lookup_name(v, err);
     if (st != CW_OK)

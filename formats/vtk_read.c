@@ -1,7 +1,8 @@
-/* Legacy VTK image data and rectilinear grids: "VTK File Formats", the simple legacy formats,
- * version 1.0 to 5.1. */
+/* Legacy VTK image data and grids, rectilinear, curvilinear and unstructured: "VTK File
+ * Formats", the simple legacy formats, version 1.0 to 5.1. */
 #include "core/memory.h"
 #include "core/status.h"
+#include "formats/irregular.h"
 #include "formats/readers.h"
 #include "formats/vtk.h"
 #include "formats/vtk_grid.h"
@@ -11,22 +12,63 @@
 
 static const char magic[] = "# vtk DataFile Version ";
 
+typedef enum dataset {
+    EVEN = 1,
+    RECTILINEAR = 2,
+    CURVILINEAR = 4,
+    UNSTRUCTURED = 8,
+    IRREGULAR = CURVILINEAR | UNSTRUCTURED
+} dataset;
+
+static const struct {
+    const char *name;
+    dataset kind;
+} datasets[] = {{"STRUCTURED_POINTS", EVEN},
+                {"RECTILINEAR_GRID", RECTILINEAR},
+                {"STRUCTURED_GRID", CURVILINEAR},
+                {"UNSTRUCTURED_GRID", UNSTRUCTURED}};
+enum { DATASET_COUNT = sizeof datasets / sizeof *datasets };
+
 typedef enum grid_field {
     G_DIMENSIONS,
     G_ORIGIN,
     G_SPACING,
+    G_POINTS,
+    G_CELLS,
+    G_CELL_TYPES,
     G_COORDINATES,
     GRID_FIELD_COUNT = G_COORDINATES + 3
 } grid_field;
 
 static const char *const grid_names[GRID_FIELD_COUNT] = {
-    [G_DIMENSIONS] = "dimensions",         [G_ORIGIN] = "origin",
-    [G_SPACING] = "spacing|aspect_ratio",  [G_COORDINATES] = "x_coordinates",
-    [G_COORDINATES + 1] = "y_coordinates", [G_COORDINATES + 2] = "z_coordinates"};
+    [G_DIMENSIONS] = "dimensions",
+    [G_ORIGIN] = "origin",
+    [G_SPACING] = "spacing|aspect_ratio",
+    [G_POINTS] = "points",
+    [G_CELLS] = "cells",
+    [G_CELL_TYPES] = "cell_types",
+    [G_COORDINATES] = "x_coordinates",
+    [G_COORDINATES + 1] = "y_coordinates",
+    [G_COORDINATES + 2] = "z_coordinates",
+};
+
+/* The kinds of dataset that have the field. */
+static const unsigned grid_kinds[GRID_FIELD_COUNT] = {
+    [G_DIMENSIONS] = EVEN | RECTILINEAR | CURVILINEAR,
+    [G_ORIGIN] = EVEN,
+    [G_SPACING] = EVEN,
+    [G_POINTS] = IRREGULAR,
+    [G_CELLS] = UNSTRUCTURED,
+    [G_CELL_TYPES] = UNSTRUCTURED,
+    [G_COORDINATES] = RECTILINEAR,
+    [G_COORDINATES + 1] = RECTILINEAR,
+    [G_COORDINATES + 2] = RECTILINEAR,
+};
 
 /* The grid of points, as far as the file has told of it. */
 typedef struct grid {
-    bool rectilinear;
+    dataset kind;
+    const char *name; /* of the kind */
     size_t dim[3];
     double origin[3], spacing[3];
     bool seen[GRID_FIELD_COUNT];
@@ -51,6 +93,7 @@ static cw_status read_magic(cwi_vtk *v, cw_error *err)
     if (*version < '1' || *version > '5' || version[1] != '.')
         return cw_fail(err, CW_ERR_FORMAT, "the version is '%.20s'; 1.0 to 5.1 are read",
                        version);
+    v->version = *version - '0';
     return cwi_vtk_line(v, &more, err); /* a title, or none */
 }
 
@@ -86,12 +129,17 @@ static cw_status read_dataset(cwi_vtk *v, grid *g, cw_error *err)
         if (st == CW_OK)
             st = cwi_vtk_section(v, &known, err);
     }
-    g->rectilinear = strcasecmp(cwi_vtk_value(v), "rectilinear_grid") == 0;
-    if (st != CW_OK || g->rectilinear || strcasecmp(cwi_vtk_value(v), "structured_points") == 0)
+    for (int i = 0; i < DATASET_COUNT && st == CW_OK; i++)
+        if (strcasecmp(cwi_vtk_value(v), datasets[i].name) == 0) {
+            g->kind = datasets[i].kind;
+            g->name = datasets[i].name;
+            return CW_OK;
+        }
+    if (st != CW_OK)
         return st;
     return cw_fail(err, CW_ERR_FORMAT,
-                   "line %zu is '%.60s'; only DATASET STRUCTURED_POINTS or RECTILINEAR_GRID is "
-                   "a volume",
+                   "line %zu is '%.60s'; only DATASET STRUCTURED_POINTS, RECTILINEAR_GRID, "
+                   "STRUCTURED_GRID or UNSTRUCTURED_GRID is a volume",
                    v->number, v->line);
 }
 
@@ -102,17 +150,22 @@ static int find_field(const cwi_vtk *v, const grid *g)
 {
     const int field =
         cwi_field_find(grid_names, GRID_FIELD_COUNT, v->line, strcspn(v->line, " \t"));
-    const bool fits = field == G_DIMENSIONS || (field >= G_COORDINATES) == g->rectilinear;
-    return fits ? field : -1;
+    return field >= 0 && grid_kinds[field] & g->kind ? field : -1;
 }
 
 static cw_status read_grid_field(cwi_vtk *v, int field, grid *g, cw_error *err)
 {
-    const char *by = g->rectilinear ? "RECTILINEAR_GRID" : "STRUCTURED_POINTS";
+    const char *by = g->name;
     const char *value = cwi_vtk_value(v);
     g->seen[field] = true;
     if (field >= G_COORDINATES)
         return cwi_vtk_coordinates(v, field - G_COORDINATES, err);
+    if (field == G_POINTS)
+        return cwi_vtk_points(v, err);
+    if (field == G_CELLS)
+        return cwi_vtk_cell_corners(v, err);
+    if (field == G_CELL_TYPES)
+        return cwi_vtk_cell_types(v, err);
     if (field == G_DIMENSIONS)
         return cwi_field_sizes("DIMENSIONS", value, 3, by, g->dim, err);
     if (field == G_ORIGIN)
@@ -125,6 +178,13 @@ static cw_status check_count(const cwi_vtk *v, const char *field, const grid *g,
 {
     const size_t cells = v->best == &v->cells;
     size_t wanted = 1;
+    if (g->kind == UNSTRUCTURED) {
+        wanted = cells ? v->grid.count : v->grid.points.count;
+        return v->count == wanted
+                   ? CW_OK
+                   : cw_fail(err, CW_ERR_FORMAT, "'%s' is %zu; '%s' asks for %zu", field,
+                             v->count, cells ? "CELLS" : "POINTS", wanted);
+    }
     if (!g->seen[G_DIMENSIONS])
         return cw_fail(err, CW_ERR_FORMAT, "'DIMENSIONS' is missing in front of %s", field);
     for (int a = 0; a < 3; a++)
@@ -250,24 +310,104 @@ static void set_frame(const cwi_vtk *v, const grid *g, cw_volume *shape)
     }
 }
 
+/* --- irregular grids --------------------------------------------------------------------- */
+
+static cw_status describe_array(const void *file, size_t piece, cwi_grid_role role,
+                                size_t count, cwi_source *src, bool *wide, cw_error *err)
+{
+    const cwi_vtk *v = file;
+    const cwi_vtk_array *array = choose(v);
+    const cwi_vtk_row values = {.type = array->type, .count = count, .offset = array->offset};
+    (void)piece;
+    switch (role) {
+    case CWI_GRID_POINTS:
+        return cwi_vtk_describe(v, &v->grid.points, "POINTS", 3, count, src, wide, err);
+    case CWI_GRID_TYPES:
+        return cwi_vtk_describe(v, &v->grid.types, "CELL_TYPES", 1, count, src, wide, err);
+    case CWI_GRID_ENDS:
+        return cwi_vtk_describe(v, &v->grid.ends, "OFFSETS", 1, count, src, wide, err);
+    case CWI_GRID_CORNERS:
+        return cwi_vtk_describe(v, &v->grid.corners, v->grid.listed ? "CELLS" : "CONNECTIVITY",
+                                1, count, src, wide, err);
+    case CWI_GRID_POINT_MARKS:
+    case CWI_GRID_CELL_MARKS:
+        return cwi_vtk_describe(v, &v->grid.marks[role == CWI_GRID_CELL_MARKS], "vtkGhostType",
+                                1, count, src, wide, err);
+    default:
+        return cwi_vtk_describe(v, &values, array->name, array->components, count, src, wide,
+                                err);
+    }
+}
+
+static cw_status set_piece(const cwi_vtk *v, const grid *g, cwi_grid_piece *piece,
+                           cw_error *err)
+{
+    *piece = (cwi_grid_piece){.points = v->grid.points.count,
+                              .cells = v->grid.count,
+                              .listed = v->grid.listed,
+                              .has_point_marks = v->grid.marks[0].offset,
+                              .has_cell_marks = v->grid.marks[1].offset};
+    if (g->kind == UNSTRUCTURED)
+        return CW_OK;
+    for (int a = 0; a < 3; a++)
+        piece->along[a] = g->dim[a];
+    return cwi_grid_along(piece, "DIMENSIONS", err);
+}
+
+static cw_status read_start(cwi_vtk *v, grid *g, cw_error *err)
+{
+    cw_status st = read_magic(v, err);
+    if (st == CW_OK)
+        st = read_form(v, err);
+    return st == CW_OK ? read_dataset(v, g, err) : st;
+}
+
+cw_status cwi_vtk_read_grid(const cwi_input *in, const cw_read_desc *desc, bool *is_grid,
+                            cw_volume *volume, cw_error *err)
+{
+    cwi_vtk v = {.in = in, .wanted = in->array, .to_end = true};
+    grid g = {0};
+    cwi_grid_piece piece;
+    cw_status st = read_start(&v, &g, err);
+    *is_grid = g.kind & IRREGULAR;
+    if (st != CW_OK || !*is_grid)
+        return st;
+    st = read_lines(&v, &g, err);
+    if (st == CW_OK)
+        st = check_found(&v, err);
+    if (st == CW_OK)
+        st = set_piece(&v, &g, &piece, err);
+    if (st != CW_OK)
+        return st;
+    const cwi_vtk_array *array = choose(&v);
+    const cwi_irregular all = {.pieces = &piece,
+                               .piece_count = 1,
+                               .point_field = "POINTS",
+                               .array = array->name,
+                               .type = array->type,
+                               .components = array->components,
+                               .of_cells = array == &v.cells,
+                               .describe = describe_array,
+                               .file = &v};
+    return cwi_irregular_read(&all, in, desc, volume, err);
+}
+
+/* --- other grids ------------------------------------------------------------------------- */
+
 cw_status cwi_vtk_parse(const cwi_input *in, cwi_source *src, cw_error *err)
 {
     cwi_vtk v = {.in = in, .wanted = in->array};
     grid g = {.spacing = {1, 1, 1}};
     src->size_field = "DIMENSIONS";
     src->frame_field = "SPACING, ORIGIN";
-    cw_status st = read_magic(&v, err);
-    if (st == CW_OK)
-        st = read_form(&v, err);
-    if (st == CW_OK)
-        st = read_dataset(&v, &g, err);
+    cw_status st = read_start(&v, &g, err);
     if (st == CW_OK)
         st = read_lines(&v, &g, err);
     if (st == CW_OK)
         st = check_found(&v, err);
     if (st == CW_OK)
         st = describe(&v, &g, src, err);
-    if (st == CW_OK && g.rectilinear)
+    if (st == CW_OK && g.kind == RECTILINEAR)
         return set_coordinates(&v, &g, src, err);
     set_frame(&v, &g, &src->shape);
     return st;

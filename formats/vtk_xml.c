@@ -1,6 +1,7 @@
 #include "formats/vtk_xml.h"
 
 #include "core/status.h"
+#include "formats/tuples.h"
 
 #include <ctype.h>
 #include <stdio.h>
@@ -219,4 +220,18 @@ cw_status cwi_vtk_xml_place(const cwi_vtk_xml *v, const cwi_vtk_array *array,
                        array->name);
     set_place(v, array, src);
     return check_count(in, v, array, src, err);
+}
+
+cw_status cwi_vtk_xml_tuples(const cwi_vtk_xml *v, const cwi_vtk_array *array,
+                             const char *field, size_t count, const cwi_input *in,
+                             cwi_source *src, bool *wide, cw_error *err)
+{
+    *wide = false;
+    if (!array)
+        return cw_fail(err, CW_ERR_FORMAT, "'%s' is %zu; the array for them is missing", field,
+                       count);
+    *wide = array->wide && array->form != CWI_VTK_ASCII;
+    const cw_type type = array->wide && !*wide ? CW_F64 : array->type;
+    cw_status st = cwi_tuples_describe(src, field, type, *wide, array->components, count, err);
+    return st == CW_OK ? cwi_vtk_xml_place(v, array, in, src, err) : st;
 }

@@ -52,4 +52,11 @@ cw_status cwi_vtk_xml_find_appended(const cwi_input *in, cwi_vtk_xml *v, cw_erro
 cw_status cwi_vtk_xml_place(const cwi_vtk_xml *v, const cwi_vtk_array *array,
                             const cwi_input *in, cwi_source *src, cw_error *err);
 
+/* Describes an array of so many tuples, for cwi_tuples_load(). field is where the file counts
+ * them; an array of NULL is missing. In text numbers of 64 bits are numbers like any other.
+ */
+cw_status cwi_vtk_xml_tuples(const cwi_vtk_xml *v, const cwi_vtk_array *array,
+                             const char *field, size_t count, const cwi_input *in,
+                             cwi_source *src, bool *wide, cw_error *err);
+
 #endif

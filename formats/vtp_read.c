@@ -3,6 +3,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "formats/mesh_readers.h"
+#include "formats/tuples.h"
 #include "formats/vtk_xml.h"
 
 #include <float.h>
@@ -237,106 +238,42 @@ static const cwi_xml_rules rules = {.elements = elements,
 
 /* --- numbers ----------------------------------------------------------------------------- */
 
-/* The numbers of an array, held as voxels are. */
-typedef struct numbers {
-    cw_volume data;
-    size_t count; /* tuples */
-    bool wide;    /* 64-bit numbers as two halves, in the machine's order */
-    size_t bytes; /* counted as memory that is used */
-} numbers;
-
-static void drop(vtp *v, numbers *n)
+static void drop(vtp *v, cwi_tuples *t)
 {
-    v->in->bytes -= n->bytes;
-    cw_volume_free(&n->data);
-    *n = (numbers){.count = 0};
+    v->in->bytes -= t->bytes;
+    cwi_tuples_free(t);
 }
 
-static double number_at(const numbers *n, size_t i, size_t component)
-{
-    const cw_volume *v = &n->data;
-    const char *at = (const char *)v->data + (ptrdiff_t)i * v->stride[0] +
-                     (ptrdiff_t)component * v->component_stride;
-    switch (v->type) {
-#define CASE(name, ctype, text)                                                                \
-    case name:                                                                                 \
-        return (double)*(const ctype *)(const void *)at;
-        CW_TYPE_TABLE(CASE)
-#undef CASE
-    default:
-        return 0;
-    }
-}
-
-/* A whole number; what is beyond 2^53 names nothing here, and stays so. */
-static int64_t whole_at(const numbers *n, size_t i)
-{
-    uint64_t halves;
-    if (n->data.type == CW_U32 && n->wide) {
-        memcpy(&halves, (const char *)n->data.data + i * sizeof halves, sizeof halves);
-        return (int64_t)halves;
-    }
-    const double value = number_at(n, i, 0);
-    return fabs(value) < 0x1p53 ? (int64_t)value : -1;
-}
-
-/* Halves were turned round one by one; those of a number still stand in the file's order. */
-static void join_halves(numbers *n, bool big_endian)
-{
-    uint32_t *half = n->data.owned;
-    if (!n->wide || big_endian == cwi_machine_is_big_endian())
-        return;
-    for (size_t i = 0; i < n->count; i++) {
-        const uint32_t first = half[2 * i];
-        half[2 * i] = half[2 * i + 1];
-        half[2 * i + 1] = first;
-    }
-}
-
-/* Reads an array of so many tuples; field is where the file counts them. In text numbers of 64
- * bits are numbers like any other. */
-static cw_status load(vtp *v, role r, const char *field, uint64_t count, numbers *n,
+/* Reads an array of so many tuples; field is where the file counts them. */
+static cw_status load(vtp *v, role r, const char *field, uint64_t count, cwi_tuples *t,
                       cw_error *err)
 {
-    cwi_vtk_array array = v->arrays[r];
     const cwi_input *file = &v->in->file;
     const cw_read_desc desc = {.progress = v->in->desc.progress};
-    cwi_source src = {.size_field = field, .noun = "numbers", .shape = {.slope = 1}};
-    *n = (numbers){.count = (size_t)count};
+    cwi_source src;
+    bool wide;
+    *t = (cwi_tuples){.count = 0};
     if (count == 0)
         return CW_OK;
-    if (!v->has[r])
-        return cw_fail(err, CW_ERR_FORMAT, "'%s' is %llu; the array for them is missing", field,
-                       (unsigned long long)count);
-    n->wide = array.wide && array.form != CWI_VTK_ASCII;
-    src.shape.type = array.wide && !n->wide ? CW_F64 : array.type;
-    const cwi_axis axes[] = {{CWI_AXIS_COMPONENT, array.components * (n->wide ? 2 : 1)},
-                             {CWI_AXIS_X, (size_t)count}};
-    cw_status st = cwi_source_set_axes(&src, axes, 2, err);
-    if (st == CW_OK)
-        st = cwi_vtk_xml_place(&v->file, &array, file, &src, err);
+    cw_status st = cwi_vtk_xml_tuples(&v->file, v->has[r] ? &v->arrays[r] : NULL, field,
+                                      (size_t)count, file, &src, &wide, err);
     if (st == CW_OK)
         st = cwi_mesh_take_bytes(v->in, src.bytes, err);
-    n->bytes = st == CW_OK ? src.bytes : 0;
-    if (st == CW_OK)
-        st = cwi_source_load(&src, file, &desc, &n->data, err);
-    if (st == CW_OK)
-        join_halves(n, v->file.big_endian);
-    return st;
+    return st == CW_OK ? cwi_tuples_load(&src, file, &desc, wide, t, err) : st;
 }
 
 /* --- the mesh ---------------------------------------------------------------------------- */
 
 static cw_status read_points(vtp *v, cw_error *err)
 {
-    numbers n;
+    cwi_tuples n;
     cw_status st = load(v, POINTS, "NumberOfPoints", (uint64_t)v->points, &n, err);
     if (st == CW_OK)
         st = cwi_build_reserve(&v->build, n.count, 0, err);
     for (size_t i = 0; i < n.count && st == CW_OK; i++) {
         double point[3];
         for (size_t a = 0; a < 3; a++)
-            point[a] = number_at(&n, i, a);
+            point[a] = cwi_tuples_real(&n, i, a);
         st = cwi_build_point(&v->build, point, err);
     }
     drop(v, &n);
@@ -352,7 +289,7 @@ static float to_single(double number)
  */
 static cw_status read_attribute(vtp *v, role r, void *array, size_t size, cw_error *err)
 {
-    numbers n;
+    cwi_tuples n;
     size_t room = 0;
     void *to;
     if (!v->has[r] || v->points == 0)
@@ -364,9 +301,7 @@ static cw_status read_attribute(vtp *v, role r, void *array, size_t size, cw_err
     const size_t given = v->arrays[r].components;
     for (size_t i = 0; i < n.count && st == CW_OK; i++)
         for (size_t c = 0; c < (r == NORMALS ? 3 : r == COLORS ? 4 : 1); c++) {
-            const double number = r == COLORS && c >= given ? 255
-                                  : n.wide                  ? (double)whole_at(&n, i)
-                                                            : number_at(&n, i, c);
+            const double number = r == COLORS && c >= given ? 255 : cwi_tuples_real(&n, i, c);
             if (r == COLORS)
                 ((uint8_t *)to)[4 * i + c] = (uint8_t)number;
             else if (r == LABELS)
@@ -379,13 +314,13 @@ static cw_status read_attribute(vtp *v, role r, void *array, size_t size, cw_err
 }
 
 /* The corners of one polygon, or of one strip, whose triangles are wound by turns. */
-static cw_status add_corners(vtp *v, const numbers *corners, size_t from, size_t to, bool strip,
-                             cw_error *err)
+static cw_status add_corners(vtp *v, const cwi_tuples *corners, size_t from, size_t to,
+                             bool strip, cw_error *err)
 {
     cw_status st = CW_OK;
     if (!strip) {
         for (size_t i = from; i < to && st == CW_OK; i++)
-            st = cwi_build_corner(&v->build, whole_at(corners, i), err);
+            st = cwi_build_corner(&v->build, cwi_tuples_whole(corners, i), err);
         cwi_build_end_face(&v->build, v->said);
         return st;
     }
@@ -393,18 +328,18 @@ static cw_status add_corners(vtp *v, const numbers *corners, size_t from, size_t
         const size_t odd = (i - from) % 2;
         const size_t order[3] = {i, i + 1 + odd, i + 2 - odd};
         for (int c = 0; c < 3 && st == CW_OK; c++)
-            st = cwi_build_corner(&v->build, whole_at(corners, order[c]), err);
+            st = cwi_build_corner(&v->build, cwi_tuples_whole(corners, order[c]), err);
         v->build.corners = 0;
     }
     return st;
 }
 
 /* Ends must not go back; the last says how many corners there are. */
-static cw_status check_ends(const numbers *ends, const char *field, cw_error *err)
+static cw_status check_ends(const cwi_tuples *ends, const char *field, cw_error *err)
 {
     int64_t before = 0;
     for (size_t i = 0; i < ends->count; i++) {
-        const int64_t end = whole_at(ends, i);
+        const int64_t end = cwi_tuples_whole(ends, i);
         if (end < before)
             return cw_fail(err, CW_ERR_FORMAT,
                            "'offsets' says that number %zu of '%s' ends at %lld, behind %lld",
@@ -417,18 +352,18 @@ static cw_status check_ends(const numbers *ends, const char *field, cw_error *er
 static cw_status read_faces(vtp *v, role first, const char *field, int64_t count, cw_error *err)
 {
     const bool strip = first == STRIPS;
-    numbers ends = {0}, corners = {0};
+    cwi_tuples ends = {0}, corners = {0};
     cw_status st = load(v, first + 1, field, (uint64_t)count, &ends, err);
     if (st == CW_OK)
         st = check_ends(&ends, field, err);
     if (st == CW_OK && ends.count)
-        st =
-            load(v, first, "offsets", (uint64_t)whole_at(&ends, ends.count - 1), &corners, err);
+        st = load(v, first, "offsets", (uint64_t)cwi_tuples_whole(&ends, ends.count - 1),
+                  &corners, err);
     if (st == CW_OK && corners.count > 2 * ends.count)
         st = cwi_build_reserve(&v->build, 0,
                                v->build.triangle_count + corners.count - 2 * ends.count, err);
     for (size_t i = 0, from = 0; i < ends.count && st == CW_OK; i++) {
-        const size_t to = (size_t)whole_at(&ends, i);
+        const size_t to = (size_t)cwi_tuples_whole(&ends, i);
         st = add_corners(v, &corners, from, to, strip, err);
         from = to;
     }

@@ -38,11 +38,13 @@ typedef enum cw_tilt {
 typedef struct cw_read_desc {
     const char *reader;       /* a name of cw_formats(); default: by content, then extension */
     const cw_raw_layout *raw; /* read as headerless bytes laid out so; default: by header */
-    bool header_only;         /* leave data NULL: everything else is filled in */
+    bool header_only;         /* leave data NULL: everything else is filled in, but of an
+                                 irregular grid neither points nor corners */
     bool allow_external;      /* data files outside the header's folder; default: refused */
     const cw_box *region;     /* only these voxels, x y z; default: all */
     uint64_t max_voxels;      /* default 2^40 */
-    uint64_t max_bytes;       /* of voxels in memory; default: no limit */
+    uint64_t max_bytes;       /* of voxels in memory, of an irregular grid with all that reading
+                                 it takes; default: no limit */
     double spacing_mm[3];     /* in place of the file's; default: all 0, the file's */
     const char *array;        /* by its name, where files have several; default: the one that
                                  the file names, else the first of one value */
@@ -79,6 +81,10 @@ typedef struct cw_read_desc {
  * are not wanted, compressed ones inflated and dropped, and then the checksum at their end is
  * verified only if the region reaches it.
  *
+ * Of an irregular grid cells of our four shapes are read; what is left out is noted. Samples
+ * that are the same in place and value to the bit become one. Values of cells are averaged
+ * around each sample, to CW_F64. Its header counts samples as the file does.
+ *
  * volume   filled on success, else emptied; free it with cw_volume_free(), a header's too
  * format   set to the reader's name (static); may be NULL
  * Returns  CW_ERR_IO           missing, not a regular file, unreadable
@@ -86,11 +92,12 @@ typedef struct cw_read_desc {
  *          CW_ERR_UNSAFE       the header names voxels outside its own folder; an XML document
  *                              type; several series and none chosen; slices that are missing,
  *                              uneven, without a place, or shifted unevenly
- *          CW_ERR_UNSUPPORTED  compressed with a library that is not in this build
+ *          CW_ERR_UNSUPPORTED  compressed with a library that is not in this build; a region of
+ *                              an irregular grid
  *          CW_ERR_BACKEND      a library died of the file, or took too long
  *          CW_ERR_LIMIT        more voxels or bytes than allowed; CW_ERR_NO_MEMORY
  *          CW_ERR_ARGUMENT     no such reader or array; a region that is empty or leaves the
- *                              volume; CW_ERR_CANCELLED */
+ *                              volume; a spacing for an irregular grid; CW_ERR_CANCELLED */
 CW_API cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *volume,
                                 const char **format, cw_error *err);
 

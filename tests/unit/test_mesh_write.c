@@ -248,8 +248,8 @@ static void running_out_of_memory_leaves_nothing(void **state)
 static void the_table_of_formats_is_whole_and_always_the_same(void **state)
 {
     (void)state;
-    static const char wanted[] =
-        "nrrd nifti metaimage vtk vti mrc inr dicom tiff raw glb gltf stl ply obj off 3mf vtp ";
+    static const char wanted[] = "nrrd nifti metaimage vtk vtu vti mrc inr dicom tiff raw glb "
+                                 "gltf stl ply obj off 3mf vtp ";
     char names[128] = "";
     size_t count, again;
     const cw_format *formats = cw_formats(&count);

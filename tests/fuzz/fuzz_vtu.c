@@ -1,0 +1,7 @@
+#define _GNU_SOURCE /* memfd_create */
+#include "fuzz_reader.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size)
+{
+    return fuzz_reader("vtu", bytes, size);
+}
