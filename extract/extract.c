@@ -7,8 +7,10 @@
 #include "core/status.h"
 #include "core/volume.h"
 #include "extract/cases.h"
+#include "extract/cells.h"
 #include "extract/crossing.h"
 #include "extract/engine.h"
+#include "extract/limits.h"
 #include "extract/normals.h"
 #include "extract/snap.h"
 
@@ -27,12 +29,6 @@ struct cw_extractor {
 
 typedef struct cw_extractor plan;
 
-static size_t mesh_bytes(const cw_extract_counts *c, bool normals)
-{
-    return c->vertices * 3 * sizeof(float) * (normals ? 2 : 1) +
-           c->triangles * 3 * sizeof(uint32_t);
-}
-
 static cw_status check_snap(const cw_extract_desc *d, cw_error *err)
 {
     if (d->snap >= 0 && d->snap <= CW_EXTRACT_MAX_SNAP)
@@ -40,21 +36,6 @@ static cw_status check_snap(const cw_extract_desc *d, cw_error *err)
     return cw_fail(err, CW_ERR_ARGUMENT,
                    "snap is a share of an edge from 0 (off) to %g, and not %g",
                    CW_EXTRACT_MAX_SNAP, d->snap);
-}
-
-static cw_status check_limits(const cw_extract_desc *d, const cw_extract_counts *c,
-                              cw_error *err)
-{
-    if (d->max_triangles && c->triangles > d->max_triangles)
-        return cw_fail(err, CW_ERR_LIMIT,
-                       "the surface has %zu triangles; the limit is %zu (--max-triangles)",
-                       c->triangles, d->max_triangles);
-    if (d->max_bytes && c->bytes > d->max_bytes)
-        return cw_fail(
-            err, CW_ERR_LIMIT,
-            "extraction of %zu triangles needs %zu bytes; the limit is %zu (--memory)",
-            c->triangles, c->bytes, d->max_bytes);
-    return CW_OK;
 }
 
 static void count_layer(void *context, size_t k)
@@ -102,7 +83,8 @@ static cw_status init_plan(plan *p, const cwi_engine *engine, const cw_volume *v
 {
     memset(p, 0, sizeof *p);
     p->engine = engine;
-    return cwi_grid_init(&p->grid, volume, err);
+    return volume->cells ? cw_volume_select(volume, 0, 0, &p->grid.volume, err)
+                         : cwi_grid_init(&p->grid, volume, err);
 }
 
 static void free_plan(plan *p)
@@ -136,11 +118,11 @@ static cw_status make_plan(plan *p, const cw_extract_desc *d, cw_error *err)
         st = number_rows(p, d, err);
     if (st == CW_OK)
         st = cwi_grid_border_loops(&p->grid, &p->counts.border_loops, err);
-    p->counts.bytes = mesh_bytes(&p->counts, !d->no_normals) + cwi_grid_bytes(&p->grid) +
-                      cwi_octree_bytes(&p->tree);
+    p->counts.bytes = cwi_extract_mesh_bytes(&p->counts, !d->no_normals) +
+                      cwi_grid_bytes(&p->grid) + cwi_octree_bytes(&p->tree);
     if (d->snap > 0)
         p->counts.bytes += cwi_snap_bytes(g, p->counts.vertices, p->counts.triangles);
-    return st == CW_OK ? check_limits(d, &p->counts, err) : st;
+    return st == CW_OK ? cwi_extract_check_limits(d, &p->counts, err) : st;
 }
 
 static cwi_vertex_sink make_sink(const cwi_grid *g, cw_mesh *mesh)
@@ -248,6 +230,8 @@ static cw_status extract(plan *p, const cw_extract_desc *desc, cw_mesh *mesh,
                          cw_extract_counts *counts, cw_error *err)
 {
     const cw_extract_desc d = desc ? *desc : (cw_extract_desc){0};
+    if (p->grid.volume.cells)
+        return cwi_cells_extract(&p->grid.volume, desc, mesh, counts, err);
     memset(mesh, 0, sizeof *mesh);
     cw_status st = make_plan(p, &d, err);
     if (st == CW_OK && p->counts.triangles)
@@ -377,8 +361,9 @@ static cw_status write_slabs(plan *p, const cw_extract_desc *d, size_t triangles
 {
     const cw_extract_counts most = largest_slab(p, triangles);
     cw_mesh mesh;
-    p->counts.bytes = mesh_bytes(&most, false) + most.vertices + cwi_grid_bytes(&p->grid);
-    cw_status st = check_limits(d, &p->counts, err);
+    p->counts.bytes =
+        cwi_extract_mesh_bytes(&most, false) + most.vertices + cwi_grid_bytes(&p->grid);
+    cw_status st = cwi_extract_check_limits(d, &p->counts, err);
     if (st == CW_OK)
         st = cwi_mesh_alloc(&mesh, most.vertices, most.triangles, false, err);
     if (st != CW_OK)
@@ -407,6 +392,8 @@ cw_status cw_extract_slabs(const cw_volume *volume, const cw_extract_desc *desc,
     cw_extract_desc d = desc ? *desc : (cw_extract_desc){0};
     const size_t max_bytes = d.max_bytes;
     plan p = {0};
+    if (volume->cells)
+        return cwi_cells_extract_slab(volume, desc, sink, counts, err);
     d.no_normals = true;
     d.max_bytes = 0; /* is for slabs, not for all of it */
     cw_status st = d.snap == 0
@@ -428,6 +415,8 @@ static cw_status predict(plan *p, const cw_extract_desc *desc, cw_extract_counts
                          cw_error *err)
 {
     const cw_extract_desc d = desc ? *desc : (cw_extract_desc){0};
+    if (p->grid.volume.cells)
+        return cwi_cells_extract(&p->grid.volume, desc, NULL, counts, err);
     cw_status st = make_plan(p, &d, err);
     if (st == CW_OK)
         *counts = p->counts;
@@ -472,7 +461,7 @@ cw_status cwi_extractor_new_with(const cwi_engine *engine, size_t leaf_bytes,
     if (!e)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for an extractor");
     cw_status st = init_plan(e, engine, volume, err);
-    if (st == CW_OK)
+    if (st == CW_OK && !volume->cells)
         st = cwi_octree_init(&e->tree, &e->grid, err);
     e->tree.leaf_bytes = leaf_bytes;
     if (st == CW_OK)

@@ -28,6 +28,16 @@ typedef struct cwi_layer {
     bool plans_lost; /* there was no memory */
 } cwi_layer;
 
+/* The isovalue in stored numbers, and which side of it is inside. */
+typedef struct cwi_level {
+    double at;
+    bool strict; /* crossed upward above, not at, the level: values fall as numbers rise */
+    bool invert; /* inside is where the comparison fails */
+} cwi_level;
+
+cw_status cwi_level_find(const cw_volume *volume, const cw_extract_desc *desc, cwi_level *level,
+                         cw_error *err);
+
 typedef struct cwi_octree cwi_octree;
 typedef struct cwi_engine cwi_engine;
 
