@@ -141,19 +141,23 @@ static void number_crossings(cwi_cells *g)
 }
 
 /* Counts become first numbers. */
-static void number_parts(cwi_cells *g)
+static void number_inner(cwi_cells *g)
 {
-    size_t inner = 0, triangles = 0;
     for (size_t n = 0; n < g->count; n++) {
-        cwi_element *e = &g->elements[n];
-        const size_t vertices = e->first_inner, own = e->first_triangle;
-        e->first_inner = (uint32_t)(g->edge_vertices + inner);
-        e->first_triangle = triangles;
-        inner += vertices;
-        triangles += own;
+        const uint32_t vertices = g->elements[n].first_inner;
+        g->elements[n].first_inner = (uint32_t)(g->edge_vertices + g->inner_vertices);
+        g->inner_vertices += vertices;
     }
-    g->inner_vertices = inner;
-    g->cap_triangle = g->counts.triangles = triangles;
+}
+
+static void number_triangles(cwi_cells *g)
+{
+    for (size_t n = 0; n < g->count; n++) {
+        const size_t triangles = g->elements[n].first_triangle;
+        g->elements[n].first_triangle = g->cap_triangle;
+        g->cap_triangle += triangles;
+    }
+    g->counts.triangles = g->cap_triangle + g->cap_triangles;
 }
 
 /* --- the plan ---------------------------------------------------------------------------- */
@@ -163,7 +167,8 @@ static size_t working_bytes(const cwi_cells *g)
     return g->volume.dim[0] * (1 + (g->desc->no_normals ? 0 : sizeof(uint32_t))) +
            g->chunks * sizeof *g->chunk_corners +
            g->count * (sizeof *g->elements + CWI_CELL_FACES * sizeof *g->across) +
-           g->crossing_count * sizeof *g->crossings + g->border_count * sizeof *g->border;
+           g->crossing_count * sizeof *g->crossings + g->border_count * sizeof *g->border +
+           g->pairing_bytes;
 }
 
 static cw_status finish_counts(cwi_cells *g, cw_error *err)
@@ -194,9 +199,12 @@ static cw_status make_plan(cwi_cells *g, cw_error *err)
     if (st != CW_OK)
         return st;
     number_crossings(g);
-    number_parts(g);
+    number_inner(g);
     st = cwi_cells_find_border(g, err);
-    return st == CW_OK ? finish_counts(g, err) : st;
+    if (st != CW_OK)
+        return st;
+    number_triangles(g);
+    return finish_counts(g, err);
 }
 
 /* --- the mesh ---------------------------------------------------------------------------- */

@@ -38,7 +38,7 @@ typedef struct cwi_border_face {
     uint32_t corners[4]; /* vertices of a cap at its inside corners, by position in the face */
     uint32_t middles[4]; /* on the side of a cap that leads on from a position; seldom */
     uint32_t centres[2]; /* inside its polygons; seldom */
-    size_t first_triangle;
+    size_t first_triangle; /* of the caps' */
 } cwi_border_face;
 
 typedef struct cwi_cells {
@@ -59,7 +59,8 @@ typedef struct cwi_cells {
     cwi_border_face *border;
     size_t border_count;
     size_t edge_vertices, inner_vertices, cap_vertices; /* are numbered in this order */
-    size_t cap_triangle;                                /* the first one */
+    size_t cap_triangle, cap_triangles; /* the first one, and how many there are */
+    size_t pairing_bytes;               /* held for a while */
     cw_extract_counts counts;
 } cwi_cells;
 
@@ -94,6 +95,9 @@ bool cwi_element_collapse(cwi_element *e);
  * cells that are to be collapsed. The edge from each leads to the next one. */
 int cwi_face_ring(const cwi_element *e, int face, uint8_t ring[4]);
 
+/* Whether the surface, or a cap, runs through a face. */
+bool cwi_face_matters(const cwi_cells *g, const cwi_element *e, int face);
+
 /* A face's samples in an order that does not depend on the cell: from the least toward the
  * lesser of its neighbours; UINT32_MAX ends those of a triangle. */
 typedef struct cwi_face_key {
@@ -110,8 +114,8 @@ cw_status cwi_cells_orient(cwi_cells *g, cw_error *err);
 
 /* --- cells_border.c ---------------------------------------------------------------------- */
 
-/* Lists the border's faces, numbers the vertices of caps and their triangles, after all others,
- * and counts border loops. */
+/* Lists the border's faces, numbers the vertices of caps, after all others, and their
+ * triangles, and counts border loops. */
 cw_status cwi_cells_find_border(cwi_cells *g, cw_error *err);
 
 /* --- cells_caps.c ------------------------------------------------------------------------ */

@@ -118,16 +118,9 @@ int cwi_cap_fan(const cwi_cells *g, uint32_t face, const cwi_cap *c, int polygon
 static bool is_border(const cwi_cells *g, uint32_t face)
 {
     const cwi_element *e = cwi_element_of(g, face);
-    const cwi_shape *s = cwi_shape_of(e);
-    const uint32_t local = face % CWI_CELL_FACES;
-    uint8_t ring[4];
-    int inside = 0;
-    if (local >= s->face_count || g->across[face] != CWI_NO_FACE ||
-        cwi_face_ring(e, (int)local, ring) < 3)
-        return false;
-    for (int n = 0; n < s->face_size[local]; n++)
-        inside += cwi_corner_inside(e, s->faces[local][n]);
-    return inside && !(g->desc->leave_open && inside == s->face_size[local]);
+    const int local = (int)(face % CWI_CELL_FACES);
+    return local < cwi_shape_of(e)->face_count && g->across[face] == CWI_NO_FACE &&
+           cwi_face_matters(g, e, local);
 }
 
 /* --- vertices ---------------------------------------------------------------------------- */
@@ -357,15 +350,15 @@ static void number_middle(cwi_cells *g, size_t border, int at)
     g->border[partner].middles[there] = vertex;
 }
 
-/* Numbers what was marked, and the triangles. */
+/* Numbers what was marked, and the caps' triangles. What is cut of the surface adds to the
+ * counts that elements have of theirs. */
 static void number_caps(cwi_cells *g)
 {
-    g->counts.triangles = g->cap_triangle;
     for (size_t b = 0; b < g->border_count; b++) {
         cwi_border_face *face = &g->border[b];
         cwi_cap c;
         cwi_find_cap(g, face->face, &c);
-        face->first_triangle = g->counts.triangles;
+        face->first_triangle = g->cap_triangles;
         for (int at = 0; at < 4; at++)
             if (face->middles[at] == CWI_WANTED)
                 number_middle(g, b, at);
@@ -375,10 +368,10 @@ static void number_caps(cwi_cells *g)
             if (count > c.size[polygon] || face->centres[polygon] == CWI_WANTED)
                 face->centres[polygon] =
                     (uint32_t)(g->edge_vertices + g->inner_vertices + g->cap_vertices++);
-            g->counts.triangles +=
+            g->cap_triangles +=
                 (size_t)count - (face->centres[polygon] == CWI_NO_VERTEX ? 2 : 0);
-            for (int n = 0; n < c.size[polygon]; n++) /* the surface's is cut in two */
-                g->counts.triangles +=
+            for (int n = 0; n < c.size[polygon]; n++)
+                g->elements[face->face / CWI_CELL_FACES].first_triangle +=
                     cwi_cap_segment_middle(face, &c, polygon, n) != CWI_NO_VERTEX;
         }
     }

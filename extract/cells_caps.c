@@ -5,6 +5,7 @@
 #include "core/weld.h"
 #include "extract/cells_border.h"
 #include "extract/crossing.h"
+#include "extract/topology.h"
 
 #include <string.h>
 
@@ -67,49 +68,72 @@ static void write_middles(const cwi_cells *g, const cwi_border_face *face, cw_me
     }
 }
 
-/* The surface's triangle at a segment with a vertex in its middle becomes two: one in its own
- * place, one here. */
-static void cut_triangle(const cwi_cells *g, uint32_t face, uint32_t u, uint32_t v,
-                         uint32_t middle, cw_mesh *mesh, uint32_t *here)
+/* An element's triangle at the segment from u to v, which has a vertex in its middle, becomes
+ * two: one in its own place, one after its count others. */
+static void cut_triangle(const cwi_element *e, size_t count, const uint32_t segment[2],
+                         uint32_t middle, cw_mesh *mesh)
 {
-    uint32_t *triangle = mesh->triangles + 3 * cwi_element_of(g, face)->first_triangle;
-    for (;; triangle += 3)
+    uint32_t *triangle = mesh->triangles + 3 * e->first_triangle, *last = triangle + 3 * count;
+    const uint32_t u = segment[e->flip], v = segment[!e->flip];
+    for (; triangle < last; triangle += 3)
         for (int n = 0; n < 3; n++) {
-            uint32_t *a = &triangle[n], *b = &triangle[(n + 1) % 3];
-            if (!((*a == u && *b == v) || (*a == v && *b == u)))
+            if (triangle[n] != u || triangle[(n + 1) % 3] != v)
                 continue;
-            memcpy(here, triangle, 3 * sizeof *here);
-            here[n] = middle;
-            *b = middle;
+            memcpy(last, triangle, 3 * sizeof *last);
+            last[n] = middle;
+            triangle[(n + 1) % 3] = middle;
             return;
         }
+}
+
+/* The surface runs along a segment against the cap. count: of the element's triangles so far */
+static void cut_segments(const cwi_cells *g, const cwi_border_face *face, size_t *count,
+                         cw_mesh *mesh)
+{
+    cwi_cap c;
+    cwi_find_cap(g, face->face, &c);
+    for (int polygon = 0; polygon < c.count; polygon++)
+        for (int n = 0; n < c.size[polygon]; n++) {
+            const uint32_t middle = cwi_cap_segment_middle(face, &c, polygon, n);
+            const int next = (n + 1) % c.size[polygon];
+            const uint32_t segment[2] = {cwi_cap_vertex(g, face, c.corner[polygon][next]),
+                                         cwi_cap_vertex(g, face, c.corner[polygon][n])};
+            if (middle != CWI_NO_VERTEX)
+                cut_triangle(cwi_element_of(g, face->face), (*count)++, segment, middle, mesh);
+        }
+}
+
+/* Border faces of an element follow each other. */
+static void cut_surface(const cwi_cells *g, cw_mesh *mesh)
+{
+    size_t count = 0;
+    for (size_t b = 0; b < g->border_count; b++) {
+        const cwi_element *e = cwi_element_of(g, g->border[b].face);
+        cwi_cell_plan plan;
+        cwi_cell_plan_unpack(e->plan, &plan);
+        if (b == 0 || e != cwi_element_of(g, g->border[b - 1].face))
+            count = (size_t)plan.triangle_count;
+        if (e->crossed)
+            cut_segments(g, &g->border[b], &count, mesh);
+    }
 }
 
 static void write_cap(const cwi_cells *g, const cwi_border_face *face, cw_mesh *mesh)
 {
     const bool flip = cwi_element_of(g, face->face)->flip;
-    uint32_t *triangle = mesh->triangles + 3 * face->first_triangle;
+    uint32_t *triangle = mesh->triangles + 3 * (g->cap_triangle + face->first_triangle);
     cwi_cap c;
     cwi_find_cap(g, face->face, &c);
     for (int polygon = 0; polygon < c.count; polygon++) {
         uint32_t vertices[CWI_CAP_VERTICES];
         const int count = cwi_cap_vertices(g, face, &c, polygon, vertices);
-        const int first = cwi_cap_fan(g, face->face, &c, polygon), size = c.size[polygon];
+        const int first = cwi_cap_fan(g, face->face, &c, polygon);
         const uint32_t centre = face->centres[polygon];
         for (int n = 0; n < count && centre != CWI_NO_VERTEX; n++, triangle += 3)
             put(triangle, centre, vertices[n], vertices[(n + 1) % count], flip);
         for (int n = 1; n + 1 < count && centre == CWI_NO_VERTEX; n++, triangle += 3)
             put(triangle, vertices[first], vertices[(first + n) % count],
                 vertices[(first + n + 1) % count], flip);
-        for (int n = 0; n < size; n++) {
-            const uint32_t middle = cwi_cap_segment_middle(face, &c, polygon, n);
-            if (middle == CWI_NO_VERTEX)
-                continue;
-            cut_triangle(g, face->face, cwi_cap_vertex(g, face, c.corner[polygon][n]),
-                         cwi_cap_vertex(g, face, c.corner[polygon][(n + 1) % size]), middle,
-                         mesh, triangle);
-            triangle += 3;
-        }
     }
 }
 
@@ -121,6 +145,7 @@ void cwi_cells_write_caps(const cwi_cells *g, cw_mesh *mesh)
         write_middles(g, &g->border[b], mesh);
     for (size_t b = 0; b < g->border_count; b++)
         write_cap(g, &g->border[b], mesh);
+    cut_surface(g, mesh);
 }
 
 /* --- vertices in one place --------------------------------------------------------------- */

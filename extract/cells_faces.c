@@ -54,6 +54,17 @@ bool cwi_cells_join(const cwi_cells *g, const cwi_element *e, int face)
     return cwi_face_joins(v[inside], v[1 - inside], g->level.invert == g->level.strict);
 }
 
+bool cwi_face_matters(const cwi_cells *g, const cwi_element *e, int face)
+{
+    const cwi_shape *s = cwi_shape_of(e);
+    uint8_t ring[4];
+    int inside = 0;
+    for (int n = 0; n < s->face_size[face]; n++)
+        inside += cwi_corner_inside(e, s->faces[face][n]);
+    return inside && !(g->desc->leave_open && inside == s->face_size[face]) &&
+           cwi_face_ring(e, face, ring) >= 3;
+}
+
 /* --- pairs ------------------------------------------------------------------------------- */
 
 enum { SAMPLE_CHUNK = 4096 };
@@ -72,16 +83,6 @@ typedef struct pairing {
     bucket_face *faces;
 } pairing;
 
-/* A face that the surface, or a cap, runs through. */
-static bool matters(const cwi_cells *g, const cwi_element *e, int face)
-{
-    const cwi_shape *s = cwi_shape_of(e);
-    int inside = 0;
-    for (int n = 0; n < s->face_size[face]; n++)
-        inside += cwi_corner_inside(e, s->faces[face][n]);
-    return inside && !(g->desc->leave_open && inside == s->face_size[face]);
-}
-
 static void chunk_of(const cwi_cells *g, size_t chunk, size_t *begin, size_t *end)
 {
     *begin = chunk * CWI_CELL_CHUNK;
@@ -95,7 +96,7 @@ static void count_faces(void *context, size_t chunk)
     chunk_of(p->g, chunk, &begin, &end);
     for (size_t n = begin; n < end; n++)
         for (int face = 0; face < cwi_shape_of(&p->g->elements[n])->face_count; face++)
-            if (matters(p->g, &p->g->elements[n], face)) {
+            if (cwi_face_matters(p->g, &p->g->elements[n], face)) {
                 const uint32_t least = cwi_face_key_of(&p->g->elements[n], face).samples[0];
 #pragma omp atomic update
                 p->ends[least]++;
@@ -109,7 +110,7 @@ static void fill_buckets(void *context, size_t chunk)
     chunk_of(p->g, chunk, &begin, &end);
     for (size_t n = begin; n < end; n++)
         for (int face = 0; face < cwi_shape_of(&p->g->elements[n])->face_count; face++)
-            if (matters(p->g, &p->g->elements[n], face)) {
+            if (cwi_face_matters(p->g, &p->g->elements[n], face)) {
                 const cwi_face_key key = cwi_face_key_of(&p->g->elements[n], face);
                 uint32_t at;
 #pragma omp atomic capture
@@ -148,8 +149,27 @@ static bool is_reversed(const cwi_cells *g, uint32_t face)
     return cwi_face_key_of(&g->elements[face / CWI_CELL_FACES], face % CWI_CELL_FACES).reversed;
 }
 
+/* All corners of a cell are corners of another. */
+static bool lies_in(const cwi_element *e, const cwi_element *other)
+{
+    const int count = cwi_shape_of(e)->corner_count, others = cwi_shape_of(other)->corner_count;
+    for (int c = 0; c < count; c++) {
+        int d = 0;
+        while (d < others && other->corners[d] != e->corners[c])
+            d++;
+        if (d == others)
+            return false;
+    }
+    return true;
+}
+
+/* Cells that lie in each other are no neighbours. */
 static void join_faces(cwi_cells *g, uint32_t a, uint32_t b)
 {
+    const cwi_element *e = &g->elements[a / CWI_CELL_FACES],
+                      *o = &g->elements[b / CWI_CELL_FACES];
+    if (lies_in(e, o) || lies_in(o, e))
+        return;
     const uint32_t twist = is_reversed(g, a) == is_reversed(g, b) ? TWISTED : 0;
     g->across[a] = b | twist;
     g->across[b] = a | twist;
@@ -199,7 +219,7 @@ static cw_status no_memory(const cwi_cells *g, cw_error *err)
 
 static cw_status pair_faces(pairing *p, cw_error *err)
 {
-    const cwi_cells *g = p->g;
+    cwi_cells *g = p->g;
     const size_t chunks = (g->count + CWI_CELL_CHUNK - 1) / CWI_CELL_CHUNK;
     const cw_progress *progress = &g->desc->progress;
     const int threads = g->desc->threads;
@@ -207,7 +227,9 @@ static cw_status pair_faces(pairing *p, cw_error *err)
                                   count_faces, p, err);
     if (st != CW_OK)
         return st;
-    p->faces = cwi_alloc_large(place_buckets(p), sizeof *p->faces);
+    const size_t count = place_buckets(p);
+    g->pairing_bytes = count * sizeof *p->faces + g->volume.dim[0] * sizeof *p->ends;
+    p->faces = cwi_alloc_large(count, sizeof *p->faces);
     if (!p->faces)
         return no_memory(g, err);
     st = cwi_each_layer(chunks, CWI_CELL_CHUNK * 64, threads, progress, "pairing", fill_buckets,

@@ -242,6 +242,656 @@ static void no_surface_crosses_itself(void **state)
         }
 }
 
+/* --- the same grid in another guise ------------------------------------------------------ */
+
+/* The lattice's samples as a dense grid. */
+static cw_volume as_dense(const test_grid *g, size_t n)
+{
+    cw_volume v = {.type = CW_F64, .data = g->values, .dim = {n + 1, n + 1, n + 1}};
+    for (int a = 0; a < 3; a++) {
+        v.affine[a][a] = 2.0 / (double)n;
+        v.affine[a][3] = -1;
+    }
+    return v;
+}
+
+/* Every vertex of one stands where a vertex of the other does. */
+static void assert_same_places(const cw_mesh *a, const cw_mesh *b)
+{
+    assert_int_equal(a->vertex_count, b->vertex_count);
+    bool *taken = calloc(b->vertex_count + 1, sizeof *taken);
+    assert_non_null(taken);
+    for (size_t v = 0; v < a->vertex_count; v++) {
+        size_t w = 0;
+        for (; w < b->vertex_count; w++) {
+            double most = 0;
+            for (size_t i = 0; i < 3; i++)
+                most = fmax(most, fabs(a->origin[i] + (double)a->positions[3 * v + i] -
+                                       b->origin[i] - (double)b->positions[3 * w + i]));
+            if (most < 1e-6 && !taken[w])
+                break;
+        }
+        if (w == b->vertex_count)
+            fail_msg("vertex %zu is at no place of the other mesh", v);
+        taken[w] = true;
+    }
+    free(taken);
+}
+
+/* Noise has tunnels and every other case: the cells of a lattice give what the lattice does.
+ * Caps of a dense grid stand a little beyond it. */
+static void a_lattice_of_hexahedra_is_a_dense_grid(void **state)
+{
+    (void)state;
+    enum { N = 9 };
+    srand(5);
+    for (int round = 0; round < 24; round++) {
+        test_grid g;
+        cw_extract_counts counts, wanted_counts;
+        test_grid_make(&g, TEST_HEXAHEDRA, N, 0);
+        fill_with_noise(&g, round % 2);
+        const cw_volume dense = as_dense(&g, N);
+        const cw_extract_desc desc = {
+            .leave_open = round & 2, .inside_is_low = round & 4, .simple_topology = round & 8};
+        cw_mesh m = test_extract(&g.volume, &desc, &counts),
+                wanted = test_extract(&dense, &desc, &wanted_counts);
+        const cw_quality q = test_check_promise(&m, desc.leave_open),
+                         wanted_q = test_measure(&wanted);
+        assert_int_equal(q.euler, wanted_q.euler);
+        assert_int_equal(q.components, wanted_q.components);
+        assert_int_equal(counts.border_loops, wanted_counts.border_loops);
+        if (desc.leave_open) {
+            assert_int_equal(m.triangle_count, wanted.triangle_count);
+            assert_same_places(&m, &wanted);
+            assert_within(q.area_mm2, wanted_q.area_mm2, 1e-6);
+        }
+        cw_mesh_free(&m);
+        cw_mesh_free(&wanted);
+        test_grid_free(&g);
+    }
+}
+
+/* Cells numbered as mirror images, in files of another mind: neighbours agree all the same. */
+static void cells_may_be_inside_out(void **state)
+{
+    (void)state;
+    srand(6);
+    for (int round = 0; round < 3; round++)
+        for (int cut = 0; cut < TEST_CUT_COUNT; cut++) {
+            test_grid g;
+            test_grid_make(&g, (test_cut)cut, 8, 0.1);
+            test_grid_fill(&g, sphere);
+            cw_mesh straight = test_extract(&g.volume, NULL, NULL);
+            for (size_t n = 0; n < g.cells.count; n++)
+                if (round == 2 || rand() % 2)
+                    test_grid_mirror(&g, n);
+            cw_mesh m = test_extract(&g.volume, NULL, NULL);
+            const cw_quality q = test_check_promise(&m, false);
+            assert_int_equal(q.triangles, straight.triangle_count);
+            assert_int_equal(q.euler, 2);
+            assert_within(q.volume_mm3, test_measure(&straight).volume_mm3, 1e-3);
+            assert_same_places(&m, &straight);
+            assert_true(test_normals_agree(&m));
+            cw_mesh_free(&m);
+            cw_mesh_free(&straight);
+            test_grid_free(&g);
+        }
+}
+
+/* --- curvilinear grids ------------------------------------------------------------------- */
+
+/* A box of cells between samples whose numbers a map gives. */
+static void add_cells_between(test_grid *g, const size_t n[3],
+                              uint32_t (*number)(size_t i, size_t j, size_t k))
+{
+    for (size_t k = 0; k < n[2]; k++)
+        for (size_t j = 0; j < n[1]; j++)
+            for (size_t i = 0; i < n[0]; i++)
+                test_grid_cell(g, CW_HEXAHEDRON,
+                               (uint32_t[8]){number(i, j, k), number(i + 1, j, k),
+                                             number(i + 1, j + 1, k), number(i, j + 1, k),
+                                             number(i, j, k + 1), number(i + 1, j, k + 1),
+                                             number(i + 1, j + 1, k + 1),
+                                             number(i, j + 1, k + 1)});
+}
+
+enum { RINGS = 4, TURNS = 40, STORIES = 3 };
+
+static uint32_t in_annulus(size_t i, size_t j, size_t k)
+{
+    return (uint32_t)((k * TURNS + j % TURNS) * (RINGS + 1) + i);
+}
+
+/* Radius, angle, height; clockwise the grid is left-handed. All of it inside is a ring, closed
+ * by caps alone; the field cuts a smaller ring out of it. */
+static void an_annulus_is_a_ring_either_way_round(void **state)
+{
+    (void)state;
+    for (int clockwise = 0; clockwise < 2; clockwise++) {
+        test_grid g = {0};
+        for (size_t n = 0; n < (RINGS + 1) * TURNS * (STORIES + 1); n++) {
+            const double r = 1 + (double)(n % (RINGS + 1)) / RINGS,
+                         turn = 2 * PI * (double)(n / (RINGS + 1) % TURNS) / TURNS,
+                         z = (double)(n / (RINGS + 1) / TURNS);
+            test_grid_sample(&g, r * cos(turn), r * sin(turn) * (clockwise ? -1 : 1), z);
+            g.values[n] = r - 1.3;
+        }
+        add_cells_between(&g, (size_t[3]){RINGS, TURNS, STORIES}, in_annulus);
+        for (int whole = 0; whole < 2; whole++) {
+            const cw_extract_desc desc = {.isovalue = whole ? -10 : 0};
+            cw_extract_counts counts;
+            cw_mesh m = test_extract(&g.volume, &desc, &counts);
+            const cw_quality q = test_check_promise(&m, false);
+            const double inner = whole ? 1 : 1.3, polygon = sin(2 * PI / TURNS) * TURNS / 2;
+            assert_int_equal(q.euler, 0);
+            assert_int_equal(q.components, 1);
+            assert_int_equal(counts.border_loops, whole ? 0 : 2);
+            assert_within(q.volume_mm3, polygon * (4 - inner * inner) * STORIES, 1e-5);
+            cw_mesh_free(&m);
+        }
+        test_grid_free(&g);
+    }
+}
+
+enum { SHELLS = 6, RAYS = 24, ROWS = 12 };
+
+/* The middle is one sample, and so is each pole of each shell. */
+static uint32_t in_ball(size_t i, size_t j, size_t k)
+{
+    if (i == 0)
+        return 0;
+    const size_t shell = 1 + (i - 1) * (2 + (ROWS - 1) * RAYS);
+    return (uint32_t)(j == 0      ? shell
+                      : j == ROWS ? shell + 1
+                                  : shell + 2 + (j - 1) * RAYS + k % RAYS);
+}
+
+static void make_ball(test_grid *g)
+{
+    memset(g, 0, sizeof *g);
+    test_grid_sample(g, 0, 0, 0);
+    for (int shell = 1; shell <= SHELLS; shell++) {
+        const double r = (double)shell / SHELLS;
+        test_grid_sample(g, 0, 0, r);
+        test_grid_sample(g, 0, 0, -r);
+        for (int row = 1; row < ROWS; row++)
+            for (int ray = 0; ray < RAYS; ray++) {
+                const double down = PI * row / ROWS, turn = 2 * PI * ray / RAYS;
+                test_grid_sample(g, r * sin(down) * cos(turn), r * sin(down) * sin(turn),
+                                 r * cos(down));
+            }
+    }
+    add_cells_between(g, (size_t[3]){SHELLS, ROWS, RAYS}, in_ball);
+}
+
+static double beside_the_middle(const double p[3])
+{
+    const double x = p[0] - 0.1, y = p[1] - 0.05, z = p[2] - 0.15;
+    return 0.5 - sqrt(x * x + y * y + z * z);
+}
+
+/* Spherical coordinates: hexahedra at the axis are wedges, and in the middle tetrahedra and
+ * pyramids. */
+static void hexahedra_may_collapse(void **state)
+{
+    (void)state;
+    test_grid g;
+    make_ball(&g);
+    test_grid_fill(&g, beside_the_middle);
+    cw_mesh m = test_extract(&g.volume, NULL, NULL);
+    cw_quality q = test_check_promise(&m, false);
+    assert_int_equal(q.euler, 2);
+    assert_within(q.volume_mm3, 4.0 / 3 * PI * 0.125, 0.08);
+    assert_int_equal(test_count_crossings(&m), 0);
+    cw_mesh_free(&m);
+    m = test_extract(&g.volume, &(cw_extract_desc){.isovalue = -10}, NULL);
+    q = test_check_promise(&m, false);
+    assert_int_equal(q.euler, 2);
+    assert_int_equal(q.vertices, 2 + (ROWS - 1) * RAYS); /* nothing is left open inside */
+    cw_mesh_free(&m);
+    test_grid_free(&g);
+}
+
+static void check_manifold(const cw_mesh *m, bool open)
+{
+    cw_quality q;
+    cw_error err = {0};
+    assert_ok(cw_quality_measure(m, NULL, &q, &err), err);
+    assert_int_equal(q.nonmanifold_edges + q.nonmanifold_vertices, 0);
+    assert_int_equal(q.misoriented_edges, 0);
+    assert_true(open || q.open_edges == 0);
+}
+
+static double distance(const test_grid *g, uint32_t a, uint32_t b)
+{
+    const double *p = g->points + 3 * (size_t)a, *q = g->points + 3 * (size_t)b;
+    return sqrt(pow(p[0] - q[0], 2) + pow(p[1] - q[1], 2) + pow(p[2] - q[2], 2));
+}
+
+/* Makes the ends of a cell's first edge one sample, if it is one of the lattice's, and not near
+ * another such place: cells that have more in common than a face, an edge or a corner would be
+ * no grid. */
+static void collapse_edge(test_grid *g, size_t cell, bool *near)
+{
+    const uint32_t *corners = test_grid_corners(g, cell);
+    const uint32_t from = corners[0], to = corners[1];
+    bool apart = distance(g, from, to) < 0.34;
+    for (int round = 0; round < 2 && apart; round++) {
+        const uint32_t *c = g->corners;
+        for (size_t n = 0; n < g->cells.count; n++) {
+            const size_t count = (size_t)cwi_shapes[g->shapes[n]].corner_count;
+            bool around = false;
+            for (size_t i = 0; i < count; i++)
+                around = around || c[i] == from || c[i] == to;
+            for (size_t i = 0; i < count && around; i++) {
+                apart = apart && (round || !near[c[i]]);
+                near[c[i]] = near[c[i]] || round;
+            }
+            c += count;
+        }
+    }
+    for (size_t c = 0; c < g->corner_count && apart; c++)
+        g->corners[c] = g->corners[c] == from ? to : g->corners[c];
+}
+
+/* Neighbours made one sample, anywhere: there are cells of seven corners, and ones that enclose
+ * nothing. */
+static void any_edge_may_collapse(void **state)
+{
+    (void)state;
+    srand(7);
+    for (int round = 0; round < 60; round++) {
+        test_grid g;
+        test_grid_make(&g, (test_cut)(round % TEST_CUT_COUNT), 6, 0);
+        bool *near = calloc(g.samples, sizeof *near);
+        assert_non_null(near);
+        fill_with_noise(&g, round % 3 ? 1 : 0);
+        for (int n = 0; n < 30; n++)
+            collapse_edge(&g, (size_t)rand() % g.cells.count, near);
+        cw_mesh m = test_extract(&g.volume, &(cw_extract_desc){.leave_open = round & 2}, NULL);
+        check_manifold(&m, round & 2);
+        cw_mesh_free(&m);
+        free(near);
+        test_grid_free(&g);
+    }
+}
+
+/* Of hexahedra also many in one place, edges and diagonals. */
+static void hexahedra_may_collapse_to_anything(void **state)
+{
+    (void)state;
+    srand(17);
+    for (int round = 0; round < 40; round++) {
+        test_grid g;
+        test_grid_make(&g, TEST_HEXAHEDRA, 5, 0.1);
+        fill_with_noise(&g, round % 3 ? 1 : 0);
+        for (int n = 0; n < 12; n++) {
+            const uint32_t *cell = test_grid_corners(&g, (size_t)rand() % g.cells.count);
+            const uint32_t from = cell[0], to = cell[1 + rand() % 3];
+            for (size_t c = 0; c < g.corner_count; c++)
+                g.corners[c] = g.corners[c] == from ? to : g.corners[c];
+        }
+        cw_mesh m = test_extract(&g.volume, &(cw_extract_desc){.leave_open = round & 2}, NULL);
+        check_manifold(&m, round & 2);
+        cw_mesh_free(&m);
+        test_grid_free(&g);
+    }
+}
+
+/* --- cells by themselves ----------------------------------------------------------------- */
+
+/* A hexahedron whose corners are named so encloses what another shape does, or as many faces.
+ */
+static void a_cell_is_what_its_corners_leave(void **state)
+{
+    (void)state;
+    const struct {
+        uint32_t corners[8];
+        size_t triangles; /* of its caps; 0: it is nothing */
+    } rows[] = {
+        {{0, 1, 2, 3, 4, 5, 6, 7}, 12}, /* itself */
+        {{0, 1, 2, 3, 0, 1, 6, 7}, 8},  /* a wedge */
+        {{0, 0, 2, 3, 4, 4, 6, 7}, 8},  /* a wedge, from the side */
+        {{0, 1, 2, 3, 4, 4, 4, 4}, 6},  /* a pyramid */
+        {{0, 1, 2, 2, 4, 4, 4, 4}, 4},  /* a tetrahedron */
+        {{0, 1, 2, 3, 0, 5, 6, 7}, 10}, /* seven corners */
+        {{0, 1, 2, 3, 0, 1, 2, 3}, 0},  /* flat */
+        {{0, 1, 0, 3, 4, 5, 6, 7}, 0},  /* folded */
+        {{0, 0, 0, 0, 0, 0, 0, 0}, 0},
+    };
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++)
+        for (int mirror = 0; mirror < 2; mirror++) {
+            test_grid g = {0};
+            for (int n = 0; n < 8; n++)
+                test_grid_sample(&g, n % 4 == 1 || n % 4 == 2, n % 4 > 1, n / 4);
+            test_grid_cell(&g, CW_HEXAHEDRON, rows[r].corners);
+            if (mirror)
+                test_grid_mirror(&g, 0);
+            cw_mesh m = test_extract(&g.volume, &(cw_extract_desc){.isovalue = -1}, NULL);
+            const cw_quality q = test_check_promise(&m, false);
+            assert_int_equal(m.triangle_count, rows[r].triangles);
+            assert_true(rows[r].triangles == 0 || (q.volume_mm3 > 0.1 && q.euler == 2));
+            cw_mesh_free(&m);
+            test_grid_free(&g);
+        }
+}
+
+/* Cells that a file names twice overlap: their surfaces stand in one place, but have nothing
+ * to do with each other. */
+static void cells_named_twice_are_two(void **state)
+{
+    (void)state;
+    srand(12);
+    for (int round = 0; round < 20; round++) {
+        test_grid g;
+        test_grid_make(&g, (test_cut)(round % TEST_CUT_COUNT), 5, 0.1);
+        fill_with_noise(&g, 1);
+        const size_t count = g.cells.count;
+        for (int n = 0; n < 20; n++) {
+            uint32_t corners[8];
+            const size_t cell = (size_t)rand() % count;
+            memcpy(corners, test_grid_corners(&g, cell),
+                   cwi_shapes[g.shapes[cell]].corner_count * sizeof *corners);
+            test_grid_cell(&g, (cw_shape)g.shapes[cell], corners);
+        }
+        cw_mesh m = test_extract(&g.volume, &(cw_extract_desc){.leave_open = round & 1}, NULL);
+        check_manifold(&m, round & 1);
+        cw_mesh_free(&m);
+        test_grid_free(&g);
+    }
+}
+
+/* --- borders ----------------------------------------------------------------------------- */
+
+/* A lattice of n boxes, of which some are left out. */
+static void make_boxes(test_grid *g, const size_t n[3], const bool *there)
+{
+    memset(g, 0, sizeof *g);
+    const size_t rows = n[0] + 1, layers = rows * (n[1] + 1);
+    for (size_t m = 0; m < layers * (n[2] + 1); m++)
+        test_grid_sample(g, (double)(m % rows), (double)(m / rows % (n[1] + 1)),
+                         (double)(m / layers));
+    for (size_t m = 0; m < n[0] * n[1] * n[2]; m++) {
+        const size_t at[3] = {m % n[0], m / n[0] % n[1], m / n[0] / n[1]};
+        const uint32_t c = (uint32_t)(at[2] * layers + at[1] * rows + at[0]);
+        const uint32_t r = (uint32_t)rows, l = (uint32_t)layers;
+        if (there[m])
+            test_grid_cell(g, CW_HEXAHEDRON,
+                           (uint32_t[8]){c, c + 1, c + r + 1, c + r, c + l, c + l + 1,
+                                         c + l + r + 1, c + l + r});
+    }
+}
+
+/* Cells that touch in an edge or a corner only stay apart, wherever the surface goes; and a
+ * solid that touches itself in an edge is closed there all the same. */
+static void pinched_borders_are_parted(void **state)
+{
+    (void)state;
+    const struct {
+        size_t n[3];
+        bool there[12];
+        size_t components; /* when all is inside */
+        long euler;
+    } rows[] = {
+        {{2, 2, 1}, {1, 0, 0, 1}, 2, 4},
+        {{2, 2, 2}, {1, 0, 0, 0, 0, 0, 0, 1}, 2, 4},
+        {{2, 2, 2}, {0, 1, 1, 1, 1, 1, 1, 0}, 1, 2},
+        {{2, 2, 2}, {1, 1, 1, 0, 0, 1, 1, 1}, 1, 2},
+        {{2, 2, 3}, {1, 1, 1, 1, 0, 1, 1, 0, 1, 1, 1, 1}, 1, 0},
+    };
+    srand(8);
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
+        test_grid g;
+        make_boxes(&g, rows[r].n, rows[r].there);
+        cw_mesh m = test_extract(&g.volume, &(cw_extract_desc){.isovalue = -1}, NULL);
+        const cw_quality q = test_check_promise(&m, false);
+        print_message("row %zu: %zu components, euler %ld\n", r, q.components, (long)q.euler);
+        assert_int_equal(q.components, rows[r].components);
+        assert_int_equal(q.euler, rows[r].euler);
+        cw_mesh_free(&m);
+        for (int round = 0; round < 200; round++) {
+            fill_with_noise(&g, round % 2);
+            m = test_extract(&g.volume, &(cw_extract_desc){.leave_open = round & 2}, NULL);
+            test_check_promise(&m, round & 2);
+            cw_mesh_free(&m);
+        }
+        test_grid_free(&g);
+    }
+}
+
+/* Two tetrahedra where the neighbour has a quadrangle: not the same faces, so both are closed.
+ */
+static void cells_that_do_not_fit_are_closed_apart(void **state)
+{
+    (void)state;
+    srand(9);
+    for (int round = 0; round < 200; round++) {
+        test_grid g;
+        make_boxes(&g, (size_t[3]){3, 3, 2},
+                   (bool[18]){1, 1, 1, 1, 0, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1});
+        const uint32_t c = 5, r = 4, l = 16, tip = test_grid_sample(&g, 1.5, 1.5, 0.5);
+        const uint32_t q[6][4] = {
+            {c, c + r, c + r + 1, c + 1}, {c + l, c + l + 1, c + l + r + 1, c + l + r},
+            {c, c + 1, c + l + 1, c + l}, {c + r, c + l + r, c + l + r + 1, c + r + 1},
+            {c, c + l, c + l + r, c + r}, {c + 1, c + r + 1, c + l + r + 1, c + l + 1}};
+        for (int n = 0; n < 6; n++) {
+            test_grid_cell(&g, CW_TETRAHEDRON, (uint32_t[4]){q[n][0], q[n][1], q[n][2], tip});
+            test_grid_cell(&g, CW_TETRAHEDRON, (uint32_t[4]){q[n][0], q[n][2], q[n][3], tip});
+        }
+        fill_with_noise(&g, 1);
+        cw_quality found;
+        cw_mesh m = test_extract(&g.volume, NULL, NULL);
+        assert_ok(cw_quality_measure(&m, NULL, &found, NULL), (cw_error){0});
+        assert_true(cw_quality_is_closed_manifold(&found));
+        cw_mesh_free(&m);
+        test_grid_free(&g);
+    }
+}
+
+/* A face that three cells have is a border of each; a ring of cells that comes back as its
+ * mirror image is cut open. */
+static void faces_that_no_two_sides_have_are_borders(void **state)
+{
+    (void)state;
+    test_grid g = {0};
+    test_grid_sample(&g, 0, 0, 0);
+    test_grid_sample(&g, 1, 0, 0);
+    test_grid_sample(&g, 0, 1, 0);
+    for (int n = 0; n < 3; n++) {
+        test_grid_sample(&g, 0.2 * n, 0.1, n ? n : -1);
+        test_grid_cell(&g, CW_TETRAHEDRON, (uint32_t[4]){0, 1, 2, 3 + (uint32_t)n});
+    }
+    cw_mesh m = test_extract(&g.volume, &(cw_extract_desc){.isovalue = -1}, NULL);
+    const cw_quality q = test_check_promise(&m, false);
+    assert_int_equal(q.components, 3);
+    assert_int_equal(q.euler, 6);
+    cw_mesh_free(&m);
+    test_grid_free(&g);
+
+    enum { CELLS = 7 };
+    memset(&g, 0, sizeof g);
+    for (int n = 0; n < 4 * CELLS; n++) {
+        const double turn = 2 * PI * (n / 4) / CELLS, r = n % 4 == 1 || n % 4 == 2 ? 3 : 2;
+        test_grid_sample(&g, r * cos(turn), r * sin(turn), n % 4 > 1);
+    }
+    for (uint32_t n = 0; n < CELLS; n++) {
+        const uint32_t a = 4 * n, b = 4 * (n + 1) % (4 * CELLS);
+        const bool last = n + 1 == CELLS;
+        test_grid_cell(&g, CW_HEXAHEDRON,
+                       (uint32_t[8]){a, a + 1, a + 2, a + 3, last ? b + 1 : b, last ? b : b + 1,
+                                     last ? b + 3 : b + 2, last ? b + 2 : b + 3});
+    }
+    m = test_extract(&g.volume, &(cw_extract_desc){.isovalue = -1}, NULL);
+    cw_quality strip;
+    assert_ok(cw_quality_measure(&m, NULL, &strip, NULL), (cw_error){0});
+    assert_true(cw_quality_is_closed_manifold(&strip));
+    assert_int_equal(strip.euler, 2);
+    cw_mesh_free(&m);
+    test_grid_free(&g);
+}
+
+/* --- calls ------------------------------------------------------------------------------- */
+
+static void threads_do_not_change_a_byte(void **state)
+{
+    (void)state;
+    srand(10);
+    for (int round = 0; round < 6; round++) {
+        test_grid g;
+        test_grid_make(&g, TEST_MIXED, 22, 0.2);
+        fill_with_noise(&g, round);
+        cw_mesh one = test_extract(&g.volume, &(cw_extract_desc){.threads = 1}, NULL),
+                three = test_extract(&g.volume, &(cw_extract_desc){.threads = 3}, NULL);
+        test_assert_same_mesh(&one, &three);
+        cw_mesh_free(&one);
+        cw_mesh_free(&three);
+        test_grid_free(&g);
+    }
+}
+
+static cw_status take_whole(void *user, const cw_slab *slab, cw_error *err)
+{
+    const cw_mesh *whole = user;
+    (void)err;
+    assert_true(slab->last && slab->low < -1e300 && slab->high > 1e300);
+    assert_int_equal(slab->triangles, whole->triangle_count);
+    assert_int_equal(slab->mesh->triangle_count, whole->triangle_count);
+    assert_memory_equal(slab->mesh->triangles, whole->triangles, 12 * whole->triangle_count);
+    for (size_t v = 0; v < slab->mesh->vertex_count; v++)
+        assert_int_equal(slab->seam[v], 0);
+    return CW_OK;
+}
+
+/* A slab is all of it, and an extractor makes it anew. */
+static void slabs_and_extractors_give_the_same(void **state)
+{
+    (void)state;
+    test_grid g;
+    cw_extractor *e;
+    cw_error err = {0};
+    cw_mesh again;
+    cw_extract_counts counts, predicted;
+    test_grid_make(&g, TEST_MIXED, 10, 0.2);
+    test_grid_fill(&g, slope);
+    cw_mesh m = test_extract(&g.volume, NULL, &counts);
+    assert_true(m.triangle_count > 0);
+    assert_ok(cw_extract_slabs(&g.volume, NULL, 10, (cw_slab_sink){take_whole, &m}, NULL, &err),
+              err);
+    assert_ok(cw_extractor_new(&g.volume, &e, &err), err);
+    for (int n = 0; n < 2; n++) {
+        assert_ok(cw_extractor_predict(e, NULL, &predicted, &err), err);
+        assert_memory_equal(&predicted, &counts, sizeof counts);
+        assert_ok(cw_extractor_extract(e, NULL, &again, NULL, &err), err);
+        test_assert_same_mesh(&m, &again);
+        cw_mesh_free(&again);
+    }
+    cw_extractor_free(e);
+    cw_mesh_free(&m);
+    test_grid_free(&g);
+}
+
+static void what_is_wrong_is_named(void **state)
+{
+    (void)state;
+    test_grid g;
+    cw_error err = {0};
+    cw_mesh m;
+    test_grid_make(&g, TEST_MIXED, 10, 0);
+    test_grid_fill(&g, sphere);
+#define FAILS(desc, status, words)                                                             \
+    assert_fails(cw_extract(&g.volume, &(cw_extract_desc)desc, &m, NULL, &err), status, words, \
+                 err)
+    FAILS({.snap = 0.3}, CW_ERR_UNSUPPORTED, "snap on an irregular grid");
+    FAILS({.cubic_placement = true}, CW_ERR_UNSUPPORTED, "cubic");
+    FAILS({.isovalue = NAN}, CW_ERR_ARGUMENT, "isovalue");
+    FAILS({.max_triangles = 5}, CW_ERR_LIMIT, "triangles; the limit is 5");
+    FAILS({.max_bytes = 500}, CW_ERR_LIMIT, "the limit is 500");
+    uint32_t *corner = test_grid_corners(&g, 20) + 3;
+    const uint32_t own = *corner;
+    *corner = (uint32_t)g.samples;
+    FAILS({0}, CW_ERR_ARGUMENT, "cell 20 has a corner at sample");
+    *corner = own;
+    const uint8_t shape = g.shapes[30];
+    g.shapes[30] = 4;
+    FAILS({0}, CW_ERR_ARGUMENT, "cell 30 has shape 4");
+    g.shapes[30] = shape;
+    const double x = g.points[3 * 17];
+    g.points[3 * 17] = INFINITY;
+    FAILS({0}, CW_ERR_ARGUMENT, "sample 17 is not finite");
+    g.points[3 * 17] = 1e300;
+    FAILS({0}, CW_ERR_ARGUMENT, "beyond what positions can hold");
+    g.points[3 * 17] = x;
+    m = test_extract(&g.volume, NULL, NULL);
+    assert_fails(cw_extract_normals(&g.volume, NULL, &m, &err), CW_ERR_UNSUPPORTED,
+                 "irregular grid", err);
+    cw_mesh_free(&m);
+    g.cells.count = 0;
+    m = test_extract(&g.volume, NULL, NULL);
+    assert_int_equal(m.vertex_count, 0);
+    test_grid_free(&g);
+}
+
+static void it_can_be_stopped_anywhere(void **state)
+{
+    (void)state;
+    test_grid g;
+    cw_error err = {0};
+    cw_mesh m;
+    cw_status st = CW_ERR_CANCELLED;
+    test_grid_make(&g, TEST_MIXED, 10, 0);
+    test_grid_fill(&g, slope);
+    int polls = 0;
+    for (int n = 0; st == CW_ERR_CANCELLED; n++) {
+        polls = n;
+        const cw_extract_desc desc = {.progress = {test_stop_after, &polls}};
+        st = cw_extract(&g.volume, &desc, &m, NULL, &err);
+        assert_true(n < 200 && (st == CW_OK) == (m.triangles != NULL));
+    }
+    assert_ok(st, err);
+    cw_mesh_free(&m);
+    st = CW_ERR_NO_MEMORY;
+    for (long n = 0; st == CW_ERR_NO_MEMORY; n++) {
+        cwi_alloc_fail_after(n);
+        st = cw_extract(&g.volume, &(cw_extract_desc){.threads = 1}, &m, NULL, &err);
+        cwi_alloc_fail_after(-1);
+        assert_true(n < 200 && (st == CW_OK) == (m.triangles != NULL));
+    }
+    assert_ok(st, err);
+    cw_mesh_free(&m);
+    test_grid_free(&g);
+}
+
+/* Values of any size, and infinite ones, make no bad number; so do cells of no volume. */
+static void extremes_stay_finite(void **state)
+{
+    (void)state;
+    srand(11);
+    const double scales[] = {1e-320, 1e-160, 1, 1e160, 1.7e308};
+    for (size_t s = 0; s < sizeof scales / sizeof *scales; s++)
+        for (int round = 0; round < 4; round++) {
+            test_grid g;
+            test_grid_make(&g, TEST_MIXED, 6, 0.1);
+            for (size_t n = 0; n < g.samples; n++)
+                g.values[n] = round & 1 && rand() % 4 == 0 ? (rand() % 2 ? INFINITY : -INFINITY)
+                                                           : random_number(-1, 1) * scales[s];
+            if (round & 2)
+                for (size_t n = 0; n < g.samples; n++)
+                    g.points[3 * n + 2] = 0;
+            cw_quality q;
+            cw_mesh m = test_extract(&g.volume, NULL, NULL);
+            cw_error err = {0};
+            assert_ok(cw_mesh_check(&m, &err), err);
+            assert_ok(cw_quality_measure(&m, NULL, &q, &err), err);
+            assert_true(cw_quality_is_closed_manifold(&q));
+            for (size_t v = 0; v < m.vertex_count; v++) {
+                const float *n = m.normals + 3 * v;
+                assert_near((double)(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]), 1, 1e-5);
+            }
+            cw_mesh_free(&m);
+            test_grid_free(&g);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -250,6 +900,22 @@ int main(void)
         cmocka_unit_test(normals_of_linear_fields_are_exact),
         cmocka_unit_test(any_field_gives_a_sound_surface),
         cmocka_unit_test(no_surface_crosses_itself),
+        cmocka_unit_test(a_lattice_of_hexahedra_is_a_dense_grid),
+        cmocka_unit_test(cells_may_be_inside_out),
+        cmocka_unit_test(an_annulus_is_a_ring_either_way_round),
+        cmocka_unit_test(hexahedra_may_collapse),
+        cmocka_unit_test(any_edge_may_collapse),
+        cmocka_unit_test(hexahedra_may_collapse_to_anything),
+        cmocka_unit_test(a_cell_is_what_its_corners_leave),
+        cmocka_unit_test(cells_named_twice_are_two),
+        cmocka_unit_test(pinched_borders_are_parted),
+        cmocka_unit_test(cells_that_do_not_fit_are_closed_apart),
+        cmocka_unit_test(faces_that_no_two_sides_have_are_borders),
+        cmocka_unit_test(threads_do_not_change_a_byte),
+        cmocka_unit_test(slabs_and_extractors_give_the_same),
+        cmocka_unit_test(what_is_wrong_is_named),
+        cmocka_unit_test(it_can_be_stopped_anywhere),
+        cmocka_unit_test(extremes_stay_finite),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
