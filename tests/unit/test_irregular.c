@@ -151,7 +151,6 @@ static void spheres_are_closed_and_of_second_order(void **state)
     for (int cut = 0; cut < TEST_CUT_COUNT; cut++) {
         const double coarse = measure_sphere((test_cut)cut, 15),
                      fine = measure_sphere((test_cut)cut, 30);
-        print_message("cut %d: %g, %g\n", cut, coarse, fine);
         assert_true(coarse < 0.02);
         assert_true(fine < 0.35 * coarse);
     }
@@ -391,6 +390,31 @@ static void an_annulus_is_a_ring_either_way_round(void **state)
         }
         test_grid_free(&g);
     }
+}
+
+static uint32_t in_cut_annulus(size_t i, size_t j, size_t k)
+{
+    return (uint32_t)((k * (TURNS + 1) + j) * (RINGS + 1) + i);
+}
+
+/* Where the ring closes its samples are there twice: it ends on both sides, and the caps do not
+ * touch. */
+static void samples_in_one_place_are_two(void **state)
+{
+    (void)state;
+    test_grid g = {0};
+    for (size_t n = 0; n < (RINGS + 1) * (TURNS + 1) * (STORIES + 1); n++) {
+        const double r = 1 + (double)(n % (RINGS + 1)) / RINGS,
+                     turn = 2 * PI * (double)(n / (RINGS + 1) % (TURNS + 1) % TURNS) / TURNS;
+        test_grid_sample(&g, r * cos(turn), r * sin(turn),
+                         (double)(n / (RINGS + 1) / (TURNS + 1)));
+    }
+    add_cells_between(&g, (size_t[3]){RINGS, TURNS, STORIES}, in_cut_annulus);
+    cw_mesh m = test_extract(&g.volume, &(cw_extract_desc){.isovalue = -1}, NULL);
+    assert_int_equal(test_check_promise(&m, false).euler, 2);
+    assert_int_equal(test_count_crossings(&m), 0);
+    cw_mesh_free(&m);
+    test_grid_free(&g);
 }
 
 enum { SHELLS = 6, RAYS = 24, ROWS = 12 };
@@ -645,7 +669,6 @@ static void pinched_borders_are_parted(void **state)
         make_boxes(&g, rows[r].n, rows[r].there);
         cw_mesh m = test_extract(&g.volume, &(cw_extract_desc){.isovalue = -1}, NULL);
         const cw_quality q = test_check_promise(&m, false);
-        print_message("row %zu: %zu components, euler %ld\n", r, q.components, (long)q.euler);
         assert_int_equal(q.components, rows[r].components);
         assert_int_equal(q.euler, rows[r].euler);
         cw_mesh_free(&m);
@@ -903,6 +926,7 @@ int main(void)
         cmocka_unit_test(a_lattice_of_hexahedra_is_a_dense_grid),
         cmocka_unit_test(cells_may_be_inside_out),
         cmocka_unit_test(an_annulus_is_a_ring_either_way_round),
+        cmocka_unit_test(samples_in_one_place_are_two),
         cmocka_unit_test(hexahedra_may_collapse),
         cmocka_unit_test(any_edge_may_collapse),
         cmocka_unit_test(hexahedra_may_collapse_to_anything),
