@@ -14,17 +14,6 @@
 #include <math.h>
 #include <string.h>
 
-static size_t chunks_of(const cwi_cells *g)
-{
-    return (g->count + CWI_CELL_CHUNK - 1) / CWI_CELL_CHUNK;
-}
-
-static void chunk_of(const cwi_cells *g, size_t chunk, size_t *begin, size_t *end)
-{
-    *begin = chunk * CWI_CELL_CHUNK;
-    *end = *begin + CWI_CELL_CHUNK < g->count ? *begin + CWI_CELL_CHUNK : g->count;
-}
-
 /* --- what the elements are made of ------------------------------------------------------- */
 
 /* A hexahedron is treated as the trilinear field in it, other cells have no tunnels: slices of
@@ -54,7 +43,7 @@ static void plan_chunk(void *context, size_t chunk)
 {
     cwi_cells *g = context;
     size_t begin, end;
-    chunk_of(g, chunk, &begin, &end);
+    cwi_chunk_of(g, chunk, &begin, &end);
     for (size_t n = begin; n < end; n++) {
         cwi_element *e = &g->elements[n];
         cwi_cell_plan plan;
@@ -68,20 +57,6 @@ static void plan_chunk(void *context, size_t chunk)
 }
 
 /* --- vertices on edges ------------------------------------------------------------------- */
-
-/* The edge of an element's face between two samples. */
-static int find_edge(const cwi_element *e, int face, uint32_t s, uint32_t t)
-{
-    const cwi_shape *shape = cwi_shape_of(e);
-    for (int n = 0; n < shape->face_size[face]; n++) {
-        const int edge = shape->face_edges[face][n];
-        const uint32_t a = e->corners[shape->edges[edge][0]],
-                       b = e->corners[shape->edges[edge][1]];
-        if ((a == s && b == t) || (a == t && b == s))
-            return edge;
-    }
-    return 0;
-}
 
 /* A crossing is one vertex in all cells around its edge that are joined by faces there; where
  * cells touch in an edge only, each has its own. */
@@ -99,8 +74,8 @@ static void join_crossings(cwi_cells *g, uint32_t face)
         if (!(e->crossed >> edge & 1))
             continue;
         const int there =
-            find_edge(o, (int)(other % CWI_CELL_FACES), e->corners[s->edges[edge][0]],
-                      e->corners[s->edges[edge][1]]);
+            cwi_edge_of(o, (int)(other % CWI_CELL_FACES), e->corners[s->edges[edge][0]],
+                        e->corners[s->edges[edge][1]]);
         cwi_sets_join(g->crossings, (uint32_t)cwi_crossing_slot(e, edge),
                       (uint32_t)cwi_crossing_slot(o, there));
     }
@@ -162,13 +137,15 @@ static void number_triangles(cwi_cells *g)
 
 /* --- the plan ---------------------------------------------------------------------------- */
 
+/* All that is held at some time; gradients as if there were one a crossing. */
 static size_t working_bytes(const cwi_cells *g)
 {
-    return g->volume.dim[0] * (1 + (g->desc->no_normals ? 0 : sizeof(uint32_t))) +
-           g->chunks * sizeof *g->chunk_corners +
+    const size_t gradients =
+        g->volume.dim[0] * sizeof(uint32_t) + g->edge_vertices * 12 * sizeof(double);
+    return g->volume.dim[0] + g->chunks * sizeof *g->chunk_corners +
            g->count * (sizeof *g->elements + CWI_CELL_FACES * sizeof *g->across) +
            g->crossing_count * sizeof *g->crossings + g->border_count * sizeof *g->border +
-           g->pairing_bytes;
+           g->pairing_bytes + (g->desc->no_normals ? 0 : gradients);
 }
 
 static cw_status finish_counts(cwi_cells *g, cw_error *err)
@@ -192,7 +169,7 @@ static cw_status make_plan(cwi_cells *g, cw_error *err)
     if (st == CW_OK)
         st = cwi_cells_orient(g, err);
     if (st == CW_OK)
-        st = cwi_each_layer(chunks_of(g), CWI_CELL_CHUNK * 64, g->desc->threads,
+        st = cwi_each_layer(cwi_chunks_of(g), CWI_CELL_CHUNK * 64, g->desc->threads,
                             &g->desc->progress, "planning", plan_chunk, g, err);
     if (st == CW_OK)
         st = place_crossings(g, err);
@@ -215,11 +192,25 @@ typedef struct writing {
     cw_mesh *mesh;
 } writing;
 
-/* A point in a cell by the weights of its corners, and the outward direction there. */
+/* The outward direction at a point in a cell; zero where nothing tells. */
+static void write_normal(const writing *w, const cwi_element *e, const double weights[8],
+                         float *normal)
+{
+    const double outward = w->g->level.invert ? 1 : -1;
+    double sum[3] = {0, 0, 0};
+    for (int c = 0; c < cwi_shape_of(e)->corner_count; c++)
+        for (int a = 0; a < 3; a++)
+            sum[a] += weights[c] * w->gradients.at[w->gradients.rows[e->corners[c]]][a];
+    const bool known = cwi_normalise(sum);
+    for (int a = 0; a < 3; a++)
+        normal[a] = known ? (float)(outward * sum[a]) : 0;
+}
+
+/* A point in a cell is told by the weights of its corners. */
 static void write_vertex(const writing *w, const cwi_element *e, const double weights[8],
                          size_t vertex)
 {
-    double place[3] = {0, 0, 0}, gradient[3] = {0, 0, 0};
+    double place[3] = {0, 0, 0};
     for (int c = 0; c < cwi_shape_of(e)->corner_count; c++) {
         double p[3];
         if (weights[c] == 0)
@@ -227,19 +218,11 @@ static void write_vertex(const writing *w, const cwi_element *e, const double we
         cwi_place_of(w->g, e->corners[c], p);
         for (int a = 0; a < 3; a++)
             place[a] += weights[c] * p[a];
-        const double *g =
-            w->mesh->normals ? w->gradients.at[w->gradients.rows[e->corners[c]]] : place;
-        for (int a = 0; a < 3; a++)
-            gradient[a] += weights[c] * g[a];
     }
     for (size_t a = 0; a < 3; a++)
         w->mesh->positions[3 * vertex + a] = (float)place[a];
-    if (!w->mesh->normals)
-        return;
-    const double outward = w->g->level.invert ? 1 : -1;
-    const bool known = cwi_normalise(gradient);
-    for (size_t a = 0; a < 3; a++)
-        w->mesh->normals[3 * vertex + a] = known ? (float)(outward * gradient[a]) : 0;
+    if (w->mesh->normals)
+        write_normal(w, e, weights, w->mesh->normals + 3 * vertex);
 }
 
 /* The share of an edge, from its first corner, where it is crossed: found from its lower sample
@@ -327,7 +310,7 @@ static void write_chunk(void *context, size_t chunk)
 {
     const writing *w = context;
     size_t begin, end;
-    chunk_of(w->g, chunk, &begin, &end);
+    cwi_chunk_of(w->g, chunk, &begin, &end);
     for (size_t n = begin; n < end; n++)
         if (w->g->elements[n].crossed)
             write_element(w, &w->g->elements[n]);
@@ -338,7 +321,7 @@ static cw_status write_parts(writing *w, cw_error *err)
     const cwi_cells *g = w->g;
     cw_status st = w->mesh->normals ? cwi_cells_gradients(g, &w->gradients, err) : CW_OK;
     if (st == CW_OK)
-        st = cwi_each_layer(chunks_of(g), CWI_CELL_CHUNK * 64, g->desc->threads,
+        st = cwi_each_layer(cwi_chunks_of(g), CWI_CELL_CHUNK * 64, g->desc->threads,
                             &g->desc->progress, "marching", write_chunk, w, err);
     cwi_gradients_free(&w->gradients);
     if (st != CW_OK)

@@ -95,6 +95,9 @@ bool cwi_element_collapse(cwi_element *e);
  * cells that are to be collapsed. The edge from each leads to the next one. */
 int cwi_face_ring(const cwi_element *e, int face, uint8_t ring[4]);
 
+/* In a face of an element, the position from which the edge between two samples leads on. */
+int cwi_edge_position(const cwi_element *e, int face, uint32_t s, uint32_t t);
+
 /* Whether the surface, or a cap, runs through a face. */
 bool cwi_face_matters(const cwi_cells *g, const cwi_element *e, int face);
 
@@ -147,6 +150,24 @@ static inline const cwi_shape *cwi_shape_of(const cwi_element *e)
 static inline double cwi_stored_at(const cwi_cells *g, uint32_t sample)
 {
     return cwi_voxel_at(g->volume.type, cwi_voxel_address(&g->volume, sample, 0, 0));
+}
+
+/* The edge of a face of an element between two samples. */
+static inline int cwi_edge_of(const cwi_element *e, int face, uint32_t s, uint32_t t)
+{
+    return cwi_shape_of(e)->face_edges[face][cwi_edge_position(e, face, s, t)];
+}
+
+/* Elements are worked on in chunks. */
+static inline size_t cwi_chunks_of(const cwi_cells *g)
+{
+    return (g->count + CWI_CELL_CHUNK - 1) / CWI_CELL_CHUNK;
+}
+
+static inline void cwi_chunk_of(const cwi_cells *g, size_t chunk, size_t *begin, size_t *end)
+{
+    *begin = chunk * CWI_CELL_CHUNK;
+    *end = *begin + CWI_CELL_CHUNK < g->count ? *begin + CWI_CELL_CHUNK : g->count;
 }
 
 /* As the decisions see it: less the isovalue, positive inside. */

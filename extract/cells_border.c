@@ -30,16 +30,14 @@ static void add_corner(cwi_cap *c, bool crossing, uint8_t at)
 }
 
 /* Adds the run of inside corners that begins after ring position n, with the crossings at its
- * ends. Returns the position it ends at. */
-static int add_run(cwi_cap *c, const cwi_element *e, const uint8_t *corners,
-                   const uint8_t *ring, int size, int n)
+ * ends. */
+static void add_run(cwi_cap *c, const cwi_element *e, const uint8_t *corners,
+                    const uint8_t *ring, int size, int n)
 {
     add_corner(c, true, ring[n]);
     for (n = (n + 1) % size; cwi_corner_inside(e, corners[ring[n]]); n = (n + 1) % size)
         add_corner(c, false, ring[n]);
-    n = (n + size - 1) % size;
-    add_corner(c, true, ring[n]);
-    return n;
+    add_corner(c, true, ring[(n + size - 1) % size]);
 }
 
 void cwi_find_cap(const cwi_cells *g, uint32_t face, cwi_cap *c)
@@ -125,31 +123,22 @@ static bool is_border(const cwi_cells *g, uint32_t face)
 
 /* --- vertices ---------------------------------------------------------------------------- */
 
-/* The position in a face from which the edge between two samples leads on. */
-static int position_of(const cwi_cells *g, uint32_t face, uint32_t s, uint32_t t)
+/* The sample that the edge from a position in a face leads to. */
+static uint32_t sample_after(const cwi_cells *g, uint32_t face, int position)
 {
     const int size = cwi_shape_of(cwi_element_of(g, face))->face_size[face % CWI_CELL_FACES];
-    for (int n = 0; n < size; n++) {
-        const uint32_t a = cwi_sample_at(g, face, n),
-                       b = cwi_sample_at(g, face, (n + 1) % size);
-        if ((a == s && b == t) || (a == t && b == s))
-            return n;
-    }
-    return 0;
+    return cwi_sample_at(g, face, (position + 1) % size);
 }
 
 /* Turns about an edge of a border face, through the cells there, to the border face on their
  * other side. */
 static uint32_t turn_about(const cwi_cells *g, uint32_t face, int position)
 {
-    const uint32_t s = cwi_sample_at(g, face, position);
-    const int size = cwi_shape_of(cwi_element_of(g, face))->face_size[face % CWI_CELL_FACES];
-    const uint32_t t = cwi_sample_at(g, face, (position + 1) % size);
+    const uint32_t s = cwi_sample_at(g, face, position), t = sample_after(g, face, position);
     for (;;) {
-        const cwi_shape *shape = cwi_shape_of(cwi_element_of(g, face));
+        const cwi_element *e = cwi_element_of(g, face);
         const uint32_t local = face % CWI_CELL_FACES;
-        const int edge = shape->face_edges[local][position_of(g, face, s, t)];
-        const uint8_t *faces = shape->edge_faces[edge];
+        const uint8_t *faces = cwi_shape_of(e)->edge_faces[cwi_edge_of(e, (int)local, s, t)];
         face += (faces[0] == local ? faces[1] : faces[0]) - local;
         if (g->across[face] == CWI_NO_FACE)
             return face;
@@ -171,8 +160,7 @@ static size_t border_index(const cwi_cells *g, uint32_t face)
     return low;
 }
 
-/* The position in a face whose edge leads to a sample, or from it, past the position's own
- * repetitions. */
+/* The position of a sample in a face: of those that it has there, the last. */
 static int corner_position(const cwi_cells *g, uint32_t face, uint32_t sample)
 {
     const cwi_element *e = cwi_element_of(g, face);
@@ -262,9 +250,8 @@ static void add_side(sides *s, side_kind kind, size_t border, int at, uint32_t u
 static size_t partner_of(const cwi_cells *g, size_t border, int at, int *there)
 {
     const uint32_t face = g->border[border].face, next = turn_about(g, face, at);
-    const int size = cwi_shape_of(cwi_element_of(g, face))->face_size[face % CWI_CELL_FACES];
-    *there = position_of(g, next, cwi_sample_at(g, face, at),
-                         cwi_sample_at(g, face, (at + 1) % size));
+    *there = cwi_edge_position(cwi_element_of(g, next), (int)(next % CWI_CELL_FACES),
+                               cwi_sample_at(g, face, at), sample_after(g, face, at));
     return border_index(g, next);
 }
 

@@ -23,6 +23,19 @@ int cwi_face_ring(const cwi_element *e, int face, uint8_t ring[4])
     return count;
 }
 
+int cwi_edge_position(const cwi_element *e, int face, uint32_t s, uint32_t t)
+{
+    const cwi_shape *shape = cwi_shape_of(e);
+    const uint8_t *corners = shape->faces[face];
+    int n = 0;
+    for (; n + 1 < shape->face_size[face]; n++) {
+        const uint32_t a = e->corners[corners[n]], b = e->corners[corners[n + 1]];
+        if ((a == s && b == t) || (a == t && b == s))
+            break;
+    }
+    return n;
+}
+
 cwi_face_key cwi_face_key_of(const cwi_element *e, int face)
 {
     const uint8_t *corners = cwi_shape_of(e)->faces[face];
@@ -83,17 +96,11 @@ typedef struct pairing {
     bucket_face *faces;
 } pairing;
 
-static void chunk_of(const cwi_cells *g, size_t chunk, size_t *begin, size_t *end)
-{
-    *begin = chunk * CWI_CELL_CHUNK;
-    *end = *begin + CWI_CELL_CHUNK < g->count ? *begin + CWI_CELL_CHUNK : g->count;
-}
-
 static void count_faces(void *context, size_t chunk)
 {
     pairing *p = context;
     size_t begin, end;
-    chunk_of(p->g, chunk, &begin, &end);
+    cwi_chunk_of(p->g, chunk, &begin, &end);
     for (size_t n = begin; n < end; n++)
         for (int face = 0; face < cwi_shape_of(&p->g->elements[n])->face_count; face++)
             if (cwi_face_matters(p->g, &p->g->elements[n], face)) {
@@ -107,7 +114,7 @@ static void fill_buckets(void *context, size_t chunk)
 {
     pairing *p = context;
     size_t begin, end;
-    chunk_of(p->g, chunk, &begin, &end);
+    cwi_chunk_of(p->g, chunk, &begin, &end);
     for (size_t n = begin; n < end; n++)
         for (int face = 0; face < cwi_shape_of(&p->g->elements[n])->face_count; face++)
             if (cwi_face_matters(p->g, &p->g->elements[n], face)) {
@@ -220,7 +227,7 @@ static cw_status no_memory(const cwi_cells *g, cw_error *err)
 static cw_status pair_faces(pairing *p, cw_error *err)
 {
     cwi_cells *g = p->g;
-    const size_t chunks = (g->count + CWI_CELL_CHUNK - 1) / CWI_CELL_CHUNK;
+    const size_t chunks = cwi_chunks_of(g);
     const cw_progress *progress = &g->desc->progress;
     const int threads = g->desc->threads;
     cw_status st = cwi_each_layer(chunks, CWI_CELL_CHUNK * 64, threads, progress, "pairing",
@@ -328,7 +335,7 @@ static void measure_chunk(void *context, size_t chunk)
     const cwi_cells *g = o->g;
     const double scale = g->reach > 0 ? 1 / g->reach : 1;
     size_t begin, end;
-    chunk_of(g, chunk, &begin, &end);
+    cwi_chunk_of(g, chunk, &begin, &end);
     for (size_t n = begin; n < end; n++) {
         const cwi_element *e = &g->elements[n];
         const cwi_shape *s = cwi_shape_of(e);
