@@ -950,6 +950,42 @@ static void extremes_stay_finite(void **state)
         }
 }
 
+/* Cells between samples at random overlap in every way: no promise holds, but nothing breaks,
+ * and all is made that was counted. */
+static void any_cells_give_a_mesh(void **state)
+{
+    (void)state;
+    srand(13);
+    for (int round = 0; round < 400; round++) {
+        test_grid g = {0};
+        const size_t samples = 4 + (size_t)rand() % 20;
+        for (size_t n = 0; n < samples; n++)
+            test_grid_sample(&g, rand() % 4, rand() % 4, rand() % 4);
+        for (int n = rand() % 60; n >= 0; n--) {
+            uint32_t corners[8];
+            for (int c = 0; c < 8; c++)
+                corners[c] = (uint32_t)((size_t)rand() % samples);
+            test_grid_cell(&g, (cw_shape)(rand() % CW_SHAPE_COUNT), corners);
+        }
+        fill_with_noise(&g, round % 2);
+        for (int open = 0; open < 2; open++) {
+            cw_quality q;
+            cw_error err = {0};
+            cw_extract_counts counts;
+            cw_mesh m =
+                test_extract(&g.volume, &(cw_extract_desc){.leave_open = open}, &counts);
+            assert_ok(cw_mesh_check(&m, &err), err);
+            assert_ok(cw_quality_measure(&m, NULL, &q, &err), err);
+            assert_int_equal(m.triangle_count, counts.triangles);
+            assert_int_equal(q.unused_vertices, 0);
+            if (!open)
+                assert_int_equal(q.open_edges, 0);
+            cw_mesh_free(&m);
+        }
+        test_grid_free(&g);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -975,6 +1011,7 @@ int main(void)
         cmocka_unit_test(what_is_wrong_is_named),
         cmocka_unit_test(it_can_be_stopped_anywhere),
         cmocka_unit_test(extremes_stay_finite),
+        cmocka_unit_test(any_cells_give_a_mesh),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
