@@ -252,7 +252,7 @@ static void any_field_gives_a_sound_surface(void **state)
         }
 }
 
-/* In undistorted cells, where all are convex, nothing crosses anything. */
+/* In cells that are convex, or nearly so, nothing crosses anything. */
 static void no_surface_crosses_itself(void **state)
 {
     (void)state;
@@ -260,7 +260,7 @@ static void no_surface_crosses_itself(void **state)
     for (int round = 0; round < 8; round++)
         for (int cut = 0; cut < TEST_CUT_COUNT; cut++) {
             test_grid g;
-            test_grid_make(&g, (test_cut)cut, 7, 0);
+            test_grid_make(&g, (test_cut)cut, 7, round < 4 ? 0 : 0.1);
             fill_with_noise(&g, round % 2);
             cw_mesh m = test_extract(&g.volume, NULL, NULL);
             if (test_count_crossings(&m))
@@ -284,8 +284,8 @@ static cw_volume as_dense(const test_grid *g, size_t n)
     return v;
 }
 
-/* Every vertex of one stands where a vertex of the other does. */
-static void assert_same_places(const cw_mesh *a, const cw_mesh *b)
+/* Every vertex of one stands where a vertex of the other does, with its normal if asked for. */
+static void assert_same_places(const cw_mesh *a, const cw_mesh *b, bool normals)
 {
     assert_int_equal(a->vertex_count, b->vertex_count);
     bool *taken = calloc(b->vertex_count + 1, sizeof *taken);
@@ -302,6 +302,8 @@ static void assert_same_places(const cw_mesh *a, const cw_mesh *b)
         }
         if (w == b->vertex_count)
             fail_msg("vertex %zu is at no place of the other mesh", v);
+        for (size_t i = 0; i < 3 && normals; i++)
+            assert_near((double)a->normals[3 * v + i], (double)b->normals[3 * w + i], 1e-4);
         taken[w] = true;
     }
     free(taken);
@@ -331,7 +333,8 @@ static void a_lattice_of_hexahedra_is_a_dense_grid(void **state)
         assert_int_equal(counts.border_loops, wanted_counts.border_loops);
         if (desc.leave_open) {
             assert_int_equal(m.triangle_count, wanted.triangle_count);
-            assert_same_places(&m, &wanted);
+            /* one rule has no vertices inside cells, where a dense grid knows less */
+            assert_same_places(&m, &wanted, desc.simple_topology && round % 2);
             assert_within(q.area_mm2, wanted_q.area_mm2, 1e-6);
         }
         cw_mesh_free(&m);
@@ -359,7 +362,7 @@ static void cells_may_be_inside_out(void **state)
             assert_int_equal(q.triangles, straight.triangle_count);
             assert_int_equal(q.euler, 2);
             assert_within(q.volume_mm3, test_measure(&straight).volume_mm3, 1e-3);
-            assert_same_places(&m, &straight);
+            assert_same_places(&m, &straight, true);
             assert_true(test_normals_agree(&m));
             cw_mesh_free(&m);
             cw_mesh_free(&straight);
