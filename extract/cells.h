@@ -152,6 +152,13 @@ static inline double cwi_stored_at(const cwi_cells *g, uint32_t sample)
     return cwi_voxel_at(g->volume.type, cwi_voxel_address(&g->volume, sample, 0, 0));
 }
 
+/* Where cw_cells lists a shape's corner: a hexahedron's around its base and above it, while a
+ * cube's are x fastest. */
+static inline int cwi_listed_corner(uint8_t shape, int corner)
+{
+    return shape == CW_HEXAHEDRON ? corner ^ (corner >> 1 & 1) : corner;
+}
+
 /* The edge of a face of an element between two samples. */
 static inline int cwi_edge_of(const cwi_element *e, int face, uint32_t s, uint32_t t)
 {

@@ -58,7 +58,8 @@ static void look_at_samples(void *context, size_t chunk)
     }
 }
 
-/* Positions are floats, and so must be the way from the middle to the farthest point. */
+/* Positions are floats, which have to reach from the middle to the farthest point, and to tell
+ * it from the middle. */
 static cw_status set_frame(cwi_cells *g, const sampling *s, cw_error *err)
 {
     double far = 0;
@@ -68,7 +69,7 @@ static cw_status set_frame(cwi_cells *g, const sampling *s, cw_error *err)
     }
     for (int i = 0; i < 9; i++)
         far = fmax(far, fabs(g->volume.affine[i / 3][i % 3]) * g->reach * 3);
-    if (far > (double)FLT_MAX)
+    if (far > (double)FLT_MAX || (g->reach > 0 && far < (double)FLT_MIN))
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "a grid %g mm wide is beyond what positions can hold", far / 3);
     return CW_OK;
@@ -122,13 +123,11 @@ typedef struct gathering {
     size_t bad; /* the first cell with a corner that is no sample */
 } gathering;
 
-/* Corners of a hexahedron change places: around its base, to x fastest. */
 static void take_corners(cwi_element *e, const uint32_t *corners)
 {
-    static const uint8_t cube[8] = {0, 1, 3, 2, 4, 5, 7, 6};
     const int count = cwi_shape_of(e)->corner_count;
     for (int c = 0; c < count; c++)
-        e->corners[e->shape == CW_HEXAHEDRON ? cube[c] : c] = corners[c];
+        e->corners[c] = corners[cwi_listed_corner(e->shape, c)];
 }
 
 static bool repeats_a_corner(const cwi_element *e)

@@ -65,7 +65,6 @@ static void solve(const normal_equations *n, double g[3])
 static void add_cell(fitting *f, uint8_t shape, const uint32_t *corners)
 {
     const cwi_shape *s = &cwi_shapes[shape];
-    static const uint8_t cube[8] = {0, 1, 3, 2, 4, 5, 7, 6};
     bool wanted = false;
     uint8_t sides = 0;
     for (int c = 0; c < s->corner_count; c++) {
@@ -75,10 +74,8 @@ static void add_cell(fitting *f, uint8_t shape, const uint32_t *corners)
     if (!wanted || sides & CWI_ABSENT)
         return;
     for (int e = 0; e < s->edge_count; e++) {
-        const bool hexahedron = shape == CW_HEXAHEDRON;
-        const int i = s->edges[e][0], j = s->edges[e][1];
-        const uint32_t a = corners[hexahedron ? cube[i] : i],
-                       b = corners[hexahedron ? cube[j] : j];
+        const uint32_t a = corners[cwi_listed_corner(shape, s->edges[e][0])],
+                       b = corners[cwi_listed_corner(shape, s->edges[e][1])];
         add_edge(f, a, b);
         add_edge(f, b, a);
     }

@@ -882,6 +882,9 @@ static void what_is_wrong_is_named(void **state)
     g.points[3 * 17] = 1e300;
     FAILS({0}, CW_ERR_ARGUMENT, "beyond what positions can hold");
     g.points[3 * 17] = x;
+    g.volume.affine[0][0] = g.volume.affine[1][1] = g.volume.affine[2][2] = 1e-60;
+    FAILS({0}, CW_ERR_ARGUMENT, "beyond what positions can hold");
+    g.volume.affine[0][0] = g.volume.affine[1][1] = g.volume.affine[2][2] = 1;
     m = test_extract(&g.volume, NULL, NULL);
     assert_fails(cw_extract_normals(&g.volume, NULL, &m, &err), CW_ERR_UNSUPPORTED,
                  "irregular grid", err);
