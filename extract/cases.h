@@ -1,16 +1,16 @@
-/* What the 256 cube cases and the resolutions of their ambiguous faces look like; the tables
- * are made by make_cases.c. Triangles name edges of the cube, three a triangle,
- * counter-clockwise seen from outside the solid. */
+/* What the 256 cube cases and the resolutions of their ambiguous faces look like, and those of
+ * other cells; the tables are made by make_cases.c. Triangles name edges of the cell, three a
+ * triangle, counter-clockwise seen from outside the solid. */
 #ifndef EXTRACT_CASES_H
 #define EXTRACT_CASES_H
 
-#include <stdbool.h>
-#include <stdint.h>
+#include <cubewright/volume.h>
 
 enum {
     CWI_CASE_MAX_TRIANGLES = 5,
     CWI_CASE_MAX_LOOPS = 4,
     CWI_CASE_CONFIGS = 656, /* over all cases, 2 ^ (number of ambiguous faces) */
+    CWI_CONFIGS = 802,      /* these first, then those of the other shapes */
 };
 
 /* One rule for every face, inside corners kept apart: number of triangles, and their corners.
@@ -38,6 +38,21 @@ typedef struct cwi_config {
     uint8_t patch[8];              /* of each corner: the lowest corner of its patch */
 } cwi_config;
 
-extern const cwi_config cwi_configs[CWI_CASE_CONFIGS];
+extern const cwi_config cwi_configs[CWI_CONFIGS];
+
+/* A shape of cells: what belongs to what, and where its configurations are. A hexahedron's
+ * corners, edges and faces are numbered as cube.h has them, others' corners as VTK's. */
+typedef struct cwi_shape {
+    uint8_t corner_count, edge_count, face_count;
+    uint8_t edges[12][2];      /* corners, the lower first */
+    uint8_t edge_faces[12][2]; /* on both sides of it */
+    uint8_t face_size[6];
+    uint8_t faces[6][4];      /* corners, counter-clockwise seen from outside */
+    uint8_t face_edges[6][4]; /* from corner n to n + 1 */
+    uint8_t ambiguous_faces[256];
+    uint16_t first_config[256];
+} cwi_shape;
+
+extern const cwi_shape cwi_shapes[CW_SHAPE_COUNT];
 
 #endif

@@ -7,7 +7,9 @@
 #include "core/status.h"
 #include "core/volume.h"
 #include "extract/cases.h"
+#include "extract/cells.h"
 #include "extract/crossing.h"
+#include "extract/limits.h"
 #include "extract/normals.h"
 #include "extract/plan.h"
 #include "extract/snap.h"
@@ -18,11 +20,6 @@
 
 typedef cwi_plan plan;
 
-size_t cwi_mesh_bytes(size_t vertices, size_t triangles, bool normals)
-{
-    return vertices * 3 * sizeof(float) * (normals ? 2 : 1) + triangles * 3 * sizeof(uint32_t);
-}
-
 static cw_status check_snap(const cw_extract_desc *d, cw_error *err)
 {
     if (d->snap >= 0 && d->snap <= CW_EXTRACT_MAX_SNAP)
@@ -30,21 +27,6 @@ static cw_status check_snap(const cw_extract_desc *d, cw_error *err)
     return cw_fail(err, CW_ERR_ARGUMENT,
                    "snap is a share of an edge from 0 (off) to %g, and not %g",
                    CW_EXTRACT_MAX_SNAP, d->snap);
-}
-
-cw_status cwi_extract_check_limits(const cw_extract_desc *d, const cw_extract_counts *c,
-                                   cw_error *err)
-{
-    if (d->max_triangles && c->triangles > d->max_triangles)
-        return cw_fail(err, CW_ERR_LIMIT,
-                       "the surface has %zu triangles; the limit is %zu (--max-triangles)",
-                       c->triangles, d->max_triangles);
-    if (d->max_bytes && c->bytes > d->max_bytes)
-        return cw_fail(
-            err, CW_ERR_LIMIT,
-            "extraction of %zu triangles needs %zu bytes; the limit is %zu (--memory)",
-            c->triangles, c->bytes, d->max_bytes);
-    return CW_OK;
 }
 
 static void count_layer(void *context, size_t k)
@@ -104,21 +86,24 @@ static cw_status init_plan(plan *p, const cwi_engine *engine, const cw_volume *v
 {
     memset(p, 0, sizeof *p);
     p->engine = engine;
-    return volume->sparse ? cw_volume_select(volume, 0, 0, &p->grid.volume, err)
-                          : cwi_grid_init(&p->grid, volume, err);
+    return volume->sparse || volume->cells
+               ? cw_volume_select(volume, 0, 0, &p->grid.volume, err)
+               : cwi_grid_init(&p->grid, volume, err);
 }
 
-/* Sparse grids are extracted at one go; mesh NULL: counted. */
+/* Sparse and irregular grids are extracted at one go; mesh NULL: counted. */
 static bool is_dense(const plan *p)
 {
-    return !p->grid.volume.sparse;
+    return !p->grid.volume.sparse && !p->grid.volume.cells;
 }
 
 static cw_status extract_at_once(plan *p, const cw_extract_desc *d, cw_mesh *mesh,
                                  cw_error *err)
 {
+    const cw_volume *v = &p->grid.volume;
     memset(&p->counts, 0, sizeof p->counts);
-    return cwi_extract_sparse(p->engine, &p->grid.volume, d, mesh, &p->counts, err);
+    return v->cells ? cwi_cells_extract(v, d, mesh, &p->counts, err)
+                    : cwi_extract_sparse(p->engine, v, d, mesh, &p->counts, err);
 }
 
 void cwi_plan_free(plan *p)
@@ -145,7 +130,7 @@ static cw_status make_plan(plan *p, const cw_extract_desc *d, cw_error *err)
     st = cwi_plan_count(p, d->threads, &d->progress, err);
     if (st == CW_OK)
         st = cwi_grid_border_loops(&p->grid, &p->counts.border_loops, err);
-    p->counts.bytes = cwi_mesh_bytes(p->counts.vertices, p->counts.triangles, !d->no_normals) +
+    p->counts.bytes = cwi_extract_mesh_bytes(&p->counts, !d->no_normals) +
                       cwi_grid_bytes(&p->grid) + cwi_octree_bytes(&p->tree);
     if (d->snap > 0)
         p->counts.bytes += cwi_snap_bytes(g, p->counts.vertices, p->counts.triangles);
@@ -385,8 +370,8 @@ static cw_status write_slabs(plan *p, const cw_extract_desc *d, size_t triangles
 {
     const cw_extract_counts most = largest_slab(p, triangles);
     cw_mesh mesh;
-    p->counts.bytes = cwi_mesh_bytes(most.vertices, most.triangles, false) + most.vertices +
-                      cwi_grid_bytes(&p->grid);
+    p->counts.bytes =
+        cwi_extract_mesh_bytes(&most, false) + most.vertices + cwi_grid_bytes(&p->grid);
     cw_status st = cwi_extract_check_limits(d, &p->counts, err);
     if (st == CW_OK)
         st = cwi_mesh_alloc(&mesh, most.vertices, most.triangles, false, err);

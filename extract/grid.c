@@ -160,19 +160,29 @@ static bool drop_pinched(cwi_grid *g)
     return changed;
 }
 
-cw_status cwi_grid_set_level(cwi_grid *g, const cw_extract_desc *desc, cw_error *err)
+cw_status cwi_level_find(const cw_volume *v, const cw_extract_desc *desc, cwi_level *level,
+                         cw_error *err)
 {
-    const double slope = g->volume.slope;
-    g->level = (desc->isovalue - g->volume.intercept) / slope;
-    g->strict = slope < 0;
-    g->invert = (slope < 0) != desc->inside_is_low;
-    g->simple = desc->simple_topology;
-    g->cubic = desc->cubic_placement;
-    if (!isfinite(desc->isovalue) || !isfinite(g->level))
+    level->at = (desc->isovalue - v->intercept) / v->slope;
+    level->strict = v->slope < 0;
+    level->invert = (v->slope < 0) != desc->inside_is_low;
+    if (!isfinite(desc->isovalue) || !isfinite(level->at))
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "isovalue %g is not finite, or not after slope %g and intercept %g",
-                       desc->isovalue, slope, g->volume.intercept);
+                       desc->isovalue, v->slope, v->intercept);
     return CW_OK;
+}
+
+cw_status cwi_grid_set_level(cwi_grid *g, const cw_extract_desc *desc, cw_error *err)
+{
+    cwi_level level;
+    cw_status st = cwi_level_find(&g->volume, desc, &level, err);
+    g->level = level.at;
+    g->strict = level.strict;
+    g->invert = level.invert;
+    g->simple = desc->simple_topology;
+    g->cubic = desc->cubic_placement;
+    return st;
 }
 
 /* Cells at the end of the domain are dropped where the surface stays open. */

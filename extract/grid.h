@@ -10,6 +10,9 @@
 
 #include <cubewright/extract.h>
 
+/* The sides of the isovalue that some samples are on. */
+enum { CWI_OUTSIDE = 1, CWI_INSIDE = 2, CWI_BOTH = CWI_OUTSIDE | CWI_INSIDE };
+
 /* The surface is looked for in bricks of 8 x 8 x 8 cells. */
 enum { CWI_BRICK = 8 };
 
@@ -27,6 +30,16 @@ typedef struct cwi_layer {
     size_t plan_count, plan_room;
     bool plans_lost; /* there was no memory */
 } cwi_layer;
+
+/* The isovalue in stored numbers, and which side of it is inside. */
+typedef struct cwi_level {
+    double at;
+    bool strict; /* crossed upward above, not at, the level: values fall as numbers rise */
+    bool invert; /* inside is where the comparison fails */
+} cwi_level;
+
+cw_status cwi_level_find(const cw_volume *volume, const cw_extract_desc *desc, cwi_level *level,
+                         cw_error *err);
 
 typedef struct cwi_octree cwi_octree;
 typedef struct cwi_engine cwi_engine;

@@ -18,13 +18,6 @@ cw_status cwi_plan_count(cwi_plan *plan, int threads, const cw_progress *progres
                          cw_error *err);
 void cwi_plan_free(cwi_plan *plan);
 
-/* Fails with CW_ERR_LIMIT where counts are beyond the description's limits. */
-cw_status cwi_extract_check_limits(const cw_extract_desc *desc, const cw_extract_counts *counts,
-                                   cw_error *err);
-
-/* Bytes of a mesh. */
-size_t cwi_mesh_bytes(size_t vertices, size_t triangles, bool normals);
-
 /* Where vertices of a volume go: the mesh's arrays, relative to an origin, which it gets, in
  * the middle of the volume. invert: as in cwi_grid */
 cwi_vertex_sink cwi_make_sink(const cw_volume *volume, bool invert, cw_mesh *mesh);

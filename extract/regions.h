@@ -12,8 +12,7 @@
 /* Along x a row of samples, with what is around it, just fits a word of bits. */
 enum { CWI_BLOCK_X = 7, CWI_BLOCK_Y = 4, CWI_BLOCK_Z = 4 };
 
-/* On which sides of the isovalue samples are; and what is in no region. */
-enum { CWI_OUTSIDE = 1, CWI_INSIDE = 2, CWI_BOTH = CWI_OUTSIDE | CWI_INSIDE };
+/* The number of what is in no region. */
 #define CWI_BACKGROUND UINT32_MAX
 
 /* A leaf or a tile: samples 8 * at to 8 * (at + size) - 1 along each axis. */

@@ -7,6 +7,7 @@
 #include "core/volume.h"
 #include "extract/crossings.h"
 #include "extract/gather.h"
+#include "extract/limits.h"
 #include "extract/normals.h"
 #include "extract/plan.h"
 
@@ -123,8 +124,9 @@ static cw_status alloc_piece(const worker *w, bool normals, cwi_piece *piece, cw
 {
     const size_t v = w->plan.counts.vertices, t = w->plan.counts.triangles,
                  strangers = w->stranger_count;
-    char *memory = cwi_alloc_array(
-        cwi_mesh_bytes(v, t, normals) + strangers * sizeof *piece->strangers, 1);
+    char *memory = cwi_alloc_array(cwi_extract_mesh_bytes(&w->plan.counts, normals) +
+                                       strangers * sizeof *piece->strangers,
+                                   1);
     *piece = (cwi_piece){
         .memory = memory, .vertex_count = v, .triangle_count = t, .stranger_count = strangers};
     if (!memory)
@@ -169,7 +171,8 @@ static cw_status make_piece(const sparse_plan *p, cwi_block *b, worker *w, cw_er
 
 static size_t bytes_of(const sparse_plan *p, const cwi_block *b)
 {
-    return cwi_mesh_bytes(b->vertices, b->triangles, !p->desc->no_normals);
+    const cw_extract_counts c = {.vertices = b->vertices, .triangles = b->triangles};
+    return cwi_extract_mesh_bytes(&c, !p->desc->no_normals);
 }
 
 /* Too many triangles are told as soon as so many are found, not when all are made. */
@@ -412,7 +415,7 @@ static cw_status number_blocks(sparse_plan *p, cw_extract_counts *c, cw_error *e
         seam += b->seam_count;
     }
     *c = (cw_extract_counts){.vertices = v, .triangles = t};
-    c->bytes = 2 * cwi_mesh_bytes(v, t, !p->desc->no_normals) + seam * sizeof(cwi_seam) +
+    c->bytes = 2 * cwi_extract_mesh_bytes(c, !p->desc->no_normals) + seam * sizeof(cwi_seam) +
                p->blocks.room * sizeof *p->blocks.block; /* as pieces, and joined */
     if (v > UINT32_MAX)
         return cw_fail(err, CW_ERR_LIMIT, "the surface has %zu vertices; a mesh holds %u", v,

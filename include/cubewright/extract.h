@@ -52,7 +52,8 @@ typedef struct cw_extract_counts {
     cw_snap_counts snap; /* known when it is made; before, and without snapping, zero */
 } cw_extract_counts;
 
-/* Extracts the surface { p : f(p) = isovalue } of the trilinear field f by marching cubes.
+/* Extracts the surface { p : f(p) = isovalue } of the trilinear field f by marching cubes; on
+ * an irregular grid by marching its cells, see below.
  *
  * Vertices are in the volume's world frame (LPS, millimetres) and shared by the triangles
  * around them; each lies on a grid edge, kept 1/1024 of the edge away from its ends, so that
@@ -77,6 +78,19 @@ typedef struct cw_extract_counts {
  * the dense grid, in another order; it has no border, and what has no value (NaN, no-data) is
  * capped.
  *
+ * On an irregular grid f is linear in tetrahedra, along edges, and trilinear in hexahedra; the
+ * surface in other cells is bounded by what it is on their faces. All that is said above holds
+ * but for two things: distorted cells may make it cross itself, and caps lie in the border's
+ * faces, those that no other cell has, and have vertices at samples. Cells are neighbours when
+ * they have a face with all its corners in common, whichever way round a file has them: in each
+ * set of neighbours volumes add up to a positive one. A face of three cells or more, one that
+ * would turn a cell against itself, and those of cells that lie in each other are borders.
+ * Cells with a NaN or no-data sample are not there, nor are those whose repeated corners leave
+ * none of the four shapes, nor a hexahedron with some edges of no length. Vertices of the
+ * border in one place are moved apart, 1/1024 of the way into their cells. Two cells should
+ * have no more in common than one face, edge or corner: else they may share a triangle's side.
+ * Normals are least squares over the edges at a sample, exact where the field is linear.
+ *
  * volume   borrowed; at least 2 voxels along each axis; first component and step are used
  * desc     borrowed; NULL means all defaults
  * mesh     filled on success, emptied on failure; free it with cw_mesh_free()
@@ -84,25 +98,28 @@ typedef struct cw_extract_counts {
  * err      may be NULL
  *
  * Returns  CW_ERR_ARGUMENT  isovalue is not finite, volume too thin, voxels too small or large
- *                           for single precision (1e-38, 1e38 mm), snap out of range, or as
+ *                           for single precision (1e-38, 1e38 mm), snap out of range, a cell's
+ *                           shape or corner that is none, a point that is not finite, or as
  *                           cw_volume_resolve()
  *          CW_ERR_UNSUPPORTED  snap on a grid that is not even, cubic_placement on a
- *                           rectilinear one
+ *                           rectilinear or irregular one
  *          CW_ERR_LIMIT     more than 2^32 - 1 vertices, or a limit of desc
  *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
- * Cost     two passes over the voxels' sign bits after one over the voxels; snapping takes some
- *          five microseconds for each vertex that it makes, far more than the rest; in noise
- *          five times that
+ * Cost     two passes over the voxels' sign bits after one over the voxels; on an irregular
+ *          grid half a microsecond a cell with a corner inside, a tenth of that for others;
+ *          snapping takes some five microseconds for each vertex that it makes, far more than
+ *          the rest; in noise five times that
  * Threads  reentrant; the mesh is the same to the bit for any number of threads
  * Source   [Lorensen1987]; faces [Nielson1991]; tunnels after [Chernyaev1995]; simple_topology
- *          [Montani1994]; snapping after [Moore1992]; ranks in place of maps as in
- *          extract/README.md */
+ *          [Montani1994]; tetrahedra [Doi1991]; snapping after [Moore1992]; ranks in place of
+ *          maps as in extract/README.md */
 CW_API cw_status cw_extract(const cw_volume *volume, const cw_extract_desc *desc, cw_mesh *mesh,
                             cw_extract_counts *counts, cw_error *err);
 
 /* The same surface a slab at a time, so that all of it never is in memory: what is left of one
  * slab is the sink's business before the next is made. Vertices are those of cw_extract(),
- * without normals; where slabs end depends on the surface and on `triangles` only.
+ * without normals; where slabs end depends on the surface and on `triangles` only. On an
+ * irregular grid all of it is one slab.
  *
  * desc       as in cw_extract(), but without snap
  * triangles  of a slab, at least, where there are so many: slabs are whole layers of cells,
@@ -124,6 +141,8 @@ CW_API cw_status cw_extract_predict(const cw_volume *volume, const cw_extract_de
  * voxels, and on the way builds an octree of the lowest and highest value in each brick of 8 x
  * 8 x 8 cells; later ones read the bricks that their isovalue passes through, and no others.
  * Meshes are the same to the bit as those of cw_extract().
+ *
+ * Of an irregular grid nothing is kept: each surface is extracted anew.
  *
  * Holds planes of bits and the tree: at most 1/8 of the bytes of a volume of floats. One
  * extraction at a time; several extractors may share a volume.
@@ -162,7 +181,7 @@ typedef struct cw_normals_desc {
  * err      may be NULL
  *
  * Returns  CW_ERR_ARGUMENT  volume too thin, or as cw_volume_resolve(), cw_mesh_check();
- *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
+ *          CW_ERR_UNSUPPORTED  the grid is irregular; CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
  * Cost     half a microsecond a vertex
  * Threads  reentrant; the same to the bit for any number of threads */
 CW_API cw_status cw_extract_normals(const cw_volume *volume, const cw_normals_desc *desc,
