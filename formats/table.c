@@ -70,6 +70,11 @@ static const cw_format rows[] = {
      .about = "TIFF stack: pages of one file, or numbered slices",
      .reads_volume = true,
      .lost = ""},
+    {.name = "vdb",
+     .extensions = ".vdb",
+     .about = "OpenVDB level set or fog volume, sparse",
+     .reads_volume = true,
+     .lost = ""},
     {.name = "raw",
      .extensions = ".raw",
      .about = "bytes without a header, laid out as the caller says",
@@ -153,7 +158,11 @@ static void fill_formats(void)
 {
     static const struct {
         const char *format, *module;
-    } modules[] = {{"glb", "gltf"}, {"gltf", "gltf"}, {"dicom", "dicom"}, {"tiff", "tiff"}};
+    } modules[] = {{"glb", "gltf"},
+                   {"gltf", "gltf"},
+                   {"dicom", "dicom"},
+                   {"tiff", "tiff"},
+                   {"vdb", "openvdb"}};
     memcpy(formats, rows, sizeof rows);
     for (int i = 0; i < ROW_COUNT; i++)
         for (size_t m = 0; m < sizeof modules / sizeof *modules; m++)
