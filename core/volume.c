@@ -276,8 +276,9 @@ cw_status cw_volume_select(const cw_volume *in, size_t component, size_t step, c
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "component %zu of step %zu: the volume has %zu components, %zu steps",
                        component, step, v.components, v.steps);
-    v.data = (const char *)v.data + (ptrdiff_t)component * v.component_stride +
-             (ptrdiff_t)step * v.step_stride;
+    if (v.data)
+        v.data = (const char *)v.data + (ptrdiff_t)component * v.component_stride +
+                 (ptrdiff_t)step * v.step_stride;
     v.components = v.steps = 1;
     v.owned = v.owned_grid = NULL;
     *out = v;

@@ -320,7 +320,8 @@ static cw_status keep_crossed(sorting *s, cw_error *err)
             b->block[kept++] = *at;
     }
     b->count = kept;
-    qsort(b->block, kept, sizeof *b->block, by_place);
+    if (kept)
+        qsort(b->block, kept, sizeof *b->block, by_place);
     return make_table(b, b->slots ? b->slots : 2)
                ? CW_OK
                : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu blocks", kept);

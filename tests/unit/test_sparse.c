@@ -15,7 +15,7 @@ typedef double (*field)(double x, double y, double z);
 
 static double ball(double x, double y, double z)
 {
-    return 30 - sqrt((x - 60) * (x - 60) + (y - 37) * (y - 37) + (z - 40) * (z - 40));
+    return 19 - sqrt((x - 34) * (x - 34) + (y - 23) * (y - 23) + (z - 26) * (z - 26));
 }
 
 static double sponge(double x, double y, double z)
@@ -33,7 +33,7 @@ static double noise(double x, double y, double z)
     return (double)((h ^ h >> 15) % 7) - 3; /* many samples at the isovalue */
 }
 
-static const size_t dim[3] = {136, 80, 88}; /* several blocks along each axis */
+static const size_t dim[3] = {80, 48, 56}; /* several blocks along each axis */
 
 /* What is beyond `far` from the surface of the ball is cut off, as narrow bands are. */
 static cw_volume make_dense(field f, cw_type type, double scale, double far)
@@ -44,7 +44,7 @@ static cw_volume make_dense(field f, cw_type type, double scale, double far)
     for (size_t n = 0; n < dim[0] * dim[1] * dim[2]; n++) {
         const size_t i = n % dim[0], j = n / dim[0] % dim[1], k = n / dim[0] / dim[1];
         const double x = (double)i, y = (double)j, z = (double)k;
-        const bool rim = i < 3 || j < 3 || k < 3 || i > 130 || j > 74 || k > 84;
+        const bool rim = i < 3 || j < 3 || k < 3 || i > 74 || j > 43 || k > 50;
         const double bound = fmin(fmax(ball(x, y, z), -far), far);
         const double value = rim ? -far : f == ball ? bound : bound > -far ? f(x, y, z) : -far;
         const double stored = rint(value * scale);
@@ -314,7 +314,7 @@ static void test_refusals(void **state)
                  CW_ERR_ARGUMENT, "not finite", err);
     assert_fails(cw_volume_crop(&v, &(cw_box){{0, 0, 0}, {8, 8, 8}}, &v, &err),
                  CW_ERR_UNSUPPORTED, "a crop on a sparse grid", err);
-    v.dim[0] = 64;
+    v.dim[0] = 48;
     assert_fails(cw_extract(&v, NULL, &m, NULL, &err), CW_ERR_ARGUMENT,
                  "is beyond the volume's", err);
     const cw_tile tile = {{0, 0, 0}, {1, 1, 1}, 300};
