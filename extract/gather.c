@@ -95,13 +95,16 @@ static span span_of(const cwi_gathering *g, int a, size_t slot)
                   .in_leaf = slot ? 0 : CWI_LEAF - g->halo};
 }
 
-/* Most runs are those of whole leaves. */
-static inline void copy_run(char *to, const char *from, size_t bytes)
+/* So many runs, from and to so many bytes apart; most are those of whole leaves. */
+static inline void copy_runs(char *to, size_t to_step, const char *from, size_t from_step,
+                             size_t bytes, size_t count)
 {
     if (bytes == CWI_LEAF * sizeof(float))
-        memcpy(to, from, CWI_LEAF * sizeof(float));
+        for (; count--; to += to_step, from += from_step)
+            memcpy(to, from, CWI_LEAF * sizeof(float));
     else
-        memcpy(to, from, bytes);
+        for (; count--; to += to_step, from += from_step)
+            memcpy(to, from, bytes);
 }
 
 /* The samples of one slot: of a leaf, or all with one value. */
@@ -109,22 +112,22 @@ static void copy_slot(const cwi_gathering *g, uint32_t number, span x, span y, s
 {
     const cw_volume *v = g->blocks->volume;
     const size_t size = cw_type_size(v->type), run = (x.end - x.begin) * size;
+    const size_t row = CWI_PITCH * size, line = CWI_LEAF * size;
     double same[CWI_LEAF]; /* of any type */
     const cwi_region r = number != CWI_BACKGROUND
                              ? cwi_region_at(v, number)
                              : (cwi_region){.value = v->sparse->background};
     for (size_t n = 0; n < CWI_LEAF && !r.voxels; n++)
         cwi_voxel_put(v->type, (char *)same + n * size, r.value);
-    for (size_t k = z.begin; k < z.end; k++)
-        for (size_t j = y.begin; j < y.end; j++) {
-            const size_t in_leaf =
-                ((k - z.begin + z.in_leaf) * CWI_LEAF + j - y.begin + y.in_leaf) * CWI_LEAF +
-                x.in_leaf;
-            char *to = g->voxels + ((k * g->sample[1] + j) * CWI_PITCH + x.begin) * size;
-            copy_run(to,
-                     r.voxels ? (const char *)r.voxels + in_leaf * size : (const char *)same,
-                     run);
-        }
+    for (size_t k = z.begin; k < z.end; k++) {
+        const size_t in_leaf = ((k - z.begin + z.in_leaf) * CWI_LEAF + y.in_leaf) * line;
+        char *to = g->voxels + (k * g->sample[1] + y.begin) * row + x.begin * size;
+        if (r.voxels)
+            copy_runs(to, row, (const char *)r.voxels + in_leaf + x.in_leaf * size, line, run,
+                      y.end - y.begin);
+        else
+            copy_runs(to, row, (const char *)same, 0, run, y.end - y.begin);
+    }
 }
 
 /* Bits of rows whose samples, between the padding, are all on one side. */

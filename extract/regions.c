@@ -96,11 +96,18 @@ static cw_status check(const cw_volume *v, cw_error *err)
 
 enum { TOGETHER = 512 }; /* leaves that a thread looks at in a row */
 
+/* A region and a block that it touches. */
+typedef struct touch {
+    uint32_t block, region;
+} touch;
+
 typedef struct sorting {
     cwi_blocks *blocks;
     const cwi_engine *engine;
     const cwi_grid *grid;
     size_t max_bytes;
+    touch *touches;
+    size_t touch_count, touch_room;
 } sorting;
 
 static uint8_t sides_of(const sorting *s, const void *voxels, size_t count)
@@ -145,9 +152,15 @@ static size_t slot_of(const cwi_blocks *b, const uint32_t at[3])
     return slot;
 }
 
+/* Its number and 1; 0: there is none. */
+static uint32_t find_number(const cwi_blocks *b, const uint32_t at[3])
+{
+    return b->slots ? b->table[slot_of(b, at)] : 0;
+}
+
 const cwi_block *cwi_blocks_find(const cwi_blocks *b, const uint32_t at[3])
 {
-    const uint32_t number = b->slots ? b->table[slot_of(b, at)] : 0;
+    const uint32_t number = find_number(b, at);
     return number ? &b->block[number - 1] : NULL;
 }
 
@@ -278,26 +291,6 @@ static cw_status note_sides(sorting *s, size_t n, const reach along[3], const ui
     return CW_OK;
 }
 
-static cw_status count_region(sorting *s, size_t n, const reach along[3], const uint32_t at[3],
-                              cw_error *err)
-{
-    cwi_block *b = (cwi_block *)cwi_blocks_find(s->blocks, at);
-    (void)n, (void)along, (void)err;
-    if (b)
-        b->count++;
-    return CW_OK;
-}
-
-static cw_status list_region(sorting *s, size_t n, const reach along[3], const uint32_t at[3],
-                             cw_error *err)
-{
-    cwi_block *b = (cwi_block *)cwi_blocks_find(s->blocks, at);
-    (void)along, (void)err;
-    if (b)
-        s->blocks->region[b->first + b->count++] = (uint32_t)n;
-    return CW_OK;
-}
-
 static int by_place(const void *a, const void *b)
 {
     const cwi_block *p = a, *q = b;
@@ -327,19 +320,47 @@ static cw_status keep_crossed(sorting *s, cw_error *err)
                : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu blocks", kept);
 }
 
+static cw_status note_touch(sorting *s, size_t n, const reach along[3], const uint32_t at[3],
+                            cw_error *err)
+{
+    (void)along;
+    const uint32_t block = find_number(s->blocks, at);
+    if (!block)
+        return CW_OK;
+    if (s->touch_count == s->touch_room) {
+        s->touch_room =
+            s->touch_room ? 2 * s->touch_room : 4 * region_count(s->blocks->volume->sparse);
+        touch *more = cwi_realloc_array(s->touches, s->touch_room, sizeof *more);
+        if (!more)
+            return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", s->touch_room);
+        s->touches = more;
+    }
+    s->touches[s->touch_count++] = (touch){block - 1, (uint32_t)n};
+    s->blocks->block[block - 1].count++;
+    return CW_OK;
+}
+
+/* Gives each block the list of its regions. */
 static cw_status list_regions(sorting *s, cw_error *err)
 {
     cwi_blocks *b = s->blocks;
     size_t total = 0;
-    visit_all(s, 1, count_region, err);
+    cw_status st = visit_all(s, 1, note_touch, err);
+    if (st != CW_OK)
+        return st;
+    b->region = cwi_alloc_array(s->touch_count, sizeof *b->region);
+    if (!b->region)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", s->touch_count);
     for (size_t n = 0; n < b->count; n++) {
         b->block[n].first = total;
         total += b->block[n].count;
         b->block[n].count = 0;
     }
-    b->region = cwi_alloc_array(total, sizeof *b->region);
-    return b->region ? visit_all(s, 1, list_region, err)
-                     : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu leaves", total);
+    for (size_t n = 0; n < s->touch_count; n++) {
+        cwi_block *block = &b->block[s->touches[n].block];
+        b->region[block->first + block->count++] = s->touches[n].region;
+    }
+    return CW_OK;
 }
 
 cw_status cwi_blocks_init(cwi_blocks *b, const cwi_engine *engine, const cwi_grid *grid,
@@ -362,6 +383,7 @@ cw_status cwi_blocks_init(cwi_blocks *b, const cwi_engine *engine, const cwi_gri
         st = keep_crossed(&s, err);
     if (st == CW_OK)
         st = list_regions(&s, err);
+    cwi_free(s.touches);
     return st;
 }
 

@@ -406,7 +406,8 @@ static cw_status each_block(sparse_plan *p, const char *step,
 static cw_status number_blocks(sparse_plan *p, cw_extract_counts *c, cw_error *err)
 {
     size_t v = 0, t = 0, seam = 0;
-    for (cwi_block *b = p->blocks.block; b < p->blocks.block + p->blocks.count; b++) {
+    for (size_t n = 0; n < p->blocks.count; n++) {
+        cwi_block *b = &p->blocks.block[n];
         const size_t vertices = b->vertices, triangles = b->triangles;
         b->vertices = v;
         b->triangles = t;
