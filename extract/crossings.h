@@ -25,13 +25,19 @@ static inline uint64_t cwi_live_edges(const cwi_grid *g, int axis, size_t j, siz
     return here | here << 1 | before >> 63;
 }
 
+/* Of a block: the edges of live cells along axis from row (j, k). */
+static inline const uint64_t *cwi_window(const cwi_grid *g, int axis, size_t j, size_t k)
+{
+    return g->window + ((size_t)axis + 1) * g->rows + k * g->rows_y + j;
+}
+
 /* Bit i: there is a vertex on the edge along axis from sample i of row (j, k). */
 static inline uint64_t cwi_edge_vertices(const cwi_grid *g, int axis, size_t j, size_t k,
                                          size_t w)
 {
     const uint64_t crossed = cwi_grid_crossed(g, axis, j, k, w);
     if (g->window)
-        return crossed & g->window[((size_t)axis + 1) * g->rows + k * g->rows_y + j];
+        return crossed & *cwi_window(g, axis, j, k);
     return g->live ? crossed & cwi_live_edges(g, axis, j, k, w) : crossed;
 }
 

@@ -253,7 +253,11 @@ static void count_row(const cwi_grid *g, size_t j, size_t k, cwi_row *row)
         const cell_word c = load_cells(g, j, k, w);
         if (side || w == 0 || w == n[0] / 64)
             at_border |= c.mixed & border_cells(g, w, side);
-        if (g->live) {
+        if (g->window) {
+            for (int axis = 0; axis < 3; axis++)
+                count[axis] += (unsigned)popcount((c.corner[0] ^ c.corner[1 << axis]) &
+                                                  *cwi_window(g, axis, j, k));
+        } else if (g->live) {
             for (int axis = 0; axis < 3; axis++)
                 count[axis] += (unsigned)popcount(cwi_edge_vertices(g, axis, j, k, w));
         } else {
@@ -352,7 +356,7 @@ static const struct {
 static inline void load_edges(edge_word *e, const cwi_grid *g, const cell_word *c, size_t j,
                               size_t k, size_t w)
 {
-    if (g->live) {
+    if (g->live && !g->window) {
         for (int n = 0; n < 12; n++)
             e->crossed[n] = cwi_edge_vertices(g, edge_rows[n].axis, j + edge_rows[n].j,
                                               k + edge_rows[n].k, w);
@@ -364,6 +368,9 @@ static inline void load_edges(edge_word *e, const cwi_grid *g, const cell_word *
     e->crossed[6] = e->crossed[7] = c->corner[4] ^ c->corner[6];
     e->crossed[8] = e->crossed[9] = c->corner[0] ^ c->corner[4];
     e->crossed[10] = e->crossed[11] = c->corner[2] ^ c->corner[6];
+    for (int n = 0; n < 12 && g->window; n++)
+        e->crossed[n] &=
+            *cwi_window(g, edge_rows[n].axis, j + edge_rows[n].j, k + edge_rows[n].k);
 }
 
 /* Goes on to the next word. */
