@@ -59,7 +59,7 @@ static cw_status find_levels(facts *f, int threads, cw_error *err)
     if (count && cw_statistics_otsu(&s, MAX_LEVELS, values + 1))
         count += MAX_LEVELS;
     if (f->volume.whole.known & CW_KNOWN_LEVEL_SET)
-        f->levels[f->level_count++] = (level){.name = "surface", .value = 0};
+        f->levels[f->level_count++] = (level){.name = "zero", .value = 0};
     for (int n = 0; n < count; n++)
         f->levels[f->level_count++] = (level){.name = names[n], .value = values[n]};
     cw_statistics_free(&s);

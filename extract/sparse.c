@@ -175,21 +175,30 @@ static size_t bytes_of(const sparse_plan *p, const cwi_block *b)
     return cwi_extract_mesh_bytes(&c, !p->desc->no_normals);
 }
 
-/* Too many triangles are told as soon as so many are found, not when all are made. */
+/* What is too much is told as soon as it is found, not when all is made. */
 static cw_status check_made(sparse_plan *p, const cwi_block *b, cw_error *err)
 {
-    cw_extract_counts made = {0};
+    const cw_extract_desc *d = p->desc;
+    size_t made, bytes;
 #pragma omp atomic capture
     {
         p->made += b->triangles;
-        made.triangles = p->made;
+        made = p->made;
     }
 #pragma omp atomic capture
     {
         p->bytes += bytes_of(p, b);
-        made.bytes = p->bytes;
+        bytes = p->bytes;
     }
-    return cwi_extract_check_limits(p->desc, &made, err);
+    if (d->max_triangles && made > d->max_triangles)
+        return cw_fail(err, CW_ERR_LIMIT,
+                       "the surface has more triangles than the limit of %zu (--max-triangles)",
+                       d->max_triangles);
+    if (d->max_bytes && bytes > d->max_bytes)
+        return cw_fail(err, CW_ERR_LIMIT,
+                       "extraction needs more bytes than the limit of %zu (--memory)",
+                       d->max_bytes);
+    return CW_OK;
 }
 
 static cw_status march_block(sparse_plan *p, cwi_block *b, worker *w, cw_error *err)

@@ -7,8 +7,6 @@ extern "C" {
 }
 
 #include <openvdb/openvdb.h>
-#include <tbb/global_control.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cstring>
@@ -72,6 +70,43 @@ private:
     std::vector<char> bytes;
 };
 
+// A grid whose tree is freed without TBB: its threads do not come along into the process, and
+// none may be started there. A tree that is empty does not ask for them.
+class held_grid
+{
+public:
+    held_grid() = default;
+    explicit held_grid(GridBase::Ptr grid) : held(std::move(grid))
+    {
+    }
+    held_grid(held_grid &&other) = default;
+    held_grid &operator=(held_grid &&other)
+    {
+        std::swap(held, other.held);
+        return *this;
+    }
+    ~held_grid()
+    {
+        if (held)
+            held->apply<openvdb::GridTypes>([](auto &grid) { grid.tree().root().clear(); });
+    }
+    explicit operator bool() const
+    {
+        return bool(held);
+    }
+    GridBase &operator*() const
+    {
+        return *held;
+    }
+    GridBase *operator->() const
+    {
+        return held.get();
+    }
+
+private:
+    GridBase::Ptr held;
+};
+
 // A file's grids in their order, as openvdb::io::Stream reads them; but without voxels, or only
 // one of them.
 class archive : public openvdb::io::Archive
@@ -89,10 +124,12 @@ public:
         count = std::max(readGridCount(in), 0);
     }
 
-    // The next grid, without voxels.
-    GridBase::Ptr next(openvdb::io::GridDescriptor &about)
+    // The next grid, without voxels; none where its type is not known.
+    held_grid next(openvdb::io::GridDescriptor &about)
     {
-        GridBase::Ptr grid = about.read(in);
+        held_grid grid = begin(about);
+        if (!grid)
+            return grid;
         grid->setSaveFloatAsHalf(about.saveFloatAsHalf());
         if (inputHasGridOffsets())
             about.seekToGrid(in);
@@ -111,10 +148,10 @@ public:
     }
 
     // Its voxels, or on to the next grid without them.
-    void finish(const openvdb::io::GridDescriptor &about, GridBase &grid, bool voxels)
+    void finish(const openvdb::io::GridDescriptor &about, const held_grid &grid, bool voxels)
     {
-        if (!about.isInstance() && (voxels || !inputHasGridOffsets()))
-            grid.readBuffers(in);
+        if (grid && !about.isInstance() && (voxels || !inputHasGridOffsets()))
+            grid->readBuffers(in);
         if (inputHasGridOffsets())
             about.seekToEnd(in);
     }
@@ -122,6 +159,21 @@ public:
     int32_t count;
 
 private:
+    // Its description. OpenVDB leaves off at a type that it does not know, ahead of the places.
+    held_grid begin(openvdb::io::GridDescriptor &about)
+    {
+        try {
+            return held_grid(about.read(in));
+        } catch (const openvdb::LookupError &) {
+            int64_t places[3]; // of the grid, its voxels, its end
+            in.read(reinterpret_cast<char *>(places), sizeof places);
+            about.setEndPos(places[2]);
+            if (!inputHasGridOffsets())
+                throw;
+            return held_grid();
+        }
+    }
+
     descriptor_buffer buffer;
     std::istream in;
     openvdb::io::StreamMetadata::Ptr stream{new openvdb::io::StreamMetadata};
@@ -249,7 +301,7 @@ void put_voxels(const std::vector<const void *> &leaves, size_t first, size_t co
 struct state {
     int fd = -1;
     int64_t size = 0;
-    GridBase::Ptr grid;
+    held_grid grid;
     size_t number = 0; // of that grid
     content held;
 };
@@ -306,18 +358,41 @@ void put_facts(const GridBase &grid, const openvdb::io::GridDescriptor &about, c
         put_affine(grid, f);
 }
 
-cw_status list(state &s, void *shared, cw_error *err)
+void put_unknown(const openvdb::io::GridDescriptor &about, cwi_vdb_grid &f)
+{
+    put_text(about.gridName(), f.name, sizeof f.name);
+    put_text("its type " + about.gridType() + " is not known", f.refusal, sizeof f.refusal);
+}
+
+// As cw::guard(), but files that end too early are told so.
+template <typename Body> cw_status guard_file(cw_error *err, Body &&body)
 {
     return cw::guard(err, "OpenVDB", [&] {
+        try {
+            return body();
+        } catch (const std::ios_base::failure &) {
+            return cw_fail(err, CW_ERR_FORMAT,
+                           "it is damaged: it ends, or points beyond its end, "
+                           "where there should be more of a grid");
+        }
+    });
+}
+
+cw_status list(state &s, void *shared, cw_error *err)
+{
+    return guard_file(err, [&] {
         auto *facts = static_cast<cwi_vdb_facts *>(shared);
         archive file(s.fd, s.size);
         facts->grid_count = uint32_t(file.count);
         for (int32_t n = 0; n < std::min<int32_t>(file.count, CWI_VDB_MOST_GRIDS); n++) {
             openvdb::io::GridDescriptor about;
             facts->grid[n] = cwi_vdb_grid{};
-            GridBase::Ptr grid = file.next(about);
-            put_facts(*grid, about, facts->grid[n]);
-            file.finish(about, *grid, false);
+            const held_grid grid = file.next(about);
+            if (grid)
+                put_facts(*grid, about, facts->grid[n]);
+            else
+                put_unknown(about, facts->grid[n]);
+            file.finish(about, grid, false);
         }
         return CW_OK;
     });
@@ -329,8 +404,10 @@ void load(state &s, size_t number)
     for (size_t n = 0; n <= number; n++) {
         openvdb::io::GridDescriptor about;
         s.grid = file.next(about);
-        file.finish(about, *s.grid, n == number);
+        file.finish(about, s.grid, n == number);
     }
+    if (!s.grid)
+        throw openvdb::ValueError("the file changed");
     with_tree(*s.grid, [&](const auto &tree, cw_type) { s.held = content_of(tree); });
     s.number = number;
 }
@@ -369,7 +446,7 @@ void put_rows(const state &s, const Tree &, cw_type type, const cwi_plane_reques
 
 cw_status read_rows(state &s, const cwi_plane_request &q, void *shared, cw_error *err)
 {
-    return cw::guard(err, "OpenVDB", [&] {
+    return guard_file(err, [&] {
         if (!s.grid || s.number != q.plane / CWI_VDB_PLANES)
             load(s, q.plane / CWI_VDB_PLANES);
         with_tree(*s.grid,
@@ -383,8 +460,8 @@ void close_file(state &s)
     if (s.fd >= 0)
         close(s.fd);
     s.fd = -1;
-    s.grid.reset();
     s.held = content();
+    s.grid = held_grid();
 }
 
 void *state_new()
@@ -398,21 +475,13 @@ void state_free(void *p)
     delete static_cast<state *>(p);
 }
 
-// A tree is freed by TBB's threads, and the process may not start any: TBB finds out what it is
-// running on here, where files may still be opened, and there does without threads.
-using single_thread = tbb::global_control;
-constexpr auto parallelism = tbb::global_control::max_allowed_parallelism;
-
 void prepare()
 {
-    const single_thread one(parallelism, 1);
     openvdb::initialize();
-    tbb::parallel_for(0, 2, [](int) {});
 }
 
 cw_status work(void *p, int fd, const void *request, void *shared, cw_error *err)
 {
-    const single_thread one(parallelism, 1);
     state &s = *static_cast<state *>(p);
     const auto &q = *static_cast<const cwi_plane_request *>(request);
     if (q.op == CWI_PLANE_PIXELS)

@@ -1,6 +1,6 @@
 /* OpenVDB files: every kind of grid, and files that are damaged. */
 #include "support/surface.h"
-#include "support/vdbs.h"
+#include "vdb/vdbs.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "support/vdbs.h"
+#include "vdb/vdbs.h"
 
 #include <openvdb/io/Stream.h>
 #include <openvdb/openvdb.h>
