@@ -14,8 +14,13 @@
 #include <omp.h>
 #include <string.h>
 
-static const int cells[3] = {CWI_LEAF * CWI_BLOCK_X, CWI_LEAF *CWI_BLOCK_Y,
-                             CWI_LEAF *CWI_BLOCK_Z};
+/* Of a block, along the axes. */
+enum {
+    CELLS_X = CWI_LEAF * CWI_BLOCK_X,
+    CELLS_Y = CWI_LEAF * CWI_BLOCK_Y,
+    CELLS_Z = CWI_LEAF * CWI_BLOCK_Z
+};
+static const int cells[3] = {CELLS_X, CELLS_Y, CELLS_Z};
 
 /* What a thread holds of the block at hand. */
 typedef struct worker {
@@ -217,15 +222,16 @@ static cw_status march_block(sparse_plan *p, cwi_block *b, worker *w, cw_error *
 /* --- joining -------------------------------------------------------------------------------
  */
 
-/* The number in the mesh of another block's vertex. That block cuts the same edge: it was kept,
- * and has the key. */
-static uint32_t number_of(const sparse_plan *p, const cwi_block *b, const cwi_stranger *s)
+/* The number in the mesh of another block's vertex. That block cuts the same edge, so it was
+ * kept and has the key; but for leaves that lie in each other. */
+static bool find_stranger(const sparse_plan *p, const cwi_block *b, const cwi_stranger *s,
+                          uint32_t *number)
 {
     uint32_t at[3];
     for (int a = 0; a < 3; a++)
         at[a] = b->at[a] + (s->beyond >> a & 1);
     const cwi_block *owner = cwi_blocks_find(&p->blocks, at);
-    size_t low = 0, high = owner->seam_count;
+    size_t low = 0, high = owner ? owner->seam_count : 0;
     while (high - low > 1) {
         const size_t middle = low + (high - low) / 2;
         if (owner->seam[middle].key <= s->key)
@@ -233,11 +239,14 @@ static uint32_t number_of(const sparse_plan *p, const cwi_block *b, const cwi_st
         else
             high = middle;
     }
-    return (uint32_t)owner->vertices + owner->seam[low].number;
+    if (high == 0 || owner->seam[low].key != s->key)
+        return false;
+    *number = (uint32_t)owner->vertices + owner->seam[low].number;
+    return true;
 }
 
 /* Copies a block's own vertices to the mesh, and tells where all are there. */
-static void place_vertices(const sparse_plan *p, const cwi_block *b, uint32_t *number)
+static bool place_vertices(const sparse_plan *p, const cwi_block *b, uint32_t *number)
 {
     const cwi_piece *piece = &b->piece;
     const cw_mesh *mesh = p->mesh;
@@ -251,9 +260,10 @@ static void place_vertices(const sparse_plan *p, const cwi_block *b, uint32_t *n
             memcpy(mesh->normals + 3 * to, piece->normals + 3 * from, bytes);
         while (from < end)
             number[from++] = (uint32_t)to++;
-        if (!last)
-            number[from++] = number_of(p, b, &piece->strangers[n]);
+        if (!last && !find_stranger(p, b, &piece->strangers[n], &number[from++]))
+            return false;
     }
+    return true;
 }
 
 static cw_status join_block(sparse_plan *p, cwi_block *b, worker *w, cw_error *err)
@@ -269,7 +279,8 @@ static cw_status join_block(sparse_plan *p, cwi_block *b, worker *w, cw_error *e
     if (!w->number)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices",
                        piece->vertex_count);
-    place_vertices(p, b, w->number);
+    if (!place_vertices(p, b, w->number))
+        return cw_fail(err, CW_ERR_ARGUMENT, "leaves or tiles of the sparse grid overlap");
     uint32_t *to = p->mesh->triangles + 3 * b->triangles;
     for (size_t n = 0; n < 3 * piece->triangle_count; n++)
         to[n] = w->number[piece->triangles[n]];

@@ -99,7 +99,8 @@ typedef struct cw_extract_counts {
  *
  * Returns  CW_ERR_ARGUMENT  isovalue is not finite, volume too thin, voxels too small or large
  *                           for single precision (1e-38, 1e38 mm), snap out of range, a cell's
- *                           shape or corner that is none, a point that is not finite, or as
+ *                           shape or corner that is none, a point that is not finite, a
+ *                           leaf or tile beyond the volume or in another, or as
  *                           cw_volume_resolve()
  *          CW_ERR_UNSUPPORTED  snap on a grid that is not even, cubic_placement on a
  *                           rectilinear or irregular one

@@ -328,6 +328,36 @@ static void test_refusals(void **state)
     cw_volume_free(&sparse);
 }
 
+/* Overlapping leaves and tiles are refused, or what came last counts: there is a mesh, or a
+ * word.
+ */
+static void test_overlaps(void **state)
+{
+    (void)state;
+    bool refused = false;
+    for (uint32_t round = 0; round < 60; round++) {
+        cw_tile tiles[40];
+        cw_error err = {0};
+        cw_mesh m;
+        for (uint32_t n = 0; n < 40; n++) {
+            tiles[n].value = (n + round) % 3;
+            for (int a = 0; a < 3; a++) {
+                const double x = fabs(noise(n, round, a)) + fabs(noise(a, n, round + 100));
+                tiles[n].at[a] = (uint32_t)(2 * x + fabs(noise(round, a, n)));
+                tiles[n].size[a] = 1 + (n + round) % 7;
+            }
+        }
+        const cw_sparse s = {.tile_count = 40, .tiles = tiles, .background = round % 2 ? 0 : 2};
+        const cw_volume v = {.type = CW_F32, .dim = {256, 256, 256}, .sparse = &s};
+        const cw_status st =
+            cw_extract(&v, &(cw_extract_desc){.isovalue = 1.5}, &m, NULL, &err);
+        assert_true(st == CW_OK || st == CW_ERR_ARGUMENT);
+        refused = refused || st == CW_ERR_ARGUMENT;
+        cw_mesh_free(&m);
+    }
+    assert_true(refused);
+}
+
 static void test_no_memory_and_stops(void **state)
 {
     cw_error err = {0};
@@ -366,6 +396,7 @@ int main(void)
         cmocka_unit_test(test_tiles),
         cmocka_unit_test(test_nothing_there),
         cmocka_unit_test(test_refusals),
+        cmocka_unit_test(test_overlaps),
         cmocka_unit_test(test_no_memory_and_stops),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
