@@ -7,7 +7,7 @@
 #include <math.h>
 
 /* Shares of the box's diagonal. */
-static const double usual = 1.0 / 256, finest = 1.0 / 1024;
+static const double usual = 1.0 / 256, finest = 1.0 / 512;
 
 static double choose_voxel(const cw_offset_desc *d, const cw_quality *q)
 {

@@ -59,7 +59,7 @@ CW_API cw_status cw_level_set_from_mesh(const cw_mesh *mesh, const cw_level_set_
 typedef struct cw_offset_desc {
     double offset_mm;     /* outward; negative: inward; 0: the mesh's surface, made anew */
     double voxel_mm;      /* default: the finer of 1/256 of the box's diagonal and 1/4 of the
-                             offset, but 1/1024 of the diagonal at the least, and, with max_bytes,
+                             offset, but 1/512 of the diagonal at the least, and, with max_bytes,
                              as coarse as it takes */
     int threads;          /* default: all */
     size_t max_bytes;     /* default: no limit */
