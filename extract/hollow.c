@@ -306,6 +306,7 @@ static cw_status drain(hollowing *h, cw_mesh *out, cw_error *err)
         return st;
     carve_all(h);
     st = take_surface(h, 0, h->mesh->normals, out, err);
+    memcpy(out->affine, h->mesh->affine, sizeof out->affine);
     if (st == CW_OK && !out->triangle_count)
         st = cw_fail(err, CW_ERR_EMPTY, "nothing is left of the wall: the drains take it all");
     return st;

@@ -5,6 +5,7 @@
 #include <cubewright/extract.h>
 
 #include <math.h>
+#include <string.h>
 
 /* Shares of the box's diagonal. */
 static const double usual = 1.0 / 256, finest = 1.0 / 512;
@@ -54,6 +55,8 @@ cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc, cw_mes
     if (st == CW_OK && !out->triangle_count)
         st = cw_fail(err, CW_ERR_EMPTY, "nothing is left: no point is %g mm inside",
                      -desc->offset_mm);
+    if (st == CW_OK) /* not of the grid in between */
+        memcpy(out->affine, mesh->affine, sizeof out->affine);
     if (voxel_mm)
         *voxel_mm = voxel;
     cw_volume_free(&volume);
