@@ -4,6 +4,7 @@
 #include "cli/json.h"
 
 #include <cubewright/formats.h>
+#include <cubewright/level_set.h>
 #include <cubewright/quality.h>
 #include <cubewright/simplify.h>
 
@@ -81,6 +82,7 @@ static cw_status run_version(void *p, cw_error *err)
     if (args->features) {
         printf("%-11s%s\n", "cgal", cw_quality_has_cgal() ? "yes" : "no");
         printf("%-11s%s\n", "simplify", cw_simplify_available() ? "yes" : "no");
+        printf("%-11s%s\n", "level-set", cw_level_set_available() ? "yes" : "no");
     }
     for (size_t i = 0; i < count && args->features; i++)
         printf("%-11s%s\n", formats[i].name, formats[i].in_this_build ? "yes" : "no");

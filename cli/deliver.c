@@ -264,6 +264,8 @@ static void print_summary(const cli_delivery *how, const cli_made *made, const l
                    made->origin[2]);
     if (made->compression)
         print_compressed(made);
+    if (how->found)
+        cli_result("%s", how->found);
     if (how->preview)
         cli_result("; a preview");
     cli_result("; %.2f s\n", cli_seconds() - start);

@@ -16,6 +16,7 @@ typedef struct cli_delivery {
     bool tell_dropped; /* say what of the mesh the file does not hold */
     bool open;         /* the surface may end at the volume's border */
     const char *parts; /* what the parts are: "levels" of detail, "steps"; default: "parts" */
+    const char *found; /* what else is said in the line, from "; " on; default: nothing */
     bool preview;      /* not of all voxels: the line says so */
 } cli_delivery;
 

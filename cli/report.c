@@ -8,6 +8,7 @@
 #include "core/outfile.h"
 #include "core/status.h"
 
+#include <cubewright/level_set.h>
 #include <cubewright/simplify.h>
 
 #include <math.h>
@@ -90,6 +91,8 @@ static void put_features(cli_json *j)
         cli_json_text(j, NULL, "cgal");
     if (cw_simplify_available())
         cli_json_text(j, NULL, "simplify");
+    if (cw_level_set_available())
+        cli_json_text(j, NULL, "level-set");
     for (size_t i = 0; i < count; i++)
         if (formats[i].in_this_build)
             cli_json_text(j, NULL, formats[i].name);

@@ -8,6 +8,7 @@
 #include <cubewright/extract.h>
 #include <cubewright/field.h>
 #include <cubewright/formats.h>
+#include <cubewright/level_set.h>
 #include <cubewright/mesh.h>
 #include <cubewright/quality.h>
 #include <cubewright/simplify.h>

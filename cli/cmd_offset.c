@@ -1,0 +1,49 @@
+#include "cli/commands.h"
+#include "cli/solid.h"
+
+static const cli_option options[] = {
+    {"by", 'b', CLI_TEXT, "L",
+     "how far: 1mm, -0.5mm (inward), or 0; 1% is of the box's diagonal",
+     offsetof(cli_solid_args, by)},
+    {"measure", 0, CLI_FLAG, NULL,
+     "measure how far the result is from where it should be (on; --no-measure)",
+     offsetof(cli_solid_args, measure)},
+    CLI_SOLID_OPTIONS,
+};
+
+const cli_command cli_offset = {
+    .name = "offset",
+    .usage = "MESH -o MESH --by L [options]",
+    .about = "the surface at a distance from a closed mesh, outward or inward",
+    .more =
+        "Reads a closed mesh, makes the surface of all points that are so far from it, "
+        "measures\n"
+        "that distance and writes the surface: closed, a manifold, free of crossings.\n\n"
+        "Outward, convex edges and corners come out round; inward, concave ones. What is "
+        "thinner\n"
+        "than twice the distance is gone. --by 0 makes the surface itself anew: parts that "
+        "cross\n"
+        "become one, and what a voxel cannot tell is lost.\n\n"
+        "Distances are those of a grid's samples, exact; between them the surface is within "
+        "half\n"
+        "a voxel of where it should be if that is smooth, and edges and corners lose about "
+        "one.\n"
+        "--voxel auto is 1/256 of the box's diagonal, or a quarter of the distance if that is\n"
+        "finer, but not below 1/512, and coarser where memory would not do.\n\n"
+        "Printed is how far the result's distance from the input is off, at most and by the "
+        "root\n"
+        "of the mean square; with --by 0 the distance both ways. All parts are taken as one "
+        "mesh;\n"
+        "colours, scalars and labels are not kept.\n\n"
+        "Examples\n"
+        "  cubewright offset bone.stl --by 1mm -o larger.stl\n"
+        "  cubewright offset bone.stl --by -0.5mm --voxel 0.2mm -o smaller.stl\n"
+        "  cubewright offset overlapping.obj --by 0 -o one.stl\n",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .min_inputs = 1,
+    .max_inputs = 1,
+    .size = sizeof(cli_solid_args),
+    .defaults = &cli_solid_defaults,
+    .run = cli_run_offset,
+};

@@ -1,0 +1,26 @@
+# A solid with a wall, and the surface at a distance: what is made, and what is said of it.
+cubewright version --features | grep -q '^level-set *yes' || { echo "this build has no OpenVDB" >&2; exit 77; }
+cubewright make sphere -o s.nrrd --dims 32 -q
+cubewright extract s.nrrd --iso 0 -o s.off -q
+cubewright hollow s.off -o h.off --wall 3mm
+# the outer surface is what it was: its vertices and its triangles stand first
+points() { grep -v '^#' "$1" | sed -n "3,$((2 + $2))p"; }
+points s.off 2592 >a && points h.off 2592 >b && cmp a b && echo "same outside"
+cubewright hollow s.off -o one.stl --wall 3mm --drain 6mm@-z --voxel 1mm -q
+cubewright hollow s.off -o two.ply --wall 3mm --drain 10%@x,6mm@-y --voxel 1mm --no-measure
+cubewright check one.stl --json - -q | grep -e '"components"' -e '"euler"' -e open_edges
+cubewright check two.ply --json - -q | grep -e '"components"' -e '"euler"' -e open_edges
+cubewright offset s.off -o more.stl --by 2mm --voxel 1mm
+cubewright offset s.off -o less.stl --by -2mm --voxel 1% -q
+cubewright offset s.off -o same.stl --by 0 --voxel 1mm
+cubewright offset s.off -o '{stem}-auto.stl' --by=-5% --no-measure
+for t in 1 3; do
+    cubewright hollow s.off -o t$t.glb --wall 4mm --drain 5mm@+x -t $t --name t -q
+done
+cmp t1.glb t3.glb && echo "same"
+
+# the reports
+cubewright hollow s.off -o h.stl --wall 3mm --drain 6mm@-z --voxel 1mm --json - -q |
+    sed -n -e '/"hollow": {/,/}/p' -e '/"params"/,/"voxel_mm"/p'
+cubewright offset s.off -o o.stl --by -2mm --voxel 1mm --json - -q |
+    sed -n -e '/"off": {/,/}/p' -e '/"params"/,/"voxel_mm"/p'
