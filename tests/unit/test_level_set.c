@@ -480,6 +480,7 @@ static void running_out_of_memory_is_told(void **state)
             const cw_status st = cw_mesh_hollow(&ball, &desc, &out, NULL, &err);
             if (!cwi_alloc_fail_after(-1)) {
                 assert_ok(st, err);
+                cw_mesh_free(&out);
                 break;
             }
             if (st == CW_OK) /* what was asked back could stay */
@@ -488,7 +489,6 @@ static void running_out_of_memory_is_told(void **state)
                 assert_fails(st, CW_ERR_NO_MEMORY, "no memory", err);
             assert_null(out.positions);
         }
-    cw_mesh_free(&out);
     cw_mesh_free(&ball);
 }
 
