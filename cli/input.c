@@ -327,6 +327,7 @@ cw_read_desc cli_read_desc(const cli_input *input)
                          .allow_external = input->allow_external,
                          .series = input->series,
                          .array = input->array,
+                         .points = input->points,
                          .gaps = (cw_gaps)input->gaps,
                          .tilt = (cw_tilt)input->tilt,
                          .no_sandbox = input->no_sandbox,

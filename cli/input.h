@@ -9,7 +9,7 @@
 #include <cubewright/formats.h>
 
 typedef struct cli_input {
-    const char *reader, *raw, *series, *array;
+    const char *reader, *raw, *series, *array, *points;
     int gaps, tilt; /* cw_gaps, cw_tilt */
     bool no_sandbox;
     size_t timeout_s;
@@ -60,6 +60,12 @@ typedef struct cli_input {
          "NAME",                                                                               \
          "of OpenVDB files: that one (the first level set, else the first of one value)",      \
          CLI_INPUT_ROW(args, array)},                                                          \
+        {"points",                                                                             \
+         0,                                                                                    \
+         CLI_TEXT,                                                                             \
+         "FILE",                                                                               \
+         "of PLOT3D solutions: the file of the grid's points",                                 \
+         CLI_INPUT_ROW(args, points)},                                                         \
         {"gaps",                                                                               \
          0,                                                                                    \
          CLI_CHOICE,                                                                           \

@@ -73,7 +73,7 @@ static cw_status load(building *b, size_t piece, cwi_grid_role role, size_t coun
 {
     const bool reports = b->desc->progress.report;
     const cw_read_desc desc = {.progress = {reports ? report : NULL, b}};
-    cwi_source src;
+    cwi_source src = {0};
     bool wide;
     *t = (cwi_tuples){.count = 0};
     if (count == 0)
@@ -84,6 +84,7 @@ static cw_status load(building *b, size_t piece, cwi_grid_role role, size_t coun
     b->now = (double)src.bytes;
     if (st == CW_OK)
         st = cwi_tuples_load(&src, b->in, &desc, wide, t, err);
+    cwi_source_free(&src);
     b->done += b->now;
     return st;
 }
@@ -98,7 +99,7 @@ static void drop(building *b, cwi_tuples *t)
 static cw_status check_array(building *b, size_t piece, cwi_grid_role role, size_t count,
                              cw_error *err)
 {
-    cwi_source src;
+    cwi_source src = {0};
     cw_volume shape;
     bool wide;
     if (count == 0)
@@ -106,6 +107,7 @@ static cw_status check_array(building *b, size_t piece, cwi_grid_role role, size
     cw_status st = describe(b, piece, role, count, &src, &wide, err);
     if (st == CW_OK)
         st = cwi_source_load(&src, b->in, &(cw_read_desc){.header_only = true}, &shape, err);
+    cwi_source_free(&src);
     if (st != CW_OK)
         return st;
     b->total += (double)src.bytes;

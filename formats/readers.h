@@ -54,6 +54,10 @@ cw_status cwi_tiff_read(const cwi_input *in, cwi_names *names, const cw_read_des
 cw_status cwi_vdb_read(const cwi_input *in, const cw_read_desc *desc, cw_volume *volume,
                        cw_error *err);
 
+/* Reads one file and the one that desc->points names. */
+cw_status cwi_plot3d_read(const cwi_input *in, const cw_read_desc *desc, cw_volume *volume,
+                          cw_error *err);
+
 cw_status cwi_dicom_list(const cwi_input *in, cwi_names *names, const cw_read_desc *desc,
                          cw_series **series, size_t *count, cw_error *err);
 

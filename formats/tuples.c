@@ -55,10 +55,11 @@ static int64_t joined(const cwi_tuples *t, size_t n)
 
 double cwi_tuples_real(const cwi_tuples *t, size_t i, size_t component)
 {
-    const size_t n = i * t->components + component;
-    const cw_type type = t->data.type;
-    return t->wide ? (double)joined(t, n)
-                   : cwi_voxel_at(type, (const char *)t->data.data + n * cw_type_size(type));
+    const cw_volume *v = &t->data;
+    const ptrdiff_t at =
+        (ptrdiff_t)i * v->stride[0] + (ptrdiff_t)component * v->component_stride;
+    return t->wide ? (double)joined(t, i * t->components + component)
+                   : cwi_voxel_at(v->type, (const char *)v->data + at);
 }
 
 int64_t cwi_tuples_whole(const cwi_tuples *t, size_t i)

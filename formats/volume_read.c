@@ -27,6 +27,13 @@ typedef struct reader {
                           cw_error *err);
 } reader;
 
+/* Nothing in such a file tells. */
+static bool never(const unsigned char *head, size_t size)
+{
+    (void)head, (void)size;
+    return false;
+}
+
 static const reader readers[] = {
     {"nrrd", ".nrrd .nhdr", false, cwi_nrrd_sniff, .parse = cwi_nrrd_parse},
     {"nifti", ".nii .nii.gz .hdr .hdr.gz .img .img.gz", true, cwi_nifti_sniff,
@@ -42,6 +49,7 @@ static const reader readers[] = {
     {"dicom", ".dcm .dicom .ima", false, cwi_dicom_sniff, .read = cwi_dicom_read},
     {"tiff", ".tif .tiff", false, cwi_tiff_sniff, .read = cwi_tiff_read},
     {"vdb", ".vdb", false, cwi_vdb_sniff, .read_one = cwi_vdb_read},
+    {"plot3d", ".q", false, never, .read_one = cwi_plot3d_read},
 };
 enum { READER_COUNT = sizeof readers / sizeof *readers };
 
@@ -163,9 +171,10 @@ static cw_status find_by_files(opened *o, cw_error *err)
 
 static cw_status find_reader(opened *o, const cw_read_desc *desc, cw_error *err)
 {
-    cw_status st = desc->reader ? find_by_name(desc->reader, &o->reader, err)
-                   : o->many    ? find_by_files(o, err)
-                                : find_by_file(&o->in, &o->reader, err);
+    const char *name = desc->reader || !desc->points ? desc->reader : "plot3d";
+    cw_status st = name      ? find_by_name(name, &o->reader, err)
+                   : o->many ? find_by_files(o, err)
+                             : find_by_file(&o->in, &o->reader, err);
     if (st == CW_OK && o->many && !o->reader->read)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "the reader '%s' reads one file, and these are %zu", o->reader->name,

@@ -49,6 +49,9 @@ typedef struct cw_read_desc {
     const char *array;        /* by its name, where files have several; default: the one that
                                  the file names, else the first of one value */
 
+    const char *points; /* of a PLOT3D solution: the file of its grid's points, and that it
+                           is one */
+
     /* Slices in files of their own (TIFF, DICOM). */
     const char *series; /* label or UID, as of cw_series_list(); default: the only one */
     cw_gaps gaps;

@@ -28,3 +28,5 @@ cubewright extract g.vtu --iso 4.5 --snap 0.3 -o none.ply -q || echo "exit $?"
 cubewright extract g.vtu --iso 4.5 --placement cubic -o none.ply -q || echo "exit $?"
 cubewright extract g.vtu --iso 4.5 --max-triangles 5 -o none.ply -q || echo "exit $?"
 [ ! -e none.ply ]
+cubewright info g.vtu --points g.vtu || echo "exit $?"
+cubewright info none.q --points none.xyz || echo "exit $?"

@@ -248,9 +248,10 @@ static void running_out_of_memory_leaves_nothing(void **state)
 static void the_table_of_formats_is_whole_and_always_the_same(void **state)
 {
     (void)state;
-    static const char wanted[] = "nrrd nifti metaimage vtk vtu vti mrc inr dicom tiff raw glb "
-                                 "gltf stl ply obj off 3mf vtp ";
-    char names[128] = "";
+    static const char wanted[] =
+        "nrrd nifti metaimage vtk vtu vti mrc inr dicom tiff vdb plot3d "
+        "raw glb gltf stl ply obj off 3mf vtp ";
+    char names[160] = "";
     size_t count, again;
     const cw_format *formats = cw_formats(&count);
     assert_ptr_equal(formats, cw_formats(&again));
