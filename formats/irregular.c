@@ -107,11 +107,11 @@ static cw_status check_array(building *b, size_t piece, cwi_grid_role role, size
     cw_status st = describe(b, piece, role, count, &src, &wide, err);
     if (st == CW_OK)
         st = cwi_source_load(&src, b->in, &(cw_read_desc){.header_only = true}, &shape, err);
+    b->total += (double)src.bytes;
+    b->claimed += src.encoding == CWI_RAW ? src.bytes : src.bytes / 1032;
     cwi_source_free(&src);
     if (st != CW_OK)
         return st;
-    b->total += (double)src.bytes;
-    b->claimed += src.encoding == CWI_RAW ? src.bytes : src.bytes / 1032;
     if (b->claimed <= b->in->size)
         return CW_OK;
     return cw_fail(err, CW_ERR_FORMAT,
