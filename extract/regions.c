@@ -258,8 +258,8 @@ static cw_status visit_region(sorting *s, size_t n, uint32_t around, visitor vis
     cw_status st = CW_OK;
     for (int a = 0; a < 3; a++)
         along[a] = reach_along(&r, a, around);
-    for (at[2] = along[2].first; at[2] <= along[2].last; at[2]++)
-        for (at[1] = along[1].first; at[1] <= along[1].last; at[1]++) {
+    for (at[2] = along[2].first; at[2] <= along[2].last && st == CW_OK; at[2]++)
+        for (at[1] = along[1].first; at[1] <= along[1].last && st == CW_OK; at[1]++) {
             const bool deep = is_buried(&along[1], at[1]) && is_buried(&along[2], at[2]);
             for (at[0] = along[0].first; at[0] <= along[0].last && st == CW_OK; at[0]++)
                 if (deep && is_buried(&along[0], at[0]))

@@ -286,6 +286,21 @@ static void test_tiles(void **state)
     cw_mesh_free(&m);
 }
 
+/* A tile whose sides alone are more than memory may hold is told at once. */
+static void test_too_large(void **state)
+{
+    const cw_tile tile = {{0, 0, 0}, {1u << 29, 1u << 29, 1u << 29}, 2};
+    const cw_sparse s = {.tile_count = 1, .tiles = &tile};
+    const size_t side = (size_t)1 << 32;
+    const cw_volume v = {.type = CW_F32, .dim = {side, side, side}, .sparse = &s};
+    cw_error err = {0};
+    cw_mesh m;
+    (void)state;
+    assert_fails(cw_extract(&v, &(cw_extract_desc){.isovalue = 1, .max_bytes = 10000000}, &m,
+                            NULL, &err),
+                 CW_ERR_LIMIT, "--memory", err);
+}
+
 static void test_nothing_there(void **state)
 {
     const cw_sparse none = {.background = 1};
@@ -394,6 +409,7 @@ int main(void)
         cmocka_unit_test(test_engines_and_threads),
         cmocka_unit_test(test_extractor_and_slabs),
         cmocka_unit_test(test_tiles),
+        cmocka_unit_test(test_too_large),
         cmocka_unit_test(test_nothing_there),
         cmocka_unit_test(test_refusals),
         cmocka_unit_test(test_overlaps),
