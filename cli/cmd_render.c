@@ -40,9 +40,9 @@ static const cli_option options[] = {
 
 static cw_status check_camera(const char *name, cw_error *err)
 {
-    const cwi_fit_desc fit = {.view = name, .max = {1, 1, 1}};
-    cwi_camera camera;
-    return cwi_camera_fit(&fit, &camera, err);
+    const cw_fit_desc fit = {.view = name, .max = {1, 1, 1}};
+    cw_camera camera;
+    return cw_camera_fit(&fit, &camera, err);
 }
 
 static cw_status check_args(const render_args *args, cw_error *err)
@@ -60,10 +60,10 @@ static cw_status check_args(const render_args *args, cw_error *err)
     return st == CW_OK ? cli_check_output(args->output, args->common.inputs, 1, err) : st;
 }
 
-static cw_status draw(const render_args *args, const cw_mesh *mesh, cwi_image *image,
+static cw_status draw(const render_args *args, const cw_mesh *mesh, cw_image *image,
                       cw_error *err)
 {
-    cwi_fit_desc fit = {
+    cw_fit_desc fit = {
         .view = args->camera,
         .aspect = (double)args->size.n[0] / (double)args->size.n[1],
         .fov_deg = 30,
@@ -77,7 +77,7 @@ static cw_status draw(const render_args *args, const cw_mesh *mesh, cwi_image *i
         .progress = cli_progress((double)mesh->triangle_count / 1e6, "Mtriangle"),
     };
     cw_mesh_bounds(mesh, fit.min, fit.max);
-    cw_status st = cwi_camera_fit(&fit, &desc.camera, err);
+    cw_status st = cw_camera_fit(&fit, &desc.camera, err);
     return st == CW_OK ? cwi_render_mesh(mesh, &desc, image, err) : st;
 }
 
@@ -112,19 +112,19 @@ static cw_status run(void *p, cw_error *err)
     const render_args *args = p;
     const double start = cli_seconds();
     cw_mesh mesh = {0};
-    cwi_image image = {0};
+    cw_image image = {0};
     cw_status st = check_args(args, err);
     if (st == CW_OK)
         st = get_mesh(args, &mesh, err);
     if (st == CW_OK)
         st = draw(args, &mesh, &image, err);
     if (st == CW_OK)
-        st = cwi_png_write(args->output, &image, err);
+        st = cw_image_write(args->output, &image, err);
     if (st == CW_OK)
         cli_result("%s: %zu x %zu, %s triangles seen from %s; %.2f s\n", args->output,
                    image.width, image.height, cli_count(mesh.triangle_count), args->camera,
                    cli_seconds() - start);
-    cwi_image_free(&image);
+    cw_image_free(&image);
     cw_mesh_free(&mesh);
     return st;
 }

@@ -1,4 +1,4 @@
-#include "viewer/camera.h"
+#include <cubewright/camera.h>
 
 #include "core/status.h"
 #include "core/vector.h"
@@ -29,13 +29,13 @@ static bool normalize(double a[3])
     return isnormal(length);
 }
 
-const char *cwi_view_name(size_t n)
+const char *cw_view_name(size_t n)
 {
     return n < VIEW_COUNT ? views[n].name : NULL;
 }
 
-cw_status cwi_camera_axes(const cwi_camera *camera, double right[3], double up[3],
-                          double forward[3], cw_error *err)
+cw_status cw_camera_axes(const cw_camera *camera, double right[3], double up[3],
+                         double forward[3], cw_error *err)
 {
     for (int a = 0; a < 3; a++)
         forward[a] = camera->target[a] - camera->eye[a];
@@ -88,7 +88,7 @@ static double perspective_distance(const double half[3], const double axes[3][3]
     return distance;
 }
 
-static void place(const cwi_fit_desc *d, const double axes[3][3], cwi_camera *camera)
+static void place(const cw_fit_desc *d, const double axes[3][3], cw_camera *camera)
 {
     const double aspect = d->aspect > 0 ? d->aspect : 1, inner = 1 - 2 * d->margin;
     double half[3], distance;
@@ -110,11 +110,11 @@ static void place(const cwi_fit_desc *d, const double axes[3][3], cwi_camera *ca
         camera->eye[a] = camera->target[a] - distance * axes[2][a];
 }
 
-cw_status cwi_camera_fit(const cwi_fit_desc *desc, cwi_camera *camera, cw_error *err)
+cw_status cw_camera_fit(const cw_fit_desc *desc, cw_camera *camera, cw_error *err)
 {
     int view;
     double axes[3][3]; /* right, up, forward */
-    cwi_camera c = {.fov_deg = desc->fov_deg, .height_mm = 1};
+    cw_camera c = {.fov_deg = desc->fov_deg, .height_mm = 1};
     cw_status st = find_view(desc->view ? desc->view : "front", &view, err);
     if (st != CW_OK)
         return st;
@@ -122,7 +122,7 @@ cw_status cwi_camera_fit(const cwi_fit_desc *desc, cwi_camera *camera, cw_error 
         return cw_fail(err, CW_ERR_ARGUMENT, "a margin of %g leaves no picture", desc->margin);
     memcpy(c.target, views[view].forward, sizeof c.target);
     memcpy(c.up, views[view].up, sizeof c.up);
-    st = cwi_camera_axes(&c, axes[0], axes[1], axes[2], err);
+    st = cw_camera_axes(&c, axes[0], axes[1], axes[2], err);
     if (st == CW_OK) {
         place(desc, (const double(*)[3])axes, &c);
         *camera = c;

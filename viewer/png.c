@@ -1,4 +1,4 @@
-#include "viewer/png.h"
+#include <cubewright/picture.h>
 
 #include "core/memory.h"
 #include "core/outfile.h"
@@ -8,10 +8,10 @@
 #include <setjmp.h>
 #include <string.h>
 
-cw_status cwi_image_alloc(cwi_image *image, size_t width, size_t height, cw_error *err)
+cw_status cw_image_alloc(cw_image *image, size_t width, size_t height, cw_error *err)
 {
     size_t pixels;
-    *image = (cwi_image){0};
+    *image = (cw_image){0};
     if (cwi_size_mul(width, height, &pixels))
         image->pixels = cwi_alloc_zeroed(pixels, 4);
     if (!image->pixels)
@@ -22,10 +22,10 @@ cw_status cwi_image_alloc(cwi_image *image, size_t width, size_t height, cw_erro
     return CW_OK;
 }
 
-void cwi_image_free(cwi_image *image)
+void cw_image_free(cw_image *image)
 {
     cwi_free(image->pixels);
-    *image = (cwi_image){0};
+    *image = (cw_image){0};
 }
 
 /* What libpng's callbacks need. The status outlives the jump they leave by. */
@@ -76,7 +76,7 @@ static void on_free(png_structp png, png_voidp memory)
     cwi_free(memory);
 }
 
-static bool is_opaque(const cwi_image *image)
+static bool is_opaque(const cw_image *image)
 {
     for (size_t i = 0; i < image->width * image->height; i++)
         if (image->pixels[4 * i + 3] != 255)
@@ -85,7 +85,7 @@ static bool is_opaque(const cwi_image *image)
 }
 
 /* Leaves by libpng's jump on any error: nothing here may own memory. */
-static void put_image(png_structp png, png_infop info, const cwi_image *image)
+static void put_image(png_structp png, png_infop info, const cw_image *image)
 {
     const bool opaque = is_opaque(image);
     png_set_IHDR(png, info, (png_uint_32)image->width, (png_uint_32)image->height, 8,
@@ -100,7 +100,7 @@ static void put_image(png_structp png, png_infop info, const cwi_image *image)
     png_write_end(png, info);
 }
 
-static cw_status encode(writer *w, const cwi_image *image)
+static cw_status encode(writer *w, const cw_image *image)
 {
     png_structp png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, w, on_error, on_warning,
                                                 w, on_malloc, on_free);
@@ -119,7 +119,7 @@ static cw_status encode(writer *w, const cwi_image *image)
     return w->status;
 }
 
-cw_status cwi_png_write(const char *path, const cwi_image *image, cw_error *err)
+cw_status cw_image_write(const char *path, const cw_image *image, cw_error *err)
 {
     writer w = {.err = err};
     cw_status st = image->pixels

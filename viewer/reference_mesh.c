@@ -373,7 +373,7 @@ static void put_pixel(const scene *s, const double sum[3], int covered, const ui
 }
 
 static void shade_band(const scene *s, size_t first_row, size_t row_count, const hit *hits,
-                       cwi_image *image)
+                       cw_image *image)
 {
     const int n = s->d->samples;
     facet f = {.triangle = NO_TRIANGLE};
@@ -408,7 +408,7 @@ static void project_all(scene *s)
     }
 }
 
-static void draw_one_band(const scene *s, int band, hit *hits, cwi_image *image)
+static void draw_one_band(const scene *s, int band, hit *hits, cw_image *image)
 {
     const size_t first = (size_t)band * BAND_ROWS;
     const size_t rows = image->height - first < BAND_ROWS ? image->height - first : BAND_ROWS;
@@ -419,7 +419,7 @@ static void draw_one_band(const scene *s, int band, hit *hits, cwi_image *image)
 
 /* Only the calling thread reports; once it is told to stop, bands are left out. It may get no
  * band while the others work, so it is asked once more at the end. */
-static cw_status draw_bands(const scene *s, hit *hits, size_t band_hits, cwi_image *image,
+static cw_status draw_bands(const scene *s, hit *hits, size_t band_hits, cw_image *image,
                             cw_error *err)
 {
     const cw_progress *progress = &s->d->progress;
@@ -479,19 +479,19 @@ static cw_status resolve_desc(const cw_mesh *mesh, const cwi_render_desc *desc,
     cw_status st = check_sizes(d, err);
     if (st != CW_OK || d->camera.up[0] != 0 || d->camera.up[1] != 0 || d->camera.up[2] != 0)
         return st;
-    cwi_fit_desc fit = {
+    cw_fit_desc fit = {
         .aspect = (double)d->width / (double)d->height, .fov_deg = 30, .margin = 0.05};
     cw_mesh_bounds(mesh, fit.min, fit.max);
-    return cwi_camera_fit(&fit, &d->camera, err);
+    return cw_camera_fit(&fit, &d->camera, err);
 }
 
 static cw_status set_up_scene(const cw_mesh *mesh, const cwi_render_desc *d, scene *s,
                               cw_error *err)
 {
-    const cwi_camera *camera = &d->camera;
+    const cw_camera *camera = &d->camera;
     double distance = 0;
     *s = (scene){.mesh = mesh, .d = d};
-    cw_status st = cwi_camera_axes(camera, s->right, s->up, s->forward, err);
+    cw_status st = cw_camera_axes(camera, s->right, s->up, s->forward, err);
     if (st != CW_OK)
         return st;
     s->width = (int)d->width * d->samples;
@@ -514,7 +514,7 @@ static cw_status set_up_scene(const cw_mesh *mesh, const cwi_render_desc *d, sce
     return CW_OK;
 }
 
-static cw_status draw_scene(scene *s, cwi_image *image, cw_error *err)
+static cw_status draw_scene(scene *s, cw_image *image, cw_error *err)
 {
     const size_t n = (size_t)s->d->samples, band_hits = BAND_ROWS * n * (size_t)s->width;
     hit *hits = cwi_alloc_array((size_t)s->d->threads * band_hits, sizeof *hits);
@@ -527,25 +527,25 @@ static cw_status draw_scene(scene *s, cwi_image *image, cw_error *err)
     return st;
 }
 
-cw_status cwi_render_mesh(const cw_mesh *mesh, const cwi_render_desc *desc, cwi_image *image,
+cw_status cwi_render_mesh(const cw_mesh *mesh, const cwi_render_desc *desc, cw_image *image,
                           cw_error *err)
 {
     cwi_render_desc d;
     scene s = {0};
-    *image = (cwi_image){0};
+    *image = (cw_image){0};
     cw_status st = cw_mesh_check(mesh, err);
     if (st == CW_OK)
         st = resolve_desc(mesh, desc, &d, err);
     if (st == CW_OK)
         st = set_up_scene(mesh, &d, &s, err);
     if (st == CW_OK)
-        st = cwi_image_alloc(image, d.width, d.height, err);
+        st = cw_image_alloc(image, d.width, d.height, err);
     if (st == CW_OK)
         st = draw_scene(&s, image, err);
 
     cwi_free(s.points);
     cwi_free(s.spans);
     if (st != CW_OK)
-        cwi_image_free(image);
+        cw_image_free(image);
     return st;
 }

@@ -2,6 +2,7 @@
 #ifndef CUBEWRIGHT_CUBEWRIGHT_H
 #define CUBEWRIGHT_CUBEWRIGHT_H
 
+#include <cubewright/camera.h>
 #include <cubewright/check.h>
 #include <cubewright/core.h>
 #include <cubewright/distance.h>
@@ -10,8 +11,11 @@
 #include <cubewright/formats.h>
 #include <cubewright/level_set.h>
 #include <cubewright/mesh.h>
+#include <cubewright/picture.h>
 #include <cubewright/quality.h>
+#include <cubewright/render.h>
 #include <cubewright/simplify.h>
+#include <cubewright/transfer.h>
 #include <cubewright/volume.h>
 
 #endif

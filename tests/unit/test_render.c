@@ -76,29 +76,29 @@ static void make_sheet(cw_mesh *mesh, size_t n, size_t m)
     }
 }
 
-static cwi_camera fit(const cw_mesh *mesh, const char *view, double fov_deg, double margin)
+static cw_camera fit(const cw_mesh *mesh, const char *view, double fov_deg, double margin)
 {
-    cwi_fit_desc desc = {.view = view, .fov_deg = fov_deg, .margin = margin};
-    cwi_camera camera;
+    cw_fit_desc desc = {.view = view, .fov_deg = fov_deg, .margin = margin};
+    cw_camera camera;
     cw_error err = {0};
     cw_mesh_bounds(mesh, desc.min, desc.max);
-    assert_ok(cwi_camera_fit(&desc, &camera, &err), err);
+    assert_ok(cw_camera_fit(&desc, &camera, &err), err);
     return camera;
 }
 
-static void render(const cw_mesh *mesh, const cwi_render_desc *desc, cwi_image *image)
+static void render(const cw_mesh *mesh, const cwi_render_desc *desc, cw_image *image)
 {
     cw_error err = {0};
     assert_ok(cwi_render_mesh(mesh, desc, image, &err), err);
 }
 
-static const uint8_t *pixel_at(const cwi_image *image, size_t x, size_t y)
+static const uint8_t *pixel_at(const cw_image *image, size_t x, size_t y)
 {
     return image->pixels + 4 * (y * image->width + x);
 }
 
 /* Pixels' worth of surface in a picture whose background is transparent. */
-static double covered(const cwi_image *image)
+static double covered(const cw_image *image)
 {
     double sum = 0;
     for (size_t i = 0; i < image->width * image->height; i++)
@@ -110,7 +110,7 @@ static void a_sphere_fills_pi_quarters_of_its_square(void **state)
 {
     (void)state;
     cw_mesh mesh = {0};
-    cwi_image image;
+    cw_image image;
     make_sphere(&mesh, 50);
     for (int samples = 1; samples <= 4; samples++) {
         const cwi_render_desc desc = {.camera = fit(&mesh, "front", 0, 0),
@@ -120,7 +120,7 @@ static void a_sphere_fills_pi_quarters_of_its_square(void **state)
                                       .background = CLEAR};
         render(&mesh, &desc, &image);
         assert_within(covered(&image), PI / 4 * 200 * 200, 0.01);
-        cwi_image_free(&image);
+        cw_image_free(&image);
     }
     cw_mesh_free(&mesh);
 }
@@ -129,7 +129,7 @@ static void the_middle_of_a_sphere_is_brighter_than_its_rim(void **state)
 {
     (void)state;
     cw_mesh mesh = {0};
-    cwi_image image;
+    cw_image image;
     make_sphere(&mesh, 50);
     const cwi_render_desc desc = {
         .camera = fit(&mesh, "front", 0, 0), .width = 100, .height = 100};
@@ -141,7 +141,7 @@ static void the_middle_of_a_sphere_is_brighter_than_its_rim(void **state)
                      y = (const size_t[]){50, 50, 2, 97}[i];
         assert_true(pixel_at(&image, x, y)[1] + 15 < middle[1]);
     }
-    cwi_image_free(&image);
+    cw_image_free(&image);
     cw_mesh_free(&mesh);
 }
 
@@ -149,16 +149,16 @@ static void any_number_of_threads_gives_the_same_bytes(void **state)
 {
     (void)state;
     cw_mesh mesh = {0};
-    cwi_image one, many;
+    cw_image one, many;
     make_sphere(&mesh, 20);
     cwi_render_desc desc = {.width = 150, .height = 101, .samples = 3, .threads = 1};
     render(&mesh, &desc, &one);
     for (desc.threads = 2; desc.threads <= 5; desc.threads++) {
         render(&mesh, &desc, &many);
         assert_memory_equal(one.pixels, many.pixels, 4 * one.width * one.height);
-        cwi_image_free(&many);
+        cw_image_free(&many);
     }
-    cwi_image_free(&one);
+    cw_image_free(&one);
     cw_mesh_free(&mesh);
 }
 
@@ -179,16 +179,16 @@ static void views_show_the_patient_unmirrored(void **state)
     double right[3], up[3], forward[3];
     make_sphere(&mesh, 5);
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
-        const cwi_camera camera = fit(&mesh, rows[i].name, 0, 0);
-        assert_string_equal(cwi_view_name(i), rows[i].name);
-        assert_ok(cwi_camera_axes(&camera, right, up, forward, &err), err);
+        const cw_camera camera = fit(&mesh, rows[i].name, 0, 0);
+        assert_string_equal(cw_view_name(i), rows[i].name);
+        assert_ok(cw_camera_axes(&camera, right, up, forward, &err), err);
         for (int a = 0; a < 3; a++) {
             assert_near(right[a], rows[i].right[a], 1e-12);
             assert_near(up[a], rows[i].up[a], 1e-12);
         }
     }
-    assert_string_equal(cwi_view_name(6), "iso");
-    assert_null(cwi_view_name(7));
+    assert_string_equal(cw_view_name(6), "iso");
+    assert_null(cw_view_name(7));
     cw_mesh_free(&mesh);
 }
 
@@ -197,7 +197,7 @@ static void a_hole_is_seen_where_it_is(void **state)
 {
     (void)state;
     cw_mesh mesh = {0};
-    cwi_image image;
+    cw_image image;
     make_sheet(&mesh, 3, 3);
     const size_t top_right = 3 * 2 + 2; /* +x is the patient's left: the picture's right */
     memmove(mesh.triangles + 6 * top_right, mesh.triangles + 6 * (top_right + 1),
@@ -209,7 +209,7 @@ static void a_hole_is_seen_where_it_is(void **state)
     for (size_t y = 0; y < 30; y++)
         for (size_t x = 0; x < 30; x++)
             assert_int_equal(pixel_at(&image, x, y)[3], x >= 20 && y < 10 ? 0 : 255);
-    cwi_image_free(&image);
+    cw_image_free(&image);
     cw_mesh_free(&mesh);
 }
 
@@ -220,7 +220,7 @@ static void every_sample_belongs_to_one_triangle(void **state)
     (void)state;
     enum { SIZE = 36 };
     cw_mesh mesh = {0};
-    cwi_image image;
+    cw_image image;
     make_sheet(&mesh, 6, 6);
     for (size_t v = 0; v < mesh.vertex_count; v++) /* shear, so that edges have all slopes */
         if (v % 7 % 6 != 0 && v / 7 % 6 != 0)
@@ -241,7 +241,7 @@ static void every_sample_belongs_to_one_triangle(void **state)
             render(&single, &desc, &image);
             for (size_t i = 0; i < SIZE * SIZE; i++)
                 count[i] += image.pixels[4 * i + 3] == 255;
-            cwi_image_free(&image);
+            cw_image_free(&image);
         }
         for (size_t i = 0; i < SIZE * SIZE; i++) {
             const bool inner =
@@ -261,7 +261,7 @@ static void the_nearer_surface_hides_the_other(void **state)
 {
     (void)state;
     cw_mesh mesh = {0};
-    cwi_image image;
+    cw_image image;
     make_arrays(&mesh, 8, 4);
     mesh.colors = calloc(8, 4);
     assert_non_null(mesh.colors);
@@ -281,7 +281,7 @@ static void the_nearer_surface_hides_the_other(void **state)
             render(&mesh, &desc, &image);
             const uint8_t *p = pixel_at(&image, 10, 10);
             assert_true(p[2] > 200 && p[0] < 100);
-            cwi_image_free(&image);
+            cw_image_free(&image);
         }
         for (size_t i = 0; i < 6; i++) { /* the same with the order of triangles turned */
             const uint32_t kept = mesh.triangles[i];
@@ -296,19 +296,19 @@ static void an_inside_out_surface_is_red(void **state)
 {
     (void)state;
     cw_mesh mesh = {0};
-    cwi_image image;
+    cw_image image;
     make_sphere(&mesh, 10);
     const cwi_render_desc desc = {
         .camera = fit(&mesh, "left", 20, 0), .width = 40, .height = 40};
     render(&mesh, &desc, &image);
     assert_true(pixel_at(&image, 20, 20)[0] < pixel_at(&image, 20, 20)[1] + 40);
-    cwi_image_free(&image);
+    cw_image_free(&image);
     for (size_t t = 0; t < mesh.triangle_count; t++)
         put_triangle(&mesh, t, mesh.triangles[3 * t], mesh.triangles[3 * t + 2],
                      mesh.triangles[3 * t + 1]);
     render(&mesh, &desc, &image);
     assert_true(pixel_at(&image, 20, 20)[0] > pixel_at(&image, 20, 20)[1] + 60);
-    cwi_image_free(&image);
+    cw_image_free(&image);
     cw_mesh_free(&mesh);
 }
 
@@ -317,10 +317,10 @@ static void from_inside_a_sphere_there_is_no_gap(void **state)
 {
     (void)state;
     cw_mesh mesh = {0};
-    cwi_image image;
+    cw_image image;
     make_sphere(&mesh, 10);
     cwi_render_desc desc = {.width = 120, .height = 120, .background = CLEAR};
-    desc.camera = (cwi_camera){.eye = {1003, 1997, 3001}, .up = {0, 0, 1}, .fov_deg = 150};
+    desc.camera = (cw_camera){.eye = {1003, 1997, 3001}, .up = {0, 0, 1}, .fov_deg = 150};
     for (int i = 0; i < 6; i++) {
         for (int a = 0; a < 3; a++)
             desc.camera.target[a] = desc.camera.eye[a] + sin(1.7 * i + a);
@@ -328,7 +328,7 @@ static void from_inside_a_sphere_there_is_no_gap(void **state)
         assert_near(covered(&image), 120 * 120, 0);
         for (size_t p = 0; p < 120 * 120; p++)
             assert_true(image.pixels[4 * p] > image.pixels[4 * p + 1] + 20);
-        cwi_image_free(&image);
+        cw_image_free(&image);
     }
     cw_mesh_free(&mesh);
 }
@@ -337,7 +337,7 @@ static void what_is_behind_the_eye_is_not_drawn(void **state)
 {
     (void)state;
     cw_mesh mesh = {0};
-    cwi_image image;
+    cw_image image;
     make_sphere(&mesh, 10);
     for (double fov = 0; fov < 100; fov += 45) {
         cwi_render_desc desc = {.width = 50, .height = 50, .background = CLEAR};
@@ -346,7 +346,7 @@ static void what_is_behind_the_eye_is_not_drawn(void **state)
             desc.camera.target[a] = 2 * desc.camera.eye[a] - desc.camera.target[a];
         render(&mesh, &desc, &image);
         assert_near(covered(&image), 0, 0);
-        cwi_image_free(&image);
+        cw_image_free(&image);
     }
     cw_mesh_free(&mesh);
 }
@@ -356,11 +356,11 @@ static void a_fitted_box_touches_the_margin_and_no_more(void **state)
 {
     (void)state;
     cw_mesh mesh = {0};
-    cwi_image image;
+    cw_image image;
     test_make_cube(&mesh);
     for (double fov = 0; fov < 100; fov += 30)
-        for (size_t i = 0; cwi_view_name(i); i++) {
-            const cwi_render_desc desc = {.camera = fit(&mesh, cwi_view_name(i), fov, 0.1),
+        for (size_t i = 0; cw_view_name(i); i++) {
+            const cwi_render_desc desc = {.camera = fit(&mesh, cw_view_name(i), fov, 0.1),
                                           .width = 100,
                                           .height = 100,
                                           .background = CLEAR};
@@ -374,7 +374,7 @@ static void a_fitted_box_touches_the_margin_and_no_more(void **state)
                     nearest = rim;
             }
             assert_in_range(nearest, 9, 11);
-            cwi_image_free(&image);
+            cw_image_free(&image);
         }
     cw_mesh_free(&mesh);
 }
@@ -386,7 +386,7 @@ static void shares_are_right_in_perspective(void **state)
     (void)state;
     enum { SIZE = 400 };
     cw_mesh mesh = {0};
-    cwi_image ramp, flat;
+    cw_image ramp, flat;
     make_sheet(&mesh, 1, 1);
     mesh.colors = malloc(16);
     assert_non_null(mesh.colors);
@@ -396,7 +396,7 @@ static void shares_are_right_in_perspective(void **state)
         memset(mesh.colors + 4 * v, v / 2 ? 255 : 0, 4);
     }
     cwi_render_desc desc = {.width = SIZE, .height = SIZE, .samples = 1};
-    desc.camera = (cwi_camera){.target = {0, 1, 0}, .up = {0, 0, 1}, .fov_deg = 90};
+    desc.camera = (cw_camera){.target = {0, 1, 0}, .up = {0, 0, 1}, .fov_deg = 90};
     render(&mesh, &desc, &ramp);
     memset(mesh.colors, 188, 16); /* sRGB of half the light */
     render(&mesh, &desc, &flat);
@@ -404,8 +404,8 @@ static void shares_are_right_in_perspective(void **state)
     for (size_t x = 150; x < 250; x += 10)
         assert_near(pixel_at(&ramp, x, y)[1], pixel_at(&flat, x, y)[1], 2);
     assert_true(pixel_at(&ramp, 200, y + 20)[1] + 10 < pixel_at(&flat, 200, y + 20)[1]);
-    cwi_image_free(&ramp);
-    cwi_image_free(&flat);
+    cw_image_free(&ramp);
+    cw_image_free(&flat);
     cw_mesh_free(&mesh);
 }
 
@@ -413,7 +413,7 @@ static void without_normals_faces_are_flat(void **state)
 {
     (void)state;
     cw_mesh mesh = {0};
-    cwi_image image;
+    cw_image image;
     test_make_cube(&mesh);
     free(mesh.normals);
     mesh.normals = NULL;
@@ -424,7 +424,7 @@ static void without_normals_faces_are_flat(void **state)
         assert_near(image.pixels[4 * p], image.pixels[0], 0);
         assert_near(image.pixels[4 * p + 2], image.pixels[2], 0);
     }
-    cwi_image_free(&image);
+    cw_image_free(&image);
     cw_mesh_free(&mesh);
 }
 
@@ -434,21 +434,21 @@ static void an_empty_mesh_gives_the_background(void **state)
     const cw_mesh mesh = {0};
     const cwi_render_desc desc = {
         .width = 3, .height = 2, .background = {{10, 20, 30, 255}, {110, 120, 130, 255}}};
-    cwi_image image;
+    cw_image image;
     render(&mesh, &desc, &image);
     assert_memory_equal(pixel_at(&image, 0, 0), "\x23\x2d\x37\xff", 4);
     assert_memory_equal(pixel_at(&image, 2, 1), "\x55\x5f\x69\xff", 4);
-    cwi_image_free(&image);
+    cw_image_free(&image);
 }
 
 static void mistakes_are_named(void **state)
 {
     (void)state;
-    const cwi_camera good = {.target = {0, 1, 0}, .up = {0, 0, 1}, .fov_deg = 30};
-    const cwi_camera same = {.up = {0, 0, 1}, .fov_deg = 30};
-    const cwi_camera along = {.target = {0, 0, 1}, .up = {0, 0, 1}, .fov_deg = 30};
-    const cwi_camera wide = {.target = {0, 1, 0}, .up = {0, 0, 1}, .fov_deg = 180};
-    const cwi_camera low = {.target = {0, 1, 0}, .up = {0, 0, 1}};
+    const cw_camera good = {.target = {0, 1, 0}, .up = {0, 0, 1}, .fov_deg = 30};
+    const cw_camera same = {.up = {0, 0, 1}, .fov_deg = 30};
+    const cw_camera along = {.target = {0, 0, 1}, .up = {0, 0, 1}, .fov_deg = 30};
+    const cw_camera wide = {.target = {0, 1, 0}, .up = {0, 0, 1}, .fov_deg = 180};
+    const cw_camera low = {.target = {0, 1, 0}, .up = {0, 0, 1}};
     const struct {
         cwi_render_desc desc;
         const char *words;
@@ -461,19 +461,19 @@ static void mistakes_are_named(void **state)
         {{.camera = good, .samples = 5}, "5 samples a side"},
     };
     cw_mesh mesh = {0};
-    cwi_image image;
+    cw_image image;
     cw_error err = {0};
-    cwi_camera camera;
+    cw_camera camera;
     test_make_cube(&mesh);
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         assert_fails(cwi_render_mesh(&mesh, &rows[i].desc, &image, &err), CW_ERR_ARGUMENT,
                      rows[i].words, err);
         assert_null(image.pixels);
     }
-    const cwi_fit_desc sideways = {.view = "sideways"}, narrow = {.margin = 0.5};
-    assert_fails(cwi_camera_fit(&sideways, &camera, &err), CW_ERR_ARGUMENT,
+    const cw_fit_desc sideways = {.view = "sideways"}, narrow = {.margin = 0.5};
+    assert_fails(cw_camera_fit(&sideways, &camera, &err), CW_ERR_ARGUMENT,
                  "no view is named 'sideways'; there are front back", err);
-    assert_fails(cwi_camera_fit(&narrow, &camera, &err), CW_ERR_ARGUMENT, "margin of 0.5", err);
+    assert_fails(cw_camera_fit(&narrow, &camera, &err), CW_ERR_ARGUMENT, "margin of 0.5", err);
     mesh.triangles[5] = 8;
     assert_fails(cwi_render_mesh(&mesh, NULL, &image, &err), CW_ERR_ARGUMENT, "names vertex 8",
                  err);
@@ -491,7 +491,7 @@ static void drawing_can_be_cancelled(void **state)
 {
     (void)state;
     cw_mesh mesh = {0};
-    cwi_image image;
+    cw_image image;
     cw_error err = {0};
     int calls = 0;
     test_make_cube(&mesh);
@@ -512,15 +512,15 @@ static void running_out_of_memory_is_an_error(void **state)
     const cwi_render_desc desc = {.width = 32, .height = 32, .threads = 1};
     bool failed = true;
     for (long n = 0; failed; n++) {
-        cwi_image image = {0};
+        cw_image image = {0};
         cwi_alloc_fail_after(n);
         cw_status st = cwi_render_mesh(&mesh, &desc, &image, &err);
         if (st == CW_OK)
-            st = cwi_png_write(test_path("a.png"), &image, &err);
+            st = cw_image_write(test_path("a.png"), &image, &err);
         failed = cwi_alloc_fail_after(-1);
         assert_int_equal(st, failed ? CW_ERR_NO_MEMORY : CW_OK);
         assert_int_equal(test_folder_entries(), failed ? 0 : 1);
-        cwi_image_free(&image);
+        cw_image_free(&image);
     }
     cw_mesh_free(&mesh);
 }
@@ -531,14 +531,14 @@ static void pngs_come_back_to_the_bit(void **state)
     (void)state;
     cw_error err = {0};
     for (int alpha = 255; alpha >= 128; alpha -= 127) {
-        cwi_image image;
-        assert_ok(cwi_image_alloc(&image, 57, 31, &err), err);
+        cw_image image;
+        assert_ok(cw_image_alloc(&image, 57, 31, &err), err);
         for (size_t i = 0; i < 57 * 31; i++) {
             const uint8_t rgba[4] = {(uint8_t)(i * 7), (uint8_t)(i >> 3), (uint8_t)(i * i),
                                      (uint8_t)(i % 2 ? 255 : alpha)};
             memcpy(image.pixels + 4 * i, rgba, 4);
         }
-        assert_ok(cwi_png_write(test_path("a.png"), &image, &err), err);
+        assert_ok(cw_image_write(test_path("a.png"), &image, &err), err);
         png_image png = {.version = PNG_IMAGE_VERSION};
         assert_true(png_image_begin_read_from_file(&png, test_path("a.png")));
         assert_int_equal(png.width, 57);
@@ -550,10 +550,10 @@ static void pngs_come_back_to_the_bit(void **state)
         assert_true(png_image_finish_read(&png, NULL, back, 0, NULL));
         assert_memory_equal(back, image.pixels, 4 * 57 * 31);
         free(back);
-        cwi_image_free(&image);
+        cw_image_free(&image);
     }
-    const cwi_image nothing = {0};
-    assert_fails(cwi_png_write(test_path("b.png"), &nothing, &err), CW_ERR_ARGUMENT,
+    const cw_image nothing = {0};
+    assert_fails(cw_image_write(test_path("b.png"), &nothing, &err), CW_ERR_ARGUMENT,
                  "b.png: there is no picture", err);
     assert_int_equal(test_folder_entries(), 1);
 }

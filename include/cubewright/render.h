@@ -1,0 +1,191 @@
+/* Pictures of volumes and meshes, in every classic mode, without a window. */
+#ifndef CUBEWRIGHT_RENDER_H
+#define CUBEWRIGHT_RENDER_H
+
+#include <cubewright/camera.h>
+#include <cubewright/mesh.h>
+#include <cubewright/picture.h>
+#include <cubewright/transfer.h>
+#include <cubewright/volume.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* One row per mode: constant, name, what it is, and the paper it follows. */
+#define CW_MODE_TABLE(X)                                                                       \
+    X(CW_MODE_MESH, "mesh", "triangles, lit", "Blinn 1977")                                    \
+    X(CW_MODE_COMPOSITE, "composite", "ray casting: emission and absorption",                  \
+      "Upson & Keeler 1988; Drebin et al. 1988; Engel et al. 2001")                            \
+    X(CW_MODE_MIP, "mip", "the highest value along each ray", "Wallis et al. 1989")            \
+    X(CW_MODE_MINIP, "minip", "the lowest value along each ray", "Wallis et al. 1989")         \
+    X(CW_MODE_AVERAGE, "average", "the mean value along each ray", "as an X-ray")              \
+    X(CW_MODE_LOCAL_MIP, "local-mip", "the first maximum above a threshold",                   \
+      "Sato et al. 1998")                                                                      \
+    X(CW_MODE_PROJECTION, "projection", "coherent projection of cells",                        \
+      "Wilhelms & Van Gelder 1991")                                                            \
+    X(CW_MODE_SPLAT, "splat", "splatting, sheet by sheet", "Westover 1990")                    \
+    X(CW_MODE_SPLAT_TREE, "splat-tree", "hierarchical splatting", "Laur & Hanrahan 1991")      \
+    X(CW_MODE_TEXTURE, "texture", "slices through a 3D texture",                               \
+      "Wilson, Van Gelder & Wilhelms 1994")                                                    \
+    X(CW_MODE_SHADED_TEXTURE, "shaded-texture",                                                \
+      "slices through a texture of quantised "                                                 \
+      "gradients",                                                                             \
+      "Van Gelder & Kim 1996")                                                                 \
+    X(CW_MODE_SLICES, "slices", "axial, coronal, sagittal and oblique slices", "")             \
+    X(CW_MODE_VBUFFER, "vbuffer", "ray casting cell by cell, on the CPU",                      \
+      "Upson & Keeler 1988")                                                                   \
+    X(CW_MODE_REFERENCE, "reference", "the rendering integral itself, on the CPU",             \
+      "Sabella 1988; Max 1995")
+
+typedef enum cw_mode {
+#define CW_MODE_ENUM(name, text, about, source) name,
+    CW_MODE_TABLE(CW_MODE_ENUM)
+#undef CW_MODE_ENUM
+        CW_MODE_COUNT
+} cw_mode;
+
+CW_API const char *cw_mode_name(cw_mode mode);
+CW_API const char *cw_mode_about(cw_mode mode);
+CW_API const char *cw_mode_source(cw_mode mode);
+
+/* Who draws. */
+typedef enum cw_backend {
+    CW_BACKEND_AUTO, /* the CPU for what only it does (vbuffer, reference), else EGL */
+    CW_BACKEND_EGL,  /* OpenGL 3.3, without a display */
+    CW_BACKEND_CPU,  /* vbuffer, reference, and meshes alone */
+    CW_BACKEND_COUNT
+} cw_backend;
+
+enum { CW_MAX_LIGHTS = 4, CW_MAX_CLIPS = 12, CW_MAX_SLICES = 4 };
+
+/* A light from far away. */
+typedef struct cw_light {
+    double direction[3]; /* towards the light, of any length, in the camera's frame: x to the
+                            right, y up, z to the eye */
+    float color[3];
+} cw_light;
+
+/* What is kept lies where normal . p >= distance, p in the world, LPS millimetres. */
+typedef struct cw_clip {
+    double normal[3];
+    double distance_mm;
+} cw_clip;
+
+/* A slice to draw: all p with normal . p = distance. */
+typedef cw_clip cw_slice;
+
+/* How reflective things are: I = ambient C + sum over lights (diffuse |n.l| C + specular
+ * |n.h|^shininess) I_l. Both sides are lit. Where a volume's gradient is 0 there is no n, and
+ * only ambient light. */
+typedef struct cw_material {
+    float ambient, diffuse, specular, shininess; /* all 0: 0.25, 0.75, 0.2, 32 */
+} cw_material;
+
+/* What colours a mesh. */
+typedef enum cw_tint {
+    CW_TINT_COLORS,  /* the mesh's colours, else the scene's */
+    CW_TINT_SCALARS, /* the mesh's scalars, dark to bright from tint_low to tint_high */
+    CW_TINT_QUALITY, /* each triangle's shape: 4 sqrt(3) area / sum of squared edges, 0 to 1 */
+    CW_TINT_COUNT
+} cw_tint;
+
+/* Bits of what slices of a texture are blended in. */
+typedef enum cw_target {
+    CW_TARGET_32F, /* single precision */
+    CW_TARGET_16,  /* unsigned, normalised */
+    CW_TARGET_16F, /* half precision: rounds towards zero on some machines */
+    CW_TARGET_8,
+    CW_TARGET_COUNT
+} cw_target;
+
+/* A scene. Zero-initialise it and set what you need; a zero field means the default named
+ * beside it. What pointers point to is borrowed. */
+typedef struct cw_scene {
+    cw_mode mode;
+    const cw_volume *volume;     /* evenly spaced; required for all modes but mesh */
+    const cw_mesh *mesh;         /* drawn too, opaque, whatever the mode; required for mesh */
+    const cw_transfer *transfer; /* required for all modes but mesh */
+    cw_camera camera;            /* default (up all 0): front view of everything, 30 degrees */
+    size_t width, height;        /* pixels, at most 16384; default 1280 x 720 */
+    int samples;                 /* a side: 1 to 4 squared samples a pixel; default 1 */
+
+    /* light and depth */
+    cw_light lights[CW_MAX_LIGHTS]; /* light_count of them */
+    size_t light_count;             /* default: one, white, from the eye */
+    cw_material material;
+    bool lit;        /* volumes are shaded by their gradient; meshes always are */
+    float depth_cue; /* 0 to 1: the share of the background at the far end of what is seen,
+                        rising linearly from 0 at the near end */
+    float background[2][3];      /* top and bottom, for depth_cue and slices; sRGB */
+    cw_clip clips[CW_MAX_CLIPS]; /* clip_count of them: only what all of them keep is drawn */
+    size_t clip_count;
+    bool cut_away; /* what all of them would keep is what is left out */
+
+    /* rays and slices */
+    double step_vox;        /* distance of samples along a ray, or of slices of a texture, in
+                               smallest spacings; default 1 */
+    bool cell_steps;        /* samples end at the faces of cells */
+    bool no_preintegration; /* sample at the middle of each step */
+    bool jitter;            /* shift the samples of every ray by another part of a step */
+    bool exact_filter;      /* trilinear interpolation by the shader, not the texture unit */
+    bool no_skipping;       /* go through what is empty as well */
+    float stop_opacity;     /* rays end there; default 0.9999 */
+    double threshold;       /* local-mip: the value a maximum has to reach */
+    size_t texture_edge;    /* largest edge of a 3D texture, in voxels; default: what GL can */
+    cw_target target;       /* texture, shaded-texture: what slices are blended in */
+    bool colors_first;      /* texture, shaded-texture: interpolate colours, not data */
+    size_t normals;         /* shaded-texture: directions of the table; default 1024 */
+    bool mark_boundary;     /* shaded-texture: only cells at material boundaries */
+    bool linear_opacity;    /* projection: opacity, not depth, is linear over a polygon, as in
+                               1991 */
+    double tree_error;      /* splat-tree: largest error of a node, in the table's range 0..1 of
+                               values; 0: every voxel is splatted */
+
+    /* slices */
+    cw_slice slices[CW_MAX_SLICES]; /* slice_count of them */
+    size_t slice_count;             /* default: axial, coronal, sagittal through the middle */
+
+    /* mesh */
+    float color[4]; /* sRGB and opacity of a mesh without colours; default a bone white */
+    cw_tint tint;
+    double tint_low, tint_high; /* both 0: the range of the scalars */
+    bool wireframe;             /* edges drawn over the triangles */
+    bool cap;                   /* the cut through a clipped mesh is filled */
+
+    int threads;          /* default: all that OpenMP offers */
+    cw_progress progress; /* default: none */
+} cw_scene;
+
+/* A renderer keeps what it has uploaded of a scene for the next picture of it. */
+typedef struct cw_renderer cw_renderer;
+
+/* Makes a renderer.
+ * Returns  CW_ERR_UNSUPPORTED  this build has no GL, the machine has no driver, or none with
+ *                              OpenGL 3.3: the message names the packages; CW_ERR_NO_MEMORY */
+CW_API cw_status cw_renderer_new(cw_backend backend, cw_renderer **renderer, cw_error *err);
+CW_API void cw_renderer_free(cw_renderer *renderer);
+
+/* What draws: "CPU", or the GL's own words. Valid as long as the renderer. */
+CW_API const char *cw_renderer_name(const cw_renderer *renderer);
+
+/* Draws a scene. Deterministic: the same scene gives the same picture on the same machine, and
+ * by the CPU on any.
+ *
+ * picture  filled on success, emptied on failure; free it with cw_picture_free()
+ * Returns  CW_ERR_ARGUMENT     something the mode needs is missing or out of range
+ *          CW_ERR_UNSUPPORTED  the mode is not one of the backend's; a volume that is not
+ *                              evenly spaced
+ *          CW_ERR_BACKEND      GL failed or its context was lost: make another renderer
+ *          CW_ERR_LIMIT; CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
+CW_API cw_status cw_render(cw_renderer *renderer, const cw_scene *scene, cw_picture *picture,
+                           cw_error *err);
+
+/* Tells a renderer that voxels or vertices it has drawn were written to since. */
+CW_API void cw_renderer_forget(cw_renderer *renderer);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,72 @@
+/* Transfer functions: from a value to the colour and the opacity it is shown with. */
+#ifndef CUBEWRIGHT_TRANSFER_H
+#define CUBEWRIGHT_TRANSFER_H
+
+#include <cubewright/volume.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { CW_TRANSFER_POINTS = 64 };
+
+/* A colour (sRGB, 0 to 1) and an opacity (0 to 1) at a value, in the unit of the voxels. */
+typedef struct cw_color_point {
+    double value;
+    float color[3];
+} cw_color_point;
+
+typedef struct cw_opacity_point {
+    double value;
+    float opacity;
+} cw_opacity_point;
+
+/* A transfer function: linear between points, constant beyond the ends. Points' values do not
+ * fall; two at one value are a jump, which belongs to the side above. No colours: white; no
+ * opacities: fully transparent; no gradients: 1 everywhere.
+ *
+ * Opacity o is what a path of unit_mm through that value covers: the extinction coefficient is
+ * -ln(1 - o) / unit_mm, and o is taken as at most 1 - 1e-6. */
+typedef struct cw_transfer {
+    size_t color_count, opacity_count, gradient_count;
+    cw_color_point colors[CW_TRANSFER_POINTS];
+    cw_opacity_point opacities[CW_TRANSFER_POINTS];
+    cw_opacity_point gradients[CW_TRANSFER_POINTS]; /* value: length of the gradient, per mm;
+                                                       opacity: a factor of the opacity */
+    double unit_mm;                                 /* default: the volume's smallest spacing */
+} cw_transfer;
+
+/* Returns CW_ERR_ARGUMENT, naming the point, for values that fall or are not finite, for
+ * colours and opacities outside of 0 to 1, too many points, and a unit_mm that is no length. */
+CW_API cw_status cw_transfer_check(const cw_transfer *transfer, cw_error *err);
+
+/* The colour and opacity of a value, and the factor of a gradient's length. */
+CW_API void cw_transfer_at(const cw_transfer *transfer, double value, double color[3],
+                           double *opacity);
+CW_API double cw_transfer_gradient_factor(const cw_transfer *transfer, double gradient_per_mm);
+
+/* The name of the n-th preset; NULL after the last. */
+CW_API const char *cw_transfer_preset_name(size_t n);
+CW_API const char *cw_transfer_preset_about(size_t n);
+
+/* A preset. Those of CT stand at Hounsfield units; others are fitted to the values.
+ * statistics  of the volume, with 256 bins or more; borrowed
+ * Returns CW_ERR_ARGUMENT for an unknown name, with the names there are. */
+CW_API cw_status cw_transfer_preset(const char *name, const cw_statistics *statistics,
+                                    cw_transfer *transfer, cw_error *err);
+
+/* A transfer function as a JSON file:
+ *     {"schema": "cubewright-transfer-1", "unit_mm": 1,
+ *      "colors": [[-1000, "#000000"], [300, "#ffeedd"]],
+ *      "opacities": [[100, 0], [300, 0.5]], "gradients": [[0, 0], [40, 1]]}
+ * Values are read back to the bit; colours are kept in steps of 1/255.
+ * Returns CW_ERR_IO; CW_ERR_FORMAT, with the line or the field that is wrong; CW_ERR_OUTPUT. */
+CW_API cw_status cw_transfer_read(const char *path, cw_transfer *transfer, cw_error *err);
+CW_API cw_status cw_transfer_write(const char *path, const cw_transfer *transfer,
+                                   cw_error *err);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

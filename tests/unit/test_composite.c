@@ -1,0 +1,72 @@
+#include "support/pictures.h"
+
+#include <math.h>
+
+static const double cube[3] = {1, 1, 1};
+
+/* The length of the ray through the middle of a pixel inside of a box that is seen from the
+ * front, orthographically: the same everywhere. */
+static cw_camera straight(double height_mm)
+{
+    return (cw_camera){.eye = {0, -500, 0}, .up = {0, 0, 1}, .height_mm = height_mm};
+}
+
+/* A box of one value is as opaque as Beer and Lambert say. */
+static void constant_box_is_exact(void **state)
+{
+    (void)state;
+    cw_renderer *r = test_renderer();
+    cw_volume box = {0};
+    const cw_transfer flat = test_flat_transfer();
+    test_field(&box, 24, 33, 20, cube, test_constant);
+    for (int n = 0; n < 4; n++) {
+        const cw_scene scene = {.mode = CW_MODE_COMPOSITE,
+                                .volume = &box,
+                                .transfer = &flat,
+                                .camera = straight(10),
+                                .width = 16,
+                                .height = 16,
+                                .step_vox = (double[]){1, 0.3, 2.7, 7}[n],
+                                .cell_steps = n == 1,
+                                .no_preintegration = n == 2};
+        cw_picture picture = test_draw(r, &scene);
+        const double alpha = 1 - pow(1 - 0.05, 32);
+        for (size_t p = 0; p < 16 * 16; p++) {
+            assert_true(fabs((double)picture.pixels[4 * p + 3] - alpha) < 1e-5);
+            assert_true(fabs((double)picture.pixels[4 * p] - 0.8 * alpha) < 1e-5);
+        }
+        cw_picture_free(&picture);
+    }
+    cw_volume_free(&box);
+}
+
+/* What is passed over is empty. */
+static void skipping_changes_nothing(void **state)
+{
+    (void)state;
+    cw_renderer *r = test_renderer();
+    cw_volume blobs = {0};
+    const cw_transfer soft = test_soft_transfer();
+    test_field(&blobs, 64, 64, 64, cube, test_blobs);
+    cw_scene scene = {.mode = CW_MODE_COMPOSITE,
+                      .volume = &blobs,
+                      .transfer = &soft,
+                      .width = 128,
+                      .height = 128};
+    cw_picture with = test_draw(r, &scene);
+    scene.no_skipping = true;
+    cw_picture without = test_draw(r, &scene);
+    assert_true(test_compare(&with, &without).max < 0.02);
+    cw_picture_free(&with);
+    cw_picture_free(&without);
+    cw_volume_free(&blobs);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(constant_box_is_exact),
+        cmocka_unit_test(skipping_changes_nothing),
+    };
+    return cmocka_run_group_tests(tests, NULL, test_renderer_close);
+}

@@ -1,0 +1,131 @@
+/* A context without a display: EGL on Mesa's surfaceless platform, else on any device. */
+#include "viewer/gl_draw.h"
+
+#include "core/memory.h"
+#include "core/status.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#define PACKAGES "apt-get install libegl1 libgl1-mesa-dri"
+
+static EGLDisplay surfaceless(void)
+{
+    const char *extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
+    if (!extensions || !strstr(extensions, "EGL_MESA_platform_surfaceless"))
+        return EGL_NO_DISPLAY;
+    return eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, NULL);
+}
+
+static EGLDisplay first_device(void)
+{
+    EGLDeviceEXT device;
+    EGLint count = 0;
+    const char *extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
+    if (!extensions || !strstr(extensions, "EGL_EXT_platform_device") ||
+        !eglQueryDevicesEXT(1, &device, &count) || count < 1)
+        return EGL_NO_DISPLAY;
+    return eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, NULL);
+}
+
+static bool start(cwi_gl *gl, EGLDisplay display)
+{
+    static const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                    3,
+                                    EGL_CONTEXT_MINOR_VERSION,
+                                    3,
+                                    EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                    EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                    EGL_NONE};
+    if (display == EGL_NO_DISPLAY || !eglInitialize(display, NULL, NULL))
+        return false;
+    gl->display = display;
+    if (eglBindAPI(EGL_OPENGL_API))
+        gl->context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted);
+    return gl->context != EGL_NO_CONTEXT &&
+           eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, gl->context);
+}
+
+static void stop(cwi_gl *gl)
+{
+    if (gl->display == EGL_NO_DISPLAY)
+        return;
+    eglMakeCurrent(gl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    if (gl->context != EGL_NO_CONTEXT)
+        eglDestroyContext(gl->display, gl->context);
+    eglTerminate(gl->display);
+    eglReleaseThread();
+    gl->display = EGL_NO_DISPLAY;
+    gl->context = EGL_NO_CONTEXT;
+}
+
+static cw_status open_context(cwi_gl *gl, cw_error *err)
+{
+    if (!epoxy_has_egl())
+        return cw_fail(err, CW_ERR_UNSUPPORTED, "this machine has no EGL: " PACKAGES);
+    if (!start(gl, surfaceless())) {
+        stop(gl);
+        if (!start(gl, first_device())) {
+            stop(gl);
+            return cw_fail(err, CW_ERR_UNSUPPORTED,
+                           "no driver here offers OpenGL 3.3 without a display: " PACKAGES);
+        }
+    }
+    snprintf(gl->name, sizeof gl->name, "OpenGL %d.%d, %s", epoxy_gl_version() / 10,
+             epoxy_gl_version() % 10, (const char *)glGetString(GL_RENDERER));
+    return CW_OK;
+}
+
+static cw_status gl_open(cwi_gl **out, cw_error *err)
+{
+    cwi_gl *gl = cwi_alloc_zeroed(1, sizeof *gl);
+    if (!gl)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for OpenGL");
+    cw_status st = open_context(gl, err);
+    if (st != CW_OK) {
+        cwi_free(gl);
+        return st;
+    }
+    glGenBuffers(1, &gl->frame_block);
+    glGenVertexArrays(1, &gl->empty_array);
+    *out = gl;
+    return CW_OK;
+}
+
+static void drop_states(cwi_gl *gl)
+{
+    for (int m = 0; m < CW_MODE_COUNT; m++) {
+        const cwi_gl_mode *mode = cwi_gl_find_mode((cw_mode)m);
+        if (mode && mode->drop && gl->state[m])
+            mode->drop(gl->state[m]);
+        gl->state[m] = NULL;
+    }
+}
+
+void cwi_gl_forget(cwi_gl *gl)
+{
+    eglMakeCurrent(gl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, gl->context);
+    drop_states(gl);
+    cwi_gl_drop_volume(gl);
+    cwi_gl_drop_transfer(gl);
+}
+
+static void gl_close(cwi_gl *gl)
+{
+    cwi_gl_forget(gl);
+    cwi_gl_drop_target(gl);
+    for (size_t n = 0; n < gl->program_count; n++)
+        glDeleteProgram(gl->programs[n].name);
+    glDeleteBuffers(1, &gl->frame_block);
+    glDeleteVertexArrays(1, &gl->empty_array);
+    stop(gl);
+    cwi_free(gl);
+}
+
+static const char *gl_name(const cwi_gl *gl)
+{
+    return gl->name;
+}
+
+CW_API extern const cwi_gl_functions cwi_module_gl;
+const cwi_gl_functions cwi_module_gl = {gl_open, gl_close, gl_name, cwi_gl_forget, cwi_gl_draw};

@@ -1,0 +1,383 @@
+/* A volume as 3D textures: one, or bricks where one would be too large. */
+#include "viewer/gl_draw.h"
+
+#include "core/affine.h"
+#include "core/memory.h"
+#include "core/status.h"
+#include "core/volume.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { CHUNK_BYTES = 1 << 25, MOST_BRICKS = 4096, GRADIENT_BYTES = 8 };
+
+/* How texels are made of voxels. */
+typedef struct texel_kind {
+    GLenum inner, type;
+    size_t size;
+    bool as_is;         /* voxels of this type are texels when they are packed */
+    double scale, bias; /* voxel = texel (as shaders see it) x scale + bias */
+} texel_kind;
+
+/* Eight and sixteen bits go to sixteen, normalised, and stay exact: in textures of eight bits
+ * some machines interpolate in eight bits. Others become floats. */
+static texel_kind kind_of(const cw_volume *v)
+{
+    const texel_kind single = {GL_R32F, GL_FLOAT, 4, v->type == CW_F32 && !v->has_nodata, 1, 0};
+    if (v->has_nodata) /* becomes NaN */
+        return single;
+    switch (v->type) {
+    case CW_U8:
+        return (texel_kind){GL_R16, GL_UNSIGNED_BYTE, 1, true, 255, 0};
+    case CW_I8:
+        return (texel_kind){GL_R16, GL_UNSIGNED_BYTE, 1, false, 255, -128};
+    case CW_U16:
+        return (texel_kind){GL_R16, GL_UNSIGNED_SHORT, 2, true, 65535, 0};
+    case CW_I16:
+        return (texel_kind){GL_R16, GL_UNSIGNED_SHORT, 2, false, 65535, -32768};
+    case CW_F32:
+        return single;
+    default:
+        return (texel_kind){GL_R32F, GL_FLOAT, 4, false, 1, 0};
+    }
+}
+
+/* The range of the volume's values; 0, 1 when it has none. */
+static void find_range(const cwi_ranges *ranges, double range[2])
+{
+    range[0] = INFINITY;
+    range[1] = -INFINITY;
+    for (size_t n = 0; n < ranges->dim[0] * ranges->dim[1] * ranges->dim[2]; n++)
+        if (ranges->blocks[n][0] <= ranges->blocks[n][1]) {
+            range[0] = fmin(range[0], (double)ranges->blocks[n][0]);
+            range[1] = fmax(range[1], (double)ranges->blocks[n][1]);
+        }
+    if (!(range[0] < range[1])) {
+        range[0] = 0;
+        range[1] = 1;
+    }
+}
+
+/* Wide types are told from their middle, in units of half their range. */
+static void fit_wide(const cw_volume *v, const double range[2], texel_kind *kind)
+{
+    if (kind->type != GL_FLOAT || v->type == CW_F32)
+        return;
+    kind->bias = ((range[0] + range[1]) / 2 - v->intercept) / v->slope;
+    kind->scale = fabs((range[1] - range[0]) / 2 / v->slope);
+}
+
+static void put_row(const cw_volume *v, const texel_kind *kind, const char *from, size_t count,
+                    void *to)
+{
+    for (size_t i = 0; i < count; i++, from += v->stride[0]) {
+        const double x = cwi_voxel_at(v->type, from);
+        if (kind->type == GL_UNSIGNED_BYTE)
+            ((uint8_t *)to)[i] = (uint8_t)(x - kind->bias);
+        else if (kind->type == GL_UNSIGNED_SHORT)
+            ((uint16_t *)to)[i] = (uint16_t)(x - kind->bias);
+        else
+            ((float *)to)[i] =
+                v->has_nodata && x == v->nodata ? NAN : (float)((x - kind->bias) / kind->scale);
+    }
+}
+
+static void put_layers(const cw_volume *v, const texel_kind *kind, const cwi_gl_brick *b,
+                       size_t from, size_t count, char *to)
+{
+    const size_t row = b->count[0] * kind->size;
+#pragma omp parallel for collapse(2)
+    for (size_t k = 0; k < count; k++)
+        for (size_t j = 0; j < b->count[1]; j++)
+            put_row(v, kind,
+                    cwi_voxel_address(v, b->first[0], b->first[1] + j, b->first[2] + from + k),
+                    b->count[0], to + (k * b->count[1] + j) * row);
+}
+
+static bool is_packed(const cw_volume *v)
+{
+    const ptrdiff_t size = (ptrdiff_t)cw_type_size(v->type);
+    return v->stride[0] == size && v->stride[1] == size * (ptrdiff_t)v->dim[0] &&
+           v->stride[2] == v->stride[1] * (ptrdiff_t)v->dim[1];
+}
+
+static size_t layers_at_once(size_t layer_bytes, size_t layers)
+{
+    const size_t fit = CHUNK_BYTES / layer_bytes;
+    return fit < 1 ? 1 : fit < layers ? fit : layers;
+}
+
+static cw_status upload(const cw_volume *v, const texel_kind *kind, const cwi_gl_brick *b,
+                        cw_error *err)
+{
+    const GLsizei w = (GLsizei)b->count[0], h = (GLsizei)b->count[1], d = (GLsizei)b->count[2];
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    if (kind->as_is && is_packed(v) && b->count[0] == v->dim[0] && b->count[1] == v->dim[1]) {
+        glTexImage3D(GL_TEXTURE_3D, 0, (GLint)kind->inner, w, h, d, 0, GL_RED, kind->type,
+                     cwi_voxel_address(v, 0, 0, b->first[2]));
+        return CW_OK;
+    }
+    const size_t layer = b->count[0] * b->count[1] * kind->size;
+    const size_t step = layers_at_once(layer, b->count[2]);
+    char *chunk = cwi_alloc_array(step, layer);
+    if (!chunk)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the upload of a volume");
+    glTexImage3D(GL_TEXTURE_3D, 0, (GLint)kind->inner, w, h, d, 0, GL_RED, kind->type, NULL);
+    for (size_t k = 0; k < b->count[2]; k += step) {
+        const size_t n = b->count[2] - k < step ? b->count[2] - k : step;
+        put_layers(v, kind, b, k, n, chunk);
+        glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, (GLint)k, w, h, (GLsizei)n, GL_RED, kind->type,
+                        chunk);
+    }
+    cwi_free(chunk);
+    return CW_OK;
+}
+
+/* Whether this OpenGL makes such a texture: only the proxy says so. */
+static bool fits(GLenum inner, size_t w, size_t h, size_t d)
+{
+    GLint got = 0, most = 0;
+    glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &most);
+    if (w > (size_t)most || h > (size_t)most || d > (size_t)most)
+        return false;
+    glTexImage3D(GL_PROXY_TEXTURE_3D, 0, (GLint)inner, (GLsizei)w, (GLsizei)h, (GLsizei)d, 0,
+                 inner == GL_RGBA16F ? GL_RGBA : GL_RED, GL_FLOAT, NULL);
+    glGetTexLevelParameteriv(GL_PROXY_TEXTURE_3D, 0, GL_TEXTURE_WIDTH, &got);
+    return got != 0;
+}
+
+/* Parts an axis of n samples is cut into, of at most edge samples, one in common with the next.
+ */
+static size_t parts_of(size_t n, size_t edge)
+{
+    return n <= edge ? 1 : (n - 2) / (edge - 1) + 1;
+}
+
+/* The largest bricks of values and gradients that fit; longest axes are cut first. */
+static void choose_edges(const cw_volume *v, const texel_kind *kind, size_t asked,
+                         size_t edge[3])
+{
+    for (int a = 0; a < 3; a++)
+        edge[a] = asked >= 2 && asked < v->dim[a] ? asked : v->dim[a];
+    while (!(fits(kind->inner, edge[0], edge[1], edge[2]) &&
+             fits(GL_RGBA16F, edge[0], edge[1], edge[2]))) {
+        int longest = 0;
+        for (int a = 1; a < 3; a++)
+            if (edge[a] > edge[longest])
+                longest = a;
+        if (edge[longest] <= 32)
+            break;
+        edge[longest] = edge[longest] / 2 + 1;
+    }
+}
+
+static cw_status plan_bricks(cwi_gl_volume *g, const size_t edge[3], cw_error *err)
+{
+    const cw_volume *v = &g->key;
+    size_t parts[3];
+    for (int a = 0; a < 3; a++)
+        parts[a] = parts_of(v->dim[a], edge[a]);
+    const size_t count = parts[0] * parts[1] * parts[2];
+    if (count > MOST_BRICKS)
+        return cw_fail(err, CW_ERR_LIMIT, "the volume makes %zu textures: at most %d are drawn",
+                       count, MOST_BRICKS);
+    g->bricks = cwi_alloc_zeroed(count, sizeof *g->bricks);
+    if (!g->bricks)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bricks", count);
+    g->brick_count = count;
+    for (size_t n = 0; n < count; n++) {
+        const size_t at[3] = {n % parts[0], n / parts[0] % parts[1], n / parts[0] / parts[1]};
+        for (int a = 0; a < 3; a++) {
+            const size_t first = at[a] * (edge[a] - 1), left = v->dim[a] - first;
+            g->bricks[n].first[a] = first;
+            g->bricks[n].count[a] = left < edge[a] ? left : edge[a];
+        }
+    }
+    return CW_OK;
+}
+
+void cwi_gl_drop_volume(cwi_gl *gl)
+{
+    cwi_gl_volume *g = &gl->volume;
+    for (size_t n = 0; n < g->brick_count; n++) {
+        glDeleteTextures(1, &g->bricks[n].values);
+        glDeleteTextures(1, &g->bricks[n].gradients);
+    }
+    cwi_free(g->bricks);
+    cwi_ranges_free(&g->ranges);
+    *g = (cwi_gl_volume){0};
+}
+
+static bool is_there(const cwi_gl_volume *g, const cwi_frame *f)
+{
+    return g->bricks && g->edge == f->scene.texture_edge &&
+           memcmp(&g->key, &f->volume, sizeof g->key) == 0;
+}
+
+cw_status cwi_gl_take_volume(cwi_gl *gl, cw_error *err)
+{
+    cwi_gl_volume *g = &gl->volume;
+    size_t edge[3];
+    double range[2] = {0, 1};
+    if (is_there(g, gl->frame))
+        return CW_OK;
+    cwi_gl_forget(gl);
+    g->key = gl->frame->volume;
+    g->edge = gl->frame->scene.texture_edge;
+    const cw_volume *v = &g->key;
+    texel_kind kind = kind_of(v);
+    cw_status st = cwi_ranges_make(v, gl->frame->scene.threads, &g->ranges, err);
+    if (st == CW_OK) {
+        find_range(&g->ranges, range);
+        fit_wide(v, range, &kind);
+    }
+    g->range = range[1] - range[0];
+    g->scale = v->slope * kind.scale;
+    g->bias = v->slope * kind.bias + v->intercept;
+    choose_edges(v, &kind, g->edge, edge);
+    if (st == CW_OK)
+        st = plan_bricks(g, edge, err);
+    for (size_t n = 0; n < g->brick_count && st == CW_OK; n++) {
+        g->bricks[n].values = cwi_gl_texture(GL_TEXTURE_3D, CWI_UNIT_VOLUME, true);
+        st = upload(v, &kind, &g->bricks[n], err);
+    }
+    if (st != CW_OK)
+        cwi_gl_drop_volume(gl);
+    return st;
+}
+
+/* Half precision, rounded to the nearest, at most the largest. */
+static uint16_t to_half(float x)
+{
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    const uint32_t sign = bits >> 16 & 0x8000u;
+    bits &= 0x7fffffffu;
+    if (bits < 0x38800000u) /* below 2^-14: in steps of 2^-24 */
+        return (uint16_t)(sign | (uint32_t)lrintf(fabsf(x) * 0x1p24f));
+    if (bits >= 0x477ff000u)
+        return (uint16_t)(sign | 0x7bffu);
+    return (uint16_t)(sign | (bits - 0x38000000u + 0xfffu + (bits >> 13 & 1)) >> 13);
+}
+
+/* The derivative of texels along an axis: central inside, one-sided at the border; 0 where a
+ * sample has no value. at: the sample's address; n of dim. */
+static double derivative(const cw_volume *v, const char *at, int axis, size_t n)
+{
+    const size_t dim = v->dim[axis];
+    if (dim == 1)
+        return 0;
+    const char *low = n > 0 ? at - v->stride[axis] : at;
+    const char *high = n + 1 < dim ? at + v->stride[axis] : at;
+    const double a = cwi_voxel_at(v->type, low), b = cwi_voxel_at(v->type, high);
+    const double d = (b - a) / (n > 0 && n + 1 < dim ? 2 : 1);
+    return isfinite(d) && !(v->has_nodata && (a == v->nodata || b == v->nodata)) ? d : 0;
+}
+
+static void put_gradients(const cw_volume *v, const cwi_gl_brick *b, double scale, size_t from,
+                          size_t count, uint16_t (*out)[4])
+{
+#pragma omp parallel for collapse(2)
+    for (size_t k = 0; k < count; k++)
+        for (size_t j = 0; j < b->count[1]; j++)
+            for (size_t i = 0; i < b->count[0]; i++) {
+                const size_t at[3] = {b->first[0] + i, b->first[1] + j, b->first[2] + from + k};
+                const char *p = cwi_voxel_address(v, at[0], at[1], at[2]);
+                uint16_t *to = out[(k * b->count[1] + j) * b->count[0] + i];
+                for (int a = 0; a < 3; a++)
+                    to[a] = to_half((float)(derivative(v, p, a, at[a]) * scale));
+                to[3] = 0;
+            }
+}
+
+cw_status cwi_gl_need_gradients(cwi_gl *gl, cw_error *err)
+{
+    cwi_gl_volume *g = &gl->volume;
+    const double scale =
+        g->key.slope / g->range; /* about 1: half precision has few exponents */
+    for (size_t n = 0; n < g->brick_count; n++) {
+        cwi_gl_brick *b = &g->bricks[n];
+        if (b->gradients)
+            continue;
+        const GLsizei w = (GLsizei)b->count[0], h = (GLsizei)b->count[1];
+        const size_t layer = b->count[0] * b->count[1] * GRADIENT_BYTES;
+        const size_t step = layers_at_once(layer, b->count[2]);
+        void *chunk = cwi_alloc_array(step, layer);
+        if (!chunk)
+            return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for gradients");
+        b->gradients = cwi_gl_texture(GL_TEXTURE_3D, CWI_UNIT_GRADIENT, true);
+        glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA16F, w, h, (GLsizei)b->count[2], 0, GL_RGBA,
+                     GL_HALF_FLOAT, NULL);
+        for (size_t k = 0; k < b->count[2]; k += step) {
+            const size_t layers = b->count[2] - k < step ? b->count[2] - k : step;
+            put_gradients(&g->key, b, scale, k, layers, chunk);
+            glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, (GLint)k, w, h, (GLsizei)layers, GL_RGBA,
+                            GL_HALF_FLOAT, chunk);
+        }
+        cwi_free(chunk);
+    }
+    return CW_OK;
+}
+
+void cwi_gl_bind_brick(GLuint program, const cwi_gl_brick *brick)
+{
+    const double first[3] = {(double)brick->first[0], (double)brick->first[1],
+                             (double)brick->first[2]};
+    const double size[3] = {(double)brick->count[0], (double)brick->count[1],
+                            (double)brick->count[2]};
+    glActiveTexture(GL_TEXTURE0 + CWI_UNIT_VOLUME);
+    glBindTexture(GL_TEXTURE_3D, brick->values);
+    glActiveTexture(GL_TEXTURE0 + CWI_UNIT_GRADIENT);
+    glBindTexture(GL_TEXTURE_3D, brick->gradients);
+    cwi_gl_set3(program, "brick_first", first);
+    cwi_gl_set3(program, "brick_size", size);
+}
+
+typedef struct placed {
+    double distance;
+    size_t brick;
+} placed;
+
+static int farther_first(const void *a, const void *b)
+{
+    const placed *x = a, *y = b;
+    return x->distance < y->distance   ? 1
+           : x->distance > y->distance ? -1
+           : x->brick < y->brick       ? -1
+                                       : x->brick > y->brick;
+}
+
+/* The sum over axes of how far the eye is from a brick's faces. A brick that hides another is
+ * nearer along some axes, and farther along none. */
+static double brick_distance(const cwi_gl_brick *b, const double eye[3])
+{
+    double sum = 0;
+    for (int a = 0; a < 3; a++) {
+        const double low = (double)b->first[a], high = low + (double)b->count[a] - 1;
+        sum += eye[a] < low ? low - eye[a] : eye[a] > high ? eye[a] - high : 0;
+    }
+    return sum;
+}
+
+size_t *cwi_gl_order_bricks(const cwi_gl *gl)
+{
+    const cwi_gl_volume *g = &gl->volume;
+    const double back[3] = {0, 0, gl->frame->perspective ? 0 : 1e6 * fmax(gl->frame->far, 1)};
+    double eye[3];
+    size_t *order = cwi_alloc_array(g->brick_count, sizeof *order);
+    placed *all = cwi_alloc_array(g->brick_count, sizeof *all);
+    cwi_affine_apply(gl->frame->index_from_eye, back, eye);
+    for (size_t n = 0; order && all && n < g->brick_count; n++)
+        all[n] = (placed){brick_distance(&g->bricks[n], eye), n};
+    if (order && all) {
+        qsort(all, g->brick_count, sizeof *all, farther_first);
+        for (size_t n = 0; n < g->brick_count; n++)
+            order[n] = all[n].brick;
+    } else {
+        cwi_free(order);
+        order = NULL;
+    }
+    cwi_free(all);
+    return order;
+}

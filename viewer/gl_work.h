@@ -1,0 +1,132 @@
+/* What the files of the GL module share: the context, what was uploaded to it, and the modes.
+ */
+#ifndef VIEWER_GL_WORK_H
+#define VIEWER_GL_WORK_H
+
+#include "viewer/gl.h"
+#include "viewer/ranges.h"
+#include "viewer/table.h"
+
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+
+/* Texture units that every shader finds the same things in. */
+enum {
+    CWI_UNIT_VOLUME,
+    CWI_UNIT_TABLE,    /* cwi_table, CWI_TABLE_ROWS x 1 */
+    CWI_UNIT_SEGMENTS, /* pre-integrated */
+    CWI_UNIT_SKIP,     /* blocks: how many blocks away the next visible one is */
+    CWI_UNIT_DEPTH,    /* of the mesh */
+    CWI_UNIT_GRADIENT,
+    CWI_UNIT_FACTOR, /* of the extinction, by the gradient's length */
+    CWI_UNIT_FREE    /* and those after it: a mode's own */
+};
+
+/* A part of the volume that fits a texture: neighbours have a layer of samples in common. */
+typedef struct cwi_gl_brick {
+    size_t first[3], count[3];
+    GLuint values, gradients; /* gradients: 0 until cwi_gl_need_gradients() */
+} cwi_gl_brick;
+
+/* A volume on the GPU. The number in a texel times scale plus bias is the scaled value. */
+typedef struct cwi_gl_volume {
+    cw_volume key; /* the view that was uploaded */
+    size_t edge;   /* as the scene had it */
+    double scale, bias;
+    double range; /* of the scaled values, above 0; gradients are told in it */
+    size_t brick_count;
+    cwi_gl_brick *bricks;
+    cwi_ranges ranges;
+} cwi_gl_volume;
+
+/* The transfer function on the GPU. */
+typedef struct cwi_gl_transfer {
+    cw_transfer key;
+    double opacity_units;
+    bool is_made;
+    cwi_table table;
+    GLuint rows, skip, segments, factor;
+    double segment_length; /* of what segments holds; 0: nothing */
+    double factor_end;     /* gradient per unit of eye space at the end of factor */
+} cwi_gl_transfer;
+
+enum { CWI_SEGMENT_ROWS = 1024, CWI_FACTOR_ROWS = 1024, CWI_GL_PROGRAMS = 64 };
+
+/* Where pictures are drawn: RGBA and depth textures of the picture's size. */
+typedef struct cwi_gl_target {
+    GLuint framebuffer, color, depth;
+    GLuint rays; /* the same color without depth, which shaders may then read */
+    GLsizei width, height;
+} cwi_gl_target;
+
+typedef struct cwi_gl_program {
+    const char *vertex, *fragment; /* addresses of the sources */
+    char defines[256];
+    GLuint name;
+} cwi_gl_program;
+
+struct cwi_gl {
+    EGLDisplay display;
+    EGLContext context;
+    char name[256];
+    const cwi_frame *frame; /* that is being drawn */
+    GLuint frame_block, empty_array, sampler;
+    cwi_gl_target target;
+    cwi_gl_volume volume;
+    cwi_gl_transfer transfer;
+    size_t program_count;
+    cwi_gl_program programs[CWI_GL_PROGRAMS];
+    void *state[CW_MODE_COUNT]; /* each mode's own */
+};
+
+/* A mode: draws into gl->target, which is bound, cleared or with the mesh in it. */
+typedef struct cwi_gl_mode {
+    cw_mode mode;
+    bool goes_along_rays; /* draws into target.rays */
+    /* Of the mode's state, made at the first call. The frame is gl->frame. */
+    cw_status (*draw)(cwi_gl *gl, void **state, cw_error *err);
+    /* Frees it, when another volume or mesh comes and at the end; NULL: there is none. */
+    void (*drop)(void *state);
+} cwi_gl_mode;
+
+extern const cwi_gl_mode cwi_gl_composite;
+
+/* The mode's row; NULL when GL does not draw it. */
+const cwi_gl_mode *cwi_gl_find_mode(cw_mode mode);
+
+/* A program of two of the sources in shaders/ (cwi_glsl_NAME), each after common.glsl; made
+ * once. defines  "#define A 1\n...", at most 255 characters; "" for none The uniform block
+ * Frame and the texture units above are set. CW_ERR_BACKEND with GL's words. */
+cw_status cwi_gl_use(cwi_gl *gl, const char *vertex, const char *fragment, const char *defines,
+                     GLuint *program, cw_error *err);
+void cwi_gl_set(GLuint program, const char *name, float value);
+void cwi_gl_set3(GLuint program, const char *name, const double value[3]);
+extern const char cwi_glsl_common[], cwi_glsl_screen[];
+
+/* Draws a triangle over the whole picture, for fragment shaders that go along rays. */
+void cwi_gl_draw_screen(cwi_gl *gl);
+
+/* Uploads the frame's volume, unless it is there. */
+cw_status cwi_gl_take_volume(cwi_gl *gl, cw_error *err);
+cw_status cwi_gl_need_gradients(cwi_gl *gl, cw_error *err);
+void cwi_gl_drop_volume(cwi_gl *gl);
+
+/* Binds a brick's textures and sets the uniforms brick_first and brick_size of a program. */
+void cwi_gl_bind_brick(GLuint program, const cwi_gl_brick *brick);
+
+/* Numbers of the bricks from the farthest to the nearest; free with cwi_free(). */
+size_t *cwi_gl_order_bricks(const cwi_gl *gl);
+
+/* Uploads the frame's transfer function, unless it is there, and binds it. */
+cw_status cwi_gl_take_transfer(cwi_gl *gl, cw_error *err);
+/* And pre-integrated, for segments of a length in units of eye space. */
+cw_status cwi_gl_need_segments(cwi_gl *gl, double length, cw_error *err);
+void cwi_gl_drop_transfer(cwi_gl *gl);
+
+cw_status cwi_gl_take_target(cwi_gl *gl, cw_error *err);
+void cwi_gl_drop_target(cwi_gl *gl);
+
+/* A texture without mipmaps, linear or nearest, clamped to its edge, bound to a unit. */
+GLuint cwi_gl_texture(GLenum kind, int unit, bool linear);
+
+#endif

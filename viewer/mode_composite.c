@@ -1,0 +1,52 @@
+/* Ray casting of volumes: emission and absorption along each ray, by a fragment shader. */
+#include "viewer/gl_work.h"
+
+#include "core/memory.h"
+#include "core/status.h"
+
+#include <stdio.h>
+
+extern const char cwi_glsl_composite[];
+
+static void describe(const cw_scene *s, const cw_transfer *t, char *defines, size_t size)
+{
+    snprintf(defines, size, "#define RAYS\n%s%s%s%s%s%s",
+             s->no_preintegration ? "" : "#define SEGMENTS\n",
+             s->no_skipping ? "" : "#define SKIP\n", s->cell_steps ? "#define CELLS\n" : "",
+             s->lit ? "#define LIT\n" : "", t->gradient_count ? "#define FACTOR\n" : "",
+             s->exact_filter ? "#define EXACT_FILTER\n" : "");
+}
+
+static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
+{
+    (void)state;
+    char defines[256];
+    GLuint program;
+    const cw_scene *s = &gl->frame->scene;
+    cw_status st = CW_OK;
+    describe(s, &gl->frame->transfer, defines, sizeof defines);
+    if (!s->no_preintegration)
+        st = cwi_gl_need_segments(gl, s->step_vox, err);
+    if (st == CW_OK && (s->lit || gl->frame->transfer.gradient_count > 0))
+        st = cwi_gl_need_gradients(gl, err);
+    if (st == CW_OK)
+        st = cwi_gl_use(gl, cwi_glsl_screen, cwi_glsl_composite, defines, &program, err);
+    if (st != CW_OK)
+        return st;
+    size_t *order = cwi_gl_order_bricks(gl);
+    if (!order)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the order of bricks");
+    cwi_gl_set(program, "step_length", (float)s->step_vox);
+    glDisable(GL_DEPTH_TEST);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    for (size_t n = 0; n < gl->volume.brick_count; n++) {
+        cwi_gl_bind_brick(program, &gl->volume.bricks[order[n]]);
+        cwi_gl_draw_screen(gl);
+    }
+    glDisable(GL_BLEND);
+    cwi_free(order);
+    return CW_OK;
+}
+
+const cwi_gl_mode cwi_gl_composite = {CW_MODE_COMPOSITE, true, draw, NULL};

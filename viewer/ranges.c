@@ -1,0 +1,110 @@
+#include "viewer/ranges.h"
+
+#include "core/layers.h"
+#include "core/memory.h"
+#include "core/status.h"
+#include "core/volume.h"
+
+#include <math.h>
+
+typedef struct job {
+    const cw_volume *v;
+    const cwi_ranges *ranges;
+} job;
+
+/* Widens a range by `count` numbers of a row; NaN and nodata change nothing. */
+#define WIDEN(name, ctype, text)                                                               \
+    static void widen_##name(const cw_volume *v, const char *p, size_t count, double r[2])     \
+    {                                                                                          \
+        ctype low = *(const ctype *)p, high = low;                                             \
+        const bool packed = v->stride[0] == (ptrdiff_t)sizeof low;                             \
+        const ctype *row = (const ctype *)p;                                                   \
+        bool plain = packed && !v->has_nodata;                                                 \
+        for (size_t i = 0; plain && i < count; i++) {                                          \
+            low = row[i] < low ? row[i] : low;                                                 \
+            high = row[i] > high ? row[i] : high;                                              \
+            plain = row[i] == row[i]; /* NaN */                                                \
+        }                                                                                      \
+        for (size_t i = 0; !plain && i < count; i++) {                                         \
+            const double x = (double)*(const ctype *)(p + (ptrdiff_t)i * v->stride[0]);        \
+            if (isfinite(x) && !(v->has_nodata && x == v->nodata)) {                           \
+                r[0] = x < r[0] ? x : r[0];                                                    \
+                r[1] = x > r[1] ? x : r[1];                                                    \
+            }                                                                                  \
+        }                                                                                      \
+        if (plain) {                                                                           \
+            r[0] = (double)low < r[0] ? (double)low : r[0];                                    \
+            r[1] = (double)high > r[1] ? (double)high : r[1];                                  \
+        }                                                                                      \
+    }
+CW_TYPE_TABLE(WIDEN)
+#undef WIDEN
+
+static void widen_row(const cw_volume *v, const char *p, size_t count, double r[2])
+{
+    switch (v->type) {
+#define CASE(name, ctype, text)                                                                \
+    case name:                                                                                 \
+        widen_##name(v, p, count, r);                                                          \
+        break;
+        CW_TYPE_TABLE(CASE)
+#undef CASE
+    default:
+        break;
+    }
+}
+
+/* The samples of block n along an axis. */
+static size_t samples_of(const cw_volume *v, int axis, size_t n)
+{
+    const size_t left = v->dim[axis] - CWI_RANGE_EDGE * n;
+    return left < CWI_RANGE_EDGE + 1 ? left : CWI_RANGE_EDGE + 1;
+}
+
+static void scan_block(const cw_volume *v, size_t i, size_t j, size_t k, float out[2])
+{
+    double r[2] = {INFINITY, -INFINITY};
+    for (size_t z = 0; z < samples_of(v, 2, k); z++)
+        for (size_t y = 0; y < samples_of(v, 1, j); y++)
+            widen_row(v,
+                      cwi_voxel_address(v, CWI_RANGE_EDGE * i, CWI_RANGE_EDGE * j + y,
+                                        CWI_RANGE_EDGE * k + z),
+                      samples_of(v, 0, i), r);
+    const double a = v->slope * r[0] + v->intercept, b = v->slope * r[1] + v->intercept;
+    out[0] = r[0] > r[1] ? 1 : nextafterf((float)fmin(a, b), -INFINITY);
+    out[1] = r[0] > r[1] ? 0 : nextafterf((float)fmax(a, b), INFINITY);
+}
+
+static void scan_layer(void *context, size_t k)
+{
+    const job *work = context;
+    const size_t *dim = work->ranges->dim;
+    for (size_t j = 0; j < dim[1]; j++)
+        for (size_t i = 0; i < dim[0]; i++)
+            scan_block(work->v, i, j, k, work->ranges->blocks[(k * dim[1] + j) * dim[0] + i]);
+}
+
+cw_status cwi_ranges_make(const cw_volume *volume, int threads, cwi_ranges *ranges,
+                          cw_error *err)
+{
+    *ranges = (cwi_ranges){0};
+    size_t count = 1;
+    for (int a = 0; a < 3; a++) {
+        const size_t cells = volume->dim[a] > 1 ? volume->dim[a] - 1 : 1;
+        ranges->dim[a] = (cells + CWI_RANGE_EDGE - 1) / CWI_RANGE_EDGE;
+        count *= ranges->dim[a];
+    }
+    ranges->blocks = cwi_alloc_array(count, sizeof *ranges->blocks);
+    if (!ranges->blocks)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the ranges of %zu blocks", count);
+    job work = {volume, ranges};
+    const cw_progress none = {0};
+    return cwi_each_layer(ranges->dim[2], volume->dim[0] * volume->dim[1] * CWI_RANGE_EDGE,
+                          threads, &none, "ranges", scan_layer, &work, err);
+}
+
+void cwi_ranges_free(cwi_ranges *ranges)
+{
+    cwi_free(ranges->blocks);
+    *ranges = (cwi_ranges){0};
+}

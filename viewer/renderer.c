@@ -1,0 +1,130 @@
+#include <cubewright/render.h>
+
+#include "core/memory.h"
+#include "core/module.h"
+#include "core/status.h"
+#include "viewer/gl.h"
+
+struct cw_renderer {
+    cw_backend backend;
+    const cwi_gl_functions *functions; /* NULL: not loaded yet */
+    cwi_gl *gl;                        /* opened by the first scene that needs it */
+};
+
+static const struct {
+    const char *name, *about, *source;
+} modes[CW_MODE_COUNT] = {
+#define ROW(name, text, about, source) {text, about, source},
+    CW_MODE_TABLE(ROW)
+#undef ROW
+};
+
+const char *cw_mode_name(cw_mode mode)
+{
+    return (unsigned)mode < CW_MODE_COUNT ? modes[mode].name : "unknown";
+}
+
+const char *cw_mode_about(cw_mode mode)
+{
+    return (unsigned)mode < CW_MODE_COUNT ? modes[mode].about : "";
+}
+
+const char *cw_mode_source(cw_mode mode)
+{
+    return (unsigned)mode < CW_MODE_COUNT ? modes[mode].source : "";
+}
+
+/* Loads the module and opens a context, once. */
+static cw_status need_gl(cw_renderer *r, cw_error *err)
+{
+    const void *functions;
+    if (r->gl)
+        return CW_OK;
+    cw_status st = cwi_module_load("gl", "CUBEWRIGHT_GL", "libepoxy-dev", &functions, err);
+    if (st != CW_OK)
+        return st;
+    r->functions = functions;
+    return r->functions->open(&r->gl, err);
+}
+
+cw_status cw_renderer_new(cw_backend backend, cw_renderer **renderer, cw_error *err)
+{
+    *renderer = NULL;
+    if ((unsigned)backend >= CW_BACKEND_COUNT)
+        return cw_fail(err, CW_ERR_ARGUMENT, "backend %d is none", (int)backend);
+    cw_renderer *r = cwi_alloc_zeroed(1, sizeof *r);
+    if (!r)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a renderer");
+    r->backend = backend;
+    cw_status st = backend == CW_BACKEND_EGL ? need_gl(r, err) : CW_OK;
+    if (st == CW_OK)
+        *renderer = r;
+    else
+        cw_renderer_free(r);
+    return st;
+}
+
+void cw_renderer_free(cw_renderer *r)
+{
+    if (r && r->gl)
+        r->functions->close(r->gl);
+    cwi_free(r);
+}
+
+const char *cw_renderer_name(const cw_renderer *r)
+{
+    return r->gl ? r->functions->name(r->gl) : "CPU";
+}
+
+void cw_renderer_forget(cw_renderer *r)
+{
+    if (r->gl)
+        r->functions->forget(r->gl);
+}
+
+/* Draws every sample of the picture. */
+static cw_status draw(cw_renderer *r, const cwi_frame *frame, cw_picture *picture,
+                      cw_error *err)
+{
+    if (r->backend == CW_BACKEND_CPU)
+        return cw_fail(err, CW_ERR_UNSUPPORTED, "the mode %s is not drawn by the CPU",
+                       cw_mode_name(frame->scene.mode));
+    cw_status st = need_gl(r, err);
+    return st == CW_OK ? r->functions->draw(r->gl, frame, picture, err) : st;
+}
+
+/* Means of n x n samples. */
+static cw_status average(const cw_picture *fine, size_t n, cw_picture *out, cw_error *err)
+{
+    cw_status st = cw_picture_alloc(out, fine->width / n, fine->height / n, err);
+    for (size_t p = 0; st == CW_OK && p < out->width * out->height * 4; p++) {
+        const size_t c = p % 4, x = p / 4 % out->width, y = p / 4 / out->width;
+        double sum = 0;
+        for (size_t j = 0; j < n; j++)
+            for (size_t i = 0; i < n; i++)
+                sum += (double)fine->pixels[4 * ((y * n + j) * fine->width + x * n + i) + c];
+        out->pixels[p] = (float)(sum / (double)(n * n));
+    }
+    return st;
+}
+
+cw_status cw_render(cw_renderer *renderer, const cw_scene *scene, cw_picture *picture,
+                    cw_error *err)
+{
+    cwi_frame frame;
+    cw_picture fine = {0};
+    *picture = (cw_picture){0};
+    cw_status st = cwi_frame_init(&frame, scene, err);
+    if (st == CW_OK)
+        st = cw_picture_alloc(&fine, frame.scene.width, frame.scene.height, err);
+    if (st == CW_OK)
+        st = draw(renderer, &frame, &fine, err);
+    if (st == CW_OK && frame.scene.samples > 1)
+        st = average(&fine, (size_t)frame.scene.samples, picture, err);
+    else if (st == CW_OK) {
+        *picture = fine;
+        fine = (cw_picture){0};
+    }
+    cw_picture_free(&fine);
+    return st;
+}

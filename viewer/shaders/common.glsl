@@ -1,0 +1,167 @@
+// What every shader knows of the picture. See viewer/frame.h for the spaces.
+layout(std140) uniform Frame {
+    mat4 projection;
+    mat4 eye_from_index, index_from_eye;
+    mat4 gradient_to_eye; // of a gradient per voxel, to one per unit
+    vec4 picture;         // width, height, half x, half y
+    vec4 view;            // 1 in perspective, near, far, depth cue
+    vec4 low, high;       // the volume in index space
+    vec4 dim;             // samples
+    vec4 texels;          // scale and bias from a texel to a table's coordinate; to a value
+    vec4 march;           // step, opacity to stop at, 1: jitter, factor's end
+    vec4 material;        // ambient, diffuse, specular, shininess
+    vec4 light_direction[4], light_color[4];
+    vec4 background[2]; // top, bottom
+    vec4 clips[12];     // eye space: n . p >= w is kept
+    ivec4 counts;       // lights, clips, 1: clips cut away, 1: volumes are lit
+};
+
+uniform sampler3D volume;    // one brick's values
+uniform sampler3D gradients; // and gradients per voxel
+uniform sampler2D table;     // transfer function: colour, extinction per unit
+uniform sampler2D factor;    // of the extinction, by the gradient's length
+uniform vec3 brick_first, brick_size; // samples
+const float table_rows = 4096.0, factor_rows = 1024.0;
+
+vec3 brick_place(vec3 index)
+{
+    return (index - brick_first + 0.5) / brick_size;
+}
+
+// The texel at a point of index space, interpolated; NaN where a sample around it has no value.
+float texel_at(vec3 index)
+{
+#ifdef EXACT_FILTER
+    vec3 at = clamp(index - brick_first, vec3(0.0), brick_size - 1.0);
+    vec3 low = min(floor(at), max(brick_size - 2.0, 0.0)), s = at - low;
+    ivec3 i = ivec3(low), j = ivec3(min(low + 1.0, brick_size - 1.0));
+    vec4 x0 = vec4(texelFetch(volume, i, 0).r, texelFetch(volume, ivec3(i.x, j.y, i.z), 0).r,
+                   texelFetch(volume, ivec3(i.xy, j.z), 0).r, texelFetch(volume, ivec3(i.x, j.yz), 0).r);
+    vec4 x1 = vec4(texelFetch(volume, ivec3(j.x, i.yz), 0).r, texelFetch(volume, ivec3(j.xy, i.z), 0).r,
+                   texelFetch(volume, ivec3(j.x, i.y, j.z), 0).r, texelFetch(volume, j, 0).r);
+    vec4 x = mix(x0, x1, s.x);
+    vec2 y = mix(x.xz, x.yw, s.y);
+    return mix(y.x, y.y, s.z);
+#else
+    return texture(volume, brick_place(index)).r;
+#endif
+}
+
+// A texel's coordinate in the table: 0 at its first value, 1 at its last.
+float coordinate_of(float texel)
+{
+    return texel * texels.x + texels.y;
+}
+
+// Colour and extinction at a coordinate. Comparisons with NaN are false: no extinction.
+vec4 classify(float coordinate)
+{
+    float at = clamp(coordinate, 0.0, 1.0);
+    vec4 row = texture(table, vec2((at * (table_rows - 1.0) + 0.5) / table_rows, 0.5));
+    return coordinate == coordinate ? row : vec4(0.0);
+}
+
+// The gradient in eye space, per unit.
+vec3 gradient_at(vec3 index)
+{
+    return mat3(gradient_to_eye) * texture(gradients, brick_place(index)).xyz;
+}
+
+// What the transfer function makes of the extinction by the gradient.
+float gradient_factor(vec3 gradient)
+{
+    float at = clamp(length(gradient) / march.w, 0.0, 1.0);
+    return texture(factor, vec2((at * (factor_rows - 1.0) + 0.5) / factor_rows, 0.5)).r;
+}
+
+// Both sides are lit; to_eye and the gradient are in eye space. Without a gradient: ambient light.
+vec3 shade(vec3 color, vec3 gradient, vec3 to_eye)
+{
+    float size = length(gradient);
+    vec3 n = size > 0.0 ? gradient / size : vec3(0.0);
+    vec3 light = material.x * color;
+    for (int i = 0; i < counts.x; i++) {
+        float diffuse = abs(dot(n, light_direction[i].xyz));
+        float specular = abs(dot(n, normalize(light_direction[i].xyz + to_eye)));
+        light += light_color[i].rgb * (material.y * diffuse * color +
+                                       material.z * (size > 0.0 ? pow(specular, material.w) : 0.0));
+    }
+    return light;
+}
+
+// The share of its own light that something at a depth keeps.
+float cue(float depth)
+{
+    return 1.0 - view.w * clamp((depth - view.y) / (view.z - view.y), 0.0, 1.0);
+}
+
+// y: 0 at the picture's bottom, 1 at its top.
+vec3 background_at(float y)
+{
+    return mix(background[1].rgb, background[0].rgb, y);
+}
+
+// Premultiplied colour, some of it replaced by the background's.
+vec4 attenuate(vec4 color, float depth, float y)
+{
+    return vec4(mix(color.a * background_at(y), color.rgb, cue(depth)), color.a);
+}
+
+#if defined(RAYS) && defined(FRAGMENT)
+uniform sampler2D depth; // of the mesh, 1: none
+
+struct ray {
+    vec3 origin, direction; // eye space
+    vec3 index, slope;      // the same in index space
+};
+
+ray ray_of(vec2 fragment)
+{
+    vec2 at = (2.0 * fragment / picture.xy - 1.0) * picture.zw;
+    ray r;
+    r.origin = view.x > 0.5 ? vec3(0.0) : vec3(at, 0.0);
+    r.direction = view.x > 0.5 ? normalize(vec3(at, -1.0)) : vec3(0.0, 0.0, -1.0);
+    r.index = (index_from_eye * vec4(r.origin, 1.0)).xyz;
+    r.slope = mat3(index_from_eye) * r.direction;
+    return r;
+}
+
+// Cuts an interval to where at + t slope >= 0.
+vec2 cut(vec2 t, float at, float slope)
+{
+    float hit = -at / slope;
+    if (slope > 0.0)
+        t.x = max(t.x, hit);
+    else if (slope < 0.0)
+        t.y = min(t.y, hit);
+    else if (at < 0.0)
+        t.y = t.x - 1.0;
+    return t;
+}
+
+// How far along the ray the mesh is.
+float mesh_distance(ray r)
+{
+    float z = texelFetch(depth, ivec2(gl_FragCoord.xy), 0).r;
+    if (z >= 1.0)
+        return 1e30;
+    float ndc = 2.0 * z - 1.0, n = view.y, f = view.z;
+    float d = view.x > 0.5 ? 2.0 * f * n / (f + n - ndc * (f - n)) : (ndc * (f - n) + f + n) / 2.0;
+    return d / -r.direction.z;
+}
+
+// The part of a ray in the brick, in front of the mesh, and the part of that which clips keep.
+void intervals(ray r, out vec2 all, out vec2 kept)
+{
+    vec3 box_low = max(low.xyz, mix(brick_first, low.xyz, lessThan(dim.xyz, vec3(1.5))));
+    vec3 box_high = min(high.xyz, mix(brick_first + brick_size - 1.0, high.xyz, lessThan(dim.xyz, vec3(1.5))));
+    all = vec2(view.x > 0.5 ? view.y / -r.direction.z : -1e30, mesh_distance(r));
+    for (int a = 0; a < 3; a++) {
+        all = cut(all, r.index[a] - box_low[a], r.slope[a]);
+        all = cut(all, box_high[a] - r.index[a], -r.slope[a]);
+    }
+    kept = all;
+    for (int n = 0; n < counts.y; n++)
+        kept = cut(kept, dot(clips[n].xyz, r.origin) - clips[n].w, dot(clips[n].xyz, r.direction));
+}
+#endif

@@ -1,0 +1,171 @@
+#include "viewer/table.h"
+
+#include "core/memory.h"
+#include "core/status.h"
+
+#include <math.h>
+
+enum { PIECES = 16 };
+
+static void widen(double value, double range[2])
+{
+    range[0] = fmin(range[0], value);
+    range[1] = fmax(range[1], value);
+}
+
+/* From the first point to the last. */
+static void find_range(const cw_transfer *t, double range[2])
+{
+    range[0] = INFINITY;
+    range[1] = -INFINITY;
+    if (t->color_count > 0) {
+        widen(t->colors[0].value, range);
+        widen(t->colors[t->color_count - 1].value, range);
+    }
+    if (t->opacity_count > 0) {
+        widen(t->opacities[0].value, range);
+        widen(t->opacities[t->opacity_count - 1].value, range);
+    }
+    if (!(range[0] <= range[1]))
+        range[0] = range[1] = 0;
+    if (range[0] == range[1]) { /* a jump, or constant */
+        const double around = fmax(fabs(range[0]), 1) * 1e-6;
+        range[0] -= around;
+        range[1] += around;
+    }
+}
+
+cw_status cwi_table_make(const cwi_frame *frame, cwi_table *table, cw_error *err)
+{
+    double range[2], color[3], opacity;
+    find_range(&frame->transfer, range);
+    *table = (cwi_table){.low = range[0], .high = range[1], .count = CWI_TABLE_ROWS};
+    table->rows = cwi_alloc_array(table->count, 4 * sizeof *table->rows);
+    if (!table->rows)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a transfer function");
+    for (size_t n = 0; n < table->count; n++) {
+        float *row = table->rows + 4 * n;
+        const double share = (double)n / (double)(table->count - 1);
+        cw_transfer_at(&frame->transfer, range[0] + share * (range[1] - range[0]), color,
+                       &opacity);
+        for (int c = 0; c < 3; c++)
+            row[c] = (float)color[c];
+        row[3] = (float)cwi_frame_extinction(frame, opacity);
+    }
+    return CW_OK;
+}
+
+void cwi_table_free(cwi_table *table)
+{
+    cwi_free(table->rows);
+    *table = (cwi_table){0};
+}
+
+/* The row of a value, not rounded. */
+static double row_of(const cwi_table *table, double value)
+{
+    const double share = (value - table->low) / (table->high - table->low);
+    return fmin(fmax(share, 0), 1) * (double)(table->count - 1);
+}
+
+bool cwi_table_is_visible(const cwi_table *table, double low, double high)
+{
+    const size_t first = (size_t)floor(row_of(table, low)),
+                 last = (size_t)ceil(row_of(table, high));
+    for (size_t n = first; n <= last; n++)
+        if (table->rows[4 * n + 3] > 0)
+            return true;
+    return false;
+}
+
+/* Running integrals over the table's rows, for count rows of the result: of the extinction, and
+ * of the colours times it. */
+static double (*running_integrals(const cwi_table *t, size_t count))[4]
+{
+    double(*sum)[4] = cwi_alloc_zeroed(count * PIECES + 1, sizeof *sum);
+    const double fine = (double)((count - 1) * PIECES);
+    double before[4] = {0};
+    for (size_t n = 0; sum && n <= (count - 1) * PIECES; n++) {
+        const double at = (double)n / fine * (double)(t->count - 1);
+        const size_t i = (size_t)fmin(floor(at), (double)t->count - 2);
+        const double share = at - (double)i;
+        double now[4];
+        for (int c = 0; c < 4; c++)
+            now[c] = (1 - share) * (double)t->rows[4 * i + (size_t)c] +
+                     share * (double)t->rows[4 * i + 4 + (size_t)c];
+        for (int c = 0; c < 3; c++)
+            now[c] *= now[3];
+        for (int c = 0; c < 4 && n > 0; c++)
+            sum[n][c] = sum[n - 1][c] + (before[c] + now[c]) / 2;
+        for (int c = 0; c < 4; c++)
+            before[c] = now[c];
+    }
+    return sum;
+}
+
+/* The share of a piece's glow that leaves it: (1 - exp(-x)) / x. */
+static double escape(double depth)
+{
+    return depth > 1e-6 ? -expm1(-depth) / depth : 1 - depth / 2;
+}
+
+/* From row x to row y, which differ: pieces from front to back. scale: length per step of the
+ * running integrals. */
+static void integrate(const double (*sum)[4], size_t x, size_t y, double scale, float out[4])
+{
+    const size_t span = (x < y ? y - x : x - y) * PIECES;
+    const size_t pieces = span < 4 * PIECES ? span : 4 * PIECES;
+    double light = 1, color[3] = {0};
+    size_t from = x * PIECES;
+    for (size_t p = 1; p <= pieces && light > 1e-9; p++) {
+        const size_t way = span * p / pieces;
+        const size_t to = x < y ? x * PIECES + way : x * PIECES - way;
+        const double depth = scale * fabs(sum[to][3] - sum[from][3]);
+        const double share = light * scale * escape(depth);
+        for (int c = 0; c < 3; c++)
+            color[c] += share * fabs(sum[to][c] - sum[from][c]);
+        light *= exp(-depth);
+        from = to;
+    }
+    for (int c = 0; c < 3; c++)
+        out[c] = (float)color[c];
+    out[3] = (float)(1 - light);
+}
+
+/* A segment of one value. */
+static void integrate_flat(const cwi_table *t, double at, double length, float out[4])
+{
+    const size_t i = (size_t)fmin(floor(at), (double)t->count - 2);
+    const double share = at - (double)i;
+    double row[4];
+    for (int c = 0; c < 4; c++)
+        row[c] = (1 - share) * (double)t->rows[4 * i + (size_t)c] +
+                 share * (double)t->rows[4 * i + 4 + (size_t)c];
+    const double opacity = -expm1(-row[3] * length);
+    for (int c = 0; c < 3; c++)
+        out[c] = (float)(row[c] * opacity);
+    out[3] = (float)opacity;
+}
+
+cw_status cwi_table_preintegrate(const cwi_table *table, double length, size_t count,
+                                 int threads, float *out, cw_error *err)
+{
+    double(*sum)[4] = running_integrals(table, count);
+    if (!sum)
+        return cw_fail(err, CW_ERR_NO_MEMORY,
+                       "no memory for a pre-integrated transfer function");
+#pragma omp parallel for schedule(dynamic, 8) num_threads(cwi_threads(threads))
+    for (size_t y = 0; y < count; y++)
+        for (size_t x = 0; x < count; x++) {
+            float *to = out + 4 * (y * count + x);
+            const double span = fabs((double)x - (double)y) * PIECES;
+            if (x == y)
+                integrate_flat(table,
+                               (double)x / (double)(count - 1) * (double)(table->count - 1),
+                               length, to);
+            else
+                integrate((const double(*)[4])sum, x, y, length / span, to);
+        }
+    cwi_free(sum);
+    return CW_OK;
+}

@@ -1,0 +1,39 @@
+/* A transfer function as tables, for the texture unit and for fast loops on the CPU. */
+#ifndef VIEWER_TABLE_H
+#define VIEWER_TABLE_H
+
+#include "viewer/frame.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Colours and extinction at evenly spaced values, the ends included. Beyond them a transfer
+ * function is constant. */
+typedef struct cwi_table {
+    double low, high; /* values of the first and last row */
+    size_t count;
+    float *rows; /* count x 4: red, green, blue, extinction per unit of eye space */
+} cwi_table;
+
+enum { CWI_TABLE_ROWS = 4096 };
+
+/* Of a frame's transfer function. CW_ERR_NO_MEMORY. Harmless to free twice. */
+CW_API cw_status cwi_table_make(const cwi_frame *frame, cwi_table *table, cw_error *err);
+CW_API void cwi_table_free(cwi_table *table);
+
+/* The lowest row that is not fully transparent within a range of values; false: none is. */
+CW_API bool cwi_table_is_visible(const cwi_table *table, double low, double high);
+
+/* Pre-integration [Engel2001]: what a segment of a length (units of eye space) adds along which
+ * the value goes linearly from row x to row y. out is count x count x 4, y slowest: colour
+ * times opacity, and opacity. Within a segment light is absorbed too: it is cut into pieces
+ * whose depth and glow are exact. */
+CW_API cw_status cwi_table_preintegrate(const cwi_table *table, double length, size_t count,
+                                        int threads, float *out, cw_error *err);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
