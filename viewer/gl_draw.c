@@ -18,7 +18,8 @@ typedef struct frame_block {
     int32_t counts[4];
 } frame_block;
 
-static const cwi_gl_mode *const modes[] = {&cwi_gl_composite};
+static const cwi_gl_mode *const modes[] = {&cwi_gl_composite, &cwi_gl_mip, &cwi_gl_minip,
+                                           &cwi_gl_average, &cwi_gl_local_mip};
 
 const cwi_gl_mode *cwi_gl_find_mode(cw_mode mode)
 {

@@ -348,6 +348,12 @@ static int farther_first(const void *a, const void *b)
                                        : x->brick > y->brick;
 }
 
+void cwi_gl_set_last_block(GLuint program, const size_t dim[3])
+{
+    cwi_gl_set3(program, "last_block",
+                (double[]){(double)dim[0] - 1, (double)dim[1] - 1, (double)dim[2] - 1});
+}
+
 /* The sum over axes of how far the eye is from a brick's faces. A brick that hides another is
  * nearer along some axes, and farther along none. */
 static double brick_distance(const cwi_gl_brick *b, const double eye[3])

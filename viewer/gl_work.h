@@ -89,7 +89,8 @@ typedef struct cwi_gl_mode {
     void (*drop)(void *state);
 } cwi_gl_mode;
 
-extern const cwi_gl_mode cwi_gl_composite;
+extern const cwi_gl_mode cwi_gl_composite, cwi_gl_mip, cwi_gl_minip, cwi_gl_average,
+    cwi_gl_local_mip;
 
 /* The mode's row; NULL when GL does not draw it. */
 const cwi_gl_mode *cwi_gl_find_mode(cw_mode mode);
@@ -113,6 +114,9 @@ void cwi_gl_drop_volume(cwi_gl *gl);
 
 /* Binds a brick's textures and sets the uniforms brick_first and brick_size of a program. */
 void cwi_gl_bind_brick(GLuint program, const cwi_gl_brick *brick);
+
+/* Sets the uniform last_block for a texture of so many blocks. */
+void cwi_gl_set_last_block(GLuint program, const size_t dim[3]);
 
 /* Numbers of the bricks from the farthest to the nearest; free with cwi_free(). */
 size_t *cwi_gl_order_bricks(const cwi_gl *gl);

@@ -10,9 +10,10 @@ extern const char cwi_glsl_composite[];
 
 static void describe(const cw_scene *s, const cw_transfer *t, char *defines, size_t size)
 {
-    snprintf(defines, size, "#define RAYS\n%s%s%s%s%s%s",
+    snprintf(defines, size, "#define RAYS\n%s%s%s%s%s%s%s%s",
              s->no_preintegration ? "" : "#define SEGMENTS\n",
              s->no_skipping ? "" : "#define SKIP\n", s->cell_steps ? "#define CELLS\n" : "",
+             s->jitter ? "#define JITTER\n" : "", s->depth_cue > 0 ? "#define CUE\n" : "",
              s->lit ? "#define LIT\n" : "", t->gradient_count ? "#define FACTOR\n" : "",
              s->exact_filter ? "#define EXACT_FILTER\n" : "");
 }
@@ -37,6 +38,7 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     if (!order)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the order of bricks");
     cwi_gl_set(program, "step_length", (float)s->step_vox);
+    cwi_gl_set_last_block(program, gl->volume.ranges.dim);
     glDisable(GL_DEPTH_TEST);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);

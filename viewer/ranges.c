@@ -9,48 +9,52 @@
 
 typedef struct job {
     const cw_volume *v;
-    const cwi_ranges *ranges;
+    cwi_ranges *ranges;
 } job;
 
-/* Widens a range by `count` numbers of a row; NaN and nodata change nothing. */
+/* Widens a range by `count` numbers of a row; false when one of them is no value. */
 #define WIDEN(name, ctype, text)                                                               \
-    static void widen_##name(const cw_volume *v, const char *p, size_t count, double r[2])     \
+    static bool widen_##name(const cw_volume *v, const char *p, size_t count, double r[2])     \
     {                                                                                          \
-        ctype low = *(const ctype *)p, high = low;                                             \
-        const bool packed = v->stride[0] == (ptrdiff_t)sizeof low;                             \
         const ctype *row = (const ctype *)p;                                                   \
-        bool plain = packed && !v->has_nodata;                                                 \
+        ctype low = *row, high = low;                                                          \
+        size_t values = 0;                                                                     \
+        bool plain = v->stride[0] == (ptrdiff_t)sizeof low && !v->has_nodata;                  \
         for (size_t i = 0; plain && i < count; i++) {                                          \
             low = row[i] < low ? row[i] : low;                                                 \
             high = row[i] > high ? row[i] : high;                                              \
-            plain = row[i] == row[i]; /* NaN */                                                \
+            values += row[i] == row[i];                                                        \
         }                                                                                      \
-        for (size_t i = 0; !plain && i < count; i++) {                                         \
+        plain = values == count && isfinite((double)low) && isfinite((double)high);            \
+        if (plain) {                                                                           \
+            r[0] = (double)low < r[0] ? (double)low : r[0];                                    \
+            r[1] = (double)high > r[1] ? (double)high : r[1];                                  \
+            return true;                                                                       \
+        }                                                                                      \
+        values = 0;                                                                            \
+        for (size_t i = 0; i < count; i++) {                                                   \
             const double x = (double)*(const ctype *)(p + (ptrdiff_t)i * v->stride[0]);        \
             if (isfinite(x) && !(v->has_nodata && x == v->nodata)) {                           \
                 r[0] = x < r[0] ? x : r[0];                                                    \
                 r[1] = x > r[1] ? x : r[1];                                                    \
+                values++;                                                                      \
             }                                                                                  \
         }                                                                                      \
-        if (plain) {                                                                           \
-            r[0] = (double)low < r[0] ? (double)low : r[0];                                    \
-            r[1] = (double)high > r[1] ? (double)high : r[1];                                  \
-        }                                                                                      \
+        return values == count;                                                                \
     }
 CW_TYPE_TABLE(WIDEN)
 #undef WIDEN
 
-static void widen_row(const cw_volume *v, const char *p, size_t count, double r[2])
+static bool widen_row(const cw_volume *v, const char *p, size_t count, double r[2])
 {
     switch (v->type) {
 #define CASE(name, ctype, text)                                                                \
     case name:                                                                                 \
-        widen_##name(v, p, count, r);                                                          \
-        break;
+        return widen_##name(v, p, count, r);
         CW_TYPE_TABLE(CASE)
 #undef CASE
     default:
-        break;
+        return false;
     }
 }
 
@@ -61,27 +65,37 @@ static size_t samples_of(const cw_volume *v, int axis, size_t n)
     return left < CWI_RANGE_EDGE + 1 ? left : CWI_RANGE_EDGE + 1;
 }
 
-static void scan_block(const cw_volume *v, size_t i, size_t j, size_t k, float out[2])
+/* False when a sample has no value. */
+static bool scan_block(const cw_volume *v, size_t i, size_t j, size_t k, float out[2])
 {
     double r[2] = {INFINITY, -INFINITY};
+    bool is_whole = true;
     for (size_t z = 0; z < samples_of(v, 2, k); z++)
         for (size_t y = 0; y < samples_of(v, 1, j); y++)
-            widen_row(v,
-                      cwi_voxel_address(v, CWI_RANGE_EDGE * i, CWI_RANGE_EDGE * j + y,
-                                        CWI_RANGE_EDGE * k + z),
-                      samples_of(v, 0, i), r);
+            is_whole &=
+                widen_row(v,
+                          cwi_voxel_address(v, CWI_RANGE_EDGE * i, CWI_RANGE_EDGE * j + y,
+                                            CWI_RANGE_EDGE * k + z),
+                          samples_of(v, 0, i), r);
     const double a = v->slope * r[0] + v->intercept, b = v->slope * r[1] + v->intercept;
     out[0] = r[0] > r[1] ? 1 : nextafterf((float)fmin(a, b), -INFINITY);
     out[1] = r[0] > r[1] ? 0 : nextafterf((float)fmax(a, b), INFINITY);
+    return is_whole;
 }
 
 static void scan_layer(void *context, size_t k)
 {
     const job *work = context;
     const size_t *dim = work->ranges->dim;
+    bool is_whole = true;
     for (size_t j = 0; j < dim[1]; j++)
         for (size_t i = 0; i < dim[0]; i++)
-            scan_block(work->v, i, j, k, work->ranges->blocks[(k * dim[1] + j) * dim[0] + i]);
+            is_whole &= scan_block(work->v, i, j, k,
+                                   work->ranges->blocks[(k * dim[1] + j) * dim[0] + i]);
+    if (!is_whole) {
+#pragma omp atomic write
+        work->ranges->has_gaps = true;
+    }
 }
 
 cw_status cwi_ranges_make(const cw_volume *volume, int threads, cwi_ranges *ranges,
@@ -101,6 +115,36 @@ cw_status cwi_ranges_make(const cw_volume *volume, int threads, cwi_ranges *rang
     const cw_progress none = {0};
     return cwi_each_layer(ranges->dim[2], volume->dim[0] * volume->dim[1] * CWI_RANGE_EDGE,
                           threads, &none, "ranges", scan_layer, &work, err);
+}
+
+/* Block (i, j, k) of the coarse ones: around its eight fine ones. */
+static void gather(const cwi_ranges *fine, size_t i, size_t j, size_t k, float out[2])
+{
+    out[0] = INFINITY;
+    out[1] = -INFINITY;
+    for (size_t z = 2 * k; z < 2 * k + 2 && z < fine->dim[2]; z++)
+        for (size_t y = 2 * j; y < 2 * j + 2 && y < fine->dim[1]; y++)
+            for (size_t x = 2 * i; x < 2 * i + 2 && x < fine->dim[0]; x++) {
+                const float *r = fine->blocks[(z * fine->dim[1] + y) * fine->dim[0] + x];
+                if (r[0] <= r[1]) {
+                    out[0] = fminf(out[0], r[0]);
+                    out[1] = fmaxf(out[1], r[1]);
+                }
+            }
+}
+
+cw_status cwi_ranges_halve(const cwi_ranges *fine, cwi_ranges *coarse, cw_error *err)
+{
+    *coarse = (cwi_ranges){.has_gaps = fine->has_gaps};
+    size_t *dim = coarse->dim, count = 1;
+    for (int a = 0; a < 3; a++)
+        count *= dim[a] = (fine->dim[a] + 1) / 2;
+    coarse->blocks = cwi_alloc_array(count, sizeof *coarse->blocks);
+    if (!coarse->blocks)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the ranges of %zu blocks", count);
+    for (size_t n = 0; n < count; n++)
+        gather(fine, n % dim[0], n / dim[0] % dim[1], n / dim[0] / dim[1], coarse->blocks[n]);
+    return CW_OK;
 }
 
 void cwi_ranges_free(cwi_ranges *ranges)

@@ -8,17 +8,20 @@
 extern "C" {
 #endif
 
-enum { CWI_RANGE_EDGE = 8 }; /* cells along a side of a block */
+enum { CWI_RANGE_EDGE = 4 }; /* cells along a side of a block */
 
-/* Block (i, j, k) has the cells from 8 (i, j, k) on, and the samples around these. */
+/* Block (i, j, k) has the cells from 4 (i, j, k) on, and the samples around these. */
 typedef struct cwi_ranges {
     size_t dim[3];
     float (*blocks)[2]; /* x fastest: scaled values, rounded outward; low > high: no values */
+    bool has_gaps;      /* some sample has no value */
 } cwi_ranges;
 
 /* Of a resolved, evenly spaced volume. CW_ERR_NO_MEMORY, CW_ERR_CANCELLED. */
 CW_API cw_status cwi_ranges_make(const cw_volume *volume, int threads, cwi_ranges *ranges,
                                  cw_error *err);
+/* Blocks of twice the edge. CW_ERR_NO_MEMORY. */
+CW_API cw_status cwi_ranges_halve(const cwi_ranges *fine, cwi_ranges *coarse, cw_error *err);
 CW_API void cwi_ranges_free(cwi_ranges *ranges);
 
 #ifdef __cplusplus

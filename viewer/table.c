@@ -5,7 +5,9 @@
 
 #include <math.h>
 
-enum { PIECES = 16 };
+/* Steps of the running integrals between rows of a pre-integrated table. */
+enum { FINE = 8 };
+static const double PIECES_PER_DEPTH = 40, MOST_PIECES = 32;
 
 static void widen(double value, double range[2])
 {
@@ -82,10 +84,10 @@ bool cwi_table_is_visible(const cwi_table *table, double low, double high)
  * of the colours times it. */
 static double (*running_integrals(const cwi_table *t, size_t count))[4]
 {
-    double(*sum)[4] = cwi_alloc_zeroed(count * PIECES + 1, sizeof *sum);
-    const double fine = (double)((count - 1) * PIECES);
+    double(*sum)[4] = cwi_alloc_zeroed(count * FINE, sizeof *sum);
+    const double fine = (double)((count - 1) * FINE);
     double before[4] = {0};
-    for (size_t n = 0; sum && n <= (count - 1) * PIECES; n++) {
+    for (size_t n = 0; sum && n <= (count - 1) * FINE; n++) {
         const double at = (double)n / fine * (double)(t->count - 1);
         const size_t i = (size_t)fmin(floor(at), (double)t->count - 2);
         const double share = at - (double)i;
@@ -103,28 +105,32 @@ static double (*running_integrals(const cwi_table *t, size_t count))[4]
     return sum;
 }
 
-/* The share of a piece's glow that leaves it: (1 - exp(-x)) / x. */
-static double escape(double depth)
+/* Within a piece all glows alike: the error falls with its depth, so deep ones are cut. */
+static size_t piece_count(double depth, size_t span)
 {
-    return depth > 1e-6 ? -expm1(-depth) / depth : 1 - depth / 2;
+    const double wanted = fmin(ceil(PIECES_PER_DEPTH * depth), MOST_PIECES);
+    return wanted < 1 ? 1 : wanted < (double)span ? (size_t)wanted : span;
 }
 
 /* From row x to row y, which differ: pieces from front to back. scale: length per step of the
  * running integrals. */
 static void integrate(const double (*sum)[4], size_t x, size_t y, double scale, float out[4])
 {
-    const size_t span = (x < y ? y - x : x - y) * PIECES;
-    const size_t pieces = span < 4 * PIECES ? span : 4 * PIECES;
+    const size_t span = (x < y ? y - x : x - y) * FINE;
+    const double all = scale * fabs(sum[y * FINE][3] - sum[x * FINE][3]);
+    const size_t pieces = piece_count(all, span);
     double light = 1, color[3] = {0};
-    size_t from = x * PIECES;
-    for (size_t p = 1; p <= pieces && light > 1e-9; p++) {
+    size_t from = x * FINE;
+    for (size_t p = 1; p <= pieces && all > 0 && light > 1e-9; p++) {
         const size_t way = span * p / pieces;
-        const size_t to = x < y ? x * PIECES + way : x * PIECES - way;
+        const size_t to = x < y ? x * FINE + way : x * FINE - way;
         const double depth = scale * fabs(sum[to][3] - sum[from][3]);
-        const double share = light * scale * escape(depth);
+        const double through = exp(-depth);
+        /* the share of a piece's glow that leaves it */
+        const double escape = depth > 1e-4 ? (1 - through) / depth : 1 - depth / 2;
         for (int c = 0; c < 3; c++)
-            color[c] += share * fabs(sum[to][c] - sum[from][c]);
-        light *= exp(-depth);
+            color[c] += light * scale * escape * fabs(sum[to][c] - sum[from][c]);
+        light *= through;
         from = to;
     }
     for (int c = 0; c < 3; c++)
@@ -158,7 +164,7 @@ cw_status cwi_table_preintegrate(const cwi_table *table, double length, size_t c
     for (size_t y = 0; y < count; y++)
         for (size_t x = 0; x < count; x++) {
             float *to = out + 4 * (y * count + x);
-            const double span = fabs((double)x - (double)y) * PIECES;
+            const double span = fabs((double)x - (double)y) * FINE;
             if (x == y)
                 integrate_flat(table,
                                (double)x / (double)(count - 1) * (double)(table->count - 1),

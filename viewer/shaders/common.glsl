@@ -77,14 +77,18 @@ float gradient_factor(vec3 gradient)
 // Both sides are lit; to_eye and the gradient are in eye space. Without a gradient: ambient light.
 vec3 shade(vec3 color, vec3 gradient, vec3 to_eye)
 {
-    float size = length(gradient);
-    vec3 n = size > 0.0 ? gradient / size : vec3(0.0);
+    float size2 = dot(gradient, gradient);
+    vec3 n = gradient * (size2 > 0.0 ? inversesqrt(size2) : 0.0);
     vec3 light = material.x * color;
     for (int i = 0; i < counts.x; i++) {
-        float diffuse = abs(dot(n, light_direction[i].xyz));
-        float specular = abs(dot(n, normalize(light_direction[i].xyz + to_eye)));
-        light += light_color[i].rgb * (material.y * diffuse * color +
-                                       material.z * (size > 0.0 ? pow(specular, material.w) : 0.0));
+        vec3 l = light_direction[i].xyz, h = l + to_eye;
+        float diffuse = abs(dot(n, l));
+        float specular = 0.0;
+        if (material.z > 0.0) {
+            float near = abs(dot(n, h)) * inversesqrt(max(dot(h, h), 1e-20));
+            specular = near > 0.0 ? pow(near, material.w) : 0.0;
+        }
+        light += light_color[i].rgb * (material.y * diffuse * color + material.z * specular);
     }
     return light;
 }
@@ -113,6 +117,7 @@ uniform sampler2D depth; // of the mesh, 1: none
 struct ray {
     vec3 origin, direction; // eye space
     vec3 index, slope;      // the same in index space
+    vec3 inverse, ahead;    // 1 / slope; 1: upward along that axis, or not along it
 };
 
 ray ray_of(vec2 fragment)
@@ -123,7 +128,23 @@ ray ray_of(vec2 fragment)
     r.direction = view.x > 0.5 ? normalize(vec3(at, -1.0)) : vec3(0.0, 0.0, -1.0);
     r.index = (index_from_eye * vec4(r.origin, 1.0)).xyz;
     r.slope = mat3(index_from_eye) * r.direction;
+    r.inverse = mix(1.0 / r.slope, vec3(1e30), equal(r.slope, vec3(0.0)));
+    r.ahead = vec3(greaterThanEqual(r.slope, vec3(0.0)));
     return r;
+}
+
+// How far a ray goes from a point in a box of index space to where it leaves that.
+float box_exit(ray r, vec3 at, vec3 low, vec3 high)
+{
+    vec3 exits = (mix(low, high, r.ahead) - at) * r.inverse;
+    return max(min(exits.x, min(exits.y, exits.z)), 0.0);
+}
+
+// And to where it leaves the cell that it is in, or enters.
+float cell_exit(ray r, vec3 at)
+{
+    vec3 next = mix(ceil(at - 1e-4) - 1.0, floor(at + 1e-4) + 1.0, r.ahead);
+    return max(box_exit(r, at, next, next), 1e-3);
 }
 
 // Cuts an interval to where at + t slope >= 0.

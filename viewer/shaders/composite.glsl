@@ -3,18 +3,22 @@
 uniform sampler2D segments;
 uniform usampler3D skip;
 uniform float step_length;
+uniform vec3 last_block; // of skip
 out vec4 result;
 
 const float segment_rows = 1024.0;
 
-// What a segment of a length between two coordinates adds; NaN is empty.
-vec4 segment_between(float front, float back, float extent)
+// Where a coordinate of the transfer function is in the texture of segments, which is clamped.
+float segment_place(float coordinate)
 {
-    vec2 at = (clamp(vec2(front, back), 0.0, 1.0) * (segment_rows - 1.0) + 0.5) / segment_rows;
-    vec4 full = texture(segments, at);
-    if (!(front == front && back == back))
-        return vec4(0.0);
-    return full;
+    return coordinate * ((segment_rows - 1.0) / segment_rows) + 0.5 / segment_rows;
+}
+
+// What a full segment between two of them adds; NaN is empty.
+vec4 segment_between(float front, float back)
+{
+    vec4 color = texture(segments, vec2(front, back));
+    return front + back == front + back ? color : vec4(0.0);
 }
 
 // The same stuff on another length, or more or less of it: light through it to that power.
@@ -24,26 +28,21 @@ vec4 stretch(vec4 color, float power)
     return color.a > 0.0 ? vec4(color.rgb * (alpha / color.a), alpha) : color;
 }
 
-// How far a ray goes from an empty block before it may meet something.
-float leap_from(vec3 at, vec3 slope)
+// How far a ray goes through empty blocks, at most so far.
+float leap_from(ray r, vec3 from, float most)
 {
-    ivec3 most = textureSize(skip, 0) - 1;
-    ivec3 block = clamp(ivec3(at / 8.0), ivec3(0), most);
-    int away = int(texelFetch(skip, block, 0).r);
-    if (away == 0)
-        return 0.0;
-    vec3 low = vec3(block - away + 1) * 8.0, high = vec3(block + away) * 8.0;
-    vec3 exits = mix((low - at) / slope, (high - at) / slope, greaterThan(slope, vec3(0.0)));
-    exits = mix(exits, vec3(1e30), equal(slope, vec3(0.0)));
-    return max(min(exits.x, min(exits.y, exits.z)), 0.0);
-}
-
-// Where the ray leaves the cell it enters at.
-float cell_exit(vec3 at, vec3 slope)
-{
-    vec3 next = mix(ceil(at - 1e-4) - 1.0, floor(at + 1e-4) + 1.0, greaterThan(slope, vec3(0.0)));
-    vec3 exits = mix((next - at) / slope, vec3(1e30), equal(slope, vec3(0.0)));
-    return max(min(exits.x, min(exits.y, exits.z)), 1e-3);
+    float way = 0.0;
+    while (way < most) {
+        vec3 at = from + way * r.slope;
+        ivec3 block = ivec3(min(at * 0.25, last_block));
+        float away = float(texelFetch(skip, block, 0).r);
+        if (away == 0.0)
+            break;
+        vec3 middle = vec3(block) * 4.0 + 2.0;
+        float reach = away * 4.0 - 2.0;
+        way += box_exit(r, at, middle - reach, middle + reach) + 1e-3;
+    }
+    return way;
 }
 
 float random(vec2 at)
@@ -58,30 +57,31 @@ float random(vec2 at)
 vec4 along(ray r, float from, float to, vec4 sum, float y)
 {
     float h = step_length, t = from, front = 0.0;
-    bool has_front = false;
+    bool has_front = false, may_leap = true;
     float shift = march.z > 0.5 ? random(gl_FragCoord.xy) * h : h;
     while (t < to && sum.a < march.y) {
         vec3 at = r.index + t * r.slope;
 #ifdef SKIP
-        float steps = floor(leap_from(at, r.slope) / h);
-        if (steps >= 1.0) {
-            t += steps * h;
-            has_front = false;
-            continue;
+        if (may_leap) {
+            float steps = floor(leap_from(r, at, to - t) / h);
+            if (steps >= 1.0) {
+                t += steps * h;
+                has_front = false;
+                continue;
+            }
         }
 #endif
 #ifdef CELLS
-        float extent = min(cell_exit(at, r.slope), to - t);
+        float extent = min(cell_exit(r, at), to - t);
 #else
         float extent = min(shift, to - t);
         shift = h;
 #endif
-        vec4 color;
 #ifdef SEGMENTS
         if (!has_front)
-            front = coordinate_of(texel_at(at));
-        float back = coordinate_of(texel_at(at + extent * r.slope));
-        color = segment_between(front, back, extent);
+            front = segment_place(coordinate_of(texel_at(at)));
+        float back = segment_place(coordinate_of(texel_at(at + extent * r.slope)));
+        vec4 color = segment_between(front, back);
         front = back;
         has_front = true;
         if (extent != h)
@@ -89,10 +89,10 @@ vec4 along(ray r, float from, float to, vec4 sum, float y)
 #else
         vec4 row = classify(coordinate_of(texel_at(at + 0.5 * extent * r.slope)));
         float alpha = 1.0 - exp(-row.a * extent);
-        color = vec4(row.rgb * alpha, alpha);
+        vec4 color = vec4(row.rgb * alpha, alpha);
 #endif
 #if defined(LIT) || defined(FACTOR)
-        if (color.a > 1e-6) {
+        if ((1.0 - sum.a) * color.a > 1e-5) { // others would not be seen
             vec3 gradient = gradient_at(at + 0.5 * extent * r.slope);
 #ifdef FACTOR
             color = stretch(color, gradient_factor(gradient));
@@ -103,8 +103,11 @@ vec4 along(ray r, float from, float to, vec4 sum, float y)
 #endif
         }
 #endif
+#ifdef CUE
         color = attenuate(color, -(t + 0.5 * extent) * r.direction.z, y);
+#endif
         sum += (1.0 - sum.a) * color;
+        may_leap = color.a == 0.0;
         t += extent;
     }
     return sum;

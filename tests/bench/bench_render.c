@@ -1,0 +1,234 @@
+/* Volume rendering beside VTK's: processor time of a picture (all threads), the first and those
+ * after it, as ratios of one run.
+ *
+ * bench_render [--size 256] [--picture 512] [--frames 7]
+ *
+ * VTK needs an X server: xvfb-run bench_render. Every measurement is made in a process of its
+ * own, by turns. Prints a JSON line a case on stdout, a table on stderr. */
+#define _GNU_SOURCE /* MAP_ANONYMOUS */
+#include "render_vtk.h"
+
+#include <cubewright/cubewright.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/wait.h>
+#include <time.h>
+#include <unistd.h>
+
+enum { MOST_FRAMES = 101 };
+
+typedef struct settings {
+    size_t size, picture;
+    int frames;
+} settings;
+
+/* What a child hands back. */
+typedef struct result {
+    bool is_there;
+    bench_vtk_times times;
+} result;
+
+typedef enum drawer { OURS, VTK_GPU, VTK_FIXED } drawer;
+
+static double cpu_ms(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+    return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
+}
+
+static int by_value(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static void check(cw_status st, const cw_error *err)
+{
+    if (st == CW_OK)
+        return;
+    fprintf(stderr, "%s\n", err->message);
+    exit(1);
+}
+
+static void render_ours(const cw_scene *scene, int frames, result *out)
+{
+    cw_error err = {0};
+    cw_renderer *renderer;
+    cw_picture picture;
+    double all[MOST_FRAMES];
+    check(cw_renderer_new(CW_BACKEND_AUTO, &renderer, &err), &err);
+    for (int n = 0; n <= frames; n++) {
+        const double start = cpu_ms();
+        check(cw_render(renderer, scene, &picture, &err), &err);
+        all[n] = cpu_ms() - start;
+        cw_picture_free(&picture);
+    }
+    out->times.first_ms = all[0];
+    qsort(all + 1, (size_t)frames, sizeof *all, by_value);
+    out->times.next_ms = all[1 + frames / 2];
+    out->is_there = true;
+    cw_renderer_free(renderer);
+}
+
+/* In a child: contexts of two GL libraries do not share a thread. */
+static result measure(drawer who, const cw_scene *scene, int frames)
+{
+    result *shared =
+        mmap(NULL, sizeof *shared, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
+    if (shared == MAP_FAILED)
+        exit(1);
+    fflush(NULL);
+    const pid_t child = fork();
+    if (child == 0) {
+        if (who == OURS)
+            render_ours(scene, frames, shared);
+        else
+            shared->is_there =
+                bench_vtk_render(scene, who == VTK_GPU, frames, &shared->times, NULL);
+        _exit(0);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    result r = *shared;
+    r.is_there &= WIFEXITED(status) && WEXITSTATUS(status) == 0;
+    munmap(shared, sizeof *shared);
+    return r;
+}
+
+/* Six blobs and a ripple: some of it visible. */
+static void make_volume(size_t n, cw_volume *v)
+{
+    static const double blobs[6][4] = {{.3, .3, .3, .1},  {.7, .6, .4, .12},
+                                       {.5, .7, .7, .1},  {.4, .4, .75, .08},
+                                       {.65, .3, .6, .1}, {.5, .5, .45, .15}};
+    cw_error err = {0};
+    check(cw_volume_alloc(v, CW_F32, (size_t[]){n, n, n}, 1, 1, &err), &err);
+    float *to = cw_volume_voxels(v);
+    for (size_t i = 0; i < n * n * n; i++) { /* on one thread: children can then have more */
+        const double q[3] = {(double)(i % n) / (double)(n - 1),
+                             (double)(i / n % n) / (double)(n - 1),
+                             (double)(i / n / n) / (double)(n - 1)};
+        double sum = 0.05 * sin(20 * q[0]) * sin(23 * q[1]) * sin(19 * q[2]);
+        for (int b = 0; b < 6; b++) {
+            double d = 0;
+            for (int a = 0; a < 3; a++)
+                d += (q[a] - blobs[b][a]) * (q[a] - blobs[b][a]);
+            sum += exp(-d / (2 * blobs[b][3] * blobs[b][3]));
+        }
+        to[i] = (float)(0.8 * sum);
+    }
+    for (int a = 0; a < 3; a++) {
+        v->affine[a][a] = 1;
+        v->affine[a][3] = -0.5 * (double)(n - 1);
+    }
+}
+
+static const cw_transfer transfer = {
+    .color_count = 3,
+    .colors = {{0.3, {0.2f, 0.3f, 0.9f}}, {0.6, {0.9f, 0.7f, 0.2f}}, {1, {1, 0.2f, 0.1f}}},
+    .opacity_count = 4,
+    .opacities = {{0.35, 0}, {0.5, 0.02f}, {0.8, 0.05f}, {1, 0.3f}}};
+
+/* A case: how ours draws, and what of VTK's it stands beside. */
+typedef struct bench_case {
+    const char *name;
+    cw_mode mode;
+    bool lit, half;
+    double step;
+    drawer beside;
+    bool beside_lit;
+    cw_mode beside_mode;
+    double first_wanted, wanted; /* ratios; 0: none */
+} bench_case;
+
+static const bench_case cases[] = {
+    {"composite", CW_MODE_COMPOSITE, false, false, 1, VTK_GPU, false, CW_MODE_COMPOSITE, 0.5,
+     0.35},
+    {"composite", CW_MODE_COMPOSITE, false, false, 1, VTK_FIXED, false, CW_MODE_COMPOSITE, 0,
+     1},
+    {"shaded", CW_MODE_COMPOSITE, true, false, 1, VTK_GPU, true, CW_MODE_COMPOSITE, 0.5, 0.25},
+    {"shaded", CW_MODE_COMPOSITE, true, false, 1, VTK_FIXED, true, CW_MODE_COMPOSITE, 0, 0},
+    {"mip", CW_MODE_MIP, false, false, 1, VTK_GPU, false, CW_MODE_MIP, 0.5, 0.5},
+    {"mip", CW_MODE_MIP, false, false, 1, VTK_FIXED, false, CW_MODE_MIP, 0, 0},
+    {"texture", CW_MODE_TEXTURE, false, false, 1, VTK_GPU, false, CW_MODE_COMPOSITE, 0.5, 0.5},
+    {"vbuffer", CW_MODE_VBUFFER, false, false, 1, VTK_FIXED, false, CW_MODE_COMPOSITE, 0, 0},
+    {"dragging", CW_MODE_COMPOSITE, false, true, 2, VTK_GPU, false, CW_MODE_COMPOSITE, 0, 0.15},
+};
+
+static const char *name_of(drawer p)
+{
+    return p == VTK_GPU ? "VTK GPU" : "VTK fixed-point";
+}
+
+static void report(const bench_case *c, const settings *s, const result *ours,
+                   const result *peer)
+{
+    const double first = peer->is_there ? ours->times.first_ms / peer->times.first_ms : NAN;
+    const double next = peer->is_there ? ours->times.next_ms / peer->times.next_ms : NAN;
+    fprintf(stderr, "%-10s %8.0f %8.0f   %-15s %8.0f %8.0f   %6.2f %6.2f  (%s %.2f, %.2f)\n",
+            c->name, ours->times.first_ms, ours->times.next_ms, name_of(c->beside),
+            peer->times.first_ms, peer->times.next_ms, first, next, "asked", c->first_wanted,
+            c->wanted);
+    printf("{\"case\":\"%s\",\"size\":%zu,\"picture\":%zu,\"first_ms\":%.1f,\"ms\":%.1f,"
+           "\"peer\":\"%s\",\"peer_first_ms\":%.1f,\"peer_ms\":%.1f}\n",
+           c->name, s->size, s->picture, ours->times.first_ms, ours->times.next_ms,
+           name_of(c->beside), peer->times.first_ms, peer->times.next_ms);
+}
+
+static void run_case(const bench_case *c, const settings *s, const cw_scene *base)
+{
+    cw_scene ours = *base, theirs = *base;
+    ours.mode = c->mode;
+    ours.lit = c->lit;
+    ours.step_vox = c->step;
+    if (c->half) {
+        ours.width /= 2;
+        ours.height /= 2;
+    }
+    theirs.mode = c->beside_mode;
+    theirs.lit = c->beside_lit;
+    const result peer = measure(c->beside, &theirs, s->frames);
+    const result own = measure(OURS, &ours, s->frames);
+    report(c, s, &own, &peer);
+}
+
+static settings parse(int argc, char **argv)
+{
+    settings s = {256, 512, 7};
+    for (int n = 1; n + 1 < argc; n += 2) {
+        const long value = atol(argv[n + 1]);
+        if (strcmp(argv[n], "--size") == 0)
+            s.size = (size_t)value;
+        else if (strcmp(argv[n], "--picture") == 0)
+            s.picture = (size_t)value;
+        else if (strcmp(argv[n], "--frames") == 0)
+            s.frames = value < MOST_FRAMES ? (int)value : MOST_FRAMES - 1;
+    }
+    return s;
+}
+
+int main(int argc, char **argv)
+{
+    const settings s = parse(argc, argv);
+    cw_volume volume = {0};
+    cw_error err = {0};
+    make_volume(s.size, &volume);
+    const double half = (double)s.size / 2;
+    const cw_fit_desc fit = {
+        .view = "iso", .min = {-half, -half, -half}, .max = {half, half, half}, .fov_deg = 30};
+    cw_scene scene = {
+        .volume = &volume, .transfer = &transfer, .width = s.picture, .height = s.picture};
+    check(cw_camera_fit(&fit, &scene.camera, &err), &err);
+    fprintf(stderr,
+            "%zu^3 floats, %zu x %zu pixels, ms of processor time: first, next; ratios\n",
+            s.size, s.picture, s.picture);
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++)
+        run_case(&cases[n], &s, &scene);
+    cw_volume_free(&volume);
+    return 0;
+}

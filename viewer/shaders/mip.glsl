@@ -1,0 +1,228 @@
+// Projections of values along rays: the highest (MIP), the lowest, the mean, and the first maximum
+// above a threshold (LOCAL). A volume in bricks is gone through front to back, each pass reading
+// what the one before left.
+uniform sampler3D ranges; // of texels in each block
+uniform vec3 last_block;  // of these
+uniform sampler2D before; // value, length so far, 1: LOCAL is done, the last value
+uniform float step_length, threshold;
+out vec4 result;
+
+const float none = 3e38;
+
+vec2 range_of(vec3 at)
+{
+    return texelFetch(ranges, ivec3(min(at * 0.125, last_block)), 0).rg;
+}
+
+float block_exit(ray r, vec3 at)
+{
+    vec3 low = floor(at * 0.125) * 8.0;
+    return box_exit(r, at, low, low + 8.0);
+}
+
+// Whether nothing in a range changes what was found.
+bool is_useless(vec2 range, vec4 found)
+{
+#ifdef MIP
+    return range.y <= found.x;
+#else
+    return range.x >= found.x;
+#endif
+}
+
+// How far a ray goes without a change of what was found.
+float useless_length(ray r, vec3 at, vec4 found)
+{
+#if defined(MIP) || defined(MINIP)
+    if (is_useless(range_of(at), found))
+        return block_exit(r, at);
+#endif
+    return 0.0;
+}
+
+vec4 take(vec4 found, float value)
+{
+#ifdef MIP
+    found.x = value > found.x ? value : found.x;
+#endif
+#ifdef MINIP
+    found.x = value < found.x ? value : found.x;
+#endif
+#ifdef LOCAL
+    if (found.z < 0.5) {
+        if (found.x >= threshold && value < found.w)
+            found.z = 1.0; // it falls: the last one was a maximum
+        else
+            found.x = value > found.x ? value : found.x;
+        found.w = value;
+    }
+#endif
+    return found;
+}
+
+// The cubic through values at 0, 1/3, 2/3 and 1 of a cell, which a trilinear field is along a ray:
+// its extrema.
+vec4 take_cell(vec4 found, vec4 v)
+{
+    float b = -5.5 * v.x + 9.0 * v.y - 4.5 * v.z + v.w;
+    float c = 9.0 * v.x - 22.5 * v.y + 18.0 * v.z - 4.5 * v.w;
+    float d = -4.5 * v.x + 13.5 * v.y - 13.5 * v.z + 4.5 * v.w;
+    float inner = c * c - 3.0 * b * d;
+    if (inner >= 0.0) {
+        float q = -(c + (c < 0.0 ? -1.0 : 1.0) * sqrt(inner));
+        vec2 roots = vec2(q / (3.0 * d), b / q); // may be infinite: not inside
+        roots = vec2(min(roots.x, roots.y), max(roots.x, roots.y));
+        for (int n = 0; n < 2; n++)
+            if (roots[n] > 0.0 && roots[n] < 1.0)
+                found = take(found, ((d * roots[n] + c) * roots[n] + b) * roots[n] + v.x);
+    }
+    return take(found, v.w);
+}
+
+// What the ray is bound to find: the ranges of the blocks it passes through say so, and samples of
+// the most promising one.
+vec4 foresee(ray r, float from, float to, vec4 found)
+{
+#ifdef FORESEE
+    float best = -none, best_from = from;
+    for (float t = from; t < to; ) {
+        vec3 at = r.index + t * r.slope;
+        vec2 range = range_of(at);
+#ifdef MIP
+        found.x = max(found.x, range.x);
+        float promise = range.y;
+#else
+        found.x = min(found.x, range.y);
+        float promise = -range.x;
+#endif
+        best_from = promise > best ? t : best_from;
+        best = max(best, promise);
+        t += block_exit(r, at) + 0.01;
+    }
+    float until = min(to, best_from + block_exit(r, r.index + best_from * r.slope));
+    for (float t = from + ceil((best_from - from) / step_length) * step_length; t < until; t += step_length)
+        found = take(found, texel_at(r.index + t * r.slope));
+#endif
+    return found;
+}
+
+#ifdef CELLS
+// Every cell by itself; values at its ends are shared.
+vec4 along(ray r, float from, float to, vec4 found)
+{
+    float value = texel_at(r.index + from * r.slope);
+    for (float t = from; t < to && found.z < 0.5; ) {
+        vec3 at = r.index + t * r.slope;
+        float useless = useless_length(r, at, found);
+        if (useless > 0.01) {
+            t += useless;
+            value = texel_at(r.index + t * r.slope);
+            continue;
+        }
+        float extent = min(cell_exit(r, at), to - t);
+        vec4 v = vec4(value, texel_at(at + extent / 3.0 * r.slope),
+                      texel_at(at + extent * (2.0 / 3.0) * r.slope), texel_at(at + extent * r.slope));
+        value = v.w;
+#ifdef AVERAGE
+        float mean = (v.x + v.w) / 8.0 + (v.y + v.z) * 0.375;
+        found.xy += mean == mean ? extent * vec2(mean, 1.0) : vec2(0.0);
+#else
+        found = take_cell(take(found, v.x), v);
+#endif
+        t += extent;
+    }
+    return found;
+}
+#else
+#ifdef AVERAGE
+// The middles of steps.
+vec4 along(ray r, float from, float to, vec4 found)
+{
+    for (float t = from; t < to; t += step_length) {
+        float extent = min(step_length, to - t);
+        float mean = texel_at(r.index + (t + 0.5 * extent) * r.slope);
+        found.xy += mean == mean ? extent * vec2(mean, 1.0) : vec2(0.0);
+    }
+    return found;
+}
+#else
+// Samples a step apart, and the last at the end: past what is useless, then through a block.
+vec4 along(ray r, float from, float to, vec4 found)
+{
+    float t = from;
+    while (t < to && found.z < 0.5) {
+        float until = to;
+#if defined(MIP) || defined(MINIP)
+        float useless = useless_length(r, r.index + t * r.slope, found);
+        while (useless > 0.0 && t < to) {
+            t += max(ceil(useless / step_length), 1.0) * step_length;
+            useless = useless_length(r, r.index + t * r.slope, found);
+        }
+        until = min(to, t + block_exit(r, r.index + t * r.slope) + 1e-3);
+#endif
+        for (; t < until && found.z < 0.5; t += step_length)
+            found = take(found, texel_at(r.index + t * r.slope));
+    }
+    return found.z < 0.5 ? take(found, texel_at(r.index + to * r.slope)) : found;
+}
+#endif
+#endif
+
+// A part of a ray; first what it is bound to find.
+vec4 along_part(ray r, vec2 part, vec4 found)
+{
+    return part.x < part.y ? along(r, part.x, part.y, foresee(r, part.x, part.y, found)) : found;
+}
+
+vec4 nothing()
+{
+#ifdef AVERAGE
+    return vec4(0.0);
+#endif
+#ifdef MINIP
+    return vec4(none, 0.0, 0.0, none);
+#endif
+    return vec4(-none, 0.0, 0.0, -none);
+}
+
+// A value's colour, opaque; in front of a mesh as opaque as the transfer function has it.
+vec4 show(vec4 found, bool has_mesh)
+{
+#ifdef AVERAGE
+    if (found.y == 0.0)
+        return vec4(0.0);
+    float value = found.x / found.y;
+#else
+    float value = found.x;
+    if (abs(value) >= none)
+        return vec4(0.0);
+#endif
+    vec4 row = classify(coordinate_of(value));
+    float alpha = has_mesh ? 1.0 - exp(-row.a) : 1.0;
+    return vec4(row.rgb * alpha, alpha);
+}
+
+void main()
+{
+    vec2 all, kept;
+    ray r = ray_of(gl_FragCoord.xy);
+    intervals(r, all, kept);
+#ifdef FIRST
+    vec4 found = nothing();
+#else
+    vec4 found = texelFetch(before, ivec2(gl_FragCoord.xy), 0);
+#endif
+    if (counts.z == 0) {
+        found = along_part(r, kept, found);
+    } else if (kept.x < kept.y) {
+        found = along_part(r, vec2(all.x, kept.x), found);
+        found = along_part(r, vec2(kept.y, all.y), found);
+    } else {
+        found = along_part(r, all, found);
+    }
+#ifdef LAST
+    result = show(found, mesh_distance(r) < 1e29);
+#else
+    result = found;
+#endif
+}
