@@ -206,14 +206,19 @@ static inline lanes finish(const state *s, double x, lanes glow)
     return glow;
 }
 
-/* A stretch of a length by what is at its two points. */
+/* A stretch of a length by what is at its two points. What it adds is as opaque as its depth
+ * says, which is exact for more than what the points alone would add up to; they tell the
+ * colour. */
 static inline void pass(state *s, lanes first, lanes second, float length)
 {
     const float a = first[3] * length, b = second[3] * length;
     const lanes depths = {0.25f * a + to_first * b, to_second * a + 0.25f * b, 0.5f * (a + b),
                           0};
     const lanes left = fade(depths);
-    s->color += (s->light * 0.5f) * (a * left[0] * first + b * left[1] * second);
+    const float p = a * left[0], q = b * left[1];
+    if (!(p + q > 0))
+        return;
+    s->color += s->light * (1 - left[2]) / (p + q) * (p * first + q * second);
     s->light *= left[2];
 }
 
