@@ -328,7 +328,7 @@ int cwi_frame_clip(const cwi_frame *f, const double origin[3], const double dire
 
 double cwi_frame_extinction(const cwi_frame *f, double opacity)
 {
-    return -log1p(-fmin(opacity, 1 - 1e-6)) / f->opacity_units;
+    return -log1p(-fmin(opacity, CWI_MOST_OPACITY)) / f->opacity_units;
 }
 
 double cwi_frame_cue(const cwi_frame *f, double depth)

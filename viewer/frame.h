@@ -55,7 +55,9 @@ CW_API void cwi_frame_ray(const cwi_frame *frame, double x, double y, double ori
 CW_API int cwi_frame_clip(const cwi_frame *frame, const double origin[3],
                           const double direction[3], double intervals[2][2]);
 
-/* The extinction coefficient per unit of eye space of an opacity of the transfer function. */
+/* The extinction coefficient per unit of eye space of an opacity of the transfer function,
+ * which is taken as at most that. */
+#define CWI_MOST_OPACITY (1 - 1e-6)
 CW_API double cwi_frame_extinction(const cwi_frame *frame, double opacity);
 
 /* What is left of the light of something at a depth: 1 near, 1 - depth_cue far. */

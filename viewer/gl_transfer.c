@@ -18,44 +18,18 @@ void cwi_gl_drop_transfer(cwi_gl *gl)
     *t = (cwi_gl_transfer){0};
 }
 
-/* Each byte becomes at most one more than the least of its neighbours before it, in an order of
- * the lattice from one corner to the opposite: forward, then backward, that is the distance
- * along the longest axis to the next 0, up to 255. */
-static void relax(uint8_t *d, const size_t dim[3], bool backward)
+static bool is_visible(const void *table, double low, double high)
 {
-    const ptrdiff_t count = (ptrdiff_t)(dim[0] * dim[1] * dim[2]);
-    for (ptrdiff_t m = 0; m < count; m++) {
-        const ptrdiff_t n = backward ? count - 1 - m : m;
-        const ptrdiff_t x = n % (ptrdiff_t)dim[0],
-                        y = n / (ptrdiff_t)dim[0] % (ptrdiff_t)dim[1],
-                        z = n / (ptrdiff_t)(dim[0] * dim[1]);
-        for (int o = 0; o < 13; o++) { /* the half of the 27 in front of the middle */
-            const ptrdiff_t s = backward ? -1 : 1;
-            const ptrdiff_t i = x + s * (o % 3 - 1), j = y + s * (o / 3 % 3 - 1),
-                            k = z + s * (o / 9 - 1);
-            if (i < 0 || j < 0 || k < 0 || i >= (ptrdiff_t)dim[0] || j >= (ptrdiff_t)dim[1] ||
-                k >= (ptrdiff_t)dim[2])
-                continue;
-            const uint8_t near = d[(k * (ptrdiff_t)dim[1] + j) * (ptrdiff_t)dim[0] + i];
-            if (near < 255 && near + 1 < d[n])
-                d[n] = (uint8_t)(near + 1);
-        }
-    }
+    return cwi_table_is_visible(table, low, high);
 }
 
 static cw_status make_skip(cwi_gl *gl, cw_error *err)
 {
     const cwi_ranges *r = &gl->volume.ranges;
-    const size_t count = r->dim[0] * r->dim[1] * r->dim[2];
-    uint8_t *d = cwi_alloc_array(count, 1);
-    if (!d)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for what is empty");
-    for (size_t n = 0; n < count; n++) {
-        const double low = (double)r->blocks[n][0], high = (double)r->blocks[n][1];
-        d[n] = low <= high && cwi_table_is_visible(&gl->transfer.table, low, high) ? 0 : 255;
-    }
-    relax(d, r->dim, false);
-    relax(d, r->dim, true);
+    uint8_t *d;
+    cw_status st = cwi_ranges_distances(r, is_visible, &gl->transfer.table, &d, err);
+    if (st != CW_OK)
+        return st;
     gl->transfer.skip = cwi_gl_texture(GL_TEXTURE_3D, CWI_UNIT_SKIP, false);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glTexImage3D(GL_TEXTURE_3D, 0, GL_R8UI, (GLsizei)r->dim[0], (GLsizei)r->dim[1],

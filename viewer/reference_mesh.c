@@ -414,6 +414,8 @@ static void draw_one_band(const scene *s, int band, hit *hits, cw_image *image)
     const size_t rows = image->height - first < BAND_ROWS ? image->height - first : BAND_ROWS;
     const int n = s->d->samples;
     draw_band(s, (int)first * n, (int)(first + rows) * n - 1, hits);
+    for (size_t i = 0; i < rows * image->width && s->d->depth_mm; i++)
+        s->d->depth_mm[first * image->width + i] = hits[i].z;
     shade_band(s, first, rows, hits, image);
 }
 
@@ -450,6 +452,9 @@ static cw_status check_sizes(const cwi_render_desc *d, cw_error *err)
     if (d->samples < 1 || d->samples > MAX_SAMPLES)
         return cw_fail(err, CW_ERR_ARGUMENT, "%d samples a side of a pixel; 1 to %d can be had",
                        d->samples, MAX_SAMPLES);
+    if (d->depth_mm && d->samples != 1)
+        return cw_fail(err, CW_ERR_ARGUMENT, "depths are of one sample a pixel, not of %d x %d",
+                       d->samples, d->samples);
     return CW_OK;
 }
 

@@ -20,8 +20,10 @@ typedef struct cwi_render_desc {
     uint8_t color[4];         /* sRGB of a mesh without colours; default a bone white */
     uint8_t background[2][4]; /* top and bottom, sRGB and alpha; all 0: a light gradient. For a
                                * transparent one give any colour and alpha 0 */
-    int threads;              /* default: all that OpenMP offers */
-    cw_progress progress;     /* default: none */
+    double *depth_mm; /* not NULL: filled with height x width depths, along the line of sight,
+                         of what is seen; INFINITY: nothing is. One sample a pixel only */
+    int threads;      /* default: all that OpenMP offers */
+    cw_progress progress; /* default: none */
 } cwi_render_desc;
 
 /* Draws a mesh: nearest surface first, lit on both sides; back faces are tinted red, so that an

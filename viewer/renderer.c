@@ -3,12 +3,14 @@
 #include "core/memory.h"
 #include "core/module.h"
 #include "core/status.h"
+#include "viewer/cpu_draw.h"
 #include "viewer/gl.h"
 
 struct cw_renderer {
     cw_backend backend;
     const cwi_gl_functions *functions; /* NULL: not loaded yet */
     cwi_gl *gl;                        /* opened by the first scene that needs it */
+    cwi_cpu cpu;
 };
 
 static const struct {
@@ -68,6 +70,8 @@ void cw_renderer_free(cw_renderer *r)
 {
     if (r && r->gl)
         r->functions->close(r->gl);
+    if (r)
+        cwi_cpu_forget(&r->cpu);
     cwi_free(r);
 }
 
@@ -80,15 +84,23 @@ void cw_renderer_forget(cw_renderer *r)
 {
     if (r->gl)
         r->functions->forget(r->gl);
+    cwi_cpu_forget(&r->cpu);
+}
+
+/* What GL does not draw is left to the CPU. */
+static bool is_for_cpu(const cw_renderer *r, cw_mode mode)
+{
+    return r->backend == CW_BACKEND_CPU ||
+           (r->backend == CW_BACKEND_AUTO &&
+            (mode == CW_MODE_VBUFFER || mode == CW_MODE_REFERENCE));
 }
 
 /* Draws every sample of the picture. */
 static cw_status draw(cw_renderer *r, const cwi_frame *frame, cw_picture *picture,
                       cw_error *err)
 {
-    if (r->backend == CW_BACKEND_CPU)
-        return cw_fail(err, CW_ERR_UNSUPPORTED, "the mode %s is not drawn by the CPU",
-                       cw_mode_name(frame->scene.mode));
+    if (is_for_cpu(r, frame->scene.mode))
+        return cwi_cpu_draw(&r->cpu, frame, picture, err);
     cw_status st = need_gl(r, err);
     return st == CW_OK ? r->functions->draw(r->gl, frame, picture, err) : st;
 }

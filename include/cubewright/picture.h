@@ -35,6 +35,35 @@ CW_API void cw_image_free(cw_image *image);
 CW_API cw_status cw_picture_show(const cw_picture *picture, const uint8_t background[2][4],
                                  cw_image *image, cw_error *err);
 
+/* How far a picture is from its reference, over the pixels that the reference covers (opacity
+ * above 1e-4), both over one background. Errors are in 1/255. */
+typedef struct cw_comparison {
+    size_t pixels;          /* compared; 0: the reference is empty, and all below is 0 */
+    double rmse, max, bias; /* of red, green and blue; bias: how much too bright, on average */
+    double delta_e_mean, delta_e_p99, delta_e_max; /* CIEDE2000; p99: 99 of 100 are at most */
+    double ssim; /* structural similarity of luma, Gaussian window of 11 pixels; 1: the same */
+} cw_comparison;
+
+/* Compares two pictures of one size.
+ * background  top and bottom, sRGB
+ * Returns     CW_ERR_ARGUMENT for pictures of nothing or of different sizes; CW_ERR_NO_MEMORY
+ * Source      [Sharma2005], [Wang2004] */
+CW_API cw_status cw_picture_compare(const cw_picture *picture, const cw_picture *reference,
+                                    const float background[2][3], cw_comparison *out,
+                                    cw_error *err);
+
+/* A picture of how two differ, amplified: per channel, over black or white, whichever shows
+ * more of it. Returns CW_ERR_ARGUMENT as above and for a factor that is not above 0;
+ * CW_ERR_NO_MEMORY */
+CW_API cw_status cw_picture_difference(const cw_picture *a, const cw_picture *b, double amplify,
+                                       cw_picture *difference, cw_error *err);
+
+/* One picture on the left, another on the right, and a thin white line between them.
+ * share    of the width that is the left one's, 0 to 1
+ * Returns  CW_ERR_ARGUMENT as above; CW_ERR_NO_MEMORY */
+CW_API cw_status cw_picture_split(const cw_picture *left, const cw_picture *right, double share,
+                                  cw_picture *both, cw_error *err);
+
 /* Writes a PNG, tagged as sRGB; without its alpha channel when nothing is translucent. The file
  * appears only when whole. Returns CW_ERR_OUTPUT, CW_ERR_NO_MEMORY, CW_ERR_BACKEND (libpng's
  * own words); CW_ERR_ARGUMENT for a picture of nothing. */

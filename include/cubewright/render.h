@@ -12,7 +12,17 @@
 extern "C" {
 #endif
 
-/* One row per mode: constant, name, what it is, and the paper it follows. */
+/* One row per mode: constant, name, what it is, and the paper it follows.
+ *
+ * Intensity projections (mip, minip, average, local-mip) show one value a ray: in the colour
+ * that the transfer function has for it and, whatever opacity that has, opaque; nothing where
+ * the ray meets no value. They have no light and no depth cue. Where a ray passes through a
+ * gap, average leaves that out of the mean. A local maximum of local-mip may lie where the ray
+ * enters or leaves values; if none reaches the threshold, it is the highest value that counts.
+ *
+ * A gradient is interpolated between those of the voxels around, which are central differences,
+ * one-sided at the border, 0 where a neighbour has no value and along an axis of one voxel. A
+ * cell with a corner that has no value is empty. */
 #define CW_MODE_TABLE(X)                                                                       \
     X(CW_MODE_MESH, "mesh", "triangles, lit", "Blinn 1977")                                    \
     X(CW_MODE_COMPOSITE, "composite", "ray casting: emission and absorption",                  \
@@ -53,7 +63,8 @@ CW_API const char *cw_mode_source(cw_mode mode);
 typedef enum cw_backend {
     CW_BACKEND_AUTO, /* the CPU for what only it does (vbuffer, reference), else EGL */
     CW_BACKEND_EGL,  /* OpenGL 3.3, without a display */
-    CW_BACKEND_CPU,  /* vbuffer, reference, and meshes alone */
+    CW_BACKEND_CPU,  /* vbuffer, reference, intensity projections, and opaque meshes, in a light
+                        of their own, alone or with those */
     CW_BACKEND_COUNT
 } cw_backend;
 

@@ -32,7 +32,8 @@ typedef struct cw_transfer {
     cw_color_point colors[CW_TRANSFER_POINTS];
     cw_opacity_point opacities[CW_TRANSFER_POINTS];
     cw_opacity_point gradients[CW_TRANSFER_POINTS]; /* value: length of the gradient, per mm;
-                                                       opacity: a factor of the opacity */
+                                                       opacity: a factor of the extinction
+                                                       coefficient */
     double unit_mm;                                 /* default: the volume's smallest spacing */
 } cw_transfer;
 
