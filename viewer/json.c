@@ -6,6 +6,7 @@
 #include "core/text.h"
 
 #include <errno.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -118,6 +119,10 @@ cw_status cwi_json_number(const json_t *root, const char *key, double *value, cw
 /* Digits until it reads back; with a point, as JSON knows no -0 without one. */
 static const char *shortest(char text[CWI_JSON_NUMBER], double value, bool single)
 {
+    if (value == floor(value) && fabs(value) < 1e15) {
+        snprintf(text, CWI_JSON_NUMBER, "%.1f", value);
+        return text;
+    }
     for (int digits = 1; digits <= 17; digits++) {
         double same;
         const char *end = text;
