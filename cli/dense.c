@@ -79,6 +79,8 @@ cw_status cli_make_dense(const cw_volume *sparse, size_t max_voxels, cw_volume *
     dense->slope = sparse->slope;
     dense->intercept = sparse->intercept;
     dense->known = sparse->known;
+    dense->has_nodata = sparse->has_nodata;
+    dense->nodata = sparse->nodata;
     fill(dense, voxels, (size_t[3]){0}, n, sparse->sparse->background);
     fill_tiles(dense, sparse->sparse, voxels);
     for (size_t leaf = 0; leaf < sparse->sparse->leaf_count; leaf++)
