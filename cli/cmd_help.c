@@ -48,8 +48,9 @@ static size_t search_options(const char *command, const cli_option *options, siz
 {
     size_t found = 0;
     for (size_t n = 0; n < count; n++)
-        if (contains(options[n].name, word) || contains(options[n].about, word) ||
-            contains(options[n].value, word)) {
+        if (options[n].kind != CLI_HEADING &&
+            (contains(options[n].name, word) || contains(options[n].about, word) ||
+             contains(options[n].value, word))) {
             printf("%s --%s%s%s: %s\n", command, options[n].name, options[n].value ? " " : "",
                    options[n].value ? options[n].value : "", options[n].about);
             found++;

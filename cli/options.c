@@ -68,7 +68,8 @@ static const cli_option *find_long(const cli_command *command, const char *name,
 {
     const cli_option *o;
     for (size_t n = 0; (o = option_at(command, n)); n++)
-        if (strlen(o->name) == length && strncmp(o->name, name, length) == 0)
+        if (o->kind != CLI_HEADING && strlen(o->name) == length &&
+            strncmp(o->name, name, length) == 0)
             return o;
     return NULL;
 }
@@ -86,17 +87,26 @@ static cw_status unknown_option(const cli_command *command, const char *name, si
                                 cw_error *err)
 {
     char word[64];
-    const char *names[64] = {0};
+    const char *names[CLI_MAX_OPTIONS + 1] = {0};
     const cli_option *o;
+    size_t count = 0;
     snprintf(word, sizeof word, "%.*s", (int)(length < 63 ? length : 63), name);
-    for (size_t n = 0; (o = option_at(command, n)) && n < 63; n++)
-        names[n] = o->name;
+    for (size_t n = 0; (o = option_at(command, n)) && count < CLI_MAX_OPTIONS; n++)
+        if (o->kind != CLI_HEADING)
+            names[count++] = o->name;
     const char *nearest = cli_nearest(word, names);
     if (nearest)
         return cw_fail(err, CW_ERR_ARGUMENT, "%s has no option --%s; did you mean --%s?",
                        command->name, word, nearest);
     return cw_fail(err, CW_ERR_ARGUMENT, "%s has no option --%s; 'cubewright %s -h' lists them",
                    command->name, word, command->name);
+}
+
+bool cli_is_given(const cli_command *command, const cli_common *args, const char *name)
+{
+    const cli_option *o = find_long(command, name, strlen(name));
+    return o >= command->options && o < command->options + command->option_count &&
+           args->given[o - command->options];
 }
 
 static bool takes_value(const cli_option *o)
@@ -235,6 +245,9 @@ static cw_status take_option(parser *p, const cli_option *o, const char *value, 
                              cw_error *err)
 {
     void *field = (char *)p->args + o->offset;
+    const cli_command *c = p->command;
+    if (o >= c->options && o < c->options + c->option_count)
+        p->args->given[o - c->options] = true;
     if (o->kind == CLI_LOUDER)
         ++*(int *)field;
     if (o->kind == CLI_FLAG)
@@ -324,7 +337,11 @@ cw_status cli_parse(const cli_command *command, int count, char **words, void *a
 
 static void print_option(const cli_option *o)
 {
-    char head[64];
+    char head[256];
+    if (o->kind == CLI_HEADING) {
+        printf("\n%s\n", o->name);
+        return;
+    }
     const int length = snprintf(head, sizeof head, "  %c%c%s--%s%s%s", o->letter ? '-' : ' ',
                                 o->letter ? o->letter : ' ', o->letter ? ", " : "  ", o->name,
                                 o->value ? " " : "", o->value ? o->value : "");

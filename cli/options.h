@@ -21,6 +21,7 @@ typedef enum cli_kind {
     CLI_STEPS,     /* cli_steps: 0:20:2, 0,3,7 or all */
     CLI_WEIGHTS,   /* cli_weights: normal:0.5,color:1; value has the names, parted by '/' */
     CLI_LOUDER,    /* int, counts up */
+    CLI_HEADING,   /* no option: the name of those below it in the help */
 } cli_kind;
 
 typedef struct cli_number {
@@ -101,6 +102,8 @@ typedef struct cli_option {
     size_t offset;     /* of its field in the command's struct */
 } cli_option;
 
+enum { CLI_MAX_OPTIONS = 128 }; /* rows of a command's table */
+
 /* What every command's struct begins with. */
 typedef struct cli_common {
     bool help;
@@ -108,6 +111,7 @@ typedef struct cli_common {
     int verbose;
     const char **inputs; /* the arguments that are no options */
     size_t input_count;
+    bool given[CLI_MAX_OPTIONS]; /* rows of the command's table that were */
 } cli_common;
 
 typedef struct cli_command {
@@ -129,6 +133,9 @@ typedef struct cli_command {
  * for an unknown option; checks nothing about the number of inputs when help is asked for. */
 cw_status cli_parse(const cli_command *command, int count, char **words, void *args,
                     const char **inputs, cw_error *err);
+
+/* Whether an option was given, of that name. */
+bool cli_is_given(const cli_command *command, const cli_common *args, const char *name);
 
 /* The help of a command: long adds its paragraphs. */
 void cli_print_help(const cli_command *command, bool long_form);

@@ -304,7 +304,7 @@ static void put_report(FILE *out, const cli_report *r, cw_status status, const c
     cli_json_close(&j, '}');
 }
 
-static cw_status save(const char *path, const char *text, size_t size, cw_error *err)
+cw_status cli_report_save(const char *path, const char *text, size_t size, cw_error *err)
 {
     cwi_outfile *file = NULL;
     if (strcmp(path, "-") == 0)
@@ -331,7 +331,7 @@ cw_status cli_report_write(const cli_report *report, cw_status status, cw_error 
     cw_status st = CW_ERR_NO_MEMORY;
     if (out) {
         put_report(out, report, status, err);
-        st = fclose(out) == 0 ? save(report->path, text, size, &why)
+        st = fclose(out) == 0 ? cli_report_save(report->path, text, size, &why)
                               : cw_fail(&why, st, "no memory for the report");
     }
     free(text);

@@ -94,4 +94,7 @@ void cli_report_warn(cli_report *report, const char *format, ...) CW_PRINTF(2, 3
  * the report could not be written when the run itself went well. */
 cw_status cli_report_write(const cli_report *report, cw_status status, cw_error *err);
 
+/* Writes the text of a report to a file, or the standard output for "-". CW_ERR_OUTPUT */
+cw_status cli_report_save(const char *path, const char *text, size_t size, cw_error *err);
+
 #endif

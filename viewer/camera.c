@@ -110,6 +110,63 @@ static void place(const cw_fit_desc *d, const double axes[3][3], cw_camera *came
         camera->eye[a] = camera->target[a] - distance * axes[2][a];
 }
 
+/* Turns a vector about an axis of unit length (Rodrigues' formula). */
+static void rotate(double v[3], const double axis[3], double degrees)
+{
+    const double angle = degrees * acos(-1) / 180, c = cos(angle), s = sin(angle);
+    const double along = cwi_dot(axis, v) * (1 - c);
+    double across[3];
+    cwi_cross(axis, v, across);
+    for (int a = 0; a < 3; a++)
+        v[a] = c * v[a] + s * across[a] + along * axis[a];
+}
+
+/* From a view's directions to those beside and above it. */
+static cw_status turn_view(const cw_fit_desc *d, double forward[3], double up[3], cw_error *err)
+{
+    double right[3];
+    if (!isfinite(d->azimuth_deg))
+        return cw_fail(err, CW_ERR_ARGUMENT, "an azimuth of %g is no angle", d->azimuth_deg);
+    if (!(d->elevation_deg >= -90 && d->elevation_deg <= 90))
+        return cw_fail(err, CW_ERR_ARGUMENT, "an elevation of %g degrees, not -90 to 90",
+                       d->elevation_deg);
+    cwi_cross(forward, up, right); /* some views' up is not across */
+    cwi_cross(right, forward, up);
+    normalize(up);
+    rotate(forward, up, d->azimuth_deg);
+    cwi_cross(forward, up, right);
+    normalize(right);
+    rotate(forward, right, -d->elevation_deg);
+    rotate(up, right, -d->elevation_deg);
+    return CW_OK;
+}
+
+cw_status cw_camera_turn(cw_camera *camera, const double axis[3], double degrees, cw_error *err)
+{
+    double unit[3], arm[3];
+    memcpy(unit, axis, sizeof unit);
+    if (!normalize(unit) || !isfinite(degrees))
+        return cw_fail(err, CW_ERR_ARGUMENT, "a turn of %g degrees about (%g, %g, %g)", degrees,
+                       axis[0], axis[1], axis[2]);
+    for (int a = 0; a < 3; a++)
+        arm[a] = camera->eye[a] - camera->target[a];
+    rotate(arm, unit, degrees);
+    rotate(camera->up, unit, degrees);
+    for (int a = 0; a < 3; a++)
+        camera->eye[a] = camera->target[a] + arm[a];
+    return CW_OK;
+}
+
+cw_status cw_camera_zoom(cw_camera *camera, double factor, cw_error *err)
+{
+    const double half = acos(-1) / 360;
+    if (!(isnormal(factor) && factor > 0))
+        return cw_fail(err, CW_ERR_ARGUMENT, "a zoom of %g: above 0 was expected", factor);
+    camera->fov_deg = atan(tan(camera->fov_deg * half) / factor) / half;
+    camera->height_mm /= factor;
+    return CW_OK;
+}
+
 cw_status cw_camera_fit(const cw_fit_desc *desc, cw_camera *camera, cw_error *err)
 {
     int view;
@@ -122,7 +179,10 @@ cw_status cw_camera_fit(const cw_fit_desc *desc, cw_camera *camera, cw_error *er
         return cw_fail(err, CW_ERR_ARGUMENT, "a margin of %g leaves no picture", desc->margin);
     memcpy(c.target, views[view].forward, sizeof c.target);
     memcpy(c.up, views[view].up, sizeof c.up);
-    st = cw_camera_axes(&c, axes[0], axes[1], axes[2], err);
+    if (desc->azimuth_deg != 0 || desc->elevation_deg != 0)
+        st = turn_view(desc, c.target, c.up, err);
+    if (st == CW_OK)
+        st = cw_camera_axes(&c, axes[0], axes[1], axes[2], err);
     if (st == CW_OK) {
         place(desc, (const double(*)[3])axes, &c);
         *camera = c;

@@ -80,8 +80,8 @@ static size_t find_place(const void *points, size_t row, size_t count, double va
 #define VALUE(i) (*(const double *)((const char *)points + (i)*row))
     while (n < count && VALUE(n) <= value)
         n++;
-    if (n > 0 && n < count)
-        *share = (value - VALUE(n - 1)) / (VALUE(n) - VALUE(n - 1));
+    if (n > 0 && n < count) /* in halves: differences may be beyond what doubles hold */
+        *share = (value / 2 - VALUE(n - 1) / 2) / (VALUE(n) / 2 - VALUE(n - 1) / 2);
 #undef VALUE
     return n;
 }

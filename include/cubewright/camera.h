@@ -19,9 +19,11 @@ typedef struct cw_camera {
 typedef struct cw_fit_desc {
     const char *view; /* a cw_view_name(); default "front" */
     double min[3], max[3];
-    double aspect;  /* width / height of the picture; 0 means 1 */
-    double fov_deg; /* 0: orthographic */
-    double margin;  /* share of the picture left free on each side, below 0.5 */
+    double aspect;        /* width / height of the picture; 0 means 1 */
+    double fov_deg;       /* 0: orthographic */
+    double margin;        /* share of the picture left free on each side, below 0.5 */
+    double azimuth_deg;   /* how far the eye goes round from there to the picture's right, */
+    double elevation_deg; /* and then up: -90 to 90 */
 } cw_fit_desc;
 
 /* The name of the n-th view; NULL after the last. They are front (seen from the patient's
@@ -29,14 +31,31 @@ typedef struct cw_fit_desc {
  * front has the left hand on the picture's right; from above and below the front is up. */
 CW_API const char *cw_view_name(size_t n);
 
-/* The camera of a named view that sees a whole box, as large as the margin allows.
+/* The camera of a view that sees a whole box, as large as the margin allows.
  * Returns CW_ERR_ARGUMENT for an unknown view, an unusable angle or margin. */
 CW_API cw_status cw_camera_fit(const cw_fit_desc *desc, cw_camera *camera, cw_error *err);
 
 /* The picture's axes in the world, unit length. Returns CW_ERR_ARGUMENT when eye and target
  * coincide, up is along the line of sight, or angle and height make no picture. */
 CW_API cw_status cw_camera_axes(const cw_camera *camera, double right[3], double up[3],
-                                 double forward[3], cw_error *err);
+                                double forward[3], cw_error *err);
+
+/* Moves the eye around the target, to the picture's right, by an angle about an axis through
+ * the target; up turns with it.
+ * Returns CW_ERR_ARGUMENT for an axis without a direction and an angle that is no number. */
+CW_API cw_status cw_camera_turn(cw_camera *camera, const double axis[3], double degrees,
+                                cw_error *err);
+
+/* What is in the picture's middle becomes so many times as large; the eye stays where it is.
+ * Returns CW_ERR_ARGUMENT for a factor that is not above 0. */
+CW_API cw_status cw_camera_zoom(cw_camera *camera, double factor, cw_error *err);
+
+/* A camera as a JSON file, with either of the last two; numbers are read back to the bit:
+ *     {"schema": "cubewright-camera-1", "eye": [0, -500, 0], "target": [0, 0, 0],
+ *      "up": [0, 0, 1], "fov_deg": 30, "height_mm": 200}
+ * Returns CW_ERR_IO; CW_ERR_FORMAT, with the line or the field that is wrong; CW_ERR_OUTPUT. */
+CW_API cw_status cw_camera_read(const char *path, cw_camera *camera, cw_error *err);
+CW_API cw_status cw_camera_write(const char *path, const cw_camera *camera, cw_error *err);
 
 #ifdef __cplusplus
 }

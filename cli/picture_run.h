@@ -1,0 +1,54 @@
+/* The work of render: from inputs to pictures. */
+#ifndef CLI_PICTURE_RUN_H
+#define CLI_PICTURE_RUN_H
+
+#include "cli/render_report.h"
+#include "cli/series.h"
+#include "cli/viewpoint.h"
+
+typedef struct render_args {
+    cli_common common;
+    cli_input input;
+    cli_scene scene;
+    cli_turns turns;
+    const char *output, *json, *mesh, *save_transfer, *save_camera;
+    cli_number iso;
+    int inside, backend;
+    cli_sizes size;
+    size_t samples;
+    cli_steps steps;
+} render_args;
+
+/* A run as far as it has come. Free with cli_end_pictures(). */
+typedef struct cli_pictures {
+    const cli_command *command;
+    const render_args *args;
+    cli_series series;
+    cw_mode mode;
+    bool is_mesh; /* the input is a mesh */
+    bool is_level_set;
+    cli_volume volume; /* of the step at hand */
+    cw_volume dense;   /* of a sparse one */
+    cw_mesh mesh;
+    cw_transfer transfer;
+    bool has_transfer; /* of the first step, which is kept */
+    double box[2][3];  /* what the cameras see: of the first step, likewise */
+    bool has_box;
+    cw_scene scene;        /* the latest */
+    cw_renderer *renderer; /* NULL: none was needed */
+    cli_shot *shots;
+    size_t shot_count;
+    double start;
+} cli_pictures;
+
+/* What can be refused before the input is touched. */
+cw_status cli_check_pictures(const render_args *args, cw_error *err);
+
+/* Reads what there is to see, draws and writes all pictures. */
+cw_status cli_make_pictures(cli_pictures *p, cw_error *err);
+void cli_end_pictures(cli_pictures *p);
+
+/* What its report says. */
+cli_render_report cli_report_pictures(const cli_pictures *p);
+
+#endif
