@@ -50,7 +50,7 @@ static cw_status check_list(const json_t *list, const char *key, cw_error *err)
 
 static cw_status take_colors(const json_t *root, cw_transfer *t, cw_error *err)
 {
-    const json_t *list = json_object_get(root, "colors"), *color;
+    const json_t *list = json_object_get(root, "colors"), *color = NULL;
     cw_status st = check_list(list, "colors", err);
     for (size_t n = 0; st == CW_OK && n < json_array_size(list); n++) {
         cw_color_point *p = &t->colors[t->color_count++];
@@ -66,7 +66,7 @@ static cw_status take_colors(const json_t *root, cw_transfer *t, cw_error *err)
 static cw_status take_opacities(const json_t *root, const char *key, cw_opacity_point *points,
                                 size_t *count, cw_error *err)
 {
-    const json_t *list = json_object_get(root, key), *opacity;
+    const json_t *list = json_object_get(root, key), *opacity = NULL;
     cw_status st = check_list(list, key, err);
     for (size_t n = 0; st == CW_OK && n < json_array_size(list); n++) {
         cw_opacity_point *p = &points[(*count)++];

@@ -192,7 +192,8 @@ CW_API const char *cw_renderer_name(const cw_renderer *renderer);
 CW_API cw_status cw_render(cw_renderer *renderer, const cw_scene *scene, cw_picture *picture,
                            cw_error *err);
 
-/* Tells a renderer that voxels or vertices it has drawn were written to since. */
+/* Tells a renderer that voxels or vertices it has drawn were written to since, or freed: it
+ * knows them by their address. */
 CW_API void cw_renderer_forget(cw_renderer *renderer);
 
 #ifdef __cplusplus

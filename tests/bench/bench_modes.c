@@ -133,6 +133,7 @@ static void run(cw_renderer *r, cw_renderer *cpu, const char *name, const cw_vol
     static const float black[2][3];
     cw_picture truth[3] = {{0}}; /* of the integral, lit, and of the last projection */
     fprintf(stderr, "%s\n", name);
+    cw_renderer_forget(r); /* a new volume may stand where another was */
     for (size_t n = 0; n < sizeof list / sizeof *list; n++) {
         cw_error err = {0};
         cw_comparison gap;
