@@ -242,7 +242,9 @@ cw_status cwi_frame_init(cwi_frame *frame, const cw_scene *scene, cw_error *err)
 {
     double min[3], max[3];
     cwi_frame *f = frame;
-    *f = (cwi_frame){.scene = *scene};
+    *f = (cwi_frame){.scene = *scene,
+                     .studio_light =
+                         scene->light_count == 0 && !is_material_set(&scene->material)};
     cw_status st = fill_in(&f->scene, err);
     if (st == CW_OK && f->scene.mesh)
         st = cw_mesh_check(f->scene.mesh, err);

@@ -18,7 +18,7 @@ typedef struct frame_block {
     int32_t counts[4];
 } frame_block;
 
-static const cwi_gl_mode *const modes[] = {&cwi_gl_composite};
+static const cwi_gl_mode *const modes[] = {&cwi_gl_composite, &cwi_gl_mesh_mode};
 
 const cwi_gl_mode *cwi_gl_find_mode(cw_mode mode)
 {
@@ -160,6 +160,10 @@ static cw_status draw_scene(cwi_gl *gl, const cwi_gl_mode *mode, cw_error *err)
     glDepthMask(GL_TRUE);
     glClearColor(0, 0, 0, 0);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    if (gl->frame->scene.mesh && mode->mode != CW_MODE_MESH)
+        st = cwi_gl_draw_mesh(gl, err);
+    if (st != CW_OK)
+        return st;
     if (mode->goes_along_rays)
         glBindFramebuffer(GL_FRAMEBUFFER, gl->target.rays);
     return mode->draw(gl, &gl->state[mode->mode], err);

@@ -112,7 +112,8 @@ typedef struct cw_scene {
 
     /* light and depth */
     cw_light lights[CW_MAX_LIGHTS]; /* light_count of them */
-    size_t light_count;             /* default: one, white, from the eye */
+    size_t light_count;             /* default: one, white, from the eye; for meshes, when no
+                                       material is given either, a studio's */
     cw_material material;
     bool lit;        /* volumes are shaded by their gradient; meshes always are */
     float depth_cue; /* 0 to 1: the share of the background at the far end of what is seen,
@@ -150,8 +151,8 @@ typedef struct cw_scene {
     float color[4]; /* sRGB and opacity of a mesh without colours; default a bone white */
     cw_tint tint;
     double tint_low, tint_high; /* both 0: the range of the scalars */
-    bool wireframe;             /* edges drawn over the triangles */
-    bool cap;                   /* the cut through a clipped mesh is filled */
+    bool wireframe;             /* edges drawn over the triangles; faint where they are dense */
+    bool cap;                   /* the cut through a clipped mesh, which is closed, is filled */
 
     int threads;          /* default: all that OpenMP offers */
     cw_progress progress; /* default: none */

@@ -1,0 +1,541 @@
+#include "support/pictures.h"
+
+#include "viewer/mesh_look.h"
+#include "viewer/reference_mesh.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { SIDE = 96 };
+
+static cw_camera straight(double height_mm)
+{
+    return (cw_camera){.eye = {0, -500, 0}, .up = {0, 0, 1}, .height_mm = height_mm};
+}
+
+static void make_arrays(cw_mesh *mesh, size_t vertices, size_t triangles)
+{
+    *mesh = (cw_mesh){.vertex_count = vertices, .triangle_count = triangles};
+    mesh->positions = calloc(vertices, 12);
+    mesh->triangles = calloc(triangles, 12);
+    mesh->colors = calloc(vertices, 4);
+    assert_true(mesh->positions && mesh->triangles && mesh->colors);
+}
+
+/* A square in front of the camera, at some y, that reaches from -half to half; facing it. */
+static void put_sheet(cw_mesh *mesh, size_t n, float y, float half, const uint8_t color[4])
+{
+    static const uint32_t corners[6] = {0, 1, 2, 0, 2, 3};
+    static const float x[4] = {-1, 1, 1, -1}, z[4] = {-1, -1, 1, 1};
+    for (size_t v = 0; v < 4; v++) {
+        const float p[3] = {half * x[v], y, half * z[v]};
+        memcpy(mesh->positions + 3 * (4 * n + v), p, sizeof p);
+        memcpy(mesh->colors + 4 * (4 * n + v), color, 4);
+    }
+    for (size_t c = 0; c < 6; c++)
+        mesh->triangles[6 * n + c] = (uint32_t)(4 * n) + corners[c];
+}
+
+/* A sphere by longitude and latitude around a point, with normals. */
+static void make_ball(cw_mesh *mesh, double radius, const double middle[3])
+{
+    enum { N = 96, M = 48 };
+    size_t t = 0;
+    make_arrays(mesh, (N + 1) * (M + 1), 2 * N * M);
+    free(mesh->colors);
+    mesh->colors = NULL;
+    mesh->normals = calloc(mesh->vertex_count, 12);
+    assert_non_null(mesh->normals);
+    memcpy(mesh->origin, middle, sizeof mesh->origin);
+    for (size_t v = 0; v < mesh->vertex_count; v++) {
+        const double a = 2 * PI * (double)(v % (N + 1) % N) / N,
+                     b = PI * (double)(v / (N + 1)) / M;
+        const double n[3] = {sin(b) * cos(a), sin(b) * sin(a), -cos(b)};
+        for (size_t c = 0; c < 3; c++) {
+            mesh->normals[3 * v + c] = (float)n[c];
+            mesh->positions[3 * v + c] = (float)(radius * n[c]);
+        }
+    }
+    for (uint32_t j = 0; j < M; j++)
+        for (uint32_t i = 0; i < N; i++, t++) {
+            const uint32_t a = j * (N + 1) + i, c = a + N + 1;
+            memcpy(mesh->triangles + 6 * t, (const uint32_t[6]){a, a + 1, c + 1, a, c + 1, c},
+                   24);
+        }
+}
+
+static const float *pixel(const cw_picture *p, size_t x, size_t y)
+{
+    return p->pixels + 4 * (y * p->width + x);
+}
+
+/* Every pixel that both cover is the same to rounding; coverage differs at most at outlines. */
+static void check_against_cpu(const cw_mesh *mesh, const cw_camera *camera)
+{
+    cw_renderer *r = test_renderer();
+    cw_error err = {0};
+    cw_image truth;
+    const cwi_render_desc desc = {.camera = *camera,
+                                  .width = SIDE,
+                                  .height = SIDE,
+                                  .samples = 1,
+                                  .color = {230, 222, 209, 255},
+                                  .background = {{9, 9, 9, 0}, {9, 9, 9, 0}}};
+    const cw_scene scene = {.mode = CW_MODE_MESH,
+                            .mesh = mesh,
+                            .camera = *camera,
+                            .width = SIDE,
+                            .height = SIDE,
+                            .color = {230 / 255.f, 222 / 255.f, 209 / 255.f, 1}};
+    assert_ok(cwi_render_mesh(mesh, &desc, &truth, &err), err);
+    cw_renderer_forget(r);
+    cw_picture drawn = test_draw(r, &scene);
+    double sum = 0, max = 0;
+    size_t both = 0, one = 0;
+    for (size_t p = 0; p < (size_t)SIDE * SIDE; p++) {
+        const float *a = drawn.pixels + 4 * p;
+        const uint8_t *b = truth.pixels + 4 * p;
+        one += (a[3] > 0) != (b[3] > 0);
+        if (!(a[3] > 0 && b[3] > 0))
+            continue;
+        both++;
+        for (int c = 0; c < 3; c++) {
+            const double d = 255 * (double)a[c] - b[c];
+            sum += d * d;
+            max = fmax(max, fabs(d));
+        }
+    }
+    print_message("rmse %.4f, max %.3f over %zu pixels; %zu covered by one\n",
+                  sqrt(sum / 3 / (double)both), max, both, one);
+    assert_true(both > (size_t)SIDE * SIDE / 5);
+    assert_true(one * 500 <= both);
+    assert_true(sqrt(sum / 3 / (double)both) < 0.5);
+    cw_picture_free(&drawn);
+    cw_image_free(&truth);
+}
+
+static void looks_as_the_reference(void **state)
+{
+    (void)state;
+    cw_mesh mesh;
+    const cw_camera cameras[] = {
+        {.eye = {30, -90, 40}, .target = {1, 2, 3}, .up = {0, 0, 1}, .fov_deg = 30},
+        {.eye = {-90, 20, 10}, .up = {0, 0, 1}, .height_mm = 50}};
+    for (int n = 0; n < 2; n++) {
+        make_ball(&mesh, 20, (const double[3]){1, 2, 3});
+        check_against_cpu(&mesh, &cameras[n]);
+        free(mesh.normals); /* flat; and without a few triangles the inside is seen */
+        mesh.normals = NULL;
+        mesh.triangle_count = mesh.triangle_count * 5 / 9;
+        check_against_cpu(&mesh, &cameras[n]);
+        mesh.colors = calloc(mesh.vertex_count, 4);
+        for (size_t v = 0; v < 4 * mesh.vertex_count; v++)
+            mesh.colors[v] = v % 4 == 3 ? 255 : (uint8_t)(v * 7919 % 251);
+        check_against_cpu(&mesh, &cameras[n]);
+        cw_mesh_free(&mesh);
+    }
+}
+
+/* Lit by nothing but ambient light, a surface has its own colour. */
+static const cw_material flat = {1, 0, 0, 1};
+
+/* Sheets at several depths, given in several orders, blend as the formula says. */
+static void translucent_sheets_blend_in_any_order(void **state)
+{
+    (void)state;
+    cw_renderer *r = test_renderer();
+    static const uint8_t colors[3][4] = {
+        {255, 0, 0, 102}, {0, 255, 0, 153}, {51, 102, 255, 204}};
+    static const int orders[4][3] = {{0, 1, 2}, {2, 1, 0}, {1, 2, 0}, {0, 2, 1}};
+    double wanted[4] = {0};
+    for (int c = 0; c < 4; c++) { /* from the nearest on */
+        double left = 1;
+        for (int s = 0; s < 3; s++) {
+            const double alpha = colors[s][3] / 255.0;
+            wanted[c] += left * alpha * (c < 3 ? colors[s][c] / 255.0 : 1);
+            left *= 1 - alpha;
+        }
+    }
+    for (int n = 0; n < 4; n++) {
+        cw_mesh mesh;
+        make_arrays(&mesh, 12, 6);
+        for (size_t k = 0; k < 3; k++)
+            put_sheet(&mesh, k, (float)(10 * orders[n][k]), 5, colors[orders[n][k]]);
+        const cw_scene scene = {.mode = CW_MODE_MESH,
+                                .mesh = &mesh,
+                                .camera = straight(20),
+                                .width = 32,
+                                .height = 32,
+                                .material = flat};
+        cw_renderer_forget(r);
+        cw_picture picture = test_draw(r, &scene);
+        for (int c = 0; c < 4; c++) {
+            assert_near((double)pixel(&picture, 16, 16)[c], wanted[c], 1e-5);
+            assert_near((double)pixel(&picture, 2, 2)[c], 0, 0);
+        }
+        cw_picture_free(&picture);
+        cw_mesh_free(&mesh);
+    }
+}
+
+/* Sheets that cross: each half of the picture has the other in front. */
+static void crossing_sheets_blend_pixel_by_pixel(void **state)
+{
+    (void)state;
+    cw_renderer *r = test_renderer();
+    cw_mesh mesh;
+    static const uint8_t red[4] = {255, 0, 0, 128}, blue[4] = {0, 0, 255, 128};
+    make_arrays(&mesh, 8, 4);
+    put_sheet(&mesh, 0, 0, 5, red);
+    put_sheet(&mesh, 1, 0, 5, blue);
+    for (size_t v = 0; v < 8; v++)
+        mesh.positions[3 * v + 1] = mesh.positions[3 * v] * (v < 4 ? 1.f : -1.f);
+    const cw_scene scene = {.mode = CW_MODE_MESH,
+                            .mesh = &mesh,
+                            .camera = straight(10),
+                            .width = 32,
+                            .height = 32,
+                            .material = flat};
+    cw_renderer_forget(r);
+    cw_picture picture = test_draw(r, &scene);
+    const double a = 128 / 255.0;
+    for (int side = 0; side < 2; side++) { /* left of the middle red is nearer */
+        const float *at = pixel(&picture, side ? 28 : 4, 16);
+        assert_near((double)at[side ? 2 : 0], a, 1e-5);
+        assert_near((double)at[side ? 0 : 2], (1 - a) * a, 1e-5);
+    }
+    cw_picture_free(&picture);
+    cw_mesh_free(&mesh);
+}
+
+static cw_scene cut_ball(const cw_mesh *ball)
+{
+    return (cw_scene){.mode = CW_MODE_MESH,
+                      .mesh = ball,
+                      .camera = straight(50),
+                      .width = SIDE,
+                      .height = SIDE,
+                      .clips = {{{0, 1, 0}, 0}},
+                      .clip_count = 1,
+                      .color = {0.5f, 0.5f, 0.5f, 1},
+                      .material = flat,
+                      .cap = true};
+}
+
+/* The front half of a ball is cut away: a disc is seen, of one colour, not the ball's red
+ * inside; and what the disc covers is what the ball's outline is. */
+static void cap_closes_a_cut_ball(void **state)
+{
+    (void)state;
+    cw_renderer *r = test_renderer();
+    cw_mesh ball;
+    make_ball(&ball, 20, (const double[3]){0, 0, 0});
+    cw_scene scene = cut_ball(&ball);
+    cw_renderer_forget(r);
+    cw_picture capped = test_draw(r, &scene);
+    scene.cap = false;
+    cw_picture open = test_draw(r, &scene);
+    scene.color[3] = 0.5f;
+    scene.cap = true;
+    cw_picture clear = test_draw(r, &scene);
+    size_t covered = 0;
+    for (size_t p = 0; p < (size_t)SIDE * SIDE; p++) {
+        const float *c = capped.pixels + 4 * p, *o = open.pixels + 4 * p;
+        assert_true(c[3] == o[3]);
+        if (!(c[3] > 0))
+            continue;
+        covered++;
+        assert_true(o[0] > 1.5f * o[1]); /* the red inside */
+        assert_true(c[1] > 0.8f * c[0]); /* the cap */
+        assert_near((double)c[0], (double)pixel(&capped, SIDE / 2, SIDE / 2)[0], 1e-6);
+        assert_near((double)clear.pixels[4 * p + 3], 0.75, 1e-6); /* cap and back: two layers */
+    }
+    const double radius = 20.0 * SIDE / 50;
+    assert_within((double)covered, PI * radius * radius, 0.01);
+    cw_picture_free(&capped);
+    cw_picture_free(&open);
+    cw_picture_free(&clear);
+    cw_mesh_free(&ball);
+}
+
+/* A wedge is cut out by two planes: both cuts are closed, seen from any side no inside shows.
+ */
+static void caps_close_what_is_cut_away(void **state)
+{
+    (void)state;
+    cw_renderer *r = test_renderer();
+    cw_mesh ball;
+    make_ball(&ball, 20, (const double[3]){3, 1, -2});
+    cw_scene scene = cut_ball(&ball);
+    scene.clips[0] = (cw_clip){{0.2, -1, 0}, -1};
+    scene.clips[1] = (cw_clip){{1, 0, 0.3}, 2};
+    scene.clip_count = 2;
+    cw_renderer_forget(r);
+    for (int n = 0; n < 8; n++) {
+        const double a = n * PI / 4;
+        scene.cut_away = n % 2;
+        scene.camera = (cw_camera){.eye = {90 * sin(a), -90 * cos(a), 30},
+                                   .up = {0, 0, 1},
+                                   .fov_deg = n < 4 ? 35 : 0,
+                                   .height_mm = 60};
+        cw_picture picture = test_draw(r, &scene);
+        size_t covered = 0, inside = 0;
+        for (size_t p = 0; p < (size_t)SIDE * SIDE; p++) {
+            const float *c = picture.pixels + 4 * p;
+            covered += c[3] > 0;
+            inside += c[1] < 0.8f * c[0];
+        }
+        assert_true(covered > SIDE * SIDE / 20);
+        assert_true(inside <= 1); /* at an outline the two sides may change places */
+        cw_picture_free(&picture);
+    }
+    cw_mesh_free(&ball);
+}
+
+/* Each triangle draws its half of an edge: 0.6 pixels, of any sample count, at any distance. */
+static void edges_are_as_wide_as_said(void **state)
+{
+    (void)state;
+    cw_renderer *r = test_renderer();
+    static const uint8_t white[4] = {255, 255, 255, 255};
+    for (int n = 0; n < 4; n++) {
+        cw_mesh mesh;
+        make_arrays(&mesh, 4, 2);
+        put_sheet(&mesh, 0, n < 2 ? 0 : 200, 5, white);
+        const cw_scene scene = {
+            .mode = CW_MODE_MESH,
+            .mesh = &mesh,
+            .camera = {.eye = {0, -50, 0},
+                       .up = {0, 0, 1},
+                       .fov_deg = 360 / PI * atan(8 / (n < 2 ? 50.0 : 250.0))},
+            .width = 64,
+            .height = 64,
+            .samples = n % 2 ? 3 : 1,
+            .material = flat,
+            .wireframe = true};
+        cw_renderer_forget(r);
+        cw_picture picture = test_draw(r, &scene);
+        double width = 0, diagonal = 0;
+        const double drop = 1 - 0.08;     /* of red, from the sheet to the line */
+        for (size_t x = 0; x < 20; x++) { /* across the left edge, clear of the diagonal */
+            const float *at = pixel(&picture, x, 24);
+            if (at[3] > 0)
+                width += ((double)at[3] - (double)at[0]) / drop;
+        }
+        for (size_t x = 22; x < 42; x++)
+            diagonal += (1 - (double)pixel(&picture, x, 32)[0]) / drop;
+        assert_near(width, 0.6, 0.02); /* the outline is between samples */
+        assert_near(diagonal, 1.2 * sqrt(2), 0.12);
+        cw_picture_free(&picture);
+        cw_mesh_free(&mesh);
+    }
+}
+
+/* The colour of one value, and none where there is none. */
+static void scalars_are_shown_by_the_ramp(void **state)
+{
+    (void)state;
+    cw_renderer *r = test_renderer();
+    cw_mesh mesh;
+    static const uint8_t any[4] = {1, 2, 3, 255};
+    make_arrays(&mesh, 4, 2);
+    put_sheet(&mesh, 0, 0, 5, any);
+    mesh.scalars = calloc(4, sizeof(float));
+    for (int n = 0; n < 6; n++) {
+        const float value = (float)(n == 5 ? NAN : 10 + 2.5 * n);
+        double wanted[3] = {0};
+        for (int v = 0; v < 4; v++)
+            mesh.scalars[v] = value;
+        const cw_scene scene = {.mode = CW_MODE_MESH,
+                                .mesh = &mesh,
+                                .camera = straight(8),
+                                .width = 8,
+                                .height = 8,
+                                .tint = CW_TINT_SCALARS,
+                                .tint_low = 10,
+                                .tint_high = 20,
+                                .material = flat};
+        cw_renderer_forget(r);
+        cw_picture picture = test_draw(r, &scene);
+        cwi_ramp_color(n / 4.0, wanted);
+        for (int c = 0; c < 3; c++) {
+            const double shown = (double)pixel(&picture, 4, 4)[c];
+            if (n == 5)
+                assert_near(shown, (double)pixel(&picture, 4, 4)[0], 1e-6);
+            else
+                assert_near(shown, wanted[c], 2e-3);
+        }
+        cw_picture_free(&picture);
+    }
+    cw_error err = {0};
+    cw_picture picture;
+    cw_scene scene = {.mode = CW_MODE_MESH, .mesh = &mesh, .tint = CW_TINT_SCALARS};
+    scene.tint_low = 2;
+    scene.tint_high = 1;
+    assert_fails(cw_render(r, &scene, &picture, &err), CW_ERR_ARGUMENT, "2 to 1", err);
+    free(mesh.scalars);
+    mesh.scalars = NULL;
+    assert_fails(cw_render(r, &scene, &picture, &err), CW_ERR_ARGUMENT, "no scalars", err);
+    cw_mesh_free(&mesh);
+}
+
+static double lightness(const double srgb[3])
+{
+    static const double weight[3] = {0.2126, 0.7152, 0.0722};
+    double y = 0;
+    for (int c = 0; c < 3; c++)
+        y += weight[c] *
+             (srgb[c] <= 0.04045 ? srgb[c] / 12.92 : pow((srgb[c] + 0.055) / 1.055, 2.4));
+    return 116 * cbrt(y) - 16;
+}
+
+/* Equal steps are equally lighter, and no colour is cut off at the gamut. */
+static void ramp_is_perceptually_even(void **state)
+{
+    (void)state;
+    for (int n = 0; n <= 100; n++) {
+        double c[3];
+        cwi_ramp_color(n / 100.0, c);
+        assert_near(lightness(c), 18 + 0.74 * n, 0.3);
+        for (int a = 0; a < 3; a++)
+            assert_true(c[a] > 0 && c[a] < 1);
+    }
+}
+
+/* An equilateral triangle and a right one are told apart. */
+static void shape_of_triangles_is_shown(void **state)
+{
+    (void)state;
+    cw_renderer *r = test_renderer();
+    cw_mesh mesh;
+    double wanted[2][3];
+    make_arrays(&mesh, 6, 2);
+    for (uint32_t n = 0; n < 6; n++)
+        mesh.triangles[n] = n;
+    static const float corners[6][2] = {{-9, -4}, {-1, -4}, {-5, 2.9282032f},
+                                        {1, -4},  {9, -4},  {1, 4}};
+    for (size_t v = 0; v < 6; v++) {
+        mesh.positions[3 * v] = corners[v][0];
+        mesh.positions[3 * v + 2] = corners[v][1];
+    }
+    assert_near(cwi_triangle_shape(&mesh, 0), 1, 1e-6);
+    assert_near(cwi_triangle_shape(&mesh, 1), sqrt(3) / 2, 1e-6);
+    const cw_scene scene = {.mode = CW_MODE_MESH,
+                            .mesh = &mesh,
+                            .camera = straight(20),
+                            .width = 40,
+                            .height = 40,
+                            .tint = CW_TINT_QUALITY,
+                            .material = flat};
+    cw_renderer_forget(r);
+    cw_picture picture = test_draw(r, &scene);
+    cwi_ramp_color(1, wanted[0]);
+    cwi_ramp_color(sqrt(3) / 2, wanted[1]);
+    for (int c = 0; c < 3; c++) {
+        assert_near((double)pixel(&picture, 10, 24)[c], wanted[0][c], 2e-3);
+        assert_near((double)pixel(&picture, 25, 24)[c], wanted[1][c], 2e-3);
+    }
+    cw_picture_free(&picture);
+    cw_mesh_free(&mesh);
+}
+
+/* The share of the background in what is farthest is the depth cue. */
+static void depth_fades_into_the_background(void **state)
+{
+    (void)state;
+    cw_renderer *r = test_renderer();
+    cw_mesh mesh;
+    static const uint8_t white[4] = {255, 255, 255, 255};
+    make_arrays(&mesh, 8, 4);
+    put_sheet(&mesh, 0, 100, 9, white);
+    put_sheet(&mesh, 1, 0, 3, white);
+    const cw_scene scene = {.mode = CW_MODE_MESH,
+                            .mesh = &mesh,
+                            .camera = straight(20),
+                            .width = 40,
+                            .height = 40,
+                            .background = {{0.2f, 0.4f, 0.6f}, {0.2f, 0.4f, 0.6f}},
+                            .depth_cue = 0.7f,
+                            .material = flat};
+    cw_renderer_forget(r);
+    cw_picture picture = test_draw(r, &scene);
+    for (int c = 0; c < 3; c++) {
+        assert_near((double)pixel(&picture, 20, 20)[c], 1, 2e-3);
+        assert_near((double)pixel(&picture, 4, 20)[c], 0.3 + 0.7 * 0.2 * (c + 1), 2e-3);
+    }
+    cw_picture_free(&picture);
+    cw_mesh_free(&mesh);
+}
+
+/* A ball in, before and behind a box of fog: what is seen of the fog ends at the ball. */
+static void mesh_stands_in_a_volume(void **state)
+{
+    (void)state;
+    cw_renderer *r = test_renderer();
+    cw_volume box = {0};
+    const cw_transfer fog = test_flat_transfer();
+    test_field(&box, 33, 33, 33, (const double[3]){1, 1, 1}, test_constant);
+    for (int n = 0; n < 6; n++) {
+        cw_mesh ball;
+        const double y[3] = {-30, 0, 30};
+        make_ball(&ball, 6, (const double[3]){0, y[n % 3], 0});
+        const cw_scene scene = {.mode = CW_MODE_COMPOSITE,
+                                .volume = &box,
+                                .transfer = &fog,
+                                .mesh = &ball,
+                                .camera = {.eye = {0, -200, 0},
+                                           .up = {0, 0, 1},
+                                           .fov_deg = n < 3 ? 0 : 5,
+                                           .height_mm = 20},
+                                .width = SIDE,
+                                .height = SIDE,
+                                .color = {1, 0, 0, 1},
+                                .material = flat};
+        cw_renderer_forget(r);
+        cw_picture picture = test_draw(r, &scene);
+        for (size_t x = 3; x < SIDE; x += 9) {
+            const double fov = tan(5 * PI / 360) * 200, u = ((double)x + 0.5) / SIDE * 2 - 1,
+                         v = 0.5 / SIDE * 2;
+            const double side = (n < 3 ? 10 : fov) * u, up = (n < 3 ? 10 : fov) * v;
+            /* along the ray to the plane y = 0, t from 0 to 1 */
+            const double d[3] = {n < 3 ? 0 : side, 200, n < 3 ? 0 : -up};
+            const double o[3] = {n < 3 ? side : 0, -200 - y[n % 3], n < 3 ? -up : 0};
+            double b = 0, c = -36, q = 0;
+            for (int a = 0; a < 3; a++)
+                b += o[a] * d[a], c += o[a] * o[a], q += d[a] * d[a];
+            const double root = b * b - q * c;
+            if (fabs(root) < 3e4 * 6) /* the ball's outline has corners */
+                continue;
+            const double hit = root > 0 ? (-b - sqrt(root)) / q : 1e9;
+            const double enter = (200.0 - 16) / 200, leave = (200.0 + 16) / 200;
+            const double way = fmax(fmin(leave, hit) - enter, 0) * sqrt(q);
+            const double through = pow(0.95, way);
+            const float *at = pixel(&picture, x, SIDE / 2);
+            assert_near((double)at[3], root > 0 ? 1 : 1 - through, 3e-3);
+            assert_near((double)at[1], 0.6 * (1 - through), 3e-3);
+            assert_near((double)at[0], 0.8 * (1 - through) + (root > 0 ? through : 0), 3e-3);
+        }
+        cw_picture_free(&picture);
+        cw_mesh_free(&ball);
+    }
+    cw_volume_free(&box);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(looks_as_the_reference),
+        cmocka_unit_test(translucent_sheets_blend_in_any_order),
+        cmocka_unit_test(crossing_sheets_blend_pixel_by_pixel),
+        cmocka_unit_test(cap_closes_a_cut_ball),
+        cmocka_unit_test(caps_close_what_is_cut_away),
+        cmocka_unit_test(edges_are_as_wide_as_said),
+        cmocka_unit_test(scalars_are_shown_by_the_ramp),
+        cmocka_unit_test(ramp_is_perceptually_even),
+        cmocka_unit_test(shape_of_triangles_is_shown),
+        cmocka_unit_test(depth_fades_into_the_background),
+        cmocka_unit_test(mesh_stands_in_a_volume),
+    };
+    return cmocka_run_group_tests(tests, NULL, test_renderer_close);
+}
