@@ -18,7 +18,8 @@ typedef struct frame_block {
     int32_t counts[4];
 } frame_block;
 
-static const cwi_gl_mode *const modes[] = {&cwi_gl_composite, &cwi_gl_mesh_mode};
+static const cwi_gl_mode *const modes[] = {&cwi_gl_composite, &cwi_gl_mesh_mode,
+                                           &cwi_gl_slices};
 
 const cwi_gl_mode *cwi_gl_find_mode(cw_mode mode)
 {

@@ -182,6 +182,17 @@ CW_API const char *cw_renderer_name(const cw_renderer *renderer);
 CW_API cw_status cw_render(cw_renderer *renderer, const cw_scene *scene, cw_picture *picture,
                            cw_error *err);
 
+/* The orthographic camera that looks straight at a slice and sees all of it, for a picture that
+ * is aspect times as wide as high; with it, the mode slices draws that slice flat. Directions
+ * are those of radiology: axial slices are seen from the feet, with the patient's right on the
+ * picture's left and the front up; coronal ones from the front, right on the left, the head up;
+ * sagittal ones from the left, the front on the picture's left, the head up. Oblique ones are
+ * seen as those they are closest to.
+ * Returns CW_ERR_ARGUMENT for a slice that misses the volume or has no direction, for an aspect
+ * that is none, and as cw_volume_resolve(). */
+CW_API cw_status cw_slice_camera(const cw_volume *volume, const cw_slice *slice, double aspect,
+                                 cw_camera *camera, cw_error *err);
+
 /* Tells a renderer that voxels or vertices it has drawn were written to since. */
 CW_API void cw_renderer_forget(cw_renderer *renderer);
 

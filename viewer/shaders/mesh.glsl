@@ -136,7 +136,7 @@ vec4 surface_here()
 #ifdef TINTED
     float row = clamp((tint - tint_range.x) * tint_range.y, 0.0, 1.0) * (tint_range.z - 1.0) + 0.5;
     vec3 shown = texture(ramp, vec2(row / tint_range.z, 0.5)).rgb;
-    surface.rgb = tint == tint ? linear_of(shown) : no_value;
+    surface.rgb = isnan(tint) ? no_value : linear_of(shown);
 #endif
 #ifdef SOLID
     surface.a = 1.0;
