@@ -45,6 +45,7 @@ static void check_slice(const cw_volume *v, const cw_slice *slice, bool exact)
     cw_renderer *r = test_renderer();
     cw_error err = {0};
     const cw_transfer t = telling();
+    cw_renderer_forget(r);
     cw_scene scene = {.mode = CW_MODE_SLICES,
                       .volume = v,
                       .transfer = &t,
@@ -156,6 +157,7 @@ static void slices_hide_each_other_rightly(void **state)
     cw_mesh sheet = {.vertex_count = 3, .triangle_count = 1};
     float corners[9] = {-99, -4, -99, 99, -4, -99, 0, -4, 160};
     uint32_t order[3] = {0, 1, 2};
+    cw_renderer_forget(r);
     sheet.positions = corners;
     sheet.triangles = order;
     const cw_scene scene = {.mode = CW_MODE_SLICES,
@@ -186,6 +188,47 @@ static void slices_hide_each_other_rightly(void **state)
     cw_volume_free(&v);
 }
 
+/* A plane that clips halves another slice; one that lies in it stays, whichever side is kept.
+ */
+static void slices_are_clipped_but_not_by_their_own_plane(void **state)
+{
+    (void)state;
+    cw_renderer *r = test_renderer();
+    cw_volume v = {0};
+    const cw_transfer t = telling();
+    test_field(&v, 33, 33, 33, (const double[3]){1, 1, 1}, test_ramp);
+    static const struct {
+        cw_clip clip;
+        bool away;
+        double share;
+    } rows[] = {{{{0.3, -1, 0}, -3.1}, false, 0.5}, {{{0.3, -1, 0}, -3.1}, true, 0.5},
+                {{{0, 2, 0}, 6.2}, false, 1},       {{{0, 2, 0}, 6.2}, true, 1},
+                {{{0, -2, 0}, -6.2}, false, 1},     {{{0, -2, 0}, -6.2}, true, 1}};
+    cw_renderer_forget(r);
+    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
+        const cw_scene scene = {
+            .mode = CW_MODE_SLICES,
+            .volume = &v,
+            .transfer = &t,
+            .camera = {.eye = {0, -300, 0}, .up = {0, 0, 1}, .height_mm = 33},
+            .width = SIDE,
+            .height = SIDE,
+            .slices = {{{0, 1, 0}, 3.1}},
+            .slice_count = 1,
+            .clips = {rows[n].clip},
+            .clip_count = 1,
+            .cut_away = rows[n].away};
+        cw_picture picture = test_draw(r, &scene);
+        size_t covered = 0;
+        for (size_t p = 0; p < (size_t)SIDE * SIDE; p++)
+            covered += picture.pixels[4 * p + 3] > 0;
+        const double whole = 32.0 * 32 / 33 / 33 * SIDE * SIDE;
+        assert_within((double)covered, whole * rows[n].share, 0.04);
+        cw_picture_free(&picture);
+    }
+    cw_volume_free(&v);
+}
+
 /* Three frames in their colours; what has no value is open. */
 static void frames_tell_and_gaps_show(void **state)
 {
@@ -199,6 +242,7 @@ static void frames_tell_and_gaps_show(void **state)
     for (size_t n = 0; n < (size_t)33 * 33 * 33; n++)
         if (n % 33 > 20)
             voxels[n] = NAN;
+    cw_renderer_forget(r);
     for (int n = 0; n < 4; n++) {
         cw_slice slice = {.distance_mm = 0.5};
         double color[3];
@@ -237,6 +281,7 @@ int main(void)
         cmocka_unit_test(slices_have_the_colours_of_their_values),
         cmocka_unit_test(slices_are_seen_as_in_radiology),
         cmocka_unit_test(slices_hide_each_other_rightly),
+        cmocka_unit_test(slices_are_clipped_but_not_by_their_own_plane),
         cmocka_unit_test(frames_tell_and_gaps_show),
     };
     return cmocka_run_group_tests(tests, NULL, test_renderer_close);
