@@ -19,6 +19,7 @@ typedef struct board {
     cw_image *image;
     double width, height, text, margin;
     double ink[4], halo[4];
+    double corners[8][3];
 } board;
 
 static const double axis_colors[3][3] = {
@@ -104,32 +105,35 @@ static bool project(const board *b, const double world[3], double at[2])
     return true;
 }
 
-/* Corner n of the volume's box, else of the mesh's: bit a tells the end along axis a. */
-static void corner(const cwi_frame *f, int n, double world[3])
+/* Corners of the volume's box, else of the mesh's: bit a of a corner's number tells its end
+ * along axis a. */
+static void find_corners(board *b)
 {
-    double low[3], high[3], index[3];
-    if (!f->volume.data) {
-        cw_mesh_bounds(f->scene.mesh, low, high);
+    const cwi_frame *f = b->frame;
+    double ends[2][3];
+    if (!f->volume.data)
+        cw_mesh_bounds(f->scene.mesh, ends[0], ends[1]);
+    for (int n = 0; n < 8; n++) {
+        double p[3];
         for (int a = 0; a < 3; a++)
-            world[a] = n >> a & 1 ? high[a] : low[a];
-        return;
+            p[a] = !f->volume.data ? ends[n >> a & 1][a] : n >> a & 1 ? f->high[a] : f->low[a];
+        if (f->volume.data)
+            cw_volume_to_world(&f->volume, p, b->corners[n]);
+        else
+            memcpy(b->corners[n], p, sizeof p);
     }
-    for (int a = 0; a < 3; a++)
-        index[a] = n >> a & 1 ? f->high[a] : f->low[a];
-    cw_volume_to_world(&f->volume, index, world);
 }
 
 /* Whether the face at an end of an axis is seen from outside. */
-static bool is_seen(const cwi_frame *f, int axis, int end)
+static bool is_seen(const board *b, int axis, int end)
 {
-    double side[3][3], from[3], across[3], eye[3];
+    const cwi_frame *f = b->frame;
     const int at = end << axis;
-    corner(f, at, from);
-    for (int a = 0; a < 3; a++) {
-        corner(f, at ^ 1 << a, side[a]); /* along the axis: from the face inwards */
+    const double *from = b->corners[at];
+    double side[3][3], across[3], eye[3];
+    for (int a = 0; a < 3; a++) /* along the axis: from the face inwards */
         for (int c = 0; c < 3; c++)
-            side[a][c] -= from[c];
-    }
+            side[a][c] = b->corners[at ^ 1 << a][c] - from[c];
     cwi_cross(side[(axis + 1) % 3], side[(axis + 2) % 3], across);
     for (int c = 0; c < 3; c++)
         eye[c] = f->perspective ? f->eye_mm[c] - from[c] : f->axes[2][c];
@@ -141,14 +145,11 @@ static void draw_box(const board *b)
     for (int edge = 0; edge < 12; edge++) {
         const int axis = edge / 4, next = (axis + 1) % 3, last = (axis + 2) % 3;
         const int at = (edge & 1) << next | (edge >> 1 & 1) << last;
-        const bool seen =
-            is_seen(b->frame, next, edge & 1) || is_seen(b->frame, last, edge >> 1 & 1);
-        double ends[2][3], color[4];
+        const bool seen = is_seen(b, next, edge & 1) || is_seen(b, last, edge >> 1 & 1);
+        double color[4];
         cwi_stroke s;
-        corner(b->frame, at, ends[0]);
-        corner(b->frame, at | 1 << axis, ends[1]);
         tint(color, b->ink, b->ink[3] * (seen ? 0.7 : 0.25));
-        if (project(b, ends[0], s.from) && project(b, ends[1], s.to))
+        if (project(b, b->corners[at], s.from) && project(b, b->corners[at | 1 << axis], s.to))
             draw_lines(b, &s, 1, fmax(b->text / 9, 1), color);
     }
 }
@@ -488,10 +489,11 @@ cw_status cw_overlay_draw(const cw_overlay *overlay, const cw_scene *scene, cw_i
                .text = overlay->text_px > 0 ? overlay->text_px : fmax(round(h / 48), 7)};
     b.margin = 1.2 * b.text;
     choose_ink(&b);
-    if (overlay->axes)
+    if (overlay->axes) {
+        find_corners(&b);
         draw_box(&b);
-    if (overlay->axes)
         draw_triad(&b);
+    }
     if (overlay->letters)
         draw_letters(&b);
     if (overlay->scale_bar)

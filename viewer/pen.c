@@ -19,13 +19,14 @@ static void blend(uint8_t *pixel, const double color[4], double share)
     pixel[3] = (uint8_t)lround(255 * (alpha + below));
 }
 
-static double distance(const cwi_stroke *s, double x, double y)
+static double square_of_distance(const cwi_stroke *s, double x, double y)
 {
     const double d[2] = {s->to[0] - s->from[0], s->to[1] - s->from[1]};
     const double p[2] = {x - s->from[0], y - s->from[1]};
     const double square = d[0] * d[0] + d[1] * d[1];
     const double t = square > 0 ? clamp((p[0] * d[0] + p[1] * d[1]) / square, 0, 1) : 0;
-    return hypot(p[0] - t * d[0], p[1] - t * d[1]);
+    const double off[2] = {p[0] - t * d[0], p[1] - t * d[1]};
+    return off[0] * off[0] + off[1] * off[1];
 }
 
 /* Pixels from low to high, cut to a picture of that size. */
@@ -80,9 +81,9 @@ void cwi_pen_draw(const cwi_pen *pen, const cwi_stroke *strokes, size_t count)
         for (size_t x = columns[0]; x < columns[1]; x++) {
             double near = INFINITY;
             for (size_t n = 0; n < count; n++)
-                near = fmin(near, distance(&strokes[n], (double)x + 0.5, y));
+                near = fmin(near, square_of_distance(&strokes[n], (double)x + 0.5, y));
             blend(pen->image->pixels + 4 * (row * pen->image->width + x), pen->color,
-                  clamp(reach - near, 0, 1) * fmin(pen->width, 1));
+                  clamp(reach - sqrt(near), 0, 1) * fmin(pen->width, 1));
         }
     }
 }
