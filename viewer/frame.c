@@ -74,6 +74,10 @@ static cw_status fill_in(cw_scene *s, cw_error *err)
         s->normals = 1024;
     if (s->color[0] == 0 && s->color[1] == 0 && s->color[2] == 0 && s->color[3] == 0)
         memcpy(s->color, bone, sizeof bone);
+    for (int c = 0; c < 4; c++)
+        if (!(s->color[c] >= 0 && s->color[c] <= 1))
+            return cw_fail(err, CW_ERR_ARGUMENT, "a mesh's colour of %g: expected 0 to 1",
+                           (double)s->color[c]);
     return CW_OK;
 }
 

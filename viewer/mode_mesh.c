@@ -4,7 +4,7 @@
  * order of the triangles does not matter. Of several surfaces at exactly one depth one counts.
  *
  * Cuts are filled where the winding number of the mesh around a plane's point is not 0: what
- * the ray leaves behind that point, less what it enters [compare Rossignac1992]. */
+ * the ray leaves behind that point, less what it enters. */
 #include "viewer/gl_mesh.h"
 
 #include "core/status.h"

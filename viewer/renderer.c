@@ -3,6 +3,7 @@
 #include "core/memory.h"
 #include "core/module.h"
 #include "core/status.h"
+#include "viewer/cpu_mesh.h"
 #include "viewer/gl.h"
 
 struct cw_renderer {
@@ -86,6 +87,8 @@ void cw_renderer_forget(cw_renderer *r)
 static cw_status draw(cw_renderer *r, const cwi_frame *frame, cw_picture *picture,
                       cw_error *err)
 {
+    if (r->backend == CW_BACKEND_CPU && frame->scene.mode == CW_MODE_MESH)
+        return cwi_cpu_draw_mesh(frame, picture, err);
     if (r->backend == CW_BACKEND_CPU)
         return cw_fail(err, CW_ERR_UNSUPPORTED, "the mode %s is not drawn by the CPU",
                        cw_mode_name(frame->scene.mode));

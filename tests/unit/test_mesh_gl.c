@@ -65,6 +65,9 @@ static void make_ball(cw_mesh *mesh, double radius, const double middle[3])
         }
 }
 
+/* Lit by nothing but ambient light, a surface has its own colour. */
+static const cw_material flat = {1, 0, 0, 1};
+
 static const float *pixel(const cw_picture *p, size_t x, size_t y)
 {
     return p->pixels + 4 * (y * p->width + x);
@@ -137,8 +140,45 @@ static void looks_as_the_reference(void **state)
     }
 }
 
-/* Lit by nothing but ambient light, a surface has its own colour. */
-static const cw_material flat = {1, 0, 0, 1};
+/* By either backend a scene looks the same, tints too; what the CPU does not draw it says. */
+static void backends_agree(void **state)
+{
+    (void)state;
+    cw_renderer *r = test_renderer(), *cpu;
+    cw_mesh ball;
+    cw_error err = {0};
+    assert_ok(cw_renderer_new(CW_BACKEND_CPU, &cpu, &err), err);
+    make_ball(&ball, 20, (const double[3]){0, 0, 0});
+    ball.scalars = calloc(ball.vertex_count, sizeof(float));
+    for (size_t v = 0; v < ball.vertex_count; v++)
+        ball.scalars[v] = ball.positions[3 * v + 2];
+    cw_scene scene = {.mode = CW_MODE_MESH, .mesh = &ball, .width = SIDE, .height = SIDE};
+    cw_renderer_forget(r);
+    for (int n = 0; n < 2 * CW_TINT_COUNT; n++) {
+        scene.tint = (cw_tint)(n / 2);
+        scene.samples = n % 2 + 1;
+        cw_picture a = test_draw(r, &scene), b = test_draw(cpu, &scene);
+        assert_true(test_compare(&a, &b).rmse < 0.5);
+        assert_true(pixel(&b, SIDE / 2, SIDE / 2)[3] == 1 && pixel(&b, 0, 0)[3] == 0);
+        cw_picture_free(&a);
+        cw_picture_free(&b);
+    }
+    cw_scene others[] = {scene, scene, scene, scene, scene};
+    others[0].wireframe = true;
+    others[1].clip_count = 1;
+    others[1].clips[0].normal[0] = 1;
+    memcpy(others[2].color, (float[4]){1, 1, 1, 0.5f}, sizeof scene.color);
+    others[3].depth_cue = 0.5f;
+    others[4].material = flat;
+    for (size_t n = 0; n < 5; n++) {
+        cw_picture picture;
+        assert_fails(cw_render(cpu, &others[n], &picture, &err), CW_ERR_UNSUPPORTED, "the CPU",
+                     err);
+        assert_null(picture.pixels);
+    }
+    cw_renderer_free(cpu);
+    cw_mesh_free(&ball);
+}
 
 /* Sheets at several depths, given in several orders, blend as the formula says. */
 static void translucent_sheets_blend_in_any_order(void **state)
@@ -380,6 +420,41 @@ static void scalars_are_shown_by_the_ramp(void **state)
     cw_mesh_free(&mesh);
 }
 
+/* A mesh of nothing is drawn as nothing, and then another as itself. */
+static void empty_meshes_are_no_trouble(void **state)
+{
+    (void)state;
+    cw_renderer *r = test_renderer();
+    cw_error err = {0};
+    cw_mesh cube;
+    const cw_mesh nothing = {0};
+    test_make_cube(&cube);
+    cw_scene scene = {.mode = CW_MODE_MESH,
+                      .width = 16,
+                      .height = 16,
+                      .clips = {{{1, 0, 0}, 0.5}},
+                      .clip_count = 1,
+                      .cap = true,
+                      .wireframe = true};
+    for (int n = 0; n < 4; n++) {
+        scene.mesh = n % 2 ? &cube : &nothing;
+        scene.color[0] = scene.color[3] = n < 2 ? 1 : 0.5f;
+        cw_picture picture = test_draw(r, &scene);
+        float most = 0;
+        for (size_t p = 0; p < 4 * 16 * 16; p++)
+            most = fmaxf(most, picture.pixels[p]);
+        assert_true(n % 2 ? most > 0.3f : most == 0);
+        cw_picture_free(&picture);
+    }
+    cw_picture picture;
+    scene.color[0] = 2;
+    assert_fails(cw_render(r, &scene, &picture, &err), CW_ERR_ARGUMENT, "colour of 2", err);
+    scene.color[0] = 1;
+    scene.tint = CW_TINT_COUNT;
+    assert_fails(cw_render(r, &scene, &picture, &err), CW_ERR_ARGUMENT, "tint", err);
+    cw_mesh_free(&cube);
+}
+
 static double lightness(const double srgb[3])
 {
     static const double weight[3] = {0.2126, 0.7152, 0.0722};
@@ -526,12 +601,14 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(looks_as_the_reference),
+        cmocka_unit_test(backends_agree),
         cmocka_unit_test(translucent_sheets_blend_in_any_order),
         cmocka_unit_test(crossing_sheets_blend_pixel_by_pixel),
         cmocka_unit_test(cap_closes_a_cut_ball),
         cmocka_unit_test(caps_close_what_is_cut_away),
         cmocka_unit_test(edges_are_as_wide_as_said),
         cmocka_unit_test(scalars_are_shown_by_the_ramp),
+        cmocka_unit_test(empty_meshes_are_no_trouble),
         cmocka_unit_test(ramp_is_perceptually_even),
         cmocka_unit_test(shape_of_triangles_is_shown),
         cmocka_unit_test(depth_fades_into_the_background),
