@@ -551,10 +551,12 @@ static void mesh_stands_in_a_volume(void **state)
     cw_volume box = {0};
     const cw_transfer fog = test_flat_transfer();
     test_field(&box, 33, 33, 33, (const double[3]){1, 1, 1}, test_constant);
+    cw_mesh ball;
+    make_ball(&ball, 6, (const double[3]){0, 0, 0});
+    cw_renderer_forget(r);
     for (int n = 0; n < 6; n++) {
-        cw_mesh ball;
         const double y[3] = {-30, 0, 30};
-        make_ball(&ball, 6, (const double[3]){0, y[n % 3], 0});
+        ball.origin[1] = y[n % 3];
         const cw_scene scene = {.mode = CW_MODE_COMPOSITE,
                                 .volume = &box,
                                 .transfer = &fog,
@@ -567,7 +569,6 @@ static void mesh_stands_in_a_volume(void **state)
                                 .height = SIDE,
                                 .color = {1, 0, 0, 1},
                                 .material = flat};
-        cw_renderer_forget(r);
         cw_picture picture = test_draw(r, &scene);
         for (size_t x = 3; x < SIDE; x += 9) {
             const double fov = tan(5 * PI / 360) * 200, u = ((double)x + 0.5) / SIDE * 2 - 1,
@@ -592,8 +593,8 @@ static void mesh_stands_in_a_volume(void **state)
             assert_near((double)at[0], 0.8 * (1 - through) + (root > 0 ? through : 0), 3e-3);
         }
         cw_picture_free(&picture);
-        cw_mesh_free(&ball);
     }
+    cw_mesh_free(&ball);
     cw_volume_free(&box);
 }
 
