@@ -18,6 +18,7 @@ typedef struct board {
     const cwi_frame *frame;
     cw_image *image;
     double width, height, text, margin;
+    double top; /* above it the middle is taken */
     double ink[4], halo[4];
     double corners[8][3];
 } board;
@@ -210,7 +211,7 @@ static void draw_letters(const board *b)
         int axis, sign;
     } places[4] = {{b->width - b->margin, (b->height + b->text) / 2, 1, 0, 1},
                    {b->margin, (b->height + b->text) / 2, 0, 0, -1},
-                   {b->width / 2, b->margin + b->text, 0.5, 1, 1},
+                   {b->width / 2, b->top + b->text, 0.5, 1, 1},
                    {b->width / 2, low, 0.5, 1, -1}};
     for (int n = 0; n < 4; n++) {
         double d[3];
@@ -336,27 +337,46 @@ static void find_bars(const cw_statistics *s, double *bars, size_t count)
             bars[i] = fmax(bars[i], log1p((double)s->bins[n]) / most);
 }
 
-/* Points of the curve: the transfer function is linear between so close ones, but for jumps. */
+/* The opacity at the ends of a range, and at the transfer function's points between. */
+static size_t find_curve(const cw_transfer *t, const double range[2],
+                         double points[CW_TRANSFER_POINTS + 2][2])
+{
+    double color[3];
+    size_t count = 1;
+    points[0][0] = range[0];
+    for (size_t n = 0; n < t->opacity_count; n++)
+        if (t->opacities[n].value > range[0] && t->opacities[n].value < range[1]) {
+            points[count][0] = t->opacities[n].value;
+            points[count++][1] = (double)t->opacities[n].opacity;
+        }
+    points[count][0] = range[1];
+    cw_transfer_at(t, range[0], color, &points[0][1]);
+    cw_transfer_at(t, range[1], color, &points[count][1]);
+    return count + 1;
+}
+
+/* As high as the box where it is highest, which is told. */
 static void draw_curve(const board *b, const double range[2], const double box[4])
 {
-    enum { POINTS = 128 };
-    cwi_stroke s[POINTS];
-    double last[2] = {0}, color[4];
-    for (int n = 0; n <= POINTS; n++) {
-        double rgb[3], opacity;
-        const double share = n / (double)POINTS;
-        cw_transfer_at(&b->frame->transfer, range[0] + share * (range[1] - range[0]), rgb,
-                       &opacity);
-        const double at[2] = {box[0] + share * (box[2] - box[0]),
-                              box[3] - opacity * (box[3] - box[1])};
-        if (n > 0) {
-            memcpy(s[n - 1].from, last, sizeof last);
+    double points[CW_TRANSFER_POINTS + 2][2], most = 0, color[4];
+    cwi_stroke s[CW_TRANSFER_POINTS + 1];
+    char text[TEXT];
+    const size_t count = find_curve(&b->frame->transfer, range, points);
+    for (size_t n = 0; n < count; n++)
+        most = fmax(most, points[n][1]);
+    for (size_t n = 0; n < count; n++) {
+        const double at[2] = {box[0] + (points[n][0] - range[0]) / (range[1] - range[0]) *
+                                           (box[2] - box[0]),
+                              box[3] - points[n][1] / fmax(most, 1e-6) * (box[3] - box[1])};
+        if (n > 0)
             memcpy(s[n - 1].to, at, sizeof at);
-        }
-        memcpy(last, at, sizeof at);
+        if (n + 1 < count)
+            memcpy(s[n].from, at, sizeof at);
     }
     tint(color, (const double[3]){1, 0.75, 0.2}, 1);
-    draw_lines(b, s, POINTS, fmax(b->text / 6, 1.2), color);
+    draw_lines(b, s, count - 1, fmax(b->text / 6, 1.2), color);
+    print_value(most, text);
+    write_text(b, box[0] - b->text / 2, box[1] + b->text, 1, color, text);
 }
 
 static void draw_histogram(const board *b)
@@ -386,7 +406,8 @@ static void draw_histogram(const board *b)
     }
 }
 
-static cw_status draw_caption(const board *b, cw_error *err)
+/* The letter at the top moves below lines that reach it. */
+static cw_status draw_caption(board *b, cw_error *err)
 {
     const char *line = b->o->caption;
     for (double y = b->margin + b->text; line; y += 1.8 * b->text) {
@@ -398,6 +419,8 @@ static cw_status draw_caption(const board *b, cw_error *err)
         memcpy(text, line, length);
         text[length] = 0;
         write_text(b, b->margin, y, 0, b->ink, text);
+        if (b->margin + cwi_text_width(b->text, text) > b->width / 2 - 2 * b->text)
+            b->top = y + 0.8 * b->text;
         cwi_free(text);
         line = end ? end + 1 : NULL;
     }
@@ -487,8 +510,9 @@ cw_status cw_overlay_draw(const cw_overlay *overlay, const cw_scene *scene, cw_i
                .width = (double)image->width,
                .height = h,
                .text = overlay->text_px > 0 ? overlay->text_px : fmax(round(h / 48), 7)};
-    b.margin = 1.2 * b.text;
+    b.margin = b.top = 1.2 * b.text;
     choose_ink(&b);
+    st = draw_caption(&b, err);
     if (overlay->axes) {
         find_corners(&b);
         draw_box(&b);
@@ -498,9 +522,9 @@ cw_status cw_overlay_draw(const cw_overlay *overlay, const cw_scene *scene, cw_i
         draw_letters(&b);
     if (overlay->scale_bar)
         draw_scale_bar(&b);
-    if (overlay->color_bar)
+    if (overlay->color_bar && st == CW_OK)
         st = draw_color_bar(&b, err);
     if (overlay->histogram)
         draw_histogram(&b);
-    return st == CW_OK ? draw_caption(&b, err) : st;
+    return st;
 }

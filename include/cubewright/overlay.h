@@ -17,7 +17,8 @@ typedef struct cw_overlay {
     bool letters;   /* at the edges, where they lead: R L A P S I, or two of them */
     bool color_bar; /* upper right: the colours of the scene's transfer function,
                        in the mode mesh those of its tint */
-    bool histogram; /* lower right: how often values are, logarithmically, under the opacity */
+    bool histogram; /* lower right: how often values are, logarithmically, under the opacity,
+                       whose highest value is told */
     const char *caption;             /* top; UTF-8, lines end with \n; default none */
     const cw_statistics *statistics; /* required for the histogram, with bins */
     double text_px;   /* height of capitals; default 1/48 of the picture's height,

@@ -274,6 +274,45 @@ static void color_bar_has_the_colours(void **state)
     cw_volume_free(&v);
 }
 
+/* Values that are equally frequent have bars of one height; the curve goes through its points.
+ */
+static void histogram_has_bars_and_the_curve(void **state)
+{
+    (void)state;
+    enum { W = 400, H = 300 };
+    cw_volume v = make_volume();
+    cw_statistics s;
+    cw_error err = {0};
+    const cw_transfer t = {.opacity_count = 3, .opacities = {{0, 0}, {0.5, 0.2f}, {1, 0}}};
+    const cw_scene scene = {
+        .mode = CW_MODE_SLICES, .volume = &v, .transfer = &t, .width = W, .height = H};
+    const double text = 10, bottom = H - 1.2 * text - 1.6 * text;
+    const double box[4] = {0.7 * W, bottom - 0.18 * H, W - 1.2 * text, bottom};
+    float *voxels = cw_volume_voxels(&v);
+    for (int n = 0; n < 2; n++) { /* at last 0 and 1 are all there is */
+        for (size_t k = 0; k < (size_t)33 * 33 * 33 && n == 1; k++)
+            voxels[k] = roundf(voxels[k]);
+        assert_ok(cw_volume_statistics(&v, 33, 1, &s, &err), err);
+        cw_image image = make_image(W, H, 0);
+        const cw_overlay o = {.histogram = true, .statistics = &s, .text_px = text};
+        assert_ok(cw_overlay_draw(&o, &scene, &image, &err), err);
+        for (size_t x = (size_t)box[0] + 6; x < (size_t)box[2] - 3; x++) {
+            const double share = ((double)x + 0.5 - box[0]) / (box[2] - box[0]);
+            const double high = box[3] - (1 - fabs(2 * share - 1)) * (box[3] - box[1]);
+            const uint8_t *low = pixel(&image, x, (size_t)box[3] - 3);
+            if (high < box[3] - 8) /* clear of the curve */
+                assert_true((low[0] > 120) == (n == 0));
+            if (n == 0 && high > box[1] + 4 && high < box[3] - 4) {
+                const uint8_t *at = pixel(&image, x, (size_t)high);
+                assert_true(at[0] > 240 && at[1] > 150 && at[2] < 80);
+            }
+        }
+        cw_image_free(&image);
+        cw_statistics_free(&s);
+    }
+    cw_volume_free(&v);
+}
+
 /* Ink is dark on a bright picture. */
 static void ink_stands_out(void **state)
 {
@@ -378,6 +417,7 @@ int main(void)
         cmocka_unit_test(scale_bar_is_true),
         cmocka_unit_test(parts_are_drawn_where_they_say),
         cmocka_unit_test(color_bar_has_the_colours),
+        cmocka_unit_test(histogram_has_bars_and_the_curve),
         cmocka_unit_test(ink_stands_out),
         cmocka_unit_test(what_cannot_be_drawn_is_refused),
         cmocka_unit_test(images_are_tiled),
