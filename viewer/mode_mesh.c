@@ -93,6 +93,7 @@ static cw_status count_windings(cwi_gl *gl, cwi_gl_mesh *m, size_t n, cw_error *
     glClear(GL_COLOR_BUFFER_BIT);
     glDisable(GL_DEPTH_TEST);
     glEnable(GL_BLEND);
+    glBlendEquation(GL_FUNC_ADD);
     glBlendFunc(GL_ONE, GL_ONE);
     cwi_gl_set(program, "first_plane", (float)(n * CWI_PLANES_A_PASS));
     cwi_gl_draw_triangles(m);
@@ -121,6 +122,7 @@ static cw_status draw_caps(cwi_gl *gl, const cwi_gl_mesh *m, manner how, cw_erro
 static cw_status draw_surface(cwi_gl *gl, cwi_gl_mesh *m, manner how, cw_error *err)
 {
     GLuint program;
+    glDisable(GL_BLEND);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
     cw_status st = use(gl, cwi_glsl_mesh, "", how, &program, err);
@@ -145,6 +147,7 @@ static cw_status put_behind(cwi_gl *gl, const cwi_gl_mesh *m, cw_error *err)
     glBindTexture(GL_TEXTURE_2D, m->layer_color);
     glDisable(GL_DEPTH_TEST);
     glEnable(GL_BLEND);
+    glBlendEquation(GL_FUNC_ADD);
     glBlendFunc(GL_ONE_MINUS_DST_ALPHA, GL_ONE);
     cwi_gl_draw_screen(gl);
     glDisable(GL_BLEND);

@@ -39,6 +39,7 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     if (st != CW_OK)
         return st;
     cwi_gl_set(program, "frame_width", FRAME_WIDTH * (float)f->scene.samples);
+    glDisable(GL_BLEND);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
     for (size_t n = 0; n < count; n++) {

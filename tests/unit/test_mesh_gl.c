@@ -249,6 +249,30 @@ static void crossing_sheets_blend_pixel_by_pixel(void **state)
     cw_mesh_free(&mesh);
 }
 
+/* A hundred sheets are peeled one by one. */
+static void deep_stacks_are_peeled_to_the_end(void **state)
+{
+    (void)state;
+    enum { COUNT = 100 };
+    cw_renderer *r = test_renderer();
+    cw_mesh mesh;
+    static const uint8_t haze[4] = {255, 255, 255, 10};
+    make_arrays(&mesh, 4 * COUNT, 2 * COUNT);
+    for (size_t n = 0; n < COUNT; n++)
+        put_sheet(&mesh, n, (float)(n * 37 % COUNT), 5, haze);
+    const cw_scene scene = {.mode = CW_MODE_MESH,
+                            .mesh = &mesh,
+                            .camera = straight(20),
+                            .width = 16,
+                            .height = 16,
+                            .material = flat};
+    cw_renderer_forget(r);
+    cw_picture picture = test_draw(r, &scene);
+    assert_near((double)pixel(&picture, 8, 8)[3], 1 - pow(1 - 10 / 255.0, COUNT), 1e-5);
+    cw_picture_free(&picture);
+    cw_mesh_free(&mesh);
+}
+
 static cw_scene cut_ball(const cw_mesh *ball)
 {
     return (cw_scene){.mode = CW_MODE_MESH,
@@ -297,6 +321,45 @@ static void cap_closes_a_cut_ball(void **state)
     cw_picture_free(&open);
     cw_picture_free(&clear);
     cw_mesh_free(&ball);
+}
+
+/* Of a hollow ball the cut is a ring; of one that is inside out the same as of the right one.
+ */
+static void caps_leave_hollows_open(void **state)
+{
+    (void)state;
+    cw_renderer *r = test_renderer();
+    for (int turned = 0; turned < 2; turned++) {
+        cw_mesh ball, both;
+        make_ball(&ball, 20, (const double[3]){0, 0, 0});
+        const size_t vertices = ball.vertex_count, triangles = ball.triangle_count;
+        make_arrays(&both, 2 * vertices, 2 * triangles);
+        free(both.colors);
+        both.colors = NULL;
+        for (size_t n = 0; n < 6 * vertices; n++)
+            both.positions[n] =
+                ball.positions[n % (3 * vertices)] * (n < 3 * vertices ? 1 : 0.5f);
+        for (size_t n = 0; n < 6 * triangles; n++) { /* the inner one is turned */
+            const bool turn = (n >= 3 * triangles) != turned;
+            const size_t from = turn ? n / 3 * 3 + 2 - n % 3 : n;
+            both.triangles[n] = ball.triangles[from % (3 * triangles)] +
+                                (uint32_t)(n < 3 * triangles ? 0 : vertices);
+        }
+        cw_scene scene = cut_ball(&both);
+        cw_renderer_forget(r);
+        cw_picture with = test_draw(r, &scene);
+        scene.cap = false;
+        cw_picture without = test_draw(r, &scene);
+        size_t filled = 0;
+        for (size_t p = 0; p < (size_t)SIDE * SIDE; p++)
+            filled += fabsf(with.pixels[4 * p + 2] - without.pixels[4 * p + 2]) > 0.02f;
+        const double scale = SIDE / 50.0;
+        assert_within((double)filled, PI * (400 - 100) * scale * scale, 0.02);
+        cw_picture_free(&with);
+        cw_picture_free(&without);
+        cw_mesh_free(&ball);
+        cw_mesh_free(&both);
+    }
 }
 
 /* A wedge is cut out by two planes: both cuts are closed, seen from any side no inside shows.
@@ -605,6 +668,8 @@ int main(void)
         cmocka_unit_test(backends_agree),
         cmocka_unit_test(translucent_sheets_blend_in_any_order),
         cmocka_unit_test(crossing_sheets_blend_pixel_by_pixel),
+        cmocka_unit_test(deep_stacks_are_peeled_to_the_end),
+        cmocka_unit_test(caps_leave_hollows_open),
         cmocka_unit_test(cap_closes_a_cut_ball),
         cmocka_unit_test(caps_close_what_is_cut_away),
         cmocka_unit_test(edges_are_as_wide_as_said),

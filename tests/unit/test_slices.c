@@ -111,6 +111,66 @@ static void slices_have_the_colours_of_their_values(void **state)
     cw_volume_free(&v);
 }
 
+/* In perspective each pixel shows the nearest of the three planes that its ray meets. */
+static void perspective_shows_what_the_ray_meets(void **state)
+{
+    (void)state;
+    cw_renderer *r = test_renderer();
+    cw_volume v = {0};
+    cw_error err = {0};
+    const cw_transfer t = telling();
+    cw_fit_desc fit = {
+        .view = "iso", .fov_deg = 40, .min = {-20, -20, -24}, .max = {20, 20, 24}};
+    cw_scene scene = {
+        .mode = CW_MODE_SLICES, .volume = &v, .transfer = &t, .width = SIDE, .height = SIDE};
+    double right[3], up[3], forward[3];
+    size_t checked = 0;
+    test_field(&v, 40, 48, 32, uneven, patient);
+    assert_ok(cw_camera_fit(&fit, &scene.camera, &err), err);
+    assert_ok(cw_camera_axes(&scene.camera, right, up, forward, &err), err);
+    cw_renderer_forget(r);
+    cw_picture picture = test_draw(r, &scene);
+    for (size_t p = 0; p < (size_t)SIDE * SIDE; p++) {
+        const double slope = tan(20 * PI / 180);
+        const double x = (((double)(p % SIDE) + 0.5) / SIDE * 2 - 1) * slope;
+        const double y = (1 - ((double)(p / SIDE) + 0.5) / SIDE * 2) * slope;
+        double nearest = INFINITY, second = INFINITY, value = 0, off = 0;
+        bool is_close = false;
+        for (int plane = 0; plane < 3; plane++) { /* all go through 0 */
+            double d[3], world[3], index[3], edge = INFINITY, q[3];
+            for (int a = 0; a < 3; a++)
+                d[a] = forward[a] + x * right[a] + y * up[a];
+            const double along = -scene.camera.eye[plane] / d[plane];
+            for (int a = 0; a < 3; a++)
+                world[a] = scene.camera.eye[a] + along * d[a];
+            assert_ok(cw_volume_to_index(&v, world, index, &err), err);
+            for (int a = 0; a < 3; a++) {
+                const double last = (double)v.dim[a] - 1;
+                q[a] = index[a] / last;
+                if (a != plane)
+                    edge = fmin(edge, fmin(index[a], last - index[a]));
+            }
+            is_close = is_close || fabs(edge) < 5; /* the frame is there, or not */
+            if (edge < 0)
+                continue;
+            second = fmin(second, fmax(nearest, along));
+            if (along < nearest) {
+                nearest = along;
+                value = patient(NULL, q);
+                off = edge;
+            }
+        }
+        if (is_close || !(off > 0) || second - nearest < 1e-3)
+            continue;
+        checked++;
+        assert_near((double)picture.pixels[4 * p], 1 - value, 2e-3);
+        assert_near((double)picture.pixels[4 * p + 1], value, 2e-3);
+    }
+    assert_true(checked > SIDE * SIDE / 20);
+    cw_picture_free(&picture);
+    cw_volume_free(&v);
+}
+
 /* The patient's right is on the left, where radiologists have it; values rise to the left, the
  * back and the head (LPS). */
 static void slices_are_seen_as_in_radiology(void **state)
@@ -279,6 +339,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(slices_have_the_colours_of_their_values),
+        cmocka_unit_test(perspective_shows_what_the_ray_meets),
         cmocka_unit_test(slices_are_seen_as_in_radiology),
         cmocka_unit_test(slices_hide_each_other_rightly),
         cmocka_unit_test(slices_are_clipped_but_not_by_their_own_plane),
