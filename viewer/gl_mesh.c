@@ -261,6 +261,7 @@ void cwi_gl_set_mesh(const cwi_gl *gl, GLuint program)
         GLint unit;
     } samplers[] = {{"ramp", CWI_UNIT_RAMP},
                     {"peeled", CWI_UNIT_PEELED},
+                    {"covered", CWI_UNIT_COVERED},
                     {"layer", CWI_UNIT_LAYER},
                     {"winding", CWI_UNIT_WINDING}};
     float matrix[16];

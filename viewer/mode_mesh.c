@@ -154,7 +154,7 @@ static cw_status put_behind(cwi_gl *gl, const cwi_gl_mesh *m, cw_error *err)
     return CW_OK;
 }
 
-static void start_layer(const cwi_gl_mesh *m, int n)
+static void start_layer(const cwi_gl *gl, const cwi_gl_mesh *m, int n)
 {
     static const GLfloat nearest = 0;
     if (n == 0) { /* nothing was peeled yet */
@@ -165,6 +165,8 @@ static void start_layer(const cwi_gl_mesh *m, int n)
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     glActiveTexture(GL_TEXTURE0 + CWI_UNIT_PEELED);
     glBindTexture(GL_TEXTURE_2D, m->layer_depth[(n + 1) % 2]);
+    glActiveTexture(GL_TEXTURE0 + CWI_UNIT_COVERED);
+    glBindTexture(GL_TEXTURE_2D, gl->target.color);
 }
 
 /* Layers from the nearest on, until one is empty. */
@@ -173,7 +175,7 @@ static cw_status peel(cwi_gl *gl, cwi_gl_mesh *m, cw_error *err)
     GLuint drawn = 1;
     cw_status st = cwi_gl_need_layers(gl, m, err);
     for (int n = 0; n < MOST_LAYERS && drawn && st == CW_OK; n++) {
-        start_layer(m, n);
+        start_layer(gl, m, n);
         glBeginQuery(GL_ANY_SAMPLES_PASSED, m->query);
         st = draw_surface(gl, m, (manner){.peels = true}, err);
         glEndQuery(GL_ANY_SAMPLES_PASSED);
@@ -181,6 +183,8 @@ static cw_status peel(cwi_gl *gl, cwi_gl_mesh *m, cw_error *err)
         if (st == CW_OK && drawn)
             st = put_behind(gl, m, err);
     }
+    glActiveTexture(GL_TEXTURE0 + CWI_UNIT_COVERED);
+    glBindTexture(GL_TEXTURE_2D, 0);
     return st;
 }
 

@@ -131,7 +131,7 @@ typedef struct cw_scene {
     bool jitter;            /* shift the samples of every ray by another part of a step */
     bool exact_filter;      /* trilinear interpolation by the shader, not the texture unit */
     bool no_skipping;       /* go through what is empty as well */
-    float stop_opacity;     /* rays end there; default 0.9999 */
+    float stop_opacity;     /* rays, and layers of meshes, end there; default 0.9999 */
     double threshold;       /* local-mip: the value a maximum has to reach */
     size_t texture_edge;    /* largest edge of a 3D texture, in voxels; default: what GL can */
     cw_target target;       /* texture, shaded-texture: what slices are blended in */

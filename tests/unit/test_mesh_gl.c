@@ -196,15 +196,20 @@ static void deep_stacks_are_peeled_to_the_end(void **state)
     make_arrays(&mesh, 4 * COUNT, 2 * COUNT);
     for (size_t n = 0; n < COUNT; n++)
         put_sheet(&mesh, n, (float)(n * 37 % COUNT), 5, haze);
-    const cw_scene scene = {.mode = CW_MODE_MESH,
-                            .mesh = &mesh,
-                            .camera = straight(20),
-                            .width = 16,
-                            .height = 16,
-                            .material = flat};
+    cw_scene scene = {.mode = CW_MODE_MESH,
+                      .mesh = &mesh,
+                      .camera = straight(20),
+                      .width = 16,
+                      .height = 16,
+                      .material = flat,
+                      .stop_opacity = 1};
     cw_renderer_forget(r);
     cw_picture picture = test_draw(r, &scene);
     assert_near((double)pixel(&picture, 8, 8)[3], 1 - pow(1 - 10 / 255.0, COUNT), 1e-5);
+    cw_picture_free(&picture);
+    scene.stop_opacity = 0.9f; /* 58 layers are the first to reach it */
+    picture = test_draw(r, &scene);
+    assert_near((double)pixel(&picture, 8, 8)[3], 1 - pow(1 - 10 / 255.0, 58), 1e-5);
     cw_picture_free(&picture);
     cw_mesh_free(&mesh);
 }

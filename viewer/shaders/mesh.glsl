@@ -33,7 +33,7 @@ void main()
 #endif
 
 #ifdef FRAGMENT
-uniform sampler2D peeled; // depth of the layer before
+uniform sampler2D peeled, covered; // depth of the layer before; all layers before, blended
 out vec4 result;
 
 vec3 srgb_of(vec3 light)
@@ -62,10 +62,12 @@ vec4 light_up(vec3 p, vec3 n, vec4 surface)
     return attenuate(vec4(shown * surface.a, surface.a), -p.z, gl_FragCoord.y / picture.y);
 }
 
+// In a layer before, or behind so much that it is not seen.
 bool is_peeled(float z)
 {
 #ifdef PEEL
-    return z <= texelFetch(peeled, ivec2(gl_FragCoord.xy), 0).r;
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    return z <= texelFetch(peeled, pixel, 0).r || texelFetch(covered, pixel, 0).a >= march.y;
 #else
     return false;
 #endif
