@@ -1,14 +1,13 @@
 #include "viewer/cpu_draw.h"
 
+#include "viewer/cpu_mesh.h"
 #include "viewer/intensity.h"
-#include "viewer/reference_mesh.h"
 #include "viewer/reference_volume.h"
 #include "viewer/vbuffer.h"
 
 #include "core/memory.h"
 #include "core/status.h"
 
-#include <math.h>
 #include <string.h>
 
 bool cwi_cpu_draws(cw_mode mode)
@@ -37,41 +36,6 @@ static cw_status take_ranges(cwi_cpu *cpu, const cwi_frame *f, cw_error *err)
     return st;
 }
 
-/* The mesh is drawn by its own reference, which has lights of its own. */
-static cw_status check_mesh(const cw_scene *s, cw_error *err)
-{
-    const cw_light *l = &s->lights[0];
-    const bool headlight = s->light_count == 1 && l->direction[0] == 0 &&
-                           l->direction[1] == 0 && l->color[0] == 1 && l->color[1] == 1 &&
-                           l->color[2] == 1;
-    const char *what = s->clip_count > 0           ? "cut by planes"
-                       : s->wireframe              ? "as wireframes"
-                       : s->tint != CW_TINT_COLORS ? "coloured by scalars or quality"
-                       : s->color[3] < 1           ? "translucent"
-                       : s->depth_cue > 0          ? "with a depth cue"
-                       : s->lit && !headlight      ? "in other than its own light"
-                                                   : NULL;
-    return what ? cw_fail(err, CW_ERR_UNSUPPORTED, "meshes are not drawn %s by the CPU", what)
-                : CW_OK;
-}
-
-static cw_status draw_mesh(const cwi_frame *f, double *depth_mm, cw_image *image, cw_error *err)
-{
-    const cw_scene *s = &f->scene;
-    cwi_render_desc desc = {.camera = s->camera,
-                            .width = s->width,
-                            .height = s->height,
-                            .samples = 1,
-                            .background = {{1, 1, 1, 0}, {1, 1, 1, 0}},
-                            .depth_mm = depth_mm,
-                            .threads = s->threads,
-                            .progress = s->progress};
-    for (int c = 0; c < 4; c++)
-        desc.color[c] = (uint8_t)lrintf(255 * fminf(fmaxf(s->color[c], 0), 1));
-    cw_status st = check_mesh(s, err);
-    return st == CW_OK ? cwi_render_mesh(s->mesh, &desc, image, err) : st;
-}
-
 static cw_status draw_volume(cwi_cpu *cpu, const cwi_frame *f, const double *depths,
                              cw_picture *picture, cw_error *err)
 {
@@ -88,32 +52,33 @@ static cw_status draw_volume(cwi_cpu *cpu, const cwi_frame *f, const double *dep
 }
 
 /* Puts an opaque mesh behind what was drawn. */
-static void put_behind(const cw_image *mesh, cw_picture *picture)
+static void put_behind(const cw_picture *mesh, cw_picture *picture)
 {
     for (size_t p = 0; p < picture->width * picture->height; p++) {
         float *pixel = picture->pixels + 4 * p;
-        const float through = (1 - pixel[3]) * (float)mesh->pixels[4 * p + 3] / 255;
-        for (size_t c = 0; c < 3; c++)
-            pixel[c] += through * (float)mesh->pixels[4 * p + c] / 255;
-        pixel[3] += through;
+        const float through = 1 - pixel[3];
+        for (size_t c = 0; c < 4; c++)
+            pixel[c] += through * mesh->pixels[4 * p + c];
     }
 }
 
 static cw_status draw_both(cwi_cpu *cpu, const cwi_frame *f, cw_picture *picture, cw_error *err)
 {
     const size_t count = picture->width * picture->height;
-    cw_image mesh = {0};
+    cw_picture mesh = {0};
     double *depths = cwi_alloc_array(count, sizeof *depths);
     if (!depths)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the depths of a mesh");
-    cw_status st = draw_mesh(f, depths, &mesh, err);
+    cw_status st = cw_picture_alloc(&mesh, picture->width, picture->height, err);
+    if (st == CW_OK)
+        st = cwi_cpu_draw_mesh(f, depths, &mesh, err);
     for (size_t p = 0; p < count && st == CW_OK; p++)
         depths[p] /= f->unit_mm;
-    if (st == CW_OK && f->scene.mode != CW_MODE_MESH)
+    if (st == CW_OK)
         st = draw_volume(cpu, f, depths, picture, err);
     if (st == CW_OK)
         put_behind(&mesh, picture);
-    cw_image_free(&mesh);
+    cw_picture_free(&mesh);
     cwi_free(depths);
     return st;
 }
@@ -123,6 +88,8 @@ cw_status cwi_cpu_draw(cwi_cpu *cpu, const cwi_frame *f, cw_picture *picture, cw
     if (!cwi_cpu_draws(f->scene.mode))
         return cw_fail(err, CW_ERR_UNSUPPORTED, "the mode %s is not drawn by the CPU",
                        cw_mode_name(f->scene.mode));
+    if (f->scene.mode == CW_MODE_MESH)
+        return cwi_cpu_draw_mesh(f, NULL, picture, err);
     return f->scene.mesh ? draw_both(cpu, f, picture, err)
                          : draw_volume(cpu, f, NULL, picture, err);
 }

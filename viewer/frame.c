@@ -74,6 +74,10 @@ static cw_status fill_in(cw_scene *s, cw_error *err)
         s->normals = 1024;
     if (s->color[0] == 0 && s->color[1] == 0 && s->color[2] == 0 && s->color[3] == 0)
         memcpy(s->color, bone, sizeof bone);
+    for (int c = 0; c < 4; c++)
+        if (!(s->color[c] >= 0 && s->color[c] <= 1))
+            return cw_fail(err, CW_ERR_ARGUMENT, "a mesh's colour of %g: expected 0 to 1",
+                           (double)s->color[c]);
     return CW_OK;
 }
 
@@ -242,7 +246,9 @@ cw_status cwi_frame_init(cwi_frame *frame, const cw_scene *scene, cw_error *err)
 {
     double min[3], max[3];
     cwi_frame *f = frame;
-    *f = (cwi_frame){.scene = *scene};
+    *f = (cwi_frame){.scene = *scene,
+                     .studio_light =
+                         scene->light_count == 0 && !is_material_set(&scene->material)};
     cw_status st = fill_in(&f->scene, err);
     if (st == CW_OK && f->scene.mesh)
         st = cw_mesh_check(f->scene.mesh, err);

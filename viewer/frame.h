@@ -29,6 +29,9 @@ typedef struct cwi_frame {
     bool perspective;
     double half[2];
 
+    /* Neither lights nor a material were given: meshes are lit as in reference_mesh.c. */
+    bool studio_light;
+
     /* Distances from the eye's plane (depth) between which all of the scene is; near is above 0
      * in perspective. */
     double near, far;

@@ -18,8 +18,9 @@ typedef struct frame_block {
     int32_t counts[4];
 } frame_block;
 
-static const cwi_gl_mode *const modes[] = {&cwi_gl_composite, &cwi_gl_mip, &cwi_gl_minip,
-                                           &cwi_gl_average, &cwi_gl_local_mip};
+static const cwi_gl_mode *const modes[] = {
+    &cwi_gl_mesh_mode, &cwi_gl_composite, &cwi_gl_mip,   &cwi_gl_minip,
+    &cwi_gl_average,   &cwi_gl_local_mip, &cwi_gl_slices};
 
 const cwi_gl_mode *cwi_gl_find_mode(cw_mode mode)
 {
@@ -161,6 +162,10 @@ static cw_status draw_scene(cwi_gl *gl, const cwi_gl_mode *mode, cw_error *err)
     glDepthMask(GL_TRUE);
     glClearColor(0, 0, 0, 0);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
+    if (gl->frame->scene.mesh && mode->mode != CW_MODE_MESH)
+        st = cwi_gl_draw_mesh(gl, err);
+    if (st != CW_OK)
+        return st;
     if (mode->goes_along_rays)
         glBindFramebuffer(GL_FRAMEBUFFER, gl->target.rays);
     return mode->draw(gl, &gl->state[mode->mode], err);

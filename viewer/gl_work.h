@@ -90,7 +90,7 @@ typedef struct cwi_gl_mode {
 } cwi_gl_mode;
 
 extern const cwi_gl_mode cwi_gl_composite, cwi_gl_mip, cwi_gl_minip, cwi_gl_average,
-    cwi_gl_local_mip;
+    cwi_gl_local_mip, cwi_gl_mesh_mode, cwi_gl_slices;
 
 /* The mode's row; NULL when GL does not draw it. */
 const cwi_gl_mode *cwi_gl_find_mode(cw_mode mode);
@@ -103,6 +103,9 @@ cw_status cwi_gl_use(cwi_gl *gl, const char *vertex, const char *fragment, const
 void cwi_gl_set(GLuint program, const char *name, float value);
 void cwi_gl_set3(GLuint program, const char *name, const double value[3]);
 extern const char cwi_glsl_common[], cwi_glsl_screen[];
+
+/* Draws the scene's mesh, opaque, with its depth. */
+cw_status cwi_gl_draw_mesh(cwi_gl *gl, cw_error *err);
 
 /* Draws a triangle over the whole picture, for fragment shaders that go along rays. */
 void cwi_gl_draw_screen(cwi_gl *gl);

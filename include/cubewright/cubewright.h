@@ -11,6 +11,7 @@
 #include <cubewright/formats.h>
 #include <cubewright/level_set.h>
 #include <cubewright/mesh.h>
+#include <cubewright/overlay.h>
 #include <cubewright/picture.h>
 #include <cubewright/quality.h>
 #include <cubewright/render.h>

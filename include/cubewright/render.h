@@ -123,7 +123,8 @@ typedef struct cw_scene {
 
     /* light and depth */
     cw_light lights[CW_MAX_LIGHTS]; /* light_count of them */
-    size_t light_count;             /* default: one, white, from the eye */
+    size_t light_count;             /* default: one, white, from the eye; for meshes, when no
+                                       material is given either, a studio's */
     cw_material material;
     bool lit;        /* volumes are shaded by their gradient; meshes always are */
     float depth_cue; /* 0 to 1: the share of the background at the far end of what is seen,
@@ -141,7 +142,7 @@ typedef struct cw_scene {
     bool jitter;            /* shift the samples of every ray by another part of a step */
     bool exact_filter;      /* trilinear interpolation by the shader, not the texture unit */
     bool no_skipping;       /* go through what is empty as well */
-    float stop_opacity;     /* rays end there; default 0.9999 */
+    float stop_opacity;     /* rays, and layers of meshes, end there; default 0.9999 */
     double threshold;       /* local-mip: the value a maximum has to reach */
     size_t texture_edge;    /* largest edge of a 3D texture, in voxels; default: what GL can */
     cw_target target;       /* texture, shaded-texture: what slices are blended in */
@@ -161,8 +162,8 @@ typedef struct cw_scene {
     float color[4]; /* sRGB and opacity of a mesh without colours; default a bone white */
     cw_tint tint;
     double tint_low, tint_high; /* both 0: the range of the scalars */
-    bool wireframe;             /* edges drawn over the triangles */
-    bool cap;                   /* the cut through a clipped mesh is filled */
+    bool wireframe;             /* edges drawn over the triangles; faint where they are dense */
+    bool cap;                   /* the cut through a clipped mesh, which is closed, is filled */
 
     int threads;          /* default: all that OpenMP offers */
     cw_progress progress; /* default: none */
@@ -191,6 +192,17 @@ CW_API const char *cw_renderer_name(const cw_renderer *renderer);
  *          CW_ERR_LIMIT; CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
 CW_API cw_status cw_render(cw_renderer *renderer, const cw_scene *scene, cw_picture *picture,
                            cw_error *err);
+
+/* The orthographic camera that looks straight at a slice and sees all of it, for a picture that
+ * is aspect times as wide as high; with it, the mode slices draws that slice flat. Directions
+ * are those of radiology: axial slices are seen from the feet, with the patient's right on the
+ * picture's left and the front up; coronal ones from the front, right on the left, the head up;
+ * sagittal ones from the left, the front on the picture's left, the head up. Oblique ones are
+ * seen as those they are closest to.
+ * Returns CW_ERR_ARGUMENT for a slice that misses the volume or has no direction, for an aspect
+ * that is none, and as cw_volume_resolve(). */
+CW_API cw_status cw_slice_camera(const cw_volume *volume, const cw_slice *slice, double aspect,
+                                 cw_camera *camera, cw_error *err);
 
 /* Tells a renderer that voxels or vertices it has drawn were written to since, or freed: it
  * knows them by their address. */

@@ -360,8 +360,8 @@ static void rays_end_at_a_mesh(void **state)
         assert_near((double)both.pixels[4 * p + 3], 1, 1e-6);
     }
     cw_picture_free(&both);
-    scene.tint = CW_TINT_QUALITY;
-    assert_fails(cw_render(r, &scene, &both, &err), CW_ERR_UNSUPPORTED, "coloured by", err);
+    scene.wireframe = true;
+    assert_fails(cw_render(r, &scene, &both, &err), CW_ERR_UNSUPPORTED, "with edges", err);
     scene.mode = CW_MODE_SPLAT;
     assert_fails(cw_render(r, &scene, &both, &err), CW_ERR_UNSUPPORTED, "splat", err);
     cw_picture_free(&alone);
