@@ -85,6 +85,7 @@ static void put_volume(const cwi_gl *gl, frame_block *b)
     put3(f->high, b->high);
     for (int a = 0; a < 3; a++)
         b->dim[a] = (float)f->volume.dim[a];
+    b->dim[3] = (float)gl->transfer.segment_rows;
     const cwi_table *t = &gl->transfer.table;
     b->texels[0] = (float)(gl->volume.scale / (t->high - t->low));
     b->texels[1] = (float)((gl->volume.bias - t->low) / (t->high - t->low));

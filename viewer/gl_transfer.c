@@ -76,6 +76,7 @@ static cw_status make(cwi_gl *gl, cw_error *err)
     t->rows = cwi_gl_texture(GL_TEXTURE_2D, CWI_UNIT_TABLE, true);
     glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, CWI_TABLE_ROWS, 1, 0, GL_RGBA, GL_FLOAT,
                  t->table.rows);
+    t->segment_rows = cwi_table_segment_rows(&t->table, &t->key);
     make_factor(gl);
     st = make_skip(gl, err);
     t->is_made = st == CW_OK;
@@ -101,17 +102,18 @@ cw_status cwi_gl_need_segments(cwi_gl *gl, double length, cw_error *err)
     cwi_gl_transfer *t = &gl->transfer;
     if (t->segment_length == length)
         return CW_OK;
-    float *all = cwi_alloc_array((size_t)CWI_SEGMENT_ROWS * CWI_SEGMENT_ROWS, 4 * sizeof *all);
+    const size_t rows = t->segment_rows;
+    float *all = cwi_alloc_array(rows * rows, 4 * sizeof *all);
     if (!all)
         return cw_fail(err, CW_ERR_NO_MEMORY,
                        "no memory for a pre-integrated transfer function");
-    cw_status st = cwi_table_preintegrate(&t->table, length, CWI_SEGMENT_ROWS,
-                                          gl->frame->scene.threads, all, err);
+    cw_status st =
+        cwi_table_preintegrate(&t->table, length, rows, gl->frame->scene.threads, all, err);
     if (st == CW_OK) {
         glDeleteTextures(1, &t->segments);
         t->segments = cwi_gl_texture(GL_TEXTURE_2D, CWI_UNIT_SEGMENTS, true);
-        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, CWI_SEGMENT_ROWS, CWI_SEGMENT_ROWS, 0,
-                     GL_RGBA, GL_FLOAT, all);
+        glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, (GLsizei)rows, (GLsizei)rows, 0, GL_RGBA,
+                     GL_FLOAT, all);
         t->segment_length = length;
     }
     cwi_free(all);

@@ -261,34 +261,87 @@ static uint16_t to_half(float x)
     return (uint16_t)(sign | (bits - 0x38000000u + 0xfffu + (bits >> 13 & 1)) >> 13);
 }
 
-/* The derivative of texels along an axis: central inside, one-sided at the border; 0 where a
- * sample has no value. at: the sample's address; n of dim. */
-static double derivative(const cw_volume *v, const char *at, int axis, size_t n)
+/* A row of voxels as floats; NaN: no value. */
+static void load_row(const cw_volume *v, const char *from, size_t count, float *to)
 {
-    const size_t dim = v->dim[axis];
-    if (dim == 1)
-        return 0;
-    const char *low = n > 0 ? at - v->stride[axis] : at;
-    const char *high = n + 1 < dim ? at + v->stride[axis] : at;
-    const double a = cwi_voxel_at(v->type, low), b = cwi_voxel_at(v->type, high);
-    const double d = (b - a) / (n > 0 && n + 1 < dim ? 2 : 1);
-    return isfinite(d) && !(v->has_nodata && (a == v->nodata || b == v->nodata)) ? d : 0;
+    switch (v->type) {
+#define CASE(name, ctype, text)                                                                \
+    case name:                                                                                 \
+        for (size_t i = 0; i < count; i++)                                                     \
+            to[i] = (float)*(const ctype *)(from + (ptrdiff_t)i * v->stride[0]);               \
+        break;
+        CW_TYPE_TABLE(CASE)
+#undef CASE
+    default:
+        break;
+    }
+    for (size_t i = 0; i < count && v->has_nodata; i++)
+        if (cwi_voxel_at(v->type, from + (ptrdiff_t)i * v->stride[0]) == v->nodata)
+            to[i] = NAN;
 }
 
-static void put_gradients(const cw_volume *v, const cwi_gl_brick *b, double scale, size_t from,
+/* The row n before or after one, or that one at the border; and how far apart such two are. */
+static const char *row_at(const cw_volume *v, const char *row, int axis, size_t at, int n)
+{
+    const bool is_there = n < 0 ? at > 0 : at + 1 < v->dim[axis];
+    return is_there ? row + n * v->stride[axis] : row;
+}
+
+static float reach(const cw_volume *v, int axis, size_t at)
+{
+    return at > 0 && at + 1 < v->dim[axis] ? 0.5f : 1;
+}
+
+static uint16_t slope_of(float low, float high, float scale)
+{
+    const float d = (high - low) * scale;
+    return isfinite(d) ? to_half(d) : 0;
+}
+
+/* Derivatives along a row: central inside, one-sided at the border; 0 where a neighbour has no
+ * value. rows: room for five rows and one sample at either end. */
+static void put_gradient_row(const cw_volume *v, const cwi_gl_brick *b, size_t j, size_t k,
+                             float scale, float *rows, uint16_t (*out)[4])
+{
+    const size_t n = v->dim[0], x0 = b->first[0];
+    const char *row = cwi_voxel_address(v, 0, j, k);
+    float *r[5];
+    for (int i = 0; i < 5; i++)
+        r[i] = rows + (size_t)i * n;
+    load_row(v, row, n, r[0]);
+    for (int i = 0; i < 4; i++) {
+        const int axis = 1 + i / 2;
+        load_row(v, row_at(v, row, axis, axis == 1 ? j : k, i % 2 ? 1 : -1), n, r[1 + i]);
+    }
+    const float ys = scale * reach(v, 1, j), zs = scale * reach(v, 2, k);
+    for (size_t i = 0; i < b->count[0]; i++) {
+        const size_t x = x0 + i;
+        out[i][0] = slope_of(r[0][x > 0 ? x - 1 : x], r[0][x + 1 < n ? x + 1 : x],
+                             scale * reach(v, 0, x));
+        out[i][1] = slope_of(r[1][x], r[2][x], ys);
+        out[i][2] = slope_of(r[3][x], r[4][x], zs);
+        out[i][3] = 0;
+    }
+}
+
+/* Layers of a brick; false when there is no memory for a thread's rows. */
+static bool put_gradients(const cw_volume *v, const cwi_gl_brick *b, double scale, size_t from,
                           size_t count, uint16_t (*out)[4])
 {
-#pragma omp parallel for collapse(2)
-    for (size_t k = 0; k < count; k++)
-        for (size_t j = 0; j < b->count[1]; j++)
-            for (size_t i = 0; i < b->count[0]; i++) {
-                const size_t at[3] = {b->first[0] + i, b->first[1] + j, b->first[2] + from + k};
-                const char *p = cwi_voxel_address(v, at[0], at[1], at[2]);
-                uint16_t *to = out[(k * b->count[1] + j) * b->count[0] + i];
-                for (int a = 0; a < 3; a++)
-                    to[a] = to_half((float)(derivative(v, p, a, at[a]) * scale));
-                to[3] = 0;
-            }
+    bool failed = false;
+#pragma omp parallel reduction(|| : failed)
+    {
+        float *rows = cwi_alloc_array(v->dim[0], 5 * sizeof *rows);
+        failed = !rows;
+#pragma omp for
+        for (size_t n = 0; n < count * b->count[1]; n++)
+            if (rows)
+                put_gradient_row(v, b, b->first[1] + n % b->count[1],
+                                 b->first[2] + from + n / b->count[1], (float)scale, rows,
+                                 out + n * b->count[0]);
+        cwi_free(rows);
+    }
+    return !failed;
 }
 
 cw_status cwi_gl_need_gradients(cwi_gl *gl, cw_error *err)
@@ -311,7 +364,10 @@ cw_status cwi_gl_need_gradients(cwi_gl *gl, cw_error *err)
                      GL_HALF_FLOAT, NULL);
         for (size_t k = 0; k < b->count[2]; k += step) {
             const size_t layers = b->count[2] - k < step ? b->count[2] - k : step;
-            put_gradients(&g->key, b, scale, k, layers, chunk);
+            if (!put_gradients(&g->key, b, scale, k, layers, chunk)) {
+                cwi_free(chunk);
+                return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for gradients");
+            }
             glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, (GLint)k, w, h, (GLsizei)layers, GL_RGBA,
                             GL_HALF_FLOAT, chunk);
         }

@@ -46,11 +46,12 @@ typedef struct cwi_gl_transfer {
     bool is_made;
     cwi_table table;
     GLuint rows, skip, segments, factor;
+    size_t segment_rows;   /* a side of segments */
     double segment_length; /* of what segments holds; 0: nothing */
     double factor_end;     /* gradient per unit of eye space at the end of factor */
 } cwi_gl_transfer;
 
-enum { CWI_SEGMENT_ROWS = 1024, CWI_FACTOR_ROWS = 1024, CWI_GL_PROGRAMS = 64 };
+enum { CWI_FACTOR_ROWS = 1024, CWI_GL_PROGRAMS = 64 };
 
 /* Where pictures are drawn: RGBA and depth textures of the picture's size. */
 typedef struct cwi_gl_target {

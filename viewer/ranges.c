@@ -6,6 +6,7 @@
 #include "core/volume.h"
 
 #include <math.h>
+#include <string.h>
 
 typedef struct job {
     const cw_volume *v;
@@ -153,28 +154,22 @@ void cwi_ranges_free(cwi_ranges *ranges)
     *ranges = (cwi_ranges){0};
 }
 
-/* Each byte becomes at most one more than the least of its neighbours before it, in an order of
- * the lattice from one corner to the opposite: forward, then backward, that is the distance
- * along the longest axis to the next 0, up to 255. */
-static void relax(uint8_t *d, const size_t dim[3], bool backward)
+/* One pass over a lattice that has a margin of one block on every side: each byte becomes at
+ * most one more than the least of its 13 neighbours in front (behind, backward). A pass each
+ * way, and every byte is the distance along the longest axis to the next 0, up to 255. */
+static void relax(uint8_t *d, const ptrdiff_t dim[3], bool backward)
 {
-    const ptrdiff_t count = (ptrdiff_t)(dim[0] * dim[1] * dim[2]);
+    const ptrdiff_t row = dim[0], layer = dim[0] * dim[1], margin = layer + row + 1;
+    const ptrdiff_t count = layer * dim[2] - 2 * margin, s = backward ? -1 : 1;
+    ptrdiff_t before[13];
+    for (int o = 0; o < 13; o++)
+        before[o] = s * ((o / 9 - 1) * layer + (o / 3 % 3 - 1) * row + o % 3 - 1);
     for (ptrdiff_t m = 0; m < count; m++) {
-        const ptrdiff_t n = backward ? count - 1 - m : m;
-        const ptrdiff_t x = n % (ptrdiff_t)dim[0],
-                        y = n / (ptrdiff_t)dim[0] % (ptrdiff_t)dim[1],
-                        z = n / (ptrdiff_t)(dim[0] * dim[1]);
-        for (int o = 0; o < 13; o++) { /* the half of the 27 in front of the middle */
-            const ptrdiff_t s = backward ? -1 : 1;
-            const ptrdiff_t i = x + s * (o % 3 - 1), j = y + s * (o / 3 % 3 - 1),
-                            k = z + s * (o / 9 - 1);
-            if (i < 0 || j < 0 || k < 0 || i >= (ptrdiff_t)dim[0] || j >= (ptrdiff_t)dim[1] ||
-                k >= (ptrdiff_t)dim[2])
-                continue;
-            const uint8_t near = d[(k * (ptrdiff_t)dim[1] + j) * (ptrdiff_t)dim[0] + i];
-            if (near < 255 && near + 1 < d[n])
-                d[n] = (uint8_t)(near + 1);
-        }
+        uint8_t *at = d + margin + (backward ? count - 1 - m : m);
+        int near = 254;
+        for (int o = 0; o < 13; o++)
+            near = at[before[o]] < near ? at[before[o]] : near;
+        *at = near + 1 < *at ? (uint8_t)(near + 1) : *at;
     }
 }
 
@@ -182,16 +177,23 @@ cw_status cwi_ranges_distances(const cwi_ranges *r,
                                bool (*is_visible)(const void *context, double low, double high),
                                const void *context, uint8_t **distances, cw_error *err)
 {
-    const size_t count = r->dim[0] * r->dim[1] * r->dim[2];
-    uint8_t *d = cwi_alloc_array(count, 1);
+    const size_t nx = r->dim[0], ny = r->dim[1], nz = r->dim[2], wide = (nx + 2) * (ny + 2);
+    uint8_t *d = cwi_alloc_array(wide, nz + 2); /* then the lattice without its margin */
     *distances = d;
     if (!d)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for what is empty");
-    for (size_t n = 0; n < count; n++) {
+    memset(d, 255, wide * (nz + 2));
+#define ROW(j, k) (d + ((k) + 1) * wide + ((j) + 1) * (nx + 2) + 1)
+    for (size_t n = 0; n < nx * ny * nz; n++) {
         const double low = (double)r->blocks[n][0], high = (double)r->blocks[n][1];
-        d[n] = low <= high && is_visible(context, low, high) ? 0 : 255;
+        if (low <= high && is_visible(context, low, high))
+            ROW(n / nx % ny, n / nx / ny)[n % nx] = 0;
     }
-    relax(d, r->dim, false);
-    relax(d, r->dim, true);
+    const ptrdiff_t dim[3] = {(ptrdiff_t)nx + 2, (ptrdiff_t)ny + 2, (ptrdiff_t)nz + 2};
+    relax(d, dim, false);
+    relax(d, dim, true);
+    for (size_t n = 0; n < ny * nz; n++)
+        memmove(d + n * nx, ROW(n % ny, n / ny), nx);
+#undef ROW
     return CW_OK;
 }

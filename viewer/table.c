@@ -80,6 +80,29 @@ bool cwi_table_is_visible(const cwi_table *table, double low, double high)
     return false;
 }
 
+/* The shortest way between two points that differ, at most so much. */
+static double narrowest(const void *points, size_t row, size_t count, double most)
+{
+    for (size_t n = 1; n < count; n++) {
+        const double a = *(const double *)((const char *)points + (n - 1) * row);
+        const double b = *(const double *)((const char *)points + n * row);
+        if (b > a && b - a < most)
+            most = b - a;
+    }
+    return most;
+}
+
+size_t cwi_table_segment_rows(const cwi_table *table, const cw_transfer *t)
+{
+    const double range = table->high - table->low;
+    double gap = narrowest(t->opacities, sizeof *t->opacities, t->opacity_count, range);
+    gap = narrowest(t->colors, sizeof *t->colors, t->color_count, gap);
+    size_t rows = 256;
+    while (rows < 1024 && (double)rows * gap < 64 * range)
+        rows *= 2;
+    return rows;
+}
+
 /* Running integrals over the table's rows, for count rows of the result: of the extinction, and
  * of the colours times it. */
 static double (*running_integrals(const cwi_table *t, size_t count))[4]

@@ -25,6 +25,9 @@ CW_API void cwi_table_free(cwi_table *table);
 /* The lowest row that is not fully transparent within a range of values; false: none is. */
 CW_API bool cwi_table_is_visible(const cwi_table *table, double low, double high);
 
+/* Rows that a pre-integrated table needs: more for narrow peaks, 256 to 1024. */
+CW_API size_t cwi_table_segment_rows(const cwi_table *table, const cw_transfer *transfer);
+
 /* Pre-integration [Engel2001]: what a segment of a length (units of eye space) adds along which
  * the value goes linearly from row x to row y. out is count x count x 4, y slowest: colour
  * times opacity, and opacity. Within a segment light is absorbed too: it is cut into pieces

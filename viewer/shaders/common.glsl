@@ -6,7 +6,7 @@ layout(std140) uniform Frame {
     vec4 picture;         // width, height, half x, half y
     vec4 view;            // 1 in perspective, near, far, depth cue
     vec4 low, high;       // the volume in index space
-    vec4 dim;             // samples
+    vec4 dim;             // samples; rows of the pre-integrated table
     vec4 texels;          // scale and bias from a texel to a table's coordinate; to a value
     vec4 march;           // step, opacity to stop at, 1: jitter, factor's end
     vec4 material;        // ambient, diffuse, specular, shininess

@@ -6,12 +6,10 @@ uniform float step_length;
 uniform vec3 last_block; // of skip
 out vec4 result;
 
-const float segment_rows = 1024.0;
-
 // Where a coordinate of the transfer function is in the texture of segments, which is clamped.
 float segment_place(float coordinate)
 {
-    return coordinate * ((segment_rows - 1.0) / segment_rows) + 0.5 / segment_rows;
+    return (coordinate * (dim.w - 1.0) + 0.5) / dim.w;
 }
 
 // What a full segment between two of them adds; NaN is empty.
