@@ -120,9 +120,19 @@ static void put_frame(cwi_gl *gl)
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, gl->frame_block);
 }
 
+static bool is_lost(void)
+{
+    return epoxy_gl_version() >= 45 ? glGetGraphicsResetStatus() != GL_NO_ERROR
+           : epoxy_has_gl_extension("GL_ARB_robustness")
+               ? glGetGraphicsResetStatusARB() != GL_NO_ERROR
+               : false;
+}
+
 /* GL's errors since the last look, and a lost context. */
 static cw_status check(cw_error *err)
 {
+    if (is_lost())
+        return cw_fail(err, CW_ERR_BACKEND, "the OpenGL context was lost");
     const GLenum first = glGetError();
     while (glGetError() != GL_NO_ERROR)
         ;
@@ -178,13 +188,15 @@ cw_status cwi_gl_draw(cwi_gl *gl, const cwi_frame *frame, cw_picture *picture, c
     if (!mode)
         return cw_fail(err, CW_ERR_UNSUPPORTED, "the mode %s is not drawn by OpenGL",
                        cw_mode_name(frame->scene.mode));
-    if (!eglMakeCurrent(gl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, gl->context))
-        return cw_fail(err, CW_ERR_BACKEND, "the OpenGL context was lost");
+    if (!cwi_gl_enter(gl))
+        return cw_fail(err, CW_ERR_BACKEND,
+                       "the OpenGL context was lost, or another library's is on this thread");
     gl->frame = frame;
     cw_status st = draw_scene(gl, mode, err);
     if (st == CW_OK)
         read_back(gl, picture);
     const cw_status after = check(st == CW_OK ? err : NULL);
     gl->frame = NULL;
+    cwi_gl_leave(gl);
     return st == CW_OK ? after : st;
 }

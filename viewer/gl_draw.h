@@ -5,6 +5,13 @@
 #include "viewer/gl_work.h"
 
 cw_status cwi_gl_draw(cwi_gl *gl, const cwi_frame *frame, cw_picture *picture, cw_error *err);
-void cwi_gl_forget(cwi_gl *gl);
+
+/* Makes the context this thread's, until cwi_gl_leave() puts back what was there; false when it
+ * was lost. */
+bool cwi_gl_enter(cwi_gl *gl);
+void cwi_gl_leave(cwi_gl *gl);
+
+/* Frees what was made of a volume, a mesh and a transfer function. */
+void cwi_gl_drop_scene(cwi_gl *gl);
 
 #endif

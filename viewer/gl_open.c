@@ -28,29 +28,58 @@ static EGLDisplay first_device(void)
     return eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, NULL);
 }
 
+/* Reports of a lost context are asked for where there are such. */
+static EGLContext make_context(EGLDisplay display)
+{
+    const EGLint wanted[] = {
+        EGL_CONTEXT_MAJOR_VERSION, 3, EGL_CONTEXT_MINOR_VERSION, 3,
+        EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+        /* left out when it is not known: */
+        EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY, EGL_LOSE_CONTEXT_ON_RESET, EGL_NONE};
+    EGLint plain[7];
+    memcpy(plain, wanted, 6 * sizeof *plain);
+    plain[6] = EGL_NONE;
+    EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted);
+    return context != EGL_NO_CONTEXT
+               ? context
+               : eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, plain);
+}
+
 static bool start(cwi_gl *gl, EGLDisplay display)
 {
-    static const EGLint wanted[] = {EGL_CONTEXT_MAJOR_VERSION,
-                                    3,
-                                    EGL_CONTEXT_MINOR_VERSION,
-                                    3,
-                                    EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                    EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                    EGL_NONE};
     if (display == EGL_NO_DISPLAY || !eglInitialize(display, NULL, NULL))
         return false;
     gl->display = display;
     if (eglBindAPI(EGL_OPENGL_API))
-        gl->context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, wanted);
+        gl->context = make_context(display);
     return gl->context != EGL_NO_CONTEXT &&
            eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, gl->context);
+}
+
+/* The caller may have a context of its own on this thread. */
+bool cwi_gl_enter(cwi_gl *gl)
+{
+    gl->before.display = eglGetCurrentDisplay();
+    gl->before.draw = eglGetCurrentSurface(EGL_DRAW);
+    gl->before.read = eglGetCurrentSurface(EGL_READ);
+    gl->before.context = eglGetCurrentContext();
+    return eglMakeCurrent(gl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, gl->context);
+}
+
+void cwi_gl_leave(cwi_gl *gl)
+{
+    if (gl->before.context != EGL_NO_CONTEXT && gl->before.context != gl->context)
+        eglMakeCurrent(gl->before.display, gl->before.draw, gl->before.read,
+                       gl->before.context);
+    else
+        eglMakeCurrent(gl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
 }
 
 static void stop(cwi_gl *gl)
 {
     if (gl->display == EGL_NO_DISPLAY)
         return;
-    eglMakeCurrent(gl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+    cwi_gl_leave(gl);
     if (gl->context != EGL_NO_CONTEXT)
         eglDestroyContext(gl->display, gl->context);
     eglTerminate(gl->display);
@@ -81,6 +110,7 @@ static cw_status gl_open(cwi_gl **out, cw_error *err)
     cwi_gl *gl = cwi_alloc_zeroed(1, sizeof *gl);
     if (!gl)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for OpenGL");
+    gl->before.context = eglGetCurrentContext();
     cw_status st = open_context(gl, err);
     if (st != CW_OK) {
         cwi_free(gl);
@@ -88,6 +118,7 @@ static cw_status gl_open(cwi_gl **out, cw_error *err)
     }
     glGenBuffers(1, &gl->frame_block);
     glGenVertexArrays(1, &gl->empty_array);
+    cwi_gl_leave(gl);
     *out = gl;
     return CW_OK;
 }
@@ -102,17 +133,24 @@ static void drop_states(cwi_gl *gl)
     }
 }
 
-void cwi_gl_forget(cwi_gl *gl)
+void cwi_gl_drop_scene(cwi_gl *gl)
 {
-    eglMakeCurrent(gl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, gl->context);
     drop_states(gl);
     cwi_gl_drop_volume(gl);
     cwi_gl_drop_transfer(gl);
 }
 
+static void gl_forget(cwi_gl *gl)
+{
+    cwi_gl_enter(gl);
+    cwi_gl_drop_scene(gl);
+    cwi_gl_leave(gl);
+}
+
 static void gl_close(cwi_gl *gl)
 {
-    cwi_gl_forget(gl);
+    cwi_gl_enter(gl);
+    cwi_gl_drop_scene(gl);
     cwi_gl_drop_target(gl);
     for (size_t n = 0; n < gl->program_count; n++)
         glDeleteProgram(gl->programs[n].name);
@@ -128,4 +166,4 @@ static const char *gl_name(const cwi_gl *gl)
 }
 
 CW_API extern const cwi_gl_functions cwi_module_gl;
-const cwi_gl_functions cwi_module_gl = {gl_open, gl_close, gl_name, cwi_gl_forget, cwi_gl_draw};
+const cwi_gl_functions cwi_module_gl = {gl_open, gl_close, gl_name, gl_forget, cwi_gl_draw};

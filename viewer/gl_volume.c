@@ -222,7 +222,7 @@ cw_status cwi_gl_take_volume(cwi_gl *gl, cw_error *err)
     double range[2] = {0, 1};
     if (is_there(g, gl->frame))
         return CW_OK;
-    cwi_gl_forget(gl);
+    cwi_gl_drop_scene(gl);
     g->key = gl->frame->volume;
     g->edge = gl->frame->scene.texture_edge;
     const cw_volume *v = &g->key;

@@ -69,6 +69,11 @@ typedef struct cwi_gl_program {
 struct cwi_gl {
     EGLDisplay display;
     EGLContext context;
+    struct {
+        EGLDisplay display;
+        EGLSurface draw, read;
+        EGLContext context;
+    } before; /* the caller's, while this one draws */
     char name[256];
     const cwi_frame *frame; /* that is being drawn */
     GLuint frame_block, empty_array, sampler;
