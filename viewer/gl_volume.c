@@ -275,6 +275,12 @@ static double derivative(const cw_volume *v, const char *at, int axis, size_t n)
     return isfinite(d) && !(v->has_nodata && (a == v->nodata || b == v->nodata)) ? d : 0;
 }
 
+void cwi_gl_derivatives(const cw_volume *v, const size_t at[3], double out[3])
+{
+    for (int a = 0; a < 3; a++)
+        out[a] = derivative(v, cwi_voxel_address(v, at[0], at[1], at[2]), a, at[a]);
+}
+
 static void put_gradients(const cw_volume *v, const cwi_gl_brick *b, double scale, size_t from,
                           size_t count, uint16_t (*out)[4])
 {

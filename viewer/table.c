@@ -114,7 +114,10 @@ static double escape(double depth)
 static void integrate(const double (*sum)[4], size_t x, size_t y, double scale, float out[4])
 {
     const size_t span = (x < y ? y - x : x - y) * PIECES;
-    const size_t pieces = span < 4 * PIECES ? span : 4 * PIECES;
+    /* Of a depth of 1 / (4 PIECES) at most, unless all is deep: most segments are thin. */
+    const double depth_all = scale * fabs(sum[y * PIECES][3] - sum[x * PIECES][3]);
+    const size_t most = (size_t)fmin(1 + 4 * PIECES * depth_all, 4 * PIECES);
+    const size_t pieces = span < most ? span : most;
     double light = 1, color[3] = {0};
     size_t from = x * PIECES;
     for (size_t p = 1; p <= pieces && light > 1e-9; p++) {
