@@ -347,6 +347,10 @@ static void everything_else_is_as_along_rays(void **state)
     (void)state;
     cw_volume blobs = {0};
     cw_transfer soft = test_soft_transfer();
+    float corners[] = {-20, 3, -20, 20, -4, -15, 5, 6, 20}; /* a triangle through the middle */
+    uint32_t triangle[] = {0, 1, 2};
+    const cw_mesh mesh = {
+        .vertex_count = 3, .positions = corners, .triangle_count = 1, .triangles = triangle};
     test_field(&blobs, 40, 40, 40, cube, test_blobs);
     for (int kind = 0; kind < 14; kind++) {
         cw_scene slices = scene_of(&blobs, &soft, looking(true, 60, kind & 1 ? 35 : 0));
@@ -361,6 +365,7 @@ static void everything_else_is_as_along_rays(void **state)
         slices.clips[0] = (cw_clip){{1, 0.3, -0.2}, 1.3};
         slices.clips[1] = (cw_clip){{0.2, 1, 0.1}, what == 5 ? 50 : -3.1};
         slices.step_vox = 0.2;
+        slices.mesh = what == 2 || what == 6 ? &mesh : NULL;
         cw_scene rays = slices;
         rays.mode = CW_MODE_COMPOSITE;
         rays.stop_opacity = 1;
