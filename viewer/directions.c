@@ -87,7 +87,7 @@ static double nearest_angle(const cwi_directions *d, const double v[3])
 }
 
 /* What is nearest to a point of a cell is no farther from its middle than the nearest of that
- * plus twice the radius. Heights differ by less than angles do. */
+ * plus twice the radius: angles between lines add up at most. Counts when to is NULL. */
 static size_t put_candidates(const cwi_directions *d, size_t cell, uint16_t *to)
 {
     double middle[3], radius;

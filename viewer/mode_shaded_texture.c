@@ -101,12 +101,13 @@ static uint16_t normal_of(const cw_volume *v, const shaded_state *t,
     return (uint16_t)(n | (marked ? BOUNDARY : 0));
 }
 
-static void put_layer(const cw_volume *v, const shaded_state *t, const cwi_gl_brick *b,
-                      size_t k, uint16_t *out)
+static void put_layer(const cwi_gl *gl, const shaded_state *t, const cwi_gl_brick *b, size_t k,
+                      uint16_t *out)
 {
+    const cw_volume *v = &gl->frame->volume;
     double to_world[3][3];
     cwi_affine_cofactor(v->affine[0], to_world);
-#pragma omp parallel for
+#pragma omp parallel for num_threads(cwi_threads(gl->frame->scene.threads))
     for (size_t j = 0; j < b->count[1]; j++)
         for (size_t i = 0; i < b->count[0]; i++) {
             const size_t at[3] = {b->first[0] + i, b->first[1] + j, b->first[2] + k};
@@ -126,7 +127,7 @@ static cw_status upload_normals(const cwi_gl *gl, shaded_state *t, size_t brick,
     glTexImage3D(GL_TEXTURE_3D, 0, GL_R16UI, w, h, d, 0, GL_RED_INTEGER, GL_UNSIGNED_SHORT,
                  NULL);
     for (GLint k = 0; k < d; k++) {
-        put_layer(&gl->frame->volume, t, b, (size_t)k, layer);
+        put_layer(gl, t, b, (size_t)k, layer);
         glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, k, w, h, 1, GL_RED_INTEGER, GL_UNSIGNED_SHORT,
                         layer);
     }

@@ -62,7 +62,7 @@ static double value_of(const cw_volume *v, const cwi_gl_brick *b, size_t i, size
 static void put_layer(const cwi_gl *gl, const cwi_gl_brick *b, size_t k, float (*out)[4])
 {
     const cw_volume *v = &gl->frame->volume;
-#pragma omp parallel for
+#pragma omp parallel for num_threads(cwi_threads(gl->frame->scene.threads))
     for (size_t j = 0; j < b->count[1]; j++)
         for (size_t i = 0; i < b->count[0]; i++)
             classify(&gl->transfer.table, value_of(v, b, i, j, k), out[j * b->count[0] + i]);

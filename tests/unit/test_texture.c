@@ -260,14 +260,15 @@ static void bricks_have_no_seams(void **state)
         cw_scene scene = scene_of(&blobs, &soft, looking(true, 70, kind & 1 ? 40 : 0));
         scene.lit = kind / 2 == 1;
         scene.colors_first = kind / 2 == 2;
-        scene.step_vox = 0.25;
+        scene.step_vox = 0.2;
         scene.texture_edge = (size_t[]){0, 17, 33}[n / 6];
         cw_picture picture = test_draw(test_renderer(), &scene);
         if (n < 6) {
             whole[kind] = picture;
             continue;
         }
-        expect_near("bricks", &whole[kind], &picture, 0.01, scene.lit ? 1 : 0.05);
+        expect_near("bricks", &whole[kind], &picture, scene.lit ? 0.03 : 0.01,
+                    scene.lit ? 3 : 0.05);
         cw_picture_free(&picture);
     }
     for (int n = 0; n < 6; n++)
