@@ -3,6 +3,7 @@
 #include "viewer/directions.h"
 #include "viewer/frame.h"
 
+#include "core/memory.h"
 #include "core/vector.h"
 
 #include <math.h>
@@ -221,6 +222,39 @@ static void too_many_directions_are_refused(void **state)
     cw_volume_free(&v);
 }
 
+/* Wherever memory runs out, that is said, and the next picture is whole. */
+static void lack_of_memory_is_told(void **state)
+{
+    (void)state;
+    cw_volume v = {0};
+    cw_renderer *r = test_renderer();
+    const cw_transfer soft = test_soft_transfer();
+    test_field(&v, 20, 20, 20, cube, test_blobs);
+    for (int kind = 0; kind < 3; kind++) {
+        long fails = 0;
+        cw_scene scene = scene_of(&v, &soft, 0);
+        scene.mode = kind == 0 ? CW_MODE_SHADED_TEXTURE : CW_MODE_TEXTURE;
+        scene.colors_first = kind == 1;
+        scene.target = kind == 2 ? CW_TARGET_16 : CW_TARGET_32F;
+        scene.texture_edge = 12;
+        scene.normals = 100;
+        cw_picture whole = test_draw(r, &scene), picture;
+        for (bool failed = true; failed; fails++) {
+            cw_error err = {0};
+            cw_renderer_forget(r);
+            cwi_alloc_fail_after(fails);
+            const cw_status st = cw_render(r, &scene, &picture, &err);
+            failed = cwi_alloc_fail_after(-1);
+            assert_int_equal(st, failed ? CW_ERR_NO_MEMORY : CW_OK);
+        }
+        assert_true(fails > 10);
+        assert_true(test_compare(&whole, &picture).max == 0);
+        cw_picture_free(&whole);
+        cw_picture_free(&picture);
+    }
+    cw_volume_free(&v);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -230,6 +264,7 @@ int main(void)
         cmocka_unit_test(boundaries_are_where_materials_meet),
         cmocka_unit_test(bricks_and_layers_are_shaded_alike),
         cmocka_unit_test(too_many_directions_are_refused),
+        cmocka_unit_test(lack_of_memory_is_told),
     };
     return cmocka_run_group_tests(tests, NULL, test_renderer_close);
 }

@@ -267,8 +267,8 @@ static void bricks_have_no_seams(void **state)
             whole[kind] = picture;
             continue;
         }
-        expect_near("bricks", &whole[kind], &picture, scene.lit ? 0.03 : 0.01,
-                    scene.lit ? 3 : 0.05);
+        expect_near("bricks", &whole[kind], &picture, scene.lit ? 0.01 : 0.005,
+                    scene.lit ? 0.5 : 0.05);
         cw_picture_free(&picture);
     }
     for (int n = 0; n < 6; n++)
