@@ -15,6 +15,7 @@ void cwi_gl_drop_transfer(cwi_gl *gl)
     glDeleteTextures(1, &t->segments);
     glDeleteTextures(1, &t->factor);
     cwi_table_free(&t->table);
+    cwi_free(t->away);
     *t = (cwi_gl_transfer){0};
 }
 
@@ -34,7 +35,7 @@ static cw_status make_skip(cwi_gl *gl, cw_error *err)
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glTexImage3D(GL_TEXTURE_3D, 0, GL_R8UI, (GLsizei)r->dim[0], (GLsizei)r->dim[1],
                  (GLsizei)r->dim[2], 0, GL_RED_INTEGER, GL_UNSIGNED_BYTE, d);
-    cwi_free(d);
+    gl->transfer.away = d;
     return CW_OK;
 }
 

@@ -47,6 +47,7 @@ typedef struct cwi_gl_transfer {
     cwi_table table;
     GLuint rows, skip, segments, factor;
     size_t segment_rows;   /* a side of segments */
+    uint8_t *away;         /* what skip holds */
     double segment_length; /* of what segments holds; 0: nothing */
     double factor_end;     /* gradient per unit of eye space at the end of factor */
 } cwi_gl_transfer;
@@ -96,7 +97,8 @@ typedef struct cwi_gl_mode {
 } cwi_gl_mode;
 
 extern const cwi_gl_mode cwi_gl_composite, cwi_gl_mip, cwi_gl_minip, cwi_gl_average,
-    cwi_gl_local_mip, cwi_gl_mesh_mode, cwi_gl_slices;
+    cwi_gl_local_mip, cwi_gl_mesh_mode, cwi_gl_slices, cwi_gl_texture_mode,
+    cwi_gl_shaded_texture;
 
 /* The mode's row; NULL when GL does not draw it. */
 const cwi_gl_mode *cwi_gl_find_mode(cw_mode mode);
@@ -119,6 +121,8 @@ void cwi_gl_draw_screen(cwi_gl *gl);
 /* Uploads the frame's volume, unless it is there. */
 cw_status cwi_gl_take_volume(cwi_gl *gl, cw_error *err);
 cw_status cwi_gl_need_gradients(cwi_gl *gl, cw_error *err);
+/* The derivatives of voxels, unscaled, along each axis: what gradients are made of. */
+void cwi_gl_derivatives(const cw_volume *volume, const size_t at[3], double derivatives[3]);
 void cwi_gl_drop_volume(cwi_gl *gl);
 
 /* Binds a brick's textures and sets the uniforms brick_first and brick_size of a program. */

@@ -147,8 +147,10 @@ typedef struct cw_scene {
     size_t texture_edge;    /* largest edge of a 3D texture, in voxels; default: what GL can */
     cw_target target;       /* texture, shaded-texture: what slices are blended in */
     bool colors_first;      /* texture, shaded-texture: interpolate colours, not data */
-    size_t normals;         /* shaded-texture: directions of the table; default 1024 */
-    bool mark_boundary;     /* shaded-texture: only cells at material boundaries */
+    size_t normals;         /* shaded-texture: directions of the table, at most 8192; default
+                               1024. It is lit whether or not lit is set */
+    bool mark_boundary;     /* shaded-texture: only cells at material boundaries, whose samples
+                               have a point of the opacities between them */
     bool linear_opacity;    /* projection: opacity, not depth, is linear over a polygon, as in
                                1991 */
     double tree_error;      /* splat-tree: largest error of a node, in the table's range 0..1 of

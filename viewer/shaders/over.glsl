@@ -1,0 +1,8 @@
+// Blended slices, over what is drawn already.
+uniform sampler2D slices;
+out vec4 result;
+
+void main()
+{
+    result = texelFetch(slices, ivec2(gl_FragCoord.xy), 0);
+}
