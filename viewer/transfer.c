@@ -94,21 +94,16 @@ static double opacity_at(const cw_opacity_point *p, size_t count, double value)
     return (double)low->opacity + share * ((double)high->opacity - (double)low->opacity);
 }
 
-static void color_at(const cw_color_point *p, size_t count, double value, double color[3])
-{
-    double share;
-    const size_t n = find_place(p, sizeof *p, count, value, &share);
-    const cw_color_point *low = &p[n ? n - 1 : 0], *high = &p[n < count ? n : count - 1];
-    for (int c = 0; c < 3; c++)
-        color[c] =
-            (double)low->color[c] + share * ((double)high->color[c] - (double)low->color[c]);
-}
-
 void cw_transfer_at(const cw_transfer *t, double value, double color[3], double *opacity)
 {
-    color[0] = color[1] = color[2] = 1;
-    if (t->color_count)
-        color_at(t->colors, t->color_count, value, color);
+    double share;
+    const size_t n = find_place(t->colors, sizeof *t->colors, t->color_count, value, &share);
+    const cw_color_point *low = &t->colors[n ? n - 1 : 0];
+    const cw_color_point *high = n < t->color_count ? &t->colors[n] : low;
+    for (int c = 0; c < 3; c++)
+        color[c] = t->color_count ? (double)low->color[c] +
+                                        share * ((double)high->color[c] - (double)low->color[c])
+                                  : 1;
     *opacity = t->opacity_count ? opacity_at(t->opacities, t->opacity_count, value) : 0;
 }
 
