@@ -100,6 +100,14 @@ cw_status cli_check_scene(const cli_command *command, const cli_common *common, 
     return CW_OK;
 }
 
+bool cli_is_setting(const char *name)
+{
+    for (int n = 0; n < ROWS; n++)
+        if (strcmp(rows[n].name, name) == 0)
+            return strcmp(name, "save-tf") != 0;
+    return strcmp(name, "mode") == 0 || strcmp(name, "samples") == 0;
+}
+
 const char *cli_needs_gl(const cli_command *command, const cli_common *common,
                          const cli_scene *args)
 {
