@@ -40,6 +40,12 @@ static const cli_option options[] = {
     {"backend", 0, CLI_CHOICE, "auto/egl/cpu",
      "OpenGL without a display, or the CPU: meshes, vbuffer, reference (auto)",
      offsetof(render_args, backend)},
+    {"compare", 0, CLI_TEXT, "A|B",
+     "two pictures in one: settings such as 'texture,step-length=2|reference'",
+     offsetof(render_args, compare)},
+    {"difference", 0, CLI_NUMBER, "F",
+     "of --compare: side by side, and how they differ, F times as strong",
+     offsetof(render_args, difference)},
     {"json", 0, CLI_TEXT, "FILE", "write a report; - is the standard output",
      offsetof(render_args, json)},
     HEADING("Camera"),
@@ -120,8 +126,8 @@ static const cli_option options[] = {
     {"boundary", 0, CLI_FLAG, NULL, "only cells where materials meet (off)", SCENE(boundary)},
     {"linear-opacity", 0, CLI_FLAG, NULL,
      "opacity, not depth, is linear over a polygon, as in 1991 (off)", SCENE(linear_opacity)},
-    {"tree-error", 0, CLI_NUMBER, "S", "largest error of a splatted node, 0 to 1 (0)",
-     SCENE(tree_error)},
+    {"tree-error", 0, CLI_NUMBER, "S",
+     "largest error of a node that is drawn whole, 0 to 1 (0)", SCENE(tree_error)},
     HEADING("Meshes"),
     {"color", 0, CLI_TEXT, "C", "of a mesh without colours, such as #ffeedd or #ffeedd80",
      SCENE(color)},
@@ -179,6 +185,10 @@ const cli_command cli_render = {
         "  slices          axial, coronal, sagittal, oblique  --planes\n"
         "  vbuffer         ray casting cell by cell, on the CPU\n"
         "  reference       the rendering integral itself, on the CPU\n"
+        "--compare draws a scene twice, left and right, and prints how far they are apart "
+        "(RMSE\n"
+        "in 1/255, CIEDE2000). A side is options by comma without their dashes, the first a\n"
+        "mode; what holds for both sides stands outside.\n"
         "An option that does nothing in the mode at hand is an error that names its modes.\n\n"
         "Cameras are named in the patient's frame: front looks at the face, heads are up, and\n"
         "the patient's left is on the right of the picture. 90,0 is left, 0,90 from above.\n\n"
@@ -188,6 +198,7 @@ const cli_command cli_render = {
         "  cubewright render angio.nrrd --mode mip --turntable 36 -o 'a-{turn:02d}.png'\n"
         "  cubewright render ct.nrrd --mode composite --iso 300 --clip 0,1,0,0 -o cut.png\n"
         "  cubewright render head.nii.gz --iso 50 --camera 30,20 -o head.png\n"
+        "  cubewright render ct.nrrd --compare 'composite,step-length=2|reference' -o two.png\n"
         "  cubewright render run.nii.gz --steps all -o 'run-{step:04d}.png'\n"
         "  cubewright render defects.ply -o defects.png\n",
     .options = options,

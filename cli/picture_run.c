@@ -5,6 +5,7 @@
 #include "cli/mesh.h"
 #include "cli/output.h"
 #include "cli/quantity.h"
+#include "cli/split.h"
 #include "cli/surface.h"
 #include "cli/template.h"
 #include "core/status.h"
@@ -38,6 +39,11 @@ cw_status cli_check_pictures(const render_args *args, cw_error *err)
         return cw_fail(err, CW_ERR_ARGUMENT, "--samples %zu: expected 1 to 4", args->samples);
     if (args->mesh && args->iso.given)
         return cw_fail(err, CW_ERR_ARGUMENT, "--iso or --mesh, not both");
+    if (args->difference.given && !args->compare)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--difference is for --compare");
+    if (args->difference.given && !(args->difference.value > 0))
+        return cw_fail(err, CW_ERR_ARGUMENT, "--difference %g: above 0 was expected",
+                       args->difference.value);
     cw_status st = cli_check_camera(&args->scene, &args->turns, err);
     if (st == CW_OK)
         st = check_side_output(args->json, args, err);
@@ -104,6 +110,20 @@ static bool draws_on_cpu(const cli_pictures *p)
            !cli_needs_gl(p->command, &p->args->common, &p->args->scene);
 }
 
+/* What is read suits the left side: both draw the volume. */
+static cw_status plan_split(cli_pictures *p, cw_error *err)
+{
+    const render_args *args = p->args;
+    if (p->is_mesh || args->scene.hide == CLI_HIDE_VOLUME)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--compare is for the modes of volumes");
+    p->split = calloc(1, sizeof *p->split);
+    if (!p->split)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a comparison");
+    cw_status st = cli_parse_split(p->command, args, p->split, err);
+    p->mode = p->split->sides[0].mode;
+    return st;
+}
+
 static cw_status check_mode(cli_pictures *p, cw_error *err)
 {
     const render_args *args = p->args;
@@ -111,6 +131,8 @@ static cw_status check_mode(cli_pictures *p, cw_error *err)
     cw_status st = check_hidden(p, err);
     if (st != CW_OK)
         return st;
+    if (args->compare)
+        return plan_split(p, err);
     if (p->is_mesh && p->mode != CW_MODE_MESH)
         return cw_fail(err, CW_ERR_ARGUMENT, "%s is a mesh; the mode %s draws volumes",
                        args->common.inputs[0], cw_mode_name(p->mode));
@@ -241,8 +263,16 @@ static cw_status read_beside(cli_pictures *p, cw_error *err)
 static cw_status make_transfer(cli_pictures *p, cw_error *err)
 {
     const render_args *args = p->args;
-    cw_status st = cli_make_transfer(&args->scene, drawn(p), p->mode, (int)args->input.threads,
-                                     &p->transfer, err);
+    cw_status st = CW_OK;
+    for (int n = 0; n < 2 && p->split && st == CW_OK; n++)
+        st =
+            cli_make_transfer(&p->split->sides[n].args.scene, drawn(p), p->split->sides[n].mode,
+                              (int)args->input.threads, &p->split->sides[n].transfer, err);
+    if (p->split)
+        p->transfer = p->split->sides[0].transfer;
+    else
+        st = cli_make_transfer(&args->scene, drawn(p), p->mode, (int)args->input.threads,
+                               &p->transfer, err);
     p->has_transfer = st == CW_OK;
     if (st == CW_OK && args->save_transfer)
         st = cw_transfer_write(args->save_transfer, &p->transfer, err);
@@ -342,15 +372,50 @@ static cw_status draw_mesh(cli_pictures *p, const uint8_t background[2][4], cw_i
     return cwi_render_mesh(&p->mesh, &desc, image, err);
 }
 
-static cw_status draw_scene(cli_pictures *p, const uint8_t background[2][4], cw_image *image,
-                            cw_error *err)
+static cw_status draw_picture(cli_pictures *p, cw_picture *picture, cw_error *err)
 {
-    cw_picture picture = {0};
     cw_status st = CW_OK;
     if (!p->renderer)
         st = cw_renderer_new((cw_backend)p->args->backend, &p->renderer, err);
+    return st == CW_OK ? cw_render(p->renderer, &p->scene, picture, err) : st;
+}
+
+/* A side is drawn as if the run were about it alone. */
+static cw_status draw_side(cli_pictures *p, size_t turn, cli_side *side, cw_picture *picture,
+                           cw_error *err)
+{
+    const render_args *args = p->args;
+    p->args = &side->args;
+    p->mode = side->mode;
+    p->transfer = side->transfer;
+    cw_status st = make_scene(p, turn, err);
     if (st == CW_OK)
-        st = cw_render(p->renderer, &p->scene, &picture, err);
+        st = draw_picture(p, picture, err);
+    p->args = args;
+    return st;
+}
+
+static cw_status draw_both(cli_pictures *p, size_t turn, cli_shot *shot,
+                           const uint8_t background[2][4], cw_picture *out, cw_error *err)
+{
+    cw_picture sides[2] = {{0}, {0}};
+    cw_status st = CW_OK;
+    for (int n = 1; n >= 0 && st == CW_OK; n--)
+        st = draw_side(p, turn, &p->split->sides[n], &sides[n], err);
+    if (st == CW_OK)
+        st = cli_draw_split(sides, p->args, background, &shot->measured, out, err);
+    shot->compared = st == CW_OK;
+    for (int n = 0; n < 2; n++)
+        cw_picture_free(&sides[n]);
+    return st;
+}
+
+static cw_status draw_scene(cli_pictures *p, size_t turn, cli_shot *shot,
+                            const uint8_t background[2][4], cw_image *image, cw_error *err)
+{
+    cw_picture picture = {0};
+    cw_status st = p->split ? draw_both(p, turn, shot, background, &picture, err)
+                            : draw_picture(p, &picture, err);
     if (st == CW_OK)
         st = cw_picture_show(&picture, background, image, err);
     cw_picture_free(&picture);
@@ -367,8 +432,13 @@ static void tell(const cli_pictures *p, const cli_shot *shot)
                  triangles ? " triangles" : "", cw_renderer_name(p->renderer));
     else
         snprintf(what, sizeof what, "%s triangles", cli_count(triangles));
-    cli_result("%s: %zu x %zu, %s seen from %s; %.2f s\n", shot->path, p->args->size.n[0],
-               p->args->size.n[1], what, p->args->scene.camera, shot->seconds);
+    if (shot->compared)
+        cli_result("%s: %s: rmse %.3g, max %.3g of 255; delta-E %.3g, 99 %% below %.3g\n",
+                   shot->path, p->args->compare, shot->measured.rmse, shot->measured.max,
+                   shot->measured.delta_e_mean, shot->measured.delta_e_p99);
+    else
+        cli_result("%s: %zu x %zu, %s seen from %s; %.2f s\n", shot->path, p->args->size.n[0],
+                   p->args->size.n[1], what, p->args->scene.camera, shot->seconds);
 }
 
 static cw_status take_picture(cli_pictures *p, size_t turn, cli_shot *shot, cw_error *err)
@@ -379,8 +449,9 @@ static cw_status take_picture(cli_pictures *p, size_t turn, cli_shot *shot, cw_e
     if (st == CW_OK)
         st = cli_background(&p->args->scene, p->mode, background, err);
     if (st == CW_OK)
-        st = draws_on_cpu(p) ? draw_mesh(p, (const uint8_t(*)[4])background, &image, err)
-                             : draw_scene(p, (const uint8_t(*)[4])background, &image, err);
+        st = draws_on_cpu(p)
+                 ? draw_mesh(p, (const uint8_t(*)[4])background, &image, err)
+                 : draw_scene(p, turn, shot, (const uint8_t(*)[4])background, &image, err);
     if (st == CW_OK)
         st = cw_image_write(shot->path, &image, err);
     cw_image_free(&image);
@@ -426,6 +497,9 @@ cw_status cli_make_pictures(cli_pictures *p, cw_error *err)
 void cli_end_pictures(cli_pictures *p)
 {
     cw_renderer_free(p->renderer);
+    if (p->split)
+        cli_free_split(p->split);
+    free(p->split);
     for (size_t n = 0; n < p->shot_count; n++)
         free(p->shots[n].path);
     free(p->shots);

@@ -11,13 +11,26 @@ typedef struct render_args {
     cli_input input;
     cli_scene scene;
     cli_turns turns;
-    const char *output, *json, *mesh, *save_transfer, *save_camera;
-    cli_number iso;
+    const char *output, *json, *mesh, *save_transfer, *save_camera, *compare;
+    cli_number iso, difference;
     int inside, backend;
     cli_sizes size;
     size_t samples;
     cli_steps steps;
 } render_args;
+
+/* One side of --compare: the run's arguments, changed. */
+typedef struct cli_side {
+    render_args args;
+    cw_mode mode;
+    cw_transfer transfer;
+    char *words[32];
+    int word_count;
+} cli_side;
+
+typedef struct cli_split {
+    cli_side sides[2];
+} cli_split;
 
 /* A run as far as it has come. Free with cli_end_pictures(). */
 typedef struct cli_pictures {
@@ -39,6 +52,7 @@ typedef struct cli_pictures {
     cli_shot *shots;
     size_t shot_count;
     double start;
+    cli_split *split; /* NULL: nothing is compared */
 } cli_pictures;
 
 /* What can be refused before the input is touched. */

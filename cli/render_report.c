@@ -85,6 +85,20 @@ static void put_settings(cli_json *j, const cw_scene *s)
     cli_json_close(j, '}');
 }
 
+static void put_comparison(cli_json *j, const cw_comparison *c)
+{
+    cli_json_open(j, "comparison", '{');
+    cli_json_count(j, "pixels", c->pixels);
+    cli_json_number(j, "rmse", c->rmse);
+    cli_json_number(j, "max", c->max);
+    cli_json_number(j, "bias", c->bias);
+    cli_json_number(j, "delta_e_mean", c->delta_e_mean);
+    cli_json_number(j, "delta_e_p99", c->delta_e_p99);
+    cli_json_number(j, "delta_e_max", c->delta_e_max);
+    cli_json_number(j, "ssim", c->ssim);
+    cli_json_close(j, '}');
+}
+
 static void put_shots(cli_json *j, const cli_render_report *r)
 {
     cli_json_open(j, "pictures", '[');
@@ -98,6 +112,8 @@ static void put_shots(cli_json *j, const cli_render_report *r)
         cli_json_number(j, "turn_deg", shot->turn_deg);
         put_camera(j, &shot->camera);
         cli_json_number(j, "seconds", shot->seconds);
+        if (shot->compared)
+            put_comparison(j, &shot->measured);
         cli_json_close(j, '}');
     }
     cli_json_close(j, ']');

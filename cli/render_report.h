@@ -11,7 +11,8 @@ typedef struct cli_shot {
     double turn_deg;
     double seconds; /* to draw, show and write it */
     cw_camera camera;
-    bool written;
+    bool written, compared;
+    cw_comparison measured; /* when it is */
 } cli_shot;
 
 typedef struct cli_render_report {

@@ -281,10 +281,14 @@ static cw_status take_share(const char *name, const cli_number *n, double most, 
     return CW_OK;
 }
 
+/* Nothing said is left to the library: meshes may have a light of their own. */
 static cw_status add_material(const cli_scene *args, cw_scene *s, cw_error *err)
 {
+    const bool given = args->ambient.given || args->diffuse.given || args->specular.given ||
+                       args->shininess.given;
     cw_material *m = &s->material;
-    *m = (cw_material){0.25f, 0.75f, 0.2f, 32};
+    if (given)
+        *m = (cw_material){0.25f, 0.75f, 0.2f, 32};
     cw_status st = take_share("ambient", &args->ambient, 1, &m->ambient, err);
     if (st == CW_OK)
         st = take_share("diffuse", &args->diffuse, 1, &m->diffuse, err);
@@ -294,7 +298,7 @@ static cw_status add_material(const cli_scene *args, cw_scene *s, cw_error *err)
         st = take_share("shininess", &args->shininess, 1000, &m->shininess, err);
     if (st == CW_OK)
         st = take_share("depth-cue", &args->depth_cue, 1, &s->depth_cue, err);
-    if (st == CW_OK && m->ambient + m->diffuse + m->specular == 0)
+    if (st == CW_OK && given && m->ambient + m->diffuse + m->specular == 0)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "--ambient, --diffuse and --specular are all 0: nothing is lit");
     return st == CW_OK ? add_lights(args->lights, s, err) : st;

@@ -45,6 +45,9 @@ typedef struct cli_subject {
 cw_status cli_check_scene(const cli_command *command, const cli_common *common, cw_mode mode,
                           bool has_mesh, cw_error *err);
 
+/* Whether an option of that name sets how one picture looks. */
+bool cli_is_setting(const char *name);
+
 /* The first option given of those that only OpenGL draws of a mesh; NULL: none. */
 const char *cli_needs_gl(const cli_command *command, const cli_common *common,
                          const cli_scene *args);

@@ -27,7 +27,7 @@ static const struct {
     {"shift", VOLUMES, false, false},
     {"opacity", VOLUMES, false, false},
     {"save-tf", VOLUMES, false, false},
-    {"lit", SHADED, false, false},
+    {"lit", SHADED & ~ONE(SHADED_TEXTURE), false, false},
     {"ambient", SHADED, true, true},
     {"diffuse", SHADED, true, true},
     {"specular", SHADED, true, true},
@@ -41,10 +41,10 @@ static const struct {
     {"slices", TEXTURES, false, false},
     {"planes", ONE(SLICES), false, false},
     {"cell-steps", RAYS, false, false},
-    {"preintegration", ONE(COMPOSITE) | ONE(TEXTURE), false, false},
-    {"jitter", RAYS, false, false},
-    {"exact-filter", RAYS | ONE(TEXTURE) | ONE(SLICES), false, false},
-    {"skipping", RAYS | CPU, false, false},
+    {"preintegration", ONE(COMPOSITE) | ONE(PROJECTION) | TEXTURES, false, false},
+    {"jitter", ONE(COMPOSITE), false, false},
+    {"exact-filter", RAYS | TEXTURES | ONE(SLICES), false, false},
+    {"skipping", ONE(COMPOSITE) | TEXTURES, false, false},
     {"stop-opacity", ONE(COMPOSITE) | ONE(VBUFFER), false, false},
     {"threshold", ONE(LOCAL_MIP), false, false},
     {"texture-edge", RAYS | TEXTURES | ONE(SLICES), false, false},
@@ -53,7 +53,7 @@ static const struct {
     {"normals", ONE(SHADED_TEXTURE), false, false},
     {"boundary", ONE(SHADED_TEXTURE), false, false},
     {"linear-opacity", ONE(PROJECTION), false, false},
-    {"tree-error", ONE(SPLAT_TREE), false, false},
+    {"tree-error", ONE(SPLAT_TREE) | ONE(PROJECTION), false, false},
     {"tint", 0, true, true},
     {"tint-range", 0, true, true},
     {"wireframe", 0, true, true},
@@ -98,6 +98,14 @@ cw_status cli_check_scene(const cli_command *command, const cli_common *common, 
             return refuse(n, mode, err);
     }
     return CW_OK;
+}
+
+bool cli_is_setting(const char *name)
+{
+    for (int n = 0; n < ROWS; n++)
+        if (strcmp(rows[n].name, name) == 0)
+            return strcmp(name, "save-tf") != 0;
+    return strcmp(name, "mode") == 0 || strcmp(name, "samples") == 0;
 }
 
 const char *cli_needs_gl(const cli_command *command, const cli_common *common,

@@ -42,14 +42,13 @@ static void angles_lead_from_view_to_view(void **state)
     } rows[] = {{"front", 90, 0, "left"},   {"front", 180, 0, "back"},
                 {"front", -90, 0, "right"}, {"front", 360, 0, "front"},
                 {"left", 90, 0, "back"},    {"front", 0, -90, "bottom"},
-                {"back", 0, 90, "top"},     {"top", 180, -90, "front"}};
+                {"back", 0, 90, "top"},     {"top", 0, -90, "back"}};
     for (size_t n = 0; n < sizeof rows / sizeof *rows; n++)
         for (int flat = 0; flat < 2; flat++) {
             const cw_camera a =
                 fit(rows[n].from, rows[n].azimuth, rows[n].elevation, flat ? 0 : 30);
             const cw_camera b = fit(rows[n].to, 0, 0, flat ? 0 : 30);
-            if (n != 7)
-                assert_alike(&a, &b);
+            assert_alike(&a, &b);
         }
 }
 
