@@ -11,6 +11,7 @@ static const render_args defaults = {
     .size = {.count = 2, .n = {1280, 720, 0}}};
 
 #define SCENE(field) offsetof(render_args, scene) + offsetof(cli_scene, field)
+#define MARKS(field) offsetof(render_args, marks) + offsetof(cli_marks, field)
 #define HEADING(name)                                                                          \
     {                                                                                          \
         name, 0, CLI_HEADING, NULL, "", 0                                                      \
@@ -65,6 +66,18 @@ static const cli_option options[] = {
      offsetof(render_args, turns) + offsetof(cli_turns, orbit)},
     {"steps", 0, CLI_STEPS, "A:B:S/N,.../all", "steps of a time series, from 0, each drawn",
      offsetof(render_args, steps)},
+    HEADING("On the picture"),
+    {"axes", 0, CLI_FLAG, NULL, "the edges of the volume's box, and L, P, S (off)",
+     MARKS(axes)},
+    {"scale-bar", 0, CLI_FLAG, NULL, "a length in mm (off)", MARKS(scale_bar)},
+    {"letters", 0, CLI_FLAG, NULL, "where the edges lead: R L A P S I (off)", MARKS(letters)},
+    {"color-bar", 0, CLI_FLAG, NULL, "the colours of values, or of a mesh's tint (off)",
+     MARKS(color_bar)},
+    {"histogram", 0, CLI_FLAG, NULL, "how often values are, under their opacity (off)",
+     MARKS(histogram)},
+    {"caption", 0, CLI_TEXT, "TEXT", "a line on top (none)", MARKS(caption)},
+    {"layout", 0, CLI_CHOICE, "single/quad",
+     "quad: with axial, coronal and sagittal slices beside it (single)", MARKS(layout)},
     HEADING("Colours and opacities of a volume"),
     {"tf", 0, CLI_TEXT, "NAME|FILE",
      "auto, ct-bone, ct-soft, ct-skin, mr, mip, grey, fog, level-set, or a .json file (by "
@@ -94,7 +107,7 @@ static const cli_option options[] = {
     {"cut-away", 0, CLI_FLAG, NULL, "leave that out instead, and show the rest (off)",
      SCENE(cut_away)},
     HEADING("Rays, slices, splats (the help says which is for which mode)"),
-    {"step-length", 0, CLI_NUMBER, "V", "of rays, or from slice to slice, in voxels (1)",
+    {"step-length", 0, CLI_NUMBER, "V", "of rays, or from slice to slice, in voxels (0.5)",
      SCENE(step)},
     {"cell-steps", 0, CLI_FLAG, NULL, "samples where rays leave cells, too (off)",
      SCENE(cell_steps)},

@@ -41,6 +41,13 @@ cw_status cli_check_pictures(const render_args *args, cw_error *err)
         return cw_fail(err, CW_ERR_ARGUMENT, "--iso or --mesh, not both");
     if (args->difference.given && !args->compare)
         return cw_fail(err, CW_ERR_ARGUMENT, "--difference is for --compare");
+    if (args->difference.given && cli_has_marks(&args->marks))
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "nothing is written on the three pictures of --difference");
+    if (args->marks.layout == CLI_LAYOUT_QUAD && args->compare)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--layout quad or --compare, not both");
+    if (args->marks.layout == CLI_LAYOUT_QUAD && (args->size.n[0] < 2 || args->size.n[1] < 2))
+        return cw_fail(err, CW_ERR_ARGUMENT, "--layout quad needs 2 x 2 pixels");
     if (args->difference.given && !(args->difference.value > 0))
         return cw_fail(err, CW_ERR_ARGUMENT, "--difference %g: above 0 was expected",
                        args->difference.value);
@@ -136,6 +143,9 @@ static cw_status check_mode(cli_pictures *p, cw_error *err)
     if (p->is_mesh && p->mode != CW_MODE_MESH)
         return cw_fail(err, CW_ERR_ARGUMENT, "%s is a mesh; the mode %s draws volumes",
                        args->common.inputs[0], cw_mode_name(p->mode));
+    if (args->marks.layout == CLI_LAYOUT_QUAD && p->is_mesh)
+        return cw_fail(err, CW_ERR_ARGUMENT, "%s is a mesh; --layout quad is for volumes",
+                       args->common.inputs[0]);
     if (p->is_mesh && (args->mesh || args->scene.hide))
         return cw_fail(err, CW_ERR_ARGUMENT, "%s is a mesh; --%s is for volumes",
                        args->common.inputs[0], args->mesh ? "mesh" : "hide");
@@ -344,7 +354,8 @@ static cw_status make_scene(cli_pictures *p, size_t turn, cw_error *err)
         .threads = (int)args->input.threads,
     };
     const double aspect = (double)args->size.n[0] / (double)args->size.n[1];
-    p->scene = (cw_scene){.width = args->size.n[0], .height = args->size.n[1]};
+    const size_t part = args->marks.layout == CLI_LAYOUT_QUAD ? 2 : 1;
+    p->scene = (cw_scene){.width = args->size.n[0] / part, .height = args->size.n[1] / part};
     p->scene.samples = args->samples ? (int)args->samples : draws_volume(p) ? 1 : MESH_SAMPLES;
     p->scene.progress = cli_progress((double)p->mesh.triangle_count / 1e6, "Mtriangle");
     find_box(p);
@@ -441,6 +452,21 @@ static void tell(const cli_pictures *p, const cli_shot *shot)
                    p->args->size.n[1], what, p->args->scene.camera, shot->seconds);
 }
 
+/* With slices beside it. */
+static cw_status add_slices(cli_pictures *p, cw_image *image, cw_error *err)
+{
+    cw_image sheet = {0};
+    cw_scene whole = p->scene;
+    whole.volume = drawn(p);
+    whole.width = p->args->size.n[0];
+    whole.height = p->args->size.n[1];
+    cw_status st =
+        cli_mark_quad(&whole, image, (cw_backend)p->args->backend, &p->renderer, &sheet, err);
+    cw_image_free(image);
+    *image = sheet;
+    return st;
+}
+
 static cw_status take_picture(cli_pictures *p, size_t turn, cli_shot *shot, cw_error *err)
 {
     uint8_t background[2][4];
@@ -452,6 +478,10 @@ static cw_status take_picture(cli_pictures *p, size_t turn, cli_shot *shot, cw_e
         st = draws_on_cpu(p)
                  ? draw_mesh(p, (const uint8_t(*)[4])background, &image, err)
                  : draw_scene(p, turn, shot, (const uint8_t(*)[4])background, &image, err);
+    if (st == CW_OK)
+        st = cli_mark(&p->args->marks, &p->scene, &image, err);
+    if (st == CW_OK && p->args->marks.layout == CLI_LAYOUT_QUAD)
+        st = add_slices(p, &image, err);
     if (st == CW_OK)
         st = cw_image_write(shot->path, &image, err);
     cw_image_free(&image);

@@ -2,6 +2,7 @@
 #ifndef CLI_PICTURE_RUN_H
 #define CLI_PICTURE_RUN_H
 
+#include "cli/marks.h"
 #include "cli/render_report.h"
 #include "cli/series.h"
 #include "cli/viewpoint.h"
@@ -11,6 +12,7 @@ typedef struct render_args {
     cli_input input;
     cli_scene scene;
     cli_turns turns;
+    cli_marks marks;
     const char *output, *json, *mesh, *save_transfer, *save_camera, *compare;
     cli_number iso, difference;
     int inside, backend;
