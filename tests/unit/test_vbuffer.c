@@ -67,9 +67,9 @@ static void it_is_as_exact_as_bytes_can_show(void **state)
     scene.cut_away = true;
     expect_close(r, &scene, 0.001, 0.01);
     scene.lit = true;
-    expect_close(r, &scene, 0.1, 2); /* where gradients vanish, light turns within a cell */
+    expect_close(r, &scene, 0.02, 0.5); /* where gradients vanish, light turns in a cell */
     scene.transfer = &edges;
-    expect_close(r, &scene, 0.05, 0.6);
+    expect_close(r, &scene, 0.05, 0.5);
     scene.lit = false;
     expect_close(r, &scene, 0.01, 0.1);
     scene.cut_away = false;
