@@ -412,16 +412,6 @@ static inline void pass_cell(state *s)
         pass_in_pieces(s);
 }
 
-/* Where the walk is among blocks: how many are empty around it. */
-static int distance_at(const vbuffer *b, const cwi_walk *w)
-{
-    const size_t *dim = b->ranges->dim;
-    const size_t i = (size_t)w->cell[0] / CWI_RANGE_EDGE,
-                 j = (size_t)w->cell[1] / CWI_RANGE_EDGE,
-                 k = (size_t)w->cell[2] / CWI_RANGE_EDGE;
-    return b->distances[(k * dim[1] + j) * dim[0] + i];
-}
-
 static void draw_part(state *s, int part, float least_light)
 {
     cwi_walk *w = &s->walk;
@@ -429,7 +419,7 @@ static void draw_part(state *s, int part, float least_light)
     bool is_new = true;
     while (w->t < w->stop && s->light > least_light) {
         if (is_new) {
-            const int distance = distance_at(s->b, w);
+            const int distance = s->b->distances[cwi_walk_block(w, s->b->ranges->dim)];
             if (distance > 0) {
                 cwi_walk_leap(w, CWI_RANGE_EDGE, distance);
                 continue;
@@ -437,7 +427,7 @@ static void draw_part(state *s, int part, float least_light)
         }
         if (!cwi_walk_next(w))
             break;
-        is_new = (w->cell[w->leave] ^ w->at[w->leave]) & CWI_RANGE_EDGE;
+        is_new = cwi_walk_changes_block(w);
         pass_cell(s);
     }
 }
