@@ -32,6 +32,9 @@ static const float to_first = -0.038675134594812866f, to_second = 0.538675134594
 /* Optical depth that two points are enough for. */
 static const float most_depth = 0.5f;
 
+/* What the extinction may differ by at two points of a piece, times its length. */
+static const float most_steepness = 0.1f;
+
 /* What the two points may differ by, where gradients count. */
 static const float most_turn = 2e-3f;
 
@@ -262,7 +265,9 @@ static void pass_piece(state *s, const cwi_piece *piece, const double value[4])
         const lanes first = glow_of_piece(s, piece->linear, value, from + FIRST_POINT * width);
         const lanes second =
             glow_of_piece(s, piece->linear, value, from + SECOND_POINT * width);
-        if (parts == 1 && !is_told(s, first, second, (float)width * length)) {
+        const float steepness = fabsf(first[3] - second[3]) * (float)width * length;
+        if (parts == 1 &&
+            (steepness > most_steepness || !is_told(s, first, second, (float)width * length))) {
             const float depth = (first[3] + second[3]) * 0.5f * (float)width * length;
             parts = (int)fminf(4 + 2 * depth / most_depth, 32);
             width /= parts;
@@ -358,8 +363,9 @@ static inline const row_parts *parts_of(const vbuffer *b, float row)
     return &b->parts[(int32_t)(at > 0 ? at < most ? at : most : 0)];
 }
 
-/* The values a cell may have along the ray. Where they turn, the cubic may go farther than at
- * the four places: a parabola by half the difference. */
+/* The values a cell may have along the ray. Where they turn, the cubic goes farther than at the
+ * four places: a parabola by half the difference, by little if it turns close to an end; a
+ * rough cubic by more. */
 static inline void range_of(lanes rows, float *low, float *high)
 {
     *low = *high = rows[0];
@@ -369,11 +375,9 @@ static inline void range_of(lanes rows, float *low, float *high)
     }
     const bool rises = rows[0] <= rows[1] && rows[1] <= rows[2] && rows[2] <= rows[3];
     const bool falls = rows[0] >= rows[1] && rows[1] >= rows[2] && rows[2] >= rows[3];
-    if (!rises && !falls) {
-        const float beyond = 0.5f * (*high - *low);
-        *low -= beyond;
-        *high += beyond;
-    }
+    const float beyond = (rises || falls ? 0.125f : 1.0f) * (*high - *low);
+    *low -= beyond;
+    *high += beyond;
 }
 
 static inline void pass_cell(state *s)
