@@ -39,16 +39,14 @@ static cw_status take_ranges(cwi_cpu *cpu, const cwi_frame *f, cw_error *err)
 static cw_status draw_volume(cwi_cpu *cpu, const cwi_frame *f, const double *depths,
                              cw_picture *picture, cw_error *err)
 {
-    cw_status st;
-    switch (f->scene.mode) {
-    case CW_MODE_REFERENCE:
+    if (f->scene.mode == CW_MODE_REFERENCE)
         return cwi_reference_draw(f, depths, picture, NULL, err);
-    case CW_MODE_VBUFFER:
-        st = take_ranges(cpu, f, err);
-        return st == CW_OK ? cwi_vbuffer_draw(f, &cpu->ranges, depths, picture, err) : st;
-    default:
-        return cwi_intensity_draw(f, depths, picture, err);
-    }
+    cw_status st = take_ranges(cpu, f, err);
+    if (st == CW_OK && f->scene.mode == CW_MODE_VBUFFER)
+        st = cwi_vbuffer_draw(f, &cpu->ranges, depths, picture, err);
+    else if (st == CW_OK)
+        st = cwi_intensity_draw(f, &cpu->ranges, depths, picture, err);
+    return st;
 }
 
 /* Puts an opaque mesh behind what was drawn. */

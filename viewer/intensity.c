@@ -117,20 +117,55 @@ static void add_cell(cw_mode mode, const cwi_walk *w, tally *t)
         add_local(w, v, t);
 }
 
-double cwi_intensity_ray(const cwi_frame *frame, double x, double y, double depth)
+/* Whether a block of cells can be passed over: it has no values, or none that would be told. A
+ * stretch of values goes on behind it, below the threshold as its end was, and so as if it
+ * began there. */
+static bool is_passed_over(cw_mode mode, const float range[2], tally *t)
+{
+    const double low = (double)range[0], high = (double)range[1];
+    if (low > high) {
+        end_stretch(t);
+        return true;
+    }
+    if (mode == CW_MODE_AVERAGE || !t->has_value ||
+        !(mode == CW_MODE_MINIP ? low >= t->extreme : high <= t->extreme) ||
+        (mode == CW_MODE_LOCAL_MIP && high >= t->threshold))
+        return false;
+    t->is_under_way = false;
+    return true;
+}
+
+static void add_part(const cwi_frame *frame, const cwi_ranges *ranges, const cwi_ray *ray,
+                     int part, tally *t)
+{
+    cwi_walk walk;
+    const cw_mode mode = frame->scene.mode;
+    bool is_new_block = ranges != NULL;
+    cwi_walk_start(&walk, frame, ray, part);
+    while (!t->is_found && walk.t < walk.stop) {
+        if (is_new_block &&
+            is_passed_over(mode, ranges->blocks[cwi_walk_block(&walk, ranges->dim)], t)) {
+            cwi_walk_leap(&walk, CWI_RANGE_EDGE, 1);
+            continue;
+        }
+        if (!cwi_walk_next(&walk))
+            break;
+        is_new_block = ranges && cwi_walk_changes_block(&walk);
+        add_cell(mode, &walk, t);
+    }
+    if (!t->is_found)
+        end_stretch(t);
+}
+
+double cwi_intensity_ray(const cwi_frame *frame, const cwi_ranges *ranges, double x, double y,
+                         double depth)
 {
     cwi_ray ray;
-    cwi_walk walk;
     const cw_mode mode = frame->scene.mode;
     tally t = {.threshold = mode == CW_MODE_LOCAL_MIP ? frame->scene.threshold : INFINITY};
     cwi_ray_make(frame, x, y, depth, &ray);
-    for (int n = 0; n < ray.part_count && !t.is_found; n++) {
-        cwi_walk_start(&walk, frame, &ray, n);
-        while (!t.is_found && cwi_walk_next(&walk))
-            add_cell(mode, &walk, &t);
-        if (!t.is_found)
-            end_stretch(&t);
-    }
+    for (int n = 0; n < ray.part_count && !t.is_found; n++)
+        add_part(frame, ranges, &ray, n, &t);
     if (!t.has_value)
         return NAN;
     if (mode == CW_MODE_AVERAGE)
@@ -140,6 +175,7 @@ double cwi_intensity_ray(const cwi_frame *frame, double x, double y, double dept
 
 typedef struct job {
     const cwi_frame *frame;
+    const cwi_ranges *ranges;
     const double *depths;
     cw_picture *picture;
 } job;
@@ -151,8 +187,8 @@ static void draw_row(void *context, size_t y)
     for (size_t x = 0; x < width; x++) {
         float *pixel = work->picture->pixels + 4 * (y * width + x);
         const double depth = work->depths ? work->depths[y * width + x] : INFINITY;
-        const double value =
-            cwi_intensity_ray(work->frame, (double)x + 0.5, (double)y + 0.5, depth);
+        const double value = cwi_intensity_ray(work->frame, work->ranges, (double)x + 0.5,
+                                               (double)y + 0.5, depth);
         double color[3], opacity;
         if (isnan(value))
             continue;
@@ -163,10 +199,10 @@ static void draw_row(void *context, size_t y)
     }
 }
 
-cw_status cwi_intensity_draw(const cwi_frame *frame, const double *depths, cw_picture *picture,
-                             cw_error *err)
+cw_status cwi_intensity_draw(const cwi_frame *frame, const cwi_ranges *ranges,
+                             const double *depths, cw_picture *picture, cw_error *err)
 {
-    job work = {frame, depths, picture};
+    job work = {frame, ranges, depths, picture};
     return cwi_each_layer(picture->height, picture->width * CWI_RAY_SAMPLES,
                           frame->scene.threads, &frame->scene.progress, "drawing", draw_row,
                           &work, err);

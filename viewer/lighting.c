@@ -12,6 +12,18 @@ static void normalize(double v[3])
         v[a] /= length;
 }
 
+/* x^power for whole powers, as most are, and others; quicker than pow(). */
+static double raise(double x, double power)
+{
+    double result = 1;
+    if (power != floor(power) || power > 1024 || power < 0)
+        return pow(x, power);
+    for (unsigned n = (unsigned)power; n > 0; n /= 2, x *= x)
+        if (n & 1)
+            result *= x;
+    return result;
+}
+
 void cwi_lighting_make(const cwi_frame *f, const double direction[3], cwi_lighting *l)
 {
     *l = (cwi_lighting){.material = f->scene.material, .count = f->scene.light_count};
@@ -39,7 +51,7 @@ void cwi_lighting_shade(const cwi_lighting *l, const double gradient[3], double 
         const double diffuse = (double)l->material.diffuse * fabs(cwi_dot(n, l->direction[i]));
         const double gloss = fabs(cwi_dot(n, l->halfway[i]));
         const double specular =
-            (double)l->material.specular * pow(gloss, (double)l->material.shininess);
+            (double)l->material.specular * raise(gloss, (double)l->material.shininess);
         for (int c = 0; c < 3; c++)
             light[c] += l->color[i][c] * (diffuse * color[c] + specular);
     }

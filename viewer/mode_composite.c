@@ -24,10 +24,13 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     char defines[256];
     GLuint program;
     const cw_scene *s = &gl->frame->scene;
+    /* a segment has samples at both ends and in the middle */
+    const double length =
+        s->no_preintegration || s->cell_steps || s->lit ? s->step_vox : 2 * s->step_vox;
     cw_status st = CW_OK;
     describe(s, &gl->frame->transfer, defines, sizeof defines);
     if (!s->no_preintegration)
-        st = cwi_gl_need_segments(gl, s->step_vox, err);
+        st = cwi_gl_need_segments(gl, length, err);
     if (st == CW_OK && (s->lit || gl->frame->transfer.gradient_count > 0))
         st = cwi_gl_need_gradients(gl, err);
     if (st == CW_OK)
@@ -37,7 +40,7 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     size_t *order = cwi_gl_order_bricks(gl);
     if (!order)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the order of bricks");
-    cwi_gl_set(program, "step_length", (float)s->step_vox);
+    cwi_gl_set(program, "step_length", (float)length);
     cwi_gl_set_last_block(program, gl->volume.ranges.dim);
     glDisable(GL_DEPTH_TEST);
     glEnable(GL_BLEND);

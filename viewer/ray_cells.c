@@ -80,23 +80,43 @@ void cwi_walk_leap(cwi_walk *w, int edge, int distance)
         w->t = w->stop;
 }
 
-bool cwi_walk_values(const cwi_walk *w, double v[8])
+/* The stored numbers at the corners, from the address of the first. */
+static void read_corners(const cw_volume *volume, const char *p, double x[8])
 {
-    const cw_volume *volume = w->volume;
     ptrdiff_t side[3];
     for (int a = 0; a < 3; a++)
         side[a] = volume->dim[a] > 1 ? volume->stride[a] : 0;
+    switch (volume->type) {
+#define CASE(name, ctype, text)                                                                \
+    case name:                                                                                 \
+        for (int n = 0; n < 8; n += 2) {                                                       \
+            const char *edge = p + (n >> 1 & 1) * side[1] + (n >> 2) * side[2];                \
+            x[n] = (double)*(const ctype *)edge;                                               \
+            x[n + 1] = (double)*(const ctype *)(edge + side[0]);                               \
+        }                                                                                      \
+        break;
+        CW_TYPE_TABLE(CASE)
+#undef CASE
+    default:
+        break;
+    }
+}
+
+bool cwi_walk_values(const cwi_walk *w, double v[8])
+{
+    const cw_volume *volume = w->volume;
     const char *base = (const char *)volume->data + w->at[0] * volume->stride[0] +
                        w->at[1] * volume->stride[1] + w->at[2] * volume->stride[2];
+    double x[8] = {0}, none = 0;
+    read_corners(volume, base, x);
     for (int n = 0; n < 8; n++) {
-        const char *p =
-            base + (n & 1) * side[0] + (n >> 1 & 1) * side[1] + (n >> 2 & 1) * side[2];
-        const double x = cwi_voxel_at(volume->type, p);
-        if (!isfinite(x) || (volume->has_nodata && x == volume->nodata))
-            return false;
-        v[n] = volume->slope * x + volume->intercept;
+        none += x[n] - x[n]; /* 0, or NaN */
+        v[n] = volume->slope * x[n] + volume->intercept;
     }
-    return true;
+    for (int n = 0; n < 8 && volume->has_nodata; n++)
+        if (x[n] == volume->nodata)
+            return false;
+    return none == 0;
 }
 
 /* Along x, which makes a line of each edge, then y and z, each of which raises the degree. */

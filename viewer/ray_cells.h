@@ -4,6 +4,7 @@
 #define VIEWER_RAY_CELLS_H
 
 #include "viewer/frame.h"
+#include "viewer/ranges.h"
 
 #include "core/vector.h"
 
@@ -76,6 +77,21 @@ static inline bool cwi_walk_next(cwi_walk *w)
             return true;
     }
     return false;
+}
+
+/* The number of the block of CWI_RANGE_EDGE cells a side that the next cell is in, of a lattice
+ * of dim of them; and whether that is another one than the cell that was found is in. */
+static inline size_t cwi_walk_block(const cwi_walk *w, const size_t dim[3])
+{
+    const size_t i = (size_t)w->cell[0] / CWI_RANGE_EDGE,
+                 j = (size_t)w->cell[1] / CWI_RANGE_EDGE,
+                 k = (size_t)w->cell[2] / CWI_RANGE_EDGE;
+    return (k * dim[1] + j) * dim[0] + i;
+}
+
+static inline bool cwi_walk_changes_block(const cwi_walk *w)
+{
+    return (w->cell[w->leave] ^ w->at[w->leave]) & CWI_RANGE_EDGE;
 }
 
 /* Out of blocks of edge cells a side that are empty: that of the next cell, and those around it

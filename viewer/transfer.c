@@ -98,8 +98,9 @@ void cw_transfer_at(const cw_transfer *t, double value, double color[3], double 
 {
     double share;
     const size_t n = find_place(t->colors, sizeof *t->colors, t->color_count, value, &share);
+    const size_t last = t->color_count ? t->color_count - 1 : 0;
     const cw_color_point *low = &t->colors[n ? n - 1 : 0];
-    const cw_color_point *high = n < t->color_count ? &t->colors[n] : low;
+    const cw_color_point *high = &t->colors[n < last ? n : last];
     for (int c = 0; c < 3; c++)
         color[c] = t->color_count ? (double)low->color[c] +
                                         share * ((double)high->color[c] - (double)low->color[c])

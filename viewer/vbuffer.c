@@ -14,6 +14,7 @@
 #include "core/layers.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "core/vector.h"
 #include "core/volume.h"
 
 #include <math.h>
@@ -30,6 +31,12 @@ static const float to_first = -0.038675134594812866f, to_second = 0.538675134594
 
 /* Optical depth that two points are enough for. */
 static const float most_depth = 0.5f;
+
+/* What the extinction may differ by at two points of a piece, times its length. */
+static const float most_steepness = 0.1f;
+
+/* What the two points may differ by, where gradients count. */
+static const float most_turn = 2e-3f;
 
 typedef struct vbuffer vbuffer;
 
@@ -55,6 +62,7 @@ struct vbuffer {
     ptrdiff_t side[3];
     double row_scale, row_bias; /* from a voxel to its row */
     double to_eye[3][3];
+    float rows_to_eye[3][3]; /* of gradients in rows of the table */
     bool has_gradients;
 };
 
@@ -67,7 +75,8 @@ typedef struct state {
     lanes color;
     float light;
     float background[3];
-    double gradient[3][4]; /* cubics in the cell, eye space */
+    bool has_gradient;     /* the cell's: */
+    double gradient[3][4]; /* cubics, eye space */
 } state;
 
 #define FETCH(name, ctype, text)                                                               \
@@ -166,19 +175,13 @@ static inline lanes glow_of_row(const vbuffer *b, float row)
     return low + (at - (float)n) * (high - low);
 }
 
-static void change_by_gradient(const state *s, double x, lanes *glow)
+static void change_by_gradient(const state *s, const double gradient[3], lanes *glow)
 {
     const cwi_frame *f = s->b->frame;
-    double gradient[3], color[3];
-    for (int a = 0; a < 3; a++) {
-        gradient[a] = cwi_cubic_at(s->gradient[a], x);
-        color[a] = (double)(*glow)[a];
-    }
+    double color[3] = {(double)(*glow)[0], (double)(*glow)[1], (double)(*glow)[2]};
     if (f->transfer.gradient_count > 0)
         (*glow)[3] *= (float)cw_transfer_gradient_factor(
-            &f->transfer, sqrt(gradient[0] * gradient[0] + gradient[1] * gradient[1] +
-                               gradient[2] * gradient[2]) /
-                              f->unit_mm);
+            &f->transfer, sqrt(cwi_dot(gradient, gradient)) / f->unit_mm);
     if (f->scene.lit) {
         cwi_lighting_shade(s->lighting, gradient, color);
         for (int a = 0; a < 3; a++)
@@ -195,12 +198,12 @@ static void change_by_depth(const state *s, double x, lanes *glow)
         (*glow)[c] = cue * (*glow)[c] + (1 - cue) * s->background[c];
 }
 
-/* What a point glows with and its extinction, of which the transfer function told. x: its place
- * in the cell, 0 to 1 */
-static inline lanes finish(const state *s, double x, lanes glow)
+/* What a point glows with, of which the transfer function told. x: its place in the cell, 0 to
+ * 1; gradient: in eye space, if there is need of it */
+static inline lanes finish(const state *s, double x, const double gradient[3], lanes glow)
 {
     if (s->b->has_gradients)
-        change_by_gradient(s, x, &glow);
+        change_by_gradient(s, gradient, &glow);
     if (s->b->frame->scene.depth_cue > 0)
         change_by_depth(s, x, &glow);
     return glow;
@@ -232,35 +235,53 @@ static lanes glow_of_piece(const state *s, const cwi_linear *l, const double val
     for (int c = 0; c < 3; c++)
         glow[c] = (float)(l->color[c] + v * l->color_slope[c]);
     glow[3] = (float)cwi_frame_extinction(s->b->frame, opacity);
-    return finish(s, x, glow);
+    double gradient[3] = {0};
+    for (int a = 0; a < 3 && s->has_gradient; a++)
+        gradient[a] = cwi_cubic_at(s->gradient[a], x);
+    return finish(s, x, gradient, glow);
 }
 
-/* A piece, in as many parts as its optical depth asks for. */
+/* Whether two points tell of a stretch well enough. Light may turn within a cell. */
+static inline bool is_told(const state *s, lanes first, lanes second, float length)
+{
+    const float depth = (first[3] + second[3]) * 0.5f * length;
+    if (depth > most_depth)
+        return false;
+    if (!s->b->has_gradients)
+        return true;
+    float most = fabsf(first[3] - second[3]) * length;
+    for (int c = 0; c < 3; c++)
+        most = fmaxf(most, depth * fabsf(first[c] - second[c]));
+    return s->light * most < most_turn;
+}
+
+/* A piece, in parts where two points do not tell of it. */
 static void pass_piece(state *s, const cwi_piece *piece, const double value[4])
 {
-    const cwi_walk *w = &s->walk;
-    const double length = w->to - w->from;
+    const float length = (float)(s->walk.to - s->walk.from);
     double width = piece->to - piece->from;
-    int parts = 1;
-    for (int n = 0; n < parts; n++) {
+    for (int n = 0, parts = 1; n < parts; n++) {
         const double from = piece->from + n * width;
         const lanes first = glow_of_piece(s, piece->linear, value, from + FIRST_POINT * width);
         const lanes second =
             glow_of_piece(s, piece->linear, value, from + SECOND_POINT * width);
-        const float depth = (first[3] + second[3]) * 0.5f * (float)(width * length);
-        if (parts == 1 && depth > most_depth) {
-            parts = (int)fminf(ceilf(2 * depth / most_depth), 32);
+        const float steepness = fabsf(first[3] - second[3]) * (float)width * length;
+        if (parts == 1 &&
+            (steepness > most_steepness || !is_told(s, first, second, (float)width * length))) {
+            const float depth = (first[3] + second[3]) * 0.5f * (float)width * length;
+            parts = (int)fminf(4 + 2 * depth / most_depth, 32);
             width /= parts;
             n = -1;
             continue;
         }
-        pass(s, first, second, (float)(width * length));
+        pass(s, first, second, (float)width * length);
     }
 }
 
 static void find_gradients(state *s)
 {
     double g[3][8], cubic[3][4];
+    s->has_gradient = true;
     cwi_walk_gradients(&s->walk, g);
     for (int a = 0; a < 3; a++)
         cwi_walk_cubic(&s->walk, g[a], cubic[a]);
@@ -279,10 +300,60 @@ static void pass_in_pieces(state *s)
     if (!cwi_walk_values(&s->walk, v))
         return;
     cwi_walk_cubic(&s->walk, v, value);
+    if (s->b->has_gradients)
+        find_gradients(s);
     const size_t count = cwi_knots_cut(&s->b->knots, value, pieces);
     for (size_t n = 0; n < count; n++)
         if (pieces[n].linear->is_visible)
             pass_piece(s, &pieces[n], value);
+}
+
+/* Gradients at the cell's corners, per voxel and in rows, as values are: by the cells on both
+ * sides along each axis. False: there is none on one side, or one without a value. */
+static bool fetch_gradients(const vbuffer *b, const cwi_walk *w, const char *p, lanes even,
+                            lanes odd, lanes g[3][2])
+{
+    const cw_volume *v = &b->frame->volume;
+    lanes low[3][2], high[3][2];
+    for (int a = 0; a < 3; a++)
+        if (w->at[a] < 1 || w->at[a] + 2 >= (ptrdiff_t)v->dim[a] ||
+            !b->fetch(b, p - v->stride[a], &low[a][0], &low[a][1]) ||
+            !b->fetch(b, p + v->stride[a], &high[a][0], &high[a][1]))
+            return false;
+    g[0][0] = 0.5f * (odd - low[0][0]);
+    g[0][1] = 0.5f * (high[0][1] - even);
+    for (int n = 0; n < 2; n++) {
+        const lanes e = n ? odd : even, *l = &low[1][n], *h = &high[1][n];
+        g[1][n] = 0.5f * ((lanes){e[1], (*h)[1], e[3], (*h)[3]} -
+                          (lanes){(*l)[0], e[0], (*l)[2], e[2]});
+        l = &low[2][n], h = &high[2][n];
+        g[2][n] = 0.5f * ((lanes){e[2], e[3], (*h)[2], (*h)[3]} -
+                          (lanes){(*l)[0], (*l)[1], e[0], e[1]});
+    }
+    return true;
+}
+
+/* The gradients at the two points of a cell, in eye space. */
+static void gradients_at_points(state *s, const char *p, lanes even, lanes odd,
+                                const lanes at[3], double gradients[2][3])
+{
+    lanes g[3][2], along[3];
+    if (!fetch_gradients(s->b, &s->walk, p, even, odd, g)) {
+        find_gradients(s);
+        for (int a = 0; a < 3; a++) {
+            gradients[0][a] = cwi_cubic_at(s->gradient[a], FIRST_POINT);
+            gradients[1][a] = cwi_cubic_at(s->gradient[a], SECOND_POINT);
+        }
+        return;
+    }
+    for (int a = 0; a < 3; a++)
+        along[a] = rows_along(g[a][0], g[a][1], at);
+    for (int r = 0; r < 3; r++) {
+        const float *m = s->b->rows_to_eye[r];
+        const lanes eye = m[0] * along[0] + m[1] * along[1] + m[2] * along[2];
+        gradients[0][r] = (double)eye[1];
+        gradients[1][r] = (double)eye[2];
+    }
 }
 
 static inline const row_parts *parts_of(const vbuffer *b, float row)
@@ -290,6 +361,23 @@ static inline const row_parts *parts_of(const vbuffer *b, float row)
     const float most = (float)CWI_TABLE_ROWS;
     const float at = row + 1;
     return &b->parts[(int32_t)(at > 0 ? at < most ? at : most : 0)];
+}
+
+/* The values a cell may have along the ray. Where they turn, the cubic goes farther than at the
+ * four places: a parabola by half the difference, by little if it turns close to an end; a
+ * rough cubic by more. */
+static inline void range_of(lanes rows, float *low, float *high)
+{
+    *low = *high = rows[0];
+    for (int n = 1; n < 4; n++) {
+        *low = rows[n] < *low ? rows[n] : *low;
+        *high = rows[n] > *high ? rows[n] : *high;
+    }
+    const bool rises = rows[0] <= rows[1] && rows[1] <= rows[2] && rows[2] <= rows[3];
+    const bool falls = rows[0] >= rows[1] && rows[1] >= rows[2] && rows[2] >= rows[3];
+    const float beyond = (rises || falls ? 0.125f : 1.0f) * (*high - *low);
+    *low -= beyond;
+    *high += beyond;
 }
 
 static inline void pass_cell(state *s)
@@ -308,32 +396,24 @@ static inline void pass_cell(state *s)
         at[a] = (float)(w->index[a] + w->from * w->slope[a] - (double)w->at[a]) +
                 (float)(length * w->slope[a]) * x;
     const lanes rows = rows_along(even, odd, at);
-    float low = rows[0], high = rows[0];
-    for (int n = 1; n < 4; n++) {
-        low = rows[n] < low ? rows[n] : low;
-        high = rows[n] > high ? rows[n] : high;
-    }
+    float low, high;
+    range_of(rows, &low, &high);
     const int first = parts_of(b, low)->low, last = parts_of(b, high)->high;
     if (first == last && !b->knots.linear[first].is_visible)
         return;
-    if (b->has_gradients)
-        find_gradients(s);
-    lanes glow[2] = {glow_of_row(b, rows[1]), glow_of_row(b, rows[2])};
-    if (first != last || (glow[0][3] + glow[1][3]) * (float)length > 2 * most_depth) {
+    if (first != last) {
         pass_in_pieces(s);
         return;
     }
-    pass(s, finish(s, FIRST_POINT, glow[0]), finish(s, SECOND_POINT, glow[1]), (float)length);
-}
-
-/* Where the walk is among blocks: how many are empty around it. */
-static int distance_at(const vbuffer *b, const cwi_walk *w)
-{
-    const size_t *dim = b->ranges->dim;
-    const size_t i = (size_t)w->cell[0] / CWI_RANGE_EDGE,
-                 j = (size_t)w->cell[1] / CWI_RANGE_EDGE,
-                 k = (size_t)w->cell[2] / CWI_RANGE_EDGE;
-    return b->distances[(k * dim[1] + j) * dim[0] + i];
+    double gradients[2][3] = {0};
+    if (b->has_gradients)
+        gradients_at_points(s, p, even, odd, at, gradients);
+    const lanes front = finish(s, FIRST_POINT, gradients[0], glow_of_row(b, rows[1]));
+    const lanes back = finish(s, SECOND_POINT, gradients[1], glow_of_row(b, rows[2]));
+    if (is_told(s, front, back, (float)length))
+        pass(s, front, back, (float)length);
+    else
+        pass_in_pieces(s);
 }
 
 static void draw_part(state *s, int part, float least_light)
@@ -343,7 +423,7 @@ static void draw_part(state *s, int part, float least_light)
     bool is_new = true;
     while (w->t < w->stop && s->light > least_light) {
         if (is_new) {
-            const int distance = distance_at(s->b, w);
+            const int distance = s->b->distances[cwi_walk_block(w, s->b->ranges->dim)];
             if (distance > 0) {
                 cwi_walk_leap(w, CWI_RANGE_EDGE, distance);
                 continue;
@@ -351,7 +431,7 @@ static void draw_part(state *s, int part, float least_light)
         }
         if (!cwi_walk_next(w))
             break;
-        is_new = (w->cell[w->leave] ^ w->at[w->leave]) & CWI_RANGE_EDGE;
+        is_new = cwi_walk_changes_block(w);
         pass_cell(s);
     }
 }
@@ -422,6 +502,9 @@ static cw_status set_up(vbuffer *b, cw_error *err)
     for (int a = 0; a < 3; a++)
         b->side[a] = v->dim[a] > 1 ? v->stride[a] : 0;
     cwi_frame_gradient_matrix(b->frame, b->to_eye);
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+            b->rows_to_eye[r][c] = (float)(b->to_eye[r][c] / scale);
     b->has_gradients = b->frame->scene.lit || b->frame->transfer.gradient_count > 0;
     return cwi_ranges_distances(b->ranges, is_visible, &b->knots, &b->distances, err);
 }

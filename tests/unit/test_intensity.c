@@ -21,7 +21,7 @@ static cw_scene scene_of(cw_mode mode, const cw_volume *v, cw_camera camera)
 static double value_of(const cw_scene *scene, double x, double y)
 {
     const cwi_frame frame = test_frame(scene);
-    return cwi_intensity_ray(&frame, x, y, INFINITY);
+    return cwi_intensity_ray(&frame, NULL, x, y, INFINITY);
 }
 
 /* Samples come close to the extremes, and never beyond them; their mean to the mean. */
@@ -125,12 +125,41 @@ static void pictures_show_the_value(void **state)
     cw_renderer_free(r);
 }
 
+/* What is passed over would not have been told; values in their blocks or not. */
+static void passing_over_blocks_changes_nothing(void **state)
+{
+    (void)state;
+    cw_error err = {0};
+    cw_volume v = {0};
+    cwi_ranges ranges;
+    test_field(&v, 37, 41, 33, (const double[3]){1, 1.3, 0.9}, test_blobs);
+    float *voxels = cw_volume_voxels(&v);
+    for (size_t n = 0; n < 37 * 41 * 33; n++)
+        if (n / 37 % 41 / 12 == 1 && n % 37 > 8) /* whole blocks of it */
+            voxels[n] = NAN;
+    assert_ok(cwi_ranges_make(&v, 1, &ranges, &err), err);
+    for (int mode = CW_MODE_MIP; mode <= CW_MODE_LOCAL_MIP; mode++)
+        for (size_t p = 0; p < 400; p++) {
+            cw_scene scene = scene_of((cw_mode)mode, &v, (cw_camera){0});
+            scene.camera = (cw_camera){.eye = {35, -60, 20}, .up = {0, 0, 1}, .fov_deg = 30};
+            scene.threshold = (double[]){0.2, 0.5, 0.8}[p % 3];
+            const cwi_frame frame = test_frame(&scene);
+            const double x = 0.4 * (double)(p % 20), y = 0.4 * (double)(p / 20);
+            const double all = cwi_intensity_ray(&frame, NULL, x, y, INFINITY),
+                         some = cwi_intensity_ray(&frame, &ranges, x, y, INFINITY);
+            assert_true(all == some || (isnan(all) && isnan(some)));
+        }
+    cwi_ranges_free(&ranges);
+    cw_volume_free(&v);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(extremes_and_mean_are_exact),
         cmocka_unit_test(first_maximum_above_the_threshold_counts),
         cmocka_unit_test(pictures_show_the_value),
+        cmocka_unit_test(passing_over_blocks_changes_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

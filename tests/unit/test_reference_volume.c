@@ -156,6 +156,7 @@ static void many_small_steps_agree(void **state)
         {test_blobs, &soft, mirror, true, false, 1, 1e-7},
         {test_blobs, &soft, shear, true, true, 0.5f, 1e-6},
         {test_blobs, &edges, NULL, true, true, 0, 1e-6},
+        {test_cubic, &ramp_transfer, NULL, true, true, 0, 1e-6}, /* lit at the border */
     };
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
         cw_volume volume = {0};

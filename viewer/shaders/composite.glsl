@@ -12,11 +12,13 @@ float segment_place(float coordinate)
     return (coordinate * (dim.w - 1.0) + 0.5) / dim.w;
 }
 
-// What a full segment between two of them adds; NaN is empty.
-vec4 segment_between(float front, float back)
+// What a full segment adds that has such ends and such a middle; NaN is empty. Both ends are shifted
+// by two thirds of what the middle is above their mean: so the mean is that of the parabola.
+vec4 segment_through(float front, float middle, float back)
 {
-    vec4 color = texture(segments, vec2(front, back));
-    return front + back == front + back ? color : vec4(0.0);
+    float shift = (2.0 / 3.0) * (middle - 0.5 * (front + back));
+    vec4 color = texture(segments, vec2(front, back) + shift);
+    return shift == shift ? color : vec4(0.0);
 }
 
 // The same stuff on another length, or more or less of it: light through it to that power.
@@ -78,8 +80,9 @@ vec4 along(ray r, float from, float to, vec4 sum, float y)
 #ifdef SEGMENTS
         if (!has_front)
             front = segment_place(coordinate_of(texel_at(at)));
+        float middle = segment_place(coordinate_of(texel_at(at + 0.5 * extent * r.slope)));
         float back = segment_place(coordinate_of(texel_at(at + extent * r.slope)));
-        vec4 color = segment_between(front, back);
+        vec4 color = segment_through(front, middle, back);
         front = back;
         has_front = true;
         if (extent != h)
