@@ -18,7 +18,7 @@ typedef struct frame_block {
     int32_t counts[4];
 } frame_block;
 
-static const cwi_gl_mode *const modes[] = {&cwi_gl_composite};
+static const cwi_gl_mode *const modes[] = {&cwi_gl_composite, &cwi_gl_projection};
 
 const cwi_gl_mode *cwi_gl_find_mode(cw_mode mode)
 {
