@@ -18,7 +18,8 @@ typedef struct frame_block {
     int32_t counts[4];
 } frame_block;
 
-static const cwi_gl_mode *const modes[] = {&cwi_gl_composite, &cwi_gl_projection};
+static const cwi_gl_mode *const modes[] = {&cwi_gl_composite, &cwi_gl_projection, &cwi_gl_splat,
+                                           &cwi_gl_splat_tree};
 
 const cwi_gl_mode *cwi_gl_find_mode(cw_mode mode)
 {

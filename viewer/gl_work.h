@@ -89,7 +89,7 @@ typedef struct cwi_gl_mode {
     void (*drop)(void *state);
 } cwi_gl_mode;
 
-extern const cwi_gl_mode cwi_gl_composite, cwi_gl_projection;
+extern const cwi_gl_mode cwi_gl_composite, cwi_gl_projection, cwi_gl_splat, cwi_gl_splat_tree;
 
 /* The mode's row; NULL when GL does not draw it. */
 const cwi_gl_mode *cwi_gl_find_mode(cw_mode mode);

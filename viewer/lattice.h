@@ -33,6 +33,18 @@ CW_API bool cwi_visible_any(const cwi_visible *visible, float low, float high);
 CW_API void cwi_lattice_load(const cwi_frame *frame, const cwi_table *table,
                              const size_t first[3], const size_t count[3], float *out);
 
+/* Whether a sample of the volume has no value. */
+CW_API bool cwi_lattice_has_gaps(const cw_volume *v, int threads);
+
+/* The cells a voxel stands for: of the eight eighths around it those that belong to cells of
+ * the volume with values at all corners. A volume of one layer has cells on both sides of it.
+ * has_gaps: whether to look for samples without a value */
+CW_API double cwi_lattice_mass(const cw_volume *v, const size_t at[3], bool has_gaps);
+
+/* The derivatives of the stored values per voxel: central inside, one-sided at the border; 0
+ * where a sample has no value. */
+CW_API void cwi_lattice_gradient(const cw_volume *v, const size_t at[3], double gradient[3]);
+
 #ifdef __cplusplus
 }
 #endif

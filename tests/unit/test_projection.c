@@ -94,6 +94,7 @@ static void simple_forms_are_near(void **state)
     const cw_transfer soft = test_soft_transfer();
     cw_volume blobs = {0};
     test_field(&blobs, EDGE, EDGE, EDGE, cube, test_blobs);
+    cw_renderer_forget(r);
     cw_scene scene = scene_of(&blobs, &soft, test_view(30, 25, 30, 50));
     const double best = test_error(r, &scene).rmse;
     scene.no_preintegration = true;
@@ -113,6 +114,7 @@ static void no_jump_in_degenerate_views(void **state)
     const cw_transfer soft = test_soft_transfer();
     cw_volume blobs = {0};
     test_field(&blobs, EDGE, EDGE, EDGE, cube, test_blobs);
+    cw_renderer_forget(r);
     for (int n = 0; n < 2; n++) {
         cw_picture before = {0};
         double worst[2] = {0};
@@ -195,6 +197,7 @@ static void eye_inside_sees_what_is_in_front(void **state)
     const cw_transfer soft = test_soft_transfer();
     cw_volume blobs = {0};
     test_field(&blobs, EDGE, EDGE, EDGE, cube, test_blobs);
+    cw_renderer_forget(r);
     cw_scene scene = scene_of(&blobs, &soft, test_view(30, 25, 90, 8));
     assert_true(test_error(r, &scene).rmse < 0.5);
     cw_volume_free(&blobs);
@@ -210,6 +213,7 @@ static void nodata_is_left_out(void **state)
     test_field(&box, EDGE, EDGE, EDGE, cube, test_constant);
     box.has_nodata = true;
     box.nodata = -7;
+    cw_renderer_forget(r);
     float *voxels = cw_volume_voxels(&box);
     for (size_t n = 0; n < EDGE * EDGE * EDGE; n += 97)
         voxels[n] = -7;
@@ -226,6 +230,7 @@ static void nodes_follow_the_tolerance(void **state)
     const cw_transfer soft = test_soft_transfer();
     cw_volume blobs = {0};
     test_field(&blobs, EDGE, EDGE, EDGE, cube, test_blobs);
+    cw_renderer_forget(r);
     cw_scene scene = scene_of(&blobs, &soft, test_view(30, 25, 30, 50));
     cw_picture exact = test_draw(r, &scene);
     double before = 0;
