@@ -24,7 +24,7 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     cwi_splats s = {0};
     cw_status st = *state ? CW_OK : make_state(gl->frame, (bool **)state, err);
     if (st == CW_OK)
-        st = cwi_splats_open(&s, gl, *(const bool *)*state, err);
+        st = cwi_splats_open(&s, gl, *(const bool *)*state, false, err);
     if (st == CW_OK)
         st = cwi_splats_flat(&s, err);
     cwi_splats_close(&s);

@@ -1,5 +1,5 @@
 /* Hierarchical splatting: nodes of an octree whose values are near enough to their mean are one
- * splat each. A node goes into the sheet in its middle. */
+ * splat in each sheet they are in. */
 #include "viewer/pyramid.h"
 #include "viewer/splats.h"
 
@@ -50,7 +50,7 @@ static bool is_clipped(const cwi_splats *s, const double eye[3], const float siz
 static bool is_too_near(const cwi_splats *s, const double eye[3], const float size[3])
 {
     const float most = fmaxf(fmaxf(size[0], size[1]), size[2]);
-    return s->frame->perspective && -eye[2] <= s->radius * (double)most;
+    return s->frame->perspective && -eye[2] <= s->radius * (1 + (double)most);
 }
 
 /* The slope of the means of the nodes on both sides; of the volume's range, per voxel. */
@@ -71,12 +71,36 @@ static float slope_at(const walk *w, size_t level, const size_t node[3], int axi
     return (float)((double)(y->mean - x->mean) / (double)away / w->splats.gl->volume.range);
 }
 
-static void splat_node(walk *w, size_t level, const size_t node[3], cwi_splat *splat,
-                       const double eye[3])
+/* A node's box ends half a voxel beyond its voxels, and at the volume's border. */
+static void find_box(const walk *w, const size_t at[3][2], double low[3], double high[3])
 {
-    for (int a = 0; a < 3 && w->splats.needs_gradients; a++)
-        splat->gradient[a] = slope_at(w, level, node, a);
-    cwi_splats_add(&w->splats, splat, eye);
+    const cwi_frame *f = w->splats.frame;
+    for (int a = 0; a < 3; a++) {
+        low[a] = fmax((double)at[a][0] - 0.5, f->low[a]);
+        high[a] = fmin((double)at[a][1] - 0.5, f->high[a]);
+    }
+}
+
+/* The part of a node in the sheet that is being drawn. */
+static void splat_node(walk *w, size_t level, const size_t node[3], const double low[3],
+                       const double high[3], const double eye[3])
+{
+    const int axis = w->splats.axis;
+    const double from = fmax((double)w->sheet - 0.5, low[axis]);
+    const double to = fmin((double)w->sheet + 0.5, high[axis]);
+    const cwi_pyramid_node *n = cwi_pyramid_node_at(w->pyramid, level, node);
+    cwi_splat splat = {.value = cwi_pyramid_look_at(&w->view, n).mean, .is_node = 1};
+    double volume = 1;
+    for (int a = 0; a < 3; a++) {
+        splat.at[a] = (float)((low[a] + high[a]) / 2);
+        splat.size[a] = (float)(high[a] - low[a]);
+        volume *= high[a] - low[a];
+        if (w->splats.needs_gradients)
+            splat.gradient[a] = slope_at(w, level, node, a);
+    }
+    splat.at[axis] = (float)w->sheet;
+    splat.mass = (float)((double)n->mass / volume * (to - from));
+    cwi_splats_add(&w->splats, &splat, eye);
 }
 
 static void visit(walk *w, size_t level, const size_t node[3]);
@@ -98,39 +122,32 @@ static void visit_parts(walk *w, size_t level, const size_t node[3])
     }
 }
 
-/* Goes down to what is drawn in the sheet. A node is met in each of its sheets, and as nodes
- * are few in proportion to their size, all sheets take about as long as one walk through all
- * voxels. */
+/* Goes down to what is drawn in the sheet. */
 static void visit(walk *w, size_t level, const size_t node[3])
 {
-    const size_t *dim = w->pyramid->levels[level].dim;
-    const cwi_pyramid_node *n =
-        &w->pyramid->levels[level].nodes[(node[2] * dim[1] + node[1]) * dim[0] + node[0]];
     size_t at[3][2];
-    double place[3], eye[3];
-    cwi_splat splat = {0};
+    double low[3], high[3], middle[3], eye[3];
+    float size[3];
     for (int a = 0; a < 3; a++)
         find_voxels(w, a, level, node[a], at[a]);
     const size_t *sheets = at[w->splats.axis];
     if (w->sheet < sheets[0] || w->sheet >= sheets[1])
         return;
-    const cwi_pyramid_look look = cwi_pyramid_look_at(&w->view, n);
+    const cwi_pyramid_look look =
+        cwi_pyramid_look_at(&w->view, cwi_pyramid_node_at(w->pyramid, level, node));
     if (!look.shows_any)
         return;
+    find_box(w, (const size_t(*)[2])at, low, high);
     for (int a = 0; a < 3; a++) {
-        place[a] = ((double)at[a][0] + (double)at[a][1] - 1) / 2;
-        splat.at[a] = (float)place[a];
-        splat.size[a] = (float)(at[a][1] - at[a][0]);
+        middle[a] = (low[a] + high[a]) / 2;
+        size[a] = (float)(high[a] - low[a]);
     }
-    const bool is_kept = cwi_splats_keep(&w->splats, place, eye);
-    if (look.error > w->error || is_clipped(&w->splats, eye, splat.size) ||
-        is_too_near(&w->splats, eye, splat.size)) {
+    const bool is_kept = cwi_splats_keep(&w->splats, middle, eye);
+    if (look.error > w->error || is_clipped(&w->splats, eye, size) ||
+        is_too_near(&w->splats, eye, size))
         visit_parts(w, level, node);
-    } else if (is_kept && look.shows_mean && (sheets[0] + sheets[1]) / 2 == w->sheet) {
-        splat.value = look.mean;
-        splat.mass = n->mass;
-        splat_node(w, level, node, &splat, eye);
-    }
+    else if (is_kept && look.shows_mean)
+        splat_node(w, level, node, low, high, eye);
 }
 
 static cw_status draw_sheets(walk *w, cw_error *err)
@@ -191,8 +208,11 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
         return st;
     const tree *t = *state;
     w.pyramid = &t->pyramid;
-    st = cwi_splats_open(&w.splats, gl, t->has_gaps, err);
-    w.view = (cwi_pyramid_view){gl->frame, &gl->transfer.table, &w.splats.visible};
+    st = cwi_splats_open(&w.splats, gl, t->has_gaps,
+                         gl->frame->scene.tree_error > 0 || gl->frame->scene.splat_budget > 0,
+                         err);
+    w.view =
+        (cwi_pyramid_view){gl->frame, &gl->transfer.table, &w.splats.visible, w.splats.axis};
     if (st == CW_OK)
         st = choose_error(&w, err);
     if (st == CW_OK)

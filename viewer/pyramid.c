@@ -47,11 +47,11 @@ static cwi_pyramid_node sum_voxels(const cw_volume *v, bool has_gaps, const size
     return node_of(&s);
 }
 
-static const cwi_pyramid_node *node_at(const cwi_pyramid *p, size_t level, size_t i, size_t j,
-                                       size_t k)
+const cwi_pyramid_node *cwi_pyramid_node_at(const cwi_pyramid *pyramid, size_t level,
+                                            const size_t node[3])
 {
-    const size_t *dim = p->levels[level].dim;
-    return &p->levels[level].nodes[(k * dim[1] + j) * dim[0] + i];
+    const size_t *dim = pyramid->levels[level].dim;
+    return &pyramid->levels[level].nodes[(node[2] * dim[1] + node[1]) * dim[0] + node[0]];
 }
 
 static cwi_pyramid_node sum_nodes(const cwi_pyramid *p, size_t level, const size_t node[3])
@@ -59,11 +59,11 @@ static cwi_pyramid_node sum_nodes(const cwi_pyramid *p, size_t level, const size
     sum s = {.low = INFINITY, .high = -INFINITY};
     const size_t *dim = p->levels[level].dim;
     for (size_t n = 0; n < 8; n++) {
-        const size_t i = 2 * node[0] + (n & 1), j = 2 * node[1] + (n >> 1 & 1),
-                     k = 2 * node[2] + (n >> 2);
-        if (i >= dim[0] || j >= dim[1] || k >= dim[2])
+        const size_t at[3] = {2 * node[0] + (n & 1), 2 * node[1] + (n >> 1 & 1),
+                              2 * node[2] + (n >> 2)};
+        if (at[0] >= dim[0] || at[1] >= dim[1] || at[2] >= dim[2])
             continue;
-        const cwi_pyramid_node *c = node_at(p, level, i, j, k);
+        const cwi_pyramid_node *c = cwi_pyramid_node_at(p, level, at);
         if (c->mass > 0)
             add(&s, (double)c->mean, (double)c->mass, c->low, c->high);
     }
@@ -142,15 +142,15 @@ typedef struct tally {
     size_t voxels;
 } tally;
 
-/* Drawn with errors from one on, up to but without another. */
-static void draw_between(tally *t, float from, float to)
+/* So many are drawn with errors from one on, up to but without another. */
+static void draw_between(tally *t, size_t count, float from, float to)
 {
     const double steps = CWI_PYRAMID_STEPS;
     if (!(from < to))
         return;
-    t->change[(size_t)ceil((double)from * steps)]++;
+    t->change[(size_t)ceil((double)from * steps)] += (ptrdiff_t)count;
     if (to <= 1)
-        t->change[(size_t)ceil((double)to * steps)]--;
+        t->change[(size_t)ceil((double)to * steps)] -= (ptrdiff_t)count;
 }
 
 static void tally_voxels(tally *t, const size_t node[3], float end)
@@ -166,19 +166,22 @@ static void tally_voxels(tally *t, const size_t node[3], float end)
         if (!cwi_visible_any(t->view->visible, value, value))
             continue;
         t->voxels++;
-        draw_between(t, 0, end);
+        draw_between(t, 1, 0, end);
     }
 }
 
 /* end: the least error of the nodes above, from which on one of them is drawn instead */
 static void tally_node(tally *t, size_t level, const size_t node[3], float end)
 {
-    const cwi_pyramid_node *n = node_at(t->pyramid, level, node[0], node[1], node[2]);
+    const cwi_pyramid_node *n = cwi_pyramid_node_at(t->pyramid, level, node);
     const cwi_pyramid_look look = cwi_pyramid_look_at(t->view, n);
     if (!look.shows_any)
         return;
+    const int a = t->view->axis;
+    const size_t first = node[a] << (level + 1), left = t->view->frame->volume.dim[a] - first;
+    const size_t edge = (size_t)2 << level;
     if (look.shows_mean)
-        draw_between(t, look.error, end);
+        draw_between(t, left < edge ? left : edge, look.error, end);
     const float rest = fminf(end, look.error);
     if (level == 0) {
         tally_voxels(t, node, rest);

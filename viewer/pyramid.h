@@ -30,11 +30,16 @@ CW_API cw_status cwi_pyramid_make(const cw_volume *volume, bool has_gaps, int th
                                   cwi_pyramid *pyramid, cw_error *err);
 CW_API void cwi_pyramid_free(cwi_pyramid *pyramid);
 
-/* How values are seen: a transfer function's table, and what of it is visible. */
+CW_API const cwi_pyramid_node *cwi_pyramid_node_at(const cwi_pyramid *pyramid, size_t level,
+                                                   const size_t node[3]);
+
+/* How values are seen: a transfer function's table, and what of it is visible; sheets are
+ * across an axis. */
 typedef struct cwi_pyramid_view {
     const cwi_frame *frame;
     const cwi_table *table;
     const cwi_visible *visible;
+    int axis;
 } cwi_pyramid_view;
 
 /* What a node looks like: coordinates in the table, clamped to it where it is constant. */
@@ -49,7 +54,8 @@ CW_API cwi_pyramid_look cwi_pyramid_look_at(const cwi_pyramid_view *view,
 
 enum { CWI_PYRAMID_STEPS = 4096 };
 
-/* How many splats are drawn with a largest error of n / CWI_PYRAMID_STEPS, for all n; with 0
+/* How many splats are drawn with a largest error of n / CWI_PYRAMID_STEPS, for all n, a node
+ * being one in each of its sheets; with 0
  * every visible voxel is one. Clipping and the edges of the picture are not looked at.
  * counts: CWI_PYRAMID_STEPS + 1 */
 CW_API void cwi_pyramid_counts(const cwi_pyramid *pyramid, const cwi_pyramid_view *view,

@@ -80,12 +80,13 @@ static void make_buffer(cwi_splats *s)
     glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, s->buffer);
 }
 
-static cw_status make_programs(cwi_splats *s, cw_error *err)
+static cw_status make_programs(cwi_splats *s, bool has_nodes, cw_error *err)
 {
     char defines[64];
     const cwi_frame *f = s->frame;
-    snprintf(defines, sizeof defines, "%s%s", f->scene.lit ? "#define LIT\n" : "",
-             f->transfer.gradient_count ? "#define FACTOR\n" : "");
+    snprintf(defines, sizeof defines, "%s%s%s", f->scene.lit ? "#define LIT\n" : "",
+             f->transfer.gradient_count ? "#define FACTOR\n" : "",
+             has_nodes ? "#define NODES\n" : "");
     cw_status st = cwi_gl_use(s->gl, cwi_glsl_screen, cwi_glsl_sheet, "", &s->composite, err);
     if (st != CW_OK)
         return st;
@@ -97,6 +98,7 @@ static cw_status make_programs(cwi_splats *s, cw_error *err)
     glUniform1i(glGetUniformLocation(s->program, "footprint"), UNIT_FOOTPRINT);
     cwi_gl_set(s->program, "sigma", (float)sigma);
     cwi_gl_set(s->program, "radius", (float)table_radius);
+    glUniform1i(glGetUniformLocation(s->program, "axis"), s->axis);
     cwi_gl_set(s->program, "cell", (float)fabs(cwi_affine_determinant(f->eye_from_index)));
     return CW_OK;
 }
@@ -140,7 +142,8 @@ static void measure(cwi_splats *s)
     start_bounds(s);
 }
 
-cw_status cwi_splats_open(cwi_splats *s, cwi_gl *gl, bool has_gaps, cw_error *err)
+cw_status cwi_splats_open(cwi_splats *s, cwi_gl *gl, bool has_gaps, bool has_nodes,
+                          cw_error *err)
 {
     s->gl = gl;
     s->frame = gl->frame;
@@ -153,7 +156,7 @@ cw_status cwi_splats_open(cwi_splats *s, cwi_gl *gl, bool has_gaps, cw_error *er
     if (st == CW_OK)
         st = make_indices(s, err);
     if (st == CW_OK)
-        st = make_programs(s, err);
+        st = make_programs(s, has_nodes, err);
     if (st != CW_OK)
         return st;
     make_footprint(s);
@@ -218,7 +221,8 @@ static bool find_bounds(const cwi_splats *s, const cwi_splat *splat, const doubl
                         double bounds[4])
 {
     const cwi_frame *f = s->frame;
-    const double size = (double)fmaxf(fmaxf(splat->size[0], splat->size[1]), splat->size[2]);
+    const double size =
+        1 + (double)fmaxf(fmaxf(splat->size[0], splat->size[1]), splat->size[2]);
     const double scale = f->perspective ? -1 / eye[2] : 1;
     const size_t points[2] = {f->scene.width, f->scene.height};
     for (int a = 0; a < 2; a++) {
@@ -295,7 +299,7 @@ size_t *cwi_splats_order(const cwi_splats *s, cw_error *err)
 void cwi_splats_voxel(cwi_splats *s, const size_t at[3])
 {
     double eye[3], gradient[3];
-    cwi_splat splat = {.size = {1, 1, 1}};
+    cwi_splat splat = {0};
     const cwi_frame *f = s->frame;
     const double place[3] = {(double)at[0], (double)at[1], (double)at[2]};
     cwi_lattice_load(f, &s->gl->transfer.table, at, (size_t[]){1, 1, 1}, &splat.value);

@@ -5,14 +5,16 @@
 #include "viewer/gl_work.h"
 #include "viewer/lattice.h"
 
-/* A Gaussian blob, in index space. As shaders/splat.glsl reads it from a buffer. */
+/* A voxel's Gaussian blob, or the part of a node's voxels that is in a sheet, as one. As
+ * shaders/splat.glsl reads it from a buffer. */
 typedef struct cwi_splat {
-    float at[3];
+    float at[3];       /* index space */
     float value;       /* coordinate in the table */
     float gradient[3]; /* per voxel */
-    float mass;        /* cells it stands for */
-    float size[3];     /* voxels it stands for along each axis; 1: the footprint of one voxel */
-    float unused;
+    float mass;    /* cells a voxel stands for; of a node those it has in the sheet, over its
+                      area there */
+    float size[3]; /* of a node in the sheet, in voxels; else 0 */
+    float is_node; /* 1: it is one */
 } cwi_splat;
 
 /* A picture being made of splats. Zeroed, then cwi_splats_open(), harmless to close twice. */
@@ -32,8 +34,9 @@ typedef struct cwi_splats {
     double bounds[4]; /* of the sheet's splats, on the picture from -1 to 1: low, high x; y */
 } cwi_splats;
 
-/* has_gaps: see cwi_lattice_mass() */
-cw_status cwi_splats_open(cwi_splats *s, cwi_gl *gl, bool has_gaps, cw_error *err);
+/* has_gaps: see cwi_lattice_mass(); has_nodes: there are not only voxels */
+cw_status cwi_splats_open(cwi_splats *s, cwi_gl *gl, bool has_gaps, bool has_nodes,
+                          cw_error *err);
 void cwi_splats_close(cwi_splats *s);
 
 /* Whether clips, and a place in front of the eye, keep a splat at a point of index space. */
