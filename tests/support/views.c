@@ -18,7 +18,7 @@ cw_picture test_truth(cw_renderer *renderer, const cw_scene *scene)
 {
     cw_scene fine = *scene;
     fine.mode = CW_MODE_COMPOSITE;
-    fine.step_vox = 0.05;
+    fine.step_vox = 0.1;
     fine.stop_opacity = 1;
     fine.no_preintegration = true; /* whose table would be made anew each time */
     fine.no_skipping = true;

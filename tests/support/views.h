@@ -8,7 +8,7 @@
  * size is about what the picture covers, in mm. fov_deg 0: orthographic. */
 cw_camera test_view(double yaw_deg, double pitch_deg, double fov_deg, double size_mm);
 
-/* The same scene by ray casting in steps of 0.05, at their middles. */
+/* The same scene by ray casting in steps of 0.1, at their middles. */
 cw_picture test_truth(cw_renderer *renderer, const cw_scene *scene);
 
 /* How far a scene's picture is from test_truth(). */

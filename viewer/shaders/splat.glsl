@@ -61,7 +61,7 @@ vec2 corner()
 void place_voxel(vec3 at, vec4 row, float mass)
 {
     mat2 c = widen(covariance(at));
-    float first = sqrt(c[0][0]), mixed = c[0][1] / first; // the root of c, a triangle [Cholesky]
+    float first = sqrt(c[0][0]), mixed = c[0][1] / first; // the root of c, after Cholesky
     float second = sqrt(max(c[1][1] - mixed * mixed, 1e-30));
     offset = radius * corner();
     vec2 way = vec2(first * offset.x, mixed * offset.x + second * offset.y);
