@@ -178,12 +178,20 @@ static double twice_area(const polygon *p)
  * rounding of the line stays as it is. */
 static void cut_polygon(polygon *p, const double a[2], const double b[2], double rounding)
 {
-    polygon out = {0};
+    polygon out;
     double at[2], d[MOST_SIDES];
+    bool any_left = false, any_right = false;
     for (int n = 0; n < p->count; n++) {
         d[n] = cross(a, b, p->at[n]);
         if (fabs(d[n]) <= rounding)
             d[n] = 0;
+        any_left = any_left || d[n] > 0;
+        any_right = any_right || d[n] < 0;
+    }
+    out.count = 0;
+    if (!any_right || !any_left) {
+        p->count = any_right ? 0 : p->count;
+        return;
     }
     for (int n = 0; n < p->count; n++) {
         const int next = (n + 1) % p->count;
@@ -195,7 +203,8 @@ static void cut_polygon(polygon *p, const double a[2], const double b[2], double
             at[c] = p->at[n][c] + d[n] / (d[n] - d[next]) * (p->at[next][c] - p->at[n][c]);
         add_corner(&out, at);
     }
-    *p = out;
+    p->count = out.count;
+    memcpy(p->at, out.at, (size_t)out.count * sizeof *out.at);
 }
 
 static double depth_at(const solid *s, const double plane[3], const double at[2])
