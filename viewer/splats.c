@@ -21,7 +21,7 @@ enum {
 };
 
 /* Of the Gaussian of one voxel, in voxels: wide enough that what footprints on a lattice add up
- * to varies by less than 0.5 %, and no wider; the table ends at a radius in sigmas where it has
+ * to varies by less than 0.6 %, and no wider; the table ends at a radius in sigmas where it has
  * fallen to 0.3 %. */
 static const double sigma = 0.6, table_radius = 3.4;
 

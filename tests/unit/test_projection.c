@@ -95,6 +95,7 @@ static void simple_forms_are_near(void **state)
     cw_renderer *r = test_renderer();
     cw_transfer soft = test_soft_transfer();
     cw_volume blobs = {0};
+    soft.gradients[1] = (cw_opacity_point){0.02, 1}; /* not counted at first */
     test_field(&blobs, EDGE, EDGE, EDGE, cube, test_blobs);
     cw_renderer_forget(r);
     cw_scene scene = scene_of(&blobs, &soft, test_view(30, 25, 30, 50));
@@ -107,7 +108,6 @@ static void simple_forms_are_near(void **state)
     assert_true(best < linear && linear < 2);
     for (int n = 0; n < 12; n++) { /* every shader there is does compile, and draws */
         soft.gradient_count = n / 8 * 2;
-        soft.gradients[1] = (cw_opacity_point){0.02, 1};
         scene.no_preintegration = n & 1 || n >= 8;
         scene.linear_opacity = n & 2;
         scene.lit = n & 4 || n & 1;
