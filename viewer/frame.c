@@ -70,6 +70,9 @@ static cw_status fill_in(cw_scene *s, cw_error *err)
     if (!(s->depth_cue >= 0 && s->depth_cue <= 1))
         return cw_fail(err, CW_ERR_ARGUMENT, "a depth cue of %g: expected 0 to 1",
                        (double)s->depth_cue);
+    if (!(s->tree_error >= 0 && s->tree_error <= 1))
+        return cw_fail(err, CW_ERR_ARGUMENT, "an error of nodes of %g: expected 0 to 1",
+                       s->tree_error);
     if (s->normals == 0)
         s->normals = 1024;
     if (s->color[0] == 0 && s->color[1] == 0 && s->color[2] == 0 && s->color[3] == 0)

@@ -19,9 +19,9 @@ typedef struct frame_block {
 } frame_block;
 
 static const cwi_gl_mode *const modes[] = {
-    &cwi_gl_mesh_mode, &cwi_gl_composite,    &cwi_gl_mip,
-    &cwi_gl_minip,     &cwi_gl_average,      &cwi_gl_local_mip,
-    &cwi_gl_slices,    &cwi_gl_texture_mode, &cwi_gl_shaded_texture};
+    &cwi_gl_mesh_mode,  &cwi_gl_composite, &cwi_gl_mip,          &cwi_gl_minip,
+    &cwi_gl_average,    &cwi_gl_local_mip, &cwi_gl_projection,   &cwi_gl_splat,
+    &cwi_gl_splat_tree, &cwi_gl_slices,    &cwi_gl_texture_mode, &cwi_gl_shaded_texture};
 
 const cwi_gl_mode *cwi_gl_find_mode(cw_mode mode)
 {

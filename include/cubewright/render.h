@@ -154,7 +154,10 @@ typedef struct cw_scene {
     bool linear_opacity;    /* projection: opacity, not depth, is linear over a polygon, as in
                                1991 */
     double tree_error;      /* splat-tree: largest error of a node, in the table's range 0..1 of
-                               values; 0: every voxel is splatted */
+                               values; 0: every voxel is splatted. projection: half the range
+                               of values of a node that is drawn whole */
+    size_t splat_budget;    /* splat-tree: about how many splats a picture may take: the error
+                               is raised until they suffice; default: no limit */
 
     /* slices */
     cw_slice slices[CW_MAX_SLICES]; /* slice_count of them */

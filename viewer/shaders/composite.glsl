@@ -12,20 +12,31 @@ float segment_place(float coordinate)
     return (coordinate * (dim.w - 1.0) + 0.5) / dim.w;
 }
 
-// What a full segment adds that has such ends and such a middle; NaN is empty. Both ends are shifted
-// by two thirds of what the middle is above their mean: so the mean is that of the parabola.
-vec4 segment_through(float front, float middle, float back)
-{
-    float shift = (2.0 / 3.0) * (middle - 0.5 * (front + back));
-    vec4 color = texture(segments, vec2(front, back) + shift);
-    return shift == shift ? color : vec4(0.0);
-}
-
 // The same stuff on another length, or more or less of it: light through it to that power.
 vec4 stretch(vec4 color, float power)
 {
     float alpha = 1.0 - pow(1.0 - min(color.a, 0.9999999), power);
     return color.a > 0.0 ? vec4(color.rgb * (alpha / color.a), alpha) : color;
+}
+
+// Half a segment, straight; NaN is empty.
+vec4 half_segment(float front, float back)
+{
+    vec4 color = stretch(texture(segments, vec2(front, back)), 0.5);
+    return front + back == front + back ? color : vec4(0.0);
+}
+
+// What a full segment adds that has such ends and such a middle. Both ends are shifted by two thirds
+// of what the middle is above their mean: so the mean is that of the parabola.
+vec4 segment_through(float front, float middle, float back)
+{
+    float shift = (2.0 / 3.0) * (middle - 0.5 * (front + back));
+    vec4 color = texture(segments, vec2(front, back) + shift);
+    if (!(shift == shift)) {
+        color = half_segment(front, middle);
+        color += (1.0 - color.a) * half_segment(middle, back);
+    }
+    return color;
 }
 
 // How far a ray goes through empty blocks, at most so far.
