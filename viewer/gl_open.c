@@ -75,6 +75,7 @@ void cwi_gl_leave(cwi_gl *gl)
         eglMakeCurrent(gl->display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
 }
 
+/* The display stays initialised: it is the process's, and others may use it. */
 static void stop(cwi_gl *gl)
 {
     if (gl->display == EGL_NO_DISPLAY)
@@ -82,8 +83,6 @@ static void stop(cwi_gl *gl)
     cwi_gl_leave(gl);
     if (gl->context != EGL_NO_CONTEXT)
         eglDestroyContext(gl->display, gl->context);
-    eglTerminate(gl->display);
-    eglReleaseThread();
     gl->display = EGL_NO_DISPLAY;
     gl->context = EGL_NO_CONTEXT;
 }

@@ -112,6 +112,16 @@ void cwi_gl_set3(GLuint program, const char *name, const double value[3])
                 (float)value[2]);
 }
 
+const char *cwi_gl_ray_defines(const cw_scene *scene)
+{
+    static const char *const rows[2][3] = {
+        {"#define RAYS\n", "#define RAYS\n#define CLIPS\n",
+         "#define RAYS\n#define CLIPS\n#define CUT_AWAY\n"},
+        {"#define RAYS\n#define MESH\n", "#define RAYS\n#define MESH\n#define CLIPS\n",
+         "#define RAYS\n#define MESH\n#define CLIPS\n#define CUT_AWAY\n"}};
+    return rows[scene->mesh != NULL][scene->clip_count == 0 ? 0 : scene->cut_away ? 2 : 1];
+}
+
 void cwi_gl_draw_screen(cwi_gl *gl)
 {
     glBindVertexArray(gl->empty_array);

@@ -115,6 +115,10 @@ extern const char cwi_glsl_common[], cwi_glsl_screen[];
 /* Draws the scene's mesh, opaque, with its depth. */
 cw_status cwi_gl_draw_mesh(cwi_gl *gl, cw_error *err);
 
+/* Defines of shaders that go along rays: what is not needed is not compiled, as machines may go
+ * through it all the same. */
+const char *cwi_gl_ray_defines(const cw_scene *scene);
+
 /* Draws a triangle over the whole picture, for fragment shaders that go along rays. */
 void cwi_gl_draw_screen(cwi_gl *gl);
 

@@ -10,11 +10,12 @@ extern const char cwi_glsl_composite[];
 
 static void describe(const cw_scene *s, const cw_transfer *t, char *defines, size_t size)
 {
-    snprintf(defines, size, "#define RAYS\n%s%s%s%s%s%s%s%s",
+    snprintf(defines, size, "%s%s%s%s%s%s%s%s%s",
              s->no_preintegration ? "" : "#define SEGMENTS\n",
              s->no_skipping ? "" : "#define SKIP\n", s->cell_steps ? "#define CELLS\n" : "",
-             s->jitter ? "#define JITTER\n" : "", s->depth_cue > 0 ? "#define CUE\n" : "",
-             s->lit ? "#define LIT\n" : "", t->gradient_count ? "#define FACTOR\n" : "",
+             cwi_gl_ray_defines(s), s->jitter ? "#define JITTER\n" : "",
+             s->depth_cue > 0 ? "#define CUE\n" : "", s->lit ? "#define LIT\n" : "",
+             t->gradient_count ? "#define FACTOR\n" : "",
              s->exact_filter ? "#define EXACT_FILTER\n" : "");
 }
 
@@ -25,8 +26,7 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     GLuint program;
     const cw_scene *s = &gl->frame->scene;
     /* a segment has samples at both ends and in the middle */
-    const double length =
-        s->no_preintegration || s->cell_steps || s->lit ? s->step_vox : 2 * s->step_vox;
+    const double length = s->no_preintegration || s->cell_steps ? s->step_vox : 2 * s->step_vox;
     cw_status st = CW_OK;
     describe(s, &gl->frame->transfer, defines, sizeof defines);
     if (!s->no_preintegration)

@@ -115,8 +115,8 @@ static cw_status draw_brick(cwi_gl *gl, const projector *p, const cwi_gl_brick *
     char defines[256];
     const cw_scene *s = &gl->frame->scene;
     const bool is_last = n + 1 == count;
-    snprintf(defines, sizeof defines, "#define RAYS\n#define %s\n%s%s%s%s%s", name_of(s->mode),
-             n == 0 ? "#define FIRST\n" : "", is_last ? "#define LAST\n" : "",
+    snprintf(defines, sizeof defines, "%s#define %s\n%s%s%s%s%s", cwi_gl_ray_defines(s),
+             name_of(s->mode), n == 0 ? "#define FIRST\n" : "", is_last ? "#define LAST\n" : "",
              can_foresee(gl) ? "#define FORESEE\n" : "", s->cell_steps ? "#define CELLS\n" : "",
              s->exact_filter ? "#define EXACT_FILTER\n" : "");
     cw_status st = cwi_gl_use(gl, cwi_glsl_screen, cwi_glsl_mip, defines, &program, err);

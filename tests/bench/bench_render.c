@@ -100,7 +100,7 @@ static result measure(drawer who, const cw_scene *scene, int frames)
     return r;
 }
 
-/* Six blobs and a ripple: some of it visible. */
+/* Six blobs and a ripple: 22 % of the voxels are visible. */
 static void make_volume(size_t n, cw_volume *v)
 {
     static const double blobs[6][4] = {{.3, .3, .3, .1},  {.7, .6, .4, .12},
@@ -130,9 +130,9 @@ static void make_volume(size_t n, cw_volume *v)
 
 static const cw_transfer transfer = {
     .color_count = 3,
-    .colors = {{0.3, {0.2f, 0.3f, 0.9f}}, {0.6, {0.9f, 0.7f, 0.2f}}, {1, {1, 0.2f, 0.1f}}},
+    .colors = {{0.1, {0.2f, 0.3f, 0.9f}}, {0.6, {0.9f, 0.7f, 0.2f}}, {1, {1, 0.2f, 0.1f}}},
     .opacity_count = 4,
-    .opacities = {{0.35, 0}, {0.5, 0.02f}, {0.8, 0.05f}, {1, 0.3f}}};
+    .opacities = {{0.135, 0}, {0.5, 0.02f}, {0.8, 0.05f}, {1, 0.3f}}};
 
 /* A case: how ours draws, and what of VTK's it stands beside. */
 typedef struct bench_case {

@@ -43,7 +43,7 @@ float texel_at(vec3 index)
     vec2 y = mix(x.xz, x.yw, s.y);
     return mix(y.x, y.y, s.z);
 #else
-    return texture(volume, brick_place(index)).r;
+    return textureLod(volume, brick_place(index), 0.0).r;
 #endif
 }
 
@@ -57,21 +57,21 @@ float coordinate_of(float texel)
 vec4 classify(float coordinate)
 {
     float at = clamp(coordinate, 0.0, 1.0);
-    vec4 row = texture(table, vec2((at * (table_rows - 1.0) + 0.5) / table_rows, 0.5));
+    vec4 row = textureLod(table, vec2((at * (table_rows - 1.0) + 0.5) / table_rows, 0.5), 0.0);
     return coordinate == coordinate ? row : vec4(0.0);
 }
 
 // The gradient in eye space, per unit.
 vec3 gradient_at(vec3 index)
 {
-    return mat3(gradient_to_eye) * texture(gradients, brick_place(index)).xyz;
+    return mat3(gradient_to_eye) * textureLod(gradients, brick_place(index), 0.0).xyz;
 }
 
 // What the transfer function makes of the extinction by the gradient.
 float gradient_factor(vec3 gradient)
 {
     float at = clamp(length(gradient) / march.w, 0.0, 1.0);
-    return texture(factor, vec2((at * (factor_rows - 1.0) + 0.5) / factor_rows, 0.5)).r;
+    return textureLod(factor, vec2((at * (factor_rows - 1.0) + 0.5) / factor_rows, 0.5), 0.0).r;
 }
 
 // Both sides are lit; to_eye and the gradient are in eye space. Without a gradient: ambient light.
@@ -176,13 +176,20 @@ void intervals(ray r, out vec2 all, out vec2 kept)
 {
     vec3 box_low = max(low.xyz, mix(brick_first, low.xyz, lessThan(dim.xyz, vec3(1.5))));
     vec3 box_high = min(high.xyz, mix(brick_first + brick_size - 1.0, high.xyz, lessThan(dim.xyz, vec3(1.5))));
-    all = vec2(view.x > 0.5 ? view.y / -r.direction.z : -1e30, mesh_distance(r));
-    for (int a = 0; a < 3; a++) {
-        all = cut(all, r.index[a] - box_low[a], r.slope[a]);
-        all = cut(all, box_high[a] - r.index[a], -r.slope[a]);
-    }
+    all = vec2(view.x > 0.5 ? view.y / -r.direction.z : -1e30, 1e30);
+#ifdef MESH
+    all.y = mesh_distance(r);
+#endif
+    vec3 enter = (mix(box_high, box_low, r.ahead) - r.index) * r.inverse;
+    vec3 leave = (mix(box_low, box_high, r.ahead) - r.index) * r.inverse;
+    bvec3 is_beside = bvec3(vec3(equal(r.slope, vec3(0.0))) *
+                            max(vec3(lessThan(r.index, box_low)), vec3(greaterThan(r.index, box_high))));
+    all.x = max(all.x, max(enter.x, max(enter.y, enter.z)));
+    all.y = any(is_beside) ? all.x : min(all.y, min(leave.x, min(leave.y, leave.z)));
     kept = all;
+#ifdef CLIPS
     for (int n = 0; n < counts.y; n++)
         kept = cut(kept, dot(clips[n].xyz, r.origin) - clips[n].w, dot(clips[n].xyz, r.direction));
+#endif
 }
 #endif

@@ -22,7 +22,7 @@ vec4 stretch(vec4 color, float power)
 // Half a segment, straight; NaN is empty.
 vec4 half_segment(float front, float back)
 {
-    vec4 color = stretch(texture(segments, vec2(front, back)), 0.5);
+    vec4 color = stretch(textureLod(segments, vec2(front, back), 0.0), 0.5);
     return front + back == front + back ? color : vec4(0.0);
 }
 
@@ -31,7 +31,7 @@ vec4 half_segment(float front, float back)
 vec4 segment_through(float front, float middle, float back)
 {
     float shift = (2.0 / 3.0) * (middle - 0.5 * (front + back));
-    vec4 color = texture(segments, vec2(front, back) + shift);
+    vec4 color = textureLod(segments, vec2(front, back) + shift, 0.0);
     if (!(shift == shift)) {
         color = half_segment(front, middle);
         color += (1.0 - color.a) * half_segment(middle, back);
@@ -69,7 +69,9 @@ vec4 along(ray r, float from, float to, vec4 sum, float y)
 {
     float h = step_length, t = from, front = 0.0;
     bool has_front = false, may_leap = true;
-    float shift = march.z > 0.5 ? random(gl_FragCoord.xy) * h : h;
+#ifdef JITTER
+    float first = random(gl_FragCoord.xy) * h;
+#endif
     while (t < to && sum.a < march.y) {
         vec3 at = r.index + t * r.slope;
 #ifdef SKIP
@@ -85,8 +87,11 @@ vec4 along(ray r, float from, float to, vec4 sum, float y)
 #ifdef CELLS
         float extent = min(cell_exit(r, at), to - t);
 #else
-        float extent = min(shift, to - t);
-        shift = h;
+        float extent = min(h, to - t);
+#ifdef JITTER
+        extent = min(extent, first);
+        first = h;
+#endif
 #endif
 #ifdef SEGMENTS
         if (!has_front)
@@ -131,15 +136,14 @@ void main()
     ray r = ray_of(gl_FragCoord.xy);
     float y = gl_FragCoord.y / picture.y;
     intervals(r, all, kept);
-    result = vec4(0.0);
-    if (counts.z == 0) {
-        result = along(r, kept.x, kept.y, result, y);
-    } else if (kept.x < kept.y) {
-        result = along(r, all.x, kept.x, result, y);
+#ifdef CUT_AWAY
+    bool is_cut = kept.x < kept.y;
+    result = along(r, all.x, is_cut ? kept.x : all.y, vec4(0.0), y);
+    if (is_cut)
         result = along(r, kept.y, all.y, result, y);
-    } else {
-        result = along(r, all.x, all.y, result, y);
-    }
+#else
+    result = along(r, kept.x, kept.y, vec4(0.0), y);
+#endif
     if (result.a == 0.0)
         discard;
 }

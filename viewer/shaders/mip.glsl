@@ -212,16 +212,20 @@ void main()
 #else
     vec4 found = texelFetch(before, ivec2(gl_FragCoord.xy), 0);
 #endif
-    if (counts.z == 0) {
-        found = along_part(r, kept, found);
-    } else if (kept.x < kept.y) {
-        found = along_part(r, vec2(all.x, kept.x), found);
+#ifdef CUT_AWAY
+    bool is_cut = kept.x < kept.y;
+    found = along_part(r, vec2(all.x, is_cut ? kept.x : all.y), found);
+    if (is_cut)
         found = along_part(r, vec2(kept.y, all.y), found);
-    } else {
-        found = along_part(r, all, found);
-    }
+#else
+    found = along_part(r, kept, found);
+#endif
 #ifdef LAST
+#ifdef MESH
     result = show(found, mesh_distance(r) < 1e29);
+#else
+    result = show(found, false);
+#endif
 #else
     result = found;
 #endif
