@@ -135,6 +135,7 @@ static void mistakes_are_named(void **state)
     FAILS(CW_ERR_ARGUMENT, "plane 0", bad.clip_count = 1);
     FAILS(CW_ERR_ARGUMENT, "camera", bad.camera.up[2] = 1);
 #undef FAILS
+    cw_renderer_free(cpu);
     assert_fails(cw_renderer_new((cw_backend)9, &cpu, &err), CW_ERR_ARGUMENT, "backend", err);
     cw_volume_free(&blobs);
 }
