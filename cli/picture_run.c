@@ -388,7 +388,12 @@ static cw_status draw_picture(cli_pictures *p, cw_picture *picture, cw_error *er
     cw_status st = CW_OK;
     if (!p->renderer)
         st = cw_renderer_new((cw_backend)p->args->backend, &p->renderer, err);
-    return st == CW_OK ? cw_render(p->renderer, &p->scene, picture, err) : st;
+    if (st == CW_OK)
+        st = cw_render(p->renderer, &p->scene, picture, err);
+    if (st == CW_ERR_UNSUPPORTED && draws_volume(p) && p->mode != CW_MODE_VBUFFER &&
+        (!p->renderer || strcmp(cw_renderer_name(p->renderer), "CPU") == 0))
+        cli_say("without OpenGL there are --mode vbuffer and --mode reference");
+    return st;
 }
 
 /* A side is drawn as if the run were about it alone. */

@@ -369,6 +369,7 @@ static void everything_else_is_as_along_rays(void **state)
         slices.mesh = what == 2 || what == 6 ? &mesh : NULL;
         cw_scene rays = slices;
         rays.mode = CW_MODE_COMPOSITE;
+        rays.step_vox = 0.1; /* rays are lit every other step */
         rays.stop_opacity = 1;
         expect_same("slices and rays", &slices, &rays, 0.05, 1.5);
     }

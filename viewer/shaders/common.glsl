@@ -118,6 +118,7 @@ struct ray {
     vec3 origin, direction; // eye space
     vec3 index, slope;      // the same in index space
     vec3 inverse, ahead;    // 1 / slope; 1: upward along that axis, or not along it
+    vec3 place, way;        // origin and direction in the brick's texture
 };
 
 ray ray_of(vec2 fragment)
@@ -130,7 +131,24 @@ ray ray_of(vec2 fragment)
     r.slope = mat3(index_from_eye) * r.direction;
     r.inverse = mix(1.0 / r.slope, vec3(1e30), equal(r.slope, vec3(0.0)));
     r.ahead = vec3(greaterThanEqual(r.slope, vec3(0.0)));
+    r.place = brick_place(r.index);
+    r.way = r.slope / brick_size;
     return r;
+}
+
+// texel_at() and gradient_at() of a point of a ray.
+float texel_on(ray r, float t)
+{
+#ifdef EXACT_FILTER
+    return texel_at(r.index + t * r.slope);
+#else
+    return textureLod(volume, r.place + t * r.way, 0.0).r;
+#endif
+}
+
+vec3 gradient_on(ray r, float t)
+{
+    return mat3(gradient_to_eye) * textureLod(gradients, r.place + t * r.way, 0.0).xyz;
 }
 
 // How far a ray goes from a point in a box of index space to where it leaves that.

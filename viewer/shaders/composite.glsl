@@ -6,10 +6,10 @@ uniform float step_length;
 uniform vec3 last_block; // of skip
 out vec4 result;
 
-// Where a coordinate of the transfer function is in the texture of segments, which is clamped.
-float segment_place(float coordinate)
+// Where a texel's value is in the texture of segments, which is clamped: scale and bias.
+vec2 segment_scale()
 {
-    return (coordinate * (dim.w - 1.0) + 0.5) / dim.w;
+    return vec2(texels.x * (dim.w - 1.0), texels.y * (dim.w - 1.0) + 0.5) / dim.w;
 }
 
 // The same stuff on another length, or more or less of it: light through it to that power.
@@ -69,14 +69,16 @@ vec4 along(ray r, float from, float to, vec4 sum, float y)
 {
     float h = step_length, t = from, front = 0.0;
     bool has_front = false, may_leap = true;
+#ifdef SEGMENTS
+    vec2 scale = segment_scale();
+#endif
 #ifdef JITTER
     float first = random(gl_FragCoord.xy) * h;
 #endif
     while (t < to && sum.a < march.y) {
-        vec3 at = r.index + t * r.slope;
 #ifdef SKIP
         if (may_leap) {
-            float steps = floor(leap_from(r, at, to - t) / h);
+            float steps = floor(leap_from(r, r.index + t * r.slope, to - t) / h);
             if (steps >= 1.0) {
                 t += steps * h;
                 has_front = false;
@@ -85,7 +87,7 @@ vec4 along(ray r, float from, float to, vec4 sum, float y)
         }
 #endif
 #ifdef CELLS
-        float extent = min(cell_exit(r, at), to - t);
+        float extent = min(cell_exit(r, r.index + t * r.slope), to - t);
 #else
         float extent = min(h, to - t);
 #ifdef JITTER
@@ -95,22 +97,22 @@ vec4 along(ray r, float from, float to, vec4 sum, float y)
 #endif
 #ifdef SEGMENTS
         if (!has_front)
-            front = segment_place(coordinate_of(texel_at(at)));
-        float middle = segment_place(coordinate_of(texel_at(at + 0.5 * extent * r.slope)));
-        float back = segment_place(coordinate_of(texel_at(at + extent * r.slope)));
+            front = texel_on(r, t) * scale.x + scale.y;
+        float middle = texel_on(r, t + 0.5 * extent) * scale.x + scale.y;
+        float back = texel_on(r, t + extent) * scale.x + scale.y;
         vec4 color = segment_through(front, middle, back);
         front = back;
         has_front = true;
         if (extent != h)
             color = stretch(color, extent / h);
 #else
-        vec4 row = classify(coordinate_of(texel_at(at + 0.5 * extent * r.slope)));
+        vec4 row = classify(coordinate_of(texel_on(r, t + 0.5 * extent)));
         float alpha = 1.0 - exp(-row.a * extent);
         vec4 color = vec4(row.rgb * alpha, alpha);
 #endif
 #if defined(LIT) || defined(FACTOR)
         if ((1.0 - sum.a) * color.a > 1e-5) { // others would not be seen
-            vec3 gradient = gradient_at(at + 0.5 * extent * r.slope);
+            vec3 gradient = gradient_on(r, t + 0.5 * extent);
 #ifdef FACTOR
             color = stretch(color, gradient_factor(gradient));
 #endif

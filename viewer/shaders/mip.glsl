@@ -101,7 +101,7 @@ vec4 foresee(ray r, float from, float to, vec4 found)
     }
     float until = min(to, best_from + block_exit(r, r.index + best_from * r.slope));
     for (float t = from + ceil((best_from - from) / step_length) * step_length; t < until; t += step_length)
-        found = take(found, texel_at(r.index + t * r.slope));
+        found = take(found, texel_on(r, t));
 #endif
     return found;
 }
@@ -110,18 +110,18 @@ vec4 foresee(ray r, float from, float to, vec4 found)
 // Every cell by itself; values at its ends are shared.
 vec4 along(ray r, float from, float to, vec4 found)
 {
-    float value = texel_at(r.index + from * r.slope);
+    float value = texel_on(r, from);
     for (float t = from; t < to && found.z < 0.5; ) {
         vec3 at = r.index + t * r.slope;
         float useless = useless_length(r, at, found);
         if (useless > 0.01) {
             t += useless;
-            value = texel_at(r.index + t * r.slope);
+            value = texel_on(r, t);
             continue;
         }
         float extent = min(cell_exit(r, at), to - t);
-        vec4 v = vec4(value, texel_at(at + extent / 3.0 * r.slope),
-                      texel_at(at + extent * (2.0 / 3.0) * r.slope), texel_at(at + extent * r.slope));
+        vec4 v = vec4(value, texel_on(r, t + extent / 3.0),
+                      texel_on(r, t + extent * (2.0 / 3.0)), texel_on(r, t + extent));
         value = v.w;
 #ifdef AVERAGE
         float mean = (v.x + v.w) / 8.0 + (v.y + v.z) * 0.375;
@@ -140,7 +140,7 @@ vec4 along(ray r, float from, float to, vec4 found)
 {
     for (float t = from; t < to; t += step_length) {
         float extent = min(step_length, to - t);
-        float mean = texel_at(r.index + (t + 0.5 * extent) * r.slope);
+        float mean = texel_on(r, t + 0.5 * extent);
         found.xy += mean == mean ? extent * vec2(mean, 1.0) : vec2(0.0);
     }
     return found;
@@ -161,9 +161,9 @@ vec4 along(ray r, float from, float to, vec4 found)
         until = min(to, t + block_exit(r, r.index + t * r.slope) + 1e-3);
 #endif
         for (; t < until && found.z < 0.5; t += step_length)
-            found = take(found, texel_at(r.index + t * r.slope));
+            found = take(found, texel_on(r, t));
     }
-    return found.z < 0.5 ? take(found, texel_at(r.index + to * r.slope)) : found;
+    return found.z < 0.5 ? take(found, texel_on(r, to)) : found;
 }
 #endif
 #endif
