@@ -53,12 +53,12 @@ float coordinate_of(float texel)
     return texel * texels.x + texels.y;
 }
 
-// Colour and extinction at a coordinate. Comparisons with NaN are false: no extinction.
+// Colour and extinction at a coordinate; NaN has none.
 vec4 classify(float coordinate)
 {
     float at = clamp(coordinate, 0.0, 1.0);
     vec4 row = textureLod(table, vec2((at * (table_rows - 1.0) + 0.5) / table_rows, 0.5), 0.0);
-    return coordinate == coordinate ? row : vec4(0.0);
+    return isnan(coordinate) ? vec4(0.0) : row;
 }
 
 // The gradient in eye space, per unit.

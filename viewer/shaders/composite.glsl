@@ -23,7 +23,7 @@ vec4 stretch(vec4 color, float power)
 vec4 half_segment(float front, float back)
 {
     vec4 color = stretch(textureLod(segments, vec2(front, back), 0.0), 0.5);
-    return front + back == front + back ? color : vec4(0.0);
+    return isnan(front + back) ? vec4(0.0) : color;
 }
 
 // What a full segment adds that has such ends and such a middle. Both ends are shifted by two thirds
@@ -32,7 +32,7 @@ vec4 segment_through(float front, float middle, float back)
 {
     float shift = (2.0 / 3.0) * (middle - 0.5 * (front + back));
     vec4 color = textureLod(segments, vec2(front, back) + shift, 0.0);
-    if (!(shift == shift)) {
+    if (isnan(shift)) {
         color = half_segment(front, middle);
         color += (1.0 - color.a) * half_segment(middle, back);
     }

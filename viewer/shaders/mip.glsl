@@ -125,7 +125,7 @@ vec4 along(ray r, float from, float to, vec4 found)
         value = v.w;
 #ifdef AVERAGE
         float mean = (v.x + v.w) / 8.0 + (v.y + v.z) * 0.375;
-        found.xy += mean == mean ? extent * vec2(mean, 1.0) : vec2(0.0);
+        found.xy += isnan(mean) ? vec2(0.0) : extent * vec2(mean, 1.0);
 #else
         found = take_cell(take(found, v.x), v);
 #endif
@@ -141,7 +141,7 @@ vec4 along(ray r, float from, float to, vec4 found)
     for (float t = from; t < to; t += step_length) {
         float extent = min(step_length, to - t);
         float mean = texel_on(r, t + 0.5 * extent);
-        found.xy += mean == mean ? extent * vec2(mean, 1.0) : vec2(0.0);
+        found.xy += isnan(mean) ? vec2(0.0) : extent * vec2(mean, 1.0);
     }
     return found;
 }

@@ -1,0 +1,131 @@
+/* Intensity projections by OpenGL, beside the exact ones of the CPU. */
+#include "support/pictures.h"
+
+#include <math.h>
+
+static const double cube[3] = {1, 1, 1};
+static const cw_mode modes[] = {CW_MODE_MIP, CW_MODE_MINIP, CW_MODE_AVERAGE, CW_MODE_LOCAL_MIP};
+
+enum { MODES = sizeof modes / sizeof *modes };
+
+/* Greys, so that a picture tells values. */
+static const cw_transfer greys = {.color_count = 2,
+                                  .colors = {{-0.1, {0, 0, 0}}, {1.1, {1, 1, 1}}},
+                                  .opacity_count = 1,
+                                  .opacities = {{0, 0.5f}}};
+
+static cw_scene scene_of(cw_mode mode, const cw_volume *volume, bool perspective)
+{
+    return (cw_scene){.mode = mode,
+                      .volume = volume,
+                      .transfer = &greys,
+                      .camera = {.eye = {30, -80, 20},
+                                 .up = {0, 0, 1},
+                                 .fov_deg = perspective ? 30 : 0,
+                                 .height_mm = 48},
+                      .threshold = 0.4,
+                      .width = 48,
+                      .height = 48};
+}
+
+/* How far OpenGL is from the CPU. */
+static test_gap measure(const cw_scene *scene)
+{
+    cw_error err = {0};
+    cw_renderer *cpu, *gl = test_renderer();
+    assert_ok(cw_renderer_new(CW_BACKEND_CPU, &cpu, &err), err);
+    cw_renderer_forget(gl);
+    cw_picture a = test_draw(gl, scene), b = test_draw(cpu, scene);
+    const test_gap gap = test_compare(&a, &b);
+    cw_picture_free(&a);
+    cw_picture_free(&b);
+    cw_renderer_free(cpu);
+    return gap;
+}
+
+/* By cells all but the first local maximum is exact; that may be told apart from a shoulder by
+ * rounding. */
+static void cells_are_exact(void **state)
+{
+    (void)state;
+    cw_volume blobs = {0};
+    test_field(&blobs, 30, 26, 28, cube, test_blobs);
+    for (int m = 0; m < MODES; m++)
+        for (int perspective = 0; perspective < 2; perspective++) {
+            cw_scene s = scene_of(modes[m], &blobs, perspective);
+            s.cell_steps = true;
+            const test_gap gap = measure(&s);
+            assert_true(modes[m] == CW_MODE_LOCAL_MIP ? gap.rmse < 1.5 : gap.max < 0.01);
+        }
+    cw_volume_free(&blobs);
+}
+
+/* A quarter of the step, less than a quarter of the error: samples miss a smooth maximum by its
+ * curvature, one at the face of a cell by its slope. */
+static void samples_converge(void **state)
+{
+    (void)state;
+    cw_volume blobs = {0};
+    test_field(&blobs, 64, 64, 64, cube, test_blobs);
+    for (int m = 0; m < 3; m++) {
+        double rmse[2];
+        for (int n = 0; n < 2; n++) {
+            cw_scene s = scene_of(modes[m], &blobs, true);
+            s.camera.eye[0] = 65;
+            s.camera.eye[1] = -170;
+            s.step_vox = (double[]){2, 0.5}[n];
+            rmse[n] = measure(&s).rmse;
+        }
+        assert_true(rmse[0] < 1);
+        assert_true(rmse[1] < rmse[0] / 4 || rmse[1] < 1e-3);
+    }
+    cw_volume_free(&blobs);
+}
+
+static void bricks_are_as_one_texture(void **state)
+{
+    (void)state;
+    cw_volume blobs = {0};
+    test_field(&blobs, 30, 26, 28, cube, test_blobs);
+    for (int m = 0; m < 3; m++) {
+        cw_scene s = scene_of(modes[m], &blobs, true);
+        s.cell_steps = true;
+        s.texture_edge = 9;
+        assert_true(measure(&s).max < 0.01);
+    }
+    cw_volume_free(&blobs);
+}
+
+/* Rays pass over samples without a value, and over what is cut away. */
+static void gaps_and_cuts_are_left_out(void **state)
+{
+    (void)state;
+    cw_volume blobs = {0};
+    test_field(&blobs, 30, 26, 28, cube, test_blobs);
+    float *voxels = cw_volume_voxels(&blobs);
+    for (size_t n = 0; n < 30 * 26 * 28; n++)
+        if (n % 30 > 8 && n % 30 < 14)
+            voxels[n] = NAN;
+    for (int m = 0; m < 3; m++)
+        for (int cut = 0; cut < 3; cut++) {
+            cw_scene s = scene_of(modes[m], &blobs, cut == 1);
+            s.cell_steps = true;
+            s.clip_count = cut > 0;
+            s.cut_away = cut > 1;
+            s.clips[0] = (cw_clip){{0.2, 1, 0.3}, 2};
+            assert_true(measure(&s).rmse <
+                        4); /* two pixels at a gap's edge round differently */
+        }
+    cw_volume_free(&blobs);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(cells_are_exact),
+        cmocka_unit_test(samples_converge),
+        cmocka_unit_test(bricks_are_as_one_texture),
+        cmocka_unit_test(gaps_and_cuts_are_left_out),
+    };
+    return cmocka_run_group_tests(tests, NULL, test_renderer_close);
+}
