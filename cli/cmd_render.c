@@ -80,7 +80,8 @@ static const cli_option options[] = {
      "quad: with axial, coronal and sagittal slices beside it (single)", MARKS(layout)},
     HEADING("Colours and opacities of a volume"),
     {"tf", 0, CLI_TEXT, "NAME|FILE",
-     "auto, ct-bone, ct-soft, ct-skin, mr, mip, grey, fog, level-set, or a .json file (by "
+     "auto, ct-bone, ct-soft, ct-skin, mr, mip, grey, xray, fog, level-set, or a .json file "
+     "(by "
      "mode)",
      SCENE(transfer)},
     {"shift", 0, CLI_NUMBER, "V", "add to all its values (0)", SCENE(shift)},
@@ -141,6 +142,9 @@ static const cli_option options[] = {
      "opacity, not depth, is linear over a polygon, as in 1991 (off)", SCENE(linear_opacity)},
     {"tree-error", 0, CLI_NUMBER, "S",
      "largest error of a node that is drawn whole, 0 to 1 (0)", SCENE(tree_error)},
+    {"splat-budget", 0, CLI_COUNT, "N",
+     "splats at most, as exact as they can be, in place of a --tree-error",
+     SCENE(splat_budget)},
     HEADING("Meshes"),
     {"color", 0, CLI_TEXT, "C", "of a mesh without colours, such as #ffeedd or #ffeedd80",
      SCENE(color)},

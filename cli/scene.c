@@ -88,8 +88,9 @@ static const char *default_preset(const cw_volume *v, cw_mode mode)
     case CW_MODE_MIP:
     case CW_MODE_LOCAL_MIP:
         return "mip";
-    case CW_MODE_MINIP:
     case CW_MODE_AVERAGE:
+        return "xray";
+    case CW_MODE_MINIP:
     case CW_MODE_SLICES:
         return "grey";
     default:
@@ -363,6 +364,7 @@ static cw_status add_steps(const cli_scene *args, const cw_volume *v, cw_scene *
     s->mark_boundary = args->boundary;
     s->linear_opacity = args->linear_opacity;
     s->tree_error = args->tree_error.value;
+    s->splat_budget = args->splat_budget;
     cw_status st = take_share("stop-opacity", &args->stop_opacity, 1, &s->stop_opacity, err);
     return st == CW_OK ? space_slices(args, v, s, err) : st;
 }

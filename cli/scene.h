@@ -22,6 +22,7 @@ typedef struct cli_scene {
     int target;
     bool colors_first, boundary, linear_opacity;
     cli_number tree_error;
+    size_t splat_budget;
     int tint;
     cli_numbers tint_range;
     bool wireframe, cap;

@@ -54,6 +54,7 @@ static const struct {
     {"boundary", ONE(SHADED_TEXTURE), false, false},
     {"linear-opacity", ONE(PROJECTION), false, false},
     {"tree-error", ONE(SPLAT_TREE) | ONE(PROJECTION), false, false},
+    {"splat-budget", ONE(SPLAT_TREE), false, false},
     {"tint", 0, true, true},
     {"tint-range", 0, true, true},
     {"wireframe", 0, true, true},

@@ -200,6 +200,13 @@ static void make_grey(const cw_statistics *s, cw_transfer *t)
     put_opacity(t, s->min, 1);
 }
 
+/* Means along rays, air and all, stay below the densest class. */
+static void make_xray(const cw_statistics *s, cw_transfer *t)
+{
+    make_grey_between(s->min, fmax(find_classes(s).second, s->min + s->bin_width), t);
+    put_opacity(t, s->min, 1);
+}
+
 static void make_fog(const cw_statistics *s, cw_transfer *t)
 {
     const classes c = find_classes(s);
@@ -300,6 +307,7 @@ static const struct {
     {"mr", "tissue as a veil, what is bright in it dense", true, make_mr},
     {"mip", "opaque greys from the median up, for vessels in mip", true, make_mip},
     {"grey", "opaque greys over the whole range", true, make_grey},
+    {"xray", "opaque greys up to the densest class, for average", true, make_xray},
     {"fog", "a thin white haze", true, make_fog},
     {"level-set", "solid below 0", true, make_level_set},
 };
