@@ -1,5 +1,6 @@
 /* A volume as 3D textures: one, or bricks where one would be too large. */
 #include "viewer/gl_draw.h"
+#include "viewer/rows.h"
 
 #include "core/affine.h"
 #include "core/memory.h"
@@ -261,25 +262,6 @@ static uint16_t to_half(float x)
     return (uint16_t)(sign | (bits - 0x38000000u + 0xfffu + (bits >> 13 & 1)) >> 13);
 }
 
-/* A row of voxels as floats; NaN: no value. */
-static void load_row(const cw_volume *v, const char *from, size_t count, float *to)
-{
-    switch (v->type) {
-#define CASE(name, ctype, text)                                                                \
-    case name:                                                                                 \
-        for (size_t i = 0; i < count; i++)                                                     \
-            to[i] = (float)*(const ctype *)(from + (ptrdiff_t)i * v->stride[0]);               \
-        break;
-        CW_TYPE_TABLE(CASE)
-#undef CASE
-    default:
-        break;
-    }
-    for (size_t i = 0; i < count && v->has_nodata; i++)
-        if (cwi_voxel_at(v->type, from + (ptrdiff_t)i * v->stride[0]) == v->nodata)
-            to[i] = NAN;
-}
-
 /* The row n before or after one, or that one at the border; and how far apart such two are. */
 static const char *row_at(const cw_volume *v, const char *row, int axis, size_t at, int n)
 {
@@ -308,10 +290,10 @@ static void put_gradient_row(const cw_volume *v, const cwi_gl_brick *b, size_t j
     float *r[5];
     for (int i = 0; i < 5; i++)
         r[i] = rows + (size_t)i * n;
-    load_row(v, row, n, r[0]);
+    cwi_row_load(v, row, n, r[0]);
     for (int i = 0; i < 4; i++) {
         const int axis = 1 + i / 2;
-        load_row(v, row_at(v, row, axis, axis == 1 ? j : k, i % 2 ? 1 : -1), n, r[1 + i]);
+        cwi_row_load(v, row_at(v, row, axis, axis == 1 ? j : k, i % 2 ? 1 : -1), n, r[1 + i]);
     }
     const float ys = scale * reach(v, 1, j), zs = scale * reach(v, 2, k);
     for (size_t i = 0; i < b->count[0]; i++) {

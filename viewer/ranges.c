@@ -1,5 +1,7 @@
 #include "viewer/ranges.h"
 
+#include "viewer/rows.h"
+
 #include "core/layers.h"
 #include "core/memory.h"
 #include "core/status.h"
@@ -11,53 +13,8 @@
 typedef struct job {
     const cw_volume *v;
     cwi_ranges *ranges;
+    bool has_failed;
 } job;
-
-/* Widens a range by `count` numbers of a row; false when one of them is no value. */
-#define WIDEN(name, ctype, text)                                                               \
-    static bool widen_##name(const cw_volume *v, const char *p, size_t count, double r[2])     \
-    {                                                                                          \
-        const ctype *row = (const ctype *)p;                                                   \
-        ctype low = *row, high = low;                                                          \
-        size_t values = 0;                                                                     \
-        bool plain = v->stride[0] == (ptrdiff_t)sizeof low && !v->has_nodata;                  \
-        for (size_t i = 0; plain && i < count; i++) {                                          \
-            low = row[i] < low ? row[i] : low;                                                 \
-            high = row[i] > high ? row[i] : high;                                              \
-            values += row[i] == row[i];                                                        \
-        }                                                                                      \
-        plain = values == count && isfinite((double)low) && isfinite((double)high);            \
-        if (plain) {                                                                           \
-            r[0] = (double)low < r[0] ? (double)low : r[0];                                    \
-            r[1] = (double)high > r[1] ? (double)high : r[1];                                  \
-            return true;                                                                       \
-        }                                                                                      \
-        values = 0;                                                                            \
-        for (size_t i = 0; i < count; i++) {                                                   \
-            const double x = (double)*(const ctype *)(p + (ptrdiff_t)i * v->stride[0]);        \
-            if (isfinite(x) && !(v->has_nodata && x == v->nodata)) {                           \
-                r[0] = x < r[0] ? x : r[0];                                                    \
-                r[1] = x > r[1] ? x : r[1];                                                    \
-                values++;                                                                      \
-            }                                                                                  \
-        }                                                                                      \
-        return values == count;                                                                \
-    }
-CW_TYPE_TABLE(WIDEN)
-#undef WIDEN
-
-static bool widen_row(const cw_volume *v, const char *p, size_t count, double r[2])
-{
-    switch (v->type) {
-#define CASE(name, ctype, text)                                                                \
-    case name:                                                                                 \
-        return widen_##name(v, p, count, r);
-        CW_TYPE_TABLE(CASE)
-#undef CASE
-    default:
-        return false;
-    }
-}
 
 /* The samples of block n along an axis. */
 static size_t samples_of(const cw_volume *v, int axis, size_t n)
@@ -66,37 +23,77 @@ static size_t samples_of(const cw_volume *v, int axis, size_t n)
     return left < CWI_RANGE_EDGE + 1 ? left : CWI_RANGE_EDGE + 1;
 }
 
-/* False when a sample has no value. */
-static bool scan_block(const cw_volume *v, size_t i, size_t j, size_t k, float out[2])
+/* Widens a range a column by the numbers of a row; false when one of them is no value. */
+static bool widen(const float *row, size_t count, float *low, float *high)
 {
-    double r[2] = {INFINITY, -INFINITY};
+    size_t values = 0;
+    for (size_t i = 0; i < count; i++) {
+        const bool is_value = row[i] - row[i] == 0; /* neither NaN nor infinite */
+        low[i] = is_value && row[i] < low[i] ? row[i] : low[i];
+        high[i] = is_value && row[i] > high[i] ? row[i] : high[i];
+        values += is_value;
+    }
+    return values == count;
+}
+
+/* Ranges of columns, over the rows of one row of blocks. columns: room for three rows. */
+static bool scan_rows(const cw_volume *v, size_t j, size_t k, float *columns)
+{
+    const size_t n = v->dim[0];
+    float *row = columns, *low = columns + n, *high = columns + 2 * n;
     bool is_whole = true;
+    for (size_t i = 0; i < n; i++) {
+        low[i] = INFINITY;
+        high[i] = -INFINITY;
+    }
     for (size_t z = 0; z < samples_of(v, 2, k); z++)
-        for (size_t y = 0; y < samples_of(v, 1, j); y++)
-            is_whole &=
-                widen_row(v,
-                          cwi_voxel_address(v, CWI_RANGE_EDGE * i, CWI_RANGE_EDGE * j + y,
-                                            CWI_RANGE_EDGE * k + z),
-                          samples_of(v, 0, i), r);
-    const double a = v->slope * r[0] + v->intercept, b = v->slope * r[1] + v->intercept;
-    out[0] = r[0] > r[1] ? 1 : nextafterf((float)fmin(a, b), -INFINITY);
-    out[1] = r[0] > r[1] ? 0 : nextafterf((float)fmax(a, b), INFINITY);
+        for (size_t y = 0; y < samples_of(v, 1, j); y++) {
+            cwi_row_load(
+                v, cwi_voxel_address(v, 0, CWI_RANGE_EDGE * j + y, CWI_RANGE_EDGE * k + z), n,
+                row);
+            is_whole &= widen(row, n, low, high);
+        }
     return is_whole;
+}
+
+/* A block of a row, from the columns of its samples. Floats are within half a step of what they
+ * stand for: a step outward is on the safe side. */
+static void gather_columns(const cw_volume *v, size_t i, const float *columns, float out[2])
+{
+    const float *low = columns + v->dim[0] + CWI_RANGE_EDGE * i, *high = low + v->dim[0];
+    float r[2] = {INFINITY, -INFINITY};
+    for (size_t x = 0; x < samples_of(v, 0, i); x++) {
+        r[0] = low[x] < r[0] ? low[x] : r[0];
+        r[1] = high[x] > r[1] ? high[x] : r[1];
+    }
+    const bool is_empty = r[0] > r[1];
+    const double a = v->slope * (double)nextafterf(r[0], -INFINITY) + v->intercept;
+    const double b = v->slope * (double)nextafterf(r[1], INFINITY) + v->intercept;
+    out[0] = is_empty ? 1 : nextafterf((float)fmin(a, b), -INFINITY);
+    out[1] = is_empty ? 0 : nextafterf((float)fmax(a, b), INFINITY);
 }
 
 static void scan_layer(void *context, size_t k)
 {
-    const job *work = context;
+    job *work = context;
     const size_t *dim = work->ranges->dim;
+    float *columns = cwi_alloc_array(work->v->dim[0], 3 * sizeof *columns);
     bool is_whole = true;
-    for (size_t j = 0; j < dim[1]; j++)
+    for (size_t j = 0; j < dim[1] && columns; j++) {
+        is_whole &= scan_rows(work->v, j, k, columns);
         for (size_t i = 0; i < dim[0]; i++)
-            is_whole &= scan_block(work->v, i, j, k,
-                                   work->ranges->blocks[(k * dim[1] + j) * dim[0] + i]);
+            gather_columns(work->v, i, columns,
+                           work->ranges->blocks[(k * dim[1] + j) * dim[0] + i]);
+    }
+    if (!columns) {
+#pragma omp atomic write
+        work->has_failed = true;
+    }
     if (!is_whole) {
 #pragma omp atomic write
         work->ranges->has_gaps = true;
     }
+    cwi_free(columns);
 }
 
 cw_status cwi_ranges_make(const cw_volume *volume, int threads, cwi_ranges *ranges,
@@ -112,10 +109,14 @@ cw_status cwi_ranges_make(const cw_volume *volume, int threads, cwi_ranges *rang
     ranges->blocks = cwi_alloc_array(count, sizeof *ranges->blocks);
     if (!ranges->blocks)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the ranges of %zu blocks", count);
-    job work = {volume, ranges};
+    job work = {volume, ranges, false};
     const cw_progress none = {0};
-    return cwi_each_layer(ranges->dim[2], volume->dim[0] * volume->dim[1] * CWI_RANGE_EDGE,
-                          threads, &none, "ranges", scan_layer, &work, err);
+    cw_status st =
+        cwi_each_layer(ranges->dim[2], volume->dim[0] * volume->dim[1] * CWI_RANGE_EDGE,
+                       threads, &none, "ranges", scan_layer, &work, err);
+    return st == CW_OK && work.has_failed
+               ? cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the ranges of blocks")
+               : st;
 }
 
 /* Block (i, j, k) of the coarse ones: around its eight fine ones. */

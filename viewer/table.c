@@ -43,8 +43,11 @@ cw_status cwi_table_make(const cwi_frame *frame, cwi_table *table, cw_error *err
     find_range(&frame->transfer, range);
     *table = (cwi_table){.low = range[0], .high = range[1], .count = CWI_TABLE_ROWS};
     table->rows = cwi_alloc_array(table->count, 4 * sizeof *table->rows);
-    if (!table->rows)
+    table->visible = cwi_alloc_array(table->count, sizeof *table->visible);
+    if (!table->rows || !table->visible) {
+        cwi_table_free(table);
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a transfer function");
+    }
     for (size_t n = 0; n < table->count; n++) {
         float *row = table->rows + 4 * n;
         const double share = (double)n / (double)(table->count - 1);
@@ -54,12 +57,16 @@ cw_status cwi_table_make(const cwi_frame *frame, cwi_table *table, cw_error *err
             row[c] = (float)color[c];
         row[3] = (float)cwi_frame_extinction(frame, opacity);
     }
+    size_t next = table->count;
+    for (size_t n = table->count; n-- > 0; table->visible[n] = (uint16_t)next)
+        next = table->rows[4 * n + 3] > 0 ? n : next;
     return CW_OK;
 }
 
 void cwi_table_free(cwi_table *table)
 {
     cwi_free(table->rows);
+    cwi_free(table->visible);
     *table = (cwi_table){0};
 }
 
@@ -74,10 +81,7 @@ bool cwi_table_is_visible(const cwi_table *table, double low, double high)
 {
     const size_t first = (size_t)floor(row_of(table, low)),
                  last = (size_t)ceil(row_of(table, high));
-    for (size_t n = first; n <= last; n++)
-        if (table->rows[4 * n + 3] > 0)
-            return true;
-    return false;
+    return table->visible[first] <= last;
 }
 
 /* The shortest way between two points that differ, at most so much. */

@@ -13,7 +13,9 @@ extern "C" {
 typedef struct cwi_table {
     double low, high; /* values of the first and last row */
     size_t count;
-    float *rows; /* count x 4: red, green, blue, extinction per unit of eye space */
+    float *rows;       /* count x 4: red, green, blue, extinction per unit of eye space */
+    uint16_t *visible; /* count: the first row from there on that is not fully transparent, or
+                          count */
 } cwi_table;
 
 enum { CWI_TABLE_ROWS = 4096 };
@@ -22,7 +24,7 @@ enum { CWI_TABLE_ROWS = 4096 };
 CW_API cw_status cwi_table_make(const cwi_frame *frame, cwi_table *table, cw_error *err);
 CW_API void cwi_table_free(cwi_table *table);
 
-/* The lowest row that is not fully transparent within a range of values; false: none is. */
+/* Whether something within a range of values is not fully transparent. */
 CW_API bool cwi_table_is_visible(const cwi_table *table, double low, double high);
 
 /* Rows that a pre-integrated table needs: more for narrow peaks, 256 to 1024. */

@@ -1,0 +1,18 @@
+/* Rows of voxels as floats. */
+#ifndef VIEWER_ROWS_H
+#define VIEWER_ROWS_H
+
+#include <cubewright/volume.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Reads count numbers of a row, before slope and intercept; NaN: no value. */
+CW_API void cwi_row_load(const cw_volume *volume, const void *from, size_t count, float *to);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
