@@ -127,8 +127,8 @@ static void text_is_as_wide_as_said(void **state)
     (void)state;
     static const char *const texts[] = {"12.5 mm",
                                         "\xc2\xb5m",
-                                        "\xe2\x88\x92"
-                                        "40",
+                                        ("\xe2\x88\x92"
+                                         "40"),
                                         "Wq\x80z",
                                         "cut \xe2\x88",
                                         "\xf0\x9f\x98\x80"};
