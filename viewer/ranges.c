@@ -7,6 +7,7 @@
 #include "core/status.h"
 #include "core/volume.h"
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -23,17 +24,19 @@ static size_t samples_of(const cw_volume *v, int axis, size_t n)
     return left < CWI_RANGE_EDGE + 1 ? left : CWI_RANGE_EDGE + 1;
 }
 
-/* Widens a range a column by the numbers of a row; false when one of them is no value. */
+/* Widens a range a column by the numbers of a row; false when one of them is no value: neither
+ * NaN nor infinite numbers are 0 less themselves. */
 static bool widen(const float *row, size_t count, float *low, float *high)
 {
-    size_t values = 0;
+    int gaps = 0;
     for (size_t i = 0; i < count; i++) {
-        const bool is_value = row[i] - row[i] == 0; /* neither NaN nor infinite */
-        low[i] = is_value && row[i] < low[i] ? row[i] : low[i];
-        high[i] = is_value && row[i] > high[i] ? row[i] : high[i];
-        values += is_value;
+        const int is_value = row[i] - row[i] == 0;
+        const float a = is_value ? row[i] : INFINITY, b = is_value ? row[i] : -INFINITY;
+        low[i] = a < low[i] ? a : low[i];
+        high[i] = b > high[i] ? b : high[i];
+        gaps |= !is_value;
     }
-    return values == count;
+    return !gaps;
 }
 
 /* Ranges of columns, over the rows of one row of blocks. columns: room for three rows. */
@@ -56,8 +59,14 @@ static bool scan_rows(const cw_volume *v, size_t j, size_t k, float *columns)
     return is_whole;
 }
 
+/* A little outward: more than the rounding to a float. */
+static float outward(double x, double sign)
+{
+    return (float)(x + sign * (fabs(x) * 0x1p-22 + (double)FLT_MIN));
+}
+
 /* A block of a row, from the columns of its samples. Floats are within half a step of what they
- * stand for: a step outward is on the safe side. */
+ * stand for. */
 static void gather_columns(const cw_volume *v, size_t i, const float *columns, float out[2])
 {
     const float *low = columns + v->dim[0] + CWI_RANGE_EDGE * i, *high = low + v->dim[0];
@@ -67,10 +76,10 @@ static void gather_columns(const cw_volume *v, size_t i, const float *columns, f
         r[1] = high[x] > r[1] ? high[x] : r[1];
     }
     const bool is_empty = r[0] > r[1];
-    const double a = v->slope * (double)nextafterf(r[0], -INFINITY) + v->intercept;
-    const double b = v->slope * (double)nextafterf(r[1], INFINITY) + v->intercept;
-    out[0] = is_empty ? 1 : nextafterf((float)fmin(a, b), -INFINITY);
-    out[1] = is_empty ? 0 : nextafterf((float)fmax(a, b), INFINITY);
+    const double a = v->slope * (double)outward((double)r[0], -1) + v->intercept;
+    const double b = v->slope * (double)outward((double)r[1], 1) + v->intercept;
+    out[0] = is_empty ? 1 : outward(a < b ? a : b, -1);
+    out[1] = is_empty ? 0 : outward(a < b ? b : a, 1);
 }
 
 static void scan_layer(void *context, size_t k)
