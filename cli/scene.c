@@ -10,7 +10,8 @@
 #include <string.h>
 
 enum { BINS = 1024 };
-static const double STEP_VOX = 0.5; /* pictures for keeps: the library's own is 1 */
+/* Pictures for keeps: the library's own is 1. Lit rays have one gradient for two steps. */
+static const double STEP_VOX = 0.5, LIT_STEP_VOX = 0.25;
 
 static bool parse_hex(const char *hex, uint8_t rgba[4])
 {
@@ -349,7 +350,9 @@ static cw_status add_steps(const cli_scene *args, const cw_volume *v, cw_scene *
     if (args->stop_opacity.given && !(args->stop_opacity.value > 0))
         return cw_fail(err, CW_ERR_ARGUMENT, "--stop-opacity %g: above 0 was expected",
                        args->stop_opacity.value);
-    s->step_vox = args->step.given ? args->step.value : STEP_VOX;
+    s->step_vox = args->step.given                         ? args->step.value
+                  : s->lit && s->mode == CW_MODE_COMPOSITE ? LIT_STEP_VOX
+                                                           : STEP_VOX;
     s->stop_opacity = 0.9999f;
     s->cell_steps = args->cell_steps;
     s->no_preintegration = !args->preintegration;
