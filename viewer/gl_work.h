@@ -77,7 +77,7 @@ struct cwi_gl {
     } before; /* the caller's, while this one draws */
     char name[256];
     const cwi_frame *frame; /* that is being drawn */
-    GLuint frame_block, empty_array, sampler;
+    GLuint frame_block, empty_array;
     cwi_gl_target target;
     cwi_gl_volume volume;
     cwi_gl_transfer transfer;
@@ -104,8 +104,10 @@ extern const cwi_gl_mode cwi_gl_composite, cwi_gl_mip, cwi_gl_minip, cwi_gl_aver
 const cwi_gl_mode *cwi_gl_find_mode(cw_mode mode);
 
 /* A program of two of the sources in shaders/ (cwi_glsl_NAME), each after common.glsl; made
- * once. defines  "#define A 1\n...", at most 255 characters; "" for none The uniform block
- * Frame and the texture units above are set. CW_ERR_BACKEND with GL's words. */
+ * once. The uniform block Frame and the texture units above are set.
+ *
+ * defines  "#define A 1\n...", at most 255 characters; "" for none
+ * Returns  CW_ERR_BACKEND with GL's words */
 cw_status cwi_gl_use(cwi_gl *gl, const char *vertex, const char *fragment, const char *defines,
                      GLuint *program, cw_error *err);
 void cwi_gl_set(GLuint program, const char *name, float value);

@@ -7,13 +7,13 @@ layout(std140) uniform Frame {
     vec4 view;            // 1 in perspective, near, far, depth cue
     vec4 low, high;       // the volume in index space
     vec4 dim;             // samples; rows of the pre-integrated table
-    vec4 texels;          // scale and bias from a texel to a table's coordinate; to a value
-    vec4 march;           // step, opacity to stop at, 1: jitter, factor's end
+    vec4 texels;          // scale and bias from a texel to a table's coordinate
+    vec4 limits;          // opacity to stop at, factor's end
     vec4 material;        // ambient, diffuse, specular, shininess
     vec4 light_direction[4], light_color[4];
     vec4 background[2]; // top, bottom
     vec4 clips[12];     // eye space: n . p >= w is kept
-    ivec4 counts;       // lights, clips, 1: clips cut away, 1: volumes are lit
+    ivec4 counts;       // lights, clips, 1: clips cut away
 };
 
 uniform sampler3D volume;    // one brick's values
@@ -70,7 +70,7 @@ vec3 gradient_at(vec3 index)
 // What the transfer function makes of the extinction by the gradient.
 float gradient_factor(vec3 gradient)
 {
-    float at = clamp(length(gradient) / march.w, 0.0, 1.0);
+    float at = clamp(length(gradient) / limits.y, 0.0, 1.0);
     return textureLod(factor, vec2((at * (factor_rows - 1.0) + 0.5) / factor_rows, 0.5), 0.0).r;
 }
 
@@ -91,6 +91,27 @@ vec3 shade(vec3 color, vec3 gradient, vec3 to_eye)
         light += light_color[i].rgb * (material.y * diffuse * color + material.z * specular);
     }
     return light;
+}
+
+// The same stuff on another length, or more or less of it: light through it to that power.
+vec4 stretch(vec4 color, float power)
+{
+    float alpha = 1.0 - pow(1.0 - min(color.a, 0.9999999), power);
+    return color.a > 0.0 ? vec4(color.rgb * (alpha / color.a), alpha) : vec4(0.0);
+}
+
+// What the gradient makes of a premultiplied colour: more or less of it, and light on it. SHADES: it
+// comes with light.
+vec4 by_gradient(vec4 color, vec3 gradient, vec3 to_eye)
+{
+#ifdef FACTOR
+    color = stretch(color, gradient_factor(gradient));
+#endif
+#if defined(LIT) && !defined(SHADES)
+    if (color.a > 0.0)
+        color.rgb = shade(color.rgb / color.a, gradient, to_eye) * color.a;
+#endif
+    return color;
 }
 
 // The share of its own light that something at a depth keeps.

@@ -12,13 +12,6 @@ vec2 segment_scale()
     return vec2(texels.x * (dim.w - 1.0), texels.y * (dim.w - 1.0) + 0.5) / dim.w;
 }
 
-// The same stuff on another length, or more or less of it: light through it to that power.
-vec4 stretch(vec4 color, float power)
-{
-    float alpha = 1.0 - pow(1.0 - min(color.a, 0.9999999), power);
-    return color.a > 0.0 ? vec4(color.rgb * (alpha / color.a), alpha) : color;
-}
-
 // Half a segment, straight; NaN is empty.
 vec4 half_segment(float front, float back)
 {
@@ -75,7 +68,7 @@ vec4 along(ray r, float from, float to, vec4 sum, float y)
 #ifdef JITTER
     float first = random(gl_FragCoord.xy) * h;
 #endif
-    while (t < to && sum.a < march.y) {
+    while (t < to && sum.a < limits.x) {
 #ifdef SKIP
         if (may_leap) {
             float steps = floor(leap_from(r, r.index + t * r.slope, to - t) / h);
@@ -111,16 +104,8 @@ vec4 along(ray r, float from, float to, vec4 sum, float y)
         vec4 color = vec4(row.rgb * alpha, alpha);
 #endif
 #if defined(LIT) || defined(FACTOR)
-        if ((1.0 - sum.a) * color.a > 1e-5) { // others would not be seen
-            vec3 gradient = gradient_on(r, t + 0.5 * extent);
-#ifdef FACTOR
-            color = stretch(color, gradient_factor(gradient));
-#endif
-#ifdef LIT
-            if (color.a > 0.0)
-                color.rgb = shade(color.rgb / color.a, gradient, -r.direction) * color.a;
-#endif
-        }
+        if ((1.0 - sum.a) * color.a > 1e-5) // others would not be seen
+            color = by_gradient(color, gradient_on(r, t + 0.5 * extent), -r.direction);
 #endif
 #ifdef CUE
         color = attenuate(color, -(t + 0.5 * extent) * r.direction.z, y);

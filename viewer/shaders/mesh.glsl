@@ -67,7 +67,7 @@ bool is_peeled(float z)
 {
 #ifdef PEEL
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    return z <= texelFetch(peeled, pixel, 0).r || texelFetch(covered, pixel, 0).a >= march.y;
+    return z <= texelFetch(peeled, pixel, 0).r || texelFetch(covered, pixel, 0).a >= limits.x;
 #else
     return false;
 #endif

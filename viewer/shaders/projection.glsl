@@ -47,13 +47,6 @@ struct way {
     float from, extent, front, back;
 };
 
-// The same stuff on another length: light through it to that power.
-vec4 stretch(vec4 color, float power)
-{
-    float alpha = 1.0 - pow(1.0 - min(color.a, 0.9999999), power);
-    return color.a > 0.0 ? vec4(color.rgb * (alpha / color.a), alpha) : color;
-}
-
 vec4 segment_between(float front, float back, float extent)
 {
     vec2 at = (clamp(vec2(front, back), 0.0, 1.0) * (dim.w - 1.0) + 0.5) / dim.w;
@@ -101,16 +94,8 @@ vec4 along(ray r, way w, vec2 t, float y)
     vec4 color = between(mix(w.front, w.back, share.x), mix(w.front, w.back, share.y), t.y - t.x);
 #endif
 #if defined(LIT) || defined(FACTOR)
-    if (color.a > 1e-6) {
-        vec3 gradient = gradient_at(r.index + middle * r.slope);
-#ifdef FACTOR
-        color = stretch(color, gradient_factor(gradient));
-#endif
-#ifdef LIT
-        if (color.a > 0.0)
-            color.rgb = shade(color.rgb / color.a, gradient, -r.direction) * color.a;
-#endif
-    }
+    if (color.a > 1e-6)
+        color = by_gradient(color, gradient_at(r.index + middle * r.slope), -r.direction);
 #endif
     return attenuate(color, -middle * r.direction.z, y);
 }

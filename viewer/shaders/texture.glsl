@@ -27,13 +27,6 @@ vec4 absorb(vec3 color, float alpha)
     return vec4(color * opacity, opacity);
 }
 
-// The same stuff on another length, or more or less of it: light through it to that power.
-vec4 stretch(vec4 color, float power)
-{
-    float alpha = 1.0 - pow(1.0 - min(color.a, 0.9999999), power);
-    return color.a > 0.0 ? vec4(color.rgb * (alpha / color.a), alpha) : vec4(0.0);
-}
-
 // Premultiplied; what has no value is empty.
 vec4 segment_between(vec3 from, vec3 to, float extent)
 {
@@ -122,13 +115,7 @@ vec4 through(float from, float to, vec3 direction, float secant)
     vec4 color = color_of(a, b, (to - from) * thickness * secant);
 #if (defined(LIT) && !defined(SHADES)) || defined(FACTOR)
     vec3 gradient = mat3(gradient_to_eye) * texture(gradients, 0.5 * (a + b)).xyz;
-#ifdef FACTOR
-    color = stretch(color, gradient_factor(gradient));
-#endif
-#if defined(LIT) && !defined(SHADES)
-    if (color.a > 0.0)
-        color.rgb = shade(color.rgb / color.a, gradient, -direction) * color.a;
-#endif
+    color = by_gradient(color, gradient, -direction);
 #endif
 #ifdef CUE
     color = attenuate(color, front_depth + 0.5 * (from + to) * thickness, gl_FragCoord.y / picture.y);
