@@ -1,4 +1,5 @@
 #include "viewer/compare.h"
+#include "viewer/srgb.h"
 
 #include "core/memory.h"
 #include "core/status.h"
@@ -14,11 +15,6 @@ static const float covered = 1e-4f;
 
 enum { WINDOW = 5 }; /* pixels on each side of the middle */
 static const double window_sigma = 1.5;
-
-static double linear_of(double srgb)
-{
-    return srgb <= 0.04045 ? srgb / 12.92 : pow((srgb + 0.055) / 1.055, 2.4);
-}
 
 /* The cube root, continued by a line near 0: CIE 15. */
 static double lightness_of(double share)
@@ -37,7 +33,7 @@ void cwi_lab_of(const double srgb[3], double lab[3])
     for (int r = 0; r < 3; r++) {
         double sum = 0, white = 0;
         for (int c = 0; c < 3; c++) {
-            sum += xyz_of[r][c] * linear_of(srgb[c]);
+            sum += xyz_of[r][c] * cwi_srgb_to_linear(srgb[c]);
             white += xyz_of[r][c];
         }
         f[r] = lightness_of(sum / white);

@@ -1,4 +1,5 @@
 #include "viewer/mesh_look.h"
+#include "viewer/srgb.h"
 
 #include "core/status.h"
 #include "core/vector.h"
@@ -10,12 +11,6 @@ static double inverse_f(double f)
 {
     const double knee = 6.0 / 29;
     return f > knee ? f * f * f : 3 * knee * knee * (f - 4.0 / 29);
-}
-
-static double to_srgb(double linear)
-{
-    const double c = fmin(fmax(linear, 0), 1);
-    return c <= 0.0031308 ? 12.92 * c : 1.055 * pow(c, 1 / 2.4) - 0.055;
 }
 
 /* CIELAB with the white of sRGB, D65; the matrix is IEC 61966-2-1's from XYZ. */
@@ -30,7 +25,7 @@ static void lab_to_srgb(double lightness, double a, double b, double srgb[3])
     for (int c = 0; c < 3; c++)
         xyz[c] = white[c] * inverse_f(f[c]);
     for (int c = 0; c < 3; c++)
-        srgb[c] = to_srgb(cwi_dot(from_xyz[c], xyz));
+        srgb[c] = cwi_linear_to_srgb(cwi_dot(from_xyz[c], xyz));
 }
 
 void cwi_ramp_color(double share, double srgb[3])

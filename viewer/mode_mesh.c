@@ -6,6 +6,7 @@
  * Cuts are filled where the winding number of the mesh around a plane's point is not 0: what
  * the ray leaves behind that point, less what it enters. */
 #include "viewer/gl_mesh.h"
+#include "viewer/srgb.h"
 
 #include "core/status.h"
 
@@ -21,11 +22,6 @@ enum { MOST_LAYERS = 128 };
 /* Half the width of edges, in pixels. */
 static const float LINE_WIDTH = 0.6f;
 
-static float to_linear(float srgb)
-{
-    return srgb <= 0.04045f ? srgb / 12.92f : powf((srgb + 0.055f) / 1.055f, 2.4f);
-}
-
 static bool has_colors(const cw_scene *s)
 {
     return s->tint == CW_TINT_COLORS && s->mesh->colors;
@@ -37,7 +33,7 @@ static void set_plain(const cw_scene *s, GLuint program, bool cut, bool opaque)
     static const float darker[3] = {0.86f, 0.72f, 0.62f};
     float c[4];
     for (int a = 0; a < 3; a++)
-        c[a] = to_linear(s->color[a]) * (cut ? darker[a] : 1);
+        c[a] = (float)cwi_srgb_to_linear((double)s->color[a]) * (cut ? darker[a] : 1);
     c[3] = opaque || (cut && has_colors(s)) ? 1 : s->color[3];
     glUniform4fv(glGetUniformLocation(program, "plain"), 1, c);
 }

@@ -6,6 +6,7 @@
  * edge functions of such points are exact in double, and with the top-left rule every sample of
  * a surface belongs to exactly one of its triangles: no cracks, no double hits. */
 #include "viewer/reference_mesh.h"
+#include "viewer/srgb.h"
 
 #include "core/memory.h"
 #include "core/status.h"
@@ -77,15 +78,12 @@ static double snap(double x)
 
 static double to_linear(uint8_t srgb)
 {
-    const double c = srgb / 255.0;
-    return c <= 0.04045 ? c / 12.92 : pow((c + 0.055) / 1.055, 2.4);
+    return cwi_srgb_to_linear(srgb / 255.0);
 }
 
 static uint8_t to_srgb(double linear)
 {
-    const double c =
-        linear <= 0.0031308 ? 12.92 * linear : 1.055 * pow(fmin(linear, 1), 1 / 2.4) - 0.055;
-    return (uint8_t)lround(255 * fmax(c, 0));
+    return (uint8_t)lround(255 * cwi_linear_to_srgb(linear));
 }
 
 static bool is_behind(const scene *s, const point *p)
