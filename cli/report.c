@@ -306,18 +306,11 @@ static void put_report(FILE *out, const cli_report *r, cw_status status, const c
 
 cw_status cli_report_save(const char *path, const char *text, size_t size, cw_error *err)
 {
-    cwi_outfile *file = NULL;
     if (strcmp(path, "-") == 0)
         return fwrite(text, 1, size, stdout) == size
                    ? CW_OK
                    : cw_fail(err, CW_ERR_OUTPUT, "the standard output cannot be written");
-    cw_status st = cwi_outfile_open(&file, path, false, err);
-    if (st == CW_OK)
-        st = cwi_outfile_write(file, text, size, err);
-    if (st == CW_OK)
-        st = cwi_outfile_commit(&file, err);
-    cwi_outfile_abort(&file);
-    return st == CW_OK ? st : cwi_fail_in(err, st, path);
+    return cwi_outfile_save(path, text, size, err);
 }
 
 cw_status cli_report_write(const cli_report *report, cw_status status, cw_error *err)

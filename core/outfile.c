@@ -368,3 +368,15 @@ void cwi_outfile_abort(cwi_outfile **f)
     if (*f)
         close_and_free(f);
 }
+
+cw_status cwi_outfile_save(const char *path, const void *bytes, size_t size, cw_error *err)
+{
+    cwi_outfile *file = NULL;
+    cw_status st = cwi_outfile_open(&file, path, false, err);
+    if (st == CW_OK)
+        st = cwi_outfile_write(file, bytes, size, err);
+    if (st == CW_OK)
+        st = cwi_outfile_commit(&file, err);
+    cwi_outfile_abort(&file);
+    return st == CW_OK ? st : cwi_fail_in(err, st, path);
+}

@@ -45,6 +45,10 @@ CW_API cw_status cwi_outfile_commit(cwi_outfile **f, cw_error *err);
 /* Removes the temporary, frees and NULLs. Harmless on NULL and after a commit. */
 CW_API void cwi_outfile_abort(cwi_outfile **f);
 
+/* Writes a whole file at once; errors name the path. CW_ERR_OUTPUT, CW_ERR_NO_MEMORY */
+CW_API cw_status cwi_outfile_save(const char *path, const void *bytes, size_t size,
+                                  cw_error *err);
+
 /* Unlinks every temporary in progress; the program then has to exit. Async-signal-safe: for a
  * second Ctrl-C. Knows the first 64 files that are open at one time. */
 CW_API void cwi_outfile_remove_all(void);

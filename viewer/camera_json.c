@@ -1,5 +1,6 @@
 #include <cubewright/camera.h>
 
+#include "core/outfile.h"
 #include "core/status.h"
 #include "core/text.h"
 #include "viewer/json.h"
@@ -90,5 +91,5 @@ cw_status cw_camera_write(const char *path, const cw_camera *camera, cw_error *e
                               schema, n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8],
                               flat ? "height_mm" : "fov_deg", n[9]);
     cwi_locale_restore(before);
-    return cwi_json_write(path, text, (size_t)size, err);
+    return cwi_outfile_save(path, text, (size_t)size, err);
 }

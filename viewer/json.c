@@ -1,7 +1,6 @@
 #include "viewer/json.h"
 
 #include "core/memory.h"
-#include "core/outfile.h"
 #include "core/status.h"
 #include "core/text.h"
 
@@ -144,16 +143,4 @@ const char *cwi_json_double(char text[CWI_JSON_NUMBER], double value)
 const char *cwi_json_float(char text[CWI_JSON_NUMBER], float value)
 {
     return shortest(text, (double)value, true);
-}
-
-cw_status cwi_json_write(const char *path, const char *text, size_t size, cw_error *err)
-{
-    cwi_outfile *file = NULL;
-    cw_status st = cwi_outfile_open(&file, path, false, err);
-    if (st == CW_OK)
-        st = cwi_outfile_write(file, text, size, err);
-    if (st == CW_OK)
-        st = cwi_outfile_commit(&file, err);
-    cwi_outfile_abort(&file);
-    return st == CW_OK ? st : cwi_fail_in(err, st, path);
 }

@@ -26,7 +26,4 @@ enum { CWI_JSON_NUMBER = 32 };
 const char *cwi_json_double(char text[CWI_JSON_NUMBER], double value);
 const char *cwi_json_float(char text[CWI_JSON_NUMBER], float value);
 
-/* Writes a whole file, which appears only then; errors name it. CW_ERR_OUTPUT */
-cw_status cwi_json_write(const char *path, const char *text, size_t size, cw_error *err);
-
 #endif

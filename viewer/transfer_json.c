@@ -1,6 +1,7 @@
 #define _GNU_SOURCE /* open_memstream */
 #include "viewer/transfer_json.h"
 
+#include "core/outfile.h"
 #include "core/status.h"
 #include "core/text.h"
 #include "viewer/json.h"
@@ -184,7 +185,7 @@ cw_status cw_transfer_write(const char *path, const cw_transfer *transfer, cw_er
     void *before = cwi_locale_c();
     put_transfer(out, transfer);
     cwi_locale_restore(before);
-    st = fclose(out) == 0 ? cwi_json_write(path, text, size, err)
+    st = fclose(out) == 0 ? cwi_outfile_save(path, text, size, err)
                           : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a transfer function");
     free(text);
     return st;
