@@ -7,14 +7,12 @@
  * Fields with a gentle and a narrow transfer function, then the scans. Errors are RMSE and
  * maximum in 1/255, and CIEDE2000. Prints a JSON line a picture on stdout, a table on stderr.
  */
+#include "bench.h"
 #include "support/pictures.h"
 
 #include <cubewright/formats.h>
 
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <time.h>
 
 enum { MOST_FRAMES = 31 };
 
@@ -70,27 +68,6 @@ static const setting list[] = {
     {"average, cells", {.mode = CW_MODE_AVERAGE, .cell_steps = true}, false},
 };
 
-static double cpu_ms(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
-}
-
-static int by_value(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static void check(cw_status st, const cw_error *err)
-{
-    if (st == CW_OK)
-        return;
-    fprintf(stderr, "%s\n", err->message);
-    exit(1);
-}
-
 static bool is_intensity(cw_mode mode)
 {
     return mode == CW_MODE_MIP || mode == CW_MODE_MINIP || mode == CW_MODE_AVERAGE ||
@@ -104,7 +81,7 @@ static void draw_truth(cw_renderer *cpu, const cw_scene *scene, cw_picture *trut
     cw_scene s = *scene;
     if (!is_intensity(s.mode))
         s.mode = CW_MODE_REFERENCE;
-    check(cw_render(cpu, &s, truth, &err), &err);
+    bench_check(cw_render(cpu, &s, truth, &err), &err);
 }
 
 /* Median time; false when this build does not draw it. */
@@ -114,16 +91,15 @@ static bool draw(cw_renderer *r, const cw_scene *scene, int frames, double *ms,
     cw_error err = {0};
     double all[MOST_FRAMES];
     for (int n = 0; n <= frames; n++) {
-        const double start = cpu_ms();
+        const double start = bench_cpu_ms();
         cw_picture_free(picture);
         const cw_status st = cw_render(r, scene, picture, &err);
         if (st == CW_ERR_UNSUPPORTED)
             return false;
-        check(st, &err);
-        all[n] = cpu_ms() - start;
+        bench_check(st, &err);
+        all[n] = bench_cpu_ms() - start;
     }
-    qsort(all + 1, (size_t)frames, sizeof *all, by_value);
-    *ms = all[1 + frames / 2];
+    *ms = bench_median(all + 1, frames);
     return true;
 }
 
@@ -150,7 +126,7 @@ static void run(cw_renderer *r, cw_renderer *cpu, const char *name, const cw_vol
             draw_truth(cpu, &scene, exact);
         if (!draw(r, &scene, s->frames, &ms, &picture))
             continue;
-        check(cw_picture_compare(&picture, exact, black, &gap, &err), &err);
+        bench_check(cw_picture_compare(&picture, exact, black, &gap, &err), &err);
         fprintf(stderr, "  %-24s %8.1f ms   rmse %8.4f  max %8.3f   dE %7.3f  p99 %7.3f\n",
                 list[n].name, ms, gap.rmse, gap.max, gap.delta_e_mean, gap.delta_e_p99);
         printf("{\"scene\":\"%s\",\"setting\":\"%s\",\"ms\":%.2f,\"rmse\":%.5f,\"max\":%.4f,"
@@ -185,8 +161,8 @@ static void run_scan(cw_renderer *r, cw_renderer *cpu, const char *path, const c
         fprintf(stderr, "%s: left out\n", path);
         return;
     }
-    check(cw_volume_statistics(&v, 256, 0, &statistics, &err), &err);
-    check(cw_transfer_preset(preset, &statistics, &transfer, &err), &err);
+    bench_check(cw_volume_statistics(&v, 256, 0, &statistics, &err), &err);
+    bench_check(cw_transfer_preset(preset, &statistics, &transfer, &err), &err);
     run(r, cpu, slash ? slash + 1 : path, &v, &transfer, s);
     cw_statistics_free(&statistics);
     cw_volume_free(&v);
@@ -216,8 +192,8 @@ int main(int argc, char **argv)
     const cw_transfer flat = test_flat_transfer(), soft = test_soft_transfer(),
                       tent = test_tent_transfer();
     const int first = parse(argc, argv, &s);
-    check(cw_renderer_new(CW_BACKEND_AUTO, &r, &err), &err);
-    check(cw_renderer_new(CW_BACKEND_CPU, &cpu, &err), &err);
+    bench_check(cw_renderer_new(CW_BACKEND_AUTO, &r, &err), &err);
+    bench_check(cw_renderer_new(CW_BACKEND_CPU, &cpu, &err), &err);
     run_field(r, cpu, "constant", test_constant, &flat, &s);
     run_field(r, cpu, "ramp", test_ramp, &soft, &s);
     run_field(r, cpu, "blobs", test_blobs, &soft, &s);

@@ -6,17 +6,16 @@
  * VTK needs an X server: xvfb-run bench_render. Every measurement is made in a process of its
  * own, by turns. Prints a JSON line a case on stdout, a table on stderr. */
 #define _GNU_SOURCE /* MAP_ANONYMOUS */
+#include "bench.h"
 #include "render_vtk.h"
+#include "support/pictures.h"
 
 #include <cubewright/cubewright.h>
 
 #include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
 #include <sys/wait.h>
-#include <time.h>
 #include <unistd.h>
 
 enum { MOST_FRAMES = 101 };
@@ -34,27 +33,6 @@ typedef struct result {
 
 typedef enum drawer { OURS, VTK_GPU, VTK_FIXED } drawer;
 
-static double cpu_ms(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return 1e3 * (double)t.tv_sec + 1e-6 * (double)t.tv_nsec;
-}
-
-static int by_value(const void *a, const void *b)
-{
-    const double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
-}
-
-static void check(cw_status st, const cw_error *err)
-{
-    if (st == CW_OK)
-        return;
-    fprintf(stderr, "%s\n", err->message);
-    exit(1);
-}
-
 static void render_ours(const cw_scene *scene, int frames, result *out)
 {
     cw_error err = {0};
@@ -62,18 +40,18 @@ static void render_ours(const cw_scene *scene, int frames, result *out)
     cw_picture picture;
     double all[MOST_FRAMES];
     /* contexts are opened before, as VTK's is */
-    check(cw_renderer_new(scene->mode == CW_MODE_VBUFFER ? CW_BACKEND_CPU : CW_BACKEND_EGL,
-                          &renderer, &err),
-          &err);
+    bench_check(
+        cw_renderer_new(scene->mode == CW_MODE_VBUFFER ? CW_BACKEND_CPU : CW_BACKEND_EGL,
+                        &renderer, &err),
+        &err);
     for (int n = 0; n <= frames; n++) {
-        const double start = cpu_ms();
-        check(cw_render(renderer, scene, &picture, &err), &err);
-        all[n] = cpu_ms() - start;
+        const double start = bench_cpu_ms();
+        bench_check(cw_render(renderer, scene, &picture, &err), &err);
+        all[n] = bench_cpu_ms() - start;
         cw_picture_free(&picture);
     }
     out->times.first_ms = all[0];
-    qsort(all + 1, (size_t)frames, sizeof *all, by_value);
-    out->times.next_ms = all[1 + frames / 2];
+    out->times.next_ms = bench_median(all + 1, frames);
     out->is_there = true;
     cw_renderer_free(renderer);
 }
@@ -103,34 +81,7 @@ static result measure(drawer who, const cw_scene *scene, int frames)
     return r;
 }
 
-/* Six blobs and a ripple: 22 % of the voxels are visible. */
-static void make_volume(size_t n, cw_volume *v)
-{
-    static const double blobs[6][4] = {{.3, .3, .3, .1},  {.7, .6, .4, .12},
-                                       {.5, .7, .7, .1},  {.4, .4, .75, .08},
-                                       {.65, .3, .6, .1}, {.5, .5, .45, .15}};
-    cw_error err = {0};
-    check(cw_volume_alloc(v, CW_F32, (size_t[]){n, n, n}, 1, 1, &err), &err);
-    float *to = cw_volume_voxels(v);
-    for (size_t i = 0; i < n * n * n; i++) { /* on one thread: children can then have more */
-        const double q[3] = {(double)(i % n) / (double)(n - 1),
-                             (double)(i / n % n) / (double)(n - 1),
-                             (double)(i / n / n) / (double)(n - 1)};
-        double sum = 0.05 * sin(20 * q[0]) * sin(23 * q[1]) * sin(19 * q[2]);
-        for (int b = 0; b < 6; b++) {
-            double d = 0;
-            for (int a = 0; a < 3; a++)
-                d += (q[a] - blobs[b][a]) * (q[a] - blobs[b][a]);
-            sum += exp(-d / (2 * blobs[b][3] * blobs[b][3]));
-        }
-        to[i] = (float)(0.8 * sum);
-    }
-    for (int a = 0; a < 3; a++) {
-        v->affine[a][a] = 1;
-        v->affine[a][3] = -0.5 * (double)(n - 1);
-    }
-}
-
+/* Of six blobs and a ripple 22 % of the voxels are visible. */
 static const cw_transfer transfer = {
     .color_count = 3,
     .colors = {{0.1, {0.2f, 0.3f, 0.9f}}, {0.6, {0.9f, 0.7f, 0.2f}}, {1, {1, 0.2f, 0.1f}}},
@@ -192,7 +143,7 @@ static double depth_of(const cw_scene *scene, size_t size)
 {
     double axes[3][3];
     cw_error err = {0};
-    check(cw_camera_axes(&scene->camera, axes[0], axes[1], axes[2], &err), &err);
+    bench_check(cw_camera_axes(&scene->camera, axes[0], axes[1], axes[2], &err), &err);
     return (double)(size - 1) * (fabs(axes[2][0]) + fabs(axes[2][1]) + fabs(axes[2][2]));
 }
 
@@ -233,13 +184,14 @@ int main(int argc, char **argv)
     const settings s = parse(argc, argv);
     cw_volume volume = {0};
     cw_error err = {0};
-    make_volume(s.size, &volume);
+    /* on one thread: children can then have more */
+    test_field(&volume, s.size, s.size, s.size, (const double[3]){1, 1, 1}, test_blobs);
     const double half = (double)s.size / 2;
     const cw_fit_desc fit = {
         .view = "iso", .min = {-half, -half, -half}, .max = {half, half, half}, .fov_deg = 30};
     cw_scene scene = {
         .volume = &volume, .transfer = &transfer, .width = s.picture, .height = s.picture};
-    check(cw_camera_fit(&fit, &scene.camera, &err), &err);
+    bench_check(cw_camera_fit(&fit, &scene.camera, &err), &err);
     fprintf(stderr,
             "%zu^3 floats, %zu x %zu pixels, ms of processor time: first, next; ratios\n",
             s.size, s.picture, s.picture);

@@ -1,4 +1,5 @@
 #include "render_vtk.h"
+#include "bench.h"
 
 #include <vtkAutoInit.h>
 VTK_MODULE_INIT(vtkRenderingOpenGL2)
@@ -22,18 +23,10 @@ VTK_MODULE_INIT(vtkRenderingVolumeOpenGL2)
 
 #include <algorithm>
 #include <cstdlib>
-#include <ctime>
 #include <vector>
 
 namespace
 {
-
-double cpu_ms()
-{
-    timespec t;
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-    return 1e3 * double(t.tv_sec) + 1e-6 * double(t.tv_nsec);
-}
 
 vtkSmartPointer<vtkImageData> image_of(const cw_volume &v)
 {
@@ -126,10 +119,10 @@ bool bench_vtk_render(const cw_scene *scene, bool gpu, int frames, bench_vtk_tim
     std::vector<double> all;
     for (int n = 0; n <= frames; n++) {
         volume->Modified();
-        const double start = cpu_ms();
+        const double start = bench_cpu_ms();
         window->Render();
         window->GetPixelData(0, 0, int(scene->width) - 1, int(scene->height) - 1, 1, pixels);
-        all.push_back(cpu_ms() - start);
+        all.push_back(bench_cpu_ms() - start);
     }
     times->first_ms = all[0];
     std::sort(all.begin() + 1, all.end());
