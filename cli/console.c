@@ -20,6 +20,7 @@ static struct {
     const char *unit;
     char step[32];
     double step_start, last_drawn;
+    cli_listener listener;
 } console;
 
 static volatile sig_atomic_t interrupted;
@@ -35,8 +36,26 @@ void cli_console_start(const cli_common *common, cli_progress_mode mode)
     console.color = terminal && !(no_color && *no_color);
 }
 
+void cli_console_listen(const cli_listener *listener)
+{
+    console.listener = listener ? *listener : (cli_listener){0};
+}
+
+CW_PRINTF(1, 0) static void tell(const char *format, va_list args)
+{
+    char line[1024];
+    vsnprintf(line, sizeof line, format, args);
+    console.listener.say(console.listener.user, line);
+}
+
 CW_PRINTF(1, 0) static void say(const char *format, va_list args)
 {
+    if (console.listener.say) {
+        va_list copy;
+        va_copy(copy, args);
+        tell(format, copy);
+        va_end(copy);
+    }
     cli_progress_end();
     vfprintf(stderr, format, args);
     fputc('\n', stderr);
@@ -133,7 +152,13 @@ static bool report(void *user, const char *step, double done)
         console.last_drawn = now;
         draw(done < 0 ? 0 : done > 1 ? 1 : done, now);
     }
-    return !interrupted;
+    const cli_listener *l = &console.listener;
+    return !interrupted && (!l->progress || l->progress(l->user, step, done));
+}
+
+bool cli_interrupted(void)
+{
+    return interrupted;
 }
 
 cw_progress cli_progress(double total, const char *unit)

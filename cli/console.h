@@ -30,6 +30,19 @@ void cli_result(const char *format, ...) CW_PRINTF(1, 2);
  * cancels the call after Ctrl-C. */
 cw_progress cli_progress(double total, const char *unit);
 
+/* Somebody else who hears what is said and how far things are: a window. */
+typedef struct cli_listener {
+    void *user;
+    void (*say)(void *user, const char *line);
+    bool (*progress)(void *user, const char *step, double done); /* false: stop */
+} cli_listener;
+
+/* NULL: nobody any more. */
+void cli_console_listen(const cli_listener *listener);
+
+/* Whether Ctrl-C was pressed. */
+bool cli_interrupted(void);
+
 /* Wipes the bar before something else is printed. */
 void cli_progress_end(void);
 

@@ -1,7 +1,6 @@
 #include "cli/picture_run.h"
 
 #include "cli/console.h"
-#include "cli/dense.h"
 #include "cli/mesh.h"
 #include "cli/output.h"
 #include "cli/quantity.h"
@@ -16,7 +15,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { DENSE_VOXELS = 512 * 512 * 512, MESH_SAMPLES = 2 };
+enum { MESH_SAMPLES = 2 };
 
 static cw_status check_side_output(const char *path, const render_args *args, cw_error *err)
 {
@@ -61,31 +60,17 @@ cw_status cli_check_pictures(const render_args *args, cw_error *err)
     return st;
 }
 
-/* What cannot be read as a volume, and what says so, is taken for a mesh: its reader's words
- * are then the better ones, unless the file's name speaks for a volume. */
+/* The input, and how to draw it. */
 static cw_status look_at_input(cli_pictures *p, cw_error *err)
 {
     const render_args *args = p->args;
-    const char *path = args->common.inputs[0];
-    const bool may_be_mesh =
-        !args->iso.given && !args->input.raw && p->series.count == 1 && !p->series.given;
-    cw_volume shape = {0};
-    cw_error why = {0};
-    cw_status st = cli_read_shape(path, &args->input, &shape, &why);
-    p->is_level_set = st == CW_OK && shape.known & CW_KNOWN_LEVEL_SET;
-    cw_volume_free(&shape);
-    p->is_mesh = st != CW_OK && may_be_mesh;
-    const bool by_default = p->is_mesh || args->iso.given || (p->is_level_set && !args->mesh);
+    cli_source *s = &p->source;
+    cw_status st =
+        cli_open_source(s, &args->common, &args->input, &args->steps, !args->iso.given, err);
+    const bool by_default = s->is_mesh || args->iso.given || (s->is_level_set && !args->mesh);
     p->mode = args->scene.mode ? (cw_mode)(args->scene.mode - 1)
               : by_default     ? CW_MODE_MESH
                                : CW_MODE_COMPOSITE;
-    if (!p->is_mesh)
-        return CW_OK;
-    cli_mesh file;
-    st = cli_read_mesh(path, args->input.reader, &args->input, &file, err);
-    p->mesh = file.mesh;
-    if (st == CW_ERR_FORMAT && !cw_mesh_format(path, NULL) && !args->input.reader)
-        *err = why;
     return st;
 }
 
@@ -93,14 +78,15 @@ static bool has_mesh(const cli_pictures *p)
 {
     const render_args *args = p->args;
     return args->scene.hide != CLI_HIDE_MESH &&
-           (p->is_mesh || args->iso.given || args->mesh || p->mode == CW_MODE_MESH);
+           (p->source.is_mesh || args->iso.given || args->mesh || p->mode == CW_MODE_MESH);
 }
 
 /* Draws nothing but the mesh, or nothing but the volume. */
 static cw_status check_hidden(cli_pictures *p, cw_error *err)
 {
     const render_args *args = p->args;
-    if (args->scene.hide == CLI_HIDE_VOLUME && (args->iso.given || args->mesh || p->is_mesh))
+    if (args->scene.hide == CLI_HIDE_VOLUME &&
+        (args->iso.given || args->mesh || p->source.is_mesh))
         p->mode = CW_MODE_MESH;
     else if (args->scene.hide == CLI_HIDE_VOLUME)
         return cw_fail(err, CW_ERR_ARGUMENT, "--hide volume leaves nothing to be seen");
@@ -121,7 +107,7 @@ static bool draws_on_cpu(const cli_pictures *p)
 static cw_status plan_split(cli_pictures *p, cw_error *err)
 {
     const render_args *args = p->args;
-    if (p->is_mesh || args->scene.hide == CLI_HIDE_VOLUME)
+    if (p->source.is_mesh || args->scene.hide == CLI_HIDE_VOLUME)
         return cw_fail(err, CW_ERR_ARGUMENT, "--compare is for the modes of volumes");
     p->split = calloc(1, sizeof *p->split);
     if (!p->split)
@@ -140,17 +126,17 @@ static cw_status check_mode(cli_pictures *p, cw_error *err)
         return st;
     if (args->compare)
         return plan_split(p, err);
-    if (p->is_mesh && p->mode != CW_MODE_MESH)
+    if (p->source.is_mesh && p->mode != CW_MODE_MESH)
         return cw_fail(err, CW_ERR_ARGUMENT, "%s is a mesh; the mode %s draws volumes",
                        args->common.inputs[0], cw_mode_name(p->mode));
-    if (args->marks.layout == CLI_LAYOUT_QUAD && p->is_mesh)
+    if (args->marks.layout == CLI_LAYOUT_QUAD && p->source.is_mesh)
         return cw_fail(err, CW_ERR_ARGUMENT, "%s is a mesh; --layout quad is for volumes",
                        args->common.inputs[0]);
-    if (p->is_mesh && (args->mesh || args->scene.hide))
+    if (p->source.is_mesh && (args->mesh || args->scene.hide))
         return cw_fail(err, CW_ERR_ARGUMENT, "%s is a mesh; --%s is for volumes",
                        args->common.inputs[0], args->mesh ? "mesh" : "hide");
-    if (p->mode == CW_MODE_MESH && !p->is_mesh && !args->mesh && !args->iso.given &&
-        !p->is_level_set)
+    if (p->mode == CW_MODE_MESH && !p->source.is_mesh && !args->mesh && !args->iso.given &&
+        !p->source.is_level_set)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "the surface of a volume needs a level: --iso V; 'cubewright info %s' "
                        "suggests some",
@@ -177,8 +163,8 @@ static cw_status fill_name(const cli_pictures *p, const cli_moment *moment, size
     if (st == CW_OK && p->args->turns.count > 1 && !parts[1].used)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "--turntable: the output must hold {turn}, as in 'turn-{turn:03d}.png'");
-    if (st == CW_OK && p->series.count > 1 && !parts[0].used &&
-        !(p->series.files.count && parts[2].used))
+    if (st == CW_OK && p->source.series.count > 1 && !parts[0].used &&
+        !(p->source.series.files.count && parts[2].used))
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "several steps: the output must hold {step}, as in '{step:04d}.png'");
     return st;
@@ -186,8 +172,8 @@ static cw_status fill_name(const cli_pictures *p, const cli_moment *moment, size
 
 static cw_status check_names(const cli_pictures *p, cw_error *err)
 {
-    const size_t files = p->series.files.count;
-    const char *const *inputs = files ? (const char *const *)p->series.files.path
+    const size_t files = p->source.series.files.count;
+    const char *const *inputs = files ? (const char *const *)p->source.series.files.path
                                       : (const char *const *)p->args->common.inputs;
     cw_status st = CW_OK;
     for (size_t n = 0; n < p->shot_count && st == CW_OK; n++) {
@@ -202,17 +188,17 @@ static cw_status check_names(const cli_pictures *p, cw_error *err)
 static cw_status plan(cli_pictures *p, cw_error *err)
 {
     const size_t turns = p->args->turns.count > 1 ? p->args->turns.count : 1;
-    p->shots = calloc(p->series.count * turns, sizeof *p->shots);
+    p->shots = calloc(p->source.series.count * turns, sizeof *p->shots);
     if (!p->shots)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu pictures",
-                       p->series.count * turns);
+                       p->source.series.count * turns);
     cw_status st = CW_OK;
-    for (size_t s = 0; s < p->series.count; s++)
+    for (size_t s = 0; s < p->source.series.count; s++)
         for (size_t n = 0; n < turns && st == CW_OK; n++) {
             cli_shot *shot = &p->shots[p->shot_count++];
-            shot->step = p->series.moments[s].number;
+            shot->step = p->source.series.moments[s].number;
             shot->turn_deg = cli_turn_angle(&p->args->turns, n);
-            st = fill_name(p, &p->series.moments[s], n, &shot->path, err);
+            st = fill_name(p, &p->source.series.moments[s], n, &shot->path, err);
         }
     return st == CW_OK ? check_names(p, err) : st;
 }
@@ -222,51 +208,25 @@ static bool draws_volume(const cli_pictures *p)
     return p->mode != CW_MODE_MESH;
 }
 
-static cw_status make_dense(cli_pictures *p, cw_error *err)
-{
-    const size_t limit = p->args->input.max_voxels;
-    const cw_volume *v = &p->volume.view;
-    cw_status st = cli_make_dense(v, limit ? limit : DENSE_VOXELS, &p->dense, err);
-    if (st == CW_OK)
-        cli_say("%s: a sparse grid, drawn as a dense one of %zu x %zu x %zu voxels",
-                p->volume.path, v->dim[0], v->dim[1], v->dim[2]);
-    return st;
-}
-
-static const cw_volume *drawn(const cli_pictures *p)
-{
-    return p->volume.view.sparse ? &p->dense : &p->volume.view;
-}
-
 static cw_status extract(cli_pictures *p, cw_error *err)
 {
     const render_args *args = p->args;
-    cw_mesh_free(&p->mesh);
-    return cli_extract_surface(
-        &p->volume, NULL,
-        &(cw_extract_desc){.isovalue = args->iso.value,
-                           .inside_is_low = cli_inside_is_low(args->inside, &p->volume.whole),
-                           .threads = (int)args->input.threads},
-        &p->mesh, NULL, err);
-}
-
-static cw_status read_volume(cli_pictures *p, const cli_moment *moment, cw_error *err)
-{
-    cli_input input = p->args->input;
-    input.step = moment->step;
-    if (p->volume.voxels.data && p->volume.path == moment->path)
-        return cli_choose_step(&input, moment->step, &p->volume, err);
-    cli_free_volume(&p->volume);
-    return cli_read_volume(moment->path, &input, false, &p->volume, err);
+    cw_mesh_free(&p->source.mesh);
+    return cli_extract_surface(&p->source.volume, NULL,
+                               &(cw_extract_desc){.isovalue = args->iso.value,
+                                                  .inside_is_low = cli_inside_is_low(
+                                                      args->inside, &p->source.volume.whole),
+                                                  .threads = (int)args->input.threads},
+                               &p->source.mesh, NULL, err);
 }
 
 static cw_status read_beside(cli_pictures *p, cw_error *err)
 {
     cli_mesh file;
-    if (p->mesh.triangle_count)
+    if (p->source.mesh.triangle_count)
         return CW_OK;
     cw_status st = cli_read_mesh(p->args->mesh, NULL, &p->args->input, &file, err);
-    p->mesh = file.mesh;
+    p->source.mesh = file.mesh;
     return st;
 }
 
@@ -275,14 +235,14 @@ static cw_status make_transfer(cli_pictures *p, cw_error *err)
     const render_args *args = p->args;
     cw_status st = CW_OK;
     for (int n = 0; n < 2 && p->split && st == CW_OK; n++)
-        st =
-            cli_make_transfer(&p->split->sides[n].args.scene, drawn(p), p->split->sides[n].mode,
-                              (int)args->input.threads, &p->split->sides[n].transfer, err);
+        st = cli_make_transfer(&p->split->sides[n].args.scene, cli_drawn(&p->source),
+                               p->split->sides[n].mode, (int)args->input.threads,
+                               &p->split->sides[n].transfer, err);
     if (p->split)
         p->transfer = p->split->sides[0].transfer;
     else
-        st = cli_make_transfer(&args->scene, drawn(p), p->mode, (int)args->input.threads,
-                               &p->transfer, err);
+        st = cli_make_transfer(&args->scene, cli_drawn(&p->source), p->mode,
+                               (int)args->input.threads, &p->transfer, err);
     p->has_transfer = st == CW_OK;
     if (st == CW_OK && args->save_transfer)
         st = cw_transfer_write(args->save_transfer, &p->transfer, err);
@@ -290,19 +250,14 @@ static cw_status make_transfer(cli_pictures *p, cw_error *err)
 }
 
 /* Everything that a step shows. */
-static cw_status open_step(cli_pictures *p, const cli_moment *moment, cw_error *err)
+static cw_status open_step(cli_pictures *p, size_t step, cw_error *err)
 {
     const render_args *args = p->args;
-    if (p->is_mesh)
+    if (p->source.is_mesh)
         return CW_OK;
-    cw_volume_free(&p->dense);
-    cw_status st = read_volume(p, moment, err);
-    if (st == CW_OK && draws_volume(p) && p->volume.view.sparse)
-        st = make_dense(p, err);
-    if (st == CW_OK && draws_volume(p)) {
-        st = cwi_volume_expect_even(drawn(p), "drawing", err);
-        st = st == CW_OK ? st : cwi_fail_in(err, st, moment->path);
-    }
+    cw_status st = cli_read_step(&p->source, &args->input, step, err);
+    if (st == CW_OK && draws_volume(p))
+        st = cli_need_drawable(&p->source, &args->input, err);
     if (st == CW_OK && args->mesh)
         st = read_beside(p, err);
     else if (st == CW_OK && has_mesh(p))
@@ -312,53 +267,22 @@ static cw_status open_step(cli_pictures *p, const cli_moment *moment, cw_error *
     return st;
 }
 
-static void grow(double box[2][3], bool *any, const double point[3])
-{
-    for (int a = 0; a < 3; a++) {
-        box[0][a] = *any && box[0][a] < point[a] ? box[0][a] : point[a];
-        box[1][a] = *any && box[1][a] > point[a] ? box[1][a] : point[a];
-    }
-    *any = true;
-}
-
-/* Around all that is drawn. */
-static void find_box(cli_pictures *p)
-{
-    double point[2][3];
-    if (p->has_box)
-        return;
-    if (has_mesh(p) && cw_mesh_bounds(&p->mesh, point[0], point[1])) {
-        grow(p->box, &p->has_box, point[0]);
-        grow(p->box, &p->has_box, point[1]);
-    }
-    for (int n = 0; n < 8 && draws_volume(p); n++) {
-        double index[3];
-        const cw_volume *v = drawn(p);
-        for (int a = 0; a < 3; a++)
-            index[a] = v->dim[a] == 1 ? (n >> a & 1) - 0.5
-                       : n >> a & 1   ? (double)v->dim[a] - 1
-                                      : 0;
-        cw_volume_to_world(v, index, point[0]);
-        grow(p->box, &p->has_box, point[0]);
-    }
-    p->has_box = true;
-}
-
 static cw_status make_scene(cli_pictures *p, size_t turn, cw_error *err)
 {
     const render_args *args = p->args;
     const cli_subject subject = {
-        .volume = draws_volume(p) ? drawn(p) : NULL,
-        .whole = p->is_mesh ? NULL : &p->volume.whole,
-        .mesh = has_mesh(p) ? &p->mesh : NULL,
+        .volume = draws_volume(p) ? cli_drawn(&p->source) : NULL,
+        .whole = p->source.is_mesh ? NULL : &p->source.volume.whole,
+        .mesh = has_mesh(p) ? &p->source.mesh : NULL,
         .threads = (int)args->input.threads,
     };
     const double aspect = (double)args->size.n[0] / (double)args->size.n[1];
     const size_t part = args->marks.layout == CLI_LAYOUT_QUAD ? 2 : 1;
     p->scene = (cw_scene){.width = args->size.n[0] / part, .height = args->size.n[1] / part};
     p->scene.samples = args->samples ? (int)args->samples : draws_volume(p) ? 1 : MESH_SAMPLES;
-    p->scene.progress = cli_progress((double)p->mesh.triangle_count / 1e6, "Mtriangle");
-    find_box(p);
+    p->scene.progress = cli_progress((double)p->source.mesh.triangle_count / 1e6, "Mtriangle");
+    if (!p->has_box)
+        p->has_box = cli_find_box(subject.volume, subject.mesh, p->box);
     cw_status st = cli_find_camera(&args->scene, &args->turns, turn, (const double(*)[3])p->box,
                                    aspect, &p->scene.camera, err);
     return st == CW_OK
@@ -380,7 +304,7 @@ static cw_status draw_mesh(cli_pictures *p, const uint8_t background[2][4], cw_i
     memcpy(desc.background, background, sizeof desc.background);
     if (p->args->scene.color)
         cli_parse_color(p->args->scene.color, desc.color);
-    return cwi_render_mesh(&p->mesh, &desc, image, err);
+    return cwi_render_mesh(&p->source.mesh, &desc, image, err);
 }
 
 static cw_status draw_picture(cli_pictures *p, cw_picture *picture, cw_error *err)
@@ -441,7 +365,7 @@ static cw_status draw_scene(cli_pictures *p, size_t turn, cli_shot *shot,
 static void tell(const cli_pictures *p, const cli_shot *shot)
 {
     char what[256];
-    const size_t triangles = has_mesh(p) ? p->mesh.triangle_count : 0;
+    const size_t triangles = has_mesh(p) ? p->source.mesh.triangle_count : 0;
     if (draws_volume(p))
         snprintf(what, sizeof what, "%s%s%s%s by %s", cw_mode_name(p->mode),
                  triangles ? " and " : "", triangles ? cli_count(triangles) : "",
@@ -462,7 +386,7 @@ static cw_status add_slices(cli_pictures *p, cw_image *image, cw_error *err)
 {
     cw_image sheet = {0};
     cw_scene whole = p->scene;
-    whole.volume = drawn(p);
+    whole.volume = cli_drawn(&p->source);
     whole.width = p->args->size.n[0];
     whole.height = p->args->size.n[1];
     cw_status st =
@@ -504,8 +428,8 @@ static cw_status take_pictures(cli_pictures *p, cw_error *err)
 {
     const size_t turns = p->args->turns.count > 1 ? p->args->turns.count : 1;
     cw_status st = CW_OK;
-    for (size_t s = 0; s < p->series.count && st == CW_OK; s++) {
-        st = open_step(p, &p->series.moments[s], err);
+    for (size_t s = 0; s < p->source.series.count && st == CW_OK; s++) {
+        st = open_step(p, s, err);
         if (st == CW_OK && p->renderer)
             cw_renderer_forget(p->renderer);
         for (size_t n = 0; n < turns && st == CW_OK; n++)
@@ -518,12 +442,9 @@ static cw_status take_pictures(cli_pictures *p, cw_error *err)
 
 cw_status cli_make_pictures(cli_pictures *p, cw_error *err)
 {
-    const render_args *args = p->args;
-    cw_status st = cli_find_series(&p->series, &args->common, &args->input, &args->steps, err);
+    cw_status st = look_at_input(p, err);
     if (st == CW_OK)
         st = plan(p, err);
-    if (st == CW_OK)
-        st = look_at_input(p, err);
     if (st == CW_OK)
         st = check_mode(p, err);
     return st == CW_OK ? take_pictures(p, err) : st;
@@ -538,22 +459,19 @@ void cli_end_pictures(cli_pictures *p)
     for (size_t n = 0; n < p->shot_count; n++)
         free(p->shots[n].path);
     free(p->shots);
-    cw_mesh_free(&p->mesh);
-    cw_volume_free(&p->dense);
-    cli_free_volume(&p->volume);
-    cli_free_series(&p->series);
+    cli_close_source(&p->source);
 }
 
 cli_render_report cli_report_pictures(const cli_pictures *p)
 {
     return (cli_render_report){
-        .volume = p->volume.path ? &p->volume : NULL,
+        .volume = p->source.volume.path ? &p->source.volume : NULL,
         .mode = p->mode,
         .backend = p->renderer ? cw_renderer_name(p->renderer) : "CPU",
         .scene = p->scene.width ? &p->scene : NULL,
         .transfer = &p->transfer,
         .shots = p->shots,
         .shot_count = p->shot_count,
-        .triangles = p->mesh.triangle_count,
+        .triangles = p->source.mesh.triangle_count,
     };
 }

@@ -4,7 +4,7 @@
 
 #include "cli/marks.h"
 #include "cli/render_report.h"
-#include "cli/series.h"
+#include "cli/source.h"
 #include "cli/viewpoint.h"
 
 typedef struct render_args {
@@ -38,13 +38,8 @@ typedef struct cli_split {
 typedef struct cli_pictures {
     const cli_command *command;
     const render_args *args;
-    cli_series series;
+    cli_source source; /* its mesh: what is seen beside the volume, or by itself */
     cw_mode mode;
-    bool is_mesh; /* the input is a mesh */
-    bool is_level_set;
-    cli_volume volume; /* of the step at hand */
-    cw_volume dense;   /* of a sparse one */
-    cw_mesh mesh;
     cw_transfer transfer;
     bool has_transfer; /* of the first step, which is kept */
     double box[2][3];  /* what the cameras see: of the first step, likewise */

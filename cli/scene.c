@@ -146,27 +146,35 @@ static cw_status change(const cli_scene *args, cw_transfer *t, cw_error *err)
     return cw_transfer_check(t, err);
 }
 
-cw_status cli_make_transfer(const cli_scene *args, const cw_volume *volume, cw_mode mode,
-                            int threads, cw_transfer *transfer, cw_error *err)
+cw_status cli_fit_transfer(const cli_scene *args, const cw_volume *volume, cw_mode mode,
+                           const cw_statistics *statistics, cw_transfer *transfer,
+                           cw_error *err)
 {
-    cw_statistics statistics;
     const char *name = args->transfer ? args->transfer : default_preset(volume, mode);
-    cw_status st = cw_volume_statistics(volume, BINS, threads, &statistics, err);
-    if (st != CW_OK)
-        return st;
+    cw_status st;
     if (ends_with(name, ".json")) {
         st = cw_transfer_read(name, transfer, err);
     } else {
-        st = cw_transfer_preset(name, &statistics, transfer, err);
+        st = cw_transfer_preset(name, statistics, transfer, err);
         if (st != CW_OK)
             cwi_fail_in(err, st, "--tf");
         else
-            warn_of_units(name, &statistics, args);
+            warn_of_units(name, statistics, args);
     }
     if (st == CW_OK)
         st = change(args, transfer, err);
     if (st == CW_OK)
-        warn_of_nothing(transfer, &statistics);
+        warn_of_nothing(transfer, statistics);
+    return st;
+}
+
+cw_status cli_make_transfer(const cli_scene *args, const cw_volume *volume, cw_mode mode,
+                            int threads, cw_transfer *transfer, cw_error *err)
+{
+    cw_statistics statistics;
+    cw_status st = cw_volume_statistics(volume, BINS, threads, &statistics, err);
+    if (st == CW_OK)
+        st = cli_fit_transfer(args, volume, mode, &statistics, transfer, err);
     cw_statistics_free(&statistics);
     return st;
 }
