@@ -52,7 +52,7 @@ static const cli_option options[] = {
     HEADING("Camera"),
     {"camera", 0, CLI_TEXT, "VIEW|A,E|FILE",
      "front, back, left, right, top, bottom or iso; azimuth,elevation from the front in "
-     "degrees; a .json file (front)",
+     "degrees; a .json file or its text, {...} (front)",
      SCENE(camera)},
     {"save-camera", 0, CLI_TEXT, "FILE", "write the camera as a .json file",
      offsetof(render_args, save_camera)},
@@ -80,9 +80,8 @@ static const cli_option options[] = {
      "quad: with axial, coronal and sagittal slices beside it (single)", MARKS(layout)},
     HEADING("Colours and opacities of a volume"),
     {"tf", 0, CLI_TEXT, "NAME|FILE",
-     "auto, ct-bone, ct-soft, ct-skin, mr, mip, grey, xray, fog, level-set, or a .json file "
-     "(by "
-     "mode)",
+     "auto, ct-bone, ct-soft, ct-skin, mr, mip, grey, xray, fog, level-set; a .json file or "
+     "its text, {...} (by mode)",
      SCENE(transfer)},
     {"shift", 0, CLI_NUMBER, "V", "add to all its values (0)", SCENE(shift)},
     {"opacity", 0, CLI_NUMBER, "F", "multiply its opacities (1)", SCENE(opacity)},

@@ -60,7 +60,8 @@ bool cli_parse_color(const char *text, uint8_t rgba[4]);
 cw_status cli_background(const cli_scene *args, cw_mode mode, uint8_t background[2][4],
                          cw_error *err);
 
-/* The transfer function for a volume: a preset or a file, shifted and scaled.
+/* The transfer function for a volume: a preset, a file or JSON text, shifted and
+ * scaled.
  * warn  told of what looks wrong
  * Returns CW_ERR_ARGUMENT for an unknown preset; as cw_transfer_read() */
 cw_status cli_make_transfer(const cli_scene *args, const cw_volume *volume, cw_mode mode,

@@ -86,12 +86,20 @@ CW_API cw_status cw_camera_ray(const cw_camera *camera, size_t width, size_t hei
                                const double pixel[2], double origin[3], double direction[3],
                                cw_error *err);
 
-/* A camera as a JSON file, with either of the last two; numbers are read back to the bit:
+/* A camera as JSON, in a file or as text, with either of the last two; numbers are read back to
+ * the bit:
  *     {"schema": "cubewright-camera-1", "eye": [0, -500, 0], "target": [0, 0, 0],
  *      "up": [0, 0, 1], "fov_deg": 30, "height_mm": 200}
- * Returns CW_ERR_IO; CW_ERR_FORMAT, with the line or the field that is wrong; CW_ERR_OUTPUT. */
+ * text     as it is in a file, of at most CW_CAMERA_TEXT bytes with the 0 at its end when it is
+ *          written
+ * Returns  CW_ERR_IO; CW_ERR_FORMAT, with the line or the field that is wrong; CW_ERR_OUTPUT;
+ *          CW_ERR_ARGUMENT for a camera that is none, as cw_camera_axes() */
+enum { CW_CAMERA_TEXT = 1024 };
 CW_API cw_status cw_camera_read(const char *path, cw_camera *camera, cw_error *err);
 CW_API cw_status cw_camera_write(const char *path, const cw_camera *camera, cw_error *err);
+CW_API cw_status cw_camera_parse(const char *text, cw_camera *camera, cw_error *err);
+CW_API cw_status cw_camera_format(const cw_camera *camera, char text[CW_CAMERA_TEXT],
+                                  cw_error *err);
 
 #ifdef __cplusplus
 }
