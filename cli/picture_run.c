@@ -378,7 +378,7 @@ static void tell(const cli_pictures *p, const cli_shot *shot)
                    shot->measured.delta_e_mean, shot->measured.delta_e_p99);
     else
         cli_result("%s: %zu x %zu, %s seen from %s; %.2f s\n", shot->path, p->args->size.n[0],
-                   p->args->size.n[1], what, p->args->scene.camera, shot->seconds);
+                   p->args->size.n[1], what, cli_camera_title(&p->args->scene), shot->seconds);
 }
 
 /* With slices beside it. */

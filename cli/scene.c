@@ -146,21 +146,27 @@ static cw_status change(const cli_scene *args, cw_transfer *t, cw_error *err)
     return cw_transfer_check(t, err);
 }
 
+/* A file, a preset, or JSON itself. */
+static cw_status find_transfer(const char *name, const cw_statistics *statistics,
+                               const cli_scene *args, cw_transfer *transfer, cw_error *err)
+{
+    if (ends_with(name, ".json") && *name != '{')
+        return cw_transfer_read(name, transfer, err);
+    cw_status st = *name == '{' ? cw_transfer_parse(name, transfer, err)
+                                : cw_transfer_preset(name, statistics, transfer, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, "--tf");
+    if (*name != '{')
+        warn_of_units(name, statistics, args);
+    return st;
+}
+
 cw_status cli_fit_transfer(const cli_scene *args, const cw_volume *volume, cw_mode mode,
                            const cw_statistics *statistics, cw_transfer *transfer,
                            cw_error *err)
 {
     const char *name = args->transfer ? args->transfer : default_preset(volume, mode);
-    cw_status st;
-    if (ends_with(name, ".json")) {
-        st = cw_transfer_read(name, transfer, err);
-    } else {
-        st = cw_transfer_preset(name, statistics, transfer, err);
-        if (st != CW_OK)
-            cwi_fail_in(err, st, "--tf");
-        else
-            warn_of_units(name, statistics, args);
-    }
+    cw_status st = find_transfer(name, statistics, args, transfer, err);
     if (st == CW_OK)
         st = change(args, transfer, err);
     if (st == CW_OK)

@@ -60,8 +60,8 @@ bool cli_parse_color(const char *text, uint8_t rgba[4]);
 cw_status cli_background(const cli_scene *args, cw_mode mode, uint8_t background[2][4],
                          cw_error *err);
 
-/* The transfer function for a volume: a preset or a file, shifted and scaled. What looks wrong
- * is said.
+/* The transfer function for a volume: a preset, a file or JSON text, shifted and scaled. What
+ * looks wrong is said.
  * Returns CW_ERR_ARGUMENT for an unknown preset; as cw_transfer_read() */
 cw_status cli_make_transfer(const cli_scene *args, const cw_volume *volume, cw_mode mode,
                             int threads, cw_transfer *transfer, cw_error *err);

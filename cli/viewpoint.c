@@ -14,11 +14,35 @@ static bool is_file(const char *text)
     return n > 5 && strcmp(text + n - 5, ".json") == 0;
 }
 
+static bool is_json(const char *text)
+{
+    return *text == '{';
+}
+
+/* A whole camera, by itself or in a file. */
+static cw_status read_camera(const char *text, cw_camera *camera, cw_error *err)
+{
+    if (!is_json(text))
+        return cw_camera_read(text, camera, err);
+    cw_status st = cw_camera_parse(text, camera, err);
+    return st == CW_OK ? st : cwi_fail_in(err, st, "--camera");
+}
+
+static bool is_whole(const char *text)
+{
+    return is_json(text) || is_file(text);
+}
+
 /* azimuth,elevation */
 static bool parse_angles(const char *text, double *azimuth, double *elevation)
 {
     return cwi_parse_double(&text, azimuth) && *text++ == ',' &&
            cwi_parse_double(&text, elevation) && *text == '\0';
+}
+
+const char *cli_camera_title(const cli_scene *args)
+{
+    return is_json(args->camera) ? "{...}" : args->camera;
 }
 
 static cw_fit_desc describe(const cli_scene *args)
@@ -66,11 +90,11 @@ cw_status cli_check_camera(const cli_scene *args, const cli_turns *turns, cw_err
     if (args->fov.given && !(args->fov.value > 0 && args->fov.value < 180))
         return cw_fail(err, CW_ERR_ARGUMENT, "--fov %g: 0 to 180 degrees were expected",
                        args->fov.value);
-    if (is_file(args->camera) && (args->ortho || args->fov.given))
+    if (is_whole(args->camera) && (args->ortho || args->fov.given))
         return cw_fail(err, CW_ERR_ARGUMENT, "%s is a whole camera, which leaves nothing to %s",
-                       args->camera, args->ortho ? "--ortho" : "--fov");
-    if (is_file(args->camera))
-        return CW_OK;
+                       cli_camera_title(args), args->ortho ? "--ortho" : "--fov");
+    if (is_whole(args->camera))
+        return is_json(args->camera) ? read_camera(args->camera, &camera, err) : CW_OK;
     fit.max[0] = fit.max[1] = fit.max[2] = 1;
     return cw_camera_fit(&fit, &camera, err);
 }
@@ -112,8 +136,8 @@ cw_status cli_find_camera(const cli_scene *args, const cli_turns *turns, size_t 
     fit.aspect = aspect;
     memcpy(fit.min, box[0], sizeof fit.min);
     memcpy(fit.max, box[1], sizeof fit.max);
-    if (is_file(args->camera)) {
-        st = cw_camera_read(args->camera, camera, err);
+    if (is_whole(args->camera)) {
+        st = read_camera(args->camera, camera, err);
         if (st == CW_OK && n)
             st = cw_camera_turn(camera, camera->up, cli_turn_angle(turns, n), err);
     } else if (turns->count > 1) {

@@ -69,9 +69,14 @@ cw_status cw_camera_read(const char *path, cw_camera *camera, cw_error *err)
     return cwi_json_read(path, parse, camera, err);
 }
 
-cw_status cw_camera_write(const char *path, const cw_camera *camera, cw_error *err)
+cw_status cw_camera_parse(const char *text, cw_camera *camera, cw_error *err)
 {
-    char n[10][CWI_JSON_NUMBER], text[1024];
+    return parse(text, strlen(text), camera, err);
+}
+
+cw_status cw_camera_format(const cw_camera *camera, char text[CW_CAMERA_TEXT], cw_error *err)
+{
+    char n[10][CWI_JSON_NUMBER];
     const bool flat = camera->fov_deg == 0;
     double axes[3][3];
     cw_status st = cw_camera_axes(camera, axes[0], axes[1], axes[2], err);
@@ -84,12 +89,19 @@ cw_status cw_camera_write(const char *path, const cw_camera *camera, cw_error *e
         cwi_json_double(n[6 + a], camera->up[a]);
     }
     cwi_json_double(n[9], flat ? camera->height_mm : camera->fov_deg);
-    const int size = snprintf(text, sizeof text,
-                              "{\"schema\": \"%s\",\n \"eye\": [%s, %s, %s],\n"
-                              " \"target\": [%s, %s, %s],\n \"up\": [%s, %s, %s],\n"
-                              " \"%s\": %s}\n",
-                              schema, n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8],
-                              flat ? "height_mm" : "fov_deg", n[9]);
+    snprintf(text, CW_CAMERA_TEXT,
+             "{\"schema\": \"%s\",\n \"eye\": [%s, %s, %s],\n"
+             " \"target\": [%s, %s, %s],\n \"up\": [%s, %s, %s],\n"
+             " \"%s\": %s}\n",
+             schema, n[0], n[1], n[2], n[3], n[4], n[5], n[6], n[7], n[8],
+             flat ? "height_mm" : "fov_deg", n[9]);
     cwi_locale_restore(before);
-    return cwi_outfile_save(path, text, (size_t)size, err);
+    return CW_OK;
+}
+
+cw_status cw_camera_write(const char *path, const cw_camera *camera, cw_error *err)
+{
+    char text[CW_CAMERA_TEXT];
+    cw_status st = cw_camera_format(camera, text, err);
+    return st == CW_OK ? cwi_outfile_save(path, text, strlen(text), err) : st;
 }

@@ -1,4 +1,4 @@
-#define _GNU_SOURCE /* open_memstream */
+#define _GNU_SOURCE /* fmemopen */
 #include "viewer/transfer_json.h"
 
 #include "core/outfile.h"
@@ -135,6 +135,11 @@ cw_status cw_transfer_read(const char *path, cw_transfer *transfer, cw_error *er
     return cwi_json_read(path, parse, transfer, err);
 }
 
+cw_status cw_transfer_parse(const char *text, cw_transfer *transfer, cw_error *err)
+{
+    return cwi_transfer_parse(text, strlen(text), transfer, err);
+}
+
 static void put_colors(FILE *out, const cw_transfer *t)
 {
     char number[CWI_JSON_NUMBER];
@@ -172,21 +177,27 @@ static void put_transfer(FILE *out, const cw_transfer *t)
     fputs("}\n", out);
 }
 
-cw_status cw_transfer_write(const char *path, const cw_transfer *transfer, cw_error *err)
+/* 3 * 64 points of up to 70 bytes each always fit. */
+cw_status cw_transfer_format(const cw_transfer *transfer, char text[CW_TRANSFER_TEXT],
+                             cw_error *err)
 {
-    char *text = NULL;
-    size_t size = 0;
     cw_status st = cw_transfer_check(transfer, err);
     if (st != CW_OK)
         return st;
-    FILE *out = open_memstream(&text, &size);
+    FILE *out = fmemopen(text, CW_TRANSFER_TEXT, "w");
     if (!out)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a transfer function");
     void *before = cwi_locale_c();
     put_transfer(out, transfer);
     cwi_locale_restore(before);
-    st = fclose(out) == 0 ? cwi_outfile_save(path, text, size, err)
-                          : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a transfer function");
-    free(text);
-    return st;
+    return fclose(out) == 0
+               ? CW_OK
+               : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a transfer function");
+}
+
+cw_status cw_transfer_write(const char *path, const cw_transfer *transfer, cw_error *err)
+{
+    char text[CW_TRANSFER_TEXT];
+    cw_status st = cw_transfer_format(transfer, text, err);
+    return st == CW_OK ? cwi_outfile_save(path, text, strlen(text), err) : st;
 }

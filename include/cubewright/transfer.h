@@ -56,15 +56,22 @@ CW_API const char *cw_transfer_preset_about(size_t n);
 CW_API cw_status cw_transfer_preset(const char *name, const cw_statistics *statistics,
                                     cw_transfer *transfer, cw_error *err);
 
-/* A transfer function as a JSON file:
+/* A transfer function as JSON, in a file or as text:
  *     {"schema": "cubewright-transfer-1", "unit_mm": 1,
  *      "colors": [[-1000, "#000000"], [300, "#ffeedd"]],
  *      "opacities": [[100, 0], [300, 0.5]], "gradients": [[0, 0], [40, 1]]}
  * Values are read back to the bit; colours are kept in steps of 1/255.
- * Returns CW_ERR_IO; CW_ERR_FORMAT, with the line or the field that is wrong; CW_ERR_OUTPUT. */
+ * text     as it is in a file, of at most CW_TRANSFER_TEXT bytes with the 0 at its end when it
+ *          is written
+ * Returns  CW_ERR_IO; CW_ERR_FORMAT, with the line or the field that is wrong; CW_ERR_OUTPUT;
+ *          CW_ERR_ARGUMENT as cw_transfer_check() */
+enum { CW_TRANSFER_TEXT = 16384 };
 CW_API cw_status cw_transfer_read(const char *path, cw_transfer *transfer, cw_error *err);
 CW_API cw_status cw_transfer_write(const char *path, const cw_transfer *transfer,
                                    cw_error *err);
+CW_API cw_status cw_transfer_parse(const char *text, cw_transfer *transfer, cw_error *err);
+CW_API cw_status cw_transfer_format(const cw_transfer *transfer, char text[CW_TRANSFER_TEXT],
+                                    cw_error *err);
 
 #ifdef __cplusplus
 }

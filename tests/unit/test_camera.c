@@ -1,6 +1,7 @@
 #include "support/support.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const cw_fit_desc around = {
@@ -123,6 +124,35 @@ static void files_are_read_back_to_the_bit(void **state)
                  err);
 }
 
+/* Texts are what is in files, and as exact, with the longest numbers too. */
+static void texts_are_what_files_hold(void **state)
+{
+    (void)state;
+    cw_error err = {0};
+    const double far = -1.2345678901234567e-300, up = -9.8765432109876543e-200;
+    const cw_camera all[] = {
+        fit("iso", 12.3, 45.6, 31.4),
+        {{far, 1 / 3.0, -0.0}, {2 / 3.0, far, 5}, {up, 1, up}, .height_mm = 1 / 7.0}};
+    for (int n = 0; n < 2; n++) {
+        cw_camera c = all[n], back = {0};
+        char text[CW_CAMERA_TEXT];
+        size_t size;
+        c.height_mm = n ? c.height_mm : 0;
+        assert_ok(cw_camera_format(&c, text, &err), err);
+        assert_ok(cw_camera_parse(text, &back, &err), err);
+        assert_memory_equal(&c, &back, sizeof c);
+        assert_ok(cw_camera_write(test_path("c.json"), &c, &err), err);
+        char *file = test_file_read(test_path("c.json"), &size);
+        assert_int_equal(size, strlen(text));
+        assert_memory_equal(file, text, size);
+        free(file);
+    }
+    cw_camera back;
+    char text[CW_CAMERA_TEXT];
+    assert_fails(cw_camera_parse("{\n]", &back, &err), CW_ERR_FORMAT, "line 2, column 1", err);
+    assert_fails(cw_camera_format(&(cw_camera){0}, text, &err), CW_ERR_ARGUMENT, "apart", err);
+}
+
 static void bad_files_are_told_apart(void **state)
 {
     (void)state;
@@ -166,6 +196,7 @@ int main(void)
         CASE(zooms_are_exact),
         CASE(impossible_angles_are_refused),
         CASE(files_are_read_back_to_the_bit),
+        CASE(texts_are_what_files_hold),
         CASE(bad_files_are_told_apart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -119,6 +119,42 @@ static void files_are_read_back_to_the_bit(void **state)
     }
 }
 
+/* As many points as there can be, with numbers as long as they can be, fit. */
+static void texts_are_what_files_hold(void **state)
+{
+    (void)state;
+    cw_error err = {0};
+    const cw_transfer none = {0}, full = full_transfer();
+    cw_transfer most = {.color_count = CW_TRANSFER_POINTS,
+                        .opacity_count = CW_TRANSFER_POINTS,
+                        .gradient_count = CW_TRANSFER_POINTS};
+    for (size_t n = 0; n < CW_TRANSFER_POINTS; n++) {
+        const double value = -1.2345678901234567e-300 / (double)(n + 1);
+        most.colors[n] = (cw_color_point){value, {1, 0.2f, 0}};
+        most.opacities[n] = (cw_opacity_point){value, 1.2345678e-30f};
+        most.gradients[n] = most.opacities[n];
+    }
+    const cw_transfer *all[] = {&none, &full, &most};
+    for (size_t n = 0; n < 3; n++) {
+        static char text[CW_TRANSFER_TEXT];
+        cw_transfer back;
+        size_t size;
+        assert_ok(cw_transfer_format(all[n], text, &err), err);
+        assert_ok(cw_transfer_parse(text, &back, &err), err);
+        assert_same(all[n], &back);
+        assert_ok(cw_transfer_write(test_path("t.json"), all[n], &err), err);
+        char *file = test_file_read(test_path("t.json"), &size);
+        assert_int_equal(size, strlen(text));
+        assert_memory_equal(file, text, size);
+        free(file);
+    }
+    static char text[CW_TRANSFER_TEXT];
+    cw_transfer back;
+    most.unit_mm = -1;
+    assert_fails(cw_transfer_format(&most, text, &err), CW_ERR_ARGUMENT, "unit_mm", err);
+    assert_fails(cw_transfer_parse("{", &back, &err), CW_ERR_FORMAT, "line 1", err);
+}
+
 /* In a locale with decimal commas files have points all the same. */
 static void locales_change_nothing(void **state)
 {
@@ -370,6 +406,7 @@ int main(void)
         CASE(nothing_said_is_white_and_transparent),
         CASE(unusable_points_are_named),
         CASE(files_are_read_back_to_the_bit),
+        CASE(texts_are_what_files_hold),
         CASE(locales_change_nothing),
         CASE(bad_files_are_told_apart),
         CASE(files_that_are_no_settings_are_refused),
