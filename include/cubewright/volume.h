@@ -163,6 +163,12 @@ CW_API void cw_volume_spacing(const cw_volume *volume, double spacing_mm[3]);
 CW_API cw_status cw_volume_to_index(const cw_volume *volume, const double world[3],
                                     double index[3], cw_error *err);
 
+/* The value (scaled) at a world point of an even or rectilinear grid, of the first component
+ * and step: trilinear between the voxels around. For probes. NaN outside (an axis of one voxel
+ * reaches half a voxel to both sides), where one of those voxels has no value, and on other
+ * grids. */
+CW_API double cw_volume_sample(const cw_volume *volume, const double world[3]);
+
 /* What the values are: range, and how often each occurs. */
 typedef struct cw_statistics {
     double min, max;   /* over finite values inside the domain; both 0 when there are none */

@@ -1,6 +1,7 @@
 #include "support/support.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static void a_zeroed_volume_resolves_to_its_defaults(void **state)
@@ -360,6 +361,71 @@ static void integer_fields_keep_their_level(void **state)
     assert_fails(cw_field_sample(&bad, &v, &err), CW_ERR_ARGUMENT, "99", err);
 }
 
+static void world_of(const cw_volume *v, double i, double j, double k, double world[3])
+{
+    cw_volume_to_world(v, (const double[3]){i, j, k}, world);
+}
+
+/* What is linear in the world is linear between voxels, however they are sheared; and on a
+ * rectilinear grid however far they are apart. */
+static void linear_fields_are_sampled_exactly(void **state)
+{
+    (void)state;
+    static const double coordinates[3][6] = {
+        {0, 0.5, 2, 2.25, 7, 9}, {-3, 0, 1, 1.5, 4}, {10, 10.5, 30, 31}};
+    double voxels[6 * 5 * 4];
+    cw_volume v = {.data = voxels,
+                   .type = CW_F64,
+                   .dim = {6, 5, 4},
+                   .affine = {{2, 0.3, -0.4, 100}, {0.1, -1.5, 0.2, 50}, {0, 0.6, 3, -20}},
+                   .slope = 0.5,
+                   .intercept = 7};
+    for (int rectilinear = 0; rectilinear < 2; rectilinear++) {
+        double world[3];
+        for (size_t a = 0; a < 3 && rectilinear; a++)
+            v.coordinates[a] = coordinates[a];
+        for (size_t n = 0; n < 120; n++) {
+            world_of(&v, (double)(n % 6), (double)(n / 6 % 5), (double)(n / 30), world);
+            voxels[n] = 2 * (3 * world[0] - 2 * world[1] + world[2] + 5 - 7);
+        }
+        for (int n = 0; n < 200; n++) {
+            world_of(&v, n % 26 * 0.2, n % 21 * 0.2, n % 16 * 0.2, world);
+            assert_near(cw_volume_sample(&v, world), 3 * world[0] - 2 * world[1] + world[2] + 5,
+                        1e-9);
+        }
+        for (int a = 0; a < 3; a++)
+            for (int side = 0; side < 2; side++) {
+                double index[3] = {2.5, 2.5, 1.5};
+                index[a] = side ? (double)v.dim[a] - 0.99 : -0.01;
+                cw_volume_to_world(&v, index, world);
+                assert_true(isnan(cw_volume_sample(&v, world)));
+            }
+    }
+}
+
+static void there_is_no_value_beside_a_gap(void **state)
+{
+    (void)state;
+    float voxels[4 * 3] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, NAN};
+    const cw_volume v = {
+        .data = voxels, .type = CW_F32, .dim = {4, 3, 1}, .has_nodata = true, .nodata = 4};
+    const double samples[][3] = {/* x, y, value */
+                                 {1.5, 0.25, 2.5}, {0.5, 0.5, NAN}, {2.5, 1.5, NAN},
+                                 {2, 2, 10},       {3, 2, NAN},     {0, 1, NAN},
+                                 {1, 1, 5},        {-0.1, 0, NAN}};
+    for (size_t n = 0; n < sizeof samples / sizeof *samples; n++)
+        for (int level = -2; level <= 2; level++) {
+            const double world[3] = {samples[n][0], samples[n][1], 0.3 * level};
+            const double value = cw_volume_sample(&v, world);
+            if (isnan(samples[n][2]) || abs(level) == 2)
+                assert_true(isnan(value));
+            else
+                assert_near(value, samples[n][2], 1e-12);
+        }
+    assert_true(isnan(cw_volume_sample(&(cw_volume){0}, (const double[3]){0})));
+    assert_true(isnan(cw_volume_sample(&v, (const double[3]){NAN, 0, 0})));
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -371,6 +437,8 @@ int main(void)
         cmocka_unit_test(a_coarse_view_picks_voxels_where_they_are),
         cmocka_unit_test(steps_that_leave_a_single_voxel_are_refused),
         cmocka_unit_test(indices_and_world_points_are_inverse),
+        cmocka_unit_test(linear_fields_are_sampled_exactly),
+        cmocka_unit_test(there_is_no_value_beside_a_gap),
         cmocka_unit_test(spacing_is_the_length_of_an_axis),
         cmocka_unit_test(statistics_tell_values_from_the_rest),
         cmocka_unit_test(integers_get_no_more_bins_than_values),
