@@ -85,6 +85,7 @@ static cw_status run_version(void *p, cw_error *err)
         printf("%-11s%s\n", "simplify", cw_simplify_available() ? "yes" : "no");
         printf("%-11s%s\n", "level-set", cw_level_set_available() ? "yes" : "no");
         printf("%-11s%s\n", "gl", cwi_module_present("gl") ? "yes" : "no");
+        printf("%-11s%s\n", "window", cwi_module_present("window") ? "yes" : "no");
     }
     for (size_t i = 0; i < count && args->features; i++)
         printf("%-11s%s\n", formats[i].name, formats[i].in_this_build ? "yes" : "no");

@@ -119,29 +119,6 @@ static void put_frame(cwi_gl *gl)
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, gl->frame_block);
 }
 
-static bool is_lost(void)
-{
-    return epoxy_gl_version() >= 45 ? glGetGraphicsResetStatus() != GL_NO_ERROR
-           : epoxy_has_gl_extension("GL_ARB_robustness")
-               ? glGetGraphicsResetStatusARB() != GL_NO_ERROR
-               : false;
-}
-
-/* GL's errors since the last look, and a lost context. */
-static cw_status check(cw_error *err)
-{
-    if (is_lost())
-        return cw_fail(err, CW_ERR_BACKEND, "the OpenGL context was lost");
-    const GLenum first = glGetError();
-    while (glGetError() != GL_NO_ERROR)
-        ;
-    if (first == GL_OUT_OF_MEMORY)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "OpenGL ran out of memory");
-    if (first != GL_NO_ERROR)
-        return cw_fail(err, CW_ERR_BACKEND, "OpenGL failed with error 0x%04x", first);
-    return CW_OK;
-}
-
 /* GL's rows go up. */
 static void read_back(const cwi_gl *gl, cw_picture *picture)
 {
@@ -194,7 +171,7 @@ cw_status cwi_gl_draw(cwi_gl *gl, const cwi_frame *frame, cw_picture *picture, c
     cw_status st = draw_scene(gl, mode, err);
     if (st == CW_OK)
         read_back(gl, picture);
-    const cw_status after = check(st == CW_OK ? err : NULL);
+    const cw_status after = cwi_gl_check(st == CW_OK ? err : NULL);
     gl->frame = NULL;
     cwi_gl_leave(gl);
     return st == CW_OK ? after : st;

@@ -4,11 +4,9 @@
 #define VIEWER_GL_WORK_H
 
 #include "viewer/gl.h"
+#include "viewer/gl_context.h"
 #include "viewer/ranges.h"
 #include "viewer/table.h"
-
-#include <epoxy/egl.h>
-#include <epoxy/gl.h>
 
 /* Texture units that every shader finds the same things in. */
 enum {
@@ -68,13 +66,7 @@ typedef struct cwi_gl_program {
 } cwi_gl_program;
 
 struct cwi_gl {
-    EGLDisplay display;
-    EGLContext context;
-    struct {
-        EGLDisplay display;
-        EGLSurface draw, read;
-        EGLContext context;
-    } before; /* the caller's, while this one draws */
+    cwi_gl_context context;
     char name[256];
     const cwi_frame *frame; /* that is being drawn */
     GLuint frame_block, empty_array;
