@@ -160,6 +160,95 @@ static bool store_weights(const char *names, const char *text, cli_weights *out)
     }
 }
 
+size_t cli_option_size(const cli_option *o)
+{
+    static const size_t sizes[] = {
+        [CLI_FLAG] = sizeof(bool),
+        [CLI_TEXT] = sizeof(const char *),
+        [CLI_CHOICE] = sizeof(int),
+        [CLI_NUMBER] = sizeof(cli_number),
+        [CLI_NUMBERS] = sizeof(cli_numbers),
+        [CLI_COUNT] = sizeof(size_t),
+        [CLI_COUNTS] = sizeof(cli_counts),
+        [CLI_BYTES] = sizeof(size_t),
+        [CLI_LENGTHS] = sizeof(cli_lengths),
+        [CLI_LENGTH] = sizeof(cli_length),
+        [CLI_SIZES] = sizeof(cli_sizes),
+        [CLI_RANGES] = sizeof(cli_ranges),
+        [CLI_REDUCTION] = sizeof(cli_reduction),
+        [CLI_STEPS] = sizeof(cli_steps),
+        [CLI_WEIGHTS] = sizeof(cli_weights),
+        [CLI_LOUDER] = sizeof(int),
+        [CLI_HEADING] = 0,
+    };
+    return sizes[o->kind];
+}
+
+/* The n-th of "above/below". */
+static void print_choice(const char *choices, int n, char *text, size_t size)
+{
+    for (; n > 0 && choices; n--) {
+        choices = strchr(choices, '/');
+        choices = choices ? choices + 1 : NULL;
+    }
+    snprintf(text, size, "%.*s", choices ? (int)strcspn(choices, "/") : 0, choices);
+}
+
+static void print_ranges(const cli_ranges *r, char *text, size_t size)
+{
+    const char *unit = r->world ? "mm" : "";
+    size_t used = 0;
+    for (int a = 0; a < 3 && used < size; a++)
+        used += (size_t)snprintf(text + used, size - used, "%s%.17g%s:%.17g%s", a ? "," : "",
+                                 r->low[a], unit, r->high[a], unit);
+}
+
+static void print_numbers(const double *n, size_t count, char *text, size_t size)
+{
+    size_t used = 0;
+    *text = '\0';
+    for (size_t i = 0; i < count && used < size; i++)
+        used += (size_t)snprintf(text + used, size - used, "%s%.17g", i ? "," : "", n[i]);
+}
+
+bool cli_option_text(const cli_option *o, const void *args, char *text, size_t size)
+{
+    const void *field = (const char *)args + o->offset;
+    *text = '\0';
+    switch (o->kind) {
+    case CLI_TEXT:
+        snprintf(text, size, "%s",
+                 *(const char *const *)field ? *(const char *const *)field : "");
+        break;
+    case CLI_CHOICE:
+        print_choice(o->value, *(const int *)field, text, size);
+        break;
+    case CLI_NUMBER:
+        print_numbers(&((const cli_number *)field)->value, ((const cli_number *)field)->given,
+                      text, size);
+        break;
+    case CLI_NUMBERS:
+        print_numbers(((const cli_numbers *)field)->value, ((const cli_numbers *)field)->count,
+                      text, size);
+        break;
+    case CLI_LENGTHS:
+        print_numbers(((const cli_lengths *)field)->mm,
+                      ((const cli_lengths *)field)->given ? 3 : 0, text, size);
+        break;
+    case CLI_COUNT:
+    case CLI_BYTES:
+        snprintf(text, size, "%zu", *(const size_t *)field);
+        break;
+    case CLI_RANGES:
+        if (((const cli_ranges *)field)->given)
+            print_ranges(field, text, size);
+        break;
+    default:
+        break;
+    }
+    return *text != '\0';
+}
+
 /* Stores a value in its field; false when the text is not one of its kind. */
 static bool store(const cli_option *o, const char *text, void *field)
 {
@@ -360,6 +449,8 @@ void cli_print_help(const cli_command *command, bool long_form)
     puts("\nOptions");
     for (size_t n = 0; (o = option_at(command, n)); n++)
         print_option(o);
+    if (long_form && command->print_more)
+        command->print_more();
     if (!long_form && command->more)
         printf("\n'cubewright help %s' has more and examples.\n", command->name);
 }

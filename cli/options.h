@@ -124,7 +124,8 @@ typedef struct cli_command {
     size_t min_inputs, max_inputs;
     bool slices; /* the input may be slices, which a shell may make many arguments of */
     size_t size; /* of the struct that options fill in; it begins with cli_common */
-    const void *defaults; /* that struct before any option; NULL: zeros */
+    void (*print_more)(void); /* behind the options of the long help; NULL: nothing */
+    const void *defaults;     /* that struct before any option; NULL: zeros */
     cw_status (*run)(void *args, cw_error *err);
 } cli_command;
 
@@ -136,6 +137,13 @@ cw_status cli_parse(const cli_command *command, int count, char **words, void *a
 
 /* Whether an option was given, of that name. */
 bool cli_is_given(const cli_command *command, const cli_common *args, const char *name);
+
+/* The size of an option's field. */
+size_t cli_option_size(const cli_option *option);
+
+/* The value of an option that is no flag, as it would be said on the command line; of texts,
+ * choices, numbers, counts, lengths and ranges. false: nothing was said. */
+bool cli_option_text(const cli_option *option, const void *args, char *text, size_t size);
 
 /* The help of a command: long adds its paragraphs. */
 void cli_print_help(const cli_command *command, bool long_form);

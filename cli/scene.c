@@ -131,7 +131,7 @@ static void warn_of_nothing(const cw_transfer *t, const cw_statistics *s)
                 s->min, s->max);
 }
 
-static cw_status change(const cli_scene *args, cw_transfer *t, cw_error *err)
+cw_status cli_change_transfer(const cli_scene *args, cw_transfer *t, cw_error *err)
 {
     const double factor = args->opacity.given ? args->opacity.value : 1;
     if (!(factor >= 0))
@@ -168,7 +168,7 @@ cw_status cli_fit_transfer(const cli_scene *args, const cw_volume *volume, cw_mo
     const char *name = args->transfer ? args->transfer : default_preset(volume, mode);
     cw_status st = find_transfer(name, statistics, args, transfer, err);
     if (st == CW_OK)
-        st = change(args, transfer, err);
+        st = cli_change_transfer(args, transfer, err);
     if (st == CW_OK)
         warn_of_nothing(transfer, statistics);
     return st;

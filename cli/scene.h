@@ -49,6 +49,9 @@ cw_status cli_check_scene(const cli_command *command, const cli_common *common, 
 /* Whether an option of that name sets how one picture looks. */
 bool cli_is_setting(const char *name);
 
+/* Whether an option of that name does something in a mode, with or without a mesh. */
+bool cli_setting_fits(const char *name, cw_mode mode, bool has_mesh);
+
 /* The first option given of those that only OpenGL draws of a mesh; NULL: none. */
 const char *cli_needs_gl(const cli_command *command, const cli_common *common,
                          const cli_scene *args);
@@ -70,6 +73,9 @@ cw_status cli_make_transfer(const cli_scene *args, const cw_volume *volume, cw_m
 cw_status cli_fit_transfer(const cli_scene *args, const cw_volume *volume, cw_mode mode,
                            const cw_statistics *statistics, cw_transfer *transfer,
                            cw_error *err);
+
+/* Shifts and scales one. CW_ERR_ARGUMENT */
+cw_status cli_change_transfer(const cli_scene *args, cw_transfer *transfer, cw_error *err);
 
 /* The whole scene but camera, size and samples, which are there before: slices are counted
  * along the line of sight. What it points to is borrowed.

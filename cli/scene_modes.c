@@ -101,6 +101,14 @@ cw_status cli_check_scene(const cli_command *command, const cli_common *common, 
     return CW_OK;
 }
 
+bool cli_setting_fits(const char *name, cw_mode mode, bool has_mesh)
+{
+    for (int n = 0; n < ROWS; n++)
+        if (strcmp(rows[n].name, name) == 0)
+            return rows[n].modes >> mode & 1 || (rows[n].mesh && has_mesh);
+    return true;
+}
+
 bool cli_is_setting(const char *name)
 {
     for (int n = 0; n < ROWS; n++)

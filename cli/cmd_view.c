@@ -1,0 +1,221 @@
+#define _GNU_SOURCE /* open_memstream */
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "cli/view/view.h"
+#include "core/module.h"
+#include "core/status.h"
+
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const render_args defaults = {
+    .scene = {.camera = "front", .lit = true, .preintegration = true, .skipping = true},
+    .size = {.count = 2, .n = {1280, 800, 0}}};
+
+#define SCENE(field) offsetof(render_args, scene) + offsetof(cli_scene, field)
+#define MARKS(field) offsetof(render_args, marks) + offsetof(cli_marks, field)
+#define HEADING(name)                                                                          \
+    {                                                                                          \
+        name, 0, CLI_HEADING, NULL, "", 0                                                      \
+    }
+
+static const cli_option options[] = {
+    {"exec", 'e', CLI_TEXT, "COMMANDS",
+     "do this first, such as 'mode mip; orbit 30; screenshot a.png'",
+     offsetof(render_args, exec)},
+    {"run", 0, CLI_TEXT, "FILE", "do what is written in a file, such as a saved session",
+     offsetof(render_args, run)},
+    {"hidden", 0, CLI_FLAG, NULL, "no window: do that, and end; needs no display (off)",
+     offsetof(render_args, hidden)},
+    {"output", 'o', CLI_TEXT, "FILE", "the same, and write the picture as a .png in the end",
+     offsetof(render_args, output)},
+    {"size", 0, CLI_SIZES, "WxH", "of the window, in pixels (1280x800)",
+     offsetof(render_args, size)},
+#include "cli/options_what.inc"
+    HEADING("Camera"),
+#include "cli/options_camera.inc"
+#include "cli/options_look.inc"
+    HEADING("Reading"),
+    CLI_INPUT_OPTIONS(render_args),
+};
+
+/* Frames while something takes long: a bar, and a way to stop it. */
+static bool show_progress(void *user, const char *step, double done)
+{
+    view *v = user;
+    const double now = v->ui->seconds(v->window);
+    if (now - v->frame_shown < 0.1)
+        return !v->quits;
+    v->frame_shown = now;
+    const cwi_ui_input *in = v->ui->begin(v->window, 0);
+    const double scale = v->ui->scale(v->window);
+    const cwi_ui_rect rect = {0.5 * ((double)in->width - 320 * scale), 0.5 * (double)in->height,
+                              320 * scale, 0};
+    v->quits |= in->close;
+    v->ui->panel_begin(v->window, "One moment", &rect, CWI_UI_FIXED, NULL);
+    v->ui->progress(v->window, done, step);
+    v->ui->panel_end(v->window);
+    v->ui->end(v->window, NULL);
+    return !v->quits;
+}
+
+static void hear(void *user, const char *line)
+{
+    view_say(user, false, line);
+}
+
+static cw_status check(const render_args *args, cw_error *err)
+{
+    const char *dot = args->output ? strrchr(args->output, '.') : NULL;
+    if (args->size.count != 2 || args->size.n[0] > 8192 || args->size.n[1] > 8192)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--size takes two numbers up to 8192, such as 1280x800");
+    if (args->output && (!dot || strcmp(dot, ".png") != 0))
+        return cw_fail(err, CW_ERR_ARGUMENT, "%s: view writes .png", args->output);
+    if (args->common.input_count == 0 && args->output && !args->exec && !args->run)
+        return cw_fail(err, CW_ERR_ARGUMENT, "a picture of what? name a file");
+    return CW_OK;
+}
+
+static cw_status open_window(view *v, const render_args *args, cw_error *err)
+{
+    const void *functions;
+    const cwi_ui_desc desc = {.title = "cubewright",
+                              .width = args->size.n[0],
+                              .height = args->size.n[1],
+                              .hidden = args->hidden || args->output};
+    cw_status st = cwi_module_load("window", "CUBEWRIGHT_WINDOW",
+                                   "libimgui-dev libglfw3-dev libepoxy-dev", &functions, err);
+    if (st != CW_OK)
+        return st;
+    v->ui = functions;
+    v->is_hidden = desc.hidden;
+    return v->ui->open(&desc, &v->window, err);
+}
+
+/* Where there is a window, what is wrong with a file is told there. */
+static cw_status open_first(view *v, const render_args *args, cw_error *err)
+{
+    cw_error why = {0};
+    if (args->common.input_count == 0)
+        return CW_OK;
+    cw_status st = view_open(v, args->common.inputs[0], &why);
+    if (st == CW_OK)
+        return CW_OK;
+    if (v->is_hidden)
+        return cw_fail(err, st, "%s", why.message);
+    cli_say_error(why.message);
+    view_say(v, true, why.message);
+    return CW_OK;
+}
+
+static cw_status do_asked(view *v, const render_args *args, cw_error *err)
+{
+    cw_status st = view_take_in(v, err);
+    if (st == CW_OK && args->run)
+        st = view_exec_file(v, args->run, err);
+    if (st == CW_OK && args->exec) {
+        st = view_exec(v, args->exec, err);
+        st = st == CW_OK ? st : cwi_fail_in(err, st, "--exec");
+    }
+    if (st == CW_OK && args->output && !v->quits)
+        st = view_picture(v, args->output, err);
+    return st;
+}
+
+static cw_status run_session(view *v, const render_args *args, cw_error *err)
+{
+    const cli_listener listener = {v, hear, show_progress};
+    const view_shown shown = {.panels = true, .cross = args->marks.layout == CLI_LAYOUT_QUAD};
+    v->command = &cli_view;
+    v->state.args = *args;
+    v->state.slice_zoom = 1;
+    v->state.share = 0.5;
+    v->shown = shown;
+    v->width = args->size.n[0];
+    v->height = args->size.n[1];
+    for (int p = 0; p < VIEW_PARTS; p++)
+        v->parts[p].scale = 0.5;
+    view_lay_out(v);
+    cli_console_listen(&listener);
+    cw_status st = open_first(v, args, err);
+    if (st == CW_OK)
+        st = do_asked(v, args, err);
+    if (st == CW_OK && !v->is_hidden)
+        st = view_loop(v, err);
+    cli_console_listen(NULL);
+    return st;
+}
+
+static void end_session(view *v)
+{
+    view_close(v);
+    cw_renderer_free(v->renderer);
+    if (v->window)
+        v->ui->close(v->window);
+    for (size_t n = 0; n < v->word_count; n++)
+        free(v->words[n]);
+    for (size_t n = 0; n < v->asked_count; n++)
+        free(v->asked[n]);
+    free(v->words);
+    free(v->asked);
+    free(v);
+}
+
+static cw_status run(void *p, cw_error *err)
+{
+    const render_args *args = p;
+    cw_status st = check(args, err);
+    if (st != CW_OK)
+        return st;
+    view *v = calloc(1, sizeof *v);
+    if (!v)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a session");
+    st = open_window(v, args, err);
+    if (st == CW_OK)
+        st = run_session(v, args, err);
+    end_session(v);
+    return st;
+}
+
+/* Keys and commands, out of their tables. */
+static void print_more(void)
+{
+    puts("\nKeys");
+    view_print_keys();
+    puts("\nCommands, for --exec, --run and what keys do; every option above without its "
+         "dashes\n"
+         "is one, too: 'iso 300', 'lit off', 'clip-box default'. ';' or a line's end parts "
+         "them.");
+    for (size_t n = 0; n < view_verb_count; n++) {
+        char head[64];
+        snprintf(head, sizeof head, "%s %s", view_verbs[n].name, view_verbs[n].takes);
+        printf("  %-28s%s\n", head, view_verbs[n].about);
+    }
+}
+
+const cli_command cli_view = {
+    .name = "view",
+    .usage = "[VOLUME|MESH|FOLDER] [options]",
+    .about = "a window: everything that render draws, a drag away",
+    .more =
+        "Shows a good picture at once: a mode, colours and opacities that suit the file. Drag\n"
+        "to turn it, drop files on it, press H for the keys. While things move the picture is\n"
+        "rough; it gets better when they rest. A session can be saved, as commands or as a\n"
+        "command line; --hidden does the same without a window and without a display.\n\n"
+        "Examples\n"
+        "  cubewright view head.nii.gz\n"
+        "  cubewright view ct.nrrd --tf ct-bone --layout quad\n"
+        "  cubewright view ct.nrrd --iso 300\n"
+        "  cubewright view head.nii.gz --compare 'composite|reference'\n"
+        "  cubewright view head.nii.gz --exec 'mode mip; orbit 30' -o a.png\n",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .max_inputs = 1,
+    .size = sizeof(render_args),
+    .defaults = &defaults,
+    .print_more = print_more,
+    .run = run,
+};

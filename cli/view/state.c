@@ -1,0 +1,295 @@
+#define _GNU_SOURCE /* strdup, open_memstream */
+/* Settings by name, undo, and a session as text. */
+#include "cli/view/view.h"
+
+#include "cli/split.h"
+#include "core/outfile.h"
+#include "core/status.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *view_keep_text(view *v, const char *text)
+{
+    for (size_t n = 0; n < v->word_count; n++)
+        if (strcmp(v->words[n], text) == 0)
+            return v->words[n];
+    char **words = realloc(v->words, (v->word_count + 1) * sizeof *words);
+    if (!words)
+        return NULL;
+    v->words = words;
+    words[v->word_count] = strdup(text);
+    return words[v->word_count] ? words[v->word_count++] : NULL;
+}
+
+/* Changes of one kind in one go, such as a slider's, are undone in one go. */
+void view_remember(view *v, const char *verb)
+{
+    view_history *h = &v->history;
+    const bool goes_on = h->count && h->gesture == v->gesture && strcmp(h->verb, verb) == 0;
+    if (!goes_on && h->count) {
+        if (h->at + 1 == VIEW_UNDO)
+            memmove(h->states, h->states + 1, --h->at * sizeof *h->states);
+        h->at++;
+    }
+    h->states[h->at] = v->state;
+    h->count = h->at + 1;
+    h->gesture = v->gesture;
+    snprintf(h->verb, sizeof h->verb, "%s", verb);
+}
+
+/* The camera and the step stay: it is not moving about that is undone. */
+bool view_undo(view *v, int by)
+{
+    view_history *h = &v->history;
+    if (by < 0 ? h->at == 0 : h->at + 1 >= h->count)
+        return false;
+    h->at = by < 0 ? h->at - 1 : h->at + 1;
+    view_state now = v->state;
+    v->state = h->states[h->at];
+    v->state.is_placed = now.is_placed;
+    v->state.camera = now.camera;
+    v->state.step = now.step;
+    h->verb[0] = '\0';
+    return true;
+}
+
+const cli_option *view_find_option(const view *v, const char *name)
+{
+    static const char *const fixed[] = {
+        "exec",   "run",        "hidden",  "output",     "reader",         "raw",
+        "memory", "max-voxels", "timeout", "no-sandbox", "allow-external", "threads",
+        "size",   "steps",      "step"};
+    for (size_t n = 0; n < sizeof fixed / sizeof *fixed; n++)
+        if (strcmp(fixed[n], name) == 0)
+            return NULL;
+    for (size_t n = 0; n < v->command->option_count; n++) {
+        const cli_option *o = &v->command->options[n];
+        if (o->kind != CLI_HEADING && strcmp(o->name, name) == 0)
+            return o;
+    }
+    return NULL;
+}
+
+static bool is_default(const view *v, const cli_option *o)
+{
+    return memcmp((const char *)&v->state.args + o->offset,
+                  (const char *)v->command->defaults + o->offset, cli_option_size(o)) == 0;
+}
+
+/* An option as on the command line; "off" and "none" take back what was set. */
+static cw_status parse_setting(view *v, const cli_option *o, const char *value, cw_error *err)
+{
+    char *words[1];
+    const char *inputs[2] = {0};
+    cli_command bare = *v->command;
+    render_args *args = &v->state.args;
+    const bool flag = o->kind == CLI_FLAG;
+    const bool off = value && (strcmp(value, "off") == 0 || strcmp(value, "default") == 0);
+    bare.min_inputs = 0;
+    if (off && !flag) {
+        memcpy((char *)args + o->offset, (const char *)v->command->defaults + o->offset,
+               cli_option_size(o));
+        args->common.given[o - v->command->options] = false;
+        return CW_OK;
+    }
+    if (flag && value && !off && strcmp(value, "on") != 0)
+        return cw_fail(err, CW_ERR_ARGUMENT, "%s '%s': on or off was expected", o->name, value);
+    if (!flag && !value)
+        return cw_fail(err, CW_ERR_ARGUMENT, "%s needs a value: %s", o->name,
+                       o->value ? o->value : "a text");
+    char *word = malloc(strlen(o->name) + (value ? strlen(value) : 0) + 8);
+    if (!word)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a setting");
+    if (flag)
+        sprintf(word, off ? "--no-%s" : "--%s", o->name);
+    else
+        sprintf(word, "--%s=%s", o->name, value);
+    words[0] = (char *)view_keep_text(v, word);
+    free(word);
+    if (!words[0])
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a setting");
+    const size_t count = args->common.input_count;
+    const char **before = args->common.inputs;
+    args->common.input_count = 0;
+    cw_status st = cli_parse(&bare, 1, words, args, inputs, err);
+    args->common.inputs = before;
+    args->common.input_count = count;
+    return st;
+}
+
+/* What a setting means beyond its own value. */
+static cw_status follow(view *v, const char *name, cw_error *err)
+{
+    view_state *s = &v->state;
+    if (strcmp(name, "tf") == 0)
+        s->is_edited = false;
+    if (strcmp(name, "camera") == 0 || strcmp(name, "ortho") == 0 || strcmp(name, "fov") == 0)
+        s->is_placed = false;
+    if (strcmp(name, "iso") == 0 && !s->args.iso.given &&
+        s->args.scene.mode == 1 + CW_MODE_MESH && v->has_volume)
+        s->args.scene.mode = 0;
+    v->transfer_is_old = true;
+    view_touch(v, 1 << VIEW_SPACE);
+    return view_choose_mode(v, err);
+}
+
+/* Draws nothing yet: only whether it could be. */
+static cw_status try_scene(view *v, cw_error *err)
+{
+    static const cli_turns one = {0};
+    const render_args *args = &v->state.args;
+    uint8_t background[2][4];
+    cw_scene scene = {.width = 64, .height = 64, .camera = v->state.camera};
+    const cli_subject subject = {
+        .volume = view_draws_volume(v) ? cli_drawn(&v->source) : NULL,
+        .whole = v->source.is_mesh || !v->path ? NULL : &v->source.volume.whole};
+    cli_split split = {0};
+    if (args->samples > 4)
+        return cw_fail(err, CW_ERR_ARGUMENT, "samples %zu: expected 1 to 4", args->samples);
+    if (args->difference.given && !(args->difference.value > 0))
+        return cw_fail(err, CW_ERR_ARGUMENT, "difference %g: above 0 was expected",
+                       args->difference.value);
+    cw_status st = cli_check_camera(&args->scene, &one, err);
+    if (st == CW_OK)
+        st = cli_background(&args->scene, v->mode, background, err);
+    if (st == CW_OK && v->path)
+        st = view_need_transfer(v, err);
+    if (st == CW_OK && v->path && (v->state.is_placed || !subject.volume))
+        st = cli_make_scene(&args->scene, &subject, v->mode, &v->transfer, &scene, err);
+    if (st == CW_OK && args->compare) {
+        st = cli_parse_split(v->command, args, &split, err);
+        cli_free_split(&split);
+    }
+    return st;
+}
+
+cw_status view_set(view *v, const char *name, const char *value, cw_error *err)
+{
+    const cli_option *o = view_find_option(v, name);
+    const view_state before = v->state;
+    const cw_mode mode = v->mode;
+    if (!o)
+        return cw_fail(err, CW_ERR_ARGUMENT, "'%s' is no setting", name);
+    cw_status st = parse_setting(v, o, value, err);
+    if (st == CW_OK)
+        st = follow(v, name, err);
+    if (st == CW_OK)
+        st = try_scene(v, err);
+    if (st == CW_OK)
+        return CW_OK;
+    v->state = before;
+    v->mode = mode;
+    v->transfer_is_old = true;
+    return st;
+}
+
+/* In quotes where a shell, or a script of ours, would part or read it otherwise. */
+static void put_word(FILE *out, const char *word)
+{
+    if (*word && strspn(word, "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"
+                              "-_=+:,./@%") == strlen(word)) {
+        fputs(word, out);
+        return;
+    }
+    fputc('\'', out);
+    for (const char *c = word; *c; c++)
+        if (*c == '\'')
+            fputs("'\\''", out);
+        else
+            fputc(*c, out);
+    fputc('\'', out);
+}
+
+static void put_setting(FILE *out, bool shell, const char *name, const char *value)
+{
+    fprintf(out, shell ? " --%s%s" : "%s%s", name, value ? " " : "");
+    if (value)
+        put_word(out, value);
+    if (!shell)
+        fputc('\n', out);
+}
+
+static void put_settings(const view *v, FILE *out, bool shell)
+{
+    char text[CW_TRANSFER_TEXT];
+    const view_state *s = &v->state;
+    for (size_t n = 0; n < v->command->option_count; n++) {
+        const cli_option *o = &v->command->options[n];
+        if (!view_find_option(v, o->name) || is_default(v, o) ||
+            (s->is_placed && (strcmp(o->name, "camera") == 0 || strcmp(o->name, "ortho") == 0 ||
+                              strcmp(o->name, "fov") == 0 || strcmp(o->name, "zoom") == 0)) ||
+            (s->is_edited && strcmp(o->name, "tf") == 0))
+            continue;
+        const bool flag = o->kind == CLI_FLAG;
+        const bool off = flag && !*((const bool *)((const char *)&s->args + o->offset));
+        snprintf(text, sizeof text, "no-%s", o->name);
+        if (flag && shell)
+            put_setting(out, shell, off ? text : o->name, NULL);
+        else if (flag)
+            put_setting(out, shell, o->name, off ? "off" : "on");
+        else if (cli_option_text(o, &s->args, text, sizeof text))
+            put_setting(out, shell, o->name, text);
+    }
+    if (s->is_edited && cw_transfer_format(&s->curve, text, NULL) == CW_OK)
+        put_setting(out, shell, "tf", text);
+    if (s->is_placed && cw_camera_format(&s->camera, text, NULL) == CW_OK)
+        put_setting(out, shell, "camera", text);
+}
+
+/* What no option stands for. */
+static void put_rest(const view *v, FILE *out, const char *end)
+{
+    const view_state *s = &v->state;
+    if (s->step)
+        fprintf(out, "step %zu%s", s->step, end);
+    fprintf(out, "cross %.9g %.9g %.9g%s", s->cross[0], s->cross[1], s->cross[2], end);
+    if (s->window[0] != 0 || s->window[1] != 0)
+        fprintf(out, "window %.9g %.9g%s", s->window[0], s->window[1], end);
+    if (s->slice_zoom != 1)
+        fprintf(out, "zoom-slices %.9g%s", s->slice_zoom, end);
+    if (s->args.compare)
+        fprintf(out, "split %.6g%s", s->share, end);
+}
+
+cw_status view_write_state(const view *v, const char *path, cw_error *err)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    if (!out)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a state");
+    fputs("# cubewright view: a state; 'cubewright view --run' this file\n", out);
+    if (v->path) {
+        fputs("open ", out);
+        put_word(out, v->path);
+        fputc('\n', out);
+    }
+    put_settings(v, out, false);
+    put_rest(v, out, "\n");
+    fclose(out);
+    cw_status st = cwi_outfile_save(path, text, size, err);
+    free(text);
+    return st;
+}
+
+char *view_command_line(const view *v)
+{
+    char *text = NULL;
+    size_t size = 0;
+    FILE *out = open_memstream(&text, &size);
+    if (!out)
+        return NULL;
+    fputs("cubewright view", out);
+    if (v->path) {
+        fputc(' ', out);
+        put_word(out, v->path);
+    }
+    put_settings(v, out, true);
+    fputs(" --exec '", out);
+    put_rest(v, out, "; ");
+    fputc('\'', out);
+    fclose(out);
+    return text;
+}

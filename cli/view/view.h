@@ -1,0 +1,193 @@
+/* The session of `cubewright view`: what is seen, how, and what people do to it. Whatever
+ * changes it is a command in words, from a key, a widget, the mouse or a script alike. */
+#ifndef CLI_VIEW_VIEW_H
+#define CLI_VIEW_VIEW_H
+
+#include "cli/picture_run.h"
+#include "viewer/ui.h"
+
+#include <cubewright/extract.h>
+
+/* Parts of the window that show a picture. */
+typedef enum view_part_name {
+    VIEW_SPACE, /* the scene, in any mode */
+    VIEW_AXIAL,
+    VIEW_CORONAL,
+    VIEW_SAGITTAL,
+    VIEW_PARTS
+} view_part_name;
+enum { VIEW_ALL = (1 << VIEW_PARTS) - 1, VIEW_SLICES = VIEW_ALL - (1 << VIEW_SPACE) };
+
+/* How well a part is drawn. */
+typedef enum view_level {
+    VIEW_STALE,
+    VIEW_ROUGH, /* smaller, with longer steps: while something moves */
+    VIEW_FAIR,  /* in full size */
+    VIEW_FINAL  /* as asked for */
+} view_level;
+
+typedef struct view_part {
+    bool is_shown;
+    cwi_ui_rect rect;
+    view_level level;
+    cw_scene scene; /* as it was drawn; what it points to may be gone */
+    double scale;   /* of rough pictures */
+    double ms;      /* that the last one took */
+} view_part;
+
+/* What undo brings back, and what is saved. */
+typedef struct view_state {
+    render_args args;
+    bool is_edited; /* the transfer function is curve, not that of args */
+    cw_transfer curve;
+    bool is_placed; /* the camera has been set */
+    cw_camera camera;
+    double cross[3];  /* in the world */
+    double window[2]; /* values from black to white in slices; both 0: all */
+    double slice_zoom;
+    double share; /* of the left side of a comparison */
+    size_t step;  /* of the series */
+} view_state;
+
+enum { VIEW_UNDO = 64, VIEW_MESSAGE = 1024 };
+
+/* What the window shows besides: keys switch it. */
+typedef struct view_shown {
+    bool panels, help, handles, cross, playing, about;
+    int cut; /* axis that the wheel cuts along: 1 to 3; 0: none */
+} view_shown;
+
+typedef struct view_history {
+    view_state states[VIEW_UNDO];
+    size_t count, at; /* states[at] is the one at hand */
+    char verb[32];    /* of the last change */
+    size_t gesture;   /* in which it was made */
+} view_history;
+
+typedef struct view {
+    const cli_command *command;
+    const cwi_ui_functions *ui;
+    cwi_ui *window;
+    bool is_hidden, quits;
+    size_t gesture; /* counts presses of buttons and keys */
+
+    char *path; /* NULL: nothing is open */
+    cli_source source;
+    cw_statistics statistics; /* of the volume at this step */
+    cw_extractor *extractor, *coarse;
+    cw_volume thinned; /* what coarse extracts from */
+    cw_mesh old_mesh;  /* was drawn until now: its address must not come again */
+    double mesh_iso;
+    int mesh_level; /* 0: none, 1: of coarse, 2: of all */
+    double box[2][3];
+    bool has_volume;  /* that can be drawn */
+    bool values_come; /* the volume's voxels are new to the renderer */
+
+    view_state state;
+    view_history history;
+    cw_mode mode;
+    cw_transfer transfer; /* what is drawn with */
+    bool transfer_is_old;
+    view_shown shown;
+
+    cw_renderer *renderer;
+    view_part parts[VIEW_PARTS];
+    size_t width, height; /* of the window */
+    double bar_height, panel_width;
+    cw_comparison measured;
+    bool is_measured;
+
+    char message[VIEW_MESSAGE];
+    bool is_error;
+    double message_until; /* in ui seconds */
+    double frame_shown, play_next;
+    char probe[128];
+
+    char **words; /* texts that options point to */
+    size_t word_count;
+    char **asked; /* commands to run after this frame */
+    size_t asked_count;
+    int depth; /* of files of commands that run others */
+    int drag;  /* mouse.c's */
+    int drag_part;
+    double drag_from[2];         /* what it is measured from */
+    int curve_drag, curve_point; /* curve.c's: what is dragged there, and from where */
+    bool color_drag;
+    size_t color_chosen;
+    double curve_at[2], color_at;
+} view;
+
+/* session.c */
+cw_status view_open(view *v, const char *path, cw_error *err);
+void view_close(view *v);
+cw_status view_go_to_step(view *v, size_t step, cw_error *err);
+void view_touch(view *v, unsigned parts); /* they have to be drawn anew */
+bool view_draws_volume(const view *v);
+bool view_has_mesh(const view *v);
+double view_suggest_iso(const view *v);
+cw_status view_need_transfer(view *v, cw_error *err);
+cw_status view_place_camera(view *v, const char *name, cw_error *err);
+cw_status view_choose_mode(view *v, cw_error *err); /* after settings have changed */
+
+/* state.c: undo, settings by name, and what is saved. */
+void view_remember(view *v, const char *verb);
+bool view_undo(view *v, int by);
+const cli_option *view_find_option(const view *v, const char *name);
+cw_status view_set(view *v, const char *name, const char *value, cw_error *err);
+const char *view_keep_text(view *v, const char *text);
+cw_status view_write_state(const view *v, const char *path, cw_error *err);
+char *view_command_line(const view *v); /* free() it */
+
+/* commands.c */
+typedef struct view_verb {
+    const char *name, *takes, *about;
+    int least, most; /* arguments */
+    bool changes;    /* what undo brings back */
+    cw_status (*run)(view *v, int count, char **args, cw_error *err);
+} view_verb;
+extern const view_verb view_verbs[];
+extern const size_t view_verb_count;
+cw_status view_monkey(view *v, uint64_t *seed, cw_error *err); /* one random input */
+cw_status view_run(view *v, int count, char **words, cw_error *err);
+
+/* script.c: commands in a text, parted by ; or lines, words in quotes, # begins a comment. */
+cw_status view_exec(view *v, const char *text, cw_error *err);
+cw_status view_exec_file(view *v, const char *path, cw_error *err);
+/* To be run after this frame; errors become messages. */
+void view_ask(view *v, const char *format, ...) CW_PRINTF(2, 3);
+void view_run_asked(view *v);
+void view_say(view *v, bool is_error, const char *text);
+
+/* keys.c: what keys and menus do. */
+typedef struct view_key {
+    const char *command, *key, *menu; /* key, menu: NULL for none */
+    const char *about;                /* NULL: that of the row before */
+} view_key;
+extern const view_key view_keys[];
+extern const size_t view_key_count;
+/* Something that is on or off: of view_shown, or a flag of the settings. false: no such thing
+ */
+bool view_find_flag(const view *v, const char *name, bool *on);
+bool *view_shown_flag(view *v, const char *name); /* NULL: none of those */
+void view_print_keys(void);
+
+/* draw.c */
+cw_status view_draw(view *v, view_level level, bool may_stop, cw_error *err);
+bool view_is_final(const view *v);
+cw_status view_picture(view *v, const char *path, cw_error *err);
+
+/* loop.c: frames of the window. */
+cw_status view_frame(view *v, double wait_s, cw_error *err);
+/* Frames until all that was fed has been taken in. */
+cw_status view_take_in(view *v, cw_error *err);
+cw_status view_settle(view *v, cw_error *err); /* until all is drawn as asked for */
+cw_status view_loop(view *v, cw_error *err);
+void view_lay_out(view *v);
+
+/* mouse.c, panels.c, curve.c */
+void view_mouse(view *v, const cwi_ui_input *in);
+void view_show_parts(view *v, const cwi_ui_input *in);
+void view_panels(view *v, const cwi_ui_input *in);
+void view_curve(view *v);
+
+#endif
