@@ -304,6 +304,28 @@ static void cut(double at, double slope, double t[2])
         t[1] = -INFINITY;
 }
 
+int cwi_frame_keep(const cwi_frame *f, const double origin[3], const double direction[3],
+                   const double interval[2], double intervals[2][2])
+{
+    const double *t = interval;
+    double kept[2] = {t[0], t[1]};
+    for (size_t n = 0; n < f->scene.clip_count; n++)
+        cut(cwi_dot(f->clips[n], origin) - f->clips[n][3], cwi_dot(f->clips[n], direction),
+            kept);
+    int count = 0;
+    const bool away = f->scene.cut_away && f->scene.clip_count > 0;
+    const double parts[2][2] = {{away ? t[0] : kept[0], away ? fmin(t[1], kept[0]) : kept[1]},
+                                {fmax(t[0], kept[1]), t[1]}};
+    if (away && !(kept[1] > kept[0])) { /* it misses what is cut away */
+        memcpy(intervals[0], t, sizeof intervals[0]);
+        return t[1] > t[0];
+    }
+    for (int n = 0; n < (away ? 2 : 1); n++)
+        if (parts[n][1] > parts[n][0])
+            memcpy(intervals[count++], parts[n], sizeof parts[n]);
+    return count;
+}
+
 int cwi_frame_clip(const cwi_frame *f, const double origin[3], const double direction[3],
                    double intervals[2][2])
 {
@@ -317,22 +339,15 @@ int cwi_frame_clip(const cwi_frame *f, const double origin[3], const double dire
         cut(index[r] - f->low[r], slope[r], t);
         cut(f->high[r] - index[r], -slope[r], t);
     }
-    double kept[2] = {t[0], t[1]};
-    for (size_t n = 0; n < f->scene.clip_count; n++)
-        cut(cwi_dot(f->clips[n], origin) - f->clips[n][3], cwi_dot(f->clips[n], direction),
-            kept);
-    int count = 0;
-    const bool away = f->scene.cut_away && f->scene.clip_count > 0;
-    const double parts[2][2] = {{away ? t[0] : kept[0], away ? fmin(t[1], kept[0]) : kept[1]},
-                                {fmax(t[0], kept[1]), t[1]}};
-    if (away && !(kept[1] > kept[0])) { /* it misses what is cut away */
-        memcpy(intervals[0], t, sizeof t);
-        return t[1] > t[0];
-    }
-    for (int n = 0; n < (away ? 2 : 1); n++)
-        if (parts[n][1] > parts[n][0])
-            memcpy(intervals[count++], parts[n], sizeof parts[n]);
-    return count;
+    return cwi_frame_keep(f, origin, direction, t, intervals);
+}
+
+void cwi_frame_to_world(const cwi_frame *f, const double eye[3], double world[3])
+{
+    for (int a = 0; a < 3; a++)
+        world[a] =
+            f->eye_mm[a] + f->unit_mm * (eye[0] * f->axes[0][a] + eye[1] * f->axes[1][a] +
+                                         eye[2] * f->axes[2][a]);
 }
 
 double cwi_frame_extinction(const cwi_frame *f, double opacity)

@@ -58,6 +58,14 @@ CW_API void cwi_frame_ray(const cwi_frame *frame, double x, double y, double ori
 CW_API int cwi_frame_clip(const cwi_frame *frame, const double origin[3],
                           const double direction[3], double intervals[2][2]);
 
+/* The parts of an interval of a ray that clips leave: up to two, in order; how many. */
+CW_API int cwi_frame_keep(const cwi_frame *frame, const double origin[3],
+                          const double direction[3], const double interval[2],
+                          double kept[2][2]);
+
+/* The world point of one in eye space. */
+CW_API void cwi_frame_to_world(const cwi_frame *frame, const double eye[3], double world[3]);
+
 /* The extinction coefficient per unit of eye space of an opacity of the transfer function,
  * which is taken as at most that. */
 #define CWI_MOST_OPACITY (1 - 1e-6)
