@@ -389,8 +389,8 @@ static cw_status run_cross_by(view *v, int count, char **args, cw_error *err)
 /* To what the mouse is on, in pixels of the 3D part. */
 static cw_status run_pick(view *v, int count, char **args, cw_error *err)
 {
-    double pixel[2], point[3], value;
-    bool hit = false;
+    double pixel[2];
+    cw_picked picked = {0};
     view_part *part = &v->parts[VIEW_SPACE];
     cw_status st = take("pick", args, count, pixel, err);
     if (st == CW_OK)
@@ -400,10 +400,10 @@ static cw_status run_pick(view *v, int count, char **args, cw_error *err)
     if (st == CW_OK) {
         const double scale = (double)part->scene.width / fmax(part->rect.width, 1);
         const double at[2] = {pixel[0] * scale, pixel[1] * scale};
-        st = cw_pick(&part->scene, at, &hit, point, &value, err);
+        st = cw_pick(&part->scene, at, &picked, err);
     }
-    if (st == CW_OK && hit)
-        put_cross(v, point);
+    if (st == CW_OK && picked.kind != CW_PICK_NOTHING)
+        put_cross(v, picked.point);
     return st;
 }
 

@@ -118,25 +118,24 @@ static cw_status space_scene(view *v, const render_args *args, cw_mode mode,
     return st;
 }
 
-static void make_greys(const view *v, cw_transfer *greys)
+static void make_greys(view *v)
 {
     const double *w = v->state.window;
     const bool all = w[0] == 0 && w[1] == 0;
     const double low = all ? v->statistics.min : w[0], high = all ? v->statistics.max : w[1];
-    *greys = (cw_transfer){.color_count = 2,
-                           .colors = {{low, {0, 0, 0}}, {fmax(high, low), {1, 1, 1}}},
-                           .opacity_count = 1,
-                           .opacities = {{low, 1}}};
+    v->greys = (cw_transfer){.color_count = 2,
+                             .colors = {{low, {0, 0, 0}}, {fmax(high, low), {1, 1, 1}}},
+                             .opacity_count = 1,
+                             .opacities = {{low, 1}}};
 }
 
 /* Axial, coronal and sagittal slices are across z, y and x, through the cross-hair. */
-static cw_status slice_scene(view *v, int part, const cw_transfer *greys, cw_scene *scene,
-                             cw_error *err)
+static cw_status slice_scene(view *v, int part, cw_scene *scene, cw_error *err)
 {
     const int axis = 3 - part;
     *scene = (cw_scene){.mode = CW_MODE_SLICES,
                         .volume = cli_drawn(&v->source),
-                        .transfer = greys,
+                        .transfer = &v->greys,
                         .slice_count = 1,
                         .width = scene->width,
                         .height = scene->height,
@@ -243,14 +242,12 @@ static cw_status draw_space(view *v, view_level level, const cw_progress *progre
 static cw_status draw_slice(view *v, int part, const cw_progress *progress, cw_scene *scene,
                             cw_picture *picture, cw_error *err)
 {
-    cw_transfer greys;
-    make_greys(v, &greys);
+    make_greys(v);
     size_for(&v->parts[part], VIEW_FAIR, scene);
-    cw_status st = slice_scene(v, part, &greys, scene, err);
+    cw_status st = slice_scene(v, part, scene, err);
     scene->progress = *progress;
     if (st == CW_OK)
         st = draw_scene(v, scene, picture, err);
-    scene->transfer = NULL;
     return st;
 }
 

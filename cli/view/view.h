@@ -87,6 +87,7 @@ typedef struct view {
     view_history history;
     cw_mode mode;
     cw_transfer transfer; /* what is drawn with */
+    cw_transfer greys;    /* and slices */
     bool transfer_is_old;
     view_shown shown;
 
