@@ -257,7 +257,7 @@ void cwi_ui_imgui_begin(cwi_ui *ui)
     ImGui_ImplOpenGL3_NewFrame();
     ImGui::NewFrame();
     ui->input.over_widget = io.WantCaptureMouse;
-    ui->input.typing = io.WantTextInput;
+    ui->input.typing = io.WantTextInput && ui->imgui->ActiveId; /* ImGui is a frame late */
     if (ui->input.typing)
         ui->input.key_count = 0;
     shut_by_escape(ui);
