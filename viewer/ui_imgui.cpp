@@ -268,6 +268,8 @@ void cwi_ui_imgui_layout(cwi_ui *ui)
     shut_modals_not_begun(*ui->imgui);
     if (ui->input.typing)
         ui->wake = 0.2; /* the caret blinks */
+    if (ui->imgui->DimBgRatio > 0 && ui->imgui->DimBgRatio < 1)
+        ui->wake = 0.02; /* it grows dark behind a modal panel */
     ImGui::Render();
 }
 

@@ -102,7 +102,9 @@ typedef struct taken {
 } taken;
 
 /* Whether an event belongs into the frame at hand too: each change must be seen, and where and
- * in which order it was. A key that is down must come up before it goes down again. */
+ * in which order it was. The way to where a button goes down is not dragged, and what is
+ * dragged gets where it is let go. A key that is down must come up before it goes down again.
+ */
 static bool fits(const cwi_ui *ui, const taken *t, const cwi_ui_event *e, int last_key)
 {
     if (t->alone)
@@ -111,9 +113,8 @@ static bool fits(const cwi_ui *ui, const taken *t, const cwi_ui_event *e, int la
     case CWI_UI_MOVE:
         return !t->at_place || (e->x == ui->input.x && e->y == ui->input.y);
     case CWI_UI_PRESS:
-    case CWI_UI_LIFT: /* what is dragged is let go where it was seen last */
-        return !t->button[e->button] && !t->wrote && !t->key &&
-               !(e->kind == CWI_UI_LIFT && t->moved);
+    case CWI_UI_LIFT:
+        return !t->moved && !t->button[e->button] && !t->wrote && !t->key;
     case CWI_UI_WHEEL:
         return true;
     case CWI_UI_KEY:
