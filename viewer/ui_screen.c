@@ -417,10 +417,13 @@ void cwi_ui_screen_wait(cwi_ui *ui, double seconds)
         glfwWaitEventsTimeout(seconds);
 }
 
+/* Mesa without a GPU leaves the picture with XCB, and no wait for events sends it: what asks
+ * the server something does. */
 void cwi_ui_screen_show(cwi_ui *ui)
 {
     const cwi_ui_target *t = &ui->target;
     const GLint width = (GLint)t->width, height = (GLint)t->height;
+    int size[2];
     if (!ui->screen->window)
         return;
     glBindFramebuffer(GL_READ_FRAMEBUFFER, t->framebuffer);
@@ -428,6 +431,7 @@ void cwi_ui_screen_show(cwi_ui *ui)
     glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT,
                       GL_NEAREST);
     glfwSwapBuffers(ui->screen->window);
+    glfwGetWindowSize(ui->screen->window, &size[0], &size[1]);
 }
 
 void cwi_ui_screen_title(cwi_ui *ui, const char *title)
