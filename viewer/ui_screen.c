@@ -129,14 +129,16 @@ static void capitalize(char text[8])
         text[0] = (char)(text[0] - 'a' + 'A');
 }
 
-/* The layout's name of a key that writes: with Ctrl or Alt it writes nothing. */
+/* With Ctrl or Alt a key writes nothing: its name is what the layout has on it, or, where that
+ * is of another script, what an American one has. */
 static void put_shortcut(GLFWwindow *w, unsigned modifiers, int key, int code)
 {
     const char *name = glfwGetKeyName(key, code);
-    char text[8];
-    if (!name || strlen(name) >= sizeof text)
+    const bool ascii = name && (unsigned char)name[0] < 0x80 && name[1] == '\0';
+    char text[8] = {0};
+    if (!name || (!ascii && (key <= ' ' || key > '`')))
         return;
-    strcpy(text, name);
+    text[0] = ascii ? name[0] : (char)key;
     capitalize(text);
     if (cwi_ui_key_number(text, NULL) > 0)
         put_key(w, modifiers, text);
@@ -354,6 +356,7 @@ bool cwi_ui_screen_enter(cwi_ui *ui)
     cwi_ui_screen *s = ui->screen;
     if (!s->window)
         return cwi_gl_context_enter(&s->context);
+    glfwGetError(NULL); /* of before, such as a clipboard's without text */
     glfwMakeContextCurrent(s->window);
     return glfwGetError(NULL) == GLFW_NO_ERROR;
 }

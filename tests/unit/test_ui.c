@@ -434,8 +434,19 @@ static void keys_have_names(void **state)
 
 static void keys_of_no_name_are_refused(void **state)
 {
-    static const char *const names[] = {
-        "", "a", "Enter ", "Hyper+A", "AB", "Ctrl+", "Shift+Ctrl+A", "\xc3", "F13", " ", NULL};
+    static const char *const names[] = {"",
+                                        "a",
+                                        "Enter ",
+                                        "Hyper+A",
+                                        "AB",
+                                        "Ctrl+",
+                                        "Shift+Ctrl+A",
+                                        "\xc3",
+                                        "\xc3"
+                                        "A",
+                                        "F13",
+                                        " ",
+                                        NULL};
     (void)state;
     need_window();
     for (size_t n = 0; n < sizeof names / sizeof *names; n++) {
