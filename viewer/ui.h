@@ -2,7 +2,8 @@
  * first needed; without a display the same window is a framebuffer that nobody sees.
  *
  * One thread. A frame is begin(), widgets and drawing, end(). Lengths and places are pixels of
- * the framebuffer, from its upper left corner, y down. All text is UTF-8. */
+ * the framebuffer, from its upper left corner, y down. All text is UTF-8. There may be many
+ * windows that nobody sees, but only one that somebody does. */
 #ifndef VIEWER_UI_H
 #define VIEWER_UI_H
 
@@ -50,11 +51,11 @@ typedef struct cwi_ui_event {
  * "Enter", "Tab", "Escape", "Backspace", "Delete", "Insert", "Home", "End", "PageUp",
  * "PageDown", "Left", "Right", "Up", "Down", "F1" to "F12", and characters such as "[", "?" and
  * "+" as they are typed; before them "Ctrl+", "Alt+", "Shift+" in that order, Shift not before
- * characters that need it anyway. */
+ * characters that need it anyway. (With Ctrl or Alt nothing is typed: "Ctrl+Shift+=".) */
 typedef struct cwi_ui_input {
     size_t width, height; /* of the framebuffer */
-    double x, y;          /* the mouse */
-    double dx, dy;        /* since the frame before */
+    double x, y;          /* the mouse; -1, -1: outside */
+    double dx, dy;        /* since the frame before; none in the frame of a press */
     double wheel;         /* lines up */
     unsigned modifiers;
     bool down[CWI_UI_BUTTONS];                            /* held now */
@@ -111,7 +112,9 @@ typedef struct cwi_ui_functions {
     cw_status (*feed)(cwi_ui *ui, const cwi_ui_event *event, cw_error *err);
 
     /* Waits for input up to wait_s seconds, takes it, and starts a frame. At most one change of
-     * each button and one key are taken, the rest by the next frames, so that nothing is lost.
+     * each button and one key are taken, the rest by the next frames, so that nothing is lost;
+     * moves have frames of their own beside presses and lifts. It returns at once where more
+     * frames are needed to lay out what changed, and in time for tips and a caret that blinks.
      */
     const cwi_ui_input *(*begin)(cwi_ui *ui, double wait_s);
     /* Shows the frame. CW_ERR_BACKEND: GL's error, or its context was lost */
@@ -123,7 +126,8 @@ typedef struct cwi_ui_functions {
     void (*set_clipboard)(cwi_ui *ui, const char *text);
     void (*set_cursor)(cwi_ui *ui, int shape); /* 0 arrow, 1 cross, 2 hand, 3 left-right */
 
-    /* Pictures, kept in slots 0 to 15 until replaced (NULL: dropped), drawn stretched. */
+    /* Pictures, kept in slots 0 to 15 until replaced (NULL: dropped), drawn stretched: in the
+     * panel at hand, outside of panels behind them all. */
     cw_status (*keep)(cwi_ui *ui, int slot, const cw_image *image, cw_error *err);
     void (*show)(cwi_ui *ui, int slot, const cwi_ui_rect *where);
 
@@ -166,7 +170,8 @@ typedef struct cwi_ui_functions {
     bool (*number)(cwi_ui *ui, const char *label, double *value, double per_pixel,
                    const char *format);
     bool (*color)(cwi_ui *ui, const char *label, float rgb[3]);
-    bool (*input)(cwi_ui *ui, const char *label, char *text, size_t size); /* Enter */
+    /* text has each character at once; true: Enter */
+    bool (*input)(cwi_ui *ui, const char *label, char *text, size_t size);
     void (*area)(cwi_ui *ui, const char *label, double width, double height,
                  cwi_ui_area *area); /* width 0: all there is */
     void (*progress)(cwi_ui *ui, double share, const char *text);
@@ -185,8 +190,10 @@ typedef struct cwi_ui_functions {
     void (*menu_end)(cwi_ui *ui);
     bool (*item)(cwi_ui *ui, const char *label, const char *key, bool checked, bool enabled);
 
-    /* Where a widget was in the last frame, by its label (without ##...) or, of several, by
-     * "panel/label". false: it was not there. For scripts that use it by name. */
+    /* Where a widget was in the last frame, as far as it could be seen and without the label at
+     * its side: by its label (without ##...) or, of several, by "panel/label". Also "panel",
+     * "panel/close", "choice/name" and "menu/item" where they are open. false: it was not
+     * there. For scripts that use it by name. */
     bool (*find)(const cwi_ui *ui, const char *label, cwi_ui_rect *rect);
 } cwi_ui_functions;
 

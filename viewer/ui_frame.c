@@ -78,6 +78,16 @@ static double time_to_wait(const cwi_ui *ui, double wait_s)
     return ui->wake > 0 && ui->wake < wait_s ? ui->wake : wait_s;
 }
 
+/* What was woken for, such as a tip, takes a frame to be laid out too. */
+static void wait(cwi_ui *ui, double wait_s)
+{
+    const double seconds = time_to_wait(ui, wait_s);
+    const bool by_clock = seconds > 0 && seconds == ui->wake;
+    cwi_ui_screen_wait(ui, seconds);
+    ui->settle = by_clock ? 2 : ui->settle - (ui->settle > 0);
+    ui->wake = 0;
+}
+
 static void take_size(cwi_ui *ui)
 {
     size_t size[2];
@@ -91,9 +101,7 @@ static void take_size(cwi_ui *ui)
 const cwi_ui_input *cwi_ui_begin(cwi_ui *ui, double wait_s)
 {
     cwi_ui_imgui_choose(ui);
-    cwi_ui_screen_wait(ui, time_to_wait(ui, wait_s));
-    ui->settle -= ui->settle > 0;
-    ui->wake = 0;
+    wait(ui, wait_s);
     cwi_ui_queue_take(ui);
     take_size(ui);
     ui->before = ui->time;

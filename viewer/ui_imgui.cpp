@@ -257,7 +257,7 @@ void cwi_ui_imgui_begin(cwi_ui *ui)
     ImGui_ImplOpenGL3_NewFrame();
     ImGui::NewFrame();
     ui->input.over_widget = io.WantCaptureMouse;
-    ui->input.typing = io.WantTextInput;
+    ui->input.typing = io.WantTextInput && ui->imgui->ActiveId; /* ImGui is a frame late */
     if (ui->input.typing)
         ui->input.key_count = 0;
     shut_by_escape(ui);
@@ -268,6 +268,8 @@ void cwi_ui_imgui_layout(cwi_ui *ui)
     shut_modals_not_begun(*ui->imgui);
     if (ui->input.typing)
         ui->wake = 0.2; /* the caret blinks */
+    if (ui->imgui->DimBgRatio > 0 && ui->imgui->DimBgRatio < 1)
+        ui->wake = 0.02; /* it grows dark behind a modal panel */
     ImGui::Render();
 }
 

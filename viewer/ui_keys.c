@@ -21,7 +21,10 @@ static bool is_one_character(const char *text)
 {
     const unsigned char c = (unsigned char)*text;
     const size_t length = c < 0x80 ? 1 : c < 0xc0 ? 0 : c < 0xe0 ? 2 : c < 0xf0 ? 3 : 4;
-    return length > 0 && strlen(text) == length;
+    for (size_t n = 1; n < length; n++)
+        if (((unsigned char)text[n] & 0xc0) != 0x80)
+            return false;
+    return length > 0 && text[length] == '\0';
 }
 
 static int number_of(const char *key)

@@ -98,11 +98,13 @@ cw_status cwi_ui_feed(cwi_ui *ui, const cwi_ui_event *event, cw_error *err)
 
 /* What a frame has taken so far. */
 typedef struct taken {
-    bool any, button[CWI_UI_BUTTONS], at_place, key, edit, wrote, alone;
+    bool any, moved, button[CWI_UI_BUTTONS], at_place, key, edit, wrote, alone;
 } taken;
 
 /* Whether an event belongs into the frame at hand too: each change must be seen, and where and
- * in which order it was. A key that is down must come up before it goes down again. */
+ * in which order it was. The way to where a button goes down is not dragged, and what is
+ * dragged gets where it is let go. A key that is down must come up before it goes down again.
+ */
 static bool fits(const cwi_ui *ui, const taken *t, const cwi_ui_event *e, int last_key)
 {
     if (t->alone)
@@ -112,7 +114,7 @@ static bool fits(const cwi_ui *ui, const taken *t, const cwi_ui_event *e, int la
         return !t->at_place || (e->x == ui->input.x && e->y == ui->input.y);
     case CWI_UI_PRESS:
     case CWI_UI_LIFT:
-        return !t->button[e->button] && !t->wrote && !t->key;
+        return !t->moved && !t->button[e->button] && !t->wrote && !t->key;
     case CWI_UI_WHEEL:
         return true;
     case CWI_UI_KEY:
@@ -225,6 +227,7 @@ static void note(taken *t, const cwi_ui_event *e)
 {
     const bool change = e->kind == CWI_UI_PRESS || e->kind == CWI_UI_LIFT;
     t->any = true;
+    t->moved |= e->kind == CWI_UI_MOVE;
     if (change)
         t->button[e->button] = true;
     t->at_place |= change || e->kind == CWI_UI_WHEEL;

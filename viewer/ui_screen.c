@@ -129,14 +129,16 @@ static void capitalize(char text[8])
         text[0] = (char)(text[0] - 'a' + 'A');
 }
 
-/* The layout's name of a key that writes: with Ctrl or Alt it writes nothing. */
+/* With Ctrl or Alt a key writes nothing: its name is what the layout has on it, or, where that
+ * is of another script, what an American one has. */
 static void put_shortcut(GLFWwindow *w, unsigned modifiers, int key, int code)
 {
     const char *name = glfwGetKeyName(key, code);
-    char text[8];
-    if (!name || strlen(name) >= sizeof text)
+    const bool ascii = name && (unsigned char)name[0] < 0x80 && name[1] == '\0';
+    char text[8] = {0};
+    if (!name || (!ascii && (key <= ' ' || key > '`')))
         return;
-    strcpy(text, name);
+    text[0] = ascii ? name[0] : (char)key;
     capitalize(text);
     if (cwi_ui_key_number(text, NULL) > 0)
         put_key(w, modifiers, text);
@@ -354,6 +356,7 @@ bool cwi_ui_screen_enter(cwi_ui *ui)
     cwi_ui_screen *s = ui->screen;
     if (!s->window)
         return cwi_gl_context_enter(&s->context);
+    glfwGetError(NULL); /* of before, such as a clipboard's without text */
     glfwMakeContextCurrent(s->window);
     return glfwGetError(NULL) == GLFW_NO_ERROR;
 }
@@ -417,10 +420,13 @@ void cwi_ui_screen_wait(cwi_ui *ui, double seconds)
         glfwWaitEventsTimeout(seconds);
 }
 
+/* Mesa without a GPU leaves the picture with XCB, and no wait for events sends it: what asks
+ * the server something does. */
 void cwi_ui_screen_show(cwi_ui *ui)
 {
     const cwi_ui_target *t = &ui->target;
     const GLint width = (GLint)t->width, height = (GLint)t->height;
+    int size[2];
     if (!ui->screen->window)
         return;
     glBindFramebuffer(GL_READ_FRAMEBUFFER, t->framebuffer);
@@ -428,6 +434,7 @@ void cwi_ui_screen_show(cwi_ui *ui)
     glBlitFramebuffer(0, 0, width, height, 0, 0, width, height, GL_COLOR_BUFFER_BIT,
                       GL_NEAREST);
     glfwSwapBuffers(ui->screen->window);
+    glfwGetWindowSize(ui->screen->window, &size[0], &size[1]);
 }
 
 void cwi_ui_screen_title(cwi_ui *ui, const char *title)

@@ -216,7 +216,7 @@ bool panel_begin(cwi_ui *ui, const char *title, const cwi_ui_rect *rect, unsigne
     cwi_ui_rect where = *r;
     if (flags & CWI_UI_BARE) {
         where.width = where.height = 0;
-        ImGui::SetNextWindowBgAlpha(0.4f);
+        ImGui::SetNextWindowBgAlpha(0.55f);
     }
     place_panel(ui, title, &where, (flags & (CWI_UI_FIXED | CWI_UI_BARE)) != 0);
     return ImGui::Begin(title, open, flags_of(flags, r));
