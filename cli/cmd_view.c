@@ -63,7 +63,9 @@ static bool show_progress(void *user, const char *step, double done)
 
 static void hear(void *user, const char *line)
 {
-    view_say(user, false, line);
+    view *v = user; /* what a file is stands in the status line as well */
+    if (!v->opening || strncmp(line, v->opening, strlen(v->opening)) != 0)
+        view_say(v, false, line);
 }
 
 static cw_status check(const render_args *args, cw_error *err)

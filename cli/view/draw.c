@@ -81,11 +81,15 @@ static void need_box(view *v)
         v->state.cross[a] = 0.5 * (v->box[0][a] + v->box[1][a]);
 }
 
+static bool is_slow(cw_mode mode)
+{
+    return mode == CW_MODE_VBUFFER || mode == CW_MODE_REFERENCE || mode == CW_MODE_PROJECTION;
+}
+
 /* Slow modes are stood in for while things move. */
 static void make_rough(cw_scene *s)
 {
-    if (s->mode == CW_MODE_VBUFFER || s->mode == CW_MODE_REFERENCE ||
-        s->mode == CW_MODE_PROJECTION)
+    if (is_slow(s->mode))
         s->mode = CW_MODE_COMPOSITE;
     if (s->mode == CW_MODE_SPLAT)
         s->mode = CW_MODE_SPLAT_TREE;
@@ -161,9 +165,15 @@ static cw_status draw_scene(view *v, const cw_scene *scene, cw_picture *picture,
     return st == CW_OK ? cw_render(v->renderer, scene, picture, err) : st;
 }
 
-static void size_for(const view_part *part, view_level level, cw_scene *scene)
+/* Of slow modes a small picture comes before that in full size. */
+static void size_for(const view *v, const view_part *part, view_level level, cw_scene *scene)
 {
-    const double scale = level == VIEW_ROUGH ? part->scale : 1;
+    const bool slow = part == &v->parts[VIEW_SPACE] &&
+                      (is_slow(v->mode) ||
+                       (v->state.args.compare && strstr(v->state.args.compare, "reference")));
+    const double scale = level == VIEW_ROUGH          ? part->scale
+                         : level == VIEW_FAIR && slow ? 0.25
+                                                      : 1;
     scene->width = (size_t)fmax(1, round(part->rect.width * scale));
     scene->height = (size_t)fmax(1, round(part->rect.height * scale));
 }
@@ -192,7 +202,7 @@ static cw_status draw_split(view *v, view_level level, const cw_progress *progre
                               &v->statistics, &side->transfer, err);
         if (v->state.is_edited && !side->args.scene.transfer)
             side->transfer = v->state.curve;
-        size_for(&v->parts[VIEW_SPACE], level, scene);
+        size_for(v, &v->parts[VIEW_SPACE], level, scene);
         if (st == CW_OK)
             st = space_scene(v, &side->args, side->mode, &side->transfer, scene, err);
         suit(level, scene);
@@ -205,7 +215,7 @@ static cw_status draw_split(view *v, view_level level, const cw_progress *progre
     else if (st == CW_OK)
         st = cw_picture_split(&sides[0], &sides[1], v->state.share, out, err);
     v->is_measured = false;
-    if (st == CW_OK && level == VIEW_FINAL) {
+    if (st == CW_OK && level > VIEW_ROUGH) {
         st = cw_picture_compare(&sides[0], &sides[1], (const float(*)[3])scene->background,
                                 &v->measured, err);
         v->is_measured = st == CW_OK;
@@ -230,7 +240,7 @@ static cw_status draw_space(view *v, view_level level, const cw_progress *progre
         return st;
     if (v->state.args.compare && view_draws_volume(v))
         return draw_split(v, level, progress, scene, picture, err);
-    size_for(&v->parts[VIEW_SPACE], level, scene);
+    size_for(v, &v->parts[VIEW_SPACE], level, scene);
     st = space_scene(v, &v->state.args, v->mode, &v->transfer, scene, err);
     suit(level, scene);
     scene->progress = *progress;
@@ -243,7 +253,7 @@ static cw_status draw_slice(view *v, int part, const cw_progress *progress, cw_s
                             cw_picture *picture, cw_error *err)
 {
     make_greys(v);
-    size_for(&v->parts[part], VIEW_FAIR, scene);
+    size_for(v, &v->parts[part], VIEW_FINAL, scene);
     cw_status st = slice_scene(v, part, scene, err);
     scene->progress = *progress;
     if (st == CW_OK)

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PANEL_WIDTH = 320, LABEL_WIDTH = 120, MOST_NAMES = 32 };
+enum { PANEL_WIDTH = 320, LABEL_WIDTH = 120, MOST_NAMES = 32, MOST_OPTIONS = 32 };
 
 /* The menu of a row, "View/Front": whether it is of that menu, and the item's name. */
 static const char *item_of(const view_key *k, const char *menu)
@@ -141,20 +141,30 @@ static void show_option(view *v, const char *name)
     v->ui->tip(v->window, o->about);
 }
 
-/* All options under a heading of the command's table that do something now. */
-static void show_options(view *v, const char *heading)
+/* The options under a heading of the command's table that do something now: how many. */
+static size_t find_options(const view *v, const char *heading, const char *names[MOST_OPTIONS])
 {
     bool is_here = false;
-    if (!v->ui->section(v->window, heading, false))
-        return;
+    size_t count = 0;
     for (size_t n = 0; n < v->command->option_count; n++) {
         const cli_option *o = &v->command->options[n];
         if (o->kind == CLI_HEADING)
             is_here = strncmp(o->name, heading, strlen(heading)) == 0;
-        else if (is_here && strcmp(o->name, "tf") != 0 &&
+        else if (is_here && count < MOST_OPTIONS &&
                  cli_setting_fits(o->name, v->mode, view_has_mesh(v)))
-            show_option(v, o->name);
+            names[count++] = o->name;
     }
+    return count;
+}
+
+static void show_options(view *v, const char *heading)
+{
+    const char *names[MOST_OPTIONS];
+    const size_t count = find_options(v, heading, names);
+    if (count == 0 || !v->ui->section(v->window, heading, false))
+        return;
+    for (size_t n = 0; n < count; n++)
+        show_option(v, names[n]);
 }
 
 static void show_mode(view *v)

@@ -7,10 +7,12 @@
 #include "core/status.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
-enum { BINS = 1024, THIN_FROM = 96 }; /* voxels along an axis, from which dragging thins */
+enum { BINS = 1024 };
 
 void view_touch(view *v, unsigned parts)
 {
@@ -120,20 +122,38 @@ static cw_status read_beside(view *v, cw_error *err)
     return st;
 }
 
-/* Steps of a file are a series without being asked for. */
-static cw_status open_source(view *v, cw_error *err)
+static bool is_folder(const char *path)
 {
-    const char *inputs[] = {v->path};
+    struct stat info;
+    return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
+}
+
+/* Steps of a file are a series without being asked for. */
+static cw_status open_as(view *v, const char *path, cw_error *err)
+{
+    const char *inputs[] = {path};
     const cli_common common = {.inputs = inputs, .input_count = 1};
     const cli_input *input = &v->state.args.input;
     cli_steps steps = v->state.args.steps;
     cw_volume shape;
     if (!steps.given && input->step == 0 &&
-        cli_read_shape(v->path, input, &shape, NULL) == CW_OK) {
+        cli_read_shape(path, input, &shape, NULL) == CW_OK) {
         steps.given = steps.all = shape.steps > 1;
         cw_volume_free(&shape);
     }
     return cli_open_source(&v->source, &common, input, &steps, true, err);
+}
+
+/* The files in a folder that is no volume itself are steps of one, if they agree. */
+static cw_status open_source(view *v, cw_error *err)
+{
+    char pattern[4096];
+    cw_status st = open_as(v, v->path, err);
+    if (st == CW_OK || !is_folder(v->path))
+        return st;
+    snprintf(pattern, sizeof pattern, "%.4000s/*", v->path);
+    cli_close_source(&v->source);
+    return open_as(v, pattern, NULL) == CW_OK ? CW_OK : st;
 }
 
 static void fresh_look(view *v)
@@ -153,9 +173,11 @@ static cw_status open_path(view *v, const char *path, cw_error *err)
     v->path = strdup(path);
     if (!v->path)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a name");
+    v->opening = v->path;
     cw_status st = open_source(v, err);
     if (st == CW_OK)
         st = read_step(v, v->state.step, err);
+    v->opening = NULL;
     if (st == CW_OK)
         st = read_beside(v, err);
     return st == CW_OK ? view_choose_mode(v, err) : st;

@@ -71,7 +71,8 @@ typedef struct view {
     bool is_hidden, quits;
     size_t gesture; /* counts presses of buttons and keys */
 
-    char *path; /* NULL: nothing is open */
+    char *path;          /* NULL: nothing is open */
+    const char *opening; /* is being read; else NULL */
     cli_source source;
     cw_statistics statistics; /* of the volume at this step */
     cw_extractor *extractor, *coarse;
