@@ -90,6 +90,7 @@ static void put_volume(const cwi_gl *gl, frame_block *b)
     const cwi_table *t = &gl->transfer.table;
     b->texels[0] = (float)(gl->volume.scale / (t->high - t->low));
     b->texels[1] = (float)((gl->volume.bias - t->low) / (t->high - t->low));
+    b->texels[2] = (float)(gl->volume.scale / gl->volume.range);
     b->limits[1] = (float)gl->transfer.factor_end;
 }
 

@@ -11,7 +11,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHUNK_BYTES = 1 << 25, MOST_BRICKS = 4096, GRADIENT_BYTES = 8 };
+enum {
+    CHUNK_BYTES = 1 << 22,
+    MOST_BRICKS = 4096,
+    GRADIENT_BYTES = 8,
+    MOST_GRADIENTS = 1 << 24 /* voxels that have their gradients in a texture */
+};
 
 /* How texels are made of voxels. */
 typedef struct texel_kind {
@@ -21,8 +26,7 @@ typedef struct texel_kind {
     double scale, bias; /* voxel = texel (as shaders see it) x scale + bias */
 } texel_kind;
 
-/* Eight and sixteen bits go to sixteen, normalised, and stay exact: in textures of eight bits
- * some machines interpolate in eight bits. Others become floats. */
+/* Eight and sixteen bits are normalised, and stay exact. Others become floats. */
 static texel_kind kind_of(const cw_volume *v)
 {
     const texel_kind single = {GL_R32F, GL_FLOAT, 4, v->type == CW_F32 && !v->has_nodata, 1, 0};
@@ -30,9 +34,9 @@ static texel_kind kind_of(const cw_volume *v)
         return single;
     switch (v->type) {
     case CW_U8:
-        return (texel_kind){GL_R16, GL_UNSIGNED_BYTE, 1, true, 255, 0};
+        return (texel_kind){GL_R8, GL_UNSIGNED_BYTE, 1, true, 255, 0};
     case CW_I8:
-        return (texel_kind){GL_R16, GL_UNSIGNED_BYTE, 1, false, 255, -128};
+        return (texel_kind){GL_R8, GL_UNSIGNED_BYTE, 1, false, 255, -128};
     case CW_U16:
         return (texel_kind){GL_R16, GL_UNSIGNED_SHORT, 2, true, 65535, 0};
     case CW_I16:
@@ -107,6 +111,16 @@ static size_t layers_at_once(size_t layer_bytes, size_t layers)
 {
     const size_t fit = CHUNK_BYTES / layer_bytes;
     return fit < 1 ? 1 : fit < layers ? fit : layers;
+}
+
+/* Mesa's software renderer interpolates eight bits in eight bits, unless a texture is mirrored
+ * at its ends: up to half a texel beyond them that is as clamped as it is otherwise. */
+static GLuint values_texture(const texel_kind *kind)
+{
+    const GLuint name = cwi_gl_texture(GL_TEXTURE_3D, CWI_UNIT_VOLUME, true);
+    if (kind->inner == GL_R8)
+        glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_WRAP_R, GL_MIRRORED_REPEAT);
+    return name;
 }
 
 static cw_status upload(const cw_volume *v, const texel_kind *kind, const cwi_gl_brick *b,
@@ -240,7 +254,7 @@ cw_status cwi_gl_take_volume(cwi_gl *gl, cw_error *err)
     if (st == CW_OK)
         st = plan_bricks(g, edge, err);
     for (size_t n = 0; n < g->brick_count && st == CW_OK; n++) {
-        g->bricks[n].values = cwi_gl_texture(GL_TEXTURE_3D, CWI_UNIT_VOLUME, true);
+        g->bricks[n].values = values_texture(&kind);
         st = upload(v, &kind, &g->bricks[n], err);
     }
     if (st != CW_OK)
@@ -341,36 +355,54 @@ static bool put_gradients(const cw_volume *v, const cwi_gl_brick *b, double scal
     return !failed;
 }
 
-cw_status cwi_gl_need_gradients(cwi_gl *gl, cw_error *err)
+static cw_status upload_gradients(cwi_gl *gl, cwi_gl_brick *b, cw_error *err)
+{
+    const cw_volume *v = &gl->volume.key;
+    const double scale = v->slope / gl->volume.range; /* about 1: halves have few exponents */
+    const GLsizei w = (GLsizei)b->count[0], h = (GLsizei)b->count[1];
+    const size_t layer = b->count[0] * b->count[1] * GRADIENT_BYTES;
+    const size_t step = layers_at_once(layer, b->count[2]);
+    cw_status st = CW_OK;
+    void *chunk = cwi_alloc_array(step, layer);
+    if (!chunk)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for gradients");
+    b->gradients = cwi_gl_texture(GL_TEXTURE_3D, CWI_UNIT_GRADIENT, true);
+    glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA16F, w, h, (GLsizei)b->count[2], 0, GL_RGBA,
+                 GL_HALF_FLOAT, NULL);
+    for (size_t k = 0; k < b->count[2] && st == CW_OK; k += step) {
+        const size_t n = b->count[2] - k < step ? b->count[2] - k : step;
+        if (!put_gradients(v, b, scale, k, n, chunk))
+            st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for gradients");
+        else
+            glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, (GLint)k, w, h, (GLsizei)n, GL_RGBA,
+                            GL_HALF_FLOAT, chunk);
+    }
+    cwi_free(chunk);
+    if (st != CW_OK) { /* half of them are none */
+        glDeleteTextures(1, &b->gradients);
+        b->gradients = 0;
+    }
+    return st;
+}
+
+/* Differences need neighbours that are there: the next brick's are not. */
+static bool has_differences(const cwi_gl_volume *g)
+{
+    const size_t *dim = g->key.dim;
+    return g->brick_count == 1 && !g->ranges.has_gaps &&
+           dim[0] * dim[1] * dim[2] > MOST_GRADIENTS;
+}
+
+cw_status cwi_gl_need_gradients(cwi_gl *gl, const char **defines, cw_error *err)
 {
     cwi_gl_volume *g = &gl->volume;
-    const double scale =
-        g->key.slope / g->range; /* about 1: half precision has few exponents */
-    for (size_t n = 0; n < g->brick_count; n++) {
-        cwi_gl_brick *b = &g->bricks[n];
-        if (b->gradients)
-            continue;
-        const GLsizei w = (GLsizei)b->count[0], h = (GLsizei)b->count[1];
-        const size_t layer = b->count[0] * b->count[1] * GRADIENT_BYTES;
-        const size_t step = layers_at_once(layer, b->count[2]);
-        void *chunk = cwi_alloc_array(step, layer);
-        if (!chunk)
-            return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for gradients");
-        b->gradients = cwi_gl_texture(GL_TEXTURE_3D, CWI_UNIT_GRADIENT, true);
-        glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA16F, w, h, (GLsizei)b->count[2], 0, GL_RGBA,
-                     GL_HALF_FLOAT, NULL);
-        for (size_t k = 0; k < b->count[2]; k += step) {
-            const size_t layers = b->count[2] - k < step ? b->count[2] - k : step;
-            if (!put_gradients(&g->key, b, scale, k, layers, chunk)) {
-                cwi_free(chunk);
-                return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for gradients");
-            }
-            glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, (GLint)k, w, h, (GLsizei)layers, GL_RGBA,
-                            GL_HALF_FLOAT, chunk);
-        }
-        cwi_free(chunk);
-    }
-    return CW_OK;
+    cw_status st = CW_OK;
+    const bool differs = has_differences(g);
+    *defines = differs ? "#define DIFFERENCES\n" : "";
+    for (size_t n = 0; n < g->brick_count && !differs && st == CW_OK; n++)
+        if (!g->bricks[n].gradients)
+            st = upload_gradients(gl, &g->bricks[n], err);
+    return st;
 }
 
 void cwi_gl_bind_brick(GLuint program, const cwi_gl_brick *brick)

@@ -25,7 +25,7 @@ enum {
 /* A part of the volume that fits a texture: neighbours have a layer of samples in common. */
 typedef struct cwi_gl_brick {
     size_t first[3], count[3];
-    GLuint values, gradients; /* gradients: 0 until cwi_gl_need_gradients() */
+    GLuint values, gradients; /* gradients: 0 until they are needed */
 } cwi_gl_brick;
 
 /* A volume on the GPU. The number in a texel times scale plus bias is the scaled value. */
@@ -126,7 +126,10 @@ void cwi_gl_draw_screen(cwi_gl *gl);
 
 /* Uploads the frame's volume, unless it is there. */
 cw_status cwi_gl_take_volume(cwi_gl *gl, cw_error *err);
-cw_status cwi_gl_need_gradients(cwi_gl *gl, cw_error *err);
+/* What shaders have to be defined with to find gradients. Those of a small volume become a
+ * texture; of a large one, which then would be five times as large, they are differences of
+ * interpolated values. */
+cw_status cwi_gl_need_gradients(cwi_gl *gl, const char **defines, cw_error *err);
 /* The derivatives of voxels, unscaled, along each axis: what gradients are made of. */
 void cwi_gl_derivatives(const cw_volume *volume, const size_t at[3], double derivatives[3]);
 void cwi_gl_drop_volume(cwi_gl *gl);

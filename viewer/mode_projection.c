@@ -401,7 +401,7 @@ static void close_stream(job *j)
     cwi_visible_free(&j->visible);
 }
 
-static cw_status open_job(cwi_gl *gl, job *j, cw_error *err)
+static cw_status open_job(cwi_gl *gl, job *j, const char **gradients, cw_error *err)
 {
     const cw_scene *s = &gl->frame->scene;
     const bool needs_gradients = s->lit || gl->frame->transfer.gradient_count > 0;
@@ -415,15 +415,16 @@ static cw_status open_job(cwi_gl *gl, job *j, cw_error *err)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the polygons of cells");
     cw_status st = cwi_visible_make(&gl->transfer.table, &j->visible, err);
     if (st == CW_OK && needs_gradients)
-        st = cwi_gl_need_gradients(gl, err);
+        st = cwi_gl_need_gradients(gl, gradients, err);
     if (st == CW_OK && !s->no_preintegration && !s->linear_opacity)
         st = cwi_gl_need_segments(gl, s->step_vox, err);
     return st;
 }
 
-static void describe(const cw_scene *s, const cw_transfer *t, char *defines, size_t size)
+static void describe(const cw_scene *s, const cw_transfer *t, const char *gradients,
+                     char *defines, size_t size)
 {
-    snprintf(defines, size, "#define RAYS\n%s%s%s%s",
+    snprintf(defines, size, "#define RAYS\n%s%s%s%s%s", gradients,
              s->no_preintegration ? "" : "#define SEGMENTS\n",
              s->linear_opacity ? "#define LINEAR\n" : "", s->lit ? "#define LIT\n" : "",
              t->gradient_count ? "#define FACTOR\n" : "");
@@ -447,13 +448,14 @@ static cw_status draw_bricks(job *j, GLuint program, cw_error *err)
 static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
 {
     char defines[256];
+    const char *gradients = "";
     GLuint program;
     (void)state;
     job *j = cwi_alloc_zeroed(1, sizeof *j);
     if (!j)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the projection of cells");
-    describe(&gl->frame->scene, &gl->frame->transfer, defines, sizeof defines);
-    cw_status st = open_job(gl, j, err);
+    cw_status st = open_job(gl, j, &gradients, err);
+    describe(&gl->frame->scene, &gl->frame->transfer, gradients, defines, sizeof defines);
     if (st == CW_OK)
         st = cwi_gl_use(gl, cwi_glsl_projection, cwi_glsl_projection, defines, &program, err);
     open_stream(j);

@@ -273,7 +273,8 @@ static void bind(const void *state, size_t brick)
 
 static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
 {
-    char defines[64];
+    char defines[80];
+    const char *gradients = "";
     const cw_scene *s = &gl->frame->scene;
     cw_status st = CW_OK;
     if (!*state)
@@ -282,14 +283,14 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     if (!t)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for slices");
     if (gl->frame->transfer.gradient_count > 0)
-        st = cwi_gl_need_gradients(gl, err);
+        st = cwi_gl_need_gradients(gl, &gradients, err);
     if (st == CW_OK)
         st = need_normals(gl, t, err);
     if (st == CW_OK)
         st = need_shades(gl, t, err);
     if (st != CW_OK)
         return st;
-    snprintf(defines, sizeof defines, "#define SHADES\n%s%s",
+    snprintf(defines, sizeof defines, "%s#define SHADES\n%s%s", gradients,
              s->colors_first ? "#define COLORS\n" : "",
              s->mark_boundary ? "#define BOUNDARY\n" : "");
     return cwi_gl_draw_slices(gl, &t->slices, defines, bind, t, err);

@@ -7,6 +7,7 @@
 #include "core/volume.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 typedef struct texture_state {
@@ -117,6 +118,8 @@ static void bind_classes(const void *state, size_t brick)
 static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
 {
     const cw_scene *s = &gl->frame->scene;
+    char defines[64];
+    const char *gradients = "";
     cw_status st = CW_OK;
     if (!*state)
         *state = cwi_alloc_zeroed(1, sizeof(texture_state));
@@ -124,13 +127,15 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     if (!t)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for slices");
     if (s->lit || gl->frame->transfer.gradient_count > 0)
-        st = cwi_gl_need_gradients(gl, err);
+        st = cwi_gl_need_gradients(gl, &gradients, err);
     if (st == CW_OK && s->colors_first)
         st = need_classes(gl, t, err);
     if (st != CW_OK)
         return st;
-    return cwi_gl_draw_slices(gl, &t->slices, s->colors_first ? "#define COLORS\n" : "",
-                              s->colors_first ? bind_classes : NULL, t, err);
+    snprintf(defines, sizeof defines, "%s%s", gradients,
+             s->colors_first ? "#define COLORS\n" : "");
+    return cwi_gl_draw_slices(gl, &t->slices, defines, s->colors_first ? bind_classes : NULL, t,
+                              err);
 }
 
 const cwi_gl_mode cwi_gl_texture_mode = {CW_MODE_TEXTURE, true, draw, drop};

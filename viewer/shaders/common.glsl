@@ -61,10 +61,26 @@ vec4 classify(float coordinate)
     return isnan(coordinate) ? vec4(0.0) : row;
 }
 
-// The gradient in eye space, per unit.
+// The gradient at a place in the brick's texture, in eye space, per unit. Differences of interpolated
+// values are what differences of voxels are when they are interpolated.
+vec3 gradient_in(vec3 place)
+{
+#ifdef DIFFERENCES
+    vec3 voxel = 1.0 / brick_size, first = 0.5 * voxel, last = 1.0 - first;
+    vec3 low = max(place - voxel, first), high = min(place + voxel, last);
+    vec3 rise = vec3(textureLod(volume, vec3(high.x, place.yz), 0.0).r - textureLod(volume, vec3(low.x, place.yz), 0.0).r,
+                     textureLod(volume, vec3(place.x, high.y, place.z), 0.0).r - textureLod(volume, vec3(place.x, low.y, place.z), 0.0).r,
+                     textureLod(volume, vec3(place.xy, high.z), 0.0).r - textureLod(volume, vec3(place.xy, low.z), 0.0).r);
+    vec3 apart = max((high - low) * brick_size, 0.5);
+    return mat3(gradient_to_eye) * (rise * texels.z / apart);
+#else
+    return mat3(gradient_to_eye) * textureLod(gradients, place, 0.0).xyz;
+#endif
+}
+
 vec3 gradient_at(vec3 index)
 {
-    return mat3(gradient_to_eye) * textureLod(gradients, brick_place(index), 0.0).xyz;
+    return gradient_in(brick_place(index));
 }
 
 // What the transfer function makes of the extinction by the gradient.
@@ -169,7 +185,7 @@ float texel_on(ray r, float t)
 
 vec3 gradient_on(ray r, float t)
 {
-    return mat3(gradient_to_eye) * textureLod(gradients, r.place + t * r.way, 0.0).xyz;
+    return gradient_in(r.place + t * r.way);
 }
 
 // How far a ray goes from a point in a box of index space to where it leaves that.
