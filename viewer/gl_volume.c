@@ -73,9 +73,24 @@ static void fit_wide(const cw_volume *v, const double range[2], texel_kind *kind
     kind->scale = fabs((range[1] - range[0]) / 2 / v->slope);
 }
 
+/* A row of the type that most scans have. */
+static void put_shorts(const char *from, ptrdiff_t stride, size_t count, uint16_t *to)
+{
+    if (stride == (ptrdiff_t)sizeof(int16_t))
+        for (size_t i = 0; i < count; i++)
+            to[i] = (uint16_t)(((const int16_t *)from)[i] + 32768);
+    else
+        for (size_t i = 0; i < count; i++)
+            to[i] = (uint16_t)(*(const int16_t *)(from + (ptrdiff_t)i * stride) + 32768);
+}
+
 static void put_row(const cw_volume *v, const texel_kind *kind, const char *from, size_t count,
                     void *to)
 {
+    if (v->type == CW_I16 && kind->type == GL_UNSIGNED_SHORT) {
+        put_shorts(from, v->stride[0], count, to);
+        return;
+    }
     for (size_t i = 0; i < count; i++, from += v->stride[0]) {
         const double x = cwi_voxel_at(v->type, from);
         if (kind->type == GL_UNSIGNED_BYTE)
@@ -262,18 +277,22 @@ cw_status cwi_gl_take_volume(cwi_gl *gl, cw_error *err)
     return st;
 }
 
-/* Half precision, rounded to the nearest, at most the largest. */
+/* Half precision, rounded to the nearest, at most the largest; 0 of what is no number. Without
+ * branches, so that rows of them are made at once. */
 static uint16_t to_half(float x)
 {
-    uint32_t bits;
+    float small;
+    uint32_t bits, tiny;
     memcpy(&bits, &x, sizeof bits);
-    const uint32_t sign = bits >> 16 & 0x8000u;
-    bits &= 0x7fffffffu;
-    if (bits < 0x38800000u) /* below 2^-14: in steps of 2^-24 */
-        return (uint16_t)(sign | (uint32_t)lrintf(fabsf(x) * 0x1p24f));
-    if (bits >= 0x477ff000u)
-        return (uint16_t)(sign | 0x7bffu);
-    return (uint16_t)(sign | (bits - 0x38000000u + 0xfffu + (bits >> 13 & 1)) >> 13);
+    const uint32_t sign = bits >> 16 & 0x8000u, size = bits & 0x7fffffffu;
+    small = fabsf(x) + 0.5f; /* whose last bit is 2^-24, as that of halves below 2^-14 */
+    memcpy(&tiny, &small, sizeof tiny);
+    const uint32_t normal = (size - 0x38000000u + 0xfffu + (size >> 13 & 1)) >> 13;
+    const uint32_t half = size < 0x38800000u   ? tiny - 0x3f000000u
+                          : size < 0x477ff000u ? normal
+                          : size < 0x7f800000u ? 0x7bffu
+                                               : 0;
+    return (uint16_t)(sign | half);
 }
 
 /* The row n before or after one, or that one at the border; and how far apart such two are. */
@@ -288,34 +307,43 @@ static float reach(const cw_volume *v, int axis, size_t at)
     return at > 0 && at + 1 < v->dim[axis] ? 0.5f : 1;
 }
 
-static uint16_t slope_of(float low, float high, float scale)
+/* From the row below to the one above; may be no number, which to_half() makes 0. */
+static void subtract(const float *low, const float *high, size_t n, float scale, float *out)
 {
-    const float d = (high - low) * scale;
-    return isfinite(d) ? to_half(d) : 0;
+    for (size_t i = 0; i < n; i++)
+        out[i] = (high[i] - low[i]) * scale;
+}
+
+static void along_row(const float *row, size_t n, float scale, float *out)
+{
+    out[0] = out[n - 1] = 0;
+    if (n < 2)
+        return;
+    subtract(row, row + 2, n - 2, scale / 2, out + 1);
+    subtract(row, row + 1, 1, scale, out);
+    subtract(row + n - 2, row + n - 1, 1, scale, out + n - 1);
 }
 
 /* Derivatives along a row: central inside, one-sided at the border; 0 where a neighbour has no
- * value. rows: room for five rows and one sample at either end. */
+ * value. rows: room for five rows */
 static void put_gradient_row(const cw_volume *v, const cwi_gl_brick *b, size_t j, size_t k,
                              float scale, float *rows, uint16_t (*out)[4])
 {
-    const size_t n = v->dim[0], x0 = b->first[0];
+    const size_t n = v->dim[0];
     const char *row = cwi_voxel_address(v, 0, j, k);
-    float *r[5];
-    for (int i = 0; i < 5; i++)
-        r[i] = rows + (size_t)i * n;
-    cwi_row_load(v, row, n, r[0]);
-    for (int i = 0; i < 4; i++) {
-        const int axis = 1 + i / 2;
-        cwi_row_load(v, row_at(v, row, axis, axis == 1 ? j : k, i % 2 ? 1 : -1), n, r[1 + i]);
-    }
-    const float ys = scale * reach(v, 1, j), zs = scale * reach(v, 2, k);
-    for (size_t i = 0; i < b->count[0]; i++) {
-        const size_t x = x0 + i;
-        out[i][0] = slope_of(r[0][x > 0 ? x - 1 : x], r[0][x + 1 < n ? x + 1 : x],
-                             scale * reach(v, 0, x));
-        out[i][1] = slope_of(r[1][x], r[2][x], ys);
-        out[i][2] = slope_of(r[3][x], r[4][x], zs);
+    float *x = rows, *y = rows + n, *z = rows + 2 * n, *low = rows + 3 * n, *high = low + n;
+    cwi_row_load(v, row, n, low);
+    along_row(low, n, scale, x);
+    cwi_row_load(v, row_at(v, row, 1, j, -1), n, low);
+    cwi_row_load(v, row_at(v, row, 1, j, 1), n, high);
+    subtract(low, high, n, scale * reach(v, 1, j), y);
+    cwi_row_load(v, row_at(v, row, 2, k, -1), n, low);
+    cwi_row_load(v, row_at(v, row, 2, k, 1), n, high);
+    subtract(low, high, n, scale * reach(v, 2, k), z);
+    for (size_t i = 0, at = b->first[0]; i < b->count[0]; i++, at++) {
+        out[i][0] = to_half(x[at]);
+        out[i][1] = to_half(y[at]);
+        out[i][2] = to_half(z[at]);
         out[i][3] = 0;
     }
 }
