@@ -108,8 +108,8 @@ cw_status cwi_gl_need_segments(cwi_gl *gl, double length, cw_error *err)
     if (!all)
         return cw_fail(err, CW_ERR_NO_MEMORY,
                        "no memory for a pre-integrated transfer function");
-    cw_status st =
-        cwi_table_preintegrate(&t->table, length, rows, gl->frame->scene.threads, all, err);
+    cw_status st = cwi_table_preintegrate(&t->table, length, rows, gl->frame->scene.threads,
+                                          &gl->watch.progress, all, err);
     if (st == CW_OK) {
         glDeleteTextures(1, &t->segments);
         t->segments = cwi_gl_texture(GL_TEXTURE_2D, CWI_UNIT_SEGMENTS, true);

@@ -138,30 +138,32 @@ static GLuint values_texture(const texel_kind *kind)
     return name;
 }
 
-static cw_status upload(const cw_volume *v, const texel_kind *kind, const cwi_gl_brick *b,
+/* By chunks, which are voxels as they are where they can be. */
+static cw_status upload(cwi_gl *gl, const texel_kind *kind, const cwi_gl_brick *b,
                         cw_error *err)
 {
+    const cw_volume *v = &gl->volume.key;
     const GLsizei w = (GLsizei)b->count[0], h = (GLsizei)b->count[1], d = (GLsizei)b->count[2];
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    if (kind->as_is && is_packed(v) && b->count[0] == v->dim[0] && b->count[1] == v->dim[1]) {
-        glTexImage3D(GL_TEXTURE_3D, 0, (GLint)kind->inner, w, h, d, 0, GL_RED, kind->type,
-                     cwi_voxel_address(v, 0, 0, b->first[2]));
-        return CW_OK;
-    }
+    const bool as_is =
+        kind->as_is && is_packed(v) && b->count[0] == v->dim[0] && b->count[1] == v->dim[1];
     const size_t layer = b->count[0] * b->count[1] * kind->size;
     const size_t step = layers_at_once(layer, b->count[2]);
-    char *chunk = cwi_alloc_array(step, layer);
-    if (!chunk)
+    char *chunk = as_is ? NULL : cwi_alloc_array(step, layer);
+    cw_status st = CW_OK;
+    if (!chunk && !as_is)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the upload of a volume");
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glTexImage3D(GL_TEXTURE_3D, 0, (GLint)kind->inner, w, h, d, 0, GL_RED, kind->type, NULL);
-    for (size_t k = 0; k < b->count[2]; k += step) {
+    for (size_t k = 0; k < b->count[2] && st == CW_OK; k += step) {
         const size_t n = b->count[2] - k < step ? b->count[2] - k : step;
-        put_layers(v, kind, b, k, n, chunk);
+        if (!as_is)
+            put_layers(v, kind, b, k, n, chunk);
         glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, (GLint)k, w, h, (GLsizei)n, GL_RED, kind->type,
-                        chunk);
+                        as_is ? cwi_voxel_address(v, 0, 0, b->first[2] + k) : chunk);
+        st = cwi_gl_report_soon(gl, "uploading", (double)(k + n) / (double)b->count[2], err);
     }
     cwi_free(chunk);
-    return CW_OK;
+    return st;
 }
 
 /* Whether this OpenGL makes such a texture: only the proxy says so. */
@@ -257,7 +259,8 @@ cw_status cwi_gl_take_volume(cwi_gl *gl, cw_error *err)
     g->edge = gl->frame->scene.texture_edge;
     const cw_volume *v = &g->key;
     texel_kind kind = kind_of(v);
-    cw_status st = cwi_ranges_make(v, gl->frame->scene.threads, &g->ranges, err);
+    cw_status st =
+        cwi_ranges_make(v, gl->frame->scene.threads, &gl->watch.progress, &g->ranges, err);
     if (st == CW_OK) {
         find_range(&g->ranges, range);
         fit_wide(v, range, &kind);
@@ -270,7 +273,7 @@ cw_status cwi_gl_take_volume(cwi_gl *gl, cw_error *err)
         st = plan_bricks(g, edge, err);
     for (size_t n = 0; n < g->brick_count && st == CW_OK; n++) {
         g->bricks[n].values = values_texture(&kind);
-        st = upload(v, &kind, &g->bricks[n], err);
+        st = upload(gl, &kind, &g->bricks[n], err);
     }
     if (st != CW_OK)
         cwi_gl_drop_volume(gl);
@@ -404,6 +407,9 @@ static cw_status upload_gradients(cwi_gl *gl, cwi_gl_brick *b, cw_error *err)
         else
             glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, (GLint)k, w, h, (GLsizei)n, GL_RGBA,
                             GL_HALF_FLOAT, chunk);
+        if (st == CW_OK)
+            st =
+                cwi_gl_report_soon(gl, "uploading", (double)(k + n) / (double)b->count[2], err);
     }
     cwi_free(chunk);
     if (st != CW_OK) { /* half of them are none */

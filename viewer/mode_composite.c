@@ -47,13 +47,14 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     glDisable(GL_DEPTH_TEST);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    for (size_t n = 0; n < gl->volume.brick_count; n++) {
+    for (size_t n = 0; n < gl->volume.brick_count && st == CW_OK; n++) {
         cwi_gl_bind_brick(program, &gl->volume.bricks[order[n]]);
-        cwi_gl_draw_screen(gl);
+        cwi_gl_part(gl, n, gl->volume.brick_count);
+        st = cwi_gl_draw_rays(gl, err);
     }
     glDisable(GL_BLEND);
     cwi_free(order);
-    return CW_OK;
+    return st;
 }
 
 const cwi_gl_mode cwi_gl_composite = {CW_MODE_COMPOSITE, true, draw, NULL};

@@ -42,15 +42,16 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     glDisable(GL_BLEND);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
-    for (size_t n = 0; n < count; n++) {
-        set_slice(f, program, &slices[n]);
-        for (size_t b = 0; b < gl->volume.brick_count; b++) {
-            cwi_gl_bind_brick(program, &gl->volume.bricks[b]);
-            cwi_gl_draw_screen(gl);
-        }
+    const size_t bricks = gl->volume.brick_count;
+    for (size_t n = 0; n < count * bricks && st == CW_OK; n++) {
+        if (n % bricks == 0)
+            set_slice(f, program, &slices[n / bricks]);
+        cwi_gl_bind_brick(program, &gl->volume.bricks[n % bricks]);
+        cwi_gl_part(gl, n, count * bricks);
+        st = cwi_gl_draw_rays(gl, err);
     }
     glDisable(GL_DEPTH_TEST);
-    return CW_OK;
+    return st;
 }
 
 const cwi_gl_mode cwi_gl_slices = {CW_MODE_SLICES, false, draw, NULL};

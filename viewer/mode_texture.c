@@ -70,8 +70,7 @@ static void put_layer(const cwi_gl *gl, const cwi_gl_brick *b, size_t k, float (
 }
 
 /* Half precision is relative: enough for colours that add up, whatever the opacity. */
-static cw_status upload_classes(const cwi_gl *gl, const cwi_gl_brick *b, GLuint *name,
-                                cw_error *err)
+static cw_status upload_classes(cwi_gl *gl, const cwi_gl_brick *b, GLuint *name, cw_error *err)
 {
     const GLsizei w = (GLsizei)b->count[0], h = (GLsizei)b->count[1], d = (GLsizei)b->count[2];
     float(*layer)[4] = cwi_alloc_array(b->count[0] * b->count[1], sizeof *layer);
@@ -79,15 +78,17 @@ static cw_status upload_classes(const cwi_gl *gl, const cwi_gl_brick *b, GLuint 
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for classified voxels");
     *name = cwi_gl_texture(GL_TEXTURE_3D, CWI_UNIT_CLASSES, true);
     glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA16F, w, h, d, 0, GL_RGBA, GL_FLOAT, NULL);
-    for (GLint k = 0; k < d; k++) {
+    cw_status st = CW_OK;
+    for (GLint k = 0; k < d && st == CW_OK; k++) {
         put_layer(gl, b, (size_t)k, layer);
         glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, k, w, h, 1, GL_RGBA, GL_FLOAT, layer);
+        st = cwi_gl_report_soon(gl, "uploading", (double)k / (double)d, err);
     }
     cwi_free(layer);
-    return CW_OK;
+    return st;
 }
 
-static cw_status need_classes(const cwi_gl *gl, texture_state *t, cw_error *err)
+static cw_status need_classes(cwi_gl *gl, texture_state *t, cw_error *err)
 {
     const size_t count = gl->volume.brick_count;
     cw_status st = CW_OK;
