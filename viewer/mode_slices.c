@@ -6,6 +6,8 @@
 #include "core/vector.h"
 #include "viewer/slice.h"
 
+#include <stdio.h>
+
 extern const char cwi_glsl_slices[];
 
 /* Pixels. */
@@ -30,12 +32,13 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     cw_slice slices[CW_MAX_SLICES];
     size_t count;
     GLuint program;
+    char defines[64];
+    snprintf(defines, sizeof defines, "#define RAYS\n%s%s",
+             f->scene.clip_count ? "#define CLIPS\n" : "",
+             f->scene.exact_filter ? "#define EXACT_FILTER\n" : "");
     cw_status st = cwi_slices_of(&f->scene, &f->volume, slices, &count, err);
     if (st == CW_OK)
-        st = cwi_gl_use(gl, cwi_glsl_screen, cwi_glsl_slices,
-                        f->scene.exact_filter ? "#define RAYS\n#define EXACT_FILTER\n"
-                                              : "#define RAYS\n",
-                        &program, err);
+        st = cwi_gl_use(gl, cwi_glsl_screen, cwi_glsl_slices, defines, &program, err);
     if (st != CW_OK)
         return st;
     cwi_gl_set(program, "frame_width", FRAME_WIDTH * (float)f->scene.samples);

@@ -18,8 +18,8 @@ layout(std140) uniform Frame {
 
 uniform sampler3D volume;    // one brick's values
 uniform sampler3D gradients; // and gradients per voxel
-uniform sampler2D table;     // transfer function: colour, extinction per unit
-uniform sampler2D factor;    // of the extinction, by the gradient's length
+uniform sampler1D table;     // transfer function: colour, extinction per unit
+uniform sampler1D factor;    // of the extinction, by the gradient's length
 uniform vec3 brick_first, brick_size; // samples
 const float table_rows = 4096.0, factor_rows = 1024.0;
 
@@ -57,7 +57,7 @@ float coordinate_of(float texel)
 vec4 classify(float coordinate)
 {
     float at = clamp(coordinate, 0.0, 1.0);
-    vec4 row = textureLod(table, vec2((at * (table_rows - 1.0) + 0.5) / table_rows, 0.5), 0.0);
+    vec4 row = textureLod(table, (at * (table_rows - 1.0) + 0.5) / table_rows, 0.0);
     return isnan(coordinate) ? vec4(0.0) : row;
 }
 
@@ -87,7 +87,7 @@ vec3 gradient_at(vec3 index)
 float gradient_factor(vec3 gradient)
 {
     float at = clamp(length(gradient) / limits.y, 0.0, 1.0);
-    return textureLod(factor, vec2((at * (factor_rows - 1.0) + 0.5) / factor_rows, 0.5), 0.0).r;
+    return textureLod(factor, (at * (factor_rows - 1.0) + 0.5) / factor_rows, 0.0).r;
 }
 
 // Both sides are lit; to_eye and the gradient are in eye space. Without a gradient: ambient light.
