@@ -34,25 +34,28 @@ static void scan_row(const double *values, size_t n, cw_statistics *s)
             continue;
         }
         s->finite++;
-        s->min = fmin(s->min, values[i]);
-        s->max = fmax(s->max, values[i]);
+        s->min = values[i] < s->min ? values[i] : s->min;
+        s->max = values[i] > s->max ? values[i] : s->max;
     }
 }
 
-/* Values of integer types are counted in whole steps: a slope such as 2.02 must not round one
- * into the bin below. */
-static void count_row(const double *values, size_t n, cw_statistics *s)
+/* The bin of a finite value. Values of integer types are counted in whole steps: a slope such
+ * as 2.02 must not round one into the bin below. */
+static size_t bin_of(const cw_statistics *s, double value)
 {
     const bool whole = s->quantum > 0;
     const double steps = whole ? rint((s->max - s->min) / s->quantum) + 1 : 0;
-    const double unit = whole ? s->quantum : s->bin_width;
     const double bins = (double)s->bin_count;
+    double bin = (value - s->min) / (whole ? s->quantum : s->bin_width);
+    bin = whole ? rint(bin) * bins / steps : bin;
+    return bin < bins ? (size_t)bin : s->bin_count - 1;
+}
+
+static void count_row(const double *values, size_t n, cw_statistics *s)
+{
     for (size_t i = 0; i < n; i++)
-        if (isfinite(values[i])) {
-            double bin = (values[i] - s->min) / unit;
-            bin = whole ? rint(bin) * bins / steps : bin;
-            s->bins[bin < bins ? (size_t)bin : s->bin_count - 1]++;
-        }
+        if (isfinite(values[i]))
+            s->bins[bin_of(s, values[i])]++;
 }
 
 static void set_bins(cw_statistics *s, size_t bin_count)
@@ -108,6 +111,125 @@ static cw_status each_row(const cw_volume *v, int threads, bool bins, cw_statist
     return starved ? cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a histogram") : CW_OK;
 }
 
+/* Types of so few numbers that how often each occurs can be counted. */
+static bool is_short(cw_type type)
+{
+    return is_integer(type) && cw_type_size(type) <= 2;
+}
+
+enum { SHORTS = 1 << 16, SHORT_ZERO = 1 << 15 };
+
+static void count_shorts(const cw_volume *v, size_t j, size_t k, uint64_t *counts)
+{
+    const char *p = cwi_voxel_address(v, 0, j, k);
+    switch (v->type) {
+#define CASE(name, ctype)                                                                      \
+    case name:                                                                                 \
+        for (size_t i = 0; i < v->dim[0]; i++)                                                 \
+            counts[SHORT_ZERO + *(const ctype *)(p + (ptrdiff_t)i * v->stride[0])]++;          \
+        break;
+        CASE(CW_U8, uint8_t)
+        CASE(CW_I8, int8_t)
+        CASE(CW_I16, int16_t)
+#undef CASE
+    case CW_U16: /* which has no numbers below 0 */
+        for (size_t i = 0; i < v->dim[0]; i++)
+            counts[*(const uint16_t *)(p + (ptrdiff_t)i * v->stride[0])]++;
+        break;
+    default:
+        break;
+    }
+}
+
+/* How often each number occurs, from the lowest; NULL: no memory. */
+static uint64_t *count_all_shorts(const cw_volume *v, int threads)
+{
+    uint64_t *total = cwi_alloc_zeroed(SHORTS, sizeof *total);
+    bool starved = !total;
+    threads = cwi_threads(threads);
+#pragma omp parallel num_threads(threads) reduction(|| : starved)
+    {
+        uint64_t *own = cwi_alloc_zeroed(SHORTS, sizeof *own);
+        starved = starved || !own;
+#pragma omp for schedule(static)
+        for (size_t k = 0; k < v->dim[2]; k++)
+            for (size_t j = 0; j < v->dim[1] && own; j++)
+                count_shorts(v, j, k, own);
+#pragma omp critical
+        for (size_t n = 0; n < SHORTS && own && total; n++)
+            total[n] += own[n];
+        cwi_free(own);
+    }
+    if (starved) {
+        cwi_free(total);
+        total = NULL;
+    }
+    return total;
+}
+
+static double short_at(const cw_volume *v, size_t n)
+{
+    return (double)n - (v->type == CW_U16 ? 0 : SHORT_ZERO);
+}
+
+/* What scan_row() finds of all rows. */
+static void scan_shorts(const cw_volume *v, const uint64_t *counts, cw_statistics *s)
+{
+    for (size_t n = 0; n < SHORTS; n++) {
+        const double x = short_at(v, n), value = v->slope * x + v->intercept;
+        if (!counts[n])
+            continue;
+        if (v->has_nodata && x == v->nodata) {
+            s->nodata += counts[n];
+            continue;
+        }
+        if (!isfinite(value)) {
+            s->not_finite += counts[n];
+            continue;
+        }
+        s->finite += counts[n];
+        s->min = fmin(s->min, value);
+        s->max = fmax(s->max, value);
+    }
+}
+
+static void bin_shorts(const cw_volume *v, const uint64_t *counts, cw_statistics *s)
+{
+    for (size_t n = 0; n < SHORTS; n++) {
+        const double x = short_at(v, n), value = v->slope * x + v->intercept;
+        if (counts[n] && isfinite(value) && !(v->has_nodata && x == v->nodata))
+            s->bins[bin_of(s, value)] += counts[n];
+    }
+}
+
+/* Range first, then bins: of short types both from the counts of all numbers. */
+static cw_status gather(const cw_volume *v, size_t bin_count, int threads, cw_statistics *s,
+                        cw_error *err)
+{
+    cw_status st = CW_OK;
+    uint64_t *counts = NULL;
+    if (is_short(v->type) && !(counts = count_all_shorts(v, threads)))
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a histogram");
+    if (counts)
+        scan_shorts(v, counts, s);
+    else
+        st = each_row(v, threads, false, s, err);
+    if (!s->finite)
+        s->min = s->max = 0;
+    if (st == CW_OK && bin_count && s->finite) {
+        set_bins(s, bin_count);
+        s->bins = cwi_alloc_zeroed(s->bin_count, sizeof *s->bins);
+        if (!s->bins)
+            st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bins", s->bin_count);
+        else if (counts)
+            bin_shorts(v, counts, s);
+        else
+            st = each_row(v, threads, true, s, err);
+    }
+    cwi_free(counts);
+    return st;
+}
+
 cw_status cw_volume_statistics(const cw_volume *volume, size_t bin_count, int threads,
                                cw_statistics *out, cw_error *err)
 {
@@ -122,15 +244,7 @@ cw_status cw_volume_statistics(const cw_volume *volume, size_t bin_count, int th
     }
     cw_statistics s = {.min = INFINITY, .max = -INFINITY};
     s.quantum = is_integer(v.type) ? fabs(v.slope) : 0;
-    st = each_row(&v, threads, false, &s, err);
-    if (!s.finite)
-        s.min = s.max = 0;
-    if (st == CW_OK && bin_count && s.finite) {
-        set_bins(&s, bin_count);
-        s.bins = cwi_alloc_zeroed(s.bin_count, sizeof *s.bins);
-        st = s.bins ? each_row(&v, threads, true, &s, err)
-                    : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bins", s.bin_count);
-    }
+    st = gather(&v, bin_count, threads, &s, err);
     if (st == CW_OK)
         *out = s;
     else

@@ -28,7 +28,8 @@ static cw_status take_ranges(cwi_cpu *cpu, const cwi_frame *f, cw_error *err)
     if (cpu->ranges.blocks && memcmp(&cpu->key, &f->volume, sizeof cpu->key) == 0)
         return CW_OK;
     cwi_cpu_forget(cpu);
-    cw_status st = cwi_ranges_make(&f->volume, f->scene.threads, &cpu->ranges, err);
+    cw_status st =
+        cwi_ranges_make(&f->volume, f->scene.threads, &f->scene.progress, &cpu->ranges, err);
     if (st == CW_OK)
         cpu->key = f->volume;
     else

@@ -90,6 +90,7 @@ static void put_volume(const cwi_gl *gl, frame_block *b)
     const cwi_table *t = &gl->transfer.table;
     b->texels[0] = (float)(gl->volume.scale / (t->high - t->low));
     b->texels[1] = (float)((gl->volume.bias - t->low) / (t->high - t->low));
+    b->texels[2] = (float)(gl->volume.scale / gl->volume.range);
     b->limits[1] = (float)gl->transfer.factor_end;
 }
 
@@ -136,8 +137,19 @@ static void read_back(const cwi_gl *gl, cw_picture *picture)
     }
 }
 
+/* A picture that was cancelled leaves what it was at. */
+static void reset_state(void)
+{
+    glDisable(GL_SCISSOR_TEST);
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_BLEND);
+    glBlendEquation(GL_FUNC_ADD);
+    glDepthMask(GL_TRUE);
+}
+
 static cw_status draw_scene(cwi_gl *gl, const cwi_gl_mode *mode, cw_error *err)
 {
+    reset_state();
     cw_status st = cwi_gl_take_target(gl, err);
     if (st == CW_OK && gl->frame->volume.data)
         st = cwi_gl_take_volume(gl, err);
@@ -146,7 +158,6 @@ static cw_status draw_scene(cwi_gl *gl, const cwi_gl_mode *mode, cw_error *err)
     if (st != CW_OK)
         return st;
     put_frame(gl);
-    glDepthMask(GL_TRUE);
     glClearColor(0, 0, 0, 0);
     glClear(GL_COLOR_BUFFER_BIT | GL_DEPTH_BUFFER_BIT);
     if (gl->frame->scene.mesh && mode->mode != CW_MODE_MESH)
@@ -168,10 +179,14 @@ cw_status cwi_gl_draw(cwi_gl *gl, const cwi_frame *frame, cw_picture *picture, c
         return cw_fail(err, CW_ERR_BACKEND,
                        "the OpenGL context was lost, or another library's is on this thread");
     gl->frame = frame;
+    cwi_gl_start_watch(gl);
     cw_status st = draw_scene(gl, mode, err);
     if (st == CW_OK)
         read_back(gl, picture);
     const cw_status after = cwi_gl_check(st == CW_OK ? err : NULL);
+    if (gl->watch.is_astray)
+        st = cw_fail(err, CW_ERR_BACKEND,
+                     "progress left another library's OpenGL context on this thread");
     gl->frame = NULL;
     cwi_gl_leave(gl);
     return st == CW_OK ? after : st;

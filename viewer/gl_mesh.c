@@ -76,21 +76,23 @@ static void put_chunk(const cwi_gl_mesh *m, size_t first, size_t count, vertex *
     }
 }
 
-static cw_status upload_vertices(const cwi_gl_mesh *m, cw_error *err)
+static cw_status upload_vertices(cwi_gl *gl, const cwi_gl_mesh *m, cw_error *err)
 {
     const size_t count = m->is_expanded ? 3 * m->key.triangle_count : m->key.vertex_count;
     vertex *chunk = cwi_alloc_array(CHUNK, sizeof *chunk);
     if (!chunk)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the upload of a mesh");
     glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(count * sizeof *chunk), NULL, GL_STATIC_DRAW);
-    for (size_t first = 0; first < count; first += CHUNK) {
+    cw_status st = CW_OK;
+    for (size_t first = 0; first < count && st == CW_OK; first += CHUNK) {
         const size_t n = count - first < CHUNK ? count - first : CHUNK;
         put_chunk(m, first, n, chunk);
         glBufferSubData(GL_ARRAY_BUFFER, (GLintptr)(first * sizeof *chunk),
                         (GLsizeiptr)(n * sizeof *chunk), chunk);
+        st = cwi_gl_report(gl, "uploading", (double)(first + n) / (double)count, err);
     }
     cwi_free(chunk);
-    return CW_OK;
+    return st;
 }
 
 static void name_attributes(void)
@@ -111,7 +113,7 @@ static void name_attributes(void)
     }
 }
 
-static cw_status upload(cwi_gl_mesh *m, cw_error *err)
+static cw_status upload(cwi_gl *gl, cwi_gl_mesh *m, cw_error *err)
 {
     drop_buffers(m);
     glGenVertexArrays(1, &m->array);
@@ -119,14 +121,13 @@ static cw_status upload(cwi_gl_mesh *m, cw_error *err)
     glGenBuffers(1, &m->vertices);
     glBindBuffer(GL_ARRAY_BUFFER, m->vertices);
     name_attributes();
-    m->count = (GLsizei)(3 * m->key.triangle_count);
     if (!m->is_expanded) {
         glGenBuffers(1, &m->indices);
         glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, m->indices);
         glBufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)(12 * m->key.triangle_count),
                      m->key.triangles, GL_STATIC_DRAW);
     }
-    cw_status st = upload_vertices(m, err);
+    cw_status st = upload_vertices(gl, m, err);
     m->has_alpha = false;
     for (size_t v = 0; m->key.colors && v < m->key.vertex_count && !m->has_alpha; v++)
         m->has_alpha = m->key.colors[4 * v + 3] < 255;
@@ -178,7 +179,7 @@ cw_status cwi_gl_take_mesh(cwi_gl *gl, void **state, cwi_gl_mesh **mesh, cw_erro
         m->key = *s->mesh;
         m->is_expanded = expanded;
         m->tint = s->tint;
-        st = upload(m, err);
+        st = upload(gl, m, err);
     }
     glActiveTexture(GL_TEXTURE0 + CWI_UNIT_RAMP);
     glBindTexture(GL_TEXTURE_2D, m->ramp);
@@ -271,11 +272,8 @@ void cwi_gl_set_mesh(const cwi_gl *gl, GLuint program)
     glUniformMatrix4fv(glGetUniformLocation(program, "eye_from_mesh"), 1, GL_FALSE, matrix);
 }
 
-void cwi_gl_draw_triangles(const cwi_gl_mesh *m)
+cw_status cwi_gl_draw_whole_mesh(cwi_gl *gl, const cwi_gl_mesh *m, cw_error *err)
 {
     glBindVertexArray(m->array);
-    if (m->is_expanded)
-        glDrawArrays(GL_TRIANGLES, 0, m->count);
-    else
-        glDrawElements(GL_TRIANGLES, m->count, GL_UNSIGNED_INT, NULL);
+    return cwi_gl_draw_triangles(gl, m->key.triangle_count, !m->is_expanded, err);
 }

@@ -22,7 +22,6 @@ typedef struct cwi_gl_mesh {
     cw_tint tint;
     bool has_alpha; /* some vertex is translucent */
     double tint_range[2];
-    GLsizei count; /* of corners */
     GLuint array, vertices, indices, ramp, query;
 
     /* Of the target's size; 0 until they are needed. Layers: a color, and the depths of this
@@ -41,8 +40,9 @@ void cwi_gl_drop_mesh(void *state);
 cw_status cwi_gl_need_layers(cwi_gl *gl, cwi_gl_mesh *mesh, cw_error *err);
 cw_status cwi_gl_need_winding(cwi_gl *gl, cwi_gl_mesh *mesh, size_t n, cw_error *err);
 
-/* Sets matrix and samplers of a program of mesh.glsl, and draws all triangles. */
+/* Sets matrix and samplers of a program of mesh.glsl, and draws all triangles.
+ * CW_ERR_CANCELLED */
 void cwi_gl_set_mesh(const cwi_gl *gl, GLuint program);
-void cwi_gl_draw_triangles(const cwi_gl_mesh *mesh);
+cw_status cwi_gl_draw_whole_mesh(cwi_gl *gl, const cwi_gl_mesh *mesh, cw_error *err);
 
 #endif

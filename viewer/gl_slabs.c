@@ -157,9 +157,22 @@ static void set_step(GLuint program, const char *name, const double from[3], con
     cwi_gl_set3(program, name, step);
 }
 
-static void draw_layer(const cwi_frame *f, GLuint program, const drawing *d,
-                       const double matrix[12], size_t layer)
+/* The rectangles of a layer, once for each of its slabs. */
+typedef struct instances {
+    GLint first;
+    GLsizei corners, count;
+} instances;
+
+static void draw_instances(void *context)
 {
+    const instances *all = context;
+    glDrawArraysInstanced(GL_TRIANGLES, all->first, all->corners, all->count);
+}
+
+static cw_status draw_layer(cwi_gl *gl, GLuint program, const drawing *d,
+                            const double matrix[12], size_t layer, cw_error *err)
+{
+    const cwi_frame *f = gl->frame;
     const cwi_slabs *s = &d->slabs;
     const size_t first = layer * s->per_layer, left = s->count - first;
     const size_t count = left < s->per_layer ? left : s->per_layer;
@@ -173,8 +186,9 @@ static void draw_layer(const cwi_frame *f, GLuint program, const drawing *d,
     set_step(program, "up_step", a.up, b.up);
     cwi_gl_set(program, "layer_depth", (float)depth);
     cwi_gl_set(program, "layer_slabs", (float)count);
-    glDrawArraysInstanced(GL_TRIANGLES, (GLint)d->first[layer],
-                          (GLsizei)(d->first[layer + 1] - d->first[layer]), (GLsizei)count);
+    instances all = {(GLint)d->first[layer], (GLsizei)(d->first[layer + 1] - d->first[layer]),
+                     (GLsizei)count};
+    return cwi_gl_draw_layer(gl, draw_instances, &all, err);
 }
 
 /* The brick's box in texture coordinates: samples stand in the middle of texels. */
@@ -205,10 +219,12 @@ static cw_status draw_brick(cwi_gl *gl, cwi_gl_slabs *slices, GLuint program, dr
                  GL_STREAM_DRAW);
     cwi_slabs_texture_matrix(gl->frame, b->first, b->count, matrix);
     set_box(gl->frame, program, b);
-    for (size_t n = d->slabs.layer_count; n-- > 0;)
-        if (d->first[n + 1] > d->first[n])
-            draw_layer(gl->frame, program, d, matrix, n);
-    return CW_OK;
+    for (size_t n = d->slabs.layer_count; n-- > 0 && st == CW_OK;)
+        if (d->first[n + 1] > d->first[n]) {
+            cwi_gl_part(gl, d->slabs.layer_count - 1 - n, d->slabs.layer_count);
+            st = draw_layer(gl, program, d, matrix, n, err);
+        }
+    return st;
 }
 
 static void make_array(cwi_gl_slabs *s)

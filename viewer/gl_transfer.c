@@ -50,18 +50,18 @@ static void make_factor(cwi_gl *gl)
     for (int n = 0; n < CWI_FACTOR_ROWS; n++)
         rows[n] = (float)cw_transfer_gradient_factor(t, end * n / (CWI_FACTOR_ROWS - 1));
     gl->transfer.factor_end = end * gl->frame->unit_mm / gl->volume.range;
-    gl->transfer.factor = cwi_gl_texture(GL_TEXTURE_2D, CWI_UNIT_FACTOR, true);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_R32F, CWI_FACTOR_ROWS, 1, 0, GL_RED, GL_FLOAT, rows);
+    gl->transfer.factor = cwi_gl_texture(GL_TEXTURE_1D, CWI_UNIT_FACTOR, true);
+    glTexImage1D(GL_TEXTURE_1D, 0, GL_R32F, CWI_FACTOR_ROWS, 0, GL_RED, GL_FLOAT, rows);
 }
 
 static void bind(const cwi_gl_transfer *t)
 {
     glActiveTexture(GL_TEXTURE0 + CWI_UNIT_TABLE);
-    glBindTexture(GL_TEXTURE_2D, t->rows);
+    glBindTexture(GL_TEXTURE_1D, t->rows);
     glActiveTexture(GL_TEXTURE0 + CWI_UNIT_SKIP);
     glBindTexture(GL_TEXTURE_3D, t->skip);
     glActiveTexture(GL_TEXTURE0 + CWI_UNIT_FACTOR);
-    glBindTexture(GL_TEXTURE_2D, t->factor);
+    glBindTexture(GL_TEXTURE_1D, t->factor);
     glActiveTexture(GL_TEXTURE0 + CWI_UNIT_SEGMENTS);
     glBindTexture(GL_TEXTURE_2D, t->segments);
 }
@@ -74,8 +74,8 @@ static cw_status make(cwi_gl *gl, cw_error *err)
     cw_status st = cwi_table_make(gl->frame, &t->table, err);
     if (st != CW_OK)
         return st;
-    t->rows = cwi_gl_texture(GL_TEXTURE_2D, CWI_UNIT_TABLE, true);
-    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, CWI_TABLE_ROWS, 1, 0, GL_RGBA, GL_FLOAT,
+    t->rows = cwi_gl_texture(GL_TEXTURE_1D, CWI_UNIT_TABLE, true);
+    glTexImage1D(GL_TEXTURE_1D, 0, GL_RGBA32F, CWI_TABLE_ROWS, 0, GL_RGBA, GL_FLOAT,
                  t->table.rows);
     t->segment_rows = cwi_table_segment_rows(&t->table, &t->key);
     make_factor(gl);
@@ -108,8 +108,8 @@ cw_status cwi_gl_need_segments(cwi_gl *gl, double length, cw_error *err)
     if (!all)
         return cw_fail(err, CW_ERR_NO_MEMORY,
                        "no memory for a pre-integrated transfer function");
-    cw_status st =
-        cwi_table_preintegrate(&t->table, length, rows, gl->frame->scene.threads, all, err);
+    cw_status st = cwi_table_preintegrate(&t->table, length, rows, gl->frame->scene.threads,
+                                          &gl->watch.progress, all, err);
     if (st == CW_OK) {
         glDeleteTextures(1, &t->segments);
         t->segments = cwi_gl_texture(GL_TEXTURE_2D, CWI_UNIT_SEGMENTS, true);

@@ -11,7 +11,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { CHUNK_BYTES = 1 << 25, MOST_BRICKS = 4096, GRADIENT_BYTES = 8 };
+enum {
+    CHUNK_BYTES = 1 << 22,
+    MOST_BRICKS = 4096,
+    GRADIENT_BYTES = 8,
+    MOST_GRADIENTS = 1 << 24 /* voxels that have their gradients in a texture */
+};
 
 /* How texels are made of voxels. */
 typedef struct texel_kind {
@@ -21,8 +26,7 @@ typedef struct texel_kind {
     double scale, bias; /* voxel = texel (as shaders see it) x scale + bias */
 } texel_kind;
 
-/* Eight and sixteen bits go to sixteen, normalised, and stay exact: in textures of eight bits
- * some machines interpolate in eight bits. Others become floats. */
+/* Eight and sixteen bits are normalised, and stay exact. Others become floats. */
 static texel_kind kind_of(const cw_volume *v)
 {
     const texel_kind single = {GL_R32F, GL_FLOAT, 4, v->type == CW_F32 && !v->has_nodata, 1, 0};
@@ -30,9 +34,9 @@ static texel_kind kind_of(const cw_volume *v)
         return single;
     switch (v->type) {
     case CW_U8:
-        return (texel_kind){GL_R16, GL_UNSIGNED_BYTE, 1, true, 255, 0};
+        return (texel_kind){GL_R8, GL_UNSIGNED_BYTE, 1, true, 255, 0};
     case CW_I8:
-        return (texel_kind){GL_R16, GL_UNSIGNED_BYTE, 1, false, 255, -128};
+        return (texel_kind){GL_R8, GL_UNSIGNED_BYTE, 1, false, 255, -128};
     case CW_U16:
         return (texel_kind){GL_R16, GL_UNSIGNED_SHORT, 2, true, 65535, 0};
     case CW_I16:
@@ -69,9 +73,24 @@ static void fit_wide(const cw_volume *v, const double range[2], texel_kind *kind
     kind->scale = fabs((range[1] - range[0]) / 2 / v->slope);
 }
 
+/* A row of the type that most scans have. */
+static void put_shorts(const char *from, ptrdiff_t stride, size_t count, uint16_t *to)
+{
+    if (stride == (ptrdiff_t)sizeof(int16_t))
+        for (size_t i = 0; i < count; i++)
+            to[i] = (uint16_t)(((const int16_t *)from)[i] + 32768);
+    else
+        for (size_t i = 0; i < count; i++)
+            to[i] = (uint16_t)(*(const int16_t *)(from + (ptrdiff_t)i * stride) + 32768);
+}
+
 static void put_row(const cw_volume *v, const texel_kind *kind, const char *from, size_t count,
                     void *to)
 {
+    if (v->type == CW_I16 && kind->type == GL_UNSIGNED_SHORT) {
+        put_shorts(from, v->stride[0], count, to);
+        return;
+    }
     for (size_t i = 0; i < count; i++, from += v->stride[0]) {
         const double x = cwi_voxel_at(v->type, from);
         if (kind->type == GL_UNSIGNED_BYTE)
@@ -109,30 +128,42 @@ static size_t layers_at_once(size_t layer_bytes, size_t layers)
     return fit < 1 ? 1 : fit < layers ? fit : layers;
 }
 
-static cw_status upload(const cw_volume *v, const texel_kind *kind, const cwi_gl_brick *b,
+/* Mesa's software renderer interpolates eight bits in eight bits, unless a texture is mirrored
+ * at its ends: up to half a texel beyond them that is as clamped as it is otherwise. */
+static GLuint values_texture(const texel_kind *kind)
+{
+    const GLuint name = cwi_gl_texture(GL_TEXTURE_3D, CWI_UNIT_VOLUME, true);
+    if (kind->inner == GL_R8)
+        glTexParameteri(GL_TEXTURE_3D, GL_TEXTURE_WRAP_R, GL_MIRRORED_REPEAT);
+    return name;
+}
+
+/* By chunks, which are voxels as they are where they can be. */
+static cw_status upload(cwi_gl *gl, const texel_kind *kind, const cwi_gl_brick *b,
                         cw_error *err)
 {
+    const cw_volume *v = &gl->volume.key;
     const GLsizei w = (GLsizei)b->count[0], h = (GLsizei)b->count[1], d = (GLsizei)b->count[2];
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    if (kind->as_is && is_packed(v) && b->count[0] == v->dim[0] && b->count[1] == v->dim[1]) {
-        glTexImage3D(GL_TEXTURE_3D, 0, (GLint)kind->inner, w, h, d, 0, GL_RED, kind->type,
-                     cwi_voxel_address(v, 0, 0, b->first[2]));
-        return CW_OK;
-    }
+    const bool as_is =
+        kind->as_is && is_packed(v) && b->count[0] == v->dim[0] && b->count[1] == v->dim[1];
     const size_t layer = b->count[0] * b->count[1] * kind->size;
     const size_t step = layers_at_once(layer, b->count[2]);
-    char *chunk = cwi_alloc_array(step, layer);
-    if (!chunk)
+    char *chunk = as_is ? NULL : cwi_alloc_array(step, layer);
+    cw_status st = CW_OK;
+    if (!chunk && !as_is)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the upload of a volume");
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glTexImage3D(GL_TEXTURE_3D, 0, (GLint)kind->inner, w, h, d, 0, GL_RED, kind->type, NULL);
-    for (size_t k = 0; k < b->count[2]; k += step) {
+    for (size_t k = 0; k < b->count[2] && st == CW_OK; k += step) {
         const size_t n = b->count[2] - k < step ? b->count[2] - k : step;
-        put_layers(v, kind, b, k, n, chunk);
+        if (!as_is)
+            put_layers(v, kind, b, k, n, chunk);
         glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, (GLint)k, w, h, (GLsizei)n, GL_RED, kind->type,
-                        chunk);
+                        as_is ? cwi_voxel_address(v, 0, 0, b->first[2] + k) : chunk);
+        st = cwi_gl_report_soon(gl, "uploading", (double)(k + n) / (double)b->count[2], err);
     }
     cwi_free(chunk);
-    return CW_OK;
+    return st;
 }
 
 /* Whether this OpenGL makes such a texture: only the proxy says so. */
@@ -228,7 +259,8 @@ cw_status cwi_gl_take_volume(cwi_gl *gl, cw_error *err)
     g->edge = gl->frame->scene.texture_edge;
     const cw_volume *v = &g->key;
     texel_kind kind = kind_of(v);
-    cw_status st = cwi_ranges_make(v, gl->frame->scene.threads, &g->ranges, err);
+    cw_status st =
+        cwi_ranges_make(v, gl->frame->scene.threads, &gl->watch.progress, &g->ranges, err);
     if (st == CW_OK) {
         find_range(&g->ranges, range);
         fit_wide(v, range, &kind);
@@ -240,26 +272,30 @@ cw_status cwi_gl_take_volume(cwi_gl *gl, cw_error *err)
     if (st == CW_OK)
         st = plan_bricks(g, edge, err);
     for (size_t n = 0; n < g->brick_count && st == CW_OK; n++) {
-        g->bricks[n].values = cwi_gl_texture(GL_TEXTURE_3D, CWI_UNIT_VOLUME, true);
-        st = upload(v, &kind, &g->bricks[n], err);
+        g->bricks[n].values = values_texture(&kind);
+        st = upload(gl, &kind, &g->bricks[n], err);
     }
     if (st != CW_OK)
         cwi_gl_drop_volume(gl);
     return st;
 }
 
-/* Half precision, rounded to the nearest, at most the largest. */
+/* Half precision, rounded to the nearest, at most the largest; 0 of what is no number. Without
+ * branches, so that rows of them are made at once. */
 static uint16_t to_half(float x)
 {
-    uint32_t bits;
+    float small;
+    uint32_t bits, tiny;
     memcpy(&bits, &x, sizeof bits);
-    const uint32_t sign = bits >> 16 & 0x8000u;
-    bits &= 0x7fffffffu;
-    if (bits < 0x38800000u) /* below 2^-14: in steps of 2^-24 */
-        return (uint16_t)(sign | (uint32_t)lrintf(fabsf(x) * 0x1p24f));
-    if (bits >= 0x477ff000u)
-        return (uint16_t)(sign | 0x7bffu);
-    return (uint16_t)(sign | (bits - 0x38000000u + 0xfffu + (bits >> 13 & 1)) >> 13);
+    const uint32_t sign = bits >> 16 & 0x8000u, size = bits & 0x7fffffffu;
+    small = fabsf(x) + 0.5f; /* whose last bit is 2^-24, as that of halves below 2^-14 */
+    memcpy(&tiny, &small, sizeof tiny);
+    const uint32_t normal = (size - 0x38000000u + 0xfffu + (size >> 13 & 1)) >> 13;
+    const uint32_t half = size < 0x38800000u   ? tiny - 0x3f000000u
+                          : size < 0x477ff000u ? normal
+                          : size < 0x7f800000u ? 0x7bffu
+                                               : 0;
+    return (uint16_t)(sign | half);
 }
 
 /* The row n before or after one, or that one at the border; and how far apart such two are. */
@@ -274,34 +310,43 @@ static float reach(const cw_volume *v, int axis, size_t at)
     return at > 0 && at + 1 < v->dim[axis] ? 0.5f : 1;
 }
 
-static uint16_t slope_of(float low, float high, float scale)
+/* From the row below to the one above; may be no number, which to_half() makes 0. */
+static void subtract(const float *low, const float *high, size_t n, float scale, float *out)
 {
-    const float d = (high - low) * scale;
-    return isfinite(d) ? to_half(d) : 0;
+    for (size_t i = 0; i < n; i++)
+        out[i] = (high[i] - low[i]) * scale;
+}
+
+static void along_row(const float *row, size_t n, float scale, float *out)
+{
+    out[0] = out[n - 1] = 0;
+    if (n < 2)
+        return;
+    subtract(row, row + 2, n - 2, scale / 2, out + 1);
+    subtract(row, row + 1, 1, scale, out);
+    subtract(row + n - 2, row + n - 1, 1, scale, out + n - 1);
 }
 
 /* Derivatives along a row: central inside, one-sided at the border; 0 where a neighbour has no
- * value. rows: room for five rows and one sample at either end. */
+ * value. rows: room for five rows */
 static void put_gradient_row(const cw_volume *v, const cwi_gl_brick *b, size_t j, size_t k,
                              float scale, float *rows, uint16_t (*out)[4])
 {
-    const size_t n = v->dim[0], x0 = b->first[0];
+    const size_t n = v->dim[0];
     const char *row = cwi_voxel_address(v, 0, j, k);
-    float *r[5];
-    for (int i = 0; i < 5; i++)
-        r[i] = rows + (size_t)i * n;
-    cwi_row_load(v, row, n, r[0]);
-    for (int i = 0; i < 4; i++) {
-        const int axis = 1 + i / 2;
-        cwi_row_load(v, row_at(v, row, axis, axis == 1 ? j : k, i % 2 ? 1 : -1), n, r[1 + i]);
-    }
-    const float ys = scale * reach(v, 1, j), zs = scale * reach(v, 2, k);
-    for (size_t i = 0; i < b->count[0]; i++) {
-        const size_t x = x0 + i;
-        out[i][0] = slope_of(r[0][x > 0 ? x - 1 : x], r[0][x + 1 < n ? x + 1 : x],
-                             scale * reach(v, 0, x));
-        out[i][1] = slope_of(r[1][x], r[2][x], ys);
-        out[i][2] = slope_of(r[3][x], r[4][x], zs);
+    float *x = rows, *y = rows + n, *z = rows + 2 * n, *low = rows + 3 * n, *high = low + n;
+    cwi_row_load(v, row, n, low);
+    along_row(low, n, scale, x);
+    cwi_row_load(v, row_at(v, row, 1, j, -1), n, low);
+    cwi_row_load(v, row_at(v, row, 1, j, 1), n, high);
+    subtract(low, high, n, scale * reach(v, 1, j), y);
+    cwi_row_load(v, row_at(v, row, 2, k, -1), n, low);
+    cwi_row_load(v, row_at(v, row, 2, k, 1), n, high);
+    subtract(low, high, n, scale * reach(v, 2, k), z);
+    for (size_t i = 0, at = b->first[0]; i < b->count[0]; i++, at++) {
+        out[i][0] = to_half(x[at]);
+        out[i][1] = to_half(y[at]);
+        out[i][2] = to_half(z[at]);
         out[i][3] = 0;
     }
 }
@@ -341,36 +386,57 @@ static bool put_gradients(const cw_volume *v, const cwi_gl_brick *b, double scal
     return !failed;
 }
 
-cw_status cwi_gl_need_gradients(cwi_gl *gl, cw_error *err)
+static cw_status upload_gradients(cwi_gl *gl, cwi_gl_brick *b, cw_error *err)
+{
+    const cw_volume *v = &gl->volume.key;
+    const double scale = v->slope / gl->volume.range; /* about 1: halves have few exponents */
+    const GLsizei w = (GLsizei)b->count[0], h = (GLsizei)b->count[1];
+    const size_t layer = b->count[0] * b->count[1] * GRADIENT_BYTES;
+    const size_t step = layers_at_once(layer, b->count[2]);
+    cw_status st = CW_OK;
+    void *chunk = cwi_alloc_array(step, layer);
+    if (!chunk)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for gradients");
+    b->gradients = cwi_gl_texture(GL_TEXTURE_3D, CWI_UNIT_GRADIENT, true);
+    glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA16F, w, h, (GLsizei)b->count[2], 0, GL_RGBA,
+                 GL_HALF_FLOAT, NULL);
+    for (size_t k = 0; k < b->count[2] && st == CW_OK; k += step) {
+        const size_t n = b->count[2] - k < step ? b->count[2] - k : step;
+        if (!put_gradients(v, b, scale, k, n, chunk))
+            st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for gradients");
+        else
+            glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, (GLint)k, w, h, (GLsizei)n, GL_RGBA,
+                            GL_HALF_FLOAT, chunk);
+        if (st == CW_OK)
+            st =
+                cwi_gl_report_soon(gl, "uploading", (double)(k + n) / (double)b->count[2], err);
+    }
+    cwi_free(chunk);
+    if (st != CW_OK) { /* half of them are none */
+        glDeleteTextures(1, &b->gradients);
+        b->gradients = 0;
+    }
+    return st;
+}
+
+/* Differences need neighbours that are there: the next brick's are not. */
+static bool has_differences(const cwi_gl_volume *g)
+{
+    const size_t *dim = g->key.dim;
+    return g->brick_count == 1 && !g->ranges.has_gaps &&
+           dim[0] * dim[1] * dim[2] > MOST_GRADIENTS;
+}
+
+cw_status cwi_gl_need_gradients(cwi_gl *gl, const char **defines, cw_error *err)
 {
     cwi_gl_volume *g = &gl->volume;
-    const double scale =
-        g->key.slope / g->range; /* about 1: half precision has few exponents */
-    for (size_t n = 0; n < g->brick_count; n++) {
-        cwi_gl_brick *b = &g->bricks[n];
-        if (b->gradients)
-            continue;
-        const GLsizei w = (GLsizei)b->count[0], h = (GLsizei)b->count[1];
-        const size_t layer = b->count[0] * b->count[1] * GRADIENT_BYTES;
-        const size_t step = layers_at_once(layer, b->count[2]);
-        void *chunk = cwi_alloc_array(step, layer);
-        if (!chunk)
-            return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for gradients");
-        b->gradients = cwi_gl_texture(GL_TEXTURE_3D, CWI_UNIT_GRADIENT, true);
-        glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA16F, w, h, (GLsizei)b->count[2], 0, GL_RGBA,
-                     GL_HALF_FLOAT, NULL);
-        for (size_t k = 0; k < b->count[2]; k += step) {
-            const size_t layers = b->count[2] - k < step ? b->count[2] - k : step;
-            if (!put_gradients(&g->key, b, scale, k, layers, chunk)) {
-                cwi_free(chunk);
-                return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for gradients");
-            }
-            glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, (GLint)k, w, h, (GLsizei)layers, GL_RGBA,
-                            GL_HALF_FLOAT, chunk);
-        }
-        cwi_free(chunk);
-    }
-    return CW_OK;
+    cw_status st = CW_OK;
+    const bool differs = has_differences(g);
+    *defines = differs ? "#define DIFFERENCES\n" : "";
+    for (size_t n = 0; n < g->brick_count && !differs && st == CW_OK; n++)
+        if (!g->bricks[n].gradients)
+            st = upload_gradients(gl, &g->bricks[n], err);
+    return st;
 }
 
 void cwi_gl_bind_brick(GLuint program, const cwi_gl_brick *brick)

@@ -23,7 +23,7 @@ enum {
 /* A part of the volume that fits a texture: neighbours have a layer of samples in common. */
 typedef struct cwi_gl_brick {
     size_t first[3], count[3];
-    GLuint values, gradients; /* gradients: 0 until cwi_gl_need_gradients() */
+    GLuint values, gradients; /* gradients: 0 until they are needed */
 } cwi_gl_brick;
 
 /* A volume on the GPU. The number in a texel times scale plus bias is the scaled value. */
@@ -59,6 +59,15 @@ typedef struct cwi_gl_target {
     GLsizei width, height;
 } cwi_gl_target;
 
+/* How the scene's progress is asked while a picture is drawn. */
+typedef struct cwi_gl_watch {
+    cw_progress progress; /* report: NULL when the scene has none */
+    bool is_astray;       /* the context could not be made current again after a report */
+    double last;          /* when the last report was, in seconds */
+    double from, to;      /* shares of the picture: of what is being drawn */
+    size_t rows, layer_rows, triangles; /* to draw before the next report */
+} cwi_gl_watch;
+
 typedef struct cwi_gl_program {
     const char *vertex, *fragment; /* addresses of the sources */
     char defines[256];
@@ -69,6 +78,7 @@ struct cwi_gl {
     cwi_gl_context context;
     char name[256];
     const cwi_frame *frame; /* that is being drawn */
+    cwi_gl_watch watch;
     GLuint frame_block, empty_array;
     cwi_gl_target target;
     cwi_gl_volume volume;
@@ -113,12 +123,31 @@ cw_status cwi_gl_draw_mesh(cwi_gl *gl, cw_error *err);
  * through it all the same. */
 const char *cwi_gl_ray_defines(const cw_scene *scene);
 
-/* Draws a triangle over the whole picture, for fragment shaders that go along rays. */
+/* Draws a triangle over the whole picture. */
 void cwi_gl_draw_screen(cwi_gl *gl);
+
+/* Reports progress: waits for what was drawn, gives the caller its context, and takes the own
+ * one back. CW_ERR_CANCELLED; state of GL stays, but for the framebuffer's scissor. */
+cw_status cwi_gl_report(cwi_gl *gl, const char *step, double done, cw_error *err);
+/* The same, when the last report was some milliseconds ago: for loops of the CPU. */
+cw_status cwi_gl_report_soon(cwi_gl *gl, const char *step, double done, cw_error *err);
+/* What is drawn next is the n-th part of count of the picture. */
+void cwi_gl_part(cwi_gl *gl, size_t n, size_t count);
+
+/* Draws what takes long, and reports in between: the whole picture, for fragment shaders that
+ * go along rays; anything that keeps to the scissor, in bands; triangles of what is bound, by
+ * their indices or one after another. CW_ERR_CANCELLED */
+cw_status cwi_gl_draw_rays(cwi_gl *gl, cw_error *err);
+cw_status cwi_gl_draw_layer(cwi_gl *gl, void (*draw)(void *context), void *context,
+                            cw_error *err);
+cw_status cwi_gl_draw_triangles(cwi_gl *gl, size_t count, bool indexed, cw_error *err);
 
 /* Uploads the frame's volume, unless it is there. */
 cw_status cwi_gl_take_volume(cwi_gl *gl, cw_error *err);
-cw_status cwi_gl_need_gradients(cwi_gl *gl, cw_error *err);
+/* What shaders have to be defined with to find gradients. Those of a small volume become a
+ * texture; of a large one, which then would be five times as large, they are differences of
+ * interpolated values. */
+cw_status cwi_gl_need_gradients(cwi_gl *gl, const char **defines, cw_error *err);
 /* The derivatives of voxels, unscaled, along each axis: what gradients are made of. */
 void cwi_gl_derivatives(const cw_volume *volume, const size_t at[3], double derivatives[3]);
 void cwi_gl_drop_volume(cwi_gl *gl);

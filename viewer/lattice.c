@@ -79,19 +79,6 @@ static bool has_value(const cw_volume *v, size_t i, size_t j, size_t k)
     return isfinite(x) && !(v->has_nodata && x == v->nodata);
 }
 
-bool cwi_lattice_has_gaps(const cw_volume *v, int threads)
-{
-    bool found = false;
-    if (!v->has_nodata && v->type != CW_F32 && v->type != CW_F64)
-        return false;
-#pragma omp parallel for reduction(|| : found) num_threads(cwi_threads(threads))
-    for (size_t k = 0; k < v->dim[2]; k++)
-        for (size_t j = 0; j < v->dim[1]; j++)
-            for (size_t i = 0; i < v->dim[0] && !found; i++)
-                found = !has_value(v, i, j, k);
-    return found;
-}
-
 /* Whether the cell between two samples along each axis has values at all corners. */
 static bool is_whole(const cw_volume *v, const size_t low[3], const size_t high[3])
 {

@@ -33,9 +33,6 @@ CW_API bool cwi_visible_any(const cwi_visible *visible, float low, float high);
 CW_API void cwi_lattice_load(const cwi_frame *frame, const cwi_table *table,
                              const size_t first[3], const size_t count[3], float *out);
 
-/* Whether a sample of the volume has no value. */
-CW_API bool cwi_lattice_has_gaps(const cw_volume *v, int threads);
-
 /* The cells a voxel stands for: of the eight eighths around it those that belong to cells of
  * the volume with values at all corners. A volume of one layer has cells on both sides of it.
  * has_gaps: whether to look for samples without a value */

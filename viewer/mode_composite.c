@@ -8,9 +8,10 @@
 
 extern const char cwi_glsl_composite[];
 
-static void describe(const cw_scene *s, const cw_transfer *t, char *defines, size_t size)
+static void describe(const cw_scene *s, const cw_transfer *t, const char *gradients,
+                     char *defines, size_t size)
 {
-    snprintf(defines, size, "%s%s%s%s%s%s%s%s%s",
+    snprintf(defines, size, "%s%s%s%s%s%s%s%s%s%s", gradients,
              s->no_preintegration ? "" : "#define SEGMENTS\n",
              s->no_skipping ? "" : "#define SKIP\n", s->cell_steps ? "#define CELLS\n" : "",
              cwi_gl_ray_defines(s), s->jitter ? "#define JITTER\n" : "",
@@ -23,16 +24,17 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
 {
     (void)state;
     char defines[256];
+    const char *gradients = "";
     GLuint program;
     const cw_scene *s = &gl->frame->scene;
     /* a segment has samples at both ends and in the middle */
     const double length = s->no_preintegration || s->cell_steps ? s->step_vox : 2 * s->step_vox;
     cw_status st = CW_OK;
-    describe(s, &gl->frame->transfer, defines, sizeof defines);
     if (!s->no_preintegration)
         st = cwi_gl_need_segments(gl, length, err);
     if (st == CW_OK && (s->lit || gl->frame->transfer.gradient_count > 0))
-        st = cwi_gl_need_gradients(gl, err);
+        st = cwi_gl_need_gradients(gl, &gradients, err);
+    describe(s, &gl->frame->transfer, gradients, defines, sizeof defines);
     if (st == CW_OK)
         st = cwi_gl_use(gl, cwi_glsl_screen, cwi_glsl_composite, defines, &program, err);
     if (st != CW_OK)
@@ -45,13 +47,14 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     glDisable(GL_DEPTH_TEST);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    for (size_t n = 0; n < gl->volume.brick_count; n++) {
+    for (size_t n = 0; n < gl->volume.brick_count && st == CW_OK; n++) {
         cwi_gl_bind_brick(program, &gl->volume.bricks[order[n]]);
-        cwi_gl_draw_screen(gl);
+        cwi_gl_part(gl, n, gl->volume.brick_count);
+        st = cwi_gl_draw_rays(gl, err);
     }
     glDisable(GL_BLEND);
     cwi_free(order);
-    return CW_OK;
+    return st;
 }
 
 const cwi_gl_mode cwi_gl_composite = {CW_MODE_COMPOSITE, true, draw, NULL};

@@ -92,9 +92,9 @@ static cw_status count_windings(cwi_gl *gl, cwi_gl_mesh *m, size_t n, cw_error *
     glBlendEquation(GL_FUNC_ADD);
     glBlendFunc(GL_ONE, GL_ONE);
     cwi_gl_set(program, "first_plane", (float)(n * CWI_PLANES_A_PASS));
-    cwi_gl_draw_triangles(m);
+    st = cwi_gl_draw_whole_mesh(gl, m, err);
     glDisable(GL_BLEND);
-    return CW_OK;
+    return st;
 }
 
 static cw_status draw_caps(cwi_gl *gl, const cwi_gl_mesh *m, manner how, cw_error *err)
@@ -126,8 +126,8 @@ static cw_status draw_surface(cwi_gl *gl, cwi_gl_mesh *m, manner how, cw_error *
         return st;
     set_plain(&gl->frame->scene, program, false, how.opaque);
     set_look(gl, m, program);
-    cwi_gl_draw_triangles(m);
-    return draws_caps(&gl->frame->scene) ? draw_caps(gl, m, how, err) : CW_OK;
+    st = cwi_gl_draw_whole_mesh(gl, m, err);
+    return st == CW_OK && draws_caps(&gl->frame->scene) ? draw_caps(gl, m, how, err) : st;
 }
 
 /* Blends a layer behind what is there. */

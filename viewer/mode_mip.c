@@ -138,9 +138,10 @@ static cw_status draw_brick(cwi_gl *gl, const projector *p, const cwi_gl_brick *
         glEnable(GL_BLEND);
         glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     }
-    cwi_gl_draw_screen(gl);
+    cwi_gl_part(gl, n, count);
+    st = cwi_gl_draw_rays(gl, err);
     glDisable(GL_BLEND);
-    return CW_OK;
+    return st;
 }
 
 static cw_status draw(cwi_gl *gl, void **state, cw_error *err)

@@ -37,6 +37,8 @@ typedef struct pattern {
 
 typedef struct job {
     cwi_gl *gl;
+    cw_status status; /* once it is not CW_OK nothing more is drawn */
+    cw_error *err;
     const cwi_frame *frame;
     cwi_visible visible;
     double eye[3];
@@ -58,12 +60,12 @@ typedef struct node {
 
 static void flush(job *j)
 {
-    if (j->index_count > 0) {
+    if (j->index_count > 0 && j->status == CW_OK) {
         glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(j->vertex_count * sizeof *j->vertices),
                      j->vertices, GL_STREAM_DRAW);
         glBufferData(GL_ELEMENT_ARRAY_BUFFER, (GLsizeiptr)(j->index_count * sizeof *j->indices),
                      j->indices, GL_STREAM_DRAW);
-        glDrawElements(GL_TRIANGLES, (GLsizei)j->index_count, GL_UNSIGNED_INT, NULL);
+        j->status = cwi_gl_draw_triangles(j->gl, j->index_count / 3, true, j->err);
     }
     j->vertex_count = j->index_count = 0;
 }
@@ -349,9 +351,18 @@ static size_t *order_blocks(const job *j, const cwi_gl_brick *brick, int axis, s
     return order;
 }
 
+/* A layer of blocks, by rows: between them is where drawing can be stopped. */
+static void draw_row(job *j, const cwi_gl_brick *brick, size_t *const order[3], size_t count,
+                     size_t y, size_t z)
+{
+    for (size_t x = 0; x < count; x++)
+        draw_block(j, brick, (size_t[]){order[0][x], order[1][y], order[2][z]});
+    if (j->status == CW_OK)
+        j->status = cwi_gl_report_soon(j->gl, "cells", j->gl->watch.from, j->err);
+}
+
 static cw_status draw_brick(job *j, const cwi_gl_brick *brick, cw_error *err)
 {
-    const cw_progress *progress = &j->frame->scene.progress;
     size_t *order[3], count[3] = {0};
     cw_status st = CW_OK;
     for (int a = 0; a < 3; a++) {
@@ -360,17 +371,17 @@ static cw_status draw_brick(job *j, const cwi_gl_brick *brick, cw_error *err)
             st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the order of blocks");
     }
     for (size_t z = 0; st == CW_OK && z < count[2]; z++) {
-        for (size_t y = 0; y < count[1]; y++)
-            for (size_t x = 0; x < count[0]; x++)
-                draw_block(j, brick, (size_t[]){order[0][x], order[1][y], order[2][z]});
-        if (progress->report &&
-            !progress->report(progress->user, "cells", (double)(z + 1) / (double)count[2]))
-            st = cw_fail(err, CW_ERR_CANCELLED, "cancelled while cells were drawn");
+        cwi_gl_part(j->gl, z, count[2]);
+        for (size_t y = 0; y < count[1] && j->status == CW_OK; y++)
+            draw_row(j, brick, order, count[0], y, z);
+        if (j->status == CW_OK)
+            j->status = cwi_gl_report(j->gl, "cells", j->gl->watch.to, err);
+        st = j->status;
     }
     flush(j);
     for (int a = 0; a < 3; a++)
         cwi_free(order[a]);
-    return st;
+    return st == CW_OK ? j->status : st;
 }
 
 static void open_stream(job *j)
@@ -401,11 +412,12 @@ static void close_stream(job *j)
     cwi_visible_free(&j->visible);
 }
 
-static cw_status open_job(cwi_gl *gl, job *j, cw_error *err)
+static cw_status open_job(cwi_gl *gl, job *j, const char **gradients, cw_error *err)
 {
     const cw_scene *s = &gl->frame->scene;
     const bool needs_gradients = s->lit || gl->frame->transfer.gradient_count > 0;
     j->gl = gl;
+    j->err = err;
     j->frame = gl->frame;
     j->tolerance = needs_gradients ? -1 : (float)s->tree_error;
     cwi_lattice_eye(j->frame, j->eye);
@@ -415,15 +427,16 @@ static cw_status open_job(cwi_gl *gl, job *j, cw_error *err)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the polygons of cells");
     cw_status st = cwi_visible_make(&gl->transfer.table, &j->visible, err);
     if (st == CW_OK && needs_gradients)
-        st = cwi_gl_need_gradients(gl, err);
+        st = cwi_gl_need_gradients(gl, gradients, err);
     if (st == CW_OK && !s->no_preintegration && !s->linear_opacity)
         st = cwi_gl_need_segments(gl, s->step_vox, err);
     return st;
 }
 
-static void describe(const cw_scene *s, const cw_transfer *t, char *defines, size_t size)
+static void describe(const cw_scene *s, const cw_transfer *t, const char *gradients,
+                     char *defines, size_t size)
 {
-    snprintf(defines, size, "#define RAYS\n%s%s%s%s",
+    snprintf(defines, size, "#define RAYS\n%s%s%s%s%s", gradients,
              s->no_preintegration ? "" : "#define SEGMENTS\n",
              s->linear_opacity ? "#define LINEAR\n" : "", s->lit ? "#define LIT\n" : "",
              t->gradient_count ? "#define FACTOR\n" : "");
@@ -447,13 +460,14 @@ static cw_status draw_bricks(job *j, GLuint program, cw_error *err)
 static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
 {
     char defines[256];
+    const char *gradients = "";
     GLuint program;
     (void)state;
     job *j = cwi_alloc_zeroed(1, sizeof *j);
     if (!j)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the projection of cells");
-    describe(&gl->frame->scene, &gl->frame->transfer, defines, sizeof defines);
-    cw_status st = open_job(gl, j, err);
+    cw_status st = open_job(gl, j, &gradients, err);
+    describe(&gl->frame->scene, &gl->frame->transfer, gradients, defines, sizeof defines);
     if (st == CW_OK)
         st = cwi_gl_use(gl, cwi_glsl_projection, cwi_glsl_projection, defines, &program, err);
     open_stream(j);

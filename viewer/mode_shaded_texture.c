@@ -115,7 +115,7 @@ static void put_layer(const cwi_gl *gl, const shaded_state *t, const cwi_gl_bric
         }
 }
 
-static cw_status upload_normals(const cwi_gl *gl, shaded_state *t, size_t brick, cw_error *err)
+static cw_status upload_normals(cwi_gl *gl, shaded_state *t, size_t brick, cw_error *err)
 {
     const cwi_gl_brick *b = &gl->volume.bricks[brick];
     const GLsizei w = (GLsizei)b->count[0], h = (GLsizei)b->count[1], d = (GLsizei)b->count[2];
@@ -126,16 +126,18 @@ static cw_status upload_normals(const cwi_gl *gl, shaded_state *t, size_t brick,
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glTexImage3D(GL_TEXTURE_3D, 0, GL_R16UI, w, h, d, 0, GL_RED_INTEGER, GL_UNSIGNED_SHORT,
                  NULL);
-    for (GLint k = 0; k < d; k++) {
+    cw_status st = CW_OK;
+    for (GLint k = 0; k < d && st == CW_OK; k++) {
         put_layer(gl, t, b, (size_t)k, layer);
         glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, k, w, h, 1, GL_RED_INTEGER, GL_UNSIGNED_SHORT,
                         layer);
+        st = cwi_gl_report_soon(gl, "uploading", (double)k / (double)d, err);
     }
     cwi_free(layer);
-    return CW_OK;
+    return st;
 }
 
-static cw_status need_normals(const cwi_gl *gl, shaded_state *t, cw_error *err)
+static cw_status need_normals(cwi_gl *gl, shaded_state *t, cw_error *err)
 {
     const cw_scene *s = &gl->frame->scene;
     normals_key key;
@@ -273,7 +275,8 @@ static void bind(const void *state, size_t brick)
 
 static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
 {
-    char defines[64];
+    char defines[80];
+    const char *gradients = "";
     const cw_scene *s = &gl->frame->scene;
     cw_status st = CW_OK;
     if (!*state)
@@ -282,14 +285,14 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     if (!t)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for slices");
     if (gl->frame->transfer.gradient_count > 0)
-        st = cwi_gl_need_gradients(gl, err);
+        st = cwi_gl_need_gradients(gl, &gradients, err);
     if (st == CW_OK)
         st = need_normals(gl, t, err);
     if (st == CW_OK)
         st = need_shades(gl, t, err);
     if (st != CW_OK)
         return st;
-    snprintf(defines, sizeof defines, "#define SHADES\n%s%s",
+    snprintf(defines, sizeof defines, "%s#define SHADES\n%s%s", gradients,
              s->colors_first ? "#define COLORS\n" : "",
              s->mark_boundary ? "#define BOUNDARY\n" : "");
     return cwi_gl_draw_slices(gl, &t->slices, defines, bind, t, err);

@@ -6,6 +6,8 @@
 #include "core/vector.h"
 #include "viewer/slice.h"
 
+#include <stdio.h>
+
 extern const char cwi_glsl_slices[];
 
 /* Pixels. */
@@ -30,27 +32,29 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     cw_slice slices[CW_MAX_SLICES];
     size_t count;
     GLuint program;
+    char defines[64];
+    snprintf(defines, sizeof defines, "#define RAYS\n%s%s",
+             f->scene.clip_count ? "#define CLIPS\n" : "",
+             f->scene.exact_filter ? "#define EXACT_FILTER\n" : "");
     cw_status st = cwi_slices_of(&f->scene, &f->volume, slices, &count, err);
     if (st == CW_OK)
-        st = cwi_gl_use(gl, cwi_glsl_screen, cwi_glsl_slices,
-                        f->scene.exact_filter ? "#define RAYS\n#define EXACT_FILTER\n"
-                                              : "#define RAYS\n",
-                        &program, err);
+        st = cwi_gl_use(gl, cwi_glsl_screen, cwi_glsl_slices, defines, &program, err);
     if (st != CW_OK)
         return st;
     cwi_gl_set(program, "frame_width", FRAME_WIDTH * (float)f->scene.samples);
     glDisable(GL_BLEND);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
-    for (size_t n = 0; n < count; n++) {
-        set_slice(f, program, &slices[n]);
-        for (size_t b = 0; b < gl->volume.brick_count; b++) {
-            cwi_gl_bind_brick(program, &gl->volume.bricks[b]);
-            cwi_gl_draw_screen(gl);
-        }
+    const size_t bricks = gl->volume.brick_count;
+    for (size_t n = 0; n < count * bricks && st == CW_OK; n++) {
+        if (n % bricks == 0)
+            set_slice(f, program, &slices[n / bricks]);
+        cwi_gl_bind_brick(program, &gl->volume.bricks[n % bricks]);
+        cwi_gl_part(gl, n, count * bricks);
+        st = cwi_gl_draw_rays(gl, err);
     }
     glDisable(GL_DEPTH_TEST);
-    return CW_OK;
+    return st;
 }
 
 const cwi_gl_mode cwi_gl_slices = {CW_MODE_SLICES, false, draw, NULL};

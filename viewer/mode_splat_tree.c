@@ -9,12 +9,6 @@
 
 #include <math.h>
 
-/* What is kept from picture to picture of a volume. */
-typedef struct tree {
-    bool has_gaps;
-    cwi_pyramid pyramid;
-} tree;
-
 typedef struct walk {
     cwi_splats splats;
     const cwi_pyramid *pyramid;
@@ -131,6 +125,8 @@ static void visit(walk *w, size_t level, const size_t node[3])
     for (int a = 0; a < 3; a++)
         find_voxels(w, a, level, node[a], at[a]);
     const size_t *sheets = at[w->splats.axis];
+    if (w->splats.status != CW_OK)
+        return;
     if (w->sheet < sheets[0] || w->sheet >= sheets[1])
         return;
     const cwi_pyramid_look look =
@@ -160,6 +156,7 @@ static cw_status draw_sheets(walk *w, cw_error *err)
         return CW_ERR_NO_MEMORY;
     for (size_t n = 0; n < s->frame->volume.dim[s->axis] && st == CW_OK; n++) {
         w->sheet = order[n];
+        cwi_gl_part(s->gl, n, s->frame->volume.dim[s->axis]);
         visit(w, w->pyramid->level_count - 1, root);
         st = cwi_splats_end_sheet(s, n, err);
     }
@@ -169,23 +166,23 @@ static cw_status draw_sheets(walk *w, cw_error *err)
 
 static void drop(void *state)
 {
-    tree *t = state;
-    cwi_pyramid_free(&t->pyramid);
-    cwi_free(t);
+    cwi_pyramid_free(state);
+    cwi_free(state);
 }
 
-static cw_status make_tree(const cwi_frame *f, tree **out, cw_error *err)
+/* Of a volume, kept from picture to picture. */
+static cw_status make_tree(const cwi_gl *gl, void **out, cw_error *err)
 {
-    tree *t = cwi_alloc_zeroed(1, sizeof *t);
-    if (!t)
+    const cwi_frame *f = gl->frame;
+    cwi_pyramid *p = cwi_alloc_zeroed(1, sizeof *p);
+    if (!p)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a pyramid");
-    t->has_gaps = cwi_lattice_has_gaps(&f->volume, f->scene.threads);
-    cw_status st =
-        cwi_pyramid_make(&f->volume, t->has_gaps, f->scene.threads, &t->pyramid, err);
+    cw_status st = cwi_pyramid_make(&f->volume, gl->volume.ranges.has_gaps, f->scene.threads,
+                                    &gl->watch.progress, p, err);
     if (st == CW_OK)
-        *out = t;
+        *out = p;
     else
-        drop(t);
+        drop(p);
     return st;
 }
 
@@ -203,12 +200,11 @@ static cw_status choose_error(walk *w, cw_error *err)
 static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
 {
     walk w = {0};
-    cw_status st = *state ? CW_OK : make_tree(gl->frame, (tree **)state, err);
+    cw_status st = *state ? CW_OK : make_tree(gl, state, err);
     if (st != CW_OK)
         return st;
-    const tree *t = *state;
-    w.pyramid = &t->pyramid;
-    st = cwi_splats_open(&w.splats, gl, t->has_gaps,
+    w.pyramid = *state;
+    st = cwi_splats_open(&w.splats, gl,
                          gl->frame->scene.tree_error > 0 || gl->frame->scene.splat_budget > 0,
                          err);
     w.view =

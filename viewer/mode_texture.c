@@ -7,6 +7,7 @@
 #include "core/volume.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 typedef struct texture_state {
@@ -69,8 +70,7 @@ static void put_layer(const cwi_gl *gl, const cwi_gl_brick *b, size_t k, float (
 }
 
 /* Half precision is relative: enough for colours that add up, whatever the opacity. */
-static cw_status upload_classes(const cwi_gl *gl, const cwi_gl_brick *b, GLuint *name,
-                                cw_error *err)
+static cw_status upload_classes(cwi_gl *gl, const cwi_gl_brick *b, GLuint *name, cw_error *err)
 {
     const GLsizei w = (GLsizei)b->count[0], h = (GLsizei)b->count[1], d = (GLsizei)b->count[2];
     float(*layer)[4] = cwi_alloc_array(b->count[0] * b->count[1], sizeof *layer);
@@ -78,15 +78,17 @@ static cw_status upload_classes(const cwi_gl *gl, const cwi_gl_brick *b, GLuint 
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for classified voxels");
     *name = cwi_gl_texture(GL_TEXTURE_3D, CWI_UNIT_CLASSES, true);
     glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA16F, w, h, d, 0, GL_RGBA, GL_FLOAT, NULL);
-    for (GLint k = 0; k < d; k++) {
+    cw_status st = CW_OK;
+    for (GLint k = 0; k < d && st == CW_OK; k++) {
         put_layer(gl, b, (size_t)k, layer);
         glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, k, w, h, 1, GL_RGBA, GL_FLOAT, layer);
+        st = cwi_gl_report_soon(gl, "uploading", (double)k / (double)d, err);
     }
     cwi_free(layer);
-    return CW_OK;
+    return st;
 }
 
-static cw_status need_classes(const cwi_gl *gl, texture_state *t, cw_error *err)
+static cw_status need_classes(cwi_gl *gl, texture_state *t, cw_error *err)
 {
     const size_t count = gl->volume.brick_count;
     cw_status st = CW_OK;
@@ -117,6 +119,8 @@ static void bind_classes(const void *state, size_t brick)
 static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
 {
     const cw_scene *s = &gl->frame->scene;
+    char defines[64];
+    const char *gradients = "";
     cw_status st = CW_OK;
     if (!*state)
         *state = cwi_alloc_zeroed(1, sizeof(texture_state));
@@ -124,13 +128,15 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     if (!t)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for slices");
     if (s->lit || gl->frame->transfer.gradient_count > 0)
-        st = cwi_gl_need_gradients(gl, err);
+        st = cwi_gl_need_gradients(gl, &gradients, err);
     if (st == CW_OK && s->colors_first)
         st = need_classes(gl, t, err);
     if (st != CW_OK)
         return st;
-    return cwi_gl_draw_slices(gl, &t->slices, s->colors_first ? "#define COLORS\n" : "",
-                              s->colors_first ? bind_classes : NULL, t, err);
+    snprintf(defines, sizeof defines, "%s%s", gradients,
+             s->colors_first ? "#define COLORS\n" : "");
+    return cwi_gl_draw_slices(gl, &t->slices, defines, s->colors_first ? bind_classes : NULL, t,
+                              err);
 }
 
 const cwi_gl_mode cwi_gl_texture_mode = {CW_MODE_TEXTURE, true, draw, drop};

@@ -1,5 +1,6 @@
 #include "viewer/pyramid.h"
 
+#include "core/layers.h"
 #include "core/memory.h"
 #include "core/status.h"
 #include "core/volume.h"
@@ -70,25 +71,32 @@ static cwi_pyramid_node sum_nodes(const cwi_pyramid *p, size_t level, const size
     return node_of(&s);
 }
 
-static void fill_level(cwi_pyramid *p, size_t level, const cw_volume *v, bool has_gaps,
-                       int threads)
+typedef struct filling {
+    cwi_pyramid *pyramid;
+    size_t level;
+    const cw_volume *v;
+    bool has_gaps;
+} filling;
+
+static void fill_layer(void *context, size_t k)
 {
-    const size_t *dim = p->levels[level].dim;
-#pragma omp parallel for collapse(2) num_threads(cwi_threads(threads))
-    for (size_t k = 0; k < dim[2]; k++)
-        for (size_t j = 0; j < dim[1]; j++)
-            for (size_t i = 0; i < dim[0]; i++) {
-                const size_t at[3] = {i, j, k};
-                p->levels[level].nodes[(k * dim[1] + j) * dim[0] + i] =
-                    level == 0 ? sum_voxels(v, has_gaps, at) : sum_nodes(p, level - 1, at);
-            }
+    const filling *f = context;
+    const size_t *dim = f->pyramid->levels[f->level].dim;
+    for (size_t j = 0; j < dim[1]; j++)
+        for (size_t i = 0; i < dim[0]; i++) {
+            const size_t at[3] = {i, j, k};
+            f->pyramid->levels[f->level].nodes[(k * dim[1] + j) * dim[0] + i] =
+                f->level == 0 ? sum_voxels(f->v, f->has_gaps, at)
+                              : sum_nodes(f->pyramid, f->level - 1, at);
+        }
 }
 
 cw_status cwi_pyramid_make(const cw_volume *volume, bool has_gaps, int threads,
-                           cwi_pyramid *pyramid, cw_error *err)
+                           const cw_progress *progress, cwi_pyramid *pyramid, cw_error *err)
 {
     const size_t *below = volume->dim;
     size_t count = 0;
+    cw_status st = CW_OK;
     *pyramid = (cwi_pyramid){0};
     do {
         size_t *dim = pyramid->levels[pyramid->level_count].dim;
@@ -104,9 +112,13 @@ cw_status cwi_pyramid_make(const cw_volume *volume, bool has_gaps, int threads,
             cwi_pyramid_free(pyramid);
             return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a pyramid of the volume");
         }
-        fill_level(pyramid, pyramid->level_count++, volume, has_gaps, threads);
-    } while (count > 1);
-    return CW_OK;
+        filling work = {pyramid, pyramid->level_count++, volume, has_gaps};
+        st = cwi_each_layer(dim[2], 8 * dim[0] * dim[1], threads, progress, "averaging",
+                            fill_layer, &work, err);
+    } while (count > 1 && st == CW_OK);
+    if (st != CW_OK)
+        cwi_pyramid_free(pyramid);
+    return st;
 }
 
 void cwi_pyramid_free(cwi_pyramid *pyramid)

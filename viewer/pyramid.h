@@ -27,7 +27,8 @@ typedef struct cwi_pyramid {
 /* Of a resolved, evenly spaced volume; about 2.3 bytes a voxel. CW_ERR_NO_MEMORY.
  * has_gaps: whether some samples have no value, see cwi_lattice_mass() */
 CW_API cw_status cwi_pyramid_make(const cw_volume *volume, bool has_gaps, int threads,
-                                  cwi_pyramid *pyramid, cw_error *err);
+                                  const cw_progress *progress, cwi_pyramid *pyramid,
+                                  cw_error *err);
 CW_API void cwi_pyramid_free(cwi_pyramid *pyramid);
 
 CW_API const cwi_pyramid_node *cwi_pyramid_node_at(const cwi_pyramid *pyramid, size_t level,

@@ -105,8 +105,8 @@ static void scan_layer(void *context, size_t k)
     cwi_free(columns);
 }
 
-cw_status cwi_ranges_make(const cw_volume *volume, int threads, cwi_ranges *ranges,
-                          cw_error *err)
+cw_status cwi_ranges_make(const cw_volume *volume, int threads, const cw_progress *progress,
+                          cwi_ranges *ranges, cw_error *err)
 {
     *ranges = (cwi_ranges){0};
     size_t count = 1;
@@ -119,13 +119,14 @@ cw_status cwi_ranges_make(const cw_volume *volume, int threads, cwi_ranges *rang
     if (!ranges->blocks)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the ranges of %zu blocks", count);
     job work = {volume, ranges, false};
-    const cw_progress none = {0};
     cw_status st =
         cwi_each_layer(ranges->dim[2], volume->dim[0] * volume->dim[1] * CWI_RANGE_EDGE,
-                       threads, &none, "ranges", scan_layer, &work, err);
-    return st == CW_OK && work.has_failed
-               ? cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the ranges of blocks")
-               : st;
+                       threads, progress, "ranges", scan_layer, &work, err);
+    if (st == CW_OK && work.has_failed)
+        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the ranges of blocks");
+    if (st != CW_OK)
+        cwi_ranges_free(ranges);
+    return st;
 }
 
 /* Block (i, j, k) of the coarse ones: around its eight fine ones. */

@@ -18,7 +18,8 @@ typedef struct cwi_ranges {
 } cwi_ranges;
 
 /* Of a resolved, evenly spaced volume. CW_ERR_NO_MEMORY, CW_ERR_CANCELLED. */
-CW_API cw_status cwi_ranges_make(const cw_volume *volume, int threads, cwi_ranges *ranges,
+CW_API cw_status cwi_ranges_make(const cw_volume *volume, int threads,
+                                 const cw_progress *progress, cwi_ranges *ranges,
                                  cw_error *err);
 /* Blocks of twice the edge. CW_ERR_NO_MEMORY. */
 CW_API cw_status cwi_ranges_halve(const cwi_ranges *fine, cwi_ranges *coarse, cw_error *err);

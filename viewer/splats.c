@@ -142,12 +142,12 @@ static void measure(cwi_splats *s)
     start_bounds(s);
 }
 
-cw_status cwi_splats_open(cwi_splats *s, cwi_gl *gl, bool has_gaps, bool has_nodes,
-                          cw_error *err)
+cw_status cwi_splats_open(cwi_splats *s, cwi_gl *gl, bool has_nodes, cw_error *err)
 {
     s->gl = gl;
     s->frame = gl->frame;
-    s->has_gaps = has_gaps;
+    s->err = err;
+    s->has_gaps = gl->volume.ranges.has_gaps;
     measure(s);
     s->chunk = cwi_alloc_array(CHUNK, sizeof *s->chunk);
     cw_status st = cwi_visible_make(&gl->transfer.table, &s->visible, err);
@@ -190,7 +190,7 @@ void cwi_splats_close(cwi_splats *s)
 /* Adds what is in the chunk to the sheet. */
 static void flush(cwi_splats *s)
 {
-    if (s->count == 0)
+    if (s->count == 0 || s->status != CW_OK)
         return;
     glDisable(GL_SCISSOR_TEST);
     glEnable(GL_DEPTH_TEST);
@@ -200,7 +200,7 @@ static void flush(cwi_splats *s)
     glBindBuffer(GL_TEXTURE_BUFFER, s->buffer);
     glBufferData(GL_TEXTURE_BUFFER, CHUNK * sizeof *s->chunk, NULL, GL_STREAM_DRAW);
     glBufferSubData(GL_TEXTURE_BUFFER, 0, (GLsizeiptr)(s->count * sizeof *s->chunk), s->chunk);
-    glDrawElements(GL_TRIANGLES, (GLsizei)(6 * s->count), GL_UNSIGNED_INT, NULL);
+    s->status = cwi_gl_draw_triangles(s->gl, 2 * s->count, true, s->err);
     s->count = 0;
 }
 
@@ -264,9 +264,10 @@ static void cut_to_bounds(const cwi_splats *s)
 
 cw_status cwi_splats_end_sheet(cwi_splats *s, size_t n, cw_error *err)
 {
-    const cw_progress *p = &s->frame->scene.progress;
     const double done = (double)(n + 1) / (double)s->frame->volume.dim[s->axis];
     flush(s);
+    if (s->status != CW_OK)
+        return s->status;
     if (s->bounds[0] < s->bounds[1]) {
         cut_to_bounds(s);
         glDisable(GL_DEPTH_TEST);
@@ -280,9 +281,7 @@ cw_status cwi_splats_end_sheet(cwi_splats *s, size_t n, cw_error *err)
         glClear(GL_COLOR_BUFFER_BIT);
         start_bounds(s);
     }
-    if (p->report && !p->report(p->user, "splats", done))
-        return cw_fail(err, CW_ERR_CANCELLED, "cancelled while splats were drawn");
-    return CW_OK;
+    return cwi_gl_report(s->gl, "splats", done, err);
 }
 
 size_t *cwi_splats_order(const cwi_splats *s, cw_error *err)
@@ -345,7 +344,8 @@ static void splat_layer(cwi_splats *s, size_t layer)
     const size_t last = r->dim[a] - 1, own = layer / CWI_RANGE_EDGE;
     block[a] = own < last ? own : last;
     at[a] = layer;
-    for (block[c] = 0; block[c] < r->dim[c]; block[c]++)
+    for (block[c] = 0; block[c] < r->dim[c] && s->status == CW_OK; block[c]++) {
+        s->status = cwi_gl_report_soon(s->gl, "splats", s->gl->watch.from, s->err);
         for (block[b] = 0; block[b] < r->dim[b]; block[b]++) {
             if (!shows_block(s, block))
                 continue;
@@ -354,6 +354,7 @@ static void splat_layer(cwi_splats *s, size_t layer)
                      at[b]++)
                     cwi_splats_voxel(s, at);
         }
+    }
 }
 
 cw_status cwi_splats_flat(cwi_splats *s, cw_error *err)
@@ -363,6 +364,7 @@ cw_status cwi_splats_flat(cwi_splats *s, cw_error *err)
     if (!order)
         return CW_ERR_NO_MEMORY;
     for (size_t n = 0; n < s->frame->volume.dim[s->axis] && st == CW_OK; n++) {
+        cwi_gl_part(s->gl, n, s->frame->volume.dim[s->axis]);
         splat_layer(s, order[n]);
         st = cwi_splats_end_sheet(s, n, err);
     }

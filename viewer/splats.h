@@ -21,6 +21,8 @@ typedef struct cwi_splat {
 typedef struct cwi_splats {
     cwi_gl *gl;
     const cwi_frame *frame;
+    cw_status status; /* once it is not CW_OK nothing more is drawn */
+    cw_error *err;
     cwi_visible visible;
     double eye[3]; /* index space */
     int axis;      /* sheets are across this axis of index space */
@@ -34,9 +36,8 @@ typedef struct cwi_splats {
     double bounds[4]; /* of the sheet's splats, on the picture from -1 to 1: low, high x; y */
 } cwi_splats;
 
-/* has_gaps: see cwi_lattice_mass(); has_nodes: there are not only voxels */
-cw_status cwi_splats_open(cwi_splats *s, cwi_gl *gl, bool has_gaps, bool has_nodes,
-                          cw_error *err);
+/* has_nodes: there are not only voxels */
+cw_status cwi_splats_open(cwi_splats *s, cwi_gl *gl, bool has_nodes, cw_error *err);
 void cwi_splats_close(cwi_splats *s);
 
 /* Whether clips, and a place in front of the eye, keep a splat at a point of index space. */

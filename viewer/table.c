@@ -1,5 +1,6 @@
 #include "viewer/table.h"
 
+#include "core/layers.h"
 #include "core/memory.h"
 #include "core/status.h"
 
@@ -180,25 +181,40 @@ static void integrate_flat(const cwi_table *t, double at, double length, float o
     out[3] = (float)opacity;
 }
 
+typedef struct integration {
+    const cwi_table *table;
+    double length;
+    size_t count;
+    const double (*sum)[4];
+    float *out;
+} integration;
+
+static void integrate_row(void *context, size_t y)
+{
+    const integration *w = context;
+    for (size_t x = 0; x < w->count; x++) {
+        float *to = w->out + 4 * (y * w->count + x);
+        const double span = fabs((double)x - (double)y) * FINE;
+        const double at = (double)x / (double)(w->count - 1) * (double)(w->table->count - 1);
+        if (x == y)
+            integrate_flat(w->table, at, w->length, to);
+        else
+            integrate(w->sum, x, y, w->length / span, to);
+    }
+}
+
 cw_status cwi_table_preintegrate(const cwi_table *table, double length, size_t count,
-                                 int threads, float *out, cw_error *err)
+                                 int threads, const cw_progress *progress, float *out,
+                                 cw_error *err)
 {
     double(*sum)[4] = running_integrals(table, count);
     if (!sum)
         return cw_fail(err, CW_ERR_NO_MEMORY,
                        "no memory for a pre-integrated transfer function");
-#pragma omp parallel for schedule(dynamic, 8) num_threads(cwi_threads(threads))
-    for (size_t y = 0; y < count; y++)
-        for (size_t x = 0; x < count; x++) {
-            float *to = out + 4 * (y * count + x);
-            const double span = fabs((double)x - (double)y) * FINE;
-            if (x == y)
-                integrate_flat(table,
-                               (double)x / (double)(count - 1) * (double)(table->count - 1),
-                               length, to);
-            else
-                integrate((const double(*)[4])sum, x, y, length / span, to);
-        }
+    enum { WORK = 64 }; /* an entry is as much as so many samples elsewhere */
+    integration work = {table, length, count, (const double(*)[4])sum, out};
+    cw_status st = cwi_each_layer(count, WORK * count, threads, progress, "integrating",
+                                  integrate_row, &work, err);
     cwi_free(sum);
-    return CW_OK;
+    return st;
 }

@@ -35,7 +35,8 @@ CW_API size_t cwi_table_segment_rows(const cwi_table *table, const cw_transfer *
  * times opacity, and opacity. Within a segment light is absorbed too: it is cut into pieces
  * whose depth and glow are exact. */
 CW_API cw_status cwi_table_preintegrate(const cwi_table *table, double length, size_t count,
-                                        int threads, float *out, cw_error *err);
+                                        int threads, const cw_progress *progress, float *out,
+                                        cw_error *err);
 
 #ifdef __cplusplus
 }

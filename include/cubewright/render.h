@@ -171,7 +171,12 @@ typedef struct cw_scene {
     bool cap;                   /* the cut through a clipped mesh, which is closed, is filled */
 
     int threads;          /* default: all that OpenMP offers */
-    cw_progress progress; /* default: none */
+    cw_progress progress; /* default: none. Asked every few milliseconds, but while GL compiles
+                             a shader or makes room for a volume; a picture that is cancelled
+                             leaves what was uploaded, and the next one is as any other. The
+                             report finds the EGL context that the caller of cw_render() had,
+                             and may draw with any, by EGL: with another renderer, too, but
+                             not with this one */
 } cw_scene;
 
 /* A renderer keeps what it has uploaded of a scene for the next picture of it. */

@@ -137,7 +137,7 @@ static void passing_over_blocks_changes_nothing(void **state)
     for (size_t n = 0; n < 37 * 41 * 33; n++)
         if (n / 37 % 41 / 12 == 1 && n % 37 > 8) /* whole blocks of it */
             voxels[n] = NAN;
-    assert_ok(cwi_ranges_make(&v, 1, &ranges, &err), err);
+    assert_ok(cwi_ranges_make(&v, 1, &(cw_progress){0}, &ranges, &err), err);
     for (int mode = CW_MODE_MIP; mode <= CW_MODE_LOCAL_MIP; mode++)
         for (size_t p = 0; p < 400; p++) {
             cw_scene scene = scene_of((cw_mode)mode, &v, (cw_camera){0});

@@ -116,8 +116,8 @@ static void pyramid_keeps_the_mass(void **state)
             ((float *)cw_volume_voxels(&blobs))[3 * EDGE + 20] = NAN;
             truth -= 4;
         }
-        assert_ok(cwi_pyramid_make(&blobs, gaps, 1, &one, &err), err);
-        assert_ok(cwi_pyramid_make(&blobs, gaps, 4, &many, &err), err);
+        assert_ok(cwi_pyramid_make(&blobs, gaps, 1, &(cw_progress){0}, &one, &err), err);
+        assert_ok(cwi_pyramid_make(&blobs, gaps, 4, &(cw_progress){0}, &many, &err), err);
         assert_int_equal(one.level_count, many.level_count);
         for (size_t level = 0; level < one.level_count; level++) {
             const size_t *dim = one.levels[level].dim;
@@ -156,7 +156,8 @@ static void budgets_are_kept(void **state)
     assert_ok(cwi_frame_init(&frame, &scene, &err), err);
     assert_ok(cwi_table_make(&frame, &table, &err), err);
     assert_ok(cwi_visible_make(&table, &visible, &err), err);
-    assert_ok(cwi_pyramid_make(&frame.volume, false, 0, &pyramid, &err), err);
+    assert_ok(cwi_pyramid_make(&frame.volume, false, 0, &(cw_progress){0}, &pyramid, &err),
+              err);
     const cwi_pyramid_view view = {&frame, &table, &visible, 1};
     cwi_pyramid_counts(&pyramid, &view, counts);
     for (int n = 0; n < 4; n++) {

@@ -18,8 +18,8 @@ layout(std140) uniform Frame {
 
 uniform sampler3D volume;    // one brick's values
 uniform sampler3D gradients; // and gradients per voxel
-uniform sampler2D table;     // transfer function: colour, extinction per unit
-uniform sampler2D factor;    // of the extinction, by the gradient's length
+uniform sampler1D table;     // transfer function: colour, extinction per unit
+uniform sampler1D factor;    // of the extinction, by the gradient's length
 uniform vec3 brick_first, brick_size; // samples
 const float table_rows = 4096.0, factor_rows = 1024.0;
 
@@ -57,21 +57,37 @@ float coordinate_of(float texel)
 vec4 classify(float coordinate)
 {
     float at = clamp(coordinate, 0.0, 1.0);
-    vec4 row = textureLod(table, vec2((at * (table_rows - 1.0) + 0.5) / table_rows, 0.5), 0.0);
+    vec4 row = textureLod(table, (at * (table_rows - 1.0) + 0.5) / table_rows, 0.0);
     return isnan(coordinate) ? vec4(0.0) : row;
 }
 
-// The gradient in eye space, per unit.
+// The gradient at a place in the brick's texture, in eye space, per unit. Differences of interpolated
+// values are what differences of voxels are when they are interpolated.
+vec3 gradient_in(vec3 place)
+{
+#ifdef DIFFERENCES
+    vec3 voxel = 1.0 / brick_size, first = 0.5 * voxel, last = 1.0 - first;
+    vec3 low = max(place - voxel, first), high = min(place + voxel, last);
+    vec3 rise = vec3(textureLod(volume, vec3(high.x, place.yz), 0.0).r - textureLod(volume, vec3(low.x, place.yz), 0.0).r,
+                     textureLod(volume, vec3(place.x, high.y, place.z), 0.0).r - textureLod(volume, vec3(place.x, low.y, place.z), 0.0).r,
+                     textureLod(volume, vec3(place.xy, high.z), 0.0).r - textureLod(volume, vec3(place.xy, low.z), 0.0).r);
+    vec3 apart = max((high - low) * brick_size, 0.5);
+    return mat3(gradient_to_eye) * (rise * texels.z / apart);
+#else
+    return mat3(gradient_to_eye) * textureLod(gradients, place, 0.0).xyz;
+#endif
+}
+
 vec3 gradient_at(vec3 index)
 {
-    return mat3(gradient_to_eye) * textureLod(gradients, brick_place(index), 0.0).xyz;
+    return gradient_in(brick_place(index));
 }
 
 // What the transfer function makes of the extinction by the gradient.
 float gradient_factor(vec3 gradient)
 {
     float at = clamp(length(gradient) / limits.y, 0.0, 1.0);
-    return textureLod(factor, vec2((at * (factor_rows - 1.0) + 0.5) / factor_rows, 0.5), 0.0).r;
+    return textureLod(factor, (at * (factor_rows - 1.0) + 0.5) / factor_rows, 0.0).r;
 }
 
 // Both sides are lit; to_eye and the gradient are in eye space. Without a gradient: ambient light.
@@ -169,7 +185,7 @@ float texel_on(ray r, float t)
 
 vec3 gradient_on(ray r, float t)
 {
-    return mat3(gradient_to_eye) * textureLod(gradients, r.place + t * r.way, 0.0).xyz;
+    return gradient_in(r.place + t * r.way);
 }
 
 // How far a ray goes from a point in a box of index space to where it leaves that.

@@ -29,11 +29,14 @@ void main()
     float frame = frame_here(index);
     vec3 from = mix(brick_first, low.xyz, lessThan(dim.xyz, vec3(1.5)));
     vec3 to = mix(brick_first + brick_size - 1.0, high.xyz, lessThan(dim.xyz, vec3(1.5)));
+#ifdef CLIPS
     bool kept = true; // a slice in a plane that clips is drawn
     for (int n = 0; n < counts.y; n++)
         kept = kept && dot(clips[n].xyz, p) >= clips[n].w + (counts.z != 0 ? slack : -slack);
-    if (abs(slope) < 1e-6 || !is_within(index, from, to) || (counts.y > 0 && kept == (counts.z != 0)) ||
-        -p.z < view.y || -p.z > view.z)
+    if (kept == (counts.z != 0))
+        discard;
+#endif
+    if (abs(slope) < 1e-6 || !is_within(index, from, to) || -p.z < view.y || -p.z > view.z)
         discard;
     float texel = texel_at(index);
     if (isnan(texel) && frame < 0.5)

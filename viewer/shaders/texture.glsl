@@ -114,8 +114,7 @@ vec4 through(float from, float to, vec3 direction, float secant)
         return vec4(0.0);
     vec4 color = color_of(a, b, (to - from) * thickness * secant);
 #if (defined(LIT) && !defined(SHADES)) || defined(FACTOR)
-    vec3 gradient = mat3(gradient_to_eye) * texture(gradients, 0.5 * (a + b)).xyz;
-    color = by_gradient(color, gradient, -direction);
+    color = by_gradient(color, gradient_in(0.5 * (a + b)), -direction);
 #endif
 #ifdef CUE
     color = attenuate(color, front_depth + 0.5 * (from + to) * thickness, gl_FragCoord.y / picture.y);
