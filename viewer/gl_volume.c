@@ -420,18 +420,19 @@ static cw_status upload_gradients(cwi_gl *gl, cwi_gl_brick *b, cw_error *err)
 }
 
 /* Differences need neighbours that are there: the next brick's are not. */
-static bool has_differences(const cwi_gl_volume *g)
+static bool has_differences(const cwi_gl *gl)
 {
+    const cwi_gl_volume *g = &gl->volume;
     const size_t *dim = g->key.dim;
     return g->brick_count == 1 && !g->ranges.has_gaps &&
-           dim[0] * dim[1] * dim[2] > MOST_GRADIENTS;
+           (gl->frame->scene.lean || dim[0] * dim[1] * dim[2] > MOST_GRADIENTS);
 }
 
 cw_status cwi_gl_need_gradients(cwi_gl *gl, const char **defines, cw_error *err)
 {
     cwi_gl_volume *g = &gl->volume;
     cw_status st = CW_OK;
-    const bool differs = has_differences(g);
+    const bool differs = has_differences(gl);
     *defines = differs ? "#define DIFFERENCES\n" : "";
     for (size_t n = 0; n < g->brick_count && !differs && st == CW_OK; n++)
         if (!g->bricks[n].gradients)

@@ -110,6 +110,7 @@ static cw_status space_scene(view *v, const render_args *args, cw_mode mode,
         .mesh = view_has_mesh(v) && v->source.mesh.triangle_count ? &v->source.mesh : NULL,
         .threads = (int)args->input.threads};
     scene->camera = v->state.camera;
+    scene->lean = true;
     scene->samples = args->samples ? (int)args->samples : mode == CW_MODE_MESH ? 2 : 1;
     cw_status st = cli_make_scene(&args->scene, &subject, mode, transfer, scene, err);
     if (mode == CW_MODE_SLICES && scene->slice_count == 0)

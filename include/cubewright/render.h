@@ -144,6 +144,9 @@ typedef struct cw_scene {
     bool no_skipping;       /* go through what is empty as well */
     float stop_opacity;     /* rays, and layers of meshes, end there; default 0.9999 */
     double threshold;       /* local-mip: the value a maximum has to reach */
+    bool lean;              /* gradients are found anew by the shader, where they can be, not
+                               kept in a texture: less memory, a faster first picture, lit rays
+                               up to a third slower. Always so of large volumes */
     size_t texture_edge;    /* largest edge of a 3D texture, in voxels; default: what GL can */
     cw_target target;       /* texture, shaded-texture: what slices are blended in */
     bool colors_first;      /* texture, shaded-texture: interpolate colours, not data */
