@@ -20,7 +20,12 @@ enum { NAMED = sizeof named / sizeof *named, FIRST_NAMED = 256, OTHER = 1 };
 static bool is_one_character(const char *text)
 {
     const unsigned char c = (unsigned char)*text;
-    const size_t length = c < 0x80 ? 1 : c < 0xc0 ? 0 : c < 0xe0 ? 2 : c < 0xf0 ? 3 : 4;
+    const size_t length = c == 0     ? 0
+                          : c < 0x80 ? 1
+                          : c < 0xc0 ? 0
+                          : c < 0xe0 ? 2
+                          : c < 0xf0 ? 3
+                                     : 4;
     for (size_t n = 1; n < length; n++)
         if (((unsigned char)text[n] & 0xc0) != 0x80)
             return false;

@@ -1,6 +1,7 @@
 /* A window that nobody sees, used by what is fed to it. */
 #include "support/pictures.h"
 
+#include "core/memory.h"
 #include "core/module.h"
 #include "viewer/ui.h"
 
@@ -768,6 +769,36 @@ static void a_second_window_leaves_the_first_alone(void **state)
     assert_non_null(strstr(u->name(ui), "OpenGL"));
 }
 
+static void windows_without_memory_are_refused(void **state)
+{
+    const cwi_ui_desc desc = {.title = "", .width = 50, .height = 40, .hidden = true};
+    (void)state;
+    need_window();
+    cwi_ui *other = NULL;
+    cw_status st = CW_ERR_NO_MEMORY;
+    for (long n = 0; st != CW_OK; n++) {
+        cw_error err = {0};
+        cwi_alloc_fail_after(n);
+        st = u->open(&desc, &other, &err);
+        const bool failed = cwi_alloc_fail_after(-1);
+        assert_int_equal(st, failed ? CW_ERR_NO_MEMORY : CW_OK);
+    }
+    u->close(other);
+}
+
+static void input_without_memory_is_refused(void **state)
+{
+    const cwi_ui_event event = {.kind = CWI_UI_WRITE, .text = "a"};
+    (void)state;
+    need_window();
+    cw_error err = {0};
+    cwi_alloc_fail_after(0);
+    const cw_status st = u->feed(ui, &event, &err);
+    cwi_alloc_fail_after(-1);
+    assert_int_equal(st, CW_ERR_NO_MEMORY);
+    assert_false(u->pending(ui));
+}
+
 static int close_all(void **state)
 {
     close_window(state);
@@ -805,6 +836,8 @@ int main(void)
         CASE(renderers_and_windows_do_not_disturb_each_other),
         CASE(windows_of_impossible_sizes_are_refused),
         CASE(a_second_window_leaves_the_first_alone),
+        CASE(windows_without_memory_are_refused),
+        CASE(input_without_memory_is_refused),
     };
 #undef CASE
     return cmocka_run_group_tests(tests, open_window, close_all);
