@@ -8,6 +8,17 @@
 #include "core/vector.h"
 
 #include <math.h>
+#include <string.h>
+
+/* What is kept from picture to picture of a volume: the last error that was fitted, too, for
+ * that is a walk through the whole tree. */
+typedef struct tree {
+    cwi_pyramid pyramid;
+    size_t budget; /* that it was fitted to; 0: none was */
+    int axis;
+    cw_transfer transfer;
+    double error;
+} tree;
 
 typedef struct walk {
     cwi_splats splats;
@@ -166,34 +177,50 @@ static cw_status draw_sheets(walk *w, cw_error *err)
 
 static void drop(void *state)
 {
-    cwi_pyramid_free(state);
-    cwi_free(state);
+    tree *t = state;
+    cwi_pyramid_free(&t->pyramid);
+    cwi_free(t);
 }
 
-/* Of a volume, kept from picture to picture. */
 static cw_status make_tree(const cwi_gl *gl, void **out, cw_error *err)
 {
     const cwi_frame *f = gl->frame;
-    cwi_pyramid *p = cwi_alloc_zeroed(1, sizeof *p);
-    if (!p)
+    tree *t = cwi_alloc_zeroed(1, sizeof *t);
+    if (!t)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a pyramid");
     cw_status st = cwi_pyramid_make(&f->volume, gl->volume.ranges.has_gaps, f->scene.threads,
-                                    &gl->watch.progress, p, err);
+                                    &gl->watch.progress, &t->pyramid, err);
     if (st == CW_OK)
-        *out = p;
+        *out = t;
     else
-        drop(p);
+        drop(t);
     return st;
 }
 
-static cw_status choose_error(walk *w, cw_error *err)
+static bool is_fitted(const tree *t, const walk *w)
+{
+    const cwi_frame *f = w->splats.frame;
+    return t->budget == f->scene.splat_budget && t->axis == w->splats.axis &&
+           memcmp(&t->transfer, &f->transfer, sizeof t->transfer) == 0;
+}
+
+static cw_status fit(tree *t, const walk *w, cw_error *err)
+{
+    const cwi_frame *f = w->splats.frame;
+    cw_status st =
+        cwi_pyramid_fit(&t->pyramid, &w->view, f->scene.splat_budget, &t->error, err);
+    t->budget = st == CW_OK ? f->scene.splat_budget : 0;
+    t->axis = w->splats.axis;
+    memcpy(&t->transfer, &f->transfer, sizeof t->transfer);
+    return st;
+}
+
+static cw_status choose_error(tree *t, walk *w, cw_error *err)
 {
     const cw_scene *s = &w->splats.frame->scene;
-    double error = 0;
-    cw_status st = CW_OK;
-    if (s->splat_budget > 0)
-        st = cwi_pyramid_fit(w->pyramid, &w->view, s->splat_budget, &error, err);
-    w->error = (float)fmax(error, s->tree_error);
+    const bool has_budget = s->splat_budget > 0;
+    cw_status st = has_budget && !is_fitted(t, w) ? fit(t, w, err) : CW_OK;
+    w->error = (float)fmax(has_budget ? t->error : 0, s->tree_error);
     return st;
 }
 
@@ -203,14 +230,15 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     cw_status st = *state ? CW_OK : make_tree(gl, state, err);
     if (st != CW_OK)
         return st;
-    w.pyramid = *state;
+    tree *t = *state;
+    w.pyramid = &t->pyramid;
     st = cwi_splats_open(&w.splats, gl,
                          gl->frame->scene.tree_error > 0 || gl->frame->scene.splat_budget > 0,
                          err);
     w.view =
         (cwi_pyramid_view){gl->frame, &gl->transfer.table, &w.splats.visible, w.splats.axis};
     if (st == CW_OK)
-        st = choose_error(&w, err);
+        st = choose_error(t, &w, err);
     if (st == CW_OK)
         st = w.error > 0 ? draw_sheets(&w, err) : cwi_splats_flat(&w.splats, err);
     cwi_splats_close(&w.splats);
