@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 static const render_args defaults = {
     .scene = {.camera = "front", .lit = true, .preintegration = true, .skipping = true},
@@ -27,6 +28,9 @@ static const cli_option options[] = {
      offsetof(render_args, exec)},
     {"run", 0, CLI_TEXT, "FILE", "do what is written in a file, such as a saved session",
      offsetof(render_args, run)},
+    {"config", 0, CLI_TEXT, "FILE|none",
+     "settings for what is not said here (~/.config/cubewright/view; hidden: none)",
+     offsetof(render_args, config)},
     {"hidden", 0, CLI_FLAG, NULL, "no window: do that, and end; needs no display (off)",
      offsetof(render_args, hidden)},
     {"output", 'o', CLI_TEXT, "FILE", "the same, and write the picture as a .png in the end",
@@ -113,6 +117,22 @@ static cw_status open_first(view *v, const render_args *args, cw_error *err)
     return CW_OK;
 }
 
+/* A file that was named has to be there, the usual one need not. */
+static cw_status configure(view *v, const char *named, cw_error *err)
+{
+    char path[4096];
+    const char *home = getenv("HOME"), *folder = getenv("XDG_CONFIG_HOME");
+    if (named && strcmp(named, "none") != 0)
+        return view_exec_file(v, named, err);
+    if (named || v->is_hidden || (!home && !folder))
+        return CW_OK;
+    if (folder && *folder)
+        snprintf(path, sizeof path, "%s/cubewright/view", folder);
+    else
+        snprintf(path, sizeof path, "%s/.config/cubewright/view", home ? home : "");
+    return access(path, R_OK) == 0 ? view_exec_file(v, path, err) : CW_OK;
+}
+
 static cw_status do_asked(view *v, const render_args *args, cw_error *err)
 {
     cw_status st = view_take_in(v, err);
@@ -142,7 +162,11 @@ static cw_status run_session(view *v, const render_args *args, cw_error *err)
         v->parts[p].scale = 0.5;
     view_lay_out(v);
     cli_console_listen(&listener);
-    cw_status st = open_first(v, args, err);
+    v->is_configuring = true;
+    cw_status st = configure(v, args->config, err);
+    v->is_configuring = false;
+    if (st == CW_OK)
+        st = open_first(v, args, err);
     if (st == CW_OK)
         st = do_asked(v, args, err);
     if (st == CW_OK && !v->is_hidden)
@@ -169,16 +193,20 @@ static void end_session(view *v)
 static cw_status run(void *p, cw_error *err)
 {
     const render_args *args = p;
+    const double start = cli_seconds();
     cw_status st = check(args, err);
     if (st != CW_OK)
         return st;
     view *v = calloc(1, sizeof *v);
     if (!v)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a session");
+    v->start = start;
     st = open_window(v, args, err);
     if (st == CW_OK)
         st = run_session(v, args, err);
     end_session(v);
+    if (st == CW_OK)
+        cli_say_v("most memory held: %.0f MB", (double)cli_peak_bytes() / 1e6);
     return st;
 }
 

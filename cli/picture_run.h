@@ -13,8 +13,8 @@ typedef struct render_args {
     cli_scene scene;
     cli_turns turns;
     cli_marks marks;
-    const char *exec, *run; /* of view alone, */
-    bool hidden;            /* and this */
+    const char *exec, *run, *config; /* of view alone, */
+    bool hidden;                     /* and this */
     const char *output, *json, *mesh, *save_transfer, *save_camera, *compare;
     cli_number iso, difference;
     int inside, backend;

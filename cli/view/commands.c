@@ -775,6 +775,9 @@ static cw_status run_print(view *v, int count, char **args, cw_error *err)
         printf("step %zu of %zu\n", s->step, v->source.series.count);
     else if (strcmp(what, "triangles") == 0)
         printf("triangles %zu\n", v->source.mesh.triangle_count);
+    else if (strcmp(what, "time") == 0)
+        printf("time %.1f ms, %zu x %zu\n", v->parts[VIEW_SPACE].ms,
+               v->parts[VIEW_SPACE].scene.width, v->parts[VIEW_SPACE].scene.height);
     else if (strcmp(what, "message") == 0)
         printf("message %s\n", v->message);
     else if (strcmp(what, "compare") == 0 && v->is_measured)

@@ -95,8 +95,9 @@ static void make_rough(cw_scene *s)
         s->mode = CW_MODE_SPLAT_TREE;
     if (s->mode == CW_MODE_SPLAT_TREE)
         s->splat_budget = ROUGH_SPLATS;
-    s->step_vox = fmax(s->step_vox,
-                       s->mode == CW_MODE_TEXTURE || s->mode == CW_MODE_SHADED_TEXTURE ? 2 : 1);
+    const bool is_coarse = s->mode == CW_MODE_TEXTURE || s->mode == CW_MODE_SHADED_TEXTURE ||
+                           s->mode == CW_MODE_AVERAGE;
+    s->step_vox = fmax(s->step_vox, is_coarse ? 4 : 2);
     s->samples = 1;
     s->jitter = s->exact_filter = s->cell_steps = false;
 }
@@ -280,8 +281,10 @@ static cw_status show_part(view *v, int part, cw_scene *scene, const cw_picture 
 }
 
 /* Slower or faster than wanted: the next rough picture is smaller or larger. */
-static void adapt(view_part *part, double ms)
+static void adapt(view_part *part, cw_mode mode, double ms)
 {
+    if (mode == CW_MODE_MESH) /* its cost is in its triangles */
+        return;
     if (ms > 1.5 * ROUGH_MS || (ms < 0.4 * ROUGH_MS && part->scale < 0.5))
         part->scale *= sqrt(ROUGH_MS / fmax(ms, 1));
     part->scale = fmin(fmax(part->scale, 0.2), 0.5);
@@ -304,7 +307,7 @@ static cw_status draw_part(view *v, int p, view_level level, bool may_stop, cw_i
     if (st != CW_OK)
         return st;
     if (level == VIEW_ROUGH)
-        adapt(part, ms);
+        adapt(part, scene.mode, ms);
     part->scene = scene;
     part->ms = ms;
     part->level = p == VIEW_SPACE ? level : VIEW_FINAL;

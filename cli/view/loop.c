@@ -96,6 +96,15 @@ static void draw(view *v)
         view_say(v, true, err.message);
 }
 
+/* With -v: how long people waited for something to see. */
+static void tell_first(view *v)
+{
+    if (v->is_told || v->parts[VIEW_SPACE].level == VIEW_STALE || !v->path)
+        return;
+    v->is_told = true;
+    cli_say_v("first picture shown after %.2f s", cli_seconds() - v->start);
+}
+
 cw_status view_frame(view *v, double wait_s, cw_error *err)
 {
     const cwi_ui_functions *ui = v->ui;
@@ -116,6 +125,7 @@ cw_status view_frame(view *v, double wait_s, cw_error *err)
     view_mouse(v, in);
     play(v);
     cw_status st = ui->end(v->window, err);
+    tell_first(v);
     view_run_asked(v);
     draw(v);
     return st;

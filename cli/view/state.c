@@ -57,10 +57,10 @@ bool view_undo(view *v, int by)
 
 const cli_option *view_find_option(const view *v, const char *name)
 {
-    static const char *const fixed[] = {
-        "exec",   "run",        "hidden",  "output",     "reader",         "raw",
-        "memory", "max-voxels", "timeout", "no-sandbox", "allow-external", "threads",
-        "size",   "steps",      "step"};
+    static const char *const fixed[] = {"exec",       "run",     "config",     "hidden",
+                                        "output",     "reader",  "raw",        "memory",
+                                        "max-voxels", "timeout", "no-sandbox", "allow-external",
+                                        "threads",    "size",    "steps",      "step"};
     for (size_t n = 0; n < sizeof fixed / sizeof *fixed; n++)
         if (strcmp(fixed[n], name) == 0)
             return NULL;
@@ -172,6 +172,8 @@ cw_status view_set(view *v, const char *name, const char *value, cw_error *err)
     const cw_mode mode = v->mode;
     if (!o)
         return cw_fail(err, CW_ERR_ARGUMENT, "'%s' is no setting", name);
+    if (v->is_configuring && v->state.args.common.given[o - v->command->options])
+        return CW_OK; /* the command line outdoes it */
     cw_status st = parse_setting(v, o, value, err);
     if (st == CW_OK)
         st = follow(v, name, err);

@@ -68,7 +68,7 @@ typedef struct view {
     const cli_command *command;
     const cwi_ui_functions *ui;
     cwi_ui *window;
-    bool is_hidden, quits;
+    bool is_hidden, quits, is_configuring;
     size_t gesture; /* counts presses of buttons and keys */
 
     char *path;          /* NULL: nothing is open */
@@ -102,6 +102,8 @@ typedef struct view {
     char message[VIEW_MESSAGE];
     bool is_error;
     double message_until; /* in ui seconds */
+    double start;         /* in cli_seconds() */
+    bool is_told;         /* how long the first picture took */
     double frame_shown, play_next;
     char probe[128];
 
