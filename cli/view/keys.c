@@ -105,8 +105,9 @@ void view_print_keys(void)
         if (!k->key || !k->about)
             continue;
         for (size_t m = n; m == n || (m < view_key_count && !view_keys[m].about); m++)
-            used += (size_t)snprintf(keys + used, sizeof keys - used, "%s%s", m == n ? "" : " ",
-                                     view_keys[m].key);
+            if (view_keys[m].key)
+                used += (size_t)snprintf(keys + used, sizeof keys - used, "%s%s",
+                                         m == n ? "" : " ", view_keys[m].key);
         printf("  %-22s%s\n", keys, k->about);
     }
 }
