@@ -20,6 +20,7 @@ ln -s /usr/share/mricron/templates/ch2.nii.gz head.nii.gz
 # Commands that this build is without are left out.
 simplify=$(cubewright version --features | sed -n 's/^simplify *//p')
 gl=$(cubewright version --features | sed -n 's/^gl *//p')
+window=$(cubewright version --features | sed -n 's/^window *//p')
 level_set=$(cubewright version --features | sed -n 's/^level-set *//p')
 
 awk '/^```console$/ {on = 1; next} /^```/ {on = 0} on' "$root/README.md" >../console
@@ -40,6 +41,7 @@ while IFS= read -r line; do
         command=${line#'$ '}
         : >../wanted
         case $simplify$command in no*'cubewright simplify'*) command=; continue ;; esac
+        case $window$gl$command in *no*'cubewright view'*) command=; continue ;; esac
         case $level_set$command in no*'cubewright hollow'* | no*'cubewright offset'*) command=; continue ;; esac
         case $gl$command in no*'cubewright render'*' --layout'* | no*'cubewright render'*' --mode'* | \
             no*'cubewright render'*' --compare'*) command=; continue ;; esac

@@ -8,7 +8,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PANEL_WIDTH = 320, LABEL_WIDTH = 120, MOST_NAMES = 32, MOST_OPTIONS = 32 };
+enum { PANEL_WIDTH = 320, STRIP_HEIGHT = 30, MOST_NAMES = 32, MOST_OPTIONS = 32 };
 
 /* The menu of a row, "View/Front": whether it is of that menu, and the item's name. */
 static const char *item_of(const view_key *k, const char *menu)
@@ -426,7 +426,7 @@ static void show_status(view *v)
     char line[512];
     const view_part *space = &v->parts[VIEW_SPACE];
     const double scale = v->ui->scale(v->window);
-    const cwi_ui_rect rect = {8 * scale, (double)v->height - 30 * scale, 0, 0};
+    const cwi_ui_rect rect = {2 * scale, (double)v->height - STRIP_HEIGHT * scale, 0, 0};
     snprintf(line, sizeof line, "%s   %s, %.0f ms, %s   %s%s", cli_shown_path(v->path),
              cw_mode_name(v->mode), space->ms, levels[space->level], v->probe,
              v->shown.cut == 1   ? "   wheel cuts x"
@@ -470,6 +470,7 @@ void view_panels(view *v, const cwi_ui_input *in)
 {
     (void)in;
     v->bar_height = v->panel_width = 0;
+    v->strip_height = v->shown.panels ? STRIP_HEIGHT * v->ui->scale(v->window) : 0;
     if (v->shown.panels) {
         show_bar(v);
         show_side(v);

@@ -94,8 +94,8 @@ typedef struct view {
 
     cw_renderer *renderer;
     view_part parts[VIEW_PARTS];
-    size_t width, height; /* of the window */
-    double bar_height, panel_width;
+    size_t width, height;                         /* of the window */
+    double bar_height, panel_width, strip_height; /* of menus, settings, status */
     cw_comparison measured;
     bool is_measured;
 
