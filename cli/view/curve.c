@@ -37,10 +37,11 @@ static void show_histogram(view *v, const cwi_ui_rect *r)
 {
     const cw_statistics *s = &v->statistics;
     double counts[COLUMNS] = {0}, most = 1;
-    for (size_t b = 0; b < s->bin_count; b++) {
-        double *c = &counts[b * COLUMNS / s->bin_count];
-        *c = fmax(*c, log1p((double)s->bins[b]));
-        most = fmax(most, *c);
+    for (size_t c = 0; c < COLUMNS && s->bin_count; c++) {
+        const size_t end = ((c + 1) * s->bin_count - 1) / COLUMNS;
+        for (size_t b = c * s->bin_count / COLUMNS; b <= end; b++)
+            counts[c] = fmax(counts[c], log1p((double)s->bins[b]));
+        most = fmax(most, counts[c]);
     }
     const double width = r->width / COLUMNS;
     for (int c = 0; c < COLUMNS; c++) {

@@ -199,6 +199,23 @@ static void probe(view *v, const cwi_ui_input *in, int part)
              there ? "value" : "cross-hair:", value, point[0], point[1], point[2]);
 }
 
+/* What a press would do. */
+static int cursor_for(const view *v, const cwi_ui_input *in, int part)
+{
+    enum { ARROW, CROSS_HAIR, HAND, LEFT_RIGHT };
+    const cwi_ui_rect *r = &v->parts[VIEW_SPACE].rect;
+    if (part > VIEW_SPACE)
+        return CROSS_HAIR;
+    if (part != VIEW_SPACE || !v->path)
+        return ARROW;
+    if (v->drag == SPLIT || is_on_divider(v, in->x - r->x))
+        return LEFT_RIGHT;
+    return v->drag >= HANDLE || (has_handles(v) &&
+                                 handle_under(v, in->x - r->x, in->y - r->y) != CWI_HANDLE_NONE)
+               ? HAND
+               : ARROW;
+}
+
 void view_mouse(view *v, const cwi_ui_input *in)
 {
     const int part = in->over_widget ? -1 : part_under(v, in->x, in->y);
@@ -223,6 +240,7 @@ void view_mouse(view *v, const cwi_ui_input *in)
                  in->y - v->parts[part].rect.y);
     if (in->wheel != 0 && part >= 0 && v->path)
         turn_wheel(v, in, part);
+    v->ui->set_cursor(v->window, cursor_for(v, in, part));
 }
 
 /* What is drawn over the pictures. */

@@ -201,14 +201,37 @@ static void forget_look(view *v)
         s->args.scene.mode = 0;
 }
 
+/* What is open stays open for what is none of ours. */
+static cw_status expect_readable(const view *v, const char *path, cw_error *err)
+{
+    cw_volume shape = {0};
+    if (!v->path || is_folder(path) || cw_mesh_format(path, NULL))
+        return CW_OK;
+    cw_status st = cli_read_shape(path, &v->state.args.input, &shape, err);
+    cw_volume_free(&shape);
+    return st;
+}
+
+/* "head.nii.gz - cubewright" */
+static void name_window(view *v)
+{
+    char title[256];
+    snprintf(title, sizeof title, "%.200s%scubewright", v->path ? cli_shown_path(v->path) : "",
+             v->path ? " - " : "");
+    v->ui->set_title(v->window, title);
+}
+
 cw_status view_open(view *v, const char *path, cw_error *err)
 {
+    cw_status st = expect_readable(v, path, err);
+    if (st != CW_OK)
+        return st;
     char *copy = strdup(path); /* it may be the path that is closed */
     if (!copy)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a name");
     view_close(v);
     forget_look(v);
-    cw_status st = open_path(v, copy, err);
+    st = open_path(v, copy, err);
     free(copy);
     if (st != CW_OK && v->state.args.scene.mode && v->path && !v->has_volume &&
         (v->source.is_mesh || v->source.volume.voxels.data)) {
@@ -218,6 +241,7 @@ cw_status view_open(view *v, const char *path, cw_error *err)
     if (st != CW_OK)
         view_close(v);
     fresh_look(v);
+    name_window(v);
     v->history.count = 0;
     if (st == CW_OK)
         view_remember(v, "open");
