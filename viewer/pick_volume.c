@@ -70,7 +70,7 @@ static void pass_piece(passage *p, const cwi_walk *w, const cwi_piece *piece,
 
 static void pass_cell(passage *p, const cwi_walk *w)
 {
-    double v[8], value[4], gradient[3][4];
+    double v[8], value[4], gradient[3][4] = {{0}}; /* read for factors of gradients alone */
     cwi_piece pieces[CWI_PIECES];
     const double before = p->light;
     if (!cwi_walk_values(w, v))
