@@ -150,7 +150,8 @@ static cw_status do_asked(view *v, const render_args *args, cw_error *err)
 static cw_status run_session(view *v, const render_args *args, cw_error *err)
 {
     const cli_listener listener = {v, hear, show_progress};
-    const view_shown shown = {.panels = true, .cross = args->marks.layout == CLI_LAYOUT_QUAD};
+    const view_shown shown = {.panels = !args->output,
+                              .cross = args->marks.layout == CLI_LAYOUT_QUAD};
     v->command = &cli_view;
     v->state.args = *args;
     v->state.slice_zoom = 1;

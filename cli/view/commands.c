@@ -143,6 +143,8 @@ static bool fits(const view *v, cw_mode mode)
 static cw_status change_mode(view *v, int by, cw_error *err)
 {
     int m = (int)v->mode;
+    if (v->mode == CW_MODE_MESH)
+        v->state.iso_is_ours = true; /* the volume comes without the surface */
     do
         m = (m + by + CW_MODE_COUNT) % CW_MODE_COUNT;
     while (!fits(v, (cw_mode)m));

@@ -116,7 +116,7 @@ static cw_status space_scene(view *v, const render_args *args, cw_mode mode,
         .mesh = view_has_mesh(v) && v->source.mesh.triangle_count ? &v->source.mesh : NULL,
         .threads = (int)args->input.threads};
     scene->camera = v->state.camera;
-    scene->lean = true;
+    scene->lean = !v->is_saving;
     scene->samples = args->samples ? (int)args->samples : mode == CW_MODE_MESH ? 2 : 1;
     cw_status st = cli_make_scene(&args->scene, &subject, mode, transfer, scene, err);
     if (mode == CW_MODE_SLICES && scene->slice_count == 0)
@@ -363,7 +363,9 @@ cw_status view_picture(view *v, const char *path, cw_error *err)
     cw_image image = {0};
     if (!v->path)
         return cw_fail(err, CW_ERR_ARGUMENT, "nothing is open that a picture could be of");
+    v->is_saving = true;
     cw_status st = draw_part(v, VIEW_SPACE, VIEW_FINAL, false, &image, err);
+    v->is_saving = false;
     if (st == CW_OK)
         st = cw_image_write(path, &image, err);
     cw_image_free(&image);

@@ -77,9 +77,15 @@ cw_status view_choose_mode(view *v, cw_error *err)
         return cw_fail(err, CW_ERR_ARGUMENT, "the mode %s draws volumes on even grids; %s",
                        cw_mode_name(v->mode),
                        v->source.is_mesh ? "this is a mesh" : "of this one there are surfaces");
+    if (v->mode != CW_MODE_MESH && v->state.iso_is_ours) {
+        args->iso = (cli_number){0};
+        v->state.iso_is_ours = false;
+    }
     if (v->path && v->mode == CW_MODE_MESH && !v->source.is_mesh && !args->mesh &&
-        !args->iso.given)
+        !args->iso.given) {
         args->iso = (cli_number){true, view_suggest_iso(v)};
+        v->state.iso_is_ours = true;
+    }
     return CW_OK;
 }
 

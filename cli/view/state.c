@@ -127,6 +127,8 @@ static cw_status follow(view *v, const char *name, cw_error *err)
         s->is_edited = false;
     if (strcmp(name, "camera") == 0 || strcmp(name, "ortho") == 0 || strcmp(name, "fov") == 0)
         s->is_placed = false;
+    if (strcmp(name, "iso") == 0)
+        s->iso_is_ours = false;
     if (strcmp(name, "iso") == 0 && !s->args.iso.given &&
         s->args.scene.mode == 1 + CW_MODE_MESH && v->has_volume)
         s->args.scene.mode = 0;

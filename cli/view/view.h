@@ -38,7 +38,8 @@ typedef struct view_part {
 /* What undo brings back, and what is saved. */
 typedef struct view_state {
     render_args args;
-    bool is_edited; /* the transfer function is curve, not that of args */
+    bool iso_is_ours; /* nobody asked for that isovalue, but for a mesh */
+    bool is_edited;   /* the transfer function is curve, not that of args */
     cw_transfer curve;
     bool is_placed; /* the camera has been set */
     cw_camera camera;
@@ -69,6 +70,7 @@ typedef struct view {
     const cwi_ui_functions *ui;
     cwi_ui *window;
     bool is_hidden, quits, is_configuring;
+    bool is_saving; /* what is drawn is for keeps: as render draws it */
     size_t gesture; /* counts presses of buttons and keys */
 
     char *path;          /* NULL: nothing is open */
