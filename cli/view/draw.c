@@ -49,7 +49,7 @@ static bool can_thin(const view *v)
 static cw_status need_surface(view *v, view_level level, cw_error *err)
 {
     const render_args *args = &v->state.args;
-    const bool coarse = level == VIEW_ROUGH && can_thin(v);
+    const bool coarse = level == VIEW_ROUGH && v->state.is_placed && can_thin(v);
     cw_mesh mesh;
     const bool is_there =
         v->mesh_iso == args->iso.value &&

@@ -290,11 +290,14 @@ cw_status view_place_camera(view *v, const char *name, cw_error *err)
     const double aspect = space->rect.height > 0 ? space->rect.width / space->rect.height : 1.6;
     cli_scene scene = v->state.args.scene;
     cw_camera camera;
+    double box[2][3];
+    if (v->mode != CW_MODE_MESH || !cli_find_box(NULL, &v->source.mesh, box))
+        memcpy(box, v->box, sizeof box);
     if (name)
         scene.camera = name;
     cw_status st = cli_check_camera(&scene, &one, err);
     if (st == CW_OK)
-        st = cli_find_camera(&scene, &one, 0, (const double(*)[3])v->box, aspect, &camera, err);
+        st = cli_find_camera(&scene, &one, 0, (const double(*)[3])box, aspect, &camera, err);
     if (st != CW_OK)
         return st;
     v->state.camera = camera;
