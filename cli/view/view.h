@@ -69,6 +69,7 @@ typedef struct view {
     const cwi_ui_functions *ui;
     cwi_ui *window;
     bool is_hidden, quits, is_configuring;
+    bool is_monkey; /* what comes in is random */
     size_t gesture; /* counts presses of buttons and keys */
 
     char *path;          /* NULL: nothing is open */
