@@ -8,23 +8,31 @@ view() {
 alike() {
     cmp "$1" "$2" && echo "$1 is $2"
 }
+near() {
+    png_near "$1" "$2" 0.3 24
+}
 differ() {
     cmp -s "$1" "$2" && echo "$1 is $2, but should not be"
+}
+
+# As a picture has it: the scene is what panels and bars leave of the window.
+size_of() {
+    od -A n -t u1 -j 18 -N 6 "$1" | awk '{ print 256 * $1 + $2 "x" 256 * $5 + $6 }'
 }
 
 # What is seen first is what render draws, of the same size.
 echo "first"
 view 'screenshot first.png; mode mip; screenshot mip.png; iso 300; mode mesh; screenshot mesh.png; print triangles; save-camera c.json;
       toggle panels off; screenshot wide.png; capture window.png'
-for picture in first mip mesh wide window; do
-    printf '%s ' $picture
-    od -A n -t u1 -j 16 -N 8 $picture.png
-done
-cubewright render h.nrrd -q -o r.png --size 320x457
-alike first.png r.png
-cubewright render h.nrrd -q -o r.png --size 320x457 --mode mip
+[ "$(size_of first.png)" = "$(size_of mesh.png)" ] || echo "other sizes"
+size_of wide.png
+size_of window.png
+size=$(size_of first.png)
+cubewright render h.nrrd -q -o r.png --size "$size"
+near first.png r.png
+cubewright render h.nrrd -q -o r.png --size "$size" --mode mip
 alike mip.png r.png
-cubewright render h.nrrd -q -o r.png --size 320x457 --mode mesh --iso 300 --camera c.json --backend egl --samples 2
+cubewright render h.nrrd -q -o r.png --size "$size" --mode mesh --iso 300 --camera c.json --backend egl --samples 2
 alike mesh.png r.png
 cubewright view h.nrrd -q --size 640x480 -o o.png --mode mip --exec 'orbit 0'
 alike mip.png o.png
@@ -37,11 +45,11 @@ view 'key M; print mode; key Shift+M; print mode; click Scene; capture a.png; cl
       key Space; print playing; key H; capture help.png; key Escape; print help; key ?; print help; key Escape;
       key 3; wait; screenshot right.png; key Ctrl+1; screenshot back.png; key 5; screenshot ortho.png; print ortho;
       key Enter; key Left; screenshot left.png; key Tab; print panels; capture bare.png'
-cubewright render h.nrrd -q -o r.png --size 320x457 --mode average --camera right
+cubewright render h.nrrd -q -o r.png --size "$size" --mode average --camera right
 alike right.png r.png
-cubewright render h.nrrd -q -o r.png --size 320x457 --mode average --camera back
+cubewright render h.nrrd -q -o r.png --size "$size" --mode average --camera back
 alike back.png r.png
-cubewright render h.nrrd -q -o r.png --size 320x457 --mode average --camera back --ortho
+cubewright render h.nrrd -q -o r.png --size "$size" --mode average --camera back --ortho
 alike ortho.png r.png
 differ help.png a.png
 differ left.png ortho.png
@@ -72,9 +80,9 @@ sed -e 's/^cubewright view/& -q --hidden --size 640x480/' -e "s/'\$/toggle panel
 sh line.sh
 alike a.png c.png
 alike wa.png wc.png
-cubewright render h.nrrd -q -o d.png --mode composite --size 319x239 --tf tf.json --camera c.json --iso 300 --clip-box=-20mm:120mm,-120mm:120mm,-120mm:120mm \
+cubewright render h.nrrd -q -o d.png --mode composite --size "$(size_of a.png)" --tf tf.json --camera c.json --iso 300 --clip-box=-20mm:120mm,-120mm:120mm,-120mm:120mm \
     --background '#102030,white' --letters
-alike a.png d.png
+near a.png d.png
 sed -n 1,2p s.txt
 mkdir "it's a folder; #1"
 cp h.nrrd "it's a folder; #1/a b.nrrd"
