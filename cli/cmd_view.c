@@ -142,6 +142,8 @@ static cw_status do_asked(view *v, const render_args *args, cw_error *err)
         st = view_exec(v, args->exec, err);
         st = st == CW_OK ? st : cwi_fail_in(err, st, "--exec");
     }
+    if (st == CW_OK && args->output)
+        st = view_frame(v, 0, err); /* lays out what came before */
     if (st == CW_OK && args->output && !v->quits)
         st = view_picture(v, args->output, err);
     return st;

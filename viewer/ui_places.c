@@ -62,6 +62,7 @@ void cwi_ui_panel_enter(cwi_ui *ui, const char *title, unsigned flags)
     const int at = ui->depth < CWI_UI_DEPTH ? ui->depth : CWI_UI_DEPTH - 1;
     cwi_ui_label(ui->panel[at], title);
     ui->panel_flags[at] = flags;
+    ui->in_section[at] = false;
     ui->depth++;
 }
 

@@ -232,12 +232,21 @@ void note_close(cwi_ui *ui, const ImGuiWindow *window)
     cwi_ui_places_add(ui, "close", &rect);
 }
 
+void leave_section(cwi_ui *ui)
+{
+    bool *in_section = &ui->in_section[cwi_ui_panel_at(ui)];
+    if (*in_section)
+        ImGui::PopID();
+    *in_section = false;
+}
+
 void panel_end(cwi_ui *ui)
 {
     const int at = cwi_ui_panel_at(ui);
     const unsigned flags = ui->panel_flags[at];
     char title[CWI_UI_NAME_SIZE];
     cwi_ui_label(title, ui->panel[at]);
+    leave_section(ui);
     if (!(flags & CWI_UI_GONE)) {
         const ImGuiWindow *window = ImGui::GetCurrentWindow();
         const cwi_ui_rect rect = {window->Pos.x, window->Pos.y, window->Size.x, window->Size.y};
@@ -254,11 +263,16 @@ void panel_end(cwi_ui *ui)
     }
 }
 
+/* Widgets of two sections may have one label, and that of a section's title: ImGui would take
+ * one for the other, and end the program where one is typed into and the other is clicked. */
 bool section(cwi_ui *ui, const char *title, bool open_at_first)
 {
+    leave_section(ui);
     const bool open = ImGui::CollapsingHeader(
         title, open_at_first ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None);
     used(ui, title, ImGui::IsItemToggledOpen());
+    ImGui::PushID(title);
+    ui->in_section[cwi_ui_panel_at(ui)] = true;
     return open;
 }
 

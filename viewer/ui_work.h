@@ -75,6 +75,7 @@ struct cwi_ui {
     cwi_ui_places now, last; /* of this frame and of the one before */
     char panel[CWI_UI_DEPTH][CWI_UI_NAME_SIZE];
     unsigned panel_flags[CWI_UI_DEPTH];
+    bool in_section[CWI_UI_DEPTH];
     int depth;     /* of panel[] */
     bool has_bar;  /* bar_begin() opened one */
     bool is_ended; /* a change of the widget before has come to its end */

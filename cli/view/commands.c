@@ -635,19 +635,32 @@ static cw_status tell_written(view *v, cw_status st, const char *path)
     return st;
 }
 
+static cw_status need_png(const char *path, cw_error *err)
+{
+    const char *dot = strrchr(path, '.');
+    return dot && strcmp(dot, ".png") == 0
+               ? CW_OK
+               : cw_fail(err, CW_ERR_ARGUMENT, "%s: pictures are written as .png", path);
+}
+
 static cw_status run_screenshot(view *v, int count, char **args, cw_error *err)
 {
     char name[64];
     free_name(name, sizeof name);
     const char *path = count ? args[0] : name;
-    return tell_written(v, view_picture(v, path, err), path);
+    cw_status st = need_png(path, err);
+    if (st == CW_OK)
+        st = view_frame(v, 0, err); /* lays out what came before */
+    return st == CW_OK ? tell_written(v, view_picture(v, path, err), path) : st;
 }
 
 static cw_status run_capture(view *v, int count, char **args, cw_error *err)
 {
     cw_image image = {0};
     (void)count;
-    cw_status st = view_settle(v, err);
+    cw_status st = need_png(args[0], err);
+    if (st == CW_OK)
+        st = view_settle(v, err);
     if (st == CW_OK)
         st = v->ui->grab(v->window, &image, err);
     if (st == CW_OK)
@@ -665,6 +678,10 @@ static cw_status run_turntable(view *v, int count, char **args, cw_error *err)
     cw_status st = take("turntable", args, 1, &turns, err);
     if (st == CW_OK && !(turns >= 2 && turns <= 100000 && turns == floor(turns)))
         st = cw_fail(err, CW_ERR_ARGUMENT, "turntable %s: 2 to 100000 was expected", args[0]);
+    if (st == CW_OK)
+        st = need_png(args[1], err);
+    if (st == CW_OK)
+        st = view_frame(v, 0, err); /* lays out what came before */
     if (st == CW_OK)
         st = need_camera(v, err);
     if (st != CW_OK)
@@ -891,12 +908,31 @@ static cw_status run_drop(view *v, int count, char **args, cw_error *err)
     return feed(v, &(cwi_ui_event){.kind = CWI_UI_DROP, .text = args[0]}, err);
 }
 
+/* Where a widget is once it moves no more: what came just now may still be laid out. */
+static cw_status find_widget(view *v, const char *label, cwi_ui_rect *r, cw_error *err)
+{
+    enum { MOST_FRAMES = 8 };
+    cwi_ui_rect before = {0};
+    bool is_there = false;
+    for (int n = 0; n < MOST_FRAMES; n++) {
+        cw_status st = view_frame(v, 0, err);
+        if (st != CW_OK)
+            return st;
+        is_there = v->ui->find(v->window, label, r);
+        if (is_there && memcmp(&before, r, sizeof before) == 0)
+            return CW_OK;
+        before = *r;
+    }
+    return is_there ? CW_OK : cw_fail(err, CW_ERR_ARGUMENT, "nothing is labelled '%s'", label);
+}
+
 /* Goes to a place of a widget, told as shares of its size. */
 static cw_status go_to(view *v, const char *label, double x, double y, cw_error *err)
 {
-    cwi_ui_rect r;
-    if (!v->ui->find(v->window, label, &r))
-        return cw_fail(err, CW_ERR_ARGUMENT, "nothing is labelled '%s'", label);
+    cwi_ui_rect r = {0};
+    cw_status st = find_widget(v, label, &r, err);
+    if (st != CW_OK)
+        return st;
     return feed(
         v,
         &(cwi_ui_event){.kind = CWI_UI_MOVE, .x = r.x + x * r.width, .y = r.y + y * r.height},
@@ -923,10 +959,27 @@ static cw_status run_monkey(view *v, int count, char **args, cw_error *err)
 {
     double n[2] = {0};
     cw_status st = take("monkey", args, count, n, err);
+    if (st == CW_OK && !(n[0] >= 0 && n[0] <= 1e15 && n[1] >= 0 && n[1] <= 1e9))
+        st = cw_fail(err, CW_ERR_ARGUMENT, "monkey %s %s: a seed and a number were expected",
+                     args[0], args[1]);
     uint64_t seed = st == CW_OK ? (uint64_t)n[0] : 0;
+    v->is_monkey = true;
     for (size_t k = 0; st == CW_OK && k < (size_t)n[1] && !v->quits; k++)
         st = view_monkey(v, &seed, err);
+    v->is_monkey = false;
     return st;
+}
+
+/* The monkey finds neither files to write nor others to open, nor the way out: not by keys, not
+ * by menus. */
+static bool may_run(const view *v, const char *name)
+{
+    static const char *const barred[] = {"screenshot", "save-state", "quit", "next",
+                                         "previous"};
+    for (size_t n = 0; v->is_monkey && n < sizeof barred / sizeof *barred; n++)
+        if (strcmp(name, barred[n]) == 0)
+            return false;
+    return true;
 }
 
 #define VERB(name, takes, about, least, most, run)                                             \
@@ -1037,6 +1090,8 @@ cw_status view_run(view *v, int count, char **words, cw_error *err)
     if (count - 1 < least || count - 1 > most)
         return cw_fail(err, CW_ERR_ARGUMENT, "%s takes %s, not %d words", words[0],
                        verb ? verb->takes : "one value", count - 1);
+    if (!may_run(v, words[0]))
+        return CW_OK;
     cw_status st = verb ? verb->run(v, count - 1, words + 1, err)
                         : view_set(v, words[0], count > 1 ? words[1] : NULL, err);
     if (st == CW_OK && v->path && (is_setting || verb->changes))

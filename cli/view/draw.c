@@ -30,6 +30,7 @@ static cw_status need_extractor(view *v, bool coarse, cw_error *err)
         return CW_OK;
     if (coarse) {
         const size_t two[3] = {2, 2, 2};
+        cw_volume_free(&v->thinned);
         cw_status st = cw_volume_coarsen(whole, two, &v->thinned, err);
         if (st != CW_OK)
             return st;
@@ -366,6 +367,8 @@ cw_status view_picture(view *v, const char *path, cw_error *err)
     v->is_saving = true;
     cw_status st = draw_part(v, VIEW_SPACE, VIEW_FINAL, false, &image, err);
     v->is_saving = false;
+    if (st == CW_OK) /* it counts as drawn: it is what the window shows now */
+        st = v->ui->keep(v->window, VIEW_SPACE, &image, err);
     if (st == CW_OK)
         st = cw_image_write(path, &image, err);
     cw_image_free(&image);

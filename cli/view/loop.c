@@ -164,17 +164,6 @@ static double draw_random(uint64_t *seed)
     return (double)(*seed >> 11) / 9007199254740992.0;
 }
 
-/* Neither files to write nor a way out. */
-static bool is_harmless(const char *command)
-{
-    static const char *const harmful[] = {"screenshot", "save-", "quit", "next", "previous"};
-    for (size_t n = 0; n < sizeof harmful / sizeof *harmful; n++)
-        if (strncmp(command, harmful[n], strlen(harmful[n])) == 0)
-            return strcmp(command, "next-mode") == 0 || strcmp(command, "next-preset") == 0 ||
-                   strcmp(command, "previous-mode") == 0;
-    return true;
-}
-
 cw_status view_monkey(view *v, uint64_t *seed, cw_error *err)
 {
     const double what = draw_random(seed), x = draw_random(seed), y = draw_random(seed);
@@ -184,7 +173,7 @@ cw_status view_monkey(view *v, uint64_t *seed, cw_error *err)
     if (what < 0.2) {
         const view_key *k = &view_keys[(size_t)(x * (double)view_key_count)];
         e.kind = CWI_UI_KEY;
-        e.text = k->key && is_harmless(k->command) ? k->key : "Escape";
+        e.text = k->key ? k->key : "Escape";
     } else if (what < 0.6) {
         e.kind = what < 0.4 ? CWI_UI_PRESS : CWI_UI_LIFT;
         e.button = (int)(x * 1.3); /* the left one mostly */

@@ -4,6 +4,7 @@
 
 #include "core/status.h"
 
+#include <ctype.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -11,14 +12,20 @@
 
 enum { MOST_WORDS = 16, MOST_BYTES = 1 << 20 };
 
+/* Behind a command, what looks like a colour is one: #ffeedd. */
+static bool is_comment(const char *c, bool is_first)
+{
+    return *c == '#' && (is_first || !isxdigit((unsigned char)c[1]));
+}
+
 /* Takes the next word off the text into out, which has room for all of it, as a shell would:
  * quotes hold blanks. false: the command ends here. *bad: a quote is not closed. */
-static bool next_word(const char **text, char *out, bool *bad)
+static bool next_word(const char **text, bool is_first, char *out, bool *bad)
 {
     const char *c = *text + strspn(*text, " \t\r");
     *bad = false;
     *text = c;
-    if (*c == '\0' || *c == ';' || *c == '\n' || *c == '#')
+    if (*c == '\0' || *c == ';' || *c == '\n' || is_comment(c, is_first))
         return false;
     while (*c && !strchr(" \t\r;\n", *c)) {
         if (*c == '\'' || *c == '"') {
@@ -46,7 +53,7 @@ static cw_status run_first(view *v, const char **text, char *room, cw_error *err
     char *words[MOST_WORDS];
     int count = 0;
     bool bad = false;
-    while (count < MOST_WORDS && next_word(text, room, &bad)) {
+    while (count < MOST_WORDS && next_word(text, count == 0, room, &bad)) {
         words[count++] = room;
         room += strlen(room) + 1;
     }

@@ -37,6 +37,7 @@ static void drop_surface(view *v)
 {
     cw_extractor_free(v->extractor);
     cw_extractor_free(v->coarse);
+    cw_volume_free(&v->thinned);
     v->extractor = v->coarse = NULL;
     v->mesh_level = 0;
 }

@@ -129,6 +129,8 @@ static cw_status follow(view *v, const char *name, cw_error *err)
         s->is_placed = false;
     if (strcmp(name, "iso") == 0)
         s->iso_is_ours = false;
+    if (strcmp(name, "layout") == 0) /* as at the start */
+        v->shown.cross = s->args.marks.layout == CLI_LAYOUT_QUAD;
     if (strcmp(name, "iso") == 0 && !s->args.iso.given &&
         s->args.scene.mode == 1 + CW_MODE_MESH && v->has_volume)
         s->args.scene.mode = 0;
@@ -206,6 +208,15 @@ static void put_word(FILE *out, const char *word)
     fputc('\'', out);
 }
 
+/* JSON has its lines for people; here it is one word of one line. */
+static void join_lines(char *text)
+{
+    for (size_t n = strlen(text); n > 0 && text[n - 1] == '\n'; n--)
+        text[n - 1] = '\0';
+    for (char *c = text; *c; c++)
+        *c = *c == '\n' ? ' ' : *c;
+}
+
 static void put_setting(FILE *out, bool shell, const char *name, const char *value)
 {
     fprintf(out, shell ? " --%s%s" : "%s%s", name, value ? " " : "");
@@ -236,10 +247,14 @@ static void put_settings(const view *v, FILE *out, bool shell)
         else if (cli_option_text(o, &s->args, text, sizeof text))
             put_setting(out, shell, o->name, text);
     }
-    if (s->is_edited && cw_transfer_format(&s->curve, text, NULL) == CW_OK)
+    if (s->is_edited && cw_transfer_format(&s->curve, text, NULL) == CW_OK) {
+        join_lines(text);
         put_setting(out, shell, "tf", text);
-    if (s->is_placed && cw_camera_format(&s->camera, text, NULL) == CW_OK)
+    }
+    if (s->is_placed && cw_camera_format(&s->camera, text, NULL) == CW_OK) {
+        join_lines(text);
         put_setting(out, shell, "camera", text);
+    }
 }
 
 /* What no option stands for. */

@@ -71,6 +71,7 @@ typedef struct view {
     cwi_ui *window;
     bool is_hidden, quits, is_configuring;
     bool is_saving; /* what is drawn is for keeps: as render draws it */
+    bool is_monkey; /* what comes in is random */
     size_t gesture; /* counts presses of buttons and keys */
 
     char *path;          /* NULL: nothing is open */
