@@ -34,7 +34,7 @@ cubewright render h.nrrd -q -o r.png --size "$size" --mode mip
 alike mip.png r.png
 cubewright render h.nrrd -q -o r.png --size "$size" --mode mesh --iso 300 --camera c.json --backend egl --samples 2
 alike mesh.png r.png
-cubewright view h.nrrd -q --size 640x480 -o o.png --mode mip --exec 'orbit 0'
+cubewright view h.nrrd -q --size "$size" -o o.png --mode mip --exec 'orbit 0'
 alike mip.png o.png
 
 # Keys and menus do the same.
