@@ -6,16 +6,8 @@
 #include <stdint.h>
 #include <string.h>
 
-static const render_args defaults = {
-    .scene = {.camera = "front", .lit = true, .preintegration = true, .skipping = true},
-    .size = {.count = 2, .n = {1280, 720, 0}}};
-
-#define SCENE(field) offsetof(render_args, scene) + offsetof(cli_scene, field)
-#define MARKS(field) offsetof(render_args, marks) + offsetof(cli_marks, field)
-#define HEADING(name)                                                                          \
-    {                                                                                          \
-        name, 0, CLI_HEADING, NULL, "", 0                                                      \
-    }
+static const render_args defaults = {.scene = CLI_SCENE_DEFAULTS,
+                                     .size = {.count = 2, .n = {1280, 720, 0}}};
 
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE",
@@ -31,7 +23,7 @@ static const cli_option options[] = {
      offsetof(render_args, json)},
     {"save-tf", 0, CLI_TEXT, "FILE", "write the transfer function as a .json file",
      offsetof(render_args, save_transfer)},
-    HEADING("Camera"),
+    CLI_HEADED("Camera"),
 #include "cli/options_camera.inc"
     {"save-camera", 0, CLI_TEXT, "FILE", "write the camera as a .json file",
      offsetof(render_args, save_camera)},
@@ -40,7 +32,7 @@ static const cli_option options[] = {
     {"orbit", 0, CLI_NUMBER, "DEG", "how far round they go (360)",
      offsetof(render_args, turns) + offsetof(cli_turns, orbit)},
 #include "cli/options_look.inc"
-    HEADING("Reading"),
+    CLI_HEADED("Reading"),
     CLI_INPUT_OPTIONS(render_args),
 };
 

@@ -11,16 +11,8 @@
 #include <string.h>
 #include <unistd.h>
 
-static const render_args defaults = {
-    .scene = {.camera = "front", .lit = true, .preintegration = true, .skipping = true},
-    .size = {.count = 2, .n = {1280, 800, 0}}};
-
-#define SCENE(field) offsetof(render_args, scene) + offsetof(cli_scene, field)
-#define MARKS(field) offsetof(render_args, marks) + offsetof(cli_marks, field)
-#define HEADING(name)                                                                          \
-    {                                                                                          \
-        name, 0, CLI_HEADING, NULL, "", 0                                                      \
-    }
+static const render_args defaults = {.scene = CLI_SCENE_DEFAULTS,
+                                     .size = {.count = 2, .n = {1280, 800, 0}}};
 
 static const cli_option options[] = {
     {"exec", 'e', CLI_TEXT, "COMMANDS",
@@ -38,10 +30,10 @@ static const cli_option options[] = {
     {"size", 0, CLI_SIZES, "WxH", "of the window, in pixels (1280x800)",
      offsetof(render_args, size)},
 #include "cli/options_what.inc"
-    HEADING("Camera"),
+    CLI_HEADED("Camera"),
 #include "cli/options_camera.inc"
 #include "cli/options_look.inc"
-    HEADING("Reading"),
+    CLI_HEADED("Reading"),
     CLI_INPUT_OPTIONS(render_args),
 };
 
