@@ -95,19 +95,22 @@ bool view_find_flag(const view *v, const char *name, bool *on)
     return shown || (o && o->kind == CLI_FLAG);
 }
 
-/* Keys that do alike stand on one line. */
+bool view_key_names(size_t n, char *names, size_t size)
+{
+    size_t used = 0;
+    if (!view_keys[n].key || !view_keys[n].about)
+        return false;
+    for (size_t m = n; m == n || (m < view_key_count && !view_keys[m].about); m++)
+        if (view_keys[m].key && used < size)
+            used += (size_t)snprintf(names + used, size - used, "%s%s", m == n ? "" : " ",
+                                     view_keys[m].key);
+    return true;
+}
+
 void view_print_keys(void)
 {
-    for (size_t n = 0; n < view_key_count; n++) {
-        const view_key *k = &view_keys[n];
-        char keys[64] = "";
-        size_t used = 0;
-        if (!k->key || !k->about)
-            continue;
-        for (size_t m = n; m == n || (m < view_key_count && !view_keys[m].about); m++)
-            if (view_keys[m].key)
-                used += (size_t)snprintf(keys + used, sizeof keys - used, "%s%s",
-                                         m == n ? "" : " ", view_keys[m].key);
-        printf("  %-22s%s\n", keys, k->about);
-    }
+    char names[64];
+    for (size_t n = 0; n < view_key_count; n++)
+        if (view_key_names(n, names, sizeof names))
+            printf("  %-22s%s\n", names, view_keys[n].about);
 }

@@ -373,9 +373,23 @@ static void show_side(view *v)
     v->ui->panel_end(v->window);
 }
 
+/* In two columns. */
+static void show_key(view *v, size_t n)
+{
+    static const cwi_ui_color color = {0.86f, 0.89f, 0.92f, 1}, strong = {1, 0.8f, 0.3f, 1};
+    const double scale = v->ui->scale(v->window);
+    char names[64];
+    cwi_ui_area a;
+    if (!view_key_names(n, names, sizeof names))
+        return;
+    v->ui->area(v->window, view_keys[n].command, 0, 17 * scale, &a);
+    v->ui->write(v->window, CWI_UI_PANEL, a.rect.x, a.rect.y, strong, names);
+    v->ui->write(v->window, CWI_UI_PANEL, a.rect.x + 170 * scale, a.rect.y, color,
+                 view_keys[n].about);
+}
+
 static void show_keys(view *v)
 {
-    char line[160];
     const double scale = v->ui->scale(v->window);
     const double width = fmin(620 * scale, (double)v->width - 20);
     const cwi_ui_rect rect = {0.5 * ((double)v->width - width), 40 * scale, width,
@@ -388,13 +402,8 @@ static void show_keys(view *v)
             "On slices: left moves the cross-hair, right sets black and white, the "
             "wheel goes through,\nCtrl+wheel zooms.");
         v->ui->rule(v->window);
-        for (size_t n = 0; n < view_key_count; n++) {
-            const view_key *k = &view_keys[n];
-            if (!k->key || !k->about)
-                continue;
-            snprintf(line, sizeof line, "%-14s %s", k->key, k->about);
-            v->ui->text(v->window, line);
-        }
+        for (size_t n = 0; n < view_key_count; n++)
+            show_key(v, n);
     }
     v->ui->panel_end(v->window);
 }
