@@ -223,7 +223,7 @@ static void print_more(void)
 
 const cli_command cli_view = {
     .name = "view",
-    .usage = "[VOLUME|MESH|FOLDER] [options]",
+    .usage = "[VOLUME...|MESH|FOLDER] [options]",
     .about = "a window: everything that render draws, a drag away",
     .more =
         "Shows a good picture at once: a mode, colours and opacities that suit the file. Drag\n"
@@ -238,7 +238,7 @@ const cli_command cli_view = {
         "  cubewright view head.nii.gz --exec 'mode mip; orbit 30' -o a.png\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
-    .max_inputs = 1,
+    .max_inputs = SIZE_MAX,
     .size = sizeof(render_args),
     .defaults = &defaults,
     .print_more = print_more,

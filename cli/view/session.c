@@ -136,31 +136,35 @@ static bool is_folder(const char *path)
 }
 
 /* Steps of a file are a series without being asked for. */
-static cw_status open_as(view *v, const char *path, cw_error *err)
+static cw_status open_as(view *v, const char **paths, size_t count, cw_error *err)
 {
-    const char *inputs[] = {path};
-    const cli_common common = {.inputs = inputs, .input_count = 1};
+    const cli_common common = {.inputs = paths, .input_count = count};
     const cli_input *input = &v->state.args.input;
     cli_steps steps = v->state.args.steps;
     cw_volume shape;
-    if (!steps.given && input->step == 0 &&
-        cli_read_shape(path, input, &shape, NULL) == CW_OK) {
+    if (!steps.given && input->step == 0 && count == 1 &&
+        cli_read_shape(paths[0], input, &shape, NULL) == CW_OK) {
         steps.given = steps.all = shape.steps > 1;
         cw_volume_free(&shape);
     }
     return cli_open_source(&v->source, &common, input, &steps, true, err);
 }
 
-/* The files in a folder that is no volume itself are steps of one, if they agree. */
+/* Files that the command line names are steps; so are those in a folder that is no volume
+ * itself, if they agree. */
 static cw_status open_source(view *v, cw_error *err)
 {
     char pattern[4096];
-    cw_status st = open_as(v, v->path, err);
+    const char *one[] = {v->path}, *all[] = {pattern};
+    const cli_common *said = &v->state.args.common;
+    const bool several = said->input_count > 1 && strcmp(v->path, said->inputs[0]) == 0;
+    cw_status st =
+        several ? open_as(v, said->inputs, said->input_count, err) : open_as(v, one, 1, err);
     if (st == CW_OK || !is_folder(v->path))
         return st;
     snprintf(pattern, sizeof pattern, "%.4000s/*", v->path);
     cli_close_source(&v->source);
-    return open_as(v, pattern, NULL) == CW_OK ? CW_OK : st;
+    return open_as(v, all, 1, NULL) == CW_OK ? CW_OK : st;
 }
 
 static void fresh_look(view *v)
