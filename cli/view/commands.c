@@ -323,7 +323,7 @@ static double voxel_mm(const view *v)
 static cw_status run_cut(view *v, int count, char **args, cw_error *err)
 {
     double voxels;
-    char face[8], mm[32], *words[] = {face, mm};
+    char face[16], mm[32], *words[] = {face, mm};
     const int axis = axis_of(args[0]) - 1;
     (void)count;
     if (axis < 0)

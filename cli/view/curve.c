@@ -117,7 +117,7 @@ static bool is_near_iso(const view *v, const cwi_ui_area *a)
 static void locate(const view *v, const cwi_ui_area *a, double at[2], double near[2])
 {
     const double range = v->statistics.max - v->statistics.min;
-    at[0] = value_of(v, &a->rect, a->rect.x + a->x);
+    at[0] = value_of(v, &a->rect, a->rect.x + fmin(fmax(a->x, 0), a->rect.width));
     at[1] = fmin(fmax(1 - a->y / a->rect.height, 0), 1);
     near[0] = NEAR_PX / a->rect.width * range;
     near[1] = NEAR_PX / a->rect.height;
