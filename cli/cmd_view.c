@@ -173,6 +173,7 @@ static cw_status run_session(view *v, const render_args *args, cw_error *err)
 static void end_session(view *v)
 {
     view_close(v);
+    view_close_browser(v);
     cw_renderer_free(v->renderer);
     if (v->window)
         v->ui->close(v->window);

@@ -9,6 +9,7 @@ const view_key view_keys[] = {
     {"toggle help", "H", "Help/Keys", "this list"},
     {"toggle help", "?", NULL, NULL},
     {"toggle about", NULL, "Help/About", "what draws, and whose work it follows"},
+    {"toggle files", "O", "File/Open", "choose a file"},
     {"screenshot", "F12", "File/Save the picture", "write the picture as cubewright-NNN.png"},
     {"background none; screenshot; background default", "Ctrl+F12",
      "File/Save it without background", "the same without its background"},
@@ -71,9 +72,10 @@ bool *view_shown_flag(view *v, const char *name)
     const struct {
         const char *name;
         bool *on;
-    } flags[] = {{"panels", &v->shown.panels},   {"help", &v->shown.help},
-                 {"handles", &v->shown.handles}, {"cross", &v->shown.cross},
-                 {"playing", &v->shown.playing}, {"about", &v->shown.about}};
+    } flags[] = {{"panels", &v->shown.panels}, {"files", &v->shown.files},
+                 {"help", &v->shown.help},     {"handles", &v->shown.handles},
+                 {"cross", &v->shown.cross},   {"playing", &v->shown.playing},
+                 {"about", &v->shown.about}};
     for (size_t n = 0; n < sizeof flags / sizeof *flags; n++)
         if (strcmp(flags[n].name, name) == 0)
             return flags[n].on;

@@ -43,22 +43,10 @@ static void press_keys(view *v, const cwi_ui_input *in)
                 view_ask(v, "%s", view_keys[n].command);
     for (size_t k = 0; k < in->key_count; k++)
         if (strcmp(in->keys[k], "Escape") == 0) {
-            v->shown.help = v->shown.about = false;
+            v->shown.help = v->shown.about = v->shown.files = false;
             v->shown.cut = 0;
             v->message[0] = '\0';
         }
-}
-
-/* In single quotes, so that blanks are part of it. */
-static void ask_to_open(view *v, const char *path)
-{
-    char quoted[8192];
-    size_t used = 0;
-    for (const char *c = path; *c && used + 8 < sizeof quoted; c++)
-        used += (size_t)snprintf(quoted + used, sizeof quoted - used,
-                                 *c == '\'' ? "'\\''" : "%c", *c);
-    quoted[used] = '\0';
-    view_ask(v, "open '%s'", quoted);
 }
 
 static void play(view *v)
@@ -118,7 +106,7 @@ cw_status view_frame(view *v, double wait_s, cw_error *err)
     if (!in->typing)
         press_keys(v, in);
     for (size_t n = 0; n < in->drop_count; n++)
-        ask_to_open(v, in->drops[n]);
+        view_ask_open(v, in->drops[n]);
     view_panels(v, in);
     view_lay_out(v);
     view_show_parts(v, in);

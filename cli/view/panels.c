@@ -488,6 +488,8 @@ void view_panels(view *v, const cwi_ui_input *in)
         show_nothing(v);
     else if (v->shown.panels)
         show_status(v);
+    if (v->shown.files)
+        view_browse(v);
     if (v->shown.help)
         show_keys(v);
     if (v->shown.about)

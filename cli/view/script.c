@@ -123,6 +123,18 @@ void view_ask(view *v, const char *format, ...)
         free(text);
 }
 
+/* In single quotes, so that blanks are part of it. */
+void view_ask_open(view *v, const char *path)
+{
+    char quoted[8192];
+    size_t used = 0;
+    for (const char *c = path; *c && used + 8 < sizeof quoted; c++)
+        used += (size_t)snprintf(quoted + used, sizeof quoted - used,
+                                 *c == '\'' ? "'\\''" : "%c", *c);
+    quoted[used] = '\0';
+    view_ask(v, "open '%s'", quoted);
+}
+
 void view_run_asked(view *v)
 {
     char **asked = v->asked; /* what they ask for is for the next frame */

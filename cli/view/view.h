@@ -54,9 +54,18 @@ enum { VIEW_UNDO = 64, VIEW_MESSAGE = 1024 };
 
 /* What the window shows besides: keys switch it. */
 typedef struct view_shown {
-    bool panels, help, handles, cross, playing, about;
+    bool panels, help, handles, cross, playing, about, files;
     int cut; /* axis that the wheel cuts along: 1 to 3; 0: none */
 } view_shown;
+
+enum { VIEW_PATH = 4096 };
+
+/* Files to open. */
+typedef struct view_browser {
+    char folder[VIEW_PATH]; /* "": not looked at yet */
+    char **names;
+    size_t count;
+} view_browser;
 
 typedef struct view_history {
     view_state states[VIEW_UNDO];
@@ -109,6 +118,7 @@ typedef struct view {
     bool is_told;         /* how long the first picture took */
     double frame_shown, play_next;
     char probe[128];
+    view_browser browser;
 
     char **words; /* texts that options point to */
     size_t word_count;
@@ -162,6 +172,7 @@ cw_status view_exec(view *v, const char *text, cw_error *err);
 cw_status view_exec_file(view *v, const char *path, cw_error *err);
 /* To be run after this frame; errors become messages. */
 void view_ask(view *v, const char *format, ...) CW_PRINTF(2, 3);
+void view_ask_open(view *v, const char *path); /* whatever is in its name */
 void view_run_asked(view *v);
 void view_say(view *v, bool is_error, const char *text);
 
@@ -193,7 +204,9 @@ cw_status view_settle(view *v, cw_error *err); /* until all is drawn as asked fo
 cw_status view_loop(view *v, cw_error *err);
 void view_lay_out(view *v);
 
-/* mouse.c, panels.c, curve.c */
+/* mouse.c, panels.c, curve.c, browser.c */
+void view_browse(view *v);
+void view_close_browser(view *v);
 void view_mouse(view *v, const cwi_ui_input *in);
 void view_show_parts(view *v, const cwi_ui_input *in);
 void view_panels(view *v, const cwi_ui_input *in);
