@@ -799,7 +799,7 @@ static cw_status run_print(view *v, int count, char **args, cw_error *err)
                v->parts[VIEW_SPACE].scene.width, v->parts[VIEW_SPACE].scene.height);
     else if (strcmp(what, "message") == 0)
         printf("message %s\n", v->message);
-    else if (strcmp(what, "compare") == 0 && v->is_measured)
+    else if (strcmp(what, "compare") == 0 && s->args.compare && v->is_measured)
         printf("compare %s: rmse %.3g\n", s->args.compare, v->measured.rmse);
     else if (strcmp(what, "command") == 0) {
         char *line = view_command_line(v);
@@ -871,6 +871,17 @@ static cw_status run_press(view *v, int count, char **args, cw_error *err)
 static cw_status run_lift(view *v, int count, char **args, cw_error *err)
 {
     return feed_words(v, CWI_UI_LIFT, 0, count, args, err);
+}
+
+/* All at once: frames between them may take longer than people do. */
+static cw_status run_twice(view *v, int count, char **args, cw_error *err)
+{
+    cw_status st = CW_OK;
+    (void)count, (void)args;
+    for (int n = 0; n < 4 && st == CW_OK; n++)
+        st = v->ui->feed(v->window, &(cwi_ui_event){.kind = n % 2 ? CWI_UI_LIFT : CWI_UI_PRESS},
+                         err);
+    return st == CW_OK ? view_take_in(v, err) : st;
 }
 
 static cw_status run_wheel(view *v, int count, char **args, cw_error *err)
@@ -1045,6 +1056,7 @@ const view_verb view_verbs[] = {
     VERB("press", "[BUTTON] [KEYS]", "a button goes down: left, right, middle", 0, 2,
          run_press),
     VERB("lift", "[BUTTON] [KEYS]", "and up", 0, 2, run_lift),
+    VERB("twice", "", "a double click of the left one", 0, 0, run_twice),
     VERB("wheel", "LINES [KEYS]", "the wheel turns", 1, 2, run_wheel),
     VERB("key", "NAME", "a key, such as M, F12 or Ctrl+Z", 1, 1, run_key),
     VERB("write", "TEXT", "type into a widget", 1, 1, run_write),

@@ -203,7 +203,7 @@ static cw_status draw_split(view *v, view_level level, const cw_progress *progre
     cli_split split = {0};
     cw_picture sides[2] = {{0}, {0}};
     const render_args *args = &v->state.args;
-    cw_status st = cli_parse_split(v->command, args, &split, err);
+    cw_status st = view_parse_split(v, &split, err);
     for (int n = 1; n >= 0 && st == CW_OK; n--) {
         cli_side *side = &split.sides[n];
         st = cli_fit_transfer(&side->args.scene, cli_drawn(&v->source), side->mode,

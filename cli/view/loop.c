@@ -67,10 +67,11 @@ static double wait_for(const view *v, double wait_s)
                : wait_s;
 }
 
-/* Rough pictures at once, better ones when there is nothing else to do. */
-static void draw(view *v)
+/* Rough pictures at once, better ones when there is nothing else to do. What cannot be drawn is
+ * told in the window; to the monkey GL's errors are failures. */
+static cw_status draw(view *v, cw_error *err)
 {
-    cw_error err = {0};
+    cw_error why = {0};
     bool is_stale = false;
     view_level lowest = VIEW_FINAL;
     for (int p = 0; p < VIEW_PARTS; p++)
@@ -79,9 +80,11 @@ static void draw(view *v)
             lowest = v->parts[p].level < lowest ? v->parts[p].level : lowest;
         }
     if (lowest == VIEW_FINAL || (!is_stale && v->ui->pending(v->window)))
-        return;
-    if (view_draw(v, is_stale ? VIEW_ROUGH : lowest + 1, !is_stale, &err) != CW_OK)
-        view_say(v, true, err.message);
+        return CW_OK;
+    cw_status st = view_draw(v, is_stale ? VIEW_ROUGH : lowest + 1, !is_stale, &why);
+    if (st != CW_OK)
+        view_say(v, true, why.message);
+    return v->is_monkey && st == CW_ERR_BACKEND ? cw_fail(err, st, "%s", why.message) : CW_OK;
 }
 
 /* With -v: how long people waited for something to see. */
@@ -115,8 +118,7 @@ cw_status view_frame(view *v, double wait_s, cw_error *err)
     cw_status st = ui->end(v->window, err);
     tell_first(v);
     view_run_asked(v);
-    draw(v);
-    return st;
+    return st == CW_OK ? draw(v, err) : st;
 }
 
 cw_status view_take_in(view *v, cw_error *err)

@@ -23,11 +23,13 @@ const char *view_keep_text(view *v, const char *text)
     return words[v->word_count] ? words[v->word_count++] : NULL;
 }
 
-/* Changes of one kind in one go, such as a slider's, are undone in one go. */
+/* Changes of one kind in one go, such as a slider's, are undone in one go; so are all of a
+ * drag. */
 void view_remember(view *v, const char *verb)
 {
     view_history *h = &v->history;
-    const bool goes_on = h->count && h->gesture == v->gesture && strcmp(h->verb, verb) == 0;
+    const bool goes_on = h->count && h->gesture == v->gesture &&
+                         (strcmp(h->verb, verb) == 0 || (h->is_drag && v->drag));
     if (!goes_on && h->count) {
         if (h->at + 1 == VIEW_UNDO)
             memmove(h->states, h->states + 1, --h->at * sizeof *h->states);
@@ -36,10 +38,11 @@ void view_remember(view *v, const char *verb)
     h->states[h->at] = v->state;
     h->count = h->at + 1;
     h->gesture = v->gesture;
+    h->is_drag = v->drag;
     snprintf(h->verb, sizeof h->verb, "%s", verb);
 }
 
-/* The camera and the step stay: it is not moving about that is undone. */
+/* It is not moving about that is undone: the camera, the cross-hair, the step and such stay. */
 bool view_undo(view *v, int by)
 {
     view_history *h = &v->history;
@@ -51,6 +54,9 @@ bool view_undo(view *v, int by)
     v->state.is_placed = now.is_placed;
     v->state.camera = now.camera;
     v->state.step = now.step;
+    v->state.slice_zoom = now.slice_zoom;
+    v->state.share = now.share;
+    memcpy(v->state.cross, now.cross, sizeof now.cross);
     h->verb[0] = '\0';
     return true;
 }
@@ -135,8 +141,18 @@ static cw_status follow(view *v, const char *name, cw_error *err)
         s->args.scene.mode == 1 + CW_MODE_MESH && v->has_volume)
         s->args.scene.mode = 0;
     v->transfer_is_old = true;
+    v->is_measured = false;
     view_touch(v, 1 << VIEW_SPACE);
     return view_choose_mode(v, err);
+}
+
+/* What was set for other modes stays set in a session: only what a side says must do something.
+ */
+cw_status view_parse_split(const view *v, cli_split *split, cw_error *err)
+{
+    render_args args = v->state.args;
+    memset(args.common.given, 0, sizeof args.common.given);
+    return cli_parse_split(v->command, &args, split, err);
 }
 
 /* Draws nothing yet: only whether it could be. */
@@ -163,7 +179,7 @@ static cw_status try_scene(view *v, cw_error *err)
     if (st == CW_OK && v->path && (v->state.is_placed || !subject.volume))
         st = cli_make_scene(&args->scene, &subject, v->mode, &v->transfer, &scene, err);
     if (st == CW_OK && args->compare) {
-        st = cli_parse_split(v->command, args, &split, err);
+        st = view_parse_split(v, &split, err);
         cli_free_split(&split);
     }
     return st;

@@ -4,6 +4,7 @@
 #define CLI_VIEW_VIEW_H
 
 #include "cli/picture_run.h"
+#include "cli/split.h"
 #include "viewer/ui.h"
 
 #include <cubewright/extract.h>
@@ -72,6 +73,7 @@ typedef struct view_history {
     size_t count, at; /* states[at] is the one at hand */
     char verb[32];    /* of the last change */
     size_t gesture;   /* in which it was made */
+    bool is_drag;     /* on a picture */
 } view_history;
 
 typedef struct view {
@@ -150,6 +152,7 @@ cw_status view_choose_mode(view *v, cw_error *err); /* after settings have chang
 void view_remember(view *v, const char *verb);
 bool view_undo(view *v, int by);
 const cli_option *view_find_option(const view *v, const char *name);
+cw_status view_parse_split(const view *v, cli_split *split, cw_error *err);
 cw_status view_set(view *v, const char *name, const char *value, cw_error *err);
 const char *view_keep_text(view *v, const char *text);
 cw_status view_write_state(const view *v, const char *path, cw_error *err);
