@@ -937,6 +937,16 @@ static cw_status find_widget(view *v, const char *label, cwi_ui_rect *r, cw_erro
     return is_there ? CW_OK : cw_fail(err, CW_ERR_ARGUMENT, "nothing is labelled '%s'", label);
 }
 
+static cw_status run_place(view *v, int count, char **args, cw_error *err)
+{
+    cwi_ui_rect r = {0};
+    (void)count;
+    cw_status st = find_widget(v, args[0], &r, err);
+    if (st == CW_OK)
+        printf("place %g %g %g %g\n", r.x, r.y, r.width, r.height);
+    return st;
+}
+
 /* Goes to a place of a widget, told as shares of its size. */
 static cw_status go_to(view *v, const char *label, double x, double y, cw_error *err)
 {
@@ -1062,6 +1072,7 @@ const view_verb view_verbs[] = {
     VERB("write", "TEXT", "type into a widget", 1, 1, run_write),
     VERB("drop", "PATH", "a file is dropped on the window", 1, 1, run_drop),
     VERB("resize", "W H", "the window changes its size", 2, 2, run_resize),
+    VERB("place", "LABEL", "print where a widget is: x, y, width, height", 1, 1, run_place),
     VERB("point-at", "LABEL [X Y]", "the mouse goes to a widget, X and Y are shares of it", 1,
          3, run_point_at),
     VERB("click", "LABEL [X Y]", "and clicks on it", 1, 3, run_click),
