@@ -46,7 +46,8 @@ cw_status cwi_module_load(const char *name, const char *option, const char *pack
     snprintf(symbol, sizeof symbol, "cwi_module_%s", name);
     *functions = module ? dlsym(module, symbol) : NULL;
     if (!*functions)
-        return cw_fail(err, CW_ERR_UNSUPPORTED, "the %s module cannot be loaded: %s", name,
-                       dlerror());
+        return cw_fail(err, CW_ERR_UNSUPPORTED,
+                       "the %s module cannot be loaded: %s (Debian: %s)", name, dlerror(),
+                       package);
     return CW_OK;
 }

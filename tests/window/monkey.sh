@@ -5,7 +5,7 @@
 set -u
 here=$(cd "$(dirname "$0")" && pwd)
 PATH=$1:$PATH
-inputs=${2:-150}
+inputs=${2:-80}
 [ $# -gt 2 ] && shift 2 && seeds=$*
 failed=0
 cubewright version --features | grep -q '^window *yes' || { echo "skip: no window" >&2; exit 77; }
