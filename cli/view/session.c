@@ -240,6 +240,7 @@ cw_status view_open(view *v, const char *path, cw_error *err)
     char *copy = strdup(path); /* it may be the path that is closed */
     if (!copy)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a name");
+    v->message[0] = '\0'; /* it was of another file */
     view_close(v);
     forget_look(v);
     st = open_path(v, copy, err);
