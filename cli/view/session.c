@@ -147,7 +147,27 @@ static cw_status open_as(view *v, const char **paths, size_t count, cw_error *er
         steps.given = steps.all = shape.steps > 1;
         cw_volume_free(&shape);
     }
-    return cli_open_source(&v->source, &common, input, &steps, true, err);
+    return cli_open_source(&v->source, &common, input, &steps, !is_folder(paths[0]), err);
+}
+
+/* Of several series in one folder that with the most images, unless one was asked for. */
+static void choose_series(view *v)
+{
+    char text[256];
+    cw_series *list = NULL;
+    size_t count = 0, most = 0;
+    const cw_read_desc desc = cli_read_desc(&v->state.args.input);
+    if (desc.series || cw_series_list(v->path, &desc, &list, &count, NULL) != CW_OK)
+        return;
+    for (size_t n = 0; n < count; n++)
+        most = list[n].images > list[most].images ? n : most;
+    if (count > 1) {
+        v->state.args.input.series = view_keep_text(v, list[most].label);
+        snprintf(text, sizeof text, "one of %zu series: %s, of %zu images; --series chooses",
+                 count, list[most].label, list[most].images);
+        view_say(v, false, text);
+    }
+    cw_series_free(list);
 }
 
 /* Files that the command line names are steps; so are those in a folder that is no volume
@@ -160,8 +180,13 @@ static cw_status open_source(view *v, cw_error *err)
     const bool several = said->input_count > 1 && strcmp(v->path, said->inputs[0]) == 0;
     cw_status st =
         several ? open_as(v, said->inputs, said->input_count, err) : open_as(v, one, 1, err);
-    if (st == CW_OK || !is_folder(v->path))
+    if (st != CW_OK || several || !is_folder(v->path))
         return st;
+    cw_volume shape = {0};
+    st = cli_read_shape(v->path, &v->state.args.input, &shape, err);
+    cw_volume_free(&shape);
+    if (st == CW_OK)
+        return CW_OK;
     snprintf(pattern, sizeof pattern, "%.4000s/*", v->path);
     cli_close_source(&v->source);
     return open_as(v, all, 1, NULL) == CW_OK ? CW_OK : st;
@@ -185,10 +210,13 @@ static cw_status open_path(view *v, const char *path, cw_error *err)
     if (!v->path)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a name");
     v->opening = v->path;
+    const char *series = v->state.args.input.series;
+    choose_series(v);
     cw_status st = open_source(v, err);
     if (st == CW_OK)
         st = read_step(v, v->state.step, err);
     v->opening = NULL;
+    v->state.args.input.series = series; /* which is not for what is opened next */
     if (st == CW_OK)
         st = read_beside(v, err);
     return st == CW_OK ? view_choose_mode(v, err) : st;

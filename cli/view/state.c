@@ -63,10 +63,9 @@ bool view_undo(view *v, int by)
 
 const cli_option *view_find_option(const view *v, const char *name)
 {
-    static const char *const fixed[] = {"exec",       "run",     "config",     "hidden",
-                                        "output",     "reader",  "raw",        "memory",
-                                        "max-voxels", "timeout", "no-sandbox", "allow-external",
-                                        "threads",    "size",    "steps",      "step"};
+    static const char *const fixed[] = {
+        "exec",    "run",        "config",         "hidden",  "output", "memory", "max-voxels",
+        "timeout", "no-sandbox", "allow-external", "threads", "size",   "steps",  "step"};
     for (size_t n = 0; n < sizeof fixed / sizeof *fixed; n++)
         if (strcmp(fixed[n], name) == 0)
             return NULL;
@@ -242,27 +241,50 @@ static void put_setting(FILE *out, bool shell, const char *name, const char *val
         fputc('\n', out);
 }
 
+/* Whether something else says it: the camera and the transfer function as they are now. */
+static bool is_outdone(const view_state *s, const char *name)
+{
+    static const char *const of_camera[] = {"camera", "ortho", "fov", "zoom"};
+    for (size_t n = 0; n < sizeof of_camera / sizeof *of_camera; n++)
+        if (s->is_placed && strcmp(name, of_camera[n]) == 0)
+            return true;
+    return s->is_edited && strcmp(name, "tf") == 0;
+}
+
+static void put_option(const view *v, FILE *out, bool shell, const cli_option *o)
+{
+    char text[1024];
+    const render_args *args = &v->state.args;
+    const bool flag = o->kind == CLI_FLAG;
+    const bool off = flag && !*((const bool *)((const char *)args + o->offset));
+    snprintf(text, sizeof text, "no-%s", o->name);
+    if (flag && shell)
+        put_setting(out, shell, off ? text : o->name, NULL);
+    else if (flag)
+        put_setting(out, shell, o->name, off ? "off" : "on");
+    else if (cli_option_text(o, args, text, sizeof text))
+        put_setting(out, shell, o->name, text);
+}
+
+/* Those of reading, which have to be said before a file is opened, or the others. */
+static void put_options(const view *v, FILE *out, bool shell, bool of_reading)
+{
+    bool is_reading = false;
+    for (size_t n = 0; n < v->command->option_count; n++) {
+        const cli_option *o = &v->command->options[n];
+        if (o->kind == CLI_HEADING)
+            is_reading = strcmp(o->name, "Reading") == 0;
+        else if (is_reading == of_reading && view_find_option(v, o->name) &&
+                 !is_default(v, o) && !is_outdone(&v->state, o->name))
+            put_option(v, out, shell, o);
+    }
+}
+
 static void put_settings(const view *v, FILE *out, bool shell)
 {
     char text[CW_TRANSFER_TEXT];
     const view_state *s = &v->state;
-    for (size_t n = 0; n < v->command->option_count; n++) {
-        const cli_option *o = &v->command->options[n];
-        if (!view_find_option(v, o->name) || is_default(v, o) ||
-            (s->is_placed && (strcmp(o->name, "camera") == 0 || strcmp(o->name, "ortho") == 0 ||
-                              strcmp(o->name, "fov") == 0 || strcmp(o->name, "zoom") == 0)) ||
-            (s->is_edited && strcmp(o->name, "tf") == 0))
-            continue;
-        const bool flag = o->kind == CLI_FLAG;
-        const bool off = flag && !*((const bool *)((const char *)&s->args + o->offset));
-        snprintf(text, sizeof text, "no-%s", o->name);
-        if (flag && shell)
-            put_setting(out, shell, off ? text : o->name, NULL);
-        else if (flag)
-            put_setting(out, shell, o->name, off ? "off" : "on");
-        else if (cli_option_text(o, &s->args, text, sizeof text))
-            put_setting(out, shell, o->name, text);
-    }
+    put_options(v, out, shell, false);
     if (s->is_edited && cw_transfer_format(&s->curve, text, NULL) == CW_OK) {
         join_lines(text);
         put_setting(out, shell, "tf", text);
@@ -296,6 +318,7 @@ cw_status view_write_state(const view *v, const char *path, cw_error *err)
     if (!out)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a state");
     fputs("# cubewright view: a state; 'cubewright view --run' this file\n", out);
+    put_options(v, out, false, true);
     if (v->path) {
         fputs("open ", out);
         put_word(out, v->path);
@@ -321,6 +344,7 @@ char *view_command_line(const view *v)
         fputc(' ', out);
         put_word(out, v->path);
     }
+    put_options(v, out, true, true);
     put_settings(v, out, true);
     fputs(" --exec '", out);
     put_rest(v, out, "; ");
