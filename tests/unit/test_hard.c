@@ -3,6 +3,7 @@
 #include "support/surface.h"
 #include "support/truth.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -300,12 +301,13 @@ static void surfaces_have_the_topology_of_their_field(void **state)
 }
 
 /* Numbers of 12 bits, whose products both types hold: a last digit of a double tells as much.
- * Not so inside, where the extremum is a rounded number. */
-static void near_saddles_of_faces_are_as_near_in_doubles(void **state)
+ * Inside, differences of doubles do, which take a wider type. */
+static void near_saddles_are_as_near_in_doubles(void **state)
 {
     (void)state;
     for (size_t n = 0; n < ROWS; n++)
-        if (strcmp(rows[n].name, "hard/near-saddle-face") == 0) {
+        if (strcmp(rows[n].name, "hard/near-saddle-face") == 0 ||
+            (rows[n].judge == TUNNELS && LDBL_MANT_DIG > DBL_MANT_DIG)) {
             cw_volume f = make(n, CW_F32, 24, 25, 26), d = make(n, CW_F64, 24, 25, 26);
             const test_truth a = topology_of(&f, 0), b = topology_of(&d, 0);
             assert_int_equal(a.components, b.components);
@@ -407,7 +409,7 @@ static void add_cells_of_volume(keys *k, const cw_volume *v)
             }
 }
 
-/* Whatever turns up in cells at random, no face tied, is there; 758 kinds are. */
+/* Whatever turns up in cells at random is there. */
 static void every_case_of_marching_cubes_is_there(void **state)
 {
     (void)state;
@@ -417,7 +419,7 @@ static void every_case_of_marching_cubes_is_there(void **state)
     assert_true(cw_hard_find("hard/mc33", &n));
     cw_volume v = make(n, CW_I8, 44, 44, 44);
     add_cells_of_volume(k, &v);
-    print_message("  %zu kinds of cells\n", k->count);
+    assert_int_equal(k->count, 766);
     srand(31);
     for (int r = 0; r < RANDOM_CELLS; r++) {
         float corners[8];
@@ -534,7 +536,7 @@ int main(void)
         cmocka_unit_test(every_case_has_a_row),
         cmocka_unit_test(surfaces_keep_the_promise),
         cmocka_unit_test(surfaces_have_the_topology_of_their_field),
-        cmocka_unit_test(near_saddles_of_faces_are_as_near_in_doubles),
+        cmocka_unit_test(near_saddles_are_as_near_in_doubles),
         cmocka_unit_test(vertices_are_near_surfaces_that_are_known),
         cmocka_unit_test(every_case_of_marching_cubes_is_there),
         cmocka_unit_test(all_cells_together_have_the_topology_of_each),
