@@ -4,6 +4,7 @@
 
 #include <cubewright/field.h>
 #include <cubewright/formats.h>
+#include <cubewright/hard.h>
 
 #include <stdio.h>
 #include <string.h>
@@ -39,19 +40,52 @@ static const cli_option options[] = {
      offsetof(make_args, list)},
 };
 
-static cw_status list_fields(void)
+/* What can be made: fields, and behind them the hard cases. */
+typedef struct subject {
+    const char *name, *about;
+    double isovalue;
+    bool hard;
+    size_t number; /* of the field or the hard case */
+} subject;
+
+static bool subject_at(size_t n, subject *s)
 {
-    for (int f = 0; f < CW_FIELD_COUNT; f++)
-        printf("%-16s--iso %-5g %s\n", cw_field_name((cw_field)f),
-               cw_field_isovalue((cw_field)f), cw_field_about((cw_field)f));
+    if (n < CW_FIELD_COUNT) {
+        const cw_field f = (cw_field)n;
+        *s = (subject){cw_field_name(f), cw_field_about(f), cw_field_isovalue(f), false, n};
+        return true;
+    }
+    const cw_hard *hard = cw_hard_at(n - CW_FIELD_COUNT);
+    if (hard)
+        *s = (subject){hard->name, hard->about, hard->isovalue, true, n - CW_FIELD_COUNT};
+    return hard != NULL;
+}
+
+static cw_status list_subjects(void)
+{
+    subject s;
+    for (size_t n = 0; subject_at(n, &s); n++)
+        printf("%-28s--iso %-5.10g %s%s\n", s.name, s.isovalue, s.about,
+               s.hard && cw_hard_at(s.number)->scale == 0 ? " (f32, f64)" : "");
     return CW_OK;
 }
 
-static cw_status unknown_field(const char *name, cw_error *err)
+static bool find_subject(const char *name, subject *s)
 {
-    const char *names[CW_FIELD_COUNT + 1] = {0};
-    for (int f = 0; f < CW_FIELD_COUNT; f++)
-        names[f] = cw_field_name((cw_field)f);
+    for (size_t n = 0; subject_at(n, s); n++)
+        if (strcmp(s->name, name) == 0)
+            return true;
+    return false;
+}
+
+enum { MAX_SUBJECTS = 256 };
+
+static cw_status unknown_subject(const char *name, cw_error *err)
+{
+    const char *names[MAX_SUBJECTS + 1] = {0};
+    subject s;
+    for (size_t n = 0; n < MAX_SUBJECTS && subject_at(n, &s); n++)
+        names[n] = s.name;
     const char *nearest = cli_nearest(name, names);
     if (nearest)
         return cw_fail(err, CW_ERR_ARGUMENT, "'%s' is no field; did you mean '%s'?", name,
@@ -66,7 +100,8 @@ static double mega_voxels(const make_args *args)
     return 1e-6 * (double)n[0] * (double)n[1] * (double)n[2];
 }
 
-static cw_status make(const make_args *args, cw_field field, cw_error *err)
+static cw_status sample_field(const make_args *args, cw_field field, cw_volume *volume,
+                              cw_error *err)
 {
     const cw_field_desc desc = {
         .field = field,
@@ -77,8 +112,36 @@ static cw_status make(const make_args *args, cw_field field, cw_error *err)
         .threads = (int)args->threads,
         .progress = cli_progress(mega_voxels(args), "Mvoxel"),
     };
+    return cw_field_sample(&desc, volume, err);
+}
+
+static cw_status sample_hard(const make_args *args, size_t number, cw_volume *volume,
+                             cw_error *err)
+{
+    const cw_hard_desc desc = {
+        .number = number,
+        .dim = {args->dims.n[0], args->dims.n[1], args->dims.n[2]},
+        .type = (cw_type)args->type,
+        .noise = args->noise.value,
+        .seed = args->seed,
+        .threads = (int)args->threads,
+        .progress = cli_progress(mega_voxels(args), "Mvoxel"),
+    };
+    return cw_hard_sample(&desc, volume, err);
+}
+
+/* What the isovalue is in voxels of that type. */
+static double stored_level(const subject *s, cw_type type)
+{
+    return s->hard ? cw_hard_stored(s->number, type, s->isovalue)
+                   : cw_field_stored((cw_field)s->number, type, s->isovalue);
+}
+
+static cw_status make(const make_args *args, const subject *s, cw_error *err)
+{
     cw_volume volume;
-    cw_status st = cw_field_sample(&desc, &volume, err);
+    cw_status st = s->hard ? sample_hard(args, s->number, &volume, err)
+                           : sample_field(args, (cw_field)s->number, &volume, err);
     if (st != CW_OK)
         return st;
     const cw_write_desc write = {.no_clobber = args->no_clobber,
@@ -86,9 +149,8 @@ static cw_status make(const make_args *args, cw_field field, cw_error *err)
     st = cw_volume_write(args->output, &volume, &write, err);
     if (st == CW_OK)
         cli_result("%s: %s, %zu x %zu x %zu %s; its surface: --iso %.10g\n", args->output,
-                   cw_field_name(field), volume.dim[0], volume.dim[1], volume.dim[2],
-                   cw_type_name(volume.type),
-                   cw_field_stored(field, volume.type, cw_field_isovalue(field)));
+                   s->name, volume.dim[0], volume.dim[1], volume.dim[2],
+                   cw_type_name(volume.type), stored_level(s, volume.type));
     cw_volume_free(&volume);
     return st;
 }
@@ -96,21 +158,21 @@ static cw_status make(const make_args *args, cw_field field, cw_error *err)
 static cw_status run(void *p, cw_error *err)
 {
     make_args *args = p;
-    cw_field field;
+    subject s;
     if (args->list)
-        return list_fields();
+        return list_subjects();
     if (args->common.input_count == 0)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "make needs a field; 'cubewright make --list' lists them");
-    if (!cw_field_find(args->common.inputs[0], &field))
-        return unknown_field(args->common.inputs[0], err);
+    if (!find_subject(args->common.inputs[0], &s))
+        return unknown_subject(args->common.inputs[0], err);
     if (!args->output)
         return cw_fail(err, CW_ERR_ARGUMENT, "make needs an output: -o FILE");
     if (args->dims.count == 2)
         return cw_fail(err, CW_ERR_ARGUMENT, "--dims takes one number or three, not two");
     if (args->dims.count == 1)
         args->dims.n[1] = args->dims.n[2] = args->dims.n[0];
-    return make(args, field, err);
+    return make(args, &s, err);
 }
 
 const cli_command cli_make = {
@@ -120,10 +182,15 @@ const cli_command cli_make = {
     .more =
         "Samples a field around the world's zero. 'cubewright make --list' lists the fields.\n"
         "Floats, and CT numbers, are kept as they are; integer types spread the field over\n"
-        "their range, and the line printed says which isovalue is then its surface.\n\n"
+        "their range, and the line printed says which isovalue is then its surface.\n"
+        "Those named hard/... are what extractors break on: ties, saddles, thin things, "
+        "cusps,\n"
+        "noise, gaps, the ends of the number line. Integer types hold small numbers of theirs\n"
+        "as they are or times a whole number, so that ties stay ties; some need floats.\n\n"
         "Examples\n"
         "  cubewright make sphere -o sphere.nrrd --dims 128\n"
-        "  cubewright make ct-head -o head.nii.gz --dims 256 --type i16 --noise 20\n",
+        "  cubewright make ct-head -o head.nii.gz --dims 256 --type i16 --noise 20\n"
+        "  cubewright make hard/mc33 -o cases.nrrd --dims 46\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .max_inputs = 1,

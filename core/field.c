@@ -1,6 +1,7 @@
 #include <cubewright/field.h>
 
 #include "core/affine.h"
+#include "core/fill.h"
 #include "core/layers.h"
 #include "core/status.h"
 
@@ -131,60 +132,15 @@ double cw_field_value(cw_field field, const double p[3])
     }
 }
 
-/* The range an integer type spreads a field over; false for floats. */
-static bool stored_range(cw_type type, double *low, double *high)
-{
-    const bool is_signed = type == CW_I8 || type == CW_I16 || type == CW_I32;
-    const double values = cw_type_size(type) == 1 ? 256 : 65536;
-    *low = is_signed ? -values / 2 : 0;
-    *high = *low + values - 1;
-    return type != CW_F32 && type != CW_F64;
-}
-
 double cw_field_stored(cw_field field, cw_type type, double value)
 {
     double low, high;
-    if (!known(field) || !stored_range(type, &low, &high))
+    if (!known(field) || !cwi_fill_range(type, &low, &high))
         return value;
     if (field == CW_FIELD_CT_HEAD && cw_type_size(type) > 1)
         return value + (low == 0 ? 1024 : 0);
     const double share = (value - fields[field].low) / (fields[field].high - fields[field].low);
     return low + share * (high - low);
-}
-
-/* SplitMix64: the n-th number of a stream depends on n alone, so threads do not matter. */
-static uint64_t random_bits(uint64_t seed, uint64_t n)
-{
-    uint64_t z = seed + (n + 1) * UINT64_C(0x9E3779B97F4A7C15);
-    z = (z ^ z >> 30) * UINT64_C(0xBF58476D1CE4E5B9);
-    z = (z ^ z >> 27) * UINT64_C(0x94D049BB133111EB);
-    return z ^ z >> 31;
-}
-
-/* Box-Muller: one of the pair is used. */
-static double gaussian(uint64_t seed, uint64_t n)
-{
-    const double u = ((double)(random_bits(seed, 2 * n) >> 11) + 1) * 0x1p-53;
-    const double v = (double)(random_bits(seed, 2 * n + 1) >> 11) * 0x1p-53;
-    return sqrt(-2 * log(u)) * cos(2 * PI * v);
-}
-
-static void store(cw_type type, void *voxels, size_t n, double value)
-{
-    double low, high;
-    const bool integer = stored_range(type, &low, &high);
-    if (integer)
-        value = rint(fmin(fmax(value, low), high));
-    switch (type) {
-#define CASE(name, ctype, text)                                                                \
-    case name:                                                                                 \
-        ((ctype *)voxels)[n] = (ctype)value;                                                   \
-        break;
-        CW_TYPE_TABLE(CASE)
-#undef CASE
-    default:
-        break;
-    }
 }
 
 typedef struct sampling {
@@ -205,8 +161,8 @@ static void sample_layer(void *context, size_t k)
             cwi_affine_apply(v->affine[0], index, world);
             double value = cw_field_value(d->field, world);
             if (d->noise > 0)
-                value += d->noise * gaussian(d->seed, n);
-            store(d->type, v->owned, n, cw_field_stored(d->field, d->type, value));
+                value += d->noise * cwi_gaussian(d->seed, n);
+            cwi_fill(d->type, v->owned, n, cw_field_stored(d->field, d->type, value));
         }
 }
 

@@ -73,10 +73,11 @@ static const int columns[4] = {0, 1, 3, 2};
 typedef struct sweep {
     unsigned cube;
     const double *values;
-    double low[4], slope[4]; /* of the columns, scaled */
-    double root[4];          /* where a column changes sign; 2: nowhere */
-    double event[6];         /* 0, the roots, 1, in order */
-    int event_column[6];     /* -1 for 0, -2 for 1 */
+    double low[4];        /* of the columns, scaled */
+    long double slope[4]; /* as a double it would lose last digits that decide */
+    double root[4];       /* where a column changes sign; 2: nowhere */
+    double event[6];      /* 0, the roots, 1, in order */
+    int event_column[6];  /* -1 for 0, -2 for 1 */
     int event_count;
     bool zero_inside;
 } sweep;
@@ -137,7 +138,7 @@ static bool start_sweep(sweep *s, unsigned cube, const double values[8], bool ze
             high = ldexp(high, -exponent);
         }
         s->low[n] = low;
-        s->slope[n] = high - low;
+        s->slope[n] = (long double)high - low;
         s->root[n] = 2;
         if (corner_inside(s, columns[n]) != corner_inside(s, columns[n] + 4)) {
             s->root[n] = low / (low - high);

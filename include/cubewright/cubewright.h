@@ -9,6 +9,7 @@
 #include <cubewright/extract.h>
 #include <cubewright/field.h>
 #include <cubewright/formats.h>
+#include <cubewright/hard.h>
 #include <cubewright/level_set.h>
 #include <cubewright/mesh.h>
 #include <cubewright/overlay.h>

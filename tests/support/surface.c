@@ -2,6 +2,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 cw_volume test_sample(cw_field field, size_t n, cw_type type)
 {
@@ -133,6 +134,50 @@ void test_assert_same_mesh(const cw_mesh *a, const cw_mesh *b)
     if (a->normals)
         assert_memory_equal(a->normals, b->normals, 12 * a->vertex_count);
     assert_memory_equal(a->triangles, b->triangles, 12 * a->triangle_count);
+}
+
+/* A triangle's corners with their normals, from the corner with the lowest place on. */
+typedef struct corners {
+    float x[3][6];
+} corners;
+
+static int compare_corners(const void *a, const void *b)
+{
+    return memcmp(a, b, sizeof(corners));
+}
+
+static corners *sorted_corners(const cw_mesh *m)
+{
+    corners *all = calloc(m->triangle_count + 1, sizeof *all);
+    assert_non_null(all);
+    for (size_t t = 0; t < m->triangle_count; t++) {
+        const uint32_t *v = m->triangles + 3 * t;
+        size_t first = 0;
+        for (size_t c = 1; c < 3; c++)
+            if (memcmp(m->positions + 3 * (size_t)v[c], m->positions + 3 * (size_t)v[first],
+                       3 * sizeof(float)) < 0)
+                first = c;
+        for (size_t c = 0; c < 3; c++) {
+            const size_t vertex = v[(first + c) % 3];
+            memcpy(all[t].x[c], m->positions + 3 * vertex, 3 * sizeof(float));
+            if (m->normals)
+                memcpy(all[t].x[c] + 3, m->normals + 3 * vertex, 3 * sizeof(float));
+        }
+    }
+    qsort(all, m->triangle_count, sizeof *all, compare_corners);
+    return all;
+}
+
+void test_assert_same_triangles(const cw_mesh *a, const cw_mesh *b)
+{
+    assert_int_equal(a->vertex_count, b->vertex_count);
+    assert_int_equal(a->triangle_count, b->triangle_count);
+    assert_memory_equal(a->origin, b->origin, sizeof a->origin);
+    assert_memory_equal(a->affine, b->affine, sizeof a->affine);
+    corners *p = sorted_corners(a), *q = sorted_corners(b);
+    assert_memory_equal(p, q, a->triangle_count * sizeof *p);
+    free(p);
+    free(q);
 }
 
 void test_turn(cw_volume *volume, int round)

@@ -25,6 +25,9 @@ bool test_normals_agree(const cw_mesh *mesh);
 
 void test_assert_same_mesh(const cw_mesh *a, const cw_mesh *b);
 
+/* The same triangles, to the bit, in any order. */
+void test_assert_same_triangles(const cw_mesh *a, const cw_mesh *b);
+
 /* Its quality, with default settings. */
 cw_quality test_measure(const cw_mesh *mesh);
 

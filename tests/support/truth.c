@@ -265,3 +265,11 @@ test_truth test_topology_of(const float *voxels, const size_t dim[3], float iso)
     }
     return truth;
 }
+
+test_truth test_topology_tied(const float *voxels, const size_t dim[3], float iso, float step)
+{
+    const test_truth at = test_topology_counted(voxels, dim, iso);
+    test_truth below = test_topology_of(voxels, dim, iso - step);
+    below.decidable = below.decidable && at.decidable && same(&at, &below);
+    return below;
+}

@@ -25,6 +25,11 @@ test_truth test_topology_pictured(const float *voxels, const size_t dim[3], floa
 /* The other: counting critical points. Decidable unless one is too close to call. */
 test_truth test_topology_counted(const float *voxels, const size_t dim[3], float iso);
 
+/* Both ways where samples or saddles stand on the isovalue. There pictures are of no use: the
+ * inside has parts without any width. But it is closed, so a step below the isovalue it is the
+ * same with some width, as far as no critical value lies between; which the count knows. */
+test_truth test_topology_tied(const float *voxels, const size_t dim[3], float iso, float step);
+
 /* Disjoint sets of the numbers below count: all alone at first; whose number a set goes by;
  * join two, and whether they were apart. */
 void test_sets_start(size_t *sets, size_t count);

@@ -7,6 +7,8 @@
 
 #include <cubewright/field.h>
 
+#include <cubewright/hard.h>
+
 #include <cubewright/extract.h>
 
 #include <cubewright/cubewright.h>

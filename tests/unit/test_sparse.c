@@ -73,51 +73,6 @@ static double stored_background(cw_type type, double scale, double far)
                                             : rint(value * scale) + 100;
 }
 
-/* A triangle's corners with their normals, from the corner with the lowest place on. */
-typedef struct corners {
-    float x[3][6];
-} corners;
-
-static int compare(const void *a, const void *b)
-{
-    return memcmp(a, b, sizeof(corners));
-}
-
-static corners *sorted_corners(const cw_mesh *m)
-{
-    corners *all = calloc(m->triangle_count, sizeof *all);
-    assert_non_null(all);
-    for (size_t t = 0; t < m->triangle_count; t++) {
-        const uint32_t *v = m->triangles + 3 * t;
-        size_t first = 0;
-        for (size_t c = 1; c < 3; c++)
-            if (memcmp(m->positions + 3 * (size_t)v[c], m->positions + 3 * (size_t)v[first],
-                       3 * sizeof(float)) < 0)
-                first = c;
-        for (size_t c = 0; c < 3; c++) {
-            const size_t vertex = v[(first + c) % 3];
-            memcpy(all[t].x[c], m->positions + 3 * vertex, 3 * sizeof(float));
-            if (m->normals)
-                memcpy(all[t].x[c] + 3, m->normals + 3 * vertex, 3 * sizeof(float));
-        }
-    }
-    qsort(all, m->triangle_count, sizeof *all, compare);
-    return all;
-}
-
-/* The same triangles, to the bit, in any order. */
-static void assert_same_surface(const cw_mesh *a, const cw_mesh *b)
-{
-    assert_int_equal(a->vertex_count, b->vertex_count);
-    assert_int_equal(a->triangle_count, b->triangle_count);
-    assert_memory_equal(a->origin, b->origin, sizeof a->origin);
-    assert_memory_equal(a->affine, b->affine, sizeof a->affine);
-    corners *p = sorted_corners(a), *q = sorted_corners(b);
-    assert_memory_equal(p, q, a->triangle_count * sizeof *p);
-    free(p);
-    free(q);
-}
-
 static void check_like_dense(const cw_volume *dense, const cw_volume *sparse,
                              const cw_extract_desc *d)
 {
@@ -125,7 +80,7 @@ static void check_like_dense(const cw_volume *dense, const cw_volume *sparse,
     cw_error err = {0};
     cw_mesh a = test_extract(dense, d, NULL), b = test_extract(sparse, d, &counts);
     assert_true(a.triangle_count > 1000);
-    assert_same_surface(&a, &b);
+    test_assert_same_triangles(&a, &b);
     test_check_promise(&b, false);
     assert_int_equal(counts.triangles, b.triangle_count);
     assert_ok(cw_extract_predict(sparse, d, &predicted, &err), err);
