@@ -89,9 +89,13 @@ void Bound::collect(const Star &star)
 float Bound::allowed() const
 {
     uint8_t care = points.empty() ? uint8_t(CWI_MOST_CARE) : 0;
-    for (uint32_t p : points)
+    float least = error;
+    for (uint32_t p : points) {
         care = std::max(care, original->care[p]);
-    return care < CWI_MOST_CARE ? std::ldexp(error, -care) : -1;
+        if (original->allowed)
+            least = std::min(least, original->allowed[p]);
+    }
+    return care < CWI_MOST_CARE ? std::ldexp(least, -care) : -1;
 }
 
 // From the triangles around the nearest point: a distance that is not too small.

@@ -72,6 +72,7 @@ typedef struct cwi_original {
     const uint32_t *around;  /* around[first[v]] .. around[first[v + 1] - 1] */
     uint32_t *next;          /* vertices: the next point in a list; UINT32_MAX ends it */
     const uint8_t *care;     /* vertices: how often the distance is halved around them */
+    const float *allowed;    /* vertices: the distance there; NULL: the block's everywhere */
 } cwi_original;
 
 typedef struct cwi_block {

@@ -1,0 +1,271 @@
+/* Simplified for pictures: nothing in them moves by more pixels than asked for. */
+#include "support/surface.h"
+
+#include "simplify/quality/facet.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+static double uniform(double from, double to)
+{
+    return from + (to - from) * (double)rand() / (double)RAND_MAX;
+}
+
+static cw_volume noisy_gyroid(size_t n)
+{
+    const cw_field_desc field = {
+        .field = CW_FIELD_GYROID, .dim = {n, n, n}, .type = CW_F32, .noise = 0.1};
+    cw_volume volume;
+    cw_error err = {0};
+    assert_ok(cw_field_sample(&field, &volume, &err), err);
+    return volume;
+}
+
+static cw_mesh surface(size_t n)
+{
+    cw_volume volume = noisy_gyroid(n);
+    const cw_mesh mesh = test_extract(&volume, NULL, NULL);
+    cw_volume_free(&volume);
+    return mesh;
+}
+
+static double size_of(const cw_mesh *mesh, double middle[3])
+{
+    double low[3], high[3], square = 0;
+    assert_true(cw_mesh_bounds(mesh, low, high));
+    for (int a = 0; a < 3; a++) {
+        middle[a] = 0.5 * (low[a] + high[a]);
+        square += (high[a] - low[a]) * (high[a] - low[a]);
+    }
+    return sqrt(square);
+}
+
+/* Anywhere from inside to far away; every fourth one without perspective. */
+static cw_simplify_view random_view(const cw_mesh *mesh, int round)
+{
+    cw_simplify_view view = {.width = 320, .height = 200};
+    double middle[3];
+    const double size = size_of(mesh, middle);
+    for (int a = 0; a < 3; a++) {
+        view.camera.target[a] = middle[a] + uniform(-0.2, 0.2) * size;
+        view.camera.eye[a] = middle[a] + uniform(-2, 2) * size;
+        view.camera.up[a] = uniform(-1, 1);
+    }
+    view.camera.fov_deg = round % 4 ? uniform(10, 100) : 0;
+    view.camera.height_mm = uniform(0.2, 2) * size;
+    return view;
+}
+
+static void corners_of(const cw_mesh *m, size_t t, const float *p[3])
+{
+    for (size_t k = 0; k < 3; k++)
+        p[k] = m->positions + 3 * (size_t)m->triangles[3 * t + k];
+}
+
+static void random_point(const cw_mesh *m, double world[3])
+{
+    const float *p[3];
+    double u = uniform(0, 1), v = uniform(0, 1);
+    corners_of(m, (size_t)rand() % m->triangle_count, p);
+    if (u + v > 1) {
+        u = 1 - u;
+        v = 1 - v;
+    }
+    for (int a = 0; a < 3; a++)
+        world[a] = m->origin[a] + (1 - u - v) * (double)p[0][a] + u * (double)p[1][a] +
+                   v * (double)p[2][a];
+}
+
+/* By looking at all triangles. */
+static void nearest_point(const cw_mesh *m, const double world[3], double nearest[3])
+{
+    const double x[3] = {world[0] - m->origin[0], world[1] - m->origin[1],
+                         world[2] - m->origin[2]};
+    double best = INFINITY, share[3];
+    const float *p[3];
+    size_t at = 0;
+    for (size_t t = 0; t < m->triangle_count; t++) {
+        corners_of(m, t, p);
+        const double square = cwi_facet_square(p[0], p[1], p[2], x);
+        at = square < best ? t : at;
+        best = fmin(best, square);
+    }
+    corners_of(m, at, p);
+    cwi_facet_nearest(p[0], p[1], p[2], x, share);
+    for (int a = 0; a < 3; a++)
+        nearest[a] = m->origin[a] + share[0] * (double)p[0][a] + share[1] * (double)p[1][a] +
+                     share[2] * (double)p[2][a];
+}
+
+static double apart(const double a[3], const double b[3])
+{
+    return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+}
+
+/* How many pixels lie between two points; 0 where the first is not in the picture, or too near
+ * to the eye. */
+static double pixels_between(const cw_simplify_view *view, const double a[3], const double b[3])
+{
+    const cw_camera *c = &view->camera;
+    double p[2], q[2], depth;
+    if (!cw_camera_project(c, view->width, view->height, a, p, &depth) || p[0] < 0 ||
+        p[1] < 0 || p[0] > (double)view->width || p[1] > (double)view->height ||
+        (c->fov_deg > 0 && depth < 1e-3 * apart(c->eye, c->target)))
+        return 0;
+    if (!cw_camera_project(c, view->width, view->height, b, q, NULL))
+        return INFINITY;
+    return hypot(p[0] - q[0], p[1] - q[1]);
+}
+
+static void hold(const cw_mesh *a, const cw_mesh *b, const cw_simplify_desc *d, double *most)
+{
+    for (int n = 0; n < 300; n++) {
+        double point[3], near[3];
+        random_point(a, point);
+        nearest_point(b, point, near);
+        assert_true(apart(point, near) <= 1.0001 * d->error_mm);
+        for (size_t v = 0; v < d->view_count; v++) {
+            const double pixels = pixels_between(d->views + v, point, near);
+            *most = fmax(*most, pixels);
+            if (pixels > 1.0001 * d->pixel_error)
+                fail_msg("%g pixels where %g are promised", pixels, d->pixel_error);
+        }
+    }
+}
+
+static void no_picture_is_off_by_more_pixels(void **state)
+{
+    (void)state;
+    cw_mesh mesh = surface(14);
+    double middle[3], most = 0;
+    const double size = size_of(&mesh, middle);
+    srand(7);
+    for (int round = 0; round < 8; round++) {
+        cw_simplify_view views[2] = {random_view(&mesh, round), random_view(&mesh, round + 1)};
+        const cw_simplify_desc desc = {.error_mm = 0.03 * size,
+                                       .views = views,
+                                       .view_count = 1 + (size_t)round % 2,
+                                       .pixel_error = uniform(0.3, 2)};
+        cw_mesh out;
+        cw_error err = {0};
+        assert_ok(cw_simplify(&mesh, &desc, &out, NULL, &err), err);
+        assert_true(out.triangle_count < mesh.triangle_count);
+        test_assert_sound(&mesh, &out);
+        hold(&mesh, &out, &desc, &most);
+        hold(&out, &mesh, &desc, &most);
+        cw_mesh_free(&out);
+    }
+    assert_true(most > 0.3); /* and what is promised is made use of */
+    cw_mesh_free(&mesh);
+}
+
+/* Vertices above and below a height, each by itself. */
+static void count_sides(const cw_mesh *m, double z, double count[2])
+{
+    count[0] = count[1] = 0;
+    for (size_t v = 0; v < m->vertex_count; v++)
+        count[m->origin[2] + (double)m->positions[3 * v + 2] > z]++;
+}
+
+/* A picture of the upper half: there the surface is as if all of it were seen, below as if
+ * there were no picture. */
+static void what_no_view_sees_is_coarser(void **state)
+{
+    (void)state;
+    cw_mesh mesh = surface(20), half, coarse;
+    double middle[3], seen[2], unseen[2];
+    const double size = size_of(&mesh, middle);
+    cw_error err = {0};
+    cw_simplify_view view = {
+        .camera = {.up = {0, 0, 1}, .height_mm = size}, .width = 400, .height = 400};
+    memcpy(view.camera.target, middle, sizeof middle);
+    view.camera.target[2] += 0.5 * size;
+    memcpy(view.camera.eye, view.camera.target, sizeof view.camera.eye);
+    view.camera.eye[1] -= size;
+    cw_simplify_desc desc = {
+        .error_mm = 0.02 * size, .views = &view, .view_count = 1, .pixel_error = 1};
+    assert_ok(cw_simplify(&mesh, &desc, &half, NULL, &err), err);
+    desc = (cw_simplify_desc){.error_mm = desc.error_mm};
+    assert_ok(cw_simplify(&mesh, &desc, &coarse, NULL, &err), err);
+    count_sides(&half, middle[2], seen);
+    count_sides(&coarse, middle[2], unseen);
+    assert_true(seen[1] > 2 * unseen[1]);
+    assert_true(seen[1] > 2 * seen[0]);
+    cw_mesh_free(&coarse);
+    cw_mesh_free(&half);
+    cw_mesh_free(&mesh);
+}
+
+/* In tandem with extraction, where nothing is known of the slabs to come. */
+static cw_mesh by_slabs(const cw_volume *volume, const cw_simplify_desc *desc, int threads)
+{
+    cw_simplify_desc d = *desc;
+    cw_simplifier *simplifier;
+    cw_mesh out;
+    cw_error err = {0};
+    d.threads = threads;
+    assert_ok(cw_simplifier_new(&d, &simplifier, &err), err);
+    assert_ok(cw_extract_slabs(volume, NULL, 4000,
+                               (cw_slab_sink){cw_simplifier_take, simplifier}, NULL, &err),
+              err);
+    assert_ok(cw_simplifier_finish(simplifier, &out, NULL, &err), err);
+    cw_simplifier_free(simplifier);
+    return out;
+}
+
+static void slabs_keep_it_too_for_any_number_of_threads(void **state)
+{
+    (void)state;
+    cw_volume volume = noisy_gyroid(40);
+    cw_mesh mesh = test_extract(&volume, NULL, NULL);
+    double middle[3], most = 0;
+    const double size = size_of(&mesh, middle);
+    srand(3);
+    cw_simplify_view views[2] = {random_view(&mesh, 0), random_view(&mesh, 1)};
+    const cw_simplify_desc desc = {
+        .error_mm = 0.01 * size, .views = views, .view_count = 2, .pixel_error = 1};
+    cw_mesh one = by_slabs(&volume, &desc, 1), three = by_slabs(&volume, &desc, 3);
+    test_assert_same_mesh(&one, &three);
+    assert_true(one.triangle_count < mesh.triangle_count);
+    hold(&one, &mesh, &desc, &most);
+    cw_mesh_free(&one);
+    cw_mesh_free(&three);
+    cw_mesh_free(&mesh);
+    cw_volume_free(&volume);
+}
+
+static void views_that_are_none_are_refused(void **state)
+{
+    (void)state;
+    cw_mesh mesh = surface(8), out;
+    cw_error err = {0};
+    cw_simplify_view view = random_view(&mesh, 1);
+    cw_simplify_desc d = {.error_mm = 1, .views = &view, .view_count = 1};
+    assert_fails(cw_simplify(&mesh, &d, &out, NULL, &err), CW_ERR_ARGUMENT, "pixel_error is 0",
+                 err);
+    d.pixel_error = NAN;
+    assert_fails(cw_simplify(&mesh, &d, &out, NULL, &err), CW_ERR_ARGUMENT, "pixel_error", err);
+    d.pixel_error = 1;
+    d.view_count = 0;
+    assert_fails(cw_simplify(&mesh, &d, &out, NULL, &err), CW_ERR_ARGUMENT, "no views", err);
+    d.view_count = 1;
+    d.error_mm = 0;
+    d.ratio = 0.5;
+    assert_fails(cw_simplify(&mesh, &d, &out, NULL, &err), CW_ERR_ARGUMENT, "error_mm", err);
+    d.error_mm = 1;
+    memcpy(view.camera.eye, view.camera.target, sizeof view.camera.eye);
+    assert_fails(cw_simplify(&mesh, &d, &out, NULL, &err), CW_ERR_ARGUMENT, "apart", err);
+    cw_mesh_free(&mesh);
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(no_picture_is_off_by_more_pixels),
+        cmocka_unit_test(what_no_view_sees_is_coarser),
+        cmocka_unit_test(slabs_keep_it_too_for_any_number_of_threads),
+        cmocka_unit_test(views_that_are_none_are_refused),
+    };
+    return cw_simplify_available() ? cmocka_run_group_tests(tests, NULL, NULL) : 0;
+}
