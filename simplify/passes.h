@@ -22,6 +22,7 @@ typedef struct cwi_passes {
     uint32_t *first, *around, *next;
     uint8_t *care;
     float *allowed;  /* NULL without views */
+    float *normals;  /* of what a view sees; NULL where they do not matter */
     uint32_t *lists; /* next as it was before the pass */
     size_t repeats;  /* with more care */
 } cwi_passes;

@@ -6,8 +6,6 @@
 
 #include <math.h>
 
-enum { WIDTH = 1280, HEIGHT = 720 };
-
 /* Nearer to the eye than this share of the way to the target nothing is asked for exactly: at
  * the eye itself a pixel has no size. */
 static const double NEAREST = 1e-3;
@@ -28,6 +26,7 @@ static void see_perspective(cwi_view *v, const cw_camera *c, const double size[2
     for (int n = 0; n < 3; n++)
         away[n] = c->target[n] - c->eye[n];
     v->rate = a / (1 + a);
+    v->pixel = 1 / k;
     v->nearest = NEAREST * sqrt(cwi_dot(away, away));
 }
 
@@ -37,15 +36,17 @@ static void see_parallel(cwi_view *v, const cw_camera *c, const double size[2], 
     for (int n = 0; n < 2; n++)
         v->half[n] = (0.5 * size[n] + pixels) * pixel;
     v->even = pixels * pixel;
+    v->pixel = pixel;
     v->nearest = -INFINITY;
 }
 
-static cw_status see(cwi_view *v, const cw_simplify_view *from, double pixels, cw_error *err)
+cw_status cwi_view_init(cwi_view *v, const cw_simplify_view *from, double pixels, cw_error *err)
 {
     const cw_camera *c = &from->camera;
-    const double size[2] = {(double)(from->width ? from->width : WIDTH),
-                            (double)(from->height ? from->height : HEIGHT)};
-    *v = (cwi_view){.even = 0};
+    const double size[2] = {(double)(from->width ? from->width : CWI_VIEW_WIDTH),
+                            (double)(from->height ? from->height : CWI_VIEW_HEIGHT)};
+    *v = (cwi_view){
+        .size = {size[0], size[1]}, .depth = from->depth, .unit = 1, .pixels = pixels};
     if (!(pixels > 0) || !isfinite(pixels))
         return cw_fail(err, CW_ERR_ARGUMENT, "pixel_error is %g; it must be above 0", pixels);
     cw_status st = cw_camera_axes(c, v->axes[0], v->axes[1], v->axes[2], err);
@@ -71,6 +72,22 @@ static place place_of(const cwi_view *v, const double p[3])
                    cwi_dot(way, v->axes[2])};
 }
 
+static double pixel_at(const cwi_view *v, double depth)
+{
+    return v->rate > 0 ? v->pixel * depth : v->pixel;
+}
+
+bool cwi_view_project(const cwi_view *v, const double point[3], double *x, double *y,
+                      double *depth)
+{
+    const place p = place_of(v, point);
+    const double pixel = pixel_at(v, p.depth);
+    *x = 0.5 * v->size[0] + p.across[0] / pixel;
+    *y = 0.5 * v->size[1] - p.across[1] / pixel;
+    *depth = p.depth;
+    return p.depth > v->nearest;
+}
+
 /* By how much a place is beyond one of the five planes that a view sees up to. */
 static double beyond(const cwi_view *v, const place *p, int plane)
 {
@@ -94,10 +111,38 @@ static bool is_seen(const cwi_view *v, const place *p, int corners, double margi
     return true;
 }
 
-static double limit(const cwi_view *v, const place *p, int corners, double margin)
+/* What a surface is in front of at all pixels around it. Each of the two may move by `most`,
+ * and as far as that is in the picture the other one's edge may be away. */
+static bool is_hidden(const cwi_view *v, const place *p, int corners, double most,
+                      double margin)
+{
+    double nearest = INFINITY, low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (int c = 0; c < corners; c++)
+        nearest = fmin(nearest, p[c].depth);
+    if (!v->depth || nearest - 2 * most - margin <= v->nearest)
+        return false;
+    const double around = 1 + 2 * v->pixels + (most + margin) / pixel_at(v, nearest);
+    for (int c = 0; c < corners; c++) {
+        const double pixel = pixel_at(v, p[c].depth),
+                     at[2] = {0.5 * v->size[0] + p[c].across[0] / pixel,
+                              0.5 * v->size[1] - p[c].across[1] / pixel};
+        for (int a = 0; a < 2; a++) {
+            low[a] = fmin(low[a], fmax(floor(at[a] - around), 0));
+            high[a] = fmax(high[a], fmin(floor(at[a] + around), v->size[a] - 1));
+        }
+    }
+    const double before = (nearest - 2 * most - margin) / v->unit;
+    for (double y = low[1]; y <= high[1]; y++)
+        for (double x = low[0]; x <= high[0]; x++)
+            if ((double)v->depth[(size_t)(y * v->size[0] + x)] >= before)
+                return false;
+    return true;
+}
+
+static double limit(const cwi_view *v, const place *p, int corners, double most, double margin)
 {
     double least = INFINITY;
-    if (!is_seen(v, p, corners, margin))
+    if (!is_seen(v, p, corners, margin) || is_hidden(v, p, corners, most, margin))
         return least;
     for (int c = 0; c < corners; c++) {
         const double depth = v->rate > 0 ? fmax(p[c].depth, v->nearest) : 0;
@@ -126,7 +171,7 @@ cw_status cwi_views_init(cwi_views *views, const cw_simplify_desc *d, cw_error *
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu views", d->view_count);
     views->count = d->view_count;
     for (size_t n = 0; n < d->view_count && st == CW_OK; n++)
-        st = see(views->view + n, d->views + n, d->pixel_error, err);
+        st = cwi_view_init(views->view + n, d->views + n, d->pixel_error, err);
     return st;
 }
 
@@ -144,6 +189,8 @@ void cwi_views_place(cwi_views *views, const double origin[3], double scale)
         for (int n = 0; n < 2; n++)
             v->half[n] *= scale;
         v->even *= scale;
+        v->unit *= scale;
+        v->pixel *= v->rate > 0 ? 1 : scale;
         v->nearest *= scale;
     }
 }
@@ -151,13 +198,13 @@ void cwi_views_place(cwi_views *views, const double origin[3], double scale)
 double cwi_views_limit(const cwi_views *views, const float *const corners[3], double most,
                        double margin)
 {
-    double least = most;
+    double least = INFINITY;
     for (const cwi_view *v = views->view; v < views->view + views->count; v++) {
         place p[3];
         for (int c = 0; c < 3; c++)
             p[c] = place_of(v, (const double[3]){(double)corners[c][0], (double)corners[c][1],
                                                  (double)corners[c][2]});
-        least = fmin(least, limit(v, p, 3, margin));
+        least = fmin(least, limit(v, p, 3, most, margin));
     }
     return least;
 }
@@ -166,11 +213,11 @@ cw_status cw_simplify_view_error(const cw_simplify_view *view, double pixels,
                                  const double point[3], double *error_mm, cw_error *err)
 {
     cwi_view v;
-    cw_status st = see(&v, view, pixels, err);
+    cw_status st = cwi_view_init(&v, view, pixels, err);
     *error_mm = 0;
     if (st != CW_OK)
         return st;
     const place p = place_of(&v, point);
-    *error_mm = limit(&v, &p, 1, 0);
+    *error_mm = limit(&v, &p, 1, 0, 0);
     return CW_OK;
 }

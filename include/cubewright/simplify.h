@@ -14,7 +14,17 @@ extern "C" {
 typedef struct cw_simplify_view {
     cw_camera camera;
     size_t width, height; /* pixels; default: 1280 x 720 */
+    float *depth;         /* width x height, top row first: how far before the eye, in mm along
+                             the line of sight, what is seen in the middles of pixels is;
+                             INFINITY: nothing. Default: nothing is hidden */
 } cw_simplify_view;
+
+/* Draws the depths of one more mesh, or slab, of what a view shows. Free them with
+ * cw_simplify_view_free(), which is harmless where there are none.
+ * Returns  CW_ERR_ARGUMENT for a camera that is none; CW_ERR_NO_MEMORY */
+CW_API cw_status cw_simplify_view_draw(cw_simplify_view *view, const cw_mesh *mesh,
+                                       cw_error *err);
+CW_API void cw_simplify_view_free(cw_simplify_view *view);
 
 /* How far to simplify, and what to spare. Zero-initialise it and set what you need; a zero
  * field means the default named beside it. At least one of error_mm, triangles and ratio is
@@ -24,12 +34,15 @@ typedef struct cw_simplify_desc {
                         the other one; default: no such promise */
     /* Less than error_mm where a view sees the surface: what is within such a distance is in no
        picture farther apart than so many pixels, up to so many beside it. It grows with the
-       depth. Of several views the least counts; where none sees the surface, error_mm does, and
-       so it does of what is hidden only by other parts. Nearer to an eye than a thousandth of
-       the way to its target is as there. */
+       depth. Of several views the least counts; where none sees the surface, error_mm does: so
+       where it lies more than twice that behind what a view has depths of. Nearer to an eye
+       than a thousandth of the way to its target is as there. */
     const cw_simplify_view *views; /* view_count of them, borrowed until the call returns */
     size_t view_count;
     double pixel_error; /* above 0 when there are views */
+    double normal_deg;  /* vertices that a view sees are joined only while the surface's normals
+                           around them are no farther than this from their mean, which shading
+                           follows; default: 180, any */
     size_t triangles;   /* stop when there are so many; default: no limit */
     double ratio; /* the same as a share of the input's, above 0, below 1; default: none */
     bool allow_crossings; /* default: no triangles meet that did not meet before */
