@@ -30,6 +30,9 @@ static cw_status begin(cw_simplify_view *view, cw_error *err)
     return CW_OK;
 }
 
+/* Between two triangles there is no gap for a pixel's middle to fall into, by rounding. */
+static const double SLACK = 1e-6;
+
 /* A corner in the picture; what is linear there: the depth, its inverse with a perspective. */
 typedef struct spot {
     double x, y, linear;
@@ -59,7 +62,7 @@ static void fill(cw_simplify_view *view, const spot s[3])
                 linear += share[k] * s[k].linear;
             }
             float *at = view->depth + (size_t)y * view->width + (size_t)x;
-            if (share[0] >= 0 && share[1] >= 0 && share[2] >= 0)
+            if (share[0] >= -SLACK && share[1] >= -SLACK && share[2] >= -SLACK)
                 *at = fminf(*at, (float)(perspective ? 1 / linear : linear));
         }
 }

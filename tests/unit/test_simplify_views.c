@@ -103,15 +103,24 @@ static double apart(const double a[3], const double b[3])
     return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
 }
 
-/* How many pixels lie between two points; 0 where the first is not in the picture, or too near
- * to the eye. */
+/* Whether something is before what a picture shows there. */
+static bool is_hidden(const cw_simplify_view *view, const double pixel[2], double depth)
+{
+    const size_t x = (size_t)pixel[0], y = (size_t)pixel[1];
+    return view->depth && x < view->width && y < view->height &&
+           depth > (double)view->depth[y * view->width + x] + 1e-3;
+}
+
+/* How many pixels lie between two points; 0 where the first is not in the picture, hidden, or
+ * too near to the eye. */
 static double pixels_between(const cw_simplify_view *view, const double a[3], const double b[3])
 {
     const cw_camera *c = &view->camera;
     double p[2], q[2], depth;
     if (!cw_camera_project(c, view->width, view->height, a, p, &depth) || p[0] < 0 ||
         p[1] < 0 || p[0] > (double)view->width || p[1] > (double)view->height ||
-        (c->fov_deg > 0 && depth < 1e-3 * apart(c->eye, c->target)))
+        (c->fov_deg > 0 && depth < 1e-3 * apart(c->eye, c->target)) ||
+        is_hidden(view, p, depth))
         return 0;
     if (!cw_camera_project(c, view->width, view->height, b, q, NULL))
         return INFINITY;
@@ -158,6 +167,120 @@ static void no_picture_is_off_by_more_pixels(void **state)
     }
     assert_true(most > 0.3); /* and what is promised is made use of */
     cw_mesh_free(&mesh);
+}
+
+/* The depths that are drawn are those of the nearest crossing of rays. */
+static void depths_are_those_of_rays(void **state)
+{
+    (void)state;
+    cw_volume volume = test_sample(CW_FIELD_SPHERE, 40, CW_F32);
+    cw_mesh mesh = test_extract(&volume, &(cw_extract_desc){.inside_is_low = true}, NULL);
+    double middle[3];
+    const double size = size_of(&mesh, middle);
+    cw_error err = {0};
+    for (int round = 0; round < 2; round++) {
+        cw_simplify_view view = {.width = 64, .height = 48};
+        view.camera = (cw_camera){.up = {0, 0, 1}, .fov_deg = round ? 30 : 0};
+        view.camera.height_mm = size;
+        memcpy(view.camera.target, middle, sizeof middle);
+        memcpy(view.camera.eye, middle, sizeof middle);
+        view.camera.eye[1] -= 3 * size;
+        assert_ok(cw_simplify_view_draw(&view, &mesh, &err), err);
+        size_t covered = 0;
+        for (size_t n = 0; n < view.width * view.height; n++) {
+            const double pixel[2] = {(double)(n % view.width) + 0.5,
+                                     (double)(n / view.width) + 0.5};
+            double o[3], d[3], p[2], depth, point[3], near[3];
+            if (!isfinite(view.depth[n]))
+                continue;
+            assert_ok(cw_camera_ray(&view.camera, view.width, view.height, pixel, o, d, &err),
+                      err);
+            const double along = round ? (double)view.depth[n] / d[1] : (double)view.depth[n];
+            for (int a = 0; a < 3; a++)
+                point[a] = o[a] + along * d[a];
+            nearest_point(&mesh, point, near);
+            assert_true(apart(point, near) < 1e-4 * size);
+            assert_true(point[1] < middle[1]); /* the front, not the back */
+            assert_true(
+                cw_camera_project(&view.camera, view.width, view.height, point, p, &depth));
+            assert_near(depth, (double)view.depth[n], 1e-4 * size);
+            covered++;
+        }
+        assert_true(covered > 200);
+        cw_simplify_view_free(&view);
+    }
+    cw_mesh_free(&mesh);
+    cw_volume_free(&volume);
+}
+
+/* Hidden parts are coarser, and what is seen is not. */
+static void what_is_hidden_is_coarser(void **state)
+{
+    (void)state;
+    cw_volume volume = test_sample(CW_FIELD_SPHERE, 32, CW_F32);
+    cw_mesh mesh = test_extract(&volume, &(cw_extract_desc){.inside_is_low = true}, NULL);
+    double middle[3], most = 0;
+    const double size = size_of(&mesh, middle);
+    srand(11);
+    for (int round = 0; round < 4; round++) {
+        cw_simplify_view view = random_view(&mesh, round);
+        cw_simplify_desc desc = {
+            .error_mm = 0.01 * size, .views = &view, .view_count = 1, .pixel_error = 0.2};
+        cw_mesh all, out;
+        cw_error err = {0};
+        for (int a = 0; a < 3; a++) { /* from outside */
+            view.camera.target[a] = middle[a];
+            view.camera.eye[a] = middle[a] + (a == round % 3 ? 1.5 : 0.2) * size;
+        }
+        assert_ok(cw_simplify(&mesh, &desc, &all, NULL, &err), err);
+        assert_ok(cw_simplify_view_draw(&view, &mesh, &err), err);
+        assert_ok(cw_simplify(&mesh, &desc, &out, NULL, &err), err);
+        assert_true(out.triangle_count < all.triangle_count);
+        test_assert_sound(&mesh, &out);
+        hold(&mesh, &out, &desc, &most);
+        cw_mesh_free(&all);
+        cw_mesh_free(&out);
+        cw_simplify_view_free(&view);
+    }
+    cw_mesh_free(&mesh);
+    cw_volume_free(&volume);
+}
+
+/* With little room for normals the seen side of a sphere keeps what the other one loses. */
+static void what_is_seen_keeps_its_shading(void **state)
+{
+    (void)state;
+    cw_volume volume = test_sample(CW_FIELD_SPHERE, 72, CW_F32);
+    cw_mesh mesh = test_extract(&volume, &(cw_extract_desc){.inside_is_low = true}, NULL), out;
+    double middle[3];
+    const double size = size_of(&mesh, middle);
+    size_t count[2][2] = {{0}};
+    cw_error err = {0};
+    cw_simplify_view view = {
+        .camera = {.up = {0, 0, 1}, .height_mm = size}, .width = 400, .height = 400};
+    memcpy(view.camera.target, middle, sizeof middle);
+    memcpy(view.camera.eye, middle, sizeof middle);
+    view.camera.eye[1] -= 2 * size;
+    assert_ok(cw_simplify_view_draw(&view, &mesh, &err), err);
+    for (int kept = 0; kept < 2; kept++) {
+        const cw_simplify_desc desc = {.error_mm = 0.01 * size,
+                                       .views = &view,
+                                       .view_count = 1,
+                                       .pixel_error = 4,
+                                       .normal_deg = kept ? 1 : 0};
+        assert_ok(cw_simplify(&mesh, &desc, &out, NULL, &err), err);
+        for (size_t v = 0; v < out.vertex_count; v++) {
+            const double y = out.origin[1] + (double)out.positions[3 * v + 1] - middle[1];
+            count[kept][0] += y < -0.2 * size;
+            count[kept][1] += y > 0.2 * size;
+        }
+        cw_mesh_free(&out);
+    }
+    assert_true(count[1][0] > 5 * count[0][0]);
+    assert_true(2 * count[1][0] > 3 * count[1][1]); /* which grade from fine to coarse */
+    cw_simplify_view_free(&view);
+    cw_mesh_free(&mesh);
+    cw_volume_free(&volume);
 }
 
 /* Vertices above and below a height, each by itself. */
@@ -254,6 +377,9 @@ static void views_that_are_none_are_refused(void **state)
     d.ratio = 0.5;
     assert_fails(cw_simplify(&mesh, &d, &out, NULL, &err), CW_ERR_ARGUMENT, "error_mm", err);
     d.error_mm = 1;
+    d.normal_deg = 181;
+    assert_fails(cw_simplify(&mesh, &d, &out, NULL, &err), CW_ERR_ARGUMENT, "normal_deg", err);
+    d.normal_deg = 0;
     memcpy(view.camera.eye, view.camera.target, sizeof view.camera.eye);
     assert_fails(cw_simplify(&mesh, &d, &out, NULL, &err), CW_ERR_ARGUMENT, "apart", err);
     cw_mesh_free(&mesh);
@@ -262,8 +388,11 @@ static void views_that_are_none_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_is_seen_keeps_its_shading),
         cmocka_unit_test(no_picture_is_off_by_more_pixels),
         cmocka_unit_test(what_no_view_sees_is_coarser),
+        cmocka_unit_test(depths_are_those_of_rays),
+        cmocka_unit_test(what_is_hidden_is_coarser),
         cmocka_unit_test(slabs_keep_it_too_for_any_number_of_threads),
         cmocka_unit_test(views_that_are_none_are_refused),
     };
