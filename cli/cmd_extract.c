@@ -4,6 +4,7 @@
 #include "cli/deliver.h"
 #include "cli/frames.h"
 #include "cli/output.h"
+#include "cli/pixels.h"
 #include "cli/pvd.h"
 #include "cli/quantity.h"
 #include "cli/surface.h"
@@ -27,12 +28,17 @@ typedef struct extract_args {
     cli_steps steps;
     cli_number snap, fps;
     cli_reduction simplify;
+    cli_pixel_args pixel;
     int inside, normals, progress, topology, placement, accel;
     bool open, no_clobber, local, check, animate;
     size_t max_triangles;
 } extract_args;
 
-enum { PROVENANCE_LINES = 5, DEFAULT_FPS = 10 };
+enum { PROVENANCE_LINES = 5, DEFAULT_FPS = 10, MOST_TRIES = 4 };
+
+/* Degrees: of a head in 1280 x 720 pixels 1 in 200 then looks different, of 2 degrees 1 in 100.
+ */
+static const double SHADING = 1.5;
 
 static const extract_args defaults = {.check = true};
 
@@ -71,6 +77,22 @@ static const cli_option options[] = {
      "while extracting, as far as an error allows (0.1mm, 0.05%, 0.5vox) or to so many "
      "triangles (50k) (off)",
      offsetof(extract_args, simplify)},
+    {"camera", 0, CLI_TEXT, "FILE[,FILE...]",
+     "keep only what the pictures of these cameras need; .json files of render, or the text of "
+     "one; with --pixel-error",
+     offsetof(extract_args, pixel.camera)},
+    {"pixel-error", 0, CLI_NUMBER, "N",
+     "so many pixels of --camera the surface may be off, where it is seen",
+     offsetof(extract_args, pixel.pixels)},
+    {"size", 0, CLI_SIZES, "WxH", "of those pictures, in pixels (1280x720)",
+     offsetof(extract_args, pixel.size)},
+    {"shading", 0, CLI_NUMBER, "DEG",
+     "what --camera sees is joined where normals agree within this; 180 is anywhere (1.5)",
+     offsetof(extract_args, pixel.shading)},
+    {"max-error", 0, CLI_LENGTH, "L",
+     "no farther from the field's surface than this (0.2mm, 0.05%, 0.5vox), measured; with "
+     "--camera from the full mesh's, out of sight (off)",
+     offsetof(extract_args, pixel.most)},
     {"normals", 0, CLI_CHOICE, "field/none", "normals from the field's gradient (field)",
      offsetof(extract_args, normals)},
     {"accel", 0, CLI_CHOICE, "octree/none",
@@ -110,6 +132,8 @@ typedef struct run_state {
     cli_frames frames;       /* of --animate */
     double fps;              /* of those; 0: as the file times them */
     size_t memory;           /* left when the voxels were read */
+    cw_simplify_view views[CLI_MOST_VIEWS];
+    size_t view_count;
     cli_outputs outputs;
     cli_report report;
     double start; /* of the surface at hand */
@@ -122,7 +146,7 @@ static double voxel_mm(const run_state *s)
 }
 
 /* Shares are of the diagonal of the volume's box. */
-static double error_mm(const run_state *s)
+static double length_mm(const run_state *s, const cli_length *length)
 {
     double square = 0;
     for (int a = 0; a < 3; a++) {
@@ -132,7 +156,12 @@ static double error_mm(const run_state *s)
                                 : s->volume.spacing[a] * (double)(s->volume.view.dim[a] - 1);
         square += side * side;
     }
-    return cli_length_mm(&s->args->simplify.error, sqrt(square), voxel_mm(s));
+    return cli_length_mm(length, sqrt(square), voxel_mm(s));
+}
+
+static double error_mm(const run_state *s)
+{
+    return length_mm(s, &s->args->simplify.error);
 }
 
 static bool is_low(const run_state *s)
@@ -142,7 +171,27 @@ static bool is_low(const run_state *s)
 
 static bool is_simplified(const extract_args *args)
 {
-    return args->simplify.error.given || args->simplify.triangles;
+    return args->simplify.error.given || args->simplify.triangles || args->pixel.camera ||
+           args->pixel.most.given;
+}
+
+static double shading(const extract_args *args)
+{
+    return args->pixel.shading.given ? args->pixel.shading.value : SHADING;
+}
+
+static void put_pixels(cli_json *j, const run_state *s)
+{
+    const cli_pixel_args *a = &s->args->pixel;
+    if (a->most.given)
+        cli_json_number(j, "max_error_mm", length_mm(s, &a->most));
+    if (!a->camera)
+        return;
+    cli_json_count(j, "cameras", s->view_count);
+    cli_json_number(j, "pixel_error", a->pixels.value);
+    cli_json_count(j, "width", s->views[0].width);
+    cli_json_count(j, "height", s->views[0].height);
+    cli_json_number(j, "shading_deg", shading(s->args));
 }
 
 static void put_params(cli_json *j, const void *p, const cli_made *made)
@@ -160,6 +209,7 @@ static void put_params(cli_json *j, const void *p, const cli_made *made)
         cli_json_number(j, "simplify_error_mm", error_mm(s));
     else if (args->simplify.triangles)
         cli_json_count(j, "simplify_triangles", args->simplify.triangles);
+    put_pixels(j, s);
     cli_json_text(j, "normals", args->normals ? "none" : "field");
     if (args->iso.count > 1)
         cli_json_text(j, "accel", args->accel ? "none" : "octree");
@@ -242,6 +292,31 @@ static cw_status check_animation(const extract_args *args, cw_error *err)
     return CW_OK;
 }
 
+/* What asks for fewer triangles. */
+static const char *reducer(const extract_args *args)
+{
+    return args->pixel.camera       ? "--camera"
+           : args->pixel.most.given ? "--max-error"
+                                    : "--simplify";
+}
+
+static cw_status check_pixels(run_state *s, cw_error *err)
+{
+    const extract_args *args = s->args;
+    cw_status st = cli_read_views(&args->pixel, s->views, &s->view_count, err);
+    if (st != CW_OK)
+        return st;
+    if ((args->pixel.camera || args->pixel.most.given) &&
+        (args->simplify.error.given || args->simplify.triangles))
+        return cw_fail(err, CW_ERR_ARGUMENT, "%s or --simplify, not both", reducer(args));
+
+    if (args->pixel.most.given && !args->pixel.camera && (!args->check || args->placement))
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--max-error is measured, to the field's surface: it cannot be with %s",
+                       args->check ? "--placement cubic" : "--no-check");
+    return CW_OK;
+}
+
 /* Everything about the arguments that can be refused before the input is touched. */
 static cw_status check_args(run_state *s, cw_error *err)
 {
@@ -262,21 +337,23 @@ static cw_status check_args(run_state *s, cw_error *err)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "--snap is a share of an edge, 0 to %g, and not %g", CW_EXTRACT_MAX_SNAP,
                        args->snap.value);
+    st = check_pixels(s, err);
+    if (st != CW_OK)
+        return st;
     if (is_simplified(args) && args->snap.value > 0)
         return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--snap and --simplify both remove needles: give one of them");
+                       "--snap and %s both remove needles: give one of them", reducer(args));
     if (is_simplified(args) && !cw_simplify_available())
         return cw_fail(err, CW_ERR_UNSUPPORTED,
-                       "--simplify needs OpenMesh, which this build is without: install "
-                       "libopenmesh-dev and build again");
+                       "%s needs OpenMesh, which this build is without: install "
+                       "libopenmesh-dev and build again",
+                       reducer(args));
     return check_animation(args, err);
 }
 
-static cw_status extract(run_state *s, double iso, cw_mesh *mesh, cw_extract_counts *counts,
-                         cw_error *err)
+static cw_extract_desc extract_desc(const run_state *s, double iso)
 {
-    const cw_volume *v = &s->volume.view;
-    const cw_extract_desc desc = {
+    return (cw_extract_desc){
         .isovalue = iso,
         .inside_is_low = is_low(s),
         .leave_open = s->args->open,
@@ -287,16 +364,100 @@ static cw_status extract(run_state *s, double iso, cw_mesh *mesh, cw_extract_cou
         .threads = (int)s->args->input.threads,
         .max_triangles = s->args->max_triangles,
     };
-    const cw_simplify_desc simplify = {
-        .error_mm = s->args->simplify.error.given ? error_mm(s) : 0,
+}
+
+/* error_mm  of the surface as it is extracted; with cameras: out of their sight */
+static cw_simplify_desc simplify_desc(const run_state *s, double error)
+{
+    const bool seen = s->view_count > 0;
+    return (cw_simplify_desc){
+        .error_mm = error,
         .triangles = s->args->simplify.triangles,
-        .threads = desc.threads,
+        .views = s->views,
+        .view_count = s->view_count,
+        .pixel_error = seen ? s->args->pixel.pixels.value : 0,
+        .normal_deg = seen && shading(s->args) < 180 ? shading(s->args) : 0,
+        .threads = (int)s->args->input.threads,
     };
+}
+
+static cw_status find_error(const run_state *s, double *error, cw_error *err)
+{
+    const extract_args *args = s->args;
+    *error = args->simplify.error.given ? error_mm(s) : 0;
+    if (args->pixel.most.given)
+        *error = length_mm(s, &args->pixel.most);
+    else if (s->view_count)
+        return cli_widest_error(&s->volume, s->views, s->view_count, args->pixel.pixels.value,
+                                error, err);
+    return CW_OK;
+}
+
+/* Depths of the surface first, then what they leave of it. */
+static cw_status extract_for_views(run_state *s, const cw_extract_desc *desc,
+                                   const cw_simplify_desc *simplify, cw_mesh *mesh,
+                                   cw_extract_counts *counts, cw_error *err)
+{
+    for (size_t n = 0; n < s->view_count; n++)
+        cw_simplify_view_free(s->views + n);
+    cw_status st = cli_draw_views(&s->volume, desc, s->views, s->view_count, err);
+    return st == CW_OK ? cli_extract_simplified(&s->volume, desc, simplify, mesh, counts, err)
+                       : st;
+}
+
+static cw_status measure_field(run_state *s, cli_made *made, const cw_mesh *mesh, cw_error *err)
+{
+    made->compared.has_field = false;
+    cw_status st = cli_compare_with_field(mesh, &s->volume, made->iso, is_low(s),
+                                          (int)s->args->input.threads, &made->compared, err);
+    return st == CW_OK ? st : cwi_fail_in(err, st, s->volume.path);
+}
+
+/* The extracted surface is off the field's, too: by how much is seen from the result, and the
+ * next one is given less. */
+static cw_status extract_within(run_state *s, cli_made *made, const cw_extract_desc *desc,
+                                double most, cw_mesh *mesh, cw_extract_counts *counts,
+                                cw_error *err)
+{
+    double error = most, measured = INFINITY;
+    for (int n = 0; n < MOST_TRIES && error > 0.01 * most; n++) {
+        const cw_simplify_desc simplify = simplify_desc(s, error);
+        cw_mesh_free(mesh);
+        cw_status st = cli_extract_simplified(&s->volume, desc, &simplify, mesh, counts, err);
+        if (st == CW_OK)
+            st = measure_field(s, made, mesh, err);
+        if (st != CW_OK)
+            return st;
+        measured = made->compared.to_field.max_mm;
+        if (measured <= most)
+            return CW_OK;
+        error = fmin(0.5 * error, 0.95 * (most - (measured - error)));
+    }
+    return cw_fail(err, CW_ERR_CHECK,
+                   "%s: not as promised: the result is up to %.4g mm from the field's surface, "
+                   "and not %.4g: that of cells is too far from it by itself",
+                   s->volume.path, measured, most);
+}
+
+static cw_status extract(run_state *s, cli_made *made, cw_mesh *mesh, cw_extract_counts *counts,
+                         cw_error *err)
+{
+    const cw_volume *v = &s->volume.view;
+    const cw_extract_desc desc = extract_desc(s, made->iso);
+    double error;
+    cw_status st = find_error(s, &error, err);
+    if (st != CW_OK)
+        return st;
+    const cw_simplify_desc simplify = simplify_desc(s, error);
     cli_report_begin(&s->report);
-    cw_status st =
-        is_simplified(s->args)
-            ? cli_extract_simplified(&s->volume, &desc, &simplify, mesh, counts, err)
-            : cli_extract_surface(&s->volume, s->extractor, &desc, mesh, counts, err);
+    if (s->view_count)
+        st = extract_for_views(s, &desc, &simplify, mesh, counts, err);
+    else if (s->args->pixel.most.given)
+        st = extract_within(s, made, &desc, error, mesh, counts, err);
+    else if (is_simplified(s->args))
+        st = cli_extract_simplified(&s->volume, &desc, &simplify, mesh, counts, err);
+    else
+        st = cli_extract_surface(&s->volume, s->extractor, &desc, mesh, counts, err);
     if (st == CW_OK)
         cli_report_end(&s->report, "extract", v->dim[0] * v->dim[1] * v->dim[2],
                        mesh->triangle_count);
@@ -323,12 +484,43 @@ static cw_status judge_simplified(run_state *s, cli_made *made, const cw_mesh *m
                 cwi_volume_kind(&s->volume.view));
         return CW_OK;
     }
+    if (made->compared.has_field)
+        return CW_OK;
     cli_report_begin(&s->report);
-    cw_status st = cli_compare_with_field(mesh, &s->volume, made->iso, is_low(s),
-                                          (int)args->input.threads, &made->compared, err);
+    cw_status st = measure_field(s, made, mesh, err);
+    if (st == CW_OK)
+        cli_report_end(&s->report, "measure", mesh->triangle_count, mesh->triangle_count);
+    return st;
+}
+
+/* The promise was kept by bounds, all over; here it is seen from outside. */
+static cw_status prove(run_state *s, cli_made *made, const cw_mesh *mesh, size_t bytes,
+                       cw_error *err)
+{
+    const cw_extract_desc desc = extract_desc(s, made->iso);
+    cli_proof *p = &made->proof;
+    double error;
+    if (!s->view_count || !s->args->check)
+        return CW_OK;
+    cli_report_begin(&s->report);
+    cw_status st = find_error(s, &error, err);
+    const cw_simplify_desc simplify = simplify_desc(s, error);
+    if (st == CW_OK)
+        st = cli_prove_views(&s->volume, &desc, &simplify, mesh, p, err);
     if (st != CW_OK)
-        return cwi_fail_in(err, st, s->volume.path);
-    cli_report_end(&s->report, "measure", mesh->triangle_count, mesh->triangle_count);
+        return st;
+    p->bytes = bytes;
+    cli_report_end(&s->report, "prove", p->full_triangles, mesh->triangle_count);
+    for (size_t n = 0; n < p->count; n++)
+        cli_say("%s: camera %zu: at most %.3g pixels off, %.3g promised; %.3g %% of its pixels "
+                "differ by more than 2/255",
+                s->volume.path, n + 1, p->views[n].pixels, p->promised_pixels,
+                100 * p->views[n].apart);
+    for (size_t n = 0; n < p->count; n++)
+        if (p->views[n].pixels > 1.01 * p->promised_pixels)
+            return cw_fail(err, CW_ERR_CHECK,
+                           "%s: not as promised: %.4g pixels off for camera %zu",
+                           s->volume.path, p->views[n].pixels, n + 1);
     return CW_OK;
 }
 
@@ -343,7 +535,12 @@ static size_t tell_provenance(const run_state *s, size_t n, char level[32], char
     lines[1] = (cw_provenance){"inside", is_low(s) ? "below" : "above"};
     lines[2] = (cw_provenance){"topology", args->topology ? "simple" : "field"};
     lines[3] = (cw_provenance){"placement", args->placement ? "cubic" : "linear"};
-    if (args->simplify.error.given)
+    if (args->pixel.camera)
+        snprintf(simplify, 64, "to %.9g pixels of %zu cameras", args->pixel.pixels.value,
+                 s->view_count);
+    else if (args->pixel.most.given)
+        snprintf(simplify, 64, "to %.9g mm of the field", length_mm(s, &args->pixel.most));
+    else if (args->simplify.error.given)
         snprintf(simplify, 64, "to %.9g mm", error_mm(s));
     else
         snprintf(simplify, 64, "to %zu triangles", args->simplify.triangles);
@@ -400,12 +597,14 @@ static cw_status make_surface(run_state *s, const cli_moment *moment, size_t n, 
     cli_made *made = begin_surface(s, moment, n);
     const cli_delivery how = delivery(s);
     cw_mesh mesh = {0};
-    cw_extract_counts counts;
-    cw_status st = extract(s, made->iso, &mesh, &counts, err);
+    cw_extract_counts counts = {0};
+    cw_status st = extract(s, made, &mesh, &counts, err);
     made->snapped = st == CW_OK && s->args->snap.value > 0;
     made->snap = made->snapped ? counts.snap : (cw_snap_counts){0};
     if (st == CW_OK && is_simplified(s->args))
         st = judge_simplified(s, made, &mesh, &counts, err);
+    if (st == CW_OK)
+        st = prove(s, made, &mesh, counts.bytes, err);
     if (st == CW_OK)
         st = s->args->animate
                  ? cli_deliver_step(&s->report, &how, &mesh, counts.border_loops, s->start, err)
@@ -606,6 +805,8 @@ static cw_status run(void *p, cw_error *err)
     if (st == CW_OK)
         st = pipeline(&s, err);
     st = cli_report_write(&s.report, st, err);
+    for (size_t n = 0; n < s.view_count; n++)
+        cw_simplify_view_free(s.views + n);
     cw_extractor_free(s.extractor);
     cli_frames_free(&s.frames);
     cli_free_volume(&s.volume);
@@ -643,6 +844,10 @@ const cli_command cli_extract = {
         "memory: no point of the result is farther from it than the error, nor the other way\n"
         "round, or about so many triangles are left. It keeps what the command simplify "
         "keeps.\n\n"
+        "--camera keeps what its pictures need: what is seen is off by no more than\n"
+        "--pixel-error and keeps its shading; out of sight the mesh is coarse, but closed. It "
+        "is\n"
+        "compared with the full one. --max-error is measured to the field's surface.\n\n"
         "STL, PLY and OBJ hold world coordinates; far from the world's zero single precision\n"
         "loses them, and extract warns. With --local they are relative to the mesh's origin:\n"
         "add it to get the world's. It is printed, and named in the report and in the file.\n"
@@ -680,6 +885,7 @@ const cli_command cli_extract = {
         "  cubewright extract ct.nrrd --iso -400,300 -o '{stem}-{level}.glb'\n"
         "  cubewright extract ct.nrrd --iso 300 -o bone.stl --json report.json\n"
         "  cubewright extract ct.nrrd --iso 300 -o bone.glb --simplify 0.1mm\n"
+        "  cubewright extract ct.nrrd --iso 300 -o v.glb --camera cam.json --pixel-error 1\n"
         "  cubewright extract heart.nii.gz --iso 90 --steps all -o 'heart-{step:02d}.ply'\n"
         "  cubewright extract 'scan-*.nrrd' --iso 300 -o '{stem}.glb'\n"
         "  cubewright extract heart.nii.gz --iso 90 --steps all -o 'out/{step}.vtp' --pvd "

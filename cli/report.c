@@ -175,6 +175,29 @@ static void put_comparison(cli_json *j, const cli_comparison *c)
                                       .from_reference = c->made ? &c->from_input : NULL});
 }
 
+/* What a camera's picture was promised, what was measured, and what it saved. */
+static void put_proof(cli_json *j, const cli_proof *p)
+{
+    cli_json_open(j, "proof", '{');
+    cli_json_text(j, "against", "full mesh");
+    cli_json_number(j, "promised_pixels", p->promised_pixels);
+    cli_json_number(j, "promised_mm", p->promised_mm);
+    cli_json_number(j, "max_mm", p->mm);
+    cli_json_open(j, "views", '[');
+    for (size_t n = 0; n < p->count; n++) {
+        cli_json_open(j, NULL, '{');
+        cli_json_number(j, "max_pixels", p->views[n].pixels);
+        cli_json_number(j, "share_beyond_2_of_255", p->views[n].apart);
+        cli_json_close(j, '}');
+    }
+    cli_json_close(j, ']');
+    cli_json_count(j, "full_triangles", p->full_triangles);
+    cli_json_number(j, "full_seconds", p->full_seconds);
+    cli_json_count(j, "full_bytes", p->full_bytes);
+    cli_json_count(j, "slab_bytes", p->bytes);
+    cli_json_close(j, '}');
+}
+
 static void put_facts(cli_json *j, const cli_made *m)
 {
     if (m->measured)
@@ -183,6 +206,8 @@ static void put_facts(cli_json *j, const cli_made *m)
         put_snap(j, &m->snap);
     if (m->compared.made || m->compared.has_field)
         put_comparison(j, &m->compared);
+    if (m->proof.count)
+        put_proof(j, &m->proof);
 }
 
 static void put_moment(cli_json *j, const cli_made *m)

@@ -26,6 +26,22 @@ typedef struct cli_comparison {
     double promised_mm; /* 0: no error was promised */
 } cli_comparison;
 
+enum { CLI_MOST_VIEWS = 64 }; /* of one mesh */
+
+/* What became of a promise in one picture, against the full mesh. */
+typedef struct cli_view_proof {
+    double pixels; /* the farthest that was measured */
+    double apart;  /* the share of pixels that look different: by more than 2/255 */
+} cli_view_proof;
+
+typedef struct cli_proof {
+    size_t count; /* of views; 0: nothing to prove */
+    double promised_pixels, promised_mm, mm;
+    size_t full_triangles, full_bytes, bytes; /* of work, besides the voxels */
+    double full_seconds;
+    cli_view_proof views[CLI_MOST_VIEWS];
+} cli_proof;
+
 /* One mesh of a run, as far as it has come. */
 typedef struct cli_made {
     const char *path; /* where it goes */
@@ -43,6 +59,7 @@ typedef struct cli_made {
     unsigned dropped;         /* what the file does not hold of it: cw_keeps flags */
     double origin[3];         /* when it is local: the places in the file are relative to it */
     cli_comparison compared;
+    cli_proof proof;
     char warning[CLI_MOST_WARNINGS][512];
     size_t warning_count;
     cw_error error; /* with the status CW_OK: none */

@@ -89,9 +89,30 @@ void Bound::collect(const Star &star)
 float Bound::allowed() const
 {
     uint8_t care = points.empty() ? uint8_t(CWI_MOST_CARE) : 0;
-    for (uint32_t p : points)
+    float least = error;
+    for (uint32_t p : points) {
         care = std::max(care, original->care[p]);
-    return care < CWI_MOST_CARE ? std::ldexp(error, -care) : -1;
+        if (original->allowed)
+            least = std::min(least, original->allowed[p]);
+    }
+    return care < CWI_MOST_CARE ? std::ldexp(least, -care) : -1;
+}
+
+// Whether what is seen of the star was about as even as one that is joined.
+bool Bound::is_straight() const
+{
+    Vec mean(0);
+    if (!original->normals)
+        return true;
+    for (uint32_t p : points)
+        mean += Vec(original->normals + 3 * size_t(p));
+    const float least = original->straight * mean.norm();
+    for (uint32_t p : points) {
+        const Vec normal(original->normals + 3 * size_t(p));
+        if (normal.sqrnorm() > 0 && !((normal | mean) >= least))
+            return false;
+    }
+    return true;
 }
 
 // From the triangles around the nearest point: a distance that is not too small.
@@ -216,7 +237,7 @@ bool Bound::is_kept(const Surface &surface, const Star &star)
         return true;
     collect(star);
     const float distance = allowed();
-    return distance > 0 && is_near(star.place, distance * distance) &&
+    return distance > 0 && is_straight() && is_near(star.place, distance * distance) &&
            are_listed(star, distance) && is_star_near(star, distance) &&
            is_original_near(surface, star);
 }

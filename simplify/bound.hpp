@@ -61,6 +61,7 @@ private:
     void collect(uint32_t face);
     void collect(const Star &star);
     float allowed() const;
+    bool is_straight() const;
     bool is_near(const Vec &place, float square);
     bool are_listed(const Star &star, float distance);
     bool is_star_near(const Star &star, float distance);

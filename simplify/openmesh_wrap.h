@@ -72,6 +72,9 @@ typedef struct cwi_original {
     const uint32_t *around;  /* around[first[v]] .. around[first[v + 1] - 1] */
     uint32_t *next;          /* vertices: the next point in a list; UINT32_MAX ends it */
     const uint8_t *care;     /* vertices: how often the distance is halved around them */
+    const float *allowed;    /* vertices: the distance there; NULL: the block's everywhere */
+    const float *normals;    /* vertices x 3: 0 where the next does not matter; or NULL */
+    float straight;          /* cosine: how far they are from the mean of those joined */
 } cwi_original;
 
 typedef struct cwi_block {

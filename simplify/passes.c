@@ -23,6 +23,9 @@ static cw_status check(const cw_simplify_desc *d, cw_error *err)
     if (!(d->error_mm >= 0) || !isfinite(d->error_mm))
         return cw_fail(err, CW_ERR_ARGUMENT, "error_mm is %g; it must be 0 or more",
                        d->error_mm);
+    if (!(d->normal_deg >= 0) || !(d->normal_deg <= 180))
+        return cw_fail(err, CW_ERR_ARGUMENT, "normal_deg is %g; it must be 0 to 180",
+                       d->normal_deg);
     if (!(d->ratio >= 0) || !(d->ratio < 1))
         return cw_fail(err, CW_ERR_ARGUMENT, "ratio is %g; it must be at least 0 and below 1",
                        d->ratio);
@@ -43,11 +46,12 @@ cw_status cwi_passes_init(cwi_passes *p, const cw_simplify_desc *desc, cw_error 
             cwi_module_load("openmesh", "CUBEWRIGHT_OPENMESH", "libopenmesh-dev", &module, err);
     if (st == CW_OK)
         p->openmesh = module;
-    return st;
+    return st == CW_OK ? cwi_views_init(&p->views, desc, err) : st;
 }
 
-void cwi_passes_scale(cwi_passes *p, double scale)
+void cwi_passes_place(cwi_passes *p, const double origin[3], double scale)
 {
+    cwi_views_place(&p->views, origin, scale);
     p->error *= scale;
     p->block_desc.error *= scale;
 }
@@ -58,15 +62,97 @@ static void forget(cwi_passes *p)
     cwi_free(p->around);
     cwi_free(p->next);
     cwi_free(p->care);
+    cwi_free(p->allowed);
+    cwi_free(p->normals);
     cwi_free(p->lists);
     p->first = p->around = p->next = p->lists = NULL;
     p->care = NULL;
+    p->allowed = NULL;
+    p->normals = NULL;
     p->original = (cwi_original){0};
 }
 
 void cwi_passes_free(cwi_passes *p)
 {
     forget(p);
+    cwi_views_free(&p->views);
+}
+
+static double limit_of(const cwi_passes *p, const cw_mesh *m, size_t t, double margin)
+{
+    const uint32_t *c = m->triangles + 3 * t;
+    const float *const corners[3] = {m->positions + 3 * (size_t)c[0],
+                                     m->positions + 3 * (size_t)c[1],
+                                     m->positions + 3 * (size_t)c[2]};
+    return cwi_views_limit(&p->views, corners, p->error, margin);
+}
+
+/* Normals of what a view sees, from the triangles around; the others stay 0. */
+static void add_normals(cwi_passes *p, const uint8_t *seen)
+{
+    const cw_mesh *m = &p->input;
+    for (size_t t = 0; t < m->triangle_count; t++) {
+        const uint32_t *c = m->triangles + 3 * t;
+        const float *a = m->positions + 3 * (size_t)c[0], *b = m->positions + 3 * (size_t)c[1],
+                    *d = m->positions + 3 * (size_t)c[2];
+        const float u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]},
+                    w[3] = {d[0] - a[0], d[1] - a[1], d[2] - a[2]},
+                    n[3] = {u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2],
+                            u[0] * w[1] - u[1] * w[0]};
+        for (size_t k = 0; k < 3; k++)
+            for (size_t i = 0; i < 3 && seen[c[k]]; i++)
+                p->normals[3 * (size_t)c[k] + i] += n[i];
+    }
+    for (size_t v = 0; v < m->vertex_count; v++) {
+        float *n = p->normals + 3 * v;
+        const double length = sqrt((double)n[0] * (double)n[0] + (double)n[1] * (double)n[1] +
+                                   (double)n[2] * (double)n[2]);
+        for (size_t i = 0; i < 3 && length > 0; i++)
+            n[i] = (float)((double)n[i] / length);
+    }
+}
+
+static cw_status find_normals(cwi_passes *p, cw_error *err)
+{
+    const cw_mesh *m = &p->input;
+    if (!p->views.count || p->desc->normal_deg == 0)
+        return CW_OK;
+    uint8_t *seen = cwi_alloc_zeroed(m->vertex_count, 1);
+    p->normals = cwi_alloc_zeroed(3 * m->vertex_count, sizeof *p->normals);
+    const bool ok = seen && p->normals;
+    for (size_t t = 0; t < m->triangle_count && ok; t++)
+        if (isfinite(limit_of(p, m, t, p->error)))
+            for (size_t k = 0; k < 3; k++)
+                seen[m->triangles[3 * t + k]] = 1;
+    if (ok)
+        add_normals(p, seen);
+    cwi_free(seen);
+    return ok ? CW_OK
+              : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the normals of %zu vertices",
+                        m->vertex_count);
+}
+
+/* At a point, what is allowed on all triangles around it. What is simplified may come into view
+ * on its way: so views are wider here by as much as that is. */
+static cw_status allow(cwi_passes *p, cw_error *err)
+{
+    const cw_mesh *m = &p->input;
+    if (!p->views.count)
+        return CW_OK;
+    p->allowed = cwi_alloc_array(m->vertex_count, sizeof *p->allowed);
+    if (!p->allowed)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error of %zu vertices",
+                       m->vertex_count);
+    for (size_t v = 0; v < m->vertex_count; v++)
+        p->allowed[v] = (float)p->block_desc.error;
+    for (size_t t = 0; t < m->triangle_count; t++) {
+        const float here = (float)(TIGHTER * limit_of(p, m, t, p->error));
+        for (size_t k = 0; k < 3; k++) {
+            float *at = p->allowed + m->triangles[3 * t + k];
+            *at = fminf(*at, here);
+        }
+    }
+    return CW_OK;
 }
 
 static void sort_around(cwi_passes *p)
@@ -103,7 +189,13 @@ cw_status cwi_passes_remember(cwi_passes *p, const cw_mesh *input, cw_error *err
                                  .around = p->around,
                                  .next = p->next,
                                  .care = p->care};
-    return CW_OK;
+    cw_status st = allow(p, err);
+    if (st == CW_OK)
+        st = find_normals(p, err);
+    p->original.allowed = p->allowed;
+    p->original.normals = p->normals;
+    p->original.straight = (float)cos(p->desc->normal_deg * acos(-1) / 180);
+    return st;
 }
 
 cw_status cwi_passes_list(cwi_passes *p, cwi_block *b, cw_error *err)
@@ -250,12 +342,38 @@ static cw_status add_obstacles(const part *x, cw_mesh *mesh, cw_error *err)
     return CW_OK;
 }
 
+/* What triangles of a mesh must keep; NULL where that is the same for all. */
+static cw_status find_limits(const cwi_passes *p, const cw_mesh *m, double **limits,
+                             cw_error *err)
+{
+    *limits = NULL;
+    if (!p->views.count)
+        return CW_OK;
+    *limits = cwi_alloc_array(m->triangle_count, sizeof **limits);
+    if (!*limits)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error of %zu triangles",
+                       m->triangle_count);
+    for (size_t t = 0; t < m->triangle_count; t++)
+        (*limits)[t] = fmin(p->error, limit_of(p, m, t, 0));
+    return CW_OK;
+}
+
+static cw_status find_beyond(const cwi_passes *p, const cw_mesh *mesh, const cw_mesh *reference,
+                             int threads, uint8_t *beyond, cw_error *err)
+{
+    double *limits;
+    cw_status st = find_limits(p, mesh, &limits, err);
+    if (st == CW_OK)
+        st = cwi_mesh_within(mesh, reference, p->error, limits, threads, &silent, beyond, err);
+    cwi_free(limits);
+    return st;
+}
+
 /* Whether the result keeps the distance; where it does not, more care is taken the next time.
  */
 static cw_status judge(const cwi_passes *p, const part *x, bool *kept, bool *hope,
                        cw_error *err)
 {
-    const double limit = p->error;
     const cw_mesh result = view(x->left);
     cw_mesh all = {0};
     uint8_t *input_beyond = cwi_alloc_array(x->input.triangle_count, 1);
@@ -265,9 +383,9 @@ static cw_status judge(const cwi_passes *p, const part *x, bool *kept, bool *hop
                        ? add_obstacles(x, &all, err)
                        : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error");
     if (st == CW_OK)
-        st = cwi_mesh_within(&x->input, &all, limit, x->threads, &silent, input_beyond, err);
+        st = find_beyond(p, &x->input, &all, x->threads, input_beyond, err);
     if (st == CW_OK)
-        st = cwi_mesh_within(&result, &x->input, limit, x->threads, &silent, beyond, err);
+        st = find_beyond(p, &result, &x->input, x->threads, beyond, err);
     if (st == CW_OK) {
         const size_t broken = mark_input(p, x, input_beyond) + mark_result(p, x, beyond, near);
         *kept = broken == 0;

@@ -3,6 +3,7 @@
 #define SIMPLIFY_PASSES_H
 
 #include "simplify/openmesh_wrap.h"
+#include "simplify/views.h"
 
 #include <cubewright/simplify.h>
 
@@ -15,10 +16,13 @@ typedef struct cwi_passes {
     const cw_simplify_desc *desc;
     cwi_block_desc block_desc;
     double error;          /* to keep; 0: none */
+    cwi_views views;       /* where it is less */
     cw_mesh input;         /* a view of what the distance is kept from */
     cwi_original original; /* the same; next is NULL without an error to keep */
     uint32_t *first, *around, *next;
     uint8_t *care;
+    float *allowed;  /* NULL without views */
+    float *normals;  /* of what a view sees; NULL where they do not matter */
     uint32_t *lists; /* next as it was before the pass */
     size_t repeats;  /* with more care */
 } cwi_passes;
@@ -29,8 +33,8 @@ typedef struct cwi_passes {
 cw_status cwi_passes_init(cwi_passes *passes, const cw_simplify_desc *desc, cw_error *err);
 void cwi_passes_free(cwi_passes *passes);
 
-/* All places that follow are those meant by desc times so much. */
-void cwi_passes_scale(cwi_passes *passes, double scale);
+/* All places that follow are those meant by desc, less the origin, times so much. */
+void cwi_passes_place(cwi_passes *passes, const double origin[3], double scale);
 
 /* Remembers the surface that the error is kept from, with no care so far.
  * input     borrowed, with its arrays */

@@ -150,7 +150,7 @@ static cw_status simplify_levels(const cw_mesh *mesh, const cw_simplify_desc *de
     if (st == CW_OK)
         st = scale_mesh(mesh, &scale, &scaled, err);
     if (st == CW_OK)
-        cwi_passes_scale(&p, scale);
+        cwi_passes_place(&p, mesh->origin, scale);
     if (st == CW_OK)
         st = run_passes(&p, &scaled, targets, levels, left, &cut, err);
     cwi_free(scaled.positions);

@@ -230,7 +230,7 @@ cw_status cw_simplifier_take(void *simplifier, const cw_slab *from, cw_error *er
     s->ended = from->last;
     if (s->scale == 0) {
         s->scale = cwi_simplify_scale(from->mesh);
-        cwi_passes_scale(&s->passes, s->scale);
+        cwi_passes_place(&s->passes, s->frame.origin, s->scale);
     }
     cw_status st = cwi_slab_block_init(&slab, from, s->scale, err);
     if (st == CW_OK)

@@ -2,6 +2,7 @@
 #ifndef CUBEWRIGHT_SIMPLIFY_H
 #define CUBEWRIGHT_SIMPLIFY_H
 
+#include <cubewright/camera.h>
 #include <cubewright/distance.h>
 #include <cubewright/mesh.h>
 
@@ -9,14 +10,41 @@
 extern "C" {
 #endif
 
+/* A picture that is to be taken of a surface. */
+typedef struct cw_simplify_view {
+    cw_camera camera;
+    size_t width, height; /* pixels; default: 1280 x 720 */
+    float *depth;         /* width x height, top row first: how far before the eye, in mm along
+                             the line of sight, what is seen in the middles of pixels is;
+                             INFINITY: nothing. Default: nothing is hidden */
+} cw_simplify_view;
+
+/* Draws the depths of one more mesh, or slab, of what a view shows. Free them with
+ * cw_simplify_view_free(), which is harmless where there are none.
+ * Returns  CW_ERR_ARGUMENT for a camera that is none; CW_ERR_NO_MEMORY */
+CW_API cw_status cw_simplify_view_draw(cw_simplify_view *view, const cw_mesh *mesh,
+                                       cw_error *err);
+CW_API void cw_simplify_view_free(cw_simplify_view *view);
+
 /* How far to simplify, and what to spare. Zero-initialise it and set what you need; a zero
  * field means the default named beside it. At least one of error_mm, triangles and ratio is
  * needed; what is met first ends it. */
 typedef struct cw_simplify_desc {
-    double error_mm;  /* no point of the input or of the result is farther than this from
-                         the other one; default: no such promise */
-    size_t triangles; /* stop when there are so many; default: no limit */
-    double ratio;     /* the same as a share of the input's, above 0, below 1; default: none */
+    double error_mm; /* no point of the input or of the result is farther than this from
+                        the other one; default: no such promise */
+    /* Less than error_mm where a view sees the surface: what is within such a distance is in no
+       picture farther apart than so many pixels, up to so many beside it. It grows with the
+       depth. Of several views the least counts; where none sees the surface, error_mm does: so
+       where it lies more than twice that behind what a view has depths of. Nearer to an eye
+       than a thousandth of the way to its target is as there. */
+    const cw_simplify_view *views; /* view_count of them, borrowed until the call returns */
+    size_t view_count;
+    double pixel_error; /* above 0 when there are views */
+    double normal_deg;  /* vertices that a view sees are joined only while the surface's normals
+                           around them are no farther than this from their mean, which shading
+                           follows; default: 180, any */
+    size_t triangles;   /* stop when there are so many; default: no limit */
+    double ratio; /* the same as a share of the input's, above 0, below 1; default: none */
     bool allow_crossings; /* default: no triangles meet that did not meet before */
     bool keep_border;     /* borders of open surfaces stay to the bit, so that what was cut from
                              one whole still fits together; default: they are simplified, too */
@@ -28,6 +56,12 @@ typedef struct cw_simplify_desc {
     int threads;          /* default: all that OpenMP offers */
     cw_progress progress; /* default: none */
 } cw_simplify_desc;
+
+/* How far a view lets a point in the world go: no place so near to it is seen more than so many
+ * pixels away. Infinite where it does not see the point.
+ * Returns  CW_ERR_ARGUMENT for a camera that is none, and pixels that are not above 0 */
+CW_API cw_status cw_simplify_view_error(const cw_simplify_view *view, double pixels,
+                                        const double point[3], double *error_mm, cw_error *err);
 
 /* What a simplification made. */
 typedef struct cw_simplify_facts {
@@ -53,7 +87,8 @@ typedef struct cw_simplify_facts {
  * facts    may be NULL
  *
  * Returns  CW_ERR_ARGUMENT     no target, one that is negative or not finite; so a weight, or
- *                              one of what the mesh has not; or as cw_mesh_check()
+ *                              one of what the mesh has not; views without error_mm, a camera
+ *                              that is none; or as cw_mesh_check()
  *          CW_ERR_UNSUPPORTED  this build has no OpenMesh
  *          CW_ERR_LIMIT        more than 2^30 vertices or triangles
  *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED

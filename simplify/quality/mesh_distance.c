@@ -477,6 +477,7 @@ static double nearest_facet(void *context, const double p[3], const float *corne
 typedef struct judgement {
     search search;
     uint32_t *slots; /* the search's, to be written */
+    const double *limits;
     uint8_t *beyond;
 } judgement;
 
@@ -522,23 +523,24 @@ static bool is_within(const search *s, const corner c[3])
 static void judge_chunk(void *context, size_t chunk)
 {
     const judgement *j = context;
-    const search *s = &j->search;
-    for (size_t t = CHUNK * chunk; t < CHUNK * (chunk + 1) && t < s->mesh->triangle_count;
-         t++) {
+    search s = j->search;
+    for (size_t t = CHUNK * chunk; t < CHUNK * (chunk + 1) && t < s.mesh->triangle_count; t++) {
         corner c[3];
-        begin_triangle(s, t, c);
-        j->beyond[t] = !is_within(s, c);
+        s.floor = j->limits ? j->limits[t] : s.floor;
+        begin_triangle(&s, t, c);
+        j->beyond[t] = !is_within(&s, c);
     }
 }
 
 cw_status cwi_mesh_within(const cw_mesh *mesh, const cw_mesh *mesh_reference, double limit_mm,
-                          int threads, const cw_progress *progress, uint8_t *beyond,
-                          cw_error *err)
+                          const double *limits, int threads, const cw_progress *progress,
+                          uint8_t *beyond, cw_error *err)
 {
     reference r = {0};
     uint32_t *slots = cwi_alloc_array(mesh->vertex_count, sizeof *slots);
     judgement j = {.search = {.r = &r, .mesh = mesh, .slots = slots, .floor = limit_mm},
                    .slots = slots,
+                   .limits = limits,
                    .beyond = beyond};
     cw_status st = slots ? make_reference(&r, mesh_reference, mesh->origin, err)
                          : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu vertices",

@@ -165,7 +165,7 @@ static size_t verdicts_agree(const cw_mesh *mesh, const cw_mesh *reference, doub
     size_t count = 0;
     cw_error err = {0};
     assert_non_null(beyond);
-    assert_ok(cwi_mesh_within(mesh, reference, limit, 1, &none, beyond, &err), err);
+    assert_ok(cwi_mesh_within(mesh, reference, limit, NULL, 1, &none, beyond, &err), err);
     for (size_t t = 0; t < mesh->triangle_count; t++) {
         float positions[9];
         uint32_t corners[3] = {0, 1, 2};

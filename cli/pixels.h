@@ -1,0 +1,35 @@
+/* Only what pictures need: a surface simplified for cameras, and the proof that it does. */
+#ifndef CLI_PIXELS_H
+#define CLI_PIXELS_H
+
+#include "cli/report.h"
+#include "cli/surface.h"
+
+typedef struct cli_pixel_args {
+    const char *camera; /* .json files by comma, or the text of one; NULL: none */
+    cli_number pixels, shading;
+    cli_sizes size; /* of pictures */
+    cli_length most;
+} cli_pixel_args;
+
+/* Reads the cameras. Fails for what is not usable, or would do nothing without a camera.
+ * views  CLI_MOST_VIEWS; *count of them are used */
+cw_status cli_read_views(const cli_pixel_args *args, cw_simplify_view *views, size_t *count,
+                         cw_error *err);
+
+/* The distance that so many pixels are where they are widest in the volume: what is out of
+ * sight keeps it. */
+cw_status cli_widest_error(const cli_volume *volume, const cw_simplify_view *views,
+                           size_t count, double pixels, double *error_mm, cw_error *err);
+
+/* Extracts the surface once for its depths only, slab by slab. */
+cw_status cli_draw_views(const cli_volume *volume, const cw_extract_desc *desc,
+                         cw_simplify_view *views, size_t count, cw_error *err);
+
+/* Extracts the full surface, which is compared with the mesh: distances both ways in pixels of
+ * each view, and pictures of both, drawn on the CPU. */
+cw_status cli_prove_views(const cli_volume *volume, const cw_extract_desc *desc,
+                          const cw_simplify_desc *simplify, const cw_mesh *mesh,
+                          cli_proof *proof, cw_error *err);
+
+#endif
