@@ -114,10 +114,26 @@ static cw_status check_outputs(const report_args *args, cw_error *err)
     return st;
 }
 
+/* What is no file may be a field that was misspelt; else its reader's words are better. */
+static cw_status check_name(const char *name, cw_error *err)
+{
+    const char *names[CW_FIELD_COUNT + 1] = {0};
+    for (int f = 0; f < CW_FIELD_COUNT; f++)
+        names[f] = cw_field_name((cw_field)f);
+    const char *nearest = cli_nearest(name, names);
+    return nearest ? cw_fail(err, CW_ERR_ARGUMENT,
+                             "'%s' is no file, and no field; did you mean '%s'?", name, nearest)
+                   : CW_OK;
+}
+
 static cw_status check_args(run_state *s, cw_error *err)
 {
     report_args *args = s->args;
     cw_status st = parse_budget(args->budget, &s->study.budget_s, err);
+    if (st != CW_OK)
+        return st;
+    if (!s->study.is_field && access(args->common.inputs[0], F_OK) != 0)
+        st = check_name(args->common.inputs[0], err);
     if (st != CW_OK)
         return st;
     if (!args->output)

@@ -4,7 +4,9 @@
 #include "cli/study/study.h"
 #include "core/status.h"
 
+#include <math.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/stat.h>
 
 static cli_gap gap_of(const cw_distance *d)
@@ -93,24 +95,58 @@ static cw_status show(cli_study *s, cli_point *p, const cw_mesh *mesh, const flo
                : CW_OK;
 }
 
+static void find_middles(const cw_mesh *mesh, float *middles)
+{
+    for (size_t t = 0; t < mesh->triangle_count; t++)
+        for (size_t a = 0; a < 3; a++) {
+            const uint32_t *c = mesh->triangles + 3 * t;
+            middles[3 * t + a] =
+                (mesh->positions[3 * (size_t)c[0] + a] + mesh->positions[3 * (size_t)c[1] + a] +
+                 mesh->positions[3 * (size_t)c[2] + a]) /
+                3;
+        }
+}
+
+/* For pictures of large meshes: one point a triangle, and for vertices the worst around. */
+static cw_status measure_middles(cli_study *s, cli_point *p, const cw_mesh *mesh, float *worst,
+                                 cw_error *err)
+{
+    const size_t count = mesh->triangle_count;
+    const cw_field_distance_desc desc = {.isovalue = s->iso,
+                                         .inside_is_low = s->inside_is_low,
+                                         .leave_open = s->is_field,
+                                         .threads = s->threads,
+                                         .progress = progress_of(mesh)};
+    cw_mesh points = {.vertex_count = count, .positions = malloc(3 * count * sizeof(float))};
+    float *mm = malloc(count * sizeof *mm);
+    cw_distance d;
+    cw_status st = CW_ERR_NO_MEMORY;
+    memcpy(points.origin, mesh->origin, sizeof points.origin);
+    if (points.positions && mm) {
+        find_middles(mesh, points.positions);
+        st = cw_distance_to_field(&points, &volume_of(s, p)->view, &desc, &d, mm, err);
+    } else {
+        cw_fail(err, st, "no memory for the errors of triangles");
+    }
+    for (size_t n = 0; n < 3 * count && st == CW_OK; n++) {
+        float *at = &worst[mesh->triangles[n]];
+        *at = fmaxf(*at, fabsf(mm[n / 3]));
+    }
+    cw_mesh_free(&points);
+    free(mm);
+    return st == CW_ERR_UNSUPPORTED ? CW_OK : st;
+}
+
 /* The errors of a sample, or of all. */
 static cw_status measure_sample(cli_study *s, cli_point *p, const cw_mesh *mesh,
                                 const cli_sample *sample, float *worst, cw_error *err)
 {
     const cw_mesh *measured = cli_sampled(sample, mesh);
-    float *sampled = NULL;
-    if (worst && measured != mesh) {
-        sampled = calloc(measured->vertex_count + 1, sizeof *sampled);
-        if (!sampled)
-            return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the errors of vertices");
-    }
-    cw_status st = measure_field(s, p, measured, sampled ? sampled : worst, err);
+    cw_status st = measure_field(s, p, measured, measured == mesh ? worst : NULL, err);
     if (st == CW_OK && s->is_field)
         p->truth = cli_measure_truth(s->field, s->iso, s->voxel_mm, measured);
-    if (st == CW_OK && sampled)
-        cli_spread_sample(sample, sampled, mesh, worst);
-    free(sampled);
-    return st;
+    return st == CW_OK && worst && measured != mesh ? measure_middles(s, p, mesh, worst, err)
+                                                    : st;
 }
 
 cw_status cli_measure_mesh(cli_study *s, cli_point *p, const cw_mesh *mesh, cw_error *err)

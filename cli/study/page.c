@@ -170,10 +170,11 @@ static void put_pictures(FILE *out, const cli_study *s)
         count += s->points[n].png != NULL;
     if (!count)
         return;
-    fputs(
-        "<h2>Where the error is</h2>\n<p>Each triangle in the colour of the largest distance "
-        "in it from the field's surface, as linear interpolation between voxels has it.</p>\n",
-        out);
+    fputs("<h2>Where the error is</h2>\n<p>In the colour of the distance from the field's "
+          "surface, as linear interpolation between voxels has it: the largest around each "
+          "vertex; "
+          "of large meshes the middles of triangles are looked at.</p>\n",
+          out);
     put_ramp(out, s);
     fputs("<div class=\"pictures\">\n", out);
     for (size_t n = 0; n < s->point_count; n++)
@@ -249,7 +250,7 @@ static void put_key(FILE *out, const cli_study *s, cli_family family)
         cli_put_html(out, groups[n]);
         fputs("</span>", out);
     }
-    fputs("<span><b></b>the front</span></div>\n", out);
+    fputs("<span><em></em>the front</span></div>\n", out);
 }
 
 static void put_cell(FILE *out, bool known, double value)

@@ -62,7 +62,7 @@ const char *const cli_page_style[] = {
     ".key{display:flex;flex-wrap:wrap;gap:.3rem 1.1rem;font-size:.9rem;margin:.2rem 0}\n",
     ".key i{display:inline-block;width:.75rem;height:.75rem;border-radius:50%;"
     "background:var(--c);margin-right:.4rem}\n",
-    ".key b{display:inline-block;width:1.6rem;border-top:2px dashed var(--front);"
+    ".key em{display:inline-block;width:1.6rem;border-top:2px dashed var(--front);"
     "margin:0 .4rem .25rem 0}\n",
     ".wide{overflow-x:auto;margin:1rem 0}\n",
     "table{border-collapse:collapse;width:100%;font-size:.88rem;"

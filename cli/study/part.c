@@ -4,6 +4,8 @@
 #include "cli/surface.h"
 #include "core/volume.h"
 
+#include <math.h>
+
 /* Triangles that are simplified and compressed a dozen times within a minute. */
 enum { MOST_TRIANGLES = 60000, MOST_DIVISIONS = 6 };
 
@@ -28,12 +30,23 @@ static cw_box box_at(const cw_volume *v, size_t by, size_t number)
     return box;
 }
 
-/* The box that has most of the surface, within the limit; false: all have more. */
+/* How far to the back a box is, in the patient's frame. */
+static double depth_of(const cw_volume *part)
+{
+    double middle[3], at[3];
+    for (int a = 0; a < 3; a++)
+        middle[a] = 0.5 * (double)(part->dim[a] - 1);
+    cw_volume_to_world(part, middle, at);
+    return at[1];
+}
+
+/* Of the boxes that have enough of the surface, within the limit, the one in front, where
+ * pictures are taken from; false: there is none. */
 static bool find_box(const cli_study *s, const cw_volume *v, size_t by, cw_box *best)
 {
     const cw_extract_desc desc = desc_of(s);
     const size_t places = (2 * by - 1) * (2 * by - 1) * (2 * by - 1);
-    size_t most = 0;
+    double least = INFINITY;
     for (size_t n = 0; n < places; n++) {
         const cw_box box = box_at(v, by, n);
         cw_volume part;
@@ -41,12 +54,13 @@ static bool find_box(const cli_study *s, const cw_volume *v, size_t by, cw_box *
         if (cw_volume_crop(v, &box, &part, NULL) != CW_OK ||
             cw_extract_predict(&part, &desc, &counts, NULL) != CW_OK)
             return false;
-        if (counts.triangles <= MOST_TRIANGLES && counts.triangles > most) {
-            most = counts.triangles;
-            *best = box;
-        }
+        if (counts.triangles > MOST_TRIANGLES || counts.triangles < MOST_TRIANGLES / 3 ||
+            !(depth_of(&part) < least))
+            continue;
+        least = depth_of(&part);
+        *best = box;
     }
-    return most > MOST_TRIANGLES / 8;
+    return isfinite(least);
 }
 
 /* In voxels of the file, as --crop counts them. */

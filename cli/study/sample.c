@@ -21,7 +21,6 @@ static uint32_t take_vertex(cli_sample *s, const cw_mesh *mesh, uint32_t *number
 {
     if (number[v] == UINT32_MAX) {
         number[v] = (uint32_t)s->mesh.vertex_count++;
-        s->vertices[number[v]] = v;
         memcpy(s->mesh.positions + 3 * (size_t)number[v], mesh->positions + 3 * (size_t)v,
                3 * sizeof(float));
     }
@@ -76,8 +75,7 @@ cw_status cli_take_sample(const cw_mesh *mesh, size_t most, double voxel_mm, cli
     uint32_t *number = malloc(mesh->vertex_count * sizeof *number);
     s->mesh.triangles = malloc(3 * room * sizeof(uint32_t));
     s->mesh.positions = malloc(9 * room * sizeof(float));
-    s->vertices = malloc(3 * room * sizeof *s->vertices);
-    const bool good = number && s->mesh.triangles && s->mesh.positions && s->vertices;
+    const bool good = number && s->mesh.triangles && s->mesh.positions;
     if (good)
         take(s, mesh, number, room);
     free(number);
@@ -87,44 +85,10 @@ cw_status cli_take_sample(const cw_mesh *mesh, size_t most, double voxel_mm, cli
 void cli_free_sample(cli_sample *s)
 {
     cw_mesh_free(&s->mesh);
-    free(s->vertices);
     *s = (cli_sample){0};
 }
 
 const cw_mesh *cli_sampled(const cli_sample *s, const cw_mesh *mesh)
 {
     return s->one_of > 1 ? &s->mesh : mesh;
-}
-
-/* The largest of what is known in a triangle, for those of its corners that know nothing. */
-static bool spread_triangle(float *values, const uint32_t *corners)
-{
-    float known = -1;
-    bool missing = false;
-    for (size_t c = 0; c < 3; c++) {
-        known = fmaxf(known, values[corners[c]]);
-        missing = missing || values[corners[c]] < 0;
-    }
-    for (size_t c = 0; c < 3 && missing && known >= 0; c++)
-        if (values[corners[c]] < 0)
-            values[corners[c]] = known;
-    return missing;
-}
-
-void cli_spread_sample(const cli_sample *s, const float *sampled, const cw_mesh *mesh,
-                       float *values)
-{
-    enum { MOST_SWEEPS = 64 };
-    bool missing = true;
-    for (size_t v = 0; v < mesh->vertex_count; v++)
-        values[v] = -1;
-    for (size_t v = 0; v < s->mesh.vertex_count; v++)
-        values[s->vertices[v]] = sampled[v];
-    for (int sweep = 0; sweep < MOST_SWEEPS && missing; sweep++) {
-        missing = false;
-        for (size_t t = 0; t < mesh->triangle_count; t++)
-            missing = spread_triangle(values, mesh->triangles + 3 * t) || missing;
-    }
-    for (size_t v = 0; v < mesh->vertex_count; v++)
-        values[v] = fmaxf(values[v], 0);
 }

@@ -22,7 +22,7 @@ static void put_number(FILE *out, bool known, double value)
 {
     fputc(',', out);
     if (known && isfinite(value))
-        fprintf(out, "%.9g", value);
+        fprintf(out, "%.17g", value);
 }
 
 static void put_gap(FILE *out, const cli_gap *gap)
