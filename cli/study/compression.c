@@ -16,10 +16,10 @@ void cli_plan_compression(cli_study *s)
         {1, CW_COMPRESS_NONE, 0},      {1, CW_COMPRESS_MESHOPT, 14},
         {2, CW_COMPRESS_DRACO, 14},    {3, CW_COMPRESS_MESHOPT, 12},
         {3, CW_COMPRESS_DRACO, 12},    {3, CW_COMPRESS_QUANTIZE, 14},
-        {4, CW_COMPRESS_DRACO, 10},    {4, CW_COMPRESS_MESHOPT, 10},
-        {5, CW_COMPRESS_QUANTIZE, 12}, {5, CW_COMPRESS_DRACO, 16},
-        {5, CW_COMPRESS_MESHOPT, 16},  {6, CW_COMPRESS_QUANTIZE, 16},
-        {6, CW_COMPRESS_QUANTIZE, 10},
+        {3, CW_COMPRESS_DRACO, 10},    {3, CW_COMPRESS_MESHOPT, 10},
+        {3, CW_COMPRESS_QUANTIZE, 12}, {3, CW_COMPRESS_DRACO, 16},
+        {3, CW_COMPRESS_MESHOPT, 16},  {4, CW_COMPRESS_QUANTIZE, 16},
+        {4, CW_COMPRESS_QUANTIZE, 10},
     };
     const bool gltf = strcmp(s->suffix, ".glb") == 0;
     for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {

@@ -256,7 +256,7 @@ static void put_key(FILE *out, const cli_study *s, cli_family family)
 static void put_cell(FILE *out, bool known, double value)
 {
     char text[32];
-    snprintf(text, sizeof text, "%.3g", value);
+    snprintf(text, sizeof text, value >= 1000 ? "%.0f" : "%.3g", value);
     fprintf(out, "<td>%s</td>", known ? text : "\xe2\x80\x93");
 }
 
@@ -370,7 +370,11 @@ static void put_about(FILE *out, const cli_study *s, cli_family family)
         "both ways, towards the plain surface; the plot shows what is left between the mesh "
         "and "
         "the field.",
-        "The file of the plain surface: written, read back, and measured as it came back. The "
+        "The file of the plain surface: written, read back, and measured as it came back: how "
+        "far "
+        "from the plain surface (back); what is exact is drawn at the bottom. The distance to "
+        "the "
+        "field, in the table, tells from how many bits on that no longer matters. The "
         "time is that of writing it, with the check of what was decoded.",
         "Pictures of the volume, unlit, from the front, against the rendering integral itself. "
         "The time is of a picture after the first, the median of three, of slow ones that of "
@@ -400,7 +404,7 @@ static void put_about(FILE *out, const cli_study *s, cli_family family)
         if (s->reference_seconds > 0)
             fprintf(out, "; the integral itself took %s", seconds_text(s->reference_seconds));
         fputs(".", out);
-    } else if (s->is_field) {
+    } else if (s->is_field && family != CLI_COMPRESSION) {
         fputs(" The error of the plot is to the surface as known on paper, along the field's "
               "gradient; that to the field is to what lies between the samples.",
               out);

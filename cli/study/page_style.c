@@ -27,9 +27,9 @@ const char *const cli_page_style[] = {
     "p{margin:.4rem 0 .8rem;max-width:46rem}\n",
     ".quiet,figcaption,caption{color:var(--soft);font-size:.9rem}\n",
     ".facts{display:grid;grid-template-columns:repeat(auto-fit,minmax(150px,1fr));gap:1px;"
-    "background:var(--line);border:1px solid var(--line);border-radius:8px;overflow:hidden;"
+    "background:var(--card);border:1px solid var(--line);border-radius:8px;overflow:hidden;"
     "margin:1.4rem 0}\n",
-    ".facts div{background:var(--card);padding:.6rem .8rem}\n",
+    ".facts div{box-shadow:0 0 0 1px var(--line);padding:.6rem .8rem}\n",
     ".facts dt{color:var(--soft);font-size:.8rem}\n",
     ".facts dd{margin:0;font-weight:600;font-variant-numeric:tabular-nums;"
     "overflow-wrap:anywhere}\n",

@@ -30,14 +30,21 @@ static cw_box box_at(const cw_volume *v, size_t by, size_t number)
     return box;
 }
 
-/* How far to the back a box is, in the patient's frame. */
-static double depth_of(const cw_volume *part)
+static void find_middle(const cw_volume *v, double at[3])
+{
+    double index[3];
+    for (int a = 0; a < 3; a++)
+        index[a] = 0.5 * (double)(v->dim[a] - 1);
+    cw_volume_to_world(v, index, at);
+}
+
+/* How far to the back a box is, in the patient's frame, and from the middle of what is seen. */
+static double depth_of(const cw_volume *whole, const cw_volume *part)
 {
     double middle[3], at[3];
-    for (int a = 0; a < 3; a++)
-        middle[a] = 0.5 * (double)(part->dim[a] - 1);
-    cw_volume_to_world(part, middle, at);
-    return at[1];
+    find_middle(whole, middle);
+    find_middle(part, at);
+    return at[1] - middle[1] + 0.5 * (fabs(at[0] - middle[0]) + fabs(at[2] - middle[2]));
 }
 
 /* Of the boxes that have enough of the surface, within the limit, the one in front, where
@@ -55,9 +62,9 @@ static bool find_box(const cli_study *s, const cw_volume *v, size_t by, cw_box *
             cw_extract_predict(&part, &desc, &counts, NULL) != CW_OK)
             return false;
         if (counts.triangles > MOST_TRIANGLES || counts.triangles < MOST_TRIANGLES / 3 ||
-            !(depth_of(&part) < least))
+            !(depth_of(v, &part) < least))
             continue;
-        least = depth_of(&part);
+        least = depth_of(v, &part);
         *best = box;
     }
     return isfinite(least);

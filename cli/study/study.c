@@ -132,6 +132,8 @@ double cli_point_error(const cli_study *s, const cli_point *p)
         return NAN;
     if (p->family == CLI_RENDERING)
         return p->picture.pixels ? p->picture.rmse : NAN;
+    if (p->family == CLI_COMPRESSION) /* its own: beside that of the surface it is lost */
+        return p->back.known ? p->back.rms_mm : NAN;
     if (s->is_field && p->truth.known)
         return p->truth.rms_mm;
     if (p->to_field.known)
@@ -144,7 +146,7 @@ cli_axis cli_study_axis(const cli_study *s, cli_family family)
     static const cli_axis axes[CLI_FAMILY_COUNT] = {
         {"time", "s", NULL, "mm"},
         {"triangles", "", NULL, "mm"},
-        {"size of the file", "bytes", NULL, "mm"},
+        {"size of the file", "bytes", "RMS distance from the plain surface", "mm"},
         {"time of a picture", "ms", "RMSE of the picture", "of 255"}};
     cli_axis axis = axes[family];
     if (!axis.error)
