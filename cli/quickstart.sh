@@ -35,8 +35,8 @@ echo "== cubewright extract $scan --iso $iso -o $mesh"
 "$cubewright" extract "$scan" --iso "$iso" -o "$mesh"
 echo "== cubewright render $scan --iso $iso -o head.png"
 "$cubewright" render "$scan" --iso "$iso" --camera front --size 900x900 -o head.png -q
-echo "== cubewright report $scan --iso $iso -o head.html"
-"$cubewright" report "$scan" --iso "$iso" -o head.html
+echo "== cubewright report $scan --iso $iso --budget 90s -o head.html"
+"$cubewright" report "$scan" --iso "$iso" --budget 90s -o head.html
 cat <<EOF
 
 Look at it: head.png is a picture; head.html, in a browser, tells what other settings cost and how

@@ -14,12 +14,12 @@ void cli_plan_compression(cli_study *s)
         int bits;
     } rows[] = {
         {1, CW_COMPRESS_NONE, 0},      {1, CW_COMPRESS_MESHOPT, 14},
-        {2, CW_COMPRESS_DRACO, 14},    {3, CW_COMPRESS_MESHOPT, 12},
-        {3, CW_COMPRESS_DRACO, 12},    {3, CW_COMPRESS_QUANTIZE, 14},
-        {3, CW_COMPRESS_DRACO, 10},    {3, CW_COMPRESS_MESHOPT, 10},
-        {3, CW_COMPRESS_QUANTIZE, 12}, {3, CW_COMPRESS_DRACO, 16},
-        {3, CW_COMPRESS_MESHOPT, 16},  {4, CW_COMPRESS_QUANTIZE, 16},
-        {4, CW_COMPRESS_QUANTIZE, 10},
+        {1, CW_COMPRESS_DRACO, 14},    {2, CW_COMPRESS_MESHOPT, 12},
+        {2, CW_COMPRESS_DRACO, 12},    {2, CW_COMPRESS_QUANTIZE, 14},
+        {2, CW_COMPRESS_DRACO, 10},    {2, CW_COMPRESS_MESHOPT, 10},
+        {2, CW_COMPRESS_QUANTIZE, 12}, {2, CW_COMPRESS_DRACO, 16},
+        {2, CW_COMPRESS_MESHOPT, 16},  {2, CW_COMPRESS_QUANTIZE, 16},
+        {2, CW_COMPRESS_QUANTIZE, 10},
     };
     const bool gltf = strcmp(s->suffix, ".glb") == 0;
     for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
