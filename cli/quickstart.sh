@@ -1,6 +1,7 @@
 #!/bin/sh
-# From a fresh Debian 12 to the mesh of a real head: installs what is missing, builds, extracts.
-# Run it as root or with sudo at hand; safe to run twice. Results: head.glb and head.png here.
+# From a fresh Debian 12 to the mesh of a real head: installs what is missing, builds, extracts,
+# and tells what other settings cost. Run it as root or with sudo at hand; safe to run twice.
+# Results: head.glb, head.png and head.html here.
 set -eu
 here=$(pwd)
 cd "$(dirname "$0")/.."
@@ -34,9 +35,12 @@ echo "== cubewright extract $scan --iso $iso -o $mesh"
 "$cubewright" extract "$scan" --iso "$iso" -o "$mesh"
 echo "== cubewright render $scan --iso $iso -o head.png"
 "$cubewright" render "$scan" --iso "$iso" --camera front --size 900x900 -o head.png -q
+echo "== cubewright report $scan --iso $iso --budget 90s -o head.html"
+"$cubewright" report "$scan" --iso "$iso" --budget 90s -o head.html
 cat <<EOF
 
-Look at it: head.png is a picture; $mesh opens in Blender (File > Import), in Windows' 3D Viewer,
-in any glTF viewer on the web, or with 'f3d $mesh' (Debian package f3d).
+Look at it: head.png is a picture; head.html, in a browser, tells what other settings cost and how
+close they come; $mesh opens in Blender (File > Import), in Windows' 3D Viewer, in any glTF viewer
+on the web, or with 'f3d $mesh' (Debian package f3d).
 Go on:      $cubewright help
 EOF

@@ -1,0 +1,105 @@
+# What settings cost and how close they come: a page, JSON and CSV that say the same, a front that
+# nothing beats, and commands that do what they say.
+cubewright report sphere -o page.html --dims 20 --budget 60s --json facts.json --csv rows.csv -q ||
+    exit 1
+
+# The page: well-formed, and by itself. Elements open and close in pairs.
+awk '
+BEGIN {RS = "<"}
+NR > 1 {
+    end = index($0, ">"); tag = substr($0, 1, end - 1)
+    if (!end) bad("no end of <" tag)
+    if (tag ~ /^!/ || tag ~ /\/$/) next
+    name = tag; sub(/[ \n].*/, "", name)
+    if (name ~ /^\//) {
+        if (open[depth--] != substr(name, 2)) bad("</" substr(name, 2) "> closes <" open[depth + 1] ">")
+    } else open[++depth] = name
+}
+function bad(what) {print what; failed = 1; exit 1}
+END {if (!failed && depth) print depth " are open at the end"; else if (!failed) print "well-formed"}
+' page.html
+grep -qiE '(src|href)="?(https?:|//)|@import|url\(' page.html && echo "the page asks for other files"
+for family in extraction simplification compression rendering; do
+    grep -q "<section id=\"$family\">" page.html && echo "$family"
+done
+[ "$(grep -c '<svg class="plot"' page.html)" -ge 2 ] && echo "plots"
+grep -q 'src="data:image/png;base64,iVBOR' page.html && echo "pictures"
+
+# JSON and CSV tell of the same settings; what is left out says why.
+sed -n 's/^  "schema": //p' facts.json
+points=$(grep -c '"setting"' facts.json)
+rows=$(tail -n +2 rows.csv | wc -l)
+[ "$points" = "$rows" ] && [ "$rows" -gt 30 ] && echo "as many rows as points"
+awk -F, 'FNR > 1 && !/left out/ && !/,yes,(yes|no),/' rows.csv
+tail -n +2 rows.csv | tr -d '\r' | grep ',no,no,' | grep -v 'left out: .' | head -n 3
+
+# The front, by its definition. Settings' names have commas: they stand in quotes, and go first.
+tail -n +2 rows.csv | sed 's/"[^"]*"//' | awk -F, '
+BEGIN {n = 0}
+$3 == "yes" && $6 != "" && !/that would count what/ {
+    family[n] = $1; front[n] = $4; cost[n] = $5; error[n++] = $6
+}
+END {
+    for (i = 0; i < n; i++) {
+        best = "yes"
+        for (j = 0; j < n; j++)
+            if (family[i] == family[j] && cost[j] + 0 <= cost[i] + 0 && error[j] + 0 <= error[i] + 0 &&
+                (cost[j] + 0 < cost[i] + 0 || error[j] + 0 < error[i] + 0))
+                best = "no"
+        if (best != front[i]) print "front: " family[i] " " cost[i] " " error[i] ": " front[i]
+        on += best == "yes"
+    }
+    print (n > 8 && on >= 3 ? "the front holds" : "too few points")
+}'
+
+# Commands do what they say, to the triangle.
+command_of() {
+    tail -n +2 rows.csv | tr -d '\r' | grep -F "\"$1\"" | sed 's/.*,"\(cubewright [^"]*\)"$/\1/'
+}
+triangles_of() {
+    tail -n +2 rows.csv | grep -F "\"$1\"" | sed 's/"[^"]*"//' | cut -d, -f9
+}
+sh -c "$(sed -n 's/^  "make": "\(.*\)",$/\1/p' facts.json)" >/dev/null
+for setting in "linear" "cubic" "linear, snap 0.3" "linear, every 2nd voxel" "none"; do
+    sh -c "$(command_of "$setting") --json made.json -q" || echo "failed: $setting"
+    made=$(sed -n 's/^ *"triangles": \([0-9]*\).*/\1/p' made.json | head -n 1)
+    [ -n "$made" ] && [ "$made" = "$(triangles_of "$setting")" ] && echo "$setting: as told"
+    rm -f made.json
+done
+sh -c "$(command_of vbuffer) -q" && test -s picture.png && echo "vbuffer: drawn"
+if cubewright version --features | grep -q '^simplify *yes'; then
+    sh -c "$(command_of "10 % of the triangles") --json made.json -q" || echo "failed"
+    made=$(sed -n 's/^ *"triangles": \([0-9]*\).*/\1/p' made.json | head -n 1)
+    [ "$made" = "$(triangles_of "10 % of the triangles")" ] || echo "simplified otherwise"
+fi
+
+# A hostile name is text everywhere, and its commands still run.
+hostile='a <b>&"it'\''s" $(touch broken).nrrd'
+cp sphere.nrrd "$hostile"
+cubewright report "$hostile" -o hostile.html --iso 0 --budget 0.01s --json hostile.json --csv hostile.csv -q
+grep -q '<b>' hostile.html && echo "markup got through"
+grep -q 'a &#60;b&#62;&#38;&#34;it' hostile.html && echo "escaped"
+grep -q '"title"\|a <b>&\\"it' hostile.json && echo "escaped in JSON"
+grep -c 'left out: the budget was spent' hostile.csv | awk '{print ($1 > 20 ? "most left out, and said" : $1)}'
+sed -n '2s/.*,"\(cubewright .*\)"\r$/\1/p' hostile.csv | sed 's/""/"/g' >linear.sh
+rm -f mesh.*
+sh linear.sh >/dev/null 2>&1 && test -s mesh.* && echo "its command runs"
+test -e broken && echo "the shell was fooled"
+
+# What is refused leaves nothing.
+try() {
+    cubewright report "$@"
+    echo "$?"
+}
+mkdir empty && cd empty || exit 1
+try ../sphere.nrrd
+try ../sphere.nrrd -o x.html --budget soon
+try ../sphere.nrrd -o x.html --budget 0s
+try ../sphere.nrrd -o x.html --iso 9999
+try ../sphere.nrrd -o x.html --dims 9
+try sphere -o x.html --dims 2
+try spheer -o x.html
+try ../sphere.nrrd -o ../sphere.nrrd
+try ../sphere.nrrd -o x.html --json x.html
+try ../sphere.nrrd -o - --json -
+ls -A
