@@ -365,7 +365,7 @@ static void put_about(FILE *out, const cli_study *s, cli_family family)
         "distance "
         "to the field is from points all over the mesh to the surface of the field; back is "
         "from the vertices of the plain surface (linear, all voxels) to the mesh, which tells "
-        "what a mesh has lost.",
+        "what a mesh has lost. Distances to the field beyond 4 voxels count as 4.",
         "Fewer triangles, while extracting: the time is of both. An error is a promise, kept "
         "both ways, towards the plain surface; the plot shows what is left between the mesh "
         "and "

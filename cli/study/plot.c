@@ -62,7 +62,7 @@ static const char *tick_text(double value, const char *unit)
     if (strcmp(unit, "bytes") == 0 || *unit == '\0')
         for (; value >= 1000 && letter < 3; letter++)
             value /= 1000;
-    snprintf(text, sizeof text, "%.4g%.*s", value, letter > 0, letters + letter);
+    snprintf(text, sizeof text, "%.6g%.*s", value, letter > 0, letters + letter);
     return text;
 }
 
