@@ -150,7 +150,7 @@ static void no_picture_is_off_by_more_pixels(void **state)
     double middle[3], most = 0;
     const double size = size_of(&mesh, middle);
     srand(7);
-    for (int round = 0; round < 8; round++) {
+    for (int round = 0; round < 4; round++) {
         cw_simplify_view views[2] = {random_view(&mesh, round), random_view(&mesh, round + 1)};
         const cw_simplify_desc desc = {.error_mm = 0.03 * size,
                                        .views = views,
@@ -173,7 +173,7 @@ static void no_picture_is_off_by_more_pixels(void **state)
 static void depths_are_those_of_rays(void **state)
 {
     (void)state;
-    cw_volume volume = test_sample(CW_FIELD_SPHERE, 40, CW_F32);
+    cw_volume volume = test_sample(CW_FIELD_SPHERE, 24, CW_F32);
     cw_mesh mesh = test_extract(&volume, &(cw_extract_desc){.inside_is_low = true}, NULL);
     double middle[3];
     const double size = size_of(&mesh, middle);
@@ -187,7 +187,7 @@ static void depths_are_those_of_rays(void **state)
         view.camera.eye[1] -= 3 * size;
         assert_ok(cw_simplify_view_draw(&view, &mesh, &err), err);
         size_t covered = 0;
-        for (size_t n = 0; n < view.width * view.height; n++) {
+        for (size_t n = 0; n < view.width * view.height; n += 5) {
             const double pixel[2] = {(double)(n % view.width) + 0.5,
                                      (double)(n / view.width) + 0.5};
             double o[3], d[3], p[2], depth, point[3], near[3];
@@ -206,7 +206,7 @@ static void depths_are_those_of_rays(void **state)
             assert_near(depth, (double)view.depth[n], 1e-4 * size);
             covered++;
         }
-        assert_true(covered > 200);
+        assert_true(covered > 40);
         cw_simplify_view_free(&view);
     }
     cw_mesh_free(&mesh);
@@ -217,12 +217,12 @@ static void depths_are_those_of_rays(void **state)
 static void what_is_hidden_is_coarser(void **state)
 {
     (void)state;
-    cw_volume volume = test_sample(CW_FIELD_SPHERE, 32, CW_F32);
+    cw_volume volume = test_sample(CW_FIELD_SPHERE, 24, CW_F32);
     cw_mesh mesh = test_extract(&volume, &(cw_extract_desc){.inside_is_low = true}, NULL);
     double middle[3], most = 0;
     const double size = size_of(&mesh, middle);
     srand(11);
-    for (int round = 0; round < 4; round++) {
+    for (int round = 0; round < 2; round++) {
         cw_simplify_view view = random_view(&mesh, round);
         cw_simplify_desc desc = {
             .error_mm = 0.01 * size, .views = &view, .view_count = 1, .pixel_error = 0.2};
@@ -250,7 +250,7 @@ static void what_is_hidden_is_coarser(void **state)
 static void what_is_seen_keeps_its_shading(void **state)
 {
     (void)state;
-    cw_volume volume = test_sample(CW_FIELD_SPHERE, 72, CW_F32);
+    cw_volume volume = test_sample(CW_FIELD_SPHERE, 40, CW_F32);
     cw_mesh mesh = test_extract(&volume, &(cw_extract_desc){.inside_is_low = true}, NULL), out;
     double middle[3];
     const double size = size_of(&mesh, middle);
@@ -329,7 +329,7 @@ static cw_mesh by_slabs(const cw_volume *volume, const cw_simplify_desc *desc, i
     cw_error err = {0};
     d.threads = threads;
     assert_ok(cw_simplifier_new(&d, &simplifier, &err), err);
-    assert_ok(cw_extract_slabs(volume, NULL, 4000,
+    assert_ok(cw_extract_slabs(volume, NULL, 2000,
                                (cw_slab_sink){cw_simplifier_take, simplifier}, NULL, &err),
               err);
     assert_ok(cw_simplifier_finish(simplifier, &out, NULL, &err), err);
@@ -340,7 +340,7 @@ static cw_mesh by_slabs(const cw_volume *volume, const cw_simplify_desc *desc, i
 static void slabs_keep_it_too_for_any_number_of_threads(void **state)
 {
     (void)state;
-    cw_volume volume = noisy_gyroid(40);
+    cw_volume volume = noisy_gyroid(28);
     cw_mesh mesh = test_extract(&volume, NULL, NULL);
     double middle[3], most = 0;
     const double size = size_of(&mesh, middle);
