@@ -28,7 +28,7 @@ static bool draws_volume(cw_mode mode)
 static cw_status fill_in(cw_scene *s, cw_error *err)
 {
     static const cw_light headlight = {{0, 0, 1}, {1, 1, 1}};
-    static const float bone[4] = {0.90f, 0.87f, 0.82f, 1};
+    static const float bone[4] = {240 / 255.0f, 229 / 255.0f, 208 / 255.0f, 1};
     if ((unsigned)s->mode >= CW_MODE_COUNT)
         return cw_fail(err, CW_ERR_ARGUMENT, "mode %d is none", (int)s->mode);
     if (draws_volume(s->mode) && !(s->volume && s->transfer))
