@@ -215,10 +215,11 @@ static void print_more(void)
          "dashes\n"
          "is one, too: 'iso 300', 'lit off', 'clip-box default'. ';' or a line's end parts "
          "them.");
-    for (size_t n = 0; n < view_verb_count; n++) {
+    const view_verb *verb;
+    for (size_t n = 0; (verb = view_verb_at(n)); n++) {
         char head[64];
-        snprintf(head, sizeof head, "%s %s", view_verbs[n].name, view_verbs[n].takes);
-        printf("  %-28s%s\n", head, view_verbs[n].about);
+        snprintf(head, sizeof head, "%s %s", verb->name, verb->takes);
+        printf("  %-28s%s\n", head, verb->about);
     }
 }
 

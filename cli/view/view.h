@@ -158,15 +158,14 @@ const char *view_keep_text(view *v, const char *text);
 cw_status view_write_state(const view *v, const char *path, cw_error *err);
 char *view_command_line(const view *v); /* free() it */
 
-/* commands.c */
+/* commands.c, and verbs_*.c, which have the verbs */
 typedef struct view_verb {
     const char *name, *takes, *about;
     int least, most; /* arguments */
     bool changes;    /* what undo brings back */
     cw_status (*run)(view *v, int count, char **args, cw_error *err);
 } view_verb;
-extern const view_verb view_verbs[];
-extern const size_t view_verb_count;
+const view_verb *view_verb_at(size_t n);                       /* NULL after the last */
 cw_status view_monkey(view *v, uint64_t *seed, cw_error *err); /* one random input */
 cw_status view_run(view *v, int count, char **words, cw_error *err);
 

@@ -1,0 +1,32 @@
+/* What the files of commands share. */
+#ifndef CLI_VIEW_VERBS_H
+#define CLI_VIEW_VERBS_H
+
+#include "cli/view/view.h"
+
+/* Numbers out of words. CW_ERR_ARGUMENT naming the verb and the word */
+cw_status view_take(const char *verb, char **args, int count, double *numbers, cw_error *err);
+
+/* CW_ERR_ARGUMENT when nothing is open, no volume that can be drawn; a camera is placed. */
+cw_status view_need_open(const view *v, cw_error *err);
+cw_status view_need_volume(const view *v, cw_error *err);
+cw_status view_need_camera(view *v, cw_error *err);
+
+/* The verbs of a file; EDIT: what undo brings back. */
+typedef struct view_verbs {
+    const view_verb *rows;
+    size_t count;
+} view_verbs;
+extern const view_verbs view_files_verbs, view_scene_verbs, view_curve_verbs, view_save_verbs,
+    view_script_verbs;
+
+#define VERB(name, takes, about, least, most, run)                                             \
+    {                                                                                          \
+        name, takes, about, least, most, false, run                                            \
+    }
+#define EDIT(name, takes, about, least, most, run)                                             \
+    {                                                                                          \
+        name, takes, about, least, most, true, run                                             \
+    }
+
+#endif

@@ -1,0 +1,112 @@
+#define _GNU_SOURCE /* strverscmp, scandir */
+/* Commands that open files and go through steps. */
+#include "cli/view/verbs.h"
+
+#include "core/status.h"
+
+#include <dirent.h>
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+static cw_status run_open(view *v, int count, char **args, cw_error *err)
+{
+    (void)count;
+    return view_open(v, args[0], err);
+}
+
+static cw_status run_quit(view *v, int count, char **args, cw_error *err)
+{
+    (void)count, (void)args, (void)err;
+    v->quits = true;
+    return CW_OK;
+}
+
+static int by_version(const struct dirent **a, const struct dirent **b)
+{
+    return strverscmp((*a)->d_name, (*b)->d_name);
+}
+
+static int is_plain(const struct dirent *e)
+{
+    return e->d_name[0] != '.';
+}
+
+/* What can be opened is next, in natural order and round and round. */
+static cw_status open_near(view *v, int by, cw_error *err)
+{
+    struct dirent **list = NULL;
+    const char *slash = v->path ? strrchr(v->path, '/') : NULL;
+    char folder[4096] = ".", path[8192];
+    cw_status st = view_need_open(v, err);
+    if (st != CW_OK)
+        return st;
+    if (slash)
+        snprintf(folder, sizeof folder, "%.*s", (int)(slash - v->path + 1), v->path);
+    const char *own = slash ? slash + 1 : v->path;
+    const int count = scandir(folder, &list, is_plain, by_version);
+    int at = 0;
+    while (at < count && strcmp(list[at]->d_name, own) != 0)
+        at++;
+    st = cw_fail(err, CW_ERR_ARGUMENT, "%s: nothing else to open beside it", v->path);
+    for (int n = 1; n < count && at < count && st != CW_OK; n++) {
+        struct stat info;
+        cw_volume shape = {0};
+        const char *name = list[((at + by * n) % count + count) % count]->d_name;
+        snprintf(path, sizeof path, slash ? "%s%s" : "%.0s%s", folder, name);
+        const bool readable =
+            stat(path, &info) == 0 &&
+            (cw_mesh_format(path, NULL) ||
+             cli_read_shape(path, &v->state.args.input, &shape, NULL) == CW_OK);
+        cw_volume_free(&shape);
+        if (readable)
+            st = view_open(v, path, err);
+    }
+    for (int n = 0; n < count; n++)
+        free(list[n]);
+    free(list);
+    return st;
+}
+
+static cw_status run_next(view *v, int count, char **args, cw_error *err)
+{
+    (void)count, (void)args;
+    return open_near(v, 1, err);
+}
+
+static cw_status run_previous(view *v, int count, char **args, cw_error *err)
+{
+    (void)count, (void)args;
+    return open_near(v, -1, err);
+}
+
+static cw_status run_step(view *v, int count, char **args, cw_error *err)
+{
+    const size_t steps = v->source.series.count;
+    double n = 0;
+    (void)count;
+    cw_status st = view_need_open(v, err);
+    if (st != CW_OK || steps < 2)
+        return st == CW_OK ? cw_fail(err, CW_ERR_ARGUMENT, "%s has no other steps", v->path)
+                           : st;
+    if (strcmp(args[0], "next") == 0)
+        n = (double)((v->state.step + 1) % steps);
+    else if (strcmp(args[0], "previous") == 0)
+        n = (double)((v->state.step + steps - 1) % steps);
+    else
+        st = view_take("step", args, 1, &n, err);
+    if (st == CW_OK && (n < 0 || n != floor(n)))
+        return cw_fail(err, CW_ERR_ARGUMENT, "step '%s': a whole number was expected", args[0]);
+    return st == CW_OK ? view_go_to_step(v, (size_t)n, err) : st;
+}
+
+static const view_verb rows[] = {
+    VERB("open", "PATH", "open a file or a folder", 1, 1, run_open),
+    VERB("next", "", "the next file in the folder", 0, 0, run_next),
+    VERB("previous", "", "the one before", 0, 0, run_previous),
+    VERB("step", "N|next|previous", "a step of a time series", 1, 1, run_step),
+    VERB("quit", "", "close the window", 0, 0, run_quit),
+};
+const view_verbs view_files_verbs = {rows, sizeof rows / sizeof *rows};

@@ -1,0 +1,188 @@
+/* Commands that undo and that write files. */
+#include "cli/view/verbs.h"
+
+#include "cli/template.h"
+#include "core/status.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static cw_status go_back(view *v, int by, cw_error *err)
+{
+    if (!view_undo(v, by))
+        return cw_fail(err, CW_ERR_ARGUMENT, by < 0 ? "nothing to undo" : "nothing to redo");
+    v->transfer_is_old = true;
+    view_touch(v, VIEW_ALL);
+    return view_choose_mode(v, err);
+}
+
+static cw_status run_undo(view *v, int count, char **args, cw_error *err)
+{
+    (void)count, (void)args;
+    return go_back(v, -1, err);
+}
+
+static cw_status run_redo(view *v, int count, char **args, cw_error *err)
+{
+    (void)count, (void)args;
+    return go_back(v, 1, err);
+}
+
+/* The first cubewright-001.png that is not there. */
+static void free_name(char *name, size_t size)
+{
+    for (int n = 1; n < 10000; n++) {
+        snprintf(name, size, "cubewright-%03d.png", n);
+        if (access(name, F_OK) != 0)
+            return;
+    }
+}
+
+static cw_status tell_written(view *v, cw_status st, const char *path)
+{
+    char text[512];
+    snprintf(text, sizeof text, "%.400s written", path);
+    if (st == CW_OK)
+        view_say(v, false, text);
+    return st;
+}
+
+static cw_status need_png(const char *path, cw_error *err)
+{
+    const char *dot = strrchr(path, '.');
+    return dot && strcmp(dot, ".png") == 0
+               ? CW_OK
+               : cw_fail(err, CW_ERR_ARGUMENT, "%s: pictures are written as .png", path);
+}
+
+static cw_status run_screenshot(view *v, int count, char **args, cw_error *err)
+{
+    char name[64];
+    free_name(name, sizeof name);
+    const char *path = count ? args[0] : name;
+    cw_status st = need_png(path, err);
+    if (st == CW_OK)
+        st = view_frame(v, 0, err); /* lays out what came before */
+    return st == CW_OK ? tell_written(v, view_picture(v, path, err), path) : st;
+}
+
+static cw_status run_capture(view *v, int count, char **args, cw_error *err)
+{
+    cw_image image = {0};
+    (void)count;
+    cw_status st = need_png(args[0], err);
+    if (st == CW_OK)
+        st = view_settle(v, err);
+    if (st == CW_OK)
+        st = v->ui->grab(v->window, &image, err);
+    if (st == CW_OK)
+        st = cw_image_write(args[0], &image, err);
+    cw_image_free(&image);
+    return st;
+}
+
+/* All round, and back to where it began. */
+static cw_status run_turntable(view *v, int count, char **args, cw_error *err)
+{
+    double turns;
+    char number[24], *path = NULL;
+    (void)count;
+    cw_status st = view_take("turntable", args, 1, &turns, err);
+    if (st == CW_OK && !(turns >= 2 && turns <= 100000 && turns == floor(turns)))
+        st = cw_fail(err, CW_ERR_ARGUMENT, "turntable %s: 2 to 100000 was expected", args[0]);
+    if (st == CW_OK)
+        st = need_png(args[1], err);
+    if (st == CW_OK)
+        st = view_frame(v, 0, err); /* lays out what came before */
+    if (st == CW_OK)
+        st = view_need_camera(v, err);
+    if (st != CW_OK)
+        return st;
+    const cw_camera before = v->state.camera;
+    for (size_t n = 0; n < (size_t)turns && st == CW_OK; n++) {
+        snprintf(number, sizeof number, "%zu", n);
+        cli_part part = {"turn", number, true, false};
+        st = cli_fill_template(args[1], &part, 1, &path, err);
+        if (st == CW_OK && !part.used)
+            st = cw_fail(
+                err, CW_ERR_ARGUMENT,
+                "turntable '%s': the name must hold {turn}, as in 'turn-{turn:03d}.png'",
+                args[1]);
+        if (st == CW_OK)
+            st = view_picture(v, path, err);
+        free(path);
+        path = NULL;
+        if (st == CW_OK)
+            st = cw_camera_orbit(&v->state.camera, 360 / turns, 0, err);
+    }
+    v->state.camera = before;
+    view_touch(v, 1 << VIEW_SPACE);
+    return tell_written(v, st, args[1]);
+}
+
+static cw_status run_save_state(view *v, int count, char **args, cw_error *err)
+{
+    const char *path = count ? args[0] : "cubewright-state.txt";
+    return tell_written(v, view_write_state(v, path, err), path);
+}
+
+static cw_status run_save_tf(view *v, int count, char **args, cw_error *err)
+{
+    (void)count;
+    cw_status st = view_need_volume(v, err);
+    if (st == CW_OK)
+        st = view_need_transfer(v, err);
+    if (st == CW_OK)
+        st = cw_transfer_write(args[0], &v->transfer, err);
+    return tell_written(v, st, args[0]);
+}
+
+static cw_status run_save_camera(view *v, int count, char **args, cw_error *err)
+{
+    (void)count;
+    cw_status st = view_need_camera(v, err);
+    if (st == CW_OK)
+        st = cw_camera_write(args[0], &v->state.camera, err);
+    return tell_written(v, st, args[0]);
+}
+
+static cw_status run_run(view *v, int count, char **args, cw_error *err)
+{
+    (void)count; /* a file may run others, but not itself for ever */
+    if (v->depth >= 8)
+        return cw_fail(err, CW_ERR_LIMIT, "run %s: files that run files, 8 deep", args[0]);
+    v->depth++;
+    cw_status st = view_exec_file(v, args[0], err);
+    v->depth--;
+    return st;
+}
+
+static cw_status run_copy_command(view *v, int count, char **args, cw_error *err)
+{
+    char *line = view_command_line(v);
+    (void)count, (void)args;
+    if (!line)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a command line");
+    v->ui->set_clipboard(v->window, line);
+    free(line);
+    view_say(v, false, "the command line is in the clipboard");
+    return CW_OK;
+}
+
+static const view_verb rows[] = {
+    VERB("undo", "", "take back the last change", 0, 0, run_undo),
+    VERB("redo", "", "and make it after all", 0, 0, run_redo),
+    VERB("screenshot", "[FILE]", "write the picture as a .png", 0, 1, run_screenshot),
+    VERB("capture", "FILE", "write the whole window as a .png", 1, 1, run_capture),
+    VERB("turntable", "N FILE", "write N pictures all round; FILE holds {turn}", 2, 2,
+         run_turntable),
+    VERB("save-state", "[FILE]", "write the session, as commands", 0, 1, run_save_state),
+    VERB("save-tf", "FILE", "write the transfer function", 1, 1, run_save_tf),
+    VERB("save-camera", "FILE", "write the camera", 1, 1, run_save_camera),
+    VERB("run", "FILE", "do what is written in a file", 1, 1, run_run),
+    VERB("copy-command", "", "copy the session as a command line", 0, 0, run_copy_command),
+};
+const view_verbs view_save_verbs = {rows, sizeof rows / sizeof *rows};

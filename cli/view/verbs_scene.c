@@ -1,0 +1,342 @@
+/* Commands that change what is seen, and from where. */
+#include "cli/view/verbs.h"
+
+#include "core/status.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* how it is drawn */
+
+/* The modes that what is open can be drawn in. */
+static bool fits(const view *v, cw_mode mode)
+{
+    return mode == CW_MODE_MESH || v->has_volume;
+}
+
+static cw_status change_mode(view *v, int by, cw_error *err)
+{
+    int m = (int)v->mode;
+    if (v->mode == CW_MODE_MESH)
+        v->state.iso_is_ours = true; /* the volume comes without the surface */
+    do
+        m = (m + by + CW_MODE_COUNT) % CW_MODE_COUNT;
+    while (!fits(v, (cw_mode)m));
+    return view_set(v, "mode", cw_mode_name((cw_mode)m), err);
+}
+
+static cw_status run_next_mode(view *v, int count, char **args, cw_error *err)
+{
+    (void)count, (void)args;
+    return change_mode(v, 1, err);
+}
+
+static cw_status run_previous_mode(view *v, int count, char **args, cw_error *err)
+{
+    (void)count, (void)args;
+    return change_mode(v, -1, err);
+}
+
+static cw_status run_next_preset(view *v, int count, char **args, cw_error *err)
+{
+    size_t n = 0;
+    const char *now = v->state.args.scene.transfer;
+    (void)count, (void)args;
+    while (now && cw_transfer_preset_name(n) && strcmp(cw_transfer_preset_name(n), now) != 0)
+        n++;
+    n = now && cw_transfer_preset_name(n) ? n + 1 : 0;
+    const char *name = cw_transfer_preset_name(n);
+    return view_set(v, "tf", name ? name : cw_transfer_preset_name(0), err);
+}
+
+static cw_status run_iso_by(view *v, int count, char **args, cw_error *err)
+{
+    double share;
+    char text[32];
+    (void)count;
+    cw_status st = view_need_open(v, err);
+    if (st == CW_OK && v->source.is_mesh)
+        st = cw_fail(err, CW_ERR_ARGUMENT, "a mesh has no isovalue");
+    if (st == CW_OK)
+        st = view_take("iso-by", args, 1, &share, err);
+    if (st != CW_OK)
+        return st;
+    const cw_statistics *s = &v->statistics;
+    const cli_number *iso = &v->state.args.iso;
+    const double from = iso->given ? iso->value : view_suggest_iso(v);
+    snprintf(text, sizeof text, "%.17g",
+             fmin(fmax(from + share * (s->max - s->min), s->min), s->max));
+    return view_set(v, "iso", text, err);
+}
+
+static cw_status run_toggle(view *v, int count, char **args, cw_error *err)
+{
+    bool on;
+    bool *shown = view_shown_flag(v, args[0]);
+    if (!view_find_flag(v, args[0], &on))
+        return cw_fail(err, CW_ERR_ARGUMENT, "toggle '%s': nothing that is on or off", args[0]);
+    if (count == 2 && strcmp(args[1], "on") != 0 && strcmp(args[1], "off") != 0)
+        return cw_fail(err, CW_ERR_ARGUMENT, "toggle '%s': on or off was expected", args[1]);
+    const bool wanted = count == 2 ? strcmp(args[1], "on") == 0 : !on;
+    if (strcmp(args[0], "quad") == 0)
+        return view_set(v, "layout", wanted ? "quad" : "single", err);
+    if (!shown)
+        return view_set(v, args[0], wanted ? "on" : "off", err);
+    *shown = wanted;
+    return CW_OK;
+}
+
+/* the camera */
+
+static cw_status run_orbit(view *v, int count, char **args, cw_error *err)
+{
+    double n[2] = {0};
+    cw_status st = view_take("orbit", args, count, n, err);
+    if (st == CW_OK)
+        st = view_need_camera(v, err);
+    return st == CW_OK ? cw_camera_orbit(&v->state.camera, n[0], n[1], err) : st;
+}
+
+static cw_status run_pan(view *v, int count, char **args, cw_error *err)
+{
+    double n[2];
+    cw_status st = view_take("pan", args, count, n, err);
+    if (st == CW_OK)
+        st = view_need_camera(v, err);
+    const size_t height = (size_t)fmax(1, v->parts[VIEW_SPACE].rect.height);
+    return st == CW_OK ? cw_camera_pan(&v->state.camera, height, n[0], n[1], err) : st;
+}
+
+static cw_status run_dolly(view *v, int count, char **args, cw_error *err)
+{
+    double n;
+    cw_status st = view_take("dolly", args, count, &n, err);
+    if (st == CW_OK)
+        st = view_need_camera(v, err);
+    return st == CW_OK ? cw_camera_dolly(&v->state.camera, n, err) : st;
+}
+
+static cw_status run_roll(view *v, int count, char **args, cw_error *err)
+{
+    double n;
+    cw_status st = view_take("roll", args, count, &n, err);
+    if (st == CW_OK)
+        st = view_need_camera(v, err);
+    return st == CW_OK ? cw_camera_roll(&v->state.camera, n, err) : st;
+}
+
+static cw_status run_reset(view *v, int count, char **args, cw_error *err)
+{
+    (void)count, (void)args;
+    v->state.slice_zoom = 1;
+    view_touch(v, VIEW_ALL);
+    cw_status st = view_set(v, "zoom", "default", err);
+    return st == CW_OK ? view_set(v, "camera", "default", err) : st;
+}
+
+/* cuts, the cross-hair, slices */
+
+static void start_box(view *v)
+{
+    cli_ranges *box = &v->state.args.scene.clip_box;
+    if (box->given && box->world)
+        return;
+    *box = (cli_ranges){.given = true, .world = true};
+    memcpy(box->low, v->box[0], sizeof box->low);
+    memcpy(box->high, v->box[1], sizeof box->high);
+}
+
+static cw_status run_face(view *v, int count, char **args, cw_error *err)
+{
+    double n[2];
+    cw_status st = view_take("clip-face", args, count, n, err);
+    if (st == CW_OK)
+        st = view_need_open(v, err);
+    if (st != CW_OK)
+        return st;
+    if (!(n[0] >= 0 && n[0] <= 5 && n[0] == floor(n[0])))
+        return cw_fail(err, CW_ERR_ARGUMENT, "clip-face '%s': 0 to 5 was expected", args[0]);
+    start_box(v);
+    cli_ranges *box = &v->state.args.scene.clip_box;
+    const int axis = (int)n[0] / 2;
+    const double thin = 1e-3 * (v->box[1][axis] - v->box[0][axis]);
+    const double at = fmin(fmax(n[1], v->box[0][axis]), v->box[1][axis]);
+    if ((int)n[0] % 2)
+        box->high[axis] = fmax(at, box->low[axis] + thin);
+    else
+        box->low[axis] = fmin(at, box->high[axis] - thin);
+    view_touch(v, 1 << VIEW_SPACE);
+    return CW_OK;
+}
+
+/* 1, 2, 3 for x, y, z; else 0 */
+static int axis_of(const char *word)
+{
+    return word[0] && !word[1] && word[0] >= 'x' && word[0] <= 'z' ? 1 + word[0] - 'x' : 0;
+}
+
+/* How far a voxel is along an axis of the world, about. */
+static double voxel_mm(const view *v)
+{
+    double spacing[3];
+    if (v->source.is_mesh)
+        return (v->box[1][0] - v->box[0][0]) / 256;
+    cw_volume_spacing(&v->source.volume.view, spacing);
+    return fmin(fmin(spacing[0], spacing[1]), spacing[2]);
+}
+
+static cw_status run_cut(view *v, int count, char **args, cw_error *err)
+{
+    double voxels;
+    char face[16], mm[32], *words[] = {face, mm};
+    const int axis = axis_of(args[0]) - 1;
+    (void)count;
+    if (axis < 0)
+        return cw_fail(err, CW_ERR_ARGUMENT, "cut '%s': x, y or z was expected", args[0]);
+    cw_status st = view_take("cut", args + 1, 1, &voxels, err);
+    if (st == CW_OK)
+        st = view_need_open(v, err);
+    if (st != CW_OK)
+        return st;
+    const cli_ranges *box = &v->state.args.scene.clip_box;
+    const double from = box->given && box->world ? box->low[axis] : v->box[0][axis];
+    snprintf(face, sizeof face, "%d", 2 * axis);
+    snprintf(mm, sizeof mm, "%.17g", from + voxels * voxel_mm(v));
+    return run_face(v, 2, words, err);
+}
+
+/* The wheel cuts along an axis, until the same is said again. */
+static cw_status run_wheel_cuts(view *v, int count, char **args, cw_error *err)
+{
+    const int axis = axis_of(args[0]);
+    (void)count;
+    if (!axis)
+        return cw_fail(err, CW_ERR_ARGUMENT, "wheel-cuts '%s': x, y or z was expected",
+                       args[0]);
+    v->shown.cut = v->shown.cut == axis ? 0 : axis;
+    return CW_OK;
+}
+
+static void put_cross(view *v, const double point[3])
+{
+    for (int a = 0; a < 3; a++)
+        v->state.cross[a] = fmin(fmax(point[a], v->box[0][a]), v->box[1][a]);
+    view_touch(v, v->mode == CW_MODE_SLICES ? VIEW_ALL : VIEW_SLICES);
+}
+
+static cw_status run_cross(view *v, int count, char **args, cw_error *err)
+{
+    double point[3];
+    cw_status st = view_take("cross", args, count, point, err);
+    if (st == CW_OK)
+        st = view_need_open(v, err);
+    if (st == CW_OK)
+        put_cross(v, point);
+    return st;
+}
+
+static cw_status run_cross_by(view *v, int count, char **args, cw_error *err)
+{
+    double voxels, point[3];
+    const int axis = axis_of(args[0]) - 1;
+    (void)count;
+    if (axis < 0)
+        return cw_fail(err, CW_ERR_ARGUMENT, "cross-by '%s': x, y or z was expected", args[0]);
+    cw_status st = view_take("cross-by", args + 1, 1, &voxels, err);
+    if (st == CW_OK)
+        st = view_need_open(v, err);
+    if (st != CW_OK)
+        return st;
+    memcpy(point, v->state.cross, sizeof point);
+    point[axis] += voxels * voxel_mm(v);
+    put_cross(v, point);
+    return CW_OK;
+}
+
+/* To what the mouse is on, in pixels of the 3D part. */
+static cw_status run_pick(view *v, int count, char **args, cw_error *err)
+{
+    double pixel[2];
+    cw_picked picked = {0};
+    view_part *part = &v->parts[VIEW_SPACE];
+    cw_status st = view_take("pick", args, count, pixel, err);
+    if (st == CW_OK)
+        st = view_need_open(v, err);
+    if (st == CW_OK && (part->level == VIEW_STALE || v->state.args.compare))
+        return CW_OK; /* nothing to be seen yet, or two things */
+    if (st == CW_OK) {
+        const double scale = (double)part->scene.width / fmax(part->rect.width, 1);
+        const double at[2] = {pixel[0] * scale, pixel[1] * scale};
+        st = cw_pick(&part->scene, at, &picked, err);
+    }
+    if (st == CW_OK && picked.kind != CW_PICK_NOTHING)
+        put_cross(v, picked.point);
+    return st;
+}
+
+static cw_status run_window(view *v, int count, char **args, cw_error *err)
+{
+    double n[2];
+    cw_status st = view_take("window", args, count, n, err);
+    if (st == CW_OK && !(n[0] < n[1]))
+        st = cw_fail(err, CW_ERR_ARGUMENT, "window %s %s: rising values were expected", args[0],
+                     args[1]);
+    if (st == CW_OK)
+        memcpy(v->state.window, n, sizeof n);
+    view_touch(v, VIEW_SLICES);
+    return st;
+}
+
+static cw_status run_zoom_slices(view *v, int count, char **args, cw_error *err)
+{
+    double n;
+    (void)count;
+    cw_status st = view_take("zoom-slices", args, 1, &n, err);
+    if (st == CW_OK && !(n > 0))
+        st = cw_fail(err, CW_ERR_ARGUMENT, "zoom-slices %s: above 0 was expected", args[0]);
+    if (st == CW_OK)
+        v->state.slice_zoom = fmin(fmax(n, 0.1), 100);
+    view_touch(v, VIEW_SLICES);
+    return st;
+}
+
+static cw_status run_split(view *v, int count, char **args, cw_error *err)
+{
+    double n;
+    (void)count;
+    cw_status st = view_take("split", args, 1, &n, err);
+    if (st == CW_OK && !(n >= 0 && n <= 1))
+        st = cw_fail(err, CW_ERR_ARGUMENT, "split %s: 0 to 1 was expected", args[0]);
+    if (st == CW_OK)
+        v->state.share = n;
+    if (st == CW_OK && v->state.args.compare)
+        view_touch(v, 1 << VIEW_SPACE);
+    return st;
+}
+
+static const view_verb rows[] = {
+    VERB("next-mode", "", "draw in the next mode", 0, 0, run_next_mode),
+    VERB("previous-mode", "", "and in the one before", 0, 0, run_previous_mode),
+    EDIT("next-preset", "", "the next transfer function", 0, 0, run_next_preset),
+    EDIT("iso-by", "SHARE", "move the isovalue, by a share of all values", 1, 1, run_iso_by),
+    EDIT("toggle", "NAME [on|off]",
+         "switch a setting, or panels, files, help, handles, cross, playing, about", 1, 2,
+         run_toggle),
+    VERB("orbit", "RIGHT [UP]", "the eye goes round, in degrees", 1, 2, run_orbit),
+    VERB("pan", "RIGHT DOWN", "what is seen moves, in pixels", 2, 2, run_pan),
+    VERB("dolly", "F", "the eye comes nearer: so many times as large", 1, 1, run_dolly),
+    VERB("roll", "DEG", "what is seen turns clockwise", 1, 1, run_roll),
+    VERB("reset", "", "see all of it again", 0, 0, run_reset),
+    EDIT("cut", "x|y|z VOXELS", "cut the low side of an axis, so much further", 2, 2, run_cut),
+    EDIT("clip-face", "N MM", "move a face of the clip box: 0 to 5 for x, x, y, y, z, z", 2, 2,
+         run_face),
+    VERB("wheel-cuts", "x|y|z", "the wheel cuts along an axis", 1, 1, run_wheel_cuts),
+    VERB("cross", "X Y Z", "put the cross-hair somewhere, in LPS mm", 3, 3, run_cross),
+    VERB("cross-by", "x|y|z VOXELS", "move it", 2, 2, run_cross_by),
+    VERB("pick", "X Y", "put it on what is seen at a pixel of the scene", 2, 2, run_pick),
+    EDIT("window", "LOW HIGH", "what is black and what white in slices", 2, 2, run_window),
+    VERB("zoom-slices", "F", "slices so many times as large", 1, 1, run_zoom_slices),
+    VERB("split", "SHARE", "where a comparison is divided", 1, 1, run_split),
+};
+const view_verbs view_scene_verbs = {rows, sizeof rows / sizeof *rows};
