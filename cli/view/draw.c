@@ -125,8 +125,6 @@ static cw_status space_scene(view *v, const render_args *args, cw_mode mode,
             scene->slices[scene->slice_count].normal[a] = 1;
             scene->slices[scene->slice_count++].distance_mm = v->state.cross[a];
         }
-    if (args->scene.hide == CLI_HIDE_VOLUME)
-        scene->volume = NULL;
     return st;
 }
 

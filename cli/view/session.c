@@ -74,6 +74,8 @@ cw_status view_choose_mode(view *v, cw_error *err)
     v->mode = asked ? (cw_mode)(asked - 1)
               : v->has_volume && !v->source.is_level_set && !args->iso.given ? CW_MODE_COMPOSITE
                                                                              : CW_MODE_MESH;
+    if (args->scene.hide == CLI_HIDE_VOLUME)
+        v->mode = CW_MODE_MESH;
     if (v->path && v->mode != CW_MODE_MESH && !v->has_volume)
         return cw_fail(err, CW_ERR_ARGUMENT, "the mode %s draws volumes on even grids; %s",
                        cw_mode_name(v->mode),
