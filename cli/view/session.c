@@ -71,9 +71,11 @@ cw_status view_choose_mode(view *v, cw_error *err)
 {
     render_args *args = &v->state.args;
     const int asked = args->scene.mode;
-    v->mode = asked ? (cw_mode)(asked - 1)
-              : v->has_volume && !v->source.is_level_set && !args->iso.given ? CW_MODE_COMPOSITE
-                                                                             : CW_MODE_MESH;
+    v->mode =
+        asked ? (cw_mode)(asked - 1)
+        : v->has_volume && !v->source.is_level_set && (!args->iso.given || v->state.iso_is_ours)
+            ? CW_MODE_COMPOSITE
+            : CW_MODE_MESH;
     if (args->scene.hide == CLI_HIDE_VOLUME)
         v->mode = CW_MODE_MESH;
     if (v->path && v->mode != CW_MODE_MESH && !v->has_volume)
