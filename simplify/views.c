@@ -183,7 +183,8 @@ void cwi_views_free(cwi_views *views)
 
 void cwi_views_place(cwi_views *views, const double origin[3], double scale)
 {
-    for (cwi_view *v = views->view; v < views->view + views->count; v++) {
+    for (size_t i = 0; i < views->count; i++) {
+        cwi_view *v = &views->view[i];
         for (int n = 0; n < 3; n++)
             v->eye[n] = scale * (v->eye[n] - origin[n]);
         for (int n = 0; n < 2; n++)
@@ -199,7 +200,8 @@ double cwi_views_limit(const cwi_views *views, const float *const corners[3], do
                        double margin)
 {
     double least = INFINITY;
-    for (const cwi_view *v = views->view; v < views->view + views->count; v++) {
+    for (size_t i = 0; i < views->count; i++) {
+        const cwi_view *v = &views->view[i];
         place p[3];
         for (int c = 0; c < 3; c++)
             p[c] = place_of(v, (const double[3]){(double)corners[c][0], (double)corners[c][1],
