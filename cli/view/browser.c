@@ -41,11 +41,24 @@ void view_close_browser(view *v)
     forget(&v->browser);
 }
 
+int view_scan(const char *folder, struct dirent ***entries)
+{
+    *entries = NULL;
+    return scandir(folder, entries, is_plain, by_version);
+}
+
+void view_free_scan(struct dirent **entries, int count)
+{
+    for (int n = 0; n < count; n++)
+        free(entries[n]);
+    free(entries);
+}
+
 /* Folders end with a slash, and come first. */
 static void list_folder(view_browser *b)
 {
-    struct dirent **entries = NULL;
-    const int count = scandir(b->folder, &entries, is_plain, by_version);
+    struct dirent **entries;
+    const int count = view_scan(b->folder, &entries);
     forget(b);
     b->names = count > 0 ? calloc((size_t)count, sizeof *b->names) : NULL;
     for (int folders = 1; folders >= 0; folders--)
@@ -59,9 +72,7 @@ static void list_folder(view_browser *b)
             if (line)
                 b->names[b->count++] = line;
         }
-    for (int n = 0; n < count; n++)
-        free(entries[n]);
-    free(entries);
+    view_free_scan(entries, count);
 }
 
 /* That of the file that is open, else where the program was started. */

@@ -130,13 +130,12 @@ static cw_status space_scene(view *v, const render_args *args, cw_mode mode,
 
 static void make_greys(view *v)
 {
-    const double *w = v->state.window;
-    const bool all = w[0] == 0 && w[1] == 0;
-    const double low = all ? v->statistics.min : w[0], high = all ? v->statistics.max : w[1];
+    double w[2];
+    view_grey_range(v, w);
     v->greys = (cw_transfer){.color_count = 2,
-                             .colors = {{low, {0, 0, 0}}, {fmax(high, low), {1, 1, 1}}},
+                             .colors = {{w[0], {0, 0, 0}}, {fmax(w[1], w[0]), {1, 1, 1}}},
                              .opacity_count = 1,
-                             .opacities = {{low, 1}}};
+                             .opacities = {{w[0], 1}}};
 }
 
 /* Axial, coronal and sagittal slices are across z, y and x, through the cross-hair. */

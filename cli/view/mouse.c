@@ -31,11 +31,11 @@ static cwi_view looked_at(const view *v)
 
 static cwi_world_box clip_box(const view *v)
 {
-    const cli_ranges *c = &v->state.args.scene.clip_box;
-    const bool is_set = c->given && c->world;
+    double corners[2][3];
     cwi_world_box box;
-    memcpy(box.low, is_set ? c->low : v->box[0], sizeof box.low);
-    memcpy(box.high, is_set ? c->high : v->box[1], sizeof box.high);
+    view_clip_box(v, corners);
+    memcpy(box.low, corners[0], sizeof box.low);
+    memcpy(box.high, corners[1], sizeof box.high);
     return box;
 }
 
@@ -109,11 +109,10 @@ static void move_cross(view *v, const cwi_ui_input *in)
 static void move_greys(view *v, const cwi_ui_input *in)
 {
     const cw_statistics *s = &v->statistics;
-    const double *w = v->state.window;
-    const bool all = w[0] == 0 && w[1] == 0;
+    double w[2];
     const double range = s->max - s->min;
-    double middle = all ? 0.5 * (s->min + s->max) : 0.5 * (w[0] + w[1]);
-    double width = all ? range : w[1] - w[0];
+    view_grey_range(v, w);
+    double middle = 0.5 * (w[0] + w[1]), width = w[1] - w[0];
     middle -= in->dy / 400 * range;
     width = fmax(width * exp(in->dx / 200), 1e-6 * range);
     if (range > 0)

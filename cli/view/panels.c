@@ -255,13 +255,11 @@ static void show_surface(view *v)
 static void show_faces(view *v)
 {
     static const char *const labels[6] = {"x from", "x to", "y from", "y to", "z from", "z to"};
-    const cli_ranges *c = &v->state.args.scene.clip_box;
-    const bool is_set = c->given && c->world;
+    double box[2][3];
+    view_clip_box(v, box);
     for (int f = 0; f < 6; f++) {
         const int a = f / 2;
-        double value = f % 2    ? is_set ? c->high[a] : v->box[1][a]
-                          : is_set ? c->low[a]
-                                : v->box[0][a];
+        double value = box[f % 2][a];
         if (v->ui->slider(v->window, labels[f], &value, v->box[0][a], v->box[1][a], "%.1f mm"))
             view_ask(v, "clip-face %d %.9g", f, value);
     }
@@ -289,7 +287,7 @@ static void show_slices(view *v)
 {
     static const char *const names[3] = {"Sagittal x", "Coronal y", "Axial z"};
     const cw_statistics *s = &v->statistics;
-    double w[2] = {v->state.window[0], v->state.window[1]};
+    double w[2];
     bool quad = v->state.args.marks.layout == CLI_LAYOUT_QUAD;
     double cross[3];
     if (!v->has_volume || !v->ui->section(v->window, "Slices", quad))
@@ -302,10 +300,7 @@ static void show_slices(view *v)
                           "%.1f mm"))
             view_ask(v, "cross %.9g %.9g %.9g", cross[0], cross[1], cross[2]);
     }
-    if (w[0] == 0 && w[1] == 0) {
-        w[0] = s->min;
-        w[1] = s->max;
-    }
+    view_grey_range(v, w);
     const bool black = v->ui->slider(v->window, "Black", &w[0], s->min, s->max, "%.5g");
     if (v->ui->slider(v->window, "White", &w[1], s->min, s->max, "%.5g") || black)
         view_ask(v, "window %.9g %.9g", fmin(w[0], w[1] - 1e-6 * (s->max - s->min)), w[1]);

@@ -21,6 +21,22 @@ void view_touch(view *v, unsigned parts)
             v->parts[p].level = VIEW_STALE;
 }
 
+void view_clip_box(const view *v, double box[2][3])
+{
+    const cli_ranges *c = &v->state.args.scene.clip_box;
+    const bool is_set = c->given && c->world;
+    memcpy(box[0], is_set ? c->low : v->box[0], sizeof box[0]);
+    memcpy(box[1], is_set ? c->high : v->box[1], sizeof box[1]);
+}
+
+void view_grey_range(const view *v, double range[2])
+{
+    const double *w = v->state.window;
+    const bool all = w[0] == 0 && w[1] == 0;
+    range[0] = all ? v->statistics.min : w[0];
+    range[1] = all ? v->statistics.max : w[1];
+}
+
 bool view_draws_volume(const view *v)
 {
     return v->has_volume && v->mode != CW_MODE_MESH;

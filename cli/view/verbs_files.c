@@ -1,4 +1,3 @@
-#define _GNU_SOURCE /* strverscmp, scandir */
 /* Commands that open files and go through steps. */
 #include "cli/view/verbs.h"
 
@@ -7,7 +6,6 @@
 #include <dirent.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
 
@@ -24,20 +22,10 @@ static cw_status run_quit(view *v, int count, char **args, cw_error *err)
     return CW_OK;
 }
 
-static int by_version(const struct dirent **a, const struct dirent **b)
-{
-    return strverscmp((*a)->d_name, (*b)->d_name);
-}
-
-static int is_plain(const struct dirent *e)
-{
-    return e->d_name[0] != '.';
-}
-
 /* What can be opened is next, in natural order and round and round. */
 static cw_status open_near(view *v, int by, cw_error *err)
 {
-    struct dirent **list = NULL;
+    struct dirent **list;
     const char *slash = v->path ? strrchr(v->path, '/') : NULL;
     char folder[4096] = ".", path[8192];
     cw_status st = view_need_open(v, err);
@@ -46,7 +34,7 @@ static cw_status open_near(view *v, int by, cw_error *err)
     if (slash)
         snprintf(folder, sizeof folder, "%.*s", (int)(slash - v->path + 1), v->path);
     const char *own = slash ? slash + 1 : v->path;
-    const int count = scandir(folder, &list, is_plain, by_version);
+    const int count = view_scan(folder, &list);
     int at = 0;
     while (at < count && strcmp(list[at]->d_name, own) != 0)
         at++;
@@ -64,9 +52,7 @@ static cw_status open_near(view *v, int by, cw_error *err)
         if (readable)
             st = view_open(v, path, err);
     }
-    for (int n = 0; n < count; n++)
-        free(list[n]);
-    free(list);
+    view_free_scan(list, count);
     return st;
 }
 

@@ -140,11 +140,11 @@ static cw_status run_reset(view *v, int count, char **args, cw_error *err)
 static void start_box(view *v)
 {
     cli_ranges *box = &v->state.args.scene.clip_box;
-    if (box->given && box->world)
-        return;
+    double corners[2][3];
+    view_clip_box(v, corners);
     *box = (cli_ranges){.given = true, .world = true};
-    memcpy(box->low, v->box[0], sizeof box->low);
-    memcpy(box->high, v->box[1], sizeof box->high);
+    memcpy(box->low, corners[0], sizeof box->low);
+    memcpy(box->high, corners[1], sizeof box->high);
 }
 
 static cw_status run_face(view *v, int count, char **args, cw_error *err)
@@ -199,10 +199,10 @@ static cw_status run_cut(view *v, int count, char **args, cw_error *err)
         st = view_need_open(v, err);
     if (st != CW_OK)
         return st;
-    const cli_ranges *box = &v->state.args.scene.clip_box;
-    const double from = box->given && box->world ? box->low[axis] : v->box[0][axis];
+    double box[2][3];
+    view_clip_box(v, box);
     snprintf(face, sizeof face, "%d", 2 * axis);
-    snprintf(mm, sizeof mm, "%.17g", from + voxels * voxel_mm(v));
+    snprintf(mm, sizeof mm, "%.17g", box[0][axis] + voxels * voxel_mm(v));
     return run_face(v, 2, words, err);
 }
 

@@ -9,6 +9,8 @@
 
 #include <cubewright/extract.h>
 
+#include <dirent.h>
+
 /* Parts of the window that show a picture. */
 typedef enum view_part_name {
     VIEW_SPACE, /* the scene, in any mode */
@@ -140,6 +142,10 @@ typedef struct view {
 cw_status view_open(view *v, const char *path, cw_error *err);
 void view_close(view *v);
 cw_status view_go_to_step(view *v, size_t step, cw_error *err);
+/* Of the world, low and high corner: what is left of all by the clip box in mm, else all. */
+void view_clip_box(const view *v, double box[2][3]);
+/* Values from black to white in slices. */
+void view_grey_range(const view *v, double range[2]);
 void view_touch(view *v, unsigned parts); /* they have to be drawn anew */
 bool view_draws_volume(const view *v);
 bool view_has_mesh(const view *v);
@@ -209,6 +215,9 @@ void view_lay_out(view *v);
 /* mouse.c, panels.c, curve.c, browser.c */
 void view_browse(view *v);
 void view_close_browser(view *v);
+/* What is in a folder, in natural order, and its number; below 0: it cannot be read. */
+int view_scan(const char *folder, struct dirent ***entries);
+void view_free_scan(struct dirent **entries, int count);
 void view_mouse(view *v, const cwi_ui_input *in);
 void view_show_parts(view *v, const cwi_ui_input *in);
 void view_panels(view *v, const cwi_ui_input *in);

@@ -80,55 +80,43 @@ typedef struct row {
     double bound; /* in voxels; without a distance: of nothing */
 } row;
 
-#define TIED(name)                                                                             \
+#define JUDGED(name, judge)                                                                    \
     {                                                                                          \
-        "hard/" name, TIES, 0, NULL, 0                                                         \
-    }
-#define SEEN(name)                                                                             \
-    {                                                                                          \
-        "hard/" name, PICTURES, 0, NULL, 0                                                     \
-    }
-#define GAPS(name)                                                                             \
-    {                                                                                          \
-        "hard/" name, NOBODY, 0, NULL, 0                                                       \
-    }
-#define MANY(name)                                                                             \
-    {                                                                                          \
-        "hard/" name, COUNT, 0, NULL, 0                                                        \
+        "hard/" name, judge, 0, NULL, 0                                                        \
     }
 
 static const row rows[] = {
-    TIED("plane-on-samples"),
-    TIED("two-planes-on-samples"),
-    TIED("block-in-lower"),
-    TIED("block-in-higher"),
+    JUDGED("plane-on-samples", TIES),
+    JUDGED("two-planes-on-samples", TIES),
+    JUDGED("block-in-lower", TIES),
+    JUDGED("block-in-higher", TIES),
     {"hard/mostly-on-samples", FLAT, 0, NULL, 0},
-    TIED("ties"),
-    TIED("plateaus"),
+    JUDGED("ties", TIES),
+    JUDGED("plateaus", TIES),
     {"hard/terraces", TIES, 0, ball, 0.5 + 0.076},
     {"hard/checkerboard", FLAT, 0, NULL, 0},
-    TIED("uneven-checkerboard"),
-    TIED("columns"),
-    SEEN("mc33"),
-    TIED("saddle-line"),
-    TIED("saddle-point"),
-    TIED("monkey-saddle"),
-    TIED("double-cone"),
-    MANY("near-saddle-face"),
+    JUDGED("uneven-checkerboard", TIES),
+    JUDGED("columns", TIES),
+    JUDGED("mc33", PICTURES),
+    JUDGED("saddle-line", TIES),
+    JUDGED("saddle-point", TIES),
+    JUDGED("monkey-saddle", TIES),
+    JUDGED("double-cone", TIES),
+    JUDGED("near-saddle-face", COUNT),
     {"hard/near-saddle-inside", TUNNELS, 0, NULL, 0},
-    TIED("sheet"),
-    TIED("sheet-askew"),
-    TIED("wire"),
-    TIED("wire-askew"),
+    JUDGED("sheet", TIES),
+    JUDGED("sheet-askew", TIES),
+    JUDGED("wire", TIES),
+    JUDGED("wire-askew", TIES),
     {"hard/tilted-sheet", PICTURES, 0, tilted_sheet, ANY},
     {"hard/thinner-sheet", PICTURES, 0, thinner_sheet, ANY},
     {"hard/tilted-wire", PICTURES, 0, tilted_wire, ANY},
-    TIED("lone-samples"),
-    SEEN("astroid"),
+    JUDGED("lone-samples", TIES),
+    JUDGED("astroid", PICTURES),
     {"hard/corners", PICTURES, 0, cube, ANY},
     {"hard/spike", PICTURES, 0, spike, 1.01 * ANY},
-    SEEN("near-nyquist"),
-    MANY("zone-plate"),
+    JUDGED("near-nyquist", PICTURES),
+    JUDGED("zone-plate", COUNT),
     {"hard/nanometres", PICTURES, 0, ball, ROUND},
     {"hard/kilometres", PICTURES, 0, ball, ROUND},
     {"hard/far-away", PICTURES, 0, ball, ROUND},
@@ -136,21 +124,21 @@ static const row rows[] = {
     {"hard/denormal-values", TIES, 0x1p149, ball, ROUND + 0.125},
     {"hard/offset-values", TIES, 0, ball, ROUND + 0.03125},
     {"hard/last-digits", TIES, 0x1p24, NULL, 0},
-    GAPS("decades"),
-    GAPS("nan-islands"),
-    GAPS("nan-checkerboard"),
-    GAPS("nan-blocks"),
-    GAPS("nan-around"),
-    GAPS("inf-islands"),
-    SEEN("noise"),
-    SEEN("snr-20"),
-    SEEN("snr-10"),
-    SEEN("snr-0"),
-    SEEN("spheres-0.5"),
-    SEEN("spheres-0.75"),
-    SEEN("spheres-1"),
-    SEEN("spheres-1.5"),
-    SEEN("spheres-2"),
+    JUDGED("decades", NOBODY),
+    JUDGED("nan-islands", NOBODY),
+    JUDGED("nan-checkerboard", NOBODY),
+    JUDGED("nan-blocks", NOBODY),
+    JUDGED("nan-around", NOBODY),
+    JUDGED("inf-islands", NOBODY),
+    JUDGED("noise", PICTURES),
+    JUDGED("snr-20", PICTURES),
+    JUDGED("snr-10", PICTURES),
+    JUDGED("snr-0", PICTURES),
+    JUDGED("spheres-0.5", PICTURES),
+    JUDGED("spheres-0.75", PICTURES),
+    JUDGED("spheres-1", PICTURES),
+    JUDGED("spheres-1.5", PICTURES),
+    JUDGED("spheres-2", PICTURES),
 };
 
 enum { ROWS = sizeof rows / sizeof *rows, X = 11, Y = 10, Z = 9, SAMPLES = X * Y * Z };
