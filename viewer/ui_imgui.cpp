@@ -240,6 +240,14 @@ void cwi_ui_imgui_choose(cwi_ui *ui)
     ImGui::SetCurrentContext(ui->imgui);
 }
 
+/* ImGui would undo, in a text that it is given anew, what was typed in the one before, and
+ * write before and behind it. */
+static void forget_typed(ImGuiContext *imgui)
+{
+    if (imgui->InputTextState.ID != imgui->ActiveId)
+        imgui->InputTextState.ID = 0;
+}
+
 void cwi_ui_imgui_write(const char *text)
 {
     ImGui::GetIO().AddInputCharactersUTF8(text);
@@ -256,6 +264,7 @@ void cwi_ui_imgui_begin(cwi_ui *ui)
     tell_keys(ui, io);
     ImGui_ImplOpenGL3_NewFrame();
     ImGui::NewFrame();
+    forget_typed(ui->imgui);
     ui->input.over_widget = io.WantCaptureMouse;
     ui->input.typing = io.WantTextInput && ui->imgui->ActiveId; /* ImGui is a frame late */
     if (ui->input.typing)

@@ -334,6 +334,30 @@ static void text_is_copied_and_pasted(void **state)
     assert_string_equal(used.text, "pasted oldpasted old");
 }
 
+static void what_was_typed_in_another_text_is_not_undone(void **state)
+{
+    (void)state;
+    need_window();
+    click("Text");
+    frames();
+    feed_text(CWI_UI_KEY, "End");
+    feed_text(CWI_UI_WRITE, "er");
+    feed_text(CWI_UI_WRITE, " and older");
+    feed_text(CWI_UI_KEY, "Enter");
+    frames();
+    assert_string_equal(used.text, "older and older");
+    strcpy(used.text, "n");
+    frames();
+    click("Text");
+    frames();
+    feed_text(CWI_UI_KEY, "Ctrl+Z");
+    feed_text(CWI_UI_KEY, "Ctrl+Z");
+    feed_text(CWI_UI_WRITE, "o");
+    feed_text(CWI_UI_KEY, "Enter");
+    frames();
+    assert_string_equal(used.text, "no");
+}
+
 static void areas_say_what_the_mouse_does_to_them(void **state)
 {
     (void)state;
@@ -819,6 +843,7 @@ int main(void)
         CASE(menus_open_and_their_items_are_used),
         CASE(text_is_typed_edited_and_entered),
         CASE(text_is_copied_and_pasted),
+        CASE(what_was_typed_in_another_text_is_not_undone),
         CASE(areas_say_what_the_mouse_does_to_them),
         CASE(second_presses_at_one_place_are_told),
         CASE(modal_panels_block_what_is_behind_them),
