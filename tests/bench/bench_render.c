@@ -1,7 +1,7 @@
 /* Volume rendering beside VTK's: processor time of a picture (all threads), the first and those
  * after it, as ratios of one run.
  *
- * bench_render [--size 256] [--picture 512] [--frames 7]
+ * bench_render [--size 256] [--picture 512] [--frames 7] [--case NAME]
  *
  * VTK needs an X server: xvfb-run bench_render. Every measurement is made in a process of its
  * own, by turns. Prints a JSON line a case on stdout, a table on stderr. */
@@ -23,6 +23,7 @@ enum { MOST_FRAMES = 101 };
 typedef struct settings {
     size_t size, picture;
     int frames;
+    const char *only; /* the case of this name; NULL: all */
 } settings;
 
 /* What a child hands back. */
@@ -166,7 +167,7 @@ static void run_case(const bench_case *c, const settings *s, const cw_scene *bas
 
 static settings parse(int argc, char **argv)
 {
-    settings s = {256, 512, 7};
+    settings s = {256, 512, 7, NULL};
     for (int n = 1; n + 1 < argc; n += 2) {
         const long value = atol(argv[n + 1]);
         if (strcmp(argv[n], "--size") == 0)
@@ -175,6 +176,8 @@ static settings parse(int argc, char **argv)
             s.picture = (size_t)value;
         else if (strcmp(argv[n], "--frames") == 0)
             s.frames = value < MOST_FRAMES ? (int)value : MOST_FRAMES - 1;
+        else if (strcmp(argv[n], "--case") == 0)
+            s.only = argv[n + 1];
     }
     return s;
 }
@@ -196,7 +199,8 @@ int main(int argc, char **argv)
             "%zu^3 floats, %zu x %zu pixels, ms of processor time: first, next; ratios\n",
             s.size, s.picture, s.picture);
     for (size_t n = 0; n < sizeof cases / sizeof *cases; n++)
-        run_case(&cases[n], &s, &scene);
+        if (!s.only || strcmp(s.only, cases[n].name) == 0)
+            run_case(&cases[n], &s, &scene);
     cw_volume_free(&volume);
     return 0;
 }

@@ -80,28 +80,33 @@ vec4 take_cell(vec4 found, vec4 v)
 }
 
 // What the ray is bound to find: the ranges of the blocks it passes through say so, and samples of
-// the most promising one.
-vec4 foresee(ray r, float from, float to, vec4 found)
+// the most promising one. Of the part that it is looked for in stays, in whole steps, what can better
+// that.
+vec4 foresee(ray r, inout vec2 part, vec4 found)
 {
 #ifdef FORESEE
-    float best = -none, best_from = from;
-    for (float t = from; t < to; ) {
+    float best = -none, best_from = part.x;
+    vec2 useful = part.xx;
+    for (float t = part.x; t < part.y; ) {
         vec3 at = r.index + t * r.slope;
         vec2 range = range_of(at);
 #ifdef MIP
         found.x = max(found.x, range.x);
-        float promise = range.y;
+        float promise = range.y, bound = found.x;
 #else
         found.x = min(found.x, range.y);
-        float promise = -range.x;
+        float promise = -range.x, bound = -found.x;
 #endif
+        useful.x = bound >= best ? t - 0.01 : useful.x;
         best_from = promise > best ? t : best_from;
         best = max(best, promise);
         t += block_exit(r, at) + 0.01;
+        useful.y = promise > bound ? t : useful.y;
     }
-    float until = min(to, best_from + block_exit(r, r.index + best_from * r.slope));
+    float until = min(part.y, best_from + block_exit(r, r.index + best_from * r.slope));
     found = take(found, texel_on(r, mix(best_from, until, 0.5)));
     found = take(found, texel_on(r, until));
+    part = vec2(part.x + max(floor((useful.x - part.x) / step_length), 0.0) * step_length, min(part.y, useful.y));
 #endif
     return found;
 }
@@ -171,7 +176,11 @@ vec4 along(ray r, float from, float to, vec4 found)
 // A part of a ray; first what it is bound to find.
 vec4 along_part(ray r, vec2 part, vec4 found)
 {
-    return part.x < part.y ? along(r, part.x, part.y, foresee(r, part.x, part.y, found)) : found;
+    if (part.x < part.y) {
+        found = foresee(r, part, found);
+        found = along(r, part.x, part.y, found);
+    }
+    return found;
 }
 
 vec4 nothing()
