@@ -336,9 +336,9 @@ cw_status cwi_gl_draw_slices(cwi_gl *gl, cwi_gl_slabs *slices, const char *own,
     char defines[256];
     GLuint program;
     const cw_scene *s = &gl->frame->scene;
-    cw_status st = CW_OK;
+    cw_status st = cwi_gl_need_skip(gl, err);
     describe(gl->frame, own, defines, sizeof defines);
-    if (!s->no_preintegration && !s->colors_first)
+    if (st == CW_OK && !s->no_preintegration && !s->colors_first)
         st = cwi_gl_need_segments(gl, s->step_vox, err);
     if (st == CW_OK)
         st = begin(gl, slices, err);

@@ -19,26 +19,6 @@ void cwi_gl_drop_transfer(cwi_gl *gl)
     *t = (cwi_gl_transfer){0};
 }
 
-static bool is_visible(const void *table, double low, double high)
-{
-    return cwi_table_is_visible(table, low, high);
-}
-
-static cw_status make_skip(cwi_gl *gl, cw_error *err)
-{
-    const cwi_ranges *r = &gl->volume.ranges;
-    uint8_t *d;
-    cw_status st = cwi_ranges_distances(r, is_visible, &gl->transfer.table, &d, err);
-    if (st != CW_OK)
-        return st;
-    gl->transfer.skip = cwi_gl_texture(GL_TEXTURE_3D, CWI_UNIT_SKIP, false);
-    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    glTexImage3D(GL_TEXTURE_3D, 0, GL_R8UI, (GLsizei)r->dim[0], (GLsizei)r->dim[1],
-                 (GLsizei)r->dim[2], 0, GL_RED_INTEGER, GL_UNSIGNED_BYTE, d);
-    gl->transfer.away = d;
-    return CW_OK;
-}
-
 /* Factors up to the last point; the value there is in the unit of the gradients' texture. */
 static void make_factor(cwi_gl *gl)
 {
@@ -79,9 +59,8 @@ static cw_status make(cwi_gl *gl, cw_error *err)
                  t->table.rows);
     t->segment_rows = cwi_table_segment_rows(&t->table, &t->key);
     make_factor(gl);
-    st = make_skip(gl, err);
-    t->is_made = st == CW_OK;
-    return st;
+    t->is_made = true;
+    return CW_OK;
 }
 
 cw_status cwi_gl_take_transfer(cwi_gl *gl, cw_error *err)
@@ -96,6 +75,28 @@ cw_status cwi_gl_take_transfer(cwi_gl *gl, cw_error *err)
     if (st == CW_OK)
         bind(t);
     return st;
+}
+
+static bool is_visible(const void *table, double low, double high)
+{
+    return cwi_table_is_visible(table, low, high);
+}
+
+cw_status cwi_gl_need_skip(cwi_gl *gl, cw_error *err)
+{
+    const cwi_ranges *r = &gl->volume.ranges;
+    uint8_t *d;
+    if (gl->transfer.away)
+        return CW_OK;
+    cw_status st = cwi_ranges_distances(r, is_visible, &gl->transfer.table, &d, err);
+    if (st != CW_OK)
+        return st;
+    gl->transfer.skip = cwi_gl_texture(GL_TEXTURE_3D, CWI_UNIT_SKIP, false);
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTexImage3D(GL_TEXTURE_3D, 0, GL_R8UI, (GLsizei)r->dim[0], (GLsizei)r->dim[1],
+                 (GLsizei)r->dim[2], 0, GL_RED_INTEGER, GL_UNSIGNED_BYTE, d);
+    gl->transfer.away = d;
+    return CW_OK;
 }
 
 cw_status cwi_gl_need_segments(cwi_gl *gl, double length, cw_error *err)

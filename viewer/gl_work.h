@@ -163,6 +163,8 @@ size_t *cwi_gl_order_bricks(const cwi_gl *gl);
 
 /* Uploads the frame's transfer function, unless it is there, and binds it. */
 cw_status cwi_gl_take_transfer(cwi_gl *gl, cw_error *err);
+/* And what it leaves empty: the texture skip, and away. */
+cw_status cwi_gl_need_skip(cwi_gl *gl, cw_error *err);
 /* And pre-integrated, for segments of a length in units of eye space. */
 cw_status cwi_gl_need_segments(cwi_gl *gl, double length, cw_error *err);
 void cwi_gl_drop_transfer(cwi_gl *gl);

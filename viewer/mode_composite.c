@@ -29,8 +29,8 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     const cw_scene *s = &gl->frame->scene;
     /* a segment has samples at both ends and in the middle */
     const double length = s->no_preintegration || s->cell_steps ? s->step_vox : 2 * s->step_vox;
-    cw_status st = CW_OK;
-    if (!s->no_preintegration)
+    cw_status st = cwi_gl_need_skip(gl, err);
+    if (st == CW_OK && !s->no_preintegration)
         st = cwi_gl_need_segments(gl, length, err);
     if (st == CW_OK && (s->lit || gl->frame->transfer.gradient_count > 0))
         st = cwi_gl_need_gradients(gl, &gradients, err);
