@@ -7,8 +7,15 @@
 #include "core/volume.h"
 
 #include <math.h>
+#include <sys/stat.h>
 
 enum { DENSE_VOXELS = 512 * 512 * 512 };
+
+bool cli_is_folder(const char *path)
+{
+    struct stat info;
+    return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
+}
 
 static cw_status look(cli_source *s, const char *path, const cli_input *input, bool may_be_mesh,
                       cw_error *err)
@@ -18,8 +25,8 @@ static cw_status look(cli_source *s, const char *path, const cli_input *input, b
     cw_status st = cli_read_shape(path, input, &shape, &why);
     s->is_level_set = st == CW_OK && shape.known & CW_KNOWN_LEVEL_SET;
     cw_volume_free(&shape);
-    s->is_mesh =
-        st != CW_OK && may_be_mesh && !input->raw && s->series.count == 1 && !s->series.given;
+    s->is_mesh = st != CW_OK && may_be_mesh && !input->raw && s->series.count == 1 &&
+                 !s->series.given && !cli_is_folder(path);
     if (!s->is_mesh)
         return CW_OK;
     cli_mesh file;

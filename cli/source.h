@@ -16,9 +16,11 @@ typedef struct cli_source {
     cw_mesh mesh;      /* the input's; else whatever is put here */
 } cli_source;
 
+bool cli_is_folder(const char *path);
+
 /* Finds the steps, and out of the headers whether it is a volume or a mesh; a mesh is read.
- * What cannot be read as a volume is taken for a mesh, if it may be one: its reader's words are
- * then the better ones, unless the file's name speaks for a volume. */
+ * A file that cannot be read as a volume is taken for a mesh, if it may be one: its reader's
+ * words are then the better ones, unless the file's name speaks for a volume. */
 cw_status cli_open_source(cli_source *source, const cli_common *common, const cli_input *input,
                           const cli_steps *steps, bool may_be_mesh, cw_error *err);
 void cli_close_source(cli_source *source);

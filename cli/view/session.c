@@ -10,7 +10,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 enum { BINS = 1024 };
 
@@ -149,12 +148,6 @@ static cw_status read_beside(view *v, cw_error *err)
     return st;
 }
 
-static bool is_folder(const char *path)
-{
-    struct stat info;
-    return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
-}
-
 /* Steps of a file are a series without being asked for. */
 static cw_status open_as(view *v, const char **paths, size_t count, cw_error *err)
 {
@@ -167,7 +160,7 @@ static cw_status open_as(view *v, const char **paths, size_t count, cw_error *er
         steps.given = steps.all = shape.steps > 1;
         cw_volume_free(&shape);
     }
-    return cli_open_source(&v->source, &common, input, &steps, !is_folder(paths[0]), err);
+    return cli_open_source(&v->source, &common, input, &steps, true, err);
 }
 
 /* Of several series in one folder that with the most images, unless one was asked for. */
@@ -200,7 +193,7 @@ static cw_status open_source(view *v, cw_error *err)
     const bool several = said->input_count > 1 && strcmp(v->path, said->inputs[0]) == 0;
     cw_status st =
         several ? open_as(v, said->inputs, said->input_count, err) : open_as(v, one, 1, err);
-    if (st != CW_OK || several || !is_folder(v->path))
+    if (st != CW_OK || several || !cli_is_folder(v->path))
         return st;
     cw_volume shape = {0};
     st = cli_read_shape(v->path, &v->state.args.input, &shape, err);
@@ -264,7 +257,7 @@ static void forget_look(view *v)
 static cw_status expect_readable(const view *v, const char *path, cw_error *err)
 {
     cw_volume shape = {0};
-    if (!v->path || is_folder(path) || cw_mesh_format(path, NULL))
+    if (!v->path || cli_is_folder(path) || cw_mesh_format(path, NULL))
         return CW_OK;
     cw_status st = cli_read_shape(path, &v->state.args.input, &shape, err);
     cw_volume_free(&shape);

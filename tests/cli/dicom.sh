@@ -13,6 +13,7 @@ cubewright extract ct --iso -800 -o no.stl
 echo $?
 cubewright extract ct --iso -800 -o made.stl --gaps interpolate --json - | grep -A 3 '"notes"'
 cubewright extract ct --iso -800 -o short.stl --gaps allow
+cubewright render ct -o none.png
 cubewright extract ct --iso -800 -o no.stl --series 9
 echo $?
 cubewright extract ct --iso -800 -o no.stl --reader nrrd
