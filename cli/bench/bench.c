@@ -1,0 +1,285 @@
+#include "cli/bench/bench.h"
+
+#include "cli/console.h"
+#include "cli/field.h"
+#include "cli/scratch.h"
+#include "cli/study/sample.h"
+#include "cli/surface.h"
+#include "core/status.h"
+#include "core/volume.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+const char *const cli_bench_status_names[] = {"done", "left-out", "missing", "failed"};
+
+/* --- what is measured of a result ----------------------------------------------------------
+ */
+
+enum { MOST_VERTICES = 100000 }; /* of more, every so many-th is measured */
+
+static cw_status field_distance(const cli_bench *b, const cw_mesh *mesh, cw_distance *d,
+                                cw_error *err)
+{
+    const cw_field_distance_desc desc = {
+        .isovalue = b->now->iso,
+        .inside_is_low = b->now->inside_is_low,
+        .leave_open = true,
+        .threads = b->threads,
+        .progress = cli_progress((double)mesh->vertex_count / 1e6, "Mvertex")};
+    return cw_distance_to_field(mesh, &b->volume.view, &desc, d, NULL, err);
+}
+
+/* Of a file the truth is the field between its voxels. */
+static cw_status measure_by_field(const cli_bench *b, const cw_mesh *mesh,
+                                  const cw_mesh *sampled, cli_bench_row *row, cw_error *err)
+{
+    cw_distance d;
+    const cw_mesh points = {.vertex_count = sampled->vertex_count,
+                            .positions = sampled->positions,
+                            .origin = {mesh->origin[0], mesh->origin[1], mesh->origin[2]}};
+    cw_status st = field_distance(b, &points, &d, err);
+    if (st == CW_OK)
+        row->at_vertices = (cli_vertex_errors){.count = d.samples - d.missed,
+                                               .missed = d.missed,
+                                               .mean_mm = d.mean_mm,
+                                               .max_mm = d.max_mm};
+    if (st == CW_OK)
+        st = field_distance(b, sampled, &d, err);
+    if (st == CW_OK)
+        row->surface = (cli_gap){true, d.max_mm, d.rms_mm, d.p99_mm};
+    return st;
+}
+
+static cw_status measure_truth(const cli_bench *b, const cw_mesh *mesh, cli_bench_row *row,
+                               cw_error *err)
+{
+    const cli_bench_case *c = b->now;
+    const size_t one_of = mesh->vertex_count / MOST_VERTICES + 1;
+    cli_sample sample;
+    cw_status st = cli_take_sample(mesh, CLI_STUDY_SAMPLE, c->voxel_mm, &sample, err);
+    if (st == CW_OK && c->path) {
+        st = measure_by_field(b, mesh, cli_sampled(&sample, mesh), row, err);
+    } else if (st == CW_OK) {
+        row->at_vertices = cli_measure_vertices(c->field, c->iso, c->voxel_mm, mesh, one_of);
+        row->surface =
+            cli_measure_truth(c->field, c->iso, c->voxel_mm, cli_sampled(&sample, mesh));
+    }
+    cli_free_sample(&sample);
+    return st;
+}
+
+static cw_status measure_move(const cli_bench *b, const cw_mesh *mesh, cli_bench_row *row,
+                              cw_error *err)
+{
+    const cw_mesh_distance_desc desc = {
+        .vertices_only = true,
+        .threads = b->threads,
+        .progress = cli_progress((double)mesh->vertex_count / 1e6, "Mvertex")};
+    cw_distance d;
+    cw_status st = cw_distance_to_mesh(mesh, &b->surface, &desc, &d, NULL, err);
+    if (st == CW_OK)
+        row->from_input = (cli_gap){true, d.max_mm, d.rms_mm, d.p99_mm};
+    row->from_input_mean_mm = st == CW_OK ? d.mean_mm : 0;
+    return st;
+}
+
+static cw_status measure(const cli_bench *b, const cw_mesh *mesh, cli_bench_row *row,
+                         cw_error *err)
+{
+    const cw_quality_desc desc = {.threads = b->threads};
+    cw_quality q;
+    cw_status st = cw_quality_measure(mesh, &desc, &q, err);
+    if (st != CW_OK)
+        return st;
+    row->vertices = mesh->vertex_count;
+    row->triangles = mesh->triangle_count;
+    row->open_edges = q.open_edges;
+    row->nonmanifold_edges = q.nonmanifold_edges;
+    row->nonmanifold_vertices = q.nonmanifold_vertices;
+    row->zero_area = q.degenerate;
+    st = measure_truth(b, mesh, row, err);
+    if (st == CW_OK && row->work == CLI_BENCH_COMPRESSION)
+        st = measure_move(b, mesh, row, err);
+    return st;
+}
+
+/* --- the runs -------------------------------------------------------------------------------
+ */
+
+/* Whether a row's failure ends it alone: then why is told, and err is for the next. */
+static cw_status pass_over(cli_bench_row *row, cw_status st, const cw_error *err)
+{
+    if (st == CW_OK || st == CW_ERR_CANCELLED)
+        return st;
+    row->status =
+        !row->is_peer && st == CW_ERR_UNSUPPORTED ? CLI_BENCH_LEFT_OUT : CLI_BENCH_FAILED;
+    snprintf(row->why, sizeof row->why, "%s", err->message);
+    return CW_OK;
+}
+
+/* Not counted: with it memory and libraries are at hand, and its result is what is measured. */
+static cw_status first_run(cli_bench *b, cli_bench_row *row, cw_error *err)
+{
+    cw_mesh mesh = {0};
+    cli_spent spent;
+    cw_status st = cli_bench_prepare(b, row->kind, err);
+    if (st == CW_OK)
+        st = cli_bench_once(b, row->kind, &spent, err);
+    if (st == CW_OK)
+        st = cli_bench_take(b, row->kind, &mesh, &row->file_bytes, err);
+    if (st == CW_OK)
+        st = measure(b, &mesh, row, err);
+    if (st == CW_OK && !b->surface.vertex_count) {
+        b->surface = mesh;
+        return CW_OK;
+    }
+    cw_mesh_free(&mesh);
+    return st;
+}
+
+static cw_status timed_run(cli_bench *b, cli_bench_row *row, cw_error *err)
+{
+    cli_spent spent;
+    cw_status st = cli_bench_once(b, row->kind, &spent, err);
+    if (st != CW_OK)
+        return st;
+    row->times[row->runs++] = spent.seconds;
+    row->peak_bytes = spent.peak_bytes > row->peak_bytes ? spent.peak_bytes : row->peak_bytes;
+    return CW_OK;
+}
+
+static int by_value(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+static double median(const double *times, size_t count)
+{
+    double sorted[CLI_BENCH_MOST_RUNS];
+    memcpy(sorted, times, count * sizeof *times);
+    qsort(sorted, count, sizeof *sorted, by_value);
+    return count % 2 ? sorted[count / 2] : 0.5 * (sorted[count / 2 - 1] + sorted[count / 2]);
+}
+
+/* By turns, so that whatever else the machine does strikes all alike. */
+static cw_status run_work(cli_bench *b, cli_bench_work work, cw_error *err)
+{
+    cli_bench_case *c = b->now;
+    for (size_t turn = 0; turn <= b->repeat; turn++)
+        for (size_t n = 0; n < c->row_count; n++) {
+            cli_bench_row *row = &c->rows[n];
+            if (row->work != work || row->status != CLI_BENCH_DONE)
+                continue;
+            cli_say_v("%s: %s, %s", c->name, row->who, row->setting);
+            cw_status st = turn ? timed_run(b, row, err) : first_run(b, row, err);
+            if (n > 0) /* without the first there is nothing to go on with */
+                st = pass_over(row, st, err);
+            if (st != CW_OK)
+                return st;
+        }
+    cw_mesh_free(&b->made);
+    return CW_OK;
+}
+
+static const cli_bench_row *row_of(const cli_bench_case *c, cli_bench_work work,
+                                   const char *setting)
+{
+    for (size_t n = 0; n < c->row_count; n++)
+        if (c->rows[n].work == work && strcmp(c->rows[n].setting, setting) == 0)
+            return &c->rows[n];
+    return NULL;
+}
+
+static void compare(cli_bench_case *c)
+{
+    for (size_t n = 0; n < c->row_count; n++)
+        if (c->rows[n].status == CLI_BENCH_DONE)
+            c->rows[n].seconds = median(c->rows[n].times, c->rows[n].runs);
+    for (size_t n = 0; n < c->row_count; n++) {
+        cli_bench_row *row = &c->rows[n];
+        const cli_bench_row *ours = row->against ? row_of(c, row->work, row->against) : NULL;
+        if (ours && ours->status == CLI_BENCH_DONE && row->status == CLI_BENCH_DONE)
+            row->ratio = row->seconds / ours->seconds;
+    }
+}
+
+/* --- the cases ------------------------------------------------------------------------------
+ */
+
+static cw_status open_file(cli_bench *b, cw_error *err)
+{
+    cli_bench_case *c = b->now;
+    cw_status st = cli_read_volume(c->path, b->input, false, &b->volume, err);
+    if (st == CW_OK)
+        st = cwi_fail_in(err, cwi_volume_expect_even(&b->volume.view, "bench", err), c->path);
+    if (st != CW_OK)
+        return st;
+    c->inside_is_low = cli_inside_is_low(b->inside, &b->volume.whole);
+    c->level = "as asked for";
+    c->iso = b->iso.value;
+    return b->iso.given ? CW_OK
+                        : cli_find_level(&b->volume, b->threads, &c->iso, &c->level, err);
+}
+
+static cw_status open_case(cli_bench *b, cw_error *err)
+{
+    cli_bench_case *c = b->now;
+    cw_status st = c->path ? open_file(b, err)
+                           : cli_make_field(c->field, c->dim, b->input, &b->volume, err);
+    if (st != CW_OK)
+        return st;
+    if (!c->path) {
+        b->volume.path = c->name;
+        c->iso = cw_field_isovalue(c->field);
+        c->level = "the field's own";
+    }
+    const double *mm = b->volume.spacing;
+    c->voxel_mm = cbrt(mm[0] * mm[1] * mm[2]);
+    c->type = b->volume.view.type;
+    memcpy(c->dim, b->volume.view.dim, sizeof c->dim);
+    return b->with_peers ? cli_peers_put_volume(&b->peers, &b->volume.view, err) : CW_OK;
+}
+
+static cw_status run_case(cli_bench *b, cw_error *err)
+{
+    cw_status st = open_case(b, err);
+    cli_bench_plan(b, b->now);
+    for (int work = 0; work < CLI_BENCH_WORKS && st == CW_OK; work++) {
+        if (work == CLI_BENCH_SIMPLIFICATION && b->with_peers)
+            st = cli_peers_put_mesh(&b->peers, &b->surface, err);
+        if (st == CW_OK)
+            st = run_work(b, (cli_bench_work)work, err);
+    }
+    compare(b->now);
+    cw_mesh_free(&b->made);
+    cw_mesh_free(&b->surface);
+    cli_free_volume(&b->volume);
+    return st;
+}
+
+cw_status cli_bench_run(cli_bench *b, void (*told)(const cli_bench *, const cli_bench_case *),
+                        cw_error *err)
+{
+    cw_status st = cli_scratch_make(&b->folder, err);
+    if (st == CW_OK && b->with_peers)
+        st = cli_peers_start(&b->peers, b->folder, b->threads, b->limit_s, err);
+    if (st == CW_OK)
+        cli_bench_tell_start(b);
+    for (size_t n = 0; n < b->case_count && st == CW_OK; n++) {
+        b->now = &b->cases[n];
+        st = run_case(b, err);
+        if (st == CW_OK)
+            told(b, b->now);
+    }
+    return st;
+}
+
+void cli_bench_free(cli_bench *b)
+{
+    cli_peers_stop(&b->peers);
+    cli_scratch_remove(b->folder);
+    free(b->cases);
+}
