@@ -5,6 +5,7 @@
 #include "cli/field.h"
 #include "cli/output.h"
 #include "cli/report.h"
+#include "core/outfile.h"
 #include "core/status.h"
 
 #include <stdlib.h>
@@ -78,10 +79,11 @@ static cw_status choose_fields(const bench_args *args, bool wanted[CW_FIELD_COUN
                                cw_error *err)
 {
     const char *text = args->fields ? args->fields : args->common.input_count ? NULL : "all";
+    const bool all = text && strcmp(text, "all") == 0;
     cw_status st = CW_OK;
     for (int f = 0; f < CW_FIELD_COUNT; f++)
-        wanted[f] = text && strcmp(text, "all") == 0;
-    for (const char *at = text; at && !wanted[0] && st == CW_OK;) {
+        wanted[f] = all;
+    for (const char *at = all ? NULL : text; at && st == CW_OK;) {
         char name[64];
         const size_t length = strcspn(at, ",");
         snprintf(name, sizeof name, "%.*s", length < 60 ? (int)length : 60, at);
@@ -91,13 +93,25 @@ static cw_status choose_fields(const bench_args *args, bool wanted[CW_FIELD_COUN
     return st;
 }
 
+/* It can be written: that is found out before hours of work. */
+static cw_status check_output(const bench_args *args, const char *path, cw_error *err)
+{
+    cwi_outfile *file = NULL;
+    cw_status st = cli_check_output(path, args->common.inputs, args->common.input_count, err);
+    if (st != CW_OK)
+        return st;
+    st = cwi_outfile_open(&file, path, false, err);
+    cwi_outfile_abort(&file);
+    return st == CW_OK ? st : cwi_fail_in(err, st, path);
+}
+
 static cw_status check_outputs(const bench_args *args, cw_error *err)
 {
     const char *const files[] = {args->json, args->csv};
     cw_status st = CW_OK;
     for (size_t n = 0; n < 2 && st == CW_OK; n++)
         if (files[n] && strcmp(files[n], "-") != 0)
-            st = cli_check_output(files[n], args->common.inputs, args->common.input_count, err);
+            st = check_output(args, files[n], err);
     if (st != CW_OK || !args->json || !args->csv)
         return st;
     if (strcmp(args->json, "-") == 0 && strcmp(args->csv, "-") == 0)
@@ -124,7 +138,7 @@ static cw_status check_args(const bench_args *args, cw_error *err)
     return check_outputs(args, err);
 }
 
-/* What cannot be read is found out before hours of work. */
+/* So is what cannot be read. */
 static cw_status check_files(const bench_args *args, cw_error *err)
 {
     cw_status st = CW_OK;
@@ -224,8 +238,7 @@ static cw_status run(void *p, cw_error *err)
 const cli_command cli_bench_command = {
     .name = "bench",
     .usage = "[VOLUME...] [options]",
-    .about =
-        "speed against error, on fields known on paper or files; beside others with --peers",
+    .about = "speed and error on fields known on paper, or files; with --peers beside others",
     .more =
         "Times extraction (linear, cubic, linear without normals), simplification to 10 % of "
         "the\n"

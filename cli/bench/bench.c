@@ -1,3 +1,4 @@
+#define _GNU_SOURCE /* getloadavg */
 #include "cli/bench/bench.h"
 
 #include "cli/console.h"
@@ -19,36 +20,36 @@ const char *const cli_bench_status_names[] = {"done", "left-out", "missing", "fa
 
 enum { MOST_VERTICES = 100000 }; /* of more, every so many-th is measured */
 
-static cw_status field_distance(const cli_bench *b, const cw_mesh *mesh, cw_distance *d,
-                                cw_error *err)
+static cw_field_distance_desc distance_desc(const cli_bench *b, const cw_mesh *mesh)
 {
-    const cw_field_distance_desc desc = {
+    return (cw_field_distance_desc){
         .isovalue = b->now->iso,
         .inside_is_low = b->now->inside_is_low,
         .leave_open = true,
         .threads = b->threads,
         .progress = cli_progress((double)mesh->vertex_count / 1e6, "Mvertex")};
-    return cw_distance_to_field(mesh, &b->volume.view, &desc, d, NULL, err);
 }
 
 /* Of a file the truth is the field between its voxels. */
-static cw_status measure_by_field(const cli_bench *b, const cw_mesh *mesh,
-                                  const cw_mesh *sampled, cli_bench_row *row, cw_error *err)
+static cw_status measure_by_field(const cli_bench *b, const cw_mesh *mesh, cli_bench_row *row,
+                                  cw_error *err)
 {
+    const cw_field_distance_desc desc = distance_desc(b, mesh);
+    cli_vertex_errors *at = &row->at_vertices;
+    float *mm = malloc(mesh->vertex_count * sizeof *mm);
     cw_distance d;
-    const cw_mesh points = {.vertex_count = sampled->vertex_count,
-                            .positions = sampled->positions,
-                            .origin = {mesh->origin[0], mesh->origin[1], mesh->origin[2]}};
-    cw_status st = field_distance(b, &points, &d, err);
-    if (st == CW_OK)
-        row->at_vertices = (cli_vertex_errors){.count = d.samples - d.missed,
-                                               .missed = d.missed,
-                                               .mean_mm = d.mean_mm,
-                                               .max_mm = d.max_mm};
-    if (st == CW_OK)
-        st = field_distance(b, sampled, &d, err);
+    if (!mm)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the errors of vertices");
+    cw_status st = cw_distance_to_field(mesh, &b->volume.view, &desc, &d, mm, err);
+    for (size_t v = 0; v < mesh->vertex_count && st == CW_OK; v++) {
+        const double off = fabs((double)mm[v]);
+        at->count++;
+        at->mean_mm += (off - at->mean_mm) / (double)at->count;
+        at->max_mm = fmax(at->max_mm, off);
+    }
     if (st == CW_OK)
         row->surface = (cli_gap){true, d.max_mm, d.rms_mm, d.p99_mm};
+    free(mm);
     return st;
 }
 
@@ -60,7 +61,7 @@ static cw_status measure_truth(const cli_bench *b, const cw_mesh *mesh, cli_benc
     cli_sample sample;
     cw_status st = cli_take_sample(mesh, CLI_STUDY_SAMPLE, c->voxel_mm, &sample, err);
     if (st == CW_OK && c->path) {
-        st = measure_by_field(b, mesh, cli_sampled(&sample, mesh), row, err);
+        st = measure_by_field(b, cli_sampled(&sample, mesh), row, err);
     } else if (st == CW_OK) {
         row->at_vertices = cli_measure_vertices(c->field, c->iso, c->voxel_mm, mesh, one_of);
         row->surface =
@@ -95,6 +96,8 @@ static cw_status measure(const cli_bench *b, const cw_mesh *mesh, cli_bench_row 
         return st;
     row->vertices = mesh->vertex_count;
     row->triangles = mesh->triangle_count;
+    row->worked_on = row->work == CLI_BENCH_SIMPLIFICATION ? b->surface.triangle_count
+                                                           : mesh->triangle_count;
     row->open_edges = q.open_edges;
     row->nonmanifold_edges = q.nonmanifold_edges;
     row->nonmanifold_vertices = q.nonmanifold_vertices;
@@ -264,6 +267,8 @@ cw_status cli_bench_run(cli_bench *b, void (*told)(const cli_bench *, const cli_
                         cw_error *err)
 {
     cw_status st = cli_scratch_make(&b->folder, err);
+    if (getloadavg(&b->load, 1) != 1)
+        b->load = NAN;
     if (st == CW_OK && b->with_peers)
         st = cli_peers_start(&b->peers, b->folder, b->threads, b->limit_s, err);
     if (st == CW_OK)

@@ -48,6 +48,7 @@ typedef struct cli_bench_row {
     double ratio;   /* of a peer: its median by that of our row `against`; 0: none */
     const char *against;
     size_t peak_bytes, vertices, triangles, file_bytes;
+    size_t worked_on;              /* triangles: of the result, or of what was simplified */
     cli_vertex_errors at_vertices; /* to the case's surface; of a file without angles */
     cli_gap surface;               /* likewise, of points all over the triangles */
     cli_gap from_input;            /* of compressed vertices, to the mesh before; no rms */
@@ -82,6 +83,7 @@ typedef struct cli_bench {
     size_t case_count;
 
     cli_peers peers;
+    double load; /* of the machine before it began, in processors at work; NaN: unknown */
     char *folder;
     /* of the case at work */
     cli_bench_case *now;

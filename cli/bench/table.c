@@ -5,7 +5,9 @@
 #include "cli/json.h"
 #include "cli/quantity.h"
 
+#include <math.h>
 #include <string.h>
+#include <unistd.h>
 
 static const char *const work_names[CLI_BENCH_WORKS] = {"extraction", "simplification",
                                                         "compression"};
@@ -16,8 +18,11 @@ static const char *const work_names[CLI_BENCH_WORKS] = {"extraction", "simplific
 void cli_bench_tell_start(const cli_bench *b)
 {
     const char *before = "; beside ";
-    cli_result("cubewright %s, %d thread%s; medians of %zu run%s by turns", cw_version(),
-               b->threads, b->threads == 1 ? "" : "s", b->repeat, b->repeat == 1 ? "" : "s");
+    cli_result("cubewright %s, %d of %ld processors", cw_version(), b->threads,
+               sysconf(_SC_NPROCESSORS_ONLN));
+    if (isfinite(b->load))
+        cli_result(" (%.1f at work before)", b->load);
+    cli_result("; medians of %zu run%s by turns", b->repeat, b->repeat == 1 ? "" : "s");
     for (int n = 0; n < CLI_PEER_COUNT && b->with_peers; n++) {
         const cli_peer *p = &b->peers.of[n];
         if (p->state != CLI_PEER_READY)
@@ -50,7 +55,7 @@ static void tell_error(bool known, double value)
 
 static double mega_triangles_per_second(const cli_bench_row *r)
 {
-    return r->seconds > 0 ? 1e-6 * (double)r->triangles / r->seconds : 0;
+    return r->seconds > 0 ? 1e-6 * (double)r->worked_on / r->seconds : 0;
 }
 
 static void tell_defects(const cli_bench_row *r)
@@ -61,6 +66,8 @@ static void tell_defects(const cli_bench_row *r)
         cli_result("  %s non-manifold vertices", cli_count(r->nonmanifold_vertices));
     if (r->zero_area)
         cli_result("  %s triangles without area", cli_count(r->zero_area));
+    if (r->at_vertices.missed)
+        cli_result("  %s vertices that lead to no surface", cli_count(r->at_vertices.missed));
 }
 
 static void tell_row(const cli_bench_row *r)
@@ -128,6 +135,7 @@ static void put_row(FILE *out, const cli_bench_case *c, const cli_bench_row *r)
     cli_put_cell(out, r->setting);
     fprintf(out, ",%s,%d", cli_bench_status_names[r->status], r->threads);
     cli_put_number(out, done, r->seconds);
+    cli_put_number(out, done, mega_triangles_per_second(r));
     cli_put_number(out, done && r->ratio > 0, r->ratio);
     cli_put_number(out, done && r->peak_bytes > 0, (double)r->peak_bytes);
     cli_put_number(out, done, (double)r->triangles);
@@ -152,7 +160,8 @@ static void put_row(FILE *out, const cli_bench_case *c, const cli_bench_row *r)
 
 void cli_bench_put_csv(FILE *out, const cli_bench *b)
 {
-    fputs("case,nx,ny,nz,iso,work,who,setting,status,threads,seconds,ratio,peak_bytes,"
+    fputs("case,nx,ny,nz,iso,work,who,setting,status,threads,seconds,mtriangles_per_second,"
+          "ratio,peak_bytes,"
           "triangles,file_bytes,vertices_mean_mm,vertices_max_mm,vertices_missed,"
           "normals_mean_deg,normals_max_deg,surface_rms_mm,surface_max_mm,moved_mean_mm,"
           "moved_max_mm,open_edges,nonmanifold_edges,nonmanifold_vertices,zero_area,note\r\n",
@@ -206,6 +215,7 @@ static void json_row(cli_json *j, const cli_bench_row *r)
     }
     cli_json_number(j, "seconds", r->seconds);
     cli_json_numbers(j, "runs", r->times, r->runs);
+    cli_json_number(j, "mtriangles_per_second", mega_triangles_per_second(r));
     if (r->ratio > 0) {
         cli_json_number(j, "ratio", r->ratio);
         cli_json_text(j, "ratio_to", r->against);
@@ -265,6 +275,8 @@ void cli_bench_put_json(FILE *out, const cli_bench *b)
     cli_json_text(&j, "tool", "cubewright");
     cli_json_text(&j, "version", cw_version());
     cli_json_int(&j, "threads", b->threads);
+    cli_json_int(&j, "processors", sysconf(_SC_NPROCESSORS_ONLN));
+    cli_json_number(&j, "load_before", b->load);
     cli_json_count(&j, "repeat", b->repeat);
     cli_json_open(&j, "peers", '[');
     for (int n = 0; n < CLI_PEER_COUNT && b->with_peers; n++)
