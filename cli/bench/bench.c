@@ -20,21 +20,16 @@ const char *const cli_bench_status_names[] = {"done", "left-out", "missing", "fa
 
 enum { MOST_VERTICES = 100000 }; /* of more, every so many-th is measured */
 
-static cw_field_distance_desc distance_desc(const cli_bench *b, const cw_mesh *mesh)
+/* Of a file the truth is the field between its voxels. */
+static cw_status measure_by_field(const cli_bench *b, const cw_mesh *mesh, cli_bench_row *row,
+                                  cw_error *err)
 {
-    return (cw_field_distance_desc){
+    const cw_field_distance_desc desc = {
         .isovalue = b->now->iso,
         .inside_is_low = b->now->inside_is_low,
         .leave_open = true,
         .threads = b->threads,
         .progress = cli_progress((double)mesh->vertex_count / 1e6, "Mvertex")};
-}
-
-/* Of a file the truth is the field between its voxels. */
-static cw_status measure_by_field(const cli_bench *b, const cw_mesh *mesh, cli_bench_row *row,
-                                  cw_error *err)
-{
-    const cw_field_distance_desc desc = distance_desc(b, mesh);
     cli_vertex_errors *at = &row->at_vertices;
     float *mm = malloc(mesh->vertex_count * sizeof *mm);
     cw_distance d;
@@ -80,9 +75,9 @@ static cw_status measure_move(const cli_bench *b, const cw_mesh *mesh, cli_bench
         .progress = cli_progress((double)mesh->vertex_count / 1e6, "Mvertex")};
     cw_distance d;
     cw_status st = cw_distance_to_mesh(mesh, &b->surface, &desc, &d, NULL, err);
-    if (st == CW_OK)
-        row->from_input = (cli_gap){true, d.max_mm, d.rms_mm, d.p99_mm};
-    row->from_input_mean_mm = st == CW_OK ? d.mean_mm : 0;
+    row->moved = st == CW_OK;
+    row->moved_mean_mm = d.mean_mm;
+    row->moved_max_mm = d.max_mm;
     return st;
 }
 
@@ -118,6 +113,9 @@ static cw_status pass_over(cli_bench_row *row, cw_status st, const cw_error *err
         return st;
     row->status =
         !row->is_peer && st == CW_ERR_UNSUPPORTED ? CLI_BENCH_LEFT_OUT : CLI_BENCH_FAILED;
+    row->at_vertices = (cli_vertex_errors){0};
+    row->surface = (cli_gap){0};
+    row->moved = false;
     snprintf(row->why, sizeof row->why, "%s", err->message);
     return CW_OK;
 }
@@ -263,8 +261,7 @@ static cw_status run_case(cli_bench *b, cw_error *err)
     return st;
 }
 
-cw_status cli_bench_run(cli_bench *b, void (*told)(const cli_bench *, const cli_bench_case *),
-                        cw_error *err)
+cw_status cli_bench_run(cli_bench *b, cw_error *err)
 {
     cw_status st = cli_scratch_make(&b->folder, err);
     if (getloadavg(&b->load, 1) != 1)
@@ -277,7 +274,7 @@ cw_status cli_bench_run(cli_bench *b, void (*told)(const cli_bench *, const cli_
         b->now = &b->cases[n];
         st = run_case(b, err);
         if (st == CW_OK)
-            told(b, b->now);
+            cli_bench_tell(b->now);
     }
     return st;
 }

@@ -51,8 +51,8 @@ typedef struct cli_bench_row {
     size_t worked_on;              /* triangles: of the result, or of what was simplified */
     cli_vertex_errors at_vertices; /* to the case's surface; of a file without angles */
     cli_gap surface;               /* likewise, of points all over the triangles */
-    cli_gap from_input;            /* of compressed vertices, to the mesh before; no rms */
-    double from_input_mean_mm;
+    bool moved;                    /* of compression: how far vertices were */
+    double moved_mean_mm, moved_max_mm;
     size_t open_edges, nonmanifold_edges, nonmanifold_vertices, zero_area;
 } cli_bench_row;
 
@@ -92,12 +92,11 @@ typedef struct cli_bench {
     cw_mesh made;    /* by the last run of ours */
 } cli_bench;
 
-/* Measures one case after the other; told  is called after each. Free with cli_bench_free(),
- * also after failure. What peers or settings cannot do is told in their rows.
+/* Measures one case after the other, and tells each when it is done. Free with
+ * cli_bench_free(), also after failure. What peers or settings cannot do is told in their rows.
  * Returns  CW_ERR_EMPTY  there is no surface at that level
  *          CW_ERR_CANCELLED; and whatever keeps a case from being read, or extracted */
-cw_status cli_bench_run(cli_bench *bench,
-                        void (*told)(const cli_bench *, const cli_bench_case *), cw_error *err);
+cw_status cli_bench_run(cli_bench *bench, cw_error *err);
 void cli_bench_free(cli_bench *bench);
 
 /* The rows of a case, and their runs. work.c */
@@ -112,7 +111,7 @@ cw_status cli_bench_take(cli_bench *bench, const cli_bench_kind *kind, cw_mesh *
 
 /* For people, and for programs. table.c */
 void cli_bench_tell_start(const cli_bench *bench);
-void cli_bench_tell(const cli_bench *bench, const cli_bench_case *c);
+void cli_bench_tell(const cli_bench_case *c);
 void cli_bench_put_csv(FILE *out, const cli_bench *bench);
 void cli_bench_put_json(FILE *out, const cli_bench *bench);
 

@@ -2,7 +2,6 @@
 # Their own part, which follows this text, ends with a call of serve().
 import gc, os, sys, time
 
-sys.path[:] = [folder for folder in sys.path if folder]  # nothing is imported from where we stand
 answers = os.fdopen(os.dup(1), "w")
 os.dup2(2, 1)  # what libraries print is no answer
 threads = int(sys.argv[1])

@@ -86,8 +86,8 @@ static void tell_row(const cli_bench_row *r)
     tell_cell(9, r->peak_bytes > 0, cli_bytes((double)r->peak_bytes));
     if (r->work == CLI_BENCH_COMPRESSION) {
         tell_cell(11, true, cli_bytes((double)r->file_bytes));
-        tell_error(r->from_input.known, r->from_input_mean_mm);
-        tell_error(r->from_input.known, r->from_input.max_mm);
+        tell_error(r->moved, r->moved_mean_mm);
+        tell_error(r->moved, r->moved_max_mm);
     } else {
         tell_cell(11, true, cli_count(r->triangles));
         tell_error(v->count > 0, v->mean_mm);
@@ -107,9 +107,8 @@ static void tell_heading(cli_bench_work work)
                packed ? "moved mm" : "off by mm", "at most", "surface", "normals");
 }
 
-void cli_bench_tell(const cli_bench *b, const cli_bench_case *c)
+void cli_bench_tell(const cli_bench_case *c)
 {
-    (void)b;
     cli_result("\n%s, %zu x %zu x %zu %s, --iso %s (%s), voxels of %.3g mm\n", c->name,
                c->dim[0], c->dim[1], c->dim[2], cw_type_name(c->type), cli_number_text(c->iso),
                c->level, c->voxel_mm);
@@ -147,8 +146,8 @@ static void put_row(FILE *out, const cli_bench_case *c, const cli_bench_row *r)
     cli_put_number(out, v->has_normals, v->max_deg);
     cli_put_number(out, r->surface.known, r->surface.rms_mm);
     cli_put_number(out, r->surface.known, r->surface.max_mm);
-    cli_put_number(out, r->from_input.known, r->from_input_mean_mm);
-    cli_put_number(out, r->from_input.known, r->from_input.max_mm);
+    cli_put_number(out, r->moved, r->moved_mean_mm);
+    cli_put_number(out, r->moved, r->moved_max_mm);
     cli_put_number(out, done, (double)r->open_edges);
     cli_put_number(out, done, (double)r->nonmanifold_edges);
     cli_put_number(out, done, (double)r->nonmanifold_vertices);
@@ -192,10 +191,10 @@ static void json_errors(cli_json *j, const cli_bench_row *r)
         cli_json_number(j, "max_mm", r->surface.max_mm);
         cli_json_close(j, '}');
     }
-    if (r->from_input.known) {
+    if (r->moved) {
         cli_json_open(j, "moved", '{');
-        cli_json_number(j, "mean_mm", r->from_input_mean_mm);
-        cli_json_number(j, "max_mm", r->from_input.max_mm);
+        cli_json_number(j, "mean_mm", r->moved_mean_mm);
+        cli_json_number(j, "max_mm", r->moved_max_mm);
         cli_json_close(j, '}');
     }
 }
