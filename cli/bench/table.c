@@ -122,11 +122,19 @@ void cli_bench_tell(const cli_bench_case *c)
 /* --- for programs --------------------------------------------------------------------------
  */
 
+/* A file's name is somebody else's: spreadsheets take some first letters for formulas. */
+static void put_case(FILE *out, const cli_bench_case *c)
+{
+    char name[4096];
+    snprintf(name, sizeof name, "%s%s", strchr("=+-@\t\r", *c->name) ? "./" : "", c->name);
+    cli_put_cell(out, name);
+}
+
 static void put_row(FILE *out, const cli_bench_case *c, const cli_bench_row *r)
 {
     const bool done = r->status == CLI_BENCH_DONE, missed = r->at_vertices.missed > 0;
     const cli_vertex_errors *v = &r->at_vertices;
-    cli_put_cell(out, c->name);
+    put_case(out, c);
     fprintf(out, ",%zu,%zu,%zu,%s,%s,", c->dim[0], c->dim[1], c->dim[2],
             cli_number_text(c->iso), work_names[r->work]);
     cli_put_cell(out, r->who);

@@ -72,6 +72,18 @@ PATH=$PWD/none "$bench" bench --fields sphere --sizes 16 --repeat 1 --peers --cs
 grep -E 'missing' table
 grep -c ',missing,' missing.csv
 
+# The same where a python3 is, which has not what they need; and a file's name is no formula.
+cat >fakes/python3 <<'F'
+#!/bin/sh
+echo missing vtkmodules
+F
+chmod +x fakes/python3
+cp sphere.nrrd =1+1.nrrd
+PATH=$PWD/fakes "$bench" bench =1+1.nrrd --iso 0 --repeat 1 --peers --csv missing.csv >table 2>/dev/null ||
+    echo "failed: $?"
+grep -E 'vtk.*missing' table
+sed -n 2p missing.csv | cut -d, -f1
+
 # Peers that fail in every way: told, and soon over.
 fake() { # fake SETTING [OPTION...], the program on the standard input
     setting=$1
