@@ -7,6 +7,7 @@
 #include "cli/report.h"
 #include "core/outfile.h"
 #include "core/status.h"
+#include "core/volume.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -143,8 +144,11 @@ static cw_status check_files(const bench_args *args, cw_error *err)
 {
     cw_status st = CW_OK;
     for (size_t n = 0; n < args->common.input_count && st == CW_OK; n++) {
+        const char *path = args->common.inputs[n];
         cw_volume shape;
-        st = cli_read_shape(args->common.inputs[n], &args->input, &shape, err);
+        st = cli_read_shape(path, &args->input, &shape, err);
+        if (st == CW_OK && cwi_volume_expect_even(&shape, "bench", err) != CW_OK)
+            st = cwi_fail_in(err, CW_ERR_UNSUPPORTED, path);
     }
     return st;
 }
@@ -251,10 +255,9 @@ const cli_command cli_bench_command = {
         "  Mtri/s     triangles of the result, in millions a second; simplification: of its "
         "input\n"
         "  memory     the peak of the runs, beyond what the process held before\n"
-        "  off by mm  vertices from the surface on paper (of a file: from that of the field "
-        "between\n"
-        "             its voxels): their mean, and the farthest; of compression: how far they "
-        "moved\n"
+        "  off by mm  vertices from the surface on paper (of a file: from that of the field\n"
+        "             between its voxels, looked for as far as 4 voxels): their mean, and the\n"
+        "             farthest; of compression: how far they moved\n"
         "  surface    the same of points all over the triangles, RMS; normals: the mean angle, "
         "in\n"
         "             degrees, whichever way they point\n\n"

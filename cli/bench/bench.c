@@ -7,7 +7,6 @@
 #include "cli/study/sample.h"
 #include "cli/surface.h"
 #include "core/status.h"
-#include "core/volume.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -214,8 +213,6 @@ static cw_status open_file(cli_bench *b, cw_error *err)
 {
     cli_bench_case *c = b->now;
     cw_status st = cli_read_volume(c->path, b->input, false, &b->volume, err);
-    if (st == CW_OK)
-        st = cwi_fail_in(err, cwi_volume_expect_even(&b->volume.view, "bench", err), c->path);
     if (st != CW_OK)
         return st;
     c->inside_is_low = cli_inside_is_low(b->inside, &b->volume.whole);
