@@ -105,9 +105,13 @@ static cw_status measure(const cli_bench *b, const cw_mesh *mesh, cli_bench_row 
 /* --- the runs -------------------------------------------------------------------------------
  */
 
-/* Whether a row's failure ends it alone: then why is told, and err is for the next. */
-static cw_status pass_over(cli_bench_row *row, cw_status st, const cw_error *err)
+/* Whether a row's failure ends it alone: then why is told, without the name of a folder that
+ * is soon gone, and err is for the next. */
+static cw_status pass_over(const cli_bench *b, cli_bench_row *row, cw_status st,
+                           const cw_error *err)
 {
+    const size_t folder = strlen(b->folder);
+    const bool named = strncmp(err->message, b->folder, folder) == 0;
     if (st == CW_OK || st == CW_ERR_CANCELLED)
         return st;
     row->status =
@@ -115,7 +119,7 @@ static cw_status pass_over(cli_bench_row *row, cw_status st, const cw_error *err
     row->at_vertices = (cli_vertex_errors){0};
     row->surface = (cli_gap){0};
     row->moved = false;
-    snprintf(row->why, sizeof row->why, "%s", err->message);
+    snprintf(row->why, sizeof row->why, "%s", err->message + (named ? folder + 1 : 0));
     return CW_OK;
 }
 
@@ -176,7 +180,7 @@ static cw_status run_work(cli_bench *b, cli_bench_work work, cw_error *err)
             cli_say_v("%s: %s, %s", c->name, row->who, row->setting);
             cw_status st = turn ? timed_run(b, row, err) : first_run(b, row, err);
             if (n > 0) /* without the first there is nothing to go on with */
-                st = pass_over(row, st, err);
+                st = pass_over(b, row, st, err);
             if (st != CW_OK)
                 return st;
         }
@@ -251,7 +255,8 @@ static cw_status run_case(cli_bench *b, cw_error *err)
         if (st == CW_OK)
             st = run_work(b, (cli_bench_work)work, err);
     }
-    compare(b->now);
+    if (st == CW_OK)
+        compare(b->now);
     cw_mesh_free(&b->made);
     cw_mesh_free(&b->surface);
     cli_free_volume(&b->volume);
