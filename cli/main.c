@@ -14,7 +14,7 @@ const cli_command *const cli_commands[] = {
 
 const cli_command *cli_find_command(const char *name, cw_error *err)
 {
-    const char *names[16] = {0};
+    const char *names[32] = {0};
     for (size_t n = 0; cli_commands[n]; n++) {
         if (strcmp(name, cli_commands[n]->name) == 0)
             return cli_commands[n];
