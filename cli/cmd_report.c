@@ -1,10 +1,12 @@
 #define _GNU_SOURCE /* open_memstream */
 #include "cli/commands.h"
 #include "cli/console.h"
+#include "cli/field.h"
 #include "cli/output.h"
 #include "cli/quantity.h"
 #include "cli/report.h"
 #include "cli/study/study.h"
+#include "cli/surface.h"
 #include "core/status.h"
 #include "core/text.h"
 #include "core/volume.h"
@@ -23,7 +25,7 @@ typedef struct report_args {
     int inside, progress;
 } report_args;
 
-enum { OTSU_BINS = 1024, DEFAULT_DIMS = 96, MOST_DIMS = 1024 };
+enum { DEFAULT_DIMS = 96, MOST_DIMS = 1024 };
 
 /* Of more voxels meshes are studied on every other one, or fewer. */
 static const double MOST_VOXELS = 33554432;
@@ -117,10 +119,7 @@ static cw_status check_outputs(const report_args *args, cw_error *err)
 /* What is no file may be a field that was misspelt; else its reader's words are better. */
 static cw_status check_name(const char *name, cw_error *err)
 {
-    const char *names[CW_FIELD_COUNT + 1] = {0};
-    for (int f = 0; f < CW_FIELD_COUNT; f++)
-        names[f] = cw_field_name((cw_field)f);
-    const char *nearest = cli_nearest(name, names);
+    const char *nearest = cli_nearest_field(name);
     return nearest ? cw_fail(err, CW_ERR_ARGUMENT,
                              "'%s' is no file, and no field; did you mean '%s'?", name, nearest)
                    : CW_OK;
@@ -193,24 +192,12 @@ static cw_status make_field(run_state *s, cw_error *err)
     const report_args *args = s->args;
     const size_t *n = args->dims.n;
     const cw_field field = s->study.field;
-    const cw_field_desc desc = {
-        .field = field,
-        .dim = {n[0], n[1], n[2]},
-        .type = CW_F32,
-        .threads = (int)args->input.threads,
-        .progress = cli_progress(1e-6 * (double)n[0] * (double)n[1] * (double)n[2], "Mvoxel")};
     cli_volume *v = &s->volume;
-    cw_status st = cw_field_sample(&desc, &v->voxels, err);
+    cw_status st = cli_make_field(field, n, &args->input, v, err);
     if (st != CW_OK)
         return st;
     snprintf(s->field_path, sizeof s->field_path, "%s.nrrd", cw_field_name(field));
     v->path = s->field_path;
-    v->format = "nrrd";
-    v->whole = v->view = v->voxels;
-    v->whole.owned = v->view.owned = NULL;
-    v->memory_left = cli_memory_limit(&args->input);
-    v->coarsen[0] = v->coarsen[1] = v->coarsen[2] = 1;
-    cw_volume_spacing(&v->view, v->spacing);
     s->make_words = malloc(256);
     if (!s->make_words)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a command");
@@ -241,26 +228,12 @@ static cw_status read_file(run_state *s, cw_error *err)
 
 static cw_status find_level(run_state *s, cw_error *err)
 {
-    cw_statistics statistics;
     cli_study *study = &s->study;
-    if (s->args->iso.given || s->study.is_field) {
-        study->level = s->args->iso.given ? "as asked for" : "the field's own";
-        study->iso = s->args->iso.given ? s->args->iso.value : cw_field_isovalue(study->field);
-        return CW_OK;
-    }
-    study->level = "of level sets";
-    if (s->volume.whole.known & CW_KNOWN_LEVEL_SET)
-        return CW_OK;
-    study->level = "otsu";
-    cw_status st =
-        cw_volume_statistics(&s->volume.view, OTSU_BINS, study->threads, &statistics, err);
-    if (st != CW_OK)
-        return st;
-    const bool found = cw_statistics_otsu(&statistics, 1, &study->iso);
-    cw_statistics_free(&statistics);
-    return found ? CW_OK
-                 : cw_fail(err, CW_ERR_EMPTY, "%s: no level parts its values; give --iso V",
-                           s->volume.path);
+    if (!s->args->iso.given && !study->is_field)
+        return cli_find_level(&s->volume, study->threads, &study->iso, &study->level, err);
+    study->level = s->args->iso.given ? "as asked for" : "the field's own";
+    study->iso = s->args->iso.given ? s->args->iso.value : cw_field_isovalue(study->field);
+    return CW_OK;
 }
 
 /* The drawn volume is not the coarsened one: render reads all voxels. */

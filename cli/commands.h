@@ -4,9 +4,9 @@
 
 #include "cli/options.h"
 
-extern const cli_command cli_check, cli_convert, cli_extract, cli_formats, cli_help, cli_hollow,
-    cli_info, cli_make, cli_offset, cli_render, cli_report_command, cli_simplify, cli_version,
-    cli_view;
+extern const cli_command cli_bench_command, cli_check, cli_convert, cli_extract, cli_formats,
+    cli_help, cli_hollow, cli_info, cli_make, cli_offset, cli_render, cli_report_command,
+    cli_simplify, cli_version, cli_view;
 
 /* In the order of help; the last is NULL. */
 extern const cli_command *const cli_commands[];

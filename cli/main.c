@@ -7,13 +7,14 @@
 #include <string.h>
 
 const cli_command *const cli_commands[] = {
-    &cli_extract, &cli_simplify, &cli_convert, &cli_hollow,         &cli_offset,
-    &cli_check,   &cli_info,     &cli_render,  &cli_report_command, &cli_view,
-    &cli_make,    &cli_formats,  &cli_help,    &cli_version,        NULL};
+    &cli_extract,        &cli_simplify,      &cli_convert, &cli_hollow,
+    &cli_offset,         &cli_check,         &cli_info,    &cli_render,
+    &cli_report_command, &cli_bench_command, &cli_view,    &cli_make,
+    &cli_formats,        &cli_help,          &cli_version, NULL};
 
 const cli_command *cli_find_command(const char *name, cw_error *err)
 {
-    const char *names[16] = {0};
+    const char *names[32] = {0};
     for (size_t n = 0; cli_commands[n]; n++) {
         if (strcmp(name, cli_commands[n]->name) == 0)
             return cli_commands[n];

@@ -80,3 +80,23 @@ cw_status cli_extract_simplified(const cli_volume *volume, const cw_extract_desc
         st = cw_extract_normals(&volume->view, &normals, mesh, err);
     return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
 }
+
+cw_status cli_find_level(const cli_volume *volume, int threads, double *iso, const char **how,
+                         cw_error *err)
+{
+    enum { OTSU_BINS = 1024 };
+    cw_statistics statistics;
+    *iso = 0;
+    *how = "of level sets";
+    if (volume->whole.known & CW_KNOWN_LEVEL_SET)
+        return CW_OK;
+    *how = "otsu";
+    cw_status st = cw_volume_statistics(&volume->view, OTSU_BINS, threads, &statistics, err);
+    if (st != CW_OK)
+        return st;
+    const bool found = cw_statistics_otsu(&statistics, 1, iso);
+    cw_statistics_free(&statistics);
+    return found ? CW_OK
+                 : cw_fail(err, CW_ERR_EMPTY, "%s: no level parts its values; give --iso V",
+                           volume->path);
+}

@@ -108,6 +108,15 @@ static void filter(void *vertices, size_t count, size_t stride, int kind)
         meshopt_decodeFilterExp(vertices, count, stride);
 }
 
+static size_t simplify(const cw_mesh *mesh, size_t triangles, uint32_t *left)
+{
+    const float no_limit = 1e10f; /* of its error */
+    return meshopt_simplify(left, mesh->triangles, 3 * mesh->triangle_count, mesh->positions,
+                            mesh->vertex_count, 3 * sizeof(float), 3 * triangles, no_limit, 0,
+                            NULL) /
+           3;
+}
+
 const cwi_meshopt_functions cwi_module_meshopt = {
     .reorder = reorder,
     .encode_vertices = encode_vertices,
@@ -116,4 +125,6 @@ const cwi_meshopt_functions cwi_module_meshopt = {
     .decode_triangles = decode_triangles,
     .decode_indices = decode_indices,
     .filter = filter,
+    .simplify = simplify,
+    .version = MESHOPTIMIZER_VERSION,
 };

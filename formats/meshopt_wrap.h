@@ -1,4 +1,5 @@
-/* meshoptimizer's codecs: the functions of the module "meshopt". */
+/* meshoptimizer's codecs, and what else is asked of it: the functions of the module "meshopt".
+ */
 #ifndef FORMATS_MESHOPT_WRAP_H
 #define FORMATS_MESHOPT_WRAP_H
 
@@ -32,10 +33,16 @@ typedef struct cwi_meshopt_functions {
 
     /* Undoes a cwi_gltf_filter in place; a stride that is not the filter's is left as it is. */
     void (*filter)(void *vertices, size_t count, size_t stride, int filter);
+
+    /* Its own simplification, to hold ours against: triangles between some of the vertices,
+     * into room for all. Returns how many, about as many as asked for. */
+    size_t (*simplify)(const cw_mesh *mesh, size_t triangles, uint32_t *left);
+    int version; /* 180: 0.18 */
 } cwi_meshopt_functions;
 
 /* Loads the module. CW_ERR_UNSUPPORTED: not in this build. */
-cw_status cwi_meshopt_functions_load(const cwi_meshopt_functions **functions, cw_error *err);
+CW_API cw_status cwi_meshopt_functions_load(const cwi_meshopt_functions **functions,
+                                            cw_error *err);
 
 /* Puts triangles and vertices, with all that they have, in one of the orders of reorder(). The
  * mesh is as it was on failure. CW_ERR_NO_MEMORY. */

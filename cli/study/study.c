@@ -1,7 +1,7 @@
-#define _GNU_SOURCE /* mkdtemp, strdup */
 #include "cli/study/study.h"
 
 #include "cli/console.h"
+#include "cli/scratch.h"
 #include "cli/study/command.h"
 #include "core/status.h"
 
@@ -9,7 +9,6 @@
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 const char *const cli_family_names[CLI_FAMILY_COUNT] = {"extraction", "simplification",
                                                         "compression", "rendering"};
@@ -171,19 +170,6 @@ static void mark_front(cli_study *s, cli_family family)
         s->points[n].front = s->points[n].family == family ? front[n] : s->points[n].front;
 }
 
-static cw_status make_folder(cli_study *s, cw_error *err)
-{
-    const char *base = getenv("TMPDIR");
-    char path[4000];
-    snprintf(path, sizeof path, "%s/cubewright-XXXXXX", base && *base ? base : "/tmp");
-    if (!mkdtemp(path))
-        return cw_fail(err, CW_ERR_OUTPUT,
-                       "no folder for files that are measured can be made in %s",
-                       base && *base ? base : "/tmp");
-    s->folder = strdup(path);
-    return s->folder ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a path");
-}
-
 static void plan(cli_study *s)
 {
     const cw_format *glb = cw_mesh_format("mesh.glb", NULL);
@@ -202,7 +188,7 @@ cw_status cli_study_run(cli_study *s, cw_error *err)
     plan(s);
     s->start = cli_seconds();
     s->deadline = s->start + s->budget_s;
-    cw_status st = make_folder(s, err);
+    cw_status st = cli_scratch_make(&s->folder, err);
     cli_console_listen(&listener);
     if (st == CW_OK)
         st = run_points(s, err);
@@ -226,7 +212,5 @@ void cli_study_free(cli_study *s)
     cw_picture_free(&s->reference);
     cw_mesh_free(&s->part_mesh);
     cw_mesh_free(&s->full);
-    if (s->folder)
-        rmdir(s->folder);
-    free(s->folder);
+    cli_scratch_remove(s->folder);
 }

@@ -163,6 +163,17 @@ cw_status cli_weigh_mesh(cli_study *study, const cw_mesh *mesh, const cw_write_d
 /* The distance to a field's surface, known on paper, along its gradient. */
 cli_gap cli_measure_truth(cw_field field, double iso, double voxel_mm, const cw_mesh *mesh);
 
+/* The same of vertices: every so many-th. Angles are between the lines of its normals and of
+ * the surface's. */
+typedef struct cli_vertex_errors {
+    size_t count, missed; /* measured; without a surface that is reached */
+    double mean_mm, max_mm;
+    bool has_normals;
+    double mean_deg, max_deg;
+} cli_vertex_errors;
+cli_vertex_errors cli_measure_vertices(cw_field field, double iso, double voxel_mm,
+                                       const cw_mesh *mesh, size_t one_of);
+
 /* A picture of a mesh (from where all of another is seen), as a PNG in memory, in colours of
  * the distance at each vertex: from 0.001 to 1 voxel, by the logarithm. */
 cw_status cli_draw_errors(cli_study *study, const cw_mesh *around, const cw_mesh *mesh,
@@ -188,6 +199,10 @@ void cli_put_word(FILE *out, const char *word);
 void cli_put_page(FILE *out, const cli_study *study);
 void cli_put_study_json(FILE *out, const cli_study *study);
 void cli_put_study_csv(FILE *out, const cli_study *study);
+
+/* Cells of CSV: text in quotes; a comma and a number, or nothing if it is not known. */
+void cli_put_cell(FILE *out, const char *text);
+void cli_put_number(FILE *out, bool known, double value);
 
 /* Parts of the page. */
 extern const char *const cli_page_style[]; /* pieces; the last is NULL */

@@ -7,7 +7,7 @@
 #include <math.h>
 #include <string.h>
 
-static void put_cell(FILE *out, const char *text)
+void cli_put_cell(FILE *out, const char *text)
 {
     fputc('"', out);
     for (; *text; text++) {
@@ -18,7 +18,7 @@ static void put_cell(FILE *out, const char *text)
     fputc('"', out);
 }
 
-static void put_number(FILE *out, bool known, double value)
+void cli_put_number(FILE *out, bool known, double value)
 {
     fputc(',', out);
     if (known && isfinite(value))
@@ -27,9 +27,9 @@ static void put_number(FILE *out, bool known, double value)
 
 static void put_gap(FILE *out, const cli_gap *gap)
 {
-    put_number(out, gap->known, gap->max_mm);
-    put_number(out, gap->known, gap->rms_mm);
-    put_number(out, gap->known, gap->p99_mm);
+    cli_put_number(out, gap->known, gap->max_mm);
+    cli_put_number(out, gap->known, gap->rms_mm);
+    cli_put_number(out, gap->known, gap->p99_mm);
 }
 
 /* Never with the first letter of somebody else's words: spreadsheets take some for formulas. */
@@ -37,7 +37,7 @@ static void put_note(FILE *out, const cli_point *p)
 {
     char note[sizeof p->why + 16];
     snprintf(note, sizeof note, "left out: %s", p->why);
-    put_cell(out, !p->done ? note : p->aside ? p->aside : "");
+    cli_put_cell(out, !p->done ? note : p->aside ? p->aside : "");
 }
 
 static void put_row(FILE *out, const cli_study *s, const cli_point *p)
@@ -45,25 +45,25 @@ static void put_row(FILE *out, const cli_study *s, const cli_point *p)
     const bool mesh = p->done && p->family != CLI_RENDERING,
                drawn = p->done && p->family == CLI_RENDERING;
     fprintf(out, "%s,", cli_family_names[p->family]);
-    put_cell(out, p->name);
+    cli_put_cell(out, p->name);
     fprintf(out, ",%s,%s", p->done ? "yes" : "no", p->front ? "yes" : "no");
-    put_number(out, p->done, p->done ? cli_point_cost(p) : 0);
-    put_number(out, p->done, cli_point_error(s, p));
-    put_number(out, p->done, p->seconds);
-    put_number(out, p->peak_bytes > 0, (double)p->peak_bytes);
-    put_number(out, mesh, (double)p->triangles);
-    put_number(out, mesh, (double)p->file_bytes);
+    cli_put_number(out, p->done, p->done ? cli_point_cost(p) : 0);
+    cli_put_number(out, p->done, cli_point_error(s, p));
+    cli_put_number(out, p->done, p->seconds);
+    cli_put_number(out, p->peak_bytes > 0, (double)p->peak_bytes);
+    cli_put_number(out, mesh, (double)p->triangles);
+    cli_put_number(out, mesh, (double)p->file_bytes);
     put_gap(out, &p->to_field);
     put_gap(out, &p->back);
     put_gap(out, &p->truth);
-    put_number(out, drawn, p->picture.rmse);
-    put_number(out, drawn, p->picture.max);
-    put_number(out, drawn, p->picture.delta_e_mean);
-    put_number(out, drawn, p->picture.delta_e_p99);
+    cli_put_number(out, drawn, p->picture.rmse);
+    cli_put_number(out, drawn, p->picture.max);
+    cli_put_number(out, drawn, p->picture.delta_e_mean);
+    cli_put_number(out, drawn, p->picture.delta_e_p99);
     fputc(',', out);
     put_note(out, p);
     fputc(',', out);
-    put_cell(out, p->command);
+    cli_put_cell(out, p->command);
     fputs("\r\n", out);
 }
 

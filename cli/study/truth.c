@@ -20,12 +20,13 @@ static double gradient(cw_field field, const double p[3], double h, double g[3])
     return square;
 }
 
-/* Walks to the surface by Newton's steps, none longer than a voxel; NaN: it is not reached. */
-static double walk(cw_field field, double iso, double voxel_mm, const double from[3])
+/* Walks to the surface by Newton's steps, none longer than a voxel, and leaves the last
+ * gradient in g; NaN: it is not reached. */
+static double walk(cw_field field, double iso, double voxel_mm, const double from[3],
+                   double g[3])
 {
     double p[3] = {from[0], from[1], from[2]}, length = INFINITY;
     for (int n = 0; n < STEPS && length > 1e-7 * voxel_mm; n++) {
-        double g[3];
         const double off = iso - cw_field_value(field, p);
         const double square = gradient(field, p, 1e-4 * voxel_mm, g);
         if (!(square > 0))
@@ -56,20 +57,19 @@ static void add(sum *s, double mm, double area, double voxel_mm)
     s->bins[bin < BINS - 1 ? (size_t)bin : BINS - 1] += area;
 }
 
-static void corner_of(const cw_mesh *m, size_t triangle, size_t corner, double p[3])
+static void vertex_of(const cw_mesh *m, size_t vertex, double p[3])
 {
-    const float *at = m->positions + 3 * (size_t)m->triangles[3 * triangle + corner];
-    for (int a = 0; a < 3; a++)
-        p[a] = m->origin[a] + (double)at[a];
+    for (size_t a = 0; a < 3; a++)
+        p[a] = m->origin[a] + (double)m->positions[3 * vertex + a];
 }
 
 /* At the corners of a triangle, and in its middle, in the shares that are exact for squares. */
 static void add_triangle(sum *s, cw_field field, double iso, double voxel_mm, const cw_mesh *m,
                          size_t t)
 {
-    double c[3][3], middle[3], u[3], v[3];
+    double c[3][3], middle[3], u[3], v[3], g[3];
     for (size_t n = 0; n < 3; n++)
-        corner_of(m, t, n, c[n]);
+        vertex_of(m, m->triangles[3 * t + n], c[n]);
     for (int a = 0; a < 3; a++) {
         middle[a] = (c[0][a] + c[1][a] + c[2][a]) / 3;
         u[a] = c[1][a] - c[0][a];
@@ -78,8 +78,8 @@ static void add_triangle(sum *s, cw_field field, double iso, double voxel_mm, co
     const double x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2],
                  z = u[0] * v[1] - u[1] * v[0], area = 0.5 * hypot(hypot(x, y), z);
     for (int n = 0; n < 3; n++)
-        add(s, walk(field, iso, voxel_mm, c[n]), area / 12, voxel_mm);
-    add(s, walk(field, iso, voxel_mm, middle), area * 3 / 4, voxel_mm);
+        add(s, walk(field, iso, voxel_mm, c[n], g), area / 12, voxel_mm);
+    add(s, walk(field, iso, voxel_mm, middle, g), area * 3 / 4, voxel_mm);
 }
 
 static double p99(const sum *s, double voxel_mm)
@@ -101,4 +101,40 @@ cli_gap cli_measure_truth(cw_field field, double iso, double voxel_mm, const cw_
         gap = (cli_gap){true, s->max, sqrt(s->square / s->area), p99(s, voxel_mm)};
     free(s);
     return gap;
+}
+
+/* Between lines: which way normals point is a matter of convention. */
+static double angle_deg(const float n[3], const double g[3])
+{
+    double dot = 0, cross = 0;
+    for (int a = 0; a < 3; a++) {
+        const int b = (a + 1) % 3, c = (a + 2) % 3;
+        const double x = (double)n[b] * g[c] - (double)n[c] * g[b];
+        dot += (double)n[a] * g[a];
+        cross += x * x;
+    }
+    return atan2(sqrt(cross), fabs(dot)) * 180 / acos(-1);
+}
+
+cli_vertex_errors cli_measure_vertices(cw_field field, double iso, double voxel_mm,
+                                       const cw_mesh *mesh, size_t one_of)
+{
+    cli_vertex_errors e = {0};
+    for (size_t v = 0; v < mesh->vertex_count; v += one_of) {
+        double p[3], g[3];
+        vertex_of(mesh, v, p);
+        const double mm = walk(field, iso, voxel_mm, p, g);
+        if (isnan(mm)) {
+            e.missed++;
+            continue;
+        }
+        const double deg = mesh->normals ? angle_deg(mesh->normals + 3 * v, g) : 0;
+        e.count++;
+        e.mean_mm += (mm - e.mean_mm) / (double)e.count;
+        e.max_mm = fmax(e.max_mm, mm);
+        e.mean_deg += (deg - e.mean_deg) / (double)e.count;
+        e.max_deg = fmax(e.max_deg, deg);
+    }
+    e.has_normals = mesh->normals && e.count;
+    return e;
 }

@@ -1,0 +1,304 @@
+#define _GNU_SOURCE /* open_memstream */
+#include "cli/bench/bench.h"
+#include "cli/commands.h"
+#include "cli/console.h"
+#include "cli/field.h"
+#include "cli/output.h"
+#include "cli/report.h"
+#include "core/outfile.h"
+#include "core/status.h"
+#include "core/volume.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct bench_args {
+    cli_common common;
+    cli_input input;
+    const char *fields, *json, *csv;
+    cli_counts sizes;
+    cli_number iso;
+    size_t repeat, peer_timeout;
+    bool peers;
+    int inside, progress;
+} bench_args;
+
+enum { LEAST_SIZE = 8, MOST_SIZE = 1024 };
+
+static const bench_args defaults = {
+    .repeat = 5, .peer_timeout = 60, .sizes = {.count = 3, .n = {64, 128, 256}}};
+
+static const cli_option options[] = {
+    {"fields", 'f', CLI_TEXT, "NAME,...|all",
+     "fields of 'make' whose surface is known on paper (all; with files: none)",
+     offsetof(bench_args, fields)},
+    {"sizes", 0, CLI_COUNTS, "N,...", "of fields: samples along each axis (64,128,256)",
+     offsetof(bench_args, sizes)},
+    {"iso", 'i', CLI_NUMBER, "V", "of files: the level (otsu, as info suggests)",
+     offsetof(bench_args, iso)},
+    {"inside", 0, CLI_CHOICE, CLI_INSIDE_CHOICES,
+     "of files: which values are inside the solid (auto: above, of level sets below)",
+     offsetof(bench_args, inside)},
+    {"peers", 0, CLI_FLAG, NULL,
+     "the same work by VTK, scikit-image, OpenVDB, meshoptimizer and draco_encoder (off)",
+     offsetof(bench_args, peers)},
+    {"peer-timeout", 0, CLI_COUNT, "SECONDS", "that a peer may take for one answer (60)",
+     offsetof(bench_args, peer_timeout)},
+    {"repeat", 'n', CLI_COUNT, "N", "runs of each, of which the median is told (5)",
+     offsetof(bench_args, repeat)},
+    {"json", 0, CLI_TEXT, "FILE", "the facts as JSON; - is the standard output",
+     offsetof(bench_args, json)},
+    {"csv", 0, CLI_TEXT, "FILE", "a row of each; - is the standard output",
+     offsetof(bench_args, csv)},
+    {"progress", 0, CLI_CHOICE, "auto/plain/json/none", "how to show it, on stderr (auto)",
+     offsetof(bench_args, progress)},
+    CLI_INPUT_OPTIONS(bench_args),
+};
+
+/* --- what is asked for ---------------------------------------------------------------------
+ */
+
+static cw_status take_field(const char *name, bool wanted[CW_FIELD_COUNT], cw_error *err)
+{
+    cw_field field;
+    const bool found = cw_field_find(name, &field);
+    const char *nearest = cli_nearest_field(name);
+    if (found)
+        wanted[field] = true;
+    else if (nearest)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--fields: '%s' is no field; did you mean '%s'?",
+                       name, nearest);
+    return found
+               ? CW_OK
+               : cw_fail(err, CW_ERR_ARGUMENT,
+                         "--fields: '%s' is no field that is known on paper; 'cubewright make "
+                         "--list' begins with those",
+                         name);
+}
+
+static cw_status choose_fields(const bench_args *args, bool wanted[CW_FIELD_COUNT],
+                               cw_error *err)
+{
+    const char *text = args->fields ? args->fields : args->common.input_count ? NULL : "all";
+    const bool all = text && strcmp(text, "all") == 0;
+    cw_status st = CW_OK;
+    for (int f = 0; f < CW_FIELD_COUNT; f++)
+        wanted[f] = all;
+    for (const char *at = all ? NULL : text; at && st == CW_OK;) {
+        char name[64];
+        const size_t length = strcspn(at, ",");
+        snprintf(name, sizeof name, "%.*s", length < 60 ? (int)length : 60, at);
+        st = take_field(name, wanted, err);
+        at = at[length] ? at + length + 1 : NULL;
+    }
+    return st;
+}
+
+/* It can be written: that is found out before hours of work. */
+static cw_status check_output(const bench_args *args, const char *path, cw_error *err)
+{
+    cwi_outfile *file = NULL;
+    cw_status st = cli_check_output(path, args->common.inputs, args->common.input_count, err);
+    if (st != CW_OK)
+        return st;
+    st = cwi_outfile_open(&file, path, false, err);
+    cwi_outfile_abort(&file);
+    return st == CW_OK ? st : cwi_fail_in(err, st, path);
+}
+
+static cw_status check_outputs(const bench_args *args, cw_error *err)
+{
+    const char *const files[] = {args->json, args->csv};
+    cw_status st = CW_OK;
+    for (size_t n = 0; n < 2 && st == CW_OK; n++)
+        if (files[n] && strcmp(files[n], "-") != 0)
+            st = check_output(args, files[n], err);
+    if (st != CW_OK || !args->json || !args->csv)
+        return st;
+    if (strcmp(args->json, "-") == 0 && strcmp(args->csv, "-") == 0)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--json and --csv: one of them on the standard output");
+    return cli_check_apart(args->json, args->csv, err);
+}
+
+static cw_status check_args(const bench_args *args, cw_error *err)
+{
+    for (size_t n = 0; n < args->sizes.count; n++)
+        if (args->sizes.n[n] < LEAST_SIZE || args->sizes.n[n] > MOST_SIZE)
+            return cw_fail(err, CW_ERR_ARGUMENT, "--sizes: %d to %d were expected, not %zu",
+                           LEAST_SIZE, MOST_SIZE, args->sizes.n[n]);
+    if (args->repeat < 1 || args->repeat > CLI_BENCH_MOST_RUNS)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--repeat: 1 to %d was expected, not %zu",
+                       CLI_BENCH_MOST_RUNS, args->repeat);
+    if (args->peer_timeout < 1 || args->peer_timeout > 86400)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--peer-timeout: 1 to 86400 seconds were expected, not %zu",
+                       args->peer_timeout);
+    if (args->iso.given && !args->common.input_count)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--iso is for files; fields have their own");
+    return check_outputs(args, err);
+}
+
+/* So is what cannot be read. */
+static cw_status check_files(const bench_args *args, cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (size_t n = 0; n < args->common.input_count && st == CW_OK; n++) {
+        const char *path = args->common.inputs[n];
+        cw_volume shape;
+        st = cli_read_shape(path, &args->input, &shape, err);
+        if (st == CW_OK && cwi_volume_expect_even(&shape, "bench", err) != CW_OK)
+            st = cwi_fail_in(err, CW_ERR_UNSUPPORTED, path);
+    }
+    return st;
+}
+
+static cw_status list_cases(const bench_args *args, cli_bench *b, cw_error *err)
+{
+    bool wanted[CW_FIELD_COUNT];
+    cw_status st = choose_fields(args, wanted, err);
+    if (st != CW_OK)
+        return st;
+    b->cases =
+        calloc(args->common.input_count + CW_FIELD_COUNT * args->sizes.count, sizeof *b->cases);
+    if (!b->cases)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for what is measured");
+    for (size_t n = 0; n < args->common.input_count; n++) {
+        const char *path = args->common.inputs[n];
+        b->cases[b->case_count++] =
+            (cli_bench_case){.path = path, .name = cli_shown_path(path)};
+    }
+    for (int f = 0; f < CW_FIELD_COUNT; f++)
+        for (size_t n = 0; n < args->sizes.count && wanted[f]; n++) {
+            const size_t size = args->sizes.n[n];
+            b->cases[b->case_count++] = (cli_bench_case){.field = (cw_field)f,
+                                                         .name = cw_field_name((cw_field)f),
+                                                         .dim = {size, size, size}};
+        }
+    return CW_OK;
+}
+
+/* --- the run -------------------------------------------------------------------------------
+ */
+
+static cw_status save(const cli_bench *b, const char *path,
+                      void (*put)(FILE *out, const cli_bench *bench), cw_error *err)
+{
+    char *text = NULL;
+    size_t size = 0;
+    if (!path)
+        return CW_OK;
+    FILE *out = open_memstream(&text, &size);
+    if (out)
+        put(out, b);
+    cw_status st = out && fclose(out) == 0
+                       ? cli_report_save(path, text, size, err)
+                       : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the report");
+    free(text);
+    return st;
+}
+
+static cw_status pipeline(const bench_args *args, cli_bench *b, cw_error *err)
+{
+    cw_status st = check_args(args, err);
+    if (st == CW_OK)
+        st = list_cases(args, b, err);
+    if (st == CW_OK)
+        st = check_files(args, err);
+    if (st == CW_OK)
+        st = cli_bench_run(b, err);
+    if (st == CW_OK)
+        st = save(b, args->json, cli_bench_put_json, err);
+    return st == CW_OK ? save(b, args->csv, cli_bench_put_csv, err) : st;
+}
+
+static bool is_stdout(const char *path)
+{
+    return path && strcmp(path, "-") == 0;
+}
+
+static cw_status run(void *p, cw_error *err)
+{
+    bench_args *args = p;
+    cli_bench *b = calloc(1, sizeof *b);
+    if (!b)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a bench");
+    b->input = &args->input;
+    b->iso = args->iso;
+    b->inside = args->inside;
+    b->with_peers = args->peers;
+    b->repeat = args->repeat;
+    b->limit_s = (double)args->peer_timeout;
+    b->threads = cwi_threads((int)args->input.threads);
+    cli_console_start(&args->common, (cli_progress_mode)args->progress);
+    if (is_stdout(args->json) || is_stdout(args->csv))
+        cli_results_to_stderr();
+    cw_status st = pipeline(args, b, err);
+    cli_bench_free(b);
+    free(b);
+    return st;
+}
+
+const cli_command cli_bench_command = {
+    .name = "bench",
+    .usage = "[VOLUME...] [options]",
+    .about = "speed and error on fields known on paper, or files; with --peers beside others",
+    .more =
+        "Times extraction (linear, cubic, linear without normals), simplification to 10 %\n"
+        "of the triangles, and compression (quantised, meshopt, Draco, 14 bits a coordinate),\n"
+        "and measures what comes of it: without files, on the fields of 'make' whose surface\n"
+        "is known on paper. Files are evenly spaced volumes.\n\n"
+        "  ms         the median of the runs, which follow each other by turns; one run before "
+        "them\n"
+        "             is not counted\n"
+        "  times      that of a peer in times of ours: above 1 ours is faster\n"
+        "  Mtri/s     triangles of the result, in millions a second; simplification: of its "
+        "input\n"
+        "  memory     the peak of the runs, beyond what the process held before\n"
+        "  off by mm  vertices from the surface on paper (of a file: from that of the field\n"
+        "             between its voxels, looked for as far as 4 voxels): their mean, and the\n"
+        "             farthest; of compression: how far they moved\n"
+        "  surface    the same of points all over the triangles, RMS; normals: the mean angle, "
+        "in\n"
+        "             degrees, whichever way they point\n\n"
+        "Of large meshes a sample of 25 000 triangles, or 100 000 vertices, is measured. "
+        "Surfaces "
+        "are\n"
+        "left open where they meet the border. Behind a row stand defects of the mesh as it "
+        "is\n"
+        "indexed: edges with more than two triangles, vertices with more than one fan, "
+        "triangles\n"
+        "without area.\n\n"
+        "--peers has the same work done by vtkFlyingEdges3D and vtkQuadricDecimation,\n"
+        "scikit-image's marching_cubes and OpenVDB's volumeToMesh (of each python3 in PATH the "
+        "first\n"
+        "that has them), meshoptimizer (linked) and draco_encoder, with the same isovalue, "
+        "spacing,\n"
+        "threads and target. What runs in Python is there before, and lives as long as the "
+        "run; timed\n"
+        "is the call alone, without reading, copying and converting, but OpenVDB's makes "
+        "arrays for\n"
+        "Python. VTK and scikit-image make normals, as ours does; OpenVDB makes none, and is "
+        "set\n"
+        "beside ours without them. It closes the surface at the border, which is taken off "
+        "when its\n"
+        "time was taken. scikit-image, decimation, meshoptimizer and draco_encoder have one "
+        "thread;\n"
+        "decimation keeps no normals. Of draco_encoder all of the process is timed, which "
+        "reads a PLY\n"
+        "and writes; ours includes writing a GLB, and decoding and comparing it. A peer that "
+        "is\n"
+        "missing is told with the package of Debian's that brings it; one that fails, or takes "
+        "longer\n"
+        "than --peer-timeout, is told in its row.\n\n"
+        "Examples\n"
+        "  cubewright bench --fields sphere,gyroid --sizes 128\n"
+        "  cubewright bench --peers --csv bench.csv\n"
+        "  cubewright bench head.nii.gz --iso 50 --peers --threads 1 --json bench.json\n",
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .max_inputs = 64,
+    .size = sizeof(bench_args),
+    .defaults = &defaults,
+    .run = run,
+};
