@@ -5,6 +5,9 @@ static const cli_option options[] = {
     {"by", 'b', CLI_TEXT, "L",
      "how far: 1mm, -0.5mm (inward), or 0; 1% is of the box's diagonal",
      offsetof(cli_solid_args, by)},
+    {"sharp", 0, CLI_FLAG, NULL,
+     "put back edges and corners that voxels cut off (on; --no-sharp)",
+     offsetof(cli_solid_args, sharp)},
     {"measure", 0, CLI_FLAG, NULL,
      "measure how far the result is from where it should be (on; --no-measure)",
      offsetof(cli_solid_args, measure)},
@@ -26,8 +29,11 @@ const cli_command cli_offset = {
         "become one, and what a voxel cannot tell is lost.\n\n"
         "Distances are those of a grid's samples, exact; between them the surface is within "
         "half\n"
-        "a voxel of where it should be if that is smooth, and edges and corners lose about "
-        "one.\n"
+        "a voxel of where it should be. Edges and corners, which samples cut off by about a "
+        "voxel,\n"
+        "are put back: most right angles exactly, sharper ones not everywhere (--no-sharp "
+        "leaves\n"
+        "them cut).\n"
         "--voxel auto is 1/256 of the box's diagonal, or a quarter of the distance if that is\n"
         "finer, but not below 1/512, and coarser where memory would not do.\n\n"
         "Printed is how far the result's distance from the input is off, at most and by the "

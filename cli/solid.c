@@ -40,7 +40,7 @@ typedef struct run_state {
     double start;
 } run_state;
 
-const cli_solid_args cli_solid_defaults = {.measure = true};
+const cli_solid_args cli_solid_defaults = {.measure = true, .sharp = true};
 
 /* --- the report ----------------------------------------------------------------------------
  */
@@ -300,6 +300,7 @@ static cw_status offset(run_state *s, cw_error *err)
     cli_piece *p = s->pieces.piece;
     const cw_offset_desc desc = {.offset_mm = s->by_mm,
                                  .voxel_mm = s->voxel_mm,
+                                 .no_sharpen = !s->args->sharp,
                                  .threads = (int)s->args->input.threads,
                                  .max_bytes = cli_memory_limit(&s->args->input),
                                  .progress = cli_progress(1, "solid")};

@@ -14,7 +14,7 @@ typedef struct cli_solid_args {
     const char *drain, *by; /* of hollow, and of offset */
     cli_length wall;        /* of hollow */
     int progress;
-    bool measure;
+    bool measure, sharp;
 } cli_solid_args;
 
 /* Rows that both commands have. */

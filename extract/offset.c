@@ -1,4 +1,5 @@
 #include "extract/level_set.h"
+#include "extract/sharpen.h"
 
 #include "core/status.h"
 
@@ -55,6 +56,8 @@ cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc, cw_mes
     if (st == CW_OK && !out->triangle_count)
         st = cw_fail(err, CW_ERR_EMPTY, "nothing is left: no point is %g mm inside",
                      -desc->offset_mm);
+    if (st == CW_OK && !desc->no_sharpen)
+        st = cwi_sharpen(mesh, desc, voxel, out, err);
     if (st == CW_OK) /* not of the grid in between */
         memcpy(out->affine, mesh->affine, sizeof out->affine);
     if (voxel_mm)

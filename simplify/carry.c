@@ -3,8 +3,8 @@
 #include "core/layers.h"
 #include "core/memory.h"
 #include "core/status.h"
-#include "simplify/quality/boxes.h"
-#include "simplify/quality/facet.h"
+#include "core/vector.h"
+#include "simplify/quality/closest.h"
 
 #include <math.h>
 
@@ -15,30 +15,6 @@ typedef struct carrier {
     cw_mesh *to;
     cwi_boxes tree;
 } carrier;
-
-typedef struct search {
-    const carrier *c;
-    double point[3];
-    size_t triangle;
-} search;
-
-static void corners(const cw_mesh *m, size_t triangle, const float *p[3])
-{
-    for (size_t k = 0; k < 3; k++)
-        p[k] = m->positions + 3 * (size_t)m->triangles[3 * triangle + k];
-}
-
-static void measure(void *context, size_t slot, double *square)
-{
-    search *s = context;
-    const float *p[3];
-    corners(s->c->from, s->c->tree.order[slot], p);
-    const double here = cwi_facet_square(p[0], p[1], p[2], s->point);
-    if (here < *square) {
-        *square = here;
-        s->triangle = s->c->tree.order[slot];
-    }
-}
 
 static void blend(const carrier *c, const uint32_t corner[3], const double share[3], size_t v)
 {
@@ -72,35 +48,12 @@ static void carry_chunk(void *context, size_t chunk)
 {
     const carrier *c = context;
     for (size_t v = chunk * CHUNK; v < (chunk + 1) * CHUNK && v < c->to->vertex_count; v++) {
-        search s = {.c = c};
-        double square = INFINITY, share[3];
-        const float *p[3];
+        double point[3];
         for (size_t a = 0; a < 3; a++)
-            s.point[a] = (double)c->to->positions[3 * v + a];
-        cwi_boxes_nearest(&c->tree, s.point, measure, &s, &square);
-        corners(c->from, s.triangle, p);
-        cwi_facet_nearest(p[0], p[1], p[2], s.point, share);
-        blend(c, c->from->triangles + 3 * s.triangle, share, v);
+            point[a] = (double)c->to->positions[3 * v + a];
+        const cwi_closest at = cwi_closest_find(c->from, &c->tree, point);
+        blend(c, c->from->triangles + 3 * at.triangle, at.share, v);
     }
-}
-
-static cw_status build_tree(carrier *c, cw_error *err)
-{
-    const cw_mesh *m = c->from;
-    float(*boxes)[6] = cwi_alloc_array(m->triangle_count, sizeof *boxes);
-    if (!boxes)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to find closest points");
-    for (size_t t = 0; t < m->triangle_count; t++) {
-        const float *p[3];
-        corners(m, t, p);
-        for (int a = 0; a < 3; a++) {
-            boxes[t][a] = fminf(p[0][a], fminf(p[1][a], p[2][a]));
-            boxes[t][a + 3] = fmaxf(p[0][a], fmaxf(p[1][a], p[2][a]));
-        }
-    }
-    cw_status st = cwi_boxes_build(&c->tree, (const float(*)[6])boxes, m->triangle_count, err);
-    cwi_free(boxes);
-    return st;
 }
 
 static bool alloc_carried(const cw_mesh *from, cw_mesh *to)
@@ -126,7 +79,7 @@ cw_status cwi_carry(const cw_mesh *from, int threads, cw_mesh *to, cw_error *err
         return CW_OK;
     if (!alloc_carried(from, to))
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", to->vertex_count);
-    cw_status st = build_tree(&c, err);
+    cw_status st = cwi_closest_build(from, &c.tree, err);
     if (st == CW_OK)
         st = cwi_each_layer((to->vertex_count + CHUNK - 1) / CHUNK, CHUNK * 64, threads,
                             &silent, "carrying", carry_chunk, &c, err);

@@ -34,8 +34,8 @@ typedef struct cw_level_set_desc {
  * Distances are to the closest point of the triangles, exact but for rounding; so are signs. A
  * surface that is extracted at 0, with low values inside, is within half a voxel of the mesh,
  * and the mesh of it, where the mesh is smooth as far as voxels can tell. Edges of 90 degrees
- * lose up to 0.71 voxels and corners 1.16, sharper ones more; what is thinner than a voxel may
- * be lost.
+ * lose up to 0.71 voxels and corners 1.16, sharper ones more (cw_mesh_offset() puts them back);
+ * what is thinner than a voxel may be lost.
  *
  * mesh     borrowed
  * desc     borrowed
@@ -61,6 +61,7 @@ typedef struct cw_offset_desc {
     double voxel_mm;      /* default: the finer of 1/256 of the box's diagonal and 1/4 of the
                              offset, but 1/512 of the diagonal at the least, and, with max_bytes,
                              as coarse as it takes */
+    bool no_sharpen;      /* default: edges and corners that the voxels cut off are put back */
     int threads;          /* default: all */
     size_t max_bytes;     /* default: no limit */
     cw_progress progress; /* default: none */
@@ -70,11 +71,17 @@ typedef struct cw_offset_desc {
  * that is so far from its outside: closed, a manifold, free of crossings. Convex corners come
  * out round, as the distance from them is.
  *
+ * Edges and corners that voxels cut off are put back: sides of triangles across them get
+ * vertices where the tangent planes at both ends meet, unless that would fold, flatten or cross
+ * something. Of right angles most are then exact and the others within some half a voxel;
+ * sharper ones may lose more than a voxel in places.
+ *
  * out       filled on success, with normals; emptied on failure; free it with cw_mesh_free()
  * voxel_mm  those that were taken; may be NULL
  *
  * Returns  CW_ERR_EMPTY for an offset inward that leaves nothing; else as
- *          cw_level_set_from_mesh(), cw_extract() */
+ *          cw_level_set_from_mesh(), cw_extract(), cw_self_intersections()
+ * Source   edges after [Kobbelt2001], [Attene2005] */
 CW_API cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc, cw_mesh *out,
                                 double *voxel_mm, cw_error *err);
 
