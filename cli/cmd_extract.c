@@ -5,6 +5,7 @@
 #include "cli/frames.h"
 #include "cli/output.h"
 #include "cli/pixels.h"
+#include "cli/proof.h"
 #include "cli/pvd.h"
 #include "cli/quantity.h"
 #include "cli/surface.h"
@@ -28,13 +29,14 @@ typedef struct extract_args {
     cli_steps steps;
     cli_number snap, fps;
     cli_reduction simplify;
+    cli_amount least;
     cli_pixel_args pixel;
     int inside, normals, progress, topology, placement, accel;
     bool open, no_clobber, local, check, animate;
     size_t max_triangles;
 } extract_args;
 
-enum { PROVENANCE_LINES = 5, DEFAULT_FPS = 10, MOST_TRIES = 4 };
+enum { PROVENANCE_LINES = 5, DEFAULT_FPS = 10 };
 
 /* Degrees: of a head in 1280 x 720 pixels 1 in 200 then looks different, of 2 degrees 1 in 100.
  */
@@ -77,6 +79,10 @@ static const cli_option options[] = {
      "while extracting, as far as an error allows (0.1mm, 0.05%, 0.5vox) or to so many "
      "triangles (50k) (off)",
      offsetof(extract_args, simplify)},
+    {"min-volume", 0, CLI_VOLUME, "V",
+     "leave out components that enclose less, with what is in them: 500mm3, 0.5ml, 30vox "
+     "(none)",
+     offsetof(extract_args, least)},
     {"camera", 0, CLI_TEXT, "FILE[,FILE...]",
      "keep only what the pictures of these cameras need; .json files of render, or the text of "
      "one; with --pixel-error",
@@ -90,8 +96,8 @@ static const cli_option options[] = {
      "what --camera sees is joined where normals agree within this; 180 is anywhere (1.5)",
      offsetof(extract_args, pixel.shading)},
     {"max-error", 0, CLI_LENGTH, "L",
-     "no farther from the field's surface than this (0.2mm, 0.05%, 0.5vox), measured; with "
-     "--camera from the full mesh's, out of sight (off)",
+     "as --simplify, no farther from the full surface than this (0.2mm, 0.05%, 0.5vox), and "
+     "measured, both ways; with --camera out of sight (off)",
      offsetof(extract_args, pixel.most)},
     {"normals", 0, CLI_CHOICE, "field/none", "normals from the field's gradient (field)",
      offsetof(extract_args, normals)},
@@ -164,6 +170,16 @@ static double error_mm(const run_state *s)
     return length_mm(s, &s->args->simplify.error);
 }
 
+/* What components have to enclose; 0: nothing. */
+static double least_mm3(const run_state *s)
+{
+    const cli_amount *least = &s->args->least;
+    const double voxel = voxel_mm(s);
+    return !least->given   ? 0
+           : least->voxels ? least->value * voxel * voxel * voxel
+                           : least->value;
+}
+
 static bool is_low(const run_state *s)
 {
     return cli_inside_is_low(s->args->inside, &s->volume.whole);
@@ -209,6 +225,8 @@ static void put_params(cli_json *j, const void *p, const cli_made *made)
         cli_json_number(j, "simplify_error_mm", error_mm(s));
     else if (args->simplify.triangles)
         cli_json_count(j, "simplify_triangles", args->simplify.triangles);
+    if (args->least.given)
+        cli_json_number(j, "min_volume_mm3", least_mm3(s));
     put_pixels(j, s);
     cli_json_text(j, "normals", args->normals ? "none" : "field");
     if (args->iso.count > 1)
@@ -309,11 +327,6 @@ static cw_status check_pixels(run_state *s, cw_error *err)
     if ((args->pixel.camera || args->pixel.most.given) &&
         (args->simplify.error.given || args->simplify.triangles))
         return cw_fail(err, CW_ERR_ARGUMENT, "%s or --simplify, not both", reducer(args));
-
-    if (args->pixel.most.given && !args->pixel.camera && (!args->check || args->placement))
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--max-error is measured, to the field's surface: it cannot be with %s",
-                       args->check ? "--placement cubic" : "--no-check");
     return CW_OK;
 }
 
@@ -351,18 +364,19 @@ static cw_status check_args(run_state *s, cw_error *err)
     return check_animation(args, err);
 }
 
-static cw_extract_desc extract_desc(const run_state *s, double iso)
+static cli_wanted wanted(const run_state *s, double iso)
 {
-    return (cw_extract_desc){
-        .isovalue = iso,
-        .inside_is_low = is_low(s),
-        .leave_open = s->args->open,
-        .simple_topology = s->args->topology,
-        .cubic_placement = s->args->placement,
-        .snap = s->args->snap.value,
-        .no_normals = s->args->normals,
-        .threads = (int)s->args->input.threads,
-        .max_triangles = s->args->max_triangles,
+    return (cli_wanted){
+        .extract = {.isovalue = iso,
+                    .inside_is_low = is_low(s),
+                    .leave_open = s->args->open,
+                    .simple_topology = s->args->topology,
+                    .cubic_placement = s->args->placement,
+                    .snap = s->args->snap.value,
+                    .no_normals = s->args->normals,
+                    .threads = (int)s->args->input.threads,
+                    .max_triangles = s->args->max_triangles},
+        .least_mm3 = least_mm3(s),
     };
 }
 
@@ -394,56 +408,35 @@ static cw_status find_error(const run_state *s, double *error, cw_error *err)
 }
 
 /* Depths of the surface first, then what they leave of it. */
-static cw_status extract_for_views(run_state *s, const cw_extract_desc *desc,
+static cw_status extract_for_views(run_state *s, const cli_wanted *w,
                                    const cw_simplify_desc *simplify, cw_mesh *mesh,
-                                   cw_extract_counts *counts, cw_error *err)
+                                   cw_extract_counts *counts, cw_drop_counts *dropped,
+                                   cw_error *err)
 {
     for (size_t n = 0; n < s->view_count; n++)
         cw_simplify_view_free(s->views + n);
-    cw_status st = cli_draw_views(&s->volume, desc, s->views, s->view_count, err);
-    return st == CW_OK ? cli_extract_simplified(&s->volume, desc, simplify, mesh, counts, err)
-                       : st;
+    cw_status st = cli_draw_views(&s->volume, w, s->views, s->view_count, err);
+    return st == CW_OK
+               ? cli_extract_simplified(&s->volume, w, simplify, mesh, counts, dropped, err)
+               : st;
 }
 
-static cw_status measure_field(run_state *s, cli_made *made, const cw_mesh *mesh, cw_error *err)
+static void tell_components(const run_state *s, const cli_made *made)
 {
-    made->compared.has_field = false;
-    cw_status st = cli_compare_with_field(mesh, &s->volume, made->iso, is_low(s),
-                                          (int)s->args->input.threads, &made->compared, err);
-    return st == CW_OK ? st : cwi_fail_in(err, st, s->volume.path);
-}
-
-/* The extracted surface is off the field's, too: by how much is seen from the result, and the
- * next one is given less. */
-static cw_status extract_within(run_state *s, cli_made *made, const cw_extract_desc *desc,
-                                double most, cw_mesh *mesh, cw_extract_counts *counts,
-                                cw_error *err)
-{
-    double error = most, measured = INFINITY;
-    for (int n = 0; n < MOST_TRIES && error > 0.01 * most; n++) {
-        const cw_simplify_desc simplify = simplify_desc(s, error);
-        cw_mesh_free(mesh);
-        cw_status st = cli_extract_simplified(&s->volume, desc, &simplify, mesh, counts, err);
-        if (st == CW_OK)
-            st = measure_field(s, made, mesh, err);
-        if (st != CW_OK)
-            return st;
-        measured = made->compared.to_field.max_mm;
-        if (measured <= most)
-            return CW_OK;
-        error = fmin(0.5 * error, 0.95 * (most - (measured - error)));
-    }
-    return cw_fail(err, CW_ERR_CHECK,
-                   "%s: not as promised: the result is up to %.4g mm from the field's surface, "
-                   "and not %.4g: that of cells is too far from it by itself",
-                   s->volume.path, measured, most);
+    const cw_drop_counts *c = &made->components;
+    cli_say(
+        "%s: %s component%s kept, of %.6g mm3 or more; %s dropped (< %.6g mm3), of %.6g mm3 "
+        "or less: %s triangles fewer",
+        s->volume.path, cli_count(c->kept), c->kept == 1 ? "" : "s", c->least_kept_mm3,
+        cli_count(c->dropped), made->least_mm3, c->largest_mm3, cli_count(c->triangles));
 }
 
 static cw_status extract(run_state *s, cli_made *made, cw_mesh *mesh, cw_extract_counts *counts,
                          cw_error *err)
 {
     const cw_volume *v = &s->volume.view;
-    const cw_extract_desc desc = extract_desc(s, made->iso);
+    const cli_wanted w = wanted(s, made->iso);
+    cw_drop_counts *dropped = &made->components;
     double error;
     cw_status st = find_error(s, &error, err);
     if (st != CW_OK)
@@ -451,17 +444,19 @@ static cw_status extract(run_state *s, cli_made *made, cw_mesh *mesh, cw_extract
     const cw_simplify_desc simplify = simplify_desc(s, error);
     cli_report_begin(&s->report);
     if (s->view_count)
-        st = extract_for_views(s, &desc, &simplify, mesh, counts, err);
-    else if (s->args->pixel.most.given)
-        st = extract_within(s, made, &desc, error, mesh, counts, err);
+        st = extract_for_views(s, &w, &simplify, mesh, counts, dropped, err);
     else if (is_simplified(s->args))
-        st = cli_extract_simplified(&s->volume, &desc, &simplify, mesh, counts, err);
+        st = cli_extract_simplified(&s->volume, &w, &simplify, mesh, counts, dropped, err);
     else
-        st = cli_extract_surface(&s->volume, s->extractor, &desc, mesh, counts, err);
-    if (st == CW_OK)
-        cli_report_end(&s->report, "extract", v->dim[0] * v->dim[1] * v->dim[2],
-                       mesh->triangle_count);
-    return st;
+        st = cli_extract_wanted(&s->volume, s->extractor, &w, mesh, counts, dropped, err);
+    if (st != CW_OK)
+        return st;
+    cli_report_end(&s->report, "extract", v->dim[0] * v->dim[1] * v->dim[2],
+                   mesh->triangle_count);
+    made->least_mm3 = w.least_mm3;
+    if (w.least_mm3 > 0)
+        tell_components(s, made);
+    return CW_OK;
 }
 
 /* What became of all the triangles, and how far from the field the result is: from a field of
@@ -484,33 +479,17 @@ static cw_status judge_simplified(run_state *s, cli_made *made, const cw_mesh *m
                 cwi_volume_kind(&s->volume.view));
         return CW_OK;
     }
-    if (made->compared.has_field)
-        return CW_OK;
     cli_report_begin(&s->report);
-    cw_status st = measure_field(s, made, mesh, err);
-    if (st == CW_OK)
-        cli_report_end(&s->report, "measure", mesh->triangle_count, mesh->triangle_count);
-    return st;
+    cw_status st = cli_compare_with_field(mesh, &s->volume, made->iso, is_low(s),
+                                          (int)args->input.threads, &made->compared, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, s->volume.path);
+    cli_report_end(&s->report, "measure", mesh->triangle_count, mesh->triangle_count);
+    return CW_OK;
 }
 
-/* The promise was kept by bounds, all over; here it is seen from outside. */
-static cw_status prove(run_state *s, cli_made *made, const cw_mesh *mesh, size_t bytes,
-                       cw_error *err)
+static cw_status hold_to_pixels(const run_state *s, const cli_proof *p, cw_error *err)
 {
-    const cw_extract_desc desc = extract_desc(s, made->iso);
-    cli_proof *p = &made->proof;
-    double error;
-    if (!s->view_count || !s->args->check)
-        return CW_OK;
-    cli_report_begin(&s->report);
-    cw_status st = find_error(s, &error, err);
-    const cw_simplify_desc simplify = simplify_desc(s, error);
-    if (st == CW_OK)
-        st = cli_prove_views(&s->volume, &desc, &simplify, mesh, p, err);
-    if (st != CW_OK)
-        return st;
-    p->bytes = bytes;
-    cli_report_end(&s->report, "prove", p->full_triangles, mesh->triangle_count);
     for (size_t n = 0; n < p->count; n++)
         cli_say("%s: camera %zu: at most %.3g pixels off, %.3g promised; %.3g %% of its pixels "
                 "differ by more than 2/255",
@@ -522,6 +501,29 @@ static cw_status prove(run_state *s, cli_made *made, const cw_mesh *mesh, size_t
                            "%s: not as promised: %.4g pixels off for camera %zu",
                            s->volume.path, p->views[n].pixels, n + 1);
     return CW_OK;
+}
+
+/* The promise was kept by bounds, all over; here it is seen from outside. */
+static cw_status prove(run_state *s, cli_made *made, const cw_mesh *mesh, size_t bytes,
+                       cw_error *err)
+{
+    const cli_wanted w = wanted(s, made->iso);
+    cli_proof *p = &made->proof;
+    double error;
+    if (!s->args->check || !(s->view_count || s->args->pixel.most.given))
+        return CW_OK;
+    cli_report_begin(&s->report);
+    cw_status st = find_error(s, &error, err);
+    const cw_simplify_desc simplify = simplify_desc(s, error);
+    if (st == CW_OK)
+        st = s->view_count
+                 ? cli_prove_views(&s->volume, &w, &simplify, mesh, p, err)
+                 : cli_prove_error(&s->volume, &w, &simplify, mesh, p, &made->compared, err);
+    if (st != CW_OK)
+        return st;
+    p->bytes = bytes;
+    cli_report_end(&s->report, "prove", p->full_triangles, mesh->triangle_count);
+    return hold_to_pixels(s, p, err);
 }
 
 /* How a surface was made, for the file's own record. Not of what: names of files may be names
@@ -539,7 +541,7 @@ static size_t tell_provenance(const run_state *s, size_t n, char level[32], char
         snprintf(simplify, 64, "to %.9g pixels of %zu cameras", args->pixel.pixels.value,
                  s->view_count);
     else if (args->pixel.most.given)
-        snprintf(simplify, 64, "to %.9g mm of the field", length_mm(s, &args->pixel.most));
+        snprintf(simplify, 64, "to %.9g mm", length_mm(s, &args->pixel.most));
     else if (args->simplify.error.given)
         snprintf(simplify, 64, "to %.9g mm", error_mm(s));
     else
@@ -847,7 +849,11 @@ const cli_command cli_extract = {
         "--camera keeps what its pictures need: what is seen is off by no more than\n"
         "--pixel-error and keeps its shading; out of sight the mesh is coarse, but closed. It "
         "is\n"
-        "compared with the full one. --max-error is measured to the field's surface.\n\n"
+        "compared with the full one. --max-error alone is --simplify, proven: measured "
+        "against\n"
+        "the full surface, both ways; exit code 1, and no file, if it should not hold.\n\n"
+        "--min-volume counts a component with all that is in it, which goes with it, and so\n"
+        "fills small cavities; an open one up to the middle of its box.\n\n"
         "STL, PLY and OBJ hold world coordinates; far from the world's zero single precision\n"
         "loses them, and extract warns. With --local they are relative to the mesh's origin:\n"
         "add it to get the world's. It is printed, and named in the report and in the file.\n"
@@ -882,12 +888,8 @@ const cli_command cli_extract = {
         "time.\n\n"
         "Examples\n"
         "  cubewright extract head.nii.gz --iso 50 -o head.glb\n"
-        "  cubewright extract ct.nrrd --iso -400,300 -o '{stem}-{level}.glb'\n"
         "  cubewright extract ct.nrrd --iso 300 -o bone.stl --json report.json\n"
-        "  cubewright extract ct.nrrd --iso 300 -o bone.glb --simplify 0.1mm\n"
         "  cubewright extract ct.nrrd --iso 300 -o v.glb --camera cam.json --pixel-error 1\n"
-        "  cubewright extract heart.nii.gz --iso 90 --steps all -o 'heart-{step:02d}.ply'\n"
-        "  cubewright extract 'scan-*.nrrd' --iso 300 -o '{stem}.glb'\n"
         "  cubewright extract heart.nii.gz --iso 90 --steps all -o 'out/{step}.vtp' --pvd "
         "h.pvd\n"
         "  cubewright extract 'scan-*.nrrd' --iso 300 --animate --fps 4 -o scan.glb\n"

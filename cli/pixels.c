@@ -1,6 +1,7 @@
 #include "cli/pixels.h"
 
 #include "cli/console.h"
+#include "cli/proof.h"
 #include "core/status.h"
 #include "core/volume.h"
 
@@ -137,14 +138,29 @@ static cw_status draw(void *p, const cw_slab *slab, cw_error *err)
     return st;
 }
 
-cw_status cli_draw_views(const cli_volume *volume, const cw_extract_desc *desc,
+static cw_status draw_whole(const cli_volume *volume, const cli_wanted *wanted, drawn *all,
+                            cw_error *err)
+{
+    cw_mesh mesh;
+    cw_extract_counts counts;
+    cw_status st = cli_extract_wanted(volume, NULL, wanted, &mesh, &counts, NULL, err);
+    if (st == CW_OK)
+        st = draw(all, &(cw_slab){.mesh = &mesh}, err);
+    cw_mesh_free(&mesh);
+    return st;
+}
+
+/* Which components are large enough is known when all is there. */
+cw_status cli_draw_views(const cli_volume *volume, const cli_wanted *wanted,
                          cw_simplify_view *views, size_t count, cw_error *err)
 {
-    cw_extract_desc d = *desc;
+    cli_wanted w = *wanted;
     drawn all = {views, count};
-    d.max_bytes = volume->memory_left;
-    d.no_normals = true;
-    cw_status st = cw_extract_slabs(&volume->view, &d, CW_SIMPLIFIER_SLAB,
+    w.extract.max_bytes = volume->memory_left;
+    w.extract.no_normals = true;
+    if (w.least_mm3 > 0)
+        return draw_whole(volume, &w, &all, err);
+    cw_status st = cw_extract_slabs(&volume->view, &w.extract, CW_SIMPLIFIER_SLAB,
                                     (cw_slab_sink){draw, &all}, NULL, err);
     return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
 }
@@ -236,19 +252,14 @@ static cw_status compare_pictures(const cw_simplify_view *view, const cw_mesh *f
     return st;
 }
 
-cw_status cli_prove_views(const cli_volume *volume, const cw_extract_desc *desc,
+cw_status cli_prove_views(const cli_volume *volume, const cli_wanted *wanted,
                           const cw_simplify_desc *simplify, const cw_mesh *mesh,
                           cli_proof *proof, cw_error *err)
 {
     cw_mesh full = {0};
-    cw_extract_counts counts;
-    const double start = cli_seconds();
-    cw_status st = cli_extract_surface(volume, NULL, desc, &full, &counts, err);
+    cw_status st = cli_extract_full(volume, wanted, proof, &full, err);
     if (st != CW_OK)
         return st;
-    proof->full_seconds = cli_seconds() - start;
-    proof->full_bytes = counts.bytes;
-    proof->full_triangles = full.triangle_count;
     proof->count = simplify->view_count;
     proof->promised_pixels = simplify->pixel_error;
     proof->promised_mm = simplify->error_mm;

@@ -23,12 +23,12 @@ cw_status cli_widest_error(const cli_volume *volume, const cw_simplify_view *vie
                            size_t count, double pixels, double *error_mm, cw_error *err);
 
 /* Extracts the surface once for its depths only, slab by slab. */
-cw_status cli_draw_views(const cli_volume *volume, const cw_extract_desc *desc,
+cw_status cli_draw_views(const cli_volume *volume, const cli_wanted *wanted,
                          cw_simplify_view *views, size_t count, cw_error *err);
 
 /* Extracts the full surface, which is compared with the mesh: distances both ways in pixels of
  * each view, and pictures of both, drawn on the CPU. */
-cw_status cli_prove_views(const cli_volume *volume, const cw_extract_desc *desc,
+cw_status cli_prove_views(const cli_volume *volume, const cli_wanted *wanted,
                           const cw_simplify_desc *simplify, const cw_mesh *mesh,
                           cli_proof *proof, cw_error *err);
 

@@ -24,6 +24,7 @@ typedef struct cli_comparison {
     cw_distance to_field;
     double diagonal_mm; /* of the input's box */
     double promised_mm; /* 0: no error was promised */
+    const char *other;  /* what it was made of; default: the input */
 } cli_comparison;
 
 enum { CLI_MOST_VIEWS = 64 }; /* of one mesh */
@@ -35,7 +36,8 @@ typedef struct cli_view_proof {
 } cli_view_proof;
 
 typedef struct cli_proof {
-    size_t count; /* of views; 0: nothing to prove */
+    bool made;
+    size_t count; /* of views */
     double promised_pixels, promised_mm, mm;
     size_t full_triangles, full_bytes, bytes; /* of work, besides the voxels */
     double full_seconds;
@@ -59,6 +61,8 @@ typedef struct cli_made {
     unsigned dropped;         /* what the file does not hold of it: cw_keeps flags */
     double origin[3];         /* when it is local: the places in the file are relative to it */
     cli_comparison compared;
+    double least_mm3; /* what components had to enclose; 0: nothing was left out for that */
+    cw_drop_counts components; /* when something was */
     cli_proof proof;
     char warning[CLI_MOST_WARNINGS][512];
     size_t warning_count;

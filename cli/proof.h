@@ -1,0 +1,20 @@
+/* What was promised of a surface, held against the full one, and what that saved. */
+#ifndef CLI_PROOF_H
+#define CLI_PROOF_H
+
+#include "cli/report.h"
+#include "cli/surface.h"
+
+/* Extracts the full surface, and notes in the proof what it is and costs. Free it with
+ * cw_mesh_free(). */
+cw_status cli_extract_full(const cli_volume *volume, const cli_wanted *wanted, cli_proof *proof,
+                           cw_mesh *full, cw_error *err);
+
+/* Measures how far a mesh is from the full surface, and that from it.
+ * simplify  with the error that was promised
+ * Returns   CW_ERR_CHECK when one of the two is farther */
+cw_status cli_prove_error(const cli_volume *volume, const cli_wanted *wanted,
+                          const cw_simplify_desc *simplify, const cw_mesh *mesh,
+                          cli_proof *proof, cli_comparison *compared, cw_error *err);
+
+#endif
