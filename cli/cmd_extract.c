@@ -32,7 +32,7 @@ typedef struct extract_args {
     cli_amount least;
     cli_pixel_args pixel;
     int inside, normals, progress, topology, placement, accel;
-    bool open, no_clobber, local, check, animate;
+    bool open, no_clobber, local, check, animate, prove_crop;
     size_t max_triangles;
 } extract_args;
 
@@ -115,6 +115,10 @@ static const cli_option options[] = {
      offsetof(extract_args, local)},
     {"check", 0, CLI_FLAG, NULL, "measure the mesh: closed, manifold, size (on; --no-check)",
      offsetof(extract_args, check)},
+    {"prove-crop", 0, CLI_FLAG, NULL,
+     "extract the whole volume, too: its surface is the same there, and what --crop saved "
+     "(off)",
+     offsetof(extract_args, prove_crop)},
     {"max-triangles", 0, CLI_COUNT, "N", "stop before making more, e.g. 100M (no limit)",
      offsetof(extract_args, max_triangles)},
     {"json", 0, CLI_TEXT, "FILE", "write a report; - is the standard output",
@@ -330,6 +334,21 @@ static cw_status check_pixels(run_state *s, cw_error *err)
     return CW_OK;
 }
 
+static cw_status check_crop(const extract_args *args, cw_error *err)
+{
+    const cli_input *input = &args->input;
+    if (!args->prove_crop)
+        return CW_OK;
+    if (!input->crop.given)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--prove-crop is for what --crop leaves");
+    if (input->preview || input->coarsen || args->snap.value > 0)
+        return cw_fail(
+            err, CW_ERR_ARGUMENT,
+            "--prove-crop is for all voxels and their crossings: it cannot be with %s",
+            args->snap.value > 0 ? "--snap" : "a preview");
+    return CW_OK;
+}
+
 /* Everything about the arguments that can be refused before the input is touched. */
 static cw_status check_args(run_state *s, cw_error *err)
 {
@@ -351,6 +370,8 @@ static cw_status check_args(run_state *s, cw_error *err)
                        "--snap is a share of an edge, 0 to %g, and not %g", CW_EXTRACT_MAX_SNAP,
                        args->snap.value);
     st = check_pixels(s, err);
+    if (st == CW_OK)
+        st = check_crop(args, err);
     if (st != CW_OK)
         return st;
     if (is_simplified(args) && args->snap.value > 0)
@@ -526,6 +547,30 @@ static cw_status prove(run_state *s, cli_made *made, const cw_mesh *mesh, size_t
     return hold_to_pixels(s, p, err);
 }
 
+static cw_status prove_crop(run_state *s, const cli_moment *moment, cli_made *made,
+                            cw_error *err)
+{
+    const cli_wanted w = wanted(s, made->iso);
+    const cli_crop_proof *p = &made->crop;
+    cli_input input = s->args->input;
+    if (!s->args->prove_crop)
+        return CW_OK;
+    input.step = moment->step;
+    cli_report_begin(&s->report);
+    cw_status st = cli_prove_crop(&s->volume, &input, &w, &made->crop, err);
+    if (st != CW_OK)
+        return st;
+    cli_report_end(&s->report, "prove crop", p->whole_triangles, p->triangles);
+    cli_say("%s: %s triangles, as the whole surface has them there: %.3g %% of its %s, of "
+            "%.3g %% of the voxels; %s and %.3g s in place of %s and %.3g s",
+            s->volume.path, cli_count(p->triangles),
+            100 * (double)p->triangles / (double)p->whole_triangles,
+            cli_count(p->whole_triangles), 100 * (double)p->voxels / (double)p->whole_voxels,
+            cli_bytes((double)p->bytes), p->seconds, cli_bytes((double)p->whole_bytes),
+            p->whole_seconds);
+    return CW_OK;
+}
+
 /* How a surface was made, for the file's own record. Not of what: names of files may be names
  * of patients. */
 static size_t tell_provenance(const run_state *s, size_t n, char level[32], char simplify[64],
@@ -607,6 +652,8 @@ static cw_status make_surface(run_state *s, const cli_moment *moment, size_t n, 
         st = judge_simplified(s, made, &mesh, &counts, err);
     if (st == CW_OK)
         st = prove(s, made, &mesh, counts.bytes, err);
+    if (st == CW_OK)
+        st = prove_crop(s, moment, made, err);
     if (st == CW_OK)
         st = s->args->animate
                  ? cli_deliver_step(&s->report, &how, &mesh, counts.border_loops, s->start, err)
@@ -852,8 +899,9 @@ const cli_command cli_extract = {
         "compared with the full one. --max-error alone is --simplify, proven: measured "
         "against\n"
         "the full surface, both ways; exit code 1, and no file, if it should not hold.\n\n"
-        "--min-volume counts a component with all that is in it, which goes with it, and so\n"
-        "fills small cavities; an open one up to the middle of its box.\n\n"
+        "--min-volume counts a component with all that is in it, which goes with it, and so "
+        "fills\n"
+        "small cavities; an open one up to the middle of its box.\n\n"
         "STL, PLY and OBJ hold world coordinates; far from the world's zero single precision\n"
         "loses them, and extract warns. With --local they are relative to the mesh's origin:\n"
         "add it to get the world's. It is printed, and named in the report and in the file.\n"

@@ -17,4 +17,10 @@ cw_status cli_prove_error(const cli_volume *volume, const cli_wanted *wanted,
                           const cw_simplify_desc *simplify, const cw_mesh *mesh,
                           cli_proof *proof, cli_comparison *compared, cw_error *err);
 
+/* Reads and extracts the whole volume, too: its triangles in the cells that --crop left must be
+ * those of the part, one for one, but for the part's caps.
+ * Returns   CW_ERR_CHECK when one is not */
+cw_status cli_prove_crop(const cli_volume *part, const cli_input *input,
+                         const cli_wanted *wanted, cli_crop_proof *proof, cw_error *err);
+
 #endif

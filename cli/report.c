@@ -219,6 +219,22 @@ static void put_proof(cli_json *j, const cli_proof *p)
     cli_json_close(j, '}');
 }
 
+static void put_crop(cli_json *j, const cli_crop_proof *p)
+{
+    cli_json_open(j, "crop", '{');
+    cli_json_text(j, "against", "whole volume");
+    cli_json_count(j, "voxels", p->voxels);
+    cli_json_count(j, "whole_voxels", p->whole_voxels);
+    cli_json_count(j, "triangles", p->triangles);
+    cli_json_count(j, "whole_triangles", p->whole_triangles);
+    cli_json_number(j, "max_mm", p->apart_mm);
+    cli_json_number(j, "extract_seconds", p->seconds);
+    cli_json_number(j, "whole_extract_seconds", p->whole_seconds);
+    cli_json_count(j, "bytes", p->bytes);
+    cli_json_count(j, "whole_bytes", p->whole_bytes);
+    cli_json_close(j, '}');
+}
+
 static void put_facts(cli_json *j, const cli_made *m)
 {
     if (m->measured)
@@ -229,6 +245,8 @@ static void put_facts(cli_json *j, const cli_made *m)
         put_comparison(j, &m->compared);
     if (m->least_mm3 > 0)
         put_dropped_components(j, m->least_mm3, &m->components);
+    if (m->crop.made)
+        put_crop(j, &m->crop);
     if (m->proof.made)
         put_proof(j, &m->proof);
 }

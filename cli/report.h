@@ -44,6 +44,16 @@ typedef struct cli_proof {
     cli_view_proof views[CLI_MOST_VIEWS];
 } cli_proof;
 
+/* What --crop left of a surface, against the whole one. */
+typedef struct cli_crop_proof {
+    bool made;
+    size_t voxels, triangles,
+        bytes; /* of the part, its caps left out; bytes: voxels and work */
+    size_t whole_voxels, whole_triangles, whole_bytes;
+    double seconds, whole_seconds; /* to extract */
+    double apart_mm;               /* the farthest that two vertices are which should be one */
+} cli_crop_proof;
+
 /* One mesh of a run, as far as it has come. */
 typedef struct cli_made {
     const char *path; /* where it goes */
@@ -64,6 +74,7 @@ typedef struct cli_made {
     double least_mm3; /* what components had to enclose; 0: nothing was left out for that */
     cw_drop_counts components; /* when something was */
     cli_proof proof;
+    cli_crop_proof crop;
     char warning[CLI_MOST_WARNINGS][512];
     size_t warning_count;
     cw_error error; /* with the status CW_OK: none */
