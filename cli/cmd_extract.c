@@ -90,6 +90,9 @@ static const cli_option options[] = {
     {"pixel-error", 0, CLI_NUMBER, "N",
      "so many pixels of --camera the surface may be off, where it is seen",
      offsetof(extract_args, pixel.pixels)},
+    {"cull", 0, CLI_FLAG, NULL,
+     "leave out what no --camera sees, beside its picture or behind the surface (off)",
+     offsetof(extract_args, pixel.cull)},
     {"size", 0, CLI_SIZES, "WxH", "of those pictures, in pixels (1280x720)",
      offsetof(extract_args, pixel.size)},
     {"shading", 0, CLI_NUMBER, "DEG",
@@ -149,6 +152,11 @@ typedef struct run_state {
     double start; /* of the surface at hand */
 } run_state;
 
+static size_t voxel_count(const cw_volume *v)
+{
+    return v->dim[0] * v->dim[1] * v->dim[2];
+}
+
 static double voxel_mm(const run_state *s)
 {
     const double *spacing = s->volume.spacing;
@@ -191,7 +199,7 @@ static bool is_low(const run_state *s)
 
 static bool is_simplified(const extract_args *args)
 {
-    return args->simplify.error.given || args->simplify.triangles || args->pixel.camera ||
+    return args->simplify.error.given || args->simplify.triangles || args->pixel.pixels.given ||
            args->pixel.most.given;
 }
 
@@ -208,9 +216,12 @@ static void put_pixels(cli_json *j, const run_state *s)
     if (!a->camera)
         return;
     cli_json_count(j, "cameras", s->view_count);
-    cli_json_number(j, "pixel_error", a->pixels.value);
+    cli_json_bool(j, "cull", a->cull);
     cli_json_count(j, "width", s->views[0].width);
     cli_json_count(j, "height", s->views[0].height);
+    if (!a->pixels.given)
+        return;
+    cli_json_number(j, "pixel_error", a->pixels.value);
     cli_json_number(j, "shading_deg", shading(s->args));
 }
 
@@ -404,7 +415,7 @@ static cli_wanted wanted(const run_state *s, double iso)
 /* error_mm  of the surface as it is extracted; with cameras: out of their sight */
 static cw_simplify_desc simplify_desc(const run_state *s, double error)
 {
-    const bool seen = s->view_count > 0;
+    const bool seen = s->args->pixel.pixels.given;
     return (cw_simplify_desc){
         .error_mm = error,
         .triangles = s->args->simplify.triangles,
@@ -422,24 +433,45 @@ static cw_status find_error(const run_state *s, double *error, cw_error *err)
     *error = args->simplify.error.given ? error_mm(s) : 0;
     if (args->pixel.most.given)
         *error = length_mm(s, &args->pixel.most);
-    else if (s->view_count)
+    else if (args->pixel.pixels.given)
         return cli_widest_error(&s->volume, s->views, s->view_count, args->pixel.pixels.value,
                                 error, err);
     return CW_OK;
 }
 
-/* Depths of the surface first, then what they leave of it. */
-static cw_status extract_for_views(run_state *s, const cli_wanted *w,
-                                   const cw_simplify_desc *simplify, cw_mesh *mesh,
-                                   cw_extract_counts *counts, cw_drop_counts *dropped,
-                                   cw_error *err)
+/* What there is besides the picture's, so that nothing of it is missed by rounding. */
+static double pixels_around(const run_state *s)
 {
+    return 1 + (s->args->pixel.pixels.given ? s->args->pixel.pixels.value : 0);
+}
+
+/* Depths of the surface first, then what they leave of it. To be culled, it is extracted where
+ * it may be seen only, unless all of a component counts. */
+static cw_status extract_for_views(run_state *s, const cli_wanted *w,
+                                   const cw_simplify_desc *simplify, cli_made *made,
+                                   cw_mesh *mesh, cw_extract_counts *counts, cw_error *err)
+{
+    const bool cull = s->args->pixel.cull;
+    cli_proof *p = &made->proof;
+    cli_volume part = s->volume;
+    cw_status st = CW_OK;
     for (size_t n = 0; n < s->view_count; n++)
         cw_simplify_view_free(s->views + n);
-    cw_status st = cli_draw_views(&s->volume, w, s->views, s->view_count, err);
-    return st == CW_OK
-               ? cli_extract_simplified(&s->volume, w, simplify, mesh, counts, dropped, err)
-               : st;
+    if (cull && !(w->least_mm3 > 0))
+        st = cli_seen_part(&s->volume, s->views, s->view_count, &part, err);
+    if (st == CW_OK)
+        st = cli_draw_views(&part, w, s->views, s->view_count, err);
+    if (st == CW_OK)
+        st = is_simplified(s->args)
+                 ? cli_extract_simplified(&part, w, simplify, mesh, counts, &made->components,
+                                          err)
+                 : cli_extract_wanted(&part, NULL, w, mesh, counts, &made->components, err);
+    if (st != CW_OK || !cull)
+        return st;
+    p->voxels = voxel_count(&s->volume.view);
+    p->seen_voxels = voxel_count(&part.view);
+    return cli_cull(&s->volume, s->views, s->view_count, pixels_around(s), simplify->error_mm,
+                    mesh, &p->culled, err);
 }
 
 static void tell_components(const run_state *s, const cli_made *made)
@@ -455,7 +487,6 @@ static void tell_components(const run_state *s, const cli_made *made)
 static cw_status extract(run_state *s, cli_made *made, cw_mesh *mesh, cw_extract_counts *counts,
                          cw_error *err)
 {
-    const cw_volume *v = &s->volume.view;
     const cli_wanted w = wanted(s, made->iso);
     cw_drop_counts *dropped = &made->components;
     double error;
@@ -465,18 +496,23 @@ static cw_status extract(run_state *s, cli_made *made, cw_mesh *mesh, cw_extract
     const cw_simplify_desc simplify = simplify_desc(s, error);
     cli_report_begin(&s->report);
     if (s->view_count)
-        st = extract_for_views(s, &w, &simplify, mesh, counts, dropped, err);
+        st = extract_for_views(s, &w, &simplify, made, mesh, counts, err);
     else if (is_simplified(s->args))
         st = cli_extract_simplified(&s->volume, &w, &simplify, mesh, counts, dropped, err);
     else
         st = cli_extract_wanted(&s->volume, s->extractor, &w, mesh, counts, dropped, err);
     if (st != CW_OK)
         return st;
-    cli_report_end(&s->report, "extract", v->dim[0] * v->dim[1] * v->dim[2],
-                   mesh->triangle_count);
+    cli_report_end(&s->report, "extract", voxel_count(&s->volume.view), mesh->triangle_count);
     made->least_mm3 = w.least_mm3;
     if (w.least_mm3 > 0)
         tell_components(s, made);
+    if (s->args->pixel.cull)
+        cli_say(
+            "%s: %.3g %% of the voxels are in bricks that cameras see; %s triangles of these "
+            "that none does are left out",
+            s->volume.path, 100 * (double)made->proof.seen_voxels / (double)made->proof.voxels,
+            cli_count(made->proof.culled));
     return CW_OK;
 }
 
@@ -582,7 +618,7 @@ static size_t tell_provenance(const run_state *s, size_t n, char level[32], char
     lines[1] = (cw_provenance){"inside", is_low(s) ? "below" : "above"};
     lines[2] = (cw_provenance){"topology", args->topology ? "simple" : "field"};
     lines[3] = (cw_provenance){"placement", args->placement ? "cubic" : "linear"};
-    if (args->pixel.camera)
+    if (args->pixel.pixels.given)
         snprintf(simplify, 64, "to %.9g pixels of %zu cameras", args->pixel.pixels.value,
                  s->view_count);
     else if (args->pixel.most.given)
@@ -622,6 +658,7 @@ static cli_delivery delivery(const run_state *s)
                           .voxel_mm = voxel_mm(s),
                           .unchecked = !s->args->check,
                           .open = s->args->open,
+                          .unpromised = s->args->pixel.cull,
                           .preview = cli_is_preview(&s->volume)};
 }
 
@@ -896,7 +933,8 @@ const cli_command cli_extract = {
         "--camera keeps what its pictures need: what is seen is off by no more than\n"
         "--pixel-error and keeps its shading; out of sight the mesh is coarse, but closed. It "
         "is\n"
-        "compared with the full one. --max-error alone is --simplify, proven: measured "
+        "compared with the full one. --cull leaves out what none sees: it is then open.\n"
+        "--max-error alone is --simplify, proven: measured "
         "against\n"
         "the full surface, both ways; exit code 1, and no file, if it should not hold.\n\n"
         "--min-volume counts a component with all that is in it, which goes with it, and so "

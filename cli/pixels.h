@@ -10,6 +10,7 @@ typedef struct cli_pixel_args {
     cli_number pixels, shading;
     cli_sizes size; /* of pictures */
     cli_length most;
+    bool cull;
 } cli_pixel_args;
 
 /* Reads the cameras. Fails for what is not usable, or would do nothing without a camera.
@@ -21,6 +22,17 @@ cw_status cli_read_views(const cli_pixel_args *args, cw_simplify_view *views, si
  * sight keeps it. */
 cw_status cli_widest_error(const cli_volume *volume, const cw_simplify_view *views,
                            size_t count, double pixels, double *error_mm, cw_error *err);
+
+/* The part of an even or rectilinear volume that the views may see, in whole bricks and two
+ * voxels around them; of others, all. It borrows the voxels: not to be freed.
+ * Returns CW_ERR_EMPTY when no view sees any. */
+cw_status cli_seen_part(const cli_volume *volume, const cw_simplify_view *views, size_t count,
+                        cli_volume *part, cw_error *err);
+
+/* Leaves out what no view sees of a mesh that is so near to the one whose depths were drawn. */
+cw_status cli_cull(const cli_volume *volume, const cw_simplify_view *views, size_t count,
+                   double pixels, double margin_mm, cw_mesh *mesh, size_t *dropped,
+                   cw_error *err);
 
 /* Extracts the surface once for its depths only, slab by slab. */
 cw_status cli_draw_views(const cli_volume *volume, const cli_wanted *wanted,

@@ -212,6 +212,11 @@ static void put_proof(cli_json *j, const cli_proof *p)
     cli_json_number(j, "max_mm", p->mm);
     if (p->count)
         put_views(j, p);
+    if (p->voxels) {
+        cli_json_count(j, "culled_triangles", p->culled);
+        cli_json_count(j, "voxels", p->voxels);
+        cli_json_count(j, "seen_voxels", p->seen_voxels);
+    }
     cli_json_count(j, "full_triangles", p->full_triangles);
     cli_json_number(j, "full_seconds", p->full_seconds);
     cli_json_count(j, "full_bytes", p->full_bytes);

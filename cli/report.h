@@ -41,6 +41,8 @@ typedef struct cli_proof {
     double promised_pixels, promised_mm, mm;
     size_t full_triangles, full_bytes, bytes; /* of work, besides the voxels */
     double full_seconds;
+    size_t culled;              /* triangles that no view sees, left out */
+    size_t voxels, seen_voxels; /* of the bricks that views see; 0: not looked for */
     cli_view_proof views[CLI_MOST_VIEWS];
 } cli_proof;
 

@@ -1,4 +1,5 @@
 #include "core/memory.h"
+#include "core/mesh.h"
 #include "core/sets.h"
 #include "core/status.h"
 #include "core/vector.h"
@@ -42,6 +43,23 @@ static void drop_unused(cw_mesh *m, uint32_t *number)
     for (size_t c = 0; c < 3 * m->triangle_count; c++)
         m->triangles[c] = number[m->triangles[c]];
     move_vertices(m, number, count);
+}
+
+cw_status cwi_mesh_drop_marked(cw_mesh *mesh, const bool *marked, cw_error *err)
+{
+    uint32_t *number = cwi_alloc_array(mesh->vertex_count, sizeof *number);
+    size_t kept = 0;
+    if (!number)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to number %zu vertices",
+                       mesh->vertex_count);
+    for (size_t t = 0; t < mesh->triangle_count; t++)
+        if (!marked[t])
+            memmove(mesh->triangles + 3 * kept++, mesh->triangles + 3 * t,
+                    3 * sizeof *mesh->triangles);
+    mesh->triangle_count = kept;
+    drop_unused(mesh, number);
+    cwi_free(number);
+    return CW_OK;
 }
 
 cw_status cw_mesh_weld(cw_mesh *mesh, size_t *merged, cw_error *err)
