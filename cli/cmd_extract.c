@@ -42,6 +42,10 @@ enum { PROVENANCE_LINES = 5, DEFAULT_FPS = 10 };
  */
 static const double SHADING = 1.5;
 
+/* The share of pixels that may differ where nothing was to: places of a part of the volume are
+ * rounded about another origin. */
+static const double SAME_PICTURE = 1e-4;
+
 static const extract_args defaults = {.check = true};
 
 static const cli_option options[] = {
@@ -385,6 +389,9 @@ static cw_status check_args(run_state *s, cw_error *err)
         st = check_crop(args, err);
     if (st != CW_OK)
         return st;
+    if (args->pixel.cull && args->snap.value > 0)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--cull needs the plain surface: it cannot be with --snap");
     if (is_simplified(args) && args->snap.value > 0)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "--snap and %s both remove needles: give one of them", reducer(args));
@@ -557,6 +564,12 @@ static cw_status hold_to_pixels(const run_state *s, const cli_proof *p, cw_error
             return cw_fail(err, CW_ERR_CHECK,
                            "%s: not as promised: %.4g pixels off for camera %zu",
                            s->volume.path, p->views[n].pixels, n + 1);
+        else if (p->promised_pixels == 0 && p->views[n].apart > SAME_PICTURE)
+            return cw_fail(
+                err, CW_ERR_CHECK,
+                "%s: not as promised: without what is left out %.3g %% of the pixels "
+                "of camera %zu differ",
+                s->volume.path, 100 * p->views[n].apart, n + 1);
     return CW_OK;
 }
 
@@ -934,12 +947,10 @@ const cli_command cli_extract = {
         "--pixel-error and keeps its shading; out of sight the mesh is coarse, but closed. It "
         "is\n"
         "compared with the full one. --cull leaves out what none sees: it is then open.\n"
-        "--max-error alone is --simplify, proven: measured "
-        "against\n"
-        "the full surface, both ways; exit code 1, and no file, if it should not hold.\n\n"
-        "--min-volume counts a component with all that is in it, which goes with it, and so "
-        "fills\n"
-        "small cavities; an open one up to the middle of its box.\n\n"
+        "--max-error alone is --simplify, proven: measured against the full surface, both\n"
+        "ways; exit code 1, and no file, if it should not hold.\n\n"
+        "--min-volume counts a component with all that is in it, which goes with it, and so\n"
+        "fills small cavities; an open one up to the middle of its box.\n\n"
         "STL, PLY and OBJ hold world coordinates; far from the world's zero single precision\n"
         "loses them, and extract warns. With --local they are relative to the mesh's origin:\n"
         "add it to get the world's. It is printed, and named in the report and in the file.\n"

@@ -24,6 +24,7 @@ bad() { cubewright extract s.nrrd --iso 0 -o bad.ply "$@" || echo "exit $?"; }
 bad --cull
 bad --camera cam.json --cull --shading 2
 bad --camera cam.json --cull --max-error 1mm
+bad --camera cam.json --cull --snap 0.3
 bad --camera '{"schema": "cubewright-camera-1", "eye": [0, -80, 0], "target": [0, -90, 0], "up": [0, 0, 1], "fov_deg": 8}' --cull -q
 bad --camera '{"schema": "cubewright-camera-1", "eye": [0, -80, 0], "target": [38, 0, 38], "up": [0, 0, 1], "fov_deg": 1}' --cull -q
 ls *.ply

@@ -374,7 +374,7 @@ static void what_no_view_sees_is_left_out(void **state)
     const cw_mesh full = surface(24);
     size_t went = 0;
     srand(7);
-    for (int round = 0; round < 12; round++) {
+    for (int round = 0; round < 6; round++) {
         cw_simplify_view views[2] = {random_view(&full, round), random_view(&full, round + 1)};
         cw_volume volume = noisy_gyroid(24);
         cw_mesh culled = test_extract(&volume, NULL, NULL);
@@ -408,7 +408,7 @@ static void what_no_view_sees_is_left_out(void **state)
         cw_mesh_free(&culled);
         cw_volume_free(&volume);
     }
-    assert_true(went > full.triangle_count);
+    assert_true(went > full.triangle_count / 2);
     cw_mesh mesh = full;
     cw_error err = {0};
     const cw_simplify_view view = random_view(&full, 1), none = {.width = 0};
