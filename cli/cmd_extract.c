@@ -5,6 +5,7 @@
 #include "cli/frames.h"
 #include "cli/output.h"
 #include "cli/pixels.h"
+#include "cli/proof.h"
 #include "cli/pvd.h"
 #include "cli/quantity.h"
 #include "cli/surface.h"
@@ -28,17 +29,22 @@ typedef struct extract_args {
     cli_steps steps;
     cli_number snap, fps;
     cli_reduction simplify;
+    cli_amount least;
     cli_pixel_args pixel;
     int inside, normals, progress, topology, placement, accel;
-    bool open, no_clobber, local, check, animate;
+    bool open, no_clobber, local, check, animate, prove_crop;
     size_t max_triangles;
 } extract_args;
 
-enum { PROVENANCE_LINES = 5, DEFAULT_FPS = 10, MOST_TRIES = 4 };
+enum { PROVENANCE_LINES = 5, DEFAULT_FPS = 10 };
 
 /* Degrees: of a head in 1280 x 720 pixels 1 in 200 then looks different, of 2 degrees 1 in 100.
  */
 static const double SHADING = 1.5;
+
+/* The share of pixels that may differ where nothing was to: places of a part of the volume are
+ * rounded about another origin. */
+static const double SAME_PICTURE = 1e-4;
 
 static const extract_args defaults = {.check = true};
 
@@ -77,6 +83,10 @@ static const cli_option options[] = {
      "while extracting, as far as an error allows (0.1mm, 0.05%, 0.5vox) or to so many "
      "triangles (50k) (off)",
      offsetof(extract_args, simplify)},
+    {"min-volume", 0, CLI_VOLUME, "V",
+     "leave out components that enclose less, with what is in them: 500mm3, 0.5ml, 30vox "
+     "(none)",
+     offsetof(extract_args, least)},
     {"camera", 0, CLI_TEXT, "FILE[,FILE...]",
      "keep only what the pictures of these cameras need; .json files of render, or the text of "
      "one; with --pixel-error",
@@ -84,14 +94,17 @@ static const cli_option options[] = {
     {"pixel-error", 0, CLI_NUMBER, "N",
      "so many pixels of --camera the surface may be off, where it is seen",
      offsetof(extract_args, pixel.pixels)},
+    {"cull", 0, CLI_FLAG, NULL,
+     "leave out what no --camera sees, beside its picture or behind the surface (off)",
+     offsetof(extract_args, pixel.cull)},
     {"size", 0, CLI_SIZES, "WxH", "of those pictures, in pixels (1280x720)",
      offsetof(extract_args, pixel.size)},
     {"shading", 0, CLI_NUMBER, "DEG",
      "what --camera sees is joined where normals agree within this; 180 is anywhere (1.5)",
      offsetof(extract_args, pixel.shading)},
     {"max-error", 0, CLI_LENGTH, "L",
-     "no farther from the field's surface than this (0.2mm, 0.05%, 0.5vox), measured; with "
-     "--camera from the full mesh's, out of sight (off)",
+     "as --simplify, no farther from the full surface than this (0.2mm, 0.05%, 0.5vox), and "
+     "measured, both ways; with --camera out of sight (off)",
      offsetof(extract_args, pixel.most)},
     {"normals", 0, CLI_CHOICE, "field/none", "normals from the field's gradient (field)",
      offsetof(extract_args, normals)},
@@ -109,6 +122,10 @@ static const cli_option options[] = {
      offsetof(extract_args, local)},
     {"check", 0, CLI_FLAG, NULL, "measure the mesh: closed, manifold, size (on; --no-check)",
      offsetof(extract_args, check)},
+    {"prove-crop", 0, CLI_FLAG, NULL,
+     "extract the whole volume, too: its surface is the same there, and what --crop saved "
+     "(off)",
+     offsetof(extract_args, prove_crop)},
     {"max-triangles", 0, CLI_COUNT, "N", "stop before making more, e.g. 100M (no limit)",
      offsetof(extract_args, max_triangles)},
     {"json", 0, CLI_TEXT, "FILE", "write a report; - is the standard output",
@@ -139,6 +156,11 @@ typedef struct run_state {
     double start; /* of the surface at hand */
 } run_state;
 
+static size_t voxel_count(const cw_volume *v)
+{
+    return v->dim[0] * v->dim[1] * v->dim[2];
+}
+
 static double voxel_mm(const run_state *s)
 {
     const double *spacing = s->volume.spacing;
@@ -164,6 +186,16 @@ static double error_mm(const run_state *s)
     return length_mm(s, &s->args->simplify.error);
 }
 
+/* What components have to enclose; 0: nothing. */
+static double least_mm3(const run_state *s)
+{
+    const cli_amount *least = &s->args->least;
+    const double voxel = voxel_mm(s);
+    return !least->given   ? 0
+           : least->voxels ? least->value * voxel * voxel * voxel
+                           : least->value;
+}
+
 static bool is_low(const run_state *s)
 {
     return cli_inside_is_low(s->args->inside, &s->volume.whole);
@@ -171,7 +203,7 @@ static bool is_low(const run_state *s)
 
 static bool is_simplified(const extract_args *args)
 {
-    return args->simplify.error.given || args->simplify.triangles || args->pixel.camera ||
+    return args->simplify.error.given || args->simplify.triangles || args->pixel.pixels.given ||
            args->pixel.most.given;
 }
 
@@ -188,9 +220,12 @@ static void put_pixels(cli_json *j, const run_state *s)
     if (!a->camera)
         return;
     cli_json_count(j, "cameras", s->view_count);
-    cli_json_number(j, "pixel_error", a->pixels.value);
+    cli_json_bool(j, "cull", a->cull);
     cli_json_count(j, "width", s->views[0].width);
     cli_json_count(j, "height", s->views[0].height);
+    if (!a->pixels.given)
+        return;
+    cli_json_number(j, "pixel_error", a->pixels.value);
     cli_json_number(j, "shading_deg", shading(s->args));
 }
 
@@ -209,6 +244,8 @@ static void put_params(cli_json *j, const void *p, const cli_made *made)
         cli_json_number(j, "simplify_error_mm", error_mm(s));
     else if (args->simplify.triangles)
         cli_json_count(j, "simplify_triangles", args->simplify.triangles);
+    if (args->least.given)
+        cli_json_number(j, "min_volume_mm3", least_mm3(s));
     put_pixels(j, s);
     cli_json_text(j, "normals", args->normals ? "none" : "field");
     if (args->iso.count > 1)
@@ -309,11 +346,21 @@ static cw_status check_pixels(run_state *s, cw_error *err)
     if ((args->pixel.camera || args->pixel.most.given) &&
         (args->simplify.error.given || args->simplify.triangles))
         return cw_fail(err, CW_ERR_ARGUMENT, "%s or --simplify, not both", reducer(args));
+    return CW_OK;
+}
 
-    if (args->pixel.most.given && !args->pixel.camera && (!args->check || args->placement))
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--max-error is measured, to the field's surface: it cannot be with %s",
-                       args->check ? "--placement cubic" : "--no-check");
+static cw_status check_crop(const extract_args *args, cw_error *err)
+{
+    const cli_input *input = &args->input;
+    if (!args->prove_crop)
+        return CW_OK;
+    if (!input->crop.given)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--prove-crop is for what --crop leaves");
+    if (input->preview || input->coarsen || args->snap.value > 0)
+        return cw_fail(
+            err, CW_ERR_ARGUMENT,
+            "--prove-crop is for all voxels and their crossings: it cannot be with %s",
+            args->snap.value > 0 ? "--snap" : "a preview");
     return CW_OK;
 }
 
@@ -338,8 +385,13 @@ static cw_status check_args(run_state *s, cw_error *err)
                        "--snap is a share of an edge, 0 to %g, and not %g", CW_EXTRACT_MAX_SNAP,
                        args->snap.value);
     st = check_pixels(s, err);
+    if (st == CW_OK)
+        st = check_crop(args, err);
     if (st != CW_OK)
         return st;
+    if (args->pixel.cull && args->snap.value > 0)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--cull needs the plain surface: it cannot be with --snap");
     if (is_simplified(args) && args->snap.value > 0)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "--snap and %s both remove needles: give one of them", reducer(args));
@@ -351,25 +403,26 @@ static cw_status check_args(run_state *s, cw_error *err)
     return check_animation(args, err);
 }
 
-static cw_extract_desc extract_desc(const run_state *s, double iso)
+static cli_wanted wanted(const run_state *s, double iso)
 {
-    return (cw_extract_desc){
-        .isovalue = iso,
-        .inside_is_low = is_low(s),
-        .leave_open = s->args->open,
-        .simple_topology = s->args->topology,
-        .cubic_placement = s->args->placement,
-        .snap = s->args->snap.value,
-        .no_normals = s->args->normals,
-        .threads = (int)s->args->input.threads,
-        .max_triangles = s->args->max_triangles,
+    return (cli_wanted){
+        .extract = {.isovalue = iso,
+                    .inside_is_low = is_low(s),
+                    .leave_open = s->args->open,
+                    .simple_topology = s->args->topology,
+                    .cubic_placement = s->args->placement,
+                    .snap = s->args->snap.value,
+                    .no_normals = s->args->normals,
+                    .threads = (int)s->args->input.threads,
+                    .max_triangles = s->args->max_triangles},
+        .least_mm3 = least_mm3(s),
     };
 }
 
 /* error_mm  of the surface as it is extracted; with cameras: out of their sight */
 static cw_simplify_desc simplify_desc(const run_state *s, double error)
 {
-    const bool seen = s->view_count > 0;
+    const bool seen = s->args->pixel.pixels.given;
     return (cw_simplify_desc){
         .error_mm = error,
         .triangles = s->args->simplify.triangles,
@@ -387,63 +440,62 @@ static cw_status find_error(const run_state *s, double *error, cw_error *err)
     *error = args->simplify.error.given ? error_mm(s) : 0;
     if (args->pixel.most.given)
         *error = length_mm(s, &args->pixel.most);
-    else if (s->view_count)
+    else if (args->pixel.pixels.given)
         return cli_widest_error(&s->volume, s->views, s->view_count, args->pixel.pixels.value,
                                 error, err);
     return CW_OK;
 }
 
-/* Depths of the surface first, then what they leave of it. */
-static cw_status extract_for_views(run_state *s, const cw_extract_desc *desc,
-                                   const cw_simplify_desc *simplify, cw_mesh *mesh,
-                                   cw_extract_counts *counts, cw_error *err)
+/* What there is besides the picture's, so that nothing of it is missed by rounding. */
+static double pixels_around(const run_state *s)
 {
+    return 1 + (s->args->pixel.pixels.given ? s->args->pixel.pixels.value : 0);
+}
+
+/* Depths of the surface first, then what they leave of it. To be culled, it is extracted where
+ * it may be seen only, unless all of a component counts. */
+static cw_status extract_for_views(run_state *s, const cli_wanted *w,
+                                   const cw_simplify_desc *simplify, cli_made *made,
+                                   cw_mesh *mesh, cw_extract_counts *counts, cw_error *err)
+{
+    const bool cull = s->args->pixel.cull;
+    cli_proof *p = &made->proof;
+    cli_volume part = s->volume;
+    cw_status st = CW_OK;
     for (size_t n = 0; n < s->view_count; n++)
         cw_simplify_view_free(s->views + n);
-    cw_status st = cli_draw_views(&s->volume, desc, s->views, s->view_count, err);
-    return st == CW_OK ? cli_extract_simplified(&s->volume, desc, simplify, mesh, counts, err)
-                       : st;
+    if (cull && !(w->least_mm3 > 0))
+        st = cli_seen_part(&s->volume, s->views, s->view_count, &part, err);
+    if (st == CW_OK)
+        st = cli_draw_views(&part, w, s->views, s->view_count, err);
+    if (st == CW_OK)
+        st = is_simplified(s->args)
+                 ? cli_extract_simplified(&part, w, simplify, mesh, counts, &made->components,
+                                          err)
+                 : cli_extract_wanted(&part, NULL, w, mesh, counts, &made->components, err);
+    if (st != CW_OK || !cull)
+        return st;
+    p->voxels = voxel_count(&s->volume.view);
+    p->seen_voxels = voxel_count(&part.view);
+    return cli_cull(&s->volume, s->views, s->view_count, pixels_around(s), simplify->error_mm,
+                    mesh, &p->culled, err);
 }
 
-static cw_status measure_field(run_state *s, cli_made *made, const cw_mesh *mesh, cw_error *err)
+static void tell_components(const run_state *s, const cli_made *made)
 {
-    made->compared.has_field = false;
-    cw_status st = cli_compare_with_field(mesh, &s->volume, made->iso, is_low(s),
-                                          (int)s->args->input.threads, &made->compared, err);
-    return st == CW_OK ? st : cwi_fail_in(err, st, s->volume.path);
-}
-
-/* The extracted surface is off the field's, too: by how much is seen from the result, and the
- * next one is given less. */
-static cw_status extract_within(run_state *s, cli_made *made, const cw_extract_desc *desc,
-                                double most, cw_mesh *mesh, cw_extract_counts *counts,
-                                cw_error *err)
-{
-    double error = most, measured = INFINITY;
-    for (int n = 0; n < MOST_TRIES && error > 0.01 * most; n++) {
-        const cw_simplify_desc simplify = simplify_desc(s, error);
-        cw_mesh_free(mesh);
-        cw_status st = cli_extract_simplified(&s->volume, desc, &simplify, mesh, counts, err);
-        if (st == CW_OK)
-            st = measure_field(s, made, mesh, err);
-        if (st != CW_OK)
-            return st;
-        measured = made->compared.to_field.max_mm;
-        if (measured <= most)
-            return CW_OK;
-        error = fmin(0.5 * error, 0.95 * (most - (measured - error)));
-    }
-    return cw_fail(err, CW_ERR_CHECK,
-                   "%s: not as promised: the result is up to %.4g mm from the field's surface, "
-                   "and not %.4g: that of cells is too far from it by itself",
-                   s->volume.path, measured, most);
+    const cw_drop_counts *c = &made->components;
+    cli_say(
+        "%s: %s component%s kept, of %.6g mm3 or more; %s dropped (< %.6g mm3), of %.6g mm3 "
+        "or less: %s triangles fewer",
+        s->volume.path, cli_count(c->kept), c->kept == 1 ? "" : "s", c->least_kept_mm3,
+        cli_count(c->dropped), made->least_mm3, c->largest_mm3, cli_count(c->triangles));
 }
 
 static cw_status extract(run_state *s, cli_made *made, cw_mesh *mesh, cw_extract_counts *counts,
                          cw_error *err)
 {
-    const cw_volume *v = &s->volume.view;
-    const cw_extract_desc desc = extract_desc(s, made->iso);
+    const cli_wanted w = wanted(s, made->iso);
+    cw_drop_counts *dropped = &made->components;
     double error;
     cw_status st = find_error(s, &error, err);
     if (st != CW_OK)
@@ -451,17 +503,24 @@ static cw_status extract(run_state *s, cli_made *made, cw_mesh *mesh, cw_extract
     const cw_simplify_desc simplify = simplify_desc(s, error);
     cli_report_begin(&s->report);
     if (s->view_count)
-        st = extract_for_views(s, &desc, &simplify, mesh, counts, err);
-    else if (s->args->pixel.most.given)
-        st = extract_within(s, made, &desc, error, mesh, counts, err);
+        st = extract_for_views(s, &w, &simplify, made, mesh, counts, err);
     else if (is_simplified(s->args))
-        st = cli_extract_simplified(&s->volume, &desc, &simplify, mesh, counts, err);
+        st = cli_extract_simplified(&s->volume, &w, &simplify, mesh, counts, dropped, err);
     else
-        st = cli_extract_surface(&s->volume, s->extractor, &desc, mesh, counts, err);
-    if (st == CW_OK)
-        cli_report_end(&s->report, "extract", v->dim[0] * v->dim[1] * v->dim[2],
-                       mesh->triangle_count);
-    return st;
+        st = cli_extract_wanted(&s->volume, s->extractor, &w, mesh, counts, dropped, err);
+    if (st != CW_OK)
+        return st;
+    cli_report_end(&s->report, "extract", voxel_count(&s->volume.view), mesh->triangle_count);
+    made->least_mm3 = w.least_mm3;
+    if (w.least_mm3 > 0)
+        tell_components(s, made);
+    if (s->args->pixel.cull)
+        cli_say(
+            "%s: %.3g %% of the voxels are in bricks that cameras see; %s triangles of these "
+            "that none does are left out",
+            s->volume.path, 100 * (double)made->proof.seen_voxels / (double)made->proof.voxels,
+            cli_count(made->proof.culled));
+    return CW_OK;
 }
 
 /* What became of all the triangles, and how far from the field the result is: from a field of
@@ -484,33 +543,17 @@ static cw_status judge_simplified(run_state *s, cli_made *made, const cw_mesh *m
                 cwi_volume_kind(&s->volume.view));
         return CW_OK;
     }
-    if (made->compared.has_field)
-        return CW_OK;
     cli_report_begin(&s->report);
-    cw_status st = measure_field(s, made, mesh, err);
-    if (st == CW_OK)
-        cli_report_end(&s->report, "measure", mesh->triangle_count, mesh->triangle_count);
-    return st;
+    cw_status st = cli_compare_with_field(mesh, &s->volume, made->iso, is_low(s),
+                                          (int)args->input.threads, &made->compared, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, s->volume.path);
+    cli_report_end(&s->report, "measure", mesh->triangle_count, mesh->triangle_count);
+    return CW_OK;
 }
 
-/* The promise was kept by bounds, all over; here it is seen from outside. */
-static cw_status prove(run_state *s, cli_made *made, const cw_mesh *mesh, size_t bytes,
-                       cw_error *err)
+static cw_status hold_to_pixels(const run_state *s, const cli_proof *p, cw_error *err)
 {
-    const cw_extract_desc desc = extract_desc(s, made->iso);
-    cli_proof *p = &made->proof;
-    double error;
-    if (!s->view_count || !s->args->check)
-        return CW_OK;
-    cli_report_begin(&s->report);
-    cw_status st = find_error(s, &error, err);
-    const cw_simplify_desc simplify = simplify_desc(s, error);
-    if (st == CW_OK)
-        st = cli_prove_views(&s->volume, &desc, &simplify, mesh, p, err);
-    if (st != CW_OK)
-        return st;
-    p->bytes = bytes;
-    cli_report_end(&s->report, "prove", p->full_triangles, mesh->triangle_count);
     for (size_t n = 0; n < p->count; n++)
         cli_say("%s: camera %zu: at most %.3g pixels off, %.3g promised; %.3g %% of its pixels "
                 "differ by more than 2/255",
@@ -521,6 +564,59 @@ static cw_status prove(run_state *s, cli_made *made, const cw_mesh *mesh, size_t
             return cw_fail(err, CW_ERR_CHECK,
                            "%s: not as promised: %.4g pixels off for camera %zu",
                            s->volume.path, p->views[n].pixels, n + 1);
+        else if (p->promised_pixels == 0 && p->views[n].apart > SAME_PICTURE)
+            return cw_fail(
+                err, CW_ERR_CHECK,
+                "%s: not as promised: without what is left out %.3g %% of the pixels "
+                "of camera %zu differ",
+                s->volume.path, 100 * p->views[n].apart, n + 1);
+    return CW_OK;
+}
+
+/* The promise was kept by bounds, all over; here it is seen from outside. */
+static cw_status prove(run_state *s, cli_made *made, const cw_mesh *mesh, size_t bytes,
+                       cw_error *err)
+{
+    const cli_wanted w = wanted(s, made->iso);
+    cli_proof *p = &made->proof;
+    double error;
+    if (!s->args->check || !(s->view_count || s->args->pixel.most.given))
+        return CW_OK;
+    cli_report_begin(&s->report);
+    cw_status st = find_error(s, &error, err);
+    const cw_simplify_desc simplify = simplify_desc(s, error);
+    if (st == CW_OK)
+        st = s->view_count
+                 ? cli_prove_views(&s->volume, &w, &simplify, mesh, p, err)
+                 : cli_prove_error(&s->volume, &w, &simplify, mesh, p, &made->compared, err);
+    if (st != CW_OK)
+        return st;
+    p->bytes = bytes;
+    cli_report_end(&s->report, "prove", p->full_triangles, mesh->triangle_count);
+    return hold_to_pixels(s, p, err);
+}
+
+static cw_status prove_crop(run_state *s, const cli_moment *moment, cli_made *made,
+                            cw_error *err)
+{
+    const cli_wanted w = wanted(s, made->iso);
+    const cli_crop_proof *p = &made->crop;
+    cli_input input = s->args->input;
+    if (!s->args->prove_crop)
+        return CW_OK;
+    input.step = moment->step;
+    cli_report_begin(&s->report);
+    cw_status st = cli_prove_crop(&s->volume, &input, &w, &made->crop, err);
+    if (st != CW_OK)
+        return st;
+    cli_report_end(&s->report, "prove crop", p->whole_triangles, p->triangles);
+    cli_say("%s: %s triangles, as the whole surface has them there: %.3g %% of its %s, of "
+            "%.3g %% of the voxels; %s and %.3g s in place of %s and %.3g s",
+            s->volume.path, cli_count(p->triangles),
+            100 * (double)p->triangles / (double)p->whole_triangles,
+            cli_count(p->whole_triangles), 100 * (double)p->voxels / (double)p->whole_voxels,
+            cli_bytes((double)p->bytes), p->seconds, cli_bytes((double)p->whole_bytes),
+            p->whole_seconds);
     return CW_OK;
 }
 
@@ -535,11 +631,11 @@ static size_t tell_provenance(const run_state *s, size_t n, char level[32], char
     lines[1] = (cw_provenance){"inside", is_low(s) ? "below" : "above"};
     lines[2] = (cw_provenance){"topology", args->topology ? "simple" : "field"};
     lines[3] = (cw_provenance){"placement", args->placement ? "cubic" : "linear"};
-    if (args->pixel.camera)
+    if (args->pixel.pixels.given)
         snprintf(simplify, 64, "to %.9g pixels of %zu cameras", args->pixel.pixels.value,
                  s->view_count);
     else if (args->pixel.most.given)
-        snprintf(simplify, 64, "to %.9g mm of the field", length_mm(s, &args->pixel.most));
+        snprintf(simplify, 64, "to %.9g mm", length_mm(s, &args->pixel.most));
     else if (args->simplify.error.given)
         snprintf(simplify, 64, "to %.9g mm", error_mm(s));
     else
@@ -575,6 +671,7 @@ static cli_delivery delivery(const run_state *s)
                           .voxel_mm = voxel_mm(s),
                           .unchecked = !s->args->check,
                           .open = s->args->open,
+                          .unpromised = s->args->pixel.cull,
                           .preview = cli_is_preview(&s->volume)};
 }
 
@@ -605,6 +702,8 @@ static cw_status make_surface(run_state *s, const cli_moment *moment, size_t n, 
         st = judge_simplified(s, made, &mesh, &counts, err);
     if (st == CW_OK)
         st = prove(s, made, &mesh, counts.bytes, err);
+    if (st == CW_OK)
+        st = prove_crop(s, moment, made, err);
     if (st == CW_OK)
         st = s->args->animate
                  ? cli_deliver_step(&s->report, &how, &mesh, counts.border_loops, s->start, err)
@@ -847,7 +946,11 @@ const cli_command cli_extract = {
         "--camera keeps what its pictures need: what is seen is off by no more than\n"
         "--pixel-error and keeps its shading; out of sight the mesh is coarse, but closed. It "
         "is\n"
-        "compared with the full one. --max-error is measured to the field's surface.\n\n"
+        "compared with the full one. --cull leaves out what none sees: it is then open.\n"
+        "--max-error alone is --simplify, proven: measured against the full surface, both\n"
+        "ways; exit code 1, and no file, if it should not hold.\n\n"
+        "--min-volume counts a component with all that is in it, which goes with it, and so\n"
+        "fills small cavities; an open one up to the middle of its box.\n\n"
         "STL, PLY and OBJ hold world coordinates; far from the world's zero single precision\n"
         "loses them, and extract warns. With --local they are relative to the mesh's origin:\n"
         "add it to get the world's. It is printed, and named in the report and in the file.\n"
@@ -882,12 +985,8 @@ const cli_command cli_extract = {
         "time.\n\n"
         "Examples\n"
         "  cubewright extract head.nii.gz --iso 50 -o head.glb\n"
-        "  cubewright extract ct.nrrd --iso -400,300 -o '{stem}-{level}.glb'\n"
         "  cubewright extract ct.nrrd --iso 300 -o bone.stl --json report.json\n"
-        "  cubewright extract ct.nrrd --iso 300 -o bone.glb --simplify 0.1mm\n"
         "  cubewright extract ct.nrrd --iso 300 -o v.glb --camera cam.json --pixel-error 1\n"
-        "  cubewright extract heart.nii.gz --iso 90 --steps all -o 'heart-{step:02d}.ply'\n"
-        "  cubewright extract 'scan-*.nrrd' --iso 300 -o '{stem}.glb'\n"
         "  cubewright extract heart.nii.gz --iso 90 --steps all -o 'out/{step}.vtp' --pvd "
         "h.pvd\n"
         "  cubewright extract 'scan-*.nrrd' --iso 300 --animate --fps 4 -o scan.glb\n"

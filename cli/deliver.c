@@ -212,9 +212,10 @@ static void print_distance(const cli_comparison *c)
     const double percent = c->diagonal_mm > 0 ? 100 / c->diagonal_mm : 0;
     const double most = fmax(to->max_mm, from->max_mm), p99 = fmax(to->p99_mm, from->p99_mm);
     const double rms = cli_both_rms(c);
-    cli_result("; at most %.3g mm (%.2g %% of the diagonal) from the input and back, "
+    cli_result("; at most %.3g mm (%.2g %% of the diagonal) from %s and back, "
                "rms %.3g mm (%.2g %%), 99 %% within %.3g mm (%.2g %%)",
-               most, percent * most, rms, percent * rms, p99, percent * p99);
+               most, percent * most, c->other ? c->other : "the input", rms, percent * rms, p99,
+               percent * p99);
     if (c->promised_mm > 0)
         cli_result(", within the %.6g mm asked for", c->promised_mm);
 }

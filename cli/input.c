@@ -384,6 +384,21 @@ cw_status cli_read_volume(const char *path, const cli_input *input, bool header_
     return st;
 }
 
+cw_status cli_read_whole(const cli_volume *part, const cli_input *input, cli_volume *whole,
+                         cw_error *err)
+{
+    cw_raw_layout raw;
+    cw_read_desc desc = cli_read_desc(input);
+    *whole = (cli_volume){.path = part->path, .format = part->format};
+    whole->memory_left = desc.max_bytes;
+    cw_status st = set_raw(input, &raw, &desc, err);
+    if (st == CW_OK)
+        st = cw_volume_read(part->path, &desc, &whole->voxels, NULL, err);
+    if (st == CW_OK)
+        st = cw_volume_select(&whole->voxels, input->component, input->step, &whole->view, err);
+    return st == CW_OK ? st : cwi_fail_in(err, st, part->path);
+}
+
 bool cli_inside_is_low(int inside, const cw_volume *volume)
 {
     return inside == CLI_INSIDE_BELOW ||

@@ -162,6 +162,11 @@ cw_read_desc cli_read_desc(const cli_input *input);
 cw_status cli_read_volume(const char *path, const cli_input *input, bool header_only,
                           cli_volume *volume, cw_error *err);
 
+/* All voxels of what --crop left a part of, without a word: the file was told of. Free with
+ * cli_free_volume(). */
+cw_status cli_read_whole(const cli_volume *part, const cli_input *input, cli_volume *whole,
+                         cw_error *err);
+
 /* The header alone, without a word. */
 cw_status cli_read_shape(const char *path, const cli_input *input, cw_volume *shape,
                          cw_error *err);

@@ -163,23 +163,15 @@ static bool store_weights(const char *names, const char *text, cli_weights *out)
 size_t cli_option_size(const cli_option *o)
 {
     static const size_t sizes[] = {
-        [CLI_FLAG] = sizeof(bool),
-        [CLI_TEXT] = sizeof(const char *),
-        [CLI_CHOICE] = sizeof(int),
-        [CLI_NUMBER] = sizeof(cli_number),
-        [CLI_NUMBERS] = sizeof(cli_numbers),
-        [CLI_COUNT] = sizeof(size_t),
-        [CLI_COUNTS] = sizeof(cli_counts),
-        [CLI_BYTES] = sizeof(size_t),
-        [CLI_LENGTHS] = sizeof(cli_lengths),
-        [CLI_LENGTH] = sizeof(cli_length),
-        [CLI_SIZES] = sizeof(cli_sizes),
-        [CLI_RANGES] = sizeof(cli_ranges),
-        [CLI_REDUCTION] = sizeof(cli_reduction),
-        [CLI_STEPS] = sizeof(cli_steps),
-        [CLI_WEIGHTS] = sizeof(cli_weights),
-        [CLI_LOUDER] = sizeof(int),
-        [CLI_HEADING] = 0,
+        [CLI_FLAG] = sizeof(bool),           [CLI_TEXT] = sizeof(const char *),
+        [CLI_CHOICE] = sizeof(int),          [CLI_NUMBER] = sizeof(cli_number),
+        [CLI_NUMBERS] = sizeof(cli_numbers), [CLI_COUNT] = sizeof(size_t),
+        [CLI_COUNTS] = sizeof(cli_counts),   [CLI_BYTES] = sizeof(size_t),
+        [CLI_LENGTHS] = sizeof(cli_lengths), [CLI_LENGTH] = sizeof(cli_length),
+        [CLI_VOLUME] = sizeof(cli_amount),   [CLI_SIZES] = sizeof(cli_sizes),
+        [CLI_RANGES] = sizeof(cli_ranges),   [CLI_REDUCTION] = sizeof(cli_reduction),
+        [CLI_STEPS] = sizeof(cli_steps),     [CLI_WEIGHTS] = sizeof(cli_weights),
+        [CLI_LOUDER] = sizeof(int),          [CLI_HEADING] = 0,
     };
     return sizes[o->kind];
 }
@@ -272,6 +264,8 @@ static bool store(const cli_option *o, const char *text, void *field)
         return cli_parse_lengths(text, field);
     case CLI_LENGTH:
         return cli_parse_length(text, field);
+    case CLI_VOLUME:
+        return cli_parse_amount(text, field);
     case CLI_REDUCTION:
         return cli_parse_reduction(text, field);
     case CLI_SIZES:
@@ -306,6 +300,8 @@ static const char *expectation(const cli_option *o)
         return "a length above 0 such as 0.5mm or 12um, or three of them by comma";
     case CLI_LENGTH:
         return "a length above 0 such as 0.1mm, 0.05% (of the box's diagonal) or 0.5vox";
+    case CLI_VOLUME:
+        return "a volume above 0 such as 500mm3, 0.5ml or 30vox";
     case CLI_REDUCTION:
         return "an error with its unit such as 0.1mm, 0.05% (of the box's diagonal) or 0.5vox, "
                "or a number of triangles such as 50k";

@@ -15,6 +15,7 @@ typedef enum cli_kind {
     CLI_BYTES,     /* size_t: 512M, 8G (1024s) */
     CLI_LENGTHS,   /* cli_lengths: one for all axes or three; 0.5mm,12um, bare is mm */
     CLI_LENGTH,    /* cli_length: 0.1mm, 0.05% of the box's diagonal, 0.5vox; bare is mm */
+    CLI_VOLUME,    /* cli_amount: 500mm3, 0.5ml, 30vox; bare is mm3 */
     CLI_SIZES,     /* cli_sizes: 64, 1280x720 or 512x512x300 */
     CLI_RANGES,    /* cli_ranges: 10:50,0:99,20:40 in voxels, -30mm:30mm,... in the world */
     CLI_REDUCTION, /* cli_reduction */
@@ -56,6 +57,12 @@ typedef struct cli_length {
     double value;
     cli_length_unit unit; /* millimetres, % of a box's diagonal, or voxels */
 } cli_length;
+
+/* A part of space. */
+typedef struct cli_amount {
+    bool given, voxels;
+    double value; /* cubic millimetres, or as many voxels */
+} cli_amount;
 
 enum { CLI_MAX_WEIGHTS = 4 };
 

@@ -1,6 +1,7 @@
 #include "cli/pixels.h"
 
 #include "cli/console.h"
+#include "cli/proof.h"
 #include "core/status.h"
 #include "core/volume.h"
 
@@ -17,14 +18,16 @@ enum { MOST_SIDE = 16384, MOST_PATH = 4096, SHOWN = 2 }; /* SHOWN: a difference 
 static cw_status check(const cli_pixel_args *a, cw_error *err)
 {
     const size_t *n = a->size.n;
-    if (!a->camera && (a->pixels.given || a->shading.given || a->size.count))
+    if (!a->camera && (a->pixels.given || a->shading.given || a->size.count || a->cull))
         return cw_fail(err, CW_ERR_ARGUMENT, "%s is for the pictures of --camera",
                        a->pixels.given    ? "--pixel-error"
                        : a->shading.given ? "--shading"
+                       : a->cull          ? "--cull"
                                           : "--size");
-    if (a->camera && !a->pixels.given)
+    if (a->camera && !a->pixels.given && (!a->cull || a->shading.given || a->most.given))
         return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--camera needs --pixel-error: how many pixels the surface may be off");
+                       "--camera needs --pixel-error: how many pixels the surface may be off%s",
+                       a->cull ? "" : "; or --cull");
     if (a->pixels.given && !(isfinite(a->pixels.value) && a->pixels.value > 0))
         return cw_fail(err, CW_ERR_ARGUMENT, "--pixel-error %g: it must be above 0",
                        a->pixels.value);
@@ -137,15 +140,117 @@ static cw_status draw(void *p, const cw_slab *slab, cw_error *err)
     return st;
 }
 
-cw_status cli_draw_views(const cli_volume *volume, const cw_extract_desc *desc,
+static cw_status draw_whole(const cli_volume *volume, const cli_wanted *wanted, drawn *all,
+                            cw_error *err)
+{
+    cw_mesh mesh;
+    cw_extract_counts counts;
+    cw_status st = cli_extract_wanted(volume, NULL, wanted, &mesh, &counts, NULL, err);
+    if (st == CW_OK)
+        st = draw(all, &(cw_slab){.mesh = &mesh}, err);
+    cw_mesh_free(&mesh);
+    return st;
+}
+
+/* Which components are large enough is known when all is there. */
+cw_status cli_draw_views(const cli_volume *volume, const cli_wanted *wanted,
                          cw_simplify_view *views, size_t count, cw_error *err)
 {
-    cw_extract_desc d = *desc;
+    cli_wanted w = *wanted;
     drawn all = {views, count};
-    d.max_bytes = volume->memory_left;
-    d.no_normals = true;
-    cw_status st = cw_extract_slabs(&volume->view, &d, CW_SIMPLIFIER_SLAB,
+    w.extract.max_bytes = volume->memory_left;
+    w.extract.no_normals = true;
+    if (w.least_mm3 > 0)
+        return draw_whole(volume, &w, &all, err);
+    cw_status st = cw_extract_slabs(&volume->view, &w.extract, CW_SIMPLIFIER_SLAB,
                                     (cw_slab_sink){draw, &all}, NULL, err);
+    return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
+}
+
+/* --- what no view sees ---------------------------------------------------------------------
+ */
+
+enum { BRICK = 8, AROUND = 2 };
+
+/* Corners of the brick's cells that the volume has. */
+static void place_brick(const cw_volume *v, const size_t first[3], double points[8][3])
+{
+    for (int n = 0; n < 8; n++) {
+        double index[3];
+        for (int a = 0; a < 3; a++) {
+            const size_t end = first[a] + BRICK < v->dim[a] ? first[a] + BRICK : v->dim[a] - 1;
+            index[a] = (double)(n >> a & 1 ? end : first[a]);
+        }
+        cw_volume_to_world(v, index, points[n]);
+    }
+}
+
+static cw_status see_brick(const cw_simplify_view *views, size_t count, double points[8][3],
+                           bool *seen, cw_error *err)
+{
+    cw_status st = CW_OK;
+    *seen = false;
+    for (size_t n = 0; n < count && st == CW_OK && !*seen; n++) {
+        cw_simplify_view bare = views[n];
+        bare.depth = NULL;
+        st = cw_simplify_view_sees(&bare, 1, points[0], 8, seen, err);
+    }
+    return st;
+}
+
+static cw_status find_seen(const cw_volume *v, const cw_simplify_view *views, size_t count,
+                           size_t low[3], size_t high[3], cw_error *err)
+{
+    size_t at[3];
+    cw_status st = CW_OK;
+    for (int a = 0; a < 3; a++) {
+        low[a] = SIZE_MAX;
+        high[a] = 0;
+    }
+    for (at[2] = 0; at[2] + 1 < v->dim[2]; at[2] += BRICK)
+        for (at[1] = 0; at[1] + 1 < v->dim[1]; at[1] += BRICK)
+            for (at[0] = 0; at[0] + 1 < v->dim[0] && st == CW_OK; at[0] += BRICK) {
+                double points[8][3];
+                bool seen;
+                place_brick(v, at, points);
+                st = see_brick(views, count, points, &seen, err);
+                for (int a = 0; a < 3 && seen; a++) {
+                    low[a] = at[a] < low[a] ? at[a] : low[a];
+                    high[a] = at[a] + BRICK > high[a] ? at[a] + BRICK : high[a];
+                }
+            }
+    return st;
+}
+
+cw_status cli_seen_part(const cli_volume *volume, const cw_simplify_view *views, size_t count,
+                        cli_volume *part, cw_error *err)
+{
+    const cw_volume *v = &volume->view;
+    size_t low[3], high[3];
+    cw_box box;
+    *part = *volume;
+    if (cwi_volume_expect_dense(v, "bricks", NULL) != CW_OK)
+        return CW_OK;
+    cw_status st = find_seen(v, views, count, low, high, err);
+    if (st == CW_OK && low[0] == SIZE_MAX)
+        st = cw_fail(err, CW_ERR_EMPTY, "no camera sees anything of the volume");
+    for (int a = 0; a < 3 && st == CW_OK; a++) {
+        box.first[a] = low[a] > AROUND ? low[a] - AROUND : 0;
+        const size_t end = high[a] + AROUND + 1;
+        box.count[a] = (end < v->dim[a] ? end : v->dim[a]) - box.first[a];
+    }
+    if (st == CW_OK)
+        st = cw_volume_crop(v, &box, &part->view, err);
+    return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
+}
+
+cw_status cli_cull(const cli_volume *volume, const cw_simplify_view *views, size_t count,
+                   double pixels, double margin_mm, cw_mesh *mesh, size_t *dropped,
+                   cw_error *err)
+{
+    cw_status st = cw_simplify_cull(mesh, views, count, pixels, margin_mm, dropped, err);
+    if (st == CW_OK && !mesh->triangle_count)
+        st = cw_fail(err, CW_ERR_EMPTY, "no camera sees anything of the surface");
     return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
 }
 
@@ -236,25 +341,23 @@ static cw_status compare_pictures(const cw_simplify_view *view, const cw_mesh *f
     return st;
 }
 
-cw_status cli_prove_views(const cli_volume *volume, const cw_extract_desc *desc,
+cw_status cli_prove_views(const cli_volume *volume, const cli_wanted *wanted,
                           const cw_simplify_desc *simplify, const cw_mesh *mesh,
                           cli_proof *proof, cw_error *err)
 {
     cw_mesh full = {0};
-    cw_extract_counts counts;
-    const double start = cli_seconds();
-    cw_status st = cli_extract_surface(volume, NULL, desc, &full, &counts, err);
+    cw_status st = cli_extract_full(volume, wanted, proof, &full, err);
     if (st != CW_OK)
         return st;
-    proof->full_seconds = cli_seconds() - start;
-    proof->full_bytes = counts.bytes;
-    proof->full_triangles = full.triangle_count;
     proof->count = simplify->view_count;
     proof->promised_pixels = simplify->pixel_error;
     proof->promised_mm = simplify->error_mm;
-    st = measure(mesh, &full, simplify, proof, &proof->mm, err);
-    if (st == CW_OK)
-        st = measure(&full, mesh, simplify, proof, &proof->mm, err);
+    if (simplify->pixel_error > 0) {
+        double beside = 0, *back = proof->culled ? &beside : &proof->mm;
+        st = measure(mesh, &full, simplify, proof, &proof->mm, err);
+        if (st == CW_OK)
+            st = measure(&full, mesh, simplify, proof, back, err);
+    }
     for (size_t n = 0; n < simplify->view_count && st == CW_OK; n++)
         st = compare_pictures(simplify->views + n, &full, mesh, simplify->threads,
                               proof->views + n, err);

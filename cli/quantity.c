@@ -78,6 +78,22 @@ bool cli_parse_length(const char *text, cli_length *out)
     return out->given = *text == '\0' || out->unit != CLI_MM;
 }
 
+bool cli_parse_amount(const char *text, cli_amount *out)
+{
+    static const struct {
+        const char *name;
+        double mm3;
+    } units[] = {{"", 1}, {"mm3", 1}, {"um3", 1e-9}, {"cm3", 1e3}, {"ml", 1e3}, {"vox", 1}};
+    if (!cwi_parse_double(&text, &out->value) || !(out->value > 0))
+        return false;
+    out->voxels = strcmp(text, "vox") == 0;
+    for (size_t u = 0; u < sizeof units / sizeof *units && !out->given; u++) {
+        out->given = strcmp(text, units[u].name) == 0;
+        out->value *= out->given ? units[u].mm3 : 1;
+    }
+    return out->given && isfinite(out->value) && out->value > 0;
+}
+
 bool cli_parse_reduction(const char *text, cli_reduction *out)
 {
     const char *end = text;

@@ -9,6 +9,8 @@ bool cli_parse_numbers(const char *text, cli_numbers *out);
 bool cli_parse_lengths(const char *text, cli_lengths *out);
 bool cli_parse_length(const char *text, cli_length *out);
 
+bool cli_parse_amount(const char *text, cli_amount *out);
+
 /* A length with a unit, or a count above 0 with k, M or G. */
 bool cli_parse_reduction(const char *text, cli_reduction *out);
 

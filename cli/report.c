@@ -175,14 +175,8 @@ static void put_comparison(cli_json *j, const cli_comparison *c)
                                       .from_reference = c->made ? &c->from_input : NULL});
 }
 
-/* What a camera's picture was promised, what was measured, and what it saved. */
-static void put_proof(cli_json *j, const cli_proof *p)
+static void put_views(cli_json *j, const cli_proof *p)
 {
-    cli_json_open(j, "proof", '{');
-    cli_json_text(j, "against", "full mesh");
-    cli_json_number(j, "promised_pixels", p->promised_pixels);
-    cli_json_number(j, "promised_mm", p->promised_mm);
-    cli_json_number(j, "max_mm", p->mm);
     cli_json_open(j, "views", '[');
     for (size_t n = 0; n < p->count; n++) {
         cli_json_open(j, NULL, '{');
@@ -191,10 +185,58 @@ static void put_proof(cli_json *j, const cli_proof *p)
         cli_json_close(j, '}');
     }
     cli_json_close(j, ']');
+}
+
+/* Which components were left out: none as large as was asked for, and all that are. */
+static void put_dropped_components(cli_json *j, double least_mm3, const cw_drop_counts *c)
+{
+    cli_json_open(j, "components_dropped", '{');
+    cli_json_number(j, "least_mm3", least_mm3);
+    cli_json_count(j, "dropped", c->dropped);
+    cli_json_count(j, "kept", c->kept);
+    cli_json_count(j, "dropped_triangles", c->triangles);
+    cli_json_number(j, "dropped_mm3", c->dropped_mm3);
+    cli_json_number(j, "largest_dropped_mm3", c->largest_mm3);
+    cli_json_number(j, "least_kept_mm3", c->least_kept_mm3);
+    cli_json_close(j, '}');
+}
+
+/* What a camera's picture was promised, what was measured, and what it saved. */
+static void put_proof(cli_json *j, const cli_proof *p)
+{
+    cli_json_open(j, "proof", '{');
+    cli_json_text(j, "against", "full mesh");
+    if (p->count)
+        cli_json_number(j, "promised_pixels", p->promised_pixels);
+    cli_json_number(j, "promised_mm", p->promised_mm);
+    cli_json_number(j, "max_mm", p->mm);
+    if (p->count)
+        put_views(j, p);
+    if (p->voxels) {
+        cli_json_count(j, "culled_triangles", p->culled);
+        cli_json_count(j, "voxels", p->voxels);
+        cli_json_count(j, "seen_voxels", p->seen_voxels);
+    }
     cli_json_count(j, "full_triangles", p->full_triangles);
     cli_json_number(j, "full_seconds", p->full_seconds);
     cli_json_count(j, "full_bytes", p->full_bytes);
     cli_json_count(j, "slab_bytes", p->bytes);
+    cli_json_close(j, '}');
+}
+
+static void put_crop(cli_json *j, const cli_crop_proof *p)
+{
+    cli_json_open(j, "crop", '{');
+    cli_json_text(j, "against", "whole volume");
+    cli_json_count(j, "voxels", p->voxels);
+    cli_json_count(j, "whole_voxels", p->whole_voxels);
+    cli_json_count(j, "triangles", p->triangles);
+    cli_json_count(j, "whole_triangles", p->whole_triangles);
+    cli_json_number(j, "max_mm", p->apart_mm);
+    cli_json_number(j, "extract_seconds", p->seconds);
+    cli_json_number(j, "whole_extract_seconds", p->whole_seconds);
+    cli_json_count(j, "bytes", p->bytes);
+    cli_json_count(j, "whole_bytes", p->whole_bytes);
     cli_json_close(j, '}');
 }
 
@@ -206,7 +248,11 @@ static void put_facts(cli_json *j, const cli_made *m)
         put_snap(j, &m->snap);
     if (m->compared.made || m->compared.has_field)
         put_comparison(j, &m->compared);
-    if (m->proof.count)
+    if (m->least_mm3 > 0)
+        put_dropped_components(j, m->least_mm3, &m->components);
+    if (m->crop.made)
+        put_crop(j, &m->crop);
+    if (m->proof.made)
         put_proof(j, &m->proof);
 }
 

@@ -24,6 +24,7 @@ typedef struct cli_comparison {
     cw_distance to_field;
     double diagonal_mm; /* of the input's box */
     double promised_mm; /* 0: no error was promised */
+    const char *other;  /* what it was made of; default: the input */
 } cli_comparison;
 
 enum { CLI_MOST_VIEWS = 64 }; /* of one mesh */
@@ -35,12 +36,25 @@ typedef struct cli_view_proof {
 } cli_view_proof;
 
 typedef struct cli_proof {
-    size_t count; /* of views; 0: nothing to prove */
+    bool made;
+    size_t count; /* of views */
     double promised_pixels, promised_mm, mm;
     size_t full_triangles, full_bytes, bytes; /* of work, besides the voxels */
     double full_seconds;
+    size_t culled;              /* triangles that no view sees, left out */
+    size_t voxels, seen_voxels; /* of the bricks that views see; 0: not looked for */
     cli_view_proof views[CLI_MOST_VIEWS];
 } cli_proof;
+
+/* What --crop left of a surface, against the whole one. */
+typedef struct cli_crop_proof {
+    bool made;
+    size_t voxels, triangles,
+        bytes; /* of the part, its caps left out; bytes: voxels and work */
+    size_t whole_voxels, whole_triangles, whole_bytes;
+    double seconds, whole_seconds; /* to extract */
+    double apart_mm;               /* the farthest that two vertices are which should be one */
+} cli_crop_proof;
 
 /* One mesh of a run, as far as it has come. */
 typedef struct cli_made {
@@ -59,7 +73,10 @@ typedef struct cli_made {
     unsigned dropped;         /* what the file does not hold of it: cw_keeps flags */
     double origin[3];         /* when it is local: the places in the file are relative to it */
     cli_comparison compared;
+    double least_mm3; /* what components had to enclose; 0: nothing was left out for that */
+    cw_drop_counts components; /* when something was */
     cli_proof proof;
+    cli_crop_proof crop;
     char warning[CLI_MOST_WARNINGS][512];
     size_t warning_count;
     cw_error error; /* with the status CW_OK: none */

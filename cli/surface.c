@@ -40,14 +40,41 @@ cw_status cli_extract_surface(const cli_volume *volume, cw_extractor *extractor,
     return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
 }
 
+static cw_status explain_dropped(const cli_wanted *wanted, const cw_drop_counts *dropped,
+                                 cw_error *err)
+{
+    return cw_fail(err, CW_ERR_EMPTY,
+                   "no component encloses %.6g mm3: the largest of %zu encloses %.6g",
+                   wanted->least_mm3, dropped->dropped, dropped->largest_mm3);
+}
+
+cw_status cli_extract_wanted(const cli_volume *volume, cw_extractor *extractor,
+                             const cli_wanted *wanted, cw_mesh *mesh, cw_extract_counts *counts,
+                             cw_drop_counts *dropped, cw_error *err)
+{
+    cw_drop_counts own, *d = dropped ? dropped : &own;
+    cw_status st = cli_extract_surface(volume, extractor, &wanted->extract, mesh, counts, err);
+    *d = (cw_drop_counts){0};
+    if (st != CW_OK || !(wanted->least_mm3 > 0))
+        return st;
+    st = cw_mesh_drop_volumes(mesh, wanted->least_mm3, d, err);
+    if (st == CW_OK && !d->kept)
+        st = explain_dropped(wanted, d, err);
+    if (st == CW_OK)
+        return CW_OK;
+    cw_mesh_free(mesh);
+    return cwi_fail_in(err, st, volume->path);
+}
+
 /* Not by slabs: the surface as a whole, whose normals are carried over. */
-static cw_status simplify_whole(const cli_volume *volume, const cw_extract_desc *desc,
+static cw_status simplify_whole(const cli_volume *volume, const cli_wanted *wanted,
                                 const cw_simplify_desc *simplify, cw_mesh *mesh,
-                                cw_extract_counts *counts, cw_error *err)
+                                cw_extract_counts *counts, cw_drop_counts *dropped,
+                                cw_error *err)
 {
     cw_mesh whole;
     *mesh = (cw_mesh){0};
-    cw_status st = cli_extract_surface(volume, NULL, desc, &whole, counts, err);
+    cw_status st = cli_extract_wanted(volume, NULL, wanted, &whole, counts, dropped, err);
     if (st != CW_OK)
         return st;
     st = cw_simplify(&whole, simplify, mesh, NULL, err);
@@ -55,15 +82,12 @@ static cw_status simplify_whole(const cli_volume *volume, const cw_extract_desc 
     return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
 }
 
-cw_status cli_extract_simplified(const cli_volume *volume, const cw_extract_desc *desc,
-                                 const cw_simplify_desc *simplify, cw_mesh *mesh,
-                                 cw_extract_counts *counts, cw_error *err)
+static cw_status simplify_slabs(const cli_volume *volume, const cw_extract_desc *desc,
+                                const cw_simplify_desc *simplify, cw_mesh *mesh,
+                                cw_extract_counts *counts, cw_error *err)
 {
     cw_extract_desc d = *desc;
     cw_simplifier *simplifier;
-    if (cwi_volume_expect_dense(&volume->view, "slabs", NULL) != CW_OK)
-        return simplify_whole(volume, desc, simplify, mesh, counts, err);
-    const cw_normals_desc normals = {.inside_is_low = d.inside_is_low, .threads = d.threads};
     d.max_bytes = volume->memory_left;
     d.progress = progress_of(volume);
     *mesh = (cw_mesh){0};
@@ -76,8 +100,23 @@ cw_status cli_extract_simplified(const cli_volume *volume, const cw_extract_desc
     cw_simplifier_free(simplifier);
     if (st == CW_OK && mesh->triangle_count == 0)
         st = explain_empty(volume, desc, err);
-    if (st == CW_OK && !d.no_normals)
-        st = cw_extract_normals(&volume->view, &normals, mesh, err);
+    return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
+}
+
+cw_status cli_extract_simplified(const cli_volume *volume, const cli_wanted *wanted,
+                                 const cw_simplify_desc *simplify, cw_mesh *mesh,
+                                 cw_extract_counts *counts, cw_drop_counts *dropped,
+                                 cw_error *err)
+{
+    const cw_extract_desc *d = &wanted->extract;
+    const cw_normals_desc normals = {.inside_is_low = d->inside_is_low, .threads = d->threads};
+    const bool dense = cwi_volume_expect_dense(&volume->view, "slabs", NULL) == CW_OK;
+    cw_status st = dense && !(wanted->least_mm3 > 0)
+                       ? simplify_slabs(volume, d, simplify, mesh, counts, err)
+                       : simplify_whole(volume, wanted, simplify, mesh, counts, dropped, err);
+    if (st != CW_OK || !dense || d->no_normals)
+        return st;
+    st = cw_extract_normals(&volume->view, &normals, mesh, err);
     return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
 }
 

@@ -1,6 +1,7 @@
 #include "simplify/views.h"
 
 #include "core/memory.h"
+#include "core/mesh.h"
 #include "core/status.h"
 #include "core/vector.h"
 
@@ -209,6 +210,64 @@ double cwi_views_limit(const cwi_views *views, const float *const corners[3], do
         least = fmin(least, limit(v, p, 3, most, margin));
     }
     return least;
+}
+
+cw_status cw_simplify_view_sees(const cw_simplify_view *view, double pixels,
+                                const double *points, size_t count, bool *seen, cw_error *err)
+{
+    cwi_view v;
+    place p[CWI_VIEW_HULL];
+    cw_status st = cwi_view_init(&v, view, pixels, err);
+    if (st == CW_OK && (count < 1 || count > CWI_VIEW_HULL))
+        st = cw_fail(err, CW_ERR_ARGUMENT, "a hull of %zu points; 1 to %d were expected", count,
+                     CWI_VIEW_HULL);
+    if (st != CW_OK)
+        return st;
+    for (size_t n = 0; n < count; n++)
+        p[n] = place_of(&v, points + 3 * n);
+    *seen = isfinite(limit(&v, p, (int)count, 0, 0));
+    return CW_OK;
+}
+
+static void mark_unseen(const cwi_views *views, const cw_mesh *m, double margin, bool *unseen,
+                        size_t *count)
+{
+    *count = 0;
+    for (size_t t = 0; t < m->triangle_count; t++) {
+        const uint32_t *c = m->triangles + 3 * t;
+        const float *const corners[3] = {m->positions + 3 * (size_t)c[0],
+                                         m->positions + 3 * (size_t)c[1],
+                                         m->positions + 3 * (size_t)c[2]};
+        unseen[t] = !isfinite(cwi_views_limit(views, corners, margin, margin));
+        *count += unseen[t];
+    }
+}
+
+cw_status cw_simplify_cull(cw_mesh *mesh, const cw_simplify_view *views, size_t count,
+                           double pixels, double margin_mm, size_t *dropped, cw_error *err)
+{
+    /* the error is never looked at */
+    const cw_simplify_desc desc = {
+        .error_mm = 1, .views = views, .view_count = count, .pixel_error = pixels};
+    cwi_views all = {0};
+    size_t unseen;
+    cw_status st = cw_mesh_check(mesh, err);
+    if (st == CW_OK)
+        st = cwi_views_init(&all, &desc, err);
+    bool *marks = cwi_alloc_array(mesh->triangle_count, sizeof *marks);
+    if (st == CW_OK && !marks)
+        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory to mark %zu triangles",
+                     mesh->triangle_count);
+    if (st == CW_OK) {
+        cwi_views_place(&all, mesh->origin, 1);
+        mark_unseen(&all, mesh, margin_mm, marks, &unseen);
+        st = cwi_mesh_drop_marked(mesh, marks, err);
+    }
+    if (st == CW_OK && dropped)
+        *dropped = unseen;
+    cwi_free(marks);
+    cwi_views_free(&all);
+    return st;
 }
 
 cw_status cw_simplify_view_error(const cw_simplify_view *view, double pixels,

@@ -22,7 +22,7 @@ typedef struct cwi_views {
     size_t count;
 } cwi_views;
 
-enum { CWI_VIEW_WIDTH = 1280, CWI_VIEW_HEIGHT = 720 };
+enum { CWI_VIEW_WIDTH = 1280, CWI_VIEW_HEIGHT = 720, CWI_VIEW_HULL = 8 };
 
 /* In the world's frame. Returns CW_ERR_ARGUMENT for a camera or pixels that are none. */
 cw_status cwi_view_init(cwi_view *view, const cw_simplify_view *from, double pixels,

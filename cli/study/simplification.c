@@ -37,10 +37,10 @@ size_t cli_share_of(const cli_study *s, double share)
 
 cw_status cli_try_simplification(cli_study *s, cli_point *p, cw_error *err)
 {
-    const cw_extract_desc desc = {.isovalue = s->iso,
-                                  .inside_is_low = s->inside_is_low,
-                                  .leave_open = s->is_field,
-                                  .threads = s->threads};
+    const cli_wanted wanted = {.extract = {.isovalue = s->iso,
+                                           .inside_is_low = s->inside_is_low,
+                                           .leave_open = s->is_field,
+                                           .threads = s->threads}};
     cw_status st = cli_need_part(s, err);
     const cw_simplify_desc simplify = {
         .error_mm = p->tried.error_vox * s->voxel_mm,
@@ -51,7 +51,7 @@ cw_status cli_try_simplification(cli_study *s, cli_point *p, cw_error *err)
     const cli_watch watch = cli_watch_memory();
     const double start = cli_seconds();
     if (st == CW_OK)
-        st = cli_extract_simplified(&s->part, &desc, &simplify, &mesh, &counts, err);
+        st = cli_extract_simplified(&s->part, &wanted, &simplify, &mesh, &counts, NULL, err);
     if (st == CW_OK) {
         p->seconds = cli_seconds() - start;
         p->peak_bytes = cli_watched_bytes(&watch);

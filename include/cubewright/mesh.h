@@ -55,6 +55,31 @@ CW_API cw_status cw_mesh_weld(cw_mesh *mesh, size_t *merged, cw_error *err);
 CW_API cw_status cw_mesh_drop_components(cw_mesh *mesh, double diagonal_mm, size_t *dropped,
                                          size_t *kept, cw_error *err);
 
+/* What became of components. */
+typedef struct cw_drop_counts {
+    size_t dropped, kept;  /* components */
+    size_t triangles;      /* that went */
+    double dropped_mm3;    /* what all that went enclose, together */
+    double largest_mm3;    /* the most that one of them does; 0: none went */
+    double least_kept_mm3; /* the least that one of the others does; 0: none stayed */
+} cw_drop_counts;
+
+/* Leaves out components that enclose less than so much, and then vertices that no triangle
+ * names.
+ *
+ * Each component counts by its own surface, whichever way it faces, with what lies in it: a
+ * solid with its cavities, a cavity with the islands in it. What lies in a component encloses
+ * less than that, so it goes whenever that does: no cavity is left without its solid, and small
+ * cavities are filled. An open component encloses what lies between it and the middle of its
+ * box, signed by the side that is seen from there: nothing, where it is flat.
+ *
+ * mesh     in place, as in cw_mesh_weld()
+ * counts   may be NULL
+ * Returns  CW_ERR_ARGUMENT  least_mm3 is negative or NaN, or as cw_mesh_check();
+ *          CW_ERR_NO_MEMORY */
+CW_API cw_status cw_mesh_drop_volumes(cw_mesh *mesh, double least_mm3, cw_drop_counts *counts,
+                                      cw_error *err);
+
 /* A part of a surface that is made from one end to the other: what lies between two parallel
  * planes. Slabs that follow each other have the vertices in the plane between them in common:
  * the n-th with seam 2 in one is the n-th with seam 1 in the next, at the same place. */

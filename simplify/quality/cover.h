@@ -73,7 +73,9 @@ static inline bool cwi_piece_cut(cwi_piece *piece, const double normal[3], const
     if (!(cwi_lesser(high, low) > 1e-6 * cwi_greater(high, low)) ||
         !cwi_piece_fits(height, piece->count))
         return false;
-    const cwi_piece whole = *piece;
+    cwi_piece whole;
+    whole.count = piece->count;
+    memcpy(whole.p, piece->p, (size_t)piece->count * sizeof piece->p[0]);
     piece->count = above->count = 0;
     above->cuts = --piece->cuts;
     for (int n = 0; n < whole.count; n++) {
@@ -168,19 +170,19 @@ static inline bool cwi_piece_cut_off(cwi_piece *piece, const float *const facet[
     return false;
 }
 
-/* Whether all of a piece certainly is near. */
-static inline bool cwi_piece_covered(const cwi_cover *c, cwi_piece piece)
+/* Whether all of a piece certainly is near. Cuts it up. */
+static inline bool cwi_piece_covered(const cwi_cover *c, cwi_piece *piece)
 {
     const float *facet[3];
     double middle[3];
-    cwi_piece_middle(&piece, middle);
+    cwi_piece_middle(piece, middle);
     if (!(c->nearest(c->context, middle, facet) <= c->square))
         return false;
-    for (unsigned far; (far = cwi_piece_far(&piece, facet, c->square)) != 0;) {
+    for (unsigned far; (far = cwi_piece_far(piece, facet, c->square)) != 0;) {
         cwi_piece other;
-        const bool cut = cwi_piece_cut_off(&piece, facet, far, c->normal, &other);
-        if (piece.cuts < 0 || (!cut && !cwi_piece_halve(&piece, &other)) ||
-            !cwi_piece_covered(c, other))
+        const bool cut = cwi_piece_cut_off(piece, facet, far, c->normal, &other);
+        if (piece->cuts < 0 || (!cut && !cwi_piece_halve(piece, &other)) ||
+            !cwi_piece_covered(c, &other))
             return false;
         if (!cut)
             return cwi_piece_covered(c, piece);
@@ -201,7 +203,7 @@ static inline bool cwi_is_covered(cwi_cover *c, const double corners[3][3])
     whole.count = 3;
     whole.cuts = CWI_PIECE_CUTS;
     memcpy(whole.p, corners, 3 * sizeof *whole.p);
-    return cwi_piece_covered(c, whole);
+    return cwi_piece_covered(c, &whole);
 }
 
 #endif

@@ -131,6 +131,77 @@ static void small_components_go_and_others_stay(void **state)
     }
 }
 
+/* Cubes of 1 and 27 mm3, and a flat triangle. */
+static void components_that_enclose_little_go(void **state)
+{
+    (void)state;
+    static const struct {
+        double least;
+        cw_drop_counts counts;
+    } rows[] = {{0, {0, 3, 0, 0, 0, 0}},    {1e-9, {1, 2, 1, 0, 0, 1}},
+                {1, {1, 2, 1, 0, 0, 1}},    {1.001, {2, 1, 13, 1, 1, 27}},
+                {27, {2, 1, 13, 1, 1, 27}}, {27.001, {3, 0, 25, 28, 27, 0}}};
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
+        cw_mesh mesh;
+        cw_error err = {0};
+        cw_drop_counts counts;
+        make_three(&mesh);
+        assert_ok(cw_mesh_drop_volumes(&mesh, rows[r].least, &counts, &err), err);
+        assert_int_equal(counts.dropped, rows[r].counts.dropped);
+        assert_int_equal(counts.kept, rows[r].counts.kept);
+        assert_int_equal(counts.triangles, rows[r].counts.triangles);
+        assert_int_equal(mesh.triangle_count, 25 - counts.triangles);
+        assert_within(counts.dropped_mm3, rows[r].counts.dropped_mm3, 1e-5);
+        assert_within(counts.largest_mm3, rows[r].counts.largest_mm3, 1e-5);
+        assert_within(counts.least_kept_mm3, rows[r].counts.least_kept_mm3, 1e-5);
+        cw_mesh_free(&mesh);
+    }
+}
+
+/* A cavity goes by what it encloses itself, and never stays without its solid. */
+static void small_cavities_are_filled(void **state)
+{
+    (void)state;
+    static const struct {
+        double least;
+        size_t triangles;
+    } rows[] = {{1, 24}, {1.5, 12}, {28, 0}};
+    for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
+        cw_mesh mesh;
+        cw_error err = {0};
+        make_three(&mesh);
+        mesh.triangle_count = 24;
+        for (size_t n = 0; n < 24; n++) /* the small cube into the large one, inside out */
+            mesh.positions[n] += 11;
+        for (size_t t = 12; t < 24; t++) {
+            const uint32_t first = mesh.triangles[3 * t];
+            mesh.triangles[3 * t] = mesh.triangles[3 * t + 1];
+            mesh.triangles[3 * t + 1] = first;
+        }
+        assert_ok(cw_mesh_drop_volumes(&mesh, rows[r].least, NULL, &err), err);
+        assert_int_equal(mesh.triangle_count, rows[r].triangles);
+        cw_mesh_free(&mesh);
+    }
+}
+
+/* A cube without one of its faces: the tetrahedra to its middle are 5/6 of it. */
+static void open_components_count_up_to_their_middle(void **state)
+{
+    (void)state;
+    cw_mesh mesh;
+    cw_error err = {0};
+    cw_drop_counts counts;
+    test_make_cube(&mesh);
+    mesh.triangle_count = 10;
+    assert_ok(cw_mesh_drop_volumes(&mesh, 0.8, &counts, &err), err);
+    assert_int_equal(counts.kept, 1);
+    assert_within(counts.least_kept_mm3, 5.0 / 6, 1e-6);
+    assert_ok(cw_mesh_drop_volumes(&mesh, 0.84, &counts, &err), err);
+    assert_int_equal(mesh.triangle_count, 0);
+    assert_int_equal(mesh.vertex_count, 0);
+    cw_mesh_free(&mesh);
+}
+
 static void failures_leave_the_mesh_as_it_was(void **state)
 {
     (void)state;
@@ -146,7 +217,7 @@ static void failures_leave_the_mesh_as_it_was(void **state)
         assert_int_equal(st, CW_ERR_NO_MEMORY);
         assert_int_equal(soup.vertex_count, 36);
     }
-    for (long n = 0; n < 3; n++) {
+    for (long n = 0; n < 4; n++) {
         cwi_alloc_fail_after(n);
         const cw_status st = cw_mesh_drop_components(&soup, 9, NULL, NULL, &err);
         cwi_alloc_fail_after(-1);
@@ -155,6 +226,8 @@ static void failures_leave_the_mesh_as_it_was(void **state)
     }
     assert_fails(cw_mesh_drop_components(&soup, -1, NULL, NULL, &err), CW_ERR_ARGUMENT, "-1",
                  err);
+    assert_fails(cw_mesh_drop_volumes(&soup, -1, NULL, &err), CW_ERR_ARGUMENT,
+                 "least_mm3 is -1", err);
     soup.triangles[4] = 36;
     assert_fails(cw_mesh_drop_components(&soup, 1, NULL, NULL, &err), CW_ERR_ARGUMENT,
                  "names vertex 36", err);
@@ -171,6 +244,9 @@ int main(void)
         cmocka_unit_test(soup_becomes_a_closed_cube),
         cmocka_unit_test(triangles_that_collapse_are_left_out),
         cmocka_unit_test(small_components_go_and_others_stay),
+        cmocka_unit_test(components_that_enclose_little_go),
+        cmocka_unit_test(small_cavities_are_filled),
+        cmocka_unit_test(open_components_count_up_to_their_middle),
         cmocka_unit_test(failures_leave_the_mesh_as_it_was),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -358,6 +358,71 @@ static void slabs_keep_it_too_for_any_number_of_threads(void **state)
     cw_volume_free(&volume);
 }
 
+static bool is_seen(const cw_simplify_view *view, const double point[3])
+{
+    double error;
+    cw_error err = {0};
+    assert_ok(cw_simplify_view_error(view, 1, point, &error, &err), err);
+    return isfinite(error);
+}
+
+/* Every place of the surface that a view sees is still there, and what is in no picture went.
+ */
+static void what_no_view_sees_is_left_out(void **state)
+{
+    (void)state;
+    const cw_mesh full = surface(24);
+    size_t went = 0;
+    srand(7);
+    for (int round = 0; round < 6; round++) {
+        cw_simplify_view views[2] = {random_view(&full, round), random_view(&full, round + 1)};
+        cw_volume volume = noisy_gyroid(24);
+        cw_mesh culled = test_extract(&volume, NULL, NULL);
+        cw_error err = {0};
+        size_t dropped, kept = 0;
+        if (round % 2)
+            for (int n = 0; n < 2; n++)
+                assert_ok(cw_simplify_view_draw(views + n, &full, &err), err);
+        assert_ok(cw_simplify_cull(&culled, views, 2, 1, 0, &dropped, &err), err);
+        assert_int_equal(culled.triangle_count + dropped, full.triangle_count);
+        went += dropped;
+        for (size_t t = 0; t < full.triangle_count; t++) {
+            double middle[3];
+            const float *p[3], *q[3] = {0};
+            corners_of(&full, t, p);
+            for (int a = 0; a < 3; a++)
+                middle[a] =
+                    full.origin[a] + ((double)p[0][a] + (double)p[1][a] + (double)p[2][a]) / 3;
+            bool there = kept < culled.triangle_count;
+            if (there)
+                corners_of(&culled, kept, q);
+            for (size_t k = 0; k < 3 && there; k++)
+                there = memcmp(p[k], q[k], 3 * sizeof(float)) == 0;
+            kept += there; /* in the order that they were in */
+            if (!there)
+                assert_false(is_seen(views, middle) || is_seen(views + 1, middle));
+        }
+        assert_int_equal(kept, culled.triangle_count);
+        for (int n = 0; n < 2; n++)
+            cw_simplify_view_free(views + n);
+        cw_mesh_free(&culled);
+        cw_volume_free(&volume);
+    }
+    assert_true(went > full.triangle_count / 2);
+    cw_mesh mesh = full;
+    cw_error err = {0};
+    const cw_simplify_view view = random_view(&full, 1), none = {.width = 0};
+    bool seen;
+    assert_fails(cw_simplify_cull(&mesh, &view, 1, 0, 0, NULL, &err), CW_ERR_ARGUMENT,
+                 "pixel_error is 0", err);
+    assert_fails(cw_simplify_cull(&mesh, &none, 1, 1, 0, NULL, &err), CW_ERR_ARGUMENT, "eye",
+                 err);
+    assert_fails(cw_simplify_view_sees(&view, 1, full.origin, 0, &seen, &err), CW_ERR_ARGUMENT,
+                 "1 to 8", err);
+    mesh = full;
+    cw_mesh_free(&mesh);
+}
+
 static void views_that_are_none_are_refused(void **state)
 {
     (void)state;
@@ -394,6 +459,7 @@ int main(void)
         cmocka_unit_test(depths_are_those_of_rays),
         cmocka_unit_test(what_is_hidden_is_coarser),
         cmocka_unit_test(slabs_keep_it_too_for_any_number_of_threads),
+        cmocka_unit_test(what_no_view_sees_is_left_out),
         cmocka_unit_test(views_that_are_none_are_refused),
     };
     return cw_simplify_available() ? cmocka_run_group_tests(tests, NULL, NULL) : 0;

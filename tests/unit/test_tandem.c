@@ -85,6 +85,34 @@ static void a_number_of_triangles_is_met(void **state)
 }
 
 /* The seam is as good as the inside: about as many triangles as from the whole. */
+/* Sharp edges and flat faces, whole and by slabs: hardly a triangle is needed. */
+static void a_box_needs_few_triangles(void **state)
+{
+    (void)state;
+    enum { X = 48, Z = 30 };
+    static float values[Z][X][X];
+    for (size_t k = 0; k < Z; k++)
+        for (size_t j = 0; j < X; j++)
+            for (size_t i = 0; i < X; i++)
+                values[k][j][i] = i >= 4 && i < 44 && j >= 4 && j < 44 && k >= 4 && k < 25;
+    const cw_volume volume = {.data = values, .type = CW_F32, .dim = {X, X, Z}};
+    const cw_extract_desc extract = {.isovalue = 0.5, .no_normals = true};
+    const cw_mesh full = test_extract(&volume, &extract, NULL);
+    const size_t target = full.triangle_count / 50;
+    const cw_simplify_desc desc = {.triangles = target};
+    cw_mesh meshes[2];
+    cw_error err = {0};
+    assert_ok(cw_simplify(&full, &desc, meshes, NULL, &err), err);
+    meshes[1] = run(&volume, &extract, &desc, 2000);
+    for (int n = 0; n < 2; n++) {
+        assert_in_range(meshes[n].triangle_count, 12, target);
+        assert_true(rms(meshes + n, &full) < 0.02 && rms(&full, meshes + n) < 0.02);
+        cw_mesh_free(meshes + n);
+    }
+    cw_mesh mesh = full;
+    cw_mesh_free(&mesh);
+}
+
 static void an_error_is_kept(void **state)
 {
     (void)state;
@@ -233,6 +261,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_number_of_triangles_is_met),
+        cmocka_unit_test(a_box_needs_few_triangles),
         cmocka_unit_test(an_error_is_kept),
         cmocka_unit_test(thin_slabs_stay_sound),
         cmocka_unit_test(threads_change_nothing),

@@ -1,0 +1,19 @@
+# Components that enclose little are left out, with what is in them; before anything else.
+cubewright make hard/lone-samples -o lone.nrrd --dims 12 -q
+cubewright make ct-head -o ct.nrrd -q
+cubewright extract ct.nrrd --iso 300 -o all.ply --normals none -q
+cubewright extract ct.nrrd --iso 300 -o small.ply --normals none --min-volume 1e-9mm3 -q --name all
+cmp all.ply small.ply && echo same
+cubewright extract ct.nrrd --iso 300 -o one.ply --min-volume 500ml --json - | sed -n -e '/"min_volume_mm3"/p' -e '/"components_dropped"/,/}/p'
+cubewright check one.ply | grep -o '^one.ply: 1 component'
+# the full surface that simplification is held against is what was kept
+if cubewright version --features | grep -q '^simplify *yes'; then
+    cubewright extract ct.nrrd --iso 300 -o simple.ply --min-volume 500ml --max-error 1mm -q
+    cubewright check simple.ply --reference one.ply --tolerance 1mm -q
+    echo "check: $?"
+fi
+bad() { cubewright extract "$@" || echo "exit $?"; }
+bad lone.nrrd --iso 0 -o bad.ply --min-volume 1e6vox
+bad ct.nrrd --iso 300 -o bad.ply --min-volume 0
+bad ct.nrrd --iso 300 -o bad.ply --min-volume 5mm
+ls *.ply
