@@ -233,22 +233,23 @@ static cut *side_of(const sharpener *s, size_t t, size_t k)
 
 /* ---- triangles --------------------------------------------------------------------------- */
 
-/* Where three planes meet in a triangle all of whose sides are cut. */
+/* Where three planes meet in a triangle of which two sides are cut: beyond the corner the third
+ * pair of planes may not meet on the surface. */
 static void cut_triangle(const sharpener *s, size_t t, cut *c)
 {
     const plane *p[3];
     double x[3], middle[3] = {0}, away[3], way[3], line[3];
+    int cuts = 0;
     for (size_t k = 0; k < 3; k++) {
         const uint32_t v = s->mesh->triangles[3 * t + k];
-        if (!side_of(s, t, k)->is_on)
-            return;
+        cuts += side_of(s, t, k)->is_on;
         p[k] = s->planes + v;
         place_of(s->mesh, v, x);
         for (int a = 0; a < 3; a++)
             middle[a] += x[a] / 3;
     }
     cwi_cross(p[0]->n, p[1]->n, line);
-    if (fabs(cwi_dot(line, p[2]->n)) < corner)
+    if (cuts < 2 || fabs(cwi_dot(line, p[2]->n)) < corner)
         return;
     for (int k = 0; k < 3; k++)
         away[k] = p[k]->at - cwi_dot(p[k]->n, middle);
@@ -317,10 +318,24 @@ typedef struct part {
 
 enum { MOST_PARTS = 6 };
 
-/* The parts of a triangle between its corners v, the cuts m of its sides (NULL: none), and c.
- */
-static int divide(const point v[3], const point *const m[3], const point *c,
-                  part parts[MOST_PARTS])
+/* The parts of a triangle around a point of it. */
+static int divide_around(const point *c, const point v[3], const point *const m[3],
+                         part parts[MOST_PARTS])
+{
+    const point *rim[MOST_PARTS];
+    int count = 0;
+    for (int k = 0; k < 3; k++) {
+        rim[count++] = &v[k];
+        if (m[k])
+            rim[count++] = m[k];
+    }
+    for (int n = 0; n < count; n++)
+        parts[n] = (part){{rim[n], rim[(n + 1) % count], c}};
+    return count;
+}
+
+/* The parts of a triangle between its corners v and the cuts m of its sides (NULL: none). */
+static int divide(const point v[3], const point *const m[3], part parts[MOST_PARTS])
 {
     const int cuts = !!m[0] + !!m[1] + !!m[2];
     int k = 0; /* one cut: it; two: the first of them */
@@ -339,15 +354,11 @@ static int divide(const point v[3], const point *const m[3], const point *c,
         parts[n++] = (part){{pq, q, qr}};
         parts[n++] = is_short ? (part){{p, pq, qr}} : (part){{p, pq, r}};
         parts[n++] = is_short ? (part){{p, qr, r}} : (part){{pq, qr, r}};
-    } else if (!c) {
+    } else {
         parts[n++] = (part){{p, pq, rp}};
         parts[n++] = (part){{q, qr, pq}};
         parts[n++] = (part){{r, rp, qr}};
         parts[n++] = (part){{pq, qr, rp}};
-    } else {
-        const point *rim[] = {p, pq, q, qr, r, rp};
-        for (; n < 6; n++)
-            parts[n] = (part){{rim[n], rim[(n + 1) % 6], c}};
     }
     return n;
 }
@@ -371,7 +382,8 @@ static void divide_triangle(const sharpener *s, size_t t, division *d)
         cuts += side->is_on;
     }
     d->c = cut_point(s->middles + t);
-    d->count = divide(d->v, m, cuts == 3 && s->middles[t].is_on ? &d->c : NULL, d->parts);
+    d->count = cuts >= 2 && s->middles[t].is_on ? divide_around(&d->c, d->v, m, d->parts)
+                                                : divide(d->v, m, d->parts);
 }
 
 /* ---- what stays as it is ----------------------------------------------------------------- */
@@ -415,6 +427,26 @@ static void restore(const sharpener *s, size_t t)
     }
 }
 
+/* Leaves the shortest of its sides that are cut whole, as the least is lost there; with none,
+ * its corners where they were. */
+static void restore_some(const sharpener *s, size_t t, const division *d)
+{
+    cut *shortest = NULL;
+    double least = INFINITY;
+    for (size_t k = 0; k < 3; k++) {
+        cut *side = side_of(s, t, k);
+        const double square = square_between(&d->v[k], &d->v[(k + 1) % 3]);
+        if (side->is_on && square < least) {
+            least = square;
+            shortest = side;
+        }
+    }
+    if (shortest)
+        shortest->is_on = false;
+    else
+        restore(s, t);
+}
+
 /* Whether something had to be restored. */
 static bool restore_unsound(const sharpener *s, size_t t)
 {
@@ -427,7 +459,7 @@ static bool restore_unsound(const sharpener *s, size_t t)
     for (int n = 0; (d.count > 1 || has_moved(s, t)) && n < d.count; n++)
         is_unsound |= !is_sound(s, &d.parts[n], planes);
     if (is_unsound)
-        restore(s, t);
+        restore_some(s, t, &d);
     return is_unsound;
 }
 
@@ -458,14 +490,14 @@ static void put_cuts(const cut *cuts, size_t count, cw_mesh *m)
         }
 }
 
-/* Corners are cut in where all sides are. */
+/* Corners are cut in where two sides are, at least: into five parts or six. */
 static size_t count_parts(const sharpener *s)
 {
     size_t count = 0;
     for (size_t t = 0; t < s->mesh->triangle_count; t++) {
         division d;
         divide_triangle(s, t, &d);
-        s->middles[t].is_on = d.count == MOST_PARTS;
+        s->middles[t].is_on = d.count >= 5;
         count += (size_t)d.count;
     }
     return count;
