@@ -158,7 +158,7 @@ static grid *make_grids(int count, size_t nx, size_t ny, size_t nz)
 static void random_grids_have_the_topology_of_their_field(void **state)
 {
     (void)state;
-    enum { COUNT = 1000 };
+    enum { COUNT = TEST_SOME(1000) };
     grid *grids = make_grids(COUNT, 5, 5, 5);
     for (int n = 0; n < COUNT; n++)
         for (size_t i = 0; i < 125; i++)
@@ -185,7 +185,7 @@ static float next_magnitude(int kind)
 static void single_cells_have_the_topology_of_their_field(void **state)
 {
     (void)state;
-    enum { EACH = 48 };
+    enum { EACH = TEST_SOME(48) };
     grid *grids = make_grids(256 * EACH, 2, 2, 2);
     for (int n = 0; n < 256 * EACH; n++)
         for (int i = 0; i < 8; i++)
@@ -210,7 +210,7 @@ static int count_ambiguous_faces(int signs)
 static void cells_with_several_ambiguous_faces_have_their_tunnels(void **state)
 {
     (void)state;
-    enum { COUNT = 16000 };
+    enum { COUNT = TEST_SOME(16000) };
     grid *grids = make_grids(COUNT, 2, 2, 2);
     for (int n = 0, signs = 0; n < COUNT; signs = (signs + 1) % 256) {
         const int faces = count_ambiguous_faces(signs);
@@ -228,7 +228,7 @@ static void cells_with_several_ambiguous_faces_have_their_tunnels(void **state)
 static void nearly_tied_faces_are_decided_alike_from_both_sides(void **state)
 {
     (void)state;
-    enum { COUNT = 4000 };
+    enum { COUNT = TEST_SOME(4000) };
     grid *grids = make_grids(COUNT, 3, 2, 2);
     for (int n = 0; n < COUNT; n++) {
         grid *g = &grids[n];
@@ -287,7 +287,7 @@ static test_truth whole_number_truth(const float *voxels, const size_t dim[3], f
 static void whole_numbers_have_the_topology_of_their_field(void **state)
 {
     (void)state;
-    enum { COUNT = 1000 };
+    enum { COUNT = TEST_SOME(1000) };
     grid *grids = make_grids(COUNT, 5, 5, 5);
     for (int n = 0; n < COUNT; n++)
         for (size_t i = 0; i < 125; i++)
