@@ -53,6 +53,7 @@ cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc, cw_mes
     st = cwi_level_set_make(mesh, &q, &level_set, &desc->offset_mm, &volume, err);
     if (st == CW_OK)
         st = cw_extract(&volume, &extract, out, NULL, err);
+    cw_volume_free(&volume);
     if (st == CW_OK && !out->triangle_count)
         st = cw_fail(err, CW_ERR_EMPTY, "nothing is left: no point is %g mm inside",
                      -desc->offset_mm);
@@ -62,7 +63,6 @@ cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc, cw_mes
         memcpy(out->affine, mesh->affine, sizeof out->affine);
     if (voxel_mm)
         *voxel_mm = voxel;
-    cw_volume_free(&volume);
     if (st != CW_OK)
         cw_mesh_free(out);
     return st;

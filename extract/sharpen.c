@@ -13,13 +13,13 @@
 
 enum { CHUNK = 1024, ROUNDS = 12 };
 
-/* Cosines: planes that meet at more than 30 degrees make an edge; a part of a triangle faces as
- * one of the planes at the triangle's corners does, within 45. */
+/* Cosines: planes that meet at more than 30 degrees make an edge; a part of a triangle does not
+ * turn away from all planes at the triangle's corners. */
 static const double edge = 0.866, faces = 0;
 /* Of the parallelepiped that three planes' normals span, at least. */
 static const double corner = 0.2;
-/* Of a voxel: how far from the middle of what is cut a vertex is at most; how far off the
- * surface; how far from its neighbours at least, and how low a triangle may be. */
+/* Of a voxel, at most: from the middle of what is cut to the cut, and from a vertex to its
+ * plane; off the surface. At least: between vertices, and a triangle's height. */
 static const double reach = 2.5, near = 0.5, off = 0.02, apart = 0.02, low = 0.002;
 
 /* Of the surface near a vertex: n . x = at. No normal: 0. */

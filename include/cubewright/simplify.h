@@ -64,9 +64,11 @@ CW_API cw_status cw_simplify_view_error(const cw_simplify_view *view, double pix
                                         const double point[3], double *error_mm, cw_error *err);
 
 /* Whether a view may see something of the convex hull of some points, with so many pixels
- * around its picture: false is certain, true is not. points    count x 3, in the world; count
- * is 1 to 8 Returns   CW_ERR_ARGUMENT for a camera that is none, pixels that are not above 0,
- * and no or more points */
+ * around its picture: false is certain, true is not.
+ *
+ * points   count x 3, in the world; count is 1 to 8
+ * Returns  CW_ERR_ARGUMENT  a camera that is none, pixels that are not above 0, no points or
+ *                           more than 8 */
 CW_API cw_status cw_simplify_view_sees(const cw_simplify_view *view, double pixels,
                                        const double *points, size_t count, bool *seen,
                                        cw_error *err);
@@ -76,10 +78,11 @@ CW_API cw_status cw_simplify_view_sees(const cw_simplify_view *view, double pixe
  * they have depths of, all around it. Then vertices that no triangle names. What is left is
  * open.
  *
- * mesh       in place: its arrays stay where they are, and only get shorter; as it was on
- * failure margin_mm  how far the mesh may be from the one whose depths were drawn dropped
- * triangles; may be NULL Returns    CW_ERR_ARGUMENT as cw_simplify_view_sees(),
- * cw_mesh_check(); CW_ERR_NO_MEMORY */
+ * mesh       in place: its arrays stay where they are, and only get shorter; on failure as it
+ *            was
+ * margin_mm  how far the mesh may be from the one whose depths were drawn
+ * dropped    triangles; may be NULL
+ * Returns    CW_ERR_ARGUMENT as cw_simplify_view_sees(), cw_mesh_check(); CW_ERR_NO_MEMORY */
 CW_API cw_status cw_simplify_cull(cw_mesh *mesh, const cw_simplify_view *views, size_t count,
                                   double pixels, double margin_mm, size_t *dropped,
                                   cw_error *err);
