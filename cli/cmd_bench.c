@@ -181,23 +181,6 @@ static cw_status list_cases(const bench_args *args, cli_bench *b, cw_error *err)
 /* --- the run -------------------------------------------------------------------------------
  */
 
-static cw_status save(const cli_bench *b, const char *path,
-                      void (*put)(FILE *out, const cli_bench *bench), cw_error *err)
-{
-    char *text = NULL;
-    size_t size = 0;
-    if (!path)
-        return CW_OK;
-    FILE *out = open_memstream(&text, &size);
-    if (out)
-        put(out, b);
-    cw_status st = out && fclose(out) == 0
-                       ? cli_report_save(path, text, size, err)
-                       : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the report");
-    free(text);
-    return st;
-}
-
 static cw_status pipeline(const bench_args *args, cli_bench *b, cw_error *err)
 {
     cw_status st = check_args(args, err);
@@ -208,8 +191,8 @@ static cw_status pipeline(const bench_args *args, cli_bench *b, cw_error *err)
     if (st == CW_OK)
         st = cli_bench_run(b, err);
     if (st == CW_OK)
-        st = save(b, args->json, cli_bench_put_json, err);
-    return st == CW_OK ? save(b, args->csv, cli_bench_put_csv, err) : st;
+        st = cli_report_make(args->json, cli_bench_put_json, b, err);
+    return st == CW_OK ? cli_report_make(args->csv, cli_bench_put_csv, b, err) : st;
 }
 
 static bool is_stdout(const char *path)

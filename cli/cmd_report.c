@@ -262,23 +262,6 @@ static cw_status open_input(run_state *s, cw_error *err)
     return find_level(s, err);
 }
 
-static cw_status save(const cli_study *study, const char *path,
-                      void (*put)(FILE *out, const cli_study *study), cw_error *err)
-{
-    char *text = NULL;
-    size_t size = 0;
-    if (!path)
-        return CW_OK;
-    FILE *out = open_memstream(&text, &size);
-    if (out)
-        put(out, study);
-    cw_status st = out && fclose(out) == 0
-                       ? cli_report_save(path, text, size, err)
-                       : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the report");
-    free(text);
-    return st;
-}
-
 static void tell(const cli_study *study, const char *path)
 {
     size_t done = 0;
@@ -297,11 +280,11 @@ static cw_status pipeline(run_state *s, cw_error *err)
     if (st == CW_OK)
         st = cli_study_run(&s->study, err);
     if (st == CW_OK)
-        st = save(&s->study, args->json, cli_put_study_json, err);
+        st = cli_report_make(args->json, cli_put_study_json, &s->study, err);
     if (st == CW_OK)
-        st = save(&s->study, args->csv, cli_put_study_csv, err);
+        st = cli_report_make(args->csv, cli_put_study_csv, &s->study, err);
     if (st == CW_OK)
-        st = save(&s->study, args->output, cli_put_page, err);
+        st = cli_report_make(args->output, cli_put_page, &s->study, err);
     if (st == CW_OK)
         tell(&s->study, args->output);
     return st;

@@ -384,6 +384,23 @@ cw_status cli_report_save(const char *path, const char *text, size_t size, cw_er
     return cwi_outfile_save(path, text, size, err);
 }
 
+cw_status cli_report_make(const char *path, void (*put)(FILE *out, const void *what),
+                          const void *what, cw_error *err)
+{
+    char *text = NULL;
+    size_t size = 0;
+    if (!path)
+        return CW_OK;
+    FILE *out = open_memstream(&text, &size);
+    if (out)
+        put(out, what);
+    cw_status st = out && fclose(out) == 0
+                       ? cli_report_save(path, text, size, err)
+                       : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the report");
+    free(text);
+    return st;
+}
+
 cw_status cli_report_write(const cli_report *report, cw_status status, cw_error *err)
 {
     char *text = NULL;

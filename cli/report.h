@@ -8,6 +8,8 @@
 #include <cubewright/check.h>
 #include <cubewright/extract.h>
 
+#include <stdio.h>
+
 typedef struct cli_step {
     const char *name;
     size_t made; /* which mesh it is about; nothing to go by before the first */
@@ -130,5 +132,9 @@ cw_status cli_report_write(const cli_report *report, cw_status status, cw_error 
 
 /* Writes the text of a report to a file, or the standard output for "-". CW_ERR_OUTPUT */
 cw_status cli_report_save(const char *path, const char *text, size_t size, cw_error *err);
+
+/* The same of what `put` prints of something; nothing without a path. Also CW_ERR_NO_MEMORY */
+cw_status cli_report_make(const char *path, void (*put)(FILE *out, const void *what),
+                          const void *what, cw_error *err);
 
 #endif

@@ -112,7 +112,7 @@ cw_status cli_bench_take(cli_bench *bench, const cli_bench_kind *kind, cw_mesh *
 /* For people, and for programs. table.c */
 void cli_bench_tell_start(const cli_bench *bench);
 void cli_bench_tell(const cli_bench_case *c);
-void cli_bench_put_csv(FILE *out, const cli_bench *bench);
-void cli_bench_put_json(FILE *out, const cli_bench *bench);
+void cli_bench_put_csv(FILE *out, const void *bench);
+void cli_bench_put_json(FILE *out, const void *bench);
 
 #endif

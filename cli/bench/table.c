@@ -165,8 +165,9 @@ static void put_row(FILE *out, const cli_bench_case *c, const cli_bench_row *r)
     fputs("\r\n", out);
 }
 
-void cli_bench_put_csv(FILE *out, const cli_bench *b)
+void cli_bench_put_csv(FILE *out, const void *bench)
 {
+    const cli_bench *b = bench;
     fputs("case,nx,ny,nz,iso,work,who,setting,status,threads,seconds,mtriangles_per_second,"
           "ratio,peak_bytes,"
           "triangles,file_bytes,vertices_mean_mm,vertices_max_mm,vertices_missed,"
@@ -274,8 +275,9 @@ static void json_peer(cli_json *j, const cli_peer *p)
     cli_json_close(j, '}');
 }
 
-void cli_bench_put_json(FILE *out, const cli_bench *b)
+void cli_bench_put_json(FILE *out, const void *bench)
 {
+    const cli_bench *b = bench;
     cli_json j = {.out = out};
     cli_json_open(&j, NULL, '{');
     cli_json_text(&j, "schema", "cubewright-bench-1");

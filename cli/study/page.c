@@ -446,8 +446,9 @@ static void put_quality(FILE *out, const cli_study *s)
     fputs("</div>\n", out);
 }
 
-void cli_put_page(FILE *out, const cli_study *s)
+void cli_put_page(FILE *out, const void *study)
 {
+    const cli_study *s = study;
     fputs("<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"/>"
           "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>"
           "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src "

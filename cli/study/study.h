@@ -196,9 +196,9 @@ bool cli_time_is_up(const cli_study *study);
 void cli_put_word(FILE *out, const char *word);
 
 /* The page, and the same facts for programs. */
-void cli_put_page(FILE *out, const cli_study *study);
-void cli_put_study_json(FILE *out, const cli_study *study);
-void cli_put_study_csv(FILE *out, const cli_study *study);
+void cli_put_page(FILE *out, const void *study);
+void cli_put_study_json(FILE *out, const void *study);
+void cli_put_study_csv(FILE *out, const void *study);
 
 /* Cells of CSV: text in quotes; a comma and a number, or nothing if it is not known. */
 void cli_put_cell(FILE *out, const char *text);

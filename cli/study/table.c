@@ -67,8 +67,9 @@ static void put_row(FILE *out, const cli_study *s, const cli_point *p)
     fputs("\r\n", out);
 }
 
-void cli_put_study_csv(FILE *out, const cli_study *s)
+void cli_put_study_csv(FILE *out, const void *study)
 {
+    const cli_study *s = study;
     fputs("family,setting,done,front,cost,error,seconds,peak_bytes,triangles,file_bytes,"
           "field_max_mm,field_rms_mm,field_p99_mm,back_max_mm,back_rms_mm,back_p99_mm,"
           "truth_max_mm,truth_rms_mm,truth_p99_mm,picture_rmse,picture_max,delta_e_mean,"
@@ -168,8 +169,9 @@ static void json_family(cli_json *j, const cli_study *s, cli_family family)
     cli_json_close(j, '}');
 }
 
-void cli_put_study_json(FILE *out, const cli_study *s)
+void cli_put_study_json(FILE *out, const void *study)
 {
+    const cli_study *s = study;
     cli_json j = {.out = out};
     cli_json_open(&j, NULL, '{');
     cli_json_text(&j, "schema", "cubewright-report-1");
