@@ -367,7 +367,7 @@ static cw_status add_steps(const cli_scene *args, const cw_volume *v, cw_scene *
     s->step_vox = args->step.given                         ? args->step.value
                   : s->lit && s->mode == CW_MODE_COMPOSITE ? LIT_STEP_VOX
                                                            : STEP_VOX;
-    s->stop_opacity = 0.9999f;
+    s->stop_opacity = s->mode == CW_MODE_VBUFFER ? 0.99999f : 0.9999f;
     s->cell_steps = args->cell_steps;
     s->no_preintegration = !args->preintegration;
     s->jitter = args->jitter;

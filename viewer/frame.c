@@ -62,7 +62,7 @@ static cw_status fill_in(cw_scene *s, cw_error *err)
         return cw_fail(err, CW_ERR_ARGUMENT, "a step of %g voxels: expected 0.001 to 1000",
                        s->step_vox);
     if (s->stop_opacity == 0)
-        s->stop_opacity = 0.9999f;
+        s->stop_opacity = s->mode == CW_MODE_VBUFFER ? 0.99999f : 0.9999f;
     if (!(s->stop_opacity > 0 && s->stop_opacity <= 1))
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "rays that end at an opacity of %g: expected up to 1",

@@ -152,7 +152,7 @@ static cw_status draw_scene(cwi_gl *gl, const cwi_gl_mode *mode, cw_error *err)
     reset_state();
     cw_status st = cwi_gl_take_target(gl, err);
     if (st == CW_OK && gl->frame->volume.data)
-        st = cwi_gl_take_volume(gl, err);
+        st = cwi_gl_take_volume(gl, mode->needs_textures || !gl->frame->scene.lean, err);
     if (st == CW_OK && gl->frame->volume.data)
         st = cwi_gl_take_transfer(gl, err);
     if (st != CW_OK)
@@ -183,6 +183,8 @@ cw_status cwi_gl_draw(cwi_gl *gl, const cwi_frame *frame, cw_picture *picture, c
     cw_status st = draw_scene(gl, mode, err);
     if (st == CW_OK)
         read_back(gl, picture);
+    else
+        glFinish(); /* nothing reads the caller's voxels afterwards */
     const cw_status after = cwi_gl_check(st == CW_OK ? err : NULL);
     if (gl->watch.is_astray)
         st = cw_fail(err, CW_ERR_BACKEND,

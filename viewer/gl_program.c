@@ -79,10 +79,11 @@ static cw_status build(const char *vertex, const char *fragment, const char *def
 cw_status cwi_gl_use(cwi_gl *gl, const char *vertex, const char *fragment, const char *defines,
                      GLuint *program, cw_error *err)
 {
+    char all[sizeof gl->programs->defines];
+    snprintf(all, sizeof all, "%s%s", cwi_gl_volume_defines(&gl->volume), defines);
     for (size_t n = 0; n < gl->program_count; n++) {
         const cwi_gl_program *p = &gl->programs[n];
-        if (p->vertex == vertex && p->fragment == fragment &&
-            strcmp(p->defines, defines) == 0) {
+        if (p->vertex == vertex && p->fragment == fragment && strcmp(p->defines, all) == 0) {
             glUseProgram(*program = p->name);
             return CW_OK;
         }
@@ -92,7 +93,7 @@ cw_status cwi_gl_use(cwi_gl *gl, const char *vertex, const char *fragment, const
             glDeleteProgram(gl->programs[--gl->program_count].name);
     cwi_gl_program *p = &gl->programs[gl->program_count];
     *p = (cwi_gl_program){.vertex = vertex, .fragment = fragment};
-    snprintf(p->defines, sizeof p->defines, "%s", defines);
+    memcpy(p->defines, all, sizeof all);
     cw_status st = build(vertex, fragment, p->defines, &p->name, err);
     if (st == CW_OK) {
         gl->program_count++;

@@ -18,33 +18,26 @@ enum {
     MOST_GRADIENTS = 1 << 24 /* voxels that have their gradients in a texture */
 };
 
-/* How texels are made of voxels. */
-typedef struct texel_kind {
-    GLenum inner, type;
-    size_t size;
-    bool as_is;         /* voxels of this type are texels when they are packed */
-    double scale, bias; /* voxel = texel (as shaders see it) x scale + bias */
-} texel_kind;
-
 /* Eight and sixteen bits are normalised, and stay exact. Others become floats. */
-static texel_kind kind_of(const cw_volume *v)
+static cwi_gl_texels kind_of(const cw_volume *v)
 {
-    const texel_kind single = {GL_R32F, GL_FLOAT, 4, v->type == CW_F32 && !v->has_nodata, 1, 0};
+    const cwi_gl_texels single = {GL_R32F, GL_FLOAT, 4, v->type == CW_F32 && !v->has_nodata,
+                                  1,       0};
     if (v->has_nodata) /* becomes NaN */
         return single;
     switch (v->type) {
     case CW_U8:
-        return (texel_kind){GL_R8, GL_UNSIGNED_BYTE, 1, true, 255, 0};
+        return (cwi_gl_texels){GL_R8, GL_UNSIGNED_BYTE, 1, true, 255, 0};
     case CW_I8:
-        return (texel_kind){GL_R8, GL_UNSIGNED_BYTE, 1, false, 255, -128};
+        return (cwi_gl_texels){GL_R8, GL_UNSIGNED_BYTE, 1, false, 255, -128};
     case CW_U16:
-        return (texel_kind){GL_R16, GL_UNSIGNED_SHORT, 2, true, 65535, 0};
+        return (cwi_gl_texels){GL_R16, GL_UNSIGNED_SHORT, 2, true, 65535, 0};
     case CW_I16:
-        return (texel_kind){GL_R16, GL_UNSIGNED_SHORT, 2, false, 65535, -32768};
+        return (cwi_gl_texels){GL_R16, GL_UNSIGNED_SHORT, 2, false, 65535, -32768};
     case CW_F32:
         return single;
     default:
-        return (texel_kind){GL_R32F, GL_FLOAT, 4, false, 1, 0};
+        return (cwi_gl_texels){GL_R32F, GL_FLOAT, 4, false, 1, 0};
     }
 }
 
@@ -65,7 +58,7 @@ static void find_range(const cwi_ranges *ranges, double range[2])
 }
 
 /* Wide types are told from their middle, in units of half their range. */
-static void fit_wide(const cw_volume *v, const double range[2], texel_kind *kind)
+static void fit_wide(const cw_volume *v, const double range[2], cwi_gl_texels *kind)
 {
     if (kind->type != GL_FLOAT || v->type == CW_F32)
         return;
@@ -84,8 +77,8 @@ static void put_shorts(const char *from, ptrdiff_t stride, size_t count, uint16_
             to[i] = (uint16_t)(*(const int16_t *)(from + (ptrdiff_t)i * stride) + 32768);
 }
 
-static void put_row(const cw_volume *v, const texel_kind *kind, const char *from, size_t count,
-                    void *to)
+static void put_row(const cw_volume *v, const cwi_gl_texels *kind, const char *from,
+                    size_t count, void *to)
 {
     if (v->type == CW_I16 && kind->type == GL_UNSIGNED_SHORT) {
         put_shorts(from, v->stride[0], count, to);
@@ -103,7 +96,7 @@ static void put_row(const cw_volume *v, const texel_kind *kind, const char *from
     }
 }
 
-static void put_layers(const cw_volume *v, const texel_kind *kind, const cwi_gl_brick *b,
+static void put_layers(const cw_volume *v, const cwi_gl_texels *kind, const cwi_gl_brick *b,
                        size_t from, size_t count, char *to)
 {
     const size_t row = b->count[0] * kind->size;
@@ -115,13 +108,6 @@ static void put_layers(const cw_volume *v, const texel_kind *kind, const cwi_gl_
                     b->count[0], to + (k * b->count[1] + j) * row);
 }
 
-static bool is_packed(const cw_volume *v)
-{
-    const ptrdiff_t size = (ptrdiff_t)cw_type_size(v->type);
-    return v->stride[0] == size && v->stride[1] == size * (ptrdiff_t)v->dim[0] &&
-           v->stride[2] == v->stride[1] * (ptrdiff_t)v->dim[1];
-}
-
 static size_t layers_at_once(size_t layer_bytes, size_t layers)
 {
     const size_t fit = CHUNK_BYTES / layer_bytes;
@@ -130,7 +116,7 @@ static size_t layers_at_once(size_t layer_bytes, size_t layers)
 
 /* Mesa's software renderer interpolates eight bits in eight bits, unless a texture is mirrored
  * at its ends: up to half a texel beyond them that is as clamped as it is otherwise. */
-static GLuint values_texture(const texel_kind *kind)
+static GLuint values_texture(const cwi_gl_texels *kind)
 {
     const GLuint name = cwi_gl_texture(GL_TEXTURE_3D, CWI_UNIT_VOLUME, true);
     if (kind->inner == GL_R8)
@@ -139,13 +125,13 @@ static GLuint values_texture(const texel_kind *kind)
 }
 
 /* By chunks, which are voxels as they are where they can be. */
-static cw_status upload(cwi_gl *gl, const texel_kind *kind, const cwi_gl_brick *b,
+static cw_status upload(cwi_gl *gl, const cwi_gl_texels *kind, const cwi_gl_brick *b,
                         cw_error *err)
 {
     const cw_volume *v = &gl->volume.key;
     const GLsizei w = (GLsizei)b->count[0], h = (GLsizei)b->count[1], d = (GLsizei)b->count[2];
-    const bool as_is =
-        kind->as_is && is_packed(v) && b->count[0] == v->dim[0] && b->count[1] == v->dim[1];
+    const bool as_is = kind->as_is && cwi_gl_is_packed(v) && b->count[0] == v->dim[0] &&
+                       b->count[1] == v->dim[1];
     const size_t layer = b->count[0] * b->count[1] * kind->size;
     const size_t step = layers_at_once(layer, b->count[2]);
     char *chunk = as_is ? NULL : cwi_alloc_array(step, layer);
@@ -187,7 +173,7 @@ static size_t parts_of(size_t n, size_t edge)
 }
 
 /* The largest bricks of values and gradients that fit; longest axes are cut first. */
-static void choose_edges(const cw_volume *v, const texel_kind *kind, size_t asked,
+static void choose_edges(const cw_volume *v, const cwi_gl_texels *kind, size_t asked,
                          size_t edge[3])
 {
     for (int a = 0; a < 3; a++)
@@ -235,6 +221,8 @@ void cwi_gl_drop_volume(cwi_gl *gl)
     for (size_t n = 0; n < g->brick_count; n++) {
         glDeleteTextures(1, &g->bricks[n].values);
         glDeleteTextures(1, &g->bricks[n].gradients);
+        glDeleteTextures(1, &g->bricks[n].voxels);
+        glDeleteBuffers(1, &g->bricks[n].buffer);
     }
     cwi_free(g->bricks);
     cwi_ranges_free(&g->ranges);
@@ -247,34 +235,47 @@ static bool is_there(const cwi_gl_volume *g, const cwi_frame *f)
            memcmp(&g->key, &f->volume, sizeof g->key) == 0;
 }
 
-cw_status cwi_gl_take_volume(cwi_gl *gl, cw_error *err)
+/* All about a volume but its textures. */
+static cw_status make_volume(cwi_gl *gl, cw_error *err)
 {
     cwi_gl_volume *g = &gl->volume;
     size_t edge[3];
-    double range[2] = {0, 1};
-    if (is_there(g, gl->frame))
-        return CW_OK;
+    double range[2];
     cwi_gl_drop_scene(gl);
     g->key = gl->frame->volume;
     g->edge = gl->frame->scene.texture_edge;
-    const cw_volume *v = &g->key;
-    texel_kind kind = kind_of(v);
-    cw_status st =
-        cwi_ranges_make(v, gl->frame->scene.threads, &gl->watch.progress, &g->ranges, err);
-    if (st == CW_OK) {
-        find_range(&g->ranges, range);
-        fit_wide(v, range, &kind);
-    }
+    cw_status st = cwi_ranges_make(&g->key, gl->frame->scene.threads, &gl->watch.progress,
+                                   &g->ranges, err);
+    if (st != CW_OK)
+        return st;
+    find_range(&g->ranges, range);
+    g->kind = kind_of(&g->key);
+    fit_wide(&g->key, range, &g->kind);
     g->range = range[1] - range[0];
-    g->scale = v->slope * kind.scale;
-    g->bias = v->slope * kind.bias + v->intercept;
-    choose_edges(v, &kind, g->edge, edge);
-    if (st == CW_OK)
-        st = plan_bricks(g, edge, err);
-    for (size_t n = 0; n < g->brick_count && st == CW_OK; n++) {
-        g->bricks[n].values = values_texture(&kind);
-        st = upload(gl, &kind, &g->bricks[n], err);
-    }
+    g->scale = g->key.slope * g->kind.scale;
+    g->bias = g->key.slope * g->kind.bias + g->key.intercept;
+    choose_edges(&g->key, &g->kind, g->edge, edge);
+    return plan_bricks(g, edge, err);
+}
+
+static cw_status upload_bricks(cwi_gl *gl, cw_error *err)
+{
+    cwi_gl_volume *g = &gl->volume;
+    cw_status st = CW_OK;
+    for (size_t n = 0; n < g->brick_count && st == CW_OK; n++)
+        if (!g->bricks[n].values) {
+            g->bricks[n].values = values_texture(&g->kind);
+            st = upload(gl, &g->kind, &g->bricks[n], err);
+        }
+    return st;
+}
+
+cw_status cwi_gl_take_volume(cwi_gl *gl, bool as_textures, cw_error *err)
+{
+    cw_status st = is_there(&gl->volume, gl->frame) ? CW_OK : make_volume(gl, err);
+    gl->volume.in_place = st == CW_OK && !as_textures && cwi_gl_find_voxels(gl);
+    if (st == CW_OK && !gl->volume.in_place)
+        st = upload_bricks(gl, err);
     if (st != CW_OK)
         cwi_gl_drop_volume(gl);
     return st;
@@ -335,14 +336,11 @@ static void put_gradient_row(const cw_volume *v, const cwi_gl_brick *b, size_t j
     const size_t n = v->dim[0];
     const char *row = cwi_voxel_address(v, 0, j, k);
     float *x = rows, *y = rows + n, *z = rows + 2 * n, *low = rows + 3 * n, *high = low + n;
-    cwi_row_load(v, row, n, low);
-    along_row(low, n, scale, x);
-    cwi_row_load(v, row_at(v, row, 1, j, -1), n, low);
-    cwi_row_load(v, row_at(v, row, 1, j, 1), n, high);
-    subtract(low, high, n, scale * reach(v, 1, j), y);
-    cwi_row_load(v, row_at(v, row, 2, k, -1), n, low);
-    cwi_row_load(v, row_at(v, row, 2, k, 1), n, high);
-    subtract(low, high, n, scale * reach(v, 2, k), z);
+    along_row(cwi_row_of(v, row, n, low), n, scale, x);
+    subtract(cwi_row_of(v, row_at(v, row, 1, j, -1), n, low),
+             cwi_row_of(v, row_at(v, row, 1, j, 1), n, high), n, scale * reach(v, 1, j), y);
+    subtract(cwi_row_of(v, row_at(v, row, 2, k, -1), n, low),
+             cwi_row_of(v, row_at(v, row, 2, k, 1), n, high), n, scale * reach(v, 2, k), z);
     for (size_t i = 0, at = b->first[0]; i < b->count[0]; i++, at++) {
         out[i][0] = to_half(x[at]);
         out[i][1] = to_half(y[at]);
@@ -440,20 +438,6 @@ cw_status cwi_gl_need_gradients(cwi_gl *gl, const char **defines, cw_error *err)
     return st;
 }
 
-void cwi_gl_bind_brick(GLuint program, const cwi_gl_brick *brick)
-{
-    const double first[3] = {(double)brick->first[0], (double)brick->first[1],
-                             (double)brick->first[2]};
-    const double size[3] = {(double)brick->count[0], (double)brick->count[1],
-                            (double)brick->count[2]};
-    glActiveTexture(GL_TEXTURE0 + CWI_UNIT_VOLUME);
-    glBindTexture(GL_TEXTURE_3D, brick->values);
-    glActiveTexture(GL_TEXTURE0 + CWI_UNIT_GRADIENT);
-    glBindTexture(GL_TEXTURE_3D, brick->gradients);
-    cwi_gl_set3(program, "brick_first", first);
-    cwi_gl_set3(program, "brick_size", size);
-}
-
 typedef struct placed {
     double distance;
     size_t brick;
@@ -466,12 +450,6 @@ static int farther_first(const void *a, const void *b)
            : x->distance > y->distance ? -1
            : x->brick < y->brick       ? -1
                                        : x->brick > y->brick;
-}
-
-void cwi_gl_set_last_block(GLuint program, const size_t dim[3])
-{
-    cwi_gl_set3(program, "last_block",
-                (double[]){(double)dim[0] - 1, (double)dim[1] - 1, (double)dim[2] - 1});
 }
 
 /* The sum over axes of how far the eye is from a brick's faces. A brick that hides another is

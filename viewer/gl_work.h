@@ -20,21 +20,32 @@ enum {
     CWI_UNIT_FREE    /* and those after it: a mode's own */
 };
 
+/* How texels are made of voxels. */
+typedef struct cwi_gl_texels {
+    GLenum inner, type;
+    size_t size;
+    bool as_is;         /* voxels of this type are texels when they are packed */
+    double scale, bias; /* voxel = texel (as shaders see it) x scale + bias */
+} cwi_gl_texels;
+
 /* A part of the volume that fits a texture: neighbours have a layer of samples in common. */
 typedef struct cwi_gl_brick {
     size_t first[3], count[3];
-    GLuint values, gradients; /* gradients: 0 until they are needed */
+    GLuint values, gradients; /* 0 until they are needed */
+    GLuint voxels, buffer;    /* the caller's memory as a texture; 0 until it is needed */
 } cwi_gl_brick;
 
 /* A volume on the GPU. The number in a texel times scale plus bias is the scaled value. */
 typedef struct cwi_gl_volume {
     cw_volume key; /* the view that was uploaded */
     size_t edge;   /* as the scene had it */
+    cwi_gl_texels kind;
     double scale, bias;
     double range; /* of the scaled values, above 0; gradients are told in it */
     size_t brick_count;
     cwi_gl_brick *bricks;
     cwi_ranges ranges;
+    bool in_place; /* shaders read voxels, not values */
 } cwi_gl_volume;
 
 /* The transfer function on the GPU. */
@@ -70,7 +81,7 @@ typedef struct cwi_gl_watch {
 
 typedef struct cwi_gl_program {
     const char *vertex, *fragment; /* addresses of the sources */
-    char defines[256];
+    char defines[320];             /* the volume's before the mode's */
     GLuint name;
 } cwi_gl_program;
 
@@ -96,6 +107,7 @@ typedef struct cwi_gl_mode {
     cw_status (*draw)(cwi_gl *gl, void **state, cw_error *err);
     /* Frees it, when another volume or mesh comes and at the end; NULL: there is none. */
     void (*drop)(void *state);
+    bool needs_textures; /* its shaders read values by themselves, not by texel_at() alone */
 } cwi_gl_mode;
 
 extern const cwi_gl_mode cwi_gl_composite, cwi_gl_mip, cwi_gl_minip, cwi_gl_average,
@@ -142,8 +154,17 @@ cw_status cwi_gl_draw_layer(cwi_gl *gl, void (*draw)(void *context), void *conte
                             cw_error *err);
 cw_status cwi_gl_draw_triangles(cwi_gl *gl, size_t count, bool indexed, cw_error *err);
 
-/* Uploads the frame's volume, unless it is there. */
-cw_status cwi_gl_take_volume(cwi_gl *gl, cw_error *err);
+/* Has the frame's volume for shaders: where it is, if that is not to be textures and what draws
+ * can read it there, or uploaded. What is there already stays. */
+cw_status cwi_gl_take_volume(cwi_gl *gl, bool as_textures, cw_error *err);
+/* Whether shaders can read the only brick's voxels where the caller has them: the processor
+ * draws, and they are of a type that it fetches, one after another. Then there is no upload,
+ * and no memory for another volume. */
+bool cwi_gl_find_voxels(cwi_gl *gl);
+/* x fastest, without gaps. */
+bool cwi_gl_is_packed(const cw_volume *volume);
+/* What shaders have to be defined with. */
+const char *cwi_gl_volume_defines(const cwi_gl_volume *volume);
 /* What shaders have to be defined with to find gradients. Those of a small volume become a
  * texture; of a large one, which then would be five times as large, they are differences of
  * interpolated values. */

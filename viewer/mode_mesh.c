@@ -230,4 +230,4 @@ cw_status cwi_gl_draw_mesh(cwi_gl *gl, cw_error *err)
     return st;
 }
 
-const cwi_gl_mode cwi_gl_mesh_mode = {CW_MODE_MESH, false, draw, cwi_gl_drop_mesh};
+const cwi_gl_mode cwi_gl_mesh_mode = {CW_MODE_MESH, false, draw, cwi_gl_drop_mesh, false};

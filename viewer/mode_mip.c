@@ -160,7 +160,7 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     return st;
 }
 
-const cwi_gl_mode cwi_gl_mip = {CW_MODE_MIP, true, draw, drop};
-const cwi_gl_mode cwi_gl_minip = {CW_MODE_MINIP, true, draw, drop};
-const cwi_gl_mode cwi_gl_average = {CW_MODE_AVERAGE, true, draw, drop};
-const cwi_gl_mode cwi_gl_local_mip = {CW_MODE_LOCAL_MIP, true, draw, drop};
+const cwi_gl_mode cwi_gl_mip = {CW_MODE_MIP, true, draw, drop, false};
+const cwi_gl_mode cwi_gl_minip = {CW_MODE_MINIP, true, draw, drop, false};
+const cwi_gl_mode cwi_gl_average = {CW_MODE_AVERAGE, true, draw, drop, false};
+const cwi_gl_mode cwi_gl_local_mip = {CW_MODE_LOCAL_MIP, true, draw, drop, false};

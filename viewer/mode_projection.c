@@ -480,4 +480,4 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     return st;
 }
 
-const cwi_gl_mode cwi_gl_projection = {CW_MODE_PROJECTION, true, draw, NULL};
+const cwi_gl_mode cwi_gl_projection = {CW_MODE_PROJECTION, true, draw, NULL, false};

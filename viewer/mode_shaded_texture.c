@@ -298,4 +298,4 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     return cwi_gl_draw_slices(gl, &t->slices, defines, bind, t, err);
 }
 
-const cwi_gl_mode cwi_gl_shaded_texture = {CW_MODE_SHADED_TEXTURE, true, draw, drop};
+const cwi_gl_mode cwi_gl_shaded_texture = {CW_MODE_SHADED_TEXTURE, true, draw, drop, true};

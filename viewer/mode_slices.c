@@ -57,4 +57,4 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     return st;
 }
 
-const cwi_gl_mode cwi_gl_slices = {CW_MODE_SLICES, false, draw, NULL};
+const cwi_gl_mode cwi_gl_slices = {CW_MODE_SLICES, false, draw, NULL, false};

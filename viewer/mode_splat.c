@@ -12,4 +12,4 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     return st;
 }
 
-const cwi_gl_mode cwi_gl_splat = {CW_MODE_SPLAT, false, draw, NULL};
+const cwi_gl_mode cwi_gl_splat = {CW_MODE_SPLAT, false, draw, NULL, false};

@@ -245,4 +245,4 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     return st;
 }
 
-const cwi_gl_mode cwi_gl_splat_tree = {CW_MODE_SPLAT_TREE, false, draw, drop};
+const cwi_gl_mode cwi_gl_splat_tree = {CW_MODE_SPLAT_TREE, false, draw, drop, false};

@@ -139,4 +139,4 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
                               err);
 }
 
-const cwi_gl_mode cwi_gl_texture_mode = {CW_MODE_TEXTURE, true, draw, drop};
+const cwi_gl_mode cwi_gl_texture_mode = {CW_MODE_TEXTURE, true, draw, drop, true};

@@ -24,38 +24,62 @@ static size_t samples_of(const cw_volume *v, int axis, size_t n)
     return left < CWI_RANGE_EDGE + 1 ? left : CWI_RANGE_EDGE + 1;
 }
 
-/* Widens a range a column by the numbers of a row; false when one of them is no value: neither
- * NaN nor infinite numbers are 0 less themselves. */
-static bool widen(const float *row, size_t count, float *low, float *high)
+/* A range for each column. */
+typedef struct columns {
+    float *low, *high;
+} columns;
+
+static columns clear_columns(float *from, size_t count)
+{
+    const columns c = {from, from + count};
+    for (size_t i = 0; i < count; i++) {
+        c.low[i] = INFINITY;
+        c.high[i] = -INFINITY;
+    }
+    return c;
+}
+
+/* Neither NaN nor infinite. */
+static bool are_values(const float *row, size_t count)
 {
     int gaps = 0;
-    for (size_t i = 0; i < count; i++) {
-        const int is_value = row[i] - row[i] == 0;
-        const float a = is_value ? row[i] : INFINITY, b = is_value ? row[i] : -INFINITY;
-        low[i] = a < low[i] ? a : low[i];
-        high[i] = b > high[i] ? b : high[i];
-        gaps |= !is_value;
-    }
+    for (size_t i = 0; i < count; i++)
+        gaps |= !(fabsf(row[i]) <= FLT_MAX);
     return !gaps;
 }
 
-/* Ranges of columns, over the rows of one row of blocks. columns: room for three rows. */
-static bool scan_rows(const cw_volume *v, size_t j, size_t k, float *columns)
+/* By the numbers of a row; false when one of them is no value. */
+static bool widen(const float *row, size_t count, columns c)
 {
-    const size_t n = v->dim[0];
-    float *row = columns, *low = columns + n, *high = columns + 2 * n;
-    bool is_whole = true;
-    for (size_t i = 0; i < n; i++) {
-        low[i] = INFINITY;
-        high[i] = -INFINITY;
+    const bool is_whole = are_values(row, count);
+    for (size_t i = 0; i < count && is_whole; i++) {
+        c.low[i] = row[i] < c.low[i] ? row[i] : c.low[i];
+        c.high[i] = row[i] > c.high[i] ? row[i] : c.high[i];
     }
-    for (size_t z = 0; z < samples_of(v, 2, k); z++)
-        for (size_t y = 0; y < samples_of(v, 1, j); y++) {
-            cwi_row_load(
-                v, cwi_voxel_address(v, 0, CWI_RANGE_EDGE * j + y, CWI_RANGE_EDGE * k + z), n,
-                row);
-            is_whole &= widen(row, n, low, high);
+    for (size_t i = 0; i < count && !is_whole; i++)
+        if (fabsf(row[i]) <= FLT_MAX) {
+            c.low[i] = fminf(row[i], c.low[i]);
+            c.high[i] = fmaxf(row[i], c.high[i]);
         }
+    return is_whole;
+}
+
+static void join(columns from, size_t count, columns c)
+{
+    for (size_t i = 0; i < count; i++) {
+        c.low[i] = from.low[i] < c.low[i] ? from.low[i] : c.low[i];
+        c.high[i] = from.high[i] > c.high[i] ? from.high[i] : c.high[i];
+    }
+}
+
+/* The rows j of a layer of blocks, one over another. */
+static bool scan_rows(const cw_volume *v, size_t j, size_t k, float *buffer, columns c)
+{
+    bool is_whole = true;
+    for (size_t z = 0; z < samples_of(v, 2, k); z++) {
+        const void *from = cwi_voxel_address(v, 0, j, CWI_RANGE_EDGE * k + z);
+        is_whole &= widen(cwi_row_of(v, from, v->dim[0], buffer), v->dim[0], c);
+    }
     return is_whole;
 }
 
@@ -65,15 +89,15 @@ static float outward(double x, double sign)
     return (float)(x + sign * (fabs(x) * 0x1p-22 + (double)FLT_MIN));
 }
 
-/* A block of a row, from the columns of its samples. Floats are within half a step of what they
- * stand for. */
-static void gather_columns(const cw_volume *v, size_t i, const float *columns, float out[2])
+/* A block of a row of blocks, from the columns of its samples. Floats are within half a step of
+ * what they stand for. */
+static void gather_columns(const cw_volume *v, size_t i, columns c, float out[2])
 {
-    const float *low = columns + v->dim[0] + CWI_RANGE_EDGE * i, *high = low + v->dim[0];
+    const size_t first = CWI_RANGE_EDGE * i;
     float r[2] = {INFINITY, -INFINITY};
-    for (size_t x = 0; x < samples_of(v, 0, i); x++) {
-        r[0] = low[x] < r[0] ? low[x] : r[0];
-        r[1] = high[x] > r[1] ? high[x] : r[1];
+    for (size_t x = first; x < first + samples_of(v, 0, i); x++) {
+        r[0] = c.low[x] < r[0] ? c.low[x] : r[0];
+        r[1] = c.high[x] > r[1] ? c.high[x] : r[1];
     }
     const bool is_empty = r[0] > r[1];
     const double a = v->slope * (double)outward((double)r[0], -1) + v->intercept;
@@ -82,27 +106,43 @@ static void gather_columns(const cw_volume *v, size_t i, const float *columns, f
     out[1] = is_empty ? 0 : outward(a < b ? b : a, 1);
 }
 
+/* Rows of blocks share their outer rows of samples: these are read once.
+ * buffer  room for five rows */
+static bool scan_blocks(const cw_volume *v, const size_t dim[3], size_t k, float *buffer,
+                        float (*blocks)[2])
+{
+    const size_t n = v->dim[0];
+    columns shared = clear_columns(buffer + n, n);
+    bool is_whole = scan_rows(v, 0, k, buffer, shared);
+    for (size_t j = 0; j < dim[1]; j++) {
+        const size_t first = CWI_RANGE_EDGE * j, last = first + samples_of(v, 1, j) - 1;
+        const columns all = clear_columns(buffer + 3 * n, n);
+        join(shared, n, all);
+        for (size_t y = first + 1; y < last; y++)
+            is_whole &= scan_rows(v, y, k, buffer, all);
+        shared = clear_columns(buffer + n, n);
+        is_whole &= scan_rows(v, last, k, buffer, shared);
+        join(shared, n, all);
+        for (size_t i = 0; i < dim[0]; i++)
+            gather_columns(v, i, all, blocks[j * dim[0] + i]);
+    }
+    return is_whole;
+}
+
 static void scan_layer(void *context, size_t k)
 {
     job *work = context;
     const size_t *dim = work->ranges->dim;
-    float *columns = cwi_alloc_array(work->v->dim[0], 3 * sizeof *columns);
-    bool is_whole = true;
-    for (size_t j = 0; j < dim[1] && columns; j++) {
-        is_whole &= scan_rows(work->v, j, k, columns);
-        for (size_t i = 0; i < dim[0]; i++)
-            gather_columns(work->v, i, columns,
-                           work->ranges->blocks[(k * dim[1] + j) * dim[0] + i]);
-    }
-    if (!columns) {
+    float *buffer = cwi_alloc_array(work->v->dim[0], 5 * sizeof *buffer);
+    if (!buffer) {
 #pragma omp atomic write
         work->has_failed = true;
-    }
-    if (!is_whole) {
+    } else if (!scan_blocks(work->v, dim, k, buffer,
+                            work->ranges->blocks + k * dim[1] * dim[0])) {
 #pragma omp atomic write
         work->ranges->has_gaps = true;
     }
-    cwi_free(columns);
+    cwi_free(buffer);
 }
 
 cw_status cwi_ranges_make(const cw_volume *volume, int threads, const cw_progress *progress,

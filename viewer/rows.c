@@ -35,3 +35,11 @@ void cwi_row_load(const cw_volume *v, const void *from, size_t count, float *to)
             v->nodata)
             to[i] = NAN;
 }
+
+const float *cwi_row_of(const cw_volume *v, const void *from, size_t count, float *buffer)
+{
+    if (v->type == CW_F32 && v->stride[0] == (ptrdiff_t)sizeof(float) && !v->has_nodata)
+        return from;
+    cwi_row_load(v, from, count, buffer);
+    return buffer;
+}

@@ -142,11 +142,16 @@ typedef struct cw_scene {
     bool jitter;            /* shift the samples of every ray by another part of a step */
     bool exact_filter;      /* trilinear interpolation by the shader, not the texture unit */
     bool no_skipping;       /* go through what is empty as well */
-    float stop_opacity;     /* rays, and layers of meshes, end there; default 0.9999 */
+    float stop_opacity;     /* rays, and layers of meshes, end there; default 0.9999,
+                               vbuffer 0.99999 */
     double threshold;       /* local-mip: the value a maximum has to reach */
-    bool lean;              /* gradients are found anew by the shader, where they can be, not
-                               kept in a texture: less memory, a faster first picture, lit rays
-                               up to a third slower. Always so of large volumes */
+    bool lean;              /* for a first picture, and with less memory. Gradients are found
+                               anew by the shader, where they can be, not kept in a texture:
+                               lit rays are up to a third slower; always so of large volumes.
+                               Where the processor draws (Mesa's llvmpipe), voxels without gaps
+                               of u8, u16, i16 or f32 are read where the caller has them, and
+                               there is no texture of them: rays are a sixth slower. texture and
+                               shaded-texture have textures always */
     size_t texture_edge;    /* largest edge of a 3D texture, in voxels; default: what GL can */
     cw_target target;       /* texture, shaded-texture: what slices are blended in */
     bool colors_first;      /* texture, shaded-texture: interpolate colours, not data */

@@ -1,4 +1,5 @@
 /* Voxels as textures: whatever they are made of, pictures are those of the voxels. */
+#include "support/hostile.h"
 #include "support/pictures.h"
 
 #include <math.h>
@@ -15,7 +16,7 @@ static void make_bytes(cw_volume *volume, size_t nx, size_t ny, size_t nz)
     for (int a = 0; a < 3; a++) {
         assert_true(dim[a] <= 512);
         for (size_t n = 0; n < dim[a]; n++) {
-            const double q = (double)n / (double)(dim[a] - 1);
+            const double q = dim[a] > 1 ? (double)n / (double)(dim[a] - 1) : 0.5;
             share[a][n] = 4 * q * (1 - q) * (0.9 + 0.1 * cos(30 * q + a));
         }
         volume->affine[a][a] = 1;
@@ -25,15 +26,17 @@ static void make_bytes(cw_volume *volume, size_t nx, size_t ny, size_t nz)
             (uint8_t)(255 * share[0][n % nx] * share[1][n / nx % ny] * share[2][n / nx / ny]);
 }
 
-static void copy_as_floats(const cw_volume *bytes, cw_volume *floats)
+static void copy_as(const cw_volume *bytes, cw_type type, cw_volume *out)
 {
     cw_error err = {0};
     const uint8_t *from = bytes->data;
-    assert_ok(cw_volume_alloc(floats, CW_F32, bytes->dim, 1, 1, &err), err);
-    memcpy(floats->affine, bytes->affine, sizeof floats->affine);
-    float *to = cw_volume_voxels(floats);
+    assert_ok(cw_volume_alloc(out, type, bytes->dim, 1, 1, &err), err);
+    memcpy(out->affine, bytes->affine, sizeof out->affine);
+    char *to = cw_volume_voxels(out);
+    const bool is_signed = type != CW_U8 && type != CW_U16;
     for (size_t n = 0; n < bytes->dim[0] * bytes->dim[1] * bytes->dim[2]; n++)
-        to[n] = from[n];
+        test_store(type, to, n, is_signed ? from[n] - 128.0 : from[n]);
+    out->intercept = is_signed ? 128 : 0;
 }
 
 /* A narrow peak shows every step of an interpolation in eight bits. */
@@ -51,7 +54,7 @@ static void bytes_are_interpolated_as_finely_as_floats(void **state)
     cw_volume bytes = {0}, floats = {0};
     const cw_transfer narrow = peak();
     make_bytes(&bytes, 24, 20, 28);
-    copy_as_floats(&bytes, &floats);
+    copy_as(&bytes, CW_F32, &floats);
     static const cw_mode modes[] = {CW_MODE_COMPOSITE, CW_MODE_TEXTURE, CW_MODE_MIP};
     for (size_t m = 0; m < sizeof modes / sizeof *modes; m++) {
         cw_scene scene = {.mode = modes[m],
@@ -103,9 +106,58 @@ static void large_volumes_are_lit_as_small_ones(void **state)
     cw_volume_free(&bytes);
 }
 
+/* A picture of a volume that is gone afterwards. */
+static cw_picture draw_as(const cw_volume *bytes, cw_type type, cw_mode mode, bool lean)
+{
+    cw_volume volume = {0};
+    const cw_transfer narrow = peak();
+    copy_as(bytes, type, &volume);
+    cw_scene scene = {.mode = mode,
+                      .volume = &volume,
+                      .transfer = &narrow,
+                      .lit = mode == CW_MODE_COMPOSITE || mode == CW_MODE_PROJECTION,
+                      .lean = lean,
+                      .exact_filter = !lean,
+                      .width = 48,
+                      .height = 48,
+                      .step_vox = 0.5};
+    cw_picture picture = test_draw(test_renderer(), &scene);
+    cw_volume_free(&volume);
+    return picture;
+}
+
+static void lean_pictures_are_as_others(void **state)
+{
+    (void)state;
+    static const size_t dims[][3] = {{24, 20, 28}, {31, 2, 17}, {1, 16, 24}};
+    static const cw_type types[] = {CW_U8, CW_U16, CW_I16, CW_F32};
+    static const cw_mode modes[] = {CW_MODE_COMPOSITE, CW_MODE_MIP, CW_MODE_SLICES,
+                                    CW_MODE_PROJECTION};
+    for (size_t d = 0; d < sizeof dims / sizeof *dims; d++) {
+        cw_volume bytes = {0};
+        make_bytes(&bytes, dims[d][0], dims[d][1], dims[d][2]);
+        for (size_t n = 0; n < sizeof types / sizeof *types * (sizeof modes / sizeof *modes);
+             n++) {
+            const cw_type type = types[n % (sizeof types / sizeof *types)];
+            const cw_mode mode = modes[n / (sizeof types / sizeof *types)];
+            cw_picture lean = draw_as(&bytes, type, mode, true);
+            cw_picture other = draw_as(&bytes, type, mode, false);
+            const test_gap gap = test_compare(&lean, &other);
+            if (gap.rmse > 0.05 || gap.max > 1)
+                fail_msg("%s, %s, %zu x %zu x %zu: rmse %g, max %g", cw_mode_name(mode),
+                         cw_type_name(type), dims[d][0], dims[d][1], dims[d][2], gap.rmse,
+                         gap.max);
+            cw_picture_free(&lean);
+            cw_picture_free(&other);
+        }
+        cw_volume_free(&bytes);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(lean_pictures_are_as_others),
         cmocka_unit_test(bytes_are_interpolated_as_finely_as_floats),
         cmocka_unit_test(large_volumes_are_lit_as_small_ones),
     };

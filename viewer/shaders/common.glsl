@@ -16,7 +16,17 @@ layout(std140) uniform Frame {
     ivec4 counts;       // lights, clips, 1: clips cut away
 };
 
-uniform sampler3D volume;    // one brick's values
+// One brick's values: IN_PLACE the voxels themselves, x fastest, as the processor that draws finds them
+// in memory.
+#ifndef IN_PLACE
+uniform sampler3D volume;
+#elif defined(SHORTS)
+uniform isamplerBuffer volume;
+#else
+uniform samplerBuffer volume;
+#endif
+uniform ivec3 voxel_steps; // IN_PLACE: from a voxel to the next along each axis that has more than one
+uniform vec3 last_cell;
 uniform sampler3D gradients; // and gradients per voxel
 uniform sampler1D table;     // transfer function: colour, extinction per unit
 uniform sampler1D factor;    // of the extinction, by the gradient's length
@@ -29,6 +39,37 @@ vec3 brick_place(vec3 index)
 }
 
 // The texel at a point of index space, interpolated; NaN where a sample around it has no value.
+#ifdef IN_PLACE
+float voxel(int n)
+{
+#ifdef SHORTS
+    return (float(texelFetch(volume, n).r) + 32768.0) / 65535.0;
+#else
+    return texelFetch(volume, n).r;
+#endif
+}
+
+// A point of the volume; rounding may have put it a little outside.
+float texel_inside(vec3 index)
+{
+    ivec3 i = ivec3(min(index, last_cell));
+    vec3 s = index - vec3(i);
+    int n = i.x + i.y * voxel_steps.y + i.z * voxel_steps.z;
+    int m = n + voxel_steps.z;
+    vec4 low = vec4(voxel(n), voxel(n + voxel_steps.y), voxel(m), voxel(m + voxel_steps.y));
+    n += voxel_steps.x;
+    m += voxel_steps.x;
+    vec4 high = vec4(voxel(n), voxel(n + voxel_steps.y), voxel(m), voxel(m + voxel_steps.y));
+    low += s.x * (high - low);
+    low.xz += s.y * (low.yw - low.xz);
+    return low.x + s.z * (low.z - low.x);
+}
+
+float texel_at(vec3 index)
+{
+    return texel_inside(clamp(index, vec3(0.0), brick_size - 1.0));
+}
+#else
 float texel_at(vec3 index)
 {
 #ifdef EXACT_FILTER
@@ -44,6 +85,17 @@ float texel_at(vec3 index)
     return mix(y.x, y.y, s.z);
 #else
     return textureLod(volume, brick_place(index), 0.0).r;
+#endif
+}
+#endif
+
+// The same at a place in the brick's texture.
+float texel_in(vec3 place)
+{
+#ifdef IN_PLACE
+    return texel_at(place * brick_size - 0.5);
+#else
+    return textureLod(volume, place, 0.0).r;
 #endif
 }
 
@@ -68,9 +120,9 @@ vec3 gradient_in(vec3 place)
 #ifdef DIFFERENCES
     vec3 voxel = 1.0 / brick_size, first = 0.5 * voxel, last = 1.0 - first;
     vec3 low = max(place - voxel, first), high = min(place + voxel, last);
-    vec3 rise = vec3(textureLod(volume, vec3(high.x, place.yz), 0.0).r - textureLod(volume, vec3(low.x, place.yz), 0.0).r,
-                     textureLod(volume, vec3(place.x, high.y, place.z), 0.0).r - textureLod(volume, vec3(place.x, low.y, place.z), 0.0).r,
-                     textureLod(volume, vec3(place.xy, high.z), 0.0).r - textureLod(volume, vec3(place.xy, low.z), 0.0).r);
+    vec3 rise = vec3(texel_in(vec3(high.x, place.yz)) - texel_in(vec3(low.x, place.yz)),
+                     texel_in(vec3(place.x, high.y, place.z)) - texel_in(vec3(place.x, low.y, place.z)),
+                     texel_in(vec3(place.xy, high.z)) - texel_in(vec3(place.xy, low.z)));
     vec3 apart = max((high - low) * brick_size, 0.5);
     return mat3(gradient_to_eye) * (rise * texels.z / apart);
 #else
@@ -176,10 +228,12 @@ ray ray_of(vec2 fragment)
 // texel_at() and gradient_at() of a point of a ray.
 float texel_on(ray r, float t)
 {
-#ifdef EXACT_FILTER
+#if defined(IN_PLACE)
+    return texel_inside(r.index + t * r.slope);
+#elif defined(EXACT_FILTER)
     return texel_at(r.index + t * r.slope);
 #else
-    return textureLod(volume, r.place + t * r.way, 0.0).r;
+    return texel_in(r.place + t * r.way);
 #endif
 }
 
