@@ -55,14 +55,8 @@ build_and_test() {
 build_and_test release
 quietly cmake --build --preset release --target format-check
 build_and_test fuzz -L 'unit|fuzz'
-# Mutants of every corpus, the same ones each time.
 echo "== mutants"
-for target in build/fuzz/bin/fuzz_*; do
-    new=$(mktemp -d)
-    quietly env ASAN_OPTIONS=intercept_tls_get_addr=0 "$target" -seed=1 -runs=5000 -max_total_time=20 -rss_limit_mb=4000 \
-        "$new" "tests/fuzz/corpus/${target##*/}"
-    rm -rf "$new"
-done
+printf '%s\n' build/fuzz/bin/fuzz_* | xargs -n 1 -P "$(nproc)" sh tests/fuzz/mutants.sh
 configure tsan
 threaded='extract|volume|vbuffer|intensity|quality|render|distance_mesh|oracle|intersections|normals|simplify$|slabs|sparse|irregular'
 # shellcheck disable=SC2046 # no more programs than are run
