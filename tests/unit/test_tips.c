@@ -193,7 +193,7 @@ static void what_is_lost_is_told(void **state)
         assert_ok(cw_mesh_offset(&s.mesh, &desc, &back, &facts, &err), err);
         const double most = fmax(farthest(&s.mesh, &back), farthest(&back, &s.mesh));
         assert_int_equal(facts.is_astray, most > 3 || test_measure(&back).components > 1);
-        assert_true(refine || facts.voxel_mm == 6);
+        assert_true(facts.voxel_mm == (refine ? 3 : 6) && facts.is_astray == !refine);
         cw_mesh_free(&back);
     }
 }
