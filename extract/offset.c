@@ -179,8 +179,21 @@ static bool can_refine(const making *m)
            cwi_level_set_fits(&m->before, m->voxel / 2, 0, m->desc->max_bytes);
 }
 
+/* Plain, and if that breaks the promise with samples moved. */
+static cw_status make_either(making *m, double limit_mm, cw_mesh *out, bool *holds,
+                             bool *is_near, cw_error *err)
+{
+    cw_status st = make_plain(m, out, err);
+    if (st == CW_OK)
+        st = judge(m, out, limit_mm, holds, is_near, err);
+    if (st != CW_OK || *holds)
+        return st;
+    cw_mesh_free(out);
+    return make_warped(m, limit_mm, out, holds, is_near, err);
+}
+
 /* Makes it until the promise is kept: plain, with samples moved, then both with voxels of half
- * the size. If nothing helps, what was made first. */
+ * the size. If nothing helps, or the limit forbids it, what was made first. */
 static cw_status make_true(making *m, cw_mesh *out, bool *is_astray, cw_error *err)
 {
     const double asked = m->voxel;
@@ -194,12 +207,10 @@ static cw_status make_true(making *m, cw_mesh *out, bool *is_astray, cw_error *e
     if (st == CW_OK && !holds && is_near && can_refine(m)) {
         cw_mesh_free(&next);
         m->voxel = asked / 2;
-        st = make_plain(m, &next, err);
-        if (st == CW_OK)
-            st = judge(m, &next, asked / 2, &holds, &is_near, err);
-        if (st == CW_OK && !holds) {
-            cw_mesh_free(&next);
-            st = make_warped(m, asked / 2, &next, &holds, &is_near, err);
+        st = make_either(m, asked / 2, &next, &holds, &is_near, err);
+        if (st == CW_ERR_LIMIT) {
+            holds = false;
+            st = CW_OK;
         }
     }
     if (st == CW_OK && holds && next.triangle_count) {
