@@ -8,6 +8,9 @@ static const cli_option options[] = {
     {"sharp", 0, CLI_FLAG, NULL,
      "put back edges and corners that voxels cut off (on; --no-sharp)",
      offsetof(cli_solid_args, sharp)},
+    {"refine", 0, CLI_FLAG, NULL,
+     "with --by 0: take voxels of half the size if half of one is not kept (on; --no-refine)",
+     offsetof(cli_solid_args, refine)},
     {"measure", 0, CLI_FLAG, NULL,
      "measure how far the result is from where it should be (on; --no-measure)",
      offsetof(cli_solid_args, measure)},
@@ -26,14 +29,21 @@ const cli_command cli_offset = {
         "thinner\n"
         "than twice the distance is gone. --by 0 makes the surface itself anew: parts that "
         "cross\n"
-        "become one, and what a voxel cannot tell is lost.\n\n"
+        "become one.\n\n"
         "Distances are those of a grid's samples, exact; between them the surface is within "
         "half\n"
         "a voxel of where it should be. Edges and corners, which samples cut off by about a "
         "voxel,\n"
         "are put back: most right angles exactly, sharper ones not everywhere (--no-sharp "
         "leaves\n"
-        "them cut).\n"
+        "them cut).\n\n"
+        "With --by 0 all of the surface is within half a voxel of the input, and the input of "
+        "it,\n"
+        "sharp edges, tips and thin walls too. Where that takes voxels of half the size, it is "
+        "told,\n"
+        "and costs some eight times the time (--no-refine takes the others). If it cannot be "
+        "kept,\n"
+        "the mesh is written all the same, and the exit code is 1.\n\n"
         "--voxel auto is 1/256 of the box's diagonal, or a quarter of the distance if that is\n"
         "finer, but not below 1/512, and coarser where memory would not do.\n\n"
         "Printed is how far the result's distance from the input is off, at most and by the "

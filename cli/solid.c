@@ -34,13 +34,15 @@ typedef struct run_state {
     cw_hollow_facts facts;
     double voxel_mm, by_mm, wall_mm;
     double off_max_mm, off_rms_mm; /* of an offset */
-    char found[256];               /* for the line */
+    double asked_mm;               /* voxels */
+    bool is_astray;
+    char found[256]; /* for the line */
     cli_outputs outputs;
     cli_report report;
     double start;
 } run_state;
 
-const cli_solid_args cli_solid_defaults = {.measure = true, .sharp = true};
+const cli_solid_args cli_solid_defaults = {.measure = true, .sharp = true, .refine = true};
 
 /* --- the report ----------------------------------------------------------------------------
  */
@@ -301,13 +303,24 @@ static cw_status offset(run_state *s, cw_error *err)
     const cw_offset_desc desc = {.offset_mm = s->by_mm,
                                  .voxel_mm = s->voxel_mm,
                                  .no_sharpen = !s->args->sharp,
+                                 .no_refine = !s->args->refine,
                                  .threads = (int)s->args->input.threads,
                                  .max_bytes = cli_memory_limit(&s->args->input),
                                  .progress = cli_progress(1, "solid")};
-    cw_status st = cw_mesh_offset(&p->input, &desc, &p->out, &s->voxel_mm, err);
-    if (st == CW_OK)
+    cw_offset_facts facts;
+    cw_status st = cw_mesh_offset(&p->input, &desc, &p->out, &facts, err);
+    if (st != CW_OK)
+        return st;
+    s->asked_mm = s->voxel_mm > 0 ? s->voxel_mm : facts.voxel_mm;
+    s->voxel_mm = facts.voxel_mm;
+    s->is_astray = facts.is_astray;
+    if (s->voxel_mm < s->asked_mm)
+        cli_say("%s: voxels of %.4g mm, in place of %.4g mm: those would have lost more than "
+                "half of one",
+                s->mesh.path, s->voxel_mm, s->asked_mm);
+    else
         cli_say("%s: voxels of %.4g mm", s->mesh.path, s->voxel_mm);
-    return st;
+    return CW_OK;
 }
 
 /* How far the result's distance from the input is off: squares over the surface from the mean
@@ -379,6 +392,18 @@ static cw_status deliver(run_state *s, cw_error *err)
     return cli_deliver(&s->report, &how, &part, 1, 0, s->start, err);
 }
 
+/* It is written all the same: details thinner than voxels may not matter. */
+static cw_status hold_to_input(const run_state *s, cw_error *err)
+{
+    if (!s->is_astray)
+        return CW_OK;
+    return cw_fail(
+        err, CW_ERR_CHECK,
+        "%s: written, but not within half a voxel of %.4g mm of the input both ways, "
+        "or in more pieces: something is too thin; smaller voxels lose less",
+        s->mesh.path, s->asked_mm);
+}
+
 static cw_status make(run_state *s, cli_made *made, cw_error *err)
 {
     cli_report_begin(&s->report);
@@ -392,7 +417,8 @@ static cw_status make(run_state *s, cli_made *made, cw_error *err)
         st = measure(s, made, err);
     if (st != CW_OK)
         return cwi_fail_in(err, st, s->mesh.path);
-    return deliver(s, err);
+    st = deliver(s, err);
+    return st == CW_OK ? hold_to_input(s, err) : st;
 }
 
 static cw_status pipeline(run_state *s, cw_error *err)

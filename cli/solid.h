@@ -14,7 +14,7 @@ typedef struct cli_solid_args {
     const char *drain, *by; /* of hollow, and of offset */
     cli_length wall;        /* of hollow */
     int progress;
-    bool measure, sharp;
+    bool measure, sharp, refine;
 } cli_solid_args;
 
 /* Rows that both commands have. */

@@ -1,7 +1,10 @@
 #include "extract/level_set.h"
 #include "extract/sharpen.h"
+#include "extract/warp.h"
 
+#include "core/memory.h"
 #include "core/status.h"
+#include "simplify/quality/within.h"
 
 #include <cubewright/extract.h>
 
@@ -24,45 +27,229 @@ static double choose_voxel(const cw_offset_desc *d, const cw_quality *q)
     return voxel;
 }
 
-cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc, cw_mesh *out,
-                         double *voxel_mm, cw_error *err)
+/* A surface on the way to be made. */
+typedef struct making {
+    const cw_mesh *mesh;
+    const cw_offset_desc *desc;
+    cw_quality before;
+    double voxel;
+    cw_volume volume;
+    bool is_known, overlaps; /* whether that was looked at; whether the mesh does */
+} making;
+
+static cw_status take_surface(const making *m, bool simple, cw_mesh *out, cw_error *err)
+{
+    const cw_offset_desc *d = m->desc;
+    const cw_extract_desc desc = {.isovalue = d->offset_mm,
+                                  .inside_is_low = true,
+                                  .simple_topology = simple,
+                                  .threads = d->threads,
+                                  .max_bytes = d->max_bytes,
+                                  .progress = d->progress};
+    return cw_extract(&m->volume, &desc, out, NULL, err);
+}
+
+static cw_status make_plain(making *m, cw_mesh *out, cw_error *err)
+{
+    const cw_offset_desc *d = m->desc;
+    const cw_level_set_desc desc = {.voxel_mm = m->voxel,
+                                    .inside_mm = fmax(-d->offset_mm, 0),
+                                    .outside_mm = fmax(d->offset_mm, 0),
+                                    .threads = d->threads,
+                                    .max_bytes = d->max_bytes,
+                                    .progress = d->progress};
+    cw_volume_free(&m->volume);
+    cw_status st =
+        cwi_level_set_make(m->mesh, &m->before, &desc, &d->offset_mm, &m->volume, err);
+    if (st == CW_OK)
+        st = take_surface(m, false, out, err);
+    if (st == CW_OK && out->triangle_count && !d->no_sharpen)
+        st = cwi_sharpen(m->mesh, d, m->voxel, out, err);
+    return st;
+}
+
+/* ---- what is promised of the mesh's own surface ------------------------------------------ */
+
+static int64_t handles(const cw_quality *q)
+{
+    return (int64_t)q->components - q->euler / 2;
+}
+
+/* Whether a surface has neither more components nor more handles than the mesh. */
+static cw_status compare_topology(const making *m, const cw_mesh *out, bool *holds,
+                                  cw_error *err)
 {
     cw_quality q;
-    cw_volume volume = {0};
+    const cw_status st =
+        cw_quality_measure(out, &(cw_quality_desc){.threads = m->desc->threads}, &q, err);
+    *holds = st == CW_OK && out->triangle_count && q.components <= m->before.components &&
+             handles(&q) <= handles(&m->before);
+    return st;
+}
+
+static cw_status find_beyond(const making *m, const cw_mesh *from, const cw_mesh *to,
+                             double limit_mm, bool *any, cw_error *err)
+{
+    uint8_t *beyond = cwi_alloc_array(from->triangle_count, sizeof *beyond);
+    cw_status st = beyond ? cwi_mesh_within(from, to, limit_mm, NULL, m->desc->threads,
+                                            &m->desc->progress, beyond, err)
+                          : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu triangles",
+                                    from->triangle_count);
+    *any = false;
+    for (size_t t = 0; t < from->triangle_count && st == CW_OK; t++)
+        *any |= beyond[t];
+    cwi_free(beyond);
+    return st;
+}
+
+/* What is inside of something else is not of the surface, and lost. */
+static cw_status find_overlap(making *m, cw_error *err)
+{
+    const cw_crossings_desc how = {.threads = m->desc->threads, .progress = m->desc->progress};
+    cw_quality q;
+    cw_crossings found = {0};
+    if (m->is_known)
+        return CW_OK;
+    cw_status st = cw_quality_measure(
+        m->mesh, &(cw_quality_desc){.shells = true, .threads = how.threads}, &q, err);
+    if (st == CW_OK)
+        st = cw_self_intersections(m->mesh, &how, &found, err);
+    m->overlaps = st == CW_OK && (q.nested || found.count);
+    m->is_known = true;
+    cw_crossings_free(&found);
+    return st;
+}
+
+/* Whether a surface is so near to the mesh, and, unless that overlaps, the mesh to it. */
+static cw_status compare_places(const making *m, const cw_mesh *out, double limit_mm,
+                                bool *holds, cw_error *err)
+{
+    bool beyond = !out->triangle_count;
+    cw_status st = CW_OK;
+    if (!beyond && !m->overlaps)
+        st = find_beyond(m, m->mesh, out, limit_mm, &beyond, err);
+    if (st == CW_OK && !beyond)
+        st = find_beyond(m, out, m->mesh, limit_mm, &beyond, err);
+    *holds = st == CW_OK && !beyond;
+    return st;
+}
+
+/* Whether the promise is kept; if not, whether the surface is so near that voxels of half the
+ * size may keep it. */
+static cw_status judge(making *m, const cw_mesh *out, double limit_mm, bool *holds,
+                       bool *is_near, cw_error *err)
+{
+    cw_status st = compare_topology(m, out, holds, err);
+    if (st == CW_OK && *holds)
+        st = compare_places(m, out, limit_mm, holds, err);
+    if (st == CW_OK && !*holds)
+        st = find_overlap(m, err);
+    if (st == CW_OK && !*holds && m->overlaps)
+        st = compare_places(m, out, limit_mm, holds, err);
+    if (st == CW_OK && !*holds && !*is_near)
+        st = compare_places(m, out, 2 * limit_mm, is_near, err);
+    return st;
+}
+
+/* From samples of the same level set that are moved to what they miss. Moving vertices does not
+ * change what is joined: that is looked at before. */
+static cw_status make_warped(making *m, double limit_mm, cw_mesh *out, bool *holds,
+                             bool *is_near, cw_error *err)
+{
+    const cw_offset_desc *d = m->desc;
+    cwi_warp warp;
+    cw_status st = cwi_warp_init(&warp, m->mesh, &m->volume, err);
+    if (st == CW_OK)
+        st = take_surface(m, true, out, err);
+    if (st == CW_OK)
+        st = compare_topology(m, out, holds, err);
+    if (*holds && st == CW_OK)
+        st = cwi_unwarp(&warp, m->mesh, d->threads, &d->progress, out, err);
+    if (*holds && st == CW_OK)
+        st = cwi_sharpen(m->mesh, d, m->voxel, out, err);
+    if (*holds && st == CW_OK)
+        st = judge(m, out, limit_mm, holds, is_near, err);
+    cwi_warp_free(&warp);
+    return st;
+}
+
+static bool can_refine(const making *m)
+{
+    return !m->desc->no_refine &&
+           cwi_level_set_fits(&m->before, m->voxel / 2, 0, m->desc->max_bytes);
+}
+
+/* Plain, and if that breaks the promise with samples moved. */
+static cw_status make_either(making *m, double limit_mm, cw_mesh *out, bool *holds,
+                             bool *is_near, cw_error *err)
+{
+    cw_status st = make_plain(m, out, err);
+    if (st == CW_OK)
+        st = judge(m, out, limit_mm, holds, is_near, err);
+    if (st != CW_OK || *holds)
+        return st;
+    cw_mesh_free(out);
+    return make_warped(m, limit_mm, out, holds, is_near, err);
+}
+
+/* Makes it until the promise is kept: plain, with samples moved, then both with voxels of half
+ * the size. If nothing helps, or the limit forbids it, what was made first. */
+static cw_status make_true(making *m, cw_mesh *out, bool *is_astray, cw_error *err)
+{
+    const double asked = m->voxel;
+    cw_mesh next = {0};
+    bool holds = false, is_near = false;
+    cw_status st = make_plain(m, out, err);
+    if (st == CW_OK)
+        st = judge(m, out, asked / 2, &holds, &is_near, err);
+    if (st == CW_OK && !holds)
+        st = make_warped(m, asked / 2, &next, &holds, &is_near, err);
+    if (st == CW_OK && !holds && is_near && can_refine(m)) {
+        cw_mesh_free(&next);
+        m->voxel = asked / 2;
+        st = make_either(m, asked / 2, &next, &holds, &is_near, err);
+        if (st == CW_ERR_LIMIT) {
+            holds = false;
+            st = CW_OK;
+        }
+    }
+    if (st == CW_OK && holds && next.triangle_count) {
+        cw_mesh_free(out);
+        *out = next;
+        next = (cw_mesh){0};
+    } else {
+        m->voxel = asked;
+    }
+    cw_mesh_free(&next);
+    *is_astray = !holds;
+    return st;
+}
+
+cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc, cw_mesh *out,
+                         cw_offset_facts *facts, cw_error *err)
+{
+    bool is_astray = false;
+    making m = {.mesh = mesh, .desc = desc};
     *out = (cw_mesh){0};
     if (!isfinite(desc->offset_mm) || !isfinite(desc->voxel_mm) || desc->voxel_mm < 0)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "an offset of %g mm with voxels of %g mm: both are finite, and voxels "
                        "not below 0",
                        desc->offset_mm, desc->voxel_mm);
-    cw_status st = cwi_level_set_check(mesh, desc->threads, &q, err);
+    cw_status st = cwi_level_set_check(mesh, desc->threads, &m.before, err);
     if (st != CW_OK)
         return st;
-    const double voxel = desc->voxel_mm > 0 ? desc->voxel_mm : choose_voxel(desc, &q);
-    const cw_level_set_desc level_set = {.voxel_mm = voxel,
-                                         .inside_mm = fmax(-desc->offset_mm, 0),
-                                         .outside_mm = fmax(desc->offset_mm, 0),
-                                         .threads = desc->threads,
-                                         .max_bytes = desc->max_bytes,
-                                         .progress = desc->progress};
-    const cw_extract_desc extract = {.isovalue = desc->offset_mm,
-                                     .inside_is_low = true,
-                                     .threads = desc->threads,
-                                     .max_bytes = desc->max_bytes,
-                                     .progress = desc->progress};
-    st = cwi_level_set_make(mesh, &q, &level_set, &desc->offset_mm, &volume, err);
-    if (st == CW_OK)
-        st = cw_extract(&volume, &extract, out, NULL, err);
-    cw_volume_free(&volume);
+    m.voxel = desc->voxel_mm > 0 ? desc->voxel_mm : choose_voxel(desc, &m.before);
+    st = desc->offset_mm == 0 && !desc->no_sharpen ? make_true(&m, out, &is_astray, err)
+                                                   : make_plain(&m, out, err);
+    cw_volume_free(&m.volume);
     if (st == CW_OK && !out->triangle_count)
         st = cw_fail(err, CW_ERR_EMPTY, "nothing is left: no point is %g mm inside",
-                     -desc->offset_mm);
-    if (st == CW_OK && !desc->no_sharpen)
-        st = cwi_sharpen(mesh, desc, voxel, out, err);
+                     desc->offset_mm < 0 ? -desc->offset_mm : sqrt(0.75) * m.voxel);
     if (st == CW_OK) /* not of the grid in between */
         memcpy(out->affine, mesh->affine, sizeof out->affine);
-    if (voxel_mm)
-        *voxel_mm = voxel;
+    if (facts)
+        *facts = (cw_offset_facts){m.voxel, is_astray};
     if (st != CW_OK)
         cw_mesh_free(out);
     return st;

@@ -44,8 +44,10 @@ typedef struct sharpener {
     size_t side_count;
     uint32_t *first, *upper; /* sides from each vertex to one with a higher number */
     cut *sides, *middles;
-    float *places;    /* of vertices */
-    uint32_t *parent; /* of the triangles made */
+    float *places;     /* of vertices */
+    uint32_t *parent;  /* of the triangles made */
+    uint32_t *changed; /* triangles with a side that is cut, or a corner that is moved */
+    size_t changed_count;
 } sharpener;
 
 static void place_of(const cw_mesh *m, uint32_t v, double x[3])
@@ -463,12 +465,25 @@ static bool restore_unsound(const sharpener *s, size_t t)
     return is_unsound;
 }
 
+/* What is whole stays so: nothing is cut or moved from here on, only put back. */
+static void find_changed(sharpener *s)
+{
+    s->changed_count = 0;
+    for (size_t t = 0; t < s->mesh->triangle_count; t++) {
+        bool is_changed = has_moved(s, t);
+        for (size_t k = 0; k < 3; k++)
+            is_changed |= side_of(s, t, k)->is_on;
+        if (is_changed)
+            s->changed[s->changed_count++] = (uint32_t)t;
+    }
+}
+
 static void restore_all_unsound(const sharpener *s)
 {
     for (bool again = true; again;) {
         again = false;
-        for (size_t t = 0; t < s->mesh->triangle_count; t++)
-            again |= restore_unsound(s, t);
+        for (size_t n = 0; n < s->changed_count; n++)
+            again |= restore_unsound(s, s->changed[n]);
     }
 }
 
@@ -574,7 +589,9 @@ static bool make_room(sharpener *s)
     s->upper = cwi_alloc_array(3 * t / 2 + 1, sizeof *s->upper);
     s->sides = cwi_alloc_zeroed(3 * t / 2 + 1, sizeof *s->sides);
     s->middles = cwi_alloc_zeroed(t, sizeof *s->middles);
-    return s->planes && s->places && s->first && s->upper && s->sides && s->middles;
+    s->changed = cwi_alloc_array(t, sizeof *s->changed);
+    return s->planes && s->places && s->first && s->upper && s->sides && s->middles &&
+           s->changed;
 }
 
 static void free_room(sharpener *s)
@@ -586,6 +603,7 @@ static void free_room(sharpener *s)
     cwi_free(s->sides);
     cwi_free(s->middles);
     cwi_free(s->parent);
+    cwi_free(s->changed);
     cwi_boxes_free(&s->tree);
     cw_mesh_free(&s->made);
 }
@@ -605,9 +623,11 @@ static cw_status find_cuts(sharpener *s, const cw_offset_desc *d, cw_error *err)
     for (int n = 0; n < 3 && st == CW_OK; n++)
         st = cwi_each_layer(n < 2 ? vertices : triangles, 64 * CHUNK, d->threads, &d->progress,
                             "sharpening", steps[n], s, err);
-    if (st == CW_OK)
-        settle_ends(s);
-    return st;
+    if (st != CW_OK)
+        return st;
+    settle_ends(s);
+    find_changed(s);
+    return CW_OK;
 }
 
 static void hand_over(sharpener *s)

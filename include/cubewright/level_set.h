@@ -57,15 +57,22 @@ CW_API cw_status cw_level_set_from_mesh(const cw_mesh *mesh, const cw_level_set_
 
 /* A surface at a distance. Zero fields mean the default named beside them. */
 typedef struct cw_offset_desc {
-    double offset_mm;     /* outward; negative: inward; 0: the mesh's surface, made anew */
-    double voxel_mm;      /* default: the finer of 1/256 of the box's diagonal and 1/4 of the
-                             offset, but 1/512 of the diagonal at the least, and, with max_bytes,
-                             as coarse as it takes */
-    bool no_sharpen;      /* default: edges and corners that the voxels cut off are put back */
-    int threads;          /* default: all */
-    size_t max_bytes;     /* default: no limit */
+    double offset_mm; /* outward; negative: inward; 0: the mesh's surface, made anew */
+    double voxel_mm;  /* default: the finer of 1/256 of the box's diagonal and 1/4 of the
+                         offset, but 1/512 of the diagonal at the least, and, with max_bytes,
+                         as coarse as it takes */
+    bool no_sharpen;  /* default: edges and corners that the voxels cut off are put back */
+    bool no_refine;   /* default: by 0, voxels of half the size if half of one is not kept */
+    int threads;      /* default: all */
+    size_t max_bytes; /* default: no limit */
     cw_progress progress; /* default: none */
 } cw_offset_desc;
+
+/* What an offset made. */
+typedef struct cw_offset_facts {
+    double voxel_mm; /* those that were taken */
+    bool is_astray;  /* by 0: what is said below of that is not so */
+} cw_offset_facts;
 
 /* Makes the surface of all that is nearer to the inside of a mesh than offset_mm, or, inward,
  * that is so far from its outside: closed, a manifold, free of crossings. Convex corners come
@@ -74,16 +81,27 @@ typedef struct cw_offset_desc {
  * Edges and corners that voxels cut off are put back: sides of triangles across them get
  * vertices where the tangent planes at both ends meet, unless that would fold, flatten or cross
  * something. Of right angles most are then exact and the others within some half a voxel;
- * sharper ones may lose more than a voxel in places.
+ * sharper ones may lose more than a voxel in places, but for an offset of 0.
+ *
+ * By 0 the result is within half a voxel of the mesh and the mesh within half a voxel of it,
+ * and it has neither more components nor more handles. That is looked at; if it is not so, all
+ * is made again from the same samples, those next to sharp edges, tips, and walls and gaps
+ * thinner than a voxel moved to these; and if that does not do but both are within a voxel,
+ * with voxels of half the size (half of the first is still what is kept), unless max_bytes
+ * forbids. In all that takes twice the time, or with smaller voxels eight times. What is thin
+ * all over, as bone in a scan, may break it all the same: then the result is the first one, and
+ * is_astray is set. Of a mesh that crosses itself or has solids inside solids only the distance
+ * of the result from it is looked at. All that is left out with no_sharpen.
  *
  * out       filled on success, with normals; emptied on failure; free it with cw_mesh_free()
- * voxel_mm  those that were taken; may be NULL
+ * facts     may be NULL
  *
  * Returns  CW_ERR_EMPTY for an offset inward that leaves nothing; else as
  *          cw_level_set_from_mesh(), cw_extract(), cw_self_intersections()
+ * Threads  the same to the bit for any number
  * Source   edges after [Kobbelt2001], [Attene2005] */
 CW_API cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc, cw_mesh *out,
-                                double *voxel_mm, cw_error *err);
+                                cw_offset_facts *facts, cw_error *err);
 
 /* A round hole from the largest cavity to the outside. It starts at the cavity's farthest point
  * in a direction (on a flat floor in its middle) with a ball, and goes straight on through all
@@ -121,7 +139,9 @@ typedef struct cw_hollow_facts {
  * Without drains the mesh stays as it is, vertex for vertex and triangle for triangle, with its
  * normals, if any; behind them are the surfaces of the cavities, at wall_mm from it, facing
  * inward. With drains all is made anew from the level set: edges and details lose what
- * cw_level_set_from_mesh() says. Scalars, colours and labels are not kept.
+ * cw_level_set_from_mesh() says. They are not put back, as cw_mesh_offset() does:
+ * that goes by the mesh's own planes, which beside drains and around cavities are not those of
+ * the result. Scalars, colours and labels are not kept.
  *
  * out      filled on success, emptied on failure; free it with cw_mesh_free()
  * facts    may be NULL

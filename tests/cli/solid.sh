@@ -24,3 +24,50 @@ cubewright hollow s.off -o h.stl --wall 3mm --drain 6mm@-z --voxel 1mm --json - 
     sed -n -e '/"hollow": {/,/}/p' -e '/"params"/,/"voxel_mm"/p'
 cubewright offset s.off -o o.stl --by -2mm --voxel 1mm --json - -q |
     sed -n -e '/"off": {/,/}/p' -e '/"params"/,/"voxel_mm"/p'
+
+# a groove that voxels of 6 mm do not see
+cat >g.off <<'EOF'
+OFF
+14 24 0
+-10 0 0
+10 0 0
+10 12 0
+2.14359354 12 0
+0 4 0
+-2.14359354 12 0
+-10 12 0
+-10 0 14
+10 0 14
+10 12 14
+2.14359354 12 14
+0 4 14
+-2.14359354 12 14
+-10 12 14
+3 0 1 8
+3 0 8 7
+3 1 2 9
+3 1 9 8
+3 2 3 10
+3 2 10 9
+3 3 4 11
+3 3 11 10
+3 4 5 12
+3 4 12 11
+3 5 6 13
+3 5 13 12
+3 6 0 7
+3 6 7 13
+3 0 4 1
+3 7 8 11
+3 1 3 2
+3 8 9 10
+3 1 4 3
+3 8 10 11
+3 0 5 4
+3 7 11 12
+3 0 6 5
+3 7 12 13
+EOF
+cubewright offset g.off -o g.stl --by 0 --voxel 6mm | sed 's/; at most.*//'
+cubewright offset g.off -o g.stl --by 0 --voxel 6mm --no-refine --json g.json | sed 's/; at most.*//'
+grep -e '"exit"' -e '"status"' g.json
