@@ -538,7 +538,7 @@ static void what_vertices_carry_comes_along(void **state)
 static void crossings_may_be_allowed(void **state)
 {
     (void)state;
-    cw_mesh mesh = noisy_gyroid(40, 0.2, false);
+    cw_mesh mesh = noisy_gyroid(40, 0.3, false);
     cw_mesh out = simplify(&mesh, &(cw_simplify_desc){.ratio = 0.05, .allow_crossings = true});
     const cw_quality a = test_measure(&mesh), b = test_measure(&out);
     assert_int_equal(a.euler, b.euler);
