@@ -24,8 +24,10 @@ typedef struct plan {
     const cwi_block *whole;
     uint32_t *order; /* of the triangles, by leaf */
     uint32_t *spare;
+    float *middles; /* of triangles, x 3 */
     leaf *leaves;
     size_t count;
+    double share;        /* of a leaf's triangles that are below where it is divided */
     uint8_t *held;       /* vertices: as above */
     uint32_t *obstacles; /* triangles by leaf, from first[leaf] on */
     size_t *first;
@@ -58,16 +60,31 @@ void cwi_block_span(cwi_block *block)
     block->to = INFINITY;
 }
 
+void cwi_block_number(cwi_block *block)
+{
+    for (size_t v = 0; v < block->vertices; v++)
+        block->names[v] = (uint32_t)v;
+}
+
 static float coordinate(const cwi_block *b, size_t corner, int axis)
 {
     return b->points[3 * (size_t)b->corners[corner] + (size_t)axis];
 }
 
-static float middle(const cwi_block *b, size_t triangle, int axis)
+static void find_middles(plan *p)
 {
-    return (coordinate(b, 3 * triangle, axis) + coordinate(b, 3 * triangle + 1, axis) +
-            coordinate(b, 3 * triangle + 2, axis)) /
-           3;
+    const cwi_block *b = p->whole;
+    for (size_t t = 0; t < b->triangles; t++)
+        for (int a = 0; a < 3; a++)
+            p->middles[3 * t + (size_t)a] =
+                (coordinate(b, 3 * t, a) + coordinate(b, 3 * t + 1, a) +
+                 coordinate(b, 3 * t + 2, a)) /
+                3;
+}
+
+static float middle(const plan *p, size_t triangle, int axis)
+{
+    return p->middles[3 * triangle + (size_t)axis];
 }
 
 static int longest_axis(const plan *p, const leaf *l, float low[3], float high[3])
@@ -77,7 +94,7 @@ static int longest_axis(const plan *p, const leaf *l, float low[3], float high[3
         low[a] = INFINITY;
         high[a] = -INFINITY;
         for (size_t i = l->begin; i < l->end; i++) {
-            const float x = middle(p->whole, p->order[i], a);
+            const float x = middle(p, p->order[i], a);
             low[a] = x < low[a] ? x : low[a];
             high[a] = x > high[a] ? x : high[a];
         }
@@ -87,31 +104,32 @@ static int longest_axis(const plan *p, const leaf *l, float low[3], float high[3
     return longest;
 }
 
-/* A place along the axis with about half of the triangles below. */
-static float find_half(const plan *p, const leaf *l, int axis, float low, float high)
+/* A place along the axis with about the share of the triangles below. */
+static float find_place(const plan *p, const leaf *l, int axis, float low, float high)
 {
     size_t bins[BINS] = {0}, below = 0;
     const float scale = high > low ? BINS / (high - low) : 0;
     for (size_t i = l->begin; i < l->end; i++) {
-        const float place = (middle(p->whole, p->order[i], axis) - low) * scale;
+        const float place = (middle(p, p->order[i], axis) - low) * scale;
         bins[place < BINS - 1 ? (size_t)place : BINS - 1]++;
     }
+    const size_t enough = (size_t)(p->share * (double)(l->end - l->begin));
     size_t b = 0;
-    while (b < BINS - 1 && 2 * (below + bins[b]) <= l->end - l->begin)
+    while (b < BINS - 1 && below + bins[b] <= enough)
         below += bins[b++];
     return low + (float)(b + (b == 0)) * (high - low) / BINS;
 }
 
-/* Divides a leaf; the second half becomes *other. */
-static void halve(plan *p, leaf *l, leaf *other)
+/* Divides a leaf; the second part becomes *other. */
+static void divide(plan *p, leaf *l, leaf *other)
 {
     float low[3], high[3];
     const int axis = longest_axis(p, l, low, high);
-    const float at = find_half(p, l, axis, low[axis], high[axis]);
+    const float at = find_place(p, l, axis, low[axis], high[axis]);
     size_t kept = l->begin, gone = 0;
     for (size_t i = l->begin; i < l->end; i++) {
         const uint32_t t = p->order[i];
-        if (middle(p->whole, t, axis) < at)
+        if (middle(p, t, axis) < at)
             p->order[kept++] = t;
         else
             p->spare[gone++] = t;
@@ -132,7 +150,7 @@ static void make_leaves(plan *p)
     }
     for (; step > 1; step /= 2)
         for (size_t n = 0; n < p->count; n += step)
-            halve(p, p->leaves + n, p->leaves + n + step / 2);
+            divide(p, p->leaves + n, p->leaves + n + step / 2);
 }
 
 static void bound(const cwi_block *b, size_t triangle, float box[6])
@@ -219,7 +237,7 @@ static bool alloc_vertices(cwi_block *b, const cwi_block *whole)
     return b->points && b->held && !b->quadrics == !whole->quadrics && !b->seam == !whole->seam;
 }
 
-/* The quadric of a vertex goes to one block only, one of which is left what names it. */
+/* What a vertex has gathered goes to one block only, one of which is left what names it. */
 static void copy_vertex(const plan *p, cwi_block *b, size_t v, bool own)
 {
     const cwi_block *w = p->whole;
@@ -230,9 +248,22 @@ static void copy_vertex(const plan *p, cwi_block *b, size_t v, bool own)
         b->seam[v] = w->seam[from];
     if (!b->quadrics)
         return;
-    b->quadrics[v] = own && p->held[from] != GIVEN ? w->quadrics[from] : (cwi_quadric){.c = 0};
+    const bool given = own && p->held[from] != GIVEN;
+    b->quadrics[v] = given ? w->quadrics[from] : (cwi_quadric){.c = 0};
+    if (b->trends) {
+        b->areas[v] = given ? w->areas[from] : 0;
+        memcpy(b->trends + w->attributes * v, w->trends + w->attributes * from,
+               w->attributes * sizeof *b->trends);
+    }
     if (own && p->held[from] == HELD)
         p->held[from] = GIVEN;
+}
+
+static bool alloc_trends(const cwi_block *whole, cwi_block *b)
+{
+    b->areas = cwi_alloc_array(b->vertices, sizeof *b->areas);
+    b->trends = cwi_alloc_array(whole->attributes * b->vertices, sizeof *b->trends);
+    return b->areas && b->trends;
 }
 
 /* For vertices that have names. */
@@ -241,6 +272,8 @@ static bool fill_values(const cwi_block *whole, cwi_block *b)
     const size_t count = b->attributes = whole->attributes;
     if (!count)
         return true;
+    if (whole->trends)
+        return alloc_trends(whole, b);
     b->values = cwi_alloc_array(count * b->vertices, sizeof *b->values);
     for (size_t v = 0; v < b->vertices && b->values; v++)
         memcpy(b->values + count * v, whole->values + count * b->names[v],
@@ -306,26 +339,31 @@ static cw_status fill_blocks(const plan *p, cwi_block *blocks, cw_error *err)
     return st;
 }
 
-cw_status cwi_blocks_cut(const cwi_block *whole, size_t most, cwi_block **out, size_t *count,
-                         cw_error *err)
+cw_status cwi_blocks_cut(const cwi_block *whole, size_t most, double share, cwi_block **out,
+                         size_t *count, cw_error *err)
 {
-    plan p = {.whole = whole, .count = 1};
+    plan p = {.whole = whole, .count = 1, .share = share};
     while (p.count * most < whole->triangles)
         p.count *= 2;
     *count = p.count;
     p.order = cwi_alloc_array(whole->triangles, sizeof *p.order);
     p.spare = cwi_alloc_array(whole->triangles, sizeof *p.spare);
+    p.middles = cwi_alloc_array(3 * whole->triangles, sizeof *p.middles);
     p.leaves = cwi_alloc_array(p.count, sizeof *p.leaves);
     p.held = cwi_alloc_zeroed(whole->vertices, sizeof *p.held);
     p.first = cwi_alloc_zeroed(p.count + 2, sizeof *p.first);
     *out = cwi_alloc_zeroed(p.count, sizeof **out);
-    bool ok = p.order && p.spare && p.leaves && p.held && p.first && *out;
+    bool ok = p.order && p.spare && p.middles && p.leaves && p.held && p.first && *out;
     for (size_t t = 0; t < whole->triangles && ok; t++)
         p.order[t] = (uint32_t)t;
     for (size_t v = 0; v < whole->vertices && ok && whole->held; v++)
         p.held[v] = whole->held[v] ? HELD : FREE;
-    if (ok)
+    if (ok) {
+        find_middles(&p);
         make_leaves(&p);
+    }
+    cwi_free(p.spare);
+    cwi_free(p.middles);
     ok = ok && find_obstacles(&p);
     cw_status st = ok ? fill_blocks(&p, *out, err)
                       : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to cut a mesh into blocks");
@@ -336,7 +374,6 @@ cw_status cwi_blocks_cut(const cwi_block *whole, size_t most, cwi_block **out, s
         *out = NULL;
     }
     cwi_free(p.order);
-    cwi_free(p.spare);
     cwi_free(p.leaves);
     cwi_free(p.held);
     cwi_free(p.first);

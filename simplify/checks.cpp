@@ -107,6 +107,9 @@ Contact::Contact(const cwi_block &block, const Surface &surface)
     : own(block.own), live(block.triangles),
       corners(block.corners, block.corners + 3 * block.triangles), marks(block.triangles)
 {
+#ifdef __x86_64__
+    has_avx2 = __builtin_cpu_supports("avx2");
+#endif
     build(surface);
 }
 
@@ -192,40 +195,57 @@ void put(Eight &eight, size_t lane, const Star &star, const Spoke &s)
     eight.reach[lane] = length(way);
 }
 
+// Eight numbers at a time, said so.
+typedef float Lanes __attribute__((vector_size(32)));
+typedef int32_t Mask __attribute__((vector_size(32)));
+
+template <typename Vector, typename T>
+inline __attribute__((always_inline)) void load(Vector &vector, const T (&from)[8])
+{
+    std::memcpy(&vector, from, sizeof vector);
+}
+
 // Which of the spokes may meet a triangle: it is not clearly on one side of their planes, nor
 // beyond their outer sides, but for corners that they share.
-unsigned candidates(const Eight &e, const Corners &other, const Vec &center)
+inline __attribute__((always_inline)) unsigned candidates(const Eight &e, const Corners &other,
+                                                          const Vec &center)
 {
-    int32_t above[8], below[8], beyond[8];
-    for (int l = 0; l < 8; l++)
-        above[l] = below[l] = beyond[l] = 1;
+    Mask a, b, above = Mask{} - 1, below = above, beyond = above;
+    Lanes face[3], side[3], face_doubt, side_height, side_doubt, reach;
+    for (int k = 0; k < 3; k++) {
+        load(face[k], e.face[k]);
+        load(side[k], e.side[k]);
+    }
+    load(a, e.a);
+    load(b, e.b);
+    load(face_doubt, e.face_doubt);
+    load(side_height, e.side_height);
+    load(side_doubt, e.side_doubt);
+    load(reach, e.reach);
     for (int k = 0; k < 3; k++) {
         const Vec w = other.at[k] - center;
-        const float x = w[0], y = w[1], z = w[2], far = length(w);
-        const uint32_t id = other.id[k];
-        for (int l = 0; l < 8; l++) {
-            const int32_t shared = (id == e.a[l]) | (id == e.b[l]);
-            const float height = e.face[0][l] * x + e.face[1][l] * y + e.face[2][l] * z,
-                        out = e.side[0][l] * x + e.side[1][l] * y + e.side[2][l] * z -
-                              e.side_height[l],
-                        doubt = e.face_doubt[l] * far,
-                        out_doubt = e.side_doubt[l] * (far + e.reach[l]);
-            above[l] &= shared | (height > doubt);
-            below[l] &= shared | (height < -doubt);
-            beyond[l] &= shared | (out > out_doubt);
-        }
+        const float far = length(w);
+        const int32_t id = int32_t(other.id[k]);
+        const Mask shared = (a == id) | (b == id);
+        const Lanes height = face[0] * w[0] + face[1] * w[1] + face[2] * w[2],
+                    out = side[0] * w[0] + side[1] * w[1] + side[2] * w[2] - side_height,
+                    doubt = face_doubt * far, out_doubt = side_doubt * (reach + far);
+        above &= shared | (height > doubt);
+        below &= shared | (height < -doubt);
+        beyond &= shared | (out > out_doubt);
     }
-    unsigned left = 0;
-    for (int l = 0; l < 8; l++)
-        left |= unsigned(!(above[l] | below[l] | beyond[l])) << l;
-    return left;
+    const Mask left = ~(above | below | beyond);
+    cwi_mask halves[2];
+    std::memcpy(halves, &left, sizeof halves);
+    return cwi_mask_bits(halves) | cwi_mask_bits(halves + 1) << 4;
 }
 
 } // namespace
 
 // The moved vertex stands at its new place already.
-bool Contact::meets(const Surface &surface, const Star &star, uint32_t face,
-                    const float box[6]) const
+inline __attribute__((always_inline)) bool Contact::meets(const Surface &surface,
+                                                          const Star &star, uint32_t face,
+                                                          const float box[6]) const
 {
     Corners other;
     std::memcpy(other.id, &corners[3 * size_t(face)], sizeof other.id);
@@ -276,6 +296,32 @@ bool Contact::star_meets_itself(const Surface &surface, const Star &star) const
     return false;
 }
 
+inline __attribute__((always_inline)) bool
+Contact::meets_others(const Surface &surface, const Star &star, const Box &around) const
+{
+    return nearby->any(
+        around, [&](uint32_t face, const float box[6]) __attribute__((always_inline)) {
+            return marks[face] != mark && meets(surface, star, face, box);
+        });
+}
+
+#ifdef __x86_64__
+__attribute__((target("avx2"))) bool
+Contact::meets_others_avx2(const Surface &surface, const Star &star, const Box &around) const
+{
+    return meets_others(surface, star, around);
+}
+#endif
+
+bool Contact::find_others(const Surface &surface, const Star &star, const Box &around) const
+{
+#ifdef __x86_64__
+    if (has_avx2)
+        return meets_others_avx2(surface, star, around);
+#endif
+    return meets_others(surface, star, around);
+}
+
 bool Contact::arises(Surface &surface, const Star &star)
 {
     const VertexHandle moving(int(star.vertex));
@@ -296,9 +342,7 @@ bool Contact::arises(Surface &surface, const Star &star)
         marks[f] = mark;
     surface.set_point(moving, star.place);
     const bool found = (!opens_like_a_fan(star) && star_meets_itself(surface, star)) ||
-                       nearby->any(all, [&](uint32_t face, const float box[6]) {
-                           return marks[face] != mark && meets(surface, star, face, box);
-                       });
+                       find_others(surface, star, all);
     surface.set_point(moving, before);
     return found;
 }

@@ -73,6 +73,9 @@ private:
     void build(const Surface &surface);
     bool meets(const Surface &surface, const Star &star, uint32_t face,
                const float box[6]) const;
+    bool meets_others(const Surface &surface, const Star &star, const Box &around) const;
+    bool meets_others_avx2(const Surface &surface, const Star &star, const Box &around) const;
+    bool find_others(const Surface &surface, const Star &star, const Box &around) const;
     bool star_meets_itself(const Surface &surface, const Star &star) const;
     bool opens_like_a_fan(const Star &star) const;
 
@@ -82,6 +85,7 @@ private:
     std::vector<uint32_t> marks; // faces of the star have the last number
     uint32_t mark = 0;
     std::vector<Eight> spokes;
+    bool has_avx2 = false;
 };
 
 } // namespace cw

@@ -73,7 +73,8 @@ public:
 
     // Calls visit(triangle, its box) for those whose boxes share a point with the box, until it
     // is true.
-    template <typename Visit> bool any(const Box &box, Visit &&visit) const
+    template <typename Visit>
+    __attribute__((always_inline)) bool any(const Box &box, Visit &&visit) const
     {
         struct {
             int level;

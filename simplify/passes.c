@@ -416,7 +416,8 @@ static cw_status keep(const cwi_passes *p, const part *x, size_t *repeats, cw_er
     return st;
 }
 
-/* --- the first pass ----------------------------------------------------------------------- */
+/* --- passes over blocks --------------------------------------------------------------------
+ */
 
 typedef struct crew {
     const cwi_passes *passes;
@@ -562,16 +563,26 @@ static void begin_pass(const cwi_passes *p)
         memcpy(p->lists, p->next, p->input.vertex_count * sizeof *p->lists);
 }
 
-cw_status cwi_passes_blocks(cwi_passes *p, cwi_block *whole, size_t target, cw_error *err)
+/* Borders that were known before the pass are so still. */
+static void keep_known(const uint8_t *seam, cwi_block *left)
+{
+    for (size_t v = 0; v < left->vertices && seam; v++)
+        left->seam[v] &= seam[left->names[v]];
+}
+
+static cw_status run_blocks(cwi_passes *p, cwi_block *whole, size_t target, double share,
+                            cw_error *err)
 {
     const size_t names = whole->vertices;
     crew c = {.passes = p};
     size_t repeats = 0;
     begin_pass(p);
-    cw_status st = cwi_blocks_cut(whole, CWI_BLOCK, &c.blocks, &c.count, err);
+    cw_status st = cwi_blocks_cut(whole, CWI_BLOCK, share, &c.blocks, &c.count, err);
     if (st != CW_OK)
         return st;
     c.target = first_target(&c, target);
+    uint8_t *seam = whole->seam;
+    whole->seam = NULL;
     cwi_block_free(whole);
     st = run_crew(&c, err);
     for (size_t n = 0; n < c.count && st == CW_OK; n++)
@@ -579,11 +590,27 @@ cw_status cwi_passes_blocks(cwi_passes *p, cwi_block *whole, size_t target, cw_e
     p->repeats += repeats;
     if (st == CW_OK)
         st = cwi_blocks_join(c.left, c.count, names, whole, err);
+    if (st == CW_OK)
+        keep_known(seam, whole);
+    cwi_free(seam);
     free_crew(&c);
     return st;
 }
 
-/* --- the second pass ---------------------------------------------------------------------- */
+cw_status cwi_passes_blocks(cwi_passes *p, cwi_block *whole, size_t target, cw_error *err)
+{
+    return run_blocks(p, whole, target, 0.5, err);
+}
+
+cw_status cwi_passes_seams(cwi_passes *p, cwi_block *whole, size_t target, cw_error *err)
+{
+    if (p->next || whole->triangles <= CWI_BLOCK || whole->triangles <= target + target / 4)
+        return CW_OK;
+    cwi_block_number(whole);
+    return run_blocks(p, whole, target, 7.0 / 16, err);
+}
+
+/* --- the last pass ------------------------------------------------------------------------ */
 
 static cw_status run_levels(const cwi_passes *p, const cwi_block *whole, const size_t *targets,
                             size_t levels, cwi_block *left, size_t *cut, cw_error *err)

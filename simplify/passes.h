@@ -49,6 +49,11 @@ cw_status cwi_passes_list(cwi_passes *passes, cwi_block *block, cw_error *err);
  * whole    vertices have their numbers for names; replaced */
 cw_status cwi_passes_blocks(cwi_passes *passes, cwi_block *whole, size_t target, cw_error *err);
 
+/* Does so once more, without an error to keep and where that pays: where seams have left far
+ * more triangles than the target. These blocks are cut elsewhere, and have most seams inside.
+ */
+cw_status cwi_passes_seams(cwi_passes *passes, cwi_block *whole, size_t target, cw_error *err);
+
 /* Simplifies all of a block, seams included, down to each of the targets in turn.
  * targets  levels, falling; 0: as far as the error allows
  * left     levels; with an error to keep, one

@@ -57,7 +57,7 @@ inline cwi_quadric moved(const cwi_quadric &q, const Vec &way)
 // Where the error is least, with a slight pull towards a place, so that there is always one.
 inline Vec least(const cwi_quadric &q, const Vec &towards)
 {
-    const float pull = 1e-3f * trace(q) + 1e-30f;
+    const float pull = 1e-5f * trace(q) + 1e-30f;
     const float xx = q.a[0] + pull, xy = q.a[1], xz = q.a[2], yy = q.a[3] + pull, yz = q.a[4],
                 zz = q.a[5] + pull;
     const Vec right(pull * towards[0] - q.b[0], pull * towards[1] - q.b[1],

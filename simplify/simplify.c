@@ -129,6 +129,8 @@ static cw_status run_passes(cwi_passes *p, const cw_mesh *mesh, const size_t *ta
     if (st == CW_OK && whole.triangles > CWI_BLOCK)
         st = cwi_passes_blocks(p, &whole, targets[0], err);
     if (st == CW_OK)
+        st = cwi_passes_seams(p, &whole, targets[0], err);
+    if (st == CW_OK)
         st = cwi_passes_whole(p, &whole, targets, levels, left, cut, err);
     cwi_block_free(&whole);
     return st;

@@ -172,10 +172,11 @@ static cw_status join_slabs(cw_simplifier *s, cwi_block *left, size_t *cut, cw_e
     for (size_t n = 0; n < s->count; n++)
         cwi_block_free(s->slabs + n);
     s->count = 0;
-    for (size_t v = 0; v < whole.vertices; v++)
-        whole.names[v] = (uint32_t)v;
+    cwi_block_number(&whole);
     if (st == CW_OK && whole.triangles > CWI_BLOCK)
         st = cwi_passes_blocks(&s->passes, &whole, target, err);
+    if (st == CW_OK)
+        st = cwi_passes_seams(&s->passes, &whole, target, err);
     if (st == CW_OK)
         st = cwi_passes_whole(&s->passes, &whole, &target, 1, left, cut, err);
     cwi_block_free(&whole);

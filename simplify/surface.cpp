@@ -112,7 +112,7 @@ std::vector<uint8_t> connect(const cwi_block &block, Surface &surface)
 {
     const Sides sides(block);
     std::vector<uint8_t> cut(block.vertices);
-    surface.reserve(block.vertices, block.own * 3 / 2, block.own);
+    surface.reserve(block.vertices, 3 * block.own, block.own); // pages not used cost nothing
     for (size_t v = 0; v < block.vertices; v++)
         surface.new_vertex(Vec(block.points + 3 * v));
     make_faces(make_edges(block, sides, surface, cut), surface);

@@ -6,6 +6,9 @@
 
 #include <math.h>
 #include <string.h>
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
 
 #ifdef __cplusplus
 extern "C" {
@@ -71,19 +74,30 @@ static inline void cwi_boxes_clear(cwi_boxes_node *node)
 typedef float cwi_lanes __attribute__((vector_size(16)));
 typedef int32_t cwi_mask __attribute__((vector_size(16)));
 
+/* Bit c: lane c of a mask is set. */
+static inline unsigned cwi_mask_bits(const cwi_mask *mask)
+{
+#ifdef __SSE2__
+    return (unsigned)_mm_movemask_ps((__m128)*mask);
+#else
+    const cwi_mask bits = *mask & (cwi_mask){1, 2, 4, 8};
+    return (unsigned)(bits[0] | bits[1] | bits[2] | bits[3]);
+#endif
+}
+
 /* Bit c: box c of the node shares a point with the box. */
 static inline unsigned cwi_boxes_meeting(const cwi_boxes_node *n, const float box[6])
 {
     unsigned meeting = 0;
     for (int c = 0; c < CWI_WIDTH; c += 4) {
-        cwi_mask meet = {1, 2, 4, 8};
+        cwi_mask meet = {-1, -1, -1, -1};
         for (int a = 0; a < 3; a++) {
             cwi_lanes low, high;
             memcpy(&low, n->low[a] + c, sizeof low);
             memcpy(&high, n->high[a] + c, sizeof high);
             meet &= (low <= box[a + 3]) & (high >= box[a]);
         }
-        meeting |= (unsigned)(meet[0] | meet[1] | meet[2] | meet[3]) << c;
+        meeting |= cwi_mask_bits(&meet) << c;
     }
     return meeting;
 }

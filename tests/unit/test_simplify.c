@@ -474,6 +474,24 @@ static void threads_change_nothing(void **state)
     cw_mesh_free(&mesh);
 }
 
+/* Large enough for its seams to be cut into blocks once more, with a border, and what normals
+ * cost going along. */
+static void seams_of_many_blocks_are_sound(void **state)
+{
+    (void)state;
+    cw_mesh mesh = noisy_gyroid(88, 0.1, true);
+    cw_simplify_desc desc = {.threads = 1, .ratio = 0.1, .normal_weight = 0.5f};
+    cw_mesh one = simplify(&mesh, &desc);
+    desc.threads = 3;
+    cw_mesh three = simplify(&mesh, &desc);
+    test_assert_same_mesh(&one, &three);
+    test_assert_sound(&mesh, &one);
+    assert_within((double)one.triangle_count, 0.1 * (double)mesh.triangle_count, 0.001);
+    cw_mesh_free(&one);
+    cw_mesh_free(&three);
+    cw_mesh_free(&mesh);
+}
+
 static void levels_follow_each_other(void **state)
 {
     (void)state;
@@ -538,7 +556,7 @@ static void what_vertices_carry_comes_along(void **state)
 static void crossings_may_be_allowed(void **state)
 {
     (void)state;
-    cw_mesh mesh = noisy_gyroid(40, 0.2, false);
+    cw_mesh mesh = noisy_gyroid(40, 0.3, false);
     cw_mesh out = simplify(&mesh, &(cw_simplify_desc){.ratio = 0.05, .allow_crossings = true});
     const cw_quality a = test_measure(&mesh), b = test_measure(&out);
     assert_int_equal(a.euler, b.euler);
@@ -671,6 +689,7 @@ int main(void)
         cmocka_unit_test(what_has_a_weight_stays_sharp),
         cmocka_unit_test(nothing_vanishes),
         cmocka_unit_test(threads_change_nothing),
+        cmocka_unit_test(seams_of_many_blocks_are_sound),
         cmocka_unit_test(levels_follow_each_other),
         cmocka_unit_test(what_vertices_carry_comes_along),
         cmocka_unit_test(crossings_may_be_allowed),
