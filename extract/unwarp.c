@@ -120,12 +120,7 @@ static bool way_at(const cwi_warp *w, const double at[3], float way[3])
     bool any = false;
     for (int n = 0; n < 8; n++) {
         uint32_t corner[3];
-        double share = 1;
-        for (int a = 0; a < 3; a++) {
-            const double base = floor(at[a]), in = at[a] - base;
-            corner[a] = (uint32_t)base + (n >> a & 1);
-            share *= n >> a & 1 ? in : 1 - in;
-        }
+        const double share = cwi_warp_corner(at, n, corner);
         const cwi_move *m = share > 1e-6 ? cwi_warp_find(w, corner) : NULL;
         for (int a = 0; a < 3 && m; a++)
             sum[a] += share * m->way[a];

@@ -85,12 +85,7 @@ static double distance_at(const warping *g, const double at[3])
     double sum = 0;
     for (int n = 0; n < 8; n++) {
         uint32_t corner[3];
-        double share = 1;
-        for (int a = 0; a < 3; a++) {
-            const double base = floor(at[a]), in = at[a] - base;
-            corner[a] = (uint32_t)base + (n >> a & 1);
-            share *= n >> a & 1 ? in : 1 - in;
-        }
+        const double share = cwi_warp_corner(at, n, corner);
         const float *v = voxel_at(g, corner);
         sum += v ? share * (double)*v : (double)NAN;
     }

@@ -48,6 +48,9 @@ cw_status cwi_unwarp(const cwi_warp *warp, const cw_mesh *mesh, int threads,
 size_t cwi_warp_slot(const uint32_t at[3], size_t slots);
 size_t cwi_warp_slots(size_t count);
 
+/* The n-th of the eight samples around a place in the grid, and its trilinear share. */
+double cwi_warp_corner(const double at[3], int n, uint32_t corner[3]);
+
 /* NULL: that sample was not moved. */
 cwi_move *cwi_warp_find(const cwi_warp *warp, const uint32_t at[3]);
 

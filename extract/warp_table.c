@@ -2,6 +2,7 @@
 
 #include "core/memory.h"
 
+#include <math.h>
 #include <string.h>
 
 size_t cwi_warp_slot(const uint32_t at[3], size_t slots)
@@ -18,6 +19,17 @@ size_t cwi_warp_slots(size_t count)
     while (slots < 2 * count)
         slots *= 2;
     return slots;
+}
+
+double cwi_warp_corner(const double at[3], int n, uint32_t corner[3])
+{
+    double share = 1;
+    for (int a = 0; a < 3; a++) {
+        const double base = floor(at[a]), in = at[a] - base;
+        corner[a] = (uint32_t)base + (n >> a & 1);
+        share *= n >> a & 1 ? in : 1 - in;
+    }
+    return share;
 }
 
 cwi_move *cwi_warp_find(const cwi_warp *w, const uint32_t at[3])
