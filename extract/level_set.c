@@ -52,7 +52,7 @@ static double samples(const cw_quality *q, int a, double voxel_mm, double reach_
 
 /* A band around a plane meets leaves as if it were 12 voxels thicker. A leaf is there with
  * numbers of triangles while it is made, then with the volume's own. Distances from triangles
- * need 70 bytes each. */
+ * need 76 bytes each. */
 double cwi_level_set_bytes(const cw_quality *q, double voxel_mm, double reach_mm)
 {
     double box = 1;
@@ -62,7 +62,7 @@ double cwi_level_set_bytes(const cw_quality *q, double voxel_mm, double reach_mm
     const double voxels = fmin(side * (2 * (reach_mm / voxel_mm + CWI_BAND + 1) + 12), box);
     const double rows = samples(q, 1, voxel_mm, reach_mm) * samples(q, 2, voxel_mm, reach_mm);
     return 9 * voxels + sizeof(size_t) * rows + sizeof(cwi_crossing) * side +
-           fmin(voxels, BATCH) * BATCH_BYTES + 70 * (double)q->triangles;
+           fmin(voxels, BATCH) * BATCH_BYTES + 76 * (double)q->triangles;
 }
 
 bool cwi_level_set_fits(const cw_quality *q, double voxel_mm, double reach_mm, size_t max_bytes)

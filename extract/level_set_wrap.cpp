@@ -21,51 +21,30 @@ struct cwi_distances {
 namespace
 {
 
-// The mesh in voxels, as OpenVDB asks for it.
-class triangles
+// What OpenVDB has compiled itself: anything else takes a minute and a half to compile.
+using triangles = openvdb::tools::QuadAndTriangleDataAdapter<openvdb::Vec3s, openvdb::Vec3I>;
+static_assert(sizeof(openvdb::Vec3I) == 3 * sizeof(uint32_t));
+
+std::vector<openvdb::Vec3s> in_voxels(const cwi_distances_desc &d)
 {
-public:
-    explicit triangles(const cwi_distances_desc &desc) : d(desc)
-    {
-    }
-
-    size_t polygonCount() const
-    {
-        return d.mesh->triangle_count;
-    }
-
-    size_t pointCount() const
-    {
-        return d.mesh->vertex_count;
-    }
-
-    size_t vertexCount(size_t) const
-    {
-        return 3;
-    }
-
-    void getIndexSpacePoint(size_t triangle, size_t corner, openvdb::Vec3d &p) const
-    {
-        const float *from =
-            d.mesh->positions + 3 * size_t(d.mesh->triangles[3 * triangle + corner]);
+    std::vector<openvdb::Vec3s> points(d.mesh->vertex_count);
+    const float *from = d.mesh->positions;
+    for (auto &p : points)
         for (int a = 0; a < 3; a++)
-            p[a] = (double(from[a]) - d.first[a]) / d.voxel_mm;
-    }
-
-private:
-    const cwi_distances_desc &d;
-};
+            p[a] = float((double(*from++) - d.first[a]) / d.voxel_mm);
+    return points;
+}
 
 // Progress, on the calling thread only; the others see that it was cancelled.
-class interrupter
+class interruption : public openvdb::util::NullInterrupter
 {
 public:
-    explicit interrupter(const cw_progress &progress)
+    explicit interruption(const cw_progress &progress)
         : to(progress), caller(std::this_thread::get_id())
     {
     }
 
-    bool wasInterrupted(int percent = -1)
+    bool wasInterrupted(int percent = -1) override
     {
         if (to.report && std::this_thread::get_id() == caller) {
             last = percent >= 0 ? percent : last;
@@ -90,13 +69,17 @@ cw_status open(const cwi_distances_desc *desc, cwi_distances **out, cw_error *er
 {
     return cw::guard(err, "OpenVDB", [&] {
         const at_most threads(parallelism, size_t(desc->threads));
-        interrupter stop(desc->progress);
+        interruption stop(desc->progress);
         const auto transform = openvdb::math::Transform::createLinearTransform(1.0);
         auto made = std::make_unique<cwi_distances>();
         const float reach = float(desc->reach);
         made->threads = desc->threads;
+        const auto points = in_voxels(*desc);
+        const triangles mesh(points.data(), points.size(),
+                             reinterpret_cast<const openvdb::Vec3I *>(desc->mesh->triangles),
+                             desc->mesh->triangle_count);
         made->grid = openvdb::tools::meshToVolume<openvdb::FloatGrid>(
-            stop, triangles(*desc), *transform, reach, reach,
+            stop.interrupter(), mesh, *transform, reach, reach,
             openvdb::tools::UNSIGNED_DISTANCE_FIELD);
         if (stop.cancelled)
             return cw_fail(err, CW_ERR_CANCELLED, "interrupted while distances were found");
