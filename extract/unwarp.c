@@ -5,8 +5,8 @@
 #include "core/status.h"
 #include "core/vector.h"
 #include "simplify/quality/closest.h"
-
-#include <cubewright/quality.h>
+#include "simplify/quality/contact.h"
+#include "simplify/quality/exact.h"
 
 #include <math.h>
 #include <string.h>
@@ -21,6 +21,7 @@ static const double near = 0.02, tangled = 0.15, low = 1e-4;
 typedef struct mover {
     uint32_t vertex;
     float from[3], way[3], share;
+    bool went_back; /* in this round */
 } mover;
 
 typedef struct motion {
@@ -64,24 +65,137 @@ static void forget_movers(motion *m)
 
 /* ---- as far as nothing crosses ----------------------------------------------------------- */
 
-/* Whether one of its corners could go back half of its way, or the last tenth. */
-static bool hold_back(motion *m, size_t triangle)
+/* Triangles that moved, looked at for what they cross. */
+typedef struct settling {
+    motion *motion;
+    cwi_boxes tree;    /* of all triangles, wherever on their ways their corners stop */
+    uint32_t *asked;   /* those that moved since they were looked at */
+    uint8_t *is_asked; /* of triangles */
+    uint8_t *crosses;  /* likewise: something */
+    size_t asked_count;
+} settling;
+
+/* A triangle that is looked at. */
+typedef struct look {
+    const settling *s;
+    uint32_t triangle;
+    float box[6];
+} look;
+
+static const uint32_t *corners(const motion *m, size_t triangle)
 {
-    bool any = false;
-    for (size_t n = 0; n < 3; n++) {
-        const uint32_t k = m->mover_of[m->surface->triangles[3 * triangle + n]];
-        if (k == UINT32_MAX || m->movers[k].share == 0)
-            continue;
-        m->movers[k].share = m->movers[k].share > 0.1f ? m->movers[k].share / 2 : 0;
-        place(m, m->movers + k);
-        any = true;
+    return m->surface->triangles + 3 * triangle;
+}
+
+static mover *mover_at(const motion *m, uint32_t vertex)
+{
+    const uint32_t k = m->mover_of[vertex];
+    return k == UINT32_MAX ? NULL : m->movers + k;
+}
+
+static void box_of(const motion *m, size_t triangle, float box[6])
+{
+    const uint32_t *v = corners(m, triangle);
+    for (int a = 0; a < 3; a++) {
+        box[a] = INFINITY;
+        box[a + 3] = -INFINITY;
+        for (int n = 0; n < 3; n++) {
+            box[a] = fminf(box[a], position(m->surface, v[n])[a]);
+            box[a + 3] = fmaxf(box[a + 3], position(m->surface, v[n])[a]);
+        }
     }
-    return any;
+}
+
+/* Rounding keeps what is between the ends between them. */
+static void box_of_ways(const motion *m, size_t triangle, float box[6])
+{
+    box_of(m, triangle, box);
+    for (int n = 0; n < 3; n++) {
+        const mover *k = mover_at(m, corners(m, triangle)[n]);
+        for (int a = 0; a < 3 && k; a++) {
+            const float ends[2] = {k->from[a], k->from[a] + k->way[a]};
+            box[a] = fminf(box[a], fminf(ends[0], ends[1]));
+            box[a + 3] = fmaxf(box[a + 3], fmaxf(ends[0], ends[1]));
+        }
+    }
+}
+
+static bool boxes_meet(const float a[6], const float b[6])
+{
+    for (int n = 0; n < 3; n++)
+        if (a[n] > b[n + 3] || b[n] > a[n + 3])
+            return false;
+    return true;
+}
+
+static bool has_area(const motion *m, size_t triangle)
+{
+    const uint32_t *v = corners(m, triangle);
+    return cwi_seen_along(position(m->surface, v[0]), position(m->surface, v[1]),
+                          position(m->surface, v[2])) >= 0;
+}
+
+static void note_crossing(const settling *s, uint32_t triangle)
+{
+#pragma omp atomic write
+    s->crosses[triangle] = 1;
+}
+
+/* Of two that are both looked at only one looks. */
+static void test_pair(const look *l, uint32_t other)
+{
+    const settling *s = l->s;
+    const motion *m = s->motion;
+    float box[6];
+    if (other == l->triangle || (s->is_asked[other] && other < l->triangle))
+        return;
+    box_of(m, other, box);
+    if (boxes_meet(l->box, box) && has_area(m, other) &&
+        cwi_triangles_meet(m->surface->positions, corners(m, l->triangle), corners(m, other))) {
+        note_crossing(s, l->triangle);
+        note_crossing(s, other);
+    }
+}
+
+static bool meet_node(void *context, size_t node)
+{
+    const look *l = context;
+    const cwi_boxes *tree = &l->s->tree;
+    const unsigned meeting = cwi_boxes_meeting(&tree->nodes[node], l->box);
+    for (size_t c = 0; meeting >> c; c++)
+        if (meeting >> c & 1)
+            test_pair(l, tree->order[node * CWI_WIDTH + c]);
+    return true;
+}
+
+static void look_at_chunk(void *context, size_t chunk)
+{
+    const settling *s = context;
+    for (size_t n = chunk * CHUNK; n < (chunk + 1) * CHUNK && n < s->asked_count; n++) {
+        look l = {.s = s, .triangle = s->asked[n]};
+        if (!has_area(s->motion, l.triangle))
+            continue;
+        box_of(s->motion, l.triangle, l.box);
+        cwi_boxes_visit(&s->tree, l.box, 0, meet_node, &l);
+    }
+}
+
+/* Its corners go back half of their ways, or the last tenth. */
+static void hold_back(motion *m, size_t triangle)
+{
+    for (size_t n = 0; n < 3; n++) {
+        mover *k = mover_at(m, corners(m, triangle)[n]);
+        if (!k || k->share == 0)
+            continue;
+        k->share = k->share > 0.1f ? k->share / 2 : 0;
+        k->went_back = true;
+        place(m, k);
+    }
 }
 
 static bool is_flat(const motion *m, size_t triangle)
 {
-    const uint32_t *v = m->surface->triangles + 3 * triangle;
+    const uint32_t *v = corners(m, triangle);
     double way[3][3], n[3], longest = 0;
     for (int k = 0; k < 3; k++) {
         for (int a = 0; a < 3; a++)
@@ -93,21 +207,68 @@ static bool is_flat(const motion *m, size_t triangle)
     return !(cwi_dot(n, n) > longest * low * low * m->voxel * m->voxel);
 }
 
-/* With every vertex back at its start nothing crosses: so there is an end. */
-static cw_status settle(motion *m, const cw_crossings_desc *how, cw_error *err)
+static void hold_back_all(settling *s)
 {
-    cw_status st = CW_OK;
-    for (bool again = m->count; again && st == CW_OK;) {
-        cw_crossings found = {0};
-        again = false;
-        for (size_t t = 0; t < m->surface->triangle_count; t++)
-            if (is_flat(m, t))
-                again |= hold_back(m, t);
-        st = cw_self_intersections(m->surface, how, &found, err);
-        for (size_t n = 0; n < 2 * found.count; n++)
-            again |= hold_back(m, found.pairs[n]);
-        cw_crossings_free(&found);
+    motion *m = s->motion;
+    for (size_t t = 0; t < m->surface->triangle_count; t++)
+        if (s->crosses[t] || (s->is_asked[t] && is_flat(m, t)))
+            hold_back(m, t);
+}
+
+/* Those around what went back, or, at first, around all that moves, are asked next. */
+static void ask_moved(settling *s, bool all)
+{
+    motion *m = s->motion;
+    const size_t count = m->surface->triangle_count;
+    memset(s->crosses, 0, count);
+    s->asked_count = 0;
+    for (size_t t = 0; t < count; t++) {
+        s->is_asked[t] = 0;
+        for (int n = 0; n < 3; n++) {
+            const mover *k = mover_at(m, corners(m, t)[n]);
+            s->is_asked[t] |= k && (all || k->went_back);
+        }
+        if (s->is_asked[t])
+            s->asked[s->asked_count++] = (uint32_t)t;
     }
+    for (size_t k = 0; k < m->count; k++)
+        m->movers[k].went_back = false;
+}
+
+static cw_status find_places(settling *s, cw_error *err)
+{
+    const size_t count = s->motion->surface->triangle_count;
+    float(*boxes)[6] = cwi_alloc_array(count, sizeof *boxes);
+    s->asked = cwi_alloc_array(count, sizeof *s->asked);
+    s->is_asked = cwi_alloc_array(count, sizeof *s->is_asked);
+    s->crosses = cwi_alloc_array(count, sizeof *s->crosses);
+    const bool ok = boxes && s->asked && s->is_asked && s->crosses;
+    for (size_t t = 0; t < count && ok; t++)
+        box_of_ways(s->motion, t, boxes[t]);
+    const cw_status st =
+        ok ? cwi_boxes_build(&s->tree, (const float(*)[6])boxes, count, err)
+           : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to move %zu triangles", count);
+    cwi_free(boxes);
+    return st;
+}
+
+/* With every vertex back at its start nothing crosses: so there is an end. */
+static cw_status settle(motion *m, int threads, const cw_progress *progress, cw_error *err)
+{
+    settling s = {.motion = m};
+    cw_status st = find_places(&s, err);
+    if (st == CW_OK)
+        ask_moved(&s, true);
+    while (st == CW_OK && s.asked_count) {
+        st = cwi_each_layer((s.asked_count + CHUNK - 1) / CHUNK, 64 * CHUNK, threads, progress,
+                            "edges", look_at_chunk, &s, err);
+        hold_back_all(&s);
+        ask_moved(&s, false);
+    }
+    cwi_boxes_free(&s.tree);
+    cwi_free(s.asked);
+    cwi_free(s.is_asked);
+    cwi_free(s.crosses);
     return st;
 }
 
@@ -222,7 +383,6 @@ static bool make_room(motion *m)
 cw_status cwi_unwarp(const cwi_warp *w, const cw_mesh *mesh, int threads,
                      const cw_progress *progress, cw_mesh *surface, cw_error *err)
 {
-    const cw_crossings_desc how = {.threads = threads, .progress = *progress};
     motion m = {.mesh = mesh, .surface = surface, .voxel = w->voxel};
     cw_status st = make_room(&m)
                        ? cwi_closest_build(mesh, &m.tree, err)
@@ -230,12 +390,12 @@ cw_status cwi_unwarp(const cwi_warp *w, const cw_mesh *mesh, int threads,
                                  surface->vertex_count);
     if (st == CW_OK) {
         follow_samples(w, &m);
-        st = settle(&m, &how, err);
+        st = settle(&m, threads, progress, err);
     }
     for (int round = 0; round < ROUNDS && st == CW_OK; round++) {
         st = pull(&m, round % 2, threads, progress, err);
         if (st == CW_OK)
-            st = settle(&m, &how, err);
+            st = settle(&m, threads, progress, err);
     }
     cwi_boxes_free(&m.tree);
     cwi_free(m.movers);
