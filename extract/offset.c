@@ -134,8 +134,8 @@ static cw_status compare_places(const making *m, const cw_mesh *out, double limi
     return st;
 }
 
-/* Whether the promise is kept; if not, whether the surface is so near that voxels of half the
- * size may keep it. */
+/* Whether the promise is kept; if not, whether the surface is so near that smaller voxels may
+ * keep it. */
 static cw_status judge(making *m, const cw_mesh *out, double limit_mm, bool *holds,
                        bool *is_near, cw_error *err)
 {
@@ -173,13 +173,7 @@ static cw_status make_warped(making *m, double limit_mm, cw_mesh *out, bool *hol
     return st;
 }
 
-static bool can_refine(const making *m)
-{
-    return !m->desc->no_refine &&
-           cwi_level_set_fits(&m->before, m->voxel / 2, 0, m->desc->max_bytes);
-}
-
-/* Plain, and if that breaks the promise with samples moved. */
+/* With the voxels as they are; if that breaks the promise, with samples moved. */
 static cw_status make_either(making *m, double limit_mm, cw_mesh *out, bool *holds,
                              bool *is_near, cw_error *err)
 {
@@ -192,8 +186,17 @@ static cw_status make_either(making *m, double limit_mm, cw_mesh *out, bool *hol
     return make_warped(m, limit_mm, out, holds, is_near, err);
 }
 
-/* Makes it until the promise is kept: plain, with samples moved, then both with voxels of half
- * the size. If nothing helps, or the limit forbids it, what was made first. */
+enum { MOST_HALVINGS = 2, FEW = 1 << 18 /* triangles: in a moment there are so many */ };
+
+/* Whether voxels of half the size are worth a try, where there are now so many triangles. */
+static bool should_halve(const making *m, size_t triangles, bool is_near)
+{
+    return !m->desc->no_refine && (is_near || 4 * triangles <= FEW) &&
+           cwi_level_set_fits(&m->before, m->voxel / 2, 0, m->desc->max_bytes);
+}
+
+/* Makes it until the promise is kept: with voxels as asked, then of half the size, and of half
+ * that. If nothing helps, or the limit forbids it, what was made first. */
 static cw_status make_true(making *m, cw_mesh *out, bool *is_astray, cw_error *err)
 {
     const double asked = m->voxel;
@@ -204,14 +207,17 @@ static cw_status make_true(making *m, cw_mesh *out, bool *is_astray, cw_error *e
         st = judge(m, out, asked / 2, &holds, &is_near, err);
     if (st == CW_OK && !holds)
         st = make_warped(m, asked / 2, &next, &holds, &is_near, err);
-    if (st == CW_OK && !holds && is_near && can_refine(m)) {
+    for (size_t n = 0, triangles = out->triangle_count;
+         n < MOST_HALVINGS && st == CW_OK && !holds && should_halve(m, triangles, is_near);
+         n++, triangles *= 4) {
         cw_mesh_free(&next);
-        m->voxel = asked / 2;
+        m->voxel /= 2;
+        is_near = false;
         st = make_either(m, asked / 2, &next, &holds, &is_near, err);
-        if (st == CW_ERR_LIMIT) {
-            holds = false;
-            st = CW_OK;
-        }
+    }
+    if (st == CW_ERR_LIMIT && m->voxel < asked) {
+        holds = false;
+        st = CW_OK;
     }
     if (st == CW_OK && holds && next.triangle_count) {
         cw_mesh_free(out);

@@ -57,14 +57,14 @@ CW_API cw_status cw_level_set_from_mesh(const cw_mesh *mesh, const cw_level_set_
 
 /* A surface at a distance. Zero fields mean the default named beside them. */
 typedef struct cw_offset_desc {
-    double offset_mm; /* outward; negative: inward; 0: the mesh's surface, made anew */
-    double voxel_mm;  /* default: the finer of 1/256 of the box's diagonal and 1/4 of the
-                         offset, but 1/512 of the diagonal at the least, and, with max_bytes,
-                         as coarse as it takes */
-    bool no_sharpen;  /* default: edges and corners that the voxels cut off are put back */
-    bool no_refine;   /* default: by 0, voxels of half the size if half of one is not kept */
-    int threads;      /* default: all */
-    size_t max_bytes; /* default: no limit */
+    double offset_mm;     /* outward; negative: inward; 0: the mesh's surface, made anew */
+    double voxel_mm;      /* default: the finer of 1/256 of the box's diagonal and 1/4 of the
+                             offset, but 1/512 of the diagonal at the least, and, with max_bytes,
+                             as coarse as it takes */
+    bool no_sharpen;      /* default: edges and corners that the voxels cut off are put back */
+    bool no_refine;       /* default: by 0, smaller voxels if half of one is not kept */
+    int threads;          /* default: all */
+    size_t max_bytes;     /* default: no limit */
     cw_progress progress; /* default: none */
 } cw_offset_desc;
 
@@ -86,12 +86,13 @@ typedef struct cw_offset_facts {
  * By 0 the result is within half a voxel of the mesh and the mesh within half a voxel of it,
  * and it has neither more components nor more handles. That is looked at; if it is not so, all
  * is made again from the same samples, those next to sharp edges, tips, and walls and gaps
- * thinner than a voxel moved to these; and if that does not do but both are within a voxel,
- * with voxels of half the size (half of the first is still what is kept), unless max_bytes
- * forbids. In all that takes twice the time, or with smaller voxels eight times. What is thin
- * all over, as bone in a scan, may break it all the same: then the result is the first one, and
- * is_astray is set. Of a mesh that crosses itself or has solids inside solids only the distance
- * of the result from it is looked at. All that is left out with no_sharpen.
+ * thinner than a voxel moved to these; and if that does not do either, with voxels of half the
+ * size, and of half that (half of the first is still what is kept), unless max_bytes forbids or
+ * it would be many for a surface that is more than a voxel off. In all that takes twice the
+ * time, or with smaller voxels eight and thirty times. What is thin all over, as bone in a
+ * scan, may break it all the same: then the result is the first one, and is_astray is set. Of a
+ * mesh that crosses itself or has solids inside solids only the distance of the result from it
+ * is looked at. All that is left out with no_sharpen.
  *
  * out       filled on success, with normals; emptied on failure; free it with cw_mesh_free()
  * facts     may be NULL
