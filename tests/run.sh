@@ -4,7 +4,7 @@
 # release  gcc, as users build it: all tests
 # fuzz     clang, address and undefined sanitizers: unit tests and the fuzz corpora
 # tsan     clang, thread sanitizer: the tests of code with threads
-# minimal  gcc, debug, no C++ library: unit tests, an installed copy
+# minimal  gcc, debug at -O1, no C++ library: unit tests, an installed copy
 set -eu
 cd "$(dirname "$0")/.."
 . cli/packages.sh

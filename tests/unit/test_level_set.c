@@ -74,11 +74,11 @@ static void a_mesh_comes_back_within_half_a_voxel(void **state)
                 {CW_FIELD_TORUS, 48, 0.9, 0.5, 0.5},
                 {CW_FIELD_GYROID, 40, 1, 0.5, 0.5}};
     for (size_t n = 0; n < (size_t)TEST_SOME(3); n++) {
-        cw_mesh mesh = surface_of(rows[n].field, rows[n].dim),
-                back = offset(&mesh, 0, rows[n].voxel);
+        const double voxel = (TEST_IS_SLOW ? 2 : 1) * rows[n].voxel;
+        cw_mesh mesh = surface_of(rows[n].field, rows[n].dim), back = offset(&mesh, 0, voxel);
         const cw_quality before = test_measure(&mesh), after = test_measure(&back);
-        assert_true(farthest(&back, &mesh) <= rows[n].there * rows[n].voxel);
-        assert_true(farthest(&mesh, &back) <= rows[n].back * rows[n].voxel);
+        assert_true(farthest(&back, &mesh) <= rows[n].there * voxel);
+        assert_true(farthest(&mesh, &back) <= rows[n].back * voxel);
         assert_int_equal(before.euler, after.euler);
         assert_int_equal(before.components, after.components);
         cw_mesh_free(&back);
@@ -128,7 +128,7 @@ static cw_mesh make_turned_cube(float side, double angle, const double axis[3])
 static void edges_and_corners_come_back(void **state)
 {
     (void)state;
-    for (int n = 0; n < 16; n += TEST_IS_SLOW ? 8 : 1) {
+    for (int n = TEST_IS_SLOW ? 7 : 0; n < 16; n += TEST_IS_SLOW ? 8 : 1) {
         const double voxel = 0.5 + 0.07 * (n % 8);
         cw_mesh cube = n < 8 ? make_cube(20)
                              : make_turned_cube(20, 0.2 * n, (const double[]){1, 0.3 * n, 2}),
@@ -233,11 +233,12 @@ static void distances_are_those_from_the_mesh(void **state)
 static void cavities_stay(void **state)
 {
     (void)state;
+    const double voxel = TEST_IS_SLOW ? 2 : 1;
     cw_mesh ball = surface_of(CW_FIELD_SPHERE, 48);
-    cw_mesh shell = hollow(&ball, &(cw_hollow_desc){.wall_mm = 6, .voxel_mm = 1}, NULL);
-    cw_mesh back = offset(&shell, 0, 1), thinner = offset(&shell, -1, 0.5);
+    cw_mesh shell = hollow(&ball, &(cw_hollow_desc){.wall_mm = 6, .voxel_mm = voxel}, NULL);
+    cw_mesh back = offset(&shell, 0, voxel), thinner = offset(&shell, -1, voxel / 2);
     assert_int_equal(test_measure(&back).components, 2);
-    assert_true(farthest(&back, &shell) < 0.5 && farthest(&shell, &back) < 0.5);
+    assert_true(farthest(&back, &shell) < 0.5 * voxel && farthest(&shell, &back) < 0.5 * voxel);
     const double outer = 4 / 3.0 * PI * 29 * 29 * 29, inner = 4 / 3.0 * PI * 25 * 25 * 25;
     assert_within(test_measure(&thinner).volume_mm3, outer - inner, 0.01);
     cw_mesh_free(&thinner);
@@ -266,7 +267,7 @@ static void what_overlaps_becomes_one(void **state)
         triangles[i] = ball.triangles[i];
         triangles[3 * t + i] = ball.triangles[i] + (uint32_t)v;
     }
-    cw_mesh one = offset(&pair, 0, 1);
+    cw_mesh one = offset(&pair, 0, TEST_IS_SLOW ? 2 : 1);
     const cw_quality q = test_measure(&one);
     assert_int_equal(q.components, 1);
     assert_int_equal(q.euler, 2);
@@ -286,8 +287,8 @@ static void a_sphere_becomes_a_larger_or_smaller_one(void **state)
     (void)state;
     static const double rows[] = {4, 0.4, -0.4, -12};
     cw_mesh ball = surface_of(CW_FIELD_SPHERE, 64);
-    for (int n = 0; n < 4; n++) {
-        cw_mesh out = offset(&ball, rows[n], 1);
+    for (int n = 0; n < 4; n += TEST_IS_SLOW ? 3 : 1) {
+        cw_mesh out = offset(&ball, rows[n], TEST_IS_SLOW ? 2 : 1);
         for (size_t v = 0; v < out.vertex_count; v++) {
             const float *p = out.positions + 3 * v;
             const double x = (double)p[0] + out.origin[0], y = (double)p[1] + out.origin[1],
@@ -321,7 +322,8 @@ static void far_from_zero_nothing_changes(void **state)
     cw_mesh ball = surface_of(CW_FIELD_SPHERE, 32), far = ball;
     for (int a = 0; a < 3; a++)
         far.origin[a] += 1e6;
-    cw_mesh near_out = offset(&ball, 2, 1), far_out = offset(&far, 2, 1);
+    const double voxel = TEST_IS_SLOW ? 2 : 1;
+    cw_mesh near_out = offset(&ball, 2, voxel), far_out = offset(&far, 2, voxel);
     assert_int_equal(near_out.vertex_count, far_out.vertex_count);
     for (int a = 0; a < 3; a++)
         assert_near(far_out.origin[a] - near_out.origin[a], 1e6, 1e-6);
@@ -338,11 +340,12 @@ static void far_from_zero_nothing_changes(void **state)
 static void a_sphere_gets_a_wall(void **state)
 {
     (void)state;
-    cw_mesh ball = surface_of(CW_FIELD_SPHERE, 64);
+    cw_mesh ball = surface_of(CW_FIELD_SPHERE, TEST_IS_SLOW ? 40 : 64);
+    const double wall = TEST_IS_SLOW ? 4 : 2;
     cw_hollow_facts facts;
-    cw_mesh out = hollow(&ball, &(cw_hollow_desc){.wall_mm = 2}, &facts);
+    cw_mesh out = hollow(&ball, &(cw_hollow_desc){.wall_mm = wall}, &facts);
     const cw_quality q = test_measure(&out);
-    assert_true(facts.voxel_mm == 0.5 && facts.cavities == 1 && facts.sealed == 1);
+    assert_true(facts.voxel_mm == wall / 4 && facts.cavities == 1 && facts.sealed == 1);
     assert_int_equal(q.components, 2);
     assert_memory_equal(out.positions, ball.positions,
                         3 * ball.vertex_count * sizeof *ball.positions);
@@ -350,9 +353,9 @@ static void a_sphere_gets_a_wall(void **state)
                         3 * ball.vertex_count * sizeof *ball.normals);
     assert_memory_equal(out.triangles, ball.triangles,
                         3 * ball.triangle_count * sizeof *ball.triangles);
-    assert_near(facts.wall_min_mm, 2, 0.25);
-    assert_near(facts.wall_max_mm, 2, 0.25);
-    assert_within(facts.removed_mm3, 4 / 3.0 * PI * 28 * 28 * 28, 0.005);
+    assert_near(facts.wall_min_mm, wall, 0.25);
+    assert_near(facts.wall_max_mm, wall, 0.25);
+    assert_within(facts.removed_mm3, 4 / 3.0 * PI * pow(30 - wall, 3), 0.005);
     assert_true(test_normals_agree(&out));
     assert_int_equal(test_count_crossings(&out), 0);
     cw_mesh_free(&out);
@@ -384,24 +387,25 @@ static int meets(const cw_mesh *m, double x, double y)
 static void a_drain_opens_the_cavity_where_it_should(void **state)
 {
     (void)state;
-    static const cw_drain down = {4, {0, 0, -1}}, both[] = {{4, {0, 0, -1}}, {6, {0, 0, 9}}};
-    cw_mesh ball = surface_of(CW_FIELD_SPHERE, 64);
+    const double scale = TEST_IS_SLOW ? 2 : 1, wall = 2 * scale;
+    const cw_drain down = {4 * scale, {0, 0, -1}}, both[] = {down, {6 * scale, {0, 0, 9}}};
+    cw_mesh ball = surface_of(CW_FIELD_SPHERE, TEST_IS_SLOW ? 32 : 64);
     cw_hollow_facts facts;
     cw_mesh one = hollow(
-        &ball, &(cw_hollow_desc){.wall_mm = 2, .drains = &down, .drain_count = 1}, &facts);
+        &ball, &(cw_hollow_desc){.wall_mm = wall, .drains = &down, .drain_count = 1}, &facts);
     assert_true(facts.cavities == 1 && facts.sealed == 0);
-    assert_near(facts.wall_min_mm, 2, 0.25);
+    assert_near(facts.wall_min_mm, wall, 0.25);
     assert_int_equal(test_measure(&one).components, 1);
     assert_int_equal(test_measure(&one).euler,
                      2); /* a ball's skin, and another, joined: a disc */
     assert_int_equal(meets(&one, 0.01, 0.02), 2); /* the top only */
-    assert_int_equal(meets(&one, 2.5, 2.5), 4);
+    assert_int_equal(meets(&one, 2.5 * scale, 2.5 * scale), 4);
     cw_mesh two = hollow(
-        &ball, &(cw_hollow_desc){.wall_mm = 2, .drains = both, .drain_count = 2}, &facts);
+        &ball, &(cw_hollow_desc){.wall_mm = wall, .drains = both, .drain_count = 2}, &facts);
     assert_int_equal(test_measure(&two).components, 1);
     assert_int_equal(test_measure(&two).euler, 0);
     assert_int_equal(meets(&two, 0.01, 0.02), 0);
-    assert_int_equal(meets(&two, 1.7, 1.7), 2);
+    assert_int_equal(meets(&two, 1.7 * scale, 1.7 * scale), 2);
     cw_mesh_free(&two);
     cw_mesh_free(&one);
     cw_mesh_free(&ball);
@@ -429,7 +433,8 @@ static void cavities_that_stay_sealed_are_counted(void **state)
         triangles[36 + i] = cube.triangles[i] + 8;
     }
     const cw_drain drains[] = {{2, {0, 1, 0}}, {2, {-1, 0, 0}}};
-    cw_hollow_desc desc = {.wall_mm = 1, .drains = drains, .drain_count = 1};
+    cw_hollow_desc desc = {
+        .wall_mm = 1, .voxel_mm = TEST_IS_SLOW ? 0.5 : 0, .drains = drains, .drain_count = 1};
     cw_hollow_facts facts;
     cw_mesh out = hollow(&pair, &desc, &facts);
     assert_true(facts.cavities == 2 && facts.sealed == 1);
@@ -452,9 +457,12 @@ static void threads_change_nothing(void **state)
     static const cw_drain down = {8, {1, 2, -3}};
     cw_mesh mesh = surface_of(CW_FIELD_TORUS, 48), first = {0}, out;
     cw_error err = {0};
-    for (int threads = 1; threads <= 4; threads++) {
-        const cw_hollow_desc desc = {
-            .wall_mm = 3, .drains = &down, .drain_count = 1, .threads = threads};
+    for (int threads = 1; threads <= 4; threads += TEST_IS_SLOW ? 2 : 1) {
+        const cw_hollow_desc desc = {.wall_mm = 3,
+                                     .voxel_mm = TEST_IS_SLOW ? 1.5 : 0,
+                                     .drains = &down,
+                                     .drain_count = 1,
+                                     .threads = threads};
         assert_ok(cw_mesh_hollow(&mesh, &desc, &out, NULL, &err), err);
         keep_or_compare(&first, &out);
     }
@@ -540,6 +548,7 @@ static void it_can_be_stopped(void **state)
     for (int n = 0, st = CW_ERR_CANCELLED; st != CW_OK; n = 2 * n + 1) {
         int polls = n;
         const cw_hollow_desc desc = {.wall_mm = 2,
+                                     .voxel_mm = TEST_IS_SLOW ? 1 : 0,
                                      .drains = &down,
                                      .drain_count = 1,
                                      .progress = {test_stop_after, &polls}};
@@ -559,8 +568,11 @@ static void running_out_of_memory_is_told(void **state)
     for (size_t drains = 0; drains < 2; drains++)
         for (long n = 0;; n += 1 + n / 8) {
             cw_error err = {0};
-            const cw_hollow_desc desc = {
-                .wall_mm = 8, .drains = &down, .drain_count = drains, .threads = 1};
+            const cw_hollow_desc desc = {.wall_mm = 8,
+                                         .voxel_mm = TEST_IS_SLOW ? 4 : 0,
+                                         .drains = &down,
+                                         .drain_count = drains,
+                                         .threads = 1};
             cwi_alloc_fail_after(n);
             const cw_status st = cw_mesh_hollow(&ball, &desc, &out, NULL, &err);
             if (!cwi_alloc_fail_after(-1)) {

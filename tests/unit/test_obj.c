@@ -1,18 +1,18 @@
 #include "support/support.h"
 
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 /* The next line that starts with a word; moves *text behind the word. */
 static bool next_line(const char **text, const char *word)
 {
-    char start[8];
-    snprintf(start, sizeof start, "\n%s ", word);
-    const char *at = strstr(*text, start);
-    if (at)
-        *text = at + strlen(start);
-    return at != NULL;
+    const size_t length = strlen(word);
+    for (const char *at = *text; (at = strchr(at, '\n')); at++)
+        if (strncmp(at + 1, word, length) == 0 && at[1 + length] == ' ') {
+            *text = at + length + 2;
+            return true;
+        }
+    return false;
 }
 
 static void places_come_back_to_the_bit(void **state)

@@ -289,7 +289,8 @@ static void meshes_are_hit_nearest_first(void **state)
 {
     (void)state;
     cw_mesh mesh = {0};
-    size_t hits = 0, cuts = 0;
+    const int step = TEST_IS_SLOW ? 5 : 1;
+    int hits = 0, cuts = 0;
     make_sphere(&mesh, 15);
     for (int way = 0; way < 8; way++) {
         cw_scene scene = scene_of(CW_MODE_MESH, NULL, NULL, way & 1);
@@ -300,7 +301,7 @@ static void meshes_are_hit_nearest_first(void **state)
         scene.cut_away = way >= 6;
         if (way >= 6)
             scene.clips[0] = (cw_clip){{1, -2, 0}, -4};
-        for (int y = 0; y < HEIGHT; y++)
+        for (int y = 0; y < HEIGHT; y += step)
             for (int x = y % 2; x < WIDTH; x += 2) {
                 double t[2], line[2][3], at[2] = {0}, want[3];
                 const bool met = meet_sphere(&scene.camera, x + 0.5, y + 0.5, 15, t, line);
@@ -329,7 +330,7 @@ static void meshes_are_hit_nearest_first(void **state)
                 cuts += is_cap;
             }
     }
-    assert_true(hits > 300 && cuts > 300);
+    assert_true(hits * step > 300 && cuts * step > 300);
     cw_mesh_free(&mesh);
 }
 
