@@ -69,6 +69,8 @@ static void put_params(cli_json *j, const void *p, const cli_made *made)
         cli_json_number(j, "by_mm", s->by_mm);
     }
     cli_json_number(j, "voxel_mm", s->voxel_mm);
+    if (s->asked_mm > 0) /* only offset takes others */
+        cli_json_number(j, "voxel_asked_mm", s->asked_mm);
     cli_json_count(j, "merged_vertices", s->pieces.merged);
     cli_json_written(j, &s->args->written, made->path);
 }
@@ -311,7 +313,7 @@ static cw_status offset(run_state *s, cw_error *err)
     cw_status st = cw_mesh_offset(&p->input, &desc, &p->out, &facts, err);
     if (st != CW_OK)
         return st;
-    s->asked_mm = s->voxel_mm > 0 ? s->voxel_mm : facts.voxel_mm;
+    s->asked_mm = facts.asked_mm;
     s->voxel_mm = facts.voxel_mm;
     s->is_astray = facts.is_astray;
     if (s->voxel_mm < s->asked_mm)

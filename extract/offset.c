@@ -235,6 +235,7 @@ cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc, cw_mes
                          cw_offset_facts *facts, cw_error *err)
 {
     bool is_astray = false;
+    double asked;
     making m = {.mesh = mesh, .desc = desc};
     *out = (cw_mesh){0};
     if (!isfinite(desc->offset_mm) || !isfinite(desc->voxel_mm) || desc->voxel_mm < 0)
@@ -245,7 +246,7 @@ cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc, cw_mes
     cw_status st = cwi_level_set_check(mesh, desc->threads, &m.before, err);
     if (st != CW_OK)
         return st;
-    m.voxel = desc->voxel_mm > 0 ? desc->voxel_mm : choose_voxel(desc, &m.before);
+    m.voxel = asked = desc->voxel_mm > 0 ? desc->voxel_mm : choose_voxel(desc, &m.before);
     st = desc->offset_mm == 0 && !desc->no_sharpen ? make_true(&m, out, &is_astray, err)
                                                    : make_plain(&m, out, err);
     cw_volume_free(&m.volume);
@@ -255,7 +256,7 @@ cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc, cw_mes
     if (st == CW_OK) /* not of the grid in between */
         memcpy(out->affine, mesh->affine, sizeof out->affine);
     if (facts)
-        *facts = (cw_offset_facts){m.voxel, is_astray};
+        *facts = (cw_offset_facts){m.voxel, asked, is_astray};
     if (st != CW_OK)
         cw_mesh_free(out);
     return st;

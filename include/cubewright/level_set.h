@@ -71,6 +71,7 @@ typedef struct cw_offset_desc {
 /* What an offset made. */
 typedef struct cw_offset_facts {
     double voxel_mm; /* those that were taken */
+    double asked_mm; /* those it began with: as asked for, or chosen */
     bool is_astray;  /* by 0: what is said below of that is not so */
 } cw_offset_facts;
 

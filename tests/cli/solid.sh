@@ -68,6 +68,7 @@ OFF
 3 0 6 5
 3 7 12 13
 EOF
-cubewright offset g.off -o g.stl --by 0 --voxel 6mm | sed 's/; at most.*//'
+cubewright offset g.off -o g.stl --by 0 --voxel 6mm --json g.json | sed 's/; at most.*//'
+grep -e '"voxel' g.json
 cubewright offset g.off -o g.stl --by 0 --voxel 6mm --no-refine --json g.json | sed 's/; at most.*//'
 grep -e '"exit"' -e '"status"' g.json

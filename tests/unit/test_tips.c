@@ -171,6 +171,7 @@ static void assert_comes_back(const cw_mesh *mesh, double voxel, int *refined)
     assert_ok(cw_mesh_offset(mesh, &(cw_offset_desc){.voxel_mm = voxel}, &back, &facts, &err),
               err);
     assert_false(facts.is_astray);
+    assert_true(facts.asked_mm == voxel);
     assert_true(facts.voxel_mm == voxel || facts.voxel_mm == voxel / 2 ||
                 facts.voxel_mm == voxel / 4);
     *refined += facts.voxel_mm < voxel;
