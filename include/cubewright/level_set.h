@@ -31,11 +31,12 @@ typedef struct cw_level_set_desc {
 /* Makes a sparse grid of the distances (f32, mm, negative inside) from a mesh, along the axes
  * of the world.
  *
- * Distances are to the closest point of the triangles, exact but for rounding; so are signs. A
- * surface that is extracted at 0, with low values inside, is within half a voxel of the mesh,
- * and the mesh of it, where the mesh is smooth as far as voxels can tell. Edges of 90 degrees
- * lose up to 0.71 voxels and corners 1.16, sharper ones more (cw_mesh_offset() puts them back);
- * what is thinner than a voxel may be lost.
+ * Distances are to the closest point of the triangles, exact but for rounding (near the surface
+ * by a 16-millionth of the grid's length); so are signs. A surface that is extracted at 0, with
+ * low values inside, is within half a voxel of the mesh, and the mesh of it, where the mesh is
+ * smooth as far as voxels can tell. Edges of 90 degrees lose up to 0.71 voxels and
+ * corners 1.16, sharper ones more (cw_mesh_offset() puts them back); what is thinner than a
+ * voxel may be lost.
  *
  * mesh     borrowed
  * desc     borrowed
