@@ -6,7 +6,6 @@
 #include "core/vector.h"
 #include "simplify/quality/closest.h"
 #include "simplify/quality/contact.h"
-#include "simplify/quality/exact.h"
 
 #include <math.h>
 #include <string.h>
@@ -21,7 +20,7 @@ static const double near = 0.02, tangled = 0.15, low = 1e-4;
 typedef struct mover {
     uint32_t vertex;
     float from[3], way[3], share;
-    bool went_back; /* in this round */
+    bool moved; /* in this round */
 } mover;
 
 typedef struct motion {
@@ -51,7 +50,7 @@ static void place(const motion *m, const mover *k)
 static void add_mover(motion *m, uint32_t v, const float way[3])
 {
     mover *k = m->movers + m->count;
-    *k = (mover){.vertex = v, .share = 1, .way = {way[0], way[1], way[2]}};
+    *k = (mover){.vertex = v, .share = 1, .moved = true, .way = {way[0], way[1], way[2]}};
     memcpy(k->from, position(m->surface, v), sizeof k->from);
     m->mover_of[v] = (uint32_t)m->count++;
     place(m, k);
@@ -93,23 +92,10 @@ static mover *mover_at(const motion *m, uint32_t vertex)
     return k == UINT32_MAX ? NULL : m->movers + k;
 }
 
-static void box_of(const motion *m, size_t triangle, float box[6])
-{
-    const uint32_t *v = corners(m, triangle);
-    for (int a = 0; a < 3; a++) {
-        box[a] = INFINITY;
-        box[a + 3] = -INFINITY;
-        for (int n = 0; n < 3; n++) {
-            box[a] = fminf(box[a], position(m->surface, v[n])[a]);
-            box[a + 3] = fmaxf(box[a + 3], position(m->surface, v[n])[a]);
-        }
-    }
-}
-
 /* Rounding keeps what is between the ends between them. */
 static void box_of_ways(const motion *m, size_t triangle, float box[6])
 {
-    box_of(m, triangle, box);
+    cwi_boxes_triangle(m->surface->positions, corners(m, triangle), box);
     for (int n = 0; n < 3; n++) {
         const mover *k = mover_at(m, corners(m, triangle)[n]);
         for (int a = 0; a < 3 && k; a++) {
@@ -118,21 +104,6 @@ static void box_of_ways(const motion *m, size_t triangle, float box[6])
             box[a + 3] = fmaxf(box[a + 3], fmaxf(ends[0], ends[1]));
         }
     }
-}
-
-static bool boxes_meet(const float a[6], const float b[6])
-{
-    for (int n = 0; n < 3; n++)
-        if (a[n] > b[n + 3] || b[n] > a[n + 3])
-            return false;
-    return true;
-}
-
-static bool has_area(const motion *m, size_t triangle)
-{
-    const uint32_t *v = corners(m, triangle);
-    return cwi_seen_along(position(m->surface, v[0]), position(m->surface, v[1]),
-                          position(m->surface, v[2])) >= 0;
 }
 
 static void note_crossing(const settling *s, uint32_t triangle)
@@ -146,12 +117,11 @@ static void test_pair(const look *l, uint32_t other)
 {
     const settling *s = l->s;
     const motion *m = s->motion;
-    float box[6];
+    const float *points = m->surface->positions;
     if (other == l->triangle || (s->is_asked[other] && other < l->triangle))
         return;
-    box_of(m, other, box);
-    if (boxes_meet(l->box, box) && has_area(m, other) &&
-        cwi_triangles_meet(m->surface->positions, corners(m, l->triangle), corners(m, other))) {
+    if (cwi_has_area(points, corners(m, other)) &&
+        cwi_triangles_meet(points, corners(m, l->triangle), corners(m, other))) {
         note_crossing(s, l->triangle);
         note_crossing(s, other);
     }
@@ -171,11 +141,13 @@ static bool meet_node(void *context, size_t node)
 static void look_at_chunk(void *context, size_t chunk)
 {
     const settling *s = context;
+    const float *points = s->motion->surface->positions;
     for (size_t n = chunk * CHUNK; n < (chunk + 1) * CHUNK && n < s->asked_count; n++) {
         look l = {.s = s, .triangle = s->asked[n]};
-        if (!has_area(s->motion, l.triangle))
+        const uint32_t *v = corners(s->motion, l.triangle);
+        if (!cwi_has_area(points, v))
             continue;
-        box_of(s->motion, l.triangle, l.box);
+        cwi_boxes_triangle(points, v, l.box);
         cwi_boxes_visit(&s->tree, l.box, 0, meet_node, &l);
     }
 }
@@ -188,7 +160,7 @@ static void hold_back(motion *m, size_t triangle)
         if (!k || k->share == 0)
             continue;
         k->share = k->share > 0.1f ? k->share / 2 : 0;
-        k->went_back = true;
+        k->moved = true;
         place(m, k);
     }
 }
@@ -215,8 +187,8 @@ static void hold_back_all(settling *s)
             hold_back(m, t);
 }
 
-/* Those around what went back, or, at first, around all that moves, are asked next. */
-static void ask_moved(settling *s, bool all)
+/* Triangles at what moved are looked at next. */
+static void ask_moved(settling *s)
 {
     motion *m = s->motion;
     const size_t count = m->surface->triangle_count;
@@ -226,13 +198,13 @@ static void ask_moved(settling *s, bool all)
         s->is_asked[t] = 0;
         for (int n = 0; n < 3; n++) {
             const mover *k = mover_at(m, corners(m, t)[n]);
-            s->is_asked[t] |= k && (all || k->went_back);
+            s->is_asked[t] |= k && k->moved;
         }
         if (s->is_asked[t])
             s->asked[s->asked_count++] = (uint32_t)t;
     }
     for (size_t k = 0; k < m->count; k++)
-        m->movers[k].went_back = false;
+        m->movers[k].moved = false;
 }
 
 static cw_status find_places(settling *s, cw_error *err)
@@ -256,14 +228,16 @@ static cw_status find_places(settling *s, cw_error *err)
 static cw_status settle(motion *m, int threads, const cw_progress *progress, cw_error *err)
 {
     settling s = {.motion = m};
+    if (!m->count)
+        return CW_OK;
     cw_status st = find_places(&s, err);
     if (st == CW_OK)
-        ask_moved(&s, true);
+        ask_moved(&s);
     while (st == CW_OK && s.asked_count) {
         st = cwi_each_layer((s.asked_count + CHUNK - 1) / CHUNK, 64 * CHUNK, threads, progress,
                             "edges", look_at_chunk, &s, err);
         hold_back_all(&s);
-        ask_moved(&s, false);
+        ask_moved(&s);
     }
     cwi_boxes_free(&s.tree);
     cwi_free(s.asked);

@@ -2,6 +2,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "simplify/quality/boxes.h"
 
 #include <math.h>
 #include <string.h>
@@ -153,16 +154,6 @@ static void make_leaves(plan *p)
             divide(p, p->leaves + n, p->leaves + n + step / 2);
 }
 
-static void bound(const cwi_block *b, size_t triangle, float box[6])
-{
-    for (int a = 0; a < 3; a++) {
-        const float x = coordinate(b, 3 * triangle, a), y = coordinate(b, 3 * triangle + 1, a),
-                    z = coordinate(b, 3 * triangle + 2, a);
-        box[a] = fminf(x, fminf(y, z));
-        box[a + 3] = fmaxf(x, fmaxf(y, z));
-    }
-}
-
 static bool lies_in(const leaf *l, const float box[6])
 {
     for (int a = 0; a < 3; a++)
@@ -185,7 +176,8 @@ static void each_obstacle(plan *p, void (*put)(plan *p, size_t to, uint32_t tria
     float box[6];
     for (size_t n = 0; n < p->count; n++)
         for (size_t i = p->leaves[n].begin; i < p->leaves[n].end; i++) {
-            bound(p->whole, p->order[i], box);
+            cwi_boxes_triangle(p->whole->points, p->whole->corners + 3 * (size_t)p->order[i],
+                               box);
             if (lies_in(p->leaves + n, box))
                 continue;
             for (int k = 0; k < 3; k++)

@@ -53,6 +53,17 @@ void cwi_boxes_visit(const cwi_boxes *tree, const float box[6], size_t first,
 /* The box around a node's boxes. */
 void cwi_boxes_around(const cwi_boxes_node *node, float box[6]);
 
+/* The box around a triangle. points: vertices x 3; v: three of them */
+static inline void cwi_boxes_triangle(const float *points, const uint32_t v[3], float box[6])
+{
+    for (int a = 0; a < 3; a++) {
+        const float *p = points + a;
+        const float x = p[3 * (size_t)v[0]], y = p[3 * (size_t)v[1]], z = p[3 * (size_t)v[2]];
+        box[a] = x < y ? (x < z ? x : z) : (y < z ? y : z);
+        box[a + 3] = x > y ? (x > z ? x : z) : (y > z ? y : z);
+    }
+}
+
 /* Sets box `child` of a row of nodes. */
 static inline void cwi_boxes_put(cwi_boxes_node *nodes, size_t child, const float box[6])
 {

@@ -17,14 +17,8 @@ cw_status cwi_closest_build(const cw_mesh *m, cwi_boxes *tree, cw_error *err)
     float(*boxes)[6] = cwi_alloc_array(m->triangle_count, sizeof *boxes);
     if (!boxes)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to find closest points");
-    for (size_t t = 0; t < m->triangle_count; t++) {
-        const float *p[3];
-        corners(m, t, p);
-        for (int a = 0; a < 3; a++) {
-            boxes[t][a] = fminf(p[0][a], fminf(p[1][a], p[2][a]));
-            boxes[t][a + 3] = fmaxf(p[0][a], fmaxf(p[1][a], p[2][a]));
-        }
-    }
+    for (size_t t = 0; t < m->triangle_count; t++)
+        cwi_boxes_triangle(m->positions, m->triangles + 3 * t, boxes[t]);
     cw_status st = cwi_boxes_build(tree, (const float(*)[6])boxes, m->triangle_count, err);
     cwi_free(boxes);
     return st;

@@ -3,6 +3,12 @@
 
 #include "simplify/quality/exact.h"
 
+bool cwi_has_area(const float *points, const uint32_t v[3])
+{
+    return cwi_seen_along(points + 3 * (size_t)v[0], points + 3 * (size_t)v[1],
+                          points + 3 * (size_t)v[2]) >= 0;
+}
+
 /* A triangle by its corners. */
 typedef struct corners {
     const float *p[3];

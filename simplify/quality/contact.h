@@ -8,6 +8,10 @@
 extern "C" {
 #endif
 
+/* Whether a triangle's corners are not on a line. Exact.
+ * points  vertices x 3        v  three numbers of vertices */
+bool cwi_has_area(const float *points, const uint32_t v[3]);
+
 /* Whether two triangles with an area have a point in common other than what they share as
  * neighbours: a vertex or an edge with the same numbers. Touching counts; so does lying on each
  * other, with all three vertices the same too. Exact.

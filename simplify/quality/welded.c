@@ -4,7 +4,7 @@
 #include "core/status.h"
 #include "core/weld.h"
 #include "simplify/quality/boxes.h"
-#include "simplify/quality/exact.h"
+#include "simplify/quality/contact.h"
 
 /* The points by which vertices are told apart. */
 static bool choose_points(cwi_welded *w, cw_weld how)
@@ -44,24 +44,6 @@ cw_status cwi_welded_init(cwi_welded *w, const cw_mesh *mesh, cw_weld how, cw_er
     return st;
 }
 
-static void box_of(const cwi_welded *w, size_t triangle, float box[6])
-{
-    const uint32_t *v = w->vertex + 3 * triangle;
-    for (int a = 0; a < 3; a++) {
-        const float *p = w->points + a;
-        const float x = p[3 * (size_t)v[0]], y = p[3 * (size_t)v[1]], z = p[3 * (size_t)v[2]];
-        box[a] = x < y ? (x < z ? x : z) : (y < z ? y : z);
-        box[a + 3] = x > y ? (x > z ? x : z) : (y > z ? y : z);
-    }
-}
-
-static bool has_area(const cwi_welded *w, size_t triangle)
-{
-    const uint32_t *v = w->vertex + 3 * triangle;
-    return cwi_seen_along(w->points + 3 * (size_t)v[0], w->points + 3 * (size_t)v[1],
-                          w->points + 3 * (size_t)v[2]) >= 0;
-}
-
 bool cwi_welded_sort(const cwi_welded *w, cwi_boxes *tree)
 {
     const size_t count = w->mesh->triangle_count;
@@ -70,8 +52,8 @@ bool cwi_welded_sort(const cwi_welded *w, cwi_boxes *tree)
     bool ok = boxes && triangle;
     size_t kept = 0;
     for (size_t t = 0; t < count && ok; t++)
-        if (!cwi_is_collapsed(w, t) && has_area(w, t)) {
-            box_of(w, t, boxes[kept]);
+        if (!cwi_is_collapsed(w, t) && cwi_has_area(w->points, w->vertex + 3 * t)) {
+            cwi_boxes_triangle(w->points, w->vertex + 3 * t, boxes[kept]);
             triangle[kept++] = (uint32_t)t;
         }
     ok = ok && cwi_boxes_build(tree, (const float(*)[6])boxes, kept, NULL) == CW_OK;
