@@ -7,9 +7,7 @@
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
-#include <math.h>
 #include <stdint.h>
-#include <stdio.h>
 #include <string.h>
 
 enum { DEFAULT_FPS = 10 };

@@ -32,7 +32,7 @@ typedef struct making {
     const cw_mesh *mesh;
     const cw_offset_desc *desc;
     cw_quality before;
-    double voxel;
+    double asked, voxel; /* half of those asked for is what is promised */
     cw_volume volume;
     bool is_known, overlaps; /* whether that was looked at; whether the mesh does */
 } making;
@@ -136,9 +136,9 @@ static cw_status compare_places(const making *m, const cw_mesh *out, double limi
 
 /* Whether the promise is kept; if not, whether the surface is so near that smaller voxels may
  * keep it. */
-static cw_status judge(making *m, const cw_mesh *out, double limit_mm, bool *holds,
-                       bool *is_near, cw_error *err)
+static cw_status judge(making *m, const cw_mesh *out, bool *holds, bool *is_near, cw_error *err)
 {
+    const double limit_mm = m->asked / 2;
     cw_status st = compare_topology(m, out, holds, err);
     if (st == CW_OK && *holds)
         st = compare_places(m, out, limit_mm, holds, err);
@@ -153,8 +153,7 @@ static cw_status judge(making *m, const cw_mesh *out, double limit_mm, bool *hol
 
 /* From samples of the same level set that are moved to what they miss. Moving vertices does not
  * change what is joined: that is looked at before. */
-static cw_status make_warped(making *m, double limit_mm, cw_mesh *out, bool *holds,
-                             bool *is_near, cw_error *err)
+static cw_status make_warped(making *m, cw_mesh *out, bool *holds, bool *is_near, cw_error *err)
 {
     const cw_offset_desc *d = m->desc;
     cwi_warp warp;
@@ -168,22 +167,21 @@ static cw_status make_warped(making *m, double limit_mm, cw_mesh *out, bool *hol
     if (*holds && st == CW_OK)
         st = cwi_sharpen(m->mesh, d, m->voxel, out, err);
     if (*holds && st == CW_OK)
-        st = judge(m, out, limit_mm, holds, is_near, err);
+        st = judge(m, out, holds, is_near, err);
     cwi_warp_free(&warp);
     return st;
 }
 
 /* With the voxels as they are; if that breaks the promise, with samples moved. */
-static cw_status make_either(making *m, double limit_mm, cw_mesh *out, bool *holds,
-                             bool *is_near, cw_error *err)
+static cw_status make_either(making *m, cw_mesh *out, bool *holds, bool *is_near, cw_error *err)
 {
     cw_status st = make_plain(m, out, err);
     if (st == CW_OK)
-        st = judge(m, out, limit_mm, holds, is_near, err);
+        st = judge(m, out, holds, is_near, err);
     if (st != CW_OK || *holds)
         return st;
     cw_mesh_free(out);
-    return make_warped(m, limit_mm, out, holds, is_near, err);
+    return make_warped(m, out, holds, is_near, err);
 }
 
 enum { MOST_HALVINGS = 2, FEW = 1 << 18 /* triangles: in a moment there are so many */ };
@@ -199,23 +197,22 @@ static bool should_halve(const making *m, size_t triangles, bool is_near)
  * that. If nothing helps, or the limit forbids it, what was made first. */
 static cw_status make_true(making *m, cw_mesh *out, bool *is_astray, cw_error *err)
 {
-    const double asked = m->voxel;
     cw_mesh next = {0};
     bool holds = false, is_near = false;
     cw_status st = make_plain(m, out, err);
     if (st == CW_OK)
-        st = judge(m, out, asked / 2, &holds, &is_near, err);
+        st = judge(m, out, &holds, &is_near, err);
     if (st == CW_OK && !holds)
-        st = make_warped(m, asked / 2, &next, &holds, &is_near, err);
+        st = make_warped(m, &next, &holds, &is_near, err);
     for (size_t n = 0, triangles = out->triangle_count;
          n < MOST_HALVINGS && st == CW_OK && !holds && should_halve(m, triangles, is_near);
          n++, triangles *= 4) {
         cw_mesh_free(&next);
         m->voxel /= 2;
         is_near = false;
-        st = make_either(m, asked / 2, &next, &holds, &is_near, err);
+        st = make_either(m, &next, &holds, &is_near, err);
     }
-    if (st == CW_ERR_LIMIT && m->voxel < asked) {
+    if (st == CW_ERR_LIMIT && m->voxel < m->asked) {
         holds = false;
         st = CW_OK;
     }
@@ -224,7 +221,7 @@ static cw_status make_true(making *m, cw_mesh *out, bool *is_astray, cw_error *e
         *out = next;
         next = (cw_mesh){0};
     } else {
-        m->voxel = asked;
+        m->voxel = m->asked;
     }
     cw_mesh_free(&next);
     *is_astray = !holds;
@@ -235,7 +232,6 @@ cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc, cw_mes
                          cw_offset_facts *facts, cw_error *err)
 {
     bool is_astray = false;
-    double asked;
     making m = {.mesh = mesh, .desc = desc};
     *out = (cw_mesh){0};
     if (!isfinite(desc->offset_mm) || !isfinite(desc->voxel_mm) || desc->voxel_mm < 0)
@@ -246,7 +242,7 @@ cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc, cw_mes
     cw_status st = cwi_level_set_check(mesh, desc->threads, &m.before, err);
     if (st != CW_OK)
         return st;
-    m.voxel = asked = desc->voxel_mm > 0 ? desc->voxel_mm : choose_voxel(desc, &m.before);
+    m.voxel = m.asked = desc->voxel_mm > 0 ? desc->voxel_mm : choose_voxel(desc, &m.before);
     st = desc->offset_mm == 0 && !desc->no_sharpen ? make_true(&m, out, &is_astray, err)
                                                    : make_plain(&m, out, err);
     cw_volume_free(&m.volume);
@@ -256,7 +252,7 @@ cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc, cw_mes
     if (st == CW_OK) /* not of the grid in between */
         memcpy(out->affine, mesh->affine, sizeof out->affine);
     if (facts)
-        *facts = (cw_offset_facts){m.voxel, asked, is_astray};
+        *facts = (cw_offset_facts){m.voxel, m.asked, is_astray};
     if (st != CW_OK)
         cw_mesh_free(out);
     return st;

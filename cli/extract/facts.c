@@ -1,7 +1,5 @@
 #include "cli/extract/extract.h"
 
-#include "cli/quantity.h"
-
 #include <math.h>
 #include <stdio.h>
 
