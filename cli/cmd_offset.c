@@ -9,7 +9,7 @@ static const cli_option options[] = {
      "put back edges and corners that voxels cut off (on; --no-sharp)",
      offsetof(cli_solid_args, sharp)},
     {"refine", 0, CLI_FLAG, NULL,
-     "with --by 0: take smaller voxels if half of one is not kept (on; --no-refine)",
+     "with --by 0: smaller voxels, or parts, if half of one is not kept (on; --no-refine)",
      offsetof(cli_solid_args, refine)},
     {"measure", 0, CLI_FLAG, NULL,
      "measure how far the result is from where it should be (on; --no-measure)",
@@ -41,9 +41,15 @@ const cli_command cli_offset = {
         "it,\n"
         "sharp edges, tips and thin walls too. Where that takes voxels of half the size, or a "
         "quarter,\n"
-        "it is told, and costs some eight or thirty times the time (--no-refine takes the "
-        "others).\n"
-        "If it cannot be kept, the mesh is written all the same, and the exit code is 1.\n\n"
+        "it is told, and costs some eight or thirty times the time. What is thin all over, "
+        "such "
+        "as\n"
+        "bone, takes parts of voxels, down to an eighth, where it is thin: pieces and handles "
+        "that it\n"
+        "has more then are told. --no-refine takes neither. If half a voxel cannot be kept, "
+        "the "
+        "mesh\n"
+        "is written all the same, and the exit code is 1.\n\n"
         "--voxel auto is 1/256 of the box's diagonal, or a quarter of the distance if that is\n"
         "finer, but not below 1/512, and coarser where memory would not do.\n\n"
         "Printed is how far the result's distance from the input is off, at most and by the "

@@ -34,8 +34,7 @@ typedef struct run_state {
     cw_hollow_facts facts;
     double voxel_mm, by_mm, wall_mm;
     double off_max_mm, off_rms_mm; /* of an offset */
-    double asked_mm;               /* voxels */
-    bool is_astray;
+    cw_offset_facts offset;
     char found[256]; /* for the line */
     cli_outputs outputs;
     cli_report report;
@@ -69,8 +68,8 @@ static void put_params(cli_json *j, const void *p, const cli_made *made)
         cli_json_number(j, "by_mm", s->by_mm);
     }
     cli_json_number(j, "voxel_mm", s->voxel_mm);
-    if (s->asked_mm > 0) /* only offset takes others */
-        cli_json_number(j, "voxel_asked_mm", s->asked_mm);
+    if (s->offset.asked_mm > 0) /* only offset takes others */
+        cli_json_number(j, "voxel_asked_mm", s->offset.asked_mm);
     cli_json_count(j, "merged_vertices", s->pieces.merged);
     cli_json_written(j, &s->args->written, made->path);
 }
@@ -96,6 +95,18 @@ static void put_offset(cli_json *j, const run_state *s)
     cli_json_close(j, '}');
 }
 
+/* Of the surface itself, made anew. */
+static void put_anew(cli_json *j, const cw_offset_facts *f)
+{
+    cli_json_open(j, "anew", '{');
+    cli_json_bool(j, "within_half_voxel", !f->is_astray);
+    if (f->least_mm > 0)
+        cli_json_number(j, "voxel_least_mm", f->least_mm);
+    cli_json_count(j, "more_components", f->more_components);
+    cli_json_count(j, "more_handles", f->more_handles);
+    cli_json_close(j, '}');
+}
+
 static void put_facts(cli_json *j, const void *p)
 {
     const run_state *s = p;
@@ -105,6 +116,8 @@ static void put_facts(cli_json *j, const void *p)
         put_hollow(j, s);
     if (s->off_max_mm > 0)
         put_offset(j, s);
+    if (s->offset.asked_mm > 0 && s->by_mm == 0)
+        put_anew(j, &s->offset);
 }
 
 /* --- what is asked for ---------------------------------------------------------------------
@@ -299,6 +312,25 @@ static cw_status hollow(run_state *s, cw_error *err)
     return CW_OK;
 }
 
+static void tell_offset(const run_state *s)
+{
+    const cw_offset_facts *f = &s->offset;
+    if (f->voxel_mm < f->asked_mm)
+        cli_say("%s: voxels of %.4g mm, in place of %.4g mm: those would have lost more than "
+                "half of one",
+                s->mesh.path, f->voxel_mm, f->asked_mm);
+    else if (f->least_mm > 0)
+        cli_say("%s: voxels of %.4g mm, parts of %.4g mm where those would have lost more than "
+                "half of one",
+                s->mesh.path, f->voxel_mm, f->least_mm);
+    else
+        cli_say("%s: voxels of %.4g mm", s->mesh.path, f->voxel_mm);
+    if (f->more_components || f->more_handles)
+        cli_say("%s: %s more pieces and %s more handles than there were: some of it is thinner "
+                "than that",
+                s->mesh.path, cli_count(f->more_components), cli_count(f->more_handles));
+}
+
 static cw_status offset(run_state *s, cw_error *err)
 {
     cli_piece *p = s->pieces.piece;
@@ -309,19 +341,11 @@ static cw_status offset(run_state *s, cw_error *err)
                                  .threads = (int)s->args->input.threads,
                                  .max_bytes = cli_memory_limit(&s->args->input),
                                  .progress = cli_progress(1, "solid")};
-    cw_offset_facts facts;
-    cw_status st = cw_mesh_offset(&p->input, &desc, &p->out, &facts, err);
+    const cw_status st = cw_mesh_offset(&p->input, &desc, &p->out, &s->offset, err);
     if (st != CW_OK)
         return st;
-    s->asked_mm = facts.asked_mm;
-    s->voxel_mm = facts.voxel_mm;
-    s->is_astray = facts.is_astray;
-    if (s->voxel_mm < s->asked_mm)
-        cli_say("%s: voxels of %.4g mm, in place of %.4g mm: those would have lost more than "
-                "half of one",
-                s->mesh.path, s->voxel_mm, s->asked_mm);
-    else
-        cli_say("%s: voxels of %.4g mm", s->mesh.path, s->voxel_mm);
+    s->voxel_mm = s->offset.voxel_mm;
+    tell_offset(s);
     return CW_OK;
 }
 
@@ -397,13 +421,13 @@ static cw_status deliver(run_state *s, cw_error *err)
 /* It is written all the same: details thinner than voxels may not matter. */
 static cw_status hold_to_input(const run_state *s, cw_error *err)
 {
-    if (!s->is_astray)
+    if (!s->offset.is_astray)
         return CW_OK;
     return cw_fail(
         err, CW_ERR_CHECK,
-        "%s: written, but not within half a voxel of %.4g mm of the input both ways, "
-        "or in more pieces: something is too thin; smaller voxels lose less",
-        s->mesh.path, s->asked_mm);
+        "%s: written, but not within half a voxel of %.4g mm of the input both ways: "
+        "something is too thin; smaller voxels lose less",
+        s->mesh.path, s->offset.asked_mm);
 }
 
 static cw_status make(run_state *s, cli_made *made, cw_error *err)

@@ -1,4 +1,6 @@
+#include "extract/adaptive.h"
 #include "extract/level_set.h"
+#include "extract/normals.h"
 #include "extract/sharpen.h"
 #include "extract/warp.h"
 
@@ -37,19 +39,21 @@ typedef struct making {
     bool is_known, overlaps; /* whether that was looked at; whether the mesh does */
 } making;
 
-static cw_status take_surface(const making *m, bool simple, cw_mesh *out, cw_error *err)
+static cw_status take_surface(const making *m, const cw_volume *volume, bool simple,
+                              cw_mesh *out, cw_error *err)
 {
     const cw_offset_desc *d = m->desc;
     const cw_extract_desc desc = {.isovalue = d->offset_mm,
                                   .inside_is_low = true,
+                                  .leave_open = volume->cells, /* there is more beyond them */
                                   .simple_topology = simple,
                                   .threads = d->threads,
                                   .max_bytes = d->max_bytes,
                                   .progress = d->progress};
-    return cw_extract(&m->volume, &desc, out, NULL, err);
+    return cw_extract(volume, &desc, out, NULL, err);
 }
 
-static cw_status make_plain(making *m, cw_mesh *out, cw_error *err)
+static cw_status make_samples(making *m, cw_error *err)
 {
     const cw_offset_desc *d = m->desc;
     const cw_level_set_desc desc = {.voxel_mm = m->voxel,
@@ -59,12 +63,16 @@ static cw_status make_plain(making *m, cw_mesh *out, cw_error *err)
                                     .max_bytes = d->max_bytes,
                                     .progress = d->progress};
     cw_volume_free(&m->volume);
-    cw_status st =
-        cwi_level_set_make(m->mesh, &m->before, &desc, &d->offset_mm, &m->volume, err);
+    return cwi_level_set_make(m->mesh, &m->before, &desc, &d->offset_mm, &m->volume, err);
+}
+
+static cw_status make_plain(making *m, cw_mesh *out, cw_error *err)
+{
+    cw_status st = make_samples(m, err);
     if (st == CW_OK)
-        st = take_surface(m, false, out, err);
-    if (st == CW_OK && out->triangle_count && !d->no_sharpen)
-        st = cwi_sharpen(m->mesh, d, m->voxel, out, err);
+        st = take_surface(m, &m->volume, false, out, err);
+    if (st == CW_OK && out->triangle_count && !m->desc->no_sharpen)
+        st = cwi_sharpen(m->mesh, m->desc, m->voxel, out, err);
     return st;
 }
 
@@ -159,7 +167,7 @@ static cw_status make_warped(making *m, cw_mesh *out, bool *holds, bool *is_near
     cwi_warp warp;
     cw_status st = cwi_warp_init(&warp, m->mesh, &m->volume, err);
     if (st == CW_OK)
-        st = take_surface(m, true, out, err);
+        st = take_surface(m, &m->volume, true, out, err);
     if (st == CW_OK)
         st = compare_topology(m, out, holds, err);
     if (*holds && st == CW_OK)
@@ -184,7 +192,11 @@ static cw_status make_either(making *m, cw_mesh *out, bool *holds, bool *is_near
     return make_warped(m, out, holds, is_near, err);
 }
 
-enum { MOST_HALVINGS = 2, FEW = 1 << 18 /* triangles: in a moment there are so many */ };
+enum {
+    MOST_HALVINGS = 2,
+    MOST_ROUNDS = 16,
+    FEW = 1 << 18 /* triangles: in a moment there are so many */
+};
 
 /* Whether voxels of half the size are worth a try, where there are now so many triangles. */
 static bool should_halve(const making *m, size_t triangles, bool is_near)
@@ -193,46 +205,132 @@ static bool should_halve(const making *m, size_t triangles, bool is_near)
            cwi_level_set_fits(&m->before, m->voxel / 2, 0, m->desc->max_bytes);
 }
 
-/* Makes it until the promise is kept: with voxels as asked, then of half the size, and of half
- * that. If nothing helps, or the limit forbids it, what was made first. */
-static cw_status make_true(making *m, cw_mesh *out, bool *is_astray, cw_error *err)
+/* With samples moved, and then with smaller voxels, until a surface is within half a voxel and
+ * has neither more components nor more handles. If the limit forbids it, it is not so.
+ * triangles  of the surface that the voxels give as they are */
+static cw_status make_whole(making *m, size_t triangles, bool is_near, cw_mesh *out,
+                            bool *holds, cw_error *err)
 {
-    cw_mesh next = {0};
+    cw_status st = make_warped(m, out, holds, &is_near, err);
+    for (int n = 0; n < MOST_HALVINGS && st == CW_OK && !*holds; n++, triangles *= 4) {
+        if (!should_halve(m, triangles, is_near))
+            break;
+        cw_mesh_free(out);
+        m->voxel /= 2;
+        is_near = false;
+        st = make_either(m, out, holds, &is_near, err);
+    }
+    if (st == CW_ERR_LIMIT && m->voxel < m->asked) {
+        *holds = false;
+        st = CW_OK;
+    }
+    return st;
+}
+
+/* Gradients across edges and through thin walls may point anywhere: where they are off what the
+ * triangles around say by more than 60 degrees, that is taken. */
+static cw_status mend_normals(cw_mesh *mesh, cw_error *err)
+{
+    float *gradients = mesh->normals;
+    mesh->normals = cwi_alloc_zeroed(3 * mesh->vertex_count, sizeof *mesh->normals);
+    cw_status st = mesh->normals ? cwi_mend_normals(mesh, 1, err)
+                                 : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu normals",
+                                           mesh->vertex_count);
+    for (size_t v = 0; v < mesh->vertex_count && st == CW_OK; v++) {
+        const float *g = gradients + 3 * v;
+        float *n = mesh->normals + 3 * v;
+        if (g[0] * n[0] + g[1] * n[1] + g[2] * n[2] >= 0.5F)
+            memcpy(n, g, 3 * sizeof *n);
+    }
+    cwi_free(gradients);
+    return st;
+}
+
+static cw_status make_divided(const making *m, cwi_adaptive *a, cw_mesh *out, cw_error *err)
+{
+    cw_volume grid;
+    cw_status st = cwi_adaptive_grid(a, &grid, err);
+    if (st == CW_OK)
+        st = take_surface(m, &grid, false, out, err);
+    if (st == CW_OK)
+        st = mend_normals(out, err);
+    if (st != CW_OK)
+        cw_mesh_free(out);
+    cw_volume_free(&grid);
+    return st;
+}
+
+/* Divides cells and makes the surface again, until all of it is within half a voxel, there is
+ * nothing left to divide, or the limit forbids it.
+ * out  replaced by what is made */
+static cw_status make_adaptive(making *m, cw_mesh *out, cw_offset_facts *facts, cw_error *err)
+{
+    cwi_adaptive a = {0};
+    cwi_beyond beyond = {0};
+    cw_status st = make_samples(m, err);
+    if (st == CW_OK)
+        st = cwi_adaptive_init(&a, m->mesh, &m->volume, m->desc, err);
+    for (int n = 0; n < MOST_ROUNDS && st == CW_OK; n++) {
+        cw_mesh next = {0};
+        st = cwi_adaptive_divide(&a, out, m->asked / 2, !m->overlaps, &beyond, err);
+        if (st != CW_OK || !beyond.divided)
+            break;
+        st = make_divided(m, &a, &next, err);
+        if (st != CW_OK)
+            break;
+        cw_mesh_free(out);
+        *out = next;
+        facts->least_mm = cwi_adaptive_least(&a);
+    }
+    cwi_adaptive_free(&a);
+    facts->is_astray = beyond.any;
+    return st == CW_ERR_LIMIT ? CW_OK : st;
+}
+
+/* The first surface that keeps all of the promise; else one that is as near. */
+static cw_status make_true(making *m, cw_mesh *out, cw_offset_facts *facts, cw_error *err)
+{
+    cw_mesh whole = {0};
     bool holds = false, is_near = false;
     cw_status st = make_plain(m, out, err);
     if (st == CW_OK)
         st = judge(m, out, &holds, &is_near, err);
     if (st == CW_OK && !holds)
-        st = make_warped(m, &next, &holds, &is_near, err);
-    for (size_t n = 0, triangles = out->triangle_count;
-         n < MOST_HALVINGS && st == CW_OK && !holds && should_halve(m, triangles, is_near);
-         n++, triangles *= 4) {
-        cw_mesh_free(&next);
-        m->voxel /= 2;
-        is_near = false;
-        st = make_either(m, &next, &holds, &is_near, err);
-    }
-    if (st == CW_ERR_LIMIT && m->voxel < m->asked) {
-        holds = false;
-        st = CW_OK;
-    }
-    if (st == CW_OK && holds && next.triangle_count) {
+        st = make_whole(m, out->triangle_count, is_near, &whole, &holds, err);
+    if (st == CW_OK && holds && whole.triangle_count) {
         cw_mesh_free(out);
-        *out = next;
-        next = (cw_mesh){0};
-    } else {
-        m->voxel = m->asked;
+        *out = whole;
+        return CW_OK;
     }
-    cw_mesh_free(&next);
-    *is_astray = !holds;
+    cw_mesh_free(&whole);
+    if (st != CW_OK || holds)
+        return st;
+    m->voxel = m->asked;
+    if (!m->desc->no_refine)
+        return make_adaptive(m, out, facts, err);
+    st = compare_places(m, out, m->asked / 2, &holds, err);
+    facts->is_astray = !holds;
+    return st;
+}
+
+static cw_status count_more(const making *m, const cw_mesh *out, cw_offset_facts *facts,
+                            cw_error *err)
+{
+    cw_quality q;
+    const cw_status st =
+        cw_quality_measure(out, &(cw_quality_desc){.threads = m->desc->threads}, &q, err);
+    if (st == CW_OK && q.components > m->before.components)
+        facts->more_components = q.components - m->before.components;
+    if (st == CW_OK && handles(&q) > handles(&m->before))
+        facts->more_handles = (size_t)(handles(&q) - handles(&m->before));
     return st;
 }
 
 cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc, cw_mesh *out,
                          cw_offset_facts *facts, cw_error *err)
 {
-    bool is_astray = false;
     making m = {.mesh = mesh, .desc = desc};
+    cw_offset_facts found = {0};
     *out = (cw_mesh){0};
     if (!isfinite(desc->offset_mm) || !isfinite(desc->voxel_mm) || desc->voxel_mm < 0)
         return cw_fail(err, CW_ERR_ARGUMENT,
@@ -243,7 +341,7 @@ cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc, cw_mes
     if (st != CW_OK)
         return st;
     m.voxel = m.asked = desc->voxel_mm > 0 ? desc->voxel_mm : choose_voxel(desc, &m.before);
-    st = desc->offset_mm == 0 && !desc->no_sharpen ? make_true(&m, out, &is_astray, err)
+    st = desc->offset_mm == 0 && !desc->no_sharpen ? make_true(&m, out, &found, err)
                                                    : make_plain(&m, out, err);
     cw_volume_free(&m.volume);
     if (st == CW_OK && !out->triangle_count)
@@ -251,8 +349,12 @@ cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc, cw_mes
                      desc->offset_mm < 0 ? -desc->offset_mm : sqrt(0.75) * m.voxel);
     if (st == CW_OK) /* not of the grid in between */
         memcpy(out->affine, mesh->affine, sizeof out->affine);
+    if (st == CW_OK && desc->offset_mm == 0)
+        st = count_more(&m, out, &found, err);
+    found.voxel_mm = m.voxel;
+    found.asked_mm = m.asked;
     if (facts)
-        *facts = (cw_offset_facts){m.voxel, m.asked, is_astray};
+        *facts = found;
     if (st != CW_OK)
         cw_mesh_free(out);
     return st;

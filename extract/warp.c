@@ -5,13 +5,14 @@
 #include "core/vector.h"
 #include "core/volume.h"
 #include "extract/inside.h"
+#include "extract/polygon.h"
 #include "simplify/quality/closest.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-enum { FACE, EDGE, CORNER, JOINS = 6, MOST_CORNERS = 3 + 6 };
+enum { FACE, EDGE, CORNER, JOINS = 6 };
 
 /* Of normals, the largest cosine: of faces that meet at less than 80 degrees, and at less than
  * 120, which count where what is between them is thin. */
@@ -401,37 +402,15 @@ static void wish_around(warping *g, const cwi_move *m)
 
 /* ---- faces ------------------------------------------------------------------------------- */
 
-typedef struct polygon {
-    int count;
-    double p[MOST_CORNERS][3];
-} polygon;
-
-/* What of a polygon has by * (x[a] - at) <= 0. */
-static void clip(const polygon *in, int a, double at, int by, polygon *out)
+static void clip_to_cubes(const cwi_polygon *in, int a, double middle, cwi_polygon *out)
 {
-    out->count = 0;
-    for (int n = 0; n < in->count; n++) {
-        const double *p = in->p[n], *q = in->p[(n + 1) % in->count];
-        const double u = by * (p[a] - at), v = by * (q[a] - at);
-        if (u <= 0 && out->count < MOST_CORNERS)
-            memcpy(out->p[out->count++], p, sizeof out->p[0]);
-        if (!((u < 0 && v > 0) || (u > 0 && v < 0)) || out->count == MOST_CORNERS)
-            continue;
-        for (int k = 0; k < 3; k++)
-            out->p[out->count][k] = p[k] + u / (u - v) * (q[k] - p[k]);
-        out->count++;
-    }
+    cwi_polygon half;
+    cwi_polygon_clip(in, a, middle - 0.5, -1, &half);
+    cwi_polygon_clip(&half, a, middle + 0.5, 1, out);
 }
 
-static void clip_to_cubes(const polygon *in, int a, double middle, polygon *out)
-{
-    polygon half;
-    clip(in, a, middle - 0.5, -1, &half);
-    clip(&half, a, middle + 0.5, 1, out);
-}
-
-/* The samples whose cubes a polygon is in, along an axis. */
-static void range(const polygon *p, int a, double *low, double *high)
+/* The samples whose cubes a cwi_polygon is in, along an axis. */
+static void range(const cwi_polygon *p, int a, double *low, double *high)
 {
     *low = INFINITY;
     *high = -INFINITY;
@@ -443,7 +422,7 @@ static void range(const polygon *p, int a, double *low, double *high)
     *high = floor(*high + 0.5);
 }
 
-static bool has_area(const polygon *p)
+static bool has_area(const cwi_polygon *p)
 {
     double sum[3] = {0};
     for (int n = 1; n + 1 < p->count; n++) {
@@ -460,7 +439,7 @@ static bool has_area(const polygon *p)
 }
 
 /* The part of a triangle that is in the cube of one sample. */
-static void consider_piece(warping *g, const polygon *p, const double cube[3],
+static void consider_piece(warping *g, const cwi_polygon *p, const double cube[3],
                            const double n[3])
 {
     const uint32_t at[3] = {(uint32_t)cube[0], (uint32_t)cube[1], (uint32_t)cube[2]};
@@ -484,7 +463,7 @@ static void consider_face(warping *g, size_t t)
 {
     const double *n = g->normals[t];
     double low[3], high[3], i[3];
-    polygon all = {.count = 3}, slice, column, piece;
+    cwi_polygon all = {.count = 3}, slice, column, piece;
     int a = 0;
     for (int k = 1; k < 3; k++)
         a = fabs(n[k]) > fabs(n[a]) ? k : a;

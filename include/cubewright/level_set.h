@@ -63,7 +63,8 @@ typedef struct cw_offset_desc {
                              offset, but 1/512 of the diagonal at the least, and, with max_bytes,
                              as coarse as it takes */
     bool no_sharpen;      /* default: edges and corners that the voxels cut off are put back */
-    bool no_refine;       /* default: by 0, smaller voxels if half of one is not kept */
+    bool no_refine;       /* default: by 0, smaller voxels, or parts of some, if half of one is
+                             not kept */
     int threads;          /* default: all */
     size_t max_bytes;     /* default: no limit */
     cw_progress progress; /* default: none */
@@ -73,7 +74,9 @@ typedef struct cw_offset_desc {
 typedef struct cw_offset_facts {
     double voxel_mm; /* those that were taken */
     double asked_mm; /* those it began with: as asked for, or chosen */
-    bool is_astray;  /* by 0: what is said below of that is not so */
+    double least_mm; /* the smallest parts that some were divided into; 0: none were */
+    bool is_astray;  /* by 0: it is not within half of those it began with */
+    size_t more_components, more_handles; /* by 0: than the mesh has */
 } cw_offset_facts;
 
 /* Makes the surface of all that is nearer to the inside of a mesh than offset_mm, or, inward,
@@ -91,10 +94,16 @@ typedef struct cw_offset_facts {
  * thinner than a voxel moved to these; and if that does not do either, with voxels of half the
  * size, and of half that (half of the first is still what is kept), unless max_bytes forbids or
  * it would be many for a surface that is more than a voxel off. In all that takes twice the
- * time, or with smaller voxels eight and thirty times. What is thin all over, as bone in a
- * scan, may break it all the same: then the result is the first one, and is_astray is set. Of a
- * mesh that crosses itself or has solids inside solids only the distance of the result from it
- * is looked at. All that is left out with no_sharpen.
+ * time, or with smaller voxels eight and thirty times.
+ *
+ * What is thin all over, as bone in a scan, needs another way: voxels are divided where half of
+ * one is not kept, down to an eighth, and samples between those stand in what is thinner still.
+ * So the result is within half a voxel there too (is_astray is set should it not be, or should
+ * max_bytes forbid it), but may be in more pieces and have more handles, which are counted;
+ * edges that are kept to half a voxel are not put back; and it has more triangles there. It
+ * takes some three to five times the time. Of a mesh that crosses itself or has solids inside
+ * solids only the distance of the result from it is looked at. All that is left out with
+ * no_sharpen; smaller voxels and parts of them with no_refine.
  *
  * out       filled on success, with normals; emptied on failure; free it with cw_mesh_free()
  * facts     may be NULL
@@ -102,7 +111,7 @@ typedef struct cw_offset_facts {
  * Returns  CW_ERR_EMPTY for an offset inward that leaves nothing; else as
  *          cw_level_set_from_mesh(), cw_extract(), cw_self_intersections()
  * Threads  the same to the bit for any number
- * Source   edges after [Kobbelt2001], [Attene2005] */
+ * Source   edges after [Kobbelt2001], [Attene2005]; parts of voxels after [Frisken2000] */
 CW_API cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc, cw_mesh *out,
                                 cw_offset_facts *facts, cw_error *err);
 

@@ -72,3 +72,7 @@ cubewright offset g.off -o g.stl --by 0 --voxel 6mm --json g.json | sed 's/; at 
 grep -e '"voxel' g.json
 cubewright offset g.off -o g.stl --by 0 --voxel 6mm --no-refine --json g.json | sed 's/; at most.*//'
 grep -e '"exit"' -e '"status"' g.json
+cubewright make hard/noise -d 8 -o n.nrrd
+cubewright extract n.nrrd --iso 0 -o n.ply -q
+cubewright offset n.ply -o n.glb --by 0 --voxel 1.7mm --json n.json | sed 's/; at most.*//'
+sed -n '/"anew"/,/}/p' n.json
