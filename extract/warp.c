@@ -409,7 +409,7 @@ static void clip_to_cubes(const cwi_polygon *in, int a, double middle, cwi_polyg
     cwi_polygon_clip(&half, a, middle + 0.5, 1, out);
 }
 
-/* The samples whose cubes a cwi_polygon is in, along an axis. */
+/* The samples whose cubes a polygon is in, along an axis. */
 static void range(const cwi_polygon *p, int a, double *low, double *high)
 {
     *low = INFINITY;
