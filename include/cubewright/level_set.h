@@ -101,7 +101,7 @@ typedef struct cw_offset_facts {
  * So the result is within half a voxel there too (is_astray is set should it not be, or should
  * max_bytes forbid it), but may be in more pieces and have more handles, which are counted;
  * edges that are kept to half a voxel are not put back; and it has more triangles there. It
- * takes some three to five times the time. Of a mesh that crosses itself or has solids inside
+ * takes one to three times the time again. Of a mesh that crosses itself or has solids inside
  * solids only the distance of the result from it is looked at. All that is left out with
  * no_sharpen; smaller voxels and parts of them with no_refine.
  *
