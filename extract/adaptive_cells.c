@@ -272,8 +272,10 @@ static cw_status hand_over(const build *b, cw_volume *grid, cw_error *err)
     uint32_t *corners = (uint32_t *)(void *)(points + 3 * samples);
     uint8_t *shapes = (uint8_t *)(void *)(corners + b->corner_count);
     cw_cells *cells = (cw_cells *)(void *)memory;
-    memcpy(corners, b->corners, b->corner_count * sizeof *corners);
-    memcpy(shapes, b->shapes, b->count);
+    if (b->count) {
+        memcpy(corners, b->corners, b->corner_count * sizeof *corners);
+        memcpy(shapes, b->shapes, b->count);
+    }
     memcpy(points, a->places, samples * sizeof *a->places);
     *cells = (cw_cells){points, b->count, shapes, corners};
     *grid = (cw_volume){.data = a->values,
