@@ -4,30 +4,13 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "core/vector.h"
-#include "core/volume.h"
 #include "extract/inside.h"
+#include "extract/level_set.h"
 #include "simplify/quality/closest.h"
 
 #include <math.h>
 
 enum { CHUNK = 256 };
-
-static const uint32_t *leaf_of(const uint32_t at[3], uint32_t leaf[3])
-{
-    for (int k = 0; k < 3; k++)
-        leaf[k] = at[k] / CWI_LEAF;
-    return leaf;
-}
-
-const float *cwi_adaptive_voxel(const cwi_adaptive *a, const uint32_t at[3])
-{
-    uint32_t leaf[3];
-    const uint32_t n = cwi_places_find(&a->leaves, cwi_place_key(leaf_of(at, leaf)));
-    if (n == CWI_NO_PLACE)
-        return NULL;
-    return (const float *)a->volume->data + (size_t)n * CWI_LEAF_VOXELS + at[0] % CWI_LEAF +
-           CWI_LEAF * (at[1] % CWI_LEAF + CWI_LEAF * (at[2] % CWI_LEAF));
-}
 
 /* ---- values ------------------------------------------------------------------------------ */
 
@@ -67,7 +50,7 @@ static void measure_point(cwi_adaptive *a, size_t n)
     cwi_place_of_key(a->points.keys[n], at);
     const bool is_whole = (at[0] | at[1] | at[2]) % CWI_PARTS == 0;
     const uint32_t voxel[3] = {at[0] / CWI_PARTS, at[1] / CWI_PARTS, at[2] / CWI_PARTS};
-    const float *known = is_whole ? cwi_adaptive_voxel(a, voxel) : NULL;
+    const float *known = is_whole ? cwi_level_set_voxel(a->volume, &a->leaves, voxel) : NULL;
     double *place = a->places[n];
     bool inside;
     if (!cwi_adaptive_place(a, at, place, &inside))
@@ -131,15 +114,6 @@ double cwi_adaptive_least(const cwi_adaptive *a)
 
 /* ---- all of it --------------------------------------------------------------------------- */
 
-static bool find_leaves(cwi_adaptive *a)
-{
-    const cw_sparse *sparse = a->volume->sparse;
-    bool ok = true;
-    for (size_t n = 0; n < sparse->leaf_count && ok; n++)
-        ok = cwi_places_add(&a->leaves, cwi_place_key(sparse->leaves[n])) != CWI_NO_PLACE;
-    return ok;
-}
-
 static void find_normals(cwi_adaptive *a)
 {
     const cw_mesh *m = a->mesh;
@@ -163,7 +137,7 @@ cw_status cwi_adaptive_init(cwi_adaptive *a, const cw_mesh *mesh, const cw_volum
         a->corner[k] = volume->affine[k][3] - mesh->origin[k];
     cw_status st = cwi_closest_build(mesh, &a->tree, err);
     a->normals = cwi_alloc_array(mesh->triangle_count, sizeof *a->normals);
-    if (st == CW_OK && (!a->normals || !find_leaves(a)))
+    if (st == CW_OK && (!a->normals || !cwi_level_set_leaves(volume, &a->leaves)))
         st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for finer samples");
     if (st == CW_OK)
         find_normals(a);

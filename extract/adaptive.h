@@ -84,9 +84,6 @@ void cwi_adaptive_to_mesh(const cwi_adaptive *a, const double place[3], double p
 
 bool cwi_adaptive_is_inside(const cwi_adaptive *a, const double place[3]);
 
-/* A sample of the volume; NULL: there is none. */
-const float *cwi_adaptive_voxel(const cwi_adaptive *a, const uint32_t at[3]);
-
 /* Divides a cell of a size: 0 is a voxel's. False: no memory. */
 bool cwi_adaptive_put(cwi_adaptive *a, int size, const uint32_t at[3]);
 

@@ -4,6 +4,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "core/volume.h"
+#include "extract/level_set.h"
 
 #include <math.h>
 #include <string.h>
@@ -146,7 +147,7 @@ static void add_crossed(build *b, const uint32_t at[3], float value)
         return;
     for (int n = 1; n < 8; n++) {
         const uint32_t corner[3] = {at[0] + (n & 1), at[1] + (n >> 1 & 1), at[2] + (n >> 2)};
-        const float *v = cwi_adaptive_voxel(b->a, corner);
+        const float *v = cwi_level_set_voxel(b->a->volume, &b->a->leaves, corner);
         low |= v && *v <= 0;
         high |= v && *v >= 0;
     }

@@ -399,6 +399,26 @@ cw_status cwi_level_set_make(const cw_mesh *mesh, const cw_quality *q,
     return st;
 }
 
+bool cwi_level_set_leaves(const cw_volume *volume, cwi_places *leaves)
+{
+    const cw_sparse *sparse = volume->sparse;
+    bool ok = true;
+    for (size_t n = 0; n < sparse->leaf_count && ok; n++)
+        ok = cwi_places_add(leaves, cwi_place_key(sparse->leaves[n])) != CWI_NO_PLACE;
+    return ok;
+}
+
+float *cwi_level_set_voxel(const cw_volume *volume, const cwi_places *leaves,
+                           const uint32_t at[3])
+{
+    const uint32_t leaf[3] = {at[0] / CWI_LEAF, at[1] / CWI_LEAF, at[2] / CWI_LEAF};
+    const uint32_t n = cwi_places_find(leaves, cwi_place_key(leaf));
+    if (n == CWI_NO_PLACE)
+        return NULL;
+    return (float *)volume->owned + (size_t)n * CWI_LEAF_VOXELS + at[0] % CWI_LEAF +
+           CWI_LEAF * (at[1] % CWI_LEAF + CWI_LEAF * (at[2] % CWI_LEAF));
+}
+
 cw_status cw_level_set_from_mesh(const cw_mesh *mesh, const cw_level_set_desc *desc,
                                  cw_volume *volume, cw_error *err)
 {

@@ -2,6 +2,8 @@
 #ifndef EXTRACT_LEVEL_SET_H
 #define EXTRACT_LEVEL_SET_H
 
+#include "extract/places.h"
+
 #include <cubewright/level_set.h>
 #include <cubewright/quality.h>
 
@@ -25,5 +27,12 @@ bool cwi_level_set_fits(const cw_quality *q, double voxel_mm, double reach_mm,
 cw_status cwi_level_set_make(const cw_mesh *mesh, const cw_quality *q,
                              const cw_level_set_desc *desc, const double *level,
                              cw_volume *volume, cw_error *err);
+
+/* Numbers a level set's leaves by their places; false: no memory. */
+bool cwi_level_set_leaves(const cw_volume *volume, cwi_places *leaves);
+
+/* A sample of it; NULL: there is none. */
+float *cwi_level_set_voxel(const cw_volume *volume, const cwi_places *leaves,
+                           const uint32_t at[3]);
 
 #endif

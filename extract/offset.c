@@ -287,6 +287,19 @@ static cw_status make_adaptive(making *m, cw_mesh *out, cw_offset_facts *facts, 
     return st == CW_ERR_LIMIT ? CW_OK : st;
 }
 
+static cw_status count_more(const making *m, const cw_mesh *out, cw_offset_facts *facts,
+                            cw_error *err)
+{
+    cw_quality q;
+    const cw_status st =
+        cw_quality_measure(out, &(cw_quality_desc){.threads = m->desc->threads}, &q, err);
+    if (st == CW_OK && q.components > m->before.components)
+        facts->more_components = q.components - m->before.components;
+    if (st == CW_OK && handles(&q) > handles(&m->before))
+        facts->more_handles = (size_t)(handles(&q) - handles(&m->before));
+    return st;
+}
+
 /* The first surface that keeps all of the promise; else one that is as near. */
 static cw_status make_true(making *m, cw_mesh *out, cw_offset_facts *facts, cw_error *err)
 {
@@ -306,24 +319,13 @@ static cw_status make_true(making *m, cw_mesh *out, cw_offset_facts *facts, cw_e
     if (st != CW_OK || holds)
         return st;
     m->voxel = m->asked;
-    if (!m->desc->no_refine)
-        return make_adaptive(m, out, facts, err);
-    st = compare_places(m, out, m->asked / 2, &holds, err);
-    facts->is_astray = !holds;
-    return st;
-}
-
-static cw_status count_more(const making *m, const cw_mesh *out, cw_offset_facts *facts,
-                            cw_error *err)
-{
-    cw_quality q;
-    const cw_status st =
-        cw_quality_measure(out, &(cw_quality_desc){.threads = m->desc->threads}, &q, err);
-    if (st == CW_OK && q.components > m->before.components)
-        facts->more_components = q.components - m->before.components;
-    if (st == CW_OK && handles(&q) > handles(&m->before))
-        facts->more_handles = (size_t)(handles(&q) - handles(&m->before));
-    return st;
+    if (m->desc->no_refine) {
+        st = compare_places(m, out, m->asked / 2, &holds, err);
+        facts->is_astray = !holds;
+    } else {
+        st = make_adaptive(m, out, facts, err);
+    }
+    return st == CW_OK ? count_more(m, out, facts, err) : st;
 }
 
 cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc, cw_mesh *out,
@@ -349,8 +351,6 @@ cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc, cw_mes
                      desc->offset_mm < 0 ? -desc->offset_mm : sqrt(0.75) * m.voxel);
     if (st == CW_OK) /* not of the grid in between */
         memcpy(out->affine, mesh->affine, sizeof out->affine);
-    if (st == CW_OK && desc->offset_mm == 0)
-        st = count_more(&m, out, &found, err);
     found.voxel_mm = m.voxel;
     found.asked_mm = m.asked;
     if (facts)

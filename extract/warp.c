@@ -5,6 +5,7 @@
 #include "core/vector.h"
 #include "core/volume.h"
 #include "extract/inside.h"
+#include "extract/level_set.h"
 #include "extract/polygon.h"
 #include "simplify/quality/closest.h"
 
@@ -41,8 +42,7 @@ typedef struct warping {
     const cw_mesh *mesh;
     const cw_volume *volume;
     cwi_boxes tree;
-    uint32_t *leaves; /* of leaf_slots: a leaf's number and 1, by its place */
-    size_t leaf_slots;
+    cwi_places leaves;    /* of the volume */
     double (*normals)[3]; /* of triangles */
     double (*corners)[4]; /* of vertices: normals around, weighted by angle; those weights */
     wish *wishes;         /* sorted; NULL: what is thin counts */
@@ -52,32 +52,9 @@ typedef struct warping {
 
 /* ---- samples ----------------------------------------------------------------------------- */
 
-static bool find_leaves(warping *g)
-{
-    const cw_sparse *sparse = g->volume->sparse;
-    g->leaf_slots = cwi_warp_slots(sparse->leaf_count);
-    g->leaves = cwi_alloc_zeroed(g->leaf_slots, sizeof *g->leaves);
-    for (size_t n = 0; n < sparse->leaf_count && g->leaves; n++) {
-        size_t s = cwi_warp_slot(sparse->leaves[n], g->leaf_slots);
-        while (g->leaves[s])
-            s = (s + 1) & (g->leaf_slots - 1);
-        g->leaves[s] = (uint32_t)n + 1;
-    }
-    return g->leaves;
-}
-
-/* A sample of a leaf; NULL: there is none. */
 static float *voxel_at(const warping *g, const uint32_t at[3])
 {
-    const uint32_t leaf[3] = {at[0] / CWI_LEAF, at[1] / CWI_LEAF, at[2] / CWI_LEAF};
-    size_t s = cwi_warp_slot(leaf, g->leaf_slots);
-    for (; g->leaves[s]; s = (s + 1) & (g->leaf_slots - 1)) {
-        const size_t n = g->leaves[s] - 1;
-        if (memcmp(g->volume->sparse->leaves[n], leaf, sizeof leaf) == 0)
-            return (float *)g->volume->owned + n * CWI_LEAF_VOXELS + at[0] % CWI_LEAF +
-                   CWI_LEAF * (at[1] % CWI_LEAF + CWI_LEAF * (at[2] % CWI_LEAF));
-    }
-    return NULL;
+    return cwi_level_set_voxel(g->volume, &g->leaves, at);
 }
 
 /* Trilinear, in voxels; NaN beyond the band. */
@@ -540,7 +517,7 @@ static bool make_room(warping *g)
 {
     g->normals = cwi_alloc_array(g->mesh->triangle_count, sizeof *g->normals);
     g->corners = cwi_alloc_zeroed(g->mesh->vertex_count, sizeof *g->corners);
-    return g->normals && g->corners && find_leaves(g);
+    return g->normals && g->corners && cwi_level_set_leaves(g->volume, &g->leaves);
 }
 
 /* Into the volume. What is joined with nothing stays. */
@@ -574,7 +551,7 @@ cw_status cwi_warp_init(cwi_warp *warp, const cw_mesh *mesh, cw_volume *volume, 
     if (g.out_of_memory)
         st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for samples at edges");
     cwi_boxes_free(&g.tree);
-    cwi_free(g.leaves);
+    cwi_places_free(&g.leaves);
     cwi_free(g.normals);
     cwi_free(g.corners);
     cwi_free(g.wishes);

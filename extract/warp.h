@@ -9,6 +9,8 @@
 #ifndef EXTRACT_WARP_H
 #define EXTRACT_WARP_H
 
+#include "extract/places.h"
+
 #include <cubewright/mesh.h>
 #include <cubewright/volume.h>
 
@@ -22,10 +24,9 @@ typedef struct cwi_move {
 } cwi_move;
 
 typedef struct cwi_warp {
-    cwi_move *moves;
+    cwi_move *moves; /* as `places` numbers their samples */
     size_t count, room;
-    uint32_t *table; /* of `slots`, a power of two: a move's number and 1, by its place */
-    size_t slots;
+    cwi_places places;
     double corner[3], voxel; /* where sample 0 stands in the world; mm */
 } cwi_warp;
 
@@ -43,10 +44,6 @@ void cwi_warp_free(cwi_warp *warp);
  * Threads  the same to the bit for any number */
 cw_status cwi_unwarp(const cwi_warp *warp, const cw_mesh *mesh, int threads,
                      const cw_progress *progress, cw_mesh *surface, cw_error *err);
-
-/* A hash of three numbers below `slots`, a power of two; and a table's slots for so many. */
-size_t cwi_warp_slot(const uint32_t at[3], size_t slots);
-size_t cwi_warp_slots(size_t count);
 
 /* The n-th of the eight samples around a place in the grid, and its trilinear share. */
 double cwi_warp_corner(const double at[3], int n, uint32_t corner[3]);
