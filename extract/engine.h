@@ -3,14 +3,17 @@
 #ifndef EXTRACT_ENGINE_H
 #define EXTRACT_ENGINE_H
 
+#include "extract/cases.h"
 #include "extract/octree.h"
 
 #include <cubewright/mesh.h>
 
-/* Triangles of a case in the order they are written: three edges each, 16 so that one
- * fixed-size copy takes them all. */
+/* Triangles of a case, and of a configuration of one that has no vertices inside, in the order
+ * they are written: three edges each, with room to take 16 or 32 at once. */
 typedef struct cwi_emission {
     uint8_t edge[256][16];
+    uint8_t config_edge[CWI_CASE_CONFIGS][32];
+    uint8_t config_edges[CWI_CASE_CONFIGS]; /* how many; 0: there are vertices inside */
     bool flip; /* triangles are turned round, as the affine mirrors */
 } cwi_emission;
 

@@ -4,9 +4,8 @@
  * volumes with no-data, beside NaN or infinite values and where the gradient vanishes are
  * computed one by one, and so are those on cubics. */
 #include "core/volume.h"
+#include "extract/cell_word.h"
 #include "extract/crossing.h"
-#include "extract/crossings.h"
-#include "extract/engine.h"
 #include "extract/sink.h"
 
 #include <float.h>
@@ -31,13 +30,6 @@ typedef struct cwi_edge_list {
     int32_t i[ROOM], j[ROOM];
     uint32_t number[ROOM];
 } cwi_edge_list;
-
-#if CWI_WIDE
-_Alignas(64) static const uint8_t cwi_iota[64] = {
-    0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21,
-    22, 23, 24, 25, 26, 27, 28, 29, 30, 31, 32, 33, 34, 35, 36, 37, 38, 39, 40, 41, 42, 43,
-    44, 45, 46, 47, 48, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63};
-#endif
 
 /* Adds the edges at the bits of a word whose lowest stands at i. Several at a time, whether
  * there are so many or not: how many there are cannot be foreseen, and a wrong guess costs

@@ -1,0 +1,228 @@
+/* 64 cells of a row at a time: what their corners are, and what that makes of them. Included by
+ * what is compiled for each engine. */
+#ifndef EXTRACT_CELL_WORD_H
+#define EXTRACT_CELL_WORD_H
+
+#include "extract/cases.h"
+#include "extract/crossings.h"
+#include "extract/engine.h"
+
+#if CWI_WIDE
+#include <immintrin.h>
+#endif
+
+/* The four rows of samples around a row of cells. */
+typedef struct cell_rows {
+    const uint64_t *row[4];
+} cell_rows;
+
+static inline cell_rows rows_around(const cwi_grid *g, size_t j, size_t k)
+{
+    cell_rows r;
+    for (size_t n = 0; n < 4; n++)
+        r.row[n] = cwi_grid_row(g, (k + (n >> 1)) * g->rows_y + j + (n & 1));
+    return r;
+}
+
+#if CWI_WIDE
+
+typedef struct cell_word {
+    __m512i corner; /* lane n, bit i: corner n of cell i is inside */
+    __m512i cases;  /* byte i: which corners of cell i are */
+    uint64_t mixed; /* cells whose corners are not all alike */
+} cell_word;
+
+static inline __m512i four_words(const cell_rows *r, size_t w)
+{
+    return _mm512_castsi256_si512(
+        _mm256_set_epi64x((long long)r->row[3][w], (long long)r->row[2][w],
+                          (long long)r->row[1][w], (long long)r->row[0][w]));
+}
+
+/* The cases of 64 cells: an 8 x 64 matrix of bits, turned. */
+static inline __m512i turned(__m512i corner)
+{
+    /* byte 8 b + 7 - n: bits of cells 8 b to 8 b + 7 for corner n */
+    const __m512i gather = _mm512_set_epi64(
+        0x070f171f272f373f, 0x060e161e262e363e, 0x050d151d252d353d, 0x040c141c242c343c,
+        0x030b131b232b333b, 0x020a121a222a323a, 0x0109111921293139, 0x0008101820283038);
+    const __m512i bytes = _mm512_permutexvar_epi8(gather, corner);
+    return _mm512_gf2p8affine_epi64_epi8(_mm512_set1_epi64((long long)0x8040201008040201),
+                                         bytes, 0);
+}
+
+static inline cell_word load_cells(const cell_rows *r, size_t w)
+{
+    const __m512i here = four_words(r, w), one = _mm512_set1_epi8(1);
+    const __m512i moved = _mm512_shrdi_epi64(here, four_words(r, w + 1), 1);
+    cell_word c;
+    c.corner =
+        _mm512_permutex2var_epi64(here, _mm512_set_epi64(11, 3, 10, 2, 9, 1, 8, 0), moved);
+    c.cases = turned(c.corner);
+    c.mixed = _mm512_cmpgt_epu8_mask(_mm512_add_epi8(c.cases, one), one);
+    return c;
+}
+
+/* The cases of active cells; those of others may be left out. */
+static inline void store_cases(const cell_word *c, uint64_t active, uint8_t cases[64])
+{
+    (void)active;
+    _mm512_storeu_si512(cases, c->cases);
+}
+
+_Alignas(64) static const uint8_t cwi_iota[64] = {
+    0,  1,  2,  3,  4,  5,  6,  7,  8,  9,  10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21,
+    22, 23, 24, 25, 26, 27, 28, 29, 30, 31, 32, 33, 34, 35, 36, 37, 38, 39, 40, 41, 42, 43,
+    44, 45, 46, 47, 48, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63};
+
+/* What a table of 256 bytes says of each of 64 cases. */
+static inline __m512i look_up(const void *table, __m512i cases)
+{
+    const char *t = table;
+    const __m512i low =
+        _mm512_permutex2var_epi8(_mm512_loadu_si512(t), cases, _mm512_loadu_si512(t + 64));
+    const __m512i high = _mm512_permutex2var_epi8(_mm512_loadu_si512(t + 128), cases,
+                                                  _mm512_loadu_si512(t + 192));
+    return _mm512_mask_mov_epi8(low, _mm512_movepi8_mask(cases), high);
+}
+
+/* Of the active cells those whose signs alone do not settle their surface. */
+static inline uint64_t ambiguous_cells(const cell_word *c, uint64_t active)
+{
+    return _mm512_movepi8_mask(look_up(cwi_case_summary, c->cases)) & active;
+}
+
+/* What was counted in a row so far: eight sums, lanes 1, 2 and 4 of edges along x, y, z. */
+typedef struct cell_sums {
+    __m512i edges, triangles;
+} cell_sums;
+
+/* Counts the active cells' triangles, ambiguous ones as if they were not. Returns which are. */
+static inline uint64_t count_triangles(const cell_word *c, uint64_t active, cell_sums *sums)
+{
+    const __m512i summary = look_up(cwi_case_summary, c->cases);
+    const __m512i counts = _mm512_and_si512(summary, _mm512_set1_epi8(CWI_CASE_COUNT));
+    sums->triangles =
+        _mm512_add_epi64(sums->triangles, _mm512_sad_epu8(_mm512_maskz_mov_epi8(active, counts),
+                                                          _mm512_setzero_si512()));
+    return _mm512_movepi8_mask(summary) & active;
+}
+
+static inline void count_crossed(const cell_word *c, cell_sums *sums)
+{
+    const __m512i first = _mm512_broadcastq_epi64(_mm512_castsi512_si128(c->corner));
+    sums->edges =
+        _mm512_add_epi64(sums->edges, _mm512_popcnt_epi64(_mm512_xor_si512(c->corner, first)));
+}
+
+static inline cell_sums no_sums(void)
+{
+    return (cell_sums){_mm512_setzero_si512(), _mm512_setzero_si512()};
+}
+
+static inline void take_sums(const cell_sums *sums, size_t *triangles, unsigned edges[3])
+{
+    uint64_t lane[8];
+    _mm512_storeu_si512(lane, sums->edges);
+    for (int axis = 0; axis < 3; axis++)
+        edges[axis] += (unsigned)lane[1 << axis];
+    *triangles += (size_t)_mm512_reduce_add_epi64(sums->triangles);
+}
+
+#else
+
+typedef struct cell_word {
+    uint64_t corner[8];
+    uint64_t mixed;
+} cell_word;
+
+static inline cell_word load_cells(const cell_rows *r, size_t w)
+{
+    cell_word c;
+    uint64_t any = 0, all = ~UINT64_C(0);
+    for (size_t n = 0; n < 4; n++) {
+        c.corner[2 * n] = r->row[n][w];
+        c.corner[2 * n + 1] = cwi_next_samples(r->row[n], w);
+        any |= c.corner[2 * n] | c.corner[2 * n + 1];
+        all &= c.corner[2 * n] & c.corner[2 * n + 1];
+    }
+    c.mixed = any & ~all;
+    return c;
+}
+
+/* Eight bytes as an 8 x 8 matrix of bits, transposed [Warren2013, 7-3]. */
+static inline uint64_t transpose8(uint64_t x)
+{
+    uint64_t t = (x ^ x >> 7) & UINT64_C(0x00aa00aa00aa00aa);
+    x ^= t ^ t << 7;
+    t = (x ^ x >> 14) & UINT64_C(0x0000cccc0000cccc);
+    x ^= t ^ t << 14;
+    t = (x ^ x >> 28) & UINT64_C(0x00000000f0f0f0f0);
+    return x ^ t ^ t << 28;
+}
+
+static inline void store_cases(const cell_word *c, uint64_t active, uint8_t cases[64])
+{
+    for (int b = 0; b < 64; b += 8) {
+        uint64_t eight = 0;
+        if (!(active >> b & 255))
+            continue;
+        for (int n = 0; n < 8; n++)
+            eight |= (c->corner[n] >> b & 255) << 8 * n;
+        eight = transpose8(eight);
+        for (int n = 0; n < 8; n++)
+            cases[b + n] = (uint8_t)(eight >> 8 * n);
+    }
+}
+
+static inline uint64_t ambiguous_cells(const cell_word *c, uint64_t active)
+{
+    uint64_t ambiguous = 0;
+    uint8_t cases[64];
+    store_cases(c, active, cases);
+    for (uint64_t left = active; left; left &= left - 1)
+        if (cwi_case_is_ambiguous[cases[__builtin_ctzll(left)]])
+            ambiguous |= left & -left;
+    return ambiguous;
+}
+
+typedef struct cell_sums {
+    size_t triangles;
+    unsigned edges[3];
+} cell_sums;
+
+static inline uint64_t count_triangles(const cell_word *c, uint64_t active, cell_sums *sums)
+{
+    uint64_t ambiguous = 0;
+    uint8_t cases[64];
+    store_cases(c, active, cases);
+    for (uint64_t left = active; left; left &= left - 1) {
+        const uint8_t summary = cwi_case_summary[cases[__builtin_ctzll(left)]];
+        sums->triangles += summary & CWI_CASE_COUNT;
+        ambiguous |= summary & CWI_CASE_AMBIGUOUS ? left & -left : 0;
+    }
+    return ambiguous;
+}
+
+static inline void count_crossed(const cell_word *c, cell_sums *sums)
+{
+    for (int axis = 0; axis < 3; axis++)
+        sums->edges[axis] +=
+            (unsigned)__builtin_popcountll(c->corner[0] ^ c->corner[1 << axis]);
+}
+
+static inline cell_sums no_sums(void)
+{
+    return (cell_sums){0, {0, 0, 0}};
+}
+
+static inline void take_sums(const cell_sums *sums, size_t *triangles, unsigned edges[3])
+{
+    for (int axis = 0; axis < 3; axis++)
+        edges[axis] += sums->edges[axis];
+    *triangles += sums->triangles;
+}
+
+#endif
+
+#endif
