@@ -20,73 +20,86 @@
 #define LEAST 1e-280
 #define MOST  1e280
 
-enum { BATCH = 64, LANES = 8, ROOM = BATCH + 64 + 16, AHEAD = 3, TILE = 32 /* rows */ };
+enum { BATCH = 128, LANES = 8, ROOM = BATCH + 64 + 16, AHEAD = 3, TILE = 32 /* rows */ };
 
-/* Crossed edges along one axis of a layer, until there are BATCH of them: where they begin, and
- * the numbers of their vertices. */
+/* Neighbouring edges of a row: their vertices are numbered one after another. */
+typedef struct cwi_run {
+    size_t begin; /* in the list */
+    size_t j;
+    uint32_t number; /* of the first vertex */
+} cwi_run;
+
+/* Crossed edges along one axis of a layer, until there are BATCH of them: where they begin. */
 typedef struct cwi_edge_list {
     int axis;
-    size_t k, count;
-    int32_t i[ROOM], j[ROOM];
-    uint32_t number[ROOM];
+    size_t k, count, runs;
+    int32_t i[ROOM];
+    cwi_run run[ROOM + 1];
 } cwi_edge_list;
+
+/* What is listed from now on is in row j, and its vertices are numbered from number on. */
+static inline void begin_run(cwi_edge_list *l, size_t j, uint32_t number)
+{
+    if (!l->runs || l->run[l->runs - 1].begin < l->count)
+        l->runs++;
+    l->run[l->runs - 1] = (cwi_run){l->count, j, number};
+}
+
+/* The number of the vertex on the next edge that is listed in this run. */
+static inline uint32_t next_number(const cwi_edge_list *l)
+{
+    const cwi_run *last = &l->run[l->runs - 1];
+    return last->number + (uint32_t)(l->count - last->begin);
+}
+
+/* Empties the list; its last run goes on. */
+static inline void clear_list(cwi_edge_list *l)
+{
+    if (!l->count)
+        return;
+    l->run[0] = (cwi_run){0, l->run[l->runs - 1].j, next_number(l)};
+    l->runs = 1;
+    l->count = 0;
+}
 
 /* Adds the edges at the bits of a word whose lowest stands at i. Several at a time, whether
  * there are so many or not: how many there are cannot be foreseen, and a wrong guess costs
- * more.
- */
-static inline void list_edges(cwi_edge_list *l, uint64_t bits, size_t i, size_t j,
-                              uint32_t number)
+ * more. */
+static inline void list_edges(cwi_edge_list *l, uint64_t bits, size_t i)
 {
     size_t n = l->count;
     l->count += (size_t)__builtin_popcountll(bits);
 #if CWI_WIDE
-    const __m512i iota = _mm512_load_si512(cwi_iota);
-    __m512i places = _mm512_maskz_compress_epi8(bits, iota);
+    __m512i places = _mm512_maskz_compress_epi8(bits, _mm512_load_si512(cwi_iota));
     do {
         const __m512i wide = _mm512_cvtepu8_epi32(_mm512_castsi512_si128(places));
-        const __m512i ranks = _mm512_cvtepu8_epi32(_mm512_castsi512_si128(iota));
         _mm512_storeu_si512(l->i + n, _mm512_add_epi32(wide, _mm512_set1_epi32((int)i)));
-        _mm512_storeu_si512(l->j + n, _mm512_set1_epi32((int)j));
-        _mm512_storeu_si512(l->number + n,
-                            _mm512_add_epi32(ranks, _mm512_set1_epi32((int)number)));
         places = _mm512_alignr_epi64(places, places, 2);
         n += 16;
-        number += 16;
     } while (n < l->count);
 #else
     for (; bits; n += 4)
         for (size_t c = n; c < n + 4; c++) {
             l->i[c] = (int32_t)i + __builtin_ctzll(bits | UINT64_C(1) << 63);
-            l->j[c] = (int32_t)j;
-            l->number[c] = number++;
             bits &= bits - 1;
         }
 #endif
 }
 
-/* Component r of vector n, at from[r * stride + n], to place number[n] of an array of vectors.
- */
-static inline void scatter(const float *restrict from, size_t stride, const uint32_t *number,
-                           size_t count, float *restrict to)
+/* Where the last edges of a run end in a list. */
+static inline size_t end_of_run(const cwi_edge_list *l, size_t r)
 {
-#if CWI_WIDE /* three at a time, by stores that leave a fourth place as it is */
-    for (size_t n = 0; n < count; n += 4) {
-        const __m128 x = _mm_loadu_ps(from + n), y = _mm_loadu_ps(from + stride + n),
-                     z = _mm_loadu_ps(from + 2 * stride + n);
-        const __m128 low = _mm_unpacklo_ps(x, y), high = _mm_unpackhi_ps(x, y);
-        const __m128 vectors[4] = {_mm_shuffle_ps(low, z, 0x04), _mm_shuffle_ps(low, z, 0x5e),
-                                   _mm_shuffle_ps(high, z, 0x24),
-                                   _mm_shuffle_ps(high, z, 0x3e)};
-        for (size_t c = 0; c < 4; c++)
-            _mm_mask_storeu_ps(to + 3 * (size_t)number[n + c], n + c < count ? 7 : 0,
-                               vectors[c]);
+    return r + 1 < l->runs ? l->run[r + 1].begin : l->count;
+}
+
+/* The vectors of a list's vertices to their places in an array. */
+static inline void store_runs(const cwi_edge_list *l, const float *from, float *to)
+{
+    for (size_t r = 0; r < l->runs; r++) {
+        const cwi_run *run = &l->run[r];
+        memcpy(to + 3 * (size_t)run->number, from + 3 * run->begin,
+               3 * (end_of_run(l, r) - run->begin) * sizeof *to);
     }
-#else
-    for (size_t n = 0; n < count; n++)
-        for (size_t r = 0; r < 3; r++)
-            to[3 * (size_t)number[n] + r] = from[r * stride + n];
-#endif
 }
 
 /* The vertex between the volume's last sample along an axis and the padding. */
