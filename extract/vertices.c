@@ -20,7 +20,7 @@
 #define LEAST 1e-280
 #define MOST  1e280
 
-enum { BATCH = 128, LANES = 8, ROOM = BATCH + 64 + 16, AHEAD = 3, TILE = 32 /* rows */ };
+enum { BATCH = 128, LANES = 16, ROOM = BATCH + 64 + LANES, AHEAD = 3, TILE = 32 /* rows */ };
 
 /* Neighbouring edges of a row: their vertices are numbered one after another. */
 typedef struct cwi_run {
@@ -67,20 +67,24 @@ static inline void clear_list(cwi_edge_list *l)
  * more. */
 static inline void list_edges(cwi_edge_list *l, uint64_t bits, size_t i)
 {
-    size_t n = l->count;
-    l->count += (size_t)__builtin_popcountll(bits);
+    int32_t *to = l->i + l->count;
+    const int count = __builtin_popcountll(bits);
+    l->count += (size_t)count;
 #if CWI_WIDE
-    __m512i places = _mm512_maskz_compress_epi8(bits, _mm512_load_si512(cwi_iota));
-    do {
-        const __m512i wide = _mm512_cvtepu8_epi32(_mm512_castsi512_si128(places));
-        _mm512_storeu_si512(l->i + n, _mm512_add_epi32(wide, _mm512_set1_epi32((int)i)));
-        places = _mm512_alignr_epi64(places, places, 2);
-        n += 16;
-    } while (n < l->count);
+    const __m512i places = _mm512_maskz_compress_epi8(bits, _mm512_load_si512(cwi_iota));
+    const __m128i few = _mm512_castsi512_si128(places);
+    _mm256_storeu_si256((__m256i *)(void *)to,
+                        _mm256_add_epi32(_mm256_cvtepu8_epi32(few), _mm256_set1_epi32((int)i)));
+    if (__builtin_expect(count > 8, 0)) {
+        uint8_t place[64];
+        _mm512_storeu_si512(place, places);
+        for (int n = 8; n < count; n++)
+            to[n] = (int32_t)i + place[n];
+    }
 #else
-    for (; bits; n += 4)
-        for (size_t c = n; c < n + 4; c++) {
-            l->i[c] = (int32_t)i + __builtin_ctzll(bits | UINT64_C(1) << 63);
+    for (int n = 0; n < count; n += 4)
+        for (int c = n; c < n + 4; c++) {
+            to[c] = (int32_t)i + __builtin_ctzll(bits | UINT64_C(1) << 63);
             bits &= bits - 1;
         }
 #endif
