@@ -48,23 +48,34 @@ static inline bool cwi_is_inner(const cwi_grid *g, int axis, size_t n)
     return n >= (g->cubic ? 3 : 2) && n + 2 <= g->volume.dim[axis];
 }
 
-/* Bits of word w of a row at which cwi_is_inner() holds along x. */
-static inline uint64_t cwi_inner_word(const cwi_grid *g, size_t w)
+/* Bits from to to - 1 of a row that are in the word whose lowest is `begin`. */
+static inline uint64_t cwi_bits_between(size_t begin, size_t from, size_t to)
 {
-    const size_t begin = 64 * w, end = g->volume.dim[0] - 1; /* inner: up to end - 1 */
-    if (begin >= end)
-        return 0;
-    const uint64_t low = w ? ~UINT64_C(0) : g->cubic ? ~UINT64_C(7) : ~UINT64_C(3);
-    return end - begin < 64 ? low & ((UINT64_C(1) << (end - begin)) - 1) : low;
+    uint64_t bits = ~UINT64_C(0);
+    if (begin + 64 > to)
+        bits = to > begin ? bits >> (begin + 64 - to) : 0;
+    if (begin < from)
+        bits = from - begin < 64 ? bits & ~UINT64_C(0) << (from - begin) : 0;
+    return bits;
 }
 
-/* Both ends of the edge along axis from a padded index are voxels. */
-static inline bool cwi_is_edge(const cw_volume *v, int axis, const size_t index[3])
+/* Of the word at at[]: edges, along any axis, all of whose samples and their neighbours are
+ * voxels. */
+static inline uint64_t cwi_inner_edges(const cwi_grid *g, const size_t at[3])
 {
-    bool within = true;
-    for (int a = 0; a < 3; a++)
-        within = within && index[a] >= 1 && index[a] + (a == axis) <= v->dim[a];
-    return within;
+    if (!cwi_is_inner(g, 1, at[1]) || !cwi_is_inner(g, 2, at[2]))
+        return 0;
+    return cwi_bits_between(at[0], g->cubic ? 3 : 2, g->volume.dim[0] - 1);
+}
+
+/* Edges along an axis both of whose ends are voxels. */
+static inline uint64_t cwi_volume_edges(const cwi_grid *g, int axis, const size_t at[3])
+{
+    const size_t *dim = g->volume.dim;
+    for (int a = 1; a < 3; a++)
+        if (at[a] < 1 || at[a] + (a == axis) > dim[a])
+            return 0;
+    return cwi_bits_between(at[0], 1, dim[0] + (axis != 0));
 }
 
 #endif

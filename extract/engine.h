@@ -21,6 +21,7 @@ typedef struct cwi_emission {
 typedef struct cwi_vertex_sink {
     float *positions, *normals; /* normals may be NULL */
     double affine[3][3];        /* index to world directions */
+    bool diagonal;              /* only that is not 0 */
     double centre[3];           /* index, or coordinate, that stands at the mesh's origin */
     const cw_volume *grid;      /* whose coordinates these are */
     double cofactor[3][3];      /* index gradient to outward world direction */

@@ -139,11 +139,14 @@ static cw_status make_plan(plan *p, const cw_extract_desc *d, cw_error *err)
 
 cwi_vertex_sink cwi_make_sink(const cw_volume *v, bool invert, cw_mesh *mesh)
 {
-    cwi_vertex_sink sink = {.positions = mesh->positions, .normals = mesh->normals, .grid = v};
+    cwi_vertex_sink sink = {
+        .positions = mesh->positions, .normals = mesh->normals, .grid = v, .diagonal = true};
     cwi_outward(v, invert, sink.cofactor);
     for (int r = 0; r < 3; r++) {
         for (int c = 0; c < 3; c++)
             sink.affine[r][c] = v->affine[r][c];
+        sink.diagonal =
+            sink.diagonal && v->affine[r][(r + 1) % 3] == 0 && v->affine[r][(r + 2) % 3] == 0;
         sink.centre[r] = 0.5 * (cwi_coordinate(v, r, 0, 0) +
                                 cwi_coordinate(v, r, (ptrdiff_t)v->dim[r] - 1, 0));
     }

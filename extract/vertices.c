@@ -22,6 +22,10 @@
 
 enum { BATCH = 128, LANES = 16, ROOM = BATCH + 64 + LANES, AHEAD = 3, TILE = 32 /* rows */ };
 
+/* What edges are listed apart: with all samples around them, at the volume's border, and
+ * between its last sample along an axis and the padding. */
+enum { INNER, OUTER, CAP, KINDS };
+
 /* Neighbouring edges of a row: their vertices are numbered one after another. */
 typedef struct cwi_run {
     size_t begin; /* in the list */
@@ -62,6 +66,16 @@ static inline void clear_list(cwi_edge_list *l)
     l->count = 0;
 }
 
+/* Writes where the bits of a word are, whose lowest stands at i, and up to three more. */
+static inline void list_bits(uint64_t bits, size_t i, int32_t *to)
+{
+    for (; bits; to += 4)
+        for (int c = 0; c < 4; c++) {
+            to[c] = (int32_t)i + __builtin_ctzll(bits | UINT64_C(1) << 63);
+            bits &= bits - 1;
+        }
+}
+
 /* Adds the edges at the bits of a word whose lowest stands at i. Several at a time, whether
  * there are so many or not: how many there are cannot be foreseen, and a wrong guess costs
  * more. */
@@ -71,23 +85,15 @@ static inline void list_edges(cwi_edge_list *l, uint64_t bits, size_t i)
     const int count = __builtin_popcountll(bits);
     l->count += (size_t)count;
 #if CWI_WIDE
-    const __m512i places = _mm512_maskz_compress_epi8(bits, _mm512_load_si512(cwi_iota));
-    const __m128i few = _mm512_castsi512_si128(places);
-    _mm256_storeu_si256((__m256i *)(void *)to,
-                        _mm256_add_epi32(_mm256_cvtepu8_epi32(few), _mm256_set1_epi32((int)i)));
-    if (__builtin_expect(count > 8, 0)) {
-        uint8_t place[64];
-        _mm512_storeu_si512(place, places);
-        for (int n = 8; n < count; n++)
-            to[n] = (int32_t)i + place[n];
+    if (__builtin_expect(count <= 8, 1)) {
+        const __m512i places = _mm512_maskz_compress_epi8(bits, _mm512_load_si512(cwi_iota));
+        const __m256i wide = _mm256_cvtepu8_epi32(_mm512_castsi512_si128(places));
+        _mm256_storeu_si256((__m256i *)(void *)to,
+                            _mm256_add_epi32(wide, _mm256_set1_epi32((int)i)));
+        return;
     }
-#else
-    for (int n = 0; n < count; n += 4)
-        for (int c = n; c < n + 4; c++) {
-            to[c] = (int32_t)i + __builtin_ctzll(bits | UINT64_C(1) << 63);
-            bits &= bits - 1;
-        }
 #endif
+    list_bits(bits, i, to);
 }
 
 /* Where the last edges of a run end in a list. */
@@ -104,17 +110,6 @@ static inline void store_runs(const cwi_edge_list *l, const float *from, float *
         memcpy(to + 3 * (size_t)run->number, from + 3 * run->begin,
                3 * (end_of_run(l, r) - run->begin) * sizeof *to);
     }
-}
-
-/* The vertex between the volume's last sample along an axis and the padding. */
-static void store_cap(const cwi_vertex_sink *sink, const size_t at[3], int axis, size_t n)
-{
-    const bool high = at[axis] > 0;
-    double x[3] = {0, 0, 0};
-    x[axis] = high ? CWI_NUDGE : 1 - CWI_NUDGE;
-    cwi_store_position(sink, at, x, n);
-    if (sink->normals)
-        memcpy(sink->normals + 3 * n, sink->cap[axis][high], sizeof sink->cap[axis][high]);
 }
 
 #define TYPED "extract/vertices.inc"
