@@ -36,10 +36,11 @@ extern const uint16_t cwi_case_first_config[256];
 typedef struct cwi_config {
     uint8_t loop_count;
     uint8_t loop_length[CWI_CASE_MAX_LOOPS];
-    uint8_t loop_edges[12];        /* all loops, one after another */
-    bool cone[CWI_CASE_MAX_LOOPS]; /* the loop needs a vertex inside the cube */
-    uint8_t triangles[3 * 10];     /* of the loops that do not, one after another */
-    uint8_t patch[8];              /* of each corner: the lowest corner of its patch */
+    uint8_t loop_edges[12];               /* all loops, one after another */
+    bool cone[CWI_CASE_MAX_LOOPS];        /* the loop needs a vertex inside the cube */
+    uint8_t triangles[3 * 10];            /* of the loops that do not, one after another */
+    uint8_t patch[8];                     /* of each corner: the lowest corner of its patch */
+    uint8_t triangle_count, vertex_count; /* of all loops' discs, cones among them */
 } cwi_config;
 
 extern const cwi_config cwi_configs[CWI_CONFIGS];

@@ -171,19 +171,6 @@ static void turn_triangles(const uint8_t *from, int count, bool flip, uint8_t *t
         to[n] = from[flip && n % 3 ? n - n % 3 + 3 - n % 3 : n];
 }
 
-/* Triangles of a configuration all of whose loops are discs of their own edges; 0: some are
- * not. */
-static int plain_triangles(const cwi_config *config)
-{
-    int count = 0;
-    for (int l = 0; l < config->loop_count; l++) {
-        if (config->cone[l])
-            return 0;
-        count += config->loop_length[l] - 2;
-    }
-    return count;
-}
-
 cwi_emission cwi_make_emission(const cw_volume *v)
 {
     const bool flip = cwi_affine_determinant(v->affine[0]) < 0;
@@ -191,8 +178,9 @@ cwi_emission cwi_make_emission(const cw_volume *v)
     for (int c = 0; c < 256; c++)
         turn_triangles(cwi_case_triangles[c], cwi_case_count[c], flip, emission.edge[c]);
     for (int n = 0; n < CWI_CASE_CONFIGS; n++) {
-        const int count = plain_triangles(&cwi_configs[n]);
-        turn_triangles(cwi_configs[n].triangles, count, flip, emission.config_edge[n]);
+        const cwi_config *config = &cwi_configs[n];
+        const int count = config->vertex_count ? 0 : config->triangle_count;
+        turn_triangles(config->triangles, count, flip, emission.config_edge[n]);
         emission.config_edges[n] = (uint8_t)(3 * count);
     }
     return emission;

@@ -300,6 +300,9 @@ static cwi_config resolve(const shape *s, int cell_case, int joined)
         config.cone[config.loop_count] = needs_cone(s, &loop, &t);
         for (int i = 0; i < 3 * t.count && !config.cone[config.loop_count]; i++)
             *corner++ = (uint8_t)t.edge[i / 3][i % 3];
+        config.triangle_count +=
+            (uint8_t)(loop.count - (config.cone[config.loop_count] ? 0 : 2));
+        config.vertex_count += config.cone[config.loop_count];
         config.loop_count++;
     }
     return config;
@@ -349,7 +352,7 @@ static void print_config(const cwi_config *c)
     printf(", {%d,%d,%d,%d}, ", c->cone[0], c->cone[1], c->cone[2], c->cone[3]);
     print_bytes(c->triangles, 3 * triangle_count(c));
     print_bytes((printf(", "), c->patch), 8);
-    puts("},");
+    printf(", %d, %d},\n", c->triangle_count, c->vertex_count);
 }
 
 /* One number a case. */

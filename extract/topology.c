@@ -12,11 +12,14 @@
 #define PLAIN_LEAST 1e-140
 #define PLAIN_MOST  1e140
 
-/* The sign of a c - b d, exactly: products are compared, and if equal their rounding errors.
- * Where exponents are extreme the products of what is left without them are, the first one
- * times as much as they differ by: 2^4 outweighs any such product. */
+/* The sign of a c - b d, exactly: products are compared, and if equal, as rounding keeps their
+ * order, their rounding errors. Where exponents are extreme the products of what is left
+ * without them are, the first one times as much as they differ by: 2^4 outweighs any such
+ * product. */
 static int compare_products(double a, double c, double b, double d)
 {
+    if (a * c != b * d)
+        return a * c > b * d ? 1 : -1;
     const double least = cwi_lesser(cwi_lesser(fabs(a), fabs(b)), cwi_lesser(fabs(c), fabs(d)));
     const double most =
         cwi_greater(cwi_greater(fabs(a), fabs(b)), cwi_greater(fabs(c), fabs(d)));
@@ -51,19 +54,18 @@ bool cwi_face_joins(const double inside[2], const double outside[2], bool zero_i
 
 static bool face_is_joined(unsigned cube, const double values[8], bool zero_inside, int face)
 {
-    double v[2][2]; /* every other corner of the face */
-    for (int n = 0; n < 4; n++)
-        v[n & 1][n >> 1] = values[cwi_face_corner(face, n)];
-    const int inside = cube >> cwi_face_corner(face, 0) & 1 ? 0 : 1;
-    return cwi_face_joins(v[inside], v[1 - inside], zero_inside);
+    const uint8_t *corner = cwi_shapes[CW_HEXAHEDRON].faces[face];
+    const double even[2] = {values[corner[0]], values[corner[2]]},
+                 odd[2] = {values[corner[1]], values[corner[3]]};
+    return cube >> corner[0] & 1 ? cwi_face_joins(even, odd, zero_inside)
+                                 : cwi_face_joins(odd, even, zero_inside);
 }
 
 static const cwi_config *resolve_faces(unsigned cube, const double values[8], bool zero_inside)
 {
     unsigned bits = 0, n = 0;
-    for (int face = 0; face < 6; face++)
-        if (cwi_case_ambiguous_faces[cube] >> face & 1)
-            bits |= (unsigned)face_is_joined(cube, values, zero_inside, face) << n++;
+    for (unsigned left = cwi_case_ambiguous_faces[cube]; left; left &= left - 1)
+        bits |= (unsigned)face_is_joined(cube, values, zero_inside, __builtin_ctz(left)) << n++;
     return &cwi_configs[cwi_case_first_config[cube] + bits];
 }
 
@@ -206,23 +208,30 @@ static void set_tunnel(cwi_cell_plan *plan, const sweep *s, int column, double t
     }
 }
 
-/* Whether some slice may have columns inside and outside by turns: two opposite ones are inside
- * at one end at least, and the other two outside. */
-static bool may_alternate(unsigned cube)
+/* Whether some slice across an axis may have columns inside and outside by turns: two opposite
+ * ones are inside at one end at least, and the other two outside. */
+static bool may_alternate(unsigned cube, int axis)
 {
-    const unsigned low = cube & 15, high = cube >> 4;
-    const unsigned inside = low | high, outside = ~(low & high);
-    const unsigned even = 9, odd = 6; /* corners 0 and 3, 1 and 2 */
-    return ((inside & even) == even && (outside & odd) == odd) ||
-           ((inside & odd) == odd && (outside & even) == even);
+    /* columns by their low corners: all, and opposite ones */
+    static const unsigned all[3] = {0x55, 0x33, 0x0f}, even[3] = {0x41, 0x21, 0x09};
+    const unsigned odd = all[axis] ^ even[axis], ends = cube >> (1 << axis);
+    const unsigned inside = cube | ends, outside = ~(cube & ends);
+    return ((inside & even[axis]) == even[axis] && (outside & odd) == odd) ||
+           ((inside & odd) == odd && (outside & even[axis]) == even[axis]);
+}
+
+/* A tunnel shows in slices across any axis. */
+static bool may_have_tunnel(const cwi_config *config, unsigned cube)
+{
+    return config->loop_count > 1 && may_alternate(cube, 0) && may_alternate(cube, 1) &&
+           may_alternate(cube, 2);
 }
 
 static void find_tunnel(cwi_cell_plan *plan, unsigned cube, const double values[8],
                         bool zero_inside)
 {
     sweep s;
-    if (plan->config->loop_count < 2 || !may_alternate(cube) ||
-        !start_sweep(&s, cube, values, zero_inside))
+    if (!may_have_tunnel(plan->config, cube) || !start_sweep(&s, cube, values, zero_inside))
         return;
     for (int e = 0; e + 1 < s.event_count; e++) {
         const double t = s.event[e], u = s.event[e + 1], middle = 0.5 * (t + u);
@@ -240,6 +249,7 @@ static void find_tunnel(cwi_cell_plan *plan, unsigned cube, const double values[
     }
 }
 
+/* What a loop's disc consists of. */
 static int disc_triangles(const cwi_config *config, int loop)
 {
     return config->loop_length[loop] - (config->cone[loop] ? 0 : 2);
@@ -267,15 +277,19 @@ static bool can_tunnel(const cwi_cell_plan *plan)
     return m == 3 || n == 3 || (m == 4 && n == 4);
 }
 
+/* A tube is a ring of three vertices, and two sheets between it and the loops. */
 static void count_parts(cwi_cell_plan *plan)
 {
     const cwi_config *config = plan->config;
-    plan->triangle_count = 0;
-    plan->vertex_count = has_tunnel(plan) ? 3 : 0;
-    for (int l = 0; l < config->loop_count; l++) {
-        const bool tube = is_tube(plan, l);
-        plan->triangle_count += tube ? config->loop_length[l] + 3 : disc_triangles(config, l);
-        plan->vertex_count += !tube && config->cone[l];
+    plan->triangle_count = config->triangle_count;
+    plan->vertex_count = config->vertex_count;
+    if (!has_tunnel(plan))
+        return;
+    plan->vertex_count += 3;
+    for (int i = 0; i < 2; i++) {
+        const int loop = plan->tunnel[i];
+        plan->triangle_count += config->loop_length[loop] + 3 - disc_triangles(config, loop);
+        plan->vertex_count -= config->cone[loop];
     }
 }
 
