@@ -186,12 +186,10 @@ cwi_emission cwi_make_emission(const cw_volume *v)
     return emission;
 }
 
-enum { SHARE = 8 }; /* layers that a thread writes at a time */
-
 /* Layers of cells from begin to end, and the layer of samples that ends them. */
 typedef struct writing {
     const plan *plan;
-    size_t begin, end;
+    size_t begin, end, share; /* share: so many layers are written at a time */
     cwi_emission emission;
     cwi_vertex_sink sink;
     uint32_t *triangles;
@@ -200,18 +198,28 @@ typedef struct writing {
 static void write_share(void *context, size_t share)
 {
     writing *w = context;
-    const size_t begin = w->begin + share * SHARE, end = begin + SHARE;
+    const size_t begin = w->begin + share * w->share, end = begin + w->share;
     const bool last = end >= w->end;
     w->plan->engine->write_layers(&w->plan->grid, begin, last ? w->end + 1 : end,
                                   last ? w->end : end, w->plan->rows, &w->emission, &w->sink,
                                   w->triangles);
 }
 
+/* Some shares for each thread; the larger they are, the fewer samples two of them read. */
+static size_t choose_share(size_t layers, int threads)
+{
+    enum { LEAST = 8, MOST = 32, SHARES = 8 };
+    const size_t share = layers / ((size_t)cwi_threads(threads) * SHARES);
+    return share < LEAST ? LEAST : share > MOST ? MOST : share;
+}
+
 static cw_status write_layers(writing *w, const cw_extract_desc *d, cw_error *err)
 {
     const cwi_grid *g = &w->plan->grid;
-    return cwi_each_layer((w->end - w->begin + SHARE - 1) / SHARE,
-                          SHARE * g->rows_y * g->words * 64, d->threads, &d->progress,
+    const size_t layers = w->end - w->begin;
+    w->share = choose_share(layers, d->threads);
+    return cwi_each_layer((layers + w->share - 1) / w->share,
+                          w->share * g->rows_y * g->words * 64, d->threads, &d->progress,
                           "marching", write_share, w, err);
 }
 

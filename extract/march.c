@@ -275,18 +275,18 @@ enum { WORDS = 16, LIST = 64 * WORDS, IN_WORD = 63, AMBIGUOUS = 1 << 15 };
 
 typedef struct cell_list {
     edge_word edges[WORDS + 1];
-    size_t word[WORDS], words, count;
+    size_t word[WORDS];
     uint16_t cell[LIST + 64]; /* 64 times the number of its word in the list, its bit, and
                                  whether it is ambiguous */
     uint8_t cases[LIST + 64];
 } cell_list;
 
-/* Adds the active cells of a word. */
-static inline void list_cells(cell_list *l, const cell_word *c, uint64_t active,
-                              uint64_t ambiguous)
+/* Lists the active cells of a word, the n-th, after so many others. Returns how many there are
+ * then. */
+static inline size_t list_cells(cell_list *l, size_t words, size_t n, const cell_word *c,
+                                uint64_t active, uint64_t ambiguous)
 {
-    const size_t first = 64 * l->words, n = l->count;
-    l->count += (size_t)popcount(active);
+    const size_t first = 64 * words, after = n + (size_t)popcount(active);
 #if CWI_WIDE
     const __m512i iota = _mm512_load_si512(cwi_iota);
     const __m512i bits = _mm512_maskz_compress_epi8(active, iota);
@@ -296,7 +296,7 @@ static inline void list_cells(cell_list *l, const cell_word *c, uint64_t active,
         _mm512_or_si512(base, _mm512_cvtepu8_epi16(_mm512_castsi512_si256(bits)));
     _mm512_storeu_si512(l->cases + n, _mm512_maskz_compress_epi8(active, c->cases));
     _mm512_storeu_si512(l->cell + n, _mm512_mask_add_epi16(low, (__mmask32)flags, low, flag));
-    if (l->count > n + 32) {
+    if (after > n + 32) {
         const __m512i high =
             _mm512_or_si512(base, _mm512_cvtepu8_epi16(_mm512_extracti64x4_epi64(bits, 1)));
         _mm512_storeu_si512(l->cell + n + 32,
@@ -311,6 +311,7 @@ static inline void list_cells(cell_list *l, const cell_word *c, uint64_t active,
         l->cell[at] = (uint16_t)(first + (size_t)i + (ambiguous >> i & 1 ? AMBIGUOUS : 0));
     }
 #endif
+    return after;
 }
 
 #if CWI_WIDE
@@ -423,12 +424,12 @@ __attribute__((noinline)) static void emit_ambiguous(const cwi_grid *g, const si
 }
 
 /* Writes the triangles of listed cells: the one place where a cell's case becomes triangles. */
-static void emit_cells(const cwi_grid *g, size_t j, size_t k, const cell_list *l,
+static void emit_cells(const cwi_grid *g, size_t j, size_t k, const cell_list *l, size_t count,
                        const cwi_emission *emission, cwi_vertex_sink *sink, cwi_cursor *to)
 {
     const uint32_t *end = to->end;
     uint32_t *out = to->out;
-    for (size_t n = 0, count = l->count; n < count; n++) {
+    for (size_t n = 0; n < count; n++) {
         const unsigned cell = l->cell[n], cube = l->cases[n], bit = cell & IN_WORD;
         const edge_word *e = &l->edges[cell / 64 % WORDS];
         if (cell & AMBIGUOUS) {
@@ -454,19 +455,19 @@ static void write_triangles(const cwi_grid *g, size_t j, size_t k, const cwi_row
         list->edges[0].first[n] = rows[(k + edge_rows[n].k) * g->rows_y + j + edge_rows[n].j]
                                       .first[edge_rows[n].axis];
     for (size_t w = cwi_next_word(busy, 0, g->words); w < g->words;) {
-        for (list->words = list->count = 0; w < g->words && list->words < WORDS;
-             w = cwi_next_word(busy, w + 1, g->words)) {
+        size_t words = 0, cells = 0;
+        for (; w < g->words && words < WORDS; w = cwi_next_word(busy, w + 1, g->words)) {
             const cell_word c = load_cells(&samples, w);
             const uint64_t active = active_cells(g, c.mixed, j, k, w);
-            edge_word *e = &list->edges[list->words];
+            edge_word *e = &list->edges[words];
             load_edges(e, g, &c, j, k, w);
             number_edges(e + 1, e);
-            list_cells(list, &c, active, g->simple ? 0 : ambiguous_cells(&c, active));
-            list->word[list->words++] = w;
+            cells = list_cells(list, words, cells, &c, active,
+                               g->simple ? 0 : ambiguous_cells(&c, active));
+            list->word[words++] = w;
         }
-        emit_cells(g, j, k, list, emission, sink, to);
-        memcpy(list->edges[0].first, list->edges[list->words].first,
-               sizeof list->edges[0].first);
+        emit_cells(g, j, k, list, cells, emission, sink, to);
+        memcpy(list->edges[0].first, list->edges[words].first, sizeof list->edges[0].first);
     }
 }
 
