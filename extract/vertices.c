@@ -20,7 +20,14 @@
 #define LEAST 1e-280
 #define MOST  1e280
 
-enum { BATCH = 128, LANES = 16, ROOM = BATCH + 64 + LANES, AHEAD = 3, TILE = 32 /* rows */ };
+enum {
+    BATCH = 128,
+    LANES = 16,
+    ROOM = BATCH + 64 + LANES,
+    AHEAD = 3,
+    DENSE = 2,
+    TILE = 32 /* rows */
+};
 
 /* What edges are listed apart: with all samples around them, at the volume's border, and
  * between its last sample along an axis and the padding. */
