@@ -155,6 +155,14 @@ static inline uint64_t cwi_wanted_samples(const cwi_grid *g, const cwi_brick_row
     return wanted;
 }
 
+static inline bool cwi_any_wanted(const cwi_grid *g, const cwi_brick_rows *b)
+{
+    uint64_t any = 0;
+    for (size_t m = 0; m < g->masks; m++)
+        any |= cwi_wanted_samples(g, b, m);
+    return any;
+}
+
 /* Eight bits to the samples of eight leaves. */
 static inline uint64_t cwi_spread_leaves(unsigned bits)
 {
