@@ -186,40 +186,45 @@ cwi_emission cwi_make_emission(const cw_volume *v)
     return emission;
 }
 
+/* Layers that a thread writes at a time: many at first, as two shares read some samples both;
+ * few at last, so that no thread waits for long. */
+enum { LARGE_SHARE = 32, SMALL_SHARE = 8 };
+
 /* Layers of cells from begin to end, and the layer of samples that ends them. */
 typedef struct writing {
     const plan *plan;
-    size_t begin, end, share; /* share: so many layers are written at a time */
+    size_t begin, end, large; /* large: so many shares are */
     cwi_emission emission;
     cwi_vertex_sink sink;
     uint32_t *triangles;
 } writing;
 
+static size_t begin_of_share(const writing *w, size_t share)
+{
+    const size_t large = share < w->large ? share : w->large;
+    return w->begin + large * LARGE_SHARE + (share - large) * SMALL_SHARE;
+}
+
 static void write_share(void *context, size_t share)
 {
     writing *w = context;
-    const size_t begin = w->begin + share * w->share, end = begin + w->share;
+    const size_t begin = begin_of_share(w, share), end = begin_of_share(w, share + 1);
     const bool last = end >= w->end;
     w->plan->engine->write_layers(&w->plan->grid, begin, last ? w->end + 1 : end,
                                   last ? w->end : end, w->plan->rows, &w->emission, &w->sink,
                                   w->triangles);
 }
 
-/* Some shares for each thread; the larger they are, the fewer samples two of them read. */
-static size_t choose_share(size_t layers, int threads)
-{
-    enum { LEAST = 8, MOST = 32, SHARES = 8 };
-    const size_t share = layers / ((size_t)cwi_threads(threads) * SHARES);
-    return share < LEAST ? LEAST : share > MOST ? MOST : share;
-}
-
 static cw_status write_layers(writing *w, const cw_extract_desc *d, cw_error *err)
 {
     const cwi_grid *g = &w->plan->grid;
-    const size_t layers = w->end - w->begin;
-    w->share = choose_share(layers, d->threads);
-    return cwi_each_layer((layers + w->share - 1) / w->share,
-                          w->share * g->rows_y * g->words * 64, d->threads, &d->progress,
+    const size_t layers = w->end - w->begin, threads = (size_t)cwi_threads(d->threads);
+    /* two for each thread are left for small ones */
+    const size_t large = layers / LARGE_SHARE;
+    w->large = large > 2 * threads ? large - 2 * threads : 0;
+    const size_t rest = layers - w->large * LARGE_SHARE;
+    return cwi_each_layer(w->large + (rest + SMALL_SHARE - 1) / SMALL_SHARE,
+                          SMALL_SHARE * g->rows_y * g->words * 64, d->threads, &d->progress,
                           "marching", write_share, w, err);
 }
 
