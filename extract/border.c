@@ -46,7 +46,7 @@ static size_t surface_index(const size_t n[3], const size_t p[3])
 }
 
 /* Word w of a row of samples; bricks that are not wanted hold nothing inside at the border. */
-static uint64_t word_at(const cwi_grid *g, size_t j, size_t k, size_t w)
+static inline uint64_t word_at(const cwi_grid *g, size_t j, size_t k, size_t w)
 {
     if (!g->everything) {
         const cwi_brick_rows around = cwi_rows_around(g, j, k);
@@ -106,8 +106,9 @@ static void load_line(const box *b, const side *s, size_t n, uint64_t *line)
                       word_at(b->grid, p[1] + 1, p[2] + 1, w + 1) << 63;
         return;
     }
-    for (p[1] = 0; p[1] < b->n[1]; p[1]++)
-        line[p[1] / 64] |= (uint64_t)is_inside(b, p) << p[1] % 64;
+    const size_t w = (p[0] + 1) / 64, bit = (p[0] + 1) % 64;
+    for (size_t j = 0; j < b->n[1]; j++)
+        line[j / 64] |= (word_at(b->grid, j + 1, p[2] + 1, w) >> bit & 1) << j % 64;
 }
 
 /* The first sample of the run of bits, within one word, that sample x of a line belongs to. */
