@@ -21,12 +21,12 @@
 #define MOST  1e280
 
 enum {
-    BATCH = 128,
+    BATCH = 128, /* edges; arithmetic is on LANES at a time */
     LANES = 16,
     ROOM = BATCH + 64 + LANES,
-    AHEAD = 3,
-    DENSE = 2,
-    TILE = 32 /* rows */
+    AHEAD = 3, /* rows that samples are fetched before they are needed, */
+    DENSE = 2, /* in rows with more vertices than so many a word */
+    TILE = 32  /* rows that are done in all layers before the next */
 };
 
 /* What edges are listed apart: with all samples around them, at the volume's border, and
@@ -107,6 +107,21 @@ static inline void list_edges(cwi_edge_list *l, uint64_t bits, size_t i)
 static inline size_t end_of_run(const cwi_edge_list *l, size_t r)
 {
     return r + 1 < l->runs ? l->run[r + 1].begin : l->count;
+}
+
+/* The rows that a list's edges are in. */
+static inline void list_rows(const cwi_edge_list *l, int32_t j[ROOM])
+{
+    for (size_t r = 0; r < l->runs; r++) /* each one too far, but one after another */
+        for (size_t n = l->run[r].begin; n < end_of_run(l, r); n += LANES)
+            for (size_t c = n; c < n + LANES; c++)
+                j[c] = (int32_t)l->run[r].j;
+}
+
+/* As many as its edges, rounded up to whole vectors. */
+static inline size_t lanes_of(const cwi_edge_list *l)
+{
+    return (l->count + LANES - 1) / LANES * LANES;
 }
 
 /* The vectors of a list's vertices to their places in an array. */

@@ -75,6 +75,27 @@ static void triangles_use_exactly_the_crossed_edges(void **state)
     }
 }
 
+/* What the tables tell twice is the same. */
+static void summaries_agree(void **state)
+{
+    (void)state;
+    for (int cube = 0; cube < 256; cube++) {
+        assert_int_equal(cwi_case_summary[cube] & CWI_CASE_COUNT, cwi_case_count[cube]);
+        assert_int_equal((cwi_case_summary[cube] & CWI_CASE_AMBIGUOUS) != 0,
+                         cwi_case_is_ambiguous[cube]);
+    }
+    for (int n = 0; n < CWI_CONFIGS; n++) {
+        const cwi_config *config = &cwi_configs[n];
+        int triangles = 0, vertices = 0;
+        for (int l = 0; l < config->loop_count; l++) {
+            triangles += config->loop_length[l] - (config->cone[l] ? 0 : 2);
+            vertices += config->cone[l];
+        }
+        assert_int_equal(config->triangle_count, triangles);
+        assert_int_equal(config->vertex_count, vertices);
+    }
+}
+
 /* Inside the cube every side is shared by two triangles that run through it in opposite ways;
  * the others lie on faces and pass each face's edges once in, once out. */
 static void every_case_is_a_surface_bounded_by_its_faces(void **state)
@@ -197,6 +218,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(corners_edges_and_faces_agree),
         cmocka_unit_test(triangles_use_exactly_the_crossed_edges),
+        cmocka_unit_test(summaries_agree),
         cmocka_unit_test(every_case_is_a_surface_bounded_by_its_faces),
         cmocka_unit_test(neighbours_draw_the_same_segments),
         cmocka_unit_test(triangles_wind_outward),
