@@ -134,29 +134,18 @@ static inline void store_runs(const cwi_edge_list *l, const float *from, float *
     }
 }
 
-/* Four numbers side by side, and from four places, of small types: compilers take them one by
- * one. */
+/* Four numbers side by side, of small types: compilers take them one by one. */
 #ifdef __SSE4_1__
-typedef int32_t four_i32 __attribute__((vector_size(16)));
-#define SMALL_TYPE(name, ctype, bits)                                                          \
-    static inline void side_by_side_##name(const void *at, four_i32 *out)                      \
+#define SMALL_TYPE(name, load)                                                                 \
+    static inline void side_by_side_##name(const void *at,                                     \
+                                           int32_t __attribute__((vector_size(16))) * out)     \
     {                                                                                          \
-        *out = (four_i32)_mm_cvtep##name##_epi32(FOUR_OF_##bits(at));                          \
-    }                                                                                          \
-    static inline void from_places_##name(const char *const at[4], four_i32 *out)              \
-    {                                                                                          \
-        __m128i x = _mm_cvtsi32_si128(*(const ctype *)(const void *)at[0]);                    \
-        x = _mm_insert_epi##bits(x, *(const ctype *)(const void *)at[1], 1);                   \
-        x = _mm_insert_epi##bits(x, *(const ctype *)(const void *)at[2], 2);                   \
-        x = _mm_insert_epi##bits(x, *(const ctype *)(const void *)at[3], 3);                   \
-        *out = (four_i32)_mm_cvtep##name##_epi32(x);                                           \
+        *(__m128i *)out = _mm_cvtep##name##_epi32(load(at));                                   \
     }
-#define FOUR_OF_8(at)  _mm_loadu_si32(at)
-#define FOUR_OF_16(at) _mm_loadu_si64(at)
-SMALL_TYPE(u8, uint8_t, 8)
-SMALL_TYPE(i8, int8_t, 8)
-SMALL_TYPE(u16, uint16_t, 16)
-SMALL_TYPE(i16, int16_t, 16)
+SMALL_TYPE(u8, _mm_loadu_si32)
+SMALL_TYPE(i8, _mm_loadu_si32)
+SMALL_TYPE(u16, _mm_loadu_si64)
+SMALL_TYPE(i16, _mm_loadu_si64)
 #endif
 
 #define TYPED "extract/vertices.inc"
