@@ -31,14 +31,19 @@ static inline const uint64_t *cwi_window(const cwi_grid *g, int axis, size_t j, 
     return g->window + ((size_t)axis + 1) * g->rows + k * g->rows_y + j;
 }
 
+/* Edges along axis from row (j, k) that may have vertices. */
+static inline uint64_t cwi_edge_mask(const cwi_grid *g, int axis, size_t j, size_t k, size_t w)
+{
+    if (g->window)
+        return *cwi_window(g, axis, j, k);
+    return g->live ? cwi_live_edges(g, axis, j, k, w) : ~UINT64_C(0);
+}
+
 /* Bit i: there is a vertex on the edge along axis from sample i of row (j, k). */
 static inline uint64_t cwi_edge_vertices(const cwi_grid *g, int axis, size_t j, size_t k,
                                          size_t w)
 {
-    const uint64_t crossed = cwi_grid_crossed(g, axis, j, k, w);
-    if (g->window)
-        return crossed & *cwi_window(g, axis, j, k);
-    return g->live ? crossed & cwi_live_edges(g, axis, j, k, w) : crossed;
+    return cwi_grid_crossed(g, axis, j, k, w) & cwi_edge_mask(g, axis, j, k, w);
 }
 
 /* Padded index n along an axis is that of a voxel with two after it and one before it, or two

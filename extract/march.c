@@ -228,7 +228,7 @@ static const struct {
 static inline void load_edges(edge_word *e, const cwi_grid *g, const cell_word *c, size_t j,
                               size_t k, size_t w)
 {
-    if (g->live) {
+    if (g->live && !g->window) {
         for (int n = 0; n < 12; n++)
             e->crossed[n] = cwi_edge_vertices(g, edge_rows[n].axis, j + edge_rows[n].j,
                                               k + edge_rows[n].k, w);
@@ -239,17 +239,31 @@ static inline void load_edges(edge_word *e, const cwi_grid *g, const cell_word *
                   high = _mm512_set_epi64(6, 6, 2, 2, 7, 5, 3, 1),
                   up = _mm512_set_epi64(4, 4, 4, 4, 6, 6, 4, 4),
                   below = _mm512_set_epi64(0, 0, 0, 0, 2, 2, 0, 0);
-    _mm512_store_si512(e->crossed, _mm512_xor_si512(_mm512_permutexvar_epi64(low, c->corner),
-                                                    _mm512_permutexvar_epi64(high, c->corner)));
-    _mm512_store_si512(e->crossed + 8,
-                       _mm512_maskz_xor_epi64(15, _mm512_permutexvar_epi64(below, c->corner),
-                                              _mm512_permutexvar_epi64(up, c->corner)));
+    __m512i along_xy = _mm512_xor_si512(_mm512_permutexvar_epi64(low, c->corner),
+                                        _mm512_permutexvar_epi64(high, c->corner));
+    __m512i along_z = _mm512_maskz_xor_epi64(15, _mm512_permutexvar_epi64(below, c->corner),
+                                             _mm512_permutexvar_epi64(up, c->corner));
+    if (g->window) {
+        long long live[12];
+        for (int n = 0; n < 12; n++)
+            live[n] = (long long)*cwi_window(g, edge_rows[n].axis, j + edge_rows[n].j,
+                                             k + edge_rows[n].k);
+        along_xy =
+            _mm512_and_si512(along_xy, _mm512_set_epi64(live[7], live[6], live[5], live[4],
+                                                        live[3], live[2], live[1], live[0]));
+        along_z = _mm512_and_si512(
+            along_z, _mm512_set_epi64(0, 0, 0, 0, live[11], live[10], live[9], live[8]));
+    }
+    _mm512_store_si512(e->crossed, along_xy);
+    _mm512_store_si512(e->crossed + 8, along_z);
 #else
     for (int n = 0; n < 12; n++) {
         const int axis = edge_rows[n].axis;
         const int corner = cwi_edge_corner(n); /* 5, 7, 9 and 11 stand at i + 1 */
         e->crossed[n] = c->corner[axis ? corner & ~1 : corner] ^
                         c->corner[(axis ? corner & ~1 : corner) | 1 << axis];
+        if (g->window)
+            e->crossed[n] &= *cwi_window(g, axis, j + edge_rows[n].j, k + edge_rows[n].k);
     }
 #endif
 }
