@@ -175,17 +175,6 @@ static inline void store_cases(const cell_word *c, uint64_t active, uint8_t case
     }
 }
 
-static inline uint64_t ambiguous_cells(const cell_word *c, uint64_t active)
-{
-    uint64_t ambiguous = 0;
-    uint8_t cases[64];
-    store_cases(c, active, cases);
-    for (uint64_t left = active; left; left &= left - 1)
-        if (cwi_case_is_ambiguous[cases[__builtin_ctzll(left)]])
-            ambiguous |= left & -left;
-    return ambiguous;
-}
-
 typedef struct cell_sums {
     size_t triangles;
     unsigned edges[3];

@@ -295,16 +295,16 @@ typedef struct cell_list {
     uint8_t cases[LIST + 64];
 } cell_list;
 
-/* Lists the active cells of a word, the n-th, after so many others. Returns how many there are
- * then. */
+/* Lists the active cells of a word after n others and so many words; simple: none is ambiguous.
+ * Returns how many cells there are then. */
 static inline size_t list_cells(cell_list *l, size_t words, size_t n, const cell_word *c,
-                                uint64_t active, uint64_t ambiguous)
+                                uint64_t active, bool simple)
 {
     const size_t first = 64 * words, after = n + (size_t)popcount(active);
 #if CWI_WIDE
     const __m512i iota = _mm512_load_si512(cwi_iota);
     const __m512i bits = _mm512_maskz_compress_epi8(active, iota);
-    const uint64_t flags = _pext_u64(ambiguous, active);
+    const uint64_t flags = simple ? 0 : _pext_u64(ambiguous_cells(c, active), active);
     const __m512i base = _mm512_set1_epi16((int16_t)first), flag = _mm512_set1_epi16(INT16_MIN);
     const __m512i low =
         _mm512_or_si512(base, _mm512_cvtepu8_epi16(_mm512_castsi512_si256(bits)));
@@ -320,9 +320,10 @@ static inline size_t list_cells(cell_list *l, size_t words, size_t n, const cell
     uint8_t cases[64];
     store_cases(c, active, cases);
     for (size_t at = n; active; active &= active - 1, at++) {
-        const int i = __builtin_ctzll(active);
+        const size_t i = (size_t)__builtin_ctzll(active);
+        const bool ambiguous = !simple && cwi_case_is_ambiguous[cases[i]];
         l->cases[at] = cases[i];
-        l->cell[at] = (uint16_t)(first + (size_t)i + (ambiguous >> i & 1 ? AMBIGUOUS : 0));
+        l->cell[at] = (uint16_t)(first + i + (ambiguous ? AMBIGUOUS : 0));
     }
 #endif
     return after;
@@ -476,8 +477,7 @@ static void write_triangles(const cwi_grid *g, size_t j, size_t k, const cwi_row
             edge_word *e = &list->edges[words];
             load_edges(e, g, &c, j, k, w);
             number_edges(e + 1, e);
-            cells = list_cells(list, words, cells, &c, active,
-                               g->simple ? 0 : ambiguous_cells(&c, active));
+            cells = list_cells(list, words, cells, &c, active, g->simple);
             list->word[words++] = w;
         }
         emit_cells(g, j, k, list, cells, emission, sink, to);
