@@ -23,10 +23,6 @@ extern const uint8_t cwi_case_triangles[256][3 * CWI_CASE_MAX_TRIANGLES];
 extern const uint8_t cwi_case_ambiguous_faces[256];
 extern const bool cwi_case_is_ambiguous[256];
 
-/* Both in a byte. */
-enum { CWI_CASE_COUNT = 0x7f, CWI_CASE_AMBIGUOUS = 0x80 };
-extern const uint8_t cwi_case_summary[256];
-
 /* Where the configurations of a case begin. Within a case they count the ambiguous faces' bits,
  * lowest face first; a bit is set where the inside corners of the face are joined. */
 extern const uint16_t cwi_case_first_config[256];

@@ -89,44 +89,8 @@ static inline __m512i look_up(const void *table, __m512i cases)
 /* Of the active cells those whose signs alone do not settle their surface. */
 static inline uint64_t ambiguous_cells(const cell_word *c, uint64_t active)
 {
-    return _mm512_movepi8_mask(look_up(cwi_case_summary, c->cases)) & active;
-}
-
-/* What was counted in a row so far: eight sums, lanes 1, 2 and 4 of edges along x, y, z. */
-typedef struct cell_sums {
-    __m512i edges, triangles;
-} cell_sums;
-
-/* Counts the active cells' triangles, ambiguous ones as if they were not. Returns which are. */
-static inline uint64_t count_triangles(const cell_word *c, uint64_t active, cell_sums *sums)
-{
-    const __m512i summary = look_up(cwi_case_summary, c->cases);
-    const __m512i counts = _mm512_and_si512(summary, _mm512_set1_epi8(CWI_CASE_COUNT));
-    sums->triangles =
-        _mm512_add_epi64(sums->triangles, _mm512_sad_epu8(_mm512_maskz_mov_epi8(active, counts),
-                                                          _mm512_setzero_si512()));
-    return _mm512_movepi8_mask(summary) & active;
-}
-
-static inline void count_crossed(const cell_word *c, cell_sums *sums)
-{
-    const __m512i first = _mm512_broadcastq_epi64(_mm512_castsi512_si128(c->corner));
-    sums->edges =
-        _mm512_add_epi64(sums->edges, _mm512_popcnt_epi64(_mm512_xor_si512(c->corner, first)));
-}
-
-static inline cell_sums no_sums(void)
-{
-    return (cell_sums){_mm512_setzero_si512(), _mm512_setzero_si512()};
-}
-
-static inline void take_sums(const cell_sums *sums, size_t *triangles, unsigned edges[3])
-{
-    uint64_t lane[8];
-    _mm512_storeu_si512(lane, sums->edges);
-    for (int axis = 0; axis < 3; axis++)
-        edges[axis] += (unsigned)lane[1 << axis];
-    *triangles += (size_t)_mm512_reduce_add_epi64(sums->triangles);
+    return _mm512_mask_test_epi8_mask(active, look_up(cwi_case_is_ambiguous, c->cases),
+                                      _mm512_set1_epi8(1));
 }
 
 #else
@@ -173,43 +137,6 @@ static inline void store_cases(const cell_word *c, uint64_t active, uint8_t case
         for (int n = 0; n < 8; n++)
             cases[b + n] = (uint8_t)(eight >> 8 * n);
     }
-}
-
-typedef struct cell_sums {
-    size_t triangles;
-    unsigned edges[3];
-} cell_sums;
-
-static inline uint64_t count_triangles(const cell_word *c, uint64_t active, cell_sums *sums)
-{
-    uint64_t ambiguous = 0;
-    uint8_t cases[64];
-    store_cases(c, active, cases);
-    for (uint64_t left = active; left; left &= left - 1) {
-        const uint8_t summary = cwi_case_summary[cases[__builtin_ctzll(left)]];
-        sums->triangles += summary & CWI_CASE_COUNT;
-        ambiguous |= summary & CWI_CASE_AMBIGUOUS ? left & -left : 0;
-    }
-    return ambiguous;
-}
-
-static inline void count_crossed(const cell_word *c, cell_sums *sums)
-{
-    for (int axis = 0; axis < 3; axis++)
-        sums->edges[axis] +=
-            (unsigned)__builtin_popcountll(c->corner[0] ^ c->corner[1 << axis]);
-}
-
-static inline cell_sums no_sums(void)
-{
-    return (cell_sums){0, {0, 0, 0}};
-}
-
-static inline void take_sums(const cell_sums *sums, size_t *triangles, unsigned edges[3])
-{
-    for (int axis = 0; axis < 3; axis++)
-        edges[axis] += sums->edges[axis];
-    *triangles += sums->triangles;
 }
 
 #endif

@@ -14,8 +14,17 @@
 #define SIMD 0
 #endif
 
-/* 64 bytes of 0 or 1 to bits; byte i to bit i. The product of 8 such bytes with the constant
- * gathers their lowest bits in its top byte. */
+/* Eight bytes of 0 or 1 to bits; byte i to bit i. Their product with the constant gathers their
+ * lowest bits in its top byte. */
+static inline uint64_t pack_eight(uint64_t bytes)
+{
+    return bytes * UINT64_C(0x0102040810204080) >> 56;
+}
+
+/* As many bytes as a leaf has samples in a row. */
+typedef signed char leaf_bytes __attribute__((vector_size(CWI_BRICK)));
+
+/* 64 bytes of 0 or 1 to bits. */
 static inline uint64_t pack_bits(const unsigned char bytes[64])
 {
     uint64_t bits = 0;
@@ -23,7 +32,7 @@ static inline uint64_t pack_bits(const unsigned char bytes[64])
         uint64_t eight = 0;
         for (int b = 0; b < 8; b++)
             eight |= (uint64_t)bytes[8 * i + b] << 8 * b;
-        bits |= (eight * UINT64_C(0x0102040810204080) >> 56) << 8 * i;
+        bits |= pack_eight(eight) << 8 * i;
     }
     return bits;
 }

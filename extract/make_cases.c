@@ -386,11 +386,6 @@ static int is_ambiguous(int cube_case)
     return cube_ambiguous_faces(cube_case) || resolve(cube, cube_case, 0).loop_count > 1;
 }
 
-static int summary(int cube_case)
-{
-    return simple_count(cube_case) | (is_ambiguous(cube_case) ? CWI_CASE_AMBIGUOUS : 0);
-}
-
 static int config_count(const shape *s, int cell_case)
 {
     return 1 << __builtin_popcount((unsigned)ambiguous_faces(s, cell_case));
@@ -475,7 +470,6 @@ int main(void)
     print_table("uint8_t cwi_case_count", simple_count);
     print_table("uint8_t cwi_case_ambiguous_faces", cube_ambiguous_faces);
     print_table("bool cwi_case_is_ambiguous", is_ambiguous);
-    print_table("uint8_t cwi_case_summary", summary);
     print_table("uint16_t cwi_case_first_config", first_config);
     puts("\nconst uint8_t cwi_case_triangles[256][3 * CWI_CASE_MAX_TRIANGLES] = {");
     for (int c = 0; c < 256; c++) {

@@ -1,5 +1,6 @@
 /* Counting and writing a layer of cells, from bit planes. Compiled for each engine. */
 #include "extract/ambiguous.h"
+#include "extract/cell_bits.h"
 #include "extract/cell_word.h"
 #include "extract/cube.h"
 
@@ -10,144 +11,196 @@ static inline int popcount(uint64_t x)
     return __builtin_popcountll(x);
 }
 
-/* Of the mixed cells of a word, those that are live. */
-static inline uint64_t active_cells(const cwi_grid *g, uint64_t mixed, size_t j, size_t k,
-                                    size_t w)
-{
-    return g->live ? mixed & cwi_live_cells(g, j, k, w) : mixed;
-}
+/* What some words of a layer come to; after a row's last word comes the next row's first. */
+typedef struct word_counts {
+    unsigned busy; /* words with cells whose corners are on both sides: word n, bit n */
+    cwi_words mixed, ambiguous; /* these cells, and those whose signs do not settle the rest */
+    cwi_words counts;           /* fields of COUNT_BITS: edges that are crossed along each axis,
+                                   and triangles of cells that are not ambiguous */
+} word_counts;
 
-/* Counts what the field's topology makes of the ambiguous cells in word w of row (j, k), in
- * place of what the table counted for them. */
-static void count_ambiguous(const cwi_grid *g, const cell_word *c, uint64_t ambiguous, size_t j,
-                            size_t k, size_t w, size_t *triangles, unsigned *inner)
+enum { COUNT_BITS = 16 }; /* 64 cells have 320 triangles at most, and eight words are summed */
+
+/* Finds out about the cells that matter, and counts. */
+static inline void count_cells(const cwi_grid *g, size_t first, const cwi_words corner[8],
+                               word_counts *c)
 {
-    uint8_t cases[64];
-    store_cases(c, ambiguous, cases);
-    for (; ambiguous; ambiguous &= ambiguous - 1) {
-        const int i = __builtin_ctzll(ambiguous);
-        const unsigned cube = cases[i];
-        cwi_ambiguous cell;
-        cwi_ambiguous_plan(g, (const size_t[3]){64 * w + (size_t)i, j, k}, cube, &cell);
-        *triangles += (size_t)cell.plan.triangle_count;
-        *triangles -= cwi_case_count[cube];
-        *inner += (unsigned)cell.plan.vertex_count;
+    cwi_words crossed[12], cells = c->mixed, count = {0};
+    cwi_cross_edges(corner, crossed);
+    cwi_find_ambiguous(crossed, &c->ambiguous);
+    if (g->live) {
+        cwi_load_words(g->live + first, &cells);
+        cells &= c->mixed;
     }
+    c->ambiguous &= cells;
+    cells &= ~c->ambiguous;
+    cwi_add_triangles(crossed, &cells, &count);
+    for (int axis = 2; axis >= 0; axis--) {
+        count <<= COUNT_BITS;
+        cwi_add_set(&crossed[4 * axis], &count);
+    }
+    c->counts = count;
 }
 
-/* Of up to 8 words of a row of cells from word w on: bit n is set where word w + n has a
- * cell with corners on both sides. Such a word, or the bit after it, is not all alike in all
- * four rows of samples. */
-static inline uint64_t busy_words(const cell_rows *r, size_t w)
+/* Counts the words from one of layer k on, those that are wanted: word n, bit n. */
+static inline void count_words(const cwi_grid *g, size_t k, size_t word, unsigned wanted,
+                               word_counts *c)
 {
-#if CWI_WIDE
-    __m512i any = _mm512_setzero_si512(), all = _mm512_set1_epi64(-1);
-    __m512i any_next = any, all_next = all;
+    const size_t layer = g->rows_y * g->words, first = k * layer + word;
+    const size_t row[4] = {0, g->words, layer, layer + g->words};
+    cwi_words corner[8], any = {0}, none = {0};
     for (int n = 0; n < 4; n++) {
-        const __m512i here = _mm512_loadu_si512(r->row[n] + w);
-        const __m512i next = _mm512_loadu_si512(r->row[n] + w + 1);
-        any = _mm512_or_si512(any, here);
-        all = _mm512_and_si512(all, here);
-        any_next = _mm512_or_si512(any_next, next);
-        all_next = _mm512_and_si512(all_next, next);
+        cwi_words after;
+        cwi_load_words(g->inside + first + row[n], &corner[2 * n]);
+        cwi_load_words(g->inside + first + row[n] + 1, &after);
+        corner[2 * n + 1] = corner[2 * n] >> 1 | after << 63;
+        any |= corner[2 * n] | corner[2 * n + 1];
+        none |= ~corner[2 * n] | ~corner[2 * n + 1];
     }
-    const __m512i alike = _mm512_srai_epi64(all, 63);
-    const __m512i rest =
-        _mm512_or_si512(_mm512_xor_si512(any, alike), _mm512_xor_si512(all, alike));
-    const __m512i last =
-        _mm512_or_si512(_mm512_xor_si512(any_next, alike), _mm512_xor_si512(all_next, alike));
-    return _mm512_test_epi64_mask(rest, rest) |
-           _mm512_test_epi64_mask(last, _mm512_set1_epi64(1));
-#else
-    uint64_t busy = 0;
-    for (size_t i = w; i < w + 8; i++) {
-        uint64_t any = 0, all = ~UINT64_C(0), any_next = 0, all_next = ~UINT64_C(0);
-        for (int n = 0; n < 4; n++) {
-            any |= r->row[n][i];
-            all &= r->row[n][i];
-            any_next |= r->row[n][i + 1];
-            all_next &= r->row[n][i + 1];
-        }
-        const uint64_t alike = all >> 63 ? ~UINT64_C(0) : 0;
-        const uint64_t mixed =
-            (any ^ alike) | (all ^ alike) | (((any_next ^ alike) | (all_next ^ alike)) & 1);
-        busy |= (uint64_t)(mixed != 0) << (i - w);
-    }
-    return busy;
-#endif
-}
-
-/* Finds the busy words of a row of cells; false when there are none. */
-static bool find_busy(const cwi_grid *g, const cell_rows *rows, size_t j, size_t k)
-{
-    uint64_t *busy = g->busy + (k * g->rows_y + j) * g->masks, any = 0;
+    c->mixed = any & none;
     if (g->window) {
-        const uint64_t window = g->window[k * g->rows_y + j];
-        *busy = window && load_cells(rows, 0).mixed & window;
-        return *busy;
+        cwi_load_words(g->window + k * g->rows_y + word, &any);
+        c->mixed &= any;
     }
-    const uint64_t *wanted = g->everything ? NULL : cwi_grid_wanted(g, j, k);
-    const bool *filled = g->filled + k * g->rows_y + j;
-    memset(busy, 0, g->masks * sizeof *busy);
-    if (!wanted && !filled[0] && !filled[1] && !filled[g->rows_y] && !filled[g->rows_y + 1])
-        return false;
-    for (size_t w = 0; w < g->words; w += 8) {
-        uint64_t within = g->words - w < 8 ? (UINT64_C(1) << (g->words - w)) - 1 : 255;
-        if (wanted)
-            within &= wanted[w / 64] >> w % 64;
-        const uint64_t found = within ? busy_words(rows, w) & within : 0;
-        busy[w / 64] |= found << w % 64;
-        any |= found;
+    cwi_keep_words(wanted, &c->mixed);
+    c->busy = cwi_words_set(&c->mixed);
+    if (c->busy) {
+        count_cells(g, first, corner, c);
+        cwi_keep_words(c->busy, &c->counts);
     }
-    return any != 0;
 }
 
-/* The cells of word w that are, in part, padding: in these the solid meets the border. */
-static inline uint64_t border_cells(const cwi_grid *g, size_t w, bool side)
-{
-    const size_t n = g->volume.dim[0];
-    if (side)
-        return ~UINT64_C(0);
-    return (uint64_t)(w == 0) | (uint64_t)(w == n / 64) << n % 64;
-}
-
-/* Leaves counts, not yet first numbers, in the row. An edge that is crossed belongs to a cell
- * whose corners differ, as the last samples of every row, and the last rows, are padding. */
-static void count_row(const cwi_grid *g, size_t j, size_t k, cwi_row *row)
+/* Counts what becomes of the ambiguous cells in word w of row (j, k). */
+static void count_ambiguous(const cwi_grid *g, uint64_t ambiguous, size_t j, size_t k, size_t w,
+                            cwi_row *row)
 {
     const cell_rows rows = rows_around(g, j, k);
-    unsigned count[4] = {0, 0, 0, 0};
-    size_t triangles = 0;
-    memset(row, 0, sizeof *row);
-    if (!find_busy(g, &rows, j, k))
-        return;
-    const size_t *n = g->volume.dim;
-    const bool side =
-        j == 0 || k == 0 || j == n[1] || k == n[2]; /* a row of cells in the padding */
-    uint64_t at_border = 0;
-    cell_sums sums = no_sums();
-    const uint64_t *busy = cwi_grid_busy(g, k * g->rows_y + j);
-    for (size_t w = cwi_next_word(busy, 0, g->words); w < g->words;
-         w = cwi_next_word(busy, w + 1, g->words)) {
-        const cell_word c = load_cells(&rows, w);
-        if (side || w == 0 || w == n[0] / 64)
-            at_border |= c.mixed & border_cells(g, w, side);
-        if (g->live)
-            for (int axis = 0; axis < 3; axis++)
-                count[axis] += (unsigned)popcount(cwi_edge_vertices(g, axis, j, k, w));
-        else
-            count_crossed(&c, &sums);
-        const uint64_t ambiguous =
-            count_triangles(&c, active_cells(g, c.mixed, j, k, w), &sums);
-        if (ambiguous && !g->simple)
-            count_ambiguous(g, &c, ambiguous, j, k, w, &triangles, &count[3]);
+    const cell_word c = load_cells(&rows, w);
+    uint8_t cases[64];
+    store_cases(&c, ambiguous, cases);
+    for (; ambiguous; ambiguous &= ambiguous - 1) {
+        const int i = __builtin_ctzll(ambiguous);
+        cwi_ambiguous cell;
+        if (g->simple) {
+            row->triangle += cwi_case_count[cases[i]];
+            continue;
+        }
+        cwi_ambiguous_plan(g, (const size_t[3]){64 * w + (size_t)i, j, k}, cases[i], &cell);
+        row->triangle += (size_t)cell.plan.triangle_count;
+        row->first[3] += (uint32_t)cell.plan.vertex_count;
     }
-    take_sums(&sums, &triangles, count);
-    for (int kind = 0; kind < 4; kind++)
-        row->first[kind] = count[kind];
-    row->triangle = triangles;
-    if (at_border)
-        g->layers[k].at_border = true;
+}
+
+/* The first so many of CWI_WORDS words. */
+static inline unsigned first_words(size_t count)
+{
+    return count < CWI_WORDS ? (1u << count) - 1 : (1u << CWI_WORDS) - 1;
+}
+
+/* Some of the cells of so many words from word w of row (j, k) on, the n-th that were counted,
+ * are, in part, padding: there the solid meets the border. */
+static bool meets_border(const cwi_grid *g, const word_counts *c, int n, int count, size_t j,
+                         size_t k, size_t w)
+{
+    const size_t *dim = g->volume.dim, last = dim[0] / 64;
+    if (j == 0 || k == 0 || j == dim[1] || k == dim[2])
+        return true;
+    return (w == 0 && (c->mixed[n] & 1)) ||
+           (last - w < (size_t)count && (c->mixed[n + (int)(last - w)] >> dim[0] % 64 & 1));
+}
+
+/* Vertices on edges of live cells, along each axis, in the busy words from word w of row (j, k)
+ * on, packed like counts. */
+static uint64_t count_live_edges(const cwi_grid *g, unsigned busy, size_t j, size_t k, size_t w)
+{
+    uint64_t count = 0;
+    for (; busy; busy &= busy - 1)
+        for (int axis = 0; axis < 3; axis++)
+            count += (uint64_t)popcount(
+                         cwi_edge_vertices(g, axis, j, k, w + (size_t)__builtin_ctz(busy)))
+                     << COUNT_BITS * axis;
+    return count;
+}
+
+/* Adds so many words from word w of row (j, k) on, the n-th that were counted, to their row's
+ * counts. An edge that is crossed belongs to a cell whose corners differ, as the last samples
+ * of every row, and the last rows, are padding. */
+static inline void take_words(const cwi_grid *g, const word_counts *c, int n, int count,
+                              size_t j, size_t k, size_t w, cwi_row *row)
+{
+    const unsigned busy = c->busy >> n & first_words((size_t)count);
+    const uint64_t field = (UINT64_C(1) << COUNT_BITS) - 1;
+    uint64_t sums = 0;
+    if (!busy)
+        return;
+    g->busy[(k * g->rows_y + j) * g->masks + w / 64] |= (uint64_t)busy << w % 64;
+    for (int i = n; i < n + count; i++)
+        sums += c->counts[i];
+    row->triangle += sums >> 3 * COUNT_BITS;
+    if (g->live)
+        sums = count_live_edges(g, busy, j, k, w);
+    for (int axis = 0; axis < 3; axis++)
+        row->first[axis] += (uint32_t)(sums >> COUNT_BITS * axis & field);
+    for (int i = n; i < n + count; i++)
+        if (c->ambiguous[i])
+            count_ambiguous(g, c->ambiguous[i], j, k, w + (size_t)(i - n), row);
+    if (!g->layers[k].at_border)
+        g->layers[k].at_border = meets_border(g, c, n, count, j, k, w);
+}
+
+/* Counts the wanted ones of CWI_WORDS words of layer k, from word w of row j on. Leaves counts,
+ * not yet first numbers, in the layer's rows. */
+static void count_group(const cwi_grid *g, size_t j, size_t k, size_t w, unsigned wanted,
+                        cwi_row *rows)
+{
+    word_counts c;
+    count_words(g, k, j * g->words + w, wanted, &c);
+    for (int n = 0, count; n < CWI_WORDS && c.busy >> n; n += count) {
+        /* those in the same row and word of its mask */
+        const size_t end = (w | 63) + 1 < g->words ? (w | 63) + 1 : g->words;
+        count = end - w < (size_t)(CWI_WORDS - n) ? (int)(end - w) : CWI_WORDS - n;
+        take_words(g, &c, n, count, j, k, w, rows + j);
+        w = end < g->words ? end : 0;
+        j += w == 0;
+    }
+}
+
+/* Some sample in the rows of samples around these rows of cells of layer k is inside, or it is
+ * not known. */
+static bool any_filled(const cwi_grid *g, size_t j, size_t last, size_t k)
+{
+    const bool *filled = g->filled + k * g->rows_y;
+    bool any = g->window != NULL;
+    for (; j <= last + 1 && !any; j++)
+        any = filled[j] || filled[g->rows_y + j];
+    return any;
+}
+
+static void count_all(const cwi_grid *g, size_t k, cwi_row *rows)
+{
+    const size_t last = g->rows_y - 2;
+    for (size_t j = 0, w = 0; j <= last;) {
+        const size_t left = (last + 1 - j) * g->words - w;
+        size_t end = j, after = w + CWI_WORDS;
+        for (; after >= g->words; after -= g->words)
+            end++;
+        if (any_filled(g, j, end < last ? end : last, k))
+            count_group(g, j, k, w, first_words(left), rows);
+        j = end;
+        w = after;
+    }
+}
+
+static void count_wanted(const cwi_grid *g, size_t k, cwi_row *rows)
+{
+    for (size_t j = 0; j + 1 < g->rows_y; j++) {
+        const uint64_t *wanted = cwi_grid_wanted(g, j, k);
+        for (size_t w = cwi_next_word(wanted, 0, g->words); w < g->words;) {
+            const size_t end = (w | 63) + 1, here = end - w < CWI_WORDS ? end - w : CWI_WORDS;
+            count_group(g, j, k, w, wanted[w / 64] >> w % 64 & first_words(here), rows);
+            w = cwi_next_word(wanted, w + here, g->words);
+        }
+    }
 }
 
 /* Turns the counts of a layer's rows into first numbers within the layer. */
@@ -169,37 +222,26 @@ static void sum_layer(cwi_row *rows, size_t count, cwi_layer *layer)
     layer->triangles = triangle;
 }
 
-/* Something is wanted in the row of bricks that row (j, k) of cells lies in. */
-static bool brick_is_wanted(const cwi_grid *g, size_t j, size_t k)
-{
-    if (g->everything)
-        return true;
-    const uint64_t *wanted = cwi_grid_wanted(g, j, k);
-    return cwi_next_word(wanted, 0, g->words) < g->words;
-}
-
 void cwi_count_layer(const cwi_grid *g, size_t k, cwi_row *rows)
 {
     cwi_layer *layer = &g->layers[k];
-    const bool cells = k + 1 < g->rows_z;
+    const size_t first = k * g->rows_y;
     layer->plan_count = 0;
     layer->at_border = false;
-    for (size_t j = 0; j + 1 < g->rows_y && cells;) {
-        if (j % CWI_BRICK == 0 && !brick_is_wanted(g, j, k)) {
-            const size_t row = k * g->rows_y + j,
-                         end = j + CWI_BRICK < g->rows_y ? j + CWI_BRICK : g->rows_y - 1;
-            memset(rows + row, 0, (end - j) * sizeof *rows);
-            memset(g->busy + row * g->masks, 0, (end - j) * g->masks * sizeof *g->busy);
-            j = end;
-        } else {
-            count_row(g, j, k, rows + k * g->rows_y + j);
-            j++;
-        }
-    }
-    const size_t left = cells ? 1 : g->rows_y, first = (k + 1) * g->rows_y - left;
-    memset(rows + first, 0, left * sizeof *rows);
-    memset(g->busy + first * g->masks, 0, left * g->masks * sizeof *g->busy);
-    sum_layer(rows + k * g->rows_y, g->rows_y, layer);
+    memset(rows + first, 0, g->rows_y * sizeof *rows);
+    memset(g->busy + first * g->masks, 0, g->rows_y * g->masks * sizeof *g->busy);
+    if (k + 1 < g->rows_z && g->everything)
+        count_all(g, k, rows + first);
+    else if (k + 1 < g->rows_z)
+        count_wanted(g, k, rows + first);
+    sum_layer(rows + first, g->rows_y, layer);
+}
+
+/* Of the mixed cells of a word, those that are live. */
+static inline uint64_t active_cells(const cwi_grid *g, uint64_t mixed, size_t j, size_t k,
+                                    size_t w)
+{
+    return g->live ? mixed & cwi_live_cells(g, j, k, w) : mixed;
 }
 
 /* The rows of edges around a word of cells, with what ranks need. Rows of y- and z-edges stand

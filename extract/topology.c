@@ -227,11 +227,25 @@ static bool may_have_tunnel(const cwi_config *config, unsigned cube)
            may_alternate(cube, 2);
 }
 
+/* In a cell with two opposite corners alone on their side, whether no slice across z finds both
+ * of their columns there: the lower one's ends before the other's begins. */
+static bool columns_pass(const cwi_config *config, unsigned cube, const double values[8])
+{
+    const unsigned alone = __builtin_popcount(cube) == 2 ? cube : ~cube & 255;
+    const int low = __builtin_ctz(alone), high = 7 - low;
+    if (cwi_case_ambiguous_faces[cube] || config->loop_count != 2)
+        return false;
+    const double a = values[low] - values[low + 4], b = values[high - 4] - values[high];
+    return fabs(a) < PLAIN_MOST && fabs(b) < PLAIN_MOST &&
+           values[low] / a <= values[high - 4] / b;
+}
+
 static void find_tunnel(cwi_cell_plan *plan, unsigned cube, const double values[8],
                         bool zero_inside)
 {
     sweep s;
-    if (!may_have_tunnel(plan->config, cube) || !start_sweep(&s, cube, values, zero_inside))
+    if (!may_have_tunnel(plan->config, cube) || columns_pass(plan->config, cube, values) ||
+        !start_sweep(&s, cube, values, zero_inside))
         return;
     for (int e = 0; e + 1 < s.event_count; e++) {
         const double t = s.event[e], u = s.event[e + 1], middle = 0.5 * (t + u);
