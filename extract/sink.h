@@ -18,7 +18,7 @@ static inline void cwi_position(const cwi_vertex_sink *sink, const size_t at[3],
                    : (double)at[a] - 1 - sink->centre[a] + x[a];
     for (int r = 0; r < 3; r++)
         position[r] = (float)(sink->affine[r][0] * p[0] + sink->affine[r][1] * p[1] +
-                              sink->affine[r][2] * p[2]);
+                              sink->affine[r][2] * p[2] + 0.0); /* no negative zeros */
 }
 
 static inline void cwi_store_position(const cwi_vertex_sink *sink, const size_t at[3],

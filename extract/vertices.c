@@ -9,12 +9,16 @@
 #include "extract/sink.h"
 
 #include <float.h>
-#include <math.h>
 #include <string.h>
+#include <tgmath.h>
 
 #ifdef __SSE4_1__
 #include <immintrin.h>
 #endif
+
+/* What is compiled once for each axis; and what needs all registers. */
+#define ALWAYS_INLINE __attribute__((always_inline)) static inline
+#define NEVER_INLINE  __attribute__((noinline)) static
 
 /* Lengths of gradients whose squares have lost nothing to overflow or underflow. */
 #define LEAST 1e-280
@@ -133,6 +137,52 @@ static inline void store_runs(const cwi_edge_list *l, const float *from, float *
                3 * (end_of_run(l, r) - run->begin) * sizeof *to);
     }
 }
+
+/* The axes of the differences around an edge along one, its own first. */
+static inline int axis_of(int axis, int n)
+{
+    return n == 0 ? axis : n == 1 ? axis == 0 : axis == 2 ? 1 : 2;
+}
+
+enum { ANY_AXIS = -1 };
+
+/* A list's edges in the world. */
+typedef struct cwi_frame {
+    double affine[3][3];
+    double first[2]; /* column and row that stand at the origin, as padded samples count */
+    double z;        /* layers from there */
+    double along[3]; /* the step along an edge */
+} cwi_frame;
+
+static inline cwi_frame make_frame(const cwi_edge_list *list, const cwi_vertex_sink *sink)
+{
+    cwi_frame f = {.first = {sink->centre[0] + 1, sink->centre[1] + 1},
+                   .z = (double)list->k - 1 - sink->centre[2]};
+    memcpy(f.affine, sink->affine, sizeof f.affine);
+    f.along[list->axis] = 1;
+    return f;
+}
+
+/* A power of two which brings a number to 1 or above, below 2. Of what is not finite, or too
+ * huge, it is negative or zero. */
+static inline float power_beside_f32(float x)
+{
+    uint32_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    bits = UINT32_C(0x7f000000) - (bits & UINT32_C(0x7f800000));
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+
+static inline double power_beside_f64(double x)
+{
+    uint64_t bits;
+    memcpy(&bits, &x, sizeof bits);
+    bits = UINT64_C(0x7fe0000000000000) - (bits & UINT64_C(0x7ff0000000000000));
+    memcpy(&x, &bits, sizeof x);
+    return x;
+}
+#define power_beside(x) _Generic(x, float : power_beside_f32, double : power_beside_f64)(x)
 
 /* Four numbers side by side, of small types: compilers take them one by one. */
 #ifdef __SSE4_1__
