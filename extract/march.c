@@ -244,20 +244,23 @@ static inline uint64_t active_cells(const cwi_grid *g, uint64_t mixed, size_t j,
     return g->live ? mixed & cwi_live_cells(g, j, k, w) : mixed;
 }
 
-/* The rows of edges around a word of cells, with what ranks need. Rows of y- and z-edges stand
- * twice, for the edges at i and at i + 1: lane n is edge n of the cube. */
-typedef struct edge_word {
-    _Alignas(64) uint64_t crossed[16];
-    _Alignas(64) uint64_t first[16]; /* number of the first vertex in the word */
-} edge_word;
+/* The rows of edges around half a word of cells, with what ranks need. Rows of y- and z-edges
+ * stand twice, for the edges at i and at i + 1: lane n is edge n of the cube. */
+typedef struct edge_half {
+    _Alignas(64) uint32_t crossed[16];
+    _Alignas(64) uint32_t first[16]; /* number of the first vertex in the half word */
+} edge_half;
 
-/* The vertices on the 12 edges of cell i: where they would be numbered if crossed. */
-static inline void cell_vertices(const edge_word *e, size_t i, uint32_t vertex[12])
+enum { HALF = 32 };
+
+/* The vertices on the 12 edges of cell i of a half word: where they would be numbered if
+ * crossed. */
+static inline void cell_vertices(const edge_half *e, size_t i, uint32_t vertex[12])
 {
-    const uint64_t here = UINT64_C(1) << i, before = here - 1, with = here | before;
+    const uint32_t here = UINT32_C(1) << i, before = here - 1, with = here | before;
     for (int n = 0; n < 12; n++)
-        vertex[n] = (uint32_t)e->first[n] +
-                    (uint32_t)popcount(e->crossed[n] & (n >= 4 && n & 1 ? with : before));
+        vertex[n] = e->first[n] + (uint32_t)__builtin_popcount(
+                                      e->crossed[n] & (n >= 4 && n & 1 ? with : before));
 }
 
 /* The rows of edges a cube's 12 edges lie in: axis, and which of the four rows of samples. */
@@ -266,14 +269,22 @@ static const struct {
 } edge_rows[12] = {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 1, 1}, {1, 0, 0}, {1, 0, 0},
                    {1, 0, 1}, {1, 0, 1}, {2, 0, 0}, {2, 0, 0}, {2, 1, 0}, {2, 1, 0}};
 
+/* Crossings of one row of edges around a word of cells. */
+static inline void set_edges(edge_half e[2], int n, uint64_t crossed)
+{
+    e[0].crossed[n] = (uint32_t)crossed;
+    e[1].crossed[n] = (uint32_t)(crossed >> HALF);
+}
+
 /* Crossings of the edges around word w of the cells in row (j, k). */
-static inline void load_edges(edge_word *e, const cwi_grid *g, const cell_word *c, size_t j,
+static inline void load_edges(edge_half e[2], const cwi_grid *g, const cell_word *c, size_t j,
                               size_t k, size_t w)
 {
     if (g->live && !g->window) {
         for (int n = 0; n < 12; n++)
-            e->crossed[n] = cwi_edge_vertices(g, edge_rows[n].axis, j + edge_rows[n].j,
-                                              k + edge_rows[n].k, w);
+            set_edges(e, n,
+                      cwi_edge_vertices(g, edge_rows[n].axis, j + edge_rows[n].j,
+                                        k + edge_rows[n].k, w));
         return;
     }
 #if CWI_WIDE
@@ -296,41 +307,43 @@ static inline void load_edges(edge_word *e, const cwi_grid *g, const cell_word *
         along_z = _mm512_and_si512(
             along_z, _mm512_set_epi64(0, 0, 0, 0, live[11], live[10], live[9], live[8]));
     }
-    _mm512_store_si512(e->crossed, along_xy);
-    _mm512_store_si512(e->crossed + 8, along_z);
+    const __m512i even = _mm512_set_epi32(30, 28, 26, 24, 22, 20, 18, 16, 14, 12, 10, 8, 6, 4,
+                                          2, 0),
+                  odd = _mm512_or_si512(even, _mm512_set1_epi32(1));
+    _mm512_store_si512(e[0].crossed, _mm512_permutex2var_epi32(along_xy, even, along_z));
+    _mm512_store_si512(e[1].crossed, _mm512_permutex2var_epi32(along_xy, odd, along_z));
 #else
     for (int n = 0; n < 12; n++) {
         const int axis = edge_rows[n].axis;
         const int corner = cwi_edge_corner(n); /* 5, 7, 9 and 11 stand at i + 1 */
-        e->crossed[n] = c->corner[axis ? corner & ~1 : corner] ^
-                        c->corner[(axis ? corner & ~1 : corner) | 1 << axis];
+        uint64_t crossed = c->corner[axis ? corner & ~1 : corner] ^
+                           c->corner[(axis ? corner & ~1 : corner) | 1 << axis];
         if (g->window)
-            e->crossed[n] &= *cwi_window(g, axis, j + edge_rows[n].j, k + edge_rows[n].k);
+            crossed &= *cwi_window(g, axis, j + edge_rows[n].j, k + edge_rows[n].k);
+        set_edges(e, n, crossed);
     }
 #endif
 }
 
-/* The edges of the next word: numbers go on after those of this one. */
-static inline void number_edges(edge_word *e, const edge_word *before)
+/* The edges of the next half word: numbers go on after those of this one. */
+static inline void number_edges(edge_half *e, const edge_half *before)
 {
 #if CWI_WIDE
-    for (int n = 0; n < 16; n += 8)
-        _mm512_store_si512(
-            e->first + n,
-            _mm512_add_epi64(_mm512_load_si512(before->first + n),
-                             _mm512_popcnt_epi64(_mm512_load_si512(before->crossed + n))));
+    _mm512_store_si512(
+        e->first, _mm512_add_epi32(_mm512_load_si512(before->first),
+                                   _mm512_popcnt_epi32(_mm512_load_si512(before->crossed))));
 #else
     for (int n = 0; n < 12; n++)
-        e->first[n] = before->first[n] + (uint64_t)popcount(before->crossed[n]);
+        e->first[n] = before->first[n] + (uint32_t)__builtin_popcount(before->crossed[n]);
 #endif
 }
 
 /* Words whose cells are listed before they are written, so that no loop is as short as the
  * cells in a word: its end cannot be foreseen. */
-enum { WORDS = 16, LIST = 64 * WORDS, IN_WORD = 63, AMBIGUOUS = 1 << 15 };
+enum { WORDS = 16, LIST = 64 * WORDS, AMBIGUOUS = 1 << 15 };
 
 typedef struct cell_list {
-    edge_word edges[WORDS + 1];
+    edge_half edges[2 * WORDS + 1];
     size_t word[WORDS];
     uint16_t cell[LIST + 64]; /* 64 times the number of its word in the list, its bit, and
                                  whether it is ambiguous */
@@ -374,23 +387,18 @@ static inline size_t list_cells(cell_list *l, size_t words, size_t n, const cell
 #if CWI_WIDE
 
 /* The vertices on the edges of a cell, from their ranks: lane n is edge n. */
-typedef struct cell_numbers {
-    __m512i low, high;
-} cell_numbers;
+typedef __m512i cell_numbers;
 
-static inline cell_numbers number_cell(const edge_word *e, unsigned i)
+static inline cell_numbers number_cell(const edge_half *e, unsigned i)
 {
     /* edges 5, 7, 9 and 11 stand at i + 1 */
-    const __m512i low = _mm512_set_epi64(-2, -1, -2, -1, -1, -1, -1, -1),
-                  high = _mm512_set_epi64(-1, -1, -1, -1, -2, -1, -2, -1),
-                  by = _mm512_set1_epi64(i);
-    const __m512i not_low = _mm512_sllv_epi64(low, by), not_high = _mm512_sllv_epi64(high, by);
-    const __m512i *crossed = (const void *)e->crossed, *first = (const void *)e->first;
-    return (cell_numbers){
-        _mm512_add_epi64(first[0],
-                         _mm512_popcnt_epi64(_mm512_andnot_si512(not_low, crossed[0]))),
-        _mm512_add_epi64(first[1],
-                         _mm512_popcnt_epi64(_mm512_andnot_si512(not_high, crossed[1])))};
+    const __m512i ones =
+        _mm512_set_epi32(-1, -1, -1, -1, -2, -1, -2, -1, -2, -1, -2, -1, -1, -1, -1, -1);
+    const __m512i not_before = _mm512_sllv_epi32(ones, _mm512_set1_epi32((int)i));
+    const __m512i before =
+        _mm512_andnot_si512(not_before, _mm512_load_si512((const void *)e->crossed));
+    return _mm512_add_epi32(_mm512_load_si512((const void *)e->first),
+                            _mm512_popcnt_epi32(before));
 }
 
 /* Writes the vertices at up to 16 edges; what is too much, before end, the next cells write
@@ -399,8 +407,7 @@ static inline uint32_t *put(const cell_numbers *c, const uint8_t *edge, unsigned
                             uint32_t *out, const uint32_t *end)
 {
     const __m128i edges = _mm_loadu_si128((const __m128i *)(const void *)edge);
-    const __m512i lanes = _mm512_slli_epi32(_mm512_cvtepu8_epi32(edges), 1);
-    const __m512i all = _mm512_permutex2var_epi32(c->low, lanes, c->high);
+    const __m512i all = _mm512_permutexvar_epi32(_mm512_cvtepu8_epi32(edges), *c);
     if (end - out >= 16)
         _mm512_storeu_si512(out, all);
     else
@@ -414,7 +421,7 @@ typedef struct cell_numbers {
     uint32_t vertex[12];
 } cell_numbers;
 
-static inline cell_numbers number_cell(const edge_word *e, unsigned i)
+static inline cell_numbers number_cell(const edge_half *e, unsigned i)
 {
     cell_numbers c;
     cell_vertices(e, i, c.vertex);
@@ -441,13 +448,13 @@ typedef struct cwi_cursor {
 } cwi_cursor;
 
 /* The triangles of an ambiguous cell that has vertices inside, and these. */
-static void emit_inner(const cwi_grid *g, const size_t at[3], const edge_word *e, unsigned cube,
+static void emit_inner(const cwi_grid *g, const size_t at[3], const edge_half *e, unsigned cube,
                        bool flip, cwi_vertex_sink *sink, cwi_cursor *to)
 {
     uint32_t vertex[12 + CWI_CELL_MAX_VERTICES];
     cwi_cell_plan plan;
     cwi_cell cell;
-    cell_vertices(e, at[0] % 64, vertex);
+    cell_vertices(e, at[0] % HALF, vertex);
     cwi_ambiguous_build(g, at, cube, to->plan, sink, to->inner, &plan, &cell);
     for (int n = 0; n < plan.vertex_count; n++)
         vertex[CWI_CELL_INNER + n] = to->inner++;
@@ -461,7 +468,7 @@ static void emit_inner(const cwi_grid *g, const size_t at[3], const edge_word *e
 
 /* The triangles of an ambiguous cell. */
 __attribute__((noinline)) static void emit_ambiguous(const cwi_grid *g, const size_t at[3],
-                                                     const edge_word *e, unsigned cube,
+                                                     const edge_half *e, unsigned cube,
                                                      const cwi_emission *emission,
                                                      cwi_vertex_sink *sink, cwi_cursor *to)
 {
@@ -469,7 +476,7 @@ __attribute__((noinline)) static void emit_ambiguous(const cwi_grid *g, const si
     const uint32_t plan = layer->plans_lost ? UINT32_MAX : layer->plans[to->plan];
     const unsigned edges = plan < CWI_CASE_CONFIGS ? emission->config_edges[plan] : 0;
     if (edges) {
-        const cell_numbers c = number_cell(e, at[0] % 64);
+        const cell_numbers c = number_cell(e, at[0] % HALF);
         const uint8_t *edge = emission->config_edge[plan];
         const unsigned now = edges < 16 ? edges : 16;
         to->out = put(&c, edge, now, to->out, to->end);
@@ -487,15 +494,15 @@ static void emit_cells(const cwi_grid *g, size_t j, size_t k, const cell_list *l
     const uint32_t *end = to->end;
     uint32_t *out = to->out;
     for (size_t n = 0; n < count; n++) {
-        const unsigned cell = l->cell[n], cube = l->cases[n], bit = cell & IN_WORD;
-        const edge_word *e = &l->edges[cell / 64 % WORDS];
+        const unsigned cell = l->cell[n], cube = l->cases[n], place = cell % LIST;
+        const edge_half *e = &l->edges[place / HALF];
         if (cell & AMBIGUOUS) {
             to->out = out;
-            emit_ambiguous(g, (const size_t[3]){64 * l->word[cell / 64 % WORDS] + bit, j, k}, e,
+            emit_ambiguous(g, (const size_t[3]){64 * l->word[place / 64] + place % 64, j, k}, e,
                            cube, emission, sink, to);
             out = to->out;
         } else {
-            const cell_numbers c = number_cell(e, bit);
+            const cell_numbers c = number_cell(e, place % HALF);
             out = put(&c, emission->edge[cube], 3u * cwi_case_count[cube], out, end);
         }
     }
@@ -516,14 +523,15 @@ static void write_triangles(const cwi_grid *g, size_t j, size_t k, const cwi_row
         for (; w < g->words && words < WORDS; w = cwi_next_word(busy, w + 1, g->words)) {
             const cell_word c = load_cells(&samples, w);
             const uint64_t active = active_cells(g, c.mixed, j, k, w);
-            edge_word *e = &list->edges[words];
+            edge_half *e = &list->edges[2 * words];
             load_edges(e, g, &c, j, k, w);
             number_edges(e + 1, e);
+            number_edges(e + 2, e + 1);
             cells = list_cells(list, words, cells, &c, active, g->simple);
             list->word[words++] = w;
         }
         emit_cells(g, j, k, list, cells, emission, sink, to);
-        memcpy(list->edges[0].first, list->edges[words].first, sizeof list->edges[0].first);
+        memcpy(list->edges[0].first, list->edges[2 * words].first, sizeof list->edges[0].first);
     }
 }
 
