@@ -17,25 +17,30 @@ static double stored_at(const cw_volume *v, size_t i, size_t j, size_t k)
     return v->has_nodata && x == v->nodata ? NAN : x;
 }
 
-static double value_of(const cwi_grid *grid, double stored)
+/* What a number is as the decisions see it: times this, after the level is taken off. */
+static double toward_inside(const cwi_grid *grid)
 {
-    return grid->invert ? grid->level - stored : stored - grid->level;
+    return grid->invert ? -1 : 1;
 }
 
 double cwi_value_at(const cwi_grid *grid, size_t i, size_t j, size_t k)
 {
-    return value_of(grid, stored_at(&grid->volume, i, j, k));
+    return toward_inside(grid) * (stored_at(&grid->volume, i, j, k) - grid->level);
 }
 
-/* All eight corners of a cell at once; most cells are within the volume. */
-static void load_corners(const cw_volume *v, const size_t at[3], double stored[8])
+/* The numbers of a cell's eight corners, less the level, times a factor; most cells are within
+ * the volume. */
+static void load_corners(const cw_volume *v, const size_t at[3], double level, double factor,
+                         double values[8])
 {
     bool within = !v->has_nodata;
     for (int a = 0; a < 3; a++)
         within = within && at[a] >= 1 && at[a] < v->dim[a];
     if (!within) {
         for (size_t c = 0; c < 8; c++)
-            stored[c] = stored_at(v, at[0] + (c & 1), at[1] + (c >> 1 & 1), at[2] + (c >> 2));
+            values[c] =
+                factor *
+                (stored_at(v, at[0] + (c & 1), at[1] + (c >> 1 & 1), at[2] + (c >> 2)) - level);
         return;
     }
     const char *p = cwi_voxel_address(v, at[0] - 1, at[1] - 1, at[2] - 1);
@@ -43,9 +48,10 @@ static void load_corners(const cw_volume *v, const size_t at[3], double stored[8
 #define CASE(name, ctype, text)                                                                \
     case name:                                                                                 \
         for (size_t c = 0; c < 8; c++)                                                         \
-            stored[c] = (double)*(const ctype *)(p + (c & 1 ? v->stride[0] : 0) +              \
-                                                 (c & 2 ? v->stride[1] : 0) +                  \
-                                                 (c & 4 ? v->stride[2] : 0));                  \
+            values[c] = factor * ((double)*(const ctype *)(p + (c & 1 ? v->stride[0] : 0) +    \
+                                                           (c & 2 ? v->stride[1] : 0) +        \
+                                                           (c & 4 ? v->stride[2] : 0)) -       \
+                                  level);                                                      \
         break;
         CW_TYPE_TABLE(CASE)
 #undef CASE
@@ -56,9 +62,7 @@ static void load_corners(const cw_volume *v, const size_t at[3], double stored[8
 
 void cwi_corner_values(const cwi_grid *grid, const size_t at[3], double values[8])
 {
-    load_corners(&grid->volume, at, values);
-    for (int c = 0; c < 8; c++)
-        values[c] = value_of(grid, values[c]);
+    load_corners(&grid->volume, at, grid->level, toward_inside(grid), values);
 }
 
 /* Doubles the room of a layer's list when it is full. Without memory for it there is no list:
@@ -78,27 +82,19 @@ static void note(cwi_layer *layer, uint32_t code)
         layer->plans[layer->plan_count++] = code;
 }
 
-static void load(const cwi_grid *grid, const size_t at[3], cwi_ambiguous *cell)
-{
-    load_corners(&grid->volume, at, cell->stored);
-    for (int a = 0; a < 3; a++)
-        cell->at[a] = at[a];
-}
-
-static void make_plan(const cwi_grid *grid, unsigned cube, cwi_ambiguous *cell)
+static void make_plan(const cwi_grid *grid, const size_t at[3], unsigned cube,
+                      cwi_cell_plan *plan)
 {
     double values[8];
-    for (size_t c = 0; c < 8; c++)
-        values[c] = value_of(grid, cell->stored[c]);
-    cwi_cell_plan_make(cube, values, cwi_zero_is_inside(grid), &cell->plan);
+    cwi_corner_values(grid, at, values);
+    cwi_cell_plan_make(cube, values, cwi_zero_is_inside(grid), plan);
 }
 
 void cwi_ambiguous_plan(const cwi_grid *grid, const size_t at[3], unsigned cube,
-                        cwi_ambiguous *cell)
+                        cwi_cell_plan *plan)
 {
-    load(grid, at, cell);
-    make_plan(grid, cube, cell);
-    note(&grid->layers[at[2]], cwi_cell_plan_pack(&cell->plan));
+    make_plan(grid, at, cube, plan);
+    note(&grid->layers[at[2]], cwi_cell_plan_pack(plan));
 }
 
 /* Central differences at a corner, in halves; NaN where a neighbour is missing. */
@@ -130,14 +126,14 @@ static void inner_gradient(const cw_volume *v, const size_t at[3], const double 
 }
 
 /* Where an edge of the cell is crossed: as its vertex says. */
-static double crossing_of(const cwi_grid *grid, const cwi_ambiguous *cell, int edge)
+static double crossing_of(const cwi_grid *grid, const size_t cell[3], const double stored[8],
+                          int edge)
 {
     const cw_volume *v = &grid->volume;
     const size_t low = (size_t)cwi_edge_corner(edge), axis = (size_t)cwi_edge_axis(edge);
     const size_t step[3] = {axis == 0, axis == 1, axis == 2};
-    const size_t at[3] = {cell->at[0] + (low & 1), cell->at[1] + (low >> 1 & 1),
-                          cell->at[2] + (low >> 2)};
-    double x[4] = {NAN, cell->stored[low], cell->stored[low | (size_t)1 << axis], NAN}, t;
+    const size_t at[3] = {cell[0] + (low & 1), cell[1] + (low >> 1 & 1), cell[2] + (low >> 2)};
+    double x[4] = {NAN, stored[low], stored[low | (size_t)1 << axis], NAN}, t;
     if (grid->cubic) {
         x[0] = stored_at(v, at[0] - step[0], at[1] - step[1], at[2] - step[2]);
         x[3] = stored_at(v, at[0] + 2 * step[0], at[1] + 2 * step[1], at[2] + 2 * step[2]);
@@ -152,18 +148,18 @@ void cwi_ambiguous_build(const cwi_grid *grid, const size_t at[3], unsigned cube
                          cwi_cell *out)
 {
     const cwi_layer *layer = &grid->layers[at[2]];
-    cwi_ambiguous cell;
-    double crossings[12] = {0};
-    if (!layer->plans_lost)
-        cwi_cell_plan_unpack(layer->plans[n], &cell.plan);
-    if (layer->plans_lost || cell.plan.vertex_count)
-        load(grid, at, &cell);
+    double crossings[12] = {0}, stored[8];
     if (layer->plans_lost)
-        make_plan(grid, cube, &cell);
-    for (int e = 0; e < 12 && cell.plan.vertex_count; e++) /* only inner vertices need them */
-        crossings[e] = crossing_of(grid, &cell, e);
-    cwi_cell_build(&cell.plan, crossings, out);
-    for (int v = 0; v < cell.plan.vertex_count; v++) {
+        make_plan(grid, at, cube, plan);
+    else
+        cwi_cell_plan_unpack(layer->plans[n], plan);
+    if (plan->vertex_count) { /* only inner vertices need them */
+        load_corners(&grid->volume, at, 0, 1, stored);
+        for (int e = 0; e < 12; e++)
+            crossings[e] = crossing_of(grid, at, stored, e);
+    }
+    cwi_cell_build(plan, crossings, out);
+    for (int v = 0; v < plan->vertex_count; v++) {
         double g[3];
         cwi_store_position(sink, at, out->vertices[v], first + (size_t)v);
         if (!sink->normals)
@@ -171,5 +167,4 @@ void cwi_ambiguous_build(const cwi_grid *grid, const size_t at[3], unsigned cube
         inner_gradient(&grid->volume, at, out->vertices[v], g);
         cwi_store_normal(sink, g, first + (size_t)v);
     }
-    *plan = cell.plan;
 }

@@ -18,16 +18,10 @@ static inline bool cwi_zero_is_inside(const cwi_grid *grid)
     return grid->invert == grid->strict;
 }
 
-/* A cell at padded sample at[] whose case the signs alone do not settle. */
-typedef struct cwi_ambiguous {
-    size_t at[3];
-    double stored[8]; /* the corners' numbers; NaN: outside the volume, or no value */
-    cwi_cell_plan plan;
-} cwi_ambiguous;
-
-/* Finds the cell's plan, and notes it at the end of its layer's list. */
+/* Finds the plan of the cell at padded sample at[], whose case the signs alone do not settle,
+ * and notes it at the end of its layer's list. */
 void cwi_ambiguous_plan(const cwi_grid *grid, const size_t at[3], unsigned cube,
-                        cwi_ambiguous *cell);
+                        cwi_cell_plan *plan);
 
 /* Builds the cell's surface and writes its inner vertices, numbered from first on. The plan is
  * the n-th that was noted in its layer. */

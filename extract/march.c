@@ -80,14 +80,14 @@ static void count_ambiguous(const cwi_grid *g, uint64_t ambiguous, size_t j, siz
     store_cases(&c, ambiguous, cases);
     for (; ambiguous; ambiguous &= ambiguous - 1) {
         const int i = __builtin_ctzll(ambiguous);
-        cwi_ambiguous cell;
+        cwi_cell_plan plan;
         if (g->simple) {
             row->triangle += cwi_case_count[cases[i]];
             continue;
         }
-        cwi_ambiguous_plan(g, (const size_t[3]){64 * w + (size_t)i, j, k}, cases[i], &cell);
-        row->triangle += (size_t)cell.plan.triangle_count;
-        row->first[3] += (uint32_t)cell.plan.vertex_count;
+        cwi_ambiguous_plan(g, (const size_t[3]){64 * w + (size_t)i, j, k}, cases[i], &plan);
+        row->triangle += (size_t)plan.triangle_count;
+        row->first[3] += (uint32_t)plan.vertex_count;
     }
 }
 
