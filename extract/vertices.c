@@ -48,7 +48,7 @@ typedef struct cwi_run {
 typedef struct cwi_edge_list {
     int axis;
     size_t k, count, runs;
-    int32_t i[ROOM];
+    int32_t i[ROOM], j[ROOM];
     cwi_run run[ROOM + 1];
 } cwi_edge_list;
 
@@ -77,49 +77,36 @@ static inline void clear_list(cwi_edge_list *l)
     l->count = 0;
 }
 
-/* Writes where the bits of a word are, whose lowest stands at i, and up to three more. */
-static inline void list_bits(uint64_t bits, size_t i, int32_t *to)
+/* Adds the edges at the bits of a word of row j, whose lowest stands at i. Several at a time,
+ * whether there are so many or not: how many there are cannot be foreseen, and a wrong guess
+ * costs more. */
+static inline void list_edges(cwi_edge_list *l, uint64_t bits, size_t i, size_t j)
 {
-    for (; bits; to += 4)
-        for (int c = 0; c < 4; c++) {
-            to[c] = (int32_t)i + __builtin_ctzll(bits | UINT64_C(1) << 63);
-            bits &= bits - 1;
-        }
-}
-
-/* Adds the edges at the bits of a word whose lowest stands at i. Several at a time, whether
- * there are so many or not: how many there are cannot be foreseen, and a wrong guess costs
- * more. */
-static inline void list_edges(cwi_edge_list *l, uint64_t bits, size_t i)
-{
-    int32_t *to = l->i + l->count;
+    int32_t *to_i = l->i + l->count, *to_j = l->j + l->count;
     const int count = __builtin_popcountll(bits);
     l->count += (size_t)count;
 #if CWI_WIDE
     if (__builtin_expect(count <= 8, 1)) {
         const __m512i places = _mm512_maskz_compress_epi8(bits, _mm512_load_si512(cwi_iota));
         const __m256i wide = _mm256_cvtepu8_epi32(_mm512_castsi512_si128(places));
-        _mm256_storeu_si256((__m256i *)(void *)to,
+        _mm256_storeu_si256((__m256i *)(void *)to_i,
                             _mm256_add_epi32(wide, _mm256_set1_epi32((int)i)));
+        _mm256_storeu_si256((__m256i *)(void *)to_j, _mm256_set1_epi32((int)j));
         return;
     }
 #endif
-    list_bits(bits, i, to);
+    for (; bits; to_i += 4, to_j += 4)
+        for (int c = 0; c < 4; c++) {
+            to_i[c] = (int32_t)i + __builtin_ctzll(bits | UINT64_C(1) << 63);
+            to_j[c] = (int32_t)j;
+            bits &= bits - 1;
+        }
 }
 
 /* Where the last edges of a run end in a list. */
 static inline size_t end_of_run(const cwi_edge_list *l, size_t r)
 {
     return r + 1 < l->runs ? l->run[r + 1].begin : l->count;
-}
-
-/* The rows that a list's edges are in. */
-static inline void list_rows(const cwi_edge_list *l, int32_t j[ROOM])
-{
-    for (size_t r = 0; r < l->runs; r++) /* each one too far, but one after another */
-        for (size_t n = l->run[r].begin; n < end_of_run(l, r); n += LANES)
-            for (size_t c = n; c < n + LANES; c++)
-                j[c] = (int32_t)l->run[r].j;
 }
 
 /* As many as its edges, rounded up to whole vectors. */
