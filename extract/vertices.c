@@ -162,25 +162,21 @@ static inline cwi_frame make_frame(const cwi_edge_list *list, const cwi_vertex_s
     return f;
 }
 
-/* A power of two which brings a number to 1 or above, below 2. Of what is not finite, or too
- * huge, it is negative or zero. */
-static inline float power_beside_f32(float x)
-{
-    uint32_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    bits = UINT32_C(0x7f000000) - (bits & UINT32_C(0x7f800000));
-    memcpy(&x, &bits, sizeof x);
-    return x;
-}
-
-static inline double power_beside_f64(double x)
-{
-    uint64_t bits;
-    memcpy(&bits, &x, sizeof bits);
-    bits = UINT64_C(0x7fe0000000000000) - (bits & UINT64_C(0x7ff0000000000000));
-    memcpy(&x, &bits, sizeof x);
-    return x;
-}
+/* A power of two which brings a number, not negative, to 1 or above, below 2: its exponent's
+ * bits from those of the largest power. Of what is not finite, or too huge, it is negative or
+ * zero. */
+#define POWER_BESIDE(name, real, word, digits)                                                 \
+    static inline real name(real x)                                                            \
+    {                                                                                          \
+        const word one = (word)1 << ((digits)-1), exponent = ((word)-1 >> 1) - (one - 1);      \
+        word bits;                                                                             \
+        memcpy(&bits, &x, sizeof bits);                                                        \
+        bits = exponent - one - (bits & exponent);                                             \
+        memcpy(&x, &bits, sizeof x);                                                           \
+        return x;                                                                              \
+    }
+POWER_BESIDE(power_beside_f32, float, uint32_t, FLT_MANT_DIG)
+POWER_BESIDE(power_beside_f64, double, uint64_t, DBL_MANT_DIG)
 #define power_beside(x) _Generic(x, float : power_beside_f32, double : power_beside_f64)(x)
 
 /* Four numbers side by side, of small types: compilers take them one by one. */
