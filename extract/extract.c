@@ -137,24 +137,11 @@ static cw_status make_plan(plan *p, const cw_extract_desc *d, cw_error *err)
     return st == CW_OK ? cwi_extract_check_limits(d, &p->counts, err) : st;
 }
 
-/* To the order of 1, by a power of two: only directions matter, and floats hold these. */
-static void scale_cofactor(double cofactor[3][3])
-{
-    double largest = 0;
-    int exponent;
-    for (int n = 0; n < 9; n++)
-        largest = fmax(largest, fabs(cofactor[n / 3][n % 3]));
-    frexp(largest, &exponent);
-    for (int n = 0; n < 9; n++)
-        cofactor[n / 3][n % 3] = ldexp(cofactor[n / 3][n % 3], -exponent);
-}
-
 cwi_vertex_sink cwi_make_sink(const cw_volume *v, bool invert, cw_mesh *mesh)
 {
     cwi_vertex_sink sink = {
         .positions = mesh->positions, .normals = mesh->normals, .grid = v, .diagonal = true};
     cwi_outward(v, invert, sink.cofactor);
-    scale_cofactor(sink.cofactor);
     for (int r = 0; r < 3; r++) {
         for (int c = 0; c < 3; c++)
             sink.affine[r][c] = v->affine[r][c];

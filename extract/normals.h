@@ -6,8 +6,8 @@
 #include <cubewright/volume.h>
 
 /* The map from gradients of the stored numbers, in index space, to outward directions of the
- * world: the inverse transpose of the affine, here as its cofactors; the sign holds the
- * determinant's and the side that is inside (invert: that of low numbers). */
+ * world: the inverse transpose of the affine, here as its cofactors, the largest of them 1; the
+ * sign holds the determinant's and the side that is inside (invert: that of low numbers). */
 void cwi_outward(const cw_volume *volume, bool invert, double cofactor[3][3]);
 
 /* A power of two that makes voxels about 1 large, so that no product of sides leaves the range
