@@ -7,9 +7,19 @@
 #include "extract/crossings.h"
 #include "extract/engine.h"
 
-#if CWI_WIDE
+#ifdef __AVX2__
 #include <immintrin.h>
 #endif
+
+/* The place of the lowest bit that is set; of none, any. */
+static inline unsigned cwi_lowest(uint64_t bits)
+{
+#ifdef __BMI__
+    return (unsigned)_tzcnt_u64(bits);
+#else
+    return (unsigned)__builtin_ctzll(bits | UINT64_C(1) << 63);
+#endif
+}
 
 /* The four rows of samples around a row of cells. */
 typedef struct cell_rows {
@@ -75,22 +85,63 @@ _Alignas(64) static const uint8_t cwi_iota[64] = {
     22, 23, 24, 25, 26, 27, 28, 29, 30, 31, 32, 33, 34, 35, 36, 37, 38, 39, 40, 41, 42, 43,
     44, 45, 46, 47, 48, 49, 50, 51, 52, 53, 54, 55, 56, 57, 58, 59, 60, 61, 62, 63};
 
-/* What a table of 256 bytes says of each of 64 cases. */
-static inline __m512i look_up(const void *table, __m512i cases)
+#elif defined __AVX2__
+
+typedef struct cell_word {
+    __m256i even, odd; /* lane n, bit i: corner 2 n, or 2 n + 1, of cell i is inside */
+    uint64_t mixed;    /* cells whose corners are not all alike */
+} cell_word;
+
+static inline __m256i four_words(const cell_rows *r, size_t w)
 {
-    const char *t = table;
-    const __m512i low =
-        _mm512_permutex2var_epi8(_mm512_loadu_si512(t), cases, _mm512_loadu_si512(t + 64));
-    const __m512i high = _mm512_permutex2var_epi8(_mm512_loadu_si512(t + 128), cases,
-                                                  _mm512_loadu_si512(t + 192));
-    return _mm512_mask_mov_epi8(low, _mm512_movepi8_mask(cases), high);
+    return _mm256_set_epi64x((long long)r->row[3][w], (long long)r->row[2][w],
+                             (long long)r->row[1][w], (long long)r->row[0][w]);
 }
 
-/* Of the active cells those whose signs alone do not settle their surface. */
-static inline uint64_t ambiguous_cells(const cell_word *c, uint64_t active)
+static inline cell_word load_cells(const cell_rows *r, size_t w)
 {
-    return _mm512_mask_test_epi8_mask(active, look_up(cwi_case_is_ambiguous, c->cases),
-                                      _mm512_set1_epi8(1));
+    cell_word c = {.even = four_words(r, w)};
+    c.odd = _mm256_or_si256(_mm256_srli_epi64(c.even, 1),
+                            _mm256_slli_epi64(four_words(r, w + 1), 63));
+    const __m256i any = _mm256_or_si256(c.even, c.odd), all = _mm256_and_si256(c.even, c.odd);
+    const __m128i any2 = _mm_or_si128(_mm256_castsi256_si128(any),
+                                      _mm256_extracti128_si256(any, 1)),
+                  all2 = _mm_and_si128(_mm256_castsi256_si128(all),
+                                       _mm256_extracti128_si256(all, 1));
+    c.mixed = (uint64_t)((_mm_cvtsi128_si64(any2) | _mm_extract_epi64(any2, 1)) &
+                         ~(_mm_cvtsi128_si64(all2) & _mm_extract_epi64(all2, 1)));
+    return c;
+}
+
+/* In each eight bytes: an 8 x 8 matrix of bits, transposed [Warren2013, 7-3]. */
+static inline __m256i transpose8(__m256i x)
+{
+    const __m256i by_one = _mm256_set1_epi64x(0x00aa00aa00aa00aa),
+                  by_two = _mm256_set1_epi64x(0x0000cccc0000cccc),
+                  by_four = _mm256_set1_epi64x(0x00000000f0f0f0f0);
+    __m256i t = _mm256_and_si256(_mm256_xor_si256(x, _mm256_srli_epi64(x, 7)), by_one);
+    x = _mm256_xor_si256(x, _mm256_xor_si256(t, _mm256_slli_epi64(t, 7)));
+    t = _mm256_and_si256(_mm256_xor_si256(x, _mm256_srli_epi64(x, 14)), by_two);
+    x = _mm256_xor_si256(x, _mm256_xor_si256(t, _mm256_slli_epi64(t, 14)));
+    t = _mm256_and_si256(_mm256_xor_si256(x, _mm256_srli_epi64(x, 28)), by_four);
+    return _mm256_xor_si256(x, _mm256_xor_si256(t, _mm256_slli_epi64(t, 28)));
+}
+
+/* The cases of active cells; those of others may be left out. */
+static inline void store_cases(const cell_word *c, uint64_t active, uint8_t cases[64])
+{
+    /* byte b of corners 0 to 3 side by side, and in the upper half of 4 to 7; b up to 3, then
+     * the others */
+    const __m256i low = _mm256_unpacklo_epi8(c->even, c->odd),
+                  high = _mm256_unpackhi_epi8(c->even, c->odd),
+                  join = _mm256_setr_epi32(0, 4, 1, 5, 2, 6, 3, 7);
+    const __m256i first = _mm256_unpacklo_epi16(low, high),
+                  last = _mm256_unpackhi_epi16(low, high);
+    (void)active;
+    _mm256_storeu_si256((__m256i *)(void *)cases,
+                        transpose8(_mm256_permutevar8x32_epi32(first, join)));
+    _mm256_storeu_si256((__m256i *)(void *)(cases + 32),
+                        transpose8(_mm256_permutevar8x32_epi32(last, join)));
 }
 
 #else

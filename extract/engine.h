@@ -4,6 +4,7 @@
 #define EXTRACT_ENGINE_H
 
 #include "extract/cases.h"
+#include "extract/cube.h"
 #include "extract/octree.h"
 
 #include <cubewright/mesh.h>
@@ -12,6 +13,8 @@
  * they are written: three edges each, with room to take 16 or 32 at once. */
 typedef struct cwi_emission {
     uint8_t edge[256][16];
+    uint8_t edges[256]; /* how many; 0: signs alone do not settle the surface */
+    uint8_t crossed[256][CWI_EDGE_ROWS]; /* 1 where the case's edge in the row is */
     uint8_t config_edge[CWI_CASE_CONFIGS][32];
     uint8_t config_edges[CWI_CASE_CONFIGS]; /* how many; 0: there are vertices inside */
     bool flip; /* triangles are turned round, as the affine mirrors */

@@ -171,12 +171,16 @@ static void turn_triangles(const uint8_t *from, int count, bool flip, uint8_t *t
         to[n] = from[flip && n % 3 ? n - n % 3 + 3 - n % 3 : n];
 }
 
-cwi_emission cwi_make_emission(const cw_volume *v)
+cwi_emission cwi_make_emission(const cw_volume *v, bool simple)
 {
     const bool flip = cwi_affine_determinant(v->affine[0]) < 0;
     cwi_emission emission = {.flip = flip};
-    for (int c = 0; c < 256; c++)
+    for (unsigned c = 0; c < 256; c++) {
         turn_triangles(cwi_case_triangles[c], cwi_case_count[c], flip, emission.edge[c]);
+        emission.edges[c] = simple || !cwi_case_is_ambiguous[c] ? 3 * cwi_case_count[c] : 0;
+        for (int n = 0; n < CWI_EDGE_ROWS; n++)
+            emission.crossed[c][n] = cwi_edge_is_crossed(c, cwi_row_edge(n));
+    }
     for (int n = 0; n < CWI_CASE_CONFIGS; n++) {
         const cwi_config *config = &cwi_configs[n];
         const int count = config->vertex_count ? 0 : config->triangle_count;
@@ -246,7 +250,7 @@ static cw_status write_mesh(plan *p, const cw_extract_desc *d, cw_mesh *mesh, cw
         return st;
     writing w = {.plan = p,
                  .end = p->grid.rows_z - 1,
-                 .emission = cwi_make_emission(&p->grid.volume),
+                 .emission = cwi_make_emission(&p->grid.volume, d->simple_topology),
                  .sink = cwi_make_sink(&p->grid.volume, p->grid.invert, mesh),
                  .triangles = mesh->triangles};
     st = write_layers(&w, d, err);
@@ -408,7 +412,7 @@ static cw_status write_slabs(plan *p, const cw_extract_desc *d, size_t triangles
         st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", most.vertices);
     memcpy(mesh.affine, p->grid.volume.affine, sizeof mesh.affine);
     writing w = {.plan = p,
-                 .emission = cwi_make_emission(&p->grid.volume),
+                 .emission = cwi_make_emission(&p->grid.volume, d->simple_topology),
                  .sink = cwi_make_sink(&p->grid.volume, p->grid.invert, &mesh),
                  .triangles = mesh.triangles};
     for (; w.begin + 1 < p->grid.rows_z && st == CW_OK; w.begin = w.end) {

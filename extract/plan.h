@@ -19,8 +19,8 @@ cw_status cwi_plan_count(cwi_plan *plan, int threads, const cw_progress *progres
 void cwi_plan_free(cwi_plan *plan);
 
 /* Where vertices of a volume go: the mesh's arrays, relative to an origin, which it gets, in
- * the middle of the volume. invert: as in cwi_grid */
+ * the middle of the volume. invert, simple: as in cwi_grid */
 cwi_vertex_sink cwi_make_sink(const cw_volume *volume, bool invert, cw_mesh *mesh);
-cwi_emission cwi_make_emission(const cw_volume *volume);
+cwi_emission cwi_make_emission(const cw_volume *volume, bool simple);
 
 #endif

@@ -478,7 +478,7 @@ static cw_status march(sparse_plan *p, cw_mesh *mesh, cw_error *err)
         return st;
     p->predicting = !mesh;
     p->sink = cwi_make_sink(v, p->whole.invert, mesh ? mesh : &(cw_mesh){0});
-    p->emission = cwi_make_emission(v);
+    p->emission = cwi_make_emission(v, p->desc->simple_topology);
     return each_block(p, "marching", march_block, err);
 }
 

@@ -95,12 +95,14 @@ static inline void list_edges(cwi_edge_list *l, uint64_t bits, size_t i, size_t 
         return;
     }
 #endif
-    for (; bits; to_i += 4, to_j += 4)
-        for (int c = 0; c < 4; c++) {
-            to_i[c] = (int32_t)i + __builtin_ctzll(bits | UINT64_C(1) << 63);
+    do {
+        for (int c = 0; c < 4; c++, bits &= bits - 1) {
+            to_i[c] = (int32_t)(i + cwi_lowest(bits));
             to_j[c] = (int32_t)j;
-            bits &= bits - 1;
         }
+        to_i += 4;
+        to_j += 4;
+    } while (bits);
 }
 
 /* Where the last edges of a run end in a list. */
