@@ -58,8 +58,8 @@ typedef struct cell_list {
     edge_half edges[2 * WORDS + 1];
     cell_numbers numbers; /* not used between cells */
     size_t word[WORDS];
-    uint16_t cell[LIST + 64]; /* 64 times the number of its word in the list, and its bit */
-    uint8_t cases[LIST + 64];
+    uint16_t cell[LIST + 64]; /* 64 times the number of its word here, and its bit */
+    uint8_t cases[LIST];      /* of all cells in these words */
 } cell_list;
 
 static inline void begin_row(cell_list *l, const cwi_grid *g, const cwi_row *rows, size_t j,
@@ -137,7 +137,7 @@ static inline size_t list_cells(cell_list *l, size_t words, size_t n, const cwi_
     const __m512i iota = _mm512_load_si512(cwi_iota);
     const __m512i bits = _mm512_maskz_compress_epi8(active, iota);
     const __m512i base = _mm512_set1_epi16((int16_t)(64 * words));
-    _mm512_storeu_si512(l->cases + n, _mm512_maskz_compress_epi8(active, c.cases));
+    store_cases(&c, active, l->cases + 64 * words);
     _mm512_storeu_si512(
         l->cell + n, _mm512_or_si512(base, _mm512_cvtepu8_epi16(_mm512_castsi512_si256(bits))));
     if (after > n + 32)
@@ -200,8 +200,8 @@ typedef struct cell_list {
         uint32_t first[CWI_EDGE_ROWS]; /* number of the first vertex in the word */
     } edges[WORDS + 1];                /* known where some cells are not live */
     size_t word[WORDS];
-    uint16_t cell[LIST + 4]; /* 64 times the number of its word in the list, and its bit */
-    uint8_t cases[LIST + 4];
+    uint16_t cell[LIST + 4]; /* 64 times the number of its word here, and its bit */
+    uint8_t cases[LIST];     /* of all cells in these words */
 } cell_list;
 
 static inline void begin_row(cell_list *l, const cwi_grid *g, const cwi_row *rows, size_t j,
@@ -239,19 +239,13 @@ static inline size_t list_cells(cell_list *l, size_t words, size_t n, const cwi_
     const cell_word c = load_cells(samples, w);
     uint64_t active = active_cells(g, c.mixed, j, k, w);
     const size_t after = n + (size_t)__builtin_popcountll(active);
-    uint8_t cases[64];
-    store_cases(&c, active, cases);
+    store_cases(&c, active, l->cases + 64 * words);
     l->word[words] = w;
     if (g->live)
         load_edges(l, words, g, j, k, w);
-    /* several at a time: see list_edges */
-    for (; active; n += 4)
-        for (size_t m = n; m < n + 4; m++) {
-            const unsigned i = cwi_lowest(active) % 64;
-            active &= active - 1;
-            l->cases[m] = cases[i];
-            l->cell[m] = (uint16_t)(64 * words + i);
-        }
+    for (; active; n += 4) /* several at a time: see list_edges */
+        for (size_t m = n; m < n + 4; m++, active &= active - 1)
+            l->cell[m] = (uint16_t)(64 * words + cwi_lowest(active));
     return after;
 }
 

@@ -60,8 +60,8 @@ static void emit_cells(const cwi_grid *g, size_t j, size_t k, cell_list *l, size
     const bool all_live = !g->live;
     cell_numbers numbers = l->numbers;
     for (size_t n = 0; n < count; n++) {
-        const unsigned cube = l->cases[n], edges = emission->edges[cube];
         const size_t place = l->cell[n];
+        const unsigned cube = l->cases[place], edges = emission->edges[cube];
         number_cell(l, all_live, place, emission->crossed[cube], &numbers);
         if (edges) {
             out = put(&numbers, emission->edge[cube], edges, out, end);

@@ -117,13 +117,25 @@ static inline size_t lanes_of(const cwi_edge_list *l)
     return (l->count + LANES - 1) / LANES * LANES;
 }
 
-/* As memcpy, of so few numbers that a call counts; up to 15 more may be read. */
-static inline void copy_floats(float *to, const float *from, size_t count)
+/* As memcpy, of the vectors of a few vertices, for which a call counts; up to 15 more numbers
+ * may be read. */
+static inline void copy_vectors(float *to, const float *from, size_t count)
 {
+    count *= 3;
 #if CWI_WIDE
     for (; count >= 16; count -= 16, to += 16, from += 16)
         _mm512_storeu_ps(to, _mm512_loadu_ps(from));
     _mm512_mask_storeu_ps(to, (__mmask16)((1u << count) - 1), _mm512_loadu_ps(from));
+#elif defined __AVX2__
+    /* the last ones overlap those before */
+    for (size_t n = 0; n + 8 < count; n += 8)
+        _mm256_storeu_ps(to + n, _mm256_loadu_ps(from + n));
+    if (count >= 8)
+        _mm256_storeu_ps(to + count - 8, _mm256_loadu_ps(from + count - 8));
+    else if (count == 6)
+        memcpy(to, from, 6 * sizeof *to);
+    else if (count)
+        memcpy(to, from, 3 * sizeof *to);
 #else
     memcpy(to, from, count * sizeof *to);
 #endif
@@ -134,8 +146,8 @@ static inline void store_runs(const cwi_edge_list *l, const float *from, float *
 {
     for (size_t r = 0; r < l->runs; r++) {
         const cwi_run *run = &l->run[r];
-        copy_floats(to + 3 * (size_t)run->number, from + 3 * run->begin,
-                    3 * (end_of_run(l, r) - run->begin));
+        copy_vectors(to + 3 * (size_t)run->number, from + 3 * run->begin,
+                     end_of_run(l, r) - run->begin);
     }
 }
 
