@@ -249,32 +249,45 @@ static inline size_t list_cells(cell_list *l, size_t words, size_t n, const cwi_
     return after;
 }
 
+/* The numbers of the first vertices from a cell on, from their ranks. */
+static inline void rank_cell(const cell_list *l, size_t place, edge_lanes *lanes)
+{
+    const uint64_t before = (UINT64_C(1) << place % 64) - 1;
+    uint32_t first[CWI_EDGE_ROWS];
+    for (int n = 0; n < CWI_EDGE_ROWS; n++)
+        first[n] = l->edges[place / 64].first[n] +
+                   (uint32_t)__builtin_popcountll(l->edges[place / 64].crossed[n] & before);
+    memcpy(lanes, first, sizeof *lanes);
+}
+
 /* Goes on to the next cell of a list. Where all cells are live each crossed edge is one of a
  * listed cell's, and numbers need but be counted on; else they are ranks. crossed: the cell's
- * case as in cwi_emission */
+ * case as in cwi_emission. No lane is named here and below: all may stay in registers. */
 static inline void number_cell(const cell_list *l, bool all_live, size_t place,
                                const uint8_t *crossed, cell_numbers *numbers)
 {
-    const uint64_t before = (UINT64_C(1) << place % 64) - 1;
     numbers->here = numbers->next;
-    for (int n = 0; n < CWI_EDGE_ROWS && !all_live; n++)
-        numbers->here[n] =
-            l->edges[place / 64].first[n] +
-            (uint32_t)__builtin_popcountll(l->edges[place / 64].crossed[n] & before);
+    if (!all_live)
+        rank_cell(l, place, &numbers->here);
 #ifdef __AVX2__
     numbers->next = numbers->here + (edge_lanes)_mm256_cvtepu8_epi32(_mm_loadu_si64(crossed));
 #else
+    uint32_t step[CWI_EDGE_ROWS];
+    edge_lanes lanes;
     for (int n = 0; n < CWI_EDGE_ROWS; n++)
-        numbers->next[n] = numbers->here[n] + crossed[n];
+        step[n] = crossed[n];
+    memcpy(&lanes, step, sizeof lanes);
+    numbers->next = numbers->here + lanes;
 #endif
 }
 
 static inline void cell_vertices(const cell_numbers *numbers, uint32_t vertex[12])
 {
+    uint32_t here[CWI_EDGE_ROWS], next[CWI_EDGE_ROWS];
+    memcpy(here, &numbers->here, sizeof here);
+    memcpy(next, &numbers->next, sizeof next);
     for (int n = 0; n < 12; n++)
-        vertex[n] = n < 4   ? numbers->here[n]
-                    : n & 1 ? numbers->next[2 + n / 2]
-                            : numbers->here[2 + n / 2];
+        vertex[n] = n < 4 ? here[n] : n & 1 ? next[2 + n / 2] : here[2 + n / 2];
 }
 
 /* Writes the vertices at up to 16 edges; what is too much, before end, the next cells write

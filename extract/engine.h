@@ -9,12 +9,18 @@
 
 #include <cubewright/mesh.h>
 
-/* Triangles of a case, and of a configuration of one that has no vertices inside, in the order
- * they are written: three edges each, with room to take 16 or 32 at once. */
+/* Triangles of a case, in the order they are written: three edges each, with room to take 16 at
+ * once. */
+typedef struct cwi_case_emission {
+    _Alignas(32) uint8_t edge[16];
+    uint8_t crossed[CWI_EDGE_ROWS]; /* 1 where the edge in the row is */
+    uint8_t edges;                  /* how many; 0: signs alone do not settle the surface */
+} cwi_case_emission;
+
+/* What is written of cells: of those of each case, and of a configuration of one that has no
+ * vertices inside. */
 typedef struct cwi_emission {
-    uint8_t edge[256][16];
-    uint8_t edges[256]; /* how many; 0: signs alone do not settle the surface */
-    uint8_t crossed[256][CWI_EDGE_ROWS]; /* 1 where the case's edge in the row is */
+    cwi_case_emission of_case[256];
     uint8_t config_edge[CWI_CASE_CONFIGS][32];
     uint8_t config_edges[CWI_CASE_CONFIGS]; /* how many; 0: there are vertices inside */
     bool flip; /* triangles are turned round, as the affine mirrors */

@@ -176,10 +176,11 @@ cwi_emission cwi_make_emission(const cw_volume *v, bool simple)
     const bool flip = cwi_affine_determinant(v->affine[0]) < 0;
     cwi_emission emission = {.flip = flip};
     for (unsigned c = 0; c < 256; c++) {
-        turn_triangles(cwi_case_triangles[c], cwi_case_count[c], flip, emission.edge[c]);
-        emission.edges[c] = simple || !cwi_case_is_ambiguous[c] ? 3 * cwi_case_count[c] : 0;
+        cwi_case_emission *of = &emission.of_case[c];
+        turn_triangles(cwi_case_triangles[c], cwi_case_count[c], flip, of->edge);
+        of->edges = simple || !cwi_case_is_ambiguous[c] ? 3 * cwi_case_count[c] : 0;
         for (int n = 0; n < CWI_EDGE_ROWS; n++)
-            emission.crossed[c][n] = cwi_edge_is_crossed(c, cwi_row_edge(n));
+            of->crossed[n] = cwi_edge_is_crossed(c, cwi_row_edge(n));
     }
     for (int n = 0; n < CWI_CASE_CONFIGS; n++) {
         const cwi_config *config = &cwi_configs[n];

@@ -61,10 +61,11 @@ static void emit_cells(const cwi_grid *g, size_t j, size_t k, cell_list *l, size
     cell_numbers numbers = l->numbers;
     for (size_t n = 0; n < count; n++) {
         const size_t place = l->cell[n];
-        const unsigned cube = l->cases[place], edges = emission->edges[cube];
-        number_cell(l, all_live, place, emission->crossed[cube], &numbers);
-        if (edges) {
-            out = put(&numbers, emission->edge[cube], edges, out, end);
+        const unsigned cube = l->cases[place];
+        const cwi_case_emission *of = &emission->of_case[cube];
+        number_cell(l, all_live, place, of->crossed, &numbers);
+        if (of->edges) {
+            out = put(&numbers, of->edge, of->edges, out, end);
         } else {
             const cell_numbers copy = numbers; /* so that they may stay in registers */
             to->out = out;
