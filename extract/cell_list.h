@@ -290,6 +290,17 @@ static inline void cell_vertices(const cell_numbers *numbers, uint32_t vertex[12
         vertex[n] = n < 4 ? here[n] : n & 1 ? next[2 + n / 2] : here[2 + n / 2];
 }
 
+/* Writes the vertices at some edges, and no more. Not inline: seldom called, and a burden on
+ * the loop around. */
+__attribute__((noinline)) static void put_few(const cell_numbers *numbers, const uint8_t *edge,
+                                              unsigned count, uint32_t *out)
+{
+    uint32_t vertex[12];
+    cell_vertices(numbers, vertex);
+    for (unsigned n = 0; n < count; n++)
+        out[n] = vertex[edge[n]];
+}
+
 /* Writes the vertices at up to 16 edges; what is too much, before end, the next cells write
  * over. */
 static inline uint32_t *put(const cell_numbers *numbers, const uint8_t *edge, unsigned count,
@@ -299,24 +310,23 @@ static inline uint32_t *put(const cell_numbers *numbers, const uint8_t *edge, un
     /* an edge's row, and the sign where it stands at i + 1 */
     const __m128i rows =
         _mm_setr_epi8(0, 1, 2, 3, 4, 4 - 128, 5, 5 - 128, 6, 6 - 128, 7, 7 - 128, 0, 0, 0, 0);
-    if (end - out >= 16) {
-        __m128i at =
-            _mm_shuffle_epi8(rows, _mm_loadu_si128((const __m128i *)(const void *)edge));
-        for (int n = 0; n < 16; n += 8, at = _mm_srli_si128(at, 8)) {
-            const __m256i lane = _mm256_cvtepi8_epi32(at);
-            const __m256i here = _mm256_permutevar8x32_epi32((__m256i)numbers->here, lane),
-                          next = _mm256_permutevar8x32_epi32((__m256i)numbers->next, lane);
-            _mm256_storeu_ps((float *)(void *)(out + n),
-                             _mm256_blendv_ps((__m256)here, (__m256)next, (__m256)lane));
-        }
+    __m128i at = _mm_shuffle_epi8(rows, _mm_loadu_si128((const __m128i *)(const void *)edge));
+    if (__builtin_expect(end - out < 16, 0)) {
+        const cell_numbers copy = *numbers; /* so that they may stay in registers */
+        put_few(&copy, edge, count, out);
         return out + count;
     }
-#endif
-    uint32_t vertex[12];
+    for (int n = 0; n < 16; n += 8, at = _mm_srli_si128(at, 8)) {
+        const __m256i lane = _mm256_cvtepi8_epi32(at);
+        const __m256i here = _mm256_permutevar8x32_epi32((__m256i)numbers->here, lane),
+                      next = _mm256_permutevar8x32_epi32((__m256i)numbers->next, lane);
+        _mm256_storeu_ps((float *)(void *)(out + n),
+                         _mm256_blendv_ps((__m256)here, (__m256)next, (__m256)lane));
+    }
+#else
     (void)end;
-    cell_vertices(numbers, vertex);
-    for (unsigned n = 0; n < count; n++)
-        out[n] = vertex[edge[n]];
+    put_few(numbers, edge, count, out);
+#endif
     return out + count;
 }
 

@@ -51,9 +51,12 @@ __attribute__((noinline)) static void emit_ambiguous(const cwi_grid *g, const si
     to->plan++;
 }
 
-/* Writes the triangles of listed cells: the one place where a cell's case becomes triangles. */
-static void emit_cells(const cwi_grid *g, size_t j, size_t k, cell_list *l, size_t count,
-                       const cwi_emission *emission, cwi_vertex_sink *sink, cwi_cursor *to)
+/* Writes the triangles of listed cells: the one place where a cell's case becomes triangles.
+ * Not inline: it needs all registers. */
+__attribute__((noinline)) static void emit_cells(const cwi_grid *g, size_t j, size_t k,
+                                                 cell_list *l, size_t count,
+                                                 const cwi_emission *emission,
+                                                 cwi_vertex_sink *sink, cwi_cursor *to)
 {
     const uint32_t *end = to->end;
     uint32_t *out = to->out;
