@@ -26,8 +26,8 @@ static inline uint32_t first_vertex(const cwi_grid *g, const cwi_row *rows, int 
     return rows[row].first[edge_rows[n].axis];
 }
 
-/* Bit i: there is a vertex on edge n of the cube at bit i of word w, at i where there is
- * another at i + 1. */
+/* Bit i: there is a vertex on the edge at i, of word w, in the row that edge n of row (j, k)'s
+ * cubes lies in. */
 static inline uint64_t edge_vertices(const cwi_grid *g, int n, size_t j, size_t k, size_t w)
 {
     return cwi_edge_vertices(g, edge_rows[n].axis, j + edge_rows[n].j, k + edge_rows[n].k, w);
@@ -218,8 +218,7 @@ static inline void go_on(cell_list *l, size_t words)
     memcpy(l->edges[0].first, l->edges[words].first, sizeof l->edges[0].first);
 }
 
-/* Crossings of the edges around a word of cells, whose vertices are not those of its live cells
- * alone. */
+/* Crossings of the edges around a word of cells some of which are not live. */
 static void load_edges(cell_list *l, size_t words, const cwi_grid *g, size_t j, size_t k,
                        size_t w)
 {
@@ -290,8 +289,8 @@ static inline void cell_vertices(const cell_numbers *numbers, uint32_t vertex[12
         vertex[n] = n < 4 ? here[n] : n & 1 ? next[2 + n / 2] : here[2 + n / 2];
 }
 
-/* Writes the vertices at some edges, and no more. Not inline: seldom called, and a burden on
- * the loop around. */
+/* Writes the vertices at some edges, and no more. Not inline: where larger writes are at hand
+ * this is seldom called, and a burden on the loop around. */
 __attribute__((noinline)) static void put_few(const cell_numbers *numbers, const uint8_t *edge,
                                               unsigned count, uint32_t *out)
 {
