@@ -5,11 +5,6 @@
 
 #include <string.h>
 
-static inline int popcount(uint64_t x)
-{
-    return __builtin_popcountll(x);
-}
-
 /* What some words of a layer come to; after a row's last word comes the next row's first. */
 typedef struct word_counts {
     unsigned busy; /* words with cells whose corners are on both sides: word n, bit n */
@@ -18,9 +13,8 @@ typedef struct word_counts {
                                    and triangles of cells that are not ambiguous */
 } word_counts;
 
-enum {
-    COUNT_BITS = 16
-}; /* 64 cells have 320 triangles at most, and up to eight words are summed */
+/* 64 cells have 320 triangles at most, and up to eight words are summed. */
+enum { COUNT_BITS = 16 };
 
 /* Finds out about the cells that matter, and counts. */
 static inline void count_cells(const cwi_grid *g, size_t first, const cwi_words corner[8],
@@ -117,7 +111,7 @@ static uint64_t count_live_edges(const cwi_grid *g, unsigned busy, size_t j, siz
     uint64_t count = 0;
     for (; busy; busy &= busy - 1)
         for (int axis = 0; axis < 3; axis++)
-            count += (uint64_t)popcount(
+            count += (uint64_t)__builtin_popcountll(
                          cwi_edge_vertices(g, axis, j, k, w + (size_t)__builtin_ctz(busy)))
                      << COUNT_BITS * axis;
     return count;
