@@ -107,8 +107,10 @@ static void load_line(const box *b, const side *s, size_t n, uint64_t *line)
         return;
     }
     const size_t w = (p[0] + 1) / 64, bit = (p[0] + 1) % 64;
-    for (size_t j = 0; j < b->n[1]; j++)
+    for (size_t j = 0; j < b->n[1]; j++) {
+        __builtin_prefetch(cwi_grid_row(b->grid, (p[2] + 1) * b->grid->rows_y + j + 32) + w);
         line[j / 64] |= (word_at(b->grid, j + 1, p[2] + 1, w) >> bit & 1) << j % 64;
+    }
 }
 
 /* The first sample of the run of bits, within one word, that sample x of a line belongs to. */

@@ -89,6 +89,27 @@ static inline void cwi_keep_words(unsigned wanted, cwi_words *words)
 #endif
 }
 
+/* The sum of some words: word n, bit n. */
+static inline uint64_t cwi_sum_words(unsigned wanted, const cwi_words *words)
+{
+#ifdef __AVX512VPOPCNTDQ__
+    return (uint64_t)_mm512_mask_reduce_add_epi64((__mmask8)wanted, (__m512i)*words);
+#else
+    cwi_words kept = *words;
+    cwi_keep_words(wanted, &kept);
+#ifdef __AVX2__
+    const __m128i two = _mm_add_epi64(_mm256_castsi256_si128((__m256i)kept),
+                                      _mm256_extracti128_si256((__m256i)kept, 1));
+    return (uint64_t)_mm_cvtsi128_si64(two) + (uint64_t)_mm_extract_epi64(two, 1);
+#else
+    uint64_t sum = 0;
+    for (int n = 0; n < CWI_WORDS; n++)
+        sum += kept[n];
+    return sum;
+#endif
+#endif
+}
+
 /* The 12 edges of cubes, as in cube.h, that are crossed, from the bits of their 8 corners. */
 static inline void cwi_cross_edges(const cwi_words corner[8], cwi_words crossed[12])
 {

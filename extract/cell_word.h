@@ -3,7 +3,6 @@
 #ifndef EXTRACT_CELL_WORD_H
 #define EXTRACT_CELL_WORD_H
 
-#include "extract/cases.h"
 #include "extract/crossings.h"
 #include "extract/engine.h"
 
@@ -37,8 +36,7 @@ static inline cell_rows rows_around(const cwi_grid *g, size_t j, size_t k)
 #if CWI_WIDE
 
 typedef struct cell_word {
-    __m512i corner; /* lane n, bit i: corner n of cell i is inside */
-    __m512i cases;  /* byte i: which corners of cell i are */
+    __m512i cases;  /* byte i: which corners of cell i are inside */
     uint64_t mixed; /* cells whose corners are not all alike */
 } cell_word;
 
@@ -49,7 +47,8 @@ static inline __m512i four_words(const cell_rows *r, size_t w)
                           (long long)r->row[1][w], (long long)r->row[0][w]));
 }
 
-/* The cases of 64 cells: an 8 x 64 matrix of bits, turned. */
+/* The cases of 64 cells, whose corners n are the bits of lane n: an 8 x 64 matrix of bits,
+ * turned. */
 static inline __m512i turned(__m512i corner)
 {
     /* byte 8 b + 7 - n: bits of cells 8 b to 8 b + 7 for corner n */
@@ -65,10 +64,8 @@ static inline cell_word load_cells(const cell_rows *r, size_t w)
 {
     const __m512i here = four_words(r, w), one = _mm512_set1_epi8(1);
     const __m512i moved = _mm512_shrdi_epi64(here, four_words(r, w + 1), 1);
-    cell_word c;
-    c.corner =
-        _mm512_permutex2var_epi64(here, _mm512_set_epi64(11, 3, 10, 2, 9, 1, 8, 0), moved);
-    c.cases = turned(c.corner);
+    const __m512i by_turns = _mm512_set_epi64(11, 3, 10, 2, 9, 1, 8, 0);
+    cell_word c = {.cases = turned(_mm512_permutex2var_epi64(here, by_turns, moved))};
     c.mixed = _mm512_cmpgt_epu8_mask(_mm512_add_epi8(c.cases, one), one);
     return c;
 }

@@ -7,7 +7,8 @@
 
 /* What some words of a layer come to; after a row's last word comes the next row's first. */
 typedef struct word_counts {
-    unsigned busy; /* words with cells whose corners are on both sides: word n, bit n */
+    unsigned busy; /* words with cells whose corners are on both sides: word n, bit n; */
+    unsigned open; /* and with ambiguous ones */
     cwi_words mixed, ambiguous; /* these cells, and those whose signs do not settle the rest */
     cwi_words counts;           /* fields of COUNT_BITS: edges that are crossed along each axis,
                                    and triangles of cells that are not ambiguous */
@@ -61,7 +62,7 @@ static inline void count_words(const cwi_grid *g, size_t k, size_t word, unsigne
     c->busy = cwi_words_set(&c->mixed);
     if (c->busy) {
         count_cells(g, first, corner, c);
-        cwi_keep_words(c->busy, &c->counts);
+        c->open = cwi_words_set(&c->ambiguous);
     }
 }
 
@@ -123,22 +124,21 @@ static uint64_t count_live_edges(const cwi_grid *g, unsigned busy, size_t j, siz
 static inline void take_words(const cwi_grid *g, const word_counts *c, int n, int count,
                               size_t j, size_t k, size_t w, cwi_row *row)
 {
-    const unsigned busy = c->busy >> n & first_words((size_t)count);
+    const unsigned here = first_words((size_t)count) << n, busy = (c->busy & here) >> n;
     const uint64_t field = (UINT64_C(1) << COUNT_BITS) - 1;
-    uint64_t sums = 0;
     if (!busy)
         return;
     g->busy[(k * g->rows_y + j) * g->masks + w / 64] |= (uint64_t)busy << w % 64;
-    for (int i = n; i < n + count; i++)
-        sums += c->counts[i];
+    uint64_t sums = cwi_sum_words(c->busy & here, &c->counts);
     row->triangle += sums >> 3 * COUNT_BITS;
     if (g->live)
         sums = count_live_edges(g, busy, j, k, w);
     for (int axis = 0; axis < 3; axis++)
         row->first[axis] += (uint32_t)(sums >> COUNT_BITS * axis & field);
-    for (int i = n; i < n + count; i++)
-        if (c->ambiguous[i])
-            count_ambiguous(g, c->ambiguous[i], j, k, w + (size_t)(i - n), row);
+    for (unsigned left = c->open & here; left; left &= left - 1) {
+        const int i = __builtin_ctz(left);
+        count_ambiguous(g, c->ambiguous[i], j, k, w + (size_t)(i - n), row);
+    }
     if (!g->layers[k].at_border)
         g->layers[k].at_border = meets_border(g, c, n, count, j, k, w);
 }
@@ -217,17 +217,31 @@ static void sum_layer(cwi_row *rows, size_t count, cwi_layer *layer)
     layer->triangles = triangle;
 }
 
+/* No cell of the layer can be crossed. */
+static bool is_unwanted(const cwi_grid *g, size_t k)
+{
+    if (k + 1 == g->rows_z)
+        return true;
+    const uint64_t *wanted = g->everything ? NULL : cwi_grid_wanted(g, 0, k);
+    uint64_t any = !wanted;
+    for (size_t n = 0; n < g->bricks_y * g->masks && wanted; n++)
+        any |= wanted[n];
+    return !any;
+}
+
 void cwi_count_layer(const cwi_grid *g, size_t k, cwi_row *rows)
 {
     cwi_layer *layer = &g->layers[k];
     const size_t first = k * g->rows_y;
-    layer->plan_count = 0;
+    layer->vertices = layer->triangles = layer->plan_count = 0;
     layer->at_border = false;
     memset(rows + first, 0, g->rows_y * sizeof *rows);
     memset(g->busy + first * g->masks, 0, g->rows_y * g->masks * sizeof *g->busy);
-    if (k + 1 < g->rows_z && g->everything)
+    if (is_unwanted(g, k))
+        return;
+    if (g->everything)
         count_all(g, k, rows + first);
-    else if (k + 1 < g->rows_z)
+    else
         count_wanted(g, k, rows + first);
     sum_layer(rows + first, g->rows_y, layer);
 }

@@ -4,6 +4,9 @@
 
 #include <string.h>
 
+/* Triangles are written to where memory was fetched so many corners before. */
+enum { AHEAD = 1024 };
+
 /* What writing a row of cells goes on with. */
 typedef struct cwi_cursor {
     uint32_t *out;
@@ -66,6 +69,7 @@ __attribute__((noinline)) static void emit_cells(const cwi_grid *g, size_t j, si
         const size_t place = l->cell[n];
         const unsigned cube = l->cases[place];
         const cwi_case_emission *of = &emission->of_case[cube];
+        __builtin_prefetch(out + AHEAD, 1);
         number_cell(l, all_live, place, of->crossed, &numbers);
         if (of->edges) {
             out = put(&numbers, of->edge, of->edges, out, end);
@@ -107,9 +111,11 @@ void cwi_write_layers(const cwi_grid *g, size_t begin, size_t end, size_t cells,
     memset(&list.edges, 0, sizeof list.edges); /* lanes that are no edges */
     cwi_write_vertices(g, begin, end, rows, sink);
     for (size_t k = begin; k < cells; k++) {
+        const cwi_row *layer = rows + k * g->rows_y;
         to.plan = 0;
-        for (size_t j = 0; j + 1 < g->rows_y; j++) {
-            const cwi_row *row = rows + k * g->rows_y + j;
+        for (size_t j = 0; j + 1 < g->rows_y && layer->triangle < layer[g->rows_y].triangle;
+             j++) {
+            const cwi_row *row = layer + j;
             if (row[0].triangle == row[1].triangle)
                 continue;
             to.out = triangles + 3 * row[0].triangle;

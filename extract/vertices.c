@@ -30,6 +30,7 @@ enum {
     ROOM = BATCH + 64 + LANES,
     AHEAD = 3, /* rows that samples are fetched before they are needed, */
     DENSE = 2, /* in rows with more vertices than so many a word */
+    FAR = 512, /* numbers that places in arrays are fetched before they are written */
     TILE = 32  /* rows that are done in all layers before the next */
 };
 
@@ -118,10 +119,12 @@ static inline size_t lanes_of(const cwi_edge_list *l)
 }
 
 /* As memcpy, of the vectors of a few vertices, for which a call counts; up to 15 more numbers
- * may be read. */
+ * may be read. Vertices that follow will be written to what follows: it is fetched. */
 static inline void copy_vectors(float *to, const float *from, size_t count)
 {
     count *= 3;
+    for (size_t n = 0; n < count; n += 64 / sizeof *to)
+        __builtin_prefetch(to + n + FAR, 1);
 #if CWI_WIDE
     for (; count >= 16; count -= 16, to += 16, from += 16)
         _mm512_storeu_ps(to, _mm512_loadu_ps(from));

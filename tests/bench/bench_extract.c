@@ -154,12 +154,13 @@ static double now_ms(void)
     return (double)t.tv_sec * 1e3 + (double)t.tv_nsec * 1e-6;
 }
 
-/* Reads every voxel once and writes `out` fresh bytes once. */
+/* Reads every voxel once, fetched as far ahead as pays, and writes `out` fresh bytes once. */
 static double limit_ms(const cw_volume *v, size_t out, int threads)
 {
     const uint64_t *in = v->data;
     const size_t words = v->dim[0] * v->dim[1] * v->dim[2] * cw_type_size(v->type) / 8;
     const size_t huge = (size_t)2 << 20, block = huge / 8;
+    enum { LINE = 8, AHEAD = 64 * LINE };
     const size_t bytes = (out + huge - 1) / huge * huge;
     uint64_t sum = 0;
     const double begin = now_ms();
@@ -169,8 +170,11 @@ static double limit_ms(const cw_volume *v, size_t out, int threads)
     {
 #pragma omp for schedule(dynamic) nowait
         for (size_t b = 0; b < words; b += block)
-            for (size_t n = b; n < b + block && n < words; n++)
-                sum += in[n];
+            for (size_t n = b; n < b + block && n < words; n += LINE) {
+                __builtin_prefetch(in + n + AHEAD);
+                for (size_t m = n; m < n + LINE && m < words; m++)
+                    sum += in[m];
+            }
 #pragma omp for schedule(dynamic)
         for (size_t b = 0; b < bytes / 8; b += block)
             for (size_t n = b; n < b + block; n++)
