@@ -93,6 +93,9 @@ static void join(box *b, uint32_t x, uint32_t y)
     }
 }
 
+/* Across rows but a word of each is read: it is fetched so many rows before. */
+enum { ROWS_AHEAD = 128 };
+
 /* Bits of line n of a side. */
 static void load_line(const box *b, const side *s, size_t n, uint64_t *line)
 {
@@ -106,9 +109,9 @@ static void load_line(const box *b, const side *s, size_t n, uint64_t *line)
                       word_at(b->grid, p[1] + 1, p[2] + 1, w + 1) << 63;
         return;
     }
-    const size_t w = (p[0] + 1) / 64, bit = (p[0] + 1) % 64;
+    const size_t w = (p[0] + 1) / 64, bit = (p[0] + 1) % 64, row = (p[2] + 1) * b->grid->rows_y;
     for (size_t j = 0; j < b->n[1]; j++) {
-        __builtin_prefetch(cwi_grid_row(b->grid, (p[2] + 1) * b->grid->rows_y + j + 32) + w);
+        __builtin_prefetch(cwi_grid_row(b->grid, row + j + ROWS_AHEAD) + w);
         line[j / 64] |= (word_at(b->grid, j + 1, p[2] + 1, w) >> bit & 1) << j % 64;
     }
 }
