@@ -12,20 +12,13 @@
  * cells in a word: its end cannot be foreseen. */
 enum { WORDS = 16, LIST = 64 * WORDS };
 
-/* Of the mixed cells of a word, those that are live. */
-static inline uint64_t active_cells(const cwi_grid *g, uint64_t mixed, size_t j, size_t k,
-                                    size_t w)
-{
-    return g->live ? mixed & cwi_live_cells(g, j, k, w) : mixed;
-}
-
-/* Rows of edges around a row of cells: four along x, and two along each of y and z, at i. Edges
- * at i + 1 are those at i of the next cell. In the order of cwi_row_edge(): axis, and which of
- * the four rows of samples they begin in. */
+/* The eight rows of edges around a row of cells, in the order of cwi_row_edge(): their axis,
+ * and which of the four rows of samples they begin in. */
 static const struct {
     uint8_t axis, j, k;
 } edge_rows[CWI_EDGE_ROWS] = {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 1, 1},
                               {1, 0, 0}, {1, 0, 1}, {2, 0, 0}, {2, 1, 0}};
+
 typedef uint32_t edge_lanes __attribute__((vector_size(4 * CWI_EDGE_ROWS)));
 
 /* The numbers of the first vertices in each row from a cell's i on, and from i + 1 on. */
@@ -105,7 +98,7 @@ static inline size_t list_cells(cell_list *l, size_t words, size_t n, const cwi_
                                 const cell_rows *samples, size_t j, size_t k, size_t w)
 {
     const cell_word c = load_cells(samples, w);
-    const uint64_t active = active_cells(g, c.mixed, j, k, w);
+    const uint64_t active = g->live ? c.mixed & cwi_live_cells(g, j, k, w) : c.mixed;
     const size_t count = (size_t)__builtin_popcountll(active);
     store_cases(&c, active, l->cases + 64 * words);
     l->word[words] = w;

@@ -214,8 +214,8 @@ static cwi_leaf_bits leaves_of_samples(const cwi_grid *g, const cwi_brick_rows *
     return bits;
 }
 
-/* Where all samples are compared they are fetched so many bytes ahead, a line at a time: more
- * than processors do by themselves. */
+/* Where all samples are compared they are prefetched so many bytes ahead, a line at a time:
+ * more than processors do by themselves. */
 enum { AHEAD = 4096, LINE = 64 };
 
 #define TYPED "extract/classify.inc"

@@ -7,9 +7,9 @@
 
 /* What some words of a layer come to; after a row's last word comes the next row's first. */
 typedef struct word_counts {
-    unsigned busy; /* words with cells whose corners are on both sides: word n, bit n; */
-    unsigned open; /* and with ambiguous ones */
-    cwi_words mixed, ambiguous; /* these cells, and those whose signs do not settle the rest */
+    unsigned busy, open;        /* word n, bit n: it has such cells as mixed; as ambiguous */
+    cwi_words mixed, ambiguous; /* cells whose corners are on both sides; of these, those whose
+                                   signs do not settle the rest */
     cwi_words counts;           /* fields of COUNT_BITS: edges that are crossed along each axis,
                                    and triangles of cells that are not ambiguous */
 } word_counts;
@@ -220,11 +220,11 @@ static void sum_layer(cwi_row *rows, size_t count, cwi_layer *layer)
 /* No cell of the layer can be crossed. */
 static bool is_unwanted(const cwi_grid *g, size_t k)
 {
-    if (k + 1 == g->rows_z)
-        return true;
-    const uint64_t *wanted = g->everything ? NULL : cwi_grid_wanted(g, 0, k);
-    uint64_t any = !wanted;
-    for (size_t n = 0; n < g->bricks_y * g->masks && wanted; n++)
+    if (g->everything || k + 1 == g->rows_z)
+        return k + 1 == g->rows_z;
+    const uint64_t *wanted = cwi_grid_wanted(g, 0, k);
+    uint64_t any = 0;
+    for (size_t n = 0; n < g->bricks_y * g->masks; n++)
         any |= wanted[n];
     return !any;
 }

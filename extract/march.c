@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-/* Triangles are written to where memory was fetched so many corners before. */
+/* Corners of triangles that memory is prefetched for before they are written. */
 enum { AHEAD = 1024 };
 
 /* What writing a row of cells goes on with. */
@@ -108,13 +108,14 @@ void cwi_write_layers(const cwi_grid *g, size_t begin, size_t end, size_t cells,
     /* what is too much is written over by the next rows, but not those of other threads */
     cwi_cursor to = {.end = triangles + 3 * rows[cells * g->rows_y].triangle};
     cell_list list;
-    memset(&list.edges, 0, sizeof list.edges); /* lanes that are no edges */
+    memset(&list.edges, 0, sizeof list.edges); /* not known where all cells are live */
     cwi_write_vertices(g, begin, end, rows, sink);
     for (size_t k = begin; k < cells; k++) {
         const cwi_row *layer = rows + k * g->rows_y;
         to.plan = 0;
-        for (size_t j = 0; j + 1 < g->rows_y && layer->triangle < layer[g->rows_y].triangle;
-             j++) {
+        if (layer[0].triangle == layer[g->rows_y].triangle)
+            continue;
+        for (size_t j = 0; j + 1 < g->rows_y; j++) {
             const cwi_row *row = layer + j;
             if (row[0].triangle == row[1].triangle)
                 continue;

@@ -30,7 +30,7 @@ enum {
     ROOM = BATCH + 64 + LANES,
     AHEAD = 3, /* rows that samples are fetched before they are needed, */
     DENSE = 2, /* in rows with more vertices than so many a word */
-    FAR = 512, /* numbers that places in arrays are fetched before they are written */
+    FAR = 512, /* numbers that memory is prefetched for before they are written */
     TILE = 32  /* rows that are done in all layers before the next */
 };
 
