@@ -49,7 +49,8 @@ typedef struct cwi_run {
 typedef struct cwi_edge_list {
     int axis;
     size_t k, count, runs;
-    int32_t i[ROOM], j[ROOM];
+    bool few; /* in a row: nothing was fetched for them ahead */
+    _Alignas(64) int32_t i[ROOM], j[ROOM];
     cwi_run run[ROOM + 1];
 } cwi_edge_list;
 
@@ -144,13 +145,16 @@ static inline void copy_vectors(float *to, const float *from, size_t count)
 #endif
 }
 
-/* The vectors of a list's vertices to their places in an array. */
-static inline void store_runs(const cwi_edge_list *l, const float *from, float *to)
+/* The vectors of a list's vertices to their places. */
+static inline void store_runs(const cwi_edge_list *l, float (*positions)[3],
+                              float (*normals)[3], const cwi_vertex_sink *sink)
 {
     for (size_t r = 0; r < l->runs; r++) {
         const cwi_run *run = &l->run[r];
-        copy_vectors(to + 3 * (size_t)run->number, from + 3 * run->begin,
-                     end_of_run(l, r) - run->begin);
+        const size_t to = 3 * (size_t)run->number, count = end_of_run(l, r) - run->begin;
+        copy_vectors(sink->positions + to, positions[run->begin], count);
+        if (sink->normals)
+            copy_vectors(sink->normals + to, normals[run->begin], count);
     }
 }
 
@@ -208,6 +212,74 @@ SMALL_TYPE(u8, _mm_loadu_si32)
 SMALL_TYPE(i8, _mm_loadu_si32)
 SMALL_TYPE(u16, _mm_loadu_si64)
 SMALL_TYPE(i16, _mm_loadu_si64)
+#endif
+
+/* A share of an edge, kept off its ends. */
+static inline double off_ends(double t)
+{
+    t = t > CWI_NUDGE ? t : CWI_NUDGE; /* NaN, too: halves of the smallest doubles are 0 */
+    return t > 1 - CWI_NUDGE ? 1 - CWI_NUDGE : t;
+}
+
+#if CWI_WIDE
+/* Numbers, and bits, in LANES lanes. */
+typedef int32_t cwi_lanes __attribute__((vector_size(4 * LANES)));
+typedef uint32_t cwi_bit_lanes __attribute__((vector_size(4 * LANES)));
+typedef float cwi_float_lanes __attribute__((vector_size(4 * LANES)));
+
+/* What stands at so many bytes from an address, in each lane. Not the shorter intrinsic: it
+ * waits for what its register held before. */
+ALWAYS_INLINE cwi_bit_lanes gather(const char *at, cwi_lanes bytes)
+{
+    return (cwi_bit_lanes)_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), 0xffff,
+                                                      (__m512i)bytes, at, 1);
+}
+
+/* The samples of a volume, so many bytes each, can be gathered, and that is fast: not where
+ * microcode mends Gather Data Sampling, on processors older than those with bfloat16. */
+static inline bool can_gather(const cw_volume *v, ptrdiff_t voxel)
+{
+    const ptrdiff_t row = v->stride[1];
+    return v->stride[0] == voxel && !cwi_is_rectilinear(v) &&
+           (row < 0 ? -row : row) * ((ptrdiff_t)v->dim[1] + 1) +
+                   voxel * ((ptrdiff_t)v->dim[0] + 1) <=
+               INT32_MAX &&
+           __builtin_cpu_supports("avx512bf16");
+}
+
+/* Where the padding of a layer, as padded samples count, begins. */
+static inline const char *first_padded(const cw_volume *v, size_t k)
+{
+    const char *first = cwi_voxel_address(v, 0, 0, k - 1);
+    return first - v->stride[0] - v->stride[1];
+}
+
+/* As off_ends, of all lanes. */
+ALWAYS_INLINE void all_off_ends(double share[LANES])
+{
+    for (int n = 0; n < LANES; n += 8) {
+        const __m512d t = _mm512_max_pd(_mm512_loadu_pd(share + n), _mm512_set1_pd(CWI_NUDGE));
+        _mm512_storeu_pd(share + n, _mm512_min_pd(t, _mm512_set1_pd(1 - CWI_NUDGE)));
+    }
+}
+
+/* Vectors from three arrays to one: of what 16 numbers from the n-th on are, in two steps, as
+ * an instruction chooses from two registers. */
+#define XY(n)       ((n) / 3 + ((n) % 3 == 1 ? LANES : 0))
+#define XYZ(n)      ((n) % 3 == 2 ? (n) / 3 + LANES : (n) % LANES)
+#define FOUR(of, n) of(n), of((n) + 1), of((n) + 2), of((n) + 3)
+#define ALL(of, n)  FOUR(of, n), FOUR(of, (n) + 4), FOUR(of, (n) + 8), FOUR(of, (n) + 12)
+#define VECTORS(n)                                                                             \
+    __builtin_shufflevector(__builtin_shufflevector(x, y, ALL(XY, n)), z, ALL(XYZ, n))
+ALWAYS_INLINE void interleave_lanes(float from[3][LANES], float (*to)[3])
+{
+    cwi_float_lanes x, y, z;
+    memcpy(&x, from[0], sizeof x);
+    memcpy(&y, from[1], sizeof y);
+    memcpy(&z, from[2], sizeof z);
+    const cwi_float_lanes all[3] = {VECTORS(0), VECTORS(16), VECTORS(32)};
+    memcpy(to, all, sizeof all);
+}
 #endif
 
 #define TYPED "extract/vertices.inc"

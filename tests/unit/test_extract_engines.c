@@ -34,7 +34,7 @@ static void any_number_of_threads_gives_the_same_bytes(void **state)
     cw_volume_free(&v);
 }
 
-/* Noise, with NaN and infinities in float types, in any type. */
+/* Noise of both signs where there are two, with NaN and infinities in float types. */
 static void fill(void *voxels, cw_type type, size_t count)
 {
     for (size_t n = 0; n < count; n++) {
@@ -43,7 +43,9 @@ static void fill(void *voxels, cw_type type, size_t count)
                                : kind == 1 ? INFINITY
                                : kind == 2 ? -(double)FLT_MAX
                                            : r - 48.25;
-        test_store(type, voxels, n, type == CW_F32 || type == CW_F64 ? special : r);
+        const bool is_float = type == CW_F32 || type == CW_F64;
+        const bool is_signed = type == CW_I8 || type == CW_I16 || type == CW_I32;
+        test_store(type, voxels, n, is_float ? special : is_signed ? r - 48 : 2 * r);
     }
 }
 
@@ -60,12 +62,15 @@ static void every_engine_gives_the_same_bytes(void **state)
             const size_t bytes = cw_type_size((cw_type)type), shift = (size_t)rand() % 8;
             char *voxels = (char *)memory + shift * bytes;
             fill(voxels, (cw_type)type, width * EDGE * EDGE);
-            const cw_volume v = {.data = voxels,
-                                 .type = (cw_type)type,
-                                 .dim = {width, EDGE, EDGE},
-                                 .slope = rand() % 4 ? 1 : -1,
-                                 .has_nodata = rand() % 8 == 0,
-                                 .nodata = 7};
+            cw_volume v = {.data = voxels,
+                           .type = (cw_type)type,
+                           .dim = {width, EDGE, EDGE},
+                           .affine = {{0.7}, {0, -1.3}, {0, 0, 2}},
+                           .slope = rand() % 4 ? 1 : -1,
+                           .has_nodata = rand() % 8 == 0,
+                           .nodata = 7};
+            if (rand() % 2)
+                test_turn(&v, rand());
             const cw_extract_desc d = {.isovalue = rand() % 60 * v.slope,
                                        .inside_is_low = rand() % 2,
                                        .leave_open = rand() % 4 == 0,
