@@ -110,7 +110,10 @@ static void load_line(const box *b, const side *s, size_t n, uint64_t *line)
         return;
     }
     const size_t w = (p[0] + 1) / 64, bit = (p[0] + 1) % 64, row = (p[2] + 1) * b->grid->rows_y;
-    for (size_t j = 0; j < b->n[1]; j++) {
+    const unsigned end = p[0] ? CWI_LAST_INSIDE : CWI_FIRST_INSIDE;
+    for (size_t j = 0; j < b->n[1] && b->grid->everything; j++)
+        line[j / 64] |= (uint64_t)((b->grid->filled[row + j + 1] & end) != 0) << j % 64;
+    for (size_t j = 0; j < b->n[1] && !b->grid->everything; j++) {
         __builtin_prefetch(cwi_grid_row(b->grid, row + j + ROWS_AHEAD) + w);
         line[j / 64] |= (word_at(b->grid, j + 1, p[2] + 1, w) >> bit & 1) << j % 64;
     }

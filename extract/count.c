@@ -164,7 +164,7 @@ static void count_group(const cwi_grid *g, size_t j, size_t k, size_t w, unsigne
  * not known. */
 static bool any_filled(const cwi_grid *g, size_t j, size_t last, size_t k)
 {
-    const bool *filled = g->filled + k * g->rows_y;
+    const uint8_t *filled = g->filled + k * g->rows_y;
     bool any = g->window != NULL;
     for (; j <= last + 1 && !any; j++)
         any = filled[j] || filled[g->rows_y + j];

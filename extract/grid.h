@@ -44,6 +44,9 @@ cw_status cwi_level_find(const cw_volume *volume, const cw_extract_desc *desc, c
 typedef struct cwi_octree cwi_octree;
 typedef struct cwi_engine cwi_engine;
 
+/* Some sample of a row is inside; its first is, or its last. */
+enum { CWI_ANY_INSIDE = 1, CWI_FIRST_INSIDE = 2, CWI_LAST_INSIDE = 4 };
+
 typedef struct cwi_grid {
     cw_volume volume; /* resolved: one component, one step */
     double level;     /* the isovalue in stored numbers */
@@ -52,7 +55,7 @@ typedef struct cwi_grid {
     size_t words;     /* of 64 samples in a padded row */
     size_t rows_y, rows_z, rows;
     uint64_t *inside; /* rows x words */
-    bool *filled;     /* rows: some sample of it is inside; known where everything is wanted */
+    uint8_t *filled;  /* rows: which samples are inside; known where everything is wanted */
     uint64_t *domain; /* rows x words: cells whose eight samples have values; NULL: not known */
     uint64_t *live;   /* rows x words: the domain without pinched cells; NULL: all cells */
     uint64_t *window; /* of a block, whose rows are one word: four planes, of cells that are
