@@ -93,9 +93,6 @@ static void join(box *b, uint32_t x, uint32_t y)
     }
 }
 
-/* Across rows but a word of each is read: it is fetched so many rows before. */
-enum { ROWS_AHEAD = 128 };
-
 /* Bits of line n of a side. */
 static void load_line(const box *b, const side *s, size_t n, uint64_t *line)
 {
@@ -109,13 +106,12 @@ static void load_line(const box *b, const side *s, size_t n, uint64_t *line)
                       word_at(b->grid, p[1] + 1, p[2] + 1, w + 1) << 63;
         return;
     }
-    const size_t w = (p[0] + 1) / 64, bit = (p[0] + 1) % 64, row = (p[2] + 1) * b->grid->rows_y;
+    const cwi_grid *g = b->grid;
     const unsigned end = p[0] ? CWI_LAST_INSIDE : CWI_FIRST_INSIDE;
-    for (size_t j = 0; j < b->n[1] && b->grid->everything; j++)
-        line[j / 64] |= (uint64_t)((b->grid->filled[row + j + 1] & end) != 0) << j % 64;
-    for (size_t j = 0; j < b->n[1] && !b->grid->everything; j++) {
-        __builtin_prefetch(cwi_grid_row(b->grid, row + j + ROWS_AHEAD) + w);
-        line[j / 64] |= (word_at(b->grid, j + 1, p[2] + 1, w) >> bit & 1) << j % 64;
+    for (p[1] = 0; p[1] < b->n[1]; p[1]++) {
+        const size_t row = (p[2] + 1) * g->rows_y + p[1] + 1;
+        const bool in = g->everything ? g->filled[row] & end : is_inside(b, p);
+        line[p[1] / 64] |= (uint64_t)in << p[1] % 64;
     }
 }
 

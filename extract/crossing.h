@@ -11,7 +11,8 @@
 
 static inline double cwi_off_ends(double t)
 {
-    return t < CWI_NUDGE ? CWI_NUDGE : t > 1 - CWI_NUDGE ? 1 - CWI_NUDGE : t;
+    t = t > CWI_NUDGE ? t : CWI_NUDGE; /* NaN, too: halves of the smallest doubles are 0 */
+    return t > 1 - CWI_NUDGE ? 1 - CWI_NUDGE : t;
 }
 
 /* The share of the edge from number a to number b at which the level is crossed, kept off both
@@ -25,8 +26,7 @@ static inline double cwi_crossing(double a, double b, double level)
     double t = (level * 0.5 - a * 0.5) / (b * 0.5 - a * 0.5);
     if (isinf(a) || isinf(b))
         t = isinf(a) && isinf(b) ? 0.5 : isinf(b) ? 0 : 1;
-    return isnan(t) ? CWI_NUDGE
-                    : cwi_off_ends(t); /* NaN: halves of the smallest doubles are 0 */
+    return cwi_off_ends(t);
 }
 
 /* The weights of four samples at -1, 0, 1 and 2 in the value, or the slope, at t of the cubic

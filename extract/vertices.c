@@ -164,6 +164,13 @@ static inline int axis_of(int axis, int n)
     return n == 0 ? axis : n == 1 ? axis == 0 : axis == 2 ? 1 : 2;
 }
 
+/* Where the padding of a layer, as padded samples count, begins. */
+static inline const char *first_padded(const cw_volume *v, size_t k)
+{
+    const char *first = cwi_voxel_address(v, 0, 0, k - 1);
+    return first - v->stride[0] - v->stride[1];
+}
+
 enum { ANY_AXIS = -1 };
 
 /* A list's edges in the world. */
@@ -214,13 +221,6 @@ SMALL_TYPE(u16, _mm_loadu_si64)
 SMALL_TYPE(i16, _mm_loadu_si64)
 #endif
 
-/* A share of an edge, kept off its ends. */
-static inline double off_ends(double t)
-{
-    t = t > CWI_NUDGE ? t : CWI_NUDGE; /* NaN, too: halves of the smallest doubles are 0 */
-    return t > 1 - CWI_NUDGE ? 1 - CWI_NUDGE : t;
-}
-
 #if CWI_WIDE
 /* Numbers, and bits, in LANES lanes. */
 typedef int32_t cwi_lanes __attribute__((vector_size(4 * LANES)));
@@ -247,14 +247,7 @@ static inline bool can_gather(const cw_volume *v, ptrdiff_t voxel)
            __builtin_cpu_supports("avx512bf16");
 }
 
-/* Where the padding of a layer, as padded samples count, begins. */
-static inline const char *first_padded(const cw_volume *v, size_t k)
-{
-    const char *first = cwi_voxel_address(v, 0, 0, k - 1);
-    return first - v->stride[0] - v->stride[1];
-}
-
-/* As off_ends, of all lanes. */
+/* As cwi_off_ends, of all lanes. */
 ALWAYS_INLINE void all_off_ends(double share[LANES])
 {
     for (int n = 0; n < LANES; n += 8) {
