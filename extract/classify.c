@@ -245,6 +245,26 @@ void cwi_classify_rows(const cwi_grid *g, size_t j, size_t k, size_t rows, bool 
     classify[g->volume.type](g, j, k, rows, in, out);
 }
 
+/* What is wanted of the samples of a layer of bricks. */
+static void classify_bricks(const cwi_grid *g, size_t b)
+{
+    static void (*const classify[CW_TYPE_COUNT])(const cwi_grid *, const size_t[2],
+                                                 const size_t[2]) = {
+        [CW_U8] = classify_bricks_u8,   [CW_I8] = classify_bricks_i8,
+        [CW_U16] = classify_bricks_u16, [CW_I16] = classify_bricks_i16,
+        [CW_U32] = classify_bricks_u32, [CW_I32] = classify_bricks_i32,
+        [CW_F32] = classify_bricks_f32, [CW_F64] = classify_bricks_f64,
+    };
+    const size_t z = b * CWI_BRICK, last_row = g->rows_y - 2, last_layer = g->rows_z - 2;
+    for (size_t y = 0; y <= last_row; y += CWI_BRICK) {
+        const size_t first[2] = {y ? y : 1, z ? z : 1}, y_end = y + CWI_BRICK - 1,
+                     z_end = z + CWI_BRICK - 1;
+        const size_t last[2] = {y_end < last_row ? y_end : last_row,
+                                z_end < last_layer ? z_end : last_layer};
+        classify[g->volume.type](g, first, last);
+    }
+}
+
 void cwi_classify_layer(const cwi_grid *g, size_t b, cwi_range *leaves, bool *in, bool *out)
 {
     static void (*const measure[CW_TYPE_COUNT])(const cwi_grid *, size_t, size_t,
@@ -257,12 +277,16 @@ void cwi_classify_layer(const cwi_grid *g, size_t b, cwi_range *leaves, bool *in
     const size_t begin = b * CWI_BRICK;
     const size_t end = b + 1 == g->bricks_z ? g->rows_z : begin + CWI_BRICK;
     const size_t leaves_x = (g->volume.dim[0] + CWI_BRICK) / CWI_BRICK;
-    for (size_t k = begin; k < end && g->everything; k++) {
+    if (!g->everything) {
+        classify_bricks(g, b);
+        return;
+    }
+    for (size_t k = begin; k < end; k++) {
         clear_padding(g, g->inside, k);
         if (g->find_domain)
             clear_padding(g, g->domain, k);
     }
-    if (g->everything && !leaves) { /* as memory lies */
+    if (!leaves) { /* as memory lies */
         for (size_t k = begin ? begin : 1; k < end && k + 1 < g->rows_z; k++)
             cwi_classify_rows(g, 1, k, g->rows_y - 2, in, out);
         return;

@@ -9,7 +9,7 @@
 
 #include "extract/grid.h"
 
-enum { CWI_OCTREE_LEVELS = 64, CWI_LEAF_BYTES = 60 /* measured */ };
+enum { CWI_OCTREE_LEVELS = 64, CWI_LEAF_BYTES = 20 /* measured */ };
 
 /* The numbers in a brick; none: from infinity to -infinity. */
 typedef struct cwi_range {
