@@ -173,6 +173,8 @@ static cw_status make_surface(cli_extract_run *s, const cli_moment *moment, size
                  : deliver(s, n, &(cw_part){.mesh = &mesh}, 1, counts.border_loops, err);
     if (s->args->animate && (st == CW_OK || st == CW_ERR_EMPTY))
         cli_frames_add(&s->frames, &mesh, moment, s->fps);
+    if (s->extractor)
+        cw_extractor_recycle(s->extractor, &mesh);
     cw_mesh_free(&mesh);
     s->start = cli_seconds();
     if (st == CW_OK)

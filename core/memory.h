@@ -24,6 +24,10 @@ CW_API void cwi_free(void *memory);
  */
 CW_API void *cwi_alloc_large(size_t count, size_t size);
 
+/* The same from an array that is no longer needed, or NULL: memory that was written to before
+ * need not be cleared. It is freed where there is no memory. */
+CW_API void *cwi_renew_large(void *memory, size_t count, size_t size);
+
 /* A copy of a string; NULL when memory is out. */
 CW_API char *cwi_strdup(const char *text);
 

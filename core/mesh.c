@@ -6,19 +6,34 @@
 #include <math.h>
 #include <string.h>
 
+cw_status cwi_mesh_renew(cw_mesh *mesh, size_t vertices, size_t triangles, bool normals,
+                         cw_error *err)
+{
+    cw_mesh made = {.vertex_count = vertices, .triangle_count = triangles};
+    made.positions = cwi_renew_large(mesh->positions, vertices, 3 * sizeof *made.positions);
+    made.triangles = cwi_renew_large(mesh->triangles, triangles, 3 * sizeof *made.triangles);
+    mesh->positions = NULL;
+    mesh->triangles = NULL;
+    if (normals) {
+        made.normals = cwi_renew_large(mesh->normals, vertices, 3 * sizeof *made.normals);
+        mesh->normals = NULL;
+    }
+    cw_mesh_free(mesh);
+    if (!made.positions || !made.triangles || (normals && !made.normals)) {
+        cw_mesh_free(&made);
+        return cw_fail(err, CW_ERR_NO_MEMORY,
+                       "no memory for a mesh of %zu vertices, %zu triangles", vertices,
+                       triangles);
+    }
+    *mesh = made;
+    return CW_OK;
+}
+
 cw_status cwi_mesh_alloc(cw_mesh *mesh, size_t vertices, size_t triangles, bool normals,
                          cw_error *err)
 {
-    *mesh = (cw_mesh){.vertex_count = vertices, .triangle_count = triangles};
-    mesh->positions = cwi_alloc_large(vertices, 3 * sizeof *mesh->positions);
-    mesh->triangles = cwi_alloc_large(triangles, 3 * sizeof *mesh->triangles);
-    if (normals)
-        mesh->normals = cwi_alloc_large(vertices, 3 * sizeof *mesh->normals);
-    if (mesh->positions && mesh->triangles && (mesh->normals || !normals))
-        return CW_OK;
-    cw_mesh_free(mesh);
-    return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a mesh of %zu vertices, %zu triangles",
-                   vertices, triangles);
+    *mesh = (cw_mesh){0};
+    return cwi_mesh_renew(mesh, vertices, triangles, normals, err);
 }
 
 void cw_mesh_free(cw_mesh *mesh)

@@ -111,6 +111,7 @@ void cwi_plan_free(plan *p)
     cwi_grid_free(&p->grid);
     cwi_octree_free(&p->tree);
     cwi_free(p->rows);
+    cw_mesh_free(&p->spare);
 }
 
 /* Everything that is known of the surface before it is made. */
@@ -246,7 +247,9 @@ static cw_status shade_by_coordinates(const plan *p, const cw_extract_desc *d, c
 static cw_status write_mesh(plan *p, const cw_extract_desc *d, cw_mesh *mesh, cw_error *err)
 {
     const bool normals = !d->no_normals && !cwi_is_rectilinear(&p->grid.volume);
-    cw_status st = cwi_mesh_alloc(mesh, p->counts.vertices, p->counts.triangles, normals, err);
+    *mesh = p->spare;
+    p->spare = (cw_mesh){0};
+    cw_status st = cwi_mesh_renew(mesh, p->counts.vertices, p->counts.triangles, normals, err);
     if (st != CW_OK)
         return st;
     writing w = {.plan = p,
@@ -543,6 +546,16 @@ cw_status cw_extractor_extract(cw_extractor *e, const cw_extract_desc *desc, cw_
                                cw_extract_counts *counts, cw_error *err)
 {
     return extract(e, desc, mesh, counts, err);
+}
+
+void cw_extractor_recycle(cw_extractor *e, cw_mesh *mesh)
+{
+    if (mesh->positions) {
+        cw_mesh_free(&e->spare);
+        e->spare = *mesh;
+        *mesh = (cw_mesh){0};
+    }
+    cw_mesh_free(mesh);
 }
 
 cw_status cw_extractor_predict(cw_extractor *e, const cw_extract_desc *desc,

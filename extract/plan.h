@@ -11,6 +11,7 @@ typedef struct cw_extractor {
     cwi_octree tree; /* no levels: not asked for */
     cwi_row *rows;   /* and one after the last, with the totals */
     cw_extract_counts counts;
+    cw_mesh spare; /* arrays for the next mesh */
 } cwi_plan;
 
 /* Counts the rows of a classified grid, and gives them their first numbers. */

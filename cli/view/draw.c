@@ -64,12 +64,19 @@ static cw_status need_surface(view *v, view_level level, cw_error *err)
                                   .threads = (int)args->input.threads,
                                   .max_bytes = v->source.volume.memory_left};
     cw_status st = need_extractor(v, coarse, err);
-    if (st == CW_OK)
-        st = cw_extractor_extract(coarse ? v->coarse : v->extractor, &desc, &mesh, NULL, err);
     if (st != CW_OK)
         return st;
-    cw_mesh_free(&v->old_mesh);
-    v->old_mesh = v->source.mesh;
+    cw_extractor *extractor = coarse ? v->coarse : v->extractor;
+    if (v->mesh_is_drawn)
+        cw_extractor_recycle(extractor, &v->old_mesh);
+    st = cw_extractor_extract(extractor, &desc, &mesh, NULL, err);
+    if (st != CW_OK)
+        return st;
+    if (v->mesh_is_drawn)
+        v->old_mesh = v->source.mesh;
+    else
+        cw_mesh_free(&v->source.mesh);
+    v->mesh_is_drawn = false;
     v->source.mesh = mesh;
     v->mesh_iso = args->iso.value;
     v->mesh_level = coarse ? 1 : 2;
@@ -167,7 +174,10 @@ static cw_status draw_scene(view *v, const cw_scene *scene, cw_picture *picture,
     if (st == CW_OK && v->values_come)
         cw_renderer_forget(v->renderer);
     v->values_come = v->values_come && st != CW_OK;
-    return st == CW_OK ? cw_render(v->renderer, scene, picture, err) : st;
+    if (st == CW_OK)
+        st = cw_render(v->renderer, scene, picture, err);
+    v->mesh_is_drawn = v->mesh_is_drawn || (st == CW_OK && scene->mesh);
+    return st;
 }
 
 /* Of slow modes a small picture comes before that in full size. */

@@ -92,8 +92,9 @@ typedef struct view {
     cli_source source;
     cw_statistics statistics; /* of the volume at this step */
     cw_extractor *extractor, *coarse;
-    cw_volume thinned; /* what coarse extracts from */
-    cw_mesh old_mesh;  /* was drawn until now: its address must not come again */
+    cw_volume thinned;  /* what coarse extracts from */
+    cw_mesh old_mesh;   /* was drawn until now: its address must not come again */
+    bool mesh_is_drawn; /* the renderer holds it, and no longer the old one */
     double mesh_iso;
     int mesh_level; /* 0: none, 1: of coarse, 2: of all */
     double box[2][3];

@@ -161,6 +161,12 @@ CW_API cw_status cw_extractor_extract(cw_extractor *extractor, const cw_extract_
 CW_API cw_status cw_extractor_predict(cw_extractor *extractor, const cw_extract_desc *desc,
                                       cw_extract_counts *counts, cw_error *err);
 
+/* In place of cw_mesh_free(), for a mesh of this extractor or any other: the next surface is
+ * written to its memory, which the system then has not to clear and hand out again. A fifth to
+ * an eighth of an extraction's time is saved where surfaces are large. The memory is held until
+ * then, or until the extractor is freed. */
+CW_API void cw_extractor_recycle(cw_extractor *extractor, cw_mesh *mesh);
+
 /* How to take normals from a field. Zero fields mean the default named beside them. */
 typedef struct cw_normals_desc {
     bool inside_is_low;   /* default: high values are inside */

@@ -4,7 +4,8 @@
  *               [--data FOLDER]
  *
  * Prints a JSON line a case on stdout, a table on stderr. next_ms is another isovalue of the
- * same volume through a cw_extractor; next_ratio sets it beside theirs at that isovalue.
+ * same volume through a cw_extractor; next_ratio sets it beside theirs at that isovalue;
+ * recycled_ms and its ratio are the same again, in the memory of the surface before.
  * limit_ms is a plain pass that reads the volume once and writes as many fresh bytes as the
  * mesh has, with the same threads. Of the scans in FOLDER those that are there are measured,
  * too. */
@@ -237,7 +238,7 @@ static double median(double *values, int count)
 
 /* What is measured of a volume, each a median in milliseconds. */
 typedef struct timing {
-    double ours, next, theirs, theirs_next, limit, peak_mb;
+    double ours, next, recycled, theirs, theirs_next, limit, peak_mb;
     size_t triangles, vtk_triangles;
 } timing;
 
@@ -265,7 +266,8 @@ static double ours_ms(const cw_volume *v, const cw_extract_desc *d, timing *t)
     return end - begin;
 }
 
-static double next_ms(cw_extractor *extractor, const cw_extract_desc *d)
+/* recycle: the next surface is written to this one's memory. */
+static double next_ms(cw_extractor *extractor, const cw_extract_desc *d, bool recycle)
 {
     cw_mesh mesh;
     cw_error err = {0};
@@ -273,6 +275,8 @@ static double next_ms(cw_extractor *extractor, const cw_extract_desc *d)
     const cw_status st = cw_extractor_extract(extractor, d, &mesh, NULL, &err);
     const double end = now_ms();
     mesh = must(st, mesh, &err);
+    if (recycle)
+        cw_extractor_recycle(extractor, &mesh);
     cw_mesh_free(&mesh);
     return end - begin;
 }
@@ -280,7 +284,7 @@ static double next_ms(cw_extractor *extractor, const cw_extract_desc *d)
 static timing measure(const cw_volume *v, double isovalue, double next, int threads, int runs)
 {
     double ours[MAX_RUNS], later[MAX_RUNS], theirs[MAX_RUNS], limit[MAX_RUNS];
-    double theirs_later[MAX_RUNS];
+    double theirs_later[MAX_RUNS], recycled[MAX_RUNS];
     timing t = {0};
     const cw_extract_desc d = {.isovalue = isovalue, .threads = threads},
                           e = {.isovalue = next, .threads = threads};
@@ -290,14 +294,17 @@ static timing measure(const cw_volume *v, double isovalue, double next, int thre
     if (cw_extract_predict(v, &d, &counts, NULL) != CW_OK ||
         cw_extractor_new(v, &extractor, NULL) != CW_OK)
         exit(1);
-    next_ms(extractor, &d); /* builds the octree */
+    next_ms(extractor, &d, false); /* builds the octree */
     for (int r = 0; r < runs; r++) {
         warm(2 * counts.bytes);
         ours[r] = ours_ms(v, &d, &t);
         warm(2 * counts.bytes);
-        next_ms(extractor, &d);
+        next_ms(extractor, &d, false);
         warm(2 * counts.bytes);
-        later[r] = next_ms(extractor, &e);
+        later[r] = next_ms(extractor, &e, false);
+        warm(2 * counts.bytes);
+        next_ms(extractor, &d, true);
+        recycled[r] = next_ms(extractor, &e, false);
         warm(3 * counts.bytes);
         theirs[r] = bench_vtk(v, isovalue, threads, &t.vtk_triangles);
         warm(3 * counts.bytes);
@@ -308,6 +315,7 @@ static timing measure(const cw_volume *v, double isovalue, double next, int thre
     cw_extractor_free(extractor);
     t.ours = median(ours, runs);
     t.next = median(later, runs);
+    t.recycled = median(recycled, runs);
     t.theirs = median(theirs, runs);
     t.theirs_next = median(theirs_later, runs);
     t.limit = median(limit, runs);
@@ -318,16 +326,19 @@ static void report(const char *name, const cw_volume *v, int threads, const timi
 {
     printf("{\"case\": \"%s\", \"dims\": [%zu, %zu, %zu], \"type\": \"%s\", \"threads\": %d, "
            "\"ours_ms\": %.2f, \"vtk_ms\": %.2f, \"ratio\": %.3f, \"next_ms\": %.2f, "
-           "\"next_ratio\": %.3f, \"limit_ms\": %.2f, \"triangles\": %zu, "
+           "\"next_ratio\": %.3f, \"recycled_ms\": %.2f, \"recycled_ratio\": %.3f, "
+           "\"limit_ms\": %.2f, \"triangles\": %zu, "
            "\"vtk_triangles\": %zu, \"peak_mb\": %.1f}\n",
            name, v->dim[0], v->dim[1], v->dim[2], cw_type_name(v->type), threads, t->ours,
-           t->theirs, t->theirs / t->ours, t->next, t->theirs_next / t->next, t->limit,
-           t->triangles, t->vtk_triangles, t->peak_mb);
+           t->theirs, t->theirs / t->ours, t->next, t->theirs_next / t->next, t->recycled,
+           t->theirs_next / t->recycled, t->limit, t->triangles, t->vtk_triangles, t->peak_mb);
     fflush(stdout);
-    fprintf(stderr, "%-28s %5zu %3s %3d %9.1f %9.1f %7.2f %9.1f %7.2f %9.1f %12zu %8.0f\n",
+    fprintf(stderr,
+            "%-28s %5zu %3s %3d %9.1f %9.1f %7.2f %9.1f %7.2f %9.1f %7.2f %9.1f %12zu "
+            "%8.0f\n",
             name, v->dim[0], cw_type_name(v->type), threads, t->ours, t->theirs,
-            t->theirs / t->ours, t->next, t->theirs_next / t->next, t->limit, t->triangles,
-            t->peak_mb);
+            t->theirs / t->ours, t->next, t->theirs_next / t->next, t->recycled,
+            t->theirs_next / t->recycled, t->limit, t->triangles, t->peak_mb);
 }
 
 /* The next number of a comma-separated list; 0 at its end. */
@@ -392,9 +403,9 @@ int main(int argc, char **argv)
     const int asked = atoi(run_count), runs = asked < 1          ? 1
                                               : asked > MAX_RUNS ? MAX_RUNS
                                                                  : asked;
-    fprintf(stderr, "%-28s %5s %3s %3s %9s %9s %7s %9s %7s %9s %12s %8s\n", "case", "size", "",
-            "thr", "ours ms", "vtk ms", "vtk/our", "next ms", "vtk/nxt", "limit ms",
-            "triangles", "peak MB");
+    fprintf(stderr, "%-28s %5s %3s %3s %9s %9s %7s %9s %7s %9s %7s %9s %12s %8s\n", "case",
+            "size", "", "thr", "ours ms", "vtk ms", "vtk/our", "next ms", "vtk/nxt", "recycled",
+            "vtk/rec", "limit ms", "triangles", "peak MB");
     for (size_t n; (n = next_number(&sizes)) > 1;)
         for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
             if (!listed(names, cases[c].name))

@@ -71,17 +71,47 @@ static void one_after_another_as_each_by_itself(void **state)
             const cw_extract_desc d = {.isovalue = value * v.slope,
                                        .inside_is_low = rand() % 2,
                                        .leave_open = rand() % 4 == 0,
+                                       .no_normals = rand() % 4 == 0,
                                        .threads = 1 + rand() % 2};
             assert_ok(cwi_extract_with(engine, &v, &d, &once, &counts[0], &err), err);
             assert_ok(cw_extractor_extract(extractor, &d, &again, &counts[1], &err), err);
             test_assert_same_mesh(&once, &again);
             assert_int_equal(counts[0].border_loops, counts[1].border_loops);
             cw_mesh_free(&once);
+            if (rand() % 2)
+                cw_extractor_recycle(extractor, &again);
             cw_mesh_free(&again);
         }
         cw_extractor_free(extractor);
         cw_volume_free(&v);
     }
+}
+
+/* Larger and smaller surfaces by turns, with and without normals. */
+static void into_the_memory_of_the_surface_before(void **state)
+{
+    (void)state;
+    const cw_field_desc desc = {
+        .field = CW_FIELD_SPHERE, .dim = {300, 300, 300}, .type = CW_F32};
+    cw_volume v;
+    cw_extractor *extractor;
+    cw_mesh mesh = {0};
+    cw_error err = {0};
+    assert_ok(cw_field_sample(&desc, &v, &err), err);
+    assert_ok(cw_extractor_new(&v, &extractor, &err), err);
+    for (int n = 0; n < 8; n++) {
+        const cw_extract_desc d = {.isovalue = n % 2 ? 0 : 3 * n, .no_normals = n % 3 == 2};
+        cw_mesh once;
+        assert_ok(cw_extract(&v, &d, &once, NULL, &err), err);
+        assert_ok(cw_extractor_extract(extractor, &d, &mesh, NULL, &err), err);
+        test_assert_same_mesh(&once, &mesh);
+        cw_mesh_free(&once);
+        cw_extractor_recycle(extractor, &mesh);
+        assert_null(mesh.positions);
+        cw_extractor_recycle(extractor, &mesh); /* an empty one changes nothing */
+    }
+    cw_extractor_free(extractor);
+    cw_volume_free(&v);
 }
 
 /* Bricks that the surface does not cross are spoilt after the first extraction. */
@@ -159,6 +189,15 @@ static void memory_running_out_is_an_error_at_every_allocation(void **state)
         assert_int_equal(st, done ? CW_OK : CW_ERR_NO_MEMORY);
         if (extractor && !done) /* it can be asked again */
             assert_ok(cw_extractor_extract(extractor, &d, &mesh, NULL, &err), err);
+        for (long left = 0; extractor && left < 3; left++) { /* for its three arrays */
+            cw_extractor_recycle(extractor, &mesh);
+            cwi_alloc_fail_after(left);
+            st = cw_extractor_extract(extractor, &d, &mesh, NULL, &err);
+            assert_true(cwi_alloc_fail_after(-1));
+            assert_int_equal(st, CW_ERR_NO_MEMORY);
+            assert_null(mesh.positions);
+            assert_ok(cw_extractor_extract(extractor, &d, &mesh, NULL, &err), err);
+        }
         cw_mesh_free(&mesh);
         cw_extractor_free(extractor);
         assert_true(n < 40);
@@ -187,6 +226,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(one_after_another_as_each_by_itself),
+        cmocka_unit_test(into_the_memory_of_the_surface_before),
         cmocka_unit_test(later_surfaces_read_no_other_bricks),
         cmocka_unit_test(after_a_cancelled_extraction_it_starts_afresh),
         cmocka_unit_test(memory_running_out_is_an_error_at_every_allocation),
