@@ -215,8 +215,9 @@ static cwi_leaf_bits leaves_of_samples(const cwi_grid *g, const cwi_brick_rows *
 }
 
 /* Where all samples are compared they are prefetched so many bytes ahead, a line at a time:
- * more than processors do by themselves. */
-enum { AHEAD = 4096, LINE = 64 };
+ * more than processors do by themselves. Into the second cache: the first one has fewer lines
+ * on their way to it at a time. */
+enum { AHEAD = 4096, LINE = 64, SECOND = 2 };
 
 #define TYPED "extract/classify.inc"
 #include "extract/types.inc"
