@@ -1,6 +1,9 @@
 #define _DEFAULT_SOURCE /* madvise */
 #include "core/memory.h"
 
+#ifdef __linux__
+#include <malloc.h>
+#endif
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -84,42 +87,39 @@ void *cwi_alloc_zeroed(size_t count, size_t size)
     return memory;
 }
 
-/* As usable(); large arrays end with a page. */
-static bool usable_pages(size_t count, size_t size, size_t *bytes)
-{
-    const size_t page = LARGE_PAGE;
-    if (!usable(count, size, bytes))
-        return false;
-    if (*bytes >= 2 * page && *bytes <= PTRDIFF_MAX - page)
-        *bytes = (*bytes + page - 1) / page * page;
-    return true;
-}
-
 void *cwi_alloc_large(size_t count, size_t size)
 {
     const size_t page = LARGE_PAGE;
     size_t bytes;
-    if (!usable_pages(count, size, &bytes))
+    if (!usable(count, size, &bytes))
         return NULL;
-    if (bytes < 2 * page || bytes % page)
+    if (bytes < 2 * page || bytes > PTRDIFF_MAX - page)
         return malloc(bytes ? bytes : 1);
+    bytes = (bytes + page - 1) / page * page;
     void *memory = aligned_alloc(page, bytes);
     wish_large_pages(memory, bytes);
     return memory;
 }
 
+/* The bytes that allocated memory has; 0: not known. */
+static size_t room_of(void *memory)
+{
+#ifdef __linux__
+    return malloc_usable_size(memory);
+#else
+    (void)memory;
+    return 0;
+#endif
+}
+
 void *cwi_renew_large(void *memory, size_t count, size_t size)
 {
-    size_t bytes = 0;
-    void *renewed = NULL;
-    if (!memory)
-        return cwi_alloc_large(count, size);
-    if (usable_pages(count, size, &bytes))
-        renewed = realloc(memory, bytes ? bytes : 1);
-    if (!renewed)
-        free(memory);
-    wish_large_pages(renewed, bytes);
-    return renewed;
+    const size_t room = room_of(memory), more = memory ? count / 8 : 0;
+    size_t bytes;
+    if (memory && usable(count, size, &bytes) && bytes <= room && bytes >= room / 2)
+        return memory;
+    free(memory);
+    return cwi_alloc_large(count + more, size);
 }
 
 void *cwi_realloc_array(void *memory, size_t count, size_t size)

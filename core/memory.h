@@ -24,8 +24,9 @@ CW_API void cwi_free(void *memory);
  */
 CW_API void *cwi_alloc_large(size_t count, size_t size);
 
-/* The same from an array that is no longer needed, or NULL: memory that was written to before
- * need not be cleared. It is freed where there is no memory. */
+/* The same in place of an array that is no longer needed, or NULL: that array, unless it is too
+ * short, or more than twice too long; else a new one, an eighth longer than asked for, as more
+ * like it may be wanted. What was written to before, the system need not clear. */
 CW_API void *cwi_renew_large(void *memory, size_t count, size_t size);
 
 /* A copy of a string; NULL when memory is out. */

@@ -304,7 +304,9 @@ static timing measure(const cw_volume *v, double isovalue, double next, int thre
         later[r] = next_ms(extractor, &e, false);
         warm(2 * counts.bytes);
         next_ms(extractor, &d, true);
-        recycled[r] = next_ms(extractor, &e, false);
+        next_ms(extractor, &e, true); /* may be larger, and then gets new memory */
+        next_ms(extractor, &d, true);
+        recycled[r] = next_ms(extractor, &e, true);
         warm(3 * counts.bytes);
         theirs[r] = bench_vtk(v, isovalue, threads, &t.vtk_triangles);
         warm(3 * counts.bytes);
