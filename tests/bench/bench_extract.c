@@ -187,11 +187,12 @@ static double limit_ms(const cw_volume *v, size_t out, int threads)
 }
 
 /* Touches and frees memory, so that a virtual machine's host has it at hand for who comes next:
- * else whoever grows first pays for it, by seconds. */
+ * else whoever grows first pays for it, by seconds. More than is needed, as what was freed last
+ * is not what is handed out first. */
 static void warm(size_t bytes)
 {
     const size_t huge = (size_t)2 << 20;
-    bytes = (bytes / huge + 1) * huge;
+    bytes = (4 * bytes / huge + 1) * huge;
     char *p = aligned_alloc(huge, bytes);
     if (!p)
         return;
