@@ -31,7 +31,7 @@ typedef struct cell_list {
     struct {
         _Alignas(64) uint64_t crossed[CWI_EDGE_ROWS];
         uint32_t first[CWI_EDGE_ROWS]; /* number of the first vertex in the word */
-    } edges[WORDS + 1];                /* known where some cells are not live */
+    } edges[WORDS + 1];                /* known where numbers are ranks */
     size_t word[WORDS];
     uint16_t cell[LIST + 64]; /* 64 times the number of its word here, and its bit */
     uint8_t cases[LIST];      /* of all cells in these words */
@@ -92,6 +92,13 @@ static inline void list_bits(uint64_t bits, size_t count, size_t word, uint16_t 
 #endif
 }
 
+/* Each crossed edge around row (j, k) of cells that has a vertex is one of a live cell's, so
+ * that numbers need but be counted on from cell to cell. */
+static inline bool counts_on(const cwi_grid *g, size_t j, size_t k)
+{
+    return !g->live || cwi_is_whole(g, j, k);
+}
+
 /* Lists the active cells of word w after n others and so many words. Returns how many cells
  * there are then. */
 static inline size_t list_cells(cell_list *l, size_t words, size_t n, const cwi_grid *g,
@@ -102,7 +109,7 @@ static inline size_t list_cells(cell_list *l, size_t words, size_t n, const cwi_
     const size_t count = (size_t)__builtin_popcountll(active);
     store_cases(&c, active, l->cases + 64 * words);
     l->word[words] = w;
-    if (g->live)
+    if (!counts_on(g, j, k))
         load_edges(l, words, g, samples, j, k, w);
     list_bits(active, count, words, l->cell + n);
     return n + count;
@@ -127,14 +134,14 @@ static inline void rank_cell(const cell_list *l, size_t place, edge_lanes *lanes
 #endif
 }
 
-/* Goes on to the next cell of a list. Where all cells are live each crossed edge is one of a
- * listed cell's, and numbers need but be counted on; else they are ranks. crossed: the cell's
- * case as in cwi_emission. No lane is named here and below: all may stay in registers. */
-static inline void number_cell(const cell_list *l, bool all_live, size_t place,
+/* Goes on to the next cell of a list, whose numbers are counted on, see counts_on(), or are
+ * ranks. crossed: the cell's case as in cwi_emission. No lane is named here and below: all may
+ * stay in registers. */
+static inline void number_cell(const cell_list *l, bool count_on, size_t place,
                                const uint8_t *crossed, cell_numbers *numbers)
 {
     numbers->here = numbers->next;
-    if (!all_live)
+    if (!count_on)
         rank_cell(l, place, &numbers->here);
 #ifdef __AVX2__
     numbers->next = numbers->here + (edge_lanes)_mm256_cvtepu8_epi32(_mm_loadu_si64(crossed));

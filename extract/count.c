@@ -18,15 +18,16 @@ typedef struct word_counts {
 enum { COUNT_BITS = 16 };
 
 /* Finds out about the cells that matter, and counts. */
-static inline void count_cells(const cwi_grid *g, size_t first, const cwi_words corner[8],
-                               word_counts *c)
+static inline void count_cells(const cwi_grid *g, size_t k, size_t word,
+                               const cwi_words corner[8], word_counts *c)
 {
     cwi_words crossed[12], cells = c->mixed, count = {0};
     cwi_cross_edges(corner, crossed);
     cwi_find_ambiguous(crossed, &c->ambiguous);
     if (g->live) {
-        cwi_load_words(g->live + first, &cells);
+        cwi_load_words(cwi_live_layer(g, k) + word, &cells);
         cells &= c->mixed;
+        crossed[0] &= cells; /* of whole rows: see cwi_is_whole() */
     }
     c->ambiguous &= cells;
     cells &= ~c->ambiguous;
@@ -61,7 +62,7 @@ static inline void count_words(const cwi_grid *g, size_t k, size_t word, unsigne
     cwi_keep_words(wanted, &c->mixed);
     c->busy = cwi_words_set(&c->mixed);
     if (c->busy) {
-        count_cells(g, first, corner, c);
+        count_cells(g, k, word, corner, c);
         c->open = cwi_words_set(&c->ambiguous);
     }
 }
@@ -131,7 +132,7 @@ static inline void take_words(const cwi_grid *g, const word_counts *c, int n, in
     g->busy[(k * g->rows_y + j) * g->masks + w / 64] |= (uint64_t)busy << w % 64;
     uint64_t sums = cwi_sum_words(c->busy & here, &c->counts);
     row->triangle += sums >> 3 * COUNT_BITS;
-    if (g->live)
+    if (g->live && !cwi_is_whole(g, j, k))
         sums = count_live_edges(g, busy, j, k, w);
     for (int axis = 0; axis < 3; axis++)
         row->first[axis] += (uint32_t)(sums >> COUNT_BITS * axis & field);
@@ -167,7 +168,7 @@ static bool any_filled(const cwi_grid *g, size_t j, size_t last, size_t k)
     const uint8_t *filled = g->filled + k * g->rows_y;
     bool any = g->window != NULL;
     for (; j <= last + 1 && !any; j++)
-        any = filled[j] || filled[g->rows_y + j];
+        any = (filled[j] | filled[g->rows_y + j]) & CWI_ANY_INSIDE;
     return any;
 }
 

@@ -4,12 +4,26 @@
 
 #include "extract/grid.h"
 
+/* Live cells of layer k: rows_y x words. Of a box's layers two are kept. */
+static inline const uint64_t *cwi_live_layer(const cwi_grid *g, size_t k)
+{
+    const size_t inner = k >= 1 && k < g->volume.dim[2];
+    return g->live + (g->boxed ? inner : k) * g->rows_y * g->words;
+}
+
+/* All cells of row (j, k) but the padding at its ends are live: on edges around them there are
+ * vertices wherever these are crossed, but along x toward padding. */
+static inline bool cwi_is_whole(const cwi_grid *g, size_t j, size_t k)
+{
+    return g->boxed && j >= 1 && j < g->volume.dim[1] && k >= 1 && k < g->volume.dim[2];
+}
+
 /* Live cells of word w in row (j, k) of cells; none outside the grid. */
 static inline uint64_t cwi_live_cells(const cwi_grid *g, size_t j, size_t k, size_t w)
 {
     if (j >= g->rows_y - 1 || k >= g->rows_z - 1) /* true for the row before the first, too */
         return 0;
-    return g->live[(k * g->rows_y + j) * g->words + w];
+    return cwi_live_layer(g, k)[j * g->words + w];
 }
 
 /* With open borders an edge has a vertex only if one of the four cells around it is live. */
@@ -36,7 +50,10 @@ static inline uint64_t cwi_edge_mask(const cwi_grid *g, int axis, size_t j, size
 {
     if (g->window)
         return *cwi_window(g, axis, j, k);
-    return g->live ? cwi_live_edges(g, axis, j, k, w) : ~UINT64_C(0);
+    if (!g->live || (axis != 0 && cwi_is_whole(g, j, k)))
+        return ~UINT64_C(0);
+    return cwi_is_whole(g, j, k) ? cwi_live_cells(g, j, k, w)
+                                 : cwi_live_edges(g, axis, j, k, w);
 }
 
 /* Bit i: there is a vertex on the edge along axis from sample i of row (j, k). */

@@ -4,6 +4,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "core/volume.h"
+#include "extract/crossings.h"
 #include "extract/engine.h"
 
 #include <float.h>
@@ -185,13 +186,28 @@ cw_status cwi_grid_set_level(cwi_grid *g, const cw_extract_desc *desc, cw_error 
     return st;
 }
 
+/* A layer of padding, and one of the others, which are alike. */
+static cw_status set_box(cwi_grid *g, cw_error *err)
+{
+    const size_t layer = g->rows_y * g->words;
+    g->live = cwi_alloc_zeroed(2 * layer + BEYOND, sizeof *g->live);
+    if (!g->live)
+        return no_memory(g, err);
+    for (size_t n = g->words; n < g->volume.dim[1] * g->words; n++)
+        g->live[layer + n] = cwi_bits_between(64 * (n % g->words), 1, g->volume.dim[0]);
+    return CW_OK;
+}
+
 /* Cells at the end of the domain are dropped where the surface stays open. */
 static cw_status set_live(cwi_grid *g, bool leave_open, bool keep_domain, cw_error *err)
 {
     cwi_free(g->live);
     g->live = NULL;
+    g->boxed = leave_open && !g->gaps;
     if (!leave_open)
         return CW_OK;
+    if (g->boxed)
+        return set_box(g, err);
     if (keep_domain) {
         g->live = cwi_grid_plane(g);
         if (!g->live)
@@ -239,47 +255,71 @@ static cw_status plan_classification(classification *c, cwi_grid *g, cwi_octree 
         g->wanted = cwi_alloc_array(bricks * g->masks, sizeof *g->wanted);
     if (tree && !g->leaves)
         g->leaves = cwi_alloc_array(bricks * g->words, sizeof *g->leaves);
-    if (g->find_domain)
-        g->domain = cwi_grid_plane(g);
-    if ((tree && (!g->wanted || !g->leaves)) || (g->find_domain && !g->domain))
+    if (tree && (!g->wanted || !g->leaves))
         return no_memory(g, err);
     c->grow = tree && !tree->grown ? tree : NULL;
-    g->everything = !tree || !tree->grown || g->find_domain;
+    g->everything = !tree || !tree->grown;
     if (!g->everything)
         g->everything = cwi_octree_mark(tree, g) * tree->leaf_bytes >
                         cwi_octree_leaves(tree) * cw_type_size(g->volume.type);
     return CW_OK;
 }
 
-/* After an error, what was to be found is not known. */
-static void forget_domain(cwi_grid *g)
+static bool any_gap(const cwi_grid *g)
 {
-    if (g->find_domain) {
+    unsigned any = 0;
+    for (size_t r = 0; r < g->rows; r++)
+        any |= g->filled[r];
+    return any & CWI_GAP;
+}
+
+/* Compares what is wanted, and where that is everything looks for gaps. */
+static cw_status compare(classification *c, cwi_grid *g, const cw_extract_desc *desc,
+                         cw_error *err)
+{
+    const cw_status st =
+        cwi_each_layer(g->bricks_z, CWI_BRICK * g->volume.dim[0] * g->volume.dim[1],
+                       desc->threads, &desc->progress, "classifying", classify_layer, c, err);
+    if (st == CW_OK && g->everything)
+        g->gaps = any_gap(g);
+    if (st == CW_OK && c->grow)
+        cwi_octree_grow(c->grow);
+    c->grow = NULL;
+    return st;
+}
+
+/* Compares everything once more, for where there are values: few volumes have gaps. */
+static cw_status find_domain(classification *c, cwi_grid *g, const cw_extract_desc *desc,
+                             cw_error *err)
+{
+    g->domain = cwi_grid_plane(g);
+    if (!g->domain)
+        return no_memory(g, err);
+    g->find_domain = g->everything = true;
+    const cw_status st = compare(c, g, desc, err);
+    g->find_domain = false;
+    if (st == CW_OK) {
+        make_domain(g);
+    } else {
         cwi_free(g->domain);
         g->domain = NULL;
     }
+    return st;
 }
 
 cw_status cwi_grid_classify(cwi_grid *g, const cwi_engine *engine, cwi_octree *tree,
                             const cw_extract_desc *desc, cw_error *err)
 {
     classification c = {.grid = g, .engine = engine};
-    g->find_domain = desc->leave_open && !g->domain;
     cw_status st = cwi_grid_set_level(g, desc, err);
     if (st == CW_OK)
         st = plan_classification(&c, g, tree, err);
     if (st == CW_OK)
-        st = cwi_each_layer(g->bricks_z, CWI_BRICK * g->volume.dim[0] * g->volume.dim[1],
-                            desc->threads, &desc->progress, "classifying", classify_layer, &c,
-                            err);
-    if (st != CW_OK) {
-        forget_domain(g);
+        st = compare(&c, g, desc, err);
+    if (st == CW_OK && desc->leave_open && g->gaps && !g->domain)
+        st = find_domain(&c, g, desc, err);
+    if (st != CW_OK)
         return st;
-    }
-    if (c.grow)
-        cwi_octree_grow(c.grow);
-    if (g->find_domain)
-        make_domain(g);
     g->crossed = g->everything ? c.in && c.out : cwi_octree_crossed(tree, g);
     return set_live(g, desc->leave_open, tree != NULL, err);
 }
@@ -302,13 +342,15 @@ void cwi_grid_free(cwi_grid *g)
 
 size_t cwi_grid_bytes(const cwi_grid *g)
 {
-    const size_t planes = 1 + (g->domain != NULL) + (g->live != NULL);
+    const size_t planes = 1 + (g->domain != NULL) + (g->live && !g->boxed);
+    const size_t box = g->boxed ? 2 * g->rows_y * g->words : 0;
     const size_t bricks = g->leaves ? g->bricks_z * g->bricks_y : 0;
     size_t plans = 0;
     for (size_t k = 0; k < g->rows_z; k++)
         plans += g->layers[k].plan_room;
     return plans * sizeof *g->layers->plans + g->rows_z * sizeof *g->layers +
-           (planes * g->rows * g->words + (g->rows + bricks) * g->masks) * sizeof *g->inside +
+           (planes * g->rows * g->words + box + (g->rows + bricks) * g->masks) *
+               sizeof *g->inside +
            g->rows * (sizeof(cwi_row) + sizeof *g->filled) +
            bricks * g->words * sizeof *g->leaves;
 }

@@ -44,8 +44,8 @@ cw_status cwi_level_find(const cw_volume *volume, const cw_extract_desc *desc, c
 typedef struct cwi_octree cwi_octree;
 typedef struct cwi_engine cwi_engine;
 
-/* Some sample of a row is inside; its first is, or its last. */
-enum { CWI_ANY_INSIDE = 1, CWI_FIRST_INSIDE = 2, CWI_LAST_INSIDE = 4 };
+/* Some sample of a row is inside; its first is, or its last; some has no value. */
+enum { CWI_ANY_INSIDE = 1, CWI_FIRST_INSIDE = 2, CWI_LAST_INSIDE = 4, CWI_GAP = 8 };
 
 typedef struct cwi_grid {
     cw_volume volume; /* resolved: one component, one step */
@@ -55,9 +55,11 @@ typedef struct cwi_grid {
     size_t words;     /* of 64 samples in a padded row */
     size_t rows_y, rows_z, rows;
     uint64_t *inside; /* rows x words */
-    uint8_t *filled;  /* rows: which samples are inside; known where everything is wanted */
-    uint64_t *domain; /* rows x words: cells whose eight samples have values; NULL: not known */
-    uint64_t *live;   /* rows x words: the domain without pinched cells; NULL: all cells */
+    uint8_t *filled;  /* rows: what their samples are; known where everything is wanted */
+    uint64_t *domain; /* rows x words: cells whose eight samples have values; NULL: not known,
+                         or all but the padding */
+    uint64_t *live;   /* rows x words: the domain without pinched cells, see
+                         cwi_live_layer(); NULL: all cells */
     uint64_t *window; /* of a block, whose rows are one word: four planes, of cells that are
                          live or beside a live one, and of edges of live cells along x, y and z.
                          NULL: to be found out from `live` */
@@ -71,6 +73,8 @@ typedef struct cwi_grid {
         *wanted; /* bricks_z x bricks_y x masks: words with cells the octree cannot rule out */
     cwi_leaf_bits
         *leaves;      /* bricks_z x bricks_y x words: of wanted words, and those after them */
+    bool gaps;        /* some sample has no value: once everything was wanted */
+    bool boxed;       /* the live cells are all but those of padding */
     bool find_domain; /* the domain is filled while samples are compared */
     bool everything;  /* all words are wanted; else the others mean nothing in the planes */
     bool cubic;       /* crossings stand on the cubic through four samples where there is one */

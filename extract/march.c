@@ -63,14 +63,14 @@ __attribute__((noinline)) static void emit_cells(const cwi_grid *g, size_t j, si
 {
     const uint32_t *end = to->end;
     uint32_t *out = to->out;
-    const bool all_live = !g->live;
+    const bool count_on = counts_on(g, j, k);
     cell_numbers numbers = l->numbers;
     for (size_t n = 0; n < count; n++) {
         const size_t place = l->cell[n];
         const unsigned cube = l->cases[place];
         const cwi_case_emission *of = &emission->of_case[cube];
         __builtin_prefetch(out + AHEAD, 1);
-        number_cell(l, all_live, place, of->crossed, &numbers);
+        number_cell(l, count_on, place, of->crossed, &numbers);
         if (of->edges) {
             out = put(&numbers, of->edge, of->edges, out, end);
         } else {
@@ -108,7 +108,7 @@ void cwi_write_layers(const cwi_grid *g, size_t begin, size_t end, size_t cells,
     /* what is too much is written over by the next rows, but not those of other threads */
     cwi_cursor to = {.end = triangles + 3 * rows[cells * g->rows_y].triangle};
     cell_list list;
-    memset(&list.edges, 0, sizeof list.edges); /* not known where all cells are live */
+    memset(&list.edges, 0, sizeof list.edges); /* not known where numbers count on */
     cwi_write_vertices(g, begin, end, rows, sink);
     for (size_t k = begin; k < cells; k++) {
         const cwi_row *layer = rows + k * g->rows_y;

@@ -118,6 +118,40 @@ static void many_vertices_at_a_time_are_as_good_as_one(void **state)
 }
 
 /* The same voxels through other strides: transposed, then flipped. */
+/* Where some voxel has no value vertices are numbered in another way. */
+static void a_gap_elsewhere_changes_nothing_of_an_open_surface(void **state)
+{
+    (void)state;
+    for (int round = 0; round < (TEST_IS_SLOW ? 8 : 64); round++) {
+        const cw_extract_desc d = {.isovalue = 0, .leave_open = true, .threads = 1 + round % 3};
+        const cw_field_desc desc = {.field = CW_FIELD_GYROID,
+                                    .dim = {60 + (size_t)round % 32 * 9, 13, 11},
+                                    .type = round % 2 ? CW_F64 : CW_F32,
+                                    .noise = round % 8};
+        cw_volume v;
+        cw_error err = {0};
+        assert_ok(cw_field_sample(&desc, &v, &err), err);
+        const size_t *n = v.dim, count = n[0] * n[1] * n[2];
+        const size_t plane = n[0] * n[1];
+        for (size_t at = 0; at < count; at++) /* nothing inside beside the last voxel */
+            if (at % n[0] + 3 >= n[0] && at % plane + 3 * n[0] >= plane &&
+                at + 3 * plane >= count)
+                test_store(v.type, cw_volume_voxels(&v), at, -1);
+        for (size_t e = 0; cwi_engine_at(e); e++) {
+            cw_mesh whole, gap;
+            test_store(v.type, cw_volume_voxels(&v), count - 1, -1);
+            assert_ok(cwi_extract_with(cwi_engine_at(e), &v, &d, &whole, NULL, &err), err);
+            test_store(v.type, cw_volume_voxels(&v), count - 1, NAN);
+            assert_ok(cwi_extract_with(cwi_engine_at(e), &v, &d, &gap, NULL, &err), err);
+            assert_true(whole.triangle_count > 0);
+            test_assert_same_mesh(&whole, &gap);
+            cw_mesh_free(&whole);
+            cw_mesh_free(&gap);
+        }
+        cw_volume_free(&v);
+    }
+}
+
 static void strides_are_honoured(void **state)
 {
     (void)state;
@@ -213,10 +247,9 @@ static void it_can_be_cancelled_at_any_poll(void **state)
     cw_volume_free(&v);
 }
 
-static void memory_running_out_is_an_error_at_every_allocation(void **state)
+static void run_out_of_memory(float corner)
 {
-    (void)state;
-    static const float voxels[27] = {[13] = 1};
+    const float voxels[27] = {[0] = corner, [13] = 1};
     const cw_volume v = {.data = voxels, .type = CW_F32, .dim = {3, 3, 3}};
     const cw_extract_desc d = {.isovalue = 0.5f, .leave_open = true};
     cw_mesh mesh;
@@ -235,12 +268,20 @@ static void memory_running_out_is_an_error_at_every_allocation(void **state)
     cw_mesh_free(&mesh);
 }
 
+static void memory_running_out_is_an_error_at_every_allocation(void **state)
+{
+    (void)state;
+    run_out_of_memory(0);
+    run_out_of_memory(NAN); /* where there are values has to be found out */
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(any_number_of_threads_gives_the_same_bytes),
         cmocka_unit_test(every_engine_gives_the_same_bytes),
         cmocka_unit_test(many_vertices_at_a_time_are_as_good_as_one),
+        cmocka_unit_test(a_gap_elsewhere_changes_nothing_of_an_open_surface),
         cmocka_unit_test(strides_are_honoured),
         cmocka_unit_test(unusable_arguments_are_refused_by_name),
         cmocka_unit_test(limits_stop_before_the_mesh_is_made),

@@ -115,12 +115,12 @@ static void into_the_memory_of_the_surface_before(void **state)
 }
 
 /* Bricks that the surface does not cross are spoilt after the first extraction. */
-static void later_surfaces_read_no_other_bricks(void **state)
+static void spoil_other_bricks(bool leave_open)
 {
-    (void)state;
     const cw_field_desc desc = {
         .field = CW_FIELD_SPHERE, .dim = {200, 200, 200}, .type = CW_F32};
-    const cw_extract_desc first = {.isovalue = 0}, second = {.isovalue = 20};
+    const cw_extract_desc first = {.isovalue = 0},
+                          second = {.isovalue = 20, .leave_open = leave_open};
     cw_volume v;
     cw_extractor *extractor;
     cw_mesh once, again;
@@ -140,6 +140,13 @@ static void later_surfaces_read_no_other_bricks(void **state)
     cw_mesh_free(&again);
     cw_extractor_free(extractor);
     cw_volume_free(&v);
+}
+
+static void later_surfaces_read_no_other_bricks(void **state)
+{
+    (void)state;
+    spoil_other_bricks(false);
+    spoil_other_bricks(true);
 }
 
 static void after_a_cancelled_extraction_it_starts_afresh(void **state)
