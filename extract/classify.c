@@ -24,6 +24,11 @@ static inline uint64_t pack_eight(uint64_t bytes)
 /* As many bytes as a leaf has samples in a row. */
 typedef signed char leaf_bytes __attribute__((vector_size(CWI_BRICK)));
 
+static inline uint64_t leaf_bits(leaf_bytes b)
+{
+    return pack_eight((uint64_t)b & UINT64_C(0x0101010101010101));
+}
+
 /* 64 bytes of 0 or 1 to bits. */
 static inline uint64_t pack_bits(const unsigned char bytes[64])
 {
@@ -284,8 +289,8 @@ void cwi_classify_layer(const cwi_grid *g, size_t b, cwi_range *leaves, bool *in
     }
     for (size_t k = begin; k < end; k++) {
         clear_padding(g, g->inside, k);
-        if (g->find_domain)
-            clear_padding(g, g->domain, k);
+        if (g->find_values)
+            clear_padding(g, g->has, k);
     }
     if (!leaves) { /* as memory lies */
         for (size_t k = begin ? begin : 1; k < end && k + 1 < g->rows_z; k++)

@@ -90,6 +90,31 @@ static inline uint64_t cwi_inner_edges(const cwi_grid *g, const size_t at[3])
     return cwi_bits_between(at[0], g->cubic ? 3 : 2, g->volume.dim[0] - 1);
 }
 
+/* Samples of word w of an inner row (j, k) that have values, as have all six around each. */
+static inline uint64_t cwi_valued_samples(const cwi_grid *g, size_t j, size_t k, size_t w)
+{
+    const size_t layer = g->rows_y * g->words;
+    const uint64_t *row = g->has + k * layer + j * g->words;
+    const uint64_t before = row[w] << 1 | (w ? row[w - 1] >> 63 : 0);
+    return row[w] & before & cwi_next_samples(row, w) & *(row + w - g->words) &
+           row[w + g->words] & *(row + w - layer) & row[w + layer];
+}
+
+/* Of the word at at[]: inner edges along an axis whose samples, and these's neighbours, all
+ * have values. */
+static inline uint64_t cwi_valued_edges(const cwi_grid *g, int axis, const size_t at[3])
+{
+    const size_t w = at[0] / 64, j = at[1] + (axis == 1), k = at[2] + (axis == 2);
+    const uint64_t inner = cwi_inner_edges(g, at);
+    if (!inner)
+        return 0;
+    const uint64_t here = cwi_valued_samples(g, at[1], at[2], w);
+    uint64_t after = cwi_valued_samples(g, j, k, w);
+    if (axis == 0)
+        after = after >> 1 | (w + 1 < g->words ? cwi_valued_samples(g, j, k, w + 1) << 63 : 0);
+    return inner & here & after;
+}
+
 /* Edges along an axis both of whose ends are voxels. */
 static inline uint64_t cwi_volume_edges(const cwi_grid *g, int axis, const size_t at[3])
 {

@@ -42,7 +42,7 @@ struct cwi_engine {
     const char *name;
     bool (*usable)(void);
     /* Writes the inside bits of what is wanted in brick layer b, that is eight layers of padded
-     * samples, or as many as are left; where the domain is to be found, which samples have
+     * samples, or as many as are left; where values are to be found, which samples have
      * values; and, unless leaves is NULL, the ranges of the layer's bricks. Tells whether it
      * saw samples with values on each side. */
     void (*classify_layer)(const cwi_grid *grid, size_t b, cwi_range *leaves, bool *in,

@@ -82,13 +82,12 @@ cw_status cwi_grid_init(cwi_grid *g, const cw_volume *volume, cw_error *err)
     return st == CW_OK ? allocate(g, err) : st;
 }
 
-/* Turns the plane of samples with values into the plane of cells all of whose samples have
- * values, in place: a cell needs its own row and rows after it, which are still samples. */
-static void make_domain(cwi_grid *g)
+/* The cells all of whose samples have values: each needs its own row of these and the next. */
+static void find_live(const cwi_grid *g)
 {
     for (size_t r = 0; r < g->rows; r++) {
         const size_t j = r % g->rows_y, k = r / g->rows_y;
-        uint64_t *row = g->domain + r * g->words;
+        const uint64_t *row = g->has + r * g->words;
         const bool last = j + 1 == g->rows_y || k + 1 == g->rows_z;
         for (size_t w = 0; w < g->words; w++) {
             uint64_t cells = last ? 0 : ~UINT64_C(0);
@@ -96,7 +95,7 @@ static void make_domain(cwi_grid *g)
                 const uint64_t *samples = row + ((n & 1) + (n >> 1) * g->rows_y) * g->words;
                 cells &= samples[w] & cwi_next_samples(samples, w);
             }
-            row[w] = cells;
+            g->live[r * g->words + w] = cells;
         }
     }
 }
@@ -134,7 +133,8 @@ static bool drop_pinched(cwi_grid *g)
                 uint64_t *below = here - (axis == 1 ? g->rows_y : 1) * g->words;
                 uint64_t *side = here - g->rows_y * g->words, *corner = side - g->words;
                 for (size_t w = 0; w < g->words; w++) {
-                    if (!is_wanted(g, j, k, w))
+                    const uint64_t crossed = cwi_grid_crossed(g, axis, j, k, w);
+                    if (!crossed || !is_wanted(g, j, k, w))
                         continue;
                     const uint64_t a = here[w], b = below[w];
                     uint64_t c, d; /* beside a, beside b */
@@ -145,8 +145,7 @@ static bool drop_pinched(cwi_grid *g)
                         c = a << 1 | (w ? here[w - 1] >> 63 : 0);
                         d = b << 1 | (w ? below[w - 1] >> 63 : 0);
                     }
-                    const uint64_t pinched = ((a & d & ~b & ~c) | (b & c & ~a & ~d)) &
-                                             cwi_grid_crossed(g, axis, j, k, w);
+                    const uint64_t pinched = ((a & d & ~b & ~c) | (b & c & ~a & ~d)) & crossed;
                     if (!pinched)
                         continue;
                     changed = true;
@@ -199,7 +198,7 @@ static cw_status set_box(cwi_grid *g, cw_error *err)
 }
 
 /* Cells at the end of the domain are dropped where the surface stays open. */
-static cw_status set_live(cwi_grid *g, bool leave_open, bool keep_domain, cw_error *err)
+static cw_status set_live(cwi_grid *g, bool leave_open, cw_error *err)
 {
     cwi_free(g->live);
     g->live = NULL;
@@ -208,15 +207,10 @@ static cw_status set_live(cwi_grid *g, bool leave_open, bool keep_domain, cw_err
         return CW_OK;
     if (g->boxed)
         return set_box(g, err);
-    if (keep_domain) {
-        g->live = cwi_grid_plane(g);
-        if (!g->live)
-            return no_memory(g, err);
-        memcpy(g->live, g->domain, g->rows * g->words * sizeof *g->live);
-    } else {
-        g->live = g->domain;
-        g->domain = NULL;
-    }
+    g->live = cwi_grid_plane(g);
+    if (!g->live)
+        return no_memory(g, err);
+    find_live(g);
     while (drop_pinched(g))
         ;
     return CW_OK;
@@ -273,36 +267,37 @@ static bool any_gap(const cwi_grid *g)
     return any & CWI_GAP;
 }
 
-/* Compares what is wanted, and where that is everything looks for gaps. */
+/* Compares what is wanted. Once that was everything it is known whether there are gaps; without
+ * them nothing is to be looked for later. */
 static cw_status compare(classification *c, cwi_grid *g, const cw_extract_desc *desc,
                          cw_error *err)
 {
     const cw_status st =
         cwi_each_layer(g->bricks_z, CWI_BRICK * g->volume.dim[0] * g->volume.dim[1],
                        desc->threads, &desc->progress, "classifying", classify_layer, c, err);
-    if (st == CW_OK && g->everything)
-        g->gaps = any_gap(g);
     if (st == CW_OK && c->grow)
         cwi_octree_grow(c->grow);
     c->grow = NULL;
+    if (st == CW_OK && g->everything) {
+        g->gaps = any_gap(g);
+        g->volume.has_nodata = g->volume.has_nodata && g->gaps;
+    }
     return st;
 }
 
-/* Compares everything once more, for where there are values: few volumes have gaps. */
-static cw_status find_domain(classification *c, cwi_grid *g, const cw_extract_desc *desc,
+/* The same of everything, and which samples have values. */
+static cw_status compare_all(classification *c, cwi_grid *g, const cw_extract_desc *desc,
                              cw_error *err)
 {
-    g->domain = cwi_grid_plane(g);
-    if (!g->domain)
+    g->has = cwi_grid_plane(g);
+    if (!g->has)
         return no_memory(g, err);
-    g->find_domain = g->everything = true;
+    g->find_values = g->everything = true;
     const cw_status st = compare(c, g, desc, err);
-    g->find_domain = false;
-    if (st == CW_OK) {
-        make_domain(g);
-    } else {
-        cwi_free(g->domain);
-        g->domain = NULL;
+    g->find_values = false;
+    if (st != CW_OK || !g->gaps) {
+        cwi_free(g->has);
+        g->has = NULL;
     }
     return st;
 }
@@ -314,14 +309,16 @@ cw_status cwi_grid_classify(cwi_grid *g, const cwi_engine *engine, cwi_octree *t
     cw_status st = cwi_grid_set_level(g, desc, err);
     if (st == CW_OK)
         st = plan_classification(&c, g, tree, err);
-    if (st == CW_OK)
+    const bool at_once = g->volume.has_nodata && !g->has;
+    if (st == CW_OK && !at_once)
         st = compare(&c, g, desc, err);
-    if (st == CW_OK && desc->leave_open && g->gaps && !g->domain)
-        st = find_domain(&c, g, desc, err);
+    /* few volumes of floats have NaN, and for few of these it matters */
+    if (st == CW_OK && (at_once || (desc->leave_open && g->gaps && !g->has)))
+        st = compare_all(&c, g, desc, err);
     if (st != CW_OK)
         return st;
     g->crossed = g->everything ? c.in && c.out : cwi_octree_crossed(tree, g);
-    return set_live(g, desc->leave_open, tree != NULL, err);
+    return set_live(g, desc->leave_open, err);
 }
 
 void cwi_grid_free(cwi_grid *g)
@@ -330,7 +327,7 @@ void cwi_grid_free(cwi_grid *g)
         cwi_free(g->layers[k].plans);
     cwi_free(g->layers);
     cwi_free(g->inside);
-    cwi_free(g->domain);
+    cwi_free(g->has);
     cwi_free(g->live);
     cwi_free(g->window);
     cwi_free(g->busy);
@@ -342,7 +339,7 @@ void cwi_grid_free(cwi_grid *g)
 
 size_t cwi_grid_bytes(const cwi_grid *g)
 {
-    const size_t planes = 1 + (g->domain != NULL) + (g->live && !g->boxed);
+    const size_t planes = 1 + (g->has != NULL) + (g->live && !g->boxed);
     const size_t box = g->boxed ? 2 * g->rows_y * g->words : 0;
     const size_t bricks = g->leaves ? g->bricks_z * g->bricks_y : 0;
     size_t plans = 0;

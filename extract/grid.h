@@ -56,10 +56,10 @@ typedef struct cwi_grid {
     size_t rows_y, rows_z, rows;
     uint64_t *inside; /* rows x words */
     uint8_t *filled;  /* rows: what their samples are; known where everything is wanted */
-    uint64_t *domain; /* rows x words: cells whose eight samples have values; NULL: not known,
-                         or all but the padding */
-    uint64_t *live;   /* rows x words: the domain without pinched cells, see
-                         cwi_live_layer(); NULL: all cells */
+    uint64_t *has;    /* rows x words: which samples have values; NULL: not known, or all but
+                         the padding */
+    uint64_t *live;   /* rows x words: cells all of whose samples have values, but pinched ones;
+                         see cwi_live_layer(); NULL: all cells */
     uint64_t *window; /* of a block, whose rows are one word: four planes, of cells that are
                          live or beside a live one, and of edges of live cells along x, y and z.
                          NULL: to be found out from `live` */
@@ -73,9 +73,9 @@ typedef struct cwi_grid {
         *wanted; /* bricks_z x bricks_y x masks: words with cells the octree cannot rule out */
     cwi_leaf_bits
         *leaves;      /* bricks_z x bricks_y x words: of wanted words, and those after them */
-    bool gaps;        /* some sample has no value: once everything was wanted */
+    bool gaps;        /* some voxel has no value: known once everything was wanted */
     bool boxed;       /* the live cells are all but those of padding */
-    bool find_domain; /* the domain is filled while samples are compared */
+    bool find_values; /* `has` is filled while samples are compared */
     bool everything;  /* all words are wanted; else the others mean nothing in the planes */
     bool cubic;       /* crossings stand on the cubic through four samples where there is one */
     bool simple;      /* one rule for ambiguous faces, in place of the field's topology */

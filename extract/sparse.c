@@ -345,6 +345,9 @@ static cw_status init_grid(const sparse_plan *p, worker *w, cw_error *err)
         return st;
     g->everything = g->roomy = true;
     memset(g->inside, 0, g->rows * g->words * sizeof *g->inside);
+    g->find_values = view.has_nodata;
+    if (g->find_values && !(g->has = cwi_grid_plane(g)))
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a block");
     return set_window(g, from->halo + 1, err);
 }
 

@@ -89,8 +89,29 @@ static void every_engine_gives_the_same_bytes(void **state)
     free(memory);
 }
 
-/* No-data that no voxel has sends every vertex through the code for one at a time: positions
- * are the same to the bit, normals to rounding, on the border as inside. */
+/* No-data, nobody knows where, sends every vertex through the code for one at a time. */
+static void write_one_at_a_time(const cwi_grid *grid, size_t begin, size_t end, size_t cells,
+                                const cwi_row *rows, const cwi_emission *emission,
+                                cwi_vertex_sink *sink, uint32_t *triangles)
+{
+    cwi_grid g = *grid;
+    g.volume.has_nodata = true;
+    g.volume.nodata = 0.123; /* no voxel has it */
+    cwi_engine_at(0)->write_layers(&g, begin, end, cells, rows, emission, sink, triangles);
+}
+
+/* Positions are the same to the bit, normals to rounding. */
+static void assert_as_good(const cw_mesh *a, const cw_mesh *b)
+{
+    assert_int_equal(a->vertex_count, b->vertex_count);
+    assert_int_equal(a->triangle_count, b->triangle_count);
+    assert_memory_equal(a->positions, b->positions, 12 * b->vertex_count);
+    assert_memory_equal(a->triangles, b->triangles, 12 * b->triangle_count);
+    for (size_t n = 0; n < 3 * b->vertex_count; n++)
+        assert_near(a->normals[n], b->normals[n], 1e-5);
+}
+
+/* On the border as inside. */
 static void many_vertices_at_a_time_are_as_good_as_one(void **state)
 {
     (void)state;
@@ -104,20 +125,63 @@ static void many_vertices_at_a_time_are_as_good_as_one(void **state)
                                        cw_field_stored(CW_FIELD_GYROID, (cw_type)type, 0.1)};
         test_turn(&v, type);
         cw_mesh many = test_extract(&v, &d, NULL);
-        v.has_nodata = true;
-        v.nodata = 0.123;
-        cw_mesh one = test_extract(&v, &d, NULL);
-        assert_int_equal(many.vertex_count, one.vertex_count);
-        assert_memory_equal(many.positions, one.positions, 12 * one.vertex_count);
-        for (size_t n = 0; n < 3 * one.vertex_count; n++)
-            assert_near(many.normals[n], one.normals[n], 1e-5);
+        cwi_engine engine = *cwi_engine_at(0);
+        engine.write_layers = write_one_at_a_time;
+        cw_mesh one;
+        assert_ok(cwi_extract_with(&engine, &v, &d, &one, NULL, &err), err);
+        assert_as_good(&many, &one);
         cw_mesh_free(&many);
         cw_mesh_free(&one);
         cw_volume_free(&v);
     }
 }
 
-/* The same voxels through other strides: transposed, then flipped. */
+/* Integers with no-data, and the same numbers with NaN: all samples of a level, or those of the
+ * leaves around it. */
+static void no_data_is_as_nan(void **state)
+{
+    (void)state;
+    static const size_t sizes[][3] = {{70, 9, 12}, {64, 20, 7}, {130, 8, 9}, {5, 40, 40}};
+    srand(41);
+    for (int round = 0; round < (TEST_IS_SLOW ? 12 : 96); round++) {
+        cw_volume v[2];
+        cw_extractor *x;
+        cw_error err = {0};
+        size_t engines = 0;
+        while (cwi_engine_at(engines))
+            engines++;
+        const cwi_engine *engine = cwi_engine_at((size_t)round % engines);
+        const size_t *n = sizes[rand() % 4];
+        const int few = 1 + rand() % 200, range = 3 + rand() % 60;
+        for (int nan = 0; nan < 2; nan++)
+            assert_ok(cw_volume_alloc(&v[nan], nan ? CW_F32 : CW_I16, n, 1, 1, &err), err);
+        v[0].has_nodata = true;
+        v[0].nodata = -9;
+        for (size_t at = 0; at < n[0] * n[1] * n[2]; at++) {
+            const bool none = rand() % few == 0;
+            const int number = (int)(at % 9 * 7) + rand() % range;
+            test_store(CW_I16, cw_volume_voxels(&v[0]), at, none ? -9 : number);
+            test_store(CW_F32, cw_volume_voxels(&v[1]), at, none ? NAN : number);
+        }
+        assert_ok(cwi_extractor_new_with(engine, 0, &v[0], &x, &err), err);
+        for (int again = 0; again < 4; again++) {
+            const cw_extract_desc d = {.isovalue = 30.25 + again % 3,
+                                       .inside_is_low = round & 8,
+                                       .leave_open = (round + again) % 3 == 0};
+            cw_mesh a, b;
+            assert_ok(cw_extractor_extract(x, &d, &a, NULL, &err), err);
+            assert_ok(cwi_extract_with(engine, &v[1], &d, &b, NULL, &err), err);
+            assert_true(b.triangle_count > 0);
+            assert_as_good(&a, &b);
+            cw_mesh_free(&a);
+            cw_mesh_free(&b);
+        }
+        cw_extractor_free(x);
+        cw_volume_free(&v[0]);
+        cw_volume_free(&v[1]);
+    }
+}
+
 /* Where some voxel has no value vertices are numbered in another way. */
 static void a_gap_elsewhere_changes_nothing_of_an_open_surface(void **state)
 {
@@ -152,6 +216,7 @@ static void a_gap_elsewhere_changes_nothing_of_an_open_surface(void **state)
     }
 }
 
+/* The same voxels through other strides: transposed, then flipped. */
 static void strides_are_honoured(void **state)
 {
     (void)state;
@@ -281,6 +346,7 @@ int main(void)
         cmocka_unit_test(any_number_of_threads_gives_the_same_bytes),
         cmocka_unit_test(every_engine_gives_the_same_bytes),
         cmocka_unit_test(many_vertices_at_a_time_are_as_good_as_one),
+        cmocka_unit_test(no_data_is_as_nan),
         cmocka_unit_test(a_gap_elsewhere_changes_nothing_of_an_open_surface),
         cmocka_unit_test(strides_are_honoured),
         cmocka_unit_test(unusable_arguments_are_refused_by_name),

@@ -160,6 +160,16 @@ static void test_missing_values(void **state)
     check_like_dense(&dense, &sparse, &(cw_extract_desc){.isovalue = -1});
     cw_volume_free(&dense);
     cw_volume_free(&sparse);
+
+    cw_volume numbers = make_dense(noise, CW_I16, 100, 3);
+    numbers.has_nodata = true;
+    numbers.nodata = -300; /* the background, too */
+    for (size_t n = 0; n < dim[0] * dim[1] * dim[2]; n += 35)
+        ((int16_t *)numbers.owned)[n] = -300;
+    cw_volume tree = test_sparse_of(&numbers, -300);
+    check_like_dense(&numbers, &tree, &(cw_extract_desc){.isovalue = -50});
+    cw_volume_free(&numbers);
+    cw_volume_free(&tree);
 }
 
 static void test_engines_and_threads(void **state)
