@@ -2,8 +2,8 @@
 
 #include "core/memory.h"
 #include "core/volume.h"
-#include "extract/crossing.h"
 #include "extract/cube.h"
+#include "extract/cubic.h"
 #include "extract/sink.h"
 
 #include <math.h>

@@ -5,7 +5,7 @@
  * computed one by one, and so are those on cubics. */
 #include "core/volume.h"
 #include "extract/cell_word.h"
-#include "extract/crossing.h"
+#include "extract/cubic.h"
 #include "extract/sink.h"
 
 #include <float.h>
@@ -274,6 +274,47 @@ ALWAYS_INLINE void interleave_lanes(float from[3][LANES], float (*to)[3])
     memcpy(to, all, sizeof all);
 }
 #endif
+
+_Static_assert((int)CWI_CUBICS == (int)LANES, "cubics fill the lanes");
+
+/* Edges whose vertices are on cubics: the samples before them, at their ends and after; between
+ * neighbours of these, one and two voxels away along both other axes, the differences; and what
+ * comes of it. */
+typedef struct cwi_cubic_lanes {
+    _Alignas(64) double along[4][LANES], near[2][4][LANES], far[2][4][LANES];
+    int64_t found[LANES]; /* 1: usable */
+    float normal[3][LANES];
+} cwi_cubic_lanes;
+
+/* Normals to cubics at shares t of their edges: along the edge from the slope, across it from a
+ * cubic through derivatives of fourth order. */
+static void turn_cubics(cwi_cubic_lanes *restrict c, const double *restrict t,
+                        const cwi_vertex_sink *sink, int axis)
+{
+    double cofactor[3][3];
+    for (int r = 0; r < 3; r++)
+        for (int a = 0; a < 3; a++)
+            cofactor[r][a] = sink->cofactor[r][axis_of(axis, a)];
+    for (size_t n = 0; n < LANES; n++) {
+        double slope[4], weight[4], g[3] = {0, 0, 0}, d[3];
+        cwi_cubic_slopes(t[n], slope);
+        cwi_cubic_weights(t[n], weight);
+        for (int s = 0; s < 4; s++) {
+            g[0] += slope[s] * c->along[s][n];
+            for (int a = 0; a < 2; a++)
+                g[1 + a] += weight[s] * ((8 * c->near[a][s][n] - c->far[a][s][n]) / 12);
+        }
+        for (int r = 0; r < 3; r++)
+            d[r] = cofactor[r][0] * g[0] + cofactor[r][1] * g[1] + cofactor[r][2] * g[2] + 0.0;
+        const double sum = fabs(d[0]) + fabs(d[1]) + fabs(d[2]), power = power_beside(sum);
+        for (int r = 0; r < 3; r++)
+            d[r] *= power;
+        const double scale = 1 / sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+        for (int r = 0; r < 3; r++)
+            c->normal[r][n] = (float)(d[r] * scale);
+        c->found[n] &= (sum > LEAST) & (sum < MOST);
+    }
+}
 
 #define TYPED "extract/vertices.inc"
 #include "extract/types.inc"

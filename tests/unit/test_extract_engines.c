@@ -136,6 +136,32 @@ static void many_vertices_at_a_time_are_as_good_as_one(void **state)
     }
 }
 
+/* One at a time they have normals of the linear kind. */
+static void so_they_are_on_cubics(void **state)
+{
+    (void)state;
+    for (int type = 0; type < CW_TYPE_COUNT; type++) {
+        const cw_field_desc desc = {
+            .field = CW_FIELD_GYROID, .dim = {37, 30, 41}, .type = (cw_type)type, .noise = 0.3};
+        cw_volume v;
+        cw_error err = {0};
+        assert_ok(cw_field_sample(&desc, &v, &err), err);
+        const cw_extract_desc d = {.isovalue =
+                                       cw_field_stored(CW_FIELD_GYROID, (cw_type)type, 0.1),
+                                   .cubic_placement = true};
+        test_turn(&v, type);
+        cw_mesh many = test_extract(&v, &d, NULL), one;
+        cwi_engine engine = *cwi_engine_at(0);
+        engine.write_layers = write_one_at_a_time;
+        assert_ok(cwi_extract_with(&engine, &v, &d, &one, NULL, &err), err);
+        assert_int_equal(many.vertex_count, one.vertex_count);
+        assert_memory_equal(many.positions, one.positions, 12 * one.vertex_count);
+        cw_mesh_free(&many);
+        cw_mesh_free(&one);
+        cw_volume_free(&v);
+    }
+}
+
 /* Integers with no-data, and the same numbers with NaN: all samples of a level, or those of the
  * leaves around it. */
 static void no_data_is_as_nan(void **state)
@@ -346,6 +372,7 @@ int main(void)
         cmocka_unit_test(any_number_of_threads_gives_the_same_bytes),
         cmocka_unit_test(every_engine_gives_the_same_bytes),
         cmocka_unit_test(many_vertices_at_a_time_are_as_good_as_one),
+        cmocka_unit_test(so_they_are_on_cubics),
         cmocka_unit_test(no_data_is_as_nan),
         cmocka_unit_test(a_gap_elsewhere_changes_nothing_of_an_open_surface),
         cmocka_unit_test(strides_are_honoured),
