@@ -90,14 +90,63 @@ static inline uint64_t cwi_inner_edges(const cwi_grid *g, const size_t at[3])
     return cwi_bits_between(at[0], g->cubic ? 3 : 2, g->volume.dim[0] - 1);
 }
 
+/* Word w of a row of samples moved up by some, or moved down. */
+static inline uint64_t cwi_moved_up(const uint64_t *row, size_t w, unsigned by)
+{
+    return row[w] << by | (w ? row[w - 1] >> (64 - by) : 0);
+}
+
+static inline uint64_t cwi_moved_down(const uint64_t *row, size_t w, unsigned by)
+{
+    return row[w] >> by | row[w + 1] << (64 - by);
+}
+
 /* Samples of word w of an inner row (j, k) that have values, as have all six around each. */
 static inline uint64_t cwi_valued_samples(const cwi_grid *g, size_t j, size_t k, size_t w)
 {
     const size_t layer = g->rows_y * g->words;
     const uint64_t *row = g->has + k * layer + j * g->words;
-    const uint64_t before = row[w] << 1 | (w ? row[w - 1] >> 63 : 0);
-    return row[w] & before & cwi_next_samples(row, w) & *(row + w - g->words) &
+    return row[w] & cwi_moved_up(row, w, 1) & cwi_next_samples(row, w) & *(row + w - g->words) &
            row[w + g->words] & *(row + w - layer) & row[w + layer];
+}
+
+/* Samples of word w of an inner row (j, k) that have values, as have those one and two away
+ * along both axes other than this one. */
+static inline uint64_t cwi_valued_crosses(const cwi_grid *g, int axis, size_t j, size_t k,
+                                          size_t w)
+{
+    const ptrdiff_t beside = (ptrdiff_t)g->words, above = beside * (ptrdiff_t)g->rows_y;
+    const uint64_t *row = g->has + (k * g->rows_y + j) * g->words, *at = row + w;
+    uint64_t valued = *at;
+    for (int n = 1; n <= 2; n++) {
+        if (axis != 0)
+            valued &= cwi_moved_up(row, w, (unsigned)n) & cwi_moved_down(row, w, (unsigned)n);
+        if (axis != 1)
+            valued &= at[-n * beside] & at[n * beside];
+        if (axis != 2)
+            valued &= at[-n * above] & at[n * above];
+    }
+    return valued;
+}
+
+/* Inner edges along an axis all of whose samples on cubics have values. */
+static inline uint64_t cwi_valued_cubics(const cwi_grid *g, int axis, const size_t at[3],
+                                         uint64_t inner)
+{
+    const size_t w = at[0] / 64;
+    if (axis == 0) {
+        uint64_t row[3] = {0, cwi_valued_crosses(g, 0, at[1], at[2], w), 0};
+        if (w)
+            row[0] = cwi_valued_crosses(g, 0, at[1], at[2], w - 1);
+        if (w + 1 < g->words)
+            row[2] = cwi_valued_crosses(g, 0, at[1], at[2], w + 1);
+        return inner & row[1] & cwi_moved_up(row, 1, 1) & cwi_next_samples(row, 1) &
+               cwi_moved_down(row, 1, 2);
+    }
+    for (size_t n = 0; n < 4 && inner; n++)
+        inner &= cwi_valued_crosses(g, axis, at[1] + (axis == 1 ? n - 1 : 0),
+                                    at[2] + (axis == 2 ? n - 1 : 0), w);
+    return inner;
 }
 
 /* Of the word at at[]: inner edges along an axis whose samples, and these's neighbours, all
@@ -108,6 +157,8 @@ static inline uint64_t cwi_valued_edges(const cwi_grid *g, int axis, const size_
     const uint64_t inner = cwi_inner_edges(g, at);
     if (!inner)
         return 0;
+    if (g->cubic)
+        return cwi_valued_cubics(g, axis, at, inner);
     const uint64_t here = cwi_valued_samples(g, at[1], at[2], w);
     uint64_t after = cwi_valued_samples(g, j, k, w);
     if (axis == 0)

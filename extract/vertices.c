@@ -1,8 +1,9 @@
 /* Vertices and normals. Compiled for each engine.
  *
- * Crossed edges are listed until there are enough for arithmetic on many at a time; vertices of
- * volumes with no-data, beside NaN or infinite values and where the gradient vanishes are
- * computed one by one, and so are those on cubics. */
+ * Crossed edges are listed until there are enough for arithmetic on many at a time; vertices
+ * beside no-data, NaN or infinite values and where the gradient vanishes are computed one by
+ * one.
+ */
 #include "core/volume.h"
 #include "extract/cell_word.h"
 #include "extract/cubic.h"

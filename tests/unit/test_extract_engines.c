@@ -178,7 +178,7 @@ static void no_data_is_as_nan(void **state)
             engines++;
         const cwi_engine *engine = cwi_engine_at((size_t)round % engines);
         const size_t *n = sizes[rand() % 4];
-        const int few = 1 + rand() % 200, range = 3 + rand() % 60;
+        const int few = 1 + rand() % 400, range = 3 + rand() % 60;
         for (int nan = 0; nan < 2; nan++)
             assert_ok(cw_volume_alloc(&v[nan], nan ? CW_F32 : CW_I16, n, 1, 1, &err), err);
         v[0].has_nodata = true;
@@ -193,6 +193,7 @@ static void no_data_is_as_nan(void **state)
         for (int again = 0; again < 4; again++) {
             const cw_extract_desc d = {.isovalue = 30.25 + again % 3,
                                        .inside_is_low = round & 8,
+                                       .cubic_placement = round & 16,
                                        .leave_open = (round + again) % 3 == 0};
             cw_mesh a, b;
             assert_ok(cw_extractor_extract(x, &d, &a, NULL, &err), err);

@@ -167,7 +167,11 @@ static void test_missing_values(void **state)
     for (size_t n = 0; n < dim[0] * dim[1] * dim[2]; n += 35)
         ((int16_t *)numbers.owned)[n] = -300;
     cw_volume tree = test_sparse_of(&numbers, -300);
+    const cw_extract_desc cubic = {.isovalue = -50, .cubic_placement = true};
     check_like_dense(&numbers, &tree, &(cw_extract_desc){.isovalue = -50});
+    check_like_dense(&numbers, &tree, &cubic);
+    numbers.nodata = tree.nodata = 12345; /* no voxel has it */
+    check_like_dense(&numbers, &tree, &cubic);
     cw_volume_free(&numbers);
     cw_volume_free(&tree);
 }
