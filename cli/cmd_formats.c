@@ -2,14 +2,11 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/json.h"
-#include "core/module.h"
 
 #include <cubewright/formats.h>
-#include <cubewright/level_set.h>
-#include <cubewright/quality.h>
-#include <cubewright/simplify.h>
 
 #include <stdio.h>
+#include <string.h>
 
 typedef struct formats_args {
     cli_common common;
@@ -45,7 +42,19 @@ static void print_json(const cw_format *formats, size_t count)
         cli_json_bool(&j, "reads_mesh", f->reads_mesh);
         cli_json_bool(&j, "writes_mesh", f->writes_mesh);
         cli_json_bool(&j, "in_this_build", f->in_this_build);
+        cli_json_text(&j, "reason", f->reason);
         cli_json_text(&j, "lost", f->lost);
+        cli_json_close(&j, '}');
+    }
+    cli_json_close(&j, ']');
+    cli_json_open(&j, "features", '[');
+    const cw_feature *features = cw_features(&count);
+    for (size_t i = 0; i < count; i++) {
+        cli_json_open(&j, NULL, '{');
+        cli_json_text(&j, "name", features[i].name);
+        cli_json_text(&j, "about", features[i].about);
+        cli_json_bool(&j, "available", features[i].available);
+        cli_json_text(&j, "reason", features[i].reason);
         cli_json_close(&j, '}');
     }
     cli_json_close(&j, ']');
@@ -69,6 +78,30 @@ static cw_status run_formats(void *p, cw_error *err)
     return CW_OK;
 }
 
+static void print_availability(const char *name, bool available, const char *reason)
+{
+    if (available)
+        printf("%-11syes\n", name);
+    else
+        printf("%-11sno: %s\n", name, reason);
+}
+
+/* A feature that is one format has the format's name and is told once. */
+static void print_features(const cw_format *formats, size_t format_count)
+{
+    size_t count;
+    const cw_feature *features = cw_features(&count);
+    for (size_t i = 0; i < count; i++) {
+        bool is_format = false;
+        for (size_t k = 0; k < format_count; k++)
+            is_format |= strcmp(features[i].name, formats[k].name) == 0;
+        if (!is_format)
+            print_availability(features[i].name, features[i].available, features[i].reason);
+    }
+    for (size_t k = 0; k < format_count; k++)
+        print_availability(formats[k].name, formats[k].in_this_build, formats[k].reason);
+}
+
 static cw_status run_version(void *p, cw_error *err)
 {
     const formats_args *args = p;
@@ -80,15 +113,8 @@ static cw_status run_version(void *p, cw_error *err)
         return CW_OK;
     }
     printf("cubewright %s\n", cw_version());
-    if (args->features) {
-        printf("%-11s%s\n", "cgal", cw_quality_has_cgal() ? "yes" : "no");
-        printf("%-11s%s\n", "simplify", cw_simplify_available() ? "yes" : "no");
-        printf("%-11s%s\n", "level-set", cw_level_set_available() ? "yes" : "no");
-        printf("%-11s%s\n", "gl", cwi_module_present("gl") ? "yes" : "no");
-        printf("%-11s%s\n", "window", cwi_module_present("window") ? "yes" : "no");
-    }
-    for (size_t i = 0; i < count && args->features; i++)
-        printf("%-11s%s\n", formats[i].name, formats[i].in_this_build ? "yes" : "no");
+    if (args->features)
+        print_features(formats, count);
     return CW_OK;
 }
 
@@ -107,9 +133,9 @@ const cli_command cli_formats = {
 };
 
 static const cli_option version_options[] = {
-    {"features", 0, CLI_FLAG, NULL, "also what is in this build",
+    {"features", 0, CLI_FLAG, NULL, "also what this build has, and why it lacks the rest",
      offsetof(formats_args, features)},
-    {"json", 0, CLI_FLAG, NULL, "one JSON object, with the formats",
+    {"json", 0, CLI_FLAG, NULL, "one JSON object, with formats and features",
      offsetof(formats_args, json)},
 };
 

@@ -84,8 +84,7 @@ static cw_status open_window(view *v, const render_args *args, cw_error *err)
                               .width = args->size.n[0],
                               .height = args->size.n[1],
                               .hidden = args->hidden || args->output};
-    cw_status st = cwi_module_load("window", "CUBEWRIGHT_WINDOW",
-                                   "libimgui-dev libglfw3-dev libepoxy-dev", &functions, err);
+    cw_status st = cwi_module_load("window", &functions, err);
     if (st != CW_OK)
         return st;
     v->ui = functions;

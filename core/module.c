@@ -1,6 +1,8 @@
 #define _GNU_SOURCE /* dladdr */
 #include "core/module.h"
 
+#include "core/features.h"
+
 #include <dlfcn.h>
 #include <stdio.h>
 #include <string.h>
@@ -32,22 +34,24 @@ bool cwi_module_present(const char *name)
     return module_path(name, path, sizeof path);
 }
 
-cw_status cwi_module_load(const char *name, const char *option, const char *package,
-                          const void **functions, cw_error *err)
+cw_status cwi_module_load(const char *name, const void **functions, cw_error *err)
 {
     char path[4096], symbol[64];
+    const cwi_feature_row *row = cwi_find_module_row(name);
+    if (!row)
+        return cw_fail(err, CW_ERR_UNSUPPORTED, "there is no module '%s'", name);
     if (!module_path(name, path, sizeof path))
-        return cw_fail(
-            err, CW_ERR_UNSUPPORTED,
-            "the %s module is not in this build; configure with -D%s=ON and the Debian "
-            "package %s",
-            name, option, package);
+        return cw_fail(err, CW_ERR_UNSUPPORTED,
+                       "the %s module is not in this build (%s); configure with -D%s=ON and "
+                       "the Debian package%s %s",
+                       name, *row->reason ? row->reason : "its file was removed", row->option,
+                       strchr(row->packages, ' ') ? "s" : "", row->packages);
     void *module = dlopen(path, RTLD_NOW | RTLD_LOCAL);
     snprintf(symbol, sizeof symbol, "cwi_module_%s", name);
     *functions = module ? dlsym(module, symbol) : NULL;
     if (!*functions)
         return cw_fail(err, CW_ERR_UNSUPPORTED,
                        "the %s module cannot be loaded: %s (Debian: %s)", name, dlerror(),
-                       package);
+                       row->packages);
     return CW_OK;
 }

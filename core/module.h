@@ -14,10 +14,9 @@ extern "C" {
 #endif
 
 /* Sets *functions to the struct exported by a module; it stays loaded.
- * Returns CW_ERR_UNSUPPORTED, naming the build option and Debian package, when this build has
- * no such module or it cannot be loaded. */
-CW_API cw_status cwi_module_load(const char *name, const char *option, const char *package,
-                                 const void **functions, cw_error *err);
+ * Returns CW_ERR_UNSUPPORTED, with the reason, the build option and the Debian packages, when
+ * this build has no such module or it cannot be loaded. */
+CW_API cw_status cwi_module_load(const char *name, const void **functions, cw_error *err);
 
 /* Whether the file of a module is there; nothing is loaded. */
 CW_API bool cwi_module_present(const char *name);

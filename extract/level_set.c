@@ -363,8 +363,7 @@ static cw_status make(build *b, const cw_quality *q, cw_volume *volume, cw_error
         b->dim[a] = (size_t)ceil((2 * margin + length + 1) / CWI_LEAF);
         dim[a] = CWI_LEAF * b->dim[a];
     }
-    cw_status st =
-        cwi_module_load("levelset", "CUBEWRIGHT_OPENVDB", "libopenvdb-dev", &functions, err);
+    cw_status st = cwi_module_load("levelset", &functions, err);
     b->functions = functions;
     if (st == CW_OK)
         st = cwi_winding_init(&b->winding, b->mesh, desc.first, voxel, dim, err);

@@ -14,7 +14,7 @@ enum { CHUNK_BYTES = 3 << 14, GLB_HEADER = 12, CHUNK_HEADER = 8 };
 cw_status cwi_gltf_functions_load(const cwi_gltf_functions **functions, cw_error *err)
 {
     const void *module;
-    cw_status st = cwi_module_load("gltf", "CUBEWRIGHT_GLTF", "libtinygltf-dev", &module, err);
+    cw_status st = cwi_module_load("gltf", &module, err);
     if (st == CW_OK)
         *functions = module;
     return st;
@@ -23,7 +23,7 @@ cw_status cwi_gltf_functions_load(const cwi_gltf_functions **functions, cw_error
 cw_status cwi_draco_functions_load(const cwi_draco_functions **functions, cw_error *err)
 {
     const void *module;
-    cw_status st = cwi_module_load("draco", "CUBEWRIGHT_DRACO", "libdraco-dev", &module, err);
+    cw_status st = cwi_module_load("draco", &module, err);
     if (st == CW_OK)
         *functions = module;
     return st;
@@ -32,8 +32,7 @@ cw_status cwi_draco_functions_load(const cwi_draco_functions **functions, cw_err
 cw_status cwi_meshopt_functions_load(const cwi_meshopt_functions **functions, cw_error *err)
 {
     const void *module;
-    cw_status st =
-        cwi_module_load("meshopt", "CUBEWRIGHT_MESHOPT", "libmeshoptimizer-dev", &module, err);
+    cw_status st = cwi_module_load("meshopt", &module, err);
     if (st == CW_OK)
         *functions = module;
     return st;

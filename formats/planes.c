@@ -5,12 +5,12 @@
 
 #include <string.h>
 
-cw_status cwi_planes_open(cwi_planes *planes, const char *module, const char *option,
-                          const char *package, const cw_read_desc *desc, cw_error *err)
+cw_status cwi_planes_open(cwi_planes *planes, const char *module, const cw_read_desc *desc,
+                          cw_error *err)
 {
     const void *functions;
     *planes = (cwi_planes){0};
-    cw_status st = cwi_module_load(module, option, package, &functions, err);
+    cw_status st = cwi_module_load(module, &functions, err);
     if (st != CW_OK)
         return st;
     planes->functions = functions;

@@ -43,8 +43,8 @@ typedef struct cwi_planes {
 
 /* Loads a module and starts its process.
  * Returns  CW_ERR_UNSUPPORTED  not in this build; as cwi_sandbox_open() */
-cw_status cwi_planes_open(cwi_planes *planes, const char *module, const char *option,
-                          const char *package, const cw_read_desc *desc, cw_error *err);
+cw_status cwi_planes_open(cwi_planes *planes, const char *module, const cw_read_desc *desc,
+                          cw_error *err);
 void cwi_planes_close(cwi_planes *planes);
 
 /* Hands a file over; returns its facts, or fails as the module does. Copy them, then check. */

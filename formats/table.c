@@ -1,6 +1,6 @@
 #include "formats/table.h"
 
-#include "core/module.h"
+#include "core/features.h"
 
 #include <pthread.h>
 #include <string.h>
@@ -163,17 +163,23 @@ static pthread_once_t formats_once = PTHREAD_ONCE_INIT;
 static void fill_formats(void)
 {
     static const struct {
-        const char *format, *module;
-    } modules[] = {{"glb", "gltf"},
-                   {"gltf", "gltf"},
-                   {"dicom", "dicom"},
-                   {"tiff", "tiff"},
-                   {"vdb", "openvdb"}};
+        const char *format, *feature;
+    } optional[] = {{"glb", "gltf"},
+                    {"gltf", "gltf"},
+                    {"dicom", "dicom"},
+                    {"tiff", "tiff"},
+                    {"vdb", "vdb"}};
     memcpy(formats, rows, sizeof rows);
-    for (int i = 0; i < ROW_COUNT; i++)
-        for (size_t m = 0; m < sizeof modules / sizeof *modules; m++)
-            if (strcmp(rows[i].name, modules[m].format) == 0)
-                formats[i].in_this_build = cwi_module_present(modules[m].module);
+    for (int i = 0; i < ROW_COUNT; i++) {
+        formats[i].reason = "";
+        for (size_t k = 0; k < sizeof optional / sizeof *optional; k++) {
+            if (strcmp(rows[i].name, optional[k].format) != 0)
+                continue;
+            const cw_feature *feature = cwi_find_feature(optional[k].feature);
+            formats[i].in_this_build = feature && feature->available;
+            formats[i].reason = feature ? feature->reason : "no such feature";
+        }
+    }
 }
 
 const cw_format *cw_formats(size_t *count)

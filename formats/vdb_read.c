@@ -223,8 +223,7 @@ cw_status cwi_vdb_read(const cwi_input *in, const cw_read_desc *desc, cw_volume 
 {
     cwi_planes planes = {0};
     cwi_vdb_facts *facts = cwi_alloc_array(1, sizeof *facts);
-    cw_status st = facts ? cwi_planes_open(&planes, "openvdb", "CUBEWRIGHT_OPENVDB",
-                                           "libopenvdb-dev", desc, err)
+    cw_status st = facts ? cwi_planes_open(&planes, "openvdb", desc, err)
                          : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for facts");
     if (st == CW_OK)
         st = take_facts(&planes, in, facts, err);

@@ -42,8 +42,7 @@ cw_status cwi_passes_init(cwi_passes *p, const cw_simplify_desc *desc, cw_error 
                                      .keep_border = desc->keep_border}};
     cw_status st = check(desc, err);
     if (st == CW_OK)
-        st =
-            cwi_module_load("openmesh", "CUBEWRIGHT_OPENMESH", "libopenmesh-dev", &module, err);
+        st = cwi_module_load("openmesh", &module, err);
     if (st == CW_OK)
         p->openmesh = module;
     return st == CW_OK ? cwi_views_init(&p->views, desc, err) : st;

@@ -42,7 +42,7 @@ static cw_status need_gl(cw_renderer *r, cw_error *err)
     const void *functions;
     if (r->gl)
         return CW_OK;
-    cw_status st = cwi_module_load("gl", "CUBEWRIGHT_GL", "libepoxy-dev", &functions, err);
+    cw_status st = cwi_module_load("gl", &functions, err);
     if (st != CW_OK)
         return st;
     r->functions = functions;

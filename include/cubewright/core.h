@@ -68,6 +68,17 @@ CW_API int cw_status_exit_code(cw_status status);
 CW_API const char *cw_status_name(cw_status status);
 CW_API const char *cw_status_text(cw_status status);
 
+/* An optional part of the library, which a build can be without. */
+typedef struct cw_feature {
+    const char *name;   /* such as "simplify" or "draco" */
+    const char *about;  /* what it brings */
+    bool available;     /* false: calls that need it return CW_ERR_UNSUPPORTED */
+    const char *reason; /* why it is not available; "" when it is */
+} cw_feature;
+
+/* The optional parts, available or not: count rows that live as long as the program. */
+CW_API const cw_feature *cw_features(size_t *count);
+
 #ifdef __cplusplus
 }
 #endif

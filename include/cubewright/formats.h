@@ -439,8 +439,9 @@ typedef struct cw_format {
     const char *about;
     bool reads_volume, writes_volume, reads_mesh, writes_mesh;
     bool in_this_build;
-    const char *lost; /* what writing drops; "" for nothing */
-    unsigned keeps;   /* of a mesh that is written: cw_keeps flags */
+    const char *reason; /* why it is not in this build; "" when it is */
+    const char *lost;   /* what writing drops; "" for nothing */
+    unsigned keeps;     /* of a mesh that is written: cw_keeps flags */
 } cw_format;
 
 /* The format that a mesh is written in: of that name, or (name is NULL) by the path's

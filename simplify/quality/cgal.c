@@ -6,7 +6,7 @@
 static cw_status load(const cwi_cgal_functions **functions, cw_error *err)
 {
     const void *module;
-    cw_status st = cwi_module_load("cgal", "CUBEWRIGHT_CGAL", "libcgal-dev", &module, err);
+    cw_status st = cwi_module_load("cgal", &module, err);
     if (st == CW_OK)
         *functions = module;
     return st;

@@ -33,7 +33,8 @@ void test_assert_near(double value, double truth, double margin, const char *wha
 int test_folder_make(void **state)
 {
     (void)state;
-    strcpy(folder, "/tmp/cubewright-test-XXXXXX");
+    const char *base = getenv("TMPDIR");
+    snprintf(folder, sizeof folder, "%s/cubewright-test-XXXXXX", base ? base : "/tmp");
     assert_non_null(mkdtemp(folder));
     return 0;
 }

@@ -426,9 +426,10 @@ static void a_build_without_the_module_names_the_option(void **state)
     cw_error err = {0};
     test_make_cube(&mesh);
     assert_fails(cw_mesh_write(test_path("a.glb"), &mesh, NULL, &err), CW_ERR_UNSUPPORTED,
-                 "a.glb: the gltf module is not in this build; configure with "
-                 "-DCUBEWRIGHT_GLTF=ON and the Debian package libtinygltf-dev",
-                 err);
+                 "a.glb: the gltf module is not in this build (", err);
+    assert_fails(
+        cw_mesh_write(test_path("a.glb"), &mesh, NULL, &err), CW_ERR_UNSUPPORTED,
+        "); configure with -DCUBEWRIGHT_GLTF=ON and the Debian package libtinygltf-dev", err);
     assert_int_equal(test_folder_entries(), 0);
     cw_mesh_free(&mesh);
 }

@@ -23,8 +23,7 @@ static int open_window(void **state)
     (void)state;
     if (!cwi_module_present("window"))
         return 0;
-    assert_ok(cwi_module_load("window", "CUBEWRIGHT_WINDOW", "libimgui-dev", &functions, &err),
-              err);
+    assert_ok(cwi_module_load("window", &functions, &err), err);
     u = functions;
     assert_ok(u->open(&desc, &ui, &err), err);
     return 0;

@@ -1,0 +1,282 @@
+# The optional features of a build, a call each: library, price, and a program that tries it.
+include(core/add_feature.cmake)
+
+# C++ is for the wrappers of C++ libraries alone; without them no C++ compiler is needed.
+if(CUBEWRIGHT_GLTF OR CUBEWRIGHT_DRACO OR CUBEWRIGHT_DICOM OR CUBEWRIGHT_OPENVDB OR CUBEWRIGHT_CGAL
+   OR CUBEWRIGHT_OPENMESH OR CUBEWRIGHT_WINDOW)
+  include(CheckLanguage)
+  check_language(CXX)
+  if(CMAKE_CXX_COMPILER)
+    enable_language(CXX)
+  endif()
+endif()
+
+if(CUBEWRIGHT_CGAL AND CMAKE_CXX_COMPILER)
+  set(CGAL_DO_NOT_WARN_ABOUT_CMAKE_BUILD_TYPE ON CACHE INTERNAL "one file, with its own -O2")
+  find_package(CGAL QUIET)
+endif()
+set(unsanitized ON)
+if(CUBEWRIGHT_SANITIZE)
+  set(unsanitized OFF) # sanitizers make its exact arithmetic crawl
+endif()
+add_feature(cgal OPTION CUBEWRIGHT_CGAL PACKAGES libcgal-dev MODULE cgal LANGUAGE CXX
+  ABOUT "a second opinion on meshes, by CGAL (GPL)"
+  COST "asks no second opinion on meshes"
+  NEEDS CGAL_FOUND=libcgal-dev "unsanitized=a build without sanitizers" LIBRARIES CGAL
+  HEADERS CGAL/Polygon_mesh_processing/self_intersections.h CGAL/Surface_mesh.h
+  TRIAL [[
+#include <CGAL/Gmpq.h>
+int main()
+{
+    return CGAL::Gmpq(1).numerator() != 1;
+}
+]])
+
+if(CUBEWRIGHT_OPENMESH AND CMAKE_CXX_COMPILER)
+  find_package(OpenMesh QUIET CONFIG)
+endif()
+add_feature(simplify OPTION CUBEWRIGHT_OPENMESH PACKAGES libopenmesh-dev MODULE openmesh LANGUAGE CXX
+  ABOUT "simplification of meshes, on OpenMesh"
+  COST "does not simplify"
+  NEEDS OpenMesh_FOUND=libopenmesh-dev LIBRARIES OpenMeshCore
+  TRIAL [[
+#include <OpenMesh/Core/Mesh/TriMesh_ArrayKernelT.hh>
+int main()
+{
+    OpenMesh::TriMesh_ArrayKernelT<> mesh;
+    mesh.add_vertex(OpenMesh::Vec3f(0, 0, 0));
+    return mesh.n_vertices() != 1;
+}
+]])
+
+if(CUBEWRIGHT_OPENVDB AND CMAKE_CXX_COMPILER)
+  find_path(OPENVDB_INCLUDE openvdb/openvdb.h)
+  find_library(OPENVDB_LIBRARY openvdb)
+  find_path(BOOST_INCLUDE boost/numeric/conversion/conversion_traits.hpp)
+  find_package(TBB QUIET CONFIG)
+  find_package(Imath QUIET CONFIG)
+endif()
+set(OPENVDB_LIBRARIES ${OPENVDB_LIBRARY} TBB::tbb Imath::Imath)
+# TBB's containers, in headers, keep small numbers in pointers. For source files: a target's own
+# options come before those that switch the sanitizers on.
+if(CUBEWRIGHT_SANITIZE)
+  set(OPENVDB_OPTIONS -fno-sanitize=undefined)
+endif()
+add_feature(vdb OPTION CUBEWRIGHT_OPENVDB PACKAGES libopenvdb-dev libboost-dev MODULE openvdb LANGUAGE CXX
+  ABOUT "sparse volumes, through OpenVDB"
+  COST "reads no OpenVDB"
+  NEEDS OPENVDB_INCLUDE=libopenvdb-dev OPENVDB_LIBRARY=libopenvdb-dev BOOST_INCLUDE=libboost-dev
+        TBB_FOUND=libtbb-dev Imath_FOUND=libimath-dev
+  HEADERS openvdb/openvdb.h openvdb/tools/MeshToVolume.h tbb/global_control.h
+  INCLUDES ${OPENVDB_INCLUDE} ${BOOST_INCLUDE} LIBRARIES ${OPENVDB_LIBRARIES}
+  TRIAL [[
+#include <openvdb/MetaMap.h>
+#include <openvdb/math/Math.h>
+int main()
+{
+    openvdb::MetaMap map;
+    return map.metaCount() != 0;
+}
+]])
+add_feature(level-set OPTION CUBEWRIGHT_OPENVDB PACKAGES libopenvdb-dev libboost-dev MODULE levelset
+  ABOUT "offset and hollow, through OpenVDB"
+  COST "does not offset and hollow meshes"
+  LIKE vdb)
+
+if(CUBEWRIGHT_GL OR CUBEWRIGHT_WINDOW)
+  find_path(EPOXY_INCLUDE epoxy/egl.h)
+  find_library(EPOXY_LIBRARY epoxy)
+endif()
+add_feature(gl OPTION CUBEWRIGHT_GL PACKAGES libepoxy-dev MODULE gl
+  ABOUT "volumes drawn by OpenGL"
+  COST "draws volumes by the CPU alone"
+  NEEDS EPOXY_INCLUDE=libepoxy-dev EPOXY_LIBRARY=libepoxy-dev
+  INCLUDES ${EPOXY_INCLUDE} LIBRARIES ${EPOXY_LIBRARY}
+  TRIAL [[
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+int main(void)
+{
+    return epoxy_has_egl() && epoxy_gl_version();
+}
+]])
+
+# Dear ImGui changes with every version: 1.86 told of keys in another way than later ones.
+if(CUBEWRIGHT_WINDOW)
+  find_path(IMGUI_INCLUDE imgui_internal.h PATH_SUFFIXES imgui)
+  find_library(IMGUI_LIBRARY imgui)
+  find_library(STB_LIBRARY stb)
+  find_path(GLFW_INCLUDE GLFW/glfw3.h)
+  find_library(GLFW_LIBRARY glfw)
+  if(IMGUI_INCLUDE)
+    file(STRINGS ${IMGUI_INCLUDE}/imgui.h imgui_version REGEX "define IMGUI_VERSION_NUM +186")
+  endif()
+endif()
+set(imgui_is_known OFF)
+if(imgui_version)
+  set(imgui_is_known ON)
+endif()
+add_feature(window OPTION CUBEWRIGHT_WINDOW MODULE window LANGUAGE CXX
+  PACKAGES libimgui-dev libglfw3-dev libstb-dev libepoxy-dev
+  ABOUT "the window of view, by GLFW and Dear ImGui"
+  COST "opens no window"
+  NEEDS "imgui_is_known=libimgui-dev (1.86)" "IMGUI_LIBRARY=libimgui-dev (1.86)" STB_LIBRARY=libstb-dev
+        GLFW_INCLUDE=libglfw3-dev GLFW_LIBRARY=libglfw3-dev EPOXY_INCLUDE=libepoxy-dev
+        EPOXY_LIBRARY=libepoxy-dev
+  INCLUDES ${IMGUI_INCLUDE} ${GLFW_INCLUDE} ${EPOXY_INCLUDE}
+  LIBRARIES ${IMGUI_LIBRARY} ${STB_LIBRARY} ${GLFW_LIBRARY} ${EPOXY_LIBRARY}
+  TRIAL [[
+#include <epoxy/gl.h>
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+#include <imgui_internal.h>
+int main()
+{
+    return glfwInit() && ImGui::CreateContext() && ImGui_ImplOpenGL3_Init(nullptr);
+}
+]])
+
+if(CUBEWRIGHT_GLTF AND CMAKE_CXX_COMPILER)
+  find_package(TinyGLTF QUIET CONFIG)
+endif()
+add_feature(gltf OPTION CUBEWRIGHT_GLTF PACKAGES libtinygltf-dev MODULE gltf LANGUAGE CXX
+  ABOUT "glTF and GLB, through tinygltf"
+  COST "reads and writes no glTF and no GLB"
+  NEEDS TinyGLTF_FOUND=libtinygltf-dev LIBRARIES TinyGLTF::TinyGLTF
+  TRIAL [[
+#include <tiny_gltf.h>
+int main()
+{
+    tinygltf::TinyGLTF loader;
+    tinygltf::Model model;
+    std::string error, warning;
+    return loader.LoadASCIIFromString(&model, &error, &warning, "{}", 2, "");
+}
+]])
+
+if(CUBEWRIGHT_DRACO AND CMAKE_CXX_COMPILER)
+  find_package(draco QUIET CONFIG)
+endif()
+add_feature(draco OPTION CUBEWRIGHT_DRACO PACKAGES libdraco-dev MODULE draco LANGUAGE CXX
+  ABOUT "Draco compression in glTF"
+  COST "has no Draco compression"
+  NEEDS draco_FOUND=libdraco-dev LIBRARIES draco::draco
+  TRIAL [[
+#include <draco/compression/decode.h>
+#include <draco/compression/encode.h>
+int main()
+{
+    draco::Encoder encoder;
+    draco::EncoderBuffer buffer;
+    draco::Mesh mesh;
+    return encoder.EncodeMeshToBuffer(mesh, &buffer).ok();
+}
+]])
+
+if(CUBEWRIGHT_MESHOPT)
+  find_package(meshoptimizer QUIET CONFIG)
+endif()
+add_feature(meshopt OPTION CUBEWRIGHT_MESHOPT PACKAGES libmeshoptimizer-dev MODULE meshopt
+  ABOUT "meshopt compression in glTF"
+  COST "has no meshopt compression"
+  NEEDS meshoptimizer_FOUND=libmeshoptimizer-dev LIBRARIES meshoptimizer::meshoptimizer
+  TRIAL [[
+#include <meshoptimizer.h>
+int main(void)
+{
+    return meshopt_encodeVertexBufferBound(0, 16) == 0;
+}
+]])
+
+if(CUBEWRIGHT_DICOM AND CMAKE_CXX_COMPILER)
+  find_package(DCMTK QUIET CONFIG)
+endif()
+add_feature(dicom OPTION CUBEWRIGHT_DICOM PACKAGES libdcmtk-dev MODULE dicom LANGUAGE CXX
+  ABOUT "DICOM series, through DCMTK"
+  COST "reads no DICOM"
+  NEEDS DCMTK_FOUND=libdcmtk-dev LIBRARIES DCMTK::dcmjpeg DCMTK::dcmjpls DCMTK::dcmdata
+  TRIAL [[
+#include <dcmtk/dcmdata/dcfilefo.h>
+#include <dcmtk/dcmjpeg/djdecode.h>
+#include <dcmtk/dcmjpls/djdecode.h>
+int main()
+{
+    DcmFileFormat file;
+    DJDecoderRegistration::registerCodecs();
+    DJLSDecoderRegistration::registerCodecs();
+    return file.loadFile("none").good();
+}
+]])
+
+if(CUBEWRIGHT_DICOM)
+  find_path(OPENJPEG_INCLUDE openjpeg.h PATH_SUFFIXES openjpeg-2.5)
+  find_library(OPENJPEG_LIBRARY openjp2)
+endif()
+add_feature(jpeg2000 OPTION CUBEWRIGHT_DICOM PACKAGES libopenjp2-7-dev MODULE dicom
+  ABOUT "DICOM compressed by JPEG 2000, through OpenJPEG"
+  COST "reads no DICOM compressed by JPEG 2000"
+  NEEDS HAS_DICOM=libdcmtk-dev OPENJPEG_INCLUDE=libopenjp2-7-dev OPENJPEG_LIBRARY=libopenjp2-7-dev
+  INCLUDES ${OPENJPEG_INCLUDE} LIBRARIES ${OPENJPEG_LIBRARY}
+  TRIAL [[
+#include <openjpeg.h>
+int main(void)
+{
+    return opj_create_decompress(OPJ_CODEC_J2K) == NULL;
+}
+]])
+
+if(CUBEWRIGHT_TIFF)
+  find_package(TIFF 4.5 QUIET)
+endif()
+add_feature(tiff OPTION CUBEWRIGHT_TIFF PACKAGES libtiff-dev MODULE tiff
+  ABOUT "TIFF stacks, through libtiff"
+  COST "reads no TIFF"
+  NEEDS "TIFF_FOUND=libtiff-dev (4.5 or later)" LIBRARIES TIFF::TIFF
+  TRIAL [[
+#include <tiffio.h>
+int main(void)
+{
+    TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
+    return TIFFOpenExt("none", "r", options) != NULL;
+}
+]])
+
+if(CUBEWRIGHT_ISAL)
+  find_path(ISAL_INCLUDE isa-l/igzip_lib.h)
+  find_library(ISAL_LIBRARY isal)
+endif()
+add_feature(isal OPTION CUBEWRIGHT_ISAL PACKAGES libisal-dev
+  ABOUT "compressed volumes read in half the time, by ISA-L"
+  COST "reads compressed volumes by zlib, at half the speed"
+  NEEDS ISAL_INCLUDE=libisal-dev ISAL_LIBRARY=libisal-dev
+  INCLUDES ${ISAL_INCLUDE} LIBRARIES ${ISAL_LIBRARY}
+  TRIAL [[
+#include <isa-l/igzip_lib.h>
+int main(void)
+{
+    struct inflate_state state;
+    isal_inflate_init(&state);
+    return isal_inflate(&state) == 0;
+}
+]])
+
+if(CUBEWRIGHT_LZ4)
+  find_path(LZ4_INCLUDE lz4.h)
+  find_library(LZ4_LIBRARY lz4)
+endif()
+add_feature(lz4 OPTION CUBEWRIGHT_LZ4 PACKAGES liblz4-dev
+  ABOUT "VTK image data compressed with LZ4"
+  COST "reads no .vti that is compressed with LZ4"
+  NEEDS LZ4_INCLUDE=liblz4-dev LZ4_LIBRARY=liblz4-dev
+  INCLUDES ${LZ4_INCLUDE} LIBRARIES ${LZ4_LIBRARY}
+  TRIAL [[
+#include <lz4.h>
+int main(void)
+{
+    return LZ4_versionNumber() == 0;
+}
+]])
+
+configure_file(core/features_table.c.in features_table.c @ONLY)

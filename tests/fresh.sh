@@ -1,0 +1,215 @@
+#!/bin/sh
+# Does what the README says on machines that have nothing: bare Debian 12 roots in a temporary
+# folder, with this machine's package sources and a clean copy of this tree.
+# sh tests/fresh.sh [STAGE...]
+#
+# root     the quickstart as root; its mesh, picture, report and features are looked at
+# without  after root: each optional package left out by itself; the rest still builds
+# user     the quickstart as a user with sudo; what root has compiled is compiled no more
+# needed   needed packages alone: no C++, no OpenGL; mesh and picture all the same
+set -eu
+cd "$(dirname "$0")/.."
+tree=$(pwd)
+stages=${*:-root without user needed}
+
+skip() { echo "fresh: skipped: $*"; exit 77; }
+[ "$(id -u)" = 0 ] || skip "only root can make a Debian root"
+command -v mmdebstrap >/dev/null || skip "mmdebstrap is not installed"
+unshare --mount --pid --fork true 2>/dev/null || skip "this machine allows no mount namespaces"
+
+folder=$(mktemp -d)
+started=$(date +%s)
+# Mounts live in namespaces of processes that end before this, so there are none to take down.
+clean_up() {
+    pkill -KILL -f "$folder/" || true # a worker that was interrupted
+    rm -rf --one-file-system "$folder"
+}
+trap clean_up EXIT
+trap 'exit 130' INT TERM HUP
+
+fail() { echo "fresh: FAILED: $*"; exit 1; }
+say() { echo "== fresh: $* ($(($(date +%s) - started)) s)"; }
+
+# inside ROOT COMMAND: as root of that machine, with nothing of this one's environment. All that
+# the command leaves running ends with it. Downloaded packages are shared between the roots.
+inside() {
+    unshare --mount --pid --fork --kill-child sh -euc '
+        mount -t proc proc "$1/proc"
+        mkdir -p "$1/dev/shm"
+        mount -t tmpfs tmpfs "$1/dev/shm"
+        mount --bind "$2" "$1/var/cache/apt/archives"
+        exec chroot "$1" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root sh -euc "$3" </dev/null
+    ' sh "$1" "$folder/archives" "$2"
+}
+
+# must WHAT ROOT COMMAND: shows what the command printed when it fails.
+must() {
+    inside "$2" "$3" >"$folder/said" 2>&1 || { cat "$folder/said"; fail "$1"; }
+}
+
+# The packages of groups of cli/packages.txt.
+packages() {
+    for group in "$@"; do
+        sed -n "s/^$group  *\([^ ]*\).*/\1/p" cli/packages.txt
+    done
+}
+
+# The tree as a commit would have it, in /src of a root.
+copy_tree() {
+    mkdir -p "$1/src"
+    git ls-files -z --cached --others --exclude-standard |
+        tar --create --null --files-from=- --ignore-failed-read 2>/dev/null | tar --extract --directory="$1/src"
+}
+
+# is_mesh ROOT FILE: closed and manifold, as our own reader finds it.
+is_mesh() {
+    must "$2 is no closed mesh" "$1" "$cubewright check $2"
+}
+
+# What a quickstart left in /results of a root.
+look_at_results() {
+    is_mesh "$1" /results/head.glb
+    # a picture of one colour has 4 KB, the head's 200
+    [ "$(wc -c <"$1/results/head.png")" -gt 50000 ] || fail "head.png is blank"
+    grep -q '</html>' "$1/results/head.html" || fail "head.html is cut off"
+    [ "$(grep -c 'cubewright extract' "$1/results/head.html")" -gt 5 ] ||
+        fail "head.html lists no settings"
+    [ ! -e "$1/results/ct-head.nrrd" ] || fail "the quickstart had no real scan: is mricron-data installed?"
+    inside "$1" "$cubewright version --features" >"$folder/features"
+    # CGAL is not in the quickstart
+    if grep ' no: ' "$folder/features" | grep -v '^cgal '; then
+        fail "the quickstart left the features above out: cli/packages.txt lacks what they need"
+    fi
+}
+cubewright=/src/build/release/bin/cubewright
+
+# lost_features OLD NEW: the lines of features that NEW no longer has, with the reasons.
+lost_features() {
+    sed -n 's/ *yes$//p' "$1" | while read -r name; do
+        grep "^$name  *no: " "$2" || true
+    done
+}
+
+# files_of ROOT PACKAGE: its files, without documentation, as paths within the root.
+files_of() {
+    inside "$1" "dpkg -L $2" | grep -v /usr/share/doc | while read -r path; do
+        if [ -L "$1$path" ] || [ -f "$1$path" ]; then echo ".$path"; fi
+    done
+}
+
+# leave_out ROOT PACKAGE: moves the package's files away, builds what is left, moves them back.
+leave_out() {
+    root=$1 package=$2
+    files_of "$root" "$package" >"$folder/files.$package"
+    if [ ! -s "$folder/files.$package" ]; then # it stands for those that it depends on
+        inside "$root" "dpkg-query -W -f '\${Depends}' $package" | tr ',' '\n' | sed 's/^ *//; s/[ (].*//' |
+            while read -r part; do files_of "$root" "$part"; done >"$folder/files.$package"
+    fi
+    tar --create --file="$folder/$package.tar" --directory="$root" --files-from="$folder/files.$package"
+    (cd "$root" && xargs -d '\n' rm -f) <"$folder/files.$package"
+    inside "$root" "
+        cd /src && . cli/build.sh && configure_preset release build/configure.log -DCUBEWRIGHT_TESTS=OFF >build/left &&
+        build_preset release build/build.log >build/built && $cubewright version --features >build/features &&
+        cd /tmp && $cubewright make sphere -o s.nrrd --dims 24 -q && $cubewright extract s.nrrd --iso 0 -o s.stl -q &&
+        $cubewright check s.stl -q && $cubewright render s.nrrd --iso 0 -o s.png --size 64x64 -q
+        " >"$folder/said.$package" 2>&1 || { cat "$folder/said.$package"; fail "without $package it does not build"; }
+    lost_features "$folder/features" "$root/src/build/features" >"$folder/lost.$package"
+    tar --extract --file="$folder/$package.tar" --directory="$root"
+    rm "$folder/$package.tar"
+    grep -q "$package" "$folder/lost.$package" || {
+        cat "$folder/lost.$package"
+        fail "without $package no feature is missing that names it"
+    }
+    echo "   without $package: $(sed 's/  *no: .*//' "$folder/lost.$package" | tr '\n' ' ')"
+}
+
+# leave_out_all ROOT PACKAGE...
+leave_out_all() {
+    root=$1
+    shift
+    for left_out in "$@"; do
+        leave_out "$root" "$left_out"
+    done
+}
+
+# A root a stage, from one bare system.
+say "a bare Debian"
+mkdir "$folder/archives"
+sources=$(find /etc/apt -maxdepth 2 -path '*/sources.list*' \( -name '*.list' -o -name '*.sources' \))
+# shellcheck disable=SC2086
+mmdebstrap --quiet --variant=apt bookworm "$folder/bare" $sources >"$folder/said" 2>&1 || {
+    cat "$folder/said"
+    skip "mmdebstrap made no root from this machine's package sources"
+}
+if [ -r /etc/ssl/certs/ca-certificates.crt ]; then
+    mkdir -p "$folder/bare/etc/ssl/certs"
+    cp /etc/ssl/certs/ca-certificates.crt "$folder/bare/etc/ssl/certs/"
+fi
+mkdir -p "$folder/bare/results"
+copy_tree "$folder/bare"
+
+for stage in $stages; do
+    say "$stage"
+    root=$folder/$stage
+    case $stage in
+    root)
+        cp -a "$folder/bare" "$root"
+        must "the quickstart as root" "$root" "cd /results && sh /src/cli/quickstart.sh"
+        grep ' s$' "$folder/said" || true
+        look_at_results "$root"
+        ;;
+    without)
+        [ -d "$folder/root" ] || fail "without comes after root"
+        # Half of the packages in one root, half in a copy.
+        cp -a "$folder/root" "$root"
+        first='' second=''
+        for package in $(packages optional | grep -x -e 'lib.*-dev' -e 'g++'); do # others are for run time
+            [ ${#first} -lt ${#second} ] && first="$first $package" || second="$second $package"
+        done
+        # shellcheck disable=SC2086
+        (leave_out_all "$root" $first) >"$folder/first" 2>&1 &
+        worker=$!
+        # shellcheck disable=SC2086
+        (leave_out_all "$folder/root" $second) || fail "see above"
+        wait $worker || { cat "$folder/first"; fail "see above"; }
+        cat "$folder/first"
+        ;;
+    user)
+        cp -a "$folder/bare" "$root"
+        if [ -d "$folder/root/src/build" ]; then cp -a "$folder/root/src/build" "$root/src/build"; fi
+        must "sudo" "$root" "
+            apt-get update -qq && apt-get install -y -qq --no-install-recommends sudo
+            useradd --create-home newcomer
+            echo 'newcomer ALL=(ALL) NOPASSWD: ALL' >/etc/sudoers.d/newcomer
+            chown -R newcomer: /src /results"
+        must "the quickstart as a user" "$root" "
+            cd /results
+            exec setpriv --reuid newcomer --regid newcomer --init-groups env HOME=/home/newcomer sh /src/cli/quickstart.sh"
+        look_at_results "$root"
+        [ -z "$(find "$root/results" "$root/src" ! -user 1000 | head -1)" ] ||
+            fail "files of another user: $(find "$root/results" "$root/src" ! -user 1000 | head -1)"
+        ;;
+    needed)
+        cp -a "$folder/bare" "$root"
+        must "needed packages alone" "$root" "
+            apt-get update -qq
+            apt-get install -y -qq --no-install-recommends $(packages needed | tr '\n' ' ')
+            cd /src && . cli/build.sh
+            configure_preset release build/configure.log -DCUBEWRIGHT_TESTS=OFF
+            build_preset release build/build.log
+            cd /results
+            $cubewright make ct-head -o head.nrrd --dims 64 -q
+            $cubewright extract head.nrrd --iso 300 -o head.stl
+            $cubewright render head.nrrd --iso 300 -o head.png --size 600x600 -q"
+        is_mesh "$root" /results/head.stl
+        [ "$(wc -c <"$root/results/head.png")" -gt 10000 ] || fail "head.png is blank"
+        ! inside "$root" "command -v c++" >/dev/null || fail "a C++ compiler is among the needed packages"
+        inside "$root" "$cubewright version --features" >"$folder/features"
+        for feature in simplify vdb gl window glb dicom tiff draco isal; do
+            grep -q "^$feature  *no: not found: " "$folder/features" || fail "no reason why $feature is missing"
+        done
+        ;;
+    *) fail "there is no stage '$stage'" ;;
+    esac
+done
+say "all stages passed"
