@@ -3,6 +3,8 @@
 # feature, never the build. The reasons go into a C table that `cubewright version --features` prints.
 
 set(feature_rows "")
+set(extension_of_C c)
+set(extension_of_CXX cpp)
 
 # A text between quotes, as C writes it.
 function(quote_for_c result text)
@@ -74,13 +76,9 @@ function(try_library result name)
   endif()
   if(NOT ${tried} AND NOT error)
     unset(${tried} CACHE)
-    set(extension c)
-    if(A_LANGUAGE STREQUAL CXX)
-      set(extension cpp)
-    endif()
     set(CMAKE_TRY_COMPILE_CONFIGURATION Release) # no debug information: half the time
     set(CMAKE_${A_LANGUAGE}_FLAGS_RELEASE -O0)
-    try_compile(${tried} SOURCE_FROM_VAR ${name}.${extension} A_TRIAL
+    try_compile(${tried} SOURCE_FROM_VAR ${name}.${extension_of_${A_LANGUAGE}} A_TRIAL
       CMAKE_FLAGS "-DINCLUDE_DIRECTORIES=${A_INCLUDES}" LINK_LIBRARIES ${A_LIBRARIES}
       OUTPUT_VARIABLE output CXX_STANDARD 17 CXX_STANDARD_REQUIRED ON)
     if(NOT ${tried})
@@ -105,10 +103,13 @@ endfunction()
 # MODULE is the shared object that the feature lives in, if any.
 # NEEDS lists variables that must be true, each with the package that makes it so.
 # TRIAL is a whole program. HEADERS are too slow to compile for a trial: the preprocessor reads them.
-# LIKE names a feature of the same library, tried already.
+# LANGUAGE is C unless it is CXX. LIKE names a feature of the same library, tried already.
 function(add_feature name)
   cmake_parse_arguments(PARSE_ARGV 1 A "" "OPTION;ABOUT;COST;MODULE;LANGUAGE;TRIAL;LIKE"
     "PACKAGES;NEEDS;HEADERS;INCLUDES;LIBRARIES")
+  if(NOT A_LANGUAGE)
+    set(A_LANGUAGE C)
+  endif()
   set(ENV{LC_ALL} C) # errors are read in English
   if(A_LIKE)
     set(reason "${reason_of_${A_LIKE}}")

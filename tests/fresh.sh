@@ -102,7 +102,7 @@ leave_out() {
     root=$1 package=$2
     files_of "$root" "$package" >"$folder/files.$package"
     if [ ! -s "$folder/files.$package" ]; then # it stands for those that it depends on
-        inside "$root" "dpkg-query -W -f '\${Depends}' $package" | tr ',' '\n' | sed 's/^ *//; s/[ (].*//' |
+        inside "$root" "dpkg-query -W -f '\${Depends}\n' $package" | tr ',' '\n' | sed 's/^ *//; s/[ (].*//' |
             while read -r part; do files_of "$root" "$part"; done >"$folder/files.$package"
     fi
     tar --create --file="$folder/$package.tar" --directory="$root" --files-from="$folder/files.$package"
