@@ -3,6 +3,7 @@
 
 #include <dirent.h>
 #include <ftw.h>
+#include <malloc.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -10,6 +11,15 @@
 #include <unistd.h>
 
 static char folder[64];
+
+/* Keeps freed memory in the process: in virtual machines giving it back is slow, and tests that
+ * read a thousand small files do so thousands of times. */
+__attribute__((constructor)) static void keep_memory(void)
+{
+    mallopt(M_MMAP_THRESHOLD, 32 << 20);
+    mallopt(M_TRIM_THRESHOLD, 64 << 20);
+    mallopt(M_TOP_PAD, 1 << 20);
+}
 
 void test_assert_fails(cw_status got, cw_status wanted, const char *words, const cw_error *err,
                        const char *call, const char *file, int line)
@@ -77,6 +87,8 @@ char *test_file_read(const char *path, size_t *size)
 
 void test_file_write(const char *path, const void *bytes, size_t size)
 {
+    /* ext4 writes a file that is emptied and filled again to the disk, and waits. */
+    remove(path);
     FILE *file = fopen(path, "wb");
     assert_non_null(file);
     assert_int_equal(fwrite(bytes, 1, size, file), size);
