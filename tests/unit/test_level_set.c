@@ -70,11 +70,11 @@ static void a_mesh_comes_back_within_half_a_voxel(void **state)
         cw_field field;
         size_t dim;
         double voxel, there, back; /* in voxels; the last has sharp edges, where it is cut */
-    } rows[] = {{CW_FIELD_SPHERE, 48, 1.3, 0.5, 0.5},
-                {CW_FIELD_TORUS, 48, 0.9, 0.5, 0.5},
-                {CW_FIELD_GYROID, 30, 1.3, 0.5, 0.5}};
+    } rows[] = {{CW_FIELD_SPHERE, 32, 2.6, 0.5, 0.5},
+                {CW_FIELD_TORUS, 32, 1.8, 0.5, 0.5},
+                {CW_FIELD_GYROID, 20, 1.7, 0.5, 0.5}};
     for (size_t n = 0; n < (size_t)TEST_SOME(3); n++) {
-        const double voxel = (TEST_IS_SLOW ? 2 : 1) * rows[n].voxel;
+        const double voxel = rows[n].voxel;
         cw_mesh mesh = surface_of(rows[n].field, rows[n].dim), back = offset(&mesh, 0, voxel);
         const cw_quality before = test_measure(&mesh), after = test_measure(&back);
         assert_true(farthest(&back, &mesh) <= rows[n].there * voxel);
@@ -130,8 +130,8 @@ static void edges_and_corners_come_back(void **state)
     (void)state;
     for (int n = TEST_IS_SLOW ? 7 : 0; n < 16; n += TEST_IS_SLOW ? 8 : 1) {
         const double voxel = 0.5 + 0.07 * (n % 8);
-        cw_mesh cube = n < 8 ? make_cube(20)
-                             : make_turned_cube(20, 0.2 * n, (const double[]){1, 0.3 * n, 2}),
+        cw_mesh cube = n < 8 ? make_cube(12)
+                             : make_turned_cube(12, 0.2 * n, (const double[]){1, 0.3 * n, 2}),
                 back = offset(&cube, 0, voxel), blunt;
         const cw_offset_desc desc = {.voxel_mm = voxel, .no_sharpen = true};
         cw_distance sharp_off, blunt_off;
@@ -233,8 +233,8 @@ static void distances_are_those_from_the_mesh(void **state)
 static void cavities_stay(void **state)
 {
     (void)state;
-    const double voxel = TEST_IS_SLOW ? 2 : 1;
-    cw_mesh ball = surface_of(CW_FIELD_SPHERE, 48);
+    const double voxel = 2;
+    cw_mesh ball = surface_of(CW_FIELD_SPHERE, 32);
     cw_mesh shell = hollow(&ball, &(cw_hollow_desc){.wall_mm = 6, .voxel_mm = voxel}, NULL);
     cw_mesh back = offset(&shell, 0, voxel), thinner = offset(&shell, -1, voxel / 2);
     assert_int_equal(test_measure(&back).components, 2);
@@ -288,7 +288,7 @@ static void a_sphere_becomes_a_larger_or_smaller_one(void **state)
     static const double rows[] = {4, 0.4, -0.4, -12};
     cw_mesh ball = surface_of(CW_FIELD_SPHERE, 64);
     for (int n = 0; n < 4; n += TEST_IS_SLOW ? 3 : 1) {
-        cw_mesh out = offset(&ball, rows[n], TEST_IS_SLOW ? 2 : 1);
+        cw_mesh out = offset(&ball, rows[n], 2);
         for (size_t v = 0; v < out.vertex_count; v++) {
             const float *p = out.positions + 3 * v;
             const double x = (double)p[0] + out.origin[0], y = (double)p[1] + out.origin[1],
@@ -305,7 +305,7 @@ static void a_sphere_becomes_a_larger_or_smaller_one(void **state)
 static void a_cube_becomes_a_round_box(void **state)
 {
     (void)state;
-    const double s = 20, r = 3, voxel = TEST_IS_SLOW ? 0.4 : 0;
+    const double s = 20, r = 3, voxel = TEST_IS_SLOW ? 0.4 : 0.3;
     cw_mesh cube = make_cube(20), out = offset(&cube, r, voxel), in = offset(&cube, -r, voxel);
     const double round =
         s * s * s + 6 * s * s * r + 3 * PI * s * r * r + 4 / 3.0 * PI * r * r * r;
@@ -340,8 +340,8 @@ static void far_from_zero_nothing_changes(void **state)
 static void a_sphere_gets_a_wall(void **state)
 {
     (void)state;
-    cw_mesh ball = surface_of(CW_FIELD_SPHERE, TEST_IS_SLOW ? 40 : 64);
-    const double wall = TEST_IS_SLOW ? 4 : 2;
+    cw_mesh ball = surface_of(CW_FIELD_SPHERE, 40);
+    const double wall = 4;
     cw_hollow_facts facts;
     cw_mesh out = hollow(&ball, &(cw_hollow_desc){.wall_mm = wall}, &facts);
     const cw_quality q = test_measure(&out);
@@ -387,9 +387,9 @@ static int meets(const cw_mesh *m, double x, double y)
 static void a_drain_opens_the_cavity_where_it_should(void **state)
 {
     (void)state;
-    const double scale = TEST_IS_SLOW ? 2 : 1, wall = 2 * scale;
+    const double scale = 2, wall = 2 * scale;
     const cw_drain down = {4 * scale, {0, 0, -1}}, both[] = {down, {6 * scale, {0, 0, 9}}};
-    cw_mesh ball = surface_of(CW_FIELD_SPHERE, TEST_IS_SLOW ? 32 : 64);
+    cw_mesh ball = surface_of(CW_FIELD_SPHERE, 32);
     cw_hollow_facts facts;
     cw_mesh one = hollow(
         &ball, &(cw_hollow_desc){.wall_mm = wall, .drains = &down, .drain_count = 1}, &facts);
@@ -455,11 +455,11 @@ static void threads_change_nothing(void **state)
 {
     (void)state;
     static const cw_drain down = {8, {1, 2, -3}};
-    cw_mesh mesh = surface_of(CW_FIELD_TORUS, 48), first = {0}, out;
+    cw_mesh mesh = surface_of(CW_FIELD_TORUS, 32), first = {0}, out;
     cw_error err = {0};
     for (int threads = 1; threads <= 4; threads += TEST_IS_SLOW ? 2 : 1) {
         const cw_hollow_desc desc = {.wall_mm = 3,
-                                     .voxel_mm = TEST_IS_SLOW ? 1.5 : 0,
+                                     .voxel_mm = TEST_IS_SLOW ? 1.5 : 1,
                                      .drains = &down,
                                      .drain_count = 1,
                                      .threads = threads};
@@ -548,7 +548,7 @@ static void it_can_be_stopped(void **state)
     for (int n = 0, st = CW_ERR_CANCELLED; st != CW_OK; n = 2 * n + 1) {
         int polls = n;
         const cw_hollow_desc desc = {.wall_mm = 2,
-                                     .voxel_mm = TEST_IS_SLOW ? 1 : 0,
+                                     .voxel_mm = 1,
                                      .drains = &down,
                                      .drain_count = 1,
                                      .progress = {test_stop_after, &polls}};
@@ -569,7 +569,7 @@ static void running_out_of_memory_is_told(void **state)
         for (long n = 0;; n += 1 + n / 8) {
             cw_error err = {0};
             const cw_hollow_desc desc = {.wall_mm = 8,
-                                         .voxel_mm = TEST_IS_SLOW ? 4 : 0,
+                                         .voxel_mm = 4,
                                          .drains = &down,
                                          .drain_count = drains,
                                          .threads = 1};
