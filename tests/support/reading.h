@@ -70,17 +70,19 @@ static inline void check_affine(const cw_volume *volume, const double *wanted)
 }
 
 /* Cut behind a byte, from one on every so many, a file that the header named gives an error and
- * no volume. */
+ * no volume. Libraries run in this process, at every sixteenth cut in one of their own:
+ * starting that takes a hundred times as long as reading such a file. */
 static inline void check_some_cuts(const char *header, const char *data, size_t from,
                                    size_t step)
 {
     size_t size;
     char *bytes = test_file_read(test_path(data), &size);
-    for (size_t cut = from; cut < size; cut += step) {
+    for (size_t cut = from, n = 0; cut < size; cut += step, n++) {
+        const cw_read_desc desc = {.no_sandbox = n % 16 != 0};
         cw_volume volume;
         cw_error err = {0};
         test_file_write(test_path(data), bytes, cut);
-        const cw_status st = read_back(header, &volume, &err);
+        const cw_status st = cw_volume_read(test_path(header), &desc, &volume, NULL, &err);
         if (st != (cut ? CW_ERR_FORMAT : CW_ERR_IO))
             fail_msg("%s, %zu of %zu bytes: status %d, %s", data, cut, size, (int)st,
                      st == CW_OK ? "it was read" : err.message);

@@ -154,6 +154,7 @@ static void check_stored(size_t kind, size_t layout, uint16_t samples, bool sepa
     test_tiff t = {.high_first = high_first, .big = big};
     char *pixels = make_pixels(kind, samples);
     cw_volume v;
+    cw_error err = {0};
     for (size_t p = 0; p < PAGES; p++)
         test_tiff_add(&t, &(test_page){.columns = WIDE,
                                        .rows = HIGH,
@@ -167,7 +168,7 @@ static void check_stored(size_t kind, size_t layout, uint16_t samples, bool sepa
                                        .pixels = pixels + p * WIDE * HIGH * samples *
                                                               cw_type_size(kinds[kind].type)});
     save(&t, "a.tif");
-    read_good("a.tif", &v);
+    assert_ok(read_with("a.tif", (cw_read_desc){.no_sandbox = big}, &v, &err), err);
     assert_int_equal(v.known, 0);
     check_affine(&v, (const double[12]){1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0});
     check_pixels(&v, kind, samples);
@@ -581,8 +582,9 @@ static void a_cut_of_compressed_pages_is_never_a_volume(void **state)
     for (size_t cut = 1; cut < size; cut += 13) {
         cw_volume v;
         cw_error err = {0};
+        const cw_read_desc desc = {.no_sandbox = cut / 13 % 16 != 0};
         test_file_write(test_path("a.tif"), bytes, cut);
-        assert_fails(read_with("a.tif", (cw_read_desc){0}, &v, &err), CW_ERR_FORMAT, "", err);
+        assert_fails(read_with("a.tif", desc, &v, &err), CW_ERR_FORMAT, "", err);
     }
     free(bytes);
 }
