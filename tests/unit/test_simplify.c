@@ -95,7 +95,7 @@ static void broken_meshes_become_no_worse(void **state)
 
 static void no_error_is_exceeded(double noise, bool open)
 {
-    cw_mesh mesh = noisy_gyroid(TEST_IS_SLOW ? 10 : 16, noise, open);
+    cw_mesh mesh = noisy_gyroid(10, noise, open);
     double low[3], high[3];
     assert_true(cw_mesh_bounds(&mesh, low, high));
     size_t before = mesh.triangle_count;

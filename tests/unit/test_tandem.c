@@ -8,14 +8,19 @@
 #include <stdlib.h>
 #include <string.h>
 
-static cw_volume noisy_gyroid(size_t n, double noise)
+static cw_volume noisy_column(size_t n, size_t deep, double noise)
 {
     const cw_field_desc field = {
-        .field = CW_FIELD_GYROID, .dim = {n, n, n}, .type = CW_F32, .noise = noise};
+        .field = CW_FIELD_GYROID, .dim = {n, n, deep}, .type = CW_F32, .noise = noise};
     cw_volume volume;
     cw_error err = {0};
     assert_ok(cw_field_sample(&field, &volume, &err), err);
     return volume;
+}
+
+static cw_volume noisy_gyroid(size_t n, double noise)
+{
+    return noisy_column(n, n, noise);
 }
 
 typedef struct tandem {
@@ -63,7 +68,7 @@ static void a_number_of_triangles_is_met(void **state)
     (void)state;
     srand(11);
     for (int round = TEST_IS_SLOW ? 3 : 0; round < 4; round++) {
-        cw_volume v = noisy_gyroid(TEST_IS_SLOW ? 32 : 48, 0.05);
+        cw_volume v = noisy_gyroid(32, 0.05);
         const cw_extract_desc extract = {.leave_open = round & 1};
         const cw_simplify_desc desc = {.ratio = 0.1};
         test_turn(&v, round);
@@ -119,7 +124,7 @@ static void an_error_is_kept(void **state)
     (void)state;
     srand(12);
     for (int round = TEST_IS_SLOW ? 3 : 0; round < 4; round++) {
-        cw_volume v = noisy_gyroid(22, round ? 0.02 : 0);
+        cw_volume v = noisy_column(16, 22, round ? 0.02 : 0);
         const cw_extract_desc extract = {.leave_open = round & 1};
         const cw_simplify_desc desc = {.error_mm = round & 2 ? 0.8 : 0.3};
         if (round & 2)
@@ -165,8 +170,8 @@ static void thin_slabs_stay_sound(void **state)
 static void threads_change_nothing(void **state)
 {
     (void)state;
-    cw_volume v = noisy_gyroid(TEST_IS_SLOW ? 18 : 40, 0.05);
-    const size_t slab = TEST_IS_SLOW ? 1000 : 15000;
+    cw_volume v = noisy_gyroid(TEST_IS_SLOW ? 18 : 28, 0.05);
+    const size_t slab = TEST_IS_SLOW ? 1000 : 7000;
     for (int kind = 0; kind < 2; kind++) {
         cw_mesh out[2];
         for (int n = 0; n < 2; n++) {
