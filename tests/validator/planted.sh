@@ -68,8 +68,18 @@ ask_admesh() { # MESH
     fi
 }
 
+# Asks PrusaSlicer of all files at once, as it takes long to start. One that it refuses ends it before
+# it says anything: then it is asked again of the others.
+ask_prusa_of_all() { # FILE...
+    while [ $# -gt 0 ] && ! prusa-slicer --info "$@" >prusa 2>why; do
+        refused=$(sed -n 's/: Loading of a model file failed.*//p' why)
+        [ -n "$refused" ] || { cat why; failed=1; return; }
+        set -- $(printf '%s\n' "$@" | grep -vx "$refused")
+    done
+}
+
 ask_prusa() { # MESH: it repairs what it can before it counts
-    report=$(prusa-slicer --info "$1.stl" 2>/dev/null)
+    report=$(sed -n "/^\[$1\.stl\]\$/,/^\[/p" prusa | sed '2,${/^\[/d;}')
     [ -n "$(theirs number_of_facets)" ] || return # no volume: refused
     open=$(theirs open_edges)
     expect "$1" prusa_open "${open:-0}" "$(ours open_edges)"
@@ -79,6 +89,7 @@ ask_prusa() { # MESH: it repairs what it can before it counts
 }
 
 "$plant" . >names || exit 1
+command -v prusa-slicer >/dev/null && ask_prusa_of_all $(sed 's/$/.stl/' names)
 while read -r name; do
     cubewright check "$name.stl" --profile print --json report.json -q 2>/dev/null
     [ -n "$(ours components)" ] || { echo "$name: no report"; failed=1; continue; }
