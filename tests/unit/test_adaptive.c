@@ -58,7 +58,7 @@ static void noise_comes_back(void **state)
     (void)state;
     static const double voxels[] = {1.3, 2.1, 0.7};
     for (size_t n = 0; n < (size_t)TEST_SOME(3); n++) {
-        cw_mesh mesh = make_noise(TEST_IS_SLOW ? 6 : 9, n + 1), back;
+        cw_mesh mesh = make_noise(6, n + 1), back;
         cw_offset_facts facts;
         cw_error err = {0};
         const double voxel = voxels[n];
@@ -141,7 +141,7 @@ static void threads_change_nothing(void **state)
 static void what_is_lost_is_told(void **state)
 {
     (void)state;
-    cw_mesh mesh = make_noise(TEST_IS_SLOW ? 6 : 9, 4), back;
+    cw_mesh mesh = make_noise(6, 4), back;
     cw_offset_facts facts;
     cw_error err = {0};
     int astray = 0;
