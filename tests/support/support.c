@@ -40,6 +40,14 @@ void test_assert_near(double value, double truth, double margin, const char *wha
     _fail(file, line);
 }
 
+int test_rounds(int count)
+{
+    const char *long_run = getenv("CUBEWRIGHT_TEST_LONG");
+    if (long_run && strcmp(long_run, "1") == 0)
+        return count;
+    return TEST_IS_SLOW ? TEST_SOME(count) : (count + 3) / 4;
+}
+
 int test_folder_make(void **state)
 {
     (void)state;

@@ -158,12 +158,12 @@ static grid *make_grids(int count, size_t nx, size_t ny, size_t nz)
 static void random_grids_have_the_topology_of_their_field(void **state)
 {
     (void)state;
-    enum { COUNT = TEST_SOME(1000) };
-    grid *grids = make_grids(COUNT, 5, 5, 5);
-    for (int n = 0; n < COUNT; n++)
+    const int count = test_rounds(1000);
+    grid *grids = make_grids(count, 5, 5, 5);
+    for (int n = 0; n < count; n++)
         for (size_t i = 0; i < 125; i++)
             grids[n].voxels[i] = next_value();
-    judge_all(grids, COUNT, test_topology_of);
+    judge_all(grids, count, test_topology_of);
     free(grids);
 }
 
@@ -287,12 +287,12 @@ static test_truth whole_number_truth(const float *voxels, const size_t dim[3], f
 static void whole_numbers_have_the_topology_of_their_field(void **state)
 {
     (void)state;
-    enum { COUNT = TEST_SOME(1000) };
-    grid *grids = make_grids(COUNT, 5, 5, 5);
-    for (int n = 0; n < COUNT; n++)
+    const int count = test_rounds(1000);
+    grid *grids = make_grids(count, 5, 5, 5);
+    for (int n = 0; n < count; n++)
         for (size_t i = 0; i < 125; i++)
             grids[n].voxels[i] = (float)((int)(5 * next_unit()) - 2);
-    judge_all(grids, COUNT, whole_number_truth);
+    judge_all(grids, count, whole_number_truth);
     free(grids);
 }
 
