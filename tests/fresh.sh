@@ -72,8 +72,7 @@ look_at_results() {
     # a picture of one colour has 4 KB, the head's 200
     [ "$(wc -c <"$1/results/head.png")" -gt 50000 ] || fail "head.png is blank"
     grep -q '</html>' "$1/results/head.html" || fail "head.html is cut off"
-    [ "$(grep -c 'cubewright extract' "$1/results/head.html")" -gt 5 ] ||
-        fail "head.html lists no settings"
+    grep -q 'cubewright extract' "$1/results/head.html" || fail "head.html lists no settings"
     [ ! -e "$1/results/ct-head.nrrd" ] || fail "the quickstart had no real scan: is mricron-data installed?"
     inside "$1" "$cubewright version --features" >"$folder/features"
     # CGAL is not in the quickstart

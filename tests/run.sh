@@ -9,7 +9,7 @@
 # sanitizers  clang, address and undefined-behaviour sanitizers: unit tests and fuzz corpora
 # mutants     clang, the same: every reader on mutants of its corpus
 # threads     clang, thread sanitizer: the tests of code with threads
-# minimal     gcc, debug at -O1, no C++ library: unit tests, an installed copy
+# minimal     gcc, debug at -O1, no C++ library: unit tests at their full length, an installed copy
 # fresh       a bare Debian: the quickstart, and builds that lack packages (fresh.sh)
 set -eu
 cd "$(dirname "$0")/.."
@@ -115,7 +115,9 @@ for stage in $stages; do
     minimal)
         configure_and_build minimal
         say "minimal: testing"
+        export CUBEWRIGHT_TEST_LONG=1
         run_tests minimal -R 'unit|fuzz|install'
+        unset CUBEWRIGHT_TEST_LONG
         ;;
     fresh)
         say "fresh"
