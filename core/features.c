@@ -1,3 +1,4 @@
+/* Optional features: availability, and the reason for each that is missing. */
 #include "core/features.h"
 
 #include "core/module.h"

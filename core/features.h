@@ -16,10 +16,10 @@ typedef struct cwi_feature_row {
 extern const cwi_feature_row cwi_feature_rows[];
 extern const size_t cwi_feature_row_count;
 
-/* The row of the first feature that lives in a module; NULL when there is none. */
+/* Finds the row of the first feature of a module; NULL when the module is unknown. */
 const cwi_feature_row *cwi_find_module_row(const char *module);
 
-/* The feature of a name, such as "gltf"; NULL when there is none. */
+/* Finds a feature by its name, such as "gltf"; NULL when the name is unknown. */
 const cw_feature *cwi_find_feature(const char *name);
 
 #endif

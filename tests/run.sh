@@ -60,7 +60,7 @@ run_tests() {
     sed -n '/tests passed/p; /did not run/,$p' "$log"
 }
 
-# configure_and_build PRESET [OPTION OF THE BUILD...]: no build may warn.
+# configure_and_build PRESET: with the tests; warnings are errors.
 configure_and_build() {
     say "$1: configuring"
     configure_preset "$1" "build/$1-configure.log" -DCUBEWRIGHT_TESTS=ON -DCUBEWRIGHT_WERROR=ON
