@@ -202,6 +202,9 @@ static void print_compressed(const cli_made *made)
         cli_result(" of %d bits, off by at most %.3g mm", c->bits, c->error_mm);
     else
         cli_result(", positions as they were");
+    if (c->dropped)
+        cli_result(", without the %s triangles that have a vertex twice",
+                   cli_count(c->dropped));
     cli_result(", decoded and checked");
 }
 

@@ -4,11 +4,14 @@
 #include "core/guard.hpp"
 #include "core/memory.h"
 
+#include <draco/attributes/attribute_quantization_transform.h>
 #include <draco/compression/decode.h>
 #include <draco/compression/encode.h>
 
 #include <cmath>
+#include <cstdio>
 #include <cstring>
+#include <string>
 
 namespace
 {
@@ -48,12 +51,37 @@ void add_faces(draco::Mesh &mesh, const cwi_arrays &from)
     }
 }
 
+// All digits of a number, whatever the locale's decimal point: as an integer times a power of
+// two.
+std::string print_exactly(float value)
+{
+    int exponent;
+    const float mantissa = std::frexp(value, &exponent);
+    char text[40];
+    snprintf(text, sizeof text, "%s0x%lxp%d", value < 0 ? "-" : "",
+             std::lround(std::ldexp(std::fabs(mantissa), 24)), exponent - 24);
+    return text;
+}
+
+// Draco's own SetAttributeExplicitQuantization() passes the grid on as text of six decimals, so
+// that the encoder would round to another grid than ours.
+draco::Options position_options(const cwi_grid &grid)
+{
+    draco::Options options;
+    options.SetInt("quantization_bits", grid.bits);
+    options.SetString("quantization_origin", print_exactly(grid.origin[0]) + ' ' +
+                                                 print_exactly(grid.origin[1]) + ' ' +
+                                                 print_exactly(grid.origin[2]));
+    options.SetString("quantization_range", print_exactly(grid.range));
+    return options;
+}
+
 void set_options(draco::Encoder &encoder, const cwi_draco_settings &s)
 {
     encoder.SetSpeedOptions(10 - s.level, 10 - s.level);
     encoder.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
-    encoder.SetAttributeExplicitQuantization(draco::GeometryAttribute::POSITION, s.grid.bits, 3,
-                                             s.grid.origin, s.grid.range);
+    encoder.options().SetAttributeOptions(draco::GeometryAttribute::POSITION,
+                                          position_options(s.grid));
     encoder.SetAttributeQuantization(draco::GeometryAttribute::NORMAL, s.normal_bits);
     encoder.SetAttributeQuantization(draco::GeometryAttribute::COLOR, COLOR_BITS);
 }
@@ -107,14 +135,23 @@ const draco::PointAttribute *find(const draco::Mesh &mesh, int id, int numbers)
 }
 
 // False where a point has no value.
-bool copy_floats(const draco::PointAttribute &from, size_t count, float *to)
+template <typename T> bool copy_triples(const draco::PointAttribute &from, size_t count, T *to)
 {
     for (size_t i = 0; i < count; i++) {
         const draco::AttributeValueIndex at = from.mapped_index(draco::PointIndex(uint32_t(i)));
-        if (at.value() >= from.size() || !from.ConvertValue<float, 3>(at, to + 3 * i))
+        if (at.value() >= from.size() || !from.ConvertValue<T, 3>(at, to + 3 * i))
             return false;
     }
     return true;
+}
+
+// Whether positions that were not made floats again count on this grid.
+bool is_on_grid(const draco::PointAttribute &positions, const cwi_grid &grid)
+{
+    draco::AttributeQuantizationTransform is;
+    return is.InitFromAttribute(positions) && is.quantization_bits() == grid.bits &&
+           is.range() == grid.range && is.min_value(0) == grid.origin[0] &&
+           is.min_value(1) == grid.origin[1] && is.min_value(2) == grid.origin[2];
 }
 
 // As shares of the largest, be they numbers or floats.
@@ -153,8 +190,8 @@ bool copy_faces(const draco::Mesh &mesh, uint32_t *to)
     return true;
 }
 
-cw_status copy_mesh(const draco::Mesh &mesh, const cwi_draco_ids &ids, cwi_arrays &to,
-                    cw_error *err)
+cw_status copy_mesh(const draco::Mesh &mesh, const cwi_draco_ids &ids, const cwi_grid *grid,
+                    cwi_arrays &to, cw_error *err)
 {
     const draco::PointAttribute *positions = find(mesh, ids.position, 3),
                                 *normals = find(mesh, ids.normal, 3),
@@ -163,26 +200,33 @@ cw_status copy_mesh(const draco::Mesh &mesh, const cwi_draco_ids &ids, cwi_array
     if (!positions || (ids.normal >= 0 && !normals) || (ids.color >= 0 && !colors) ||
         (colors && colors->num_components() > 4))
         return cw_fail(err, CW_ERR_FORMAT, "the Draco data lack an attribute that is named");
+    if (grid && !is_on_grid(*positions, *grid))
+        return cw_fail(err, CW_ERR_CHECK, "Draco encoded positions on another grid than asked");
     to.vertex_count = count;
     to.triangle_count = mesh.num_faces();
-    if (!allocate(to.positions, count, 3) || !allocate(to.triangles, to.triangle_count, 3) ||
+    if (!(grid ? allocate(to.places, count, 3) : allocate(to.positions, count, 3)) ||
+        !allocate(to.triangles, to.triangle_count, 3) ||
         (normals && !allocate(to.normals, count, 3)) ||
         (colors && !allocate(to.colors, count, 4)))
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", count);
-    if (!copy_floats(*positions, count, to.positions) || !copy_faces(mesh, to.triangles) ||
-        (normals && !copy_floats(*normals, count, to.normals)) ||
+    if (!(grid ? copy_triples(*positions, count, to.places)
+               : copy_triples(*positions, count, to.positions)) ||
+        !copy_faces(mesh, to.triangles) ||
+        (normals && !copy_triples(*normals, count, to.normals)) ||
         (colors && !copy_colors(*colors, count, to.colors)))
         return cw_fail(err, CW_ERR_FORMAT, "the Draco data name points that are not there");
     return CW_OK;
 }
 
 cw_status decode(const void *bytes, size_t size, const cwi_draco_ids *ids, size_t most,
-                 cwi_arrays *arrays, cw_error *err) noexcept
+                 const cwi_grid *grid, cwi_arrays *arrays, cw_error *err) noexcept
 {
     return cw::guard(err, "Draco", [&] {
         draco::DecoderBuffer buffer;
         buffer.Init(static_cast<const char *>(bytes), size);
         draco::Decoder decoder;
+        if (grid)
+            decoder.SetSkipAttributeTransform(draco::GeometryAttribute::POSITION);
         auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
         if (!decoded.ok())
             return fail_draco(err, CW_ERR_FORMAT, "decode the data", decoded.status());
@@ -190,7 +234,7 @@ cw_status decode(const void *bytes, size_t size, const cwi_draco_ids *ids, size_
         if (mesh->num_points() > most || mesh->num_faces() > most)
             return cw_fail(err, CW_ERR_LIMIT, "the Draco data hold %u triangles",
                            mesh->num_faces());
-        return copy_mesh(*mesh, *ids, *arrays, err);
+        return copy_mesh(*mesh, *ids, grid, *arrays, err);
     });
 }
 

@@ -12,6 +12,7 @@ extern "C" {
 typedef struct cwi_arrays {
     size_t vertex_count, triangle_count;
     float *positions;    /* vertex_count x 3 */
+    uint32_t *places;    /* vertex_count x 3: positions counted on a grid */
     float *normals;      /* vertex_count x 3 */
     uint8_t *colors;     /* vertex_count x 4, linear */
     uint32_t *triangles; /* triangle_count x 3 */
@@ -37,9 +38,11 @@ typedef struct cwi_draco_functions {
                         unsigned char **bytes, size_t *size, cwi_draco_ids *ids, cw_error *err);
 
     /* Decodes the attributes that ids name. Indices are below the vertex count, whatever the
-     * bytes: more than most vertices or triangles are CW_ERR_LIMIT, damage is CW_ERR_FORMAT. */
+     * bytes: more than most vertices or triangles are CW_ERR_LIMIT, damage is CW_ERR_FORMAT.
+     * grid  NULL: positions are floats. Otherwise they stay places on this grid, on which they
+     *       were encoded; CW_ERR_CHECK: it was another one. */
     cw_status (*decode)(const void *bytes, size_t size, const cwi_draco_ids *ids, size_t most,
-                        cwi_arrays *arrays, cw_error *err);
+                        const cwi_grid *grid, cwi_arrays *arrays, cw_error *err);
 } cwi_draco_functions;
 
 /* Loads the module. CW_ERR_UNSUPPORTED: not in this build. */

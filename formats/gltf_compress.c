@@ -109,6 +109,34 @@ static cw_status own_parts(cwi_gltf_plan *plan, bool all, cw_error *err)
     return CW_OK;
 }
 
+static bool names_a_vertex_twice(const uint32_t *triangle)
+{
+    return triangle[0] == triangle[1] || triangle[1] == triangle[2] ||
+           triangle[2] == triangle[0];
+}
+
+static size_t count_degenerate(const cwi_parts *parts)
+{
+    size_t count = 0;
+    for (size_t p = 0; p < parts->count; p++)
+        for (size_t t = 0; t < parts->items[p].mesh.triangle_count; t++)
+            count += names_a_vertex_twice(parts->items[p].mesh.triangles + 3 * t);
+    return count;
+}
+
+/* Draco leaves out triangles that name a vertex twice; no edge opens where they go. */
+static void drop_degenerate(cwi_gltf_plan *plan)
+{
+    for (size_t p = 0; p < plan->parts.count; p++) {
+        cw_mesh *m = &plan->parts.items[p].mesh;
+        size_t kept = 0;
+        for (size_t t = 0; t < m->triangle_count; t++)
+            if (!names_a_vertex_twice(m->triangles + 3 * t))
+                memmove(m->triangles + 3 * kept++, m->triangles + 3 * t, 3 * sizeof(uint32_t));
+        m->triangle_count = kept;
+    }
+}
+
 /* --- the grid ------------------------------------------------------------------------------
  */
 
@@ -147,6 +175,28 @@ static cw_status fail_shape(const cwi_grid *grid, const cwi_grid_harm *harm, dou
 static void lay_grid(cwi_gltf_plan *plan, cw_compression kind, int bits)
 {
     cwi_grid_refine(&plan->grid, bits, kind == CW_COMPRESS_MESHOPT && bits > SHORT_BITS);
+    plan->grid.single = kind == CW_COMPRESS_DRACO;
+}
+
+/* The most that a vertex is moved: from where it was to where a decoder puts it. */
+static double measure_error(const cwi_gltf_plan *plan)
+{
+    const cwi_grid *grid = &plan->grid;
+    double worst = 0;
+    for (size_t p = 0; p < plan->parts.count; p++) {
+        const cw_mesh *m = &plan->parts.items[p].mesh;
+        for (size_t v = 0; v < m->vertex_count; v++) {
+            double squares = 0;
+            for (int a = 0; a < 3; a++) {
+                const float x = m->positions[3 * v + (size_t)a];
+                const double moved =
+                    cwi_grid_decode(grid, cwi_grid_round(grid, x, a), a) - (double)x;
+                squares += moved * moved;
+            }
+            worst = squares > worst ? squares : worst;
+        }
+    }
+    return sqrt(worst);
 }
 
 /* The coarsest grid that keeps tolerance and shape; *found is false when none does. */
@@ -158,7 +208,8 @@ static cw_status find_grid(cwi_gltf_plan *plan, cw_compression kind, double tole
     *found = false;
     for (int bits = 1; bits <= most && st == CW_OK && !*found; bits++) {
         lay_grid(plan, kind, bits);
-        const bool fine = cwi_grid_error(&plan->grid) <= tolerance;
+        const bool fine =
+            cwi_grid_error(&plan->grid) <= tolerance && measure_error(plan) <= tolerance;
         if (fine || bits == most)
             st = cwi_grid_measure(&plan->grid, &plan->parts, harm, err);
         *found = fine && harm->merged == 0 && harm->flat == 0;
@@ -197,27 +248,6 @@ static cw_status choose_grid(cwi_gltf_plan *plan, const cw_write_desc *desc,
     return st;
 }
 
-/* The most that a vertex is moved, truly: from where it was to where it will be found. */
-static double measure_error(const cwi_gltf_plan *plan)
-{
-    const double step = plan->grid.step;
-    double worst = 0;
-    for (size_t p = 0; p < plan->parts.count; p++) {
-        const cw_mesh *m = &plan->parts.items[p].mesh;
-        for (size_t v = 0; v < m->vertex_count; v++) {
-            double squares = 0;
-            for (int a = 0; a < 3; a++) {
-                const float x = m->positions[3 * v + (size_t)a];
-                const double to =
-                    (double)plan->grid.origin[a] + step * cwi_grid_round(&plan->grid, x, a);
-                squares += ((double)x - to) * ((double)x - to);
-            }
-            worst = squares > worst ? squares : worst;
-        }
-    }
-    return sqrt(worst);
-}
-
 /* --- blocks --------------------------------------------------------------------------------
  */
 
@@ -247,34 +277,25 @@ static cw_status add_block(cwi_gltf_plan *plan, unsigned char *bytes, size_t siz
 static cw_status verify_draco(const cwi_gltf_plan *plan, const cwi_gltf_piece *piece,
                               const cwi_arrays *a, cw_compressed *told, cw_error *err)
 {
-    const double step = plan->grid.step;
-    uint32_t *places = cwi_alloc_array(a->vertex_count, 3 * sizeof *places);
-    if (!places)
-        return fail_memory(err);
-    for (size_t i = 0; i < 3 * a->vertex_count; i++) {
-        const double n = ((double)a->positions[i] - (double)plan->grid.origin[i % 3]) / step;
-        places[i] = n > 0 ? (uint32_t)(n + 0.5) : 0;
-    }
     const cwi_decoded decoded = {.vertex_count = a->vertex_count,
                                  .triangle_count = a->triangle_count,
-                                 .places = places,
+                                 .places = a->places,
                                  .normals = a->normals,
                                  .triangles = a->triangles};
-    cw_status st =
-        cwi_verify(&piece->part->mesh, &plan->grid, &decoded, &told->normal_degrees, err);
-    cwi_free(places);
-    return st;
+    return cwi_verify(&piece->part->mesh, &plan->grid, &decoded, &told->normal_degrees, err);
 }
 
-static void describe_draco(cwi_gltf_piece *piece, const cwi_arrays *decoded)
+static void describe_draco(cwi_gltf_piece *piece, const cwi_grid *grid,
+                           const cwi_arrays *decoded)
 {
     for (int a = 0; a < 3; a++) {
         piece->low[a] = INFINITY;
         piece->high[a] = -INFINITY;
     }
     for (size_t i = 0; i < 3 * decoded->vertex_count; i++) {
-        piece->low[i % 3] = fmin(piece->low[i % 3], (double)decoded->positions[i]);
-        piece->high[i % 3] = fmax(piece->high[i % 3], (double)decoded->positions[i]);
+        const double at = cwi_grid_decode(grid, decoded->places[i], (int)(i % 3));
+        piece->low[i % 3] = fmin(piece->low[i % 3], at);
+        piece->high[i % 3] = fmax(piece->high[i % 3], at);
     }
     for (size_t n = 0; n < piece->array_count; n++)
         if (piece->arrays[n].use != CWI_GLTF_INDICES)
@@ -323,11 +344,11 @@ static cw_status compress_draco(cwi_gltf_plan *plan, cwi_gltf_piece *piece,
     cwi_free(colors);
     if (st == CW_OK)
         st = draco->decode(plan->blocks[plan->block_count - 1].bytes, piece->draco, &piece->ids,
-                           SIZE_MAX, &decoded, err);
+                           SIZE_MAX, &plan->grid, &decoded, err);
     if (st == CW_OK)
         st = verify_draco(plan, piece, &decoded, told, err);
     if (st == CW_OK)
-        describe_draco(piece, &decoded);
+        describe_draco(piece, &plan->grid, &decoded);
     cwi_arrays_free(&decoded);
     told->encode_s += encoded - start;
     told->decode_s += now_s() - encoded;
@@ -486,8 +507,12 @@ cw_status cwi_gltf_compress(cwi_gltf_plan *plan, const cw_write_desc *desc, cw_e
     const bool meshopt = desc->compression == CW_COMPRESS_MESHOPT;
     cw_compressed told = {0};
     cw_status st = CW_OK;
-    if (meshopt || !same_origin(&plan->parts))
+    if (desc->compression == CW_COMPRESS_DRACO)
+        told.dropped = count_degenerate(&plan->parts);
+    if (meshopt || told.dropped || !same_origin(&plan->parts))
         st = own_parts(plan, meshopt, err);
+    if (st == CW_OK && told.dropped)
+        drop_degenerate(plan);
     if (st == CW_OK)
         st = choose_grid(plan, desc, &told, err);
     if (st != CW_OK)

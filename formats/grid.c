@@ -59,14 +59,20 @@ double cwi_grid_error(const cwi_grid *grid)
 /* --- harm -----------------------------------------------------------------------------------
  */
 
-static void round_points(const cwi_grid *grid, const cw_mesh *mesh, uint32_t *rounded)
+/* Places, and where they are found again; places of exact grids are below 2^24 and serve as
+ * both. */
+static void round_points(const cwi_grid *grid, const cw_mesh *mesh, uint32_t *places,
+                         float *found)
 {
-    for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
-        rounded[i] = cwi_grid_round(grid, mesh->positions[i], (int)(i % 3));
+    for (size_t i = 0; i < 3 * mesh->vertex_count; i++) {
+        places[i] = cwi_grid_round(grid, mesh->positions[i], (int)(i % 3));
+        found[i] = grid->single ? (float)cwi_grid_decode(grid, places[i], (int)(i % 3))
+                                : (float)places[i];
+    }
 }
 
 /* Whether two corners' differences from the third are not parallel: exact, below 2^62. */
-static bool has_area(const uint32_t *points, const uint32_t *t)
+static bool spans_places(const uint32_t *points, const uint32_t *t)
 {
     const uint32_t *p = points + 3 * (size_t)t[0], *q = points + 3 * (size_t)t[1],
                    *r = points + 3 * (size_t)t[2];
@@ -79,7 +85,7 @@ static bool has_area(const uint32_t *points, const uint32_t *t)
            u[2] * v[0] != u[0] * v[2];
 }
 
-static bool had_area(const float *points, const uint32_t *t)
+static bool has_area(const float *points, const uint32_t *t)
 {
     const float *p = points + 3 * (size_t)t[0], *q = points + 3 * (size_t)t[1],
                 *r = points + 3 * (size_t)t[2];
@@ -98,14 +104,15 @@ static bool is_elsewhere(const float *points, size_t v, size_t u)
     return p[0] != q[0] || p[1] != q[1] || p[2] != q[2];
 }
 
-static void count_harm(const cw_mesh *mesh, const uint32_t *rounded, const uint32_t *map,
-                       cwi_grid_harm *harm)
+static void count_harm(const cw_mesh *mesh, const uint32_t *places, const float *found,
+                       const uint32_t *map, cwi_grid_harm *harm)
 {
     for (size_t v = 0; v < mesh->vertex_count; v++)
         harm->merged += map[v] != v && is_elsewhere(mesh->positions, v, map[v]);
     for (size_t t = 0; t < mesh->triangle_count; t++) {
         const uint32_t *triangle = mesh->triangles + 3 * t;
-        harm->flat += !has_area(rounded, triangle) && had_area(mesh->positions, triangle);
+        harm->flat += !(spans_places(places, triangle) && has_area(found, triangle)) &&
+                      has_area(mesh->positions, triangle);
     }
 }
 
@@ -113,19 +120,18 @@ static cw_status measure_part(const cwi_grid *grid, const cw_mesh *mesh, cwi_gri
                               cw_error *err)
 {
     const size_t count = mesh->vertex_count;
-    uint32_t *rounded = cwi_alloc_array(count, 3 * sizeof *rounded);
-    float *bits = cwi_alloc_array(count, 3 * sizeof *bits);
+    uint32_t *places = cwi_alloc_array(count, 3 * sizeof *places);
+    float *found = cwi_alloc_array(count, 3 * sizeof *found);
     uint32_t *map = cwi_alloc_array(count, sizeof *map);
-    bool ok = rounded && bits && map;
+    bool ok = places && found && map;
     if (ok) {
-        round_points(grid, mesh, rounded);
-        memcpy(bits, rounded, 12 * count); /* below 2^30: as floats they are finite, too */
-        ok = cwi_weld(bits, count, map);
+        round_points(grid, mesh, places, found);
+        ok = cwi_weld(found, count, map);
     }
     if (ok)
-        count_harm(mesh, rounded, map, harm);
-    cwi_free(rounded);
-    cwi_free(bits);
+        count_harm(mesh, places, found, map, harm);
+    cwi_free(places);
+    cwi_free(found);
     cwi_free(map);
     return ok ? CW_OK
               : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to compare %zu vertices", count);

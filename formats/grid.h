@@ -19,6 +19,7 @@ typedef struct cwi_grid {
     float range; /* the longest edge of the box */
     int bits;
     bool dyadic;
+    bool single;  /* a decoder makes floats of the places: cwi_grid_decode() */
     int exponent; /* of a dyadic step */
     double step;
 } cwi_grid;
@@ -32,18 +33,28 @@ typedef struct cwi_grid_harm {
 /* The box of the positions (origins left out) of all meshes, as a grid of no bits yet. */
 cwi_grid cwi_grid_around(const cwi_parts *parts);
 
-/* Lays the grid anew, as fine as so many bits allow; dyadic takes 17 to 24 of them. */
+/* Divides the box again, as finely as the bits allow; dyadic takes 17 to 24 of them. */
 void cwi_grid_refine(cwi_grid *grid, int bits, bool dyadic);
 
-/* The most that rounding moves a point. */
+/* The most that rounding moves a point; the last digits of floats aside. */
 double cwi_grid_error(const cwi_grid *grid);
 
-/* By the arithmetic of glTF's and Draco's encoders. */
+/* By the arithmetic of glTF's and Draco's encoders. From 24 bits on, rounding can give
+ * 2^bits. */
 static inline uint32_t cwi_grid_round_even(const cwi_grid *grid, float coordinate, int axis)
 {
     const float most = (float)((1u << grid->bits) - 1), inverse = most / grid->range;
     const float at = (coordinate - grid->origin[axis]) * inverse + 0.5f;
-    return at <= 0 ? 0 : at >= most ? (uint32_t)most : (uint32_t)at;
+    return at <= 0 ? 0 : (uint32_t)at;
+}
+
+/* Where a place is found, counted from the parts' origin: by the arithmetic of Draco's decoder,
+ * or exactly. */
+static inline double cwi_grid_decode(const cwi_grid *grid, uint32_t place, int axis)
+{
+    const float step = grid->range / (float)((1u << grid->bits) - 1);
+    return grid->single ? (double)((float)place * step + grid->origin[axis])
+                        : (double)grid->origin[axis] + grid->step * place;
 }
 
 /* Single precision has no digit left to round 24 bits with. */
@@ -54,7 +65,7 @@ static inline uint32_t cwi_grid_round_dyadic(const cwi_grid *grid, float coordin
     return at <= 0 ? 0 : at >= most ? (uint32_t)most : (uint32_t)at;
 }
 
-/* Where a coordinate goes, counted from 0. */
+/* The place of a coordinate, counted from 0. */
 static inline uint32_t cwi_grid_round(const cwi_grid *grid, float coordinate, int axis)
 {
     return grid->dyadic ? cwi_grid_round_dyadic(grid, coordinate, axis)

@@ -1,8 +1,8 @@
 #!/bin/sh
 # Installs what the tests need, builds, and tests. Safe to run twice.
 #
-#   sh tests/run.sh            the release stage: every test, about ten minutes on two cores
-#   sh tests/run.sh all        all stages, about half an hour
+#   sh tests/run.sh            the release stage: every test, about five minutes on two cores
+#   sh tests/run.sh all        all stages, about 35 minutes
 #   sh tests/run.sh STAGE...   some of them:
 #
 # release     gcc, as users build it: every test, and the format of the code

@@ -288,6 +288,7 @@ typedef struct cw_compressed {
     double normal_degrees;     /* ... and a normal turned */
     size_t merged;             /* vertices that fell onto another: only with bits stated */
     size_t flat;               /* triangles that lost their area: only with bits stated */
+    size_t dropped;            /* triangles with a vertex twice, which Draco has no form for */
     uint64_t bytes;            /* of the arrays in the file */
     double encode_s, decode_s; /* and to check what was decoded */
 } cw_compressed;

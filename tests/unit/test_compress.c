@@ -148,6 +148,98 @@ static void a_tolerance_is_kept(void **state)
     cw_mesh_free(&mesh);
 }
 
+/* An octahedron whose coordinates no grid holds, in any unit and anywhere. */
+static void put_octahedron(cw_mesh *mesh, const float center[3], float scale,
+                           float positions[18], uint32_t triangles[24])
+{
+    static const float off[18] = {1,     0.0123f, -0.3f,  -1.07f,  0.21f, 0.05f,
+                                  0.02f, 0.93f,   0.011f, 0.1f,    -1.3f, -0.17f,
+                                  0.03f, 0.07f,   1.09f,  -0.019f, 0.13f, -0.71f};
+    for (size_t i = 0; i < 18; i++)
+        positions[i] = (center[i % 3] + off[i]) * scale;
+    for (uint32_t t = 0; t < 8; t++) { /* the corner of an octant */
+        const uint32_t x = t & 1, y = 2 + (t >> 1 & 1), z = 4 + (t >> 2 & 1);
+        const bool turned = (t & 1) ^ (t >> 1 & 1) ^ (t >> 2 & 1);
+        memcpy(triangles + 3 * t, (uint32_t[]){x, turned ? z : y, turned ? y : z}, 12);
+    }
+    *mesh = (cw_mesh){
+        .positions = positions, .vertex_count = 6, .triangles = triangles, .triangle_count = 8};
+}
+
+/* The most that a vertex of a is away from the nearest of b. */
+static double farthest_vertex(const cw_mesh *a, const cw_mesh *b)
+{
+    double worst = 0;
+    for (size_t v = 0; v < a->vertex_count; v++) {
+        double least = INFINITY;
+        for (size_t u = 0; u < b->vertex_count; u++) {
+            double d[3];
+            for (size_t k = 0; k < 3; k++)
+                d[k] = a->origin[k] + (double)a->positions[3 * v + k] - b->origin[k] -
+                       (double)b->positions[3 * u + k];
+            least = fmin(least, hypot(hypot(d[0], d[1]), d[2]));
+        }
+        worst = fmax(worst, least);
+    }
+    return worst;
+}
+
+/* Draco passes options on as text of six decimals; grids must not depend on it. Farther from 0
+ * than floats have digits for, vertices may merge, which is told. */
+static void draco_takes_any_unit_place_and_bits(void **state)
+{
+    (void)state;
+    static const float scales[] = {1e-6f, 1e-4f, 0.0137f, 1, 431.7f, 1e7f};
+    static const float centers[][3] = {
+        {0, 0, 0}, {0.3f, -2.7f, 11.1f}, {1234.567f, -77.7f, 0.1f}};
+    static const int bits[] = {0, 8, 11, 14, 16, 20, 22, 23, 24};
+    for (size_t s = 0; s < sizeof scales / sizeof *scales; s++)
+        for (size_t c = 0; c < sizeof centers / sizeof *centers; c++)
+            for (size_t b = 0; b < sizeof bits / sizeof *bits && is_there(CW_COMPRESS_DRACO);
+                 b++) {
+                cw_mesh mesh;
+                float positions[18];
+                uint32_t triangles[24];
+                cw_compressed told = {0};
+                put_octahedron(&mesh, centers[c], scales[s], positions, triangles);
+                cw_mesh back = write_and_read(
+                    &mesh, (cw_write_desc){.compression = CW_COMPRESS_DRACO, .bits = bits[b]},
+                    &told, "a.glb");
+                const double ulp =
+                    1200 * (double)scales[s] * 0x1p-23; /* of millimetres read back */
+                assert_int_equal(back.triangle_count, 8);
+                assert_int_equal(told.merged, 0);
+                assert_true(told.error_mm <= 0.8661 * told.step_mm + 4 * ulp);
+                assert_true(farthest_vertex(&mesh, &back) <= told.error_mm + ulp);
+                assert_true(farthest_vertex(&back, &mesh) <= told.error_mm + ulp);
+                cw_mesh_free(&back);
+            }
+}
+
+/* Floats far from 0 make corners meet, as in many an STL. */
+static void draco_leaves_out_triangles_with_a_vertex_twice(void **state)
+{
+    (void)state;
+    cw_mesh mesh, back;
+    float positions[18];
+    uint32_t triangles[30];
+    cw_compressed told = {0};
+    if (!is_there(CW_COMPRESS_DRACO))
+        return;
+    put_octahedron(&mesh, (float[3]){0, 0, 0}, 1, positions, triangles);
+    memmove(triangles + 6, triangles, 96);
+    memcpy(triangles, (uint32_t[]){0, 0, 2, 2, 4, 2}, 24);
+    mesh.triangle_count = 10;
+    back = write_and_read(&mesh, (cw_write_desc){.compression = CW_COMPRESS_DRACO}, &told,
+                          "a.glb");
+    assert_int_equal(back.triangle_count, 8);
+    assert_int_equal(told.dropped, 2);
+    assert_int_equal(test_check_promise(&back, false).euler, 2);
+    assert_int_equal(mesh.triangle_count, 10); /* the caller's mesh is as it was */
+    assert_int_equal(triangles[5], 2);
+    cw_mesh_free(&back);
+}
+
 /* Two slivers, a thousandth of a millimetre high on a base as long as told. */
 static void put_sliver(cw_mesh *mesh, float base, float positions[18], uint32_t triangles[12])
 {
@@ -388,6 +480,8 @@ int main(void)
         TEST(every_kind_keeps_the_mesh),
         TEST(colors_stay_with_their_vertices),
         TEST(a_tolerance_is_kept),
+        TEST(draco_takes_any_unit_place_and_bits),
+        TEST(draco_leaves_out_triangles_with_a_vertex_twice),
         TEST(what_cannot_be_kept_is_not_promised),
         TEST(meshopt_has_more_than_16_bits),
         TEST(what_makes_no_sense_is_refused),
