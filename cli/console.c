@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
+#include <sys/time.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -175,14 +176,26 @@ void cli_progress_end(void)
     console.drawn = false;
 }
 
+static void end_now(int number)
+{
+    static const char words[] = "cubewright: interrupted; partial files are removed\n";
+    (void)number;
+    cwi_outfile_remove_all();
+    if (write(STDERR_FILENO, words, sizeof words - 1) < 0) {
+        /* there is nobody to tell */
+    }
+    _exit(cw_status_exit_code(CW_ERR_CANCELLED));
+}
+
+/* Steps that ask often end by themselves. Work inside a library may not ask for long: after
+ * GRACE_US, or at a second signal, it is ended from outside. */
 static void on_signal(int number)
 {
-    (void)number;
-    if (interrupted) {
-        cwi_outfile_remove_all();
-        _exit(cw_status_exit_code(CW_ERR_CANCELLED));
-    }
+    enum { GRACE_US = 600000 };
+    if (interrupted)
+        end_now(number);
     interrupted = 1;
+    setitimer(ITIMER_REAL, &(struct itimerval){.it_value.tv_usec = GRACE_US}, NULL);
 }
 
 void cli_catch_signals(void)
@@ -196,6 +209,7 @@ void cli_catch_signals(void)
         if (before.sa_handler != SIG_IGN) /* nohup */
             sigaction(ends[i], &action, NULL);
     }
+    signal(SIGALRM, end_now);
     signal(SIGPIPE, SIG_IGN); /* a failed write is reported where it happens */
     signal(SIGXFSZ, SIG_IGN);
 }

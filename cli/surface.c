@@ -77,7 +77,9 @@ static cw_status simplify_whole(const cli_volume *volume, const cli_wanted *want
     cw_status st = cli_extract_wanted(volume, NULL, wanted, &whole, counts, dropped, err);
     if (st != CW_OK)
         return st;
-    st = cw_simplify(&whole, simplify, mesh, NULL, err);
+    cw_simplify_desc d = *simplify;
+    d.progress = progress_of(volume);
+    st = cw_simplify(&whole, &d, mesh, NULL, err);
     cw_mesh_free(&whole);
     return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
 }
@@ -87,11 +89,12 @@ static cw_status simplify_slabs(const cli_volume *volume, const cw_extract_desc 
                                 cw_extract_counts *counts, cw_error *err)
 {
     cw_extract_desc d = *desc;
+    cw_simplify_desc s = *simplify;
     cw_simplifier *simplifier;
     d.max_bytes = volume->memory_left;
-    d.progress = progress_of(volume);
+    d.progress = s.progress = progress_of(volume);
     *mesh = (cw_mesh){0};
-    cw_status st = cw_simplifier_new(simplify, &simplifier, err);
+    cw_status st = cw_simplifier_new(&s, &simplifier, err);
     if (st == CW_OK)
         st = cw_extract_slabs(&volume->view, &d, CW_SIMPLIFIER_SLAB,
                               (cw_slab_sink){cw_simplifier_take, simplifier}, counts, err);

@@ -10,8 +10,13 @@
 namespace cw
 {
 
-// Runs a function that returns cw_status. bad_alloc becomes CW_ERR_NO_MEMORY; everything else
-// becomes CW_ERR_BACKEND with the library's name and its own words.
+// Thrown where the caller's progress asks to stop.
+struct Cancelled {
+};
+
+// Runs a function that returns cw_status. bad_alloc becomes CW_ERR_NO_MEMORY, Cancelled
+// CW_ERR_CANCELLED; everything else becomes CW_ERR_BACKEND with the library's name and its own
+// words.
 template <typename Body>
 cw_status guard(cw_error *err, const char *library, Body &&body) noexcept
 {
@@ -19,6 +24,8 @@ cw_status guard(cw_error *err, const char *library, Body &&body) noexcept
         return body();
     } catch (const std::bad_alloc &) {
         return cw_fail(err, CW_ERR_NO_MEMORY, "memory ran out in %s", library);
+    } catch (const Cancelled &) {
+        return cw_fail(err, CW_ERR_CANCELLED, "interrupted in %s", library);
     } catch (const std::exception &e) {
         return cw_fail(err, CW_ERR_BACKEND, "%s failed: %s", library, e.what());
     } catch (...) {

@@ -186,6 +186,7 @@ _Noreturn static void live(const cwi_sandbox *box, int socket, pid_t parent)
     const struct sigaction usual = {.sa_handler = SIG_DFL};
     for (int s = 1; s < NSIG; s++)
         sigaction(s, &usual, NULL);
+    signal(SIGINT, SIG_IGN); /* Ctrl-C goes to all processes; the parent ends this one */
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     prctl(PR_SET_NAME, "cubewright-read");
     bool good = getppid() == parent && drop_files(&socket);

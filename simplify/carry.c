@@ -71,10 +71,10 @@ static bool alloc_carried(const cw_mesh *from, cw_mesh *to)
            !from->colors == !to->colors && !from->labels == !to->labels;
 }
 
-cw_status cwi_carry(const cw_mesh *from, int threads, cw_mesh *to, cw_error *err)
+cw_status cwi_carry(const cw_mesh *from, int threads, const cw_progress *progress, cw_mesh *to,
+                    cw_error *err)
 {
     carrier c = {.from = from, .to = to};
-    const cw_progress silent = {0};
     if (!from->normals && !from->scalars && !from->colors && !from->labels)
         return CW_OK;
     if (!alloc_carried(from, to))
@@ -82,7 +82,7 @@ cw_status cwi_carry(const cw_mesh *from, int threads, cw_mesh *to, cw_error *err
     cw_status st = cwi_closest_build(from, &c.tree, err);
     if (st == CW_OK)
         st = cwi_each_layer((to->vertex_count + CHUNK - 1) / CHUNK, CHUNK * 64, threads,
-                            &silent, "carrying", carry_chunk, &c, err);
+                            progress, "carrying", carry_chunk, &c, err);
     cwi_boxes_free(&c.tree);
     return st;
 }

@@ -32,12 +32,16 @@ struct cwi_decimater {
     cwi_decimater(const cwi_block &block, const cwi_block_desc &desc,
                   const cwi_original *original)
         : names(block.names, block.names + block.vertices), nodes(block.vertices),
-          trends(block), live(block.own), shape(block), bound(block, original, desc.error)
+          trends(block), live(block.own), shape(block), bound(block, original, desc.error),
+          progress(*desc.progress)
     {
+        poll();
         const std::vector<uint8_t> unsound = connect(block, surface);
+        poll();
         if (!desc.allow_crossings)
             contact = std::make_unique<Contact>(block, surface);
         for (size_t v = 0; v < block.vertices; v++) {
+            poll_often();
             const VertexHandle handle{int(v)};
             cut += unsound[v];
             nodes[v].point = surface.point(handle);
@@ -52,6 +56,7 @@ struct cwi_decimater {
     void run(float most, size_t least_triangles)
     {
         while (!queue.empty() && Queue::cost(queue.top()) <= most && live > least_triangles) {
+            poll_often();
             const uint32_t e = Queue::edge(queue.top());
             if (surface.status(EdgeHandle(int(e))).deleted()) {
                 queue.pop();
@@ -89,6 +94,23 @@ struct cwi_decimater {
     Star star;
 
 private:
+    // The caller may have asked to stop. A negative share repeats the last one.
+    void poll() const
+    {
+        if (cwi_progress(&progress, "simplifying", -1, nullptr) != CW_OK)
+            throw Cancelled();
+    }
+
+    // For loops of short turns: some milliseconds between two polls.
+    void poll_often()
+    {
+        if (++turns % 4096 == 0)
+            poll();
+    }
+
+    const cw_progress progress;
+    uint32_t turns = 0;
+
     struct Proposal {
         HalfedgeHandle halfedge; // from the vertex that goes to the one that stays
         cwi_quadric quadric;     // about where the halfedge starts
@@ -158,10 +180,13 @@ private:
             for (size_t v = 0; v < block.vertices; v++)
                 nodes[v].quadric = block.quadrics[v];
         else
-            for (auto f : surface.faces())
+            for (auto f : surface.faces()) {
+                poll_often();
                 add_face(f, block.values);
+            }
         for (int i = 0; i < int(surface.n_halfedges()); i++) {
             const HalfedgeHandle h(i);
+            poll_often();
             if (!surface.is_boundary(h))
                 continue;
             const auto a = size_t(surface.from_vertex_handle(h).idx()),
@@ -180,6 +205,7 @@ private:
         waiting.assign(edges, false);
         queue.reserve(edges);
         for (uint32_t e = 0; e < edges; e++) {
+            poll_often();
             const HalfedgeHandle h = surface.halfedge_handle(EdgeHandle(int(e)), 0);
             if (node(surface.from_vertex_handle(h)).held ||
                 node(surface.to_vertex_handle(h)).held)

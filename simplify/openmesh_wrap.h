@@ -99,6 +99,7 @@ typedef struct cwi_block {
 typedef struct cwi_block_desc {
     double error; /* the distance to keep; 0: none */
     bool allow_crossings, keep_border;
+    const cw_progress *progress; /* asked from any thread; borrowed until the end */
 } cwi_block_desc;
 
 typedef struct cwi_decimater cwi_decimater;

@@ -11,8 +11,6 @@
 #include <math.h>
 #include <string.h>
 
-static const cw_progress silent = {0};
-
 /* The share of the error that is kept: others may measure it by bounds that are wider. */
 static const double TIGHTER = 0.95;
 
@@ -39,7 +37,10 @@ cw_status cwi_passes_init(cwi_passes *p, const cw_simplify_desc *desc, cw_error 
                       .error = desc->error_mm,
                       .block_desc = {.error = TIGHTER * desc->error_mm,
                                      .allow_crossings = desc->allow_crossings,
-                                     .keep_border = desc->keep_border}};
+                                     .keep_border = desc->keep_border,
+                                     .progress = &p->poll}};
+    cwi_stop_init(&p->stop, &desc->progress);
+    p->poll = cwi_stop_progress(&p->stop);
     cw_status st = check(desc, err);
     if (st == CW_OK)
         st = cwi_module_load("openmesh", &module, err);
@@ -363,7 +364,7 @@ static cw_status find_beyond(const cwi_passes *p, const cw_mesh *mesh, const cw_
     double *limits;
     cw_status st = find_limits(p, mesh, &limits, err);
     if (st == CW_OK)
-        st = cwi_mesh_within(mesh, reference, p->error, limits, threads, &silent, beyond, err);
+        st = cwi_mesh_within(mesh, reference, p->error, limits, threads, &p->poll, beyond, err);
     cwi_free(limits);
     return st;
 }
@@ -476,9 +477,9 @@ static void keep_block(void *context, size_t n)
 /* All blocks, shared out to threads; the first that failed is the one that is told. */
 static cw_status each_block(crew *c, void (*work)(void *context, size_t n), cw_error *err)
 {
-    const cw_simplify_desc *d = c->passes->desc;
-    cw_status st = cwi_each_layer(c->count, CWI_BLOCK, d->threads, &d->progress, "simplifying",
-                                  work, c, err);
+    const cwi_passes *p = c->passes;
+    cw_status st = cwi_each_layer(c->count, CWI_BLOCK, p->desc->threads, &p->poll,
+                                  "simplifying", work, c, err);
     for (size_t n = 0; n < c->count && st == CW_OK; n++)
         if (c->statuses[n] != CW_OK)
             return cw_fail(err, c->statuses[n], "%s", c->errors[n].message);

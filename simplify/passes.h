@@ -2,6 +2,7 @@
 #ifndef SIMPLIFY_PASSES_H
 #define SIMPLIFY_PASSES_H
 
+#include "core/stop.h"
 #include "simplify/openmesh_wrap.h"
 #include "simplify/views.h"
 
@@ -14,6 +15,8 @@ enum { CWI_BLOCK = 1 << 15 };
 typedef struct cwi_passes {
     const cwi_openmesh_functions *openmesh;
     const cw_simplify_desc *desc;
+    cwi_stop stop;
+    cw_progress poll; /* asks stop, from any thread */
     cwi_block_desc block_desc;
     double error;          /* to keep; 0: none */
     cwi_views views;       /* where it is less */
@@ -27,8 +30,8 @@ typedef struct cwi_passes {
     size_t repeats;  /* with more care */
 } cwi_passes;
 
-/* Free with cwi_passes_free(), also after an error.
- * desc      borrowed
+/* Free with cwi_passes_free(), also after an error. They must not move.
+ * desc      borrowed; its progress is asked on the thread that calls this
  * Returns   CW_ERR_ARGUMENT for what is out of range; CW_ERR_UNSUPPORTED without OpenMesh */
 cw_status cwi_passes_init(cwi_passes *passes, const cw_simplify_desc *desc, cw_error *err);
 void cwi_passes_free(cwi_passes *passes);

@@ -223,6 +223,7 @@ cw_status cw_simplifier_take(void *simplifier, const cw_slab *from, cw_error *er
 {
     cw_simplifier *s = simplifier;
     cwi_slab_block slab;
+    cwi_stop_init(&s->passes.stop, &s->desc.progress); /* this thread may be another one */
     if (s->ended)
         return cw_fail(err, CW_ERR_ARGUMENT, "a slab after the last");
     memcpy(s->frame.origin, from->mesh->origin, sizeof s->frame.origin);
@@ -266,6 +267,7 @@ cw_status cw_simplifier_finish(cw_simplifier *s, cw_mesh *out, cw_simplify_facts
     size_t cut = 0;
     cw_status st = CW_OK;
     *out = (cw_mesh){0};
+    cwi_stop_init(&s->passes.stop, &s->desc.progress);
     if (s->scale > 0 && !s->ended)
         return cw_fail(err, CW_ERR_ARGUMENT, "slabs are missing: there was no last one");
     if (s->scale > 0)

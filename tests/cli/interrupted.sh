@@ -6,3 +6,11 @@ kill -TERM $child
 wait $child
 echo $?
 ls -A
+cubewright make gyroid --noise 1 --dims 120 -o v.nrrd -q
+cubewright extract v.nrrd --iso 0 --simplify 1mm -o v.glb -q &
+child=$!
+sleep 0.7
+kill -TERM $child
+wait $child
+echo $?
+ls -A

@@ -7,6 +7,7 @@
 #include "core/sandbox.h"
 
 #include <math.h>
+#include <pthread.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -607,24 +608,49 @@ static void wishes_that_make_no_sense_are_refused(void **state)
     cw_mesh_free(&mesh);
 }
 
-static bool refuse(void *user, const char *step, double done)
+typedef struct listener {
+    pthread_t caller;
+    size_t calls, stop_at; /* 0: never */
+    bool elsewhere;
+} listener;
+
+static bool listen(void *user, const char *step, double done)
 {
-    (void)step, (void)done;
-    ++*(int *)user;
-    return false;
+    listener *l = user;
+    (void)step;
+    assert_true(done >= 0 && done <= 1);
+    l->elsewhere |= !pthread_equal(pthread_self(), l->caller);
+    return ++l->calls != l->stop_at;
 }
 
+/* Asked often, on the calling thread alone, and obeyed at once, wherever it is. */
 static void it_can_be_stopped(void **state)
 {
     (void)state;
-    int calls = 0;
+    const cw_simplify_desc descs[] = {{.ratio = 0.1, .threads = 1},
+                                      {.error_mm = 0.02, .threads = 1},
+                                      {.error_mm = 0.02, .threads = 2}};
     cw_mesh mesh = noisy_gyroid(40, 0.1, false), out;
-    cw_error err = {0};
-    const cw_simplify_desc desc = {.ratio = 0.1, .progress = {refuse, &calls}};
-    assert_fails(cw_simplify(&mesh, &desc, &out, NULL, &err), CW_ERR_CANCELLED, "interrupted",
-                 err);
-    assert_int_equal(calls, 1);
-    assert_null(out.positions);
+    for (size_t d = 0; d < 3; d++) {
+        cw_error err = {0};
+        cw_simplify_desc desc = descs[d];
+        listener l = {.caller = pthread_self()};
+        desc.progress = (cw_progress){listen, &l};
+        assert_ok(cw_simplify(&mesh, &desc, &out, NULL, &err), err);
+        cw_mesh_free(&out);
+        const size_t calls = l.calls;
+        if (desc.threads == 1) /* otherwise others do what they do */
+            assert_true(calls > mesh.triangle_count / 4096);
+        for (size_t n = 0; n < 6; n++) {
+            const size_t at = desc.threads == 1 ? n * (calls - 1) / 5 : n;
+            l = (listener){.caller = pthread_self(), .stop_at = 1 + at};
+            assert_fails(cw_simplify(&mesh, &desc, &out, NULL, &err), CW_ERR_CANCELLED,
+                         "interrupted", err);
+            assert_true(l.calls == l.stop_at);
+            assert_null(out.positions);
+        }
+        assert_false(l.elsewhere);
+    }
     cw_mesh_free(&mesh);
 }
 
