@@ -132,9 +132,10 @@ static cw_status find_place(const cwi_gltf_bytes *from, const cwi_gltf_buffer *b
     if (b->uri)
         return open_file(from->in, b->uri, p, err);
     if (index > 0)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "buffer %llu has no 'uri'; only buffer 0 of a .glb file needs none",
-                       (unsigned long long)index);
+        return cw_fail(
+            err, CW_ERR_FORMAT,
+            "buffers[%llu]: there is no 'uri'; only buffer 0 of a .glb file needs none",
+            (unsigned long long)index);
     p->start = from->chunk;
     p->held = from->chunk_size;
     return CW_OK;
@@ -173,6 +174,11 @@ cw_status cwi_gltf_load(const cwi_gltf_bytes *from, const cwi_gltf_scene *scene,
                        (long long)buffer, scene->buffer_count);
     const cwi_gltf_buffer *b = &scene->buffers[buffer];
     cw_status st = find_place(from, b, buffer, &p, err);
+    if (st == CW_OK && b->bytes > p.held)
+        st = cw_fail(err, CW_ERR_FORMAT,
+                     "buffers[%llu].byteLength: %llu bytes are more than the %llu there are",
+                     (unsigned long long)buffer, (unsigned long long)b->bytes,
+                     (unsigned long long)p.held);
     if (st == CW_OK && !fits(offset, size, p.held))
         st = cw_fail(err, CW_ERR_FORMAT,
                      "buffer %llu has %llu bytes; %llu from byte %llu on were expected",
@@ -210,13 +216,11 @@ static cw_status check_accessor(const cwi_gltf_scene *scene, int accessor, const
         return cw_fail(err, CW_ERR_FORMAT, "%s names accessor %d; there are %zu", what,
                        accessor, scene->accessor_count);
     const cwi_gltf_accessor *a = &scene->accessors[accessor];
-    if (a->sparse)
-        return cw_fail(err, CW_ERR_UNSUPPORTED, "%s is sparse (accessor %d), which is not read",
-                       what, accessor);
     if (!component_size(a->component) || !a->numbers)
         return cw_fail(err, CW_ERR_FORMAT, "%s (accessor %d) has a type that is not read", what,
                        accessor);
-    if (a->view < 0 || (uint64_t)a->view >= scene->view_count)
+    const bool is_zero = a->view < 0 && a->sparse.count > 0;
+    if (!is_zero && (a->view < 0 || (uint64_t)a->view >= scene->view_count))
         return cw_fail(err, CW_ERR_FORMAT,
                        "%s (accessor %d) names bufferView %lld; there are %zu", what, accessor,
                        (long long)a->view, scene->view_count);
@@ -279,6 +283,100 @@ static cw_status load_view(const cwi_gltf_bytes *from, const cwi_gltf_scene *sce
     return st;
 }
 
+/* The elements of a view, from an offset on: checked against it, then loaded. stride 0: packed.
+ */
+static cw_status load_elements(const cwi_gltf_bytes *from, const cwi_gltf_scene *scene,
+                               int64_t view, uint64_t offset, uint64_t count, uint64_t element,
+                               uint64_t stride, const char *what, int accessor,
+                               unsigned char **bytes, cw_error *err)
+{
+    if (view < 0 || (uint64_t)view >= scene->view_count)
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "%s (accessor %d) names bufferView %lld; there are %zu", what, accessor,
+                       (long long)view, scene->view_count);
+    const cwi_gltf_view *v = &scene->views[view];
+    const uint64_t step = stride ? stride : element;
+    uint64_t size = 0, unused;
+    const bool overflow = (count && __builtin_mul_overflow(count - 1, step, &size)) ||
+                          __builtin_add_overflow(size, count ? element : 0, &size) ||
+                          __builtin_add_overflow(v->offset, offset, &unused);
+    if (overflow || step < element || !fits(offset, size, v->bytes))
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "accessors[%d] (%s): %llu elements do not fit into bufferViews[%lld], "
+                       "which has %llu "
+                       "bytes",
+                       accessor, what, (unsigned long long)count, (long long)view,
+                       (unsigned long long)v->bytes);
+    return load_view(from, scene, v, offset, size, bytes, err);
+}
+
+/* --- sparse accessors -------------------------------------------------------------------- */
+
+/* Elements that are zero take no byte of the file: what may be claimed of them is bounded. */
+enum { FREE_ZEROS = 1 << 20, ZEROS_EACH = 1024 };
+
+static cw_status make_zeros(const cwi_gltf_accessor *a, const char *what, int accessor,
+                            uint64_t element, unsigned char **bytes, cw_error *err)
+{
+    if (a->count > FREE_ZEROS + ZEROS_EACH * a->sparse.count)
+        return cw_fail(err, CW_ERR_LIMIT,
+                       "%s (accessor %d) has %llu elements, but a file holds only %llu of them",
+                       what, accessor, (unsigned long long)a->count,
+                       (unsigned long long)a->sparse.count);
+    *bytes = cwi_alloc_zeroed((size_t)a->count, (size_t)element);
+    return *bytes ? CW_OK
+                  : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %llu elements",
+                            (unsigned long long)a->count);
+}
+
+/* Puts values at their indices, which rise from one to the next. */
+static cw_status replace_elements(const cwi_gltf_sparse *s, const unsigned char *indices,
+                                  const unsigned char *values, size_t element, int accessor,
+                                  cwi_gltf_numbers *numbers, cw_error *err)
+{
+    const size_t count = (size_t)s->count;
+    const cwi_gltf_numbers list = {.bytes = (unsigned char *)(uintptr_t)indices,
+                                   .count = count,
+                                   .stride = component_size(s->index_component),
+                                   .component = s->index_component,
+                                   .numbers = 1};
+    double before = -1;
+    for (size_t i = 0; i < count; i++) {
+        const double at = cwi_gltf_number(&list, i, 0);
+        if (!(at > before) || !(at < (double)numbers->count))
+            return cw_fail(err, CW_ERR_FORMAT,
+                           "accessors[%d].sparse.indices: index %zu is %.0f; from %.0f to %zu "
+                           "was expected",
+                           accessor, i, at, before + 1, numbers->count - 1);
+        memcpy(numbers->bytes + (size_t)at * numbers->stride, values + i * element, element);
+        before = at;
+    }
+    return CW_OK;
+}
+
+static cw_status apply_sparse(const cwi_gltf_bytes *from, const cwi_gltf_scene *scene,
+                              int accessor, const char *what, uint64_t element,
+                              cwi_gltf_numbers *numbers, cw_error *err)
+{
+    const cwi_gltf_sparse *s = &scene->accessors[accessor].sparse;
+    const size_t index_size = component_size(s->index_component);
+    unsigned char *indices = NULL, *values = NULL;
+    if (s->count > numbers->count || !index_size)
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "accessors[%d].sparse.count: %llu is more than the %zu elements",
+                       accessor, (unsigned long long)s->count, numbers->count);
+    cw_status st = load_elements(from, scene, s->index_view, s->index_offset, s->count,
+                                 index_size, 0, what, accessor, &indices, err);
+    if (st == CW_OK)
+        st = load_elements(from, scene, s->value_view, s->value_offset, s->count, element, 0,
+                           what, accessor, &values, err);
+    if (st == CW_OK)
+        st = replace_elements(s, indices, values, (size_t)element, accessor, numbers, err);
+    cwi_free(indices);
+    cwi_free(values);
+    return st;
+}
+
 cw_status cwi_gltf_open_numbers(const cwi_gltf_bytes *from, const cwi_gltf_scene *scene,
                                 int accessor, const char *what, cwi_gltf_numbers *numbers,
                                 cw_error *err)
@@ -290,26 +388,23 @@ cw_status cwi_gltf_open_numbers(const cwi_gltf_bytes *from, const cwi_gltf_scene
     if (st != CW_OK)
         return st;
     const cwi_gltf_accessor *a = &scene->accessors[accessor];
-    const cwi_gltf_view *v = &scene->views[a->view];
     const uint64_t element = component_size(a->component) * (uint64_t)a->numbers;
-    const uint64_t stride = v->stride ? v->stride : element;
-    uint64_t size = 0, offset;
-    const bool overflow = (a->count && __builtin_mul_overflow(a->count - 1, stride, &size)) ||
-                          __builtin_add_overflow(size, a->count ? element : 0, &size) ||
-                          __builtin_add_overflow(v->offset, a->offset, &offset);
-    if (overflow || stride < element || !fits(a->offset, size, v->bytes))
-        return cw_fail(
-            err, CW_ERR_FORMAT,
-            "%s (accessor %d) has %llu elements, which bufferView %lld of %llu bytes "
-            "has no room for",
-            what, accessor, (unsigned long long)a->count, (long long)a->view,
-            (unsigned long long)v->bytes);
+    const uint64_t stride = a->view >= 0 ? scene->views[a->view].stride : 0;
     *numbers = (cwi_gltf_numbers){.count = (size_t)a->count,
-                                  .stride = (size_t)stride,
+                                  .stride = (size_t)(stride ? stride : element),
                                   .component = a->component,
                                   .numbers = a->numbers,
                                   .normalized = a->normalized};
-    return load_view(from, scene, v, a->offset, size, &numbers->bytes, err);
+    st = a->view < 0 ? make_zeros(a, what, accessor, element, &numbers->bytes, err)
+                     : load_elements(from, scene, a->view, a->offset, a->count, element, stride,
+                                     what, accessor, &numbers->bytes, err);
+    if (st == CW_OK && a->sparse.count)
+        st = apply_sparse(from, scene, accessor, what, element, numbers, err);
+    if (st != CW_OK) {
+        cwi_free(numbers->bytes);
+        numbers->bytes = NULL;
+    }
+    return st;
 }
 
 double cwi_gltf_number(const cwi_gltf_numbers *n, size_t i, int c)

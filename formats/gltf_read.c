@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-enum { GLB_HEADER = 12, CHUNK_HEADER = 8, FREE_COUNT = 1 << 26 };
+enum { TRIANGLES_MODE = 4, GLB_HEADER = 12, CHUNK_HEADER = 8, FREE_COUNT = 1 << 24 };
 
 void cwi_gltf_scene_free(cwi_gltf_scene *scene)
 {
@@ -89,6 +89,36 @@ static cw_status find_chunks(cwi_gltf_reader *r, uint64_t *json, uint64_t *json_
     return find_chunk(in, *json + *json_size, end, "BIN\0", &r->bytes.chunk_size, err);
 }
 
+/* A range of bytes within what a buffer says that it has. */
+static cw_status check_range(const cwi_gltf_scene *scene, size_t view, const char *member,
+                             int64_t buffer, uint64_t offset, uint64_t bytes, cw_error *err)
+{
+    if (buffer < 0 || (uint64_t)buffer >= scene->buffer_count)
+        return cw_fail(err, CW_ERR_FORMAT, "bufferViews[%zu]%s: there is no buffer %lld", view,
+                       member, (long long)buffer);
+    const uint64_t held = scene->buffers[buffer].bytes;
+    if (offset <= held && bytes <= held - offset)
+        return CW_OK;
+    return cw_fail(err, CW_ERR_FORMAT,
+                   "bufferViews[%zu]%s: %llu bytes from byte %llu on are more than the %llu of "
+                   "buffers[%lld]",
+                   view, member, (unsigned long long)bytes, (unsigned long long)offset,
+                   (unsigned long long)held, (long long)buffer);
+}
+
+static cw_status check_views(const cwi_gltf_scene *scene, cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (size_t i = 0; i < scene->view_count && st == CW_OK; i++) {
+        const cwi_gltf_view *v = &scene->views[i];
+        st = check_range(scene, i, "", v->buffer, v->offset, v->bytes, err);
+        if (st == CW_OK && v->packed_buffer >= 0)
+            st = check_range(scene, i, ".extensions.EXT_meshopt_compression", v->packed_buffer,
+                             v->packed_offset, v->packed_bytes, err);
+    }
+    return st;
+}
+
 static cw_status parse_json(cwi_gltf_reader *r, uint64_t at, uint64_t size, cw_error *err)
 {
     size_t got;
@@ -99,9 +129,13 @@ static cw_status parse_json(cwi_gltf_reader *r, uint64_t at, uint64_t size, cw_e
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the JSON");
     cw_status st = cwi_input_read_at(r->in->file.fd, at, json, (size_t)size, &got, err);
     if (st == CW_OK)
+        st = cwi_gltf_check(json, got, err);
+    if (st == CW_OK)
         st = cwi_gltf_blind(json, got, err);
     if (st == CW_OK)
         st = cwi_gltf_parse(json, got, &r->in->desc, &r->scene, err);
+    if (st == CW_OK)
+        st = check_views(&r->scene, err);
     cwi_free(json);
     return st;
 }
@@ -154,33 +188,62 @@ static uint64_t claimed_count(const cwi_gltf_scene *scene, int accessor)
     return count < UINT32_MAX ? count : UINT32_MAX;
 }
 
-/* What drawing a mesh once more adds, by its own words; a primitive of nothing takes time, too.
- */
-static uint64_t claimed_size(const cwi_gltf_scene *scene, const cwi_gltf_mesh *mesh)
+/* What drawing a mesh adds, by its own words. */
+typedef struct drawing {
+    uint64_t vertices, triangles;
+    bool counted;
+} drawing;
+
+/* A primitive of nothing counts as a triangle: it takes time, too. */
+static drawing count_drawing(const cwi_gltf_scene *scene, const cwi_gltf_mesh *mesh)
 {
-    uint64_t sum = 0;
+    drawing sum = {.counted = true};
     for (size_t i = mesh->first; i < mesh->end; i++) {
         const cwi_gltf_primitive *p = &scene->primitives[i];
-        sum += 1 + (claimed_count(scene, p->position) + claimed_count(scene, p->indices)) / 3;
+        const uint64_t vertices = claimed_count(scene, p->position);
+        const uint64_t corners = p->indices >= 0 ? claimed_count(scene, p->indices) : vertices;
+        const bool shared = i > mesh->first && p->position == p[-1].position;
+        sum.vertices += shared ? 0 : vertices;
+        sum.triangles += 1 + (p->mode > TRIANGLES_MODE ? corners : corners / 3);
     }
     return sum;
 }
 
-/* Meshes that are drawn again and again are added up before the first one is. */
+/* The arrays that a mesh takes while it is put together: points are doubles until then. */
+static cw_status check_memory(const cwi_gltf_reader *r, const drawing *sum, cw_error *err)
+{
+    const uint64_t limit = r->in->desc.max_bytes;
+    const uint64_t bytes =
+        3 * sizeof(double) * sum->vertices + 3 * sizeof(uint32_t) * sum->triangles;
+    if (!limit || bytes <= limit)
+        return CW_OK;
+    return cw_fail(err, CW_ERR_LIMIT,
+                   "the scene draws its triangles so often that they need more memory than the "
+                   "%llu bytes allowed (--memory)",
+                   (unsigned long long)limit);
+}
+
+/* Meshes that are drawn again and again are added up before the first one is drawn. */
 static cw_status check_repeats(const cwi_gltf_reader *r, cw_error *err)
 {
     const size_t count = r->scene.mesh_count;
-    uint64_t *sizes = cwi_alloc_zeroed(count, sizeof *sizes), sum = 0;
+    drawing *each = cwi_alloc_zeroed(count, sizeof *each), sum = {0};
     cw_status st =
-        sizes ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu meshes", count);
+        each ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu meshes", count);
     for (size_t i = 0; i < r->instance_count && st == CW_OK; i++) {
         const int mesh = r->instances[i].mesh;
-        sum += sizes[mesh];
-        st = cwi_gltf_limit(r, sum, err);
-        if (!sizes[mesh])
-            sizes[mesh] = claimed_size(&r->scene, &r->scene.meshes[mesh]);
+        sum.vertices += each[mesh].vertices;
+        sum.triangles += each[mesh].triangles;
+        st =
+            cwi_gltf_limit(r, sum.vertices > sum.triangles ? sum.vertices : sum.triangles, err);
+        if (st == CW_OK)
+            st = cwi_mesh_limit_triangles(r->in, sum.triangles, err);
+        if (st == CW_OK)
+            st = check_memory(r, &sum, err);
+        if (!each[mesh].counted)
+            each[mesh] = count_drawing(&r->scene, &r->scene.meshes[mesh]);
     }
-    cwi_free(sizes);
+    cwi_free(each);
     return st;
 }
 

@@ -10,7 +10,8 @@ extern "C" {
 #endif
 
 typedef struct cwi_gltf_buffer {
-    char *uri; /* NULL: the binary chunk */
+    char *uri;      /* NULL: the binary chunk */
+    uint64_t bytes; /* as the JSON says */
 } cwi_gltf_buffer;
 
 typedef enum cwi_gltf_mode {
@@ -33,12 +34,21 @@ typedef struct cwi_gltf_view {
     int packed_mode, packed_filter;
 } cwi_gltf_view;
 
+/* Elements that take the place of others. */
+typedef struct cwi_gltf_sparse {
+    uint64_t count; /* 0: none */
+    int64_t index_view, value_view;
+    uint64_t index_offset, value_offset;
+    int index_component;
+} cwi_gltf_sparse;
+
 typedef struct cwi_gltf_accessor {
-    int64_t view;
+    int64_t view; /* -1: none */
     uint64_t offset, count;
     int component; /* 5120 to 5126 */
     int numbers;   /* 1 to 4; 0: a matrix */
-    bool normalized, sparse;
+    bool normalized;
+    cwi_gltf_sparse sparse;
 } cwi_gltf_accessor;
 
 typedef struct cwi_gltf_primitive {
@@ -81,6 +91,11 @@ CW_API void cwi_gltf_scene_free(cwi_gltf_scene *scene);
 CW_API bool cwi_gltf_put_scene(const cwi_gltf_scene *scene, void *to, size_t room);
 CW_API cw_status cwi_gltf_take_scene(const void *from, size_t size, cwi_gltf_scene *scene,
                                      cw_error *err);
+
+/* Holds JSON against the members that are read of it: type, range, and that what must be there
+ * is. What is not read may hold anything.
+ * Returns CW_ERR_FORMAT, which names the member as "meshes[0].primitives[1].indices". */
+CW_API cw_status cwi_gltf_check(const char *json, size_t size, cw_error *err);
 
 /* Makes JSON fit for a library that trusts it: refuses nesting deeper than 64 and more than 32
  * MiB beside strings, and renames what no mesh needs (images, materials, extensions, ...), so

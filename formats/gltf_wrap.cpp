@@ -33,14 +33,16 @@ const tinygltf::Value &member(const tinygltf::Value &from, const char *key)
     return from.IsObject() ? from.Get(key) : none;
 }
 
-// What cwi_gltf_blind() left of "buffers": a list of objects, in "extras". Their 'byteLength'
-// is not looked at: what counts is how long they are.
+// What cwi_gltf_blind() left of "buffers": a list of objects, in "extras". tinygltf makes an
+// int of 'byteLength', which cwi_gltf_check() holds within 32 bits.
 cw_status copy_buffers(const tinygltf::Value &list, cwi_gltf_scene &scene, cw_error *err)
 {
     const size_t count = list.IsArray() ? list.ArrayLen() : 0;
     cw_status st = allocate(scene.buffers, scene.buffer_count, count, err);
     for (size_t i = 0; i < scene.buffer_count && st == CW_OK; i++) {
         const tinygltf::Value &uri = member(list.Get(int(i)), "uri");
+        const tinygltf::Value &bytes = member(list.Get(int(i)), "byteLength");
+        scene.buffers[i].bytes = bytes.IsInt() ? uint32_t(bytes.GetNumberAsInt()) : 0;
         if (!uri.IsString())
             continue;
         scene.buffers[i].uri = cwi_strdup(uri.Get<std::string>().c_str());
@@ -109,15 +111,29 @@ int numbers_of(int type)
     return type >= TINYGLTF_TYPE_VEC2 && type <= TINYGLTF_TYPE_VEC4 ? type : 0;
 }
 
+cwi_gltf_sparse copy_sparse(const tinygltf::Accessor &from)
+{
+    const auto &s = from.sparse;
+    cwi_gltf_sparse to = {};
+    if (s.isSparse)
+        to = {uint64_t(s.count),
+              s.indices.bufferView,
+              s.values.bufferView,
+              uint64_t(s.indices.byteOffset),
+              uint64_t(s.values.byteOffset),
+              s.indices.componentType};
+    return to;
+}
+
 cw_status copy_accessors(const tinygltf::Model &model, cwi_gltf_scene &scene, cw_error *err)
 {
     const cw_status st =
         allocate(scene.accessors, scene.accessor_count, model.accessors.size(), err);
     for (size_t i = 0; i < scene.accessor_count; i++) {
         const tinygltf::Accessor &from = model.accessors[i];
-        scene.accessors[i] = {from.bufferView,     from.byteOffset,       from.count,
-                              from.componentType,  numbers_of(from.type), from.normalized,
-                              from.sparse.isSparse};
+        scene.accessors[i] = {from.bufferView,    from.byteOffset,       from.count,
+                              from.componentType, numbers_of(from.type), from.normalized,
+                              copy_sparse(from)};
     }
     return st;
 }
@@ -236,7 +252,7 @@ cw_status copy_node(const tinygltf::Node &from, size_t index, cwi_gltf_node &to,
                        index);
     if (!from.matrix.empty() && (from.matrix[3] != 0 || from.matrix[7] != 0 ||
                                  from.matrix[11] != 0 || from.matrix[15] != 1))
-        return cw_fail(err, CW_ERR_FORMAT, "'matrix' of node %zu is not affine", index);
+        return cw_fail(err, CW_ERR_FORMAT, "nodes[%zu].matrix is not affine", index);
     to.mesh = from.mesh;
     set_matrix(from, to.local);
     to.levels = count_levels(from);
@@ -305,6 +321,98 @@ cw_status check_extensions(const tinygltf::Model &model, cw_error *err)
     return CW_OK;
 }
 
+// What a primitive takes from an accessor, and the types that glTF allows for it.
+struct Usage {
+    const char *name, *wanted;
+    bool (*fits)(const tinygltf::Accessor &accessor, bool quantized);
+};
+
+bool is_float(const tinygltf::Accessor &a)
+{
+    return a.componentType == TINYGLTF_COMPONENT_TYPE_FLOAT;
+}
+
+bool is_small(const tinygltf::Accessor &a) // 8 or 16 bits
+{
+    return a.componentType <= TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT;
+}
+
+bool is_unsigned(const tinygltf::Accessor &a)
+{
+    return a.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_BYTE ||
+           a.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT ||
+           a.componentType == TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT;
+}
+
+bool fits_position(const tinygltf::Accessor &a, bool quantized)
+{
+    return a.type == TINYGLTF_TYPE_VEC3 && (is_float(a) || (quantized && is_small(a)));
+}
+
+bool fits_normal(const tinygltf::Accessor &a, bool quantized)
+{
+    const bool is_share = quantized && is_small(a) && !is_unsigned(a) && a.normalized;
+    return a.type == TINYGLTF_TYPE_VEC3 && (is_float(a) || is_share);
+}
+
+bool fits_color(const tinygltf::Accessor &a, bool)
+{
+    const bool is_share = is_small(a) && is_unsigned(a) && a.normalized;
+    return (a.type == TINYGLTF_TYPE_VEC3 || a.type == TINYGLTF_TYPE_VEC4) &&
+           (is_float(a) || is_share);
+}
+
+bool fits_indices(const tinygltf::Accessor &a, bool)
+{
+    return a.type == TINYGLTF_TYPE_SCALAR && is_unsigned(a);
+}
+
+const Usage usages[] = {
+    {"attributes.POSITION",
+     "VEC3 of floats, or with KHR_mesh_quantization required of 8 or 16 bits", fits_position},
+    {"attributes.NORMAL",
+     "VEC3 of floats, or with KHR_mesh_quantization required of 8 or 16 bits, signed and "
+     "normalized",
+     fits_normal},
+    {"attributes.COLOR_0",
+     "VEC3 or VEC4 of floats, or of 8 or 16 bits, unsigned and normalized", fits_color},
+    {"indices", "SCALAR of 8, 16 or 32 bits, unsigned", fits_indices}};
+
+cw_status check_usage(const tinygltf::Model &model, const std::string &path, int accessor,
+                      const Usage &usage, bool quantized, cw_error *err)
+{
+    if (accessor < 0 || size_t(accessor) >= model.accessors.size() ||
+        usage.fits(model.accessors[size_t(accessor)], quantized))
+        return CW_OK;
+    return cw_fail(err, CW_ERR_FORMAT, "%s.%s: accessors[%d] is not %s", path.c_str(),
+                   usage.name, accessor, usage.wanted);
+}
+
+// Points and lines are left out, whatever they hold.
+cw_status check_usages(const tinygltf::Model &model, const cwi_gltf_scene &scene, cw_error *err)
+{
+    const auto &names = model.extensionsRequired;
+    const bool quantized =
+        std::find(names.begin(), names.end(), "KHR_mesh_quantization") != names.end();
+    for (size_t m = 0; m < scene.mesh_count; m++)
+        for (size_t i = scene.meshes[m].first; i < scene.meshes[m].end; i++) {
+            const cwi_gltf_primitive &p = scene.primitives[i];
+            const int accessors[] = {p.position, p.normal, p.color, p.indices};
+            const std::string path = "meshes[" + std::to_string(m) + "].primitives[" +
+                                     std::to_string(i - scene.meshes[m].first) + "]";
+            if (p.mode >= TINYGLTF_MODE_TRIANGLES && p.position < 0)
+                return cw_fail(err, CW_ERR_FORMAT, "%s.attributes: there is no POSITION",
+                               path.c_str());
+            for (size_t n = 0; n < 4 && p.mode >= TINYGLTF_MODE_TRIANGLES; n++) {
+                const cw_status st =
+                    check_usage(model, path, accessors[n], usages[n], quantized, err);
+                if (st != CW_OK)
+                    return st;
+            }
+        }
+    return CW_OK;
+}
+
 bool ignore_image(tinygltf::Image *, int, std::string *, std::string *, int, int,
                   const unsigned char *, int, void *)
 {
@@ -341,6 +449,8 @@ cw_status parse_scene(const char *json, size_t size, cwi_gltf_scene *scene,
             st = copy_accessors(model, *scene, err);
         if (st == CW_OK)
             st = copy_meshes(model, *scene, err);
+        if (st == CW_OK)
+            st = check_usages(model, *scene, err);
         return st;
     });
 }

@@ -32,9 +32,15 @@ static const struct {
 };
 
 /* Accessors: 0 corners, 1 bytes, 2 strip, 3 colours, 4 square, 5 broken, 6 normals, 7 beyond,
- * 8 quantized, 9 sparse, 10 a matrix, 11 more than there is, 12 without a view. */
+ * 8 quantized, 9 sparse, 10 a matrix, 11 more than there is, 12 without a view, 13 and 14 far
+ * more than there is, 15 sparse without a view, 16 sparse bytes; sparse ones of which: 17 the
+ * last index is beyond, 18 indices fall, 19 there are more than elements, 20 nearly all is
+ * zero. */
+#define SPARSE(count, indices, first, values, at)                                              \
+    "{\"count\":" #count ",\"indices\":{\"bufferView\":" #indices ",\"byteOffset\":" #first    \
+    ",\"componentType\":5121},\"values\":{\"bufferView\":" #values ",\"byteOffset\":" #at "}}"
 #define ARRAYS                                                                                 \
-    "\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":216}],\"bufferViews\":["     \
+    "\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":208}],\"bufferViews\":["     \
     "{\"buffer\":0,\"byteLength\":36},"                                                        \
     "{\"buffer\":0,\"byteOffset\":36,\"byteLength\":4},"                                       \
     "{\"buffer\":0,\"byteOffset\":40,\"byteLength\":8},"                                       \
@@ -43,9 +49,7 @@ static const struct {
     "{\"buffer\":0,\"byteOffset\":108,\"byteLength\":36},"                                     \
     "{\"buffer\":0,\"byteOffset\":144,\"byteLength\":36},"                                     \
     "{\"buffer\":0,\"byteOffset\":180,\"byteLength\":4},"                                      \
-    "{\"buffer\":0,\"byteOffset\":184,\"byteLength\":24,\"byteStride\":8},"                    \
-    "{\"buffer\":0,\"byteOffset\":200,\"byteLength\":3600},"                                   \
-    "{\"buffer\":7,\"byteLength\":36}],"                                                       \
+    "{\"buffer\":0,\"byteOffset\":184,\"byteLength\":24,\"byteStride\":8}],"                   \
     "\"accessors\":["                                                                          \
     "{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"                 \
     "{\"bufferView\":1,\"componentType\":5121,\"count\":3,\"type\":\"SCALAR\"},"               \
@@ -58,15 +62,43 @@ static const struct {
     "{\"bufferView\":7,\"componentType\":5121,\"count\":3,\"type\":\"SCALAR\"},"               \
     "{\"bufferView\":8,\"componentType\":5122,\"count\":3,\"type\":\"VEC3\","                  \
     "\"normalized\":true},"                                                                    \
-    "{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"sparse\":"       \
-    "{\"count\":1,\"indices\":{\"bufferView\":1,\"componentType\":5121},"                      \
-    "\"values\":{\"bufferView\":0}}},"                                                         \
-    "{\"bufferView\":0,\"componentType\":5126,\"count\":1,\"type\":\"MAT2\"},"                 \
-    "{\"bufferView\":9,\"componentType\":5126,\"count\":300,\"type\":\"VEC3\"},"               \
-    "{\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"                                  \
-    "{\"bufferView\":10,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"                \
-    "{\"bufferView\":0,\"componentType\":5126,\"count\":1537228672809129302,"                  \
-    "\"type\":\"VEC3\"}]"
+    "{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\","                  \
+    "\"sparse\":" SPARSE(                                                                      \
+        1, 1, 1, 6,                                                                            \
+        0) "},"                                                                                \
+           "{\"bufferView\":0,\"componentType\":5126,\"count\":1,\"type\":\"MAT2\"},"          \
+           "{\"bufferView\":0,\"componentType\":5126,\"count\":300,\"type\":\"VEC3\"},"        \
+           "{\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"                           \
+           "{\"bufferView\":0,\"byteOffset\":9223372036854775807,\"componentType\":5126,"      \
+           "\"count\":3,\"type\":\"VEC3\"},"                                                   \
+           "{\"bufferView\":0,\"componentType\":5126,\"count\":1537228672809129302,"           \
+           "\"type\":\"VEC3\"},"                                                               \
+           "{\"componentType\":5126,\"count\":3,\"type\":\"VEC3\","                            \
+           "\"sparse\":" SPARSE(                                                               \
+               2, 1, 1, 0,                                                                     \
+               12) "},"                                                                        \
+                   "{\"bufferView\":7,\"componentType\":5121,\"count\":3,\"type\":\"SCALAR\"," \
+                   "\"sparse\":" SPARSE(                                                       \
+                       1, 1, 2, 1,                                                             \
+                       2) "},"                                                                 \
+                          "{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":"     \
+                          "\"VEC3\","                                                          \
+                          "\"sparse\":" SPARSE(                                                \
+                              3, 7, 0, 6,                                                      \
+                              0) "},"                                                          \
+                                 "{\"bufferView\":0,\"componentType\":5126,\"count\":3,"       \
+                                 "\"type\":\"VEC3\","                                          \
+                                 "\"sparse\":" SPARSE(                                         \
+                                     2, 1, 2, 6,                                               \
+                                     0) "},"                                                   \
+                                        "{\"bufferView\":0,\"componentType\":5126,\"count\":"  \
+                                        "3,\"type\":\"VEC3\","                                 \
+                                        "\"sparse\":" SPARSE(                                  \
+                                            4, 1, 0, 4,                                        \
+                                            0) "},"                                            \
+                                               "{\"componentType\":5126,\"count\":2000000000," \
+                                               "\"type\":\"VEC3\","                            \
+                                               "\"sparse\":" SPARSE(1, 1, 1, 6, 0) "}]"
 
 static void put_u32(unsigned char *to, size_t value)
 {
@@ -107,13 +139,17 @@ static cw_status read_primitive(const char *primitive, cw_mesh *mesh, cw_mesh_fi
 }
 
 #define BY_BYTES "{\"attributes\":{\"POSITION\":0},\"indices\":1}"
-#define ONE_MESH ",\"meshes\":[{\"primitives\":[" BY_BYTES "]}]"
+#define MESHES                                                                                 \
+    ",\"meshes\":[{\"primitives\":[" BY_BYTES                                                  \
+    "]},{\"primitives\":[{\"attributes\":{\"POSITION\":8},\"mode\":%d}]}]"
 
-/* Nodes and scenes by hand, around one mesh of one triangle. */
+/* Nodes and scenes by hand, around a mesh of one triangle and a quantized one, which is points
+ * unless the file requires the extension. */
 static cw_status read_nodes(const char *nodes, cw_mesh *mesh, cw_mesh_file *file, cw_error *err)
 {
     char json[8192];
-    snprintf(json, sizeof json, "{" ARRAYS ONE_MESH ",%s}", nodes);
+    snprintf(json, sizeof json, "{" ARRAYS MESHES ",%s}",
+             strstr(nodes, "KHR_mesh_quantization") ? 4 : 0, nodes);
     return read_glb(json, mesh, file, err);
 }
 
@@ -235,7 +271,10 @@ static void quantized_positions_are_shares_of_the_largest(void **state)
     (void)state;
     cw_mesh mesh;
     cw_error err = {0};
-    assert_ok(read_primitive("{\"attributes\":{\"POSITION\":8}}", &mesh, NULL, &err), err);
+    assert_ok(read_nodes("\"extensionsRequired\":[\"KHR_mesh_quantization\"],"
+                         "\"nodes\":[{\"mesh\":1}]",
+                         &mesh, NULL, &err),
+              err);
     check_point(&mesh, 1, 1000, 0, 0);
     check_point(&mesh, 2, 0, 0, -1000);
     cw_mesh_free(&mesh);
@@ -409,12 +448,12 @@ static void buffers_lie_in_the_text_or_beside_it(void **state)
          CW_OK, NULL},
         {"my%20corners.bin", CW_OK, NULL},
         {"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAA", CW_ERR_FORMAT,
-         "buffer 0 has 18 bytes"},
+         "buffers[0].byteLength: 36 bytes are more than the 18 there are"},
         {"data:application/"
          "octet-stream;base64,AAAAAAAAAAAAAAAA*ACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA",
          CW_ERR_FORMAT, "is not base64"},
         {"data:application/octet-stream,abc", CW_ERR_FORMAT, "is not base64"},
-        {"short.bin", CW_ERR_FORMAT, "buffer 0 has 5 bytes"},
+        {"short.bin", CW_ERR_FORMAT, "buffers[0].byteLength: 36 bytes are more than the 5"},
         {"none.bin", CW_ERR_IO, "none.bin: cannot be opened"},
         {"../corners.bin", CW_ERR_UNSAFE, "a path with '..'"},
         {"%2e%2e%2fcorners.bin", CW_ERR_UNSAFE, "a path with '..'"},
@@ -450,28 +489,44 @@ static void broken_primitives_are_told_apart(void **state)
         {"{\"attributes\":{\"POSITION\":0},\"indices\":7}", "names vertex 3 of 3",
          CW_ERR_FORMAT},
         {"{\"attributes\":{\"POSITION\":0},\"indices\":2}", "has 4 corners", CW_ERR_FORMAT},
-        {"{\"attributes\":{\"POSITION\":0},\"indices\":0}", "of a type that is not read",
-         CW_ERR_FORMAT},
-        {"{\"attributes\":{\"POSITION\":0},\"indices\":99}", "accessor", CW_ERR_FORMAT},
+        {"{\"attributes\":{\"POSITION\":0},\"indices\":0}",
+         "primitives[0].indices: accessors[0] is not SCALAR", CW_ERR_FORMAT},
+        {"{\"attributes\":{\"POSITION\":0},\"indices\":99}",
+         "meshes[0].primitives[0].indices: 99 is not an index (0 to 20)", CW_ERR_FORMAT},
         {"{\"attributes\":{\"POSITION\":5}}", "of vertex 1 is nan", CW_ERR_FORMAT},
-        {"{\"attributes\":{\"POSITION\":1}}", "elements of 1 numbers", CW_ERR_FORMAT},
-        {"{\"attributes\":{\"POSITION\":9}}", "POSITION is sparse", CW_ERR_UNSUPPORTED},
-        {"{\"attributes\":{\"POSITION\":10}}", "a type that is not read", CW_ERR_FORMAT},
-        {"{\"attributes\":{\"POSITION\":11}}", "3600 from byte 200 on were expected",
+        {"{\"attributes\":{\"POSITION\":1}}", "attributes.POSITION: accessors[1] is not VEC3",
          CW_ERR_FORMAT},
+        {"{\"attributes\":{\"POSITION\":8}}", "with KHR_mesh_quantization required",
+         CW_ERR_FORMAT},
+        {"{\"attributes\":{\"POSITION\":0,\"NORMAL\":8}}", "NORMAL: accessors[8] is not VEC3",
+         CW_ERR_FORMAT},
+        {"{\"attributes\":{\"POSITION\":10}}", "accessors[10] is not VEC3", CW_ERR_FORMAT},
+        {"{\"attributes\":{\"POSITION\":11}}",
+         "do not fit into bufferViews[0], which has 36 bytes", CW_ERR_FORMAT},
         {"{\"attributes\":{\"POSITION\":12}}", "names bufferView -1", CW_ERR_FORMAT},
-        {"{\"attributes\":{\"POSITION\":13}}", "names buffer 7; there are 1", CW_ERR_FORMAT},
-        {"{\"attributes\":{\"POSITION\":14}}", "has no room for", CW_ERR_FORMAT},
-        {"{\"attributes\":{\"POSITION\":15}}", "names accessor 15; there are 15",
+        {"{\"attributes\":{\"POSITION\":13}}",
+         "do not fit into bufferViews[0], which has 36 bytes", CW_ERR_FORMAT},
+        {"{\"attributes\":{\"POSITION\":14}}",
+         "do not fit into bufferViews[0], which has 36 bytes", CW_ERR_FORMAT},
+        {"{\"attributes\":{\"POSITION\":17}}", "index 2 is 3; from 2 to 2 was expected",
          CW_ERR_FORMAT},
-        {"{\"attributes\":{\"POSITION\":-3}}", "no POSITION", CW_ERR_FORMAT},
-        {"{\"attributes\":{\"NORMAL\":6}}", "no POSITION", CW_ERR_FORMAT},
+        {"{\"attributes\":{\"POSITION\":18}}", "index 1 is 0; from 3 to 2 was expected",
+         CW_ERR_FORMAT},
+        {"{\"attributes\":{\"POSITION\":19}}",
+         "accessors[19].sparse.count: 4 is more than the 3 elements", CW_ERR_FORMAT},
+        {"{\"attributes\":{\"POSITION\":20}}", "but a file holds only 1 of them", CW_ERR_LIMIT},
+        {"{\"attributes\":{\"POSITION\":21}}", "POSITION: 21 is not an index (0 to 20)",
+         CW_ERR_FORMAT},
+        {"{\"attributes\":{\"POSITION\":-3}}", "POSITION: -3 is not an index", CW_ERR_FORMAT},
+        {"{\"attributes\":{\"NORMAL\":6}}",
+         "meshes[0].primitives[0].attributes: there is no POSITION", CW_ERR_FORMAT},
         {"{\"attributes\":{\"POSITION\":4,\"NORMAL\":6}}", "has 3 elements; POSITION has 4",
          CW_ERR_FORMAT},
-        {"{\"attributes\":{\"POSITION\":0,\"COLOR_0\":1}}", "elements of 1 numbers",
+        {"{\"attributes\":{\"POSITION\":0,\"COLOR_0\":1}}", "accessors[1] is not VEC3 or VEC4",
          CW_ERR_FORMAT},
-        {"{\"attributes\":{\"POSITION\":0},\"mode\":7}", "the mode 7", CW_ERR_FORMAT},
-        {"{}", "not valid", CW_ERR_FORMAT},
+        {"{\"attributes\":{\"POSITION\":0},\"mode\":7}",
+         "mode: 7 is not a whole number (0 to 6)", CW_ERR_FORMAT},
+        {"{}", "meshes[0].primitives[0]: there is no 'attributes'", CW_ERR_FORMAT},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         cw_mesh mesh;
@@ -499,13 +554,27 @@ static void broken_scenes_are_told_apart(void **state)
         {"\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[0,0,0,0]}]",
          "node 0 is reached in two ways", CW_ERR_FORMAT},
         {"\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[1]}]",
-         "node 1 is named; there are 1", CW_ERR_FORMAT},
-        {"\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[-1]}]", "node -1 is named",
+         "scenes[0].nodes[0]: 1 is not an index (0 to 0)", CW_ERR_FORMAT},
+        {"\"nodes\":[{\"mesh\":0}],\"scenes\":[{\"nodes\":[-1]}]",
+         "scenes[0].nodes[0]: -1 is not an index", CW_ERR_FORMAT},
+        {"\"nodes\":[{\"mesh\":4}]", "nodes[0].mesh: 4 is not an index (0 to 1)",
          CW_ERR_FORMAT},
-        {"\"nodes\":[{\"mesh\":4}]", "names mesh 4; there are 1", CW_ERR_FORMAT},
-        {"\"nodes\":[{\"mesh\":0}],\"scene\":3,\"scenes\":[{\"nodes\":[0]}]", "'scene' is 3",
+        {"\"nodes\":[{\"mesh\":0}],\"scene\":3,\"scenes\":[{\"nodes\":[0]}]",
+         "scene: 3 is not an index (0 to 0)", CW_ERR_FORMAT},
+        {"\"nodes\":[{\"mesh\":0,\"translation\":[1,2]}]",
+         "nodes[0].translation: 2 numbers; 3 were expected", CW_ERR_FORMAT},
+        {"\"nodes\":[{\"mesh\":0,\"matrix\":[1,0,null,0,0,1,0,0,0,0,1,0,0,0,0,1]}]",
+         "nodes[0].matrix[2]: null is not a number", CW_ERR_FORMAT},
+        {"\"nodes\":[{\"mesh\":0,\"scale\":[1,1e400,1]}]",
+         "nodes[0].scale[1]: 1e400 is not a finite number", CW_ERR_FORMAT},
+        {"\"nodes\":[{\"mesh\":0,\"rotation\":[0,0,0,2]}]",
+         "nodes[0].rotation[3]: 2 is not a number from -1 to 1", CW_ERR_FORMAT},
+        {"\"nodes\":[{\"m\\u0065sh\":0}]", "nodes[0].mesh: the name is written with an escape",
          CW_ERR_FORMAT},
-        {"\"nodes\":[{\"mesh\":0,\"translation\":[1,2]}]", "of node 0 has not as many",
+        {"\"nodes\":{\"mesh\":0}", "nodes: an object is not a list", CW_ERR_FORMAT},
+        {"\"nodes\":[[]]", "nodes[0]: a list is not an object", CW_ERR_FORMAT},
+        {"\"nodes\":[{\"mesh\":\"a rather long name, with \xff in it, that is cut short\"}]",
+         "nodes[0].mesh: \"a rather long name, with ? in it, that is ... is not",
          CW_ERR_FORMAT},
         {"\"nodes\":[{\"mesh\":0,\"rotation\":[0,0,0,0]}]", "matrix is not finite",
          CW_ERR_FORMAT},
@@ -525,15 +594,251 @@ static void broken_scenes_are_told_apart(void **state)
     }
 }
 
+/* Elements that sparse ones replace, or zeros; indices are replaced, too. */
+static void sparse_elements_take_the_place_of_others(void **state)
+{
+    (void)state;
+    static const uint32_t triangle[3] = {0, 1, 2};
+    cw_mesh mesh;
+    cw_error err = {0};
+    assert_ok(read_primitive("{\"attributes\":{\"POSITION\":9}}", &mesh, NULL, &err), err);
+    check_point(&mesh, 0, 0, 0, 0);
+    check_point(&mesh, 1, 0, -1000, 0);
+    check_point(&mesh, 2, 0, 0, 1000);
+    cw_mesh_free(&mesh);
+    assert_ok(
+        read_primitive("{\"attributes\":{\"POSITION\":15},\"indices\":16}", &mesh, NULL, &err),
+        err);
+    check_triangles(&mesh, 1, triangle);
+    check_point(&mesh, 0, 0, 0, 0);
+    check_point(&mesh, 1, 1000, 0, 0);
+    check_point(&mesh, 2, 0, 0, 1000);
+    cw_mesh_free(&mesh);
+}
+
+static void views_stay_in_their_buffer(void **state)
+{
+    (void)state;
+    static const char form[] =
+        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":%s}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},{\"buffer\":0,%s}],\"accessors\":[{"
+        "\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"}],"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0}}]}],"
+        "\"nodes\":[{\"mesh\":0}]}";
+    static const struct {
+        const char *bytes, *view, *words; /* NULL: it is read */
+    } rows[] = {
+        {"208", "\"byteLength\":208", NULL},
+        {"207", "\"byteLength\":207", NULL},
+        {"209", "\"byteLength\":9",
+         "buffers[0].byteLength: 209 bytes are more than the 208 there are"},
+        {"208", "\"byteLength\":209",
+         "bufferViews[1]: 209 bytes from byte 0 on are more than the 208 of buffers[0]"},
+        {"208", "\"byteOffset\":18446744073709551615,\"byteLength\":1",
+         "bufferViews[1]: 1 bytes"},
+        {"208", "\"byteOffset\":18446744073709551616,\"byteLength\":1",
+         "bufferViews[1].byteOffset: 18446744073709551616 is not a whole number (0 or more)"},
+        {"208", "\"byteLength\":0", "bufferViews[1].byteLength: 0 is not a whole number (1 or"},
+        {"208", "\"byteOffset\":4", "bufferViews[1]: there is no 'byteLength'"},
+        {"208", "\"byteLength\":8,\"byteStride\":6",
+         "bufferViews[1].byteStride: 6 is not a multiple of 4 (4 to 252)"},
+        {"208",
+         "\"byteLength\":8,\"extensions\":{\"EXT_meshopt_compression\":{\"buffer\":0,"
+         "\"byteOffset\":4294967332,\"byteLength\":8,\"byteStride\":4,\"count\":1,"
+         "\"mode\":\"INDICES\"}}",
+         "bufferViews[1].extensions.EXT_meshopt_compression.byteOffset: 4294967332 is not"},
+        {"208",
+         "\"byteLength\":8,\"extensions\":{\"EXT_meshopt_compression\":{\"buffer\":0,"
+         "\"byteOffset\":201,\"byteLength\":8,\"byteStride\":4,\"count\":1,"
+         "\"mode\":\"INDICES\"}}",
+         "bufferViews[1].extensions.EXT_meshopt_compression: 8 bytes from byte 201 on"},
+    };
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        char json[2048];
+        cw_mesh mesh;
+        cw_error err = {0};
+        snprintf(json, sizeof json, form, rows[i].bytes, rows[i].view);
+        const cw_status st = read_glb(json, &mesh, NULL, &err);
+        if (rows[i].words)
+            assert_fails(st, CW_ERR_FORMAT, rows[i].words, err);
+        else
+            assert_ok(st, err);
+        cw_mesh_free(&mesh);
+    }
+}
+
+/* --- every member, wrong ----------------------------------------------------------------- */
+
+/* Behind a JSON value that is valid. */
+static const char *value_end(const char *at)
+{
+    size_t depth = 0;
+    do {
+        if (*at == '"') {
+            for (at++; *at != '"'; at++)
+                at += *at == '\\';
+            at++;
+        } else if (strchr("{[}]", *at)) {
+            depth += *at == '{' || *at == '[';
+            depth -= *at == '}' || *at == ']';
+            at++;
+        } else {
+            at += strcspn(at, depth ? "\"{}[]" : ",{}[] \n");
+        }
+    } while (depth);
+    return at;
+}
+
+/* Whether a value begins here: at a number, a word or a bracket behind one of [ : , but not at
+ * a key. */
+static bool value_begins(const char *json, const char *at)
+{
+    const char *before = at - 1;
+    if (at == json || strchr(",:]} \n", *at))
+        return false;
+    while (before > json && strchr(" \n", *before))
+        before--;
+    if (!strchr("[:,", *before))
+        return false;
+    if (*at != '"')
+        return true;
+    const char *end = value_end(at);
+    return end[strspn(end, " \n")] != ':';
+}
+
+static bool same_array(const void *a, const void *b, size_t size)
+{
+    return (!a && !b) || (a && b && memcmp(a, b, size) == 0);
+}
+
+static bool same_surface(const cw_mesh *a, const cw_mesh *b)
+{
+    const size_t n = a->vertex_count;
+    return n == b->vertex_count && a->triangle_count == b->triangle_count &&
+           same_array(a->positions, b->positions, 3 * n * sizeof(float)) &&
+           same_array(a->normals, b->normals, 3 * n * sizeof(float)) &&
+           same_array(a->colors, b->colors, 4 * n) &&
+           memcmp(a->origin, b->origin, sizeof a->origin) == 0 &&
+           same_array(a->triangles, b->triangles, 3 * a->triangle_count * sizeof(uint32_t));
+}
+
+/* An element of a transform may be any number. */
+static bool is_free_number(const char *json, const char *at, const char *instead)
+{
+    static const char *const keys[] = {"\"matrix\":[", "\"translation\":[", "\"scale\":["};
+    while (at > json && *at != '[' && *at != '{')
+        at--;
+    if (*at != '[' || !strchr("-0123456789", *instead))
+        return false;
+    for (size_t i = 0; i < 3; i++)
+        if ((size_t)(at + 1 - json) > strlen(keys[i]) &&
+            memcmp(at + 1 - strlen(keys[i]), keys[i], strlen(keys[i])) == 0)
+            return true;
+    return false;
+}
+
+/* Each value of a file in turn becomes something else: that is refused, or changes nothing. */
+static void check_mutants(const char *json)
+{
+    static const char *const others[] = {"null", "true", "\"3\"",       "\"\"",   "{}",
+                                         "-5",   "2.5",  "99999999999", "[null]", "1e3"};
+    const cw_mesh_read_desc here = {.no_sandbox = true};
+    const size_t length = strlen(json);
+    char *mutant = malloc(length + 64);
+    cw_mesh mesh, other;
+    cw_error err = {0};
+    size_t tried = 0;
+    assert_non_null(mutant);
+    assert_ok(read_text("a.gltf", json, &mesh, NULL, &err), err);
+    for (const char *at = json; *at; at++) {
+        if (!value_begins(json, at))
+            continue;
+        for (size_t i = 0; i < sizeof others / sizeof *others; i++) {
+            const char *end = value_end(at);
+            const bool object = *others[i] == '{' && (*at == '{' || *at == '[');
+            if (object || is_free_number(json, at, others[i]))
+                continue;
+            snprintf(mutant, length + 64, "%.*s%s%s", (int)(at - json), json, others[i], end);
+            test_file_write(test_path("b.gltf"), mutant, strlen(mutant));
+            const cw_status st = cw_mesh_read(test_path("b.gltf"), &here, &other, NULL, &err);
+            tried++;
+            if (st == CW_OK && !same_surface(&mesh, &other))
+                fail_msg("%s in place of %.40s makes another surface, at byte %zu", others[i],
+                         at, (size_t)(at - json));
+            if (st != CW_OK && st != CW_ERR_FORMAT && st != CW_ERR_LIMIT && st != CW_ERR_IO &&
+                st != CW_ERR_UNSUPPORTED)
+                fail_msg("%s in place of %.40s: status %d, %s", others[i], at, (int)st,
+                         err.message);
+            cw_mesh_free(&other);
+        }
+        if (*at == '"')
+            at = value_end(at) - 1;
+    }
+    assert_true(tried > 500);
+    cw_mesh_free(&mesh);
+    free(mutant);
+}
+
+/* One with every kind of member, by hand. */
+static void no_wrong_member_of_a_scene_is_taken_for_none(void **state)
+{
+    (void)state;
+    check_mutants(
+        "{\"asset\":{\"version\":\"2.0\",\"generator\":\"hands\"},\"scene\":0,\"scenes\":[{"
+        "\"name\":\"s\",\"nodes\":[0,1]}],\"nodes\":[{\"mesh\":0,\"children\":[2],\"scale\":["
+        "1,2,3]},{\"mesh\":1,\"matrix\":[1,0,0,0,0,1,0,0,0,0,1,0,4,5,6,1]},{\"mesh\":0,"
+        "\"rotation\":[0,1,0,0],\"translation\":[7,8,9]}],\"meshes\":[{\"primitives\":[{"
+        "\"attributes\":{\"POSITION\":0},\"indices\":1}]},{\"primitives\":[{\"attributes\":{"
+        "\"POSITION\":2},\"mode\":5}]}],\"accessors\":[{\"bufferView\":0,\"byteOffset\":0,"
+        "\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},{\"bufferView\":1,"
+        "\"componentType\":5121,\"count\":3,\"type\":\"SCALAR\"},{\"bufferView\":0,"
+        "\"componentType\":5126,\"count\":3,\"type\":\"VEC3\",\"normalized\":false,"
+        "\"max\":[1,1,0],\"sparse\":{\"count\":1,\"indices\":{\"bufferView\":1,\"byteOffset\":"
+        "1,"
+        "\"componentType\":5121},\"values\":{\"bufferView\":0,\"byteOffset\":24}}}],"
+        "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36,\"byteStride\":12,\"target\":34962},{"
+        "\"buffer\":0,\"byteOffset\":36,\"byteLength\":3}],\"buffers\":[{\"byteLength\":39,"
+        "\"uri\":\"data:application/octet-stream;base64,"
+        "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAEC\"}]}");
+}
+
+/* And those that we write, in each compression that there is. */
+static void no_wrong_member_of_what_we_write_is_taken_for_none(void **state)
+{
+    (void)state;
+    static const cw_compression kinds[] = {CW_COMPRESS_NONE, CW_COMPRESS_QUANTIZE,
+                                           CW_COMPRESS_MESHOPT, CW_COMPRESS_DRACO};
+    for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++) {
+        const cw_write_desc desc = {.compression = kinds[i]};
+        cw_mesh mesh;
+        cw_error err = {0};
+        test_make_cube(&mesh);
+        const cw_status st = cw_mesh_write(test_path("a.gltf"), &mesh, &desc, &err);
+        cw_mesh_free(&mesh);
+        if (st == CW_ERR_UNSUPPORTED)
+            continue;
+        assert_ok(st, err);
+        size_t size;
+        char *json = test_file_read(test_path("a.gltf"), &size);
+        check_mutants(json);
+        free(json);
+    }
+}
+
 static void broken_files_are_told_apart(void **state)
 {
     (void)state;
     static const refused rows[] = {
         {"{", "not valid"},
-        {"{    }", "'asset.version' is ''"},
+        {"{    }", "the JSON: there is no 'asset'"},
+        {"{\"asset\":{}}", "asset: there is no 'version'"},
+        {"{\"asset\":{\"version\":2.0}}", "asset.version: 2.0 is not a string"},
+        {"{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{}}}", "its JSON is broken at byte 38"},
         {"{\"asset\":{\"version\":\"1.0\"}}", "'asset.version' is '1.0'"},
-        {"{\"asset\":{\"version\":\"2.0\"},\"nodes\":[3]}", "not valid"},
-        {"{\"a\":[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[",
+        {"{\"asset\":{\"version\":\"2.0\"},\"nodes\":[3]}", "nodes[0]: 3 is not an object"},
+        {"{\"asset\":{\"version\":\"2.0\"},\"a\":"
+         "[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[[["
+         "]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]]}",
          "deeper than 64"},
     };
     cw_mesh mesh;
@@ -567,33 +872,51 @@ static void no_beginning_of_a_file_is_a_file(void **state)
     free(bytes);
 }
 
-/* 2000 nodes with the same 2^17 triangles: 400 KB that would be three gigabytes. */
-static void a_scene_cannot_multiply_itself_without_end(void **state)
+/* A node drawn `nodes` times, of 2^15 triangles; read with limits. */
+static cw_status read_repeated(int nodes, const cw_mesh_read_desc *desc, cw_error *err)
 {
-    (void)state;
-    enum { NODES = 2000, TRIANGLES = 1 << 17 };
-    const size_t room = 400 + 16 * NODES;
+    enum { TRIANGLES = 1 << 15 };
+    const size_t room = 500 + 16 * (size_t)nodes;
     char *json = malloc(room);
     unsigned char *data = calloc(36 + 3 * TRIANGLES, 1);
     cw_mesh mesh;
-    cw_error err = {0};
     assert_true(json && data);
     size_t used = (size_t)snprintf(
         json, room,
-        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"a.bin\"}],\"bufferViews\":["
-        "{\"buffer\":0,\"byteLength\":%d}],\"accessors\":[{\"bufferView\":0,\"componentType\":"
+        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"uri\":\"a.bin\","
+        "\"byteLength\":%d}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":%d}],"
+        "\"accessors\":[{\"bufferView\":0,\"componentType\":"
         "5126,\"count\":3,\"type\":\"VEC3\"},{\"bufferView\":0,\"byteOffset\":36,"
         "\"componentType\":5121,\"count\":%d,\"type\":\"SCALAR\"}],\"meshes\":[{\"primitives\":"
         "[" BY_BYTES "]}],\"nodes\":[{\"mesh\":0}",
-        36 + 3 * TRIANGLES, 3 * TRIANGLES);
-    for (int i = 1; i < NODES; i++)
+        36 + 3 * TRIANGLES, 36 + 3 * TRIANGLES, 3 * TRIANGLES);
+    for (int i = 1; i < nodes; i++)
         used += (size_t)snprintf(json + used, room - used, ",{\"mesh\":0}");
     snprintf(json + used, room - used, "]}");
     test_file_write(test_path("a.bin"), data, 36 + 3 * TRIANGLES);
-    assert_fails(read_text("a.gltf", json, &mesh, NULL, &err), CW_ERR_LIMIT,
-                 "draws its triangles so often", err);
+    test_file_write(test_path("a.gltf"), json, strlen(json));
+    const cw_status st = cw_mesh_read(test_path("a.gltf"), desc, &mesh, NULL, err);
+    cw_mesh_free(&mesh);
     free(json);
     free(data);
+    return st;
+}
+
+/* 600 nodes with the same 2^15 triangles: 110 KB that would be a quarter of a gigabyte. */
+static void a_scene_cannot_multiply_itself_without_end(void **state)
+{
+    (void)state;
+    const cw_mesh_read_desc plain = {0}, small = {.max_bytes = 100 << 20},
+                            few = {.max_triangles = 1 << 20},
+                            many = {.max_triangles = 1 << 22, .max_bytes = 64 << 20};
+    cw_error err = {0};
+    assert_fails(read_repeated(600, &plain, &err), CW_ERR_LIMIT, "draws its triangles so often",
+                 err);
+    assert_fails(read_repeated(400, &small, &err), CW_ERR_LIMIT, "104857600 bytes allowed",
+                 err);
+    assert_fails(read_repeated(100, &few, &err), CW_ERR_LIMIT, "more than 1048576 triangles",
+                 err);
+    assert_ok(read_repeated(100, &many, &err), err);
 }
 
 static void a_build_without_the_module_names_the_option(void **state)
@@ -616,7 +939,7 @@ static void a_scene_crosses_between_processes(void **state)
 {
     (void)state;
     static const char *const uris[] = {"data.bin", NULL};
-    cwi_gltf_buffer buffers[2] = {{(char *)(uintptr_t)uris[0]}, {NULL}};
+    cwi_gltf_buffer buffers[2] = {{(char *)(uintptr_t)uris[0], 7}, {NULL, 0}};
     cwi_gltf_accessor accessors[1] = {{.numbers = 3, .count = 9}};
     cwi_gltf_primitive primitives[2] = {{.mode = 4}, {.mode = 5}};
     cwi_gltf_mesh meshes[1] = {{0, 2}};
@@ -689,6 +1012,10 @@ int main(void)
         TEST(buffers_lie_in_the_text_or_beside_it),
         TEST(broken_primitives_are_told_apart),
         TEST(broken_scenes_are_told_apart),
+        TEST(sparse_elements_take_the_place_of_others),
+        TEST(views_stay_in_their_buffer),
+        TEST(no_wrong_member_of_a_scene_is_taken_for_none),
+        TEST(no_wrong_member_of_what_we_write_is_taken_for_none),
         TEST(broken_files_are_told_apart),
         TEST(no_beginning_of_a_file_is_a_file),
         TEST(a_scene_crosses_between_processes),
