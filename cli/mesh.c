@@ -14,6 +14,13 @@ size_t cli_mesh_triangles(const cli_mesh *m)
     return triangles;
 }
 
+static void say_left_out(const cli_mesh *m, size_t objects, size_t triangles, const char *which)
+{
+    if (objects)
+        cli_say("%s: %zu object%s %s, with %s triangles, left out", m->path, objects,
+                objects == 1 ? "" : "s", which, cli_count(triangles));
+}
+
 static void say_what_was_found(const cli_mesh *m)
 {
     size_t vertices = m->mesh.vertex_count;
@@ -36,6 +43,8 @@ static void say_what_was_found(const cli_mesh *m)
     if (m->file.hidden)
         cli_say("%s: %zu part%s hidden by a scale of 0, as an animation does, left out",
                 m->path, m->file.hidden, m->file.hidden == 1 ? "" : "s");
+    say_left_out(m, m->file.supports, m->file.support_triangles, "for support");
+    say_left_out(m, m->file.others, m->file.other_triangles, "of type 'other'");
 }
 
 static double file_bytes(const char *path)

@@ -6,12 +6,18 @@
 #include "formats/xml.h"
 #include "formats/zip_read.h"
 
+typedef enum cwi_3mf_type {
+    CWI_3MF_SHAPE,   /* model, surface: what is read */
+    CWI_3MF_SUPPORT, /* support, solidsupport */
+    CWI_3MF_OTHER
+} cwi_3mf_type;
+
 /* Points and triangles of one mesh, or components; a run of each among those of all. */
 typedef struct cwi_3mf_object {
     size_t first_point, end_point, first_triangle, end_triangle;
     size_t first_component, end_component;
-    size_t name;  /* where it starts among the names */
-    bool is_help; /* support, or nothing to be printed */
+    size_t name; /* where it starts among the names */
+    cwi_3mf_type type;
 } cwi_3mf_object;
 
 /* An object of a model, placed: a component of another one, or an item of the build. */
@@ -55,6 +61,7 @@ typedef struct cwi_3mf {
     size_t component_count, component_room;
     cwi_3mf_component *items;
     size_t item_count, item_room;
+    bool has_build;
     char *names; /* each ends with a zero */
     size_t name_bytes, name_room;
     cwi_3mf_resource *resources; /* a hash table */

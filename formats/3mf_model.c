@@ -240,6 +240,26 @@ static cw_status keep_name(parsing *p, const char *name, cw_error *err)
     return CW_OK;
 }
 
+static cw_status read_type(const parsing *p, const char *name, cwi_3mf_type *type,
+                           cw_error *err)
+{
+    static const struct {
+        const char *name;
+        cwi_3mf_type type;
+    } types[] = {{"model", CWI_3MF_SHAPE},
+                 {"surface", CWI_3MF_SHAPE},
+                 {"support", CWI_3MF_SUPPORT},
+                 {"solidsupport", CWI_3MF_SUPPORT},
+                 {"other", CWI_3MF_OTHER}};
+    *type = CWI_3MF_SHAPE;
+    for (size_t i = 0; i < sizeof types / sizeof *types && name; i++)
+        if (strcmp(types[i].name, name) == 0) {
+            *type = types[i].type;
+            return CW_OK;
+        }
+    return name ? fail(p, err, "'type' of an object", name) : CW_OK;
+}
+
 static cw_status start_object(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
     parsing *p = user;
@@ -251,11 +271,10 @@ static cw_status start_object(void *user, cwi_xml *x, cwi_attributes a, cw_error
     p->object = (cwi_3mf_object){.first_point = m->build.point_count,
                                  .first_triangle = m->build.triangle_count,
                                  .first_component = m->component_count};
-    p->object.is_help =
-        type && (strcmp(type, "support") == 0 || strcmp(type, "solidsupport") == 0 ||
-                 strcmp(type, "other") == 0);
     p->group_id = p->color = cwi_3mf_none;
-    cw_status st = read_whole(p, "'id'", cwi_attribute(a, "id"), &p->object_id, err);
+    cw_status st = read_type(p, type, &p->object.type, err);
+    if (st == CW_OK)
+        st = read_whole(p, "'id'", cwi_attribute(a, "id"), &p->object_id, err);
     if (st == CW_OK && group)
         st = read_whole(p, "'pid'", group, &p->group_id, err);
     if (st == CW_OK && group && index)
@@ -420,6 +439,14 @@ static cw_status start_component(void *user, cwi_xml *x, cwi_attributes a, cw_er
 }
 
 /* Only the package's own model builds anything. */
+static cw_status start_build(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
+{
+    parsing *p = user;
+    (void)x, (void)a, (void)err;
+    p->m->has_build = p->m->has_build || p->model == 0;
+    return CW_OK;
+}
+
 static cw_status start_item(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
     parsing *p = user;
@@ -549,7 +576,7 @@ static const cwi_xml_element elements[ELEMENT_COUNT] = {
     [E_TRIANGLE] = {"triangle", E_TRIANGLES, start_triangle, NULL},
     [E_COMPONENTS] = {"components", E_OBJECT, NULL, NULL},
     [E_COMPONENT] = {"component", E_COMPONENTS, start_component, NULL},
-    [E_BUILD] = {"build", E_MODEL, NULL, NULL},
+    [E_BUILD] = {"build", E_MODEL, start_build, NULL},
     [E_ITEM] = {"item", E_BUILD, start_item, NULL},
 };
 

@@ -57,9 +57,21 @@ static cw_status add_instance(placing *p, size_t index, const double *place, cw_
     return st;
 }
 
-/* Components nest no deeper than DEEPEST, so this goes no deeper, either. */
+/* Counts the triangles of an object that is left out, or of what it is made of. */
+static void count_left_out(const placing *p, cwi_3mf_type type, const cwi_3mf_object *o)
+{
+    cw_mesh_file *said = p->m->said;
+    const size_t triangles = o->end_triangle - o->first_triangle;
+    if (type == CWI_3MF_SUPPORT)
+        said->support_triangles += triangles;
+    if (type == CWI_3MF_OTHER)
+        said->other_triangles += triangles;
+}
+
+/* Components nest no deeper than DEEPEST, so this goes no deeper, either. An object that is
+ * left out leaves out what it is made of: `type` is that of the outermost such object. */
 static cw_status visit(placing *p, const cwi_3mf_component *c, const double *parent, int depth,
-                       cw_error *err)
+                       cwi_3mf_type type, cw_error *err)
 {
     double place[12];
     const cwi_3mf_resource *r = cwi_3mf_find(p->m, c->model, c->id);
@@ -77,13 +89,32 @@ static cw_status visit(placing *p, const cwi_3mf_component *c, const double *par
         if (!isfinite(place[i]))
             return cw_fail(err, CW_ERR_FORMAT, "a transform is not finite");
     const cwi_3mf_object *o = &p->m->objects[r->object];
-    cw_status st = o->is_help ? CW_OK
-                   : o->end_triangle > o->first_triangle
-                       ? add_instance(p, r->object, place, err)
-                       : CW_OK;
-    for (size_t i = o->first_component; i < o->end_component && st == CW_OK && !o->is_help; i++)
-        st = visit(p, &p->m->components[i], place, depth + 1, err);
+    cw_status st = CW_OK;
+    if (type == CWI_3MF_SHAPE) {
+        type = o->type;
+        p->m->said->supports += type == CWI_3MF_SUPPORT;
+        p->m->said->others += type == CWI_3MF_OTHER;
+    }
+    if (type != CWI_3MF_SHAPE)
+        count_left_out(p, type, o);
+    else if (o->end_triangle > o->first_triangle)
+        st = add_instance(p, r->object, place, err);
+    for (size_t i = o->first_component; i < o->end_component && st == CW_OK; i++)
+        st = visit(p, &p->m->components[i], place, depth + 1, type, err);
     return st;
+}
+
+/* A file of nothing but what is left out would be an empty mesh without a word. */
+static cw_status check_left_out(const placing *p, cw_error *err)
+{
+    const cw_mesh_file *said = p->m->said;
+    if (p->count || !(said->supports + said->others))
+        return CW_OK;
+    return cw_fail(err, CW_ERR_FORMAT,
+                   "it builds only what is left out: %zu objects for support (%zu triangles) "
+                   "and %zu of type 'other' (%zu triangles)",
+                   said->supports, said->support_triangles, said->others,
+                   said->other_triangles);
 }
 
 static cw_status find_instances(placing *p, cw_error *err)
@@ -93,7 +124,7 @@ static cw_status find_instances(placing *p, cw_error *err)
     for (size_t i = 0; i < p->m->item_count && st == CW_OK; i++) {
         const cwi_3mf_component *item = &p->m->items[i];
         const size_t first = p->count;
-        st = visit(p, item, unit, 0, err);
+        st = visit(p, item, unit, 0, CWI_3MF_SHAPE, err);
         if (st != CW_OK || p->count == first)
             continue;
         const cwi_3mf_resource *r = cwi_3mf_find(p->m, item->model, item->id);
@@ -267,7 +298,11 @@ cw_status cwi_3mf_place(cwi_3mf *m, cw_error *err)
 {
     const bool stated = m->in->desc.max_triangles < UINT32_MAX;
     placing p = {.m = m, .most = stated ? UINT64_MAX : FREE_COUNT + m->in->file.size};
-    cw_status st = find_instances(&p, err);
+    cw_status st = m->has_build
+                       ? find_instances(&p, err)
+                       : cw_fail(err, CW_ERR_FORMAT, "'%s' has no 'build'", m->models[0]);
+    if (st == CW_OK)
+        st = check_left_out(&p, err);
     if (st == CW_OK)
         st = build_mesh(&p, err);
     cwi_free(p.instances);

@@ -113,8 +113,11 @@ static cw_status read_models(cwi_3mf *m, cw_error *err)
     cw_status st = cwi_3mf_read_xml(m, "_rels/.rels", &rules, m, err);
     if (st == CW_OK && m->model_count == 0)
         return cw_fail(err, CW_ERR_FORMAT, "the package has no model");
-    for (; m->model_count > 1; m->model_count--) /* the first is the one to build */
-        cwi_free(m->models[m->model_count - 1]);
+    if (st == CW_OK && m->model_count > 1)
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "the package names %zu models to build, '%.80s' and '%.80s'; one was "
+                       "expected",
+                       m->model_count, m->models[0], m->models[1]);
     if (st == CW_OK)
         st = add_related(m, m->models[0], err);
     if (st == CW_OK)

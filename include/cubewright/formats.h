@@ -200,6 +200,8 @@ typedef struct cw_mesh_file {
                            glTF): no part of its scene, left out */
     size_t hidden;      /* meshes of glTF that a scale of 0 hides, as those that an animation
                            shows later: left out */
+    size_t supports, support_triangles; /* placed objects of 3MF for support, and ... */
+    size_t others, other_triangles;     /* ... those of type "other": left out */
 } cw_mesh_file;
 
 /* Reads a mesh: all parts of the file, merged, in LPS millimetres.

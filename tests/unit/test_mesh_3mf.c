@@ -166,6 +166,42 @@ static void what_is_built_is_what_items_name(void **state)
     cw_parts_free(parts, count);
 }
 
+/* What supports is of four triangles, and eight as components; what is 'other' is placed by an
+ * item and by a component. */
+static void what_is_left_out_is_counted_by_type(void **state)
+{
+    (void)state;
+#define OBJECTS                                                                                \
+    FOUR("1")                                                                                  \
+    FOUR("2' type='support")                                                                   \
+    FOUR("3' type='other")                                                                     \
+    "<object id='4' type='solidsupport'><components><component objectid='1'/><component "      \
+    "objectid='3'/></components></object><object id='5'><components><component objectid='3'/>" \
+    "<component objectid='1'/></components></object>"
+    cw_mesh mesh;
+    cw_mesh_file file;
+    cw_error err = {0};
+    assert_ok(read_model(MODEL "><resources>" OBJECTS BUILD("<item objectid='2'/><item "
+                                                            "objectid='3'/><item objectid='4'/>"
+                                                            "<item objectid='5'/>"),
+                         &mesh, &file, &err),
+              err);
+    assert_int_equal(mesh.triangle_count, 4);
+    assert_int_equal(file.supports, 2);
+    assert_int_equal(file.support_triangles, 4 + 8);
+    assert_int_equal(file.others, 2);
+    assert_int_equal(file.other_triangles, 8);
+    cw_mesh_free(&mesh);
+    assert_fails(read_model(MODEL "><resources>" OBJECTS BUILD("<item objectid='2'/><item "
+                                                               "objectid='3'/>"),
+                            &mesh, &file, &err),
+                 CW_ERR_FORMAT,
+                 "only what is left out: 1 objects for support (4 triangles) and 1 of type "
+                 "'other' (4 triangles)",
+                 err);
+#undef OBJECTS
+}
+
 #define ONE_TRIANGLE(attributes, triangle)                                                     \
     "<object id='9' " attributes "><mesh><vertices><vertex x='0' y='0' z='0'/><vertex x='1' "  \
     "y='0' z='0'/><vertex x='0' y='1' z='0'/></vertices><triangles><triangle v1='0' v2='1' "   \
@@ -274,6 +310,10 @@ static void broken_models_are_told_by_line(void **state)
         {"<model><resources><object id='-1'/>", "'id' is '-1'"},
         {"<model><resources><object id='3000000000'/>", "'id' is '3000000000'"},
         {MODEL "><resources>" FOUR("1") FOUR("1") BUILD(""), "the id 1 is there twice"},
+        {MODEL "><resources>" FOUR("1") "</resources></model>",
+         "'3D/3dmodel.model' has no 'build'"},
+        {MODEL "><resources>" FOUR("1' type='invalidtype") BUILD(""),
+         "'type' of an object is 'invalidtype'"},
         {MODEL "><resources>" FOUR("1") BUILD("<item objectid='2'/>"),
          "places object 2, which is not there"},
         {MODEL "><resources><colorgroup id='2'/>" BUILD("<item objectid='2'/>"),
@@ -353,14 +393,19 @@ static void packages_without_a_model_are_refused(void **state)
         "<Relationships><Relationship Type='x/3dmodel' "
         "Target='http://x/y' TargetMode='External'/></Relationships>";
     static const char none[] = "<Relationships><Relationship Type='x/y'/></Relationships>";
+    static const char two[] =
+        "<Relationships><Relationship Type='x/3dmodel' Target='/a.model'/>"
+        "<Relationship Type='x/3dmodel' Target='/b.model'/></Relationships>";
     const zip_entry rows[] = {{"_rels/.rels", external, true},
                               {"_rels/.rels", none, true},
                               {"_rels/.rels", RELS, true},
-                              {"word/document.xml", "<x/>", true}};
+                              {"word/document.xml", "<x/>", true},
+                              {"_rels/.rels", two, true}};
     static const char *const words[] = {
         "its model 'http://x/y' is outside the package", "the package has no model",
-        "the zip archive has no '3D/3dmodel.model'", "the zip archive has no '_rels/.rels'"};
-    for (size_t i = 0; i < 4; i++) {
+        "the zip archive has no '3D/3dmodel.model'", "the zip archive has no '_rels/.rels'",
+        "the package names 2 models to build, 'a.model' and 'b.model'; one was expected"};
+    for (size_t i = 0; i < 5; i++) {
         cw_mesh mesh;
         cw_error err = {0};
         assert_fails(read_package(&rows[i], 1, NULL, &mesh, NULL, &err),
@@ -442,7 +487,7 @@ static void bombs_are_refused_unless_they_are_meant(void **state)
     char *text = malloc(SIZE + 1);
     assert_non_null(text);
     memset(text, ' ', SIZE);
-    memcpy(text, "<model>", 7);
+    memcpy(text, "<model><build/>", 15);
     memcpy(text + SIZE - 8, "</model>", 8);
     text[SIZE] = '\0';
     const zip_entry entries[] = {{"_rels/.rels", RELS, false},
@@ -505,6 +550,7 @@ int main(void)
         TEST(components_are_placed_one_in_another),
         TEST(a_common_move_is_the_origin),
         TEST(what_is_built_is_what_items_name),
+        TEST(what_is_left_out_is_counted_by_type),
         TEST(colors_are_those_of_corners_triangles_or_objects),
         TEST(colors_are_kept_when_no_vertex_has_two),
         TEST(models_may_take_objects_of_others),
