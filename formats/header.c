@@ -9,6 +9,16 @@
 
 enum { MOST_HEADER = 1 << 20, MOST_LINE = 1 << 16 };
 
+/* What ends lines: a line feed, or, where the first line ends with it alone, a carriage return,
+ * as on an old Macintosh. */
+static char find_line_end(const char *text, size_t size)
+{
+    const char *feed = memchr(text, '\n', size);
+    const char *cr = memchr(text, '\r', feed ? (size_t)(feed - text) : size);
+    const bool alone = cr && cr + 1 < text + size && cr[1] != '\n' && cr[1] != '\r';
+    return alone ? '\r' : '\n';
+}
+
 cw_status cwi_lines_open(cwi_lines *lines, const cwi_input *in, cw_error *err)
 {
     *lines = (cwi_lines){.cut = in->size > MOST_HEADER};
@@ -16,7 +26,9 @@ cw_status cwi_lines_open(cwi_lines *lines, const cwi_input *in, cw_error *err)
     lines->text = cwi_alloc_array(size + 1, 1);
     if (!lines->text)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the header");
-    return cwi_input_read_at(in->fd, 0, lines->text, size, &lines->size, err);
+    cw_status st = cwi_input_read_at(in->fd, 0, lines->text, size, &lines->size, err);
+    lines->end = find_line_end(lines->text, lines->size);
+    return st;
 }
 
 void cwi_lines_close(cwi_lines *lines)
@@ -43,7 +55,7 @@ cw_status cwi_lines_next(cwi_lines *lines, char **line, cw_error *err)
 {
     char *start = lines->text + lines->next;
     const size_t left = lines->size - lines->next;
-    char *end = memchr(start, '\n', left < MOST_LINE + 1 ? left : MOST_LINE + 1);
+    char *end = memchr(start, lines->end, left < MOST_LINE + 1 ? left : MOST_LINE + 1);
     size_t length = end ? (size_t)(end - start) : left;
     *line = NULL;
     if (left == 0 && !lines->cut)

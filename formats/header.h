@@ -12,6 +12,7 @@ typedef struct cwi_lines {
     size_t size;   /* bytes held: the file's first MiB at most */
     size_t next;   /* where the next line starts, in the file too */
     size_t number; /* of the line last given, from 1 */
+    char end;      /* what ends a line */
     bool cut;      /* the file goes on behind what is held */
 } cwi_lines;
 

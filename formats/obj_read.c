@@ -216,7 +216,7 @@ cw_status cwi_obj_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw
 {
     obj o = {.build = {.in = in, .base = 1}};
     cwi_scan s = {0};
-    cw_status st = cwi_scan_open(&s, &in->file, 0, &in->desc.progress, err);
+    cw_status st = cwi_scan_open_text(&s, &in->file, 0, &in->desc.progress, err);
     s.by_line = true;
     if (st == CW_OK)
         st = read_lines(&o, &s, mesh, said, err);

@@ -225,7 +225,7 @@ cw_status cwi_off_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw
 {
     off o = {.build = {.in = in}};
     cwi_scan s = {0};
-    cw_status st = cwi_scan_open(&s, &in->file, 0, &in->desc.progress, err);
+    cw_status st = cwi_scan_open_text(&s, &in->file, 0, &in->desc.progress, err);
     s.by_line = s.comments = true;
     if (st == CW_OK)
         st = read_keyword(&o, &s, err);

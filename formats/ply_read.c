@@ -233,7 +233,9 @@ static cw_status read_body(ply *p, cw_mesh *mesh, cw_mesh_file *said, cw_error *
     cwi_scan s = {0};
     cw_status st = make_room(p, mesh, in->file.size, err);
     if (st == CW_OK)
-        st = cwi_scan_open(&s, &in->file, p->header.body, &in->desc.progress, err);
+        st = p->header.text
+                 ? cwi_scan_open_text(&s, &in->file, p->header.body, &in->desc.progress, err)
+                 : cwi_scan_open(&s, &in->file, p->header.body, &in->desc.progress, err);
     s.line = p->header.lines + 1;
     if (st == CW_OK)
         st = read_elements(p, &s, mesh, said, err);

@@ -31,6 +31,44 @@ uint64_t cwi_scan_left(const cwi_scan *s)
     return behind + (s->end - s->next);
 }
 
+/* Whether the first line that ends in some text ends with a carriage return alone. */
+static bool has_cr_lines(const char *text, size_t size)
+{
+    const char *cr = memchr(text, '\r', size);
+    const size_t at = cr ? (size_t)(cr - text) : 0;
+    return cr && !memchr(text, '\n', at) && !(at + 1 < size && cr[1] == '\n');
+}
+
+cw_status cwi_scan_open_text(cwi_scan *s, const cwi_input *in, uint64_t offset,
+                             const cw_progress *progress, cw_error *err)
+{
+    size_t got = 0;
+    cw_status st = cwi_scan_open(s, in, offset, progress, err);
+    if (st == CW_OK)
+        st = cwi_input_read_at(in->fd, offset, s->text, HELD, &got, err);
+    if (st != CW_OK)
+        return st;
+    s->cr_lines = has_cr_lines(s->text, got);
+    s->text[0] = '\0';
+    return CW_OK;
+}
+
+/* Makes line feeds of the carriage returns that end lines, from an index on. One at the very
+ * end is given back while the file has more: a line feed may follow. */
+static void turn_line_ends(cwi_scan *s, size_t from)
+{
+    char *at = s->text + from, *end = s->text + s->end;
+    for (; (at = memchr(at, '\r', (size_t)(end - at))); at++) {
+        if (at + 1 == end && s->offset < s->in->size) {
+            s->end--;
+            s->offset--;
+            return;
+        }
+        if (at + 1 == end || at[1] != '\n')
+            *at = '\n';
+    }
+}
+
 static cw_status refill(cwi_scan *s, cw_error *err)
 {
     size_t got;
@@ -41,6 +79,8 @@ static cw_status refill(cwi_scan *s, cw_error *err)
         cwi_input_read_at(s->in->fd, s->offset, s->text + s->end, HELD - s->end, &got, err);
     s->end += got;
     s->offset += got;
+    if (s->cr_lines)
+        turn_line_ends(s, s->end - got);
     s->text[s->end] = '\0';
     if (st == CW_OK && got < HELD - CWI_SCAN_AHEAD && s->offset < s->in->size)
         return cw_fail(err, CW_ERR_IO, "the file became shorter while it was read");

@@ -17,6 +17,8 @@ typedef struct cwi_scan {
     size_t line;   /* of text, from 1 */
     bool by_line;  /* words end with their line, unless a backslash ends it; else lines are
                       blanks */
+    bool cr_lines; /* lines end with carriage returns alone, as on an old Macintosh: they are
+                      turned into line feeds */
     bool comments; /* a word that starts with '#' and what follows on its line is blank */
 } cwi_scan;
 
@@ -24,6 +26,10 @@ typedef struct cwi_scan {
  * Returns CW_ERR_NO_MEMORY. */
 cw_status cwi_scan_open(cwi_scan *s, const cwi_input *in, uint64_t offset,
                         const cw_progress *progress, cw_error *err);
+
+/* The same for text, of which the first line's end tells how lines end. */
+cw_status cwi_scan_open_text(cwi_scan *s, const cwi_input *in, uint64_t offset,
+                             const cw_progress *progress, cw_error *err);
 void cwi_scan_close(cwi_scan *s);
 
 /* Bytes of the file behind the place of reading. */

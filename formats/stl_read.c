@@ -275,12 +275,12 @@ cw_status cwi_stl_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw
     facets f = {.in = in};
     cwi_scan s = {0};
     cw_status st = cwi_input_read_at(in->file.fd, 0, head, sizeof head, &size, err);
+    const bool text = is_text(head, size) && !is_binary(head, size, in->file.size);
     if (st == CW_OK)
-        st = cwi_scan_open(&s, &in->file, 0, &in->desc.progress, err);
-    if (st == CW_OK) {
-        const bool text = is_text(head, size) && !is_binary(head, size, in->file.size);
+        st = text ? cwi_scan_open_text(&s, &in->file, 0, &in->desc.progress, err)
+                  : cwi_scan_open(&s, &in->file, 0, &in->desc.progress, err);
+    if (st == CW_OK)
         st = text ? read_text(&f, &s, mesh, said, err) : read_binary(&f, &s, mesh, said, err);
-    }
     if (st == CW_OK)
         st = move_arrays(&f, mesh, err);
     cwi_scan_close(&s);

@@ -202,6 +202,77 @@ static void content_decides_then_the_extension(void **state)
                  err);
 }
 
+/* Text with its line ends replaced by others; free it. */
+static char *replace_line_ends(const char *text, size_t size, const char *end, size_t *length)
+{
+    char *out = malloc(2 * size + 1);
+    assert_non_null(out);
+    *length = 0;
+    for (size_t i = 0; i < size; i++) {
+        const bool ends = text[i] == '\n';
+        memcpy(out + *length, ends ? end : text + i, ends ? strlen(end) : 1);
+        *length += ends ? strlen(end) : 1;
+    }
+    return out;
+}
+
+/* Files of more than a buffer, with line feeds, both, and carriage returns alone. */
+static void line_ends_of_every_kind_are_read(void **state)
+{
+    (void)state;
+    static const char *const names[] = {"a.obj", "a.off", "a.stl", "a.ply"};
+    static const char *const ends[] = {"\r", "\r\n"};
+    const cw_write_desc desc = {.text = true};
+    cw_mesh mesh;
+    cw_error err = {0};
+    make_full_mesh(&mesh);
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        cw_mesh plain;
+        size_t size, length;
+        assert_ok(cw_mesh_write(test_path(names[i]), &mesh, &desc, &err), err);
+        assert_ok(cw_mesh_read(test_path(names[i]), NULL, &plain, NULL, &err), err);
+        char *text = test_file_read(test_path(names[i]), &size);
+        for (size_t e = 0; e < 2; e++) {
+            cw_mesh back;
+            cw_mesh_file file;
+            char *other = replace_line_ends(text, size, ends[e], &length);
+            assert_ok(read_bytes(names[i], other, length, &back, &file, &err), err);
+            assert_int_equal(file.known, CW_KNOWN_UNIT | CW_KNOWN_FRAME);
+            check_positions(&back, plain.vertex_count, plain.positions);
+            check_triangles(&back, plain.triangle_count, plain.triangles);
+            check_same_floats(back.normals, plain.normals, 3 * plain.vertex_count);
+            cw_mesh_free(&back);
+            free(other);
+        }
+        free(text);
+        cw_mesh_free(&plain);
+    }
+    cw_mesh_free(&mesh);
+}
+
+/* Behind a carriage return the bytes begin at once, even with one that would be a line feed. */
+static void a_binary_file_may_have_an_old_header(void **state)
+{
+    (void)state;
+    static const char header[] =
+        "ply\rformat binary_little_endian 1.0\relement vertex 3\rproperty float x\r"
+        "property float y\rproperty float z\relement face 1\r"
+        "property list uchar uchar vertex_indices\rend_header\r";
+    static const unsigned char first[4] = {'\n', 0, 0x80, 0x3f};
+    static const unsigned char face[4] = {3, 0, 1, 2};
+    float points[9] = {0, 0, 0, 1, 0, 0, 0, 1, 0};
+    char file[sizeof header + sizeof points + sizeof face];
+    cw_mesh mesh;
+    cw_error err = {0};
+    memcpy(points, first, sizeof first);
+    memcpy(file, header, sizeof header - 1);
+    memcpy(file + sizeof header - 1, points, sizeof points);
+    memcpy(file + sizeof header - 1 + sizeof points, face, sizeof face);
+    assert_ok(read_bytes("a.ply", file, sizeof file - 1, &mesh, NULL, &err), err);
+    check_positions(&mesh, 3, points);
+    cw_mesh_free(&mesh);
+}
+
 static void limits_hold(void **state)
 {
     (void)state;
@@ -265,6 +336,8 @@ int main(void)
         TEST(a_local_stl_file_keeps_every_corner),
         TEST(a_far_obj_file_keeps_its_shape),
         TEST(content_decides_then_the_extension),
+        TEST(line_ends_of_every_kind_are_read),
+        TEST(a_binary_file_may_have_an_old_header),
         TEST(limits_hold),
         TEST(reading_may_be_stopped),
         TEST(memory_may_run_out_anywhere),
