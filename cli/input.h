@@ -40,7 +40,7 @@ typedef struct cli_input {
          0,                                                                                    \
          CLI_LENGTHS,                                                                          \
          "X[,Y,Z]",                                                                            \
-         "the distance of voxels, e.g. 0.5mm (the file's)",                                    \
+         "the distance of voxels, e.g. 0.5mm or 1x1x2mm (the file's)",                         \
          CLI_INPUT_ROW(args, spacing)},                                                        \
         {"series",                                                                             \
          0,                                                                                    \

@@ -297,7 +297,7 @@ static const char *expectation(const cli_option *o)
     case CLI_BYTES:
         return "a size such as 512M or 8G";
     case CLI_LENGTHS:
-        return "a length above 0 such as 0.5mm or 12um, or three of them by comma";
+        return "a length above 0 such as 0.5mm or 12um, or three of them by comma or x";
     case CLI_LENGTH:
         return "a length above 0 such as 0.1mm, 0.05% (of the box's diagonal) or 0.5vox";
     case CLI_VOLUME:
@@ -306,7 +306,7 @@ static const char *expectation(const cli_option *o)
         return "an error with its unit such as 0.1mm, 0.05% (of the box's diagonal) or 0.5vox, "
                "or a number of triangles such as 50k";
     case CLI_SIZES:
-        return "whole numbers above 0 joined by x";
+        return "whole numbers above 0 joined by x or comma";
     case CLI_RANGES:
         return "three ranges such as 10:50,0:99,20:40 (voxels) or -30mm:30mm,... (world)";
     case CLI_STEPS:

@@ -13,7 +13,7 @@ typedef enum cli_kind {
     CLI_COUNT,     /* size_t: 50k, 100M */
     CLI_COUNTS,    /* cli_counts: 50k,12k,3k */
     CLI_BYTES,     /* size_t: 512M, 8G (1024s) */
-    CLI_LENGTHS,   /* cli_lengths: one for all axes or three; 0.5mm,12um, bare is mm */
+    CLI_LENGTHS,   /* cli_lengths: one for all axes or three; 0.5mm, 1x1x2, bare is mm */
     CLI_LENGTH,    /* cli_length: 0.1mm, 0.05% of the box's diagonal, 0.5vox; bare is mm */
     CLI_VOLUME,    /* cli_amount: 500mm3, 0.5ml, 30vox; bare is mm3 */
     CLI_SIZES,     /* cli_sizes: 64, 1280x720 or 512x512x300 */

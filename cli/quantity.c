@@ -49,18 +49,19 @@ static bool parse_length(const char **text, double *mm, bool *unit)
 
 bool cli_parse_lengths(const char *text, cli_lengths *out)
 {
+    char item[CWI_ITEM_BYTES], separator = 0;
     int count = 0;
-    for (; count < 3; count++) {
+    do {
+        const char *at = item;
         bool unit;
-        if (!parse_length(&text, &out->mm[count], &unit) || !(out->mm[count] > 0))
+        if (count == 3 || !cwi_next_item(&text, &separator, item) ||
+            !parse_length(&at, &out->mm[count], &unit) || *at || !(out->mm[count] > 0))
             return false;
-        if (*text != ',')
-            break;
-        text++;
-    }
-    if (*text != '\0' || (count != 0 && count != 2))
+        count++;
+    } while (separator);
+    if (*text != '\0' || count == 2)
         return false;
-    for (int a = count + 1; a < 3; a++)
+    for (int a = count; a < 3; a++)
         out->mm[a] = out->mm[0];
     return out->given = true;
 }
@@ -113,34 +114,40 @@ double cli_length_mm(const cli_length *length, double diagonal_mm, double voxel_
 
 bool cli_parse_sizes(const char *text, cli_sizes *out)
 {
-    for (out->count = 0; out->count < 3; text++) {
+    char item[CWI_ITEM_BYTES], separator = 0;
+    out->count = 0;
+    do {
+        const char *at = item;
         int64_t n;
-        if (!cwi_parse_int(&text, &n) || n < 1 || n > INT32_MAX)
+        if (out->count == 3 || !cwi_next_item(&text, &separator, item) ||
+            !cwi_parse_int(&at, &n) || *at || n < 1 || n > INT32_MAX)
             return false;
         out->n[out->count++] = (size_t)n;
-        if (*text != 'x')
-            break;
-    }
+    } while (separator);
     return *text == '\0';
 }
 
-/* Six lengths, all with a unit or all bare. */
+/* "10:50" or "-30mm:30mm". *world: with units, which both ends have or none. */
+static bool parse_range(const char *text, double *low, double *high, bool *world)
+{
+    bool unit;
+    return parse_length(&text, low, world) && *text++ == ':' &&
+           parse_length(&text, high, &unit) && unit == *world && *text == '\0' && *low <= *high;
+}
+
+/* Three ranges, all with units or all bare. */
 bool cli_parse_ranges(const char *text, cli_ranges *out)
 {
-    for (int n = 0; n < 6; n++) {
-        double *end = n % 2 ? &out->high[n / 2] : &out->low[n / 2];
-        bool unit;
-        if (!parse_length(&text, end, &unit) || (n > 0 && unit != out->world))
+    char item[CWI_ITEM_BYTES], separator = 0;
+    for (int a = 0; a < 3; a++) {
+        bool world;
+        if (!cwi_next_item(&text, &separator, item) ||
+            !parse_range(item, &out->low[a], &out->high[a], &world) ||
+            (a > 0 && world != out->world) || (separator != 0) != (a < 2))
             return false;
-        out->world = unit;
-        if (*text != (n == 5 ? '\0' : n % 2 ? ',' : ':'))
-            return false;
-        text++;
+        out->world = world;
     }
-    for (int a = 0; a < 3; a++)
-        if (!(out->low[a] <= out->high[a]))
-            return false;
-    return out->given = true;
+    return out->given = *text == '\0';
 }
 
 static bool parse_step(const char **text, size_t *step)

@@ -185,21 +185,22 @@ cw_status cli_make_transfer(const cli_scene *args, const cw_volume *volume, cw_m
     return st;
 }
 
-/* Numbers by comma, up to a semicolon or the end; how many, or -1. Text moves behind them. */
+/* Numbers by comma or 'x', up to a semicolon or the end; how many, or -1. Text moves behind
+ * them.
+ */
 static int parse_tuple(const char **text, double *numbers, int most)
 {
-    for (int n = 0; n < most;) {
-        if (!cwi_parse_double(text, &numbers[n]) || !isfinite(numbers[n]))
+    char item[CWI_ITEM_BYTES], separator = 0;
+    int count = 0;
+    do {
+        const char *at = item;
+        if (count == most || !cwi_next_item(text, &separator, item) ||
+            !cwi_parse_double(&at, &numbers[count]) || *at || !isfinite(numbers[count]))
             return -1;
-        n++;
-        if (**text == ';' || **text == '\0') {
-            *text += **text == ';';
-            return n;
-        }
-        if (*(*text)++ != ',')
-            return -1;
-    }
-    return -1;
+        count++;
+    } while (separator);
+    *text += **text == ';';
+    return count;
 }
 
 static cw_status parse_planes(const char *option, const char *text, size_t most, cw_clip *out,

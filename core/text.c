@@ -5,6 +5,7 @@
 #include <locale.h>
 #include <pthread.h>
 #include <stdlib.h>
+#include <string.h>
 
 static locale_t c_locale;
 static pthread_once_t c_locale_once = PTHREAD_ONCE_INIT;
@@ -101,6 +102,20 @@ bool cwi_parse_int(const char **text, int64_t *value)
         return false;
     *text = end;
     *value = v;
+    return true;
+}
+
+bool cwi_next_item(const char **text, char *separator, char item[CWI_ITEM_BYTES])
+{
+    const char *start = *text, *end = start + strcspn(start, ",x;");
+    const size_t length = (size_t)(end - start);
+    const char found = *end == ';' ? '\0' : *end, before = *separator;
+    if (length >= CWI_ITEM_BYTES || (before && found && found != before))
+        return false;
+    memcpy(item, start, length);
+    item[length] = '\0';
+    *text = end + (found != '\0');
+    *separator = found;
     return true;
 }
 

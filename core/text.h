@@ -14,6 +14,14 @@ extern "C" {
 CW_API bool cwi_parse_double(const char **text, double *value);
 CW_API bool cwi_parse_int(const char **text, int64_t *value);
 
+/* The next item of a list on a command line, parted by commas, as in "0.5mm,0.5mm,1mm", or by
+ * 'x', as in "512x512x300": copied, and *text moves behind it and what parts it from the next.
+ * *separator is 0 in front of the first item and then what parts them; it is 0 again where the
+ * list is over, at a ';' or the text's end. False for an item of CWI_ITEM_BYTES or more, and
+ * for a list that is parted by both. */
+enum { CWI_ITEM_BYTES = 64 };
+CW_API bool cwi_next_item(const char **text, char *separator, char item[CWI_ITEM_BYTES]);
+
 /* Makes printf and friends of this thread write points; hand the result to the second call. */
 CW_API void *cwi_locale_c(void);
 CW_API void cwi_locale_restore(void *before);

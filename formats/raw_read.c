@@ -8,37 +8,47 @@
 
 /* --- a layout written on the command line ------------------------------------------------ */
 
-/* Reads "1x2x3"; the x between numbers are the only blanks. */
+static cw_status fail_dims(const char *text, cw_error *err)
+{
+    return cw_fail(err, CW_ERR_ARGUMENT,
+                   "'dims' is '%.40s'; it must be three sizes such as 512x512x300", text);
+}
+
 static cw_status parse_dims(const char *text, cw_raw_layout *layout, cw_error *err)
 {
-    const char *s = text;
-    int64_t n;
+    char item[CWI_ITEM_BYTES], separator = 0;
+    const char *rest = text;
     for (int a = 0; a < 3; a++) {
-        if (!cwi_parse_int(&s, &n) || n < 1 || n > INT32_MAX || *s != (a < 2 ? 'x' : '\0'))
-            return cw_fail(err, CW_ERR_ARGUMENT,
-                           "'dims' is '%.40s'; it must be three sizes such as 512x512x300",
-                           text);
+        const char *at = item;
+        int64_t n;
+        if (!cwi_next_item(&rest, &separator, item) || !cwi_parse_int(&at, &n) || *at ||
+            n < 1 || n > INT32_MAX || (separator != 0) != (a < 2))
+            return fail_dims(text, err);
         layout->dim[a] = (size_t)n;
-        s += a < 2;
     }
-    return CW_OK;
+    return *rest ? fail_dims(text, err) : CW_OK;
+}
+
+static cw_status fail_spacing(const char *text, cw_error *err)
+{
+    return cw_fail(err, CW_ERR_ARGUMENT,
+                   "'spacing' is '%.40s'; it must be three lengths in mm above 0, such as "
+                   "0.5x0.5x1",
+                   text);
 }
 
 static cw_status parse_spacing(const char *text, cw_raw_layout *layout, cw_error *err)
 {
-    const char *s = text;
-    double *out = layout->spacing;
+    char item[CWI_ITEM_BYTES], separator = 0;
+    const char *rest = text;
     for (int a = 0; a < 3; a++) {
-        if (!cwi_parse_double(&s, &out[a]) || !(out[a] > 0) || !isfinite(out[a]) ||
-            *s != (a < 2 ? 'x' : '\0'))
-            return cw_fail(
-                err, CW_ERR_ARGUMENT,
-                "'spacing' is '%.40s'; it must be three lengths in mm above 0, such as "
-                "0.5x0.5x1",
-                text);
-        s += a < 2;
+        double *mm = &layout->spacing[a];
+        const char *at = item;
+        if (!cwi_next_item(&rest, &separator, item) || !cwi_parse_double(&at, mm) || *at ||
+            !(*mm > 0) || !isfinite(*mm) || (separator != 0) != (a < 2))
+            return fail_spacing(text, err);
     }
-    return CW_OK;
+    return *rest ? fail_spacing(text, err) : CW_OK;
 }
 
 static cw_status parse_type(const char *text, cw_raw_layout *layout, cw_error *err)
@@ -121,6 +131,16 @@ static cw_status parse_pair(const char *pair, unsigned *seen, cw_raw_layout *lay
                    (int)(length < 40 ? length : 40), pair);
 }
 
+/* Up to a comma that a number does not follow: sizes and lengths may be parted by commas, too.
+ */
+static size_t pair_length(const char *text)
+{
+    size_t length = strcspn(text, ",");
+    while (text[length] && text[length + 1] && strchr("0123456789.+-", text[length + 1]))
+        length += 1 + strcspn(text + length + 1, ",");
+    return length;
+}
+
 cw_status cw_raw_layout_parse(const char *text, cw_raw_layout *layout, cw_error *err)
 {
     cw_raw_layout out = {0};
@@ -128,7 +148,7 @@ cw_status cw_raw_layout_parse(const char *text, cw_raw_layout *layout, cw_error 
     cw_status st = CW_OK;
     while (st == CW_OK && *text) {
         char pair[128];
-        const size_t length = strcspn(text, ",");
+        const size_t length = pair_length(text);
         const size_t kept = length < sizeof pair ? length : sizeof pair - 1;
         memcpy(pair, text, kept);
         pair[kept] = '\0';

@@ -25,6 +25,22 @@ static void a_layout_is_read_from_text(void **state)
     assert_int_equal(l.steps, 4);
 }
 
+/* Sizes and lengths by 'x' or by commas. */
+static void triples_are_parted_by_either(void **state)
+{
+    (void)state;
+    static const char *const texts[] = {"dims=4x5x6,type=u8,spacing=0.5x0.25x1",
+                                        "dims=4,5,6,type=u8,spacing=0.5,0.25,1",
+                                        "spacing=0.5,0.25,1,dims=4x5x6,type=u8,"};
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++) {
+        cw_raw_layout l;
+        cw_error err = {0};
+        assert_ok(cw_raw_layout_parse(texts[i], &l, &err), err);
+        assert_true(l.dim[0] == 4 && l.dim[1] == 5 && l.dim[2] == 6 && l.type == CW_U8);
+        assert_true(l.spacing[0] == 0.5 && l.spacing[1] == 0.25 && l.spacing[2] == 1);
+    }
+}
+
 static void every_type_is_known_by_name(void **state)
 {
     (void)state;
@@ -51,6 +67,11 @@ static void wrong_keys_are_named(void **state)
         {"", "'dims' is missing"},
         {"dims=1x1x1", "'type' is missing"},
         {"dims=1x1,type=u8", "'dims' is '1x1'"},
+        {"dims=1,1,type=u8", "'dims' is '1,1'"},
+        {"dims=1x1,1,type=u8", "'dims' is '1x1,1'"},
+        {"dims=0x10x10,type=u8", "'dims' is '0x10x10'"},
+        {"dims=1,1,1,type=u8,spacing=1,1,1,1", "'spacing' is '1,1,1,1'"},
+        {"dims=1x1x1,type=u8,offset", "'offset' needs a value"},
         {"dims=1x1x0,type=u8", "'dims' is '1x1x0'"},
         {"dims=1x1x1x1,type=u8", "'dims' is '1x1x1x1'"},
         {"dims=1x1x2147483648,type=u8", "'dims' is '1x1x2147483648'"},
@@ -195,13 +216,10 @@ int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
     const struct CMUnitTest tests[] = {
-        TEST(a_layout_is_read_from_text),
-        TEST(every_type_is_known_by_name),
-        TEST(wrong_keys_are_named),
-        TEST(bytes_behind_an_offset_become_voxels),
-        TEST(spacings_must_be_lengths),
-        TEST(a_layout_larger_than_the_file_fails),
-        TEST(slices_may_have_files_of_their_own),
+        TEST(a_layout_is_read_from_text),           TEST(triples_are_parted_by_either),
+        TEST(every_type_is_known_by_name),          TEST(wrong_keys_are_named),
+        TEST(bytes_behind_an_offset_become_voxels), TEST(spacings_must_be_lengths),
+        TEST(a_layout_larger_than_the_file_fails),  TEST(slices_may_have_files_of_their_own),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
