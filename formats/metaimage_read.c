@@ -244,19 +244,15 @@ static cw_status read_header_size(const metaimage *m, cwi_source *src, cw_error 
     return st;
 }
 
-static cw_status check_compressed_size(const cwi_input *in, const metaimage *m,
-                                       const cwi_source *src, cw_error *err)
+/* 0 stands for a size that is not known; of several files no one says which one it is of. */
+static cw_status read_compressed_size(const metaimage *m, cwi_source *src, cw_error *err)
 {
     int64_t size = 0;
-    if (src->encoding != CWI_DEFLATED || !m->value[K_COMPRESSED_SIZE] || src->files.count)
+    if (src->encoding != CWI_DEFLATED || !m->value[K_COMPRESSED_SIZE] || src->files.count > 1)
         return CW_OK;
     cw_status st = cwi_field_integer("CompressedDataSize", m->value[K_COMPRESSED_SIZE], 0,
                                      INT64_MAX, &size, err);
-    const uint64_t there = in->size > src->offset ? in->size - src->offset : 0;
-    if (st == CW_OK && (uint64_t)size > there)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "'CompressedDataSize' is %lld; the file holds %llu bytes",
-                       (long long)size, (unsigned long long)there);
+    src->packed = (uint64_t)size;
     return st;
 }
 
@@ -351,7 +347,7 @@ cw_status cwi_metaimage_parse(const cwi_input *in, cwi_source *src, cw_error *er
     if (st == CW_OK)
         st = read_header_size(&m, src, err);
     if (st == CW_OK)
-        st = check_compressed_size(in, &m, src, err);
+        st = read_compressed_size(&m, src, err);
     if (st == CW_OK)
         st = read_frame(&m, src, err);
     cwi_lines_close(&m.lines);

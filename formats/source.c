@@ -286,6 +286,11 @@ static cw_status open_part(const cwi_source *src, const cwi_input *in, size_t in
         p->start = UINT64_MAX;
     if (src->span && p->start < p->size && src->span < p->size - p->start)
         p->size = p->start + src->span;
+    if (st == CW_OK && src->packed > p->size - (p->start < p->size ? p->start : p->size))
+        st = cw_fail(err, CW_ERR_FORMAT,
+                     "'CompressedDataSize' is %llu; the file holds %llu bytes",
+                     (unsigned long long)src->packed,
+                     (unsigned long long)(p->start < p->size ? p->size - p->start : 0));
     if (st == CW_OK)
         st = check_share(src, p, err);
     if (st == CW_OK)
@@ -366,6 +371,20 @@ static cw_status pass(reading *r, uint64_t bytes, bool wanted, cw_error *err)
     return st;
 }
 
+/* Compressed data that end later than the header says. A place that is too far is let be: there
+ * is only padding. So is a place that is too near in a file of voxels alone, which is whole by
+ * its checksum: VTK's sample frogtissue.mhd names 260 020 of 262 087 bytes. */
+static cw_status check_packed(const reading *r, uint64_t start, cw_error *err)
+{
+    const cwi_stream *s = &r->stream;
+    if (!r->src->packed || r->src->files.count || !s->ended || s->truncated ||
+        s->packed_end - start <= r->src->packed)
+        return CW_OK;
+    return cw_fail(
+        err, CW_ERR_FORMAT, "'CompressedDataSize' is %llu; the compressed data take %llu bytes",
+        (unsigned long long)r->src->packed, (unsigned long long)(s->packed_end - start));
+}
+
 /* What is wanted of a part that ends at this byte of all. What is behind it is not looked at,
  * and so the checksum is only where the part was read to its end. */
 static cw_status read_runs(reading *r, uint64_t end, cw_error *err)
@@ -390,6 +409,8 @@ static cw_status read_part(reading *r, const part *p, size_t index, cw_error *er
     cw_status st = open_stream(r->src, p, &r->stream, &r->blocks, err);
     if (st == CW_OK)
         st = read_runs(r, r->at + share, err);
+    if (st == CW_OK)
+        st = check_packed(r, p->start, err);
     cwi_blocks_close(&r->blocks);
     cwi_stream_close(&r->stream);
     return st;

@@ -49,6 +49,8 @@ typedef struct cwi_source {
     uint64_t span;   /* bytes of the file behind the offset, voxels among them; 0: all */
     uint64_t lines;  /* lines behind the offset to leave out */
     uint64_t skip;   /* decoded bytes in front of the first voxel */
+    uint64_t
+        packed; /* bytes that the voxels take, compressed, as "CompressedDataSize" says; or 0 */
     bool at_end;     /* raw: the voxels are the last bytes of the file instead */
     bool has_arrays; /* with names: it is the one that was asked for, if any was */
     char note[200];  /* what the user should know; empty: nothing */

@@ -140,6 +140,7 @@ static cw_status start_next_member(cwi_stream *s, cw_error *err)
     size_t got;
     cw_status st = s->z.avail_in < 2 ? refill(s, &got, err) : CW_OK;
     s->ended = s->z.avail_in < 2 || s->z.next_in[0] != 0x1f || s->z.next_in[1] != 0x8b;
+    s->packed_end = s->offset - s->z.avail_in;
     if (st == CW_OK && !s->ended && !s->isal)
         inflateReset(&s->z);
     return st;

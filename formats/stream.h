@@ -17,9 +17,10 @@ typedef struct cwi_stream {
     uint64_t end;    /* in the file: what is there is no part of the stream */
     uint64_t given;  /* bytes handed out so far, decoded */
     bool deflated;
-    bool ended;     /* the compressed data are over, whole or not */
-    bool truncated; /* ... because the file ended first */
-    void *isal;     /* inflates in zlib's place; NULL: zlib does */
+    bool ended;          /* the compressed data are over, whole or not */
+    bool truncated;      /* ... because the file ended first */
+    uint64_t packed_end; /* ... else where in the file */
+    void *isal;          /* inflates in zlib's place; NULL: zlib does */
     z_stream z;
     unsigned char *buffer; /* compressed bytes on their way into z */
     char *text; /* base64 on its way to bytes; NULL: the file holds them as they are */

@@ -232,6 +232,55 @@ static void damaged_headers_are_told_key_by_key(void **state)
     }
 }
 
+/* In the header's own file, and beside it as far as that file can hold them; 0 is a size that
+ * no one knew. */
+static void the_compressed_size_is_that_of_the_data(void **state)
+{
+    (void)state;
+    static const struct {
+        int off;           /* from the true size */
+        size_t padding;    /* zeros behind the data */
+        const char *words; /* NULL: it is read */
+    } rows[] = {{0, 0, NULL},
+                {0, 3, NULL},
+                {3, 3, NULL},
+                {-1, 0, "; the compressed data take "},
+                {-1, 3, "; the compressed data take "},
+                {-9, 0, "'CompressedDataSize' is "},
+                {1, 0, "; the file holds "},
+                {4, 3, "; the file holds "}};
+    size_t size;
+    unsigned char *zlib = pack_bytes(counting, sizeof counting, false, &size);
+    unsigned char data[256] = {0};
+    assert_true(size + 3 < sizeof data);
+    memcpy(data, zlib, size);
+    free(zlib);
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        for (int beside = 0; beside < 2; beside++) {
+            char header[500];
+            cw_volume v = {0};
+            cw_error err = {0};
+            snprintf(header, sizeof header,
+                     U8_3D "CompressedData = True\nCompressedDataSize = %d\n"
+                           "ElementDataFile = %s\n",
+                     (int)size + rows[i].off, beside ? "a.zraw" : "LOCAL");
+            put_file("a.mha", header, data, beside ? 0 : size + rows[i].padding);
+            put_file("a.zraw", "", data, size + rows[i].padding);
+            const cw_status st = read_back("a.mha", &v, &err);
+            if (rows[i].words && !(beside && rows[i].off < 0))
+                assert_fails(st, CW_ERR_FORMAT, rows[i].words, err);
+            else
+                assert_ok(st, err);
+            cw_volume_free(&v);
+        }
+    put_file("a.mha", U8_3D "CompressedData = True\nCompressedDataSize = 0\n" LOCAL, data,
+             size);
+    cw_volume v;
+    cw_error err = {0};
+    assert_ok(read_back("a.mha", &v, &err), err);
+    cw_volume_free(&v);
+}
+
 static void a_cut_is_never_a_volume(void **state)
 {
     (void)state;
@@ -334,6 +383,7 @@ int main(void)
         TEST(every_type_has_its_name),
         TEST(voxels_may_lie_in_files_of_their_own),
         TEST(damaged_headers_are_told_key_by_key),
+        TEST(the_compressed_size_is_that_of_the_data),
         TEST(a_cut_is_never_a_volume),
         TEST(lying_sizes_are_told_before_memory_is_taken),
         TEST(data_files_stay_in_the_headers_folder),
