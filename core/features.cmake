@@ -279,4 +279,21 @@ int main(void)
 }
 ]])
 
+if(CUBEWRIGHT_BZIP2)
+  find_path(BZIP2_INCLUDE bzlib.h)
+  find_library(BZIP2_LIBRARY bz2)
+endif()
+add_feature(bzip2 OPTION CUBEWRIGHT_BZIP2 PACKAGES libbz2-dev
+  ABOUT "NRRD volumes compressed with bzip2"
+  COST "reads no NRRD that is compressed with bzip2"
+  NEEDS BZIP2_INCLUDE=libbz2-dev BZIP2_LIBRARY=libbz2-dev
+  INCLUDES ${BZIP2_INCLUDE} LIBRARIES ${BZIP2_LIBRARY}
+  TRIAL [[
+#include <bzlib.h>
+int main(void)
+{
+    return *BZ2_bzlibVersion() == 0;
+}
+]])
+
 configure_file(core/features_table.c.in features_table.c @ONLY)

@@ -1,6 +1,7 @@
 /* NRRD: the header's fields, in the order in which later ones need earlier ones.
  * The format is defined at teem.sourceforge.net/nrrd/format.html. */
 #include "core/status.h"
+#include "formats/bzip2.h"
 #include "formats/nrrd.h"
 #include "formats/readers.h"
 
@@ -155,16 +156,26 @@ static cw_status read_type(const cwi_nrrd *n, cwi_source *src, cw_error *err)
 
 static cw_status read_encoding(const cwi_nrrd *n, cwi_source *src, cw_error *err)
 {
-    static const char *const names[] = {
-        [CWI_RAW] = "raw", [CWI_DEFLATED] = "gzip|gz", [CWI_ASCII] = "ascii|text|txt"};
+    static const char *const names[] = {[CWI_RAW] = "raw",
+                                        [CWI_DEFLATED] = "gzip|gz",
+                                        [CWI_BZIP2] = "bzip2|bz2",
+                                        [CWI_ASCII] = "ascii|text|txt",
+                                        [CWI_HEX] = "hex"};
+    const int count = sizeof names / sizeof *names;
     cw_status st = require(n, CWI_NRRD_ENCODING, err);
     if (st != CW_OK)
         return st;
     const char *name = n->value[CWI_NRRD_ENCODING];
-    const int found = cwi_field_find(names, 3, name, strlen(name));
+    const int found = cwi_field_find(names, count, name, strlen(name));
     if (found < 0)
         return cw_fail(err, CW_ERR_FORMAT,
-                       "'encoding' is %.40s; those that are read are raw, gzip and ascii",
+                       "'encoding' is %.40s; those that are read are raw, gzip, bzip2, ascii "
+                       "and hex",
+                       name);
+    if (found == CWI_BZIP2 && !cwi_bzip2_present())
+        return cw_fail(err, CW_ERR_UNSUPPORTED,
+                       "'encoding' is %.40s; this build has no libbz2 (libbz2-dev, "
+                       "CUBEWRIGHT_BZIP2)",
                        name);
     src->encoding = (cwi_encoding)found;
     return CW_OK;

@@ -5,6 +5,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "core/volume.h"
+#include "formats/bzip2.h"
 #include "formats/numbers.h"
 #include "formats/runs.h"
 #include "formats/stream.h"
@@ -186,7 +187,8 @@ static cw_status skip_lines(const part *p, uint64_t lines, uint64_t *start, cw_e
 /* Bytes to skip that are seen only once they are decoded. */
 static uint64_t decoded_skip(const cwi_source *src)
 {
-    return src->encoding == CWI_DEFLATED || src->base64 ? src->skip : 0;
+    const bool packed = src->encoding == CWI_DEFLATED || src->encoding == CWI_BZIP2;
+    return packed || src->base64 ? src->skip : 0;
 }
 
 /* Bytes of the file, or the most that base64 text of that size can hold. */
@@ -196,15 +198,17 @@ static uint64_t bytes_of_text(const cwi_source *src, uint64_t encoded)
 }
 
 /* The most voxel bytes that the encoded bytes in the file can stand for. Deflate never grows
- * data more than 1032 times; a number and its blank take two bytes, the last may lack the
- * blank. What blocks stand for, their table tells. */
+ * data more than 1032 times, bzip2 by its blocks; a number and its blank take two bytes, the
+ * last may lack the blank. What blocks stand for, their table tells. */
 static uint64_t most_bytes(const cwi_source *src, uint64_t encoded)
 {
     const uint64_t voxel = cw_type_size(src->shape.type);
-    const uint64_t most = src->encoding == CWI_ASCII ? voxel : 1032;
+    const uint64_t most = src->encoding == CWI_ASCII   ? voxel
+                          : src->encoding == CWI_BZIP2 ? CWI_BZIP2_BLOCK / CWI_BZIP2_PACKED
+                                                       : 1032;
     encoded = bytes_of_text(src, encoded);
-    if (src->encoding == CWI_RAW)
-        return encoded;
+    if (src->encoding == CWI_RAW || src->encoding == CWI_HEX)
+        return src->encoding == CWI_HEX ? encoded / 2 : encoded;
     if (src->encoding == CWI_ASCII)
         encoded = encoded / 2 + 1;
     return encoded > UINT64_MAX / most ? UINT64_MAX : encoded * most;
@@ -234,12 +238,17 @@ static cw_status check_share(const cwi_source *src, part *p, cw_error *err)
 static cw_status open_stream(const cwi_source *src, const part *p, cwi_stream *stream,
                              cwi_blocks *blocks, cw_error *err)
 {
-    cw_status st = cwi_stream_open(stream, p->fd, p->start, src->encoding == CWI_DEFLATED, err);
+    cw_status st =
+        src->encoding == CWI_BZIP2
+            ? cwi_stream_open_bzip2(stream, p->fd, p->start, err)
+            : cwi_stream_open(stream, p->fd, p->start, src->encoding == CWI_DEFLATED, err);
     if (st != CW_OK)
         return st;
     cwi_stream_end_at(stream, p->size);
     if (src->base64)
         st = cwi_stream_from_base64(stream, err);
+    if (src->encoding == CWI_HEX)
+        st = cwi_stream_from_hex(stream, err);
     if (st == CW_OK)
         st = cwi_stream_skip(stream, decoded_skip(src), err);
     if (st == CW_OK && src->encoding == CWI_BLOCKS)

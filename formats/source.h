@@ -11,8 +11,10 @@
 typedef enum cwi_encoding {
     CWI_RAW,
     CWI_DEFLATED, /* gzip or zlib, told apart by content */
-    CWI_ASCII,    /* decimal numbers with blanks between them */
-    CWI_BLOCKS    /* compressed block by block, behind a table */
+    CWI_BZIP2,
+    CWI_ASCII, /* decimal numbers with blanks between them */
+    CWI_HEX,   /* two hexadecimal digits a byte; blanks between them do not matter */
+    CWI_BLOCKS /* compressed block by block, behind a table */
 } cwi_encoding;
 
 /* What an axis of the file stands for. */
@@ -49,8 +51,7 @@ typedef struct cwi_source {
     uint64_t span;   /* bytes of the file behind the offset, voxels among them; 0: all */
     uint64_t lines;  /* lines behind the offset to leave out */
     uint64_t skip;   /* decoded bytes in front of the first voxel */
-    uint64_t
-        packed; /* bytes that the voxels take, compressed, as "CompressedDataSize" says; or 0 */
+    uint64_t packed; /* compressed bytes, as "CompressedDataSize" says; 0: it is not known */
     bool at_end;     /* raw: the voxels are the last bytes of the file instead */
     bool has_arrays; /* with names: it is the one that was asked for, if any was */
     char note[200];  /* what the user should know; empty: nothing */

@@ -2,6 +2,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "formats/bzip2.h"
 #include "formats/input.h"
 #include "formats/isal.h"
 
@@ -44,6 +45,21 @@ cw_status cwi_stream_open(cwi_stream *s, int fd, uint64_t offset, bool deflated,
     return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to inflate with");
 }
 
+cw_status cwi_stream_open_bzip2(cwi_stream *s, int fd, uint64_t offset, cw_error *err)
+{
+    *s = (cwi_stream){.fd = fd, .offset = offset, .end = UINT64_MAX};
+    if (!cwi_bzip2_present())
+        return cw_fail(err, CW_ERR_UNSUPPORTED,
+                       "the data are compressed with bzip2; this build has no libbz2 "
+                       "(libbz2-dev, CUBEWRIGHT_BZIP2)");
+    s->z.next_in = s->buffer = cwi_alloc_array(BUFFER_BYTES, 1);
+    s->deflated = s->buffer && cwi_bzip2_open(&s->bzip2);
+    if (s->deflated)
+        return CW_OK;
+    cwi_stream_close(s);
+    return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to decompress with");
+}
+
 void cwi_stream_end_at(cwi_stream *s, uint64_t end)
 {
     s->end = end;
@@ -55,10 +71,18 @@ cw_status cwi_stream_from_base64(cwi_stream *s, cw_error *err)
     return s->text ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to decode base64 with");
 }
 
+cw_status cwi_stream_from_hex(cwi_stream *s, cw_error *err)
+{
+    s->text = cwi_alloc_array(BUFFER_BYTES, 1);
+    s->is_hex = true;
+    return s->text ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to decode text with");
+}
+
 void cwi_stream_close(cwi_stream *s)
 {
-    if (s->deflated && !s->isal)
+    if (s->deflated && !s->isal && !s->bzip2)
         inflateEnd(&s->z);
+    cwi_bzip2_close(s->bzip2);
     cwi_free(s->isal);
     cwi_free(s->buffer);
     cwi_free(s->text);
@@ -98,9 +122,51 @@ static cw_status fetch_base64(cwi_stream *s, unsigned char *to, size_t size, siz
     return st;
 }
 
+static int hex_digit(char c)
+{
+    const char letter = (char)(c | 32);
+    return c >= '0' && c <= '9'             ? c - '0'
+           : letter >= 'a' && letter <= 'f' ? letter - 'a' + 10
+                                            : -1;
+}
+
+/* One character of the text; false where it is neither a digit nor a blank. */
+static bool take_hex(cwi_stream *s, char c, unsigned char *to, size_t *got)
+{
+    const int digit = hex_digit(c);
+    if (digit < 0)
+        return c == ' ' || (c >= '\t' && c <= '\r');
+    if (s->has_digit)
+        to[(*got)++] = (unsigned char)(s->high << 4 | digit);
+    s->high = (unsigned char)digit;
+    s->has_digit = !s->has_digit;
+    return true;
+}
+
+static cw_status fetch_hex(cwi_stream *s, unsigned char *to, size_t size, size_t *got,
+                           cw_error *err)
+{
+    cw_status st = CW_OK;
+    *got = 0;
+    while (st == CW_OK && *got < size) {
+        if (s->text_next == s->text_size) {
+            s->text_next = 0;
+            st = fetch_plain(s, s->text, BUFFER_BYTES, &s->text_size, err);
+            if (st != CW_OK || s->text_size == 0)
+                break;
+        }
+        if (!take_hex(s, s->text[s->text_next++], to, got))
+            st = cw_fail(err, CW_ERR_FORMAT, "byte %llu of the file is no hexadecimal digit",
+                         (unsigned long long)(s->offset - s->text_size + s->text_next - 1));
+    }
+    return st;
+}
+
 static cw_status fetch(cwi_stream *s, void *to, size_t size, size_t *got, cw_error *err)
 {
-    return s->text ? fetch_base64(s, to, size, got, err) : fetch_plain(s, to, size, got, err);
+    return !s->text    ? fetch_plain(s, to, size, got, err)
+           : s->is_hex ? fetch_hex(s, to, size, got, err)
+                       : fetch_base64(s, to, size, got, err);
 }
 
 /* Puts more of the file behind what is still to be inflated, and behind the bytes before it
@@ -134,14 +200,17 @@ static cw_status check_padding(cwi_stream *s, cw_error *err)
     return st;
 }
 
-/* After one gzip member: goes on when the next one follows, else the data are over. */
+/* After one gzip member, or one stream of bzip2: goes on when the next one follows, else the
+ * data are over. */
 static cw_status start_next_member(cwi_stream *s, cw_error *err)
 {
+    const char *magic = s->bzip2 ? "BZh" : "\x1f\x8b";
+    const size_t size = strlen(magic);
     size_t got;
-    cw_status st = s->z.avail_in < 2 ? refill(s, &got, err) : CW_OK;
-    s->ended = s->z.avail_in < 2 || s->z.next_in[0] != 0x1f || s->z.next_in[1] != 0x8b;
+    cw_status st = s->z.avail_in < size ? refill(s, &got, err) : CW_OK;
+    s->ended = s->z.avail_in < size || memcmp(s->z.next_in, magic, size) != 0;
     s->packed_end = s->offset - s->z.avail_in;
-    if (st == CW_OK && !s->ended && !s->isal)
+    if (st == CW_OK && !s->ended && !s->isal && !s->bzip2)
         inflateReset(&s->z);
     return st;
 }
@@ -173,7 +242,9 @@ static cw_status inflate_some(cwi_stream *s, unsigned char *to, size_t size, siz
     s->z.next_out = to;
     s->z.avail_out = size < most ? (uInt)size : most;
     const uInt output = s->z.avail_out;
-    const int code = s->isal ? cwi_isal_inflate(s->isal, &s->z) : inflate(&s->z, Z_NO_FLUSH);
+    const int code = s->bzip2  ? cwi_bzip2_inflate(s->bzip2, &s->z)
+                     : s->isal ? cwi_isal_inflate(s->isal, &s->z)
+                               : inflate(&s->z, Z_NO_FLUSH);
     *got = output - s->z.avail_out;
     s->given += *got;
     if (code == Z_STREAM_END)

@@ -21,11 +21,15 @@ typedef struct cwi_stream {
     bool truncated;      /* ... because the file ended first */
     uint64_t packed_end; /* ... else where in the file */
     void *isal;          /* inflates in zlib's place; NULL: zlib does */
+    void *bzip2;         /* the same, of what bzip2 compressed */
     z_stream z;
     unsigned char *buffer; /* compressed bytes on their way into z */
-    char *text; /* base64 on its way to bytes; NULL: the file holds them as they are */
+    char *text;            /* on its way to bytes; NULL: the file holds them as they are */
     size_t text_next, text_size;
     cwi_base64 base64;
+    bool is_hex;    /* the text is hexadecimal, not base64 */
+    bool has_digit; /* ... and the first digit of a byte is there: high */
+    unsigned char high;
 } cwi_stream;
 
 /* Makes zlib take its memory from core/memory.h, so that tests can make it run out. */
@@ -37,10 +41,16 @@ void cwi_zlib_use_memory(z_stream *z);
 CW_API cw_status cwi_stream_open(cwi_stream *s, int fd, uint64_t offset, bool deflated,
                                  cw_error *err);
 
-/* Both before anything is read: nothing from an offset of the file on is part of the stream;
- * the file holds the bytes as base64 text. Returns CW_ERR_NO_MEMORY. */
+/* The same of data that bzip2 compressed; several streams in a row are read as one.
+ * Returns CW_ERR_NO_MEMORY, CW_ERR_UNSUPPORTED: libbz2 is not in this build. */
+CW_API cw_status cwi_stream_open_bzip2(cwi_stream *s, int fd, uint64_t offset, cw_error *err);
+
+/* All before anything is read: nothing from an offset of the file on is part of the stream;
+ * the file holds the bytes as base64 text, or as two hexadecimal digits each.
+ * Returns CW_ERR_NO_MEMORY. */
 CW_API void cwi_stream_end_at(cwi_stream *s, uint64_t end);
 CW_API cw_status cwi_stream_from_base64(cwi_stream *s, cw_error *err);
+CW_API cw_status cwi_stream_from_hex(cwi_stream *s, cw_error *err);
 
 /* Reads up to size bytes; *got is less only at the end.
  * Returns CW_ERR_FORMAT for damaged data or a wrong checksum, CW_ERR_IO. */

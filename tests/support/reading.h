@@ -126,11 +126,11 @@ static inline void check_tail(const char *header, const char *data)
             assert_ok(st, err);
         cw_volume_free(&volume);
     }
-    bytes[size - 1] ^= 1;
+    bytes[size - 2] ^= 1; /* bits of the last byte may be padding */
     test_file_write(test_path(data), bytes, size);
     assert_fails(read_back(header, &none, &damaged), CW_ERR_FORMAT,
                  "the compressed data are damaged", damaged);
-    bytes[size - 1] ^= 1;
+    bytes[size - 2] ^= 1;
     test_file_write(test_path(data), bytes, size);
     free(bytes);
 }

@@ -1,4 +1,5 @@
 #define _GNU_SOURCE /* symlink, mkfifo */
+#include "formats/bzip2.h"
 #include "support/reading.h"
 #include "support/regions.h"
 
@@ -9,8 +10,26 @@
 /* 2 x 3 x 2 voxels that tell where they stand. */
 static const uint8_t counting[12] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
 
+/* bzip2's data, of the same, and of both halves in a row; of the numbers 1, -2, 300, -32768 in
+ * big endian, behind three bytes. */
+static const uint8_t bzipped[] = {66,  90,  104, 49,  49,  65, 89, 38,  83,  89,  82,  119,
+                                  107, 164, 0,   0,   0,   64, 0,  127, 248, 32,  0,   34,
+                                  1,   160, 104, 64,  208, 52, 11, 60,  72,  171, 205, 227,
+                                  226, 238, 72,  167, 10,  18, 10, 78,  237, 116, 128};
+static const uint8_t halves[] = {
+    66,  90, 104, 57, 49,  65, 89, 38, 83, 89,  96,  26,  179, 146, 0,  0,  0,   64, 0,   126,
+    0,   32, 0,   33, 128, 12, 3,  39, 46, 226, 238, 72,  167, 10,  18, 12, 3,   86, 114, 64,
+    66,  90, 104, 49, 49,  65, 89, 38, 83, 89,  147, 144, 1,   0,   0,  0,  0,   64, 0,   1,
+    248, 32, 0,   33, 128, 12, 3,  39, 46, 226, 238, 72,  167, 10,  18, 18, 114, 0,  32,  0};
+static const uint8_t big_bzipped[] = {
+    66,  90,  104, 57,  49, 65,  89,  38,  83, 89,  145, 1,   161, 76, 0,  0,  2,  208,
+    192, 224, 0,   0,   4,  0,   112, 64,  0,  0,   1,   160, 0,   49, 6,  76, 65, 0,
+    205, 66,  102, 109, 48, 229, 226, 238, 72, 167, 10,  18,  18,  32, 52, 41, 128};
+
 #define U8      "NRRD0004\ntype: uint8\nencoding: raw\n"
 #define U8_3D   U8 "dimension: 3\nsizes: 2 3 2\n"
+#define BZ2_3D  "NRRD0004\ntype: uint8\nencoding: bzip2\ndimension: 3\nsizes: 2 3 2\n"
+#define HEX_3D  "NRRD0004\ntype: uint8\nencoding: hex\ndimension: 3\nsizes: 2 3 2\n"
 #define GZIP_3D "NRRD0004\ntype: uint8\nencoding: gzip\ndimension: 3\nsizes: 2 3 2\n"
 
 static void a_plain_header_gives_its_voxels(void **state)
@@ -206,11 +225,17 @@ static void encodings_and_byte_orders_give_the_same_numbers(void **state)
         {"endian: big\nencoding: raw\nbyte skip: -1", "junkjunk\0\1\xff\xfe\1\x2c\x80\0", 16},
         {"endian: big\nencoding: raw\nline skip: 2\nbyte skip: 3",
          "a\nb\nccc\0\1\xff\xfe\1\x2c\x80\0", 15},
+        {"endian: big\nencoding: hex", "0001 fFfE\n012C\t8000\n", 20},
+        {"endian: little\nencoding: hex", "0100feff2c010080", 16},
+        {"endian: big\nencoding: hex\nline skip: 1\nbyte skip: 2", "#\n# 0001fffe012c8000", 20},
+        {"endian: big\nencoding: bz2\nbyte skip: 3", big_bzipped, sizeof big_bzipped},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char header[300];
         cw_volume v;
         cw_error err = {0};
+        if (strstr(cases[i].fields, "bz2") && !cwi_bzip2_present())
+            continue;
         snprintf(header, sizeof header,
                  "NRRD0001\ntype: short\ndimension: 3\nsizes: 4 1 1\n%s\n\n", cases[i].fields);
         put_file("a.nrrd", header, cases[i].bytes, cases[i].size);
@@ -333,10 +358,16 @@ static void damaged_headers_are_told_field_by_field(void **state)
         {"NRRD0004\ntype: int64\ndimension: 1\nsizes: 1\n\n", "'type' is int64; the types"},
         {"NRRD0004\ntype: short\ndimension: 1\nsizes: 1\nencoding: raw\n\n",
          "'endian' is missing"},
-        {"NRRD0004\ntype: int8\ndimension: 1\nsizes: 1\nencoding: bzip2\n\n",
-         "'encoding' is bzip2"},
-        {"NRRD0004\ntype: int8\ndimension: 1\nsizes: 1\nencoding: hex\n\n",
-         "'encoding' is hex"},
+        {"NRRD0004\ntype: int8\ndimension: 1\nsizes: 1\nencoding: zstd\n\n",
+         "'encoding' is zstd; those that are read are raw, gzip, bzip2, ascii and hex"},
+        {"NRRD0004\ntype: int8\ndimension: 1\nsizes: 2\nencoding: hex\n\n012",
+         "'sizes' asks for 2 bytes of voxels, encoded; the file holds 3 bytes"},
+        {"NRRD0004\ntype: int8\ndimension: 1\nsizes: 2\nencoding: hex\n\n01 2  ",
+         "wanted 2 bytes from byte 0 on, there were 1"},
+        {"NRRD0004\ntype: int8\ndimension: 1\nsizes: 2\nencoding: hex\n\n01 2g",
+         "byte 61 of the file is no hexadecimal digit"},
+        {"NRRD0004\ntype: short\ndimension: 1\nsizes: 1\nencoding: hex\n\n0001",
+         "'endian' is missing"},
         {"NRRD0004\ntype: int8\ndimension: 1\nsizes: 3\nencoding: ascii\n\n1 2   \n",
          "end after 2 numbers"},
         {"NRRD0004\ntype: int8\ndimension: 1\nsizes: 3\nencoding: ascii\n\n1 2 200",
@@ -392,6 +423,11 @@ static void lying_sizes_fail_before_any_allocation(void **state)
          CW_ERR_FORMAT},
         {"2147483647 2147483647 1", "ascii", "'sizes' asks for 4611686014132420609",
          CW_ERR_FORMAT},
+        {"2147483647 2147483647 1", "hex", "'sizes' asks for 4611686014132420609",
+         CW_ERR_FORMAT},
+        {"2147483647 2147483647 1", "bzip2",
+         cwi_bzip2_present() ? "'sizes' asks for 4611686014132420609" : "has no libbz2",
+         cwi_bzip2_present() ? CW_ERR_FORMAT : CW_ERR_UNSUPPORTED},
         {"2147483647 2147483647 9", "raw", "'sizes' asks for more", CW_ERR_LIMIT},
         {"2147483648 1 1", "raw", "'sizes' holds 2147483648", CW_ERR_FORMAT},
     };
@@ -494,6 +530,8 @@ static void a_cut_is_never_a_volume(void **state)
              "0 1 2 3 4 5 6 7 8 9 10 1",
              NULL, 0);
     check_every_cut("a.nrrd");
+    put_file("a.nrrd", HEX_3D "\n000102030405060708090A0b", NULL, 0);
+    check_every_cut("a.nrrd");
     put_file("one.raw", "", counting, 6);
     put_file("two.raw", "", counting + 6, 6);
     put_file("a.nhdr", U8_3D "data file: LIST\none.raw\ntwo.raw\n", NULL, 0);
@@ -513,6 +551,49 @@ static void nothing_but_zeros_may_follow_gzip_data(void **state)
     put_file("a.nhdr", GZIP_3D "data file: a.gz\n", NULL, 0);
     check_tail("a.nhdr", "a.gz");
     free(packed);
+}
+
+static cw_status read_counting(const char *name, cw_error *err)
+{
+    cw_volume v = {0};
+    const cw_status st = read_back(name, &v, err);
+    if (st == CW_OK)
+        assert_memory_equal(v.data, counting, sizeof counting);
+    cw_volume_free(&v);
+    return st;
+}
+
+/* Whole or in two streams, in the header's file or beside it; damage is refused or does not
+ * matter. */
+static void bzip2_data_are_read_and_checked(void **state)
+{
+    (void)state;
+    cw_error err = {0};
+    put_file("a.nrrd", BZ2_3D "\n", bzipped, sizeof bzipped);
+    if (!cwi_bzip2_present()) {
+        assert_fails(read_counting("a.nrrd", &err), CW_ERR_UNSUPPORTED, "libbz2-dev", err);
+        return;
+    }
+    assert_ok(read_counting("a.nrrd", &err), err);
+    check_regions("a.nrrd", NULL);
+    check_every_cut("a.nrrd");
+    check_tail("a.nrrd", "a.nrrd");
+    put_file("a.bz2", "", halves, sizeof halves);
+    put_file("a.nhdr", BZ2_3D "data file: a.bz2\n", NULL, 0);
+    assert_ok(read_counting("a.nhdr", &err), err);
+    check_tail("a.nhdr", "a.bz2");
+    check_starved_reads("a.nhdr");
+    size_t refusals = 0;
+    for (size_t i = 0; i < sizeof bzipped; i++) { /* some bits are of codes that are not used */
+        uint8_t damaged[sizeof bzipped];
+        memcpy(damaged, bzipped, sizeof bzipped);
+        damaged[i] ^= 0x10;
+        put_file("a.nrrd", BZ2_3D "\n", damaged, sizeof damaged);
+        refusals += read_counting("a.nrrd", &err) == CW_ERR_FORMAT;
+    }
+    assert_true(refusals > sizeof bzipped * 3 / 4);
+    put_file("a.nrrd", BZ2_3D "\n", "BZip is not", 11);
+    assert_fails(read_counting("a.nrrd", &err), CW_ERR_FORMAT, "incorrect header check", err);
 }
 
 static void memory_may_run_out_anywhere(void **state)
@@ -549,6 +630,7 @@ int main(void)
         TEST(long_headers_are_cut_off),
         TEST(a_cut_is_never_a_volume),
         TEST(nothing_but_zeros_may_follow_gzip_data),
+        TEST(bzip2_data_are_read_and_checked),
         TEST(memory_may_run_out_anywhere),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
