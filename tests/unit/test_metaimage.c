@@ -281,6 +281,21 @@ static void the_compressed_size_is_that_of_the_data(void **state)
     cw_volume_free(&v);
 }
 
+/* Lines that end with carriage returns alone, as on an old Macintosh. */
+static void old_line_ends_are_read(void **state)
+{
+    (void)state;
+    char header[] = U8_3D LOCAL;
+    cw_volume v;
+    cw_error err = {0};
+    for (char *c = header; *c; c++)
+        *c = *c == '\n' ? '\r' : *c;
+    put_file("a.mha", header, "\n1234567890", 12); /* the data may begin with the other one */
+    assert_ok(read_back("a.mha", &v, &err), err);
+    assert_memory_equal(v.data, "\n1234567890", 12);
+    cw_volume_free(&v);
+}
+
 static void a_cut_is_never_a_volume(void **state)
 {
     (void)state;
@@ -384,6 +399,7 @@ int main(void)
         TEST(voxels_may_lie_in_files_of_their_own),
         TEST(damaged_headers_are_told_key_by_key),
         TEST(the_compressed_size_is_that_of_the_data),
+        TEST(old_line_ends_are_read),
         TEST(a_cut_is_never_a_volume),
         TEST(lying_sizes_are_told_before_memory_is_taken),
         TEST(data_files_stay_in_the_headers_folder),

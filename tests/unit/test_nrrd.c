@@ -516,6 +516,21 @@ static void long_headers_are_cut_off(void **state)
     free(long_text);
 }
 
+/* Lines that end with carriage returns alone, as on an old Macintosh. */
+static void old_line_ends_are_read(void **state)
+{
+    (void)state;
+    char header[] = U8_3D "\n";
+    cw_volume v;
+    cw_error err = {0};
+    for (char *c = header; *c; c++)
+        *c = *c == '\n' ? '\r' : *c;
+    put_file("a.nrrd", header, "\n1234567890", 12); /* the data may begin with the other one */
+    assert_ok(read_back("a.nrrd", &v, &err), err);
+    assert_memory_equal(v.data, "\n1234567890", 12);
+    cw_volume_free(&v);
+}
+
 static void a_cut_is_never_a_volume(void **state)
 {
     (void)state;
@@ -628,6 +643,7 @@ int main(void)
         TEST(the_header_alone_is_checked_but_holds_no_voxels),
         TEST(a_reader_can_be_interrupted),
         TEST(long_headers_are_cut_off),
+        TEST(old_line_ends_are_read),
         TEST(a_cut_is_never_a_volume),
         TEST(nothing_but_zeros_may_follow_gzip_data),
         TEST(bzip2_data_are_read_and_checked),
