@@ -42,7 +42,8 @@ typedef struct cwi_dicom_frame {
 typedef enum cwi_dicom_kind {
     CWI_DICOM_NO_IMAGE, /* a directory, a report, ... */
     CWI_DICOM_IMAGE,
-    CWI_DICOM_SEGMENTATION
+    CWI_DICOM_SEGMENTATION, /* a frame holds the pixels of one segment, yes or no */
+    CWI_DICOM_LABELMAP      /* a pixel is the number of a segment */
 } cwi_dicom_kind;
 
 typedef struct cwi_dicom_facts {

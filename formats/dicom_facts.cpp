@@ -80,6 +80,17 @@ DcmItem *first_item(DcmItem *item, const DcmTagKey &sequence)
     return nullptr;
 }
 
+// DCMTK 3.6.7 does not know the class of label maps.
+cwi_dicom_kind kind_of(DcmItem *data)
+{
+    static const char label_map[] = "1.2.840.10008.5.1.4.1.1.66.7";
+    const OFString what = text_of(data, DCM_SOPClassUID);
+    const bool labels = text_of(data, DCM_SegmentationType) == "LABELMAP";
+    if (what == label_map || (what == UID_SegmentationStorage && labels))
+        return CWI_DICOM_LABELMAP;
+    return what == UID_SegmentationStorage ? CWI_DICOM_SEGMENTATION : CWI_DICOM_IMAGE;
+}
+
 // --- the pixels' layout
 // ------------------------------------------------------------------------
 
@@ -111,12 +122,20 @@ const char *check_colour(DcmItem *data, uint32_t samples, bool compressed)
                         : "its colours are not stored as RGB";
 }
 
+// The colours of a palette are looks: its indices are the numbers of segments.
+const char *check_labels(const PixelLayout &l)
+{
+    return l.samples != 1 || l.is_signed || (l.type != CW_U8 && l.type != CW_U16)
+               ? "it is a label map, and its pixels are not one number of 8 or 16 bits"
+               : nullptr;
+}
+
 struct Stored {
     DcmElement *element = nullptr;
     const char *why_not = nullptr;
 };
 
-Stored find_pixels(DcmItem *data, PixelLayout &l, bool compressed)
+Stored find_pixels(DcmItem *data, PixelLayout &l, cwi_dicom_kind kind, bool compressed)
 {
     Stored s;
     l.columns = count_of(data, DCM_Columns, 0);
@@ -134,7 +153,8 @@ Stored find_pixels(DcmItem *data, PixelLayout &l, bool compressed)
         l.type = CW_F64;
     else if (data->findAndGetElement(DCM_PixelData, s.element).good() &&
              layout_type(l, &s.why_not))
-        s.why_not = check_colour(data, l.samples, compressed);
+        s.why_not = kind == CWI_DICOM_LABELMAP ? check_labels(l)
+                                               : check_colour(data, l.samples, compressed);
     return s;
 }
 
@@ -305,6 +325,9 @@ const char *why_unreadable(DicomFile &d)
                       std::strstr(DcmXfer(syntax).getXferName(), "MPEG");
     if (mpeg)
         return "its frames are a film (MPEG)";
+    if (is_compressed(d) && d.layout.allocated == 1 && syntax != EXS_RLELossless &&
+        syntax != EXS_JPEG2000 && syntax != EXS_JPEG2000LosslessOnly)
+        return "its pixels of one bit are compressed by something other than run lengths";
     if (DcmXfer(syntax).isBigEndian() && d.layout.allocated == 32)
         return "its numbers of 32 bits are big-endian";
     return nullptr;
@@ -321,12 +344,6 @@ const char *check_sizes(const PixelLayout &l)
                                         : nullptr;
 }
 
-cwi_dicom_kind kind_of(DcmItem *data)
-{
-    return text_of(data, DCM_SOPClassUID) == UID_SegmentationStorage ? CWI_DICOM_SEGMENTATION
-                                                                     : CWI_DICOM_IMAGE;
-}
-
 void refuse(cwi_dicom_facts *f, const char *why)
 {
     if (why && !f->refusal[0])
@@ -338,11 +355,12 @@ cw_status take_facts(DicomFile &d, cwi_dicom_facts *f, size_t room, cw_error *er
     DcmDataset *data = d.data();
     d.layout = PixelLayout();
     *f = cwi_dicom_facts();
-    const Stored s = find_pixels(data, d.layout, is_compressed(d));
+    const cwi_dicom_kind kind = kind_of(data);
+    const Stored s = find_pixels(data, d.layout, kind, is_compressed(d));
     if (!s.element)
         return CW_OK; // no image, and no matter
     const PixelLayout &l = d.layout;
-    f->kind = kind_of(data);
+    f->kind = kind;
     copy_text(f->series, text_of(data, DCM_SeriesInstanceUID));
     copy_text(f->instance, text_of(data, DCM_SOPInstanceUID));
     copy_text(f->modality, text_of(data, DCM_Modality));

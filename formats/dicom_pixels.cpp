@@ -3,6 +3,7 @@
 #include "core/status.h"
 #include "formats/dicom_file.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <dcmtk/dcmdata/dcpixseq.h>
 #include <dcmtk/dcmdata/dcpxitem.h>
@@ -58,6 +59,15 @@ cw_status fail_short(uint32_t frame, cw_error *err)
     return fail_frame(frame, "'PixelData' ends before it", err);
 }
 
+// One bit a pixel, from a place among the bits on.
+void spread_bits(DicomFile &d, const Uint8 *bytes, uint64_t first)
+{
+    const size_t count = d.layout.count();
+    d.pixels.resize(count);
+    for (size_t i = 0; i < count; i++)
+        d.pixels[i] = bytes[(first + i) / 8] >> ((first + i) % 8) & 1;
+}
+
 // One bit a pixel: frames follow each other without a gap, be it within a byte.
 cw_status read_bits(DicomFile &d, uint32_t frame, cw_error *err)
 {
@@ -77,9 +87,7 @@ cw_status read_bits(DicomFile &d, uint32_t frame, cw_error *err)
     const uint64_t first = uint64_t(frame) * count;
     if (!bytes || (first + count + 7) / 8 > size)
         return fail_short(frame, err);
-    d.pixels.resize(count);
-    for (size_t i = 0; i < count; i++)
-        d.pixels[i] = bytes[(first + i) / 8] >> ((first + i) % 8) & 1;
+    spread_bits(d, bytes, first);
     return CW_OK;
 }
 
@@ -104,7 +112,8 @@ bool add_fragment(DcmPixelSequence *fragments, unsigned long number,
 
 // A frame has a fragment of its own, or the only frame has all. The first is a table of
 // offsets.
-cw_status read_jpeg2000(DicomFile &d, uint32_t frame, cw_error *err)
+cw_status read_fragments(DicomFile &d, uint32_t frame, std::vector<unsigned char> &bytes,
+                         cw_error *err)
 {
     const PixelLayout &l = d.layout;
     DcmPixelSequence *fragments = nullptr;
@@ -116,11 +125,62 @@ cw_status read_jpeg2000(DicomFile &d, uint32_t frame, cw_error *err)
     const unsigned long count = fragments->card();
     const bool whole = l.frames == 1;
     if (count < 2 || (!whole && count != l.frames + 1ul))
-        return fail_frame(frame, "frames of JPEG 2000 must have one fragment each", err);
-    std::vector<unsigned char> bytes;
+        return fail_frame(frame, "compressed frames must have one fragment each", err);
     for (unsigned long n = whole ? 1 : frame + 1ul; n < (whole ? count : frame + 2ul); n++)
         if (!add_fragment(fragments, n, bytes))
             return fail_short(frame, err);
+    return CW_OK;
+}
+
+// Runs of bytes (PackBits): n < 128 is followed by n + 1 bytes, n > 128 repeats one 257 - n
+// times. Returns how many bytes there are, at most room.
+size_t unpack_runs(const unsigned char *from, size_t size, unsigned char *to, size_t room)
+{
+    size_t at = 0, filled = 0;
+    while (at + 1 < size && filled < room) {
+        const unsigned n = from[at++];
+        const bool repeats = n > 128;
+        const size_t wanted = n == 128 ? 0 : repeats ? 257 - n : n + 1;
+        const size_t count = std::min(wanted, room - filled);
+        if (!repeats && count > size - at)
+            return filled;
+        if (repeats)
+            std::memset(to + filled, from[at], count);
+        else
+            std::memcpy(to + filled, from + at, count);
+        filled += count;
+        at += repeats ? 1 : wanted;
+    }
+    return filled;
+}
+
+// Runs of bytes that hold eight pixels each: DCMTK decodes whole bytes alone. The head counts
+// segments and says where each starts; here is but one.
+cw_status read_runs_of_bits(DicomFile &d, uint32_t frame, cw_error *err)
+{
+    enum { HEAD = 64 };
+    std::vector<unsigned char> bytes;
+    cw_status st = read_fragments(d, frame, bytes, err);
+    if (st != CW_OK)
+        return st;
+    if (bytes.size() < HEAD || bytes[0] != 1 || bytes[1] || bytes[2] || bytes[3] ||
+        bytes[4] != HEAD || bytes[5] || bytes[6] || bytes[7])
+        return fail_frame(frame, "its head of run lengths does not count one segment", err);
+    std::vector<unsigned char> bits((d.layout.count() + 7) / 8);
+    if (unpack_runs(bytes.data() + HEAD, bytes.size() - HEAD, bits.data(), bits.size()) <
+        bits.size())
+        return fail_frame(frame, "its run lengths end early", err);
+    spread_bits(d, bits.data(), 0);
+    return CW_OK;
+}
+
+cw_status read_jpeg2000(DicomFile &d, uint32_t frame, cw_error *err)
+{
+    const PixelLayout &l = d.layout;
+    std::vector<unsigned char> bytes;
+    cw_status st = read_fragments(d, frame, bytes, err);
+    if (st != CW_OK)
+        return st;
     const cwi_dicom_image image = {l.columns, l.rows, l.samples, l.type};
     d.pixels.resize(l.count() * cw_type_size(l.type));
     return cwi_dicom_jpeg2000(bytes.data(), bytes.size(), &image, d.pixels.data(), err);
@@ -178,6 +238,7 @@ cw_status cw::decode_frame(DicomFile &d, uint32_t frame, cw_error *err)
     cw_status st = real                              ? read_reals(d, frame, err)
                    : l.allocated == 1 && !compressed ? read_bits(d, frame, err)
                    : is_jpeg2000(syntax)             ? read_jpeg2000(d, frame, err)
+                   : l.allocated == 1                ? read_runs_of_bits(d, frame, err)
                                                      : read_integers(d, frame, err);
     if (st != CW_OK)
         return st;

@@ -229,14 +229,25 @@ static bool is_copy(const cwi_dicom_plane *a, const cwi_dicom_plane *b)
            memcmp(a->frame.position, b->frame.position, sizeof a->frame.position) == 0;
 }
 
-static void drop_copies(cwi_dicom_scan *scan)
+static const char *base_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    return slash ? slash + 1 : path;
+}
+
+/* Of copies the file that was named stays, else the first. */
+static void drop_copies(cwi_dicom_scan *scan, const char *named)
 {
     size_t kept = 0;
     for (size_t i = 0; i < scan->plane_count; i++) {
-        if (kept && is_copy(&scan->planes[i], &scan->planes[kept - 1]))
-            scan->copies++;
-        else
-            scan->planes[kept++] = scan->planes[i];
+        const cwi_dicom_plane *p = &scan->planes[i];
+        if (!kept || !is_copy(p, &scan->planes[kept - 1])) {
+            scan->planes[kept++] = *p;
+            continue;
+        }
+        scan->copies++;
+        if (named && strcmp(scan->files.items[p->index], named) == 0)
+            scan->planes[kept - 1] = *p;
     }
     scan->plane_count = kept;
 }
@@ -260,11 +271,11 @@ static void label_series(cwi_dicom_scan *scan)
     }
 }
 
-static cw_status sort_into_series(cwi_dicom_scan *scan, cw_error *err)
+static cw_status sort_into_series(cwi_dicom_scan *scan, const char *named, cw_error *err)
 {
     if (scan->plane_count)
         qsort(scan->planes, scan->plane_count, sizeof *scan->planes, compare_planes);
-    drop_copies(scan);
+    drop_copies(scan, named);
     for (size_t i = 0; i < scan->plane_count; i++) {
         cwi_dicom_plane *p = &scan->planes[i];
         p->series = find_series(scan, p);
@@ -301,7 +312,7 @@ cw_status cwi_dicom_scan_files(cwi_dicom_scan *scan, const cwi_input *in, cwi_na
         if (st != CW_OK && st != CW_ERR_CANCELLED && names->count > 1)
             return cwi_fail_in(err, st, names->items[i]);
     }
-    return st == CW_OK ? sort_into_series(scan, err) : st;
+    return st == CW_OK ? sort_into_series(scan, only ? base_name(in->path) : NULL, err) : st;
 }
 
 static cw_status fail_several(const cwi_dicom_scan *scan, cw_error *err)

@@ -497,6 +497,24 @@ static cw_status fill_labels(const sorting *s, cwi_stack *stack, cw_error *err)
     return st;
 }
 
+/* A frame of a label map holds all segments of its place. */
+static cw_status fill_maps(const sorting *s, cwi_stack *stack, cw_error *err)
+{
+    cw_status st = make_room(s, s->count, stack, err);
+    for (size_t i = 0; st == CW_OK && i < s->count; i++) {
+        const cwi_dicom_plane *p = &s->planes[i];
+        if (i > 0 && p->place == s->planes[i - 1].place)
+            return cw_fail(err, CW_ERR_UNSAFE,
+                           "two frames of the label map stand at %.6g mm along the normal; one "
+                           "was expected at each place",
+                           p->distance);
+        stack->slots[i] = (cwi_slot){.place = p->place, .low = i, .high = i};
+    }
+    if (st == CW_OK)
+        qsort_r(stack->slots, stack->slot_count, sizeof *stack->slots, by_file, stack->planes);
+    return st;
+}
+
 static cw_status stack_segments(sorting *s, cwi_stack *stack, cw_error *err)
 {
     double along[3];
@@ -512,12 +530,18 @@ static cw_status stack_segments(sorting *s, cwi_stack *stack, cw_error *err)
         st = find_segment_places(s, step, &slices, err);
     if (st != CW_OK)
         return st;
-    stack->type = CW_U8;
-    stack->shape.type = highest_segment(s) > UINT8_MAX ? CW_U16 : CW_U8;
-    stack->shape.slope = 1;
+    const bool map = s->planes[0].file->kind == CWI_DICOM_LABELMAP;
+    if (map) {
+        set_values(s, stack);
+    } else {
+        stack->type = CW_U8;
+        stack->shape.type = highest_segment(s) > UINT8_MAX ? CW_U16 : CW_U8;
+        stack->shape.slope = 1;
+    }
+    stack->sparse = true;
     set_sizes(s, slices, stack);
     set_frame(s, along, step, stack);
-    return fill_labels(s, stack, err);
+    return map ? fill_maps(s, stack, err) : fill_labels(s, stack, err);
 }
 
 /* --- images without a place ----------------------------------------------------------------
@@ -568,7 +592,7 @@ cw_status cwi_dicom_stack(cwi_dicom_scan *scan, size_t series, const cw_read_des
     cw_status st = gather(scan, series, &s, err);
     if (st == CW_OK)
         st = check_scaling(&s, err);
-    if (st == CW_OK && s.planes[0].file->kind == CWI_DICOM_SEGMENTATION)
+    if (st == CW_OK && s.planes[0].file->kind != CWI_DICOM_IMAGE)
         st = stack_segments(&s, stack, err);
     else if (st == CW_OK && !is_placed(&s) && states_spacing(desc))
         st = stack_numbered(&s, stack, err);

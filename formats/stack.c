@@ -178,6 +178,15 @@ static bool count_bytes(const cw_volume *v, size_t *bytes)
            cwi_size_mul(*bytes, cw_type_size(v->type), bytes) && *bytes <= PTRDIFF_MAX;
 }
 
+/* What no slot claims. */
+static void fill_voxels(const cwi_stack *s, char *voxels, size_t bytes)
+{
+    const size_t size = cw_type_size(s->shape.type);
+    memset(voxels, 0, bytes);
+    for (size_t i = 0; s->shape.has_nodata && i < bytes; i += size)
+        cwi_voxel_put(s->shape.type, voxels + i, s->shape.nodata);
+}
+
 /* `v` is the stack's shape or a region of it. */
 static cw_status load_voxels(cw_volume v, size_t bytes, reading *r, const cw_read_desc *desc,
                              cw_volume *volume, cw_error *err)
@@ -192,8 +201,8 @@ static cw_status load_voxels(cw_volume v, size_t bytes, reading *r, const cw_rea
     cw_status st = CW_OK;
     if (!r->low || !r->high || !v.owned)
         st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of voxels", bytes);
-    else if (s->slot_count && s->slots[0].label)
-        memset(r->voxels, 0, bytes); /* what no label claims */
+    else if (s->sparse)
+        fill_voxels(s, r->voxels, bytes);
     if (st == CW_OK)
         st = read_slots(r, &desc->progress, err);
     cwi_free(r->low);

@@ -29,6 +29,7 @@ typedef struct cwi_stack {
     bool scaled;       /* the result is slope * pixel + intercept of each plane */
     bool has_padding;  /* pixels from low to high stand for no data */
     double padding[2]; /* ... and become shape.nodata */
+    bool sparse;       /* places may have no slot: they are shape.nodata, else 0 */
     const char *size_field;
     cwi_names files; /* none: the one that is open */
     cwi_plane *planes;

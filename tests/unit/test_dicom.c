@@ -285,6 +285,25 @@ static void copies_of_a_file_are_left_out(void **state)
     cw_volume_free(&v);
 }
 
+/* Two versions of one image under one identity: a name means its own. */
+static void of_copies_the_named_one_is_read(void **state)
+{
+    (void)state;
+    for (int n = 0; n < 2; n++) {
+        char name[16];
+        uint16_t pixels[PIXELS];
+        cw_volume v;
+        cw_error err = {0};
+        for (int i = 0; i < PIXELS; i++)
+            pixels[i] = (uint16_t)(50 + n);
+        snprintf(name, sizeof name, "%d", n);
+        test_image_write(&(test_image){.pixels = pixels}, name);
+        assert_ok(read_back(name, &v, &err), err);
+        assert_near(cw_volume_value(&v, 0, 0, 0), 50 + n, 0);
+        cw_volume_free(&v);
+    }
+}
+
 static void two_images_at_some_places_are_refused(void **state)
 {
     (void)state;
@@ -511,15 +530,18 @@ typedef struct frame {
     int segment;
 } frame;
 
-static void put_head(test_dicom *d, bool segments, const char *frames, unsigned bits)
+static const char ENHANCED_CT[] = "1.2.840.10008.5.1.4.1.1.2.1",
+                  SEGMENTATION[] = "1.2.840.10008.5.1.4.1.1.66.4",
+                  LABEL_MAP[] = "1.2.840.10008.5.1.4.1.1.66.7";
+
+static void put_head(test_dicom *d, const char *sop_class, const char *frames, unsigned bits)
 {
-    test_dicom_begin(d, TEST_DICOM_EXPLICIT);
-    test_dicom_text(d, 0x00080016, "UI",
-                    segments ? "1.2.840.10008.5.1.4.1.1.66.4" : "1.2.840.10008.5.1.4.1.1.2.1");
+    test_dicom_text(d, 0x00080016, "UI", sop_class);
     test_dicom_text(d, 0x00080018, "UI", "1.2.3.9");
     test_dicom_text(d, 0x0020000e, "UI", "1.2.3");
     test_dicom_u16(d, 0x00280002, 1);
-    test_dicom_text(d, 0x00280004, "CS", "MONOCHROME2");
+    test_dicom_text(d, 0x00280004, "CS",
+                    sop_class == LABEL_MAP ? "PALETTE COLOR" : "MONOCHROME2");
     test_dicom_text(d, 0x00280008, "IS", frames);
     test_dicom_u16(d, 0x00280010, ROWS);
     test_dicom_u16(d, 0x00280011, COLUMNS);
@@ -527,6 +549,8 @@ static void put_head(test_dicom *d, bool segments, const char *frames, unsigned 
     test_dicom_u16(d, 0x00280101, bits);
     test_dicom_u16(d, 0x00280102, bits - 1);
     test_dicom_u16(d, 0x00280103, 0);
+    if (sop_class == LABEL_MAP)
+        test_dicom_u16(d, 0x00280120, 7);
     test_dicom_open_sequence(d, 0x52009229); /* SharedFunctionalGroupsSequence */
     test_dicom_open_item(d);
     test_dicom_open_sequence(d, 0x00209116);
@@ -544,17 +568,25 @@ static void put_head(test_dicom *d, bool segments, const char *frames, unsigned 
     test_dicom_close_sequence(d);
 }
 
-static void write_frames(const char *name, bool segments, const frame *frames, int count,
-                         const void *pixels, size_t bytes)
+/* All but the pixels. */
+static void begin_frames(test_dicom *d, test_dicom_syntax syntax, const char *sop_class,
+                         const frame *frames, int count)
 {
-    test_dicom d;
     char number[8];
     snprintf(number, sizeof number, "%d", count);
-    put_head(&d, segments, number, segments ? 1 : 8);
-    test_dicom_open_sequence(&d, 0x52009230); /* PerFrameFunctionalGroupsSequence */
+    test_dicom_begin(d, syntax);
+    put_head(d, sop_class, number, sop_class == SEGMENTATION ? 1 : 8);
+    test_dicom_open_sequence(d, 0x52009230); /* PerFrameFunctionalGroupsSequence */
     for (int n = 0; n < count; n++)
-        put_frame(&d, frames[n].position, frames[n].slope, frames[n].segment);
-    test_dicom_close_sequence(&d);
+        put_frame(d, frames[n].position, frames[n].slope, frames[n].segment);
+    test_dicom_close_sequence(d);
+}
+
+static void write_frames(const char *name, const char *sop_class, const frame *frames,
+                         int count, const void *pixels, size_t bytes)
+{
+    test_dicom d;
+    begin_frames(&d, TEST_DICOM_EXPLICIT, sop_class, frames, count);
     test_dicom_bytes(&d, 0x7fe00010, "OB", pixels, bytes);
     test_file_write(test_path(name), d.bytes, d.size);
     test_dicom_free(&d);
@@ -567,7 +599,7 @@ static void frames_have_a_place_each(void **state)
     uint8_t pixels[3 * PIXELS];
     for (int n = 0; n < 3 * PIXELS; n++)
         pixels[n] = (uint8_t)n;
-    write_frames("frames.dcm", false, frames, 3, pixels, sizeof pixels);
+    write_frames("frames.dcm", ENHANCED_CT, frames, 3, pixels, sizeof pixels);
     cw_volume v = read_all(NULL);
     static const int order[] = {1, 2, 0};
     assert_true(v.dim[2] == 3 && v.type == CW_U8 && v.slope == 2 && v.intercept == 1);
@@ -585,7 +617,7 @@ static void segments_become_labels(void **state)
     const frame frames[] = {
         {"0\\0\\0", NULL, 3}, {"0\\0\\6", NULL, 3}, {"0\\0\\0", NULL, 1}, {"0\\0\\2", NULL, 1}};
     const uint8_t bits[6] = {0x0f, 0xf0, 0xff, 0xff, 0x01, 0x00};
-    write_frames("seg.dcm", true, frames, 4, bits, sizeof bits);
+    write_frames("seg.dcm", SEGMENTATION, frames, 4, bits, sizeof bits);
     cw_volume v = read_all(NULL);
     assert_true(v.dim[2] == 4 && v.type == CW_U8);
     for (size_t k = 0; k < 4; k++)
@@ -601,6 +633,65 @@ static void segments_become_labels(void **state)
             assert_near(cw_volume_value(&v, n % COLUMNS, n / COLUMNS, k), label, 0);
         }
     cw_volume_free(&v);
+}
+
+/* Pixels are numbers of segments, whatever colours a palette has for them; the slice between is
+ * left out, and padding. */
+static void label_maps_have_their_slices(void **state)
+{
+    (void)state;
+    const frame frames[] = {{"0\\0\\4", NULL, 0}, {"0\\0\\0", NULL, 0}};
+    uint8_t pixels[2 * PIXELS];
+    for (int n = 0; n < 2 * PIXELS; n++)
+        pixels[n] = (uint8_t)(n % 5);
+    write_frames("map.dcm", LABEL_MAP, frames, 2, pixels, sizeof pixels);
+    cw_volume v = read_all(NULL);
+    assert_true(v.dim[2] == 3 && v.type == CW_U8);
+    check_affine(&v, (const double[]){0.25, 0, 0, 0, 0, 0.5, 0, 0, 0, 0, 2, 0});
+    assert_true(v.has_nodata && v.nodata == 7);
+    for (size_t k = 0; k < 3; k++)
+        for (size_t n = 0; n < PIXELS; n++)
+            assert_int_equal(((const uint8_t *)v.data)[k * PIXELS + n],
+                             k == 1 ? 7 : pixels[n + (k == 0) * PIXELS]);
+    cw_volume_free(&v);
+
+    const frame twice[] = {{"0\\0\\0", NULL, 0}, {"0\\0\\0", NULL, 0}};
+    write_frames("map.dcm", LABEL_MAP, twice, 2, pixels, sizeof pixels);
+    assert_refused(NULL, CW_ERR_UNSAFE, "two frames of the label map stand at 0 mm");
+}
+
+/* Twelve bits a frame, packed into two bytes, and those as run lengths. */
+static void runs_of_bits_are_read(void **state)
+{
+    (void)state;
+    const frame frames[] = {{"0\\0\\0", NULL, 1}, {"0\\0\\2", NULL, 2}};
+    const uint8_t bits[2][2] = {{0xa5, 0x09}, {0x3c, 0x3c}};
+    for (int short_by = 0; short_by < 2; short_by++) {
+        test_dicom d;
+        uint8_t rle[64 + 4] = {1, 0, 0, 0, 64};
+        begin_frames(&d, TEST_DICOM_RLE, SEGMENTATION, frames, 2);
+        test_dicom_open_fragments(&d);
+        rle[64] = 1; /* two bytes as they are */
+        memcpy(rle + 65, bits[0], 2);
+        test_dicom_fragment(&d, rle, sizeof rle);
+        rle[64] = 257 - 2; /* one of them twice */
+        rle[65] = bits[1][0];
+        test_dicom_fragment(&d, rle, sizeof rle - 2 - 2 * (size_t)short_by);
+        test_dicom_close_sequence(&d);
+        test_file_write(test_path("rle.dcm"), d.bytes, d.size);
+        test_dicom_free(&d);
+        if (short_by) {
+            assert_refused(NULL, CW_ERR_FORMAT, "its run lengths end early");
+            continue;
+        }
+        cw_volume v = read_all(NULL);
+        assert_int_equal(v.dim[2], 2);
+        for (size_t k = 0; k < 2; k++)
+            for (size_t n = 0; n < PIXELS; n++)
+                assert_near(cw_volume_value(&v, n % COLUMNS, n / COLUMNS, k),
+                            (bits[k][n / 8] >> n % 8 & 1) * (int)(k + 1), 0);
+        cw_volume_free(&v);
+    }
 }
 
 /* --- hostile and damaged ----------------------------------------------------------------- */
@@ -633,7 +724,7 @@ static void sizes_are_held_against_the_file(void **state)
     assert_refused(NULL, CW_ERR_FORMAT, "1 frames of 30 bytes");
     const frame one = {"0\\0\\0", NULL, 0};
     uint8_t pixels[PIXELS] = {0};
-    write_frames("big", false, &one, 1, pixels, sizeof pixels);
+    write_frames("big", ENHANCED_CT, &one, 1, pixels, sizeof pixels);
     size_t size;
     char *bytes = test_file_read(test_path("big"), &size);
     for (size_t i = 0; i + 10 < size; i++) /* NumberOfFrames */
@@ -744,7 +835,7 @@ static void regions_are_crops(void **state)
     test_folder_make(NULL);
     const frame frames[] = {{"0\\0\\0", NULL, 3}, {"0\\0\\6", NULL, 3}, {"0\\0\\2", NULL, 1}};
     const uint8_t bits[5] = {0x5f, 0xf0, 0xa7, 0x3c, 0x81};
-    write_frames("seg.dcm", true, frames, 3, bits, sizeof bits);
+    write_frames("seg.dcm", SEGMENTATION, frames, 3, bits, sizeof bits);
     check_regions("", NULL);
 }
 
@@ -769,6 +860,7 @@ int main(void)
         TEST(rounded_places_are_even),
         TEST(several_series_have_to_be_chosen_from),
         TEST(copies_of_a_file_are_left_out),
+        TEST(of_copies_the_named_one_is_read),
         TEST(two_images_at_some_places_are_refused),
         TEST(as_many_images_everywhere_are_steps),
         TEST(geometry_that_is_missing_is_asked_for),
@@ -778,6 +870,8 @@ int main(void)
         TEST(runs_are_read),
         TEST(frames_have_a_place_each),
         TEST(segments_become_labels),
+        TEST(label_maps_have_their_slices),
+        TEST(runs_of_bits_are_read),
         TEST(every_cut_is_an_error),
         TEST(sizes_are_held_against_the_file),
         TEST(deep_nesting_is_survived),
