@@ -1,6 +1,7 @@
 // DCMTK behind plain C, the first half: from a file to its facts.
 #include "core/guard.hpp"
 #include "core/text.h"
+#include "formats/dicom_csa.h"
 #include "formats/dicom_file.hpp"
 
 #include <dcmtk/dcmdata/dcrledrg.h>
@@ -10,6 +11,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 
 namespace cw
 {
@@ -70,6 +72,12 @@ bool numbers_of(DcmItem *item, const DcmTagKey &tag, unsigned count, double *out
 template <size_t size> void copy_text(char (&to)[size], const OFString &text)
 {
     std::snprintf(to, size, "%s", text.c_str());
+}
+
+void refuse(cwi_dicom_facts *f, const char *why)
+{
+    if (why && !f->refusal[0])
+        copy_text(f->refusal, why);
 }
 
 DcmItem *first_item(DcmItem *item, const DcmTagKey &sequence)
@@ -295,6 +303,101 @@ void take_frames(DcmItem *data, cwi_dicom_facts *facts)
     }
 }
 
+// --- mosaics
+// -----------------------------------------------------------------------------------
+
+// Siemens scanners show the slices of one moment side by side.
+bool is_mosaic(DcmItem *data, const PixelLayout &l)
+{
+    for (unsigned long n = 0; n < 16; n++)
+        if (text_of(data, DCM_ImageType, n) == "MOSAIC")
+            return l.frames == 1;
+    return false;
+}
+
+// The element of the private group that a name has reserved; NULL where there is none.
+const Uint8 *private_bytes(DcmItem *data, Uint16 group, const char *name, Uint16 number,
+                           size_t *size)
+{
+    for (unsigned block = 0x10; block < 0x100; block++) {
+        DcmElement *element = nullptr;
+        Uint8 *bytes = nullptr;
+        if (text_of(data, DcmTagKey(group, Uint16(block))) != name ||
+            data->findAndGetElement(DcmTagKey(group, Uint16(block << 8 | number)), element)
+                .bad() ||
+            element->getUint8Array(bytes).bad() || !bytes)
+            continue;
+        *size = element->getLength();
+        return bytes;
+    }
+    return nullptr;
+}
+
+// Reads how many slices there are, and where they go; returns why not.
+const char *read_mosaic(DcmItem *data, const PixelLayout &l, Mosaic &m)
+{
+    size_t size = 0;
+    double count = 0;
+    const Uint8 *csa = private_bytes(data, 0x0029, "SIEMENS CSA HEADER", 0x10, &size);
+    if (!csa)
+        return "it is a mosaic of slices, and has no CSA header (0029,1010) that says where "
+               "they lie";
+    if (!cwi_csa_numbers(csa, size, "NumberOfImagesInMosaic", 1, &count) ||
+        !cwi_csa_numbers(csa, size, "SliceNormalVector", 3, m.normal))
+        return "it is a mosaic of slices, and its CSA header (0029,1010) is damaged or has no "
+               "NumberOfImagesInMosaic or SliceNormalVector";
+    if (!(count >= 1 && count <= 4096) || count != std::floor(count))
+        return "NumberOfImagesInMosaic of its CSA header is not from 1 to 4096";
+    m.count = uint32_t(count);
+    m.across = uint32_t(std::ceil(std::sqrt(count)));
+    if (l.columns % m.across || l.rows % m.across)
+        return "it is a mosaic of slices, and Rows and Columns are no multiples of a slice's";
+    return nullptr;
+}
+
+// The stated place is that of a slice as large as the mosaic, around the same middle.
+const char *place_slices(const Mosaic &m, cwi_dicom_facts *f)
+{
+    cwi_dicom_frame *frames = reinterpret_cast<cwi_dicom_frame *>(f + 1), first = frames[0];
+    const unsigned needed =
+        CWI_DICOM_POSITION | CWI_DICOM_ORIENTATION | CWI_DICOM_SPACING | CWI_DICOM_BETWEEN;
+    const double(&a)[2][3] = first.axes;
+    double along = 0;
+    if ((first.has & needed) != needed || !(first.between > 0))
+        return "it is a mosaic of slices without one of ImagePositionPatient, "
+               "ImageOrientationPatient, PixelSpacing and SpacingBetweenSlices";
+    for (int c = 0; c < 3; c++) {
+        const int d = (c + 1) % 3, e = (c + 2) % 3;
+        along += m.normal[c] * (a[0][d] * a[1][e] - a[0][e] * a[1][d]);
+        first.position[c] +=
+            (m.across - 1) / 2.0 *
+            (a[0][c] * first.spacing[0] * f->columns + a[1][c] * first.spacing[1] * f->rows);
+    }
+    if (!(std::fabs(std::fabs(along) - 1) < 1e-2))
+        return "SliceNormalVector of its CSA header is not normal to ImageOrientationPatient";
+    for (uint32_t n = 0; n < f->frame_count; n++) {
+        frames[n] = first;
+        for (int c = 0; c < 3; c++)
+            frames[n].position[c] += n * first.between * m.normal[c];
+    }
+    return nullptr;
+}
+
+void unfold(DicomFile &d, cwi_dicom_facts *f)
+{
+    d.mosaic = Mosaic();
+    if (!is_mosaic(d.data(), d.layout))
+        return;
+    const char *why = read_mosaic(d.data(), d.layout, d.mosaic);
+    if (!why) {
+        f->columns /= d.mosaic.across;
+        f->rows /= d.mosaic.across;
+        f->frame_count = d.mosaic.count;
+        why = place_slices(d.mosaic, f);
+    }
+    refuse(f, why);
+}
+
 // --- the file
 // ----------------------------------------------------------------------------------
 
@@ -344,12 +447,6 @@ const char *check_sizes(const PixelLayout &l)
                                         : nullptr;
 }
 
-void refuse(cwi_dicom_facts *f, const char *why)
-{
-    if (why && !f->refusal[0])
-        copy_text(f->refusal, why);
-}
-
 cw_status take_facts(DicomFile &d, cwi_dicom_facts *f, size_t room, cw_error *err)
 {
     DcmDataset *data = d.data();
@@ -384,21 +481,30 @@ cw_status take_facts(DicomFile &d, cwi_dicom_facts *f, size_t room, cw_error *er
     f->frame_count = l.frames;
     take_padding(data, l, f);
     take_frames(data, f);
+    unfold(d, f);
     return CW_OK;
 }
 
 cw_status copy_rows(DicomFile &d, const cwi_plane_request *q, void *shared, cw_error *err)
 {
     const PixelLayout &l = d.layout;
-    if (!d.file || q->plane >= l.frames || q->first_row > l.rows ||
-        q->row_count > l.rows - q->first_row)
+    const Mosaic &m = d.mosaic;
+    const bool unfolded = m.count > 1;
+    const uint32_t rows = l.rows / m.across, frame = unfolded ? 0 : q->plane;
+    if (!d.file || (unfolded ? q->plane >= m.count : q->plane >= l.frames) ||
+        q->first_row > rows || q->row_count > rows - q->first_row)
         return cw_fail(err, CW_ERR_FORMAT, "frame %u has no rows %u to %u", q->plane,
                        q->first_row, q->first_row + q->row_count);
-    cw_status st = q->plane == d.decoded ? CW_OK : decode_frame(d, q->plane, err);
-    const size_t row = size_t(l.columns) * l.samples * cw_type_size(l.type);
-    if (st == CW_OK)
-        std::memcpy(shared, d.pixels.data() + q->first_row * row, q->row_count * row);
-    return st;
+    cw_status st = frame == d.decoded ? CW_OK : decode_frame(d, frame, err);
+    if (st != CW_OK)
+        return st;
+    const size_t all = size_t(l.columns) * l.samples * cw_type_size(l.type);
+    const size_t row = all / m.across, tile = unfolded ? q->plane : 0;
+    const unsigned char *from =
+        d.pixels.data() + tile % m.across * row + (tile / m.across * rows + q->first_row) * all;
+    for (uint32_t n = 0; n < q->row_count; n++)
+        std::memcpy(static_cast<char *>(shared) + n * row, from + n * all, row);
+    return CW_OK;
 }
 
 cw_status work(void *state, int fd, const void *request, void *shared, cw_error *err)

@@ -25,11 +25,18 @@ struct PixelLayout {
     } // numbers of a frame
 };
 
+// Slices side by side in one image, row by row; without a mosaic it is one by one.
+struct Mosaic {
+    uint32_t across = 1, count = 1;
+    double normal[3] = {0, 0, 0}; // from a slice to the next one
+};
+
 struct DicomFile {
     int fd = -1;
     std::unique_ptr<FileStream> stream;
     std::unique_ptr<DcmFileFormat> file;
     PixelLayout layout;
+    Mosaic mosaic;
     std::vector<unsigned char> pixels; // of the frame decoded last
     int64_t decoded = -1;
     ~DicomFile()

@@ -142,12 +142,14 @@ static void put_identity(const test_image *m, test_dicom *d)
     char text[96];
     const char *series = or_else(m->series, "1.2.3");
     snprintf(text, sizeof text, "%s.%d", series, m->instance);
+    put_text_unless(d, 0x00080008, "CS", m->type);
     test_dicom_text(d, 0x00080016, "UI", "1.2.840.10008.5.1.4.1.1.2");
     test_dicom_text(d, 0x00080018, "UI", or_else(m->identity, text));
     test_dicom_text(d, 0x00080020, "DA", "19700102");
     test_dicom_text(d, 0x00080060, "CS", "CT");
     test_dicom_text(d, 0x00100010, "PN", "DOE^JANE");
     test_dicom_text(d, 0x00100020, "LO", "SECRET-4711");
+    put_text_unless(d, 0x00180088, "DS", m->between);
     put_text_unless(d, 0x00181060, "DS", m->trigger);
     test_dicom_text(d, 0x0020000e, "UI", series);
     snprintf(text, sizeof text, "%d", m->number);
@@ -203,6 +205,10 @@ void test_image_make(const test_image *m, test_dicom *d)
         test_dicom_u16(d, 0x00280121, (unsigned)atoi(m->padding_limit) & 0xffff);
     put_text_unless(d, 0x00281052, "DS", m->intercept);
     put_text_unless(d, 0x00281053, "DS", m->slope);
+    if (m->csa) {
+        test_dicom_text(d, 0x00290011, "LO", "SIEMENS CSA HEADER");
+        test_dicom_bytes(d, 0x00291110, "OB", m->csa, m->csa_bytes);
+    }
     if (m->syntax != TEST_DICOM_RLE)
         put_pixels(m, d, (size_t)columns * rows * samples, bits);
 }

@@ -57,8 +57,12 @@ typedef struct test_image {
     const char *slope, *intercept; /* NULL: left out */
     const char *padding, *padding_limit;
     const char *trigger; /* TriggerTime, NULL: left out */
-    const void *pixels;  /* columns x rows x samples; NULL: counting from 0 */
-    size_t pixel_bytes;  /* 0: as many as the sizes ask for */
+    const char *type;    /* ImageType, NULL: left out */
+    const char *between; /* SpacingBetweenSlices, NULL: left out */
+    const void *csa;     /* Siemens' CSA header, NULL: left out */
+    size_t csa_bytes;
+    const void *pixels; /* columns x rows x samples; NULL: counting from 0 */
+    size_t pixel_bytes; /* 0: as many as the sizes ask for */
 } test_image;
 
 /* Makes such a file in memory, or under a name in the test's folder. */
