@@ -95,7 +95,7 @@ typedef struct cli_input {
          0,                                                                                    \
          CLI_FLAG,                                                                             \
          NULL,                                                                                 \
-         "follow headers to voxel files outside their own folder (off)",                       \
+         "follow headers to files outside their own folder, and links in a folder (off)",      \
          CLI_INPUT_ROW(args, allow_external)},                                                 \
         {"no-sandbox",                                                                         \
          0,                                                                                    \

@@ -4,8 +4,10 @@
 #include "formats/input.h"
 
 #include <string.h>
+#include <zlib.h>
 
-enum { WINDOW = 4096, PREAMBLE = 128 };
+enum { WINDOW = 4096, PREAMBLE = 128, MOST_ELEMENTS = 1 << 23 };
+static const uint64_t MOST_INFLATED = (uint64_t)1 << 33;
 static const uint32_t UNDEFINED = 0xffffffff;
 
 /* A sequence or an item that has begun. */
@@ -18,8 +20,12 @@ typedef struct walk {
     int fd;
     uint64_t size, at;
     unsigned char bytes[WINDOW];
-    uint64_t start; /* of the bytes in the file */
+    uint64_t start; /* of the bytes in the file, or in what it inflates to */
     size_t held;
+    bool deflated; /* then: */
+    z_stream inflater;
+    unsigned char packed[WINDOW];
+    uint64_t packed_at; /* behind those, in the file */
     bool big_endian;
     level levels[CWI_DICOM_DEEPEST + 1];
     int depth; /* the last of levels; 0: the file itself */
@@ -31,9 +37,48 @@ typedef struct element {
     uint64_t value; /* where it is */
 } element;
 
+/* Inflates until the bytes are full, or there is no more. */
+static void inflate_more(walk *w, cw_error *err)
+{
+    z_stream *z = &w->inflater;
+    int code = Z_OK;
+    z->next_out = w->bytes + w->held;
+    z->avail_out = (uInt)(WINDOW - w->held);
+    while (z->avail_out > 0 && code == Z_OK) {
+        size_t got = z->avail_in;
+        if (got == 0 &&
+            cwi_input_read_at(w->fd, w->packed_at, w->packed, WINDOW, &got, err) == CW_OK) {
+            z->next_in = w->packed;
+            z->avail_in = (uInt)got;
+            w->packed_at += got;
+        }
+        code = got ? inflate(z, Z_NO_FLUSH) : Z_BUF_ERROR;
+    }
+    w->held = WINDOW - z->avail_out;
+}
+
+/* As peek(): what lies in front of the bytes is given up. */
+static const unsigned char *peek_inflated(walk *w, uint64_t at, size_t count, cw_error *err)
+{
+    size_t before = SIZE_MAX;
+    while (at + count > w->start + w->held && w->held != before && at <= MOST_INFLATED) {
+        const uint64_t end = w->start + w->held;
+        const size_t passed = (size_t)((at < end ? at : end) - w->start);
+        w->held -= passed;
+        w->start += passed;
+        memmove(w->bytes, w->bytes + passed, w->held);
+        before = w->held;
+        inflate_more(w, err);
+    }
+    return at >= w->start && at + count <= w->start + w->held ? w->bytes + (at - w->start)
+                                                              : NULL;
+}
+
 /* The next bytes; NULL where the file ends first. */
 static const unsigned char *peek(walk *w, uint64_t at, size_t count, cw_error *err)
 {
+    if (w->deflated)
+        return peek_inflated(w, at, count, err);
     if (at > w->size || w->size - at < count)
         return NULL;
     if (at < w->start || at + count > w->start + w->held) {
@@ -106,7 +151,11 @@ static cw_status walk_elements(walk *w, cw_error *err)
 {
     int pixels = 0; /* the depth at which they begin; 0: not in them */
     element e;
-    for (;;) {
+    for (int count = 0;; count++) {
+        if (count == MOST_ELEMENTS)
+            return cw_fail(err, CW_ERR_FORMAT,
+                           "it has more than %d elements; it is damaged or hostile",
+                           MOST_ELEMENTS);
         while (w->depth > 0 && w->at >= w->levels[w->depth].end)
             w->depth--;
         pixels = pixels > w->depth ? 0 : pixels;
@@ -135,6 +184,15 @@ static cw_status walk_elements(walk *w, cw_error *err)
     }
 }
 
+/* Goes on with what the bytes from here on inflate to; false: no memory. */
+static bool begin_inflating(walk *w)
+{
+    w->packed_at = w->at;
+    w->at = w->start = w->held = 0;
+    w->deflated = inflateInit2(&w->inflater, -MAX_WBITS) == Z_OK;
+    return w->deflated;
+}
+
 /* Reads the meta header, for the syntax of what follows; false: not to be walked over. */
 static bool read_meta(walk *w, cw_error *err)
 {
@@ -143,12 +201,12 @@ static bool read_meta(walk *w, cw_error *err)
     const unsigned char *b = peek(w, PREAMBLE, 4, err);
     char syntax[32] = "";
     element e;
-    if (!b || memcmp(b, "DICM", 4) != 0) { /* the bare elements, as a rule implicit */
-        b = peek(w, 0, 6, err);
-        w->levels[0].implicit = b && !(b[4] >= 'A' && b[5] >= 'A');
-        return b != NULL;
+    w->at = b && memcmp(b, "DICM", 4) == 0 ? PREAMBLE + 4 : 0;
+    b = peek(w, w->at, 6, err);
+    if (w->at == 0 && b && b[0] != 2) { /* the bare elements, as a rule implicit */
+        w->levels[0].implicit = !(b[4] >= 'A' && b[5] >= 'A');
+        return true;
     }
-    w->at = PREAMBLE + 4;
     while (read_element(w, false, &e, err) && e.tag >> 16 == 2) {
         const unsigned char *value = peek(w, e.value, e.length < 31 ? e.length : 0, err);
         if (e.tag == 0x00020010 && value && e.length < 31)
@@ -157,12 +215,18 @@ static bool read_meta(walk *w, cw_error *err)
     }
     w->levels[0].implicit = strcmp(syntax, implicit) == 0;
     w->big_endian = strcmp(syntax, big) == 0;
-    return strcmp(syntax, deflated) != 0;
+    return strcmp(syntax, deflated) != 0 || begin_inflating(w);
 }
 
 cw_status cwi_dicom_check_depth(int fd, uint64_t size, cw_error *err)
 {
     walk w = {.fd = fd, .size = size};
     w.levels[0].end = UINT64_MAX;
-    return read_meta(&w, err) ? walk_elements(&w, err) : CW_OK;
+    cw_status st = read_meta(&w, err) ? walk_elements(&w, err) : CW_OK;
+    if (w.deflated)
+        inflateEnd(&w.inflater);
+    if (st == CW_OK && w.deflated && w.at > MOST_INFLATED)
+        st = cw_fail(err, CW_ERR_LIMIT, "its data inflate to more than %llu bytes",
+                     (unsigned long long)MOST_INFLATED);
+    return st;
 }

@@ -4,6 +4,7 @@
 #include "formats/dicom_csa.h"
 #include "formats/dicom_file.hpp"
 
+#include <dcmtk/dcmdata/dccodec.h>
 #include <dcmtk/dcmdata/dcrledrg.h>
 #include <dcmtk/dcmjpeg/djdecode.h>
 #include <dcmtk/dcmjpls/djdecode.h>
@@ -59,6 +60,18 @@ int64_t integer_of(DcmItem *item, const DcmTagKey &tag)
     double value;
     return number_of(item, tag, 0, &value) && std::fabs(value) < 1e15 ? int64_t(value)
                                                                       : INT64_MIN;
+}
+
+// 0 where it is stated, and no whole number above 0.
+uint32_t frames_of(DcmItem *data)
+{
+    double value;
+    if (text_of(data, DCM_NumberOfFrames).empty())
+        return 1;
+    return number_of(data, DCM_NumberOfFrames, 0, &value) && value >= 1 &&
+                   value <= UINT32_MAX && value == std::floor(value)
+               ? uint32_t(value)
+               : 0;
 }
 
 bool numbers_of(DcmItem *item, const DcmTagKey &tag, unsigned count, double *out)
@@ -149,7 +162,7 @@ Stored find_pixels(DcmItem *data, PixelLayout &l, cwi_dicom_kind kind, bool comp
     l.columns = count_of(data, DCM_Columns, 0);
     l.rows = count_of(data, DCM_Rows, 0);
     l.samples = count_of(data, DCM_SamplesPerPixel, 1);
-    l.frames = count_of(data, DCM_NumberOfFrames, 1);
+    l.frames = frames_of(data);
     l.allocated = count_of(data, DCM_BitsAllocated, 0);
     l.stored = count_of(data, DCM_BitsStored, l.allocated);
     l.high = count_of(data, DCM_HighBit, l.stored - 1);
@@ -401,6 +414,43 @@ void unfold(DicomFile &d, cwi_dicom_facts *f)
 // --- the file
 // ----------------------------------------------------------------------------------
 
+// What the file itself says its pixels are stored as.
+OFString syntax_of(DicomFile &d)
+{
+    const OFString text = text_of(d.file->getMetaInfo(), DCM_TransferSyntaxUID);
+    return text.substr(0, text.find_first_not_of("0123456789."));
+}
+
+// Refuses by name what DCMTK does not know, or knows but does not decode.
+void check_syntax(DicomFile &d, cwi_dicom_facts *f)
+{
+    static const struct {
+        const char *uid, *name;
+    } unknown[] = {{"1.2.840.10008.1.2.4.110", "JPEG XL lossless"},
+                   {"1.2.840.10008.1.2.4.111", "JPEG XL recompressed"},
+                   {"1.2.840.10008.1.2.4.112", "JPEG XL"},
+                   {"1.2.840.10008.1.2.4.201", "HTJ2K lossless"},
+                   {"1.2.840.10008.1.2.4.202", "HTJ2K lossless RPCL"},
+                   {"1.2.840.10008.1.2.4.203", "HTJ2K"},
+                   {"1.2.840.10008.1.2.8.1", "frames deflated one by one"}};
+    const OFString uid = syntax_of(d);
+    const DcmXfer syntax(uid.c_str());
+    const E_TransferSyntax known = syntax.getXfer();
+    if (uid.empty()) // a file without a head says nothing
+        return;
+    if (known != EXS_Unknown &&
+        (!syntax.isEncapsulated() || known == EXS_JPEG2000LosslessOnly ||
+         known == EXS_JPEG2000 ||
+         DcmCodecList::canChangeCoding(known, EXS_LittleEndianExplicit)))
+        return;
+    const char *name = known == EXS_Unknown ? "unknown" : syntax.getXferName();
+    for (const auto &row : unknown)
+        if (uid == row.uid)
+            name = row.name;
+    std::snprintf(f->refusal, sizeof f->refusal,
+                  "its transfer syntax %.64s (%.60s) is not read", uid.c_str(), name);
+}
+
 cw_status open_dicom(DicomFile &d, int fd, uint64_t size, cw_error *err)
 {
     d.close_file();
@@ -442,7 +492,7 @@ const char *check_sizes(const PixelLayout &l)
     return l.columns < 1 || l.rows < 1  ? "Rows or Columns is missing or 0"
            : l.samples < 1              ? "SamplesPerPixel is 0"
            : row > CWI_PLANES_SHARED    ? "a row of pixels takes more than 64 MiB"
-           : l.frames < 1               ? "NumberOfFrames is 0"
+           : l.frames < 1               ? "NumberOfFrames is no whole number above 0"
            : l.count() > INT32_MAX / 16 ? "a frame holds more than 2^27 numbers"
                                         : nullptr;
 }
@@ -456,6 +506,11 @@ cw_status take_facts(DicomFile &d, cwi_dicom_facts *f, size_t room, cw_error *er
     const Stored s = find_pixels(data, d.layout, kind, is_compressed(d));
     if (!s.element)
         return CW_OK; // no image, and no matter
+    const char *unreadable = why_unreadable(d);
+    if (unreadable)
+        refuse(f, unreadable);
+    else
+        check_syntax(d, f);
     const PixelLayout &l = d.layout;
     f->kind = kind;
     copy_text(f->series, text_of(data, DCM_SeriesInstanceUID));
@@ -471,7 +526,6 @@ cw_status take_facts(DicomFile &d, cwi_dicom_facts *f, size_t room, cw_error *er
     f->deflated = d.data()->getOriginalXfer() == EXS_DeflatedLittleEndianExplicit;
     refuse(f, s.why_not);
     refuse(f, check_sizes(l));
-    refuse(f, why_unreadable(d));
     if (f->kind == CWI_DICOM_SEGMENTATION &&
         text_of(data, DCM_SegmentationType) == "FRACTIONAL")
         refuse(f, "it is a segmentation by shares (FRACTIONAL), not by yes and no");

@@ -41,18 +41,23 @@ static cw_status scan(const cwi_input *in, cwi_names *names, cwi_planes *planes,
         return cwi_dicom_scan_files(found, in, names, NULL, planes, err);
     cw_status st = facts_of_file(in, planes, &facts, err);
     if (st == CW_OK)
-        st = cwi_files_beside(in, &beside, err);
+        st = cwi_files_beside(in, &beside, &found->links, err);
     if (st == CW_OK)
         st = cwi_dicom_scan_files(found, in, &beside, &facts, planes, err);
     cwi_names_free(&beside);
     return st;
 }
 
-static void note_scan(const cw_read_desc *desc, const cwi_dicom_scan *found)
+/* Of a folder all of it counts, of a file's neighbours what may have been meant. */
+static void note_scan(const cw_read_desc *desc, const cwi_dicom_scan *found, bool folder)
 {
-    if (found->strangers)
+    cwi_note_links(desc, found->links);
+    if (found->damaged)
+        cwi_note(desc, "left out, as not readable: %zu files beside it, the first %s",
+                 found->damaged, found->damage);
+    if (folder && found->strangers)
         cwi_note(desc, "left out, as no DICOM images: %zu of its files", found->strangers);
-    if (found->copies)
+    if (folder && found->copies)
         cwi_note(desc, "left out, as copies of others: %zu images", found->copies);
 }
 
@@ -69,8 +74,8 @@ cw_status cwi_dicom_read(const cwi_input *in, cwi_names *names, const cw_read_de
         st = scan(in, names, &planes, &found, err);
     if (st == CW_OK)
         st = cwi_dicom_choose(&found, desc->series, &series, err);
-    if (st == CW_OK && names)
-        note_scan(desc, &found);
+    if (st == CW_OK)
+        note_scan(desc, &found, names != NULL);
     if (st == CW_OK)
         st = cwi_dicom_stack(&found, series, desc, &stack, &findings, err);
     if (st == CW_OK)

@@ -13,20 +13,44 @@
 
 enum { MOST_COMPRESSION = 65536, MOST_DEFLATION = 1032 };
 
+static bool is_capital(unsigned char c)
+{
+    return c >= 'A' && c <= 'Z';
+}
+
+/* Passes an element of a few bytes in little-endian order; false where none of groups 2 and 8
+ * is there, or its tag does not come behind *tag. */
+static bool pass_element(const unsigned char *head, size_t size, size_t *at, uint32_t *tag)
+{
+    enum { LONGEST = 128 };
+    if (size < *at + 8)
+        return false;
+    const unsigned char *b = head + *at;
+    const uint32_t mine = (uint32_t)(b[0] | b[1] << 8) << 16 | (uint32_t)(b[2] | b[3] << 8);
+    const bool has_vr = is_capital(b[4]) && is_capital(b[5]);
+    const bool wide = has_vr && memcmp(b + 4, "OB", 2) == 0;
+    if (wide && size < *at + 12)
+        return false;
+    const uint32_t length = wide     ? b[8] | (uint32_t)(b[9] | b[10] | b[11]) << 8
+                            : has_vr ? (uint32_t)(b[6] | b[7] << 8)
+                                     : b[4] | (uint32_t)(b[5] | b[6] | b[7]) << 8;
+    if ((mine >> 16 != 2 && mine >> 16 != 8) || mine <= *tag || length > LONGEST || length % 2)
+        return false;
+    *tag = mine;
+    *at += (wide ? 12 : 8) + length;
+    return true;
+}
+
+/* Without a preamble there is nothing but elements: the first three must be some that come
+ * first, one behind the other. */
 bool cwi_dicom_sniff(const unsigned char *head, size_t size)
 {
-    static const unsigned char numbers[] = {0x05, 0x08, 0x10, 0x12, 0x16};
+    uint32_t tag = 0;
+    size_t at = 0;
     if (size >= 132 && memcmp(head + 128, "DICM", 4) == 0)
         return true;
-    /* without a preamble: the first element is of group 8, and no longer than such are */
-    if (size < 16 || head[0] != 8 || head[1] != 0 || head[3] != 0)
-        return false;
-    const bool first = head[2] == 0 && head[4] == 'U' && head[5] == 'L';
-    const bool length = head[2] == 0 && head[4] == 4 && head[5] == 0 && head[6] == 0;
-    return first || length ||
-           (memchr(numbers, head[2], sizeof numbers) && head[6] + head[7] > 0 &&
-            ((head[4] >= 'A' && head[4] <= 'Z' && head[5] >= 'A' && head[5] <= 'Z') ||
-             (head[5] == 0 && head[6] == 0 && head[7] == 0)));
+    return pass_element(head, size, &at, &tag) && pass_element(head, size, &at, &tag) &&
+           pass_element(head, size, &at, &tag);
 }
 
 void cwi_dicom_scan_free(cwi_dicom_scan *scan)
@@ -152,13 +176,14 @@ cw_status cwi_dicom_facts_of(cwi_planes *planes, int fd, uint64_t size, const vo
     return st == CW_OK ? cwi_planes_facts(planes, fd, size, shared, err) : st;
 }
 
-static cw_status take_file(cwi_dicom_scan *scan, const char *name, int fd, uint64_t size,
-                           const cwi_dicom_facts *only, cwi_planes *planes, cw_error *err)
+static cw_status take_file(cwi_dicom_scan *scan, const cwi_input *in, const char *name, int fd,
+                           uint64_t size, const cwi_dicom_facts *only, cwi_planes *planes,
+                           cw_error *err)
 {
     const void *shared;
     cwi_dicom_facts f;
-    bool dicom;
-    cw_status st = is_dicom(fd, &dicom, err);
+    bool dicom = cwi_input_is_named(in, name);
+    cw_status st = dicom ? CW_OK : is_dicom(fd, &dicom, err);
     if (st != CW_OK || !dicom) {
         scan->strangers += !dicom;
         return st;
@@ -229,14 +254,8 @@ static bool is_copy(const cwi_dicom_plane *a, const cwi_dicom_plane *b)
            memcmp(a->frame.position, b->frame.position, sizeof a->frame.position) == 0;
 }
 
-static const char *base_name(const char *path)
-{
-    const char *slash = strrchr(path, '/');
-    return slash ? slash + 1 : path;
-}
-
 /* Of copies the file that was named stays, else the first. */
-static void drop_copies(cwi_dicom_scan *scan, const char *named)
+static void drop_copies(cwi_dicom_scan *scan, const cwi_input *in)
 {
     size_t kept = 0;
     for (size_t i = 0; i < scan->plane_count; i++) {
@@ -246,7 +265,7 @@ static void drop_copies(cwi_dicom_scan *scan, const char *named)
             continue;
         }
         scan->copies++;
-        if (named && strcmp(scan->files.items[p->index], named) == 0)
+        if (cwi_input_is_named(in, scan->files.items[p->index]))
             scan->planes[kept - 1] = *p;
     }
     scan->plane_count = kept;
@@ -271,11 +290,11 @@ static void label_series(cwi_dicom_scan *scan)
     }
 }
 
-static cw_status sort_into_series(cwi_dicom_scan *scan, const char *named, cw_error *err)
+static cw_status sort_into_series(cwi_dicom_scan *scan, const cwi_input *in, cw_error *err)
 {
     if (scan->plane_count)
         qsort(scan->planes, scan->plane_count, sizeof *scan->planes, compare_planes);
-    drop_copies(scan, named);
+    drop_copies(scan, in);
     for (size_t i = 0; i < scan->plane_count; i++) {
         cwi_dicom_plane *p = &scan->planes[i];
         p->series = find_series(scan, p);
@@ -293,6 +312,22 @@ static cw_status sort_into_series(cwi_dicom_scan *scan, const char *named, cw_er
     return CW_OK;
 }
 
+/* A file that nobody named must not stand in the way of one that somebody did. */
+static bool may_be_left_out(const cwi_input *in, const char *name, cw_status st)
+{
+    return !cwi_input_is_named(in, name) && st != CW_ERR_CANCELLED && st != CW_ERR_NO_MEMORY;
+}
+
+/* Its reading may have ended the library's process. */
+static cw_status leave_out(cwi_dicom_scan *scan, const char *name, cwi_planes *planes,
+                           cw_error *err)
+{
+    if (scan->damaged++ == 0)
+        snprintf(scan->damage, sizeof scan->damage, "%.100s: %.200s", name,
+                 err ? err->message : "");
+    return planes->box.open ? CW_OK : cwi_planes_restart(planes, err);
+}
+
 cw_status cwi_dicom_scan_files(cwi_dicom_scan *scan, const cwi_input *in, cwi_names *names,
                                const cwi_dicom_facts *only, cwi_planes *planes, cw_error *err)
 {
@@ -306,13 +341,15 @@ cw_status cwi_dicom_scan_files(cwi_dicom_scan *scan, const cwi_input *in, cwi_na
         planes->box.done = (double)i / (double)names->count;
         st = cwi_input_open_side(in, names->items[i], &fd, &size, err);
         if (st == CW_OK) {
-            st = take_file(scan, names->items[i], fd, size, only, planes, err);
+            st = take_file(scan, in, names->items[i], fd, size, only, planes, err);
             close(fd);
         }
+        if (st != CW_OK && only && may_be_left_out(in, names->items[i], st))
+            st = leave_out(scan, names->items[i], planes, err);
         if (st != CW_OK && st != CW_ERR_CANCELLED && names->count > 1)
             return cwi_fail_in(err, st, names->items[i]);
     }
-    return st == CW_OK ? sort_into_series(scan, only ? base_name(in->path) : NULL, err) : st;
+    return st == CW_OK ? sort_into_series(scan, in, err) : st;
 }
 
 static cw_status fail_several(const cwi_dicom_scan *scan, cw_error *err)

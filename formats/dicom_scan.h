@@ -33,6 +33,9 @@ typedef struct cwi_dicom_scan {
     size_t series_count;
     size_t strangers; /* files that are no DICOM images */
     size_t copies;    /* ... and that are there more than once */
+    size_t links;     /* beside the one that was named, left out */
+    size_t damaged;   /* files beside the one that was named */
+    char damage[320]; /* of the first of them */
 } cwi_dicom_scan;
 
 /* Has DCMTK read a file that was found to be fit for it. */
@@ -40,7 +43,8 @@ cw_status cwi_dicom_facts_of(cwi_planes *planes, int fd, uint64_t size, const vo
                              cw_error *err);
 
 /* Takes the facts of the files among names that are DICOM images, and sorts them into series.
- * only  NULL, or the facts of one file: its series, and images like it, are what is wanted
+ * only  NULL, or the facts of the file that was named: its series, and images like it, are what
+ *       is wanted; files beside it that are damaged are left out, and counted
  * Returns  CW_ERR_FORMAT for a file that is damaged, or whose facts contradict each other */
 cw_status cwi_dicom_scan_files(cwi_dicom_scan *scan, const cwi_input *in, cwi_names *names,
                                const cwi_dicom_facts *only, cwi_planes *planes, cw_error *err);

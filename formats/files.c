@@ -143,8 +143,9 @@ static cw_status take_entry(listing *l, int folder, const char *prefix, const ch
 {
     char path[1024];
     struct stat info;
-    const int follow = l->in->allow_external ? 0 : AT_SYMLINK_NOFOLLOW;
-    if (name[0] == '.' || fstatat(folder, name, &info, follow) != 0)
+    const bool named = depth == 0 && cwi_input_is_named(l->in, name); /* the user's own words */
+    const int follow = l->in->allow_external || named ? 0 : AT_SYMLINK_NOFOLLOW;
+    if ((name[0] == '.' && !named) || fstatat(folder, name, &info, follow) != 0)
         return CW_OK;
     l->links += S_ISLNK(info.st_mode);
     const int length = snprintf(path, sizeof path, "%s%s", prefix, name);
@@ -189,10 +190,12 @@ static cw_status list_all(listing *l, cw_error *err)
     return st;
 }
 
-cw_status cwi_files_beside(const cwi_input *in, cwi_names *names, cw_error *err)
+cw_status cwi_files_beside(const cwi_input *in, cwi_names *names, size_t *links, cw_error *err)
 {
     listing l = {.in = in, .names = names};
-    return list_all(&l, err);
+    cw_status st = list_all(&l, err);
+    *links = l.links;
+    return st;
 }
 
 /* --- a pattern --------------------------------------------------------------------------- */

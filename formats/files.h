@@ -23,8 +23,9 @@ cw_status cwi_files_find(cwi_input *in, const char *path, bool deep, cwi_names *
 /* Puts names into natural order. */
 void cwi_files_sort(cwi_names *names);
 
-/* Adds the files in the folder of an open input, and no deeper. */
-cw_status cwi_files_beside(const cwi_input *in, cwi_names *names, cw_error *err);
+/* Adds the files in the folder of an open input, its own among them, and no deeper; *links
+ * counts those left out. */
+cw_status cwi_files_beside(const cwi_input *in, cwi_names *names, size_t *links, cw_error *err);
 
 /* The numbers in names that are alike but for one number; false where they are not, or where it
  * has more than 15 digits. */

@@ -142,9 +142,22 @@ static cw_status open_below(int folder, const char *name, int *fd, uint64_t *siz
     return st;
 }
 
+bool cwi_input_is_named(const cwi_input *in, const char *name)
+{
+    if (!in->path || in->fd < 0)
+        return false;
+    const char *slash = strrchr(in->path, '/');
+    return strcmp(slash ? slash + 1 : in->path, name) == 0;
+}
+
 cw_status cwi_input_open_side(const cwi_input *in, const char *name, int *fd, uint64_t *size,
                               cw_error *err)
 {
+    if (cwi_input_is_named(in, name)) {
+        *fd = fcntl(in->fd, F_DUPFD_CLOEXEC, 0);
+        *size = in->size;
+        return *fd < 0 ? fail_system(err, "cannot be opened") : CW_OK;
+    }
     if (in->allow_external)
         return open_regular(in->folder, name, 0, fd, size, err);
     cw_status st = check_name(name, err);

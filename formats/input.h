@@ -23,10 +23,13 @@ void cwi_input_close(cwi_input *in);
 /* Opens a folder to find side files in; there is no file. CW_ERR_IO. */
 cw_status cwi_input_open_folder(cwi_input *in, const char *path, cw_error *err);
 
-/* Opens a file that the header names. Unless in->allow_external it must lie in the header's
- * folder or below: no absolute path, "..", scheme, backslash or percent sign, and no link on
- * the way. The file is the caller's to close. Returns CW_ERR_UNSAFE for a name that leaves the
- * folder, else as cwi_input_open(). */
+/* Whether a name in the folder is that of the file that is open. */
+bool cwi_input_is_named(const cwi_input *in, const char *name);
+
+/* Opens a file that the header names; the header itself is not looked up again. Unless
+ * in->allow_external it must lie in the header's folder or below: no absolute path, "..",
+ * scheme, backslash or percent sign, and no link on the way. The file is the caller's to close.
+ * Returns CW_ERR_UNSAFE for a name that leaves the folder, else as cwi_input_open(). */
 cw_status cwi_input_open_side(const cwi_input *in, const char *name, int *fd, uint64_t *size,
                               cw_error *err);
 

@@ -31,6 +31,16 @@ cw_status cwi_planes_open(cwi_planes *planes, const char *module, const cw_read_
     return st;
 }
 
+cw_status cwi_planes_restart(cwi_planes *planes, cw_error *err)
+{
+    const cw_progress *progress = planes->box.progress;
+    const cwi_sandbox_desc box = planes->box.desc;
+    cwi_sandbox_close(&planes->box);
+    cw_status st = cwi_sandbox_open(&planes->box, &box, err);
+    planes->box.progress = progress;
+    return st;
+}
+
 void cwi_planes_close(cwi_planes *planes)
 {
     cwi_sandbox_close(&planes->box);

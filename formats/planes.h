@@ -47,6 +47,9 @@ cw_status cwi_planes_open(cwi_planes *planes, const char *module, const cw_read_
                           cw_error *err);
 void cwi_planes_close(cwi_planes *planes);
 
+/* Starts the process again where it has ended. */
+cw_status cwi_planes_restart(cwi_planes *planes, cw_error *err);
+
 /* Hands a file over; returns its facts, or fails as the module does. Copy them, then check. */
 cw_status cwi_planes_facts(cwi_planes *planes, int fd, uint64_t file_bytes, const void **facts,
                            cw_error *err);

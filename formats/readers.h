@@ -25,6 +25,9 @@ void cwi_set_spacing(cw_volume *v, const cw_read_desc *desc);
 /* Tells the reader's caller of something found and decided on. */
 void cwi_note(const cw_read_desc *desc, const char *format, ...) CW_PRINTF(2, 3);
 
+/* Tells how many links of a folder were left out, where there are any. */
+void cwi_note_links(const cw_read_desc *desc, size_t links);
+
 /* Reads a header into a zeroed source, which the caller frees in any case. The messages name
  * the header's fields; the caller puts the file's name in front. */
 cw_status cwi_nrrd_parse(const cwi_input *in, cwi_source *src, cw_error *err);

@@ -118,6 +118,7 @@ static cw_status find_by_file(const cwi_input *in, const reader **found, cw_erro
 typedef struct opened {
     cwi_input in;
     cwi_names names;
+    size_t links; /* left out */
     bool many;
     const reader *reader; /* NULL: raw */
 } opened;
@@ -131,13 +132,16 @@ static void close_path(opened *o)
 static cw_status open_names(opened *o, const char *path, const cw_read_desc *desc,
                             cw_error *err)
 {
-    size_t links = 0;
-    cw_status st = cwi_files_find(&o->in, path, !desc->raw, &o->names, &links, err);
+    cw_status st = cwi_files_find(&o->in, path, !desc->raw, &o->names, &o->links, err);
+    if (st == CW_OK && o->names.count == 0 && o->links)
+        return cw_fail(
+            err, CW_ERR_IO,
+            "the folder holds no file, only %zu links; --allow-external follows them",
+            o->links);
     if (st == CW_OK && o->names.count == 0)
-        return cw_fail(err, CW_ERR_IO, "the folder holds no file%s",
-                       links ? ", only links, and external files are not allowed" : "");
-    if (st == CW_OK && links)
-        cwi_note(desc, "left out, as external files are not allowed: %zu links", links);
+        return cw_fail(err, CW_ERR_IO, "the folder holds no file");
+    if (st == CW_OK)
+        cwi_note_links(desc, o->links);
     return st;
 }
 
@@ -155,6 +159,38 @@ static bool is_of(const cwi_input *in, const char *name, const reader *r)
     return read && r->sniff(head, size);
 }
 
+/* Of a folder without slices: whether it holds volumes, or links. */
+static cw_status fail_no_slice(const opened *o, cw_error *err)
+{
+    char links[96] = "", all[320] = "";
+    if (o->links)
+        snprintf(links, sizeof links,
+                 "; %zu links were left out, --allow-external follows them", o->links);
+    for (size_t r = 0; r < READER_COUNT; r++) {
+        size_t count = 0;
+        const char *last = NULL;
+        for (size_t i = 0; i < o->names.count; i++)
+            if (is_of(&o->in, o->names.items[i], &readers[r])) {
+                last = o->names.items[i];
+                count++;
+            }
+        const size_t length = strlen(o->in.path);
+        if (count > 1 && !cwi_files_is_pattern(o->in.path) && strrchr(last, '.'))
+            snprintf(all, sizeof all,
+                     ", or the steps of a series by a pattern in quotes, '%.200s%s*%.16s'",
+                     o->in.path, o->in.path[length - 1] == '/' ? "" : "/", strrchr(last, '.'));
+        if (count > 0)
+            return cw_fail(err, CW_ERR_FORMAT,
+                           "none of its %zu files is a slice; volumes by themselves: %zu (%s), "
+                           "name one of them%s%s",
+                           o->names.count, count, readers[r].name, all, links);
+    }
+    return cw_fail(err, CW_ERR_FORMAT,
+                   "none of its %zu files is a slice in a format that is read (DICOM, TIFF)%s; "
+                   "headerless slices need their layout stated (--raw)",
+                   o->names.count, links);
+}
+
 static cw_status find_by_files(opened *o, cw_error *err)
 {
     for (size_t r = 0; r < READER_COUNT; r++)
@@ -163,10 +199,7 @@ static cw_status find_by_files(opened *o, cw_error *err)
                 o->reader = &readers[r];
                 return CW_OK;
             }
-    return cw_fail(err, CW_ERR_FORMAT,
-                   "none of its %zu files is a slice in a format that is read (DICOM, TIFF); "
-                   "headerless slices need their layout stated (--raw)",
-                   o->names.count);
+    return fail_no_slice(o, err);
 }
 
 static cw_status find_reader(opened *o, const cw_read_desc *desc, cw_error *err)
@@ -205,6 +238,12 @@ void cwi_note(const cw_read_desc *desc, const char *format, ...)
     vsnprintf(text, sizeof text, format, arguments);
     va_end(arguments);
     desc->note(desc->note_user, text);
+}
+
+void cwi_note_links(const cw_read_desc *desc, size_t links)
+{
+    if (links)
+        cwi_note(desc, "left out: %zu links; --allow-external follows them", links);
 }
 
 void cwi_set_spacing(cw_volume *v, const cw_read_desc *desc)

@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <zlib.h>
 
 static void put(test_dicom *d, const void *bytes, size_t size)
 {
@@ -108,8 +109,10 @@ void test_dicom_fragment(test_dicom *d, const void *bytes, size_t size)
 
 void test_dicom_begin(test_dicom *d, test_dicom_syntax syntax)
 {
-    static const char *const names[] = {"1.2.840.10008.1.2.1", "1.2.840.10008.1.2",
-                                        "1.2.840.10008.1.2.2", "1.2.840.10008.1.2.5"};
+    static const char *const names[] = {"1.2.840.10008.1.2.1",    "1.2.840.10008.1.2",
+                                        "1.2.840.10008.1.2.2",    "1.2.840.10008.1.2.5",
+                                        "1.2.840.10008.1.2.1.99", "1.2.840.10008.1.2.4.201",
+                                        "1.2.840.10008.1.2.8.1",  "1.2.3.4.5"};
     static const char zeros[128];
     *d = (test_dicom){0};
     put(d, zeros, sizeof zeros);
@@ -118,6 +121,25 @@ void test_dicom_begin(test_dicom *d, test_dicom_syntax syntax)
     test_dicom_text(d, 0x00020003, "UI", "1.2.3.4");
     test_dicom_text(d, 0x00020010, "UI", names[syntax]);
     d->syntax = syntax;
+    d->head = d->size;
+}
+
+void test_dicom_deflate(test_dicom *d)
+{
+    z_stream z = {0};
+    const size_t size = d->size - d->head;
+    unsigned char *packed = malloc(size + 1024);
+    assert_non_null(packed);
+    assert_int_equal(deflateInit2(&z, 1, Z_DEFLATED, -MAX_WBITS, 8, Z_DEFAULT_STRATEGY), Z_OK);
+    z.next_in = d->bytes + d->head;
+    z.avail_in = (uInt)size;
+    z.next_out = packed;
+    z.avail_out = (uInt)size + 1024;
+    assert_int_equal(deflate(&z, Z_FINISH), Z_STREAM_END);
+    d->size = d->head;
+    put(d, packed, z.total_out);
+    deflateEnd(&z);
+    free(packed);
 }
 
 void test_dicom_free(test_dicom *d)

@@ -8,19 +8,27 @@ typedef enum test_dicom_syntax {
     TEST_DICOM_EXPLICIT,
     TEST_DICOM_IMPLICIT,
     TEST_DICOM_BIG_ENDIAN,
-    TEST_DICOM_RLE
+    TEST_DICOM_RLE,
+    TEST_DICOM_DEFLATED, /* written as explicit: deflate it with test_dicom_deflate() */
+    TEST_DICOM_HTJ2K,
+    TEST_DICOM_FRAMES_DEFLATED,
+    TEST_DICOM_STRANGE /* a syntax that nobody knows */
 } test_dicom_syntax;
 
 /* Bytes that grow. Zero is empty; free with test_dicom_free(). */
 typedef struct test_dicom {
     unsigned char *bytes;
     size_t size, room;
+    size_t head; /* bytes of preamble and meta header */
     test_dicom_syntax syntax;
 } test_dicom;
 
 /* Begins a file: preamble and meta header. */
 void test_dicom_begin(test_dicom *d, test_dicom_syntax syntax);
 void test_dicom_free(test_dicom *d);
+
+/* Deflates all behind the meta header. */
+void test_dicom_deflate(test_dicom *d);
 
 /* One element: text (or backslash-parted numbers), 16-bit numbers, bytes as they are. Elements
  * must come in the order of their tags. */

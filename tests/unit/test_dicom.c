@@ -7,6 +7,8 @@
 
 #include <math.h>
 #include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
 #include <unistd.h>
 
 enum { COLUMNS = 4, ROWS = 3, PIXELS = COLUMNS * ROWS };
@@ -913,6 +915,145 @@ static void deep_nesting_is_survived(void **state)
     }
 }
 
+/* Zeros make elements of twelve bytes each, and hardly anything when they are deflated. */
+static void deflated_files_are_walked_over(void **state)
+{
+    (void)state;
+    test_dicom d;
+    cw_volume v;
+    cw_error err = {0};
+    test_image_make(&(test_image){.syntax = TEST_DICOM_DEFLATED}, &d);
+    test_dicom_deflate(&d);
+    test_file_write(test_path("d.dcm"), d.bytes, d.size);
+    test_dicom_free(&d);
+    assert_ok(read_back("d.dcm", &v, &err), err);
+    assert_near(cw_volume_value(&v, 3, 1, 0), 7, 0);
+    cw_volume_free(&v);
+
+    test_dicom_begin(&d, TEST_DICOM_DEFLATED);
+    for (int n = 0; n < 1000; n++) {
+        test_dicom_open_sequence(&d, 0x00081140);
+        test_dicom_open_item(&d);
+    }
+    test_dicom_deflate(&d);
+    test_file_write(test_path("d.dcm"), d.bytes, d.size);
+    test_dicom_free(&d);
+    assert_fails(read_back("d.dcm", &v, &err), CW_ERR_FORMAT, "nested deeper than 64", err);
+
+    const size_t many = (size_t)13 << 23;
+    test_dicom_begin(&d, TEST_DICOM_DEFLATED);
+    d.bytes = realloc(d.bytes, d.size + many);
+    assert_non_null(d.bytes);
+    memset(d.bytes + d.size, 0, many);
+    d.size = d.room = d.size + many;
+    test_dicom_deflate(&d);
+    test_file_write(test_path("d.dcm"), d.bytes, d.size);
+    test_dicom_free(&d);
+    assert_fails(read_back("d.dcm", &v, &err), CW_ERR_FORMAT, "more than 8388608 elements",
+                 err);
+}
+
+static void unknown_syntaxes_are_named(void **state)
+{
+    (void)state;
+    static const struct {
+        test_dicom_syntax syntax;
+        const char *words;
+    } rows[] = {
+        {TEST_DICOM_HTJ2K, "syntax 1.2.840.10008.1.2.4.201 (HTJ2K lossless) is not read"},
+        {TEST_DICOM_FRAMES_DEFLATED, "1.2.840.10008.1.2.8.1 (frames deflated one by one)"},
+        {TEST_DICOM_STRANGE, "syntax 1.2.3.4.5 (unknown) is not read"},
+    };
+    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
+        test_image_write(&(test_image){.syntax = rows[n].syntax}, "u");
+        assert_refused(NULL, CW_ERR_FORMAT, rows[n].words);
+    }
+}
+
+static void frames_are_counted_from_one(void **state)
+{
+    (void)state;
+    static const char *const counts[] = {"-3", "0 ", "1.5", "x "};
+    const frame one = {"0\\0\\0", NULL, 0};
+    uint8_t pixels[PIXELS] = {0};
+    for (size_t n = 0; n < sizeof counts / sizeof *counts; n++) {
+        test_dicom d;
+        test_dicom_begin(&d, TEST_DICOM_EXPLICIT);
+        put_head(&d, ENHANCED_CT, counts[n], 8);
+        test_dicom_open_sequence(&d, 0x52009230);
+        put_frame(&d, one.position, NULL, 0);
+        test_dicom_close_sequence(&d);
+        test_dicom_bytes(&d, 0x7fe00010, "OB", pixels, sizeof pixels);
+        test_file_write(test_path("n"), d.bytes, d.size);
+        test_dicom_free(&d);
+        assert_refused(NULL, CW_ERR_FORMAT, "NumberOfFrames is no whole number above 0");
+    }
+}
+
+/* Explicit or not, and with a meta header or the bare elements. */
+static void files_without_a_preamble_are_read(void **state)
+{
+    (void)state;
+    for (int n = 0; n < 4; n++) {
+        const test_dicom_syntax syntax = n % 2 ? TEST_DICOM_IMPLICIT : TEST_DICOM_EXPLICIT;
+        test_dicom d;
+        test_image_make(&(test_image){.syntax = syntax}, &d);
+        const size_t left_out = n < 2 ? 132 : d.head;
+        test_file_write(test_path("bare"), d.bytes + left_out, d.size - left_out);
+        test_dicom_free(&d);
+        cw_volume v = read_all(NULL);
+        assert_near(cw_volume_value(&v, 3, 1, 0), 7, 0);
+        cw_volume_free(&v);
+    }
+    unsigned char noise[64] = {8,   0, 8, 0, 'C', 'S', 2,   0, 'A',
+                               'B', 8, 0, 5, 0,   'C', 'S', 0, 0};
+    test_file_write(test_path("bare"), noise, sizeof noise); /* tags that go back */
+    assert_refused(NULL, CW_ERR_FORMAT, "none of its 1 files is a slice");
+}
+
+static void notes_keep(void *user, const char *text)
+{
+    snprintf((char *)user + strlen(user), 512 - strlen(user), "%s\n", text);
+}
+
+/* Somebody else's file beside it is no reason to refuse the one that was named. */
+static void damaged_neighbours_are_left_out(void **state)
+{
+    (void)state;
+    const double even[] = {0, 2.5, 5};
+    char notes[512] = "";
+    const cw_read_desc desc = {.note = notes_keep, .note_user = notes};
+    write_row(&upright, even, 3, 0);
+    size_t size;
+    char *bytes = test_file_read(test_path("90.dcm"), &size);
+    test_file_write(test_path("10.dcm"), bytes, size / 2);
+    free(bytes);
+    cw_volume v;
+    cw_error err = {0};
+    assert_ok(cw_volume_read(test_path("89.dcm"), &desc, &v, NULL, &err), err);
+    assert_int_equal(v.dim[2], 3);
+    cw_volume_free(&v);
+    assert_non_null(
+        strstr(notes, "left out, as not readable: 1 files beside it, the first 10.dcm: "));
+    assert_refused(NULL, CW_ERR_FORMAT, "10.dcm: its elements are damaged or cut off");
+    assert_fails(read_back("10.dcm", &v, &err), CW_ERR_FORMAT, "damaged or cut off", err);
+}
+
+static void folders_without_slices_tell_what_they_hold(void **state)
+{
+    (void)state;
+    static const char nrrd[] = "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 1 1 1\n"
+                               "encoding: raw\n\n";
+    test_file_write(test_path("a.nrrd"), nrrd, sizeof nrrd);
+    test_file_write(test_path("b.nrrd"), nrrd, sizeof nrrd);
+    test_file_write(test_path("c.txt"), "hello", 5);
+    assert_refused(NULL, CW_ERR_FORMAT,
+                   "none of its 3 files is a slice; volumes by themselves: 2 (nrrd), name one "
+                   "of them, or the steps of a series by a pattern in quotes, '");
+    assert_int_equal(symlink("c.txt", test_path("d.dcm")), 0);
+    assert_refused(NULL, CW_ERR_FORMAT, "; 1 links were left out, --allow-external follows");
+}
+
 static void what_is_no_image_is_told(void **state)
 {
     (void)state;
@@ -952,6 +1093,23 @@ static void links_are_left_out(void **state)
     v = read_all(&(cw_read_desc){.allow_external = true});
     assert_int_equal(v.dim[2], 3);
     cw_volume_free(&v);
+    char notes[512] = "";
+    const cw_read_desc desc = {.note = notes_keep, .note_user = notes};
+    cw_error err = {0};
+    assert_ok(cw_volume_read(test_path("link.dcm"), &desc, &v, NULL, &err), err); /* named */
+    assert_int_equal(v.dim[2], 3);
+    cw_volume_free(&v);
+    assert_ok(cw_volume_read(test_path("89.dcm"), &desc, &v, NULL, &err), err);
+    assert_int_equal(v.dim[2], 2);
+    cw_volume_free(&v);
+    assert_string_equal(notes, "left out: 1 links; --allow-external follows them\n");
+    assert_int_equal(unlink(test_path("89.dcm")), 0);
+    assert_int_equal(unlink(test_path("88.dcm")), 0);
+    assert_refused(NULL, CW_ERR_IO, "no file, only 1 links; --allow-external follows them");
+    test_file_write(test_path("readme.md"), "hello", 5);
+    assert_refused(NULL, CW_ERR_FORMAT,
+                   "none of its 1 files is a slice in a format that is read (DICOM, TIFF); 1 "
+                   "links were left out, --allow-external follows them");
 }
 
 static void here_or_in_a_sandbox_is_the_same(void **state)
@@ -1034,6 +1192,12 @@ int main(void)
         TEST(every_cut_is_an_error),
         TEST(sizes_are_held_against_the_file),
         TEST(deep_nesting_is_survived),
+        TEST(deflated_files_are_walked_over),
+        TEST(unknown_syntaxes_are_named),
+        TEST(frames_are_counted_from_one),
+        TEST(files_without_a_preamble_are_read),
+        TEST(damaged_neighbours_are_left_out),
+        TEST(folders_without_slices_tell_what_they_hold),
         TEST(what_is_no_image_is_told),
         TEST(links_are_left_out),
         TEST(here_or_in_a_sandbox_is_the_same),
