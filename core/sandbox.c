@@ -119,7 +119,7 @@ static void set_limits(const cwi_sandbox_desc *d)
     limit(RLIMIT_NOFILE, CHILD_FILES);
     limit(RLIMIT_STACK, (uint64_t)8 << 20);
     if (!CWI_SANITIZED)
-        limit(RLIMIT_AS, space_in_use() + (d->memory ? d->memory : (uint64_t)2 << 30));
+        limit(RLIMIT_AS, space_in_use() + (d->memory ? d->memory : CWI_SANDBOX_MEMORY));
 }
 
 /* Nothing stays open but the socket, which moves behind the standard streams; those lead

@@ -32,13 +32,14 @@ typedef cw_status (*cwi_sandbox_work)(void *state, int fd, const void *request, 
                                       cw_error *err);
 
 enum { CWI_SANDBOX_REQUEST = 64 };
+#define CWI_SANDBOX_MEMORY ((uint64_t)2 << 30) /* bytes, where nothing else is said */
 
 typedef struct cwi_sandbox_desc {
     const char *library; /* for messages: "DCMTK" */
     cwi_sandbox_work work;
     void *state;
     size_t shared_bytes; /* of the memory that both sides see */
-    uint64_t memory;     /* bytes that the child may take besides; 0: 2 GiB */
+    uint64_t memory;     /* bytes that the child may take besides; 0: CWI_SANDBOX_MEMORY */
     double timeout_s;    /* for one piece of work; 0: 60 */
     bool inside;         /* no child: the work is done here */
 } cwi_sandbox_desc;

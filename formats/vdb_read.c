@@ -218,15 +218,40 @@ static cw_status read_chosen(cwi_planes *planes, const cwi_input *in, const cwi_
     return st;
 }
 
+/* What the library may take for a file, whatever its numbers claim. A leaf has a mask of 64
+ * bytes in it and up to 4,200 in memory; a node has masks of 8 KiB, and up to 32,768 tiles of
+ * 40 bytes, kept twice while they grow. */
+static uint64_t most_memory(uint64_t file_bytes)
+{
+    const uint64_t base = (uint64_t)128 << 20, factor = 512;
+    return file_bytes < (UINT64_MAX - base) / factor ? base + factor * file_bytes : UINT64_MAX;
+}
+
+/* Memory that ran out under that limit alone is the file's fault. */
+static cw_status judge_memory(cw_status st, uint64_t limit, uint64_t file_bytes, cw_error *err)
+{
+    if (st != CW_ERR_NO_MEMORY || limit != most_memory(file_bytes))
+        return st;
+    return cw_fail(
+        err, CW_ERR_FORMAT,
+        "it asks OpenVDB for more than %llu MB of memory, which no file of %llu bytes "
+        "needs; it is damaged or hostile",
+        (unsigned long long)(limit >> 20), (unsigned long long)file_bytes);
+}
+
 cw_status cwi_vdb_read(const cwi_input *in, const cw_read_desc *desc, cw_volume *volume,
                        cw_error *err)
 {
     cwi_planes planes = {0};
     cwi_vdb_facts *facts = cwi_alloc_array(1, sizeof *facts);
-    cw_status st = facts ? cwi_planes_open(&planes, "openvdb", desc, err)
+    const uint64_t stated = desc->max_bytes ? desc->max_bytes : CWI_SANDBOX_MEMORY;
+    const uint64_t most = most_memory(in->size);
+    cw_read_desc boxed = *desc;
+    boxed.max_bytes = most < stated ? most : stated;
+    cw_status st = facts ? cwi_planes_open(&planes, "openvdb", &boxed, err)
                          : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for facts");
     if (st == CW_OK)
-        st = take_facts(&planes, in, facts, err);
+        st = judge_memory(take_facts(&planes, in, facts, err), boxed.max_bytes, in->size, err);
     if (st == CW_OK)
         st = read_chosen(&planes, in, facts, desc, volume, err);
     cwi_planes_close(&planes);

@@ -107,6 +107,11 @@ private:
     GridBase::Ptr held;
 };
 
+// A layout of files that this OpenVDB does not know: it would be guessed at.
+struct unknown_version {
+    uint32_t number;
+};
+
 // A file's grids in their order, as openvdb::io::Stream reads them; but without voxels, or only
 // one of them.
 class archive : public openvdb::io::Archive
@@ -116,6 +121,9 @@ public:
     {
         in.exceptions(std::ios::failbit | std::ios::badbit | std::ios::eofbit);
         readHeader(in);
+        if (fileVersion() < openvdb::OPENVDB_FILE_VERSION_ROOTNODE_MAP ||
+            fileVersion() > openvdb::OPENVDB_FILE_VERSION)
+            throw unknown_version{fileVersion()};
         openvdb::io::setStreamMetadataPtr(in, stream, false);
         openvdb::io::setVersion(in, libraryVersion(), fileVersion());
         openvdb::io::setDataCompression(in, compression());
@@ -364,12 +372,16 @@ void put_unknown(const openvdb::io::GridDescriptor &about, cwi_vdb_grid &f)
     put_text("its type " + about.gridType() + " is not known", f.refusal, sizeof f.refusal);
 }
 
-// As cw::guard(), but files that end too early are told so.
+// As cw::guard(), but files that end too early or are of another version are told so.
 template <typename Body> cw_status guard_file(cw_error *err, Body &&body)
 {
     return cw::guard(err, "OpenVDB", [&] {
         try {
             return body();
+        } catch (const unknown_version &version) {
+            return cw_fail(err, CW_ERR_FORMAT, "its file version is %u; %u to %u are read",
+                           version.number, unsigned(openvdb::OPENVDB_FILE_VERSION_ROOTNODE_MAP),
+                           unsigned(openvdb::OPENVDB_FILE_VERSION));
         } catch (const std::ios_base::failure &) {
             return cw_fail(err, CW_ERR_FORMAT,
                            "it is damaged: it ends, or points beyond its end, "

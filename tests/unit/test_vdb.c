@@ -2,6 +2,8 @@
 #include "support/surface.h"
 #include "vdb/vdbs.h"
 
+#include "core/sandbox.h"
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -259,6 +261,46 @@ static void test_damage(void **state)
     assert_true(failed < rounds);
 }
 
+/* Writes a level set with one number of its head replaced. */
+static const char *write_patched(size_t at, uint32_t number)
+{
+    const char *path = write_kind("sphere");
+    const unsigned char b[4] = {(unsigned char)number, (unsigned char)(number >> 8),
+                                (unsigned char)(number >> 16), (unsigned char)(number >> 24)};
+    size_t size;
+    char *bytes = test_file_read(path, &size);
+    memcpy(bytes + at, b, sizeof b);
+    test_file_write(path, bytes, size);
+    free(bytes);
+    return path;
+}
+
+static void test_versions(void **state)
+{
+    enum { VERSION_AT = 8 };
+    static const uint32_t unknown[] = {0, 212, 9999};
+    cw_error err = {0};
+    cw_volume v;
+    (void)state;
+    for (size_t n = 0; n < sizeof unknown / sizeof *unknown; n++)
+        assert_fails(
+            cw_volume_read(write_patched(VERSION_AT, unknown[n]), NULL, &v, NULL, &err),
+            CW_ERR_FORMAT, " are read", err);
+}
+
+/* The name of a grid claims 1.5 GB: that is not taken for a file of half a MB. */
+static void test_memory(void **state)
+{
+    enum { NAME_LENGTH_AT = 65 };
+    cw_error err = {0};
+    cw_volume v;
+    (void)state;
+    if (!CWI_SANITIZED)
+        assert_fails(
+            cw_volume_read(write_patched(NAME_LENGTH_AT, 0x60000000), NULL, &v, NULL, &err),
+            CW_ERR_FORMAT, "MB of memory, which no file of ", err);
+}
+
 int main(void)
 {
 #define IN_FOLDER(test)                                                                        \
@@ -267,7 +309,8 @@ int main(void)
         IN_FOLDER(test_level_sets), IN_FOLDER(test_transform),
         IN_FOLDER(test_types),      IN_FOLDER(test_several_grids),
         IN_FOLDER(test_refusals),   IN_FOLDER(test_header_and_spacing),
-        IN_FOLDER(test_damage),
+        IN_FOLDER(test_damage),     IN_FOLDER(test_versions),
+        IN_FOLDER(test_memory),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }
