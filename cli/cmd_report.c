@@ -1,4 +1,3 @@
-#define _GNU_SOURCE /* open_memstream */
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/field.h"
@@ -173,15 +172,15 @@ static void put_reading(FILE *out, const report_args *args)
 static cw_status tell_input(run_state *s, const char *path, cw_error *err)
 {
     size_t size;
-    char *text = NULL;
-    FILE *out = open_memstream(&text, &size);
+    char *text;
+    FILE *out = cwi_text_open(&text, &size);
     char *word = malloc(strlen(path) + 3);
     if (out && word) {
         sprintf(word, "%s%s", *path == '-' ? "./" : "", path);
         cli_put_word(out, word);
         put_reading(out, s->args);
     }
-    const bool good = out && fclose(out) == 0 && word;
+    const bool good = cwi_text_close(out, &text) && word;
     free(word);
     s->input_words = text;
     return good ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a command");

@@ -1,8 +1,8 @@
-#define _GNU_SOURCE /* open_memstream */
 #include "cli/render_report.h"
 
 #include "cli/report.h"
 #include "core/status.h"
+#include "core/text.h"
 
 #include <stdlib.h>
 
@@ -150,20 +150,17 @@ static void put_report(FILE *out, const cli_render_report *r, cw_status status,
 cw_status cli_render_report_write(const char *path, const cli_render_report *report,
                                   cw_status status, cw_error *err)
 {
-    char *text = NULL;
-    size_t size = 0;
+    char *text;
+    size_t size;
     cw_error why = {0};
     if (!path)
         return status;
-    FILE *out = open_memstream(&text, &size);
-    cw_status st = CW_ERR_NO_MEMORY;
-    if (out) {
+    FILE *out = cwi_text_open(&text, &size);
+    if (out)
         put_report(out, report, status, err);
-        st = fclose(out) == 0 ? cli_report_save(path, text, size, &why)
-                              : cw_fail(&why, st, "no memory for the report");
-    } else {
-        cw_fail(&why, st, "no memory for the report");
-    }
+    cw_status st = cwi_text_close(out, &text)
+                       ? cli_report_save(path, text, size, &why)
+                       : cw_fail(&why, CW_ERR_NO_MEMORY, "no memory for the report");
     free(text);
     if (status != CW_OK)
         return status;

@@ -1,4 +1,4 @@
-#define _GNU_SOURCE /* open_memstream, reallocarray */
+#define _GNU_SOURCE /* reallocarray */
 #include "cli/report.h"
 
 #include "cli/compress.h"
@@ -7,6 +7,7 @@
 #include "cli/verdicts.h"
 #include "core/outfile.h"
 #include "core/status.h"
+#include "core/text.h"
 
 #include <cubewright/level_set.h>
 #include <cubewright/simplify.h>
@@ -388,14 +389,14 @@ cw_status cli_report_save(const char *path, const char *text, size_t size, cw_er
 cw_status cli_report_make(const char *path, void (*put)(FILE *out, const void *what),
                           const void *what, cw_error *err)
 {
-    char *text = NULL;
-    size_t size = 0;
+    char *text;
+    size_t size;
     if (!path)
         return CW_OK;
-    FILE *out = open_memstream(&text, &size);
+    FILE *out = cwi_text_open(&text, &size);
     if (out)
         put(out, what);
-    cw_status st = out && fclose(out) == 0
+    cw_status st = cwi_text_close(out, &text)
                        ? cli_report_save(path, text, size, err)
                        : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the report");
     free(text);
@@ -404,18 +405,17 @@ cw_status cli_report_make(const char *path, void (*put)(FILE *out, const void *w
 
 cw_status cli_report_write(const cli_report *report, cw_status status, cw_error *err)
 {
-    char *text = NULL;
-    size_t size = 0;
+    char *text;
+    size_t size;
     cw_error why = {0};
     if (!report->path)
         return status;
-    FILE *out = open_memstream(&text, &size);
-    cw_status st = CW_ERR_NO_MEMORY;
-    if (out) {
+    FILE *out = cwi_text_open(&text, &size);
+    if (out)
         put_report(out, report, status, err);
-        st = fclose(out) == 0 ? cli_report_save(report->path, text, size, &why)
-                              : cw_fail(&why, st, "no memory for the report");
-    }
+    cw_status st = cwi_text_close(out, &text)
+                       ? cli_report_save(report->path, text, size, &why)
+                       : cw_fail(&why, CW_ERR_NO_MEMORY, "no memory for the report");
     free(text);
     if (status != CW_OK)
         return status;

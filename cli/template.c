@@ -1,7 +1,8 @@
-#define _GNU_SOURCE /* open_memstream, strndup */
+#define _GNU_SOURCE /* strndup */
 #include "cli/template.h"
 
 #include "core/status.h"
+#include "core/text.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -81,12 +82,9 @@ cw_status cli_fill_template(const char *text, cli_part *parts, size_t part_count
                             cw_error *err)
 {
     size_t size;
-    *out = NULL;
-    FILE *stream = open_memstream(out, &size);
-    if (!stream)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of an output");
-    cw_status st = fill(stream, text, parts, part_count, err);
-    if (fclose(stream) != 0 && st == CW_OK)
+    FILE *stream = cwi_text_open(out, &size);
+    cw_status st = stream ? fill(stream, text, parts, part_count, err) : CW_OK;
+    if (!cwi_text_close(stream, out) && st == CW_OK)
         st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of an output");
     if (st != CW_OK) {
         free(*out);

@@ -193,8 +193,10 @@ cw_status cwi_outfile_open(cwi_outfile **out, const char *path, bool no_clobber,
 {
     cwi_outfile *f = cwi_alloc_zeroed(1, sizeof *f);
     *out = NULL;
-    if (!f)
+    if (!f || !path) { /* a name that nobody had memory for */
+        cwi_free(f);
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to write a file");
+    }
     f->fd = f->folder = f->slot = -1;
     f->no_clobber = no_clobber;
     f->buffer = cwi_alloc_array(BUFFER_BYTES, 1);

@@ -1,4 +1,4 @@
-#define _GNU_SOURCE /* strtod_l, newlocale */
+#define _GNU_SOURCE /* strtod_l, newlocale, fopencookie */
 #include "core/text.h"
 
 #include <errno.h>
@@ -148,4 +148,63 @@ size_t cwi_utf8_length(const char *text)
     }
     const bool surrogate = code >= 0xd800 && code < 0xe000;
     return n && code >= lowest[n] && code < 0x110000 && !surrogate ? n : 0;
+}
+
+/* Text on its way into memory: *text has room for a zero behind it. */
+typedef struct text_sink {
+    char **text;
+    size_t *size, room;
+} text_sink;
+
+static ssize_t put_text(void *to, const char *bytes, size_t size)
+{
+    text_sink *sink = to;
+    if (size >= sink->room - *sink->size) {
+        const size_t room = 2 * (sink->room + size);
+        char *more = realloc(*sink->text, room);
+        if (!more)
+            return 0;
+        *sink->text = more;
+        sink->room = room;
+    }
+    memcpy(*sink->text + *sink->size, bytes, size);
+    *sink->size += size;
+    (*sink->text)[*sink->size] = '\0';
+    return (ssize_t)size;
+}
+
+static int free_sink(void *sink)
+{
+    free(sink);
+    return 0;
+}
+
+/* Not open_memstream(): where memory runs out, that drops text without a word. */
+FILE *cwi_text_open(char **text, size_t *size)
+{
+    static const cookie_io_functions_t functions = {.write = put_text, .close = free_sink};
+    enum { FIRST_ROOM = 256 };
+    text_sink *sink = malloc(sizeof *sink);
+    FILE *stream = sink ? fopencookie(sink, "w", functions) : NULL;
+    *size = 0;
+    *text = stream ? malloc(FIRST_ROOM) : NULL;
+    if (!stream)
+        free(sink);
+    if (stream)
+        *sink = (text_sink){text, size, *text ? FIRST_ROOM : 0};
+    if (*text)
+        **text = '\0';
+    return stream;
+}
+
+bool cwi_text_close(FILE *stream, char **text)
+{
+    bool good = stream && !ferror(stream);
+    if (stream && fclose(stream) != 0)
+        good = false;
+    if (good && *text)
+        return true;
+    free(*text);
+    *text = NULL;
+    return false;
 }

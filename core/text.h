@@ -4,6 +4,8 @@
 
 #include <cubewright/core.h>
 
+#include <stdio.h>
+
 #ifdef __cplusplus
 extern "C" {
 #endif
@@ -25,6 +27,14 @@ CW_API bool cwi_next_item(const char **text, char *separator, char item[CWI_ITEM
 /* Makes printf and friends of this thread write points; hand the result to the second call. */
 CW_API void *cwi_locale_c(void);
 CW_API void cwi_locale_restore(void *before);
+
+/* Opens a stream into memory that grows, for text to print; NULL without memory. *text and
+ * *size are good once it is closed; free the text with free(). */
+CW_API FILE *cwi_text_open(char **text, size_t *size);
+
+/* Closes the stream, NULL too. False, and *text is NULL, when memory ran out on the way: a
+ * stream into memory may lose text, or all of it, and still be closed without an error. */
+CW_API bool cwi_text_close(FILE *stream, char **text);
 
 /* Bytes of the UTF-8 character at text; 0 when there is none such: stray bytes, overlong forms,
  * surrogates, codes past the last. The terminating zero counts as a character of one byte. */

@@ -1,8 +1,8 @@
 /* The command that does what a point does, to be copied. */
-#define _GNU_SOURCE /* open_memstream */
 #include "cli/study/command.h"
 #include "cli/compress.h"
 #include "cli/quantity.h"
+#include "core/text.h"
 
 #include <stdlib.h>
 #include <string.h>
@@ -70,17 +70,12 @@ static void put_render(FILE *out, const cli_study *s, const cli_point *p)
 
 char *cli_point_command(const cli_study *s, const cli_point *p)
 {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
-    if (!out)
-        return NULL;
-    if (p->family == CLI_RENDERING)
+    char *text;
+    size_t size;
+    FILE *out = cwi_text_open(&text, &size);
+    if (out && p->family == CLI_RENDERING)
         put_render(out, s, p);
-    else
+    else if (out)
         put_extract(out, s, p);
-    if (fclose(out) == 0)
-        return text;
-    free(text);
-    return NULL;
+    return cwi_text_close(out, &text) ? text : NULL;
 }

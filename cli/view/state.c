@@ -1,10 +1,11 @@
-#define _GNU_SOURCE /* strdup, open_memstream */
+#define _GNU_SOURCE /* strdup */
 /* Settings by name, undo, and a session as text. */
 #include "cli/view/view.h"
 
 #include "cli/split.h"
 #include "core/outfile.h"
 #include "core/status.h"
+#include "core/text.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -312,9 +313,9 @@ static void put_rest(const view *v, FILE *out, const char *end)
 
 cw_status view_write_state(const view *v, const char *path, cw_error *err)
 {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
+    char *text;
+    size_t size;
+    FILE *out = cwi_text_open(&text, &size);
     if (!out)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a state");
     fputs("# cubewright view: a state; 'cubewright view --run' this file\n", out);
@@ -326,7 +327,8 @@ cw_status view_write_state(const view *v, const char *path, cw_error *err)
     }
     put_settings(v, out, false);
     put_rest(v, out, "\n");
-    fclose(out);
+    if (!cwi_text_close(out, &text))
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a state");
     cw_status st = cwi_outfile_save(path, text, size, err);
     free(text);
     return st;
@@ -334,9 +336,9 @@ cw_status view_write_state(const view *v, const char *path, cw_error *err)
 
 char *view_command_line(const view *v)
 {
-    char *text = NULL;
-    size_t size = 0;
-    FILE *out = open_memstream(&text, &size);
+    char *text;
+    size_t size;
+    FILE *out = cwi_text_open(&text, &size);
     if (!out)
         return NULL;
     fputs("cubewright view", out);
@@ -349,6 +351,5 @@ char *view_command_line(const view *v)
     fputs(" --exec '", out);
     put_rest(v, out, "; ");
     fputc('\'', out);
-    fclose(out);
-    return text;
+    return cwi_text_close(out, &text) ? text : NULL;
 }

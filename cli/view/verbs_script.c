@@ -51,7 +51,9 @@ static cw_status run_print(view *v, int count, char **args, cw_error *err)
         printf("compare %s: rmse %.3g\n", s->args.compare, v->measured.rmse);
     else if (strcmp(what, "command") == 0) {
         char *line = view_command_line(v);
-        puts(line ? line : "");
+        if (!line)
+            return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a command line");
+        puts(line);
         free(line);
     } else if (strcmp(what, "camera") == 0 && s->is_placed &&
                cw_camera_format(&s->camera, text, err) == CW_OK)

@@ -2,6 +2,7 @@
 
 #include "core/memory.h"
 #include "core/module.h"
+#include "core/sandbox.h"
 #include "core/status.h"
 #include "core/text.h"
 #include "core/weld.h"
@@ -11,6 +12,9 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 static void every_status_has_its_row(void **state)
 {
@@ -133,6 +137,46 @@ static void only_utf8_is_utf8(void **state)
     };
     for (size_t n = 0; n < sizeof rows / sizeof *rows; n++)
         assert_int_equal(cwi_utf8_length(rows[n].text), rows[n].length);
+}
+
+/* Ends with 0 when text that outgrows the memory is not given out: not even its start. */
+_Noreturn static void outgrow_memory(void)
+{
+    static const struct rlimit space = {(rlim_t)1 << 26, (rlim_t)1 << 26};
+    static const char line[] = "some words, many times over, that all go into memory\n";
+    char *text;
+    size_t size;
+    FILE *out = cwi_text_open(&text, &size);
+    if (!out || setrlimit(RLIMIT_AS, &space) != 0)
+        _exit(1);
+    for (int n = 0; n < 1 << 22 && fputs(line, out) >= 0; n++) {
+    }
+    _exit(cwi_text_close(out, &text) || text ? 2 : 0);
+}
+
+static void text_is_whole_or_not_there(void **state)
+{
+    (void)state;
+    char *text;
+    size_t size;
+    int how = 0;
+    FILE *out = cwi_text_open(&text, &size);
+    assert_non_null(out);
+    fprintf(out, "%d words", 2);
+    assert_true(cwi_text_close(out, &text));
+    assert_string_equal(text, "2 words");
+    assert_int_equal(size, 7);
+    free(text);
+    text = NULL;
+    assert_false(cwi_text_close(NULL, &text));
+    if (CWI_SANITIZED)
+        return;
+    const pid_t child = fork();
+    if (child == 0)
+        outgrow_memory();
+    assert_int_equal(waitpid(child, &how, 0), child);
+    assert_true(WIFEXITED(how));
+    assert_int_equal(WEXITSTATUS(how), 0);
 }
 
 static void a_module_that_nobody_knows_is_named(void **state)
@@ -272,6 +316,7 @@ int main(void)
         cmocka_unit_test(numbers_are_those_of_strtod),
         cmocka_unit_test(a_welder_numbers_places_as_they_come),
         cmocka_unit_test(only_utf8_is_utf8),
+        cmocka_unit_test(text_is_whole_or_not_there),
         cmocka_unit_test(a_module_that_nobody_knows_is_named),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

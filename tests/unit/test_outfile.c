@@ -352,9 +352,20 @@ static void running_out_of_memory_leaves_nothing(void **state)
 
 #define CASE(test) cmocka_unit_test_setup_teardown(test, test_folder_make, test_folder_remove)
 
+/* Of a name that memory ran out for, there is nothing. */
+static void no_name_is_no_file(void **state)
+{
+    (void)state;
+    cwi_outfile *f;
+    cw_error err = {0};
+    assert_fails(cwi_outfile_open(&f, NULL, false, &err), CW_ERR_NO_MEMORY, "no memory", err);
+    assert_null(f);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        CASE(no_name_is_no_file),
         CASE(a_file_appears_only_at_the_commit),
         CASE(an_old_file_stays_until_the_commit),
         CASE(an_abort_leaves_nothing_and_can_be_repeated),
