@@ -1,10 +1,12 @@
 #include "cli/commands.h"
 #include "cli/console.h"
+#include "core/outfile.h"
 #include "core/status.h"
 
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <unistd.h>
 
 const cli_command *const cli_commands[] = {
     &cli_extract,        &cli_simplify,      &cli_convert, &cli_hollow,
@@ -59,6 +61,20 @@ static const char *command_name(const char *word)
     return strcmp(word, "--version") == 0 ? "version" : word;
 }
 
+static bool is_running; /* a command that nothing but OpenMP may end */
+
+/* OpenMP's runtime ends the process, as if a check had failed, when it gets no thread or no
+ * memory. Nothing else calls exit(); but in a window, a display may that goes away. */
+static void end_early(void)
+{
+    if (!is_running)
+        return;
+    cli_progress_end();
+    cli_say_error("OpenMP got no thread or no memory; with -t N it takes fewer threads");
+    cwi_outfile_remove_all();
+    _exit(cw_status_exit_code(CW_ERR_NO_MEMORY));
+}
+
 int main(int argc, char **argv)
 {
     cw_error err = {0};
@@ -66,11 +82,13 @@ int main(int argc, char **argv)
     cli_catch_signals();
     const cli_command *command =
         cli_find_command(argc > 1 ? command_name(argv[1]) : "help", &err);
+    is_running = command && command != &cli_view && atexit(end_early) == 0;
     if (command)
         st = run(command, argc > 1 ? argc - 2 : 0, argv + (argc > 1 ? 2 : 1), &err);
     if (st == CW_OK && (fflush(stdout) != 0 || ferror(stdout)))
         st = cw_fail(&err, CW_ERR_OUTPUT, "the standard output cannot be written");
     if (st != CW_OK)
         cli_say_error(err.message);
+    is_running = false;
     return cw_status_exit_code(st);
 }

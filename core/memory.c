@@ -7,6 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
+#include <sys/resource.h>
 
 /* Per thread, so that a test that starves itself starves no one else. */
 static _Thread_local long allocations_left = -1;
@@ -138,4 +139,10 @@ char *cwi_strdup(const char *text)
     const size_t bytes = strlen(text) + 1;
     char *copy = cwi_alloc_array(bytes, 1);
     return copy ? memcpy(copy, text, bytes) : NULL;
+}
+
+bool cwi_memory_is_limited(void)
+{
+    struct rlimit space;
+    return getrlimit(RLIMIT_AS, &space) == 0 && space.rlim_cur != RLIM_INFINITY;
 }

@@ -32,6 +32,9 @@ CW_API void *cwi_renew_large(void *memory, size_t count, size_t size);
 /* A copy of a string; NULL when memory is out. */
 CW_API char *cwi_strdup(const char *text);
 
+/* Whether somebody has limited the address space of this process (ulimit -v). */
+CW_API bool cwi_memory_is_limited(void);
+
 /* Makes the n-th allocation of this thread from now on (0: the next) and all later ones fail,
  * until it is called with -1. For tests of what happens then. Returns whether one has failed
  * since the last call. */

@@ -15,7 +15,7 @@ extern "C" {
 
 /* Sets *functions to the struct exported by a module; it stays loaded.
  * Returns CW_ERR_UNSUPPORTED, with the reason, the build option and the Debian packages, when
- * this build has no such module or it cannot be loaded. */
+ * this build has no such module or it cannot be loaded; CW_ERR_NO_MEMORY. */
 CW_API cw_status cwi_module_load(const char *name, const void **functions, cw_error *err);
 
 /* Whether the file of a module is there; nothing is loaded. */

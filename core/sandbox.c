@@ -165,6 +165,13 @@ static bool lock(void)
     return good;
 }
 
+static bool send_answer(int socket, answer *a)
+{
+    struct iovec bytes = {.iov_base = a, .iov_len = sizeof *a};
+    const struct msghdr head = {.msg_iov = &bytes, .msg_iovlen = 1};
+    return sendmsg(socket, &head, MSG_NOSIGNAL) == (ssize_t)sizeof *a;
+}
+
 static void serve(const cwi_sandbox *box, int socket)
 {
     char request[CWI_SANDBOX_REQUEST];
@@ -173,11 +180,25 @@ static void serve(const cwi_sandbox *box, int socket)
            receive_parcel(socket, request, sizeof request, &fd)) {
         answer a = {.status = CW_OK};
         a.status = box->desc.work(box->desc.state, fd, request, box->shared, &a.error);
-        struct iovec bytes = {.iov_base = &a, .iov_len = sizeof a};
-        const struct msghdr head = {.msg_iov = &bytes, .msg_iovlen = 1};
-        if (sendmsg(socket, &head, MSG_NOSIGNAL) != (ssize_t)sizeof a)
+        if (!send_answer(socket, &a))
             return;
     }
+}
+
+/* Loads the library, then shuts the door. */
+static cw_status shut_in(const cwi_sandbox_desc *d, cw_error *err)
+{
+    cw_status st = d->prepare ? d->prepare(d->state, err) : CW_OK;
+    if (st != CW_OK)
+        return st;
+    set_limits(d);
+    if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 || prctl(PR_SET_DUMPABLE, 0) != 0 ||
+        !lock())
+        return cw_fail(err, CW_ERR_BACKEND,
+                       "the process that is to read with %s cannot be shut in (seccomp); "
+                       "--no-sandbox reads in this one",
+                       d->library);
+    return CW_OK;
 }
 
 /* The first answer tells whether the door is shut. */
@@ -189,12 +210,11 @@ _Noreturn static void live(const cwi_sandbox *box, int socket, pid_t parent)
     signal(SIGINT, SIG_IGN); /* Ctrl-C goes to all processes; the parent ends this one */
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     prctl(PR_SET_NAME, "cubewright-read");
-    bool good = getppid() == parent && drop_files(&socket);
-    set_limits(&box->desc);
-    good = good && prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) == 0 &&
-           prctl(PR_SET_DUMPABLE, 0) == 0 && lock();
-    const char ready = 1;
-    if (good && send_parcel(socket, &ready, 1, -1))
+    answer ready = {.status = CW_OK};
+    if (getppid() != parent || !drop_files(&socket))
+        _exit(0);
+    ready.status = shut_in(&box->desc, &ready.error);
+    if (send_answer(socket, &ready) && ready.status == CW_OK)
         serve(box, socket);
     _exit(0);
 }
@@ -240,8 +260,9 @@ static cw_status fail_dead(cwi_sandbox *box, cw_error *err)
     if (child > 0 && WIFSIGNALED(how))
         return cw_fail(err, CW_ERR_BACKEND,
                        "%s died of it (signal %d, %s), in a process of its own; the file is "
-                       "damaged or hostile",
-                       box->desc.library, WTERMSIG(how), strsignal(WTERMSIG(how)));
+                       "damaged or hostile%s",
+                       box->desc.library, WTERMSIG(how), strsignal(WTERMSIG(how)),
+                       cwi_memory_is_limited() ? ", or memory is short (ulimit -v)" : "");
     return cw_fail(err, CW_ERR_BACKEND, "the process that reads with %s ended",
                    box->desc.library);
 }
@@ -257,6 +278,20 @@ static cw_status take_answer(answer *a, cw_error *err)
         if ((unsigned char)*s < ' ' || *s == 0x7f)
             *s = '?';
     return a->status == CW_OK ? CW_OK : cw_fail(err, a->status, "%s", text);
+}
+
+/* Before its first answer a child runs nothing but the library's constructors. */
+static cw_status fail_unprepared(cwi_sandbox *box, cw_error *err)
+{
+    int how = 0;
+    const pid_t child = waitpid(box->child, &how, 0);
+    box->child = 0;
+    cwi_sandbox_close(box);
+    return cw_fail(
+        err, CW_ERR_NO_MEMORY,
+        "%s cannot be loaded: its process ended (signal %d); memory is short, or the "
+        "library is damaged",
+        box->desc.library, child > 0 && WIFSIGNALED(how) ? WTERMSIG(how) : 0);
 }
 
 static void kill_child(cwi_sandbox *box)
@@ -311,15 +346,20 @@ static bool share_memory(cwi_sandbox *box)
 cw_status cwi_sandbox_open(cwi_sandbox *box, const cwi_sandbox_desc *desc, cw_error *err)
 {
     int pair[2];
-    char ready;
+    answer ready = {.status = CW_OK};
+    cw_status st = CW_OK;
     *box = (cwi_sandbox){.desc = *desc, .socket = -1, .open = true};
     if (!share_memory(box)) {
         box->open = false;
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes to share with %s",
                        desc->shared_bytes, desc->library);
     }
-    if (desc->inside)
-        return CW_OK;
+    if (desc->inside) {
+        st = desc->prepare ? desc->prepare(desc->state, err) : CW_OK;
+        if (st != CW_OK)
+            cwi_sandbox_close(box);
+        return st;
+    }
     if (socketpair(AF_UNIX, SOCK_SEQPACKET | SOCK_CLOEXEC, 0, pair) != 0)
         return fail_start(box, "socketpair", err);
     box->socket = pair[0];
@@ -330,13 +370,12 @@ cw_status cwi_sandbox_open(cwi_sandbox *box, const cwi_sandbox_desc *desc, cw_er
     close(pair[1]);
     if (box->child < 0)
         return fail_start(box, "fork", err);
-    if (receive_parcel(box->socket, &ready, 1, NULL))
-        return CW_OK;
-    cwi_sandbox_close(box);
-    return cw_fail(err, CW_ERR_BACKEND,
-                   "the process that is to read with %s cannot be shut in (seccomp); "
-                   "--no-sandbox reads in this one",
-                   desc->library);
+    if (!receive_parcel(box->socket, &ready, sizeof ready, NULL))
+        return fail_unprepared(box, err);
+    st = take_answer(&ready, err);
+    if (st != CW_OK)
+        cwi_sandbox_close(box);
+    return st;
 }
 
 void cwi_sandbox_close(cwi_sandbox *box)

@@ -31,11 +31,16 @@ extern "C" {
 typedef cw_status (*cwi_sandbox_work)(void *state, int fd, const void *request, void *shared,
                                       cw_error *err);
 
+/* What comes first in the child, while it may still open files: loading a library, whose
+ * constructors may well end a process that is short of memory. */
+typedef cw_status (*cwi_sandbox_prepare)(void *state, cw_error *err);
+
 enum { CWI_SANDBOX_REQUEST = 64 };
 #define CWI_SANDBOX_MEMORY ((uint64_t)2 << 30) /* bytes, where nothing else is said */
 
 typedef struct cwi_sandbox_desc {
-    const char *library; /* for messages: "DCMTK" */
+    const char *library;         /* for messages: "DCMTK" */
+    cwi_sandbox_prepare prepare; /* NULL: nothing */
     cwi_sandbox_work work;
     void *state;
     size_t shared_bytes; /* of the memory that both sides see */
@@ -56,8 +61,8 @@ typedef struct cwi_sandbox {
 } cwi_sandbox;
 
 /* Starts the child.
- * Returns CW_ERR_BACKEND when the system gives no process, or has no seccomp; CW_ERR_NO_MEMORY.
- */
+ * Returns what its preparation returned; CW_ERR_BACKEND when the system gives no process, or
+ * has no seccomp; CW_ERR_NO_MEMORY, also when the child died of its preparation */
 CW_API cw_status cwi_sandbox_open(cwi_sandbox *box, const cwi_sandbox_desc *desc,
                                   cw_error *err);
 

@@ -596,9 +596,12 @@ struct Library {
     }
 };
 
-void prepare()
+cw_status prepare(cw_error *err)
 {
-    static const Library library;
+    return guard(err, "DCMTK", [&] {
+        static const Library library;
+        return CW_OK;
+    });
 }
 
 void *state_new()
@@ -613,4 +616,4 @@ void state_free(void *state)
 
 } // namespace
 
-const cwi_plane_functions cwi_module_dicom = {"DCMTK", state_new, state_free, prepare, work};
+const cwi_plane_functions cwi_module_dicom = {state_new, state_free, prepare, work};

@@ -10,7 +10,7 @@
 
 static cw_status open_library(cwi_planes *planes, const cw_read_desc *desc, cw_error *err)
 {
-    return cwi_planes_open(planes, "dicom", desc, err);
+    return cwi_planes_open(planes, "dicom", "DCMTK", desc, err);
 }
 
 /* The facts of the one file that was named. */

@@ -5,28 +5,43 @@
 
 #include <string.h>
 
-cw_status cwi_planes_open(cwi_planes *planes, const char *module, const cw_read_desc *desc,
-                          cw_error *err)
+static cw_status prepare(void *state, cw_error *err)
 {
+    cwi_planes *planes = state;
     const void *functions;
-    *planes = (cwi_planes){0};
-    cw_status st = cwi_module_load(module, &functions, err);
+    cw_status st = cwi_module_load(planes->module, &functions, err);
     if (st != CW_OK)
         return st;
     planes->functions = functions;
     if (planes->functions->prepare)
-        planes->functions->prepare(); /* here, so that every child finds it done */
+        st = planes->functions->prepare(err);
+    if (st != CW_OK)
+        return st;
     planes->state = planes->functions->state_new();
-    if (!planes->state)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %s", planes->functions->library);
-    const cwi_sandbox_desc box = {.library = planes->functions->library,
-                                  .work = planes->functions->work,
-                                  .state = planes->state,
+    return planes->state
+               ? CW_OK
+               : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the module %s", planes->module);
+}
+
+static cw_status work(void *state, int fd, const void *request, void *shared, cw_error *err)
+{
+    const cwi_planes *planes = state;
+    return planes->functions->work(planes->state, fd, request, shared, err);
+}
+
+cw_status cwi_planes_open(cwi_planes *planes, const char *module, const char *library,
+                          const cw_read_desc *desc, cw_error *err)
+{
+    *planes = (cwi_planes){.module = module};
+    const cwi_sandbox_desc box = {.library = library,
+                                  .prepare = prepare,
+                                  .work = work,
+                                  .state = planes,
                                   .shared_bytes = CWI_PLANES_SHARED,
                                   .memory = desc->max_bytes,
                                   .timeout_s = desc->timeout_s,
                                   .inside = desc->no_sandbox};
-    st = cwi_sandbox_open(&planes->box, &box, err);
+    cw_status st = cwi_sandbox_open(&planes->box, &box, err);
     planes->box.progress = &desc->progress;
     return st;
 }

@@ -26,25 +26,24 @@ enum { CWI_PLANES_SHARED = 64 << 20 };
 
 /* What a module exports. The facts have a struct of the module's own. */
 typedef struct cwi_plane_functions {
-    const char *library;
     void *(*state_new)(void); /* NULL: out of memory */
     void (*state_free)(void *state);
-    void (*prepare)(void); /* once or more, while files may still be opened;
-                                may be NULL */
-    cwi_sandbox_work work; /* of cwi_plane_request */
+    cw_status (*prepare)(cw_error *err); /* while files may still be opened; may be NULL */
+    cwi_sandbox_work work;               /* of cwi_plane_request */
 } cwi_plane_functions;
 
-/* A library at work. A zeroed one is closed. */
+/* A library at work. A zeroed one is closed. It stays where it was opened. */
 typedef struct cwi_planes {
-    const cwi_plane_functions *functions;
-    void *state;
+    const char *module;
+    const cwi_plane_functions *functions; /* in the process that reads */
+    void *state;                          /* as well */
     cwi_sandbox box;
 } cwi_planes;
 
-/* Loads a module and starts its process.
+/* Starts a process and loads a module in it; `library` is what it has inside, for messages.
  * Returns  CW_ERR_UNSUPPORTED  not in this build; as cwi_sandbox_open() */
-cw_status cwi_planes_open(cwi_planes *planes, const char *module, const cw_read_desc *desc,
-                          cw_error *err);
+cw_status cwi_planes_open(cwi_planes *planes, const char *module, const char *library,
+                          const cw_read_desc *desc, cw_error *err);
 void cwi_planes_close(cwi_planes *planes);
 
 /* Starts the process again where it has ended. */

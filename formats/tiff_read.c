@@ -403,7 +403,7 @@ cw_status cwi_tiff_read(const cwi_input *in, cwi_names *names, const cw_read_des
     cwi_planes planes = {0};
     cwi_stack stack = {0};
     slices s = {.in = in, .planes = &planes, .desc = desc};
-    cw_status st = cwi_planes_open(&planes, "tiff", desc, err);
+    cw_status st = cwi_planes_open(&planes, "tiff", "libtiff", desc, err);
     if (st == CW_OK)
         st = find_stack(&s, names, &stack, err);
     if (st == CW_OK) {

@@ -486,4 +486,4 @@ static void state_free(void *state)
     cwi_free(state);
 }
 
-const cwi_plane_functions cwi_module_tiff = {"libtiff", state_new, state_free, NULL, work};
+const cwi_plane_functions cwi_module_tiff = {state_new, state_free, NULL, work};

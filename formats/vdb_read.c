@@ -230,7 +230,7 @@ static uint64_t most_memory(uint64_t file_bytes)
 /* Memory that ran out under that limit alone is the file's fault. */
 static cw_status judge_memory(cw_status st, uint64_t limit, uint64_t file_bytes, cw_error *err)
 {
-    if (st != CW_ERR_NO_MEMORY || limit != most_memory(file_bytes))
+    if (st != CW_ERR_NO_MEMORY || limit != most_memory(file_bytes) || cwi_memory_is_limited())
         return st;
     return cw_fail(
         err, CW_ERR_FORMAT,
@@ -248,7 +248,7 @@ cw_status cwi_vdb_read(const cwi_input *in, const cw_read_desc *desc, cw_volume 
     const uint64_t most = most_memory(in->size);
     cw_read_desc boxed = *desc;
     boxed.max_bytes = most < stated ? most : stated;
-    cw_status st = facts ? cwi_planes_open(&planes, "openvdb", &boxed, err)
+    cw_status st = facts ? cwi_planes_open(&planes, "openvdb", "OpenVDB", &boxed, err)
                          : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for facts");
     if (st == CW_OK)
         st = judge_memory(take_facts(&planes, in, facts, err), boxed.max_bytes, in->size, err);

@@ -487,9 +487,12 @@ void state_free(void *p)
     delete static_cast<state *>(p);
 }
 
-void prepare()
+cw_status prepare(cw_error *err)
 {
-    openvdb::initialize();
+    return cw::guard(err, "OpenVDB", [&] {
+        openvdb::initialize();
+        return CW_OK;
+    });
 }
 
 cw_status work(void *p, int fd, const void *request, void *shared, cw_error *err)
@@ -506,5 +509,5 @@ cw_status work(void *p, int fd, const void *request, void *shared, cw_error *err
 
 } // namespace
 
-extern "C" const cwi_plane_functions cwi_module_openvdb = {"OpenVDB", state_new, state_free,
-                                                           prepare, work};
+extern "C" const cwi_plane_functions cwi_module_openvdb = {state_new, state_free, prepare,
+                                                           work};

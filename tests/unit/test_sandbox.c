@@ -255,6 +255,51 @@ static void test_the_parents_files_are_closed(void **state)
     cwi_sandbox_close(&box);
 }
 
+/* What comes ahead of the door, where files may still be opened. */
+static cw_status look_around(void *state, cw_error *err)
+{
+    memory_of_child *m = state;
+    const int file = open("/dev/zero", O_RDONLY);
+    m->base = file >= 0 ? 200 : 300;
+    close(file);
+    return m->calls ? cw_fail(err, CW_ERR_UNSUPPORTED, "it is not there") : CW_OK;
+}
+
+static cw_status die_of_memory(void *state, cw_error *err)
+{
+    (void)state, (void)err;
+    abort();
+}
+
+static void test_libraries_are_loaded_in_the_child(void **state)
+{
+    (void)state;
+    for (int inside = 0; inside < 2; inside++) {
+        cwi_sandbox box;
+        cw_error err = {0};
+        cwi_sandbox_desc desc = {.library = "libtest",
+                                 .prepare = look_around,
+                                 .work = work,
+                                 .state = &memory,
+                                 .shared_bytes = 4096,
+                                 .inside = inside};
+        memory = (memory_of_child){.base = 100};
+        assert_ok(cwi_sandbox_open(&box, &desc, &err), err);
+        assert_int_equal(memory.base, inside ? 200 : 100);
+        assert_ok(ask(&box, ADD, 1, -1, &err), err);
+        assert_int_equal(found(&box)->number, 202);
+        cwi_sandbox_close(&box);
+        memory.calls = 1;
+        assert_fails(cwi_sandbox_open(&box, &desc, &err), CW_ERR_UNSUPPORTED, "it is not there",
+                     err);
+        cwi_sandbox_close(&box);
+        desc.prepare = die_of_memory;
+        if (!inside)
+            assert_fails(cwi_sandbox_open(&box, &desc, &err), CW_ERR_NO_MEMORY,
+                         "libtest cannot be loaded: its process ended (signal 6)", err);
+    }
+}
+
 static void test_memory_is_limited(void **state)
 {
     (void)state;
@@ -312,6 +357,7 @@ int main(void)
         cmocka_unit_test(test_work_can_be_cancelled),
         cmocka_unit_test(test_the_child_can_reach_nothing),
         cmocka_unit_test(test_the_parents_files_are_closed),
+        cmocka_unit_test(test_libraries_are_loaded_in_the_child),
         cmocka_unit_test(test_memory_is_limited),
         cmocka_unit_test(test_what_it_prints_is_lost),
         cmocka_unit_test(test_answers_are_checked),
