@@ -81,18 +81,37 @@ static cw_status fail_load(const char *name, const char *packages, cw_error *err
                    name, words ? words : "unknown error", packages);
 }
 
-cw_status cwi_module_load(const char *name, const void **functions, cw_error *err)
+/* The path of a module that this build has. */
+static cw_status find_module(const char *name, char *path, size_t size,
+                             const cwi_feature_row **row, cw_error *err)
 {
-    char path[4096], symbol[64];
-    const cwi_feature_row *row = cwi_find_module_row(name);
-    if (!row)
+    *row = cwi_find_module_row(name);
+    if (!*row)
         return cw_fail(err, CW_ERR_UNSUPPORTED, "there is no module '%s'", name);
-    if (!module_path(name, path, sizeof path))
+    if (!module_path(name, path, size))
         return cw_fail(err, CW_ERR_UNSUPPORTED,
                        "the %s module is not in this build (%s); configure with -D%s=ON and "
                        "the Debian package%s %s",
-                       name, *row->reason ? row->reason : "its file was removed", row->option,
-                       strchr(row->packages, ' ') ? "s" : "", row->packages);
+                       name, *(*row)->reason ? (*row)->reason : "its file was removed",
+                       (*row)->option, strchr((*row)->packages, ' ') ? "s" : "",
+                       (*row)->packages);
+    return CW_OK;
+}
+
+cw_status cwi_module_find(const char *name, cw_error *err)
+{
+    char path[4096];
+    const cwi_feature_row *row;
+    return find_module(name, path, sizeof path, &row, err);
+}
+
+cw_status cwi_module_load(const char *name, const void **functions, cw_error *err)
+{
+    char path[4096], symbol[64];
+    const cwi_feature_row *row;
+    cw_status st = find_module(name, path, sizeof path, &row, err);
+    if (st != CW_OK)
+        return st;
     if (cwi_memory_is_limited() && !survives_loading(path))
         return fail_memory(name, err);
     void *module = dlopen(path, RTLD_NOW | RTLD_LOCAL);

@@ -18,6 +18,9 @@ extern "C" {
  * this build has no such module or it cannot be loaded; CW_ERR_NO_MEMORY. */
 CW_API cw_status cwi_module_load(const char *name, const void **functions, cw_error *err);
 
+/* As cwi_module_load(), but only looks for the file: another process loads it. */
+CW_API cw_status cwi_module_find(const char *name, cw_error *err);
+
 /* Whether the file of a module is there; nothing is loaded. */
 CW_API bool cwi_module_present(const char *name);
 

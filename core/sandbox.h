@@ -47,6 +47,7 @@ typedef struct cwi_sandbox_desc {
     uint64_t memory;     /* bytes that the child may take besides; 0: CWI_SANDBOX_MEMORY */
     double timeout_s;    /* for one piece of work; 0: 60 */
     bool inside;         /* no child: the work is done here */
+    bool trusted; /* the work is on data of our own: a child that may die, without limits */
 } cwi_sandbox_desc;
 
 /* A zeroed sandbox is closed. */

@@ -93,9 +93,15 @@ bool cwi_gltf_put_scene(const cwi_gltf_scene *s, void *to, size_t room)
 }
 
 typedef struct job {
-    const cwi_gltf_functions *functions;
-    size_t json, shared; /* bytes */
+    const cwi_gltf_functions *functions; /* loaded there */
+    size_t json, shared;                 /* bytes */
 } job;
+
+static cw_status load(void *state, cw_error *err)
+{
+    job *j = state;
+    return cwi_gltf_functions_load(&j->functions, err);
+}
 
 static cw_status work(void *state, int fd, const void *request, void *shared, cw_error *err)
 {
@@ -195,17 +201,15 @@ cw_status cwi_gltf_parse(const char *json, size_t size, const cw_mesh_read_desc 
     const size_t dense = size < MOST_JSON ? size : MOST_JSON; /* beside its strings */
     job j = {.json = size, .shared = 2 * size + LARGEST_ELEMENT * dense + HEAD};
     cwi_sandbox box = {0};
-    cw_status st = cwi_gltf_functions_load(&j.functions, err);
-    if (st != CW_OK)
-        return st;
     const cwi_sandbox_desc shut = {.library = "tinygltf",
+                                   .prepare = load,
                                    .work = work,
                                    .state = &j,
                                    .shared_bytes = j.shared,
                                    .memory = desc->max_bytes,
                                    .timeout_s = desc->timeout_s,
                                    .inside = desc->no_sandbox};
-    st = cwi_sandbox_open(&box, &shut, err);
+    cw_status st = cwi_sandbox_open(&box, &shut, err);
     if (st != CW_OK)
         return st;
     memcpy(box.shared, json, size);
@@ -213,6 +217,84 @@ cw_status cwi_gltf_parse(const char *json, size_t size, const cw_mesh_read_desc 
     st = cwi_sandbox_run(&box, -1, "", 1, err);
     if (st == CW_OK)
         st = cwi_gltf_take_scene((char *)box.shared + size, j.shared - size, scene, err);
+    cwi_sandbox_close(&box);
+    return st;
+}
+
+/* --- writing ------------------------------------------------------------------------------ */
+
+/* The JSON of a document goes the other way: its size, then its bytes. */
+typedef struct writing {
+    const cwi_gltf_functions *functions; /* loaded there */
+    const cwi_gltf_document *document;
+    size_t room;
+} writing;
+
+static cw_status load_writer(void *state, cw_error *err)
+{
+    writing *w = state;
+    return cwi_gltf_functions_load(&w->functions, err);
+}
+
+static cw_status make_json(void *state, int fd, const void *request, void *shared,
+                           cw_error *err)
+{
+    const writing *w = state;
+    char *json = NULL;
+    size_t size = 0;
+    (void)fd, (void)request;
+    cw_status st = w->functions->document(w->document, &json, &size, err);
+    tape t = {.at = shared, .end = (char *)shared + w->room};
+    if (st == CW_OK && (!put(&t, &size, sizeof size) || !put(&t, json, size)))
+        st = cw_fail(err, CW_ERR_LIMIT, "the JSON takes more than %zu bytes", w->room);
+    cwi_free(json);
+    return st;
+}
+
+/* Far more than the JSON takes, of which no more is used than there is. */
+static size_t room_for_json(const cwi_gltf_document *d)
+{
+    enum { BASE = 1 << 20, PER_PIECE = 16 << 10, WORST_ESCAPE = 6 };
+    size_t words = 0;
+    for (size_t i = 0; i < d->provenance_count; i++)
+        words += strlen(d->provenance[i].key) + strlen(d->provenance[i].value);
+    return BASE + PER_PIECE * d->count + WORST_ESCAPE * words;
+}
+
+static cw_status take_json(const void *shared, char **json, size_t *size, cw_error *err)
+{
+    memcpy(size, shared, sizeof *size);
+    *json = cwi_alloc_array(*size, 1);
+    if (!*json)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the JSON");
+    memcpy(*json, (const char *)shared + sizeof *size, *size);
+    return CW_OK;
+}
+
+/* Where the system gives no process, it is done here. */
+cw_status cwi_gltf_make_json(const cwi_gltf_document *document, char **json, size_t *size,
+                             cw_error *err)
+{
+    writing w = {.document = document, .room = room_for_json(document)};
+    cwi_sandbox box = {0};
+    cwi_sandbox_desc apart = {.library = "tinygltf",
+                              .prepare = load_writer,
+                              .work = make_json,
+                              .state = &w,
+                              .shared_bytes = w.room,
+                              .trusted = true};
+    cw_status st = cwi_sandbox_open(&box, &apart, err);
+    if (st == CW_ERR_BACKEND) {
+        apart.inside = true;
+        st = cwi_sandbox_open(&box, &apart, err);
+    }
+    if (st != CW_OK)
+        return st;
+    st = cwi_sandbox_run(&box, -1, "", 1, err);
+    if (st == CW_ERR_BACKEND && !box.open)
+        st = cw_fail(err, CW_ERR_NO_MEMORY, "memory ran out while tinygltf made the JSON");
+    if (st == CW_OK)
+        st = take_json(box.shared, json, size, err);
     cwi_sandbox_close(&box);
     return st;
 }

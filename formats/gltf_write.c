@@ -50,8 +50,7 @@ void cwi_arrays_free(cwi_arrays *arrays)
 
 cw_status cwi_gltf_prepare(cw_error *err)
 {
-    const cwi_gltf_functions *functions;
-    return cwi_gltf_functions_load(&functions, err);
+    return cwi_module_find("gltf", err);
 }
 
 /* --- the buffer's bytes --------------------------------------------------------------------
@@ -208,15 +207,12 @@ static cw_status write_gltf(const cwi_gltf_plan *plan, const char *json, size_t 
 static cw_status write_scene(const cwi_parts *parts, cwi_mesh_output *out, bool binary,
                              cw_error *err)
 {
-    const cwi_gltf_functions *functions;
     cwi_gltf_plan plan = {0};
     char *json = NULL;
     size_t size = 0;
-    cw_status st = cwi_gltf_functions_load(&functions, err);
+    cw_status st = cwi_gltf_plan_make(&plan, parts, out, err);
     if (st == CW_OK)
-        st = cwi_gltf_plan_make(&plan, parts, out, err);
-    if (st == CW_OK)
-        st = functions->document(&plan.document, &json, &size, err);
+        st = cwi_gltf_make_json(&plan.document, &json, &size, err);
     out->total = plan.document.bytes ? (size_t)plan.document.bytes : 1;
     if (st == CW_OK)
         st = binary ? write_glb(&plan, json, size, out, err)

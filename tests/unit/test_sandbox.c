@@ -69,7 +69,7 @@ static void try_system(const request *q, result *r)
 {
     char *const none[] = {NULL};
     errno = 0;
-    r->number = q->deed == OPEN      ? open("/etc/hostname", O_RDONLY)
+    r->number = q->deed == OPEN      ? open("/dev/zero", O_RDONLY)
                 : q->deed == CONNECT ? socket(AF_INET, SOCK_STREAM, 0)
                 : q->deed == RUN     ? execve("/bin/true", none, none)
                 : q->deed == KILL    ? kill(getppid(), 0)
@@ -300,6 +300,26 @@ static void test_libraries_are_loaded_in_the_child(void **state)
     }
 }
 
+/* Work on data of our own may open files; what it dies of is no more than an error. */
+static void test_trusted_work_may_die(void **state)
+{
+    (void)state;
+    cwi_sandbox box;
+    cw_error err = {0};
+    const cwi_sandbox_desc desc = {.library = "libtest",
+                                   .work = work,
+                                   .state = &memory,
+                                   .shared_bytes = 4096,
+                                   .trusted = true};
+    memory = (memory_of_child){.base = 100};
+    assert_ok(cwi_sandbox_open(&box, &desc, &err), err);
+    assert_ok(ask(&box, OPEN, 0, -1, &err), err);
+    assert_true(found(&box)->number >= 0);
+    assert_fails(ask(&box, ABORT, 0, -1, &err), CW_ERR_BACKEND, "libtest died of it", err);
+    assert_false(box.open);
+    cwi_sandbox_close(&box);
+}
+
 static void test_memory_is_limited(void **state)
 {
     (void)state;
@@ -358,6 +378,7 @@ int main(void)
         cmocka_unit_test(test_the_child_can_reach_nothing),
         cmocka_unit_test(test_the_parents_files_are_closed),
         cmocka_unit_test(test_libraries_are_loaded_in_the_child),
+        cmocka_unit_test(test_trusted_work_may_die),
         cmocka_unit_test(test_memory_is_limited),
         cmocka_unit_test(test_what_it_prints_is_lost),
         cmocka_unit_test(test_answers_are_checked),
