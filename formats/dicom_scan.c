@@ -18,8 +18,8 @@ static bool is_capital(unsigned char c)
     return c >= 'A' && c <= 'Z';
 }
 
-/* Passes an element of a few bytes in little-endian order; false where none of groups 2 and 8
- * is there, or its tag does not come behind *tag. */
+/* Passes an element of a few bytes in little-endian order; false where its tag does not come
+ * behind *tag, or is of no group ahead of pixels. The first must be of group 2 or 8. */
 static bool pass_element(const unsigned char *head, size_t size, size_t *at, uint32_t *tag)
 {
     enum { LONGEST = 128 };
@@ -34,7 +34,10 @@ static bool pass_element(const unsigned char *head, size_t size, size_t *at, uin
     const uint32_t length = wide     ? b[8] | (uint32_t)(b[9] | b[10] | b[11]) << 8
                             : has_vr ? (uint32_t)(b[6] | b[7] << 8)
                                      : b[4] | (uint32_t)(b[5] | b[6] | b[7]) << 8;
-    if ((mine >> 16 != 2 && mine >> 16 != 8) || mine <= *tag || length > LONGEST || length % 2)
+    const uint32_t group = mine >> 16;
+    const bool first = *tag == 0;
+    if ((first && group != 2 && group != 8) || group > 0x28 || group % 2 || mine <= *tag ||
+        length > LONGEST || length % 2)
         return false;
     *tag = mine;
     *at += (wide ? 12 : 8) + length;
