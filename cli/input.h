@@ -123,7 +123,7 @@ typedef struct cli_input {
          CLI_INPUT_ROW(args, max_voxels)},                                                     \
     {                                                                                          \
         "memory", 0, CLI_BYTES, "SIZE",                                                        \
-            "stop before voxels and mesh need more, e.g. 8G (75 % of the machine's)",          \
+            "stop before the program takes more, checks included (75 % of the machine's)",     \
             CLI_INPUT_ROW(args, memory)                                                        \
     }
 

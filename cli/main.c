@@ -1,7 +1,10 @@
 #include "cli/commands.h"
 #include "cli/console.h"
+#include "cli/input.h"
+#include "core/memory.h"
 #include "core/outfile.h"
 #include "core/status.h"
+#include "core/text.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -30,6 +33,39 @@ const cli_command *cli_find_command(const char *name, cw_error *err)
     return NULL;
 }
 
+/* Where a command has --memory, it is a limit to the whole process: what it has taken by now,
+ * and what stacks and buffers will, comes off. Less than LEAST is a limit to voxels and surface
+ * only, for the program itself does not fit. */
+static void limit_memory(const cli_command *command, const cli_common *args)
+{
+    enum { STACKS_AND_BUFFERS = 6 << 20, LEAST = 32 << 20 };
+    for (size_t n = 0; n < command->option_count; n++) {
+        const cli_option *o = &command->options[n];
+        cli_input input = {0};
+        if (strcmp(o->name, "memory") != 0)
+            continue;
+        memcpy(&input.memory, (const char *)args + o->offset, sizeof input.memory);
+        const size_t asked = cli_memory_limit(&input), limit = asked > LEAST ? asked : LEAST;
+        const size_t spent = cli_peak_bytes() + STACKS_AND_BUFFERS;
+        cw_memory_limit(limit > spent ? limit - spent : 1);
+    }
+}
+
+/* Tells memory that ran out from memory that --memory does not allow. */
+static void explain_memory(cw_error *err)
+{
+    char asked_text[CWI_MEMORY_TEXT], left_text[CWI_MEMORY_TEXT];
+    size_t left;
+    const size_t asked = cwi_memory_refused(&left);
+    const cw_error said = *err;
+    if (!asked)
+        return;
+    cwi_print_memory(asked, asked_text);
+    cwi_print_memory(left, left_text);
+    cw_fail(err, said.status, "%.400s; %s were asked for, and --memory leaves %s", said.message,
+            asked_text, left_text);
+}
+
 static cw_status run(const cli_command *command, int count, char **words, cw_error *err)
 {
     cli_common *args = calloc(1, command->size);
@@ -42,8 +78,12 @@ static cw_status run(const cli_command *command, int count, char **words, cw_err
         cli_console_start(args, CLI_PROGRESS_AUTO);
         if (st == CW_OK && args->help)
             cli_print_help(command, false);
-        else if (st == CW_OK)
+        else if (st == CW_OK) {
+            limit_memory(command, args);
             st = command->run(args, err);
+        }
+        if (st == CW_ERR_NO_MEMORY)
+            explain_memory(err);
     } else {
         cw_fail(err, st, "no memory for the arguments");
     }

@@ -46,7 +46,7 @@
          CLI_INPUT_ROW(args, max_triangles)},                                                  \
     {                                                                                          \
         "memory", 0, CLI_BYTES, "SIZE",                                                        \
-            "stop before the mesh needs more, e.g. 8G (75 % of the machine's)",                \
+            "stop before the program takes more, checks included (75 % of the machine's)",     \
             CLI_INPUT_ROW(args, memory)                                                        \
     }
 

@@ -204,6 +204,8 @@ bool cli_parse_count(const char *text, double thousand, size_t *out)
         value *= pow(thousand, (double)(prefix - prefixes + 1));
         text++;
     }
+    if (thousand == 1024 && prefix && *text == 'i') /* GiB: the unit is 1024 anyway */
+        text++;
     if (thousand == 1024 && (*text == 'B' || *text == 'b'))
         text++;
     if (*text != '\0' || !(value >= 0) || value > 0x1p62 || value != floor(value))

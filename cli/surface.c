@@ -1,6 +1,7 @@
 #include "cli/surface.h"
 
 #include "cli/console.h"
+#include "core/memory.h"
 #include "core/status.h"
 #include "core/volume.h"
 
@@ -20,6 +21,13 @@ static cw_status explain_empty(const cli_volume *volume, const cw_extract_desc *
         desc->isovalue, cli_is_preview(volume) ? " of the preview" : "", range.min, range.max);
 }
 
+/* Of the limit to voxels and surface, and of that to the whole process. */
+static size_t memory_left(const cli_volume *volume)
+{
+    const size_t left = cwi_memory_left();
+    return left < 1 ? 1 : left < volume->memory_left ? left : volume->memory_left;
+}
+
 static cw_progress progress_of(const cli_volume *volume)
 {
     const size_t *n = volume->view.dim;
@@ -31,7 +39,7 @@ cw_status cli_extract_surface(const cli_volume *volume, cw_extractor *extractor,
                               cw_extract_counts *counts, cw_error *err)
 {
     cw_extract_desc d = *desc;
-    d.max_bytes = volume->memory_left;
+    d.max_bytes = memory_left(volume);
     d.progress = progress_of(volume);
     cw_status st = extractor ? cw_extractor_extract(extractor, &d, mesh, counts, err)
                              : cw_extract(&volume->view, &d, mesh, counts, err);
@@ -91,7 +99,8 @@ static cw_status simplify_slabs(const cli_volume *volume, const cw_extract_desc 
     cw_extract_desc d = *desc;
     cw_simplify_desc s = *simplify;
     cw_simplifier *simplifier;
-    d.max_bytes = volume->memory_left;
+    d.max_bytes = memory_left(volume);
+    d.extra_bytes = 0; /* what is checked is what is left */
     d.progress = s.progress = progress_of(volume);
     *mesh = (cw_mesh){0};
     cw_status st = cw_simplifier_new(&s, &simplifier, err);

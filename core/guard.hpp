@@ -2,6 +2,7 @@
 #ifndef CORE_GUARD_HPP
 #define CORE_GUARD_HPP
 
+#include "core/memory.h"
 #include "core/status.h"
 
 #include <exception>
@@ -9,6 +10,26 @@
 
 namespace cw
 {
+
+// Memory that a library takes for itself, counted by an estimate as long as this lives.
+class Taken
+{
+public:
+    explicit Taken(size_t bytes_) : bytes(bytes_)
+    {
+        if (!cwi_memory_take(bytes))
+            throw std::bad_alloc();
+    }
+    ~Taken()
+    {
+        cwi_memory_give(bytes);
+    }
+    Taken(const Taken &) = delete;
+    Taken &operator=(const Taken &) = delete;
+
+private:
+    size_t bytes;
+};
 
 // Thrown where the caller's progress asks to stop.
 struct Cancelled {

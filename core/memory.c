@@ -4,6 +4,7 @@
 #ifdef __linux__
 #include <malloc.h>
 #endif
+#include <stdatomic.h>
 #include <stdlib.h>
 #include <string.h>
 #include <sys/mman.h>
@@ -33,6 +34,75 @@ static bool starved(void)
     return true;
 }
 
+/* --- the limit ----------------------------------------------------------------------------
+ */
+
+/* Of all arrays that are allocated now. */
+static atomic_size_t used, limit;
+/* What the limit refused last, and what it had left then. */
+static atomic_size_t refused, refused_left;
+
+void cw_memory_limit(size_t bytes)
+{
+    atomic_store(&limit, bytes);
+    atomic_store(&refused, 0);
+}
+
+size_t cw_memory_used(void)
+{
+    return atomic_load(&used);
+}
+
+size_t cwi_memory_refused(size_t *left)
+{
+    *left = atomic_load(&refused_left);
+    return atomic_load(&refused);
+}
+
+size_t cwi_memory_left(void)
+{
+    const size_t most = atomic_load(&limit), now = atomic_load(&used);
+    return !most ? SIZE_MAX : most > now ? most - now : 0;
+}
+
+bool cwi_memory_take(size_t bytes)
+{
+    const size_t most = atomic_load_explicit(&limit, memory_order_relaxed);
+    const size_t before = atomic_fetch_add_explicit(&used, bytes, memory_order_relaxed);
+    if (!most || (before <= most && bytes <= most - before))
+        return true;
+    atomic_fetch_sub_explicit(&used, bytes, memory_order_relaxed);
+    atomic_store(&refused_left, most > before ? most - before : 0);
+    atomic_store(&refused, bytes);
+    return false;
+}
+
+void cwi_memory_give(size_t bytes)
+{
+    atomic_fetch_sub_explicit(&used, bytes, memory_order_relaxed);
+}
+
+/* The bytes that allocated memory has; 0: not known, and then it is not counted. */
+static size_t room_of(void *memory)
+{
+#ifdef __linux__
+    return malloc_usable_size(memory);
+#else
+    (void)memory;
+    return 0;
+#endif
+}
+
+/* What was taken beforehand for memory becomes what it has. Passes it on. */
+static void *settle(void *memory, size_t taken)
+{
+    atomic_fetch_add_explicit(&used, room_of(memory) - taken, memory_order_relaxed);
+    return memory;
+}
+
+/* --- allocation ---------------------------------------------------------------------------
+ */
+
 bool cwi_size_mul(size_t a, size_t b, size_t *out)
 {
     size_t product;
@@ -52,9 +122,15 @@ bool cwi_size_add(size_t a, size_t b, size_t *out)
 }
 
 /* Sizes beyond PTRDIFF_MAX cannot be indexed; malloc refuses them, and compilers warn. */
-static bool usable(size_t count, size_t size, size_t *bytes)
+static bool is_usable(size_t count, size_t size, size_t *bytes)
 {
     return cwi_size_mul(count, size, bytes) && *bytes <= PTRDIFF_MAX && !starved();
+}
+
+/* The same, and takes the bytes. */
+static bool take_array(size_t count, size_t size, size_t *bytes)
+{
+    return is_usable(count, size, bytes) && cwi_memory_take(*bytes);
 }
 
 enum { LARGE_PAGE = 2 << 20 };
@@ -75,15 +151,15 @@ static void wish_large_pages(char *memory, size_t bytes)
 void *cwi_alloc_array(size_t count, size_t size)
 {
     size_t bytes;
-    return usable(count, size, &bytes) ? malloc(bytes ? bytes : 1) : NULL;
+    return take_array(count, size, &bytes) ? settle(malloc(bytes ? bytes : 1), bytes) : NULL;
 }
 
 void *cwi_alloc_zeroed(size_t count, size_t size)
 {
     size_t bytes;
-    if (!usable(count, size, &bytes))
+    if (!take_array(count, size, &bytes))
         return NULL;
-    char *memory = calloc(bytes ? bytes : 1, 1);
+    char *memory = settle(calloc(bytes ? bytes : 1, 1), bytes);
     wish_large_pages(memory, bytes);
     return memory;
 }
@@ -92,45 +168,46 @@ void *cwi_alloc_large(size_t count, size_t size)
 {
     const size_t page = LARGE_PAGE;
     size_t bytes;
-    if (!usable(count, size, &bytes))
+    if (!take_array(count, size, &bytes))
         return NULL;
     if (bytes < 2 * page || bytes > PTRDIFF_MAX - page)
-        return malloc(bytes ? bytes : 1);
-    bytes = (bytes + page - 1) / page * page;
-    void *memory = aligned_alloc(page, bytes);
-    wish_large_pages(memory, bytes);
+        return settle(malloc(bytes ? bytes : 1), bytes);
+    const size_t whole = (bytes + page - 1) / page * page;
+    void *memory = settle(aligned_alloc(page, whole), bytes);
+    wish_large_pages(memory, whole);
     return memory;
-}
-
-/* The bytes that allocated memory has; 0: not known. */
-static size_t room_of(void *memory)
-{
-#ifdef __linux__
-    return malloc_usable_size(memory);
-#else
-    (void)memory;
-    return 0;
-#endif
 }
 
 void *cwi_renew_large(void *memory, size_t count, size_t size)
 {
     const size_t room = room_of(memory), more = memory ? count / 8 : 0;
     size_t bytes;
-    if (memory && usable(count, size, &bytes) && bytes <= room && bytes >= room / 2)
+    if (memory && is_usable(count, size, &bytes) && bytes <= room && bytes >= room / 2)
         return memory;
-    free(memory);
+    cwi_free(memory);
     return cwi_alloc_large(count + more, size);
 }
 
 void *cwi_realloc_array(void *memory, size_t count, size_t size)
 {
+    const size_t before = room_of(memory);
     size_t bytes;
-    return usable(count, size, &bytes) ? realloc(memory, bytes ? bytes : 1) : NULL;
+    if (!is_usable(count, size, &bytes))
+        return NULL;
+    const size_t more = bytes > before ? bytes - before : 0;
+    if (!cwi_memory_take(more))
+        return NULL;
+    void *moved = realloc(memory, bytes ? bytes : 1);
+    if (moved)
+        settle(moved, before + more);
+    else
+        cwi_memory_give(more);
+    return moved;
 }
 
 void cwi_free(void *memory)
 {
+    cwi_memory_give(room_of(memory));
     free(memory);
 }
 

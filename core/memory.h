@@ -29,6 +29,17 @@ CW_API void *cwi_alloc_large(size_t count, size_t size);
  * like it may be wanted. What was written to before, the system need not clear. */
 CW_API void *cwi_renew_large(void *memory, size_t count, size_t size);
 
+/* Counts memory that a library is about to take for itself, until it is given back. False, and
+ * nothing taken, when the limit of cw_memory_limit() has no room for it. */
+CW_API bool cwi_memory_take(size_t bytes);
+CW_API void cwi_memory_give(size_t bytes);
+
+/* The bytes that the limit leaves; SIZE_MAX: there is none. */
+CW_API size_t cwi_memory_left(void);
+
+/* The bytes that the limit refused last, and those that were left then; 0: it refused none. */
+CW_API size_t cwi_memory_refused(size_t *left);
+
 /* A copy of a string; NULL when memory is out. */
 CW_API char *cwi_strdup(const char *text);
 

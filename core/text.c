@@ -4,6 +4,7 @@
 #include <errno.h>
 #include <locale.h>
 #include <pthread.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -207,4 +208,16 @@ bool cwi_text_close(FILE *stream, char **text)
     free(*text);
     *text = NULL;
     return false;
+}
+
+void cwi_print_memory(uint64_t bytes, char text[CWI_MEMORY_TEXT])
+{
+    static const char *const units[] = {"bytes", "KiB", "MiB", "GiB", "TiB"};
+    double value = (double)bytes;
+    size_t unit = 0;
+    for (; value >= 1000 && unit + 1 < sizeof units / sizeof *units; unit++)
+        value /= 1024;
+    void *before = cwi_locale_c();
+    snprintf(text, CWI_MEMORY_TEXT, "%.3g %s", value, units[unit]);
+    cwi_locale_restore(before);
 }

@@ -36,6 +36,11 @@ CW_API FILE *cwi_text_open(char **text, size_t *size);
  * stream into memory may lose text, or all of it, and still be closed without an error. */
 CW_API bool cwi_text_close(FILE *stream, char **text);
 
+enum { CWI_MEMORY_TEXT = 24 };
+
+/* Bytes of memory in the unit that --memory takes: "1.5 GiB". */
+CW_API void cwi_print_memory(uint64_t bytes, char text[CWI_MEMORY_TEXT]);
+
 /* Bytes of the UTF-8 character at text; 0 when there is none such: stray bytes, overlong forms,
  * surrogates, codes past the last. The terminating zero counts as a character of one byte. */
 CW_API size_t cwi_utf8_length(const char *text);

@@ -4,6 +4,7 @@
 #include "core/memory.h"
 #include "core/mesh.h"
 #include "core/status.h"
+#include "core/text.h"
 #include "core/volume.h"
 #include "extract/crossings.h"
 #include "extract/gather.h"
@@ -199,10 +200,13 @@ static cw_status check_made(sparse_plan *p, const cwi_block *b, cw_error *err)
         return cw_fail(err, CW_ERR_LIMIT,
                        "the surface has more triangles than the limit of %zu (--max-triangles)",
                        d->max_triangles);
-    if (d->max_bytes && bytes > d->max_bytes)
+    bytes += d->extra_bytes * made;
+    if (d->max_bytes && bytes > d->max_bytes) {
+        char left[CWI_MEMORY_TEXT];
+        cwi_print_memory(d->max_bytes, left);
         return cw_fail(err, CW_ERR_LIMIT,
-                       "extraction needs more bytes than the limit of %zu (--memory)",
-                       d->max_bytes);
+                       "extraction needs more than the %s that are left (--memory)", left);
+    }
     return CW_OK;
 }
 

@@ -16,6 +16,9 @@
 namespace
 {
 
+// What Draco takes for itself at most.
+enum { TRIANGLE_BYTES = 100 };
+
 enum { COLOR_BITS = 8 };
 
 cw_status fail_draco(cw_error *err, cw_status status, const char *what,
@@ -91,6 +94,7 @@ cw_status encode(const cwi_arrays *from, const cwi_draco_settings *settings,
                  cw_error *err) noexcept
 {
     return cw::guard(err, "Draco", [&] {
+        const cw::Taken taken(TRIANGLE_BYTES * from->triangle_count);
         draco::Mesh mesh;
         draco::Encoder encoder;
         draco::EncoderBuffer buffer;

@@ -18,6 +18,9 @@ using namespace cw;
 namespace
 {
 
+// What a triangle takes here, with its share of vertices, edges and what is kept of them.
+enum { TRIANGLE_BYTES = 240 };
+
 // All that a cost needs of a vertex, in one line of a cache.
 struct alignas(64) Node {
     cwi_quadric quadric;
@@ -31,7 +34,8 @@ struct alignas(64) Node {
 struct cwi_decimater {
     cwi_decimater(const cwi_block &block, const cwi_block_desc &desc,
                   const cwi_original *original)
-        : names(block.names, block.names + block.vertices), nodes(block.vertices),
+        : taken(TRIANGLE_BYTES * block.triangles),
+          names(block.names, block.names + block.vertices), nodes(block.vertices),
           trends(block), live(block.own), shape(block), bound(block, original, desc.error),
           progress(*desc.progress)
     {
@@ -78,6 +82,7 @@ struct cwi_decimater {
         }
     }
 
+    Taken taken;
     Surface surface;
     std::vector<uint32_t> names;
     std::vector<Node> nodes;

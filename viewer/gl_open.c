@@ -14,14 +14,19 @@ void cwi_gl_leave(cwi_gl *gl)
     cwi_gl_context_leave(&gl->context);
 }
 
+/* What Mesa's software OpenGL was seen to take before there is anything to draw. */
+enum { DRIVER_BYTES = 72 << 20 };
+
 static cw_status gl_open(cwi_gl **out, cw_error *err)
 {
-    cwi_gl *gl = cwi_alloc_zeroed(1, sizeof *gl);
-    if (!gl)
+    if (!cwi_memory_take(DRIVER_BYTES))
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for OpenGL");
-    cw_status st = cwi_gl_context_open(&gl->context, err);
+    cwi_gl *gl = cwi_alloc_zeroed(1, sizeof *gl);
+    cw_status st = gl ? cwi_gl_context_open(&gl->context, err)
+                      : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for OpenGL");
     if (st != CW_OK) {
         cwi_free(gl);
+        cwi_memory_give(DRIVER_BYTES);
         return st;
     }
     cwi_gl_describe(gl->name, sizeof gl->name);
@@ -67,6 +72,7 @@ static void gl_close(cwi_gl *gl)
     glDeleteVertexArrays(1, &gl->empty_array);
     cwi_gl_context_close(&gl->context);
     cwi_free(gl);
+    cwi_memory_give(DRIVER_BYTES);
 }
 
 static const char *gl_name(const cwi_gl *gl)

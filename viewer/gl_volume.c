@@ -124,6 +124,15 @@ static GLuint values_texture(const cwi_gl_texels *kind)
     return name;
 }
 
+/* Counts OpenGL's memory, which is this process's where OpenGL is software. */
+static cw_status take_memory(cwi_gl_volume *g, size_t bytes, cw_error *err)
+{
+    if (!cwi_memory_take(bytes))
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to draw the volume");
+    g->texture_bytes += bytes;
+    return CW_OK;
+}
+
 /* By chunks, which are voxels as they are where they can be. */
 static cw_status upload(cwi_gl *gl, const cwi_gl_texels *kind, const cwi_gl_brick *b,
                         cw_error *err)
@@ -135,9 +144,13 @@ static cw_status upload(cwi_gl *gl, const cwi_gl_texels *kind, const cwi_gl_bric
     const size_t layer = b->count[0] * b->count[1] * kind->size;
     const size_t step = layers_at_once(layer, b->count[2]);
     char *chunk = as_is ? NULL : cwi_alloc_array(step, layer);
-    cw_status st = CW_OK;
     if (!chunk && !as_is)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the upload of a volume");
+    cw_status st = take_memory(&gl->volume, layer * b->count[2], err);
+    if (st != CW_OK) {
+        cwi_free(chunk);
+        return st;
+    }
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
     glTexImage3D(GL_TEXTURE_3D, 0, (GLint)kind->inner, w, h, d, 0, GL_RED, kind->type, NULL);
     for (size_t k = 0; k < b->count[2] && st == CW_OK; k += step) {
@@ -224,6 +237,7 @@ void cwi_gl_drop_volume(cwi_gl *gl)
         glDeleteTextures(1, &g->bricks[n].voxels);
         glDeleteBuffers(1, &g->bricks[n].buffer);
     }
+    cwi_memory_give(g->texture_bytes);
     cwi_free(g->bricks);
     cwi_ranges_free(&g->ranges);
     *g = (cwi_gl_volume){0};
@@ -391,7 +405,9 @@ static cw_status upload_gradients(cwi_gl *gl, cwi_gl_brick *b, cw_error *err)
     const GLsizei w = (GLsizei)b->count[0], h = (GLsizei)b->count[1];
     const size_t layer = b->count[0] * b->count[1] * GRADIENT_BYTES;
     const size_t step = layers_at_once(layer, b->count[2]);
-    cw_status st = CW_OK;
+    cw_status st = take_memory(&gl->volume, layer * b->count[2], err);
+    if (st != CW_OK)
+        return st;
     void *chunk = cwi_alloc_array(step, layer);
     if (!chunk)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for gradients");

@@ -43,6 +43,7 @@ typedef struct cwi_gl_volume {
     double scale, bias;
     double range; /* of the scaled values, above 0; gradients are told in it */
     size_t brick_count;
+    size_t texture_bytes; /* counted as taken */
     cwi_gl_brick *bricks;
     cwi_ranges ranges;
     bool in_place; /* shaders read voxels, not values */

@@ -16,6 +16,12 @@ static size_t voxel_count(const cw_volume *v)
     return v->dim[0] * v->dim[1] * v->dim[2];
 }
 
+/* That the check takes a triangle; a closed surface has half as many vertices. */
+static size_t check_bytes(void)
+{
+    return cw_quality_bytes(500, 1000) / 1000 + 1;
+}
+
 static cli_wanted wanted(const cli_extract_run *s, double iso)
 {
     return (cli_wanted){
@@ -27,7 +33,8 @@ static cli_wanted wanted(const cli_extract_run *s, double iso)
                     .snap = s->args->snap.value,
                     .no_normals = s->args->normals,
                     .threads = (int)s->args->input.threads,
-                    .max_triangles = s->args->max_triangles},
+                    .max_triangles = s->args->max_triangles,
+                    .extra_bytes = s->args->check ? check_bytes() : 0},
         .least_mm3 = cli_extract_least_mm3(s),
     };
 }

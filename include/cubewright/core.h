@@ -63,6 +63,14 @@ typedef struct cw_progress {
 /* The version of the library at run time, such as "0.1.0". */
 CW_API const char *cw_version(void);
 
+/* Limits what the arrays of all calls in this process take together; calls that need more fail
+ * with CW_ERR_NO_MEMORY. What other libraries take is counted by estimates, and the program
+ * itself is not counted. 0, as at the start: no limit. Linux alone counts. */
+CW_API void cw_memory_limit(size_t bytes);
+
+/* The bytes that arrays take now. */
+CW_API size_t cw_memory_used(void);
+
 /* The row of CW_STATUS_TABLE for a status; an unknown status reads as CW_ERR_BACKEND. */
 CW_API int cw_status_exit_code(cw_status status);
 CW_API const char *cw_status_name(cw_status status);

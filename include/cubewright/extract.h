@@ -30,6 +30,8 @@ typedef struct cw_extract_desc {
     int threads;          /* default: all that OpenMP offers */
     size_t max_triangles; /* fail with CW_ERR_LIMIT before allocating more; default: no limit */
     size_t max_bytes;     /* likewise for mesh and working memory; default: no limit */
+    size_t
+        extra_bytes; /* a triangle: what the caller needs besides, counted against max_bytes */
     cw_progress progress; /* default: none */
 } cw_extract_desc;
 

@@ -88,6 +88,9 @@ typedef struct cw_quality_desc {
 CW_API cw_status cw_quality_measure(const cw_mesh *mesh, const cw_quality_desc *desc,
                                     cw_quality *out, cw_error *err);
 
+/* The bytes that measuring takes beside the mesh; for one with open edges a third more. */
+CW_API size_t cw_quality_bytes(size_t vertices, size_t triangles);
+
 /* No open, no non-manifold and no misoriented edge, no non-manifold vertex. */
 CW_API bool cw_quality_is_closed_manifold(const cw_quality *quality);
 

@@ -332,6 +332,15 @@ cw_status cw_quality_measure(const cw_mesh *mesh, const cw_quality_desc *desc, c
     return st;
 }
 
+size_t cw_quality_bytes(size_t vertices, size_t triangles)
+{
+    const work *w = NULL;
+    const size_t corner = sizeof *w->sides + sizeof *w->fan;
+    const size_t vertex = sizeof *w->begin + sizeof *w->part + sizeof *w->fans +
+                          sizeof *w->volume + sizeof *w->area + sizeof *w->unbounded + 1;
+    return 3 * corner * triangles + vertex * vertices;
+}
+
 bool cw_quality_is_closed_manifold(const cw_quality *q)
 {
     return !q->open_edges && !q->nonmanifold_edges && !q->misoriented_edges &&

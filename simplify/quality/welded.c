@@ -22,11 +22,14 @@ static bool choose_points(cwi_welded *w, cw_weld how)
 static bool weld_corners(cwi_welded *w, cw_weld how)
 {
     const size_t corners = 3 * w->mesh->triangle_count, vertices = w->mesh->vertex_count;
-    uint32_t *map = how ? cwi_alloc_array(vertices, sizeof *map) : NULL;
-    w->vertex = cwi_alloc_array(corners, sizeof *w->vertex);
-    const bool ok = w->vertex && (!how || (map && cwi_weld(w->points, vertices, map)));
+    w->vertex = w->mesh->triangles;
+    if (!how)
+        return true;
+    uint32_t *map = cwi_alloc_array(vertices, sizeof *map);
+    w->vertex = w->own_vertex = cwi_alloc_array(corners, sizeof *w->own_vertex);
+    const bool ok = w->vertex && map && cwi_weld(w->points, vertices, map);
     for (size_t c = 0; c < corners && ok; c++)
-        w->vertex[c] = map ? map[w->mesh->triangles[c]] : w->mesh->triangles[c];
+        w->own_vertex[c] = map[w->mesh->triangles[c]];
     cwi_free(map);
     return ok;
 }
@@ -67,6 +70,6 @@ bool cwi_welded_sort(const cwi_welded *w, cwi_boxes *tree)
 void cwi_welded_free(cwi_welded *w)
 {
     cwi_free(w->own_points);
-    cwi_free(w->vertex);
+    cwi_free(w->own_vertex);
     *w = (cwi_welded){0};
 }

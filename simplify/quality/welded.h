@@ -8,9 +8,10 @@ struct cwi_boxes;
 
 typedef struct cwi_welded {
     const cw_mesh *mesh;
-    const float *points; /* vertex_count x 3: single-precision world points, or positions */
-    float *own_points;   /* those of the world; or NULL */
-    uint32_t *vertex;    /* of each corner, 3 x triangle_count: the first of equal ones */
+    const float *points;    /* vertex_count x 3: single-precision world points, or positions */
+    float *own_points;      /* those of the world; or NULL */
+    const uint32_t *vertex; /* of each corner, 3 x triangle_count: the first of equal ones */
+    uint32_t *own_vertex;   /* those, where they are not the mesh's; or NULL */
 } cwi_welded;
 
 /* Checks the mesh first. Free with cwi_welded_free(), also after a failure.

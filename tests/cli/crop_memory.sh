@@ -5,7 +5,7 @@ box=10:40,20:50,60:95
 cubewright extract v.nrrd --iso 0 -o no.stl --memory 3M
 echo $?
 cubewright extract v.nrrd --iso 0 -o room.stl --name part --crop $box -q
-cubewright extract v.nrrd --iso 0 -o tight.stl --name part --crop $box --memory 1M
+cubewright extract v.nrrd --iso 0 -o tight.stl --name part --crop $box --memory 2M
 cmp room.stl tight.stl && echo same
 cubewright extract v.nrrd --iso 0 -o no.stl --crop $box --memory 100k -q
 echo $?

@@ -2,7 +2,7 @@
 cubewright make gyroid --dims 64 -o v.nrrd -q
 cubewright extract v.nrrd --iso 0 -o m.glb --max-triangles 100k -q
 echo $?
-cubewright extract v.nrrd --iso 0 -o m.glb --memory 900k -q
+cubewright extract v.nrrd --iso 0 -o m.glb --memory 900KiB -q
 echo $?
 cubewright extract v.nrrd --iso 0 -o m.glb --memory 2M -q
 echo $?

@@ -99,6 +99,44 @@ static void the_nth_allocation_can_be_made_to_fail(void **state)
     cwi_free(first);
 }
 
+/* All ways to take memory count, and what is given back may be taken again. */
+static void memory_has_a_limit(void **state)
+{
+    (void)state;
+    enum { MIB = 1 << 20 };
+    const size_t before = cw_memory_used();
+    size_t left;
+    cw_memory_limit(before + 8 * (size_t)MIB);
+    assert_int_equal(cwi_memory_refused(&left), 0);
+    char *a = cwi_alloc_array(3, MIB), *b = cwi_alloc_zeroed(2, MIB);
+    assert_non_null(a);
+    assert_non_null(b);
+    assert_true(cw_memory_used() >= before + 5 * (size_t)MIB);
+    assert_null(cwi_alloc_array(4, MIB));
+    assert_null(cwi_alloc_zeroed(4, MIB));
+    assert_null(cwi_alloc_large(4, MIB));
+    assert_null(cwi_realloc_array(a, 7, MIB));
+    assert_null(cwi_renew_large(NULL, 4, MIB));
+    assert_int_equal(cwi_memory_refused(&left), 4 * MIB);
+    assert_true(left < 3 * MIB && left == cwi_memory_left());
+    assert_false(cwi_memory_take(4 * (size_t)MIB));
+    assert_true(cwi_memory_take(2 * (size_t)MIB));
+    assert_null(cwi_alloc_array(2, MIB));
+    cwi_memory_give(2 * (size_t)MIB);
+    a = cwi_realloc_array(a, 5, MIB);
+    assert_non_null(a);
+    cwi_free(b);
+    a = cwi_renew_large(a, 2, MIB); /* a smaller one takes its place */
+    assert_non_null(a);
+    cwi_free(a);
+    assert_int_equal(cw_memory_used(), before);
+    cw_memory_limit(0);
+    assert_int_equal(cwi_memory_left(), SIZE_MAX);
+    a = cwi_alloc_array(9, MIB);
+    assert_non_null(a);
+    cwi_free(a);
+}
+
 static void numbers_have_points_in_every_locale(void **state)
 {
     (void)state;
@@ -312,6 +350,7 @@ int main(void)
         cmocka_unit_test(refused_progress_cancels),
         cmocka_unit_test(sizes_that_overflow_are_refused),
         cmocka_unit_test(the_nth_allocation_can_be_made_to_fail),
+        cmocka_unit_test(memory_has_a_limit),
         cmocka_unit_test(numbers_have_points_in_every_locale),
         cmocka_unit_test(numbers_are_those_of_strtod),
         cmocka_unit_test(a_welder_numbers_places_as_they_come),

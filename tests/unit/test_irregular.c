@@ -866,7 +866,7 @@ static void what_is_wrong_is_named(void **state)
     FAILS({.cubic_placement = true}, CW_ERR_UNSUPPORTED, "cubic");
     FAILS({.isovalue = NAN}, CW_ERR_ARGUMENT, "isovalue");
     FAILS({.max_triangles = 5}, CW_ERR_LIMIT, "triangles; the limit is 5");
-    FAILS({.max_bytes = 500}, CW_ERR_LIMIT, "the limit is 500");
+    FAILS({.max_bytes = 500}, CW_ERR_LIMIT, "500 bytes are left");
     uint32_t *corner = test_grid_corners(&g, 20) + 3;
     const uint32_t own = *corner;
     *corner = (uint32_t)g.samples;
