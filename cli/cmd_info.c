@@ -17,7 +17,7 @@ typedef struct info_args {
     cli_common common;
     cli_input input;
     size_t histogram;
-    bool json, levels;
+    bool json, levels, deep;
 } info_args;
 
 static const cli_option options[] = {
@@ -25,6 +25,9 @@ static const cli_option options[] = {
      offsetof(info_args, histogram)},
     {"levels", 0, CLI_FLAG, NULL, "predict the triangles at each suggested level",
      offsetof(info_args, levels)},
+    {"deep", 0, CLI_FLAG, NULL,
+     "read all voxels; default: of more than 256 MiB some rows, unless --levels needs all",
+     offsetof(info_args, deep)},
     {"json", 0, CLI_FLAG, NULL, "one JSON object", offsetof(info_args, json)},
     CLI_INPUT_OPTIONS(info_args),
 };
@@ -84,8 +87,9 @@ static cw_status predict(facts *f, int threads, cw_error *err)
 static cw_status find_facts(const info_args *args, facts *f, cw_error *err)
 {
     const int threads = (int)args->input.threads;
-    cw_status st =
-        cli_read_volume(args->common.inputs[0], &args->input, false, &f->volume, err);
+    cli_input input = args->input;
+    input.sample = !args->deep && !args->levels;
+    cw_status st = cli_read_volume(args->common.inputs[0], &input, false, &f->volume, err);
     if (st != CW_OK)
         return st;
     st = cw_volume_statistics(&f->volume.view, args->histogram, threads, &f->range, err);
@@ -183,6 +187,11 @@ static void print_geometry(const facts *f)
         printf("  note     %s\n", f->volume.notes[n]);
 }
 
+static bool is_sampled(const facts *f)
+{
+    return cli_is_preview(&f->volume);
+}
+
 static void print_values(const info_args *args, const facts *f)
 {
     const cw_statistics *r = &f->range;
@@ -193,6 +202,9 @@ static void print_values(const info_args *args, const facts *f)
         printf(", %s not finite", cli_count(r->not_finite));
     if (r->nodata)
         printf(", %s no-data", cli_count(r->nodata));
+    if (is_sampled(f))
+        printf(" in one row of %zu, one slice of %zu (--deep reads all)", f->volume.coarsen[1],
+               f->volume.coarsen[2]);
     puts("");
     for (size_t b = 0; b < r->bin_count; b++)
         printf("  %12.6g  %s\n", r->min + (double)b * r->bin_width,
@@ -234,6 +246,11 @@ static void print_json(const facts *f, bool predicted)
         cli_json_close(&j, '}');
     }
     cli_json_numbers(&j, "range", (const double[2]){r->min, r->max}, 2);
+    if (is_sampled(f))
+        cli_json_numbers(
+            &j, "sampled",
+            (const double[3]){1, (double)f->volume.coarsen[1], (double)f->volume.coarsen[2]},
+            3);
     cli_json_count(&j, "finite", r->finite);
     cli_json_count(&j, "not_finite", r->not_finite);
     cli_json_count(&j, "nodata", r->nodata);

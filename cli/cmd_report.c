@@ -212,6 +212,7 @@ static cw_status read_file(run_state *s, cw_error *err)
     const char *path = args->common.inputs[0];
     cw_volume shape;
     cw_status st = CW_OK;
+    args->input.coarsen_view = true;
     if (!args->input.coarsen) {
         st = cli_read_shape(path, &args->input, &shape, err);
         size_t step = 1;

@@ -202,23 +202,34 @@ static size_t coarsening(const cli_input *input)
     return input->coarsen ? input->coarsen : input->preview ? 4 : 1;
 }
 
-/* Every so many-th voxel of what was chosen so far; along thin axes fewer are passed over, so
- * that two are left. */
-static cw_status coarsen(const cli_input *input, cli_volume *volume, cw_error *err)
+/* Every so many-th voxel of `part`; along thin axes fewer are passed over, so that two are
+ * left. */
+static void choose_coarsening(size_t asked, const cw_volume *part, size_t step[3])
 {
-    const size_t asked = coarsening(input);
-    size_t *step = volume->coarsen;
-    cw_volume all = volume->view, *v = &volume->view;
     for (int a = 0; a < 3; a++)
-        step[a] = asked < all.dim[a] ? asked : all.dim[a] > 2 ? all.dim[a] - 1 : 1;
-    if (asked == 1)
-        return CW_OK;
-    return cw_volume_coarsen(&all, step, v, err);
+        step[a] = asked < part->dim[a] ? asked : part->dim[a] > 2 ? part->dim[a] - 1 : 1;
 }
 
-static void tell_preview(const cli_volume *volume)
+/* As many rows and slices as a quarter of a GiB holds, or half of the limit, of any number of
+ * components and steps. */
+static void choose_sample(const cw_volume *part, size_t limit, size_t step[3])
 {
-    const size_t *step = volume->coarsen, *dim = volume->view.dim, *all = volume->voxels.dim;
+    const double most = fmin(256 << 20, 0.5 * (double)limit);
+    const double slice = (double)cw_type_size(part->type) * (double)part->components *
+                         (double)part->steps * (double)part->dim[0];
+    size_t n = 1;
+    while (slice * ceil((double)part->dim[1] / (double)n) *
+                   ceil((double)part->dim[2] / (double)n) >
+               most &&
+           (n < part->dim[1] || n < part->dim[2]))
+        n++;
+    choose_coarsening(n, part, step);
+    step[0] = 1;
+}
+
+static void tell_preview(const cli_volume *volume, const size_t all[3])
+{
+    const size_t *step = volume->coarsen, *dim = volume->view.dim;
     cli_say("preview: one voxel in %zu x %zu x %zu, %zu x %zu x %zu of %zu x %zu x %zu; what "
             "is thinner may be lost",
             step[0], step[1], step[2], dim[0], dim[1], dim[2], all[0], all[1], all[2]);
@@ -265,10 +276,11 @@ static double grid_bytes(const cw_volume *v)
 static cw_status read_part(const char *path, cw_read_desc *desc, const cw_volume *part,
                            cli_volume *volume, cw_error *err)
 {
-    const double bytes = (double)cw_type_size(part->type) * (double)part->dim[0] *
-                             (double)part->dim[1] * (double)part->dim[2] *
-                             (double)part->components * (double)part->steps +
-                         (part->cells ? grid_bytes(part) : 0);
+    double bytes =
+        (double)cw_type_size(part->type) * (double)part->components * (double)part->steps;
+    for (int a = 0; a < 3; a++) /* x is thinned in memory only */
+        bytes *= ceil((double)part->dim[a] / (double)(a ? volume->coarsen[a] : 1));
+    bytes += part->cells ? grid_bytes(part) : 0;
     desc->note = part->cells ? desc->note : NULL; /* said already */
     desc->progress = cli_progress(bytes / 1e6, "MB");
     volume->memory_left = (double)desc->max_bytes > bytes ? desc->max_bytes - (size_t)bytes : 1;
@@ -280,8 +292,9 @@ cw_status cli_choose_step(const cli_input *input, size_t step, cli_volume *volum
 {
     cw_status st =
         cw_volume_select(&volume->voxels, input->component, step, &volume->view, err);
-    if (st == CW_OK)
-        st = coarsen(input, volume, err);
+    const cw_volume all = volume->view;
+    if (st == CW_OK && input->coarsen_view)
+        st = cw_volume_coarsen(&all, volume->coarsen, &volume->view, err);
     return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
 }
 
@@ -298,13 +311,18 @@ static cw_status read_voxels(const char *path, cw_read_desc *desc, const cli_inp
     if (st != CW_OK)
         return cwi_fail_in(err, st, path);
     desc->region = input->crop.given ? &box : NULL;
+    choose_coarsening(coarsening(input), &part, volume->coarsen);
+    if (input->sample && !part.cells && !part.sparse && !cwi_is_rectilinear(&part))
+        choose_sample(&part, cli_memory_limit(input), volume->coarsen);
+    if (!input->coarsen_view)
+        memcpy(desc->every, volume->coarsen, sizeof desc->every);
     st = read_part(path, desc, &part, volume, err);
     if (st == CW_OK && volume->voxels.cells)
         find_grid(&volume->voxels, volume);
     if (st == CW_OK)
         st = cli_choose_step(input, input->step, volume, err);
-    if (st == CW_OK && coarsening(input) > 1)
-        tell_preview(volume);
+    if (st == CW_OK && coarsening(input) > 1 && !input->sample)
+        tell_preview(volume, part.dim);
     return st;
 }
 

@@ -18,7 +18,9 @@ typedef struct cli_input {
     size_t component, step;
     size_t threads, memory, max_voxels, max_triangles;
     bool allow_external, preview;
-    size_t coarsen; /* 0: 4 for a preview, else 1 */
+    size_t coarsen;    /* 0: 4 for a preview, else 1 */
+    bool coarsen_view; /* all voxels are read, and only the view is coarse */
+    bool sample;       /* of many voxels some rows and slices are read: cli_volume's coarsen */
 } cli_input;
 
 /* Rows for a command whose struct has the field `input`. */

@@ -323,26 +323,35 @@ cw_status cw_volume_crop(const cw_volume *in, const cw_box *box, cw_volume *out,
     return CW_OK;
 }
 
+cw_status cwi_volume_thin(cw_volume *v, const size_t step[3], cw_error *err)
+{
+    cw_status st = CW_OK;
+    if (step[0] > 1 || step[1] > 1 || step[2] > 1)
+        st = cwi_volume_expect_even(v, "a preview", err);
+    for (int a = 0; a < 3 && st == CW_OK; a++) {
+        if (!step[a] || (step[a] > 1 && step[a] >= v->dim[a]))
+            return cw_fail(
+                err, CW_ERR_ARGUMENT,
+                "a step of %zu along %c: expected 1, or less than the %zu voxels there",
+                step[a], "xyz"[a], v -> dim[a]);
+        v->dim[a] = (v->dim[a] - 1) / step[a] + 1;
+        for (int r = 0; r < 3; r++)
+            v->affine[r][a] *= (double)step[a];
+    }
+    return st;
+}
+
 cw_status cw_volume_coarsen(const cw_volume *in, const size_t step[3], cw_volume *out,
                             cw_error *err)
 {
     cw_volume v;
     cw_status st = cw_volume_resolve(in, &v, err);
-    if (st == CW_OK && (step[0] > 1 || step[1] > 1 || step[2] > 1))
-        st = cwi_volume_expect_even(&v, "a preview", err);
+    if (st == CW_OK)
+        st = cwi_volume_thin(&v, step, err);
     if (st != CW_OK)
         return st;
-    for (int a = 0; a < 3; a++) {
-        if (!step[a] || (step[a] > 1 && step[a] >= v.dim[a]))
-            return cw_fail(
-                err, CW_ERR_ARGUMENT,
-                "a step of %zu along %c: expected 1, or less than the %zu voxels there",
-                step[a], "xyz"[a], v.dim[a]);
-        v.dim[a] = (v.dim[a] - 1) / step[a] + 1;
+    for (int a = 0; a < 3; a++)
         v.stride[a] *= (ptrdiff_t)step[a];
-        for (int r = 0; r < 3; r++)
-            v.affine[r][a] *= (double)step[a];
-    }
     v.owned = v.owned_grid = NULL;
     return cw_volume_resolve(&v, out, err);
 }

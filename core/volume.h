@@ -50,6 +50,10 @@ static inline void cwi_voxel_put(cw_type type, void *p, double value)
     }
 }
 
+/* Sizes and affine of every step-th voxel in place of those of all; strides stay.
+ * Returns CW_ERR_ARGUMENT as cw_volume_coarsen(). */
+CW_API cw_status cwi_volume_thin(cw_volume *volume, const size_t step[3], cw_error *err);
+
 /* Leaves of a volume's shape (sizes and affine) what is inside a box; data are not touched.
  * Returns CW_ERR_ARGUMENT when the box is empty or leaves the volume. */
 CW_API cw_status cwi_volume_shrink(cw_volume *v, const cw_box *box, cw_error *err);

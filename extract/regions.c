@@ -3,6 +3,7 @@
 #include "core/layers.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "core/text.h"
 #include "core/volume.h"
 
 #include <math.h>
@@ -179,11 +180,15 @@ static bool make_table(cwi_blocks *b, size_t slots)
 static cw_status grow(cwi_blocks *b, size_t max_bytes, cw_error *err)
 {
     const size_t room = b->room ? 2 * b->room : 1024, bytes = room * sizeof *b->block;
-    if (room > UINT32_MAX / 2 || (max_bytes && bytes > max_bytes))
-        return cw_fail(err, CW_ERR_LIMIT,
-                       "blocks around leaves and tiles need %zu bytes and more; the limit is "
-                       "%zu (--memory)",
-                       bytes, max_bytes ? max_bytes : UINT32_MAX / 2 * sizeof *b->block);
+    if (room > UINT32_MAX / 2 || (max_bytes && bytes > max_bytes)) {
+        char needed[CWI_MEMORY_TEXT], left[CWI_MEMORY_TEXT];
+        cwi_print_memory(bytes, needed);
+        cwi_print_memory(max_bytes ? max_bytes : UINT32_MAX / 2 * sizeof *b->block, left);
+        return cw_fail(
+            err, CW_ERR_LIMIT,
+            "blocks around leaves and tiles need %s and more; %s are left (--memory)", needed,
+            left);
+    }
     cwi_block *more = cwi_realloc_array(b->block, room, sizeof *more);
     if (!more)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu blocks", room);

@@ -1,6 +1,7 @@
 /* glTF: a scene's triangles, placed by its nodes, merged into one mesh of LPS millimetres. */
 #include "core/memory.h"
 #include "core/status.h"
+#include "core/text.h"
 #include "formats/gltf_reader.h"
 #include "formats/gltf_wrap.h"
 
@@ -217,10 +218,12 @@ static cw_status check_memory(const cwi_gltf_reader *r, const drawing *sum, cw_e
         3 * sizeof(double) * sum->vertices + 3 * sizeof(uint32_t) * sum->triangles;
     if (!limit || bytes <= limit)
         return CW_OK;
+    char text[CWI_MEMORY_TEXT];
+    cwi_print_memory(limit, text);
     return cw_fail(err, CW_ERR_LIMIT,
                    "the scene draws its triangles so often that they need more memory than the "
-                   "%llu bytes allowed (--memory)",
-                   (unsigned long long)limit);
+                   "%s allowed (--memory)",
+                   text);
 }
 
 /* Meshes that are drawn again and again are added up before the first one is drawn. */

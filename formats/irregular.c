@@ -2,6 +2,7 @@
 
 #include "core/memory.h"
 #include "core/status.h"
+#include "core/text.h"
 #include "core/volume.h"
 #include "formats/cell_kinds.h"
 #include "formats/corner_list.h"
@@ -49,9 +50,11 @@ static cw_status take_bytes(building *b, uint64_t bytes, cw_error *err)
         b->bytes = UINT64_MAX;
     if (!most || b->bytes <= most)
         return CW_OK;
-    return cw_fail(err, CW_ERR_LIMIT,
-                   "the grid takes more than %llu bytes; the limit is %llu (--memory)",
-                   (unsigned long long)b->bytes, (unsigned long long)most);
+    char asked[CWI_MEMORY_TEXT], limit[CWI_MEMORY_TEXT];
+    cwi_print_memory(b->bytes, asked);
+    cwi_print_memory(most, limit);
+    return cw_fail(err, CW_ERR_LIMIT, "the grid takes more than %s; the limit is %s (--memory)",
+                   asked, limit);
 }
 
 static cw_status describe(const building *b, size_t piece, cwi_grid_role role, size_t count,

@@ -24,9 +24,10 @@ static size_t next_room(const cwi_mesh_input *in, size_t room, size_t count, siz
 
 static cw_status fail_limit(const cwi_mesh_input *in, cw_error *err)
 {
+    char limit[CWI_MEMORY_TEXT];
+    cwi_print_memory(in->desc.max_bytes, limit);
     return cw_fail(err, CW_ERR_LIMIT,
-                   "the mesh needs more memory than the %llu bytes allowed (--memory)",
-                   (unsigned long long)in->desc.max_bytes);
+                   "the mesh needs more memory than the %s allowed (--memory)", limit);
 }
 
 cw_status cwi_mesh_take_bytes(cwi_mesh_input *in, uint64_t bytes, cw_error *err)

@@ -19,8 +19,9 @@ typedef struct cwi_runs {
 } cwi_runs;
 
 /* The runs of a box that lies in the source, or of all its voxels (NULL), counted from the
- * first voxel of its first file. */
-void cwi_runs_plan(cwi_runs *runs, const cwi_source *src, const cw_box *box);
+ * first voxel of its first file; of x, y and z every n-th alone. */
+void cwi_runs_plan(cwi_runs *runs, const cwi_source *src, const cw_box *box,
+                   const size_t every[3]);
 
 /* Goes on behind bytes that were taken, at most those left of the run. */
 void cwi_runs_take(cwi_runs *runs, uint64_t bytes);

@@ -4,6 +4,7 @@
 #include "core/affine.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "core/text.h"
 #include "core/volume.h"
 #include "formats/bzip2.h"
 #include "formats/numbers.h"
@@ -471,10 +472,14 @@ cw_status cwi_check_limits(const cw_volume *v, size_t bytes, const char *field,
         return cw_fail(err, CW_ERR_LIMIT,
                        "'%s' asks for %llu voxels; the limit is %llu (--max-voxels)", field,
                        (unsigned long long)voxels, (unsigned long long)most);
-    if (desc->max_bytes && bytes > desc->max_bytes)
+    if (desc->max_bytes && bytes > desc->max_bytes) {
+        char asked[CWI_MEMORY_TEXT], limit[CWI_MEMORY_TEXT];
+        cwi_print_memory(bytes, asked);
+        cwi_print_memory(desc->max_bytes, limit);
         return cw_fail(err, CW_ERR_LIMIT,
-                       "'%s' asks for %zu bytes of voxels; the limit is %llu (--memory)", field,
-                       bytes, (unsigned long long)desc->max_bytes);
+                       "'%s' asks for %s of voxels; the limit is %s (--memory)", field, asked,
+                       limit);
+    }
     return CW_OK;
 }
 
@@ -493,11 +498,52 @@ static cw_status narrow(const cwi_source *src, const cw_box *region, cwi_source 
     return st == CW_OK ? cwi_source_set_axes(out, axes, src->axis_count, err) : st;
 }
 
-/* `wanted` is the source or, narrowed, a region of it. */
+/* How far apart voxels are that are read: along the fastest of x, y and z next to each other,
+ * for they stand together in the file. */
+static void choose_steps(const cwi_source *src, const cw_read_desc *desc, size_t step[3],
+                         int *fastest)
+{
+    *fastest = -1;
+    for (int a = 0; a < 3; a++)
+        step[a] = desc->every[a] ? desc->every[a] : 1;
+    for (size_t a = 0; a < src->axis_count && *fastest < 0; a++)
+        if (src->axes[a].role <= CWI_AXIS_Z)
+            *fastest = (int)src->axes[a].role;
+    if (*fastest >= 0)
+        step[*fastest] = 1;
+}
+
+/* Shape and bytes of every n-th voxel in place of those of all. */
+static cw_status thin(const cw_read_desc *desc, cwi_source *out, cw_error *err)
+{
+    size_t every[3], step[3];
+    cwi_axis axes[CWI_ROLE_COUNT];
+    int fastest;
+    cw_volume *v = &out->shape;
+    choose_steps(out, desc, step, &fastest);
+    for (int a = 0; a < 3; a++)
+        every[a] = desc->every[a] ? desc->every[a] : 1;
+    memcpy(axes, out->axes, sizeof axes);
+    for (size_t a = 0; a < out->axis_count; a++)
+        if (axes[a].role <= CWI_AXIS_Z)
+            axes[a].size = (axes[a].size - 1) / step[axes[a].role] + 1;
+    cw_status st = cwi_volume_thin(v, every, err);
+    const size_t dim[3] = {v->dim[0], v->dim[1], v->dim[2]};
+    if (st == CW_OK)
+        st = cwi_source_set_axes(out, axes, out->axis_count, err);
+    memcpy(v->dim, dim, sizeof dim);
+    if (fastest >= 0) /* passed over in memory */
+        v->stride[fastest] *= (ptrdiff_t)every[fastest];
+    return st;
+}
+
+/* `wanted` is the source or, narrowed and thinned, a part of it. */
 static cw_status load_voxels(const cwi_source *src, const cwi_source *wanted,
                              const cwi_input *in, const cw_read_desc *desc, cw_volume *volume,
                              cw_error *err)
 {
+    size_t step[3];
+    int fastest;
     cw_volume v = wanted->shape;
     v.owned = cwi_alloc_large(wanted->bytes, 1);
     if (!v.owned)
@@ -505,7 +551,8 @@ static cw_status load_voxels(const cwi_source *src, const cwi_source *wanted,
                        noun(wanted));
     v.data = v.owned;
     reading r = {.src = src, .progress = &desc->progress, .to = v.owned};
-    cwi_runs_plan(&r.runs, src, desc->region);
+    choose_steps(src, desc, step, &fastest);
+    cwi_runs_plan(&r.runs, src, desc->region, step);
     cw_status st = cwi_volume_own_coordinates(&v, err);
     if (st == CW_OK)
         st = walk_parts(src, in, &r, err);
@@ -525,6 +572,8 @@ cw_status cwi_source_load(const cwi_source *src, const cwi_input *in, const cw_r
     cw_status st = check_files(src, in, err);
     if (st == CW_OK && desc->region)
         st = narrow(src, desc->region, &wanted, err);
+    if (st == CW_OK)
+        st = thin(desc, &wanted, err);
     if (st == CW_OK)
         st = cwi_check_limits(&wanted.shape, wanted.bytes, wanted.size_field, desc, err);
     if (st != CW_OK || !desc->header_only)

@@ -2,6 +2,7 @@
 #include "core/memory.h"
 #include "core/sets.h"
 #include "core/status.h"
+#include "core/text.h"
 #include "formats/parts.h"
 
 static const uint32_t NONE = UINT32_MAX;
@@ -175,9 +176,10 @@ static cw_status limit_memory(const cwi_mesh_input *in, const cw_mesh *m, cw_err
     const uint64_t bytes = vertex * m->vertex_count + 12 * (uint64_t)m->triangle_count;
     if (!limit || in->marks.count <= 1 || in->bytes + bytes <= limit)
         return CW_OK;
+    char text[CWI_MEMORY_TEXT];
+    cwi_print_memory(limit, text);
     return cw_fail(err, CW_ERR_LIMIT,
-                   "the parts need more memory than the %llu bytes allowed (--memory)",
-                   (unsigned long long)limit);
+                   "the parts need more memory than the %s allowed (--memory)", text);
 }
 
 cw_status cwi_parts_split(const cwi_mesh_input *in, cw_mesh *mesh, cw_part **parts,

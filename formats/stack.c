@@ -24,6 +24,7 @@ typedef struct reading {
     cwi_planes *planes;
     size_t file;               /* the one handed over last; SIZE_MAX: none */
     cw_box box;                /* what is wanted */
+    size_t every;              /* of its slices, the n-th */
     size_t pixels;             /* wanted of a plane, samples counted */
     unsigned char *low, *high; /* planes as the module gives them */
     char *voxels;
@@ -137,11 +138,12 @@ static cw_status read_slot(reading *r, const cwi_slot *slot, cw_error *err)
 {
     const cwi_stack *s = r->stack;
     const size_t slices = s->shape.dim[2], z = slot->place % slices - r->box.first[2];
+    const size_t kept = (r->box.count[2] - 1) / r->every + 1;
     const size_t bytes = r->pixels * cw_type_size(s->shape.type);
     const bool plain = is_plain(s, slot);
-    if (z >= r->box.count[2]) /* in front of it, too */
+    if (z >= r->box.count[2] || z % r->every) /* in front of it, too */
         return CW_OK;
-    char *to = r->voxels + (slot->place / slices * r->box.count[2] + z) * bytes;
+    char *to = r->voxels + (slot->place / slices * kept + z / r->every) * bytes;
     if (plain && r->box.count[0] == s->shape.dim[0])
         return read_plane(r, slot->low, to, err);
     cw_status st = read_plane(r, slot->low, r->low, err);
@@ -170,10 +172,10 @@ static cw_status read_slots(reading *r, const cw_progress *progress, cw_error *e
 }
 
 /* Of what the sizes ask for; false when that is more than an address space holds. */
-static bool count_bytes(const cw_volume *v, size_t *bytes)
+static bool count_bytes(const cw_volume *v, const size_t held[3], size_t *bytes)
 {
-    return cwi_size_mul(v->dim[0], v->dim[1], bytes) &&
-           cwi_size_mul(*bytes, v->dim[2], bytes) && cwi_size_mul(*bytes, v->steps, bytes) &&
+    return cwi_size_mul(held[0], held[1], bytes) && cwi_size_mul(*bytes, held[2], bytes) &&
+           cwi_size_mul(*bytes, v->steps, bytes) &&
            cwi_size_mul(*bytes, v->components, bytes) &&
            cwi_size_mul(*bytes, cw_type_size(v->type), bytes) && *bytes <= PTRDIFF_MAX;
 }
@@ -187,15 +189,15 @@ static void fill_voxels(const cwi_stack *s, char *voxels, size_t bytes)
         cwi_voxel_put(s->shape.type, voxels + i, s->shape.nodata);
 }
 
-/* `v` is the stack's shape or a region of it. */
+/* `v` is the shape of what is wanted. */
 static cw_status load_voxels(cw_volume v, size_t bytes, reading *r, const cw_read_desc *desc,
                              cw_volume *volume, cw_error *err)
 {
     const cwi_stack *s = r->stack;
     const size_t row = s->shape.dim[0] * s->samples * cw_type_size(s->type);
-    r->pixels = v.dim[0] * v.dim[1] * s->samples;
-    r->low = cwi_alloc_array(v.dim[1], row);
-    r->high = cwi_alloc_array(v.dim[1], row);
+    r->pixels = r->box.count[0] * r->box.count[1] * s->samples;
+    r->low = cwi_alloc_array(r->box.count[1], row);
+    r->high = cwi_alloc_array(r->box.count[1], row);
     v.owned = cwi_alloc_large(bytes, 1);
     r->voxels = v.owned;
     cw_status st = CW_OK;
@@ -215,37 +217,53 @@ static cw_status load_voxels(cw_volume v, size_t bytes, reading *r, const cw_rea
     return st;
 }
 
-/* The shape of a region: strides shrink as sizes do. */
-static cw_status narrow(cw_volume *v, const cw_box *region, cw_error *err)
+/* Strides of so many columns, rows and slices in memory, in place of those of all slices. */
+static void pack(cw_volume *v, size_t slices, const size_t count[3])
 {
-    const ptrdiff_t plane = v->stride[2], all = plane * (ptrdiff_t)v->dim[2];
-    cw_status st = cwi_volume_shrink(v, region, err);
+    const ptrdiff_t plane = v->stride[2], all = plane * (ptrdiff_t)slices;
+    v->stride[1] = v->stride[0] * (ptrdiff_t)count[0];
+    v->stride[2] = v->stride[1] * (ptrdiff_t)count[1];
+    const ptrdiff_t packed = v->stride[2] * (ptrdiff_t)count[2];
+    v->step_stride = v->step_stride / all * packed;
+    if (v->component_stride >= plane) /* components in planes of their own */
+        v->component_stride = v->component_stride / all * packed;
+}
+
+/* The shape of every n-th voxel of a box. In memory are `held` voxels: columns and rows are all
+ * there, and every n-th slice. */
+static cw_status narrow(const cw_read_desc *desc, reading *r, size_t held[3], cw_volume *v,
+                        cw_error *err)
+{
+    const size_t slices = v->dim[2];
+    size_t every[3];
+    cw_status st = desc->region ? cwi_volume_shrink(v, desc->region, err) : CW_OK;
     if (st != CW_OK)
         return st;
-    v->stride[1] = v->stride[0] * (ptrdiff_t)v->dim[0];
-    v->stride[2] = v->stride[1] * (ptrdiff_t)v->dim[1];
-    const ptrdiff_t shrunk = v->stride[2] * (ptrdiff_t)v->dim[2];
-    v->step_stride = v->step_stride / all * shrunk;
-    if (v->component_stride >= plane) /* components in planes of their own */
-        v->component_stride = v->component_stride / all * shrunk;
-    return CW_OK;
+    for (int a = 0; a < 3; a++) {
+        every[a] = desc->every[a] ? desc->every[a] : 1;
+        held[a] = r->box.count[a] = v->dim[a];
+    }
+    r->every = every[2];
+    held[2] = (held[2] - 1) / every[2] + 1;
+    pack(v, slices, held);
+    st = cwi_volume_thin(v, every, err);
+    v->stride[0] *= (ptrdiff_t)every[0];
+    v->stride[1] *= (ptrdiff_t)every[1];
+    return st;
 }
 
 cw_status cwi_stack_load(const cwi_stack *stack, const cwi_input *in, cwi_planes *planes,
                          const cw_read_desc *desc, cw_volume *volume, cw_error *err)
 {
-    size_t bytes;
+    size_t bytes, held[3];
     cw_volume v = stack->shape;
-    const cw_box whole = {.count = {v.dim[0], v.dim[1], v.dim[2]}};
-    reading r = {.stack = stack,
-                 .in = in,
-                 .planes = planes,
-                 .file = SIZE_MAX,
-                 .box = desc->region ? *desc->region : whole};
-    cw_status st = desc->region ? narrow(&v, desc->region, err) : CW_OK;
+    reading r = {.stack = stack, .in = in, .planes = planes, .file = SIZE_MAX};
+    if (desc->region)
+        r.box = *desc->region;
+    cw_status st = narrow(desc, &r, held, &v, err);
     if (st != CW_OK)
         return st;
-    if (!count_bytes(&v, &bytes))
+    if (!count_bytes(&v, held, &bytes))
         return cw_fail(err, CW_ERR_LIMIT,
                        "'%s' asks for more voxels than an address space holds",
                        stack->size_field);

@@ -1,6 +1,7 @@
 /* STL, binary and text. Facets share nothing; corners at one place become one vertex. */
 #include "core/memory.h"
 #include "core/status.h"
+#include "core/text.h"
 #include "core/weld.h"
 #include "formats/axes.h"
 #include "formats/mesh_readers.h"
@@ -52,9 +53,10 @@ static cw_status limit_memory(const facets *f, cw_error *err)
     const uint64_t welder = 12 * (uint64_t)f->welder.room + 4 * (uint64_t)f->welder.slots;
     if (!limit || f->in->bytes + welder <= limit)
         return CW_OK;
+    char text[CWI_MEMORY_TEXT];
+    cwi_print_memory(limit, text);
     return cw_fail(err, CW_ERR_LIMIT,
-                   "the mesh needs more memory than the %llu bytes allowed (--memory)",
-                   (unsigned long long)limit);
+                   "the mesh needs more memory than the %s allowed (--memory)", text);
 }
 
 static cw_status check_corners(const facets *f, const float *corners, size_t count,

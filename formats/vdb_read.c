@@ -3,6 +3,7 @@
 #include "core/affine.h"
 #include "core/memory.h"
 #include "core/status.h"
+#include "core/text.h"
 #include "core/volume.h"
 #include "formats/readers.h"
 #include "formats/vdb.h"
@@ -120,9 +121,13 @@ static cw_status check_counts(const cwi_vdb_grid *g, uint64_t file_bytes,
         return cw_fail(err, CW_ERR_LIMIT, "grid '%s' keeps %llu voxels; the limit is %llu",
                        g->name, (unsigned long long)(g->leaf_count * CWI_LEAF_VOXELS),
                        (unsigned long long)desc->max_voxels);
-    if (desc->max_bytes && bytes > desc->max_bytes)
-        return cw_fail(err, CW_ERR_LIMIT, "grid '%s' needs %llu bytes; the limit is %llu",
-                       g->name, (unsigned long long)bytes, (unsigned long long)desc->max_bytes);
+    if (desc->max_bytes && bytes > desc->max_bytes) {
+        char needed[CWI_MEMORY_TEXT], limit[CWI_MEMORY_TEXT];
+        cwi_print_memory(bytes, needed);
+        cwi_print_memory(desc->max_bytes, limit);
+        return cw_fail(err, CW_ERR_LIMIT, "grid '%s' needs %s; the limit is %s (--memory)",
+                       g->name, needed, limit);
+    }
     return CW_OK;
 }
 

@@ -1,4 +1,5 @@
 #include "core/status.h"
+#include "core/volume.h"
 #include "formats/files.h"
 #include "formats/readers.h"
 #include "formats/stream.h"
@@ -322,6 +323,18 @@ static cw_status check_spacing(const double *s, cw_error *err)
     return CW_OK;
 }
 
+/* Where cells or leaves are read, all are. */
+static cw_status expect_thin(const cw_read_desc *desc, cw_volume *v, cw_error *err)
+{
+    cw_status st = CW_OK;
+    if ((desc->every[0] > 1 || desc->every[1] > 1 || desc->every[2] > 1) &&
+        (v->cells || v->sparse))
+        st = cwi_volume_expect_even(v, "a preview", err);
+    if (st != CW_OK)
+        cw_volume_free(v);
+    return st;
+}
+
 cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *volume,
                          const char **format, cw_error *err)
 {
@@ -341,6 +354,8 @@ cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *
         st = o.reader->read_one(&o.in, desc, volume, err);
     else if (st == CW_OK)
         st = read_one(&o, desc, volume, err);
+    if (st == CW_OK)
+        st = expect_thin(desc, volume, err);
     if (format)
         *format = o.reader ? o.reader->name : desc->raw ? "raw" : NULL;
     close_path(&o);

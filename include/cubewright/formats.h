@@ -42,6 +42,8 @@ typedef struct cw_read_desc {
                                  irregular grid neither points nor corners */
     bool allow_external;      /* data files outside the header's folder; default: refused */
     const cw_box *region;     /* only these voxels, x y z; default: all */
+    size_t every[3];          /* of these, every n-th along x, y and z, as cw_volume_coarsen();
+                                 what is between them takes little memory; default: 1, all */
     uint64_t max_voxels;      /* default 2^40 */
     uint64_t max_bytes;       /* of voxels in memory, of an irregular grid with all that reading
                                  it takes; default: no limit */

@@ -75,6 +75,29 @@ static void check_limits(const char *name, const cw_read_desc *desc, const cw_vo
                      "(--max-voxels)", err);
 }
 
+/* Of the box every n-th voxel, which is what coarsening leaves of the crop. */
+static void check_thin(const char *name, const cw_read_desc *desc, const cw_volume *crop)
+{
+    cw_read_desc d = *desc;
+    cw_volume thin, part, shape;
+    cw_error err = {0};
+    for (int a = 0; a < 3; a++) {
+        const size_t every = 1 + (desc->region->first[a] + crop->dim[a] + (size_t)a) % 4;
+        d.every[a] = every < crop->dim[a] ? every : 1;
+    }
+    if (crop->coordinates[0] || crop->coordinates[1] || crop->coordinates[2])
+        return; /* a rectilinear grid is not coarsened */
+    assert_ok(cw_volume_coarsen(crop, d.every, &thin, &err), err);
+    assert_ok(cw_volume_read(test_path(name), &d, &part, NULL, &err), err);
+    d.header_only = true;
+    assert_ok(cw_volume_read(test_path(name), &d, &shape, NULL, &err), err);
+    if (!same_shape(&thin, &part) || !same_shape(&thin, &shape) || !same_voxels(&thin, &part))
+        fail_msg("%s: every %zu, %zu, %zu-th voxel of a region is not the coarsened crop", name,
+                 d.every[0], d.every[1], d.every[2]);
+    cw_volume_free(&part);
+    cw_volume_free(&shape);
+}
+
 static void check_box(const char *name, const cw_read_desc *desc, const cw_volume *whole,
                       const cw_box *box)
 {
@@ -94,6 +117,8 @@ static void check_box(const char *name, const cw_read_desc *desc, const cw_volum
                  box->count[2]);
     cw_volume_free(&part);
     cw_volume_free(&shape);
+    d.header_only = false;
+    check_thin(name, &d, &crop);
 }
 
 /* Range n of those that lie in an axis: from each voxel to it, or to one behind it. */

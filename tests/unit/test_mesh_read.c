@@ -289,7 +289,7 @@ static void limits_hold(void **state)
         assert_fails(cw_mesh_read(test_path(name), &few, &back, NULL, &err), CW_ERR_LIMIT,
                      "triangles, the most allowed", err);
         assert_fails(cw_mesh_read(test_path(name), &small, &back, NULL, &err), CW_ERR_LIMIT,
-                     "the 10000 bytes allowed", err);
+                     "the 9.77 KiB allowed", err);
         assert_ok(cw_mesh_read(test_path(name), &enough, &back, NULL, &err), err);
         cw_mesh_free(&back);
     }

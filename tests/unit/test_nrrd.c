@@ -457,7 +457,7 @@ static void limits_name_the_value_and_the_limit(void **state)
     assert_fails(cw_volume_read(test_path("a.nrrd"), &voxels, &v, NULL, &err), CW_ERR_LIMIT,
                  "'sizes' asks for 12 voxels; the limit is 11 (--max-voxels)", err);
     assert_fails(cw_volume_read(test_path("a.nrrd"), &bytes, &v, NULL, &err), CW_ERR_LIMIT,
-                 "12 bytes of voxels; the limit is 11 (--memory)", err);
+                 "12 bytes of voxels; the limit is 11 bytes (--memory)", err);
 }
 
 static void the_header_alone_is_checked_but_holds_no_voxels(void **state)
