@@ -2,6 +2,7 @@
 
 #include "cli/console.h"
 #include "cli/proof.h"
+#include "core/memory.h"
 #include "core/status.h"
 #include "core/volume.h"
 
@@ -276,7 +277,7 @@ static cw_status measure(const cw_mesh *from, const cw_mesh *to, const cw_simpli
                          cli_proof *proof, double *most_mm, cw_error *err)
 {
     cw_distance distance;
-    float *worst = calloc(from->vertex_count + 1, sizeof *worst);
+    float *worst = cwi_alloc_zeroed(from->vertex_count + 1, sizeof *worst);
     const cw_mesh_distance_desc how = {
         .worst = worst, .threads = d->threads, .tolerance_mm = d->error_mm};
     cw_status st = worst ? cw_distance_to_mesh(from, to, &how, &distance, NULL, err)
@@ -286,7 +287,7 @@ static cw_status measure(const cw_mesh *from, const cw_mesh *to, const cw_simpli
         st = measure_view(d->views + n, from, worst, &proof->views[n].pixels, err);
     if (st == CW_OK)
         *most_mm = fmax(*most_mm, distance.max_mm);
-    free(worst);
+    cwi_free(worst);
     return st;
 }
 

@@ -6,6 +6,7 @@
 #include "cli/output.h"
 #include "cli/pieces.h"
 #include "cli/quantity.h"
+#include "core/memory.h"
 #include "core/status.h"
 
 #include <cubewright/level_set.h>
@@ -358,7 +359,7 @@ static cw_status measure_offset(run_state *s, cw_error *err)
     const cw_mesh_distance_desc desc = {.threads = (int)s->args->input.threads,
                                         .progress = cli_progress(1, "solid")};
     cw_distance d;
-    float *each = malloc(p->out.vertex_count * sizeof *each);
+    float *each = cwi_alloc_array(p->out.vertex_count, sizeof *each);
     cw_status st = each ? cw_distance_to_mesh(&p->out, &p->input, &desc, &d, each, err)
                         : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for distances");
     if (st == CW_OK) {
@@ -372,7 +373,7 @@ static cw_status measure_offset(run_state *s, cw_error *err)
                  "rms %.3g mm",
                  by, s->off_max_mm, s->off_rms_mm);
     }
-    free(each);
+    cwi_free(each);
     return st;
 }
 

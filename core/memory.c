@@ -77,9 +77,13 @@ bool cwi_memory_take(size_t bytes)
     return false;
 }
 
+/* Never below 0: a caller's own arrays, which were not counted, may be freed here, too. */
 void cwi_memory_give(size_t bytes)
 {
-    atomic_fetch_sub_explicit(&used, bytes, memory_order_relaxed);
+    size_t now = atomic_load_explicit(&used, memory_order_relaxed);
+    while (!atomic_compare_exchange_weak_explicit(&used, &now, now > bytes ? now - bytes : 0,
+                                                  memory_order_relaxed, memory_order_relaxed))
+        ;
 }
 
 /* The bytes that allocated memory has; 0: not known, and then it is not counted. */
@@ -96,7 +100,11 @@ static size_t room_of(void *memory)
 /* What was taken beforehand for memory becomes what it has. Passes it on. */
 static void *settle(void *memory, size_t taken)
 {
-    atomic_fetch_add_explicit(&used, room_of(memory) - taken, memory_order_relaxed);
+    const size_t has = room_of(memory);
+    if (has > taken)
+        atomic_fetch_add_explicit(&used, has - taken, memory_order_relaxed);
+    else
+        cwi_memory_give(taken - has);
     return memory;
 }
 

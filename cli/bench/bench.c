@@ -6,6 +6,7 @@
 #include "cli/scratch.h"
 #include "cli/study/sample.h"
 #include "cli/surface.h"
+#include "core/memory.h"
 #include "core/status.h"
 
 #include <math.h>
@@ -30,7 +31,7 @@ static cw_status measure_by_field(const cli_bench *b, const cw_mesh *mesh, cli_b
         .threads = b->threads,
         .progress = cli_progress((double)mesh->vertex_count / 1e6, "Mvertex")};
     cli_vertex_errors *at = &row->at_vertices;
-    float *mm = malloc(mesh->vertex_count * sizeof *mm);
+    float *mm = cwi_alloc_array(mesh->vertex_count, sizeof *mm);
     cw_distance d;
     if (!mm)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the errors of vertices");
@@ -43,7 +44,7 @@ static cw_status measure_by_field(const cli_bench *b, const cw_mesh *mesh, cli_b
     }
     if (st == CW_OK)
         row->surface = (cli_gap){true, d.max_mm, d.rms_mm, d.p99_mm};
-    free(mm);
+    cwi_free(mm);
     return st;
 }
 

@@ -3,6 +3,7 @@
 #include "cli/source.h"
 #include "cli/study/study.h"
 #include "cli/viewpoint.h"
+#include "core/memory.h"
 #include "core/status.h"
 
 #include <math.h>
@@ -88,7 +89,7 @@ cw_status cli_draw_errors(cli_study *s, const cw_mesh *around, const cw_mesh *me
     cw_mesh colored = *mesh; /* borrowed but for the colours */
     cw_picture picture = {0};
     cw_image image = {0};
-    colored.colors = malloc(4 * mesh->vertex_count);
+    colored.colors = cwi_alloc_array(mesh->vertex_count, 4);
     if (!colored.colors)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a picture");
     for (size_t v = 0; v < mesh->vertex_count; v++) {
@@ -102,6 +103,6 @@ cw_status cli_draw_errors(cli_study *s, const cw_mesh *around, const cw_mesh *me
         st = save_and_load(s, &image, png, size, err);
     cw_picture_free(&picture);
     cw_image_free(&image);
-    free(colored.colors);
+    cwi_free(colored.colors);
     return st;
 }

@@ -2,6 +2,7 @@
 #include "cli/console.h"
 #include "cli/study/sample.h"
 #include "cli/study/study.h"
+#include "core/memory.h"
 #include "core/status.h"
 
 #include <math.h>
@@ -117,8 +118,9 @@ static cw_status measure_middles(cli_study *s, cli_point *p, const cw_mesh *mesh
                                          .leave_open = s->is_field,
                                          .threads = s->threads,
                                          .progress = progress_of(mesh)};
-    cw_mesh points = {.vertex_count = count, .positions = malloc(3 * count * sizeof(float))};
-    float *mm = malloc(count * sizeof *mm);
+    cw_mesh points = {.vertex_count = count,
+                      .positions = cwi_alloc_array(count, 3 * sizeof(float))};
+    float *mm = cwi_alloc_array(count, sizeof *mm);
     cw_distance d;
     cw_status st = CW_ERR_NO_MEMORY;
     memcpy(points.origin, mesh->origin, sizeof points.origin);
@@ -133,7 +135,7 @@ static cw_status measure_middles(cli_study *s, cli_point *p, const cw_mesh *mesh
         *at = fmaxf(*at, fabsf(mm[n / 3]));
     }
     cw_mesh_free(&points);
-    free(mm);
+    cwi_free(mm);
     return st == CW_ERR_UNSUPPORTED ? CW_OK : st;
 }
 
@@ -151,7 +153,7 @@ static cw_status measure_sample(cli_study *s, cli_point *p, const cw_mesh *mesh,
 
 cw_status cli_measure_mesh(cli_study *s, cli_point *p, const cw_mesh *mesh, cw_error *err)
 {
-    float *worst = p->shown ? calloc(mesh->vertex_count, sizeof *worst) : NULL;
+    float *worst = p->shown ? cwi_alloc_zeroed(mesh->vertex_count, sizeof *worst) : NULL;
     cli_sample sample = {0};
     cw_status st = CW_OK;
     if (p->shown && !worst)
@@ -169,6 +171,6 @@ cw_status cli_measure_mesh(cli_study *s, cli_point *p, const cw_mesh *mesh, cw_e
     if (st == CW_OK && p->shown)
         st = show(s, p, mesh, worst, err);
     cli_free_sample(&sample);
-    free(worst);
+    cwi_free(worst);
     return st;
 }

@@ -1,6 +1,7 @@
 /* Part of a mesh, for measures that would take longer of all of it than what is measured. */
 #include "cli/study/sample.h"
 
+#include "core/memory.h"
 #include "core/status.h"
 
 #include <math.h>
@@ -72,13 +73,13 @@ cw_status cli_take_sample(const cw_mesh *mesh, size_t most, double voxel_mm, cli
     if (s->one_of == 1)
         return CW_OK;
     const size_t room = 2 * (mesh->triangle_count / s->one_of) + 100;
-    uint32_t *number = malloc(mesh->vertex_count * sizeof *number);
-    s->mesh.triangles = malloc(3 * room * sizeof(uint32_t));
-    s->mesh.positions = malloc(9 * room * sizeof(float));
+    uint32_t *number = cwi_alloc_array(mesh->vertex_count, sizeof *number);
+    s->mesh.triangles = cwi_alloc_array(3 * room, sizeof(uint32_t));
+    s->mesh.positions = cwi_alloc_array(9 * room, sizeof(float));
     const bool good = number && s->mesh.triangles && s->mesh.positions;
     if (good)
         take(s, mesh, number, room);
-    free(number);
+    cwi_free(number);
     return good ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a sample");
 }
 
