@@ -187,7 +187,11 @@ static cw_status measure_mesh(run_state *s, cw_error *err)
     const cw_mesh *mesh = &s->mesh.mesh;
     const int threads = (int)args->input.threads;
     const cw_quality_desc desc = {
-        .weld = CW_WELD_LOCAL, .shells = true, .threads = threads, .defects = s->defects};
+        .weld = CW_WELD_LOCAL,
+        .shells = true,
+        .threads = threads,
+        .defects = s->defects,
+        .progress = cli_progress((double)mesh->triangle_count / 1e6, "Mtriangle")};
     const cw_crossings_desc crossings = {
         .weld = CW_WELD_LOCAL,
         .threads = threads,

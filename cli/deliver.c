@@ -79,7 +79,9 @@ static void add_quality(cw_quality *sum, const cw_quality *q)
 static cw_status check(cli_report *report, const cli_delivery *how, const load *l,
                        cli_made *made, cw_error *err)
 {
-    const cw_quality_desc desc = {.threads = how->threads};
+    const cw_quality_desc desc = {.threads = how->threads,
+                                  .progress =
+                                      cli_progress((double)l->triangles / 1e6, "Mtriangle")};
     cw_status st = CW_OK;
     cli_report_begin(report);
     for (size_t p = 0; p < l->part_count && st == CW_OK; p++) {

@@ -110,7 +110,8 @@ leave_out() {
         cd /src && . cli/build.sh && configure_preset release build/configure.log -DCUBEWRIGHT_TESTS=OFF >build/left &&
         build_preset release build/build.log >build/built && $cubewright version --features >build/features &&
         cd /tmp && $cubewright make sphere -o s.nrrd --dims 24 -q && $cubewright extract s.nrrd --iso 0 -o s.stl -q &&
-        $cubewright check s.stl -q && $cubewright render s.nrrd --iso 0 -o s.png --size 64x64 -q
+        $cubewright check s.stl -q && $cubewright render s.nrrd --iso 0 -o s.png --size 64x64 -q &&
+        rm -rf i && cmake --install /src/build/release --prefix i >/dev/null && i/bin/cubewright check s.stl -q
         " >"$folder/said.$package" 2>&1 || { cat "$folder/said.$package"; fail "without $package it does not build"; }
     lost_features "$folder/features" "$root/src/build/features" >"$folder/lost.$package"
     tar --extract --file="$folder/$package.tar" --directory="$root"
@@ -156,6 +157,11 @@ for stage in $stages; do
         must "the quickstart as root" "$root" "cd /results && sh /src/cli/quickstart.sh"
         grep ' s$' "$folder/said" || true
         look_at_results "$root"
+        must "the installed copy" "$root" "
+            cmake --install /src/build/release --prefix /opt/cubewright
+            cd /tmp && mv /src/build /src/hidden
+            /opt/cubewright/bin/cubewright convert /results/head.glb -o head.glb --compress draco -q
+            mv /src/hidden /src/build"
         ;;
     without)
         [ -d "$folder/root" ] || fail "without comes after root"

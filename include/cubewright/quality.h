@@ -80,11 +80,12 @@ typedef struct cw_quality_desc {
     bool shells;      /* count cavities to open_inward too; default: they stay 0 */
     int threads;      /* default: all */
     uint8_t *defects; /* triangle_count: bits of cw_defect are set in it; default: none kept */
+    cw_progress progress; /* default: none */
 } cw_quality_desc;
 
 /* Measures a mesh in time proportional to its triangles.
  * Returns  CW_ERR_ARGUMENT as cw_mesh_check(); CW_ERR_LIMIT beyond 2^32 / 3 triangles;
- *          CW_ERR_NO_MEMORY */
+ *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
 CW_API cw_status cw_quality_measure(const cw_mesh *mesh, const cw_quality_desc *desc,
                                     cw_quality *out, cw_error *err);
 

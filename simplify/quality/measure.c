@@ -3,6 +3,7 @@
 
 #include "core/sets.h"
 #include "core/status.h"
+#include "core/stop.h"
 #include "simplify/quality/shapes.h"
 #include "simplify/quality/shells.h"
 #include "simplify/quality/welded.h"
@@ -22,15 +23,17 @@ typedef struct work {
     cwi_welded welded;
     const uint32_t *vertex; /* of each corner */
     size_t vertices, corners;
-    uint8_t *defects;   /* or NULL */
-    uint32_t *begin;    /* first side of each vertex, vertices + 1 */
-    side *sides;        /* sorted by lower, higher, third vertex, then corner */
-    uint32_t *fan;      /* union-find: corners around one vertex that share edges */
-    uint32_t *part;     /* union-find: vertices that share triangles */
-    uint32_t *fans;     /* fans around each vertex */
-    double *volume;     /* of the component whose root a vertex is, seen from that vertex */
-    double *area;       /* of that component */
-    uint8_t *unbounded; /* whether that component bounds no volume: 1 open, else 2 or 3 */
+    uint8_t *defects; /* or NULL */
+    uint32_t *begin;  /* first side of each vertex, vertices + 1 */
+    side *sides;      /* sorted by lower, higher, third vertex, then corner */
+    uint32_t *fan;    /* union-find: corners around one vertex that share edges */
+    uint32_t *part;   /* union-find: vertices that share triangles */
+    uint32_t *fans;   /* fans around each vertex */
+    double *volume;   /* of the component whose root a vertex is, seen from that vertex */
+    double *area;     /* of that component */
+    cwi_stop stop;
+    cw_progress progress; /* asks stop */
+    uint8_t *unbounded;   /* whether that component bounds no volume: 1 open, else 2 or 3 */
 } work;
 
 /* The sides of the triangles around one edge. */
@@ -38,6 +41,12 @@ typedef struct edge {
     uint32_t low; /* its lower vertex */
     uint32_t begin, count;
 } edge;
+
+/* Asks in every 65536th turn of a loop whether to go on. */
+static bool goes_on(const work *w, size_t turn)
+{
+    return turn % 65536 || cwi_progress(&w->progress, "checking", -1, NULL) == CW_OK;
+}
 
 static void mark(const work *w, size_t triangle, cw_defect defect)
 {
@@ -72,26 +81,30 @@ static uint32_t lower_of(const work *w, uint32_t corner)
     return v < u ? v : u;
 }
 
-static void file_sides(work *w)
+static bool file_sides(work *w)
 {
-    for (uint32_t c = 0; c < w->corners; c++)
+    for (uint32_t c = 0; c < w->corners && goes_on(w, c); c++)
         if (!cwi_is_collapsed(&w->welded, c / 3))
             w->begin[lower_of(w, c) + 2]++;
     for (size_t v = 2; v < w->vertices + 2; v++)
         w->begin[v] += w->begin[v - 1];
-    for (uint32_t c = 0; c < w->corners; c++)
+    if (w->stop.stopped)
+        return false;
+    for (uint32_t c = 0; c < w->corners && goes_on(w, c); c++)
         if (!cwi_is_collapsed(&w->welded, c / 3)) {
             const uint32_t d = cwi_next_corner(c), low = lower_of(w, c);
             w->sides[w->begin[low + 1]++] =
                 (side){w->vertex[c] ^ w->vertex[d] ^ low, w->vertex[cwi_next_corner(d)], c};
         }
+    return !w->stop.stopped;
 }
 
 /* A counting sort by the lower vertex, then each vertex's few sides by the others. */
-static void sort_sides(work *w)
+static bool sort_sides(work *w)
 {
-    file_sides(w);
-    for (size_t v = 0; v < w->vertices; v++) {
+    if (!file_sides(w))
+        return false;
+    for (size_t v = 0; v < w->vertices && goes_on(w, v); v++) {
         side *bucket = w->sides + w->begin[v];
         const size_t count = w->begin[v + 1] - w->begin[v];
         if (count > 64) /* a hub: keep hostile meshes from quadratic time */
@@ -99,6 +112,7 @@ static void sort_sides(work *w)
         else
             sort_bucket(bucket, count);
     }
+    return !w->stop.stopped;
 }
 
 /* Moves on to the next edge; false behind the last. Start with a zeroed edge. */
@@ -155,7 +169,7 @@ static void join_around(work *w, const edge *e)
 
 static void measure_edges(work *w, cw_quality *q)
 {
-    for (edge e = {0}; next_edge(w, &e);) {
+    for (edge e = {0}; goes_on(w, q->edges) && next_edge(w, &e);) {
         const side *s = w->sides + e.begin;
         q->edges++;
         join_around(w, &e);
@@ -253,7 +267,7 @@ static void measure_vertices(work *w, cw_quality *q)
 
 static void measure_components(work *w, cw_quality *q)
 {
-    for (size_t t = 0; t < w->corners / 3; t++)
+    for (size_t t = 0; t < w->corners / 3 && goes_on(w, t); t++)
         if (!cwi_is_collapsed(&w->welded, t)) {
             const uint32_t root = cwi_sets_find(w->part, w->vertex[3 * t]);
             q->euler++;
@@ -280,11 +294,10 @@ static bool prepare(work *w)
 
 static bool measure_topology(work *w, const cw_quality_desc *d, cw_quality *q)
 {
-    if (!prepare(w))
+    if (!prepare(w) || !sort_sides(w))
         return false;
-    sort_sides(w);
     measure_edges(w, q);
-    if (!count_loops(w, q))
+    if (w->stop.stopped || !count_loops(w, q))
         return false;
     count_fans(w);
     measure_vertices(w, q);
@@ -316,12 +329,19 @@ static void free_work(work *w)
 cw_status cw_quality_measure(const cw_mesh *mesh, const cw_quality_desc *desc, cw_quality *out,
                              cw_error *err)
 {
-    const cw_quality_desc d = desc ? *desc : (cw_quality_desc){0};
+    cw_quality_desc d = desc ? *desc : (cw_quality_desc){0};
+    const cw_progress progress = d.progress;
     work w = {.defects = d.defects};
+    cwi_stop_init(&w.stop, &progress);
+    d.progress = w.progress = cwi_stop_progress(&w.stop);
     cw_quality q = {.vertices = mesh->vertex_count, .triangles = mesh->triangle_count};
     memset(out, 0, sizeof *out);
     cw_status st = cwi_welded_init(&w.welded, mesh, d.weld, err);
-    if (st == CW_OK && !(measure_topology(&w, &d, &q) && cwi_measure_shapes(&w.welded, &d, &q)))
+    const bool measured =
+        st == CW_OK && measure_topology(&w, &d, &q) && cwi_measure_shapes(&w.welded, &d, &q);
+    if (st == CW_OK && w.stop.stopped)
+        st = cw_fail(err, CW_ERR_CANCELLED, "interrupted while checking");
+    else if (st == CW_OK && !measured)
         st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory to check %zu triangles",
                      mesh->triangle_count);
     if (st == CW_OK) {

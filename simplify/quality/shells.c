@@ -148,7 +148,7 @@ bool cwi_measure_shells(const cwi_welded *welded, const cwi_shells *shells,
     const bool ok = w.closed && w.around && cwi_welded_sort(welded, &w.tree);
     if (ok) {
         list_closed(&w);
-        cwi_each_layer(w.count, 1 << 12, desc->threads, &(cw_progress){0}, "shells",
+        cwi_each_layer(w.count, 1 << 12, desc->threads, &desc->progress, "checking",
                        wind_around, &w, NULL);
         judge(&w, desc, q);
     }

@@ -242,6 +242,41 @@ static void threads_change_no_bit(void **state)
     cw_volume_free(&volume);
 }
 
+typedef struct listener {
+    size_t calls, stop_at; /* 0: never */
+} listener;
+
+static bool listen(void *user, const char *step, double done)
+{
+    listener *l = user;
+    assert_string_equal(step, "checking");
+    assert_true(done >= 0 && done <= 1);
+    return ++l->calls != l->stop_at;
+}
+
+static void it_stops_wherever_it_is_asked_to(void **state)
+{
+    (void)state;
+    cw_volume v = test_sample(CW_FIELD_SPHERE, 64, CW_F32);
+    cw_mesh mesh = test_extract(&v, NULL, NULL);
+    cw_error err = {0};
+    cw_quality q;
+    listener l = {0};
+    const cw_quality_desc desc = {.shells = true, .threads = 1, .progress = {listen, &l}};
+    assert_ok(cw_quality_measure(&mesh, &desc, &q, &err), err);
+    const size_t calls = l.calls;
+    assert_true(calls > 8);
+    for (size_t n = 1; n <= calls; n++) {
+        l = (listener){.stop_at = n};
+        assert_fails(cw_quality_measure(&mesh, &desc, &q, &err), CW_ERR_CANCELLED,
+                     "interrupted while checking", err);
+        assert_int_equal(l.calls, n);
+        assert_int_equal(q.triangles, 0);
+    }
+    cw_mesh_free(&mesh);
+    cw_volume_free(&v);
+}
+
 static void memory_running_out_is_an_error_at_every_allocation(void **state)
 {
     (void)state;
@@ -276,6 +311,7 @@ int main(void)
         cmocka_unit_test(a_hub_is_not_quadratic),
         cmocka_unit_test(shapes_are_those_of_school),
         cmocka_unit_test(threads_change_no_bit),
+        cmocka_unit_test(it_stops_wherever_it_is_asked_to),
         cmocka_unit_test(memory_running_out_is_an_error_at_every_allocation),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
