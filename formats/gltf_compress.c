@@ -14,8 +14,7 @@
 #include <string.h>
 #include <time.h>
 
-enum { NORMAL_BITS = 10, LEVEL = 7, SHORT_BITS = 16, EXPONENTIAL_BITS = 24 };
-static const double DIAGONALS = 20000; /* that the default tolerance goes into */
+enum { NORMAL_BITS = 10, LEVEL = 7 };
 
 static double now_s(void)
 {
@@ -29,24 +28,14 @@ static cw_status fail_memory(cw_error *err)
     return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to compress the mesh");
 }
 
-static const struct {
-    const char *name;
-    int most_bits;
-} kinds[] = {[CW_COMPRESS_QUANTIZE] = {"quantize", SHORT_BITS},
-             [CW_COMPRESS_DRACO] = {"Draco", CWI_MOST_GRID_BITS},
-             [CW_COMPRESS_MESHOPT] = {"meshopt", EXPONENTIAL_BITS}};
-
 cw_status cwi_gltf_prepare_codec(const cw_write_desc *desc, cw_error *err)
 {
     const cwi_draco_functions *draco;
     const cwi_meshopt_functions *meshopt;
     const cw_compression kind = desc->compression;
-    if ((size_t)kind >= sizeof kinds / sizeof *kinds)
-        return cw_fail(err, CW_ERR_ARGUMENT, "%d is no compression", (int)kind);
-    if (desc->bits < 0 || desc->bits > kinds[kind].most_bits)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "%d bits a coordinate; there may be 1 to %d with %s", desc->bits,
-                       kinds[kind].most_bits, kinds[kind].name);
+    cw_status st = cwi_grid_check_bits(desc, err);
+    if (st != CW_OK)
+        return st;
     return kind == CW_COMPRESS_DRACO     ? cwi_draco_functions_load(&draco, err)
            : kind == CW_COMPRESS_MESHOPT ? cwi_meshopt_functions_load(&meshopt, err)
                                          : CW_OK;
@@ -135,117 +124,6 @@ static void drop_degenerate(cwi_gltf_plan *plan)
                 memmove(m->triangles + 3 * kept++, m->triangles + 3 * t, 3 * sizeof(uint32_t));
         m->triangle_count = kept;
     }
-}
-
-/* --- the grid ------------------------------------------------------------------------------
- */
-
-static double default_tolerance(const cwi_parts *parts, const cwi_grid *grid)
-{
-    double squares = 0;
-    for (int a = 0; a < 3; a++) {
-        double high = -INFINITY;
-        for (size_t p = 0; p < parts->count; p++)
-            for (size_t v = 0; v < parts->items[p].mesh.vertex_count; v++)
-                high = fmax(high, (double)parts->items[p].mesh.positions[3 * v + (size_t)a]);
-        squares += (high - (double)grid->low[a]) * (high - (double)grid->low[a]);
-    }
-    return sqrt(squares) / DIAGONALS;
-}
-
-static cw_status fail_shape(const cwi_grid *grid, const cwi_grid_harm *harm, double tolerance,
-                            cw_error *err)
-{
-    if (cwi_grid_error(grid) > tolerance)
-        return cw_fail(
-            err, CW_ERR_CHECK,
-            "%d bits a coordinate, the most there are, move vertices by up to %.3g mm; "
-            "%.3g mm are allowed",
-            grid->bits, cwi_grid_error(grid), tolerance);
-    return cw_fail(
-        err, CW_ERR_CHECK,
-        "with %d bits a coordinate, the most there are, %zu vertices fall onto others "
-        "and %zu triangles lose their area%s",
-        grid->bits, harm->merged, harm->flat,
-        grid->bits < CWI_MOST_GRID_BITS ? "; meshopt has up to 24, Draco up to 30" : "");
-}
-
-/* Beyond integers of 16 bits, meshopt's exponential filter makes multiples of a power of two.
- */
-static void lay_grid(cwi_gltf_plan *plan, cw_compression kind, int bits)
-{
-    cwi_grid_refine(&plan->grid, bits, kind == CW_COMPRESS_MESHOPT && bits > SHORT_BITS);
-    plan->grid.single = kind == CW_COMPRESS_DRACO;
-}
-
-/* The most that a vertex is moved: from where it was to where a decoder puts it. */
-static double measure_error(const cwi_gltf_plan *plan)
-{
-    const cwi_grid *grid = &plan->grid;
-    double worst = 0;
-    for (size_t p = 0; p < plan->parts.count; p++) {
-        const cw_mesh *m = &plan->parts.items[p].mesh;
-        for (size_t v = 0; v < m->vertex_count; v++) {
-            double squares = 0;
-            for (int a = 0; a < 3; a++) {
-                const float x = m->positions[3 * v + (size_t)a];
-                const double moved =
-                    cwi_grid_decode(grid, cwi_grid_round(grid, x, a), a) - (double)x;
-                squares += moved * moved;
-            }
-            worst = squares > worst ? squares : worst;
-        }
-    }
-    return sqrt(worst);
-}
-
-/* The coarsest grid that keeps tolerance and shape; *found is false when none does. */
-static cw_status find_grid(cwi_gltf_plan *plan, cw_compression kind, double tolerance,
-                           bool *found, cwi_grid_harm *harm, cw_error *err)
-{
-    const int most = kinds[kind].most_bits;
-    cw_status st = CW_OK;
-    *found = false;
-    for (int bits = 1; bits <= most && st == CW_OK && !*found; bits++) {
-        lay_grid(plan, kind, bits);
-        const bool fine =
-            cwi_grid_error(&plan->grid) <= tolerance && measure_error(plan) <= tolerance;
-        if (fine || bits == most)
-            st = cwi_grid_measure(&plan->grid, &plan->parts, harm, err);
-        *found = fine && harm->merged == 0 && harm->flat == 0;
-    }
-    return st;
-}
-
-static cw_status choose_grid(cwi_gltf_plan *plan, const cw_write_desc *desc,
-                             cw_compressed *told, cw_error *err)
-{
-    cwi_grid_harm harm = {0};
-    bool found = true;
-    cw_status st;
-    plan->grid = cwi_grid_around(&plan->parts);
-    if (!isfinite(plan->grid.range))
-        return cw_fail(err, CW_ERR_LIMIT, "the box is too large to be divided into steps");
-    const double tolerance = desc->tolerance_mm > 0
-                                 ? desc->tolerance_mm
-                                 : default_tolerance(&plan->parts, &plan->grid);
-    if (desc->bits) {
-        lay_grid(plan, desc->compression, desc->bits);
-        st = cwi_grid_measure(&plan->grid, &plan->parts, &harm, err);
-    } else {
-        st = find_grid(plan, desc->compression, tolerance, &found, &harm, err);
-    }
-    if (st == CW_OK && !found && desc->compression == CW_COMPRESS_MESHOPT)
-        plan->grid.bits = 0; /* then positions stay as they are */
-    else if (st == CW_OK && !found)
-        return fail_shape(&plan->grid, &harm, tolerance, err);
-    if (st == CW_OK && found) {
-        told->merged = harm.merged;
-        told->flat = harm.flat;
-        told->step_mm = plan->grid.step;
-    }
-    told->bits = plan->grid.bits;
-    return st;
 }
 
 /* --- blocks --------------------------------------------------------------------------------
@@ -514,12 +392,10 @@ cw_status cwi_gltf_compress(cwi_gltf_plan *plan, const cw_write_desc *desc, cw_e
     if (st == CW_OK && told.dropped)
         drop_degenerate(plan);
     if (st == CW_OK)
-        st = choose_grid(plan, desc, &told, err);
+        st = cwi_grid_choose(&plan->grid, &plan->parts, desc, &told, err);
     if (st != CW_OK)
         return st;
     plan->rounded = desc->compression != CW_COMPRESS_DRACO;
-    if (plan->grid.bits)
-        told.error_mm = measure_error(plan);
     if (plan->rounded)
         measure_normals(plan, &told);
     if (desc->compression != CW_COMPRESS_QUANTIZE)

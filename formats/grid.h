@@ -83,6 +83,17 @@ static inline double cwi_grid_middle(const cwi_grid *grid, int axis)
     return (double)grid->origin[axis] + (double)(1 << (grid->bits - 1)) * grid->step;
 }
 
+/* CW_ERR_ARGUMENT for a compression that there is not, or bits that it has not. */
+cw_status cwi_grid_check_bits(const cw_write_desc *desc, cw_error *err);
+
+/* Lays the coarsest grid around the parts, of one origin, that keeps the tolerance and the
+ * shape; or one of the bits that are stated, whatever it does to the shape. grid     bits 0:
+ * meshopt has none, positions are to stay as they are told     bits, step, error and harm are
+ * filled in Returns  CW_ERR_CHECK when there is none; CW_ERR_LIMIT for a box too large;
+ * CW_ERR_NO_MEMORY */
+cw_status cwi_grid_choose(cwi_grid *grid, const cwi_parts *parts, const cw_write_desc *desc,
+                          cw_compressed *told, cw_error *err);
+
 /* Counts the harm over all meshes together. CW_ERR_NO_MEMORY. */
 cw_status cwi_grid_measure(const cwi_grid *grid, const cwi_parts *parts, cwi_grid_harm *harm,
                            cw_error *err);
