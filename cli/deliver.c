@@ -141,7 +141,9 @@ static cw_status write_mesh(cli_report *report, const cli_delivery *how, const l
         return st;
     made->written = true;
     made->local = desc.local;
-    made->compression = desc.compression;
+    made->compression = desc.compression        ? desc.compression
+                        : made->compressed.bits ? CW_COMPRESS_DRACO /* a format of that alone */
+                                                : CW_COMPRESS_NONE;
     memcpy(made->origin, l->parts->mesh->origin, sizeof made->origin);
     made->dropped = how->tell_dropped ? loss.dropped : 0;
     warn_of_loss(report, made, l, &loss);

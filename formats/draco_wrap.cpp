@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstring>
+#include <memory>
 #include <string>
 
 namespace
@@ -20,6 +21,9 @@ namespace
 enum { TRIANGLE_BYTES = 100 };
 
 enum { COLOR_BITS = 8 };
+
+// The name under which a comment stands among the metadata.
+const char COMMENT[] = "cubewright";
 
 cw_status fail_draco(cw_error *err, cw_status status, const char *what,
                      const draco::Status &said)
@@ -110,6 +114,11 @@ cw_status encode(const cwi_arrays *from, const cwi_draco_settings *settings,
         if (from->colors)
             ids->color = add_attribute(mesh, draco::GeometryAttribute::COLOR, draco::DT_UINT8,
                                        4, true, from->colors, count);
+        if (settings->comment) {
+            auto metadata = std::make_unique<draco::GeometryMetadata>();
+            metadata->AddEntryString(COMMENT, settings->comment);
+            mesh.AddMetadata(std::move(metadata));
+        }
         set_options(encoder, *settings);
         const draco::Status done = encoder.EncodeMeshToBuffer(mesh, &buffer);
         if (!done.ok())
@@ -136,6 +145,22 @@ const draco::PointAttribute *find(const draco::Mesh &mesh, int id, int numbers)
     const draco::PointAttribute *found =
         id >= 0 ? mesh.GetAttributeByUniqueId(uint32_t(id)) : nullptr;
     return found && found->num_components() >= numbers ? found : nullptr;
+}
+
+// The first of a kind, where nobody else names it.
+int find_first(const draco::Mesh &mesh, draco::GeometryAttribute::Type type, int numbers)
+{
+    const draco::PointAttribute *found = mesh.GetNamedAttribute(type);
+    return found && found->num_components() >= numbers && found->num_components() <= 4
+               ? int(found->unique_id())
+               : -1;
+}
+
+cwi_draco_ids find_all(const draco::Mesh &mesh)
+{
+    return {find_first(mesh, draco::GeometryAttribute::POSITION, 3),
+            find_first(mesh, draco::GeometryAttribute::NORMAL, 3),
+            find_first(mesh, draco::GeometryAttribute::COLOR, 3)};
 }
 
 // False where a point has no value.
@@ -206,6 +231,9 @@ cw_status copy_mesh(const draco::Mesh &mesh, const cwi_draco_ids &ids, const cwi
         return cw_fail(err, CW_ERR_FORMAT, "the Draco data lack an attribute that is named");
     if (grid && !is_on_grid(*positions, *grid))
         return cw_fail(err, CW_ERR_CHECK, "Draco encoded positions on another grid than asked");
+    std::string comment;
+    if (mesh.GetMetadata() && mesh.GetMetadata()->GetEntryString(COMMENT, &comment))
+        snprintf(to.comment, sizeof to.comment, "%s", comment.c_str());
     to.vertex_count = count;
     to.triangle_count = mesh.num_faces();
     if (!(grid ? allocate(to.places, count, 3) : allocate(to.positions, count, 3)) ||
@@ -228,6 +256,9 @@ cw_status decode(const void *bytes, size_t size, const cwi_draco_ids *ids, size_
     return cw::guard(err, "Draco", [&] {
         draco::DecoderBuffer buffer;
         buffer.Init(static_cast<const char *>(bytes), size);
+        const auto kind = draco::Decoder::GetEncodedGeometryType(&buffer);
+        if (kind.ok() && kind.value() == draco::POINT_CLOUD)
+            return cw_fail(err, CW_ERR_FORMAT, "the Draco data are a point cloud, not a mesh");
         draco::Decoder decoder;
         if (grid)
             decoder.SetSkipAttributeTransform(draco::GeometryAttribute::POSITION);
@@ -238,7 +269,7 @@ cw_status decode(const void *bytes, size_t size, const cwi_draco_ids *ids, size_
         if (mesh->num_points() > most || mesh->num_faces() > most)
             return cw_fail(err, CW_ERR_LIMIT, "the Draco data hold %u triangles",
                            mesh->num_faces());
-        return copy_mesh(*mesh, *ids, grid, *arrays, err);
+        return copy_mesh(*mesh, ids ? *ids : find_all(*mesh), grid, *arrays, err);
     });
 }
 

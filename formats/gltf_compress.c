@@ -6,15 +6,13 @@
 #include "core/memory.h"
 #include "core/mesh.h"
 #include "core/status.h"
+#include "formats/draco_pack.h"
 #include "formats/gltf_scene.h"
 #include "formats/meshopt_wrap.h"
-#include "formats/verify.h"
 
 #include <math.h>
 #include <string.h>
 #include <time.h>
-
-enum { NORMAL_BITS = 10, LEVEL = 7 };
 
 static double now_s(void)
 {
@@ -98,34 +96,6 @@ static cw_status own_parts(cwi_gltf_plan *plan, bool all, cw_error *err)
     return CW_OK;
 }
 
-static bool names_a_vertex_twice(const uint32_t *triangle)
-{
-    return triangle[0] == triangle[1] || triangle[1] == triangle[2] ||
-           triangle[2] == triangle[0];
-}
-
-static size_t count_degenerate(const cwi_parts *parts)
-{
-    size_t count = 0;
-    for (size_t p = 0; p < parts->count; p++)
-        for (size_t t = 0; t < parts->items[p].mesh.triangle_count; t++)
-            count += names_a_vertex_twice(parts->items[p].mesh.triangles + 3 * t);
-    return count;
-}
-
-/* Draco leaves out triangles that name a vertex twice; no edge opens where they go. */
-static void drop_degenerate(cwi_gltf_plan *plan)
-{
-    for (size_t p = 0; p < plan->parts.count; p++) {
-        cw_mesh *m = &plan->parts.items[p].mesh;
-        size_t kept = 0;
-        for (size_t t = 0; t < m->triangle_count; t++)
-            if (!names_a_vertex_twice(m->triangles + 3 * t))
-                memmove(m->triangles + 3 * kept++, m->triangles + 3 * t, 3 * sizeof(uint32_t));
-        m->triangle_count = kept;
-    }
-}
-
 /* --- blocks --------------------------------------------------------------------------------
  */
 
@@ -152,17 +122,6 @@ static cw_status add_block(cwi_gltf_plan *plan, unsigned char *bytes, size_t siz
 /* --- Draco ---------------------------------------------------------------------------------
  */
 
-static cw_status verify_draco(const cwi_gltf_plan *plan, const cwi_gltf_piece *piece,
-                              const cwi_arrays *a, cw_compressed *told, cw_error *err)
-{
-    const cwi_decoded decoded = {.vertex_count = a->vertex_count,
-                                 .triangle_count = a->triangle_count,
-                                 .places = a->places,
-                                 .normals = a->normals,
-                                 .triangles = a->triangles};
-    return cwi_verify(&piece->part->mesh, &plan->grid, &decoded, &told->normal_degrees, err);
-}
-
 static void describe_draco(cwi_gltf_piece *piece, const cwi_grid *grid,
                            const cwi_arrays *decoded)
 {
@@ -180,56 +139,29 @@ static void describe_draco(cwi_gltf_piece *piece, const cwi_grid *grid,
             piece->arrays[n].count = decoded->vertex_count;
 }
 
-static cw_status encode_draco(cwi_gltf_plan *plan, cwi_gltf_piece *piece,
-                              const cwi_draco_functions *draco, const cw_write_desc *desc,
-                              unsigned char *colors, cw_error *err)
-{
-    const cw_mesh *m = &piece->part->mesh;
-    const cwi_arrays arrays = {.vertex_count = m->vertex_count,
-                               .triangle_count = m->triangle_count,
-                               .positions = m->positions,
-                               .normals = m->normals,
-                               .colors = colors,
-                               .triangles = m->triangles};
-    const cwi_draco_settings settings = {.grid = plan->grid,
-                                         .normal_bits = NORMAL_BITS,
-                                         .level = desc->level ? desc->level : LEVEL};
-    unsigned char *bytes = NULL;
-    size_t size = 0;
-    cw_status st = draco->encode(&arrays, &settings, &bytes, &size, &piece->ids, err);
-    if (st == CW_OK)
-        st = add_block(plan, bytes, size, &piece->draco_at, err);
-    piece->draco = size;
-    return st;
-}
-
 static cw_status compress_draco(cwi_gltf_plan *plan, cwi_gltf_piece *piece,
-                                const cwi_draco_functions *draco, const cw_write_desc *desc,
-                                cw_compressed *told, cw_error *err)
+                                const cw_write_desc *desc, cw_compressed *told, cw_error *err)
 {
     const size_t count = piece->part->mesh.vertex_count;
-    const double start = now_s();
     unsigned char *colors = NULL;
-    cwi_arrays decoded = {0};
+    cwi_draco_packed packed = {0};
     cwi_gltf_plan_arrays(plan, piece);
     if (piece->part->mesh.colors && !(colors = cwi_alloc_array(count, 4)))
         return fail_memory(err);
     for (size_t n = 0; n < piece->array_count; n++)
         for (size_t i = 0; piece->arrays[n].use == CWI_GLTF_COLOR && i < count; i++)
             cwi_gltf_put(plan, piece, &piece->arrays[n], i, colors + 4 * i);
-    cw_status st = encode_draco(plan, piece, draco, desc, colors, err);
-    const double encoded = now_s();
+    cw_status st =
+        cwi_draco_pack(&piece->part->mesh, colors, &plan->grid, NULL, desc, &packed, told, err);
     cwi_free(colors);
-    if (st == CW_OK)
-        st = draco->decode(plan->blocks[plan->block_count - 1].bytes, piece->draco, &piece->ids,
-                           SIZE_MAX, &plan->grid, &decoded, err);
-    if (st == CW_OK)
-        st = verify_draco(plan, piece, &decoded, told, err);
-    if (st == CW_OK)
-        describe_draco(piece, &plan->grid, &decoded);
-    cwi_arrays_free(&decoded);
-    told->encode_s += encoded - start;
-    told->decode_s += now_s() - encoded;
+    if (st == CW_OK) {
+        describe_draco(piece, &plan->grid, &packed.decoded);
+        piece->ids = packed.ids;
+        piece->draco = packed.size;
+        st = add_block(plan, packed.bytes, packed.size, &piece->draco_at, err);
+        packed.bytes = NULL; /* taken over */
+    }
+    cwi_draco_packed_free(&packed);
     return st;
 }
 
@@ -366,13 +298,11 @@ static cw_status compress_pieces(cwi_gltf_plan *plan, const cw_write_desc *desc,
                                  cw_compressed *told, cw_error *err)
 {
     const bool draco = desc->compression == CW_COMPRESS_DRACO;
-    const cwi_draco_functions *by_draco = NULL;
     const cwi_meshopt_functions *by_meshopt = NULL;
     const double start = now_s();
-    cw_status st = draco ? cwi_draco_functions_load(&by_draco, err)
-                         : cwi_meshopt_functions_load(&by_meshopt, err);
+    cw_status st = draco ? CW_OK : cwi_meshopt_functions_load(&by_meshopt, err);
     for (size_t p = 0; st == CW_OK && p < plan->parts.count; p++)
-        st = draco ? compress_draco(plan, &plan->pieces[p], by_draco, desc, told, err)
+        st = draco ? compress_draco(plan, &plan->pieces[p], desc, told, err)
                    : compress_meshopt(plan, p, by_meshopt, err);
     if (!draco)
         told->encode_s = now_s() - start;
@@ -385,12 +315,12 @@ cw_status cwi_gltf_compress(cwi_gltf_plan *plan, const cw_write_desc *desc, cw_e
     const bool meshopt = desc->compression == CW_COMPRESS_MESHOPT;
     cw_compressed told = {0};
     cw_status st = CW_OK;
-    if (desc->compression == CW_COMPRESS_DRACO)
-        told.dropped = count_degenerate(&plan->parts);
+    for (size_t p = 0; desc->compression == CW_COMPRESS_DRACO && p < plan->parts.count; p++)
+        told.dropped += cwi_draco_count_degenerate(&plan->parts.items[p].mesh);
     if (meshopt || told.dropped || !same_origin(&plan->parts))
         st = own_parts(plan, meshopt, err);
-    if (st == CW_OK && told.dropped)
-        drop_degenerate(plan);
+    for (size_t p = 0; st == CW_OK && told.dropped && p < plan->parts.count; p++)
+        cwi_draco_drop_degenerate(&plan->parts.items[p].mesh);
     if (st == CW_OK)
         st = cwi_grid_choose(&plan->grid, &plan->parts, desc, &told, err);
     if (st != CW_OK)

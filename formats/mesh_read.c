@@ -16,10 +16,15 @@ typedef struct reader {
 } reader;
 
 static const reader readers[] = {
-    {"ply", cwi_ply_sniff, cwi_ply_read},    {"off", cwi_off_sniff, cwi_off_read},
-    {"glb", cwi_glb_sniff, cwi_glb_read},    {"stl", cwi_stl_sniff, cwi_stl_read},
-    {"gltf", cwi_gltf_sniff, cwi_gltf_read}, {"3mf", cwi_3mf_sniff, cwi_3mf_read},
-    {"vtp", cwi_vtp_sniff, cwi_vtp_read},    {"obj", NULL, cwi_obj_read},
+    {"ply", cwi_ply_sniff, cwi_ply_read},
+    {"off", cwi_off_sniff, cwi_off_read},
+    {"glb", cwi_glb_sniff, cwi_glb_read},
+    {"stl", cwi_stl_sniff, cwi_stl_read},
+    {"gltf", cwi_gltf_sniff, cwi_gltf_read},
+    {"3mf", cwi_3mf_sniff, cwi_3mf_read},
+    {"vtp", cwi_vtp_sniff, cwi_vtp_read},
+    {"drc", cwi_drc_sniff, cwi_drc_read},
+    {"obj", NULL, cwi_obj_read},
 };
 enum { READER_COUNT = sizeof readers / sizeof *readers };
 

@@ -45,6 +45,7 @@ cwi_mesh_sniffer cwi_glb_sniff;
 cwi_mesh_sniffer cwi_gltf_sniff;
 cwi_mesh_sniffer cwi_3mf_sniff;
 cwi_mesh_sniffer cwi_vtp_sniff;
+cwi_mesh_sniffer cwi_drc_sniff;
 
 cwi_mesh_reader cwi_stl_read;
 cwi_mesh_reader cwi_ply_read;
@@ -54,6 +55,7 @@ cwi_mesh_reader cwi_glb_read;
 cwi_mesh_reader cwi_gltf_read;
 cwi_mesh_reader cwi_3mf_read;
 cwi_mesh_reader cwi_vtp_read;
+cwi_mesh_reader cwi_drc_read;
 
 /* Makes an array (array is the address of its pointer) hold at least count elements of a size;
  * what is new is not initialised. room is how many it holds.

@@ -16,6 +16,7 @@ typedef struct writer {
     bool own_axes;                       /* unit and frame are those of the format */
     bool text;                           /* it is text, or can be */
     bool compresses;                     /* it has compressed forms */
+    cw_compression only;                 /* it has this form alone */
     bool levels;                         /* it has levels of detail */
     bool animates;                       /* it can show parts one after another */
 } writer;
@@ -42,6 +43,7 @@ static const writer writers[] = {
     {.format = "off", .write = cwi_off_write, .text = true},
     {.format = "3mf", .write = cwi_3mf_write},
     {.format = "vtp", .write = cwi_vtp_write},
+    {.format = "drc", .write = cwi_drc_write, .only = CW_COMPRESS_DRACO},
 };
 
 enum { PROGRESS_STEP = 65536, BATCH_BYTES = 16 << 10 };
@@ -184,10 +186,15 @@ static cw_status check_text(const writer *w, const cw_write_desc *d, cw_error *e
 
 static cw_status check_compression(const writer *w, const cw_write_desc *d, cw_error *err)
 {
-    if (d->compression == CW_COMPRESS_NONE)
+    cw_write_desc as_written = *d;
+    if (w->only && d->compression && d->compression != w->only)
+        return cw_fail(err, CW_ERR_ARGUMENT, "%s has one form only, Draco's", w->format);
+    if (w->only)
+        as_written.compression = w->only;
+    if (as_written.compression == CW_COMPRESS_NONE)
         return CW_OK;
-    if (w->compresses)
-        return cwi_gltf_prepare_codec(d, err);
+    if (w->compresses || w->only)
+        return cwi_gltf_prepare_codec(&as_written, err);
     return cw_fail(err, CW_ERR_ARGUMENT, "%s has no compressed form; glTF (.glb, .gltf) has",
                    w->format);
 }
@@ -277,6 +284,8 @@ cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
         st = check_levels(t.writer, parts, count, err);
     if (st == CW_OK && t.writer->own_axes)
         d.axes = (cw_axes){0};
+    if (st == CW_OK && t.writer->only)
+        d.compression = t.writer->only;
     if (st == CW_OK)
         st = cwi_parts_place(parts, count, &d, t.format->keeps, name, &placed, origin, err);
     if (st == CW_OK)

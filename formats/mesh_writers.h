@@ -67,6 +67,7 @@ CW_API cwi_mesh_writer cwi_3mf_write;
 CW_API cwi_mesh_writer cwi_vtp_write;
 CW_API cwi_mesh_writer cwi_glb_write;
 CW_API cwi_mesh_writer cwi_gltf_write;
+CW_API cwi_mesh_writer cwi_drc_write;
 
 /* As VTP with indices of 64 bits, which cwi_vtp_write() takes for meshes that need them. */
 CW_API cwi_mesh_writer cwi_vtp_write_wide;

@@ -153,6 +153,13 @@ static const cw_format rows[] = {
      .lost = "affine; places beyond single precision, unless local",
      .keeps = CW_KEEPS_SHARING | CW_KEEPS_NORMALS | CW_KEEPS_COLORS | CW_KEEPS_SCALARS |
               CW_KEEPS_LABELS},
+    {.name = "drc",
+     .extensions = ".drc",
+     .about = "Draco: a compressed mesh, LPS millimetres",
+     .reads_mesh = true,
+     .writes_mesh = true,
+     .lost = "scalars, labels, affine; places between those of the grid",
+     .keeps = CW_KEEPS_SHARING | CW_KEEPS_NORMALS | CW_KEEPS_COLORS},
 };
 
 enum { ROW_COUNT = sizeof rows / sizeof *rows };
@@ -164,11 +171,8 @@ static void fill_formats(void)
 {
     static const struct {
         const char *format, *feature;
-    } optional[] = {{"glb", "gltf"},
-                    {"gltf", "gltf"},
-                    {"dicom", "dicom"},
-                    {"tiff", "tiff"},
-                    {"vdb", "vdb"}};
+    } optional[] = {{"glb", "gltf"},    {"gltf", "gltf"}, {"drc", "draco"},
+                    {"dicom", "dicom"}, {"tiff", "tiff"}, {"vdb", "vdb"}};
     memcpy(formats, rows, sizeof rows);
     for (int i = 0; i < ROW_COUNT; i++) {
         formats[i].reason = "";

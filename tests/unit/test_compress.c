@@ -240,6 +240,94 @@ static void draco_leaves_out_triangles_with_a_vertex_twice(void **state)
     cw_mesh_free(&back);
 }
 
+/* A Draco file by itself: all parts on one grid, with normals and colours, in a process of its
+ * own or not. */
+static void draco_files_keep_the_mesh(void **state)
+{
+    (void)state;
+    cw_mesh mesh = make_gyroid(14), back;
+    cw_compressed told = {0};
+    cw_error err = {0};
+    if (!is_there(CW_COMPRESS_DRACO)) {
+        assert_fails(cw_mesh_write(test_path("a.drc"), &mesh, NULL, &err), CW_ERR_UNSUPPORTED,
+                     "draco", err);
+        cw_mesh_free(&mesh);
+        return;
+    }
+    const cw_part parts[] = {{.mesh = &mesh, .name = "a"}, {.mesh = &mesh, .name = "b"}};
+    for (size_t n = 1; n <= 2; n++)
+        for (int inside = 0; inside < 2; inside++) {
+            const cw_mesh_read_desc desc = {.no_sandbox = inside};
+            cw_mesh_file file;
+            assert_ok(cw_parts_write(test_path("a.drc"), parts, n,
+                                     &(cw_write_desc){.compressed = &told}, &err),
+                      err);
+            assert_ok(cw_mesh_read(test_path("a.drc"), &desc, &back, &file, &err), err);
+            assert_string_equal(file.format, "drc");
+            assert_int_equal(back.triangle_count, n * mesh.triangle_count);
+            assert_non_null(back.colors);
+            assert_int_equal(test_normals_agree(&back), n * test_normals_agree(&mesh));
+            assert_true(told.bits > 8 && told.error_mm > 0 && told.bytes > 1000);
+            assert_true(distance_between(&mesh, &back) <= told.error_mm * 1.01 + 2e-4);
+            cw_mesh_free(&back);
+        }
+    cw_mesh_file file;
+    mesh.origin[1] = -7.25;
+    assert_ok(cw_mesh_write(test_path("a.drc"), &mesh,
+                            &(cw_write_desc){.local = true, .axes = {.unit = CW_UNIT_M}}, &err),
+              err);
+    assert_ok(cw_mesh_read(test_path("a.drc"), NULL, &back, &file, &err), err);
+    assert_true(file.local && file.axes.unit == CW_UNIT_M);
+    assert_true(back.origin[1] == -7.25);
+    assert_true(distance_between(&mesh, &back) < 0.1);
+    cw_mesh_free(&back);
+    const cw_mesh_read_desc few = {.max_triangles = mesh.triangle_count - 1},
+                            little = {.max_bytes = 20000};
+    assert_fails(cw_mesh_read(test_path("a.drc"), &few, &back, NULL, &err), CW_ERR_LIMIT,
+                 "the most allowed", err);
+    assert_fails(cw_mesh_read(test_path("a.drc"), &little, &back, NULL, &err), CW_ERR_LIMIT,
+                 "(--memory)", err);
+    assert_fails(cw_mesh_write(test_path("b.drc"), &mesh,
+                               &(cw_write_desc){.compression = CW_COMPRESS_MESHOPT}, &err),
+                 CW_ERR_ARGUMENT, "one form only", err);
+    assert_fails(cw_mesh_write(test_path("b.drc"), &mesh, &(cw_write_desc){.bits = 31}, &err),
+                 CW_ERR_ARGUMENT, "1 to 30", err);
+    cw_mesh_free(&mesh);
+}
+
+/* Every byte turned round, and every length: an error or a mesh. */
+static void damaged_draco_files_are_an_error_or_a_mesh(void **state)
+{
+    (void)state;
+    cw_mesh cube = {0}, back;
+    cw_error err = {0};
+    size_t size;
+    if (!is_there(CW_COMPRESS_DRACO))
+        return;
+    test_make_cube(&cube);
+    assert_ok(cw_mesh_write(test_path("a.drc"), &cube, NULL, &err), err);
+    char *bytes = test_file_read(test_path("a.drc"), &size);
+    for (size_t i = 0; i < 2 * size; i++) {
+        const cw_mesh_read_desc desc = {
+            .reader = "drc", .no_sandbox = i % 16 != 0, .max_bytes = 64 << 20};
+        if (i < size)
+            bytes[i] = (char)~bytes[i];
+        test_file_write(test_path("b.drc"), bytes, i < size ? size : i - size);
+        if (cw_mesh_read(test_path("b.drc"), &desc, &back, NULL, &err) == CW_OK) {
+            assert_ok(cw_mesh_check(&back, &err), err);
+            cw_mesh_free(&back);
+        } else {
+            assert_true(err.status == CW_ERR_FORMAT || err.status == CW_ERR_LIMIT ||
+                        err.status == CW_ERR_NO_MEMORY || err.status == CW_ERR_BACKEND ||
+                        err.status == CW_ERR_IO);
+        }
+        if (i < size)
+            bytes[i] = (char)~bytes[i];
+    }
+    free(bytes);
+    cw_mesh_free(&cube);
+}
+
 /* Two slivers, a thousandth of a millimetre high on a base as long as told. */
 static void put_sliver(cw_mesh *mesh, float base, float positions[18], uint32_t triangles[12])
 {
@@ -482,6 +570,8 @@ int main(void)
         TEST(a_tolerance_is_kept),
         TEST(draco_takes_any_unit_place_and_bits),
         TEST(draco_leaves_out_triangles_with_a_vertex_twice),
+        TEST(draco_files_keep_the_mesh),
+        TEST(damaged_draco_files_are_an_error_or_a_mesh),
         TEST(what_cannot_be_kept_is_not_promised),
         TEST(meshopt_has_more_than_16_bits),
         TEST(what_makes_no_sense_is_refused),

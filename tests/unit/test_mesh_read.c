@@ -58,7 +58,7 @@ static void check_same_floats(const float *a, const float *b, size_t count)
 }
 
 /* The n-th format that this build writes and reads, and a name for a file of it; NULL after the
- * last. */
+ * last. Draco rounds to a grid, and is left to test_compress. */
 static const cw_format *written(size_t n, const char **name)
 {
     static char names[16][16];
@@ -66,7 +66,7 @@ static const cw_format *written(size_t n, const char **name)
     const cw_format *formats = cw_formats(&count);
     for (size_t i = 0; i < count; i++)
         if (formats[i].writes_mesh && formats[i].reads_mesh && formats[i].in_this_build &&
-            n-- == 0) {
+            strcmp(formats[i].name, "drc") != 0 && n-- == 0) {
             snprintf(names[i % 16], sizeof *names, "a%s", formats[i].extensions);
             *name = names[i % 16];
             return &formats[i];
