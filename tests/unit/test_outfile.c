@@ -1,9 +1,10 @@
-#define _GNU_SOURCE /* mkfifo, symlink, setrlimit */
+#define _GNU_SOURCE /* mkfifo, symlink, setrlimit, syscall */
 #include "support/support.h"
 
 #include "core/memory.h"
 #include "core/outfile.h"
 
+#include <errno.h>
 #include <fcntl.h>
 #include <locale.h>
 #include <signal.h>
@@ -12,8 +13,47 @@
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/syscall.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+enum { MOST_SYNCS = 4 };
+
+/* One call of fsync(): of what, and how far the file was by then. */
+typedef struct sync_call {
+    bool of_folder, is_in_place; /* the path names the file that was synced last */
+    off_t size;
+} sync_call;
+
+static struct {
+    const char *path;        /* of the file that is written */
+    int failure[MOST_SYNCS]; /* errno of each call; 0: it succeeds */
+    sync_call calls[MOST_SYNCS];
+    int count;
+    ino_t file;
+} syncs;
+
+static void watch_syncs(const char *path)
+{
+    memset(&syncs, 0, sizeof syncs);
+    syncs.path = path;
+}
+
+/* Stands in front of the system's: the library calls what the program defines. */
+int fsync(int fd)
+{
+    struct stat info, named;
+    if (!syncs.path || syncs.count == MOST_SYNCS || fstat(fd, &info) != 0)
+        return (int)syscall(SYS_fsync, fd);
+    sync_call *call = &syncs.calls[syncs.count];
+    call->of_folder = S_ISDIR(info.st_mode);
+    if (!call->of_folder)
+        syncs.file = info.st_ino;
+    call->size = info.st_size;
+    call->is_in_place = stat(syncs.path, &named) == 0 && named.st_ino == syncs.file;
+    errno = syncs.failure[syncs.count++];
+    return errno ? -1 : (int)syscall(SYS_fsync, fd);
+}
 
 static cw_status write_file(const char *path, const char *text, bool no_clobber, cw_error *err)
 {
@@ -135,6 +175,30 @@ static void printed_text_may_be_longer_than_the_buffer(void **state)
     assert_string_equal(back + size - 5, "x|end");
     free(back);
     free(text);
+}
+
+/* The byte that would end the string needs room too, though it is not written. */
+static void printed_text_may_end_with_the_buffer(void **state)
+{
+    (void)state;
+    enum { BUFFER = 256 * 1024 }; /* as the file's own */
+    static char bytes[BUFFER];
+    const char *path = test_path("text");
+    memset(bytes, '.', sizeof bytes);
+    for (size_t before = BUFFER - 6; before <= BUFFER; before++) {
+        cwi_outfile *file = NULL;
+        cw_error err = {0};
+        size_t size;
+        assert_ok(cwi_outfile_open(&file, path, false, &err), err);
+        assert_ok(cwi_outfile_write(file, bytes, before, &err), err);
+        assert_ok(cwi_outfile_printf(file, &err, "%d", 1234), err);
+        assert_ok(cwi_outfile_printf(file, &err, "|"), err);
+        assert_ok(cwi_outfile_commit(&file, &err), err);
+        char *back = test_file_read(path, &size);
+        assert_int_equal(size, before + 5);
+        assert_string_equal(back + before - 1, ".1234|");
+        free(back);
+    }
 }
 
 static void what_was_written_may_be_written_over(void **state)
@@ -275,6 +339,60 @@ static void the_longest_name_can_be_written(void **state)
     assert_fails(write_file(path, "x", false, &err), CW_ERR_OUTPUT, "too long", err);
 }
 
+/* After a crash the name stands for the old file or for the whole new one: the bytes are on the
+ * disk before the name is, and the name is when the call returns. */
+static void bytes_reach_the_disk_before_their_name_does(void **state)
+{
+    (void)state;
+    const char *path = test_path("synced");
+    cw_error err = {0};
+    for (int round = 0; round < 3; round++) { /* a new file, a replaced one, no_clobber */
+        if (round == 2)
+            assert_int_equal(unlink(path), 0);
+        watch_syncs(path);
+        assert_ok(write_file(path, "whole", round == 2, &err), err);
+        syncs.path = NULL;
+        assert_int_equal(syncs.count, 2);
+        assert_false(syncs.calls[0].of_folder);
+        assert_false(syncs.calls[0].is_in_place);
+        assert_int_equal(syncs.calls[0].size, 5);
+        assert_true(syncs.calls[1].of_folder);
+        assert_true(syncs.calls[1].is_in_place);
+    }
+}
+
+/* A disk that fails keeps the old file; a file system that cannot sync is no failure, nor is
+ * a signal, nor a folder that stays unsynced. */
+static void only_a_failing_disk_refuses_the_file(void **state)
+{
+    (void)state;
+    static const struct {
+        int failure[3];
+        int calls;
+        bool is_written;
+    } rows[] = {
+        {{EIO}, 1, false},     {{ENOSPC}, 1, false},         {{EINTR, EIO}, 2, false},
+        {{EINVAL}, 2, true},   {{ENOTSUP}, 2, true},         {{EROFS}, 2, true},
+        {{EINTR, 0}, 3, true}, {{EINTR, EINTR, 0}, 4, true}, {{0, EIO}, 2, true},
+    };
+    const char *path = test_path("kept");
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        cw_error err = {0};
+        test_file_write(path, "old", 3);
+        watch_syncs(path);
+        memcpy(syncs.failure, rows[i].failure, sizeof rows[i].failure);
+        const cw_status st = write_file(path, "new", false, &err);
+        syncs.path = NULL;
+        assert_int_equal(syncs.count, rows[i].calls);
+        if (rows[i].is_written)
+            assert_ok(st, err);
+        else
+            assert_fails(st, CW_ERR_OUTPUT, "cannot be flushed to the disk", err);
+        assert_holds(path, rows[i].is_written ? "new" : "old");
+        assert_int_equal(test_folder_entries(), 1);
+    }
+}
+
 /* A full disk is played by a limit on the size of files. The child has its own limit. */
 static int write_too_much(const char *path)
 {
@@ -371,6 +489,7 @@ int main(void)
         CASE(an_abort_leaves_nothing_and_can_be_repeated),
         CASE(buffered_and_large_writes_keep_their_order),
         CASE(printed_text_may_be_longer_than_the_buffer),
+        CASE(printed_text_may_end_with_the_buffer),
         CASE(what_was_written_may_be_written_over),
         CASE(numbers_have_points_in_every_locale),
         CASE(only_regular_files_are_replaced),
@@ -378,6 +497,8 @@ int main(void)
         CASE(no_clobber_refuses_what_was_there_and_what_came_meanwhile),
         CASE(modes_follow_the_umask_or_the_old_file),
         CASE(the_longest_name_can_be_written),
+        CASE(bytes_reach_the_disk_before_their_name_does),
+        CASE(only_a_failing_disk_refuses_the_file),
         CASE(a_full_disk_fails_and_keeps_the_old_file),
         CASE(a_signal_handler_can_remove_what_is_in_progress),
         CASE(running_out_of_memory_leaves_nothing),
