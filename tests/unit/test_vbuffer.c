@@ -112,6 +112,47 @@ static void peaks_within_cells_are_seen(void **state)
     cw_renderer_free(r);
 }
 
+static double even(const double p[3], const double q[3])
+{
+    (void)p;
+    (void)q;
+    return 1;
+}
+
+/* Every millimetre takes half of the light: a ray ends in the cell in which the opacity asked
+ * for is reached, neither before nor much later. */
+static void rays_end_at_the_opacity_asked_for(void **state)
+{
+    (void)state;
+    static const struct {
+        float asked;
+        double at_least;
+    } rows[] = {{0, 0.99999}, {0.5f, 0.5}, {0.9f, 0.9}, {0.99f, 0.99}, {0.9999f, 0.9999}};
+    cw_renderer *r = cpu();
+    cw_volume v = {0};
+    const cw_transfer half = {
+        .opacity_count = 2, .opacities = {{0, 0.5f}, {2, 0.5f}}, .unit_mm = 1};
+    test_field(&v, 33, 33, 33, cube, even);
+    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
+        const cw_scene scene = {.mode = CW_MODE_VBUFFER,
+                                .volume = &v,
+                                .transfer = &half,
+                                .camera = {.eye = {0, -99, 0}, .up = {0, 0, 1}, .height_mm = 8},
+                                .width = 8,
+                                .height = 8,
+                                .stop_opacity = rows[n].asked};
+        cw_picture picture = test_draw(r, &scene);
+        for (size_t p = 0; p < 64; p++) {
+            const double opacity = (double)picture.pixels[4 * p + 3];
+            assert_true(opacity >= rows[n].at_least - 1e-7);
+            assert_true(1 - opacity > 0.4 * (1 - rows[n].at_least)); /* one cell more at most */
+        }
+        cw_picture_free(&picture);
+    }
+    cw_volume_free(&v);
+    cw_renderer_free(r);
+}
+
 /* Straight along an axis, from inside, through slabs, and past what has no value. */
 static void rays_of_any_kind_pass(void **state)
 {
@@ -262,6 +303,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(it_is_as_exact_as_bytes_can_show),
         cmocka_unit_test(peaks_within_cells_are_seen),
+        cmocka_unit_test(rays_end_at_the_opacity_asked_for),
         cmocka_unit_test(rays_of_any_kind_pass),
         cmocka_unit_test(voxels_of_any_type_pass),
         cmocka_unit_test(any_threads_give_the_same_bytes),
