@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static cw_mesh simplify(const cw_mesh *mesh, const cw_simplify_desc *desc)
+static cw_mesh simplify_in(const cw_mesh *mesh, const cw_simplify_desc *desc, size_t *passes)
 {
     cw_mesh out;
     cw_simplify_facts facts;
@@ -20,7 +20,14 @@ static cw_mesh simplify(const cw_mesh *mesh, const cw_simplify_desc *desc)
     assert_int_equal(facts.vertices, out.vertex_count);
     assert_int_equal(facts.triangles, out.triangle_count);
     assert_true(facts.passes >= 1);
+    *passes = facts.passes;
     return out;
+}
+
+static cw_mesh simplify(const cw_mesh *mesh, const cw_simplify_desc *desc)
+{
+    size_t passes;
+    return simplify_in(mesh, desc, &passes);
 }
 
 static cw_mesh reduce(const cw_mesh *mesh, double ratio)
@@ -94,6 +101,9 @@ static void broken_meshes_become_no_worse(void **state)
     }
 }
 
+/* Collapses refuse what goes too far, so the judgement afterwards finds nothing to be done
+ * again. It would hide bounds that are too loose: the error is kept, by more passes and
+ * triangles. */
 static void no_error_is_exceeded(double noise, bool open)
 {
     cw_mesh mesh = noisy_gyroid(10, noise, open);
@@ -102,7 +112,9 @@ static void no_error_is_exceeded(double noise, bool open)
     size_t before = mesh.triangle_count;
     for (double error = 0.001 * (high[0] - low[0]); error < 0.03 * (high[0] - low[0]);
          error *= 5) {
-        cw_mesh out = simplify(&mesh, &(cw_simplify_desc){.error_mm = error});
+        size_t passes;
+        cw_mesh out = simplify_in(&mesh, &(cw_simplify_desc){.error_mm = error}, &passes);
+        assert_int_equal(passes, 1);
         test_bound_is_kept(&mesh, &out, error);
         test_bound_is_kept(&out, &mesh, error);
         test_assert_sound(&mesh, &out);
