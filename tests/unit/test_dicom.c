@@ -477,6 +477,35 @@ static void padding_is_no_data(void **state)
     cw_volume_free(&v);
 }
 
+/* A slice between two others has no value where one of them has none. */
+static void padding_of_either_neighbour_is_no_data(void **state)
+{
+    (void)state;
+    static const int places[] = {0, 1, 3, 4};
+    static const uint8_t padded[] = {99, 5, 6, 99}; /* the pixel; 99: none */
+    for (int n = 0; n < 4; n++) {
+        char name[16], place[16];
+        uint16_t pixels[PIXELS];
+        for (unsigned i = 0; i < PIXELS; i++)
+            pixels[i] = i == padded[n] ? 1000 : 10;
+        snprintf(name, sizeof name, "%d", n);
+        snprintf(place, sizeof place, "0\\0\\%d", places[n]);
+        test_image_write(
+            &(test_image){
+                .instance = n, .position = place, .padding = "1000", .pixels = pixels},
+            name);
+    }
+    cw_volume v = read_all(&(cw_read_desc){.gaps = CW_GAPS_INTERPOLATE});
+    assert_int_equal(v.dim[2], 5);
+    for (size_t i = 0; i < PIXELS; i++) {
+        const double value = cw_volume_value(&v, i % COLUMNS, i / COLUMNS, 2);
+        const bool lost = v.has_nodata ? value == v.nodata : isnan(value);
+        assert_true(lost ? i == 5 || i == 6 : value == 10);
+        assert_true(lost || (i != 5 && i != 6));
+    }
+    cw_volume_free(&v);
+}
+
 /* A byte n > 128 repeats the next one 257 - n times. */
 static void runs_are_read(void **state)
 {
@@ -1182,6 +1211,7 @@ int main(void)
         TEST(every_kind_of_pixel_is_read),
         TEST(slices_with_a_scale_each_become_values),
         TEST(padding_is_no_data),
+        TEST(padding_of_either_neighbour_is_no_data),
         TEST(runs_are_read),
         TEST(frames_have_a_place_each),
         TEST(segments_become_labels),

@@ -215,6 +215,21 @@ static void cells_may_be_oblique(void **state)
     cw_volume_free(&v);
 }
 
+/* All edges at 60 degrees to each other: those of a regular tetrahedron. */
+static void all_angles_of_a_cell_may_be_oblique(void **state)
+{
+    (void)state;
+    map m = make_map(2, 4);
+    cw_volume v;
+    for (size_t a = 0; a < 3; a++)
+        put_float(&m, 52 + 4 * a, 60);
+    read_made(&m, &v);
+    check_near(&v,
+               (const double[12]){2e-7, 1.5e-7, 2e-7, 0, 0, 3e-7 * 0.866025403784,
+                                  4e-7 * 0.288675134595, 0, 0, 0, 4e-7 * 0.816496580928, 0});
+    cw_volume_free(&v);
+}
+
 static void without_a_cell_nothing_is_known(void **state)
 {
     (void)state;
@@ -243,20 +258,27 @@ static void old_files_have_neither_name_nor_stamp(void **state)
     }
 }
 
+/* Space groups 401 to 630, and no others. */
 static void stacks_of_volumes_are_steps(void **state)
 {
     (void)state;
-    map m = make_map(1, 2);
-    cw_volume v, second;
-    cw_error err = {0};
-    put_word(&m, 88, 401);
-    put_word(&m, 36, 1); /* MZ: sections of each */
-    read_made(&m, &v);
-    assert_int_equal(v.steps, 2);
-    assert_int_equal(v.dim[2], 1);
-    assert_ok(cw_volume_select(&v, 0, 1, &second, &err), err);
-    assert_true(cw_volume_value(&second, 0, 0, 0) == 3);
-    cw_volume_free(&v);
+    const struct {
+        int32_t group;
+        size_t steps;
+    } cases[] = {{400, 1}, {401, 2}, {630, 2}, {631, 1}};
+    for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
+        map m = make_map(1, 2);
+        cw_volume v, last;
+        cw_error err = {0};
+        put_word(&m, 88, cases[i].group);
+        put_word(&m, 36, 1); /* MZ: sections of each */
+        read_made(&m, &v);
+        assert_int_equal(v.steps, cases[i].steps);
+        assert_int_equal(v.dim[2], 2 / cases[i].steps);
+        assert_ok(cw_volume_select(&v, 0, v.steps - 1, &last, &err), err);
+        assert_true(cw_volume_value(&last, 0, 0, v.dim[2] - 1) == 3);
+        cw_volume_free(&v);
+    }
 }
 
 /* Symmetry or whatever else stands between header and voxels. */
@@ -361,6 +383,7 @@ int main(void)
         TEST(places_are_origin_words_else_start_words),
         TEST(imod_says_whether_bytes_are_signed),
         TEST(cells_may_be_oblique),
+        TEST(all_angles_of_a_cell_may_be_oblique),
         TEST(without_a_cell_nothing_is_known),
         TEST(old_files_have_neither_name_nor_stamp),
         TEST(stacks_of_volumes_are_steps),

@@ -208,6 +208,19 @@ static void units_become_millimetres_and_seconds(void **state)
     }
 }
 
+/* pixdim[4] of a file that has no fourth axis is left over from whatever wrote it. */
+static void only_steps_have_a_length(void **state)
+{
+    (void)state;
+    nifti_file f = make_nifti(1);
+    cw_volume v;
+    put(&f, CWI_NIFTI_PIXDIM, 4, 3);
+    put(&f, CWI_NIFTI_XYZT_UNITS, 0, 2 | 8);
+    read_made(&f, &v);
+    assert_true(v.step_seconds == 0);
+    cw_volume_free(&v);
+}
+
 static void scaling_is_kept_beside_the_voxels(void **state)
 {
     (void)state;
@@ -272,6 +285,10 @@ static void a_pair_of_files_is_one_volume(void **state)
     put_file("head.img", "", f.bytes + 352, 24);
     assert_ok(read_back("head.hdr", &v, &err), err);
     assert_true(cw_volume_value(&v, 1, 2, 1) == 11);
+    cw_volume_free(&v);
+    put_file("head.hdr.hdr", "", f.bytes, 348); /* the last one is the extension */
+    put_file("head.hdr.img", "", f.bytes + 352, 24);
+    assert_ok(read_back("head.hdr.hdr", &v, &err), err);
     cw_volume_free(&v);
     check_cuts("head.hdr", "head.img", 0);
     assert_int_equal(rename(test_path("head.img"), test_path("other.img")), 0);
@@ -448,6 +465,7 @@ int main(void)
         TEST(qform_is_a_rotation_an_offset_and_a_mirror),
         TEST(without_either_only_spacing_is_known),
         TEST(units_become_millimetres_and_seconds),
+        TEST(only_steps_have_a_length),
         TEST(scaling_is_kept_beside_the_voxels),
         TEST(the_fifth_dimension_holds_components),
         TEST(colours_are_components_side_by_side),

@@ -74,6 +74,14 @@ static void frames_are_turned_to_lps_millimetres(void **state)
          "(0,0,0)\n",
          both,
          {-2, 0.25, 0, 0, 0.5, -3, 1, 0, 0, 0, -4, 0}},
+        {"space: left-anterior-superior-time\nspace directions: (2,0,0,0) (0,3,0,0) (0,0,4,0)\n"
+         "space origin: (5,6,7,0)\n",
+         both,
+         {2, 0, 0, 5, 0, -3, 0, -6, 0, 0, 4, 7}},
+        {"space: RAST\nspace directions: (2,0,0,0) (0,3,0,0) (0,0,4,0)\n"
+         "space origin: (5,6,7,0)\n",
+         both,
+         {-2, 0, 0, -5, 0, -3, 0, -6, 0, 0, 4, 7}},
         {"space dimension: 3\nspace directions: (0,0,2) (3,0,0) (0,4,0)\nspace origin: "
          "(1,2,3)\n",
          0,
@@ -158,6 +166,26 @@ static void axes_find_their_roles(void **state)
     }
 }
 
+/* Up to 16 entries are the values of a voxel, more of them are steps. */
+static void only_short_lists_are_values(void **state)
+{
+    (void)state;
+    static const uint8_t voxels[2 * 17];
+    for (size_t length = 15; length <= 17; length++) {
+        char header[300];
+        cw_volume v;
+        cw_error err = {0};
+        snprintf(header, sizeof header,
+                 U8 "dimension: 4\nsizes: 2 1 1 %zu\nkinds: domain domain domain list\n\n",
+                 length);
+        put_file("a.nrrd", header, voxels, 2 * length);
+        assert_ok(read_back("a.nrrd", &v, &err), err);
+        assert_int_equal(v.components, length <= 16 ? length : 1);
+        assert_int_equal(v.steps, length <= 16 ? 1 : length);
+        cw_volume_free(&v);
+    }
+}
+
 /* The fastest axis holds the values: neighbours along x are two apart, values one. */
 static void interleaved_values_are_reached_by_strides(void **state)
 {
@@ -192,16 +220,21 @@ static void flat_data_get_a_third_direction(void **state)
 static void time_is_told_in_seconds(void **state)
 {
     (void)state;
-    cw_volume v;
-    cw_error err = {0};
-    put_file("a.nrrd",
-             U8 "dimension: 4\nsizes: 2 3 1 2\nkinds: domain domain domain time\n"
-                "spacings: 1 1 1 40\nunits: \"mm\" \"mm\" \"mm\" \"ms\"\n\n",
-             counting, sizeof counting);
-    assert_ok(read_back("a.nrrd", &v, &err), err);
-    assert_near(v.step_seconds, 0.04, 1e-15);
-    assert_int_equal(v.known, CW_KNOWN_UNIT);
-    cw_volume_free(&v);
+    static const char *const spacings[] = {"1 1 1 40", "1 1 1 -40"}; /* backwards: as long */
+    for (size_t i = 0; i < 2; i++) {
+        char header[300];
+        cw_volume v;
+        cw_error err = {0};
+        snprintf(header, sizeof header,
+                 U8 "dimension: 4\nsizes: 2 3 1 2\nkinds: domain domain domain time\n"
+                    "spacings: %s\nunits: \"mm\" \"mm\" \"mm\" \"ms\"\n\n",
+                 spacings[i]);
+        put_file("a.nrrd", header, counting, sizeof counting);
+        assert_ok(read_back("a.nrrd", &v, &err), err);
+        assert_near(v.step_seconds, 0.04, 1e-15);
+        assert_int_equal(v.known, CW_KNOWN_UNIT);
+        cw_volume_free(&v);
+    }
 }
 
 static void encodings_and_byte_orders_give_the_same_numbers(void **state)
@@ -634,6 +667,7 @@ int main(void)
         TEST(interleaved_values_are_reached_by_strides),
         TEST(flat_data_get_a_third_direction),
         TEST(time_is_told_in_seconds),
+        TEST(only_short_lists_are_values),
         TEST(encodings_and_byte_orders_give_the_same_numbers),
         TEST(voxels_may_lie_in_files_of_their_own),
         TEST(data_files_stay_in_the_headers_folder),

@@ -134,6 +134,25 @@ static void strided_views_are_written_as_they_look(void **state)
     }
 }
 
+/* The components of a voxel stand far apart, as many bytes from voxel to voxel as if not. */
+static void components_may_stand_in_planes(void **state)
+{
+    (void)state;
+    for (size_t n = 0; n < NAME_COUNT; n++) {
+        cw_volume v = make_volume(CW_I16, 2, 2), view, back;
+        cw_error err = {0};
+        assert_ok(cw_volume_resolve(&v, &view, &err), err);
+        view.owned = NULL;
+        view.component_stride = view.step_stride;
+        view.steps = 1;
+        assert_ok(cw_volume_write(test_path(names[n]), &view, NULL, &err), err);
+        assert_ok(read_back(names[n], &back, &err), err);
+        check_same_voxels(&view, &back);
+        cw_volume_free(&back);
+        cw_volume_free(&v);
+    }
+}
+
 static void time_steps_keep_their_length(void **state)
 {
     (void)state;
@@ -273,6 +292,7 @@ int main(void)
         TEST(oblique_frames_survive_as_far_as_the_format_can),
         TEST(long_axes_make_a_nifti_2),
         TEST(strided_views_are_written_as_they_look),
+        TEST(components_may_stand_in_planes),
         TEST(time_steps_keep_their_length),
         TEST(scaling_goes_into_nifti_only),
         TEST(what_is_not_known_is_not_claimed),
