@@ -89,6 +89,60 @@ static void inside_out_has_a_negative_volume(void **state)
     cw_mesh_free(&mesh);
 }
 
+/* The same triangle twice, and nothing else: no edge has more than two. */
+static void a_triangle_alone_may_be_there_twice(void **state)
+{
+    (void)state;
+    float points[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 5, 5, 5}; /* the last is in none */
+    uint32_t corners[] = {0, 1, 2, 2, 0, 1};
+    const cw_mesh mesh = {
+        .vertex_count = 4, .triangle_count = 2, .positions = points, .triangles = corners};
+    const cw_quality q = measure(&mesh, true);
+    assert_int_equal(q.duplicates, 1);
+    assert_int_equal(q.nonmanifold_edges, 0);
+    assert_int_equal(q.unused_vertices, 1);
+    assert_int_equal(q.merged_vertices, 0);
+}
+
+/* A triangle with two slivers' faults is a cap only. */
+static void a_sliver_is_a_cap_or_a_needle(void **state)
+{
+    (void)state;
+    static const struct {
+        float x, y; /* of the third corner, above a side of 100 mm */
+        size_t needles, caps;
+    } rows[] = {{50, 80, 0, 0}, {50, 1, 0, 1}, {0, 1, 1, 0}, {99, 0.01f, 0, 1}};
+    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
+        float points[] = {0, 0, 0, 100, 0, 0, rows[n].x, rows[n].y, 0};
+        uint32_t corners[] = {0, 1, 2};
+        const cw_mesh mesh = {
+            .vertex_count = 3, .triangle_count = 1, .positions = points, .triangles = corners};
+        const cw_quality q = measure(&mesh, false);
+        assert_int_equal(q.needles, rows[n].needles);
+        assert_int_equal(q.caps, rows[n].caps);
+    }
+}
+
+/* A pyramid without its base, wound inward: only a high one is nearly a solid. */
+static void an_open_shell_must_be_nearly_closed_to_face_inward(void **state)
+{
+    (void)state;
+    static const struct {
+        float height;
+        size_t inward;
+    } rows[] = {{0.03f, 0}, {0.05f, 0}, {0.07f, 1}, {1, 1}, {-1, 0}};
+    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++) {
+        float points[] = {-1, -1, 0, 1, -1, 0, 1, 1, 0, -1, 1, 0, 0, 0, rows[n].height};
+        uint32_t corners[] = {1, 0, 4, 2, 1, 4, 3, 2, 4, 0, 3, 4};
+        const cw_mesh mesh = {
+            .vertex_count = 5, .triangle_count = 4, .positions = points, .triangles = corners};
+        cw_quality q;
+        cw_error err = {0};
+        assert_ok(cw_quality_measure(&mesh, &(cw_quality_desc){.shells = true}, &q, &err), err);
+        assert_int_equal(q.open_inward, rows[n].inward);
+    }
+}
+
 /* Two tetrahedra that touch in vertex 0: a bow tie. As indexed or as welded, not both. */
 static void a_bow_tie_is_found_by_index_or_by_place(void **state)
 {
@@ -305,6 +359,9 @@ int main(void)
         cmocka_unit_test(a_flipped_triangle_misorients_three_edges),
         cmocka_unit_test(a_repeated_triangle_makes_edges_nonmanifold),
         cmocka_unit_test(inside_out_has_a_negative_volume),
+        cmocka_unit_test(a_triangle_alone_may_be_there_twice),
+        cmocka_unit_test(a_sliver_is_a_cap_or_a_needle),
+        cmocka_unit_test(an_open_shell_must_be_nearly_closed_to_face_inward),
         cmocka_unit_test(a_bow_tie_is_found_by_index_or_by_place),
         cmocka_unit_test(zero_area_is_counted_whatever_its_cause),
         cmocka_unit_test(hostile_meshes_are_refused_by_name),

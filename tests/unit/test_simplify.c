@@ -5,6 +5,8 @@
 
 #include "core/memory.h"
 #include "core/sandbox.h"
+#include "simplify/attributes.h"
+#include "simplify/carry.h"
 
 #include <math.h>
 #include <pthread.h>
@@ -568,6 +570,68 @@ static void what_vertices_carry_comes_along(void **state)
     cw_volume_free(&volume);
 }
 
+/* Between the corners of one triangle, at shares that are known. */
+static void what_is_carried_is_blended_and_rounded(void **state)
+{
+    (void)state;
+    float corners[] = {0, 0, 0, 10, 0, 0, 0, 10, 0}, scalars[] = {1, 2, 4};
+    float normals[] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    uint8_t colors[] = {0, 100, 251, 9, 1, 100, 0, 9, 2, 201, 0, 9};
+    uint32_t triangle[] = {0, 1, 2};
+    uint32_t labels[] = {7, 8, 9};
+    float points[] = {1, 3, 5, 3, 6, -5, 5, 2, 0}; /* shares of 0.6, 0.1, 0.3 and so on */
+    const double shares[3][3] = {{0.6, 0.1, 0.3}, {0.1, 0.3, 0.6}, {0.3, 0.5, 0.2}};
+    const uint32_t nearest[] = {7, 9, 8};
+    const cw_mesh from = {.vertex_count = 3,
+                          .triangle_count = 1,
+                          .positions = corners,
+                          .triangles = triangle,
+                          .normals = normals,
+                          .colors = colors,
+                          .scalars = scalars,
+                          .labels = labels};
+    cw_mesh to = {.vertex_count = 3, .positions = points};
+    cw_error err = {0};
+    assert_ok(cwi_carry(&from, 1, &(cw_progress){0}, &to, &err), err);
+    for (size_t v = 0; v < 3; v++) {
+        const double *s = shares[v], length = sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
+        assert_int_equal(to.labels[v], nearest[v]);
+        assert_near((double)to.scalars[v], s[0] + 2 * s[1] + 4 * s[2], 1e-6);
+        for (size_t k = 0; k < 3; k++)
+            assert_near((double)to.normals[3 * v + k], s[k] / length, 1e-6);
+        for (size_t k = 0; k < 4; k++)
+            assert_int_equal(
+                to.colors[4 * v + k],
+                (int)rint(s[0] * colors[k] + s[1] * colors[4 + k] + s[2] * colors[8 + k]));
+    }
+    cwi_free(to.normals);
+    cwi_free(to.colors);
+    cwi_free(to.scalars);
+    cwi_free(to.labels);
+}
+
+/* In percent of the diagonal, which is 50 mm. */
+static void weights_are_lengths_of_the_largest_difference(void **state)
+{
+    (void)state;
+    float points[] = {0, 0, 0, 30, 40, 0}, scalars[] = {-5, 15};
+    float normals[] = {1, 0, 0, 0, 0, -1};
+    uint8_t colors[] = {0, 255, 0, 255, 255, 255, 51, 255};
+    const cw_mesh mesh = {.vertex_count = 2,
+                          .positions = points,
+                          .normals = normals,
+                          .colors = colors,
+                          .scalars = scalars};
+    const cw_simplify_desc desc = {.normal_weight = 2, .color_weight = 3, .scalar_weight = 4};
+    const double wanted[2][8] = {{1, 0, 0, 0, 1.5, 0, 1.5, -0.5},
+                                 {0, 0, -1, 1.5, 1.5, 0.3, 1.5, 1.5}};
+    float values[16];
+    assert_int_equal(cwi_attributes_count(&desc), 8);
+    cwi_attributes_weigh(&mesh, &desc, values);
+    for (size_t n = 0; n < 16; n++)
+        assert_near((double)values[n], wanted[n / 8][n % 8], 1e-6);
+}
+
 static void crossings_may_be_allowed(void **state)
 {
     (void)state;
@@ -732,6 +796,8 @@ int main(void)
         cmocka_unit_test(seams_of_many_blocks_are_sound),
         cmocka_unit_test(levels_follow_each_other),
         cmocka_unit_test(what_vertices_carry_comes_along),
+        cmocka_unit_test(what_is_carried_is_blended_and_rounded),
+        cmocka_unit_test(weights_are_lengths_of_the_largest_difference),
         cmocka_unit_test(crossings_may_be_allowed),
         cmocka_unit_test(wishes_that_make_no_sense_are_refused),
         cmocka_unit_test(it_can_be_stopped),

@@ -423,6 +423,72 @@ static void what_no_view_sees_is_left_out(void **state)
     cw_mesh_free(&mesh);
 }
 
+/* In perspective only what is before the eye is seen, however wide; without it there is no eye.
+ */
+static void nothing_is_seen_behind_the_eye(void **state)
+{
+    (void)state;
+    cw_simplify_view view = {.camera = {.up = {0, 0, 1}, .target = {0, 9, 0}, .fov_deg = 40}};
+    for (int flat = 0; flat < 2; flat++)
+        for (int side = -1; side <= 1; side += 2) {
+            const double y = side * 2, hull[9] = {-9, y, -9, 9, y, -9, 0, y, 9};
+            cw_error err = {0};
+            bool seen;
+            view.camera.fov_deg = flat ? 0 : 40;
+            view.camera.height_mm = 5;
+            assert_ok(cw_simplify_view_sees(&view, 1, hull, 3, &seen, &err), err);
+            assert_int_equal(seen, flat || side > 0);
+        }
+}
+
+/* A sheet of 20 x 20 mm, at a depth below an eye at zero, with bumps of 0.2 mm. */
+static cw_mesh bumpy_sheet(double depth)
+{
+    enum { SIDE = 24 };
+    cw_mesh m = {.vertex_count = SIDE * SIDE, .triangle_count = 2 * (SIDE - 1) * (SIDE - 1)};
+    m.positions = malloc(3 * m.vertex_count * sizeof *m.positions);
+    m.triangles = malloc(3 * m.triangle_count * sizeof *m.triangles);
+    assert_true(m.positions && m.triangles);
+    uint32_t *t = m.triangles;
+    for (uint32_t n = 0; n < SIDE * SIDE; n++) {
+        const uint32_t x = n % SIDE, y = n / SIDE, corners[] = {0, 1, SIDE, 1, SIDE + 1, SIDE};
+        m.positions[3 * (size_t)n] = 20.0f * (float)x / (SIDE - 1) - 10;
+        m.positions[3 * (size_t)n + 1] = 20.0f * (float)y / (SIDE - 1) - 10;
+        m.positions[3 * (size_t)n + 2] = (float)(-depth - 0.2 * ((x * 7 + y * 13) % 5 / 4.0));
+        for (size_t c = 0; c < 6 && x + 1 < SIDE && y + 1 < SIDE; c++)
+            *t++ = n + corners[c];
+    }
+    return m;
+}
+
+/* With an error of 1 mm: what is up to 2 mm behind what is seen may come before it. */
+static void what_is_just_behind_is_not_hidden(void **state)
+{
+    (void)state;
+    enum { SIZE = 64 };
+    static float depths[SIZE * SIZE];
+    size_t left[3];
+    for (size_t n = 0; n < SIZE * SIZE; n++)
+        depths[n] = 50;
+    for (int n = 0; n < 3; n++) { /* no depths; too near, far enough behind them */
+        const cw_simplify_view view = {
+            .camera = {.up = {0, 1, 0}, .target = {0, 0, -9}, .height_mm = 32},
+            .width = SIZE,
+            .height = SIZE,
+            .depth = n ? depths : NULL};
+        const cw_simplify_desc desc = {
+            .error_mm = 1, .views = &view, .view_count = 1, .pixel_error = 0.1};
+        cw_mesh mesh = bumpy_sheet(n < 2 ? 51.7 : 54), out;
+        cw_error err = {0};
+        assert_ok(cw_simplify(&mesh, &desc, &out, NULL, &err), err);
+        left[n] = out.triangle_count;
+        cw_mesh_free(&mesh);
+        cw_mesh_free(&out);
+    }
+    assert_int_equal(left[1], left[0]);
+    assert_true(left[2] < left[0] / 2);
+}
+
 static void views_that_are_none_are_refused(void **state)
 {
     (void)state;
@@ -460,6 +526,8 @@ int main(void)
         cmocka_unit_test(what_is_hidden_is_coarser),
         cmocka_unit_test(slabs_keep_it_too_for_any_number_of_threads),
         cmocka_unit_test(what_no_view_sees_is_left_out),
+        cmocka_unit_test(nothing_is_seen_behind_the_eye),
+        cmocka_unit_test(what_is_just_behind_is_not_hidden),
         cmocka_unit_test(views_that_are_none_are_refused),
     };
     return cw_simplify_available() ? cmocka_run_group_tests(tests, NULL, NULL) : 0;
