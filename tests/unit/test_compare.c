@@ -114,6 +114,48 @@ static void errors_are_counted_where_the_reference_is(void **state)
     cw_picture_free(&b);
 }
 
+/* The nearest rank: of 100 pixels the 99th is not the worst one, of 101 pixels the 100th is. */
+static void one_pixel_of_a_hundred_may_be_off(void **state)
+{
+    (void)state;
+    static const float black[2][3];
+    for (size_t count = 99; count <= 101; count++) {
+        cw_error err = {0};
+        cw_comparison gap;
+        cw_picture p[2];
+        for (int i = 0; i < 2; i++) {
+            assert_ok(cw_picture_alloc(&p[i], count, 1, &err), err);
+            for (size_t n = 0; n < 4 * count; n++)
+                p[i].pixels[n] = n % 4 == 3 ? 1 : 0.5f;
+        }
+        p[0].pixels[4 * 7] = 1;
+        assert_ok(cw_picture_compare(&p[0], &p[1], black, &gap, &err), err);
+        assert_true(gap.delta_e_max > 5);
+        assert_true(gap.delta_e_p99 == (count < 100 ? gap.delta_e_max : 0));
+        cw_picture_free(&p[0]);
+        cw_picture_free(&p[1]);
+    }
+}
+
+/* A pixel, and one more for every 1024 of the width. */
+static void the_line_between_halves_grows_with_the_picture(void **state)
+{
+    (void)state;
+    static const size_t widths[] = {40, 1023, 1024, 2047, 2048};
+    for (size_t n = 0; n < sizeof widths / sizeof *widths; n++) {
+        cw_error err = {0};
+        cw_picture p, both;
+        size_t line = 0;
+        assert_ok(cw_picture_alloc(&p, widths[n], 1, &err), err);
+        assert_ok(cw_picture_split(&p, &p, 0.5, &both, &err), err);
+        for (size_t x = 0; x < widths[n]; x++)
+            line += both.pixels[4 * x] == 1;
+        assert_int_equal(line, 1 + widths[n] / 1024);
+        cw_picture_free(&p);
+        cw_picture_free(&both);
+    }
+}
+
 /* On a plain picture structural similarity is known on paper: only the means differ. */
 static void similarity_of_plain_pictures(void **state)
 {
@@ -180,6 +222,8 @@ int main(void)
         cmocka_unit_test(color_differences_are_those_published),
         cmocka_unit_test(lab_of_known_colors),
         cmocka_unit_test(errors_are_counted_where_the_reference_is),
+        cmocka_unit_test(one_pixel_of_a_hundred_may_be_off),
+        cmocka_unit_test(the_line_between_halves_grows_with_the_picture),
         cmocka_unit_test(similarity_of_plain_pictures),
         cmocka_unit_test(differences_and_splits_are_pictures),
     };

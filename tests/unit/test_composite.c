@@ -40,6 +40,35 @@ static void constant_box_is_exact(void **state)
     cw_volume_free(&box);
 }
 
+/* By default where 0.9999 is covered: that each millimetre takes half of the light shows it. */
+static void rays_end_where_hardly_any_light_is_left(void **state)
+{
+    (void)state;
+    cw_renderer *r = test_renderer();
+    cw_volume box = {0};
+    const cw_transfer half = {
+        .opacity_count = 2, .opacities = {{-9, 0.5f}, {9, 0.5f}}, .unit_mm = 1};
+    test_field(&box, 24, 33, 20, cube, test_constant);
+    for (int n = 0; n < 3; n++) {
+        const float asked = (float[]){0, 0.9999f, 0.9f}[n];
+        const double dark = n < 2 ? 1e-4 : 0.1;
+        const cw_scene scene = {.mode = CW_MODE_COMPOSITE,
+                                .volume = &box,
+                                .transfer = &half,
+                                .camera = straight(10),
+                                .width = 4,
+                                .height = 4,
+                                .stop_opacity = asked};
+        cw_picture picture = test_draw(r, &scene);
+        for (size_t p = 0; p < 4 * 4; p++) {
+            const double light = 1 - (double)picture.pixels[4 * p + 3];
+            assert_true(light < dark + 1e-6 && light > 0.4 * dark);
+        }
+        cw_picture_free(&picture);
+    }
+    cw_volume_free(&box);
+}
+
 /* What is passed over is empty. */
 static void skipping_changes_nothing(void **state)
 {
@@ -66,6 +95,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(constant_box_is_exact),
+        cmocka_unit_test(rays_end_where_hardly_any_light_is_left),
         cmocka_unit_test(skipping_changes_nothing),
     };
     return cmocka_run_group_tests(tests, NULL, test_renderer_close);

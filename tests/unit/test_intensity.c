@@ -4,6 +4,7 @@
 #include "viewer/intensity.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 static const cw_transfer grey = {.color_count = 2, .colors = {{0, {0, 0, 0}}, {1, {1, 1, 1}}}};
@@ -153,10 +154,41 @@ static void passing_over_blocks_changes_nothing(void **state)
     cw_volume_free(&v);
 }
 
+/* Doubles that no float is: their blocks' ranges are floats, and hold them all. */
+static void ranges_of_blocks_are_rounded_outward(void **state)
+{
+    (void)state;
+    enum { EDGE = 8, SIDE = EDGE + 1 };
+    static double voxels[SIDE * SIDE * SIDE];
+    cw_error err = {0};
+    srand(5);
+    for (int round = 0; round < 8; round++) {
+        cw_volume v = {.data = voxels, .type = CW_F64, .dim = {SIDE, SIDE, SIDE}}, whole;
+        const double sign = round & 1 ? -1 : 1;
+        cwi_ranges ranges;
+        for (size_t n = 0; n < SIDE * SIDE * SIDE; n++)
+            voxels[n] = sign * (1000 + rand() / (double)RAND_MAX);
+        v.slope = round & 2 ? -0.3 : 1;
+        v.intercept = round & 4 ? -v.slope * sign * 1000.5 : 0; /* small differences */
+        assert_ok(cw_volume_resolve(&v, &whole, &err), err);
+        assert_ok(cwi_ranges_make(&whole, 1, &(cw_progress){0}, &ranges, &err), err);
+        for (size_t b = 0; b < 8; b++)
+            for (size_t n = 0; n < 125; n++) {
+                const double value =
+                    cw_volume_value(&v, 4 * (b & 1) + n % 5, 4 * (b >> 1 & 1) + n / 5 % 5,
+                                    4 * (b >> 2) + n / 25);
+                assert_true((double)ranges.blocks[b][0] <= value);
+                assert_true((double)ranges.blocks[b][1] >= value);
+            }
+        cwi_ranges_free(&ranges);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(extremes_and_mean_are_exact),
+        cmocka_unit_test(ranges_of_blocks_are_rounded_outward),
         cmocka_unit_test(first_maximum_above_the_threshold_counts),
         cmocka_unit_test(pictures_show_the_value),
         cmocka_unit_test(passing_over_blocks_changes_nothing),

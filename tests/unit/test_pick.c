@@ -74,6 +74,29 @@ static double whole_opacity(const cw_scene *scene, double x, double y)
     return out[3];
 }
 
+/* A ray's first point may be rounded to beyond the face that it enters by; its value is still
+ * there. Up to the picture's edges something is met. */
+static void what_stands_on_a_face_has_a_value(void **state)
+{
+    (void)state;
+    cw_volume box = {0};
+    const cw_transfer flat = test_flat_transfer();
+    test_field(&box, 24, 33, 20, (const double[3]){0.7, 1.1, 0.9}, test_constant);
+    const double value = cw_volume_value(&box, 0, 0, 0);
+    for (int mode = 0; mode < 2; mode++) {
+        cw_scene scene = scene_of(mode ? CW_MODE_SLICES : CW_MODE_MIP, &box, &flat, mode == 0);
+        scene.camera.height_mm = 6;
+        scene.camera.fov_deg = mode ? 6 : 0;
+        for (int y = 0; y <= 2 * HEIGHT; y++)
+            for (int x = 0; x <= 2 * WIDTH; x++) {
+                const cw_picked p = pick(&scene, x / 2.0, y / 2.0);
+                assert_int_equal(p.kind, mode ? CW_PICK_SLICE : CW_PICK_VOLUME);
+                assert_near(p.value, value, 1e-6);
+            }
+    }
+    cw_volume_free(&box);
+}
+
 /* Every transfer function, with and without a factor of gradients, clipped and not. */
 static void what_blends_is_where_half_is_covered(void **state)
 {
@@ -435,6 +458,7 @@ static void impossible_places_are_refused(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(what_stands_on_a_face_has_a_value),
         cmocka_unit_test(what_blends_is_where_half_is_covered),
         cmocka_unit_test(the_most_of_little_is_found),
         cmocka_unit_test(extremes_are_where_they_are),

@@ -49,6 +49,21 @@ static void expect_box(const cw_scene *scene, double length)
     assert_near(out[2], (double)0.4f * out[3], 1e-11);
 }
 
+/* A ray through 32 mm that each take half of the light ends where nothing shows the rest. */
+static void rays_end_in_the_dark_only(void **state)
+{
+    (void)state;
+    cw_volume box = {0};
+    const cw_transfer half = {
+        .opacity_count = 2, .opacities = {{-9, 0.5f}, {9, 0.5f}}, .unit_mm = 1};
+    test_field(&box, 24, 33, 20, cube, test_constant);
+    const cw_scene scene = scene_of(&box, &half, straight(10));
+    double out[4];
+    assert_true(ray_of(&scene, 4, 4, out) < 1e-8);
+    assert_near(out[3], 1 - pow(0.5, 32), 1e-9);
+    cw_volume_free(&box);
+}
+
 /* Beer and Lambert, straight through, cut, cut away, and aslant. */
 static void constant_box_is_exact(void **state)
 {
@@ -375,6 +390,7 @@ int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(constant_box_is_exact),
+        cmocka_unit_test(rays_end_in_the_dark_only),
         cmocka_unit_test(opacity_is_of_a_length),
         cmocka_unit_test(many_small_steps_agree),
         cmocka_unit_test(depth_cue_is_exact_on_paper),
