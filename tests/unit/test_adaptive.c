@@ -5,6 +5,7 @@
 #include "core/memory.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* The surface of noise: sheets, gaps and specks of any thickness. */
@@ -53,6 +54,33 @@ static void assert_is_sound(const cw_mesh *mesh)
     }
 }
 
+/* None is off by more than 60 degrees from what the triangles around its vertex say. */
+static void assert_normals_lean_on_triangles(const cw_mesh *mesh)
+{
+    double(*sums)[3] = calloc(mesh->vertex_count, sizeof *sums);
+    assert_non_null(sums);
+    for (size_t t = 0; t < mesh->triangle_count; t++) {
+        const uint32_t *c = mesh->triangles + 3 * t;
+        double u[3], v[3];
+        for (size_t a = 0; a < 3; a++) {
+            const double from = (double)mesh->positions[3 * (size_t)c[0] + a];
+            u[a] = (double)mesh->positions[3 * (size_t)c[1] + a] - from;
+            v[a] = (double)mesh->positions[3 * (size_t)c[2] + a] - from;
+        }
+        for (size_t k = 0; k < 3; k++)
+            for (size_t a = 0; a < 3; a++)
+                sums[c[k]][a] +=
+                    u[(a + 1) % 3] * v[(a + 2) % 3] - u[(a + 2) % 3] * v[(a + 1) % 3];
+    }
+    for (size_t v = 0; v < mesh->vertex_count; v++) {
+        const float *n = mesh->normals + 3 * v;
+        const double *s = sums[v], length = sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
+        const double along = s[0] * (double)n[0] + s[1] * (double)n[1] + s[2] * (double)n[2];
+        assert_true(along >= 0.499 * length);
+    }
+    free(sums);
+}
+
 static void noise_comes_back(void **state)
 {
     (void)state;
@@ -71,6 +99,7 @@ static void noise_comes_back(void **state)
         assert_true(farthest(&mesh, &back) <= 0.5 * voxel);
         assert_true(farthest(&back, &mesh) <= 0.5 * voxel);
         assert_is_sound(&back);
+        assert_normals_lean_on_triangles(&back);
         const cw_quality before = test_measure(&mesh), now = test_measure(&back);
         assert_int_equal(facts.more_components,
                          more((int64_t)now.components, (int64_t)before.components));

@@ -362,6 +362,30 @@ static void a_sphere_gets_a_wall(void **state)
     cw_mesh_free(&ball);
 }
 
+/* A mesh's points may be counted from anywhere: walls stay where they are. */
+static void a_mesh_far_from_zero_gets_the_same_wall(void **state)
+{
+    (void)state;
+    cw_mesh ball = surface_of(CW_FIELD_SPHERE, 24);
+    const cw_hollow_desc desc = {.wall_mm = 8, .voxel_mm = 4, .no_measure = true};
+    for (int a = 0; a < 3; a++)
+        ball.origin[a] = 1000 * (a + 1);
+    cw_mesh out = hollow(&ball, &desc, NULL);
+    double low[3], high[3], outer[2][3];
+    assert_int_equal(test_measure(&out).components, 2);
+    assert_true(cw_mesh_bounds(&ball, outer[0], outer[1]));
+    out.positions += 3 * ball.vertex_count; /* the cavity's alone */
+    out.vertex_count -= ball.vertex_count;
+    assert_true(cw_mesh_bounds(&out, low, high));
+    for (int a = 0; a < 3; a++) {
+        assert_near(low[a] - outer[0][a], 8, 1);
+        assert_near(outer[1][a] - high[a], 8, 1);
+    }
+    out.positions -= 3 * ball.vertex_count;
+    cw_mesh_free(&out);
+    cw_mesh_free(&ball);
+}
+
 /* How often a line along z, through x and y, meets a mesh. */
 static int meets(const cw_mesh *m, double x, double y)
 {
@@ -614,6 +638,7 @@ int main(void)
         cmocka_unit_test(a_cube_becomes_a_round_box),
         cmocka_unit_test(far_from_zero_nothing_changes),
         cmocka_unit_test(a_sphere_gets_a_wall),
+        cmocka_unit_test(a_mesh_far_from_zero_gets_the_same_wall),
         cmocka_unit_test(a_drain_opens_the_cavity_where_it_should),
         cmocka_unit_test(cavities_that_stay_sealed_are_counted),
         cmocka_unit_test(threads_change_nothing),

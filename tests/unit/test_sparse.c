@@ -368,10 +368,57 @@ static void test_no_memory_and_stops(void **state)
     cw_volume_free(&sparse);
 }
 
+/* Tiles and the background have numbers of the voxels' type, its lowest and highest too. */
+static void what_a_type_cannot_hold_is_refused(void **state)
+{
+    (void)state;
+    static const struct {
+        cw_type type;
+        double value;
+        bool fits;
+    } rows[] = {
+        {CW_U8, 255, true},
+        {CW_U8, 256, false},
+        {CW_U8, 0, true},
+        {CW_U8, -1, false},
+        {CW_U8, 0.5, false},
+        {CW_I8, -128, true},
+        {CW_I8, -129, false},
+        {CW_I8, 127, true},
+        {CW_I8, 128, false},
+        {CW_U16, 65535, true},
+        {CW_U16, 65536, false},
+        {CW_I16, -32768, true},
+        {CW_I16, 32768, false},
+        {CW_U32, 4294967295, true},
+        {CW_U32, 4294967296, false},
+        {CW_I32, -2147483648.0, true},
+        {CW_I32, 2147483648, false},
+        {CW_F32, 0.5, true},
+        {CW_F64, 1e300, true},
+    };
+    for (size_t n = 0; n < sizeof rows / sizeof *rows; n++)
+        for (int place = 0; place < 2; place++) {
+            const cw_tile tile = {{0, 0, 0}, {1, 1, 1}, place ? 0 : rows[n].value};
+            const cw_sparse s = {
+                .tile_count = 1, .tiles = &tile, .background = place ? rows[n].value : 0};
+            const cw_volume v = {.type = rows[n].type, .dim = {16, 8, 8}, .sparse = &s};
+            cw_error err = {0};
+            cw_mesh m = {0};
+            if (rows[n].fits)
+                assert_ok(cw_extract(&v, NULL, &m, NULL, &err), err);
+            else
+                assert_fails(cw_extract(&v, NULL, &m, NULL, &err), CW_ERR_ARGUMENT,
+                             "cannot hold", err);
+            cw_mesh_free(&m);
+        }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(test_fields_and_types),
+        cmocka_unit_test(what_a_type_cannot_hold_is_refused),
         cmocka_unit_test(test_settings),
         cmocka_unit_test(test_scaled_values),
         cmocka_unit_test(test_missing_values),
