@@ -5,6 +5,12 @@ cubewright extract ct.nrrd --iso 300 -o all.ply --normals none -q
 cubewright extract ct.nrrd --iso 300 -o small.ply --normals none --min-volume 1e-9mm3 -q --name all
 cmp all.ply small.ply && echo same
 cubewright extract ct.nrrd --iso 300 -o one.ply --min-volume 500ml --json - | sed -n -e '/"min_volume_mm3"/p' -e '/"components_dropped"/,/}/p'
+# the same volume in other units
+for volume in 5e14um3 500cm3 500000mm3 500000; do
+    cubewright extract ct.nrrd --iso 300 -o unit.ply --normals none --no-check --min-volume $volume --json - -q |
+        sed -n 's/.*"min_volume_mm3": //p'
+done
+rm unit.ply
 cubewright check one.ply | grep -o '^one.ply: 1 component'
 # the full surface that simplification is held against is what was kept
 if cubewright version --features | grep -q '^simplify *yes'; then

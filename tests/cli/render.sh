@@ -14,5 +14,9 @@ cubewright render t.nrrd --mode mesh -o u.png
 echo $?
 cubewright render t.ply -o n.png --size 80x60 --camera top --mode mesh --backend cpu --color '#e6ded1' -q
 cmp -s t.png n.png || echo "another colour"
+# Rays of every mode end where their picture shows no difference any more.
+cubewright render t.nrrd -o v.png --size 8x8 --mode vbuffer --json - -q | grep '"stop_opacity"'
+cubewright render t.nrrd -o v.png --size 8x8 --mode reference --json - -q | grep '"stop_opacity"'
+rm v.png
 cubewright render t.ply -o 'm{turn}.png' --size 80x60 --turntable 2 --ortho --zoom 1.5 -q
 ls

@@ -33,10 +33,21 @@ draw t.nrrd -o away.png --size 64x64 --clip 0,0,1,0 --cut-away
 draw t.nrrd -o mm.png --size 64x64 --clip-box -100mm:100mm,-100mm:100mm,-100mm:0mm
 draw t.nrrd -o two.png --size 64x64 --clip '0,0,-2,0;0,0,1,-200'
 cmp low.png away.png && cmp low.png mm.png && cmp low.png two.png && echo "same"
+draw t.nrrd -o ten.png --size 64x64 --clip 0,0,1,10
+draw t.nrrd -o long.png --size 64x64 --clip 0,0,5,50
+cmp ten.png long.png && echo "same"
+cmp -s ten.png high.png && echo "no other"
 cmp -s low.png high.png || echo "another"
 draw t.nrrd -o none.png --size 64x64 --clip 0,0,1,999 --background '#102030'
 cubewright render t.nrrd -o thin.png --size 64x64 --opacity 0 --background 102030 --no-preintegration
 cmp none.png thin.png && echo "same"
+
+# A colour's last two digits are its opacity.
+cubewright extract t.nrrd --iso 0 -o t.ply -q
+for opacity in ff 80 40; do
+    cubewright render t.ply -o $opacity.png --size 64x64 --color "#e6dec1$opacity" -q
+done
+cmp -s ff.png 80.png || cmp -s 80.png 40.png || echo "another"
 
 # Settings that change the picture, one by one.
 for setting in --no-lit '--light 1,1,0' '--ambient 0.9' '--diffuse 0.1' '--specular 1' '--shininess 2' \
@@ -46,6 +57,8 @@ for setting in --no-lit '--light 1,1,0' '--ambient 0.9' '--diffuse 0.1' '--specu
     cmp -s s.png a.png && echo "$setting changes nothing"
 done
 draw t.nrrd -o s.png --size 64x64 --light 1,1,0 --jitter
+# Slices are spread from the first to the last voxel: 23 steps of a voxel in 40 parts.
+draw t.nrrd -o s.png --size 8x8 --mode texture --ortho --slices 40 --json - | grep '"step_length"'
 draw t.nrrd -o s.png --size 64x64 --exact-filter --no-skipping --texture-edge 16
 
 # Steps of a series: one transfer function and one camera for all.
