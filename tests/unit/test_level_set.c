@@ -435,6 +435,30 @@ static void a_drain_opens_the_cavity_where_it_should(void **state)
     cw_mesh_free(&ball);
 }
 
+/* A floor that leans by less than a voxel is flat: the drain is in its middle, not at the side
+ * that is a little lower. */
+static void a_flat_floor_is_drained_in_its_middle(void **state)
+{
+    (void)state;
+    const cw_drain down = {4, {0, 0, -1}};
+    cw_mesh cube;
+    test_make_cube(&cube);
+    for (size_t v = 0; v < cube.vertex_count; v++) {
+        float *p = cube.positions + 3 * v;
+        for (int a = 0; a < 3; a++)
+            p[a] = 30 * p[a] - 15;
+        p[2] += 0.015f * p[0];
+    }
+    const cw_hollow_desc desc = {
+        .wall_mm = 3, .drains = &down, .drain_count = 1, .no_measure = true};
+    cw_mesh out = hollow(&cube, &desc, NULL);
+    assert_int_equal(meets(&out, 0.01, 0.02), 2); /* the top only */
+    assert_int_equal(meets(&out, 9.01, 0.02), 4);
+    assert_int_equal(meets(&out, -9.01, 0.02), 4);
+    cw_mesh_free(&out);
+    cw_mesh_free(&cube);
+}
+
 /* Two cubes, of which a drain opens the larger one. */
 static void cavities_that_stay_sealed_are_counted(void **state)
 {
@@ -640,6 +664,7 @@ int main(void)
         cmocka_unit_test(a_sphere_gets_a_wall),
         cmocka_unit_test(a_mesh_far_from_zero_gets_the_same_wall),
         cmocka_unit_test(a_drain_opens_the_cavity_where_it_should),
+        cmocka_unit_test(a_flat_floor_is_drained_in_its_middle),
         cmocka_unit_test(cavities_that_stay_sealed_are_counted),
         cmocka_unit_test(threads_change_nothing),
         cmocka_unit_test(what_makes_no_sense_is_refused),
