@@ -184,6 +184,24 @@ static void slices_shifted_unevenly_are_refused(void **state)
     cw_volume_free(&v);
 }
 
+/* A tenth of the smaller spacing, which pixels may have along either axis. */
+static void the_smaller_spacing_says_what_is_uneven(void **state)
+{
+    (void)state;
+    static const char *const spacings[] = {"1\\4", "4\\1"};
+    for (int way = 0; way < 2; way++) {
+        for (int s = 0; s < 3; s++) {
+            char name[16], place[32];
+            snprintf(name, sizeof name, "%d.dcm", s);
+            snprintf(place, sizeof place, "%s\\0\\%d", s == 1 ? "0.2" : "0", 2 * s);
+            test_image_write(
+                &(test_image){.instance = s, .position = place, .spacing = spacings[way]},
+                name);
+        }
+        assert_refused(NULL, CW_ERR_UNSAFE, "unevenly, by up to 0.2 mm");
+    }
+}
+
 static void missing_slices_stop_or_are_made(void **state)
 {
     (void)state;
@@ -504,6 +522,52 @@ static void padding_of_either_neighbour_is_no_data(void **state)
         assert_true(lost || (i != 5 && i != 6));
     }
     cw_volume_free(&v);
+}
+
+static void notes_keep(void *user, const char *text);
+
+/* Two images at each of two places, which are known to a thousandth of a pixel. The first key
+ * is the same for all and so orders nothing. */
+static void a_key_that_is_the_same_for_all_orders_nothing(void **state)
+{
+    (void)state;
+    static const char *const places[] = {"0\\0\\0", "0\\0\\0.0004", "0\\0\\2.0004", "0\\0\\2"};
+    char notes[512] = "";
+    const cw_read_desc desc = {.note = notes_keep, .note_user = notes};
+    for (int n = 0; n < 4; n++) {
+        char name[16];
+        snprintf(name, sizeof name, "%d", n);
+        test_image_write(&(test_image){.instance = n, .position = places[n], .trigger = "7"},
+                         name);
+    }
+    cw_volume v = read_all(&desc);
+    assert_int_equal(v.steps, 2);
+    assert_int_equal(v.dim[2], 2);
+    assert_non_null(strstr(notes, "in the order of InstanceNumber"));
+    cw_volume_free(&v);
+}
+
+/* Slices with scales of their own: 32 bits need doubles, 16 bits fit floats. */
+static void values_of_long_pixels_are_doubles(void **state)
+{
+    (void)state;
+    for (unsigned bits = 16; bits <= 32; bits += 16) {
+        uint32_t pixels[PIXELS];
+        for (unsigned i = 0; i < PIXELS; i++)
+            pixels[i] = 16777217;
+        for (int n = 0; n < 2; n++)
+            test_image_write(&(test_image){.instance = n,
+                                           .bits = bits,
+                                           .position = n ? "0\\0\\1" : "0\\0\\0",
+                                           .slope = n ? "2" : "1",
+                                           .intercept = "0",
+                                           .pixels = bits == 32 ? pixels : NULL},
+                             n ? "1" : "0");
+        cw_volume v = read_all(NULL);
+        assert_int_equal(v.type, bits == 32 ? CW_F64 : CW_F32);
+        assert_true(cw_volume_value(&v, 1, 0, 1) == (bits == 32 ? 2 * 16777217.0 : 2));
+        cw_volume_free(&v);
+    }
 }
 
 /* A byte n > 128 repeats the next one 257 - n times. */
@@ -1199,6 +1263,7 @@ int main(void)
         TEST(any_file_stands_for_its_series),
         TEST(a_tilted_gantry_leaves_a_sheared_frame),
         TEST(slices_shifted_unevenly_are_refused),
+        TEST(the_smaller_spacing_says_what_is_uneven),
         TEST(missing_slices_stop_or_are_made),
         TEST(uneven_slices_stop_or_are_made_even),
         TEST(rounded_places_are_even),
@@ -1212,6 +1277,8 @@ int main(void)
         TEST(slices_with_a_scale_each_become_values),
         TEST(padding_is_no_data),
         TEST(padding_of_either_neighbour_is_no_data),
+        TEST(a_key_that_is_the_same_for_all_orders_nothing),
+        TEST(values_of_long_pixels_are_doubles),
         TEST(runs_are_read),
         TEST(frames_have_a_place_each),
         TEST(segments_become_labels),

@@ -58,6 +58,7 @@ static void types_and_byte_orders_are_told_by_their_names(void **state)
         {"TYPE = float\nPIXSIZE = 64 bits \nCPU = decm\r\n", CW_F64, "\0\0\0\0\0\0\xf8\x3f",
          1.5},
         {"TYPE=signed fixed\nPIXSIZE=8 bits\nSCALE=2**-3\n", CW_I8, "\xfe", -0.25},
+        {"TYPE=float\nPIXSIZE=32 bits\nCPU=sun\nSCALE=2**-3\n", CW_F32, "\x3f\xc0\0\0", 1.5},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
         char lines[300];

@@ -126,8 +126,8 @@ static void colors_of_every_kind_become_bytes(void **state)
     } rows[] = {
         {"uchar", "255 0 128"},
         {"ushort", "65535 0 32896"},
-        {"float", "1 -3 0.5020"},
-        {"double", "7 0 0.5020"},
+        {"float", "1 -3 0.5"}, /* halves go up */
+        {"double", "7 0 0.5"},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         static const uint8_t wanted[4] = {255, 0, 128, 255};
@@ -146,6 +146,23 @@ static void colors_of_every_kind_become_bytes(void **state)
         assert_memory_equal(mesh.colors, wanted, 4);
         cw_mesh_free(&mesh);
     }
+}
+
+/* Labels are whole numbers from 0 to the largest; others become the nearest of these. */
+static void labels_stay_in_their_range(void **state)
+{
+    (void)state;
+    static const uint32_t wanted[] = {7, 0, 4294967295, 0};
+    cw_mesh mesh;
+    cw_error err = {0};
+    assert_ok(read_text("a.ply",
+                        HEAD "element vertex 4\n" XYZ "property double label\nend_header\n"
+                             "1 2 3 7\n1 2 4 -9\n1 2 5 1e12\n1 2 6 nan\n",
+                        &mesh, NULL, &err),
+              err);
+    assert_non_null(mesh.labels);
+    assert_memory_equal(mesh.labels, wanted, sizeof wanted);
+    cw_mesh_free(&mesh);
 }
 
 /* Half a set of normals, or one that is NaN, is worth nothing. */
@@ -261,9 +278,13 @@ int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
     const struct CMUnitTest tests[] = {
-        TEST(text_in_any_order_with_things_unknown), TEST(every_type_in_both_byte_orders),
-        TEST(colors_of_every_kind_become_bytes),     TEST(normals_must_be_whole),
-        TEST(faces_of_two_corners_are_counted),      TEST(far_doubles_get_an_origin),
+        TEST(text_in_any_order_with_things_unknown),
+        TEST(every_type_in_both_byte_orders),
+        TEST(colors_of_every_kind_become_bytes),
+        TEST(labels_stay_in_their_range),
+        TEST(normals_must_be_whole),
+        TEST(faces_of_two_corners_are_counted),
+        TEST(far_doubles_get_an_origin),
         TEST(broken_files_are_told_apart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

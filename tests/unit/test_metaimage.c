@@ -42,6 +42,8 @@ static void frames_are_columns_of_direction_times_spacing(void **state)
         {"Rotation = -1 0 0 0 1 0 0 0 1\n", {-1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0}},
         {"ElementSpacing = 1 1 1\nOffset = 1 2 3\nDistanceUnits = cm\n",
          {10, 0, 0, 10, 0, 10, 0, 20, 0, 0, 10, 30}},
+        {"ElementSpacing = 1 1 1\nOffset = 1 2 3\nDistanceUnits = um\n",
+         {1e-3, 0, 0, 1e-3, 0, 1e-3, 0, 2e-3, 0, 0, 1e-3, 3e-3}},
         {"ElementSpacing = 4.000000e+000 4 4\n", {4, 0, 0, 0, 0, 4, 0, 0, 0, 0, 4, 0}},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
@@ -212,6 +214,7 @@ static void damaged_headers_are_told_key_by_key(void **state)
         {U8_3D "CompressedData = maybe\n" LOCAL, "'CompressedData' is 'maybe'"},
         {U8_3D "DistanceUnits = inch\n" LOCAL, "'DistanceUnits' is 'inch'"},
         {U8_3D "CompressedData = True\nHeaderSize = -1\n" LOCAL, "'HeaderSize' is -1"},
+        {U8_3D "BinaryData = False\nHeaderSize = -1\n" LOCAL, "'HeaderSize' is -1"},
         {U8_3D "CompressedData = True\nCompressedDataSize = 99\n" LOCAL "x",
          "'CompressedDataSize' is 99; the file holds 1"},
         {U8_3D "CompressedData = True\n" LOCAL "hello", "the compressed data are damaged"},

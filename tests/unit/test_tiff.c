@@ -1052,6 +1052,47 @@ static void regions_are_crops(void **state)
     check_regions("s", &here);
 }
 
+/* Tiles of 16 rows, their planes apart: a region begins within one row of tiles, goes on in the
+ * next and ends in the third. */
+static void regions_may_cross_rows_of_tiles(void **state)
+{
+    (void)state;
+    enum { TALL = 37, ACROSS = 5 };
+    static unsigned char pixels[TALL * ACROSS * 2];
+    for (size_t i = 0; i < sizeof pixels; i++)
+        pixels[i] = (unsigned char)(i * 37);
+    for (uint16_t orientation = 1; orientation <= 4; orientation += 3) {
+        test_tiff t = {0};
+        cw_error err = {0};
+        test_tiff_add(&t, &(test_page){.columns = ACROSS,
+                                       .rows = TALL,
+                                       .samples = 2,
+                                       .separate = true,
+                                       .orientation = orientation,
+                                       .rows_per_strip = 16,
+                                       .tile_width = 16,
+                                       .pixels = pixels});
+        save(&t, "a.tif");
+        cw_volume whole, part, crop;
+        assert_ok(read_back("a.tif", &whole, &err), err);
+        for (size_t first = 0; first < 20; first++) {
+            const cw_box box = {{1, first, 0}, {3, 18, 1}};
+            const cw_read_desc desc = {.region = &box};
+            assert_ok(cw_volume_read(test_path("a.tif"), &desc, &part, NULL, &err), err);
+            assert_ok(cw_volume_crop(&whole, &box, &crop, &err), err);
+            for (size_t n = 0; n < 3 * 18 * 2; n++) {
+                cw_volume a, b;
+                assert_ok(cw_volume_select(&crop, n % 2, 0, &a, &err), err);
+                assert_ok(cw_volume_select(&part, n % 2, 0, &b, &err), err);
+                assert_true(cw_volume_value(&a, n / 2 % 3, n / 6, 0) ==
+                            cw_volume_value(&b, n / 2 % 3, n / 6, 0));
+            }
+            cw_volume_free(&part);
+        }
+        cw_volume_free(&whole);
+    }
+}
+
 static void numbers_in_names_count_as_numbers(void **state)
 {
     (void)state;
@@ -1401,6 +1442,7 @@ int main(void)
         TEST(what_is_not_read_is_refused_by_name),
         TEST(imagej_says_which_page_is_what),
         TEST(regions_are_crops),
+        TEST(regions_may_cross_rows_of_tiles),
         TEST(imagej_names_units),
         TEST(imagej_calibrates_values),
         TEST(imagej_may_leave_directories_out),

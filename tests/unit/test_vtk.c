@@ -93,6 +93,8 @@ static void every_type_is_big_endian_or_text(void **state)
     }
 }
 
+#define TEN "1 2 3 4 5 6 7 8 9 0 "
+
 /* The arrays in front must be passed over to the byte; in text, to the number. */
 static void scalars_go_before_other_arrays(void **state)
 {
@@ -117,6 +119,9 @@ static void scalars_go_before_other_arrays(void **state)
          "8\n"
          "one 1 4 float\n2.5 0 0 0",
          1, 2.5},
+        {"FIELD f 2\nmany 17 4 int\n" TEN TEN TEN TEN TEN TEN "1 2 3 4 5 6 7 8\n"
+         "some 16 4 int\n3 " TEN TEN TEN TEN TEN TEN "1 2 3\n",
+         16, 3},
         {"SCALARS l long\n" TABLE "1 2 3 4\nFIELD f 1\none 1 4 short\n-7 0 0 0", 1, -7},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
