@@ -33,6 +33,11 @@ cubewright make sphere -o t.nrrd --dims 32 --type f32 -q
 cubewright extract t.nrrd --iso 0.1 -o t.ply -q
 cubewright check t.ply --reference s.ply --tolerance 0.05mm -q
 echo "exit $?"
+# a bar of 40 is in proportion, rounded up: no share is without one
+cubewright check t.ply --histogram 2>/dev/null |
+    awk '/ %  /{ n = gsub("#", "#"); for (i = 2; i <= NF; i++) if ($i == "%") s = 0.4 * $(i - 1)
+        bad += n < s - 0.03 || n > s + 1.03 || (s > 0 && n == 0); bars++ }
+        END { print bars, "bars,", bad + 0, "wrong" }'
 cubewright check t.ply --reference s.ply --tolerance 0.11mm -q --histogram
 echo "exit $?"
 # in proportion: the diagonal of its box is 103.73 mm, a voxel 2.58065 mm

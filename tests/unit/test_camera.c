@@ -31,6 +31,38 @@ static void assert_alike(const cw_camera *a, const cw_camera *b)
     assert_near(a->fov_deg, b->fov_deg, 1e-12);
 }
 
+/* All corners of a box are in the picture, and none has room to spare: of both ways to look, in
+ * pictures of any shape. */
+static void boxes_just_fit_into_the_picture(void **state)
+{
+    (void)state;
+    static const double sizes[][3] = {{60, 10, 8}, {8, 10, 60}, {20, 90, 20}, {30, 30, 30}};
+    static const double aspects[] = {0.4, 1, 2.5}, margin = 0.1;
+    for (int n = 0; n < 4 * 3 * 2; n++) {
+        const double *size = sizes[n % 4], aspect = aspects[n / 4 % 3];
+        const size_t height = 1000, width = (size_t)(1000 * aspect);
+        cw_fit_desc d = {.view = "iso", .aspect = aspect, .margin = margin};
+        cw_error err = {0};
+        cw_camera c;
+        double most = 0;
+        d.fov_deg = n < 12 ? 0 : 30;
+        for (int a = 0; a < 3; a++) {
+            d.min[a] = -size[a];
+            d.max[a] = size[a];
+        }
+        assert_ok(cw_camera_fit(&d, &c, &err), err);
+        for (int corner = 0; corner < 8; corner++) {
+            double p[3], pixel[2];
+            for (int a = 0; a < 3; a++)
+                p[a] = corner >> a & 1 ? size[a] : -size[a];
+            assert_true(cw_camera_project(&c, width, height, p, pixel, NULL));
+            most = fmax(most, fabs(pixel[0] / (double)width - 0.5));
+            most = fmax(most, fabs(pixel[1] / (double)height - 0.5));
+        }
+        assert_near(most, 0.5 - margin, 1e-9);
+    }
+}
+
 /* Quarter turns of the front view are other views: the eye goes to the picture's right, and up.
  */
 static void angles_lead_from_view_to_view(void **state)
@@ -191,13 +223,10 @@ static void bad_files_are_told_apart(void **state)
 int main(void)
 {
     const struct CMUnitTest tests[] = {
-        CASE(angles_lead_from_view_to_view),
-        CASE(turns_keep_the_distance_and_add_up),
-        CASE(zooms_are_exact),
-        CASE(impossible_angles_are_refused),
-        CASE(files_are_read_back_to_the_bit),
-        CASE(texts_are_what_files_hold),
-        CASE(bad_files_are_told_apart),
+        CASE(boxes_just_fit_into_the_picture),    CASE(angles_lead_from_view_to_view),
+        CASE(turns_keep_the_distance_and_add_up), CASE(zooms_are_exact),
+        CASE(impossible_angles_are_refused),      CASE(files_are_read_back_to_the_bit),
+        CASE(texts_are_what_files_hold),          CASE(bad_files_are_told_apart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -119,6 +119,35 @@ static void a_promise_that_was_not_looked_at_does_not_hold(void **state)
     forget(&k);
 }
 
+/* What is just at a limit is within it. */
+static void limits_belong_to_what_they_allow(void **state)
+{
+    (void)state;
+    static const struct {
+        double number;
+        cw_grade grade;
+    } sizes[] = {{4.99, CW_GRADE_WARN},
+                 {CW_PRINT_MIN_MM, CW_GRADE_OK},
+                 {CW_PRINT_MAX_MM, CW_GRADE_OK},
+                 {400.01, CW_GRADE_WARN}};
+    known k;
+    learn(&k, "ball");
+    for (size_t n = 0; n < 4; n++) {
+        for (int a = 0; a < 3; a++) {
+            k.quality.min[a] = 0;
+            k.quality.max[a] = a == 1 ? sizes[n].number : 1;
+        }
+        assert_int_equal(judge(&k, CW_PROFILE_PRINT, "size")->grade, sizes[n].grade);
+    }
+    for (int n = 0; n < 3; n++) {
+        k.quality.shapes.min_angle_deg = n == 1 ? 9.99 : CW_FEM_MIN_ANGLE_DEG;
+        k.quality.shapes.max_aspect = n == 2 ? 10.01 : CW_FEM_MAX_ASPECT;
+        assert_int_equal(judge(&k, CW_PROFILE_FEM, "shapes")->grade,
+                         n ? CW_GRADE_FAIL : CW_GRADE_OK);
+    }
+    forget(&k);
+}
+
 static void size_and_weight_are_looked_at(void **state)
 {
     (void)state;
@@ -317,6 +346,7 @@ int main(void)
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(profiles_grade_faults),
         cmocka_unit_test(a_promise_that_was_not_looked_at_does_not_hold),
+        cmocka_unit_test(limits_belong_to_what_they_allow),
         cmocka_unit_test(size_and_weight_are_looked_at),
         cmocka_unit_test(distances_are_held_against_the_tolerance_in_both_directions),
         cmocka_unit_test(another_topology_and_another_opinion_are_told),
