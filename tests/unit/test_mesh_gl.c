@@ -214,6 +214,36 @@ static void deep_stacks_are_peeled_to_the_end(void **state)
     cw_mesh_free(&mesh);
 }
 
+/* With a part of the mesh behind it, too, an eye sees what is nearest before it. */
+static void an_eye_may_be_among_what_it_sees(void **state)
+{
+    (void)state;
+    cw_renderer *r = test_renderer();
+    static const uint8_t colors[3][4] = {{0, 255, 0, 255}, {255, 0, 0, 255}, {0, 0, 255, 255}};
+    static const int orders[2][3] = {{10, 0, -50}, {0, 10, -50}}; /* along the line of sight */
+    for (int n = 0; n < 2; n++) {
+        cw_mesh mesh;
+        make_arrays(&mesh, 12, 6);
+        for (size_t s = 0; s < 3; s++)
+            put_sheet(&mesh, s, (float)orders[n][s], 20,
+                      colors[s == 2 ? 2 : orders[n][s] == 0]);
+        const cw_scene scene = {.mode = CW_MODE_MESH,
+                                .mesh = &mesh,
+                                .camera = {.eye = {0, -20, 0}, .up = {0, 0, 1}, .fov_deg = 40},
+                                .width = 16,
+                                .height = 16,
+                                .material = flat};
+        cw_renderer_forget(r);
+        cw_picture picture = test_draw(r, &scene);
+        for (size_t x = 4; x < 12; x++) {
+            assert_near((double)pixel(&picture, x, 8)[0], 1, 1e-3);
+            assert_near((double)pixel(&picture, x, 8)[1], 0, 1e-3);
+        }
+        cw_picture_free(&picture);
+        cw_mesh_free(&mesh);
+    }
+}
+
 /* Each triangle draws its half of an edge: 0.6 pixels, of any sample count, at any distance. */
 static void edges_are_as_wide_as_said(void **state)
 {
@@ -432,6 +462,7 @@ int main(void)
         cmocka_unit_test(translucent_sheets_blend_in_any_order),
         cmocka_unit_test(crossing_sheets_blend_pixel_by_pixel),
         cmocka_unit_test(deep_stacks_are_peeled_to_the_end),
+        cmocka_unit_test(an_eye_may_be_among_what_it_sees),
         cmocka_unit_test(edges_are_as_wide_as_said),
         cmocka_unit_test(scalars_are_shown_by_the_ramp),
         cmocka_unit_test(empty_meshes_are_no_trouble),
