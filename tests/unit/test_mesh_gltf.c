@@ -380,6 +380,46 @@ static void normals_turn_with_their_node(void **state)
     }
 }
 
+/* Colours as floats are linear light, the dark ones too; what is beyond 0 to 1 is cut off.
+ * Normals of bytes are rounded: they become unit vectors again. (y, up, becomes z.) */
+static void floats_are_light_and_bytes_are_rounded(void **state)
+{
+    (void)state;
+    static const char form[] =
+        "{\"asset\":{\"version\":\"2.0\"},\"extensionsRequired\":[\"KHR_mesh_quantization\"],"
+        "\"extensionsUsed\":[\"KHR_mesh_quantization\"],\"buffers\":[{\"byteLength\":84,"
+        "\"uri\":\"data:application/octet-stream;base64,"
+        "AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAbxIDOwAAAD8AAIA/"
+        "AAAAAKabRDvNzEw+AACAvwAA"
+        "AEBmZmY/WloAAAAAnAA8AFAA\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":36},"
+        "{\"buffer\":0,\"byteOffset\":36,\"byteLength\":36},"
+        "{\"buffer\":0,\"byteOffset\":72,\"byteLength\":12,\"byteStride\":4}],\"accessors\":["
+        "{\"bufferView\":0,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"
+        "{\"bufferView\":1,\"componentType\":5126,\"count\":3,\"type\":\"VEC3\"},"
+        "{\"bufferView\":2,\"componentType\":5120,\"count\":3,\"type\":\"VEC3\","
+        "\"normalized\":true}],\"nodes\":[{\"mesh\":0%s}],\"meshes\":[{\"primitives\":[{"
+        "\"attributes\":{\"POSITION\":0,\"COLOR_0\":1,\"NORMAL\":2}}]}]}";
+    static const char *const nodes[2] = {
+        "", ",\"matrix\":[0.001,0,0,0,0,0,-0.001,0,0,0.001,0,0,0,0,0,1]"}; /* back to z up and
+                                                                              millimetres */
+    static const uint8_t colors[12] = {7, 188, 255, 255, 0, 10, 124, 255, 0, 255, 243, 255};
+    const double half = sqrt(0.5);
+    const double normals[2][9] = {{half, 0, half, 0, 1, 0, 0.6, -0.8, 0},
+                                  {half, half, 0, 0, 0, -1, 0.6, 0, 0.8}};
+    for (int i = 0; i < 2; i++) {
+        char json[2048];
+        cw_mesh mesh;
+        cw_error err = {0};
+        snprintf(json, sizeof json, form, nodes[i]);
+        assert_ok(read_text("a.gltf", json, &mesh, NULL, &err), err);
+        assert_int_equal(mesh.vertex_count, 3);
+        assert_memory_equal(mesh.colors, colors, sizeof colors);
+        for (size_t n = 0; n < 9; n++)
+            assert_near((double)mesh.normals[n], normals[i][n], 1e-6);
+        cw_mesh_free(&mesh);
+    }
+}
+
 /* A kilometre away, turned: single precision alone would keep a sixteenth of a millimetre. */
 static void far_nodes_get_an_origin(void **state)
 {
@@ -1006,6 +1046,7 @@ int main(void)
         TEST(nodes_place_meshes_and_mirrors_turn_the_winding),
         TEST(levels_of_detail_are_counted_and_left_out),
         TEST(what_has_no_scale_is_hidden),
+        TEST(floats_are_light_and_bytes_are_rounded),
         TEST(normals_turn_with_their_node),
         TEST(far_nodes_get_an_origin),
         TEST(what_we_wrote_comes_back_to_the_bit),
