@@ -217,12 +217,18 @@ static cw_status read_volume(cli_extract_run *s, const cli_moment *moment, cw_er
 {
     cli_input input = s->args->input;
     input.step = moment->step;
+    input.step_chosen = s->series.given;
     free_step(s);
     cli_report_begin(&s->report);
     cw_status st = cli_read_volume(moment->path, &input, false, &s->volume, err);
     if (st != CW_OK)
         return st;
     const cw_volume *v = &s->volume.view;
+    if (!s->report.input)
+        st = cli_tell_labels(&s->volume, s->args->iso.value, s->args->iso.count,
+                             cli_extract_is_low(s), err);
+    if (st != CW_OK)
+        return st;
     if (!s->report.input)
         s->first = s->volume;
     s->report.input = &s->first;

@@ -11,6 +11,7 @@
 #include <math.h>
 #include <stdint.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct info_args {
@@ -35,6 +36,9 @@ static const cli_option options[] = {
 /* Between how many kinds of values levels are sought, and in how many bins. */
 enum { MAX_LEVELS = 3, OTSU_BINS = 512 };
 
+/* As many as readers take. */
+enum { MOST_COMPONENTS = 16 };
+
 typedef struct level {
     const char *name;
     double value;
@@ -47,6 +51,9 @@ typedef struct facts {
     cw_statistics range; /* and the bins asked for */
     level levels[MAX_LEVELS + 2];
     int level_count;
+    cw_array *arrays; /* of a file that has several; else NULL */
+    size_t array_count;
+    double (*ranges)[2]; /* array_count x MOST_COMPONENTS: of those that are read */
 } facts;
 
 /* otsu parts two classes; dark, medium and bright part four [Otsu1979, Liao2001]. */
@@ -84,6 +91,60 @@ static cw_status predict(facts *f, int threads, cw_error *err)
     return st;
 }
 
+/* Of every component, at the chosen step. */
+static cw_status find_ranges(const info_args *args, const char *name, double (*ranges)[2],
+                             cw_error *err)
+{
+    cw_read_desc desc = cli_read_desc(&args->input);
+    cw_volume all, one;
+    desc.array = name;
+    cw_status st = cw_volume_read(args->common.inputs[0], &desc, &all, NULL, err);
+    if (st != CW_OK)
+        return st;
+    for (size_t c = 0; c < all.components && c < MOST_COMPONENTS && st == CW_OK; c++) {
+        cw_statistics s = {0};
+        st = cw_volume_select(&all, c, 0, &one, err);
+        if (st == CW_OK)
+            st = cw_volume_statistics(&one, 0, (int)args->input.threads, &s, err);
+        ranges[c][0] = s.min;
+        ranges[c][1] = s.max;
+    }
+    cw_volume_free(&all);
+    return st;
+}
+
+/* Arrays of one name, at points and at cells, cannot be told apart: the second has no range. */
+static bool is_reached(const facts *f, size_t n)
+{
+    for (size_t i = 0; i < f->array_count; i++)
+        if (i != n && strcmp(f->arrays[i].name, f->arrays[n].name) == 0 &&
+            f->arrays[n].of_cells && !f->arrays[i].of_cells)
+            return false;
+    return f->arrays[n].is_read;
+}
+
+static cw_status find_arrays(const info_args *args, facts *f, cw_error *err)
+{
+    const cw_read_desc desc = cli_read_desc(&args->input);
+    if (args->input.raw)
+        return CW_OK;
+    cw_status st =
+        cw_arrays_list(args->common.inputs[0], &desc, &f->arrays, &f->array_count, err);
+    if (st != CW_OK || f->array_count < 2) {
+        cw_arrays_free(f->arrays);
+        f->arrays = NULL;
+        f->array_count = 0;
+        return st;
+    }
+    f->ranges = calloc(f->array_count * MOST_COMPONENTS, sizeof *f->ranges);
+    if (!f->ranges)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the ranges of arrays");
+    for (size_t n = 0; n < f->array_count && st == CW_OK; n++)
+        if (is_reached(f, n))
+            st = find_ranges(args, f->arrays[n].name, f->ranges + n * MOST_COMPONENTS, err);
+    return st;
+}
+
 static cw_status find_facts(const info_args *args, facts *f, cw_error *err)
 {
     const int threads = (int)args->input.threads;
@@ -95,6 +156,10 @@ static cw_status find_facts(const info_args *args, facts *f, cw_error *err)
     st = cw_volume_statistics(&f->volume.view, args->histogram, threads, &f->range, err);
     if (st == CW_OK)
         st = find_levels(f, threads, err);
+    if (st == CW_OK)
+        st = find_arrays(args, f, err);
+    if (st == CW_OK)
+        st = cli_tell_labels(&f->volume, NULL, 0, false, err);
     if (st == CW_OK && args->levels)
         st = predict(f, threads, err);
     return st == CW_OK ? st : cwi_fail_in(err, st, f->volume.path);
@@ -168,6 +233,49 @@ static void print_box(const cli_volume *volume)
            frame_of(&volume->whole), low[0], low[1], low[2], high[0], high[1], high[2]);
 }
 
+static void print_arrays(const facts *f)
+{
+    for (size_t n = 0; n < f->array_count; n++) {
+        const cw_array *a = &f->arrays[n];
+        printf("  array    '%s', %zu x %s%s%s", a->name, a->components,
+               *a->type ? a->type : "of a type that is not read",
+               a->of_cells ? ", of cells" : "",
+               !a->is_read     ? ", not read"
+               : a->is_default ? ", taken unless --array names another"
+                               : "");
+        for (size_t c = 0; c < a->components && is_reached(f, n); c++) {
+            const double *r = f->ranges[n * MOST_COMPONENTS + c];
+            printf("%s %.6g to %.6g", c ? "," : ":", r[0], r[1]);
+        }
+        puts("");
+    }
+}
+
+static void json_arrays(cli_json *j, const facts *f)
+{
+    if (!f->array_count)
+        return;
+    cli_json_open(j, "arrays", '[');
+    for (size_t n = 0; n < f->array_count; n++) {
+        const cw_array *a = &f->arrays[n];
+        cli_json_open(j, NULL, '{');
+        cli_json_text(j, "name", a->name);
+        cli_json_text(j, "type", a->type);
+        cli_json_count(j, "components", a->components);
+        cli_json_text(j, "of", a->of_cells ? "cells" : "points");
+        cli_json_bool(j, "read", a->is_read);
+        cli_json_bool(j, "default", a->is_default);
+        if (is_reached(f, n)) {
+            cli_json_open(j, "ranges", '[');
+            for (size_t c = 0; c < a->components; c++)
+                cli_json_numbers(j, NULL, f->ranges[n * MOST_COMPONENTS + c], 2);
+            cli_json_close(j, ']');
+        }
+        cli_json_close(j, '}');
+    }
+    cli_json_close(j, ']');
+}
+
 static void print_geometry(const facts *f)
 {
     const cw_volume *v = &f->volume.whole;
@@ -183,8 +291,11 @@ static void print_geometry(const facts *f)
     if (f->series.images)
         printf("  series   %s %s, %zu images, tilt %.3g degrees\n", f->series.label,
                f->series.modality, f->series.images, f->series.tilt_degrees);
+    print_arrays(f);
     for (size_t n = 0; n < f->volume.note_count; n++)
-        printf("  note     %s\n", f->volume.notes[n]);
+        if (!f->array_count ||
+            !strstr(f->volume.notes[n], "; --array takes")) /* listed above */
+            printf("  note     %s\n", f->volume.notes[n]);
 }
 
 static bool is_sampled(const facts *f)
@@ -245,6 +356,7 @@ static void print_json(const facts *f, bool predicted)
         json_series(&j, &f->series);
         cli_json_close(&j, '}');
     }
+    json_arrays(&j, f);
     cli_json_numbers(&j, "range", (const double[2]){r->min, r->max}, 2);
     if (is_sampled(f))
         cli_json_numbers(
@@ -506,6 +618,8 @@ static cw_status run(void *p, cw_error *err)
         print_levels(&f, args->levels);
     }
     cw_statistics_free(&f.range);
+    cw_arrays_free(f.arrays);
+    free(f.ranges);
     cli_free_volume(&f.volume);
     return st;
 }

@@ -242,9 +242,12 @@ static cw_status open_input(run_state *s, cw_error *err)
     cli_study *study = &s->study;
     const cli_input *input = &s->args->input;
     cw_status st = study->is_field ? make_field(s, err) : read_file(s, err);
+    const cw_volume *all =
+        input->component.magnitude ? &s->volume.magnitude : &s->volume.voxels;
     if (st == CW_OK)
-        st = cw_volume_select(&s->volume.voxels, input->component, input->step, &study->drawn,
-                              err);
+        st = input->component.magnitude ? cw_volume_select(all, 0, 0, &study->drawn, err)
+                                        : cw_volume_select(all, input->component.number,
+                                                           input->step, &study->drawn, err);
     if (st == CW_OK)
         st = tell_input(s, s->volume.path, err);
     if (st != CW_OK)

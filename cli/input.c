@@ -132,9 +132,14 @@ void cli_spacing_range(const cli_volume *volume, int axis, double mm[2])
 
 static cw_status check_choice(const cli_input *input, const cw_volume *v, cw_error *err)
 {
-    if (input->component >= v->components)
+    const cli_component *c = &input->component;
+    if (c->magnitude && v->components < 2)
+        return cw_fail(
+            err, CW_ERR_ARGUMENT,
+            "--component mag: it is of vectors, and the volume has one value a voxel");
+    if (!c->magnitude && c->number >= v->components)
         return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--component %zu: the volume has %zu, counted from 0", input->component,
+                       "--component %zu: the volume has %zu, counted from 0", c->number,
                        v->components);
     if (input->step >= v->steps)
         return cw_fail(err, CW_ERR_ARGUMENT, "--step %zu: the volume has %zu, counted from 0",
@@ -252,6 +257,36 @@ static cw_status read_shape(const char *path, const cw_read_desc *voxels, cw_vol
     return cw_volume_read(path, &desc, shape, format, err);
 }
 
+/* Says what the reader decided, and keeps it for reports. Irregular grids are known only once
+ * they are read, and tell then what their header told, too. */
+static void take_note(void *user, const char *text)
+{
+    cli_volume *volume = user;
+    for (size_t n = 0; n < volume->note_count; n++)
+        if (strcmp(volume->notes[n], text) == 0)
+            return;
+    cli_say("%s: %s", volume->path, text);
+    if (volume->note_count < CLI_MOST_NOTES)
+        snprintf(volume->notes[volume->note_count++], sizeof *volume->notes, "%s", text);
+}
+
+/* What was chosen because nobody said. */
+static void tell_choice(const cli_input *input, cli_volume *volume)
+{
+    const cw_volume *v = &volume->whole;
+    char text[160];
+    if (v->components > 1 && !input->component.given) {
+        snprintf(text, sizeof text,
+                 "component 0 of %zu is taken (--component N, or mag for their magnitude)",
+                 v->components);
+        take_note(volume, text);
+    }
+    if (v->steps > 1 && input->step == 0 && !input->step_chosen) {
+        snprintf(text, sizeof text, "step 0 of %zu is taken (--step N)", v->steps);
+        take_note(volume, text);
+    }
+}
+
 static cw_status read_header(const char *path, const cw_read_desc *voxels,
                              const cli_input *input, cli_volume *volume, cw_error *err)
 {
@@ -263,6 +298,8 @@ static cw_status read_header(const char *path, const cw_read_desc *voxels,
         find_grid(&volume->whole, volume);
     cli_say("%s: %s", path, cli_describe(volume));
     st = check_choice(input, &volume->whole, err);
+    if (st == CW_OK)
+        tell_choice(input, volume);
     return st == CW_OK ? st : cwi_fail_in(err, st, path);
 }
 
@@ -287,11 +324,37 @@ static cw_status read_part(const char *path, cw_read_desc *desc, const cw_volume
     return cw_volume_read(path, desc, &volume->voxels, &volume->format, err);
 }
 
+/* The magnitude takes memory of its own, once. */
+static cw_status make_magnitude(const cli_input *input, size_t step, cli_volume *volume,
+                                cw_error *err)
+{
+    const size_t *n = volume->voxels.dim, bytes = n[0] * n[1] * n[2] * sizeof(float);
+    const bool first = !volume->magnitude.data;
+    if (first && volume->memory_left <= bytes)
+        return cw_fail(err, CW_ERR_LIMIT,
+                       "--component mag takes %zu bytes beside the voxels; %zu are left of "
+                       "--memory",
+                       bytes, volume->memory_left);
+    volume->memory_left -= first ? bytes : 0;
+    cw_volume_free(&volume->magnitude);
+    return cw_volume_magnitude(&volume->voxels, step, (int)input->threads, &volume->magnitude,
+                               err);
+}
+
+static cw_status select_view(const cli_input *input, size_t step, cli_volume *volume,
+                             cw_error *err)
+{
+    const cli_component *c = &input->component;
+    if (!c->magnitude)
+        return cw_volume_select(&volume->voxels, c->number, step, &volume->view, err);
+    cw_status st = make_magnitude(input, step, volume, err);
+    return st == CW_OK ? cw_volume_select(&volume->magnitude, 0, 0, &volume->view, err) : st;
+}
+
 cw_status cli_choose_step(const cli_input *input, size_t step, cli_volume *volume,
                           cw_error *err)
 {
-    cw_status st =
-        cw_volume_select(&volume->voxels, input->component, step, &volume->view, err);
+    cw_status st = select_view(input, step, volume, err);
     const cw_volume all = volume->view;
     if (st == CW_OK && input->coarsen_view)
         st = cw_volume_coarsen(&all, volume->coarsen, &volume->view, err);
@@ -326,19 +389,6 @@ static cw_status read_voxels(const char *path, cw_read_desc *desc, const cli_inp
     return st;
 }
 
-/* Says what the reader decided, and keeps it for reports. Irregular grids are known only once
- * they are read, and tell then what their header told, too. */
-static void take_note(void *user, const char *text)
-{
-    cli_volume *volume = user;
-    for (size_t n = 0; n < volume->note_count; n++)
-        if (strcmp(volume->notes[n], text) == 0)
-            return;
-    cli_say("%s: %s", volume->path, text);
-    if (volume->note_count < CLI_MOST_NOTES)
-        snprintf(volume->notes[volume->note_count++], sizeof *volume->notes, "%s", text);
-}
-
 cw_read_desc cli_read_desc(const cli_input *input)
 {
     cw_read_desc desc = {.reader = input->reader,
@@ -361,6 +411,7 @@ void cli_free_volume(cli_volume *volume)
 {
     cw_volume_free(&volume->whole);
     cw_volume_free(&volume->voxels);
+    cw_volume_free(&volume->magnitude);
 }
 
 /* The layout that --raw states, if it does, for the description. */
@@ -413,8 +464,46 @@ cw_status cli_read_whole(const cli_volume *part, const cli_input *input, cli_vol
     if (st == CW_OK)
         st = cw_volume_read(part->path, &desc, &whole->voxels, NULL, err);
     if (st == CW_OK)
-        st = cw_volume_select(&whole->voxels, input->component, input->step, &whole->view, err);
+        st = select_view(input, input->step, whole, err);
     return st == CW_OK ? st : cwi_fail_in(err, st, part->path);
+}
+
+/* How many of the labels are inside the surface at a level. */
+static size_t count_inside(const cw_labels *labels, double iso, bool inside_is_low)
+{
+    size_t inside = 0;
+    for (size_t n = 0; n < labels->count; n++)
+        inside += inside_is_low ? labels->value[n] < iso : labels->value[n] >= iso;
+    return inside;
+}
+
+cw_status cli_tell_labels(cli_volume *volume, const double *iso, size_t count,
+                          bool inside_is_low, cw_error *err)
+{
+    cw_labels l;
+    char text[256], what[128];
+    if (volume->magnitude.data)
+        return CW_OK;
+    cw_status st = cw_volume_labels(&volume->voxels, &l, err); /* of a preview all of them */
+    if (st != CW_OK || !l.found || !l.count)
+        return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
+    const bool said = volume->view.known & CW_KNOWN_LABELS;
+    snprintf(what, sizeof what, "%s (%s%zu values, %.10g to %.10g)",
+             said ? "is a label map" : "looks like a label map", l.more ? "more than " : "",
+             l.count, l.value[0], l.value[l.count - 1]);
+    for (size_t n = 0; n < count; n++) {
+        const size_t inside = count_inside(&l, iso[n], inside_is_low);
+        if (inside < 2)
+            continue;
+        snprintf(text, sizeof text, "%s: the surface at %.10g joins the %zu labels %s it", what,
+                 iso[n], inside, inside_is_low ? "below" : "above");
+        take_note(volume, text);
+    }
+    if (!count && l.count > 2) {
+        snprintf(text, sizeof text, "%s: an isovalue joins all labels above it", what);
+        take_note(volume, text);
+    }
+    return CW_OK;
 }
 
 bool cli_inside_is_low(int inside, const cw_volume *volume)

@@ -15,7 +15,9 @@ typedef struct cli_input {
     size_t timeout_s;
     cli_lengths spacing;
     cli_ranges crop;
-    size_t component, step;
+    cli_component component;
+    size_t step;
+    bool step_chosen; /* by the command, of a series: nothing is to be said of it */
     size_t threads, memory, max_voxels, max_triangles;
     bool allow_external, preview;
     size_t coarsen;    /* 0: 4 for a preview, else 1 */
@@ -88,9 +90,9 @@ typedef struct cli_input {
          CLI_INPUT_ROW(args, crop)},                                                           \
         {"component",                                                                          \
          0,                                                                                    \
-         CLI_COUNT,                                                                            \
-         "N",                                                                                  \
-         "of volumes with several values a voxel (0)",                                         \
+         CLI_COMPONENT,                                                                        \
+         "N/mag",                                                                              \
+         "of volumes with several values a voxel; mag: the length of their vector (0)",        \
          CLI_INPUT_ROW(args, component)},                                                      \
         {"step", 0, CLI_COUNT, "N", "of time series (0)", CLI_INPUT_ROW(args, step)},          \
         {"allow-external",                                                                     \
@@ -142,13 +144,14 @@ typedef struct cli_grid {
 /* A volume as a command uses it. */
 typedef struct cli_volume {
     const char *path, *format;
-    cw_volume whole;    /* as the file has it, spacing applied; without the voxels */
-    cw_volume voxels;   /* what was read of it: all, or what --crop leaves */
-    cw_volume view;     /* of that the chosen component, step and samples */
-    double spacing[3];  /* of an irregular grid the mean length of cells' edges */
-    cli_grid grid;      /* zeroed for other volumes */
-    size_t memory_left; /* of the limit, after the voxels */
-    size_t coarsen[3];  /* the view's step along each axis */
+    cw_volume whole;     /* as the file has it, spacing applied; without the voxels */
+    cw_volume voxels;    /* what was read of it: all, or what --crop leaves */
+    cw_volume magnitude; /* of the chosen step, where --component mag asks for it */
+    cw_volume view;      /* of that the chosen component, step and samples */
+    double spacing[3];   /* of an irregular grid the mean length of cells' edges */
+    cli_grid grid;       /* zeroed for other volumes */
+    size_t memory_left;  /* of the limit, after the voxels */
+    size_t coarsen[3];   /* the view's step along each axis */
     char notes[CLI_MOST_NOTES][256]; /* what the reader found and decided on */
     size_t note_count;
 } cli_volume;
@@ -174,6 +177,11 @@ cw_status cli_read_shape(const char *path, const cli_input *input, cw_volume *sh
                          cw_error *err);
 
 void cli_free_volume(cli_volume *volume);
+
+/* Says, and keeps as a note, that a volume of labels has several of them inside a surface,
+ * which it joins. No levels: that any would. */
+cw_status cli_tell_labels(cli_volume *volume, const double *iso, size_t count,
+                          bool inside_is_low, cw_error *err);
 
 /* --inside, and what it means for a volume. */
 #define CLI_INSIDE_CHOICES "auto/above/below"

@@ -163,15 +163,25 @@ static bool store_weights(const char *names, const char *text, cli_weights *out)
 size_t cli_option_size(const cli_option *o)
 {
     static const size_t sizes[] = {
-        [CLI_FLAG] = sizeof(bool),           [CLI_TEXT] = sizeof(const char *),
-        [CLI_CHOICE] = sizeof(int),          [CLI_NUMBER] = sizeof(cli_number),
-        [CLI_NUMBERS] = sizeof(cli_numbers), [CLI_COUNT] = sizeof(size_t),
-        [CLI_COUNTS] = sizeof(cli_counts),   [CLI_BYTES] = sizeof(size_t),
-        [CLI_LENGTHS] = sizeof(cli_lengths), [CLI_LENGTH] = sizeof(cli_length),
-        [CLI_VOLUME] = sizeof(cli_amount),   [CLI_SIZES] = sizeof(cli_sizes),
-        [CLI_RANGES] = sizeof(cli_ranges),   [CLI_REDUCTION] = sizeof(cli_reduction),
-        [CLI_STEPS] = sizeof(cli_steps),     [CLI_WEIGHTS] = sizeof(cli_weights),
-        [CLI_LOUDER] = sizeof(int),          [CLI_HEADING] = 0,
+        [CLI_FLAG] = sizeof(bool),
+        [CLI_TEXT] = sizeof(const char *),
+        [CLI_CHOICE] = sizeof(int),
+        [CLI_NUMBER] = sizeof(cli_number),
+        [CLI_NUMBERS] = sizeof(cli_numbers),
+        [CLI_COUNT] = sizeof(size_t),
+        [CLI_COUNTS] = sizeof(cli_counts),
+        [CLI_BYTES] = sizeof(size_t),
+        [CLI_LENGTHS] = sizeof(cli_lengths),
+        [CLI_LENGTH] = sizeof(cli_length),
+        [CLI_VOLUME] = sizeof(cli_amount),
+        [CLI_SIZES] = sizeof(cli_sizes),
+        [CLI_RANGES] = sizeof(cli_ranges),
+        [CLI_REDUCTION] = sizeof(cli_reduction),
+        [CLI_STEPS] = sizeof(cli_steps),
+        [CLI_WEIGHTS] = sizeof(cli_weights),
+        [CLI_COMPONENT] = sizeof(cli_component),
+        [CLI_LOUDER] = sizeof(int),
+        [CLI_HEADING] = 0,
     };
     return sizes[o->kind];
 }
@@ -235,10 +245,22 @@ bool cli_option_text(const cli_option *o, const void *args, char *text, size_t s
         if (((const cli_ranges *)field)->given)
             print_ranges(field, text, size);
         break;
+    case CLI_COMPONENT:
+        if (((const cli_component *)field)->magnitude)
+            snprintf(text, size, "mag");
+        else
+            snprintf(text, size, "%zu", ((const cli_component *)field)->number);
+        break;
     default:
         break;
     }
     return *text != '\0';
+}
+
+static bool store_component(const char *text, cli_component *out)
+{
+    *out = (cli_component){.given = true, .magnitude = strcmp(text, "mag") == 0};
+    return out->magnitude || cli_parse_count(text, 1000, &out->number);
 }
 
 /* Stores a value in its field; false when the text is not one of its kind. */
@@ -276,6 +298,8 @@ static bool store(const cli_option *o, const char *text, void *field)
         return cli_parse_steps(text, field);
     case CLI_WEIGHTS:
         return store_weights(o->value, text, field);
+    case CLI_COMPONENT:
+        return store_component(text, field);
     default:
         return false;
     }
@@ -313,6 +337,8 @@ static const char *expectation(const cli_option *o)
         return "steps in ascending order such as 0:20:2 (ends included), 0,3,7 or all";
     case CLI_WEIGHTS:
         return "weights above 0, each once, such as normal:0.5,color:1,scalar:1";
+    case CLI_COMPONENT:
+        return "a whole number from 0, or mag";
     default:
         return "a text that is not empty";
     }

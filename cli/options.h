@@ -21,6 +21,7 @@ typedef enum cli_kind {
     CLI_REDUCTION, /* cli_reduction */
     CLI_STEPS,     /* cli_steps: 0:20:2, 0,3,7 or all */
     CLI_WEIGHTS,   /* cli_weights: normal:0.5,color:1; value has the names, parted by '/' */
+    CLI_COMPONENT, /* cli_component: its number from 0, or mag */
     CLI_LOUDER,    /* int, counts up */
     CLI_HEADING,   /* no option: the name of those below it in the help */
 } cli_kind;
@@ -76,6 +77,12 @@ typedef struct cli_reduction {
     cli_length error; /* given, or else: */
     size_t triangles; /* 0: neither was said */
 } cli_reduction;
+
+/* What is taken of the values of a voxel. */
+typedef struct cli_component {
+    bool given, magnitude; /* of the vector that they all are; else: */
+    size_t number;
+} cli_component;
 
 typedef struct cli_sizes {
     int count; /* 1 to 3 given, 0: none */

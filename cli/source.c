@@ -58,6 +58,7 @@ cw_status cli_read_step(cli_source *source, const cli_input *input, size_t step,
     const cli_moment *moment = &source->series.moments[step];
     cli_input at = *input;
     at.step = moment->step;
+    at.step_chosen = source->series.given;
     cw_volume_free(&source->dense);
     if (source->volume.voxels.data && source->volume.path == moment->path)
         return cli_choose_step(&at, moment->step, &source->volume, err);

@@ -3,7 +3,7 @@
 #ifndef FORMATS_INPUT_H
 #define FORMATS_INPUT_H
 
-#include <cubewright/formats.h>
+#include "formats/arrays.h"
 
 /* An open file to read, and the folder it was named in. */
 typedef struct cwi_input {
@@ -13,6 +13,7 @@ typedef struct cwi_input {
     uint64_t size;       /* bytes, as the system says */
     bool allow_external; /* side files may lie elsewhere */
     const char *array;   /* that is asked for; NULL: any */
+    cwi_array_list *arrays;  /* where readers list those there are; NULL: nobody asks */
 } cwi_input;
 
 /* Opens the file a user named; links are followed, as the user may well have made them.

@@ -409,6 +409,14 @@ static void read_units(const nifti *n, cw_volume *shape)
             shape->affine[r][c] *= scale;
 }
 
+/* NIFTI_INTENT_LABEL, NIFTI_INTENT_NEURONAME */
+static void read_intent(const nifti *n, cw_volume *shape)
+{
+    const double code = get(n, CWI_NIFTI_INTENT_CODE, 0);
+    if (code == 1002 || code == 1005)
+        shape->known |= CW_KNOWN_LABELS;
+}
+
 static cw_status read_frame(const nifti *n, cwi_source *src, cw_error *err)
 {
     const bool sform = get(n, CWI_NIFTI_SFORM_CODE, 0) > 0;
@@ -445,6 +453,8 @@ cw_status cwi_nifti_parse(const cwi_input *in, cwi_source *src, cw_error *err)
         st = read_place(in, &n, src, err);
     if (st == CW_OK)
         st = read_frame(&n, src, err);
+    if (st == CW_OK)
+        read_intent(&n, &src->shape);
     if (st == CW_OK)
         read_scaling(&n, colours, &src->shape);
     return st;

@@ -55,6 +55,7 @@ typedef struct cwi_nrrd_axis {
 typedef struct cwi_nrrd {
     cwi_lines lines;
     const char *value[CWI_NRRD_FIELD_COUNT]; /* as written; NULL: the field is not there */
+    bool has_segments;                       /* keys tell of them: values are labels */
     size_t dimension;
     cwi_nrrd_axis axis[CWI_NRRD_MOST_AXES];
     double spacing[CWI_NRRD_MOST_AXES], min[CWI_NRRD_MOST_AXES],

@@ -343,7 +343,8 @@ static void turn_world(const cwi_nrrd *n, bool axes_have_units, cw_volume *shape
     const bool anatomical = n->space >= 0 && spaces[n->space].anatomical;
     const bool directed = n->value[CWI_NRRD_SPACE_DIRECTIONS] != NULL;
     shape->known = (anatomical && directed ? CW_KNOWN_FRAME : 0u) |
-                   (anatomical || world_has_units || axes_have_units ? CW_KNOWN_UNIT : 0u);
+                   (anatomical || world_has_units || axes_have_units ? CW_KNOWN_UNIT : 0u) |
+                   (n->has_segments ? CW_KNOWN_LABELS : 0u);
 }
 
 static double step_seconds(const cwi_nrrd *n, size_t i)

@@ -5,6 +5,7 @@
 #include "formats/nrrd.h"
 #include "formats/readers.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <string.h>
 
@@ -75,8 +76,10 @@ static cw_status keep_field(cwi_nrrd *n, const char *line, cw_error *err)
     const char *colon = strchr(line, ':');
     if (!colon)
         return cw_fail(err, CW_ERR_FORMAT, "line %zu holds no 'field: value'", n->lines.number);
-    if (colon[1] == '=') /* a key of someone's own */
+    if (colon[1] == '=') { /* a key of someone's own: Slicer names the segments of a map */
+        n->has_segments |= strncmp(line, "Segment", 7) == 0 && isdigit((unsigned char)line[7]);
         return CW_OK;
+    }
     const int f =
         cwi_field_find(field_names, CWI_NRRD_FIELD_COUNT, line, (size_t)(colon - line));
     if (f < 0)

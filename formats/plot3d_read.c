@@ -163,6 +163,9 @@ cw_status cwi_plot3d_read(const cwi_input *in, const cw_read_desc *desc, cw_volu
     cw_status st = choose(desc->array, &p.quantity, err);
     if (st != CW_OK)
         return st;
+    for (size_t n = 0; n < QUANTITIES; n++)
+        cwi_array_list_add(in->arrays, names[n], "float", 1, false, true);
+    cwi_array_list_choose(in->arrays, names[p.quantity], false);
     st = cwi_input_open(&points, desc->points, err);
     if (st != CW_OK)
         return cwi_fail_in(err, st, desc->points);

@@ -89,6 +89,16 @@ static cw_status choose(const cwi_vdb_facts *f, const char *name, size_t *chosen
                           f->grid_count ? list_names(f, names) : "it has none");
 }
 
+static void list_grids(const cwi_vdb_facts *f, size_t chosen, cwi_array_list *list)
+{
+    for (size_t n = 0; n < f->grid_count; n++) {
+        const cwi_vdb_grid *g = &f->grid[n];
+        cwi_array_list_add(list, g->name, g->refusal[0] ? "" : cw_type_name(g->type), 1, false,
+                           !g->refusal[0]);
+    }
+    cwi_array_list_choose(list, f->grid[chosen].name, false);
+}
+
 static void tell(const cw_read_desc *desc, const cwi_vdb_facts *f, const cwi_vdb_grid *g)
 {
     char names[256];
@@ -206,6 +216,8 @@ static cw_status read_chosen(cwi_planes *planes, const cwi_input *in, const cwi_
         st = check_counts(g, in->size, desc, err);
     if (st == CW_OK)
         st = set_shape(g, desc, &v, err);
+    if (st == CW_OK && in->arrays)
+        list_grids(f, number, in->arrays);
     if (st == CW_OK)
         tell(desc, f, g);
     if (st == CW_OK)

@@ -1,3 +1,4 @@
+#include "core/memory.h"
 #include "core/status.h"
 #include "core/volume.h"
 #include "formats/files.h"
@@ -335,31 +336,81 @@ static cw_status expect_thin(const cw_read_desc *desc, cw_volume *v, cw_error *e
     return st;
 }
 
+/* Grids of OpenVDB are told by their reader. */
+static void tell_arrays(const opened *o, const cw_read_desc *desc, const cwi_array_list *arrays)
+{
+    char text[240];
+    const bool has_grids = o->reader && o->reader->read_one == cwi_vdb_read;
+    if (!has_grids && cwi_array_list_tell(arrays, text, sizeof text))
+        cwi_note(desc, "%s", text);
+}
+
+static cw_status read_opened(opened *o, const cw_read_desc *desc, cw_volume *volume,
+                             cw_error *err)
+{
+    const reader *r = o->reader;
+    if (r && r->read && desc->array)
+        return refuse_array(desc->array, err);
+    if (r && r->read)
+        return r->read(&o->in, o->many ? &o->names : NULL, desc, volume, err);
+    return r && r->read_one ? r->read_one(&o->in, desc, volume, err)
+                            : read_one(o, desc, volume, err);
+}
+
 cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *volume,
                          const char **format, cw_error *err)
 {
-    const cw_read_desc defaults = {0};
+    const cw_read_desc d = desc ? *desc : (cw_read_desc){0};
+    cwi_array_list arrays = {0};
     opened o = {0};
     memset(volume, 0, sizeof *volume);
-    if (!desc)
-        desc = &defaults;
-    cw_status st = check_spacing(desc->spacing_mm, err);
+    cw_status st = check_spacing(d.spacing_mm, err);
     if (st == CW_OK)
-        st = open_path(&o, path, desc, err);
-    if (st == CW_OK && o.reader && o.reader->read && desc->array)
-        st = refuse_array(desc->array, err);
-    else if (st == CW_OK && o.reader && o.reader->read)
-        st = o.reader->read(&o.in, o.many ? &o.names : NULL, desc, volume, err);
-    else if (st == CW_OK && o.reader && o.reader->read_one)
-        st = o.reader->read_one(&o.in, desc, volume, err);
-    else if (st == CW_OK)
-        st = read_one(&o, desc, volume, err);
+        st = open_path(&o, path, &d, err);
+    o.in.arrays = d.note && !d.array ? &arrays : NULL;
     if (st == CW_OK)
-        st = expect_thin(desc, volume, err);
+        st = read_opened(&o, &d, volume, err);
+    if (st == CW_OK)
+        st = expect_thin(&d, volume, err);
+    if (st == CW_OK)
+        tell_arrays(&o, &d, &arrays);
     if (format)
-        *format = o.reader ? o.reader->name : desc->raw ? "raw" : NULL;
+        *format = o.reader ? o.reader->name : d.raw ? "raw" : NULL;
     close_path(&o);
+    cwi_array_list_free(&arrays);
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
+}
+
+/* Slices have no arrays with names, and are many files: their headers are not read for that. */
+cw_status cw_arrays_list(const char *path, const cw_read_desc *desc, cw_array **arrays,
+                         size_t *count, cw_error *err)
+{
+    cw_read_desc d = desc ? *desc : (cw_read_desc){0};
+    cwi_array_list list = {0};
+    opened o = {0};
+    cw_volume shape = {0};
+    d.header_only = true;
+    d.array = NULL;
+    d.region = NULL;
+    d.note = NULL;
+    cw_status st = open_path(&o, path, &d, err);
+    o.in.arrays = &list;
+    if (st == CW_OK && !(o.reader && o.reader->read))
+        st = read_opened(&o, &d, &shape, err);
+    if (st == CW_OK && list.starved)
+        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a list of arrays");
+    cw_volume_free(&shape);
+    close_path(&o);
+    if (st != CW_OK)
+        cwi_array_list_free(&list);
+    *arrays = list.items;
+    *count = list.count;
+    return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
+}
+
+void cw_arrays_free(cw_array *arrays)
+{
+    cwi_free(arrays);
 }
 
 cw_status cw_series_list(const char *path, const cw_read_desc *desc, cw_series **series,

@@ -26,13 +26,15 @@ typedef struct cwi_vti_array {
 /* Arrays for the same places. */
 typedef struct cwi_vti_data {
     char scalars[CWI_WORD_BYTES]; /* the name that the element gives */
+    bool of_cells;
     cwi_vti_array best;
 } cwi_vti_data;
 
 /* What there is to choose from. */
 typedef struct cwi_vti_choice {
-    const char *wanted; /* the name of the array that was asked for; NULL: none */
-    char others[400];   /* names and types of arrays that are not read, for messages */
+    const char *wanted;   /* the name of the array that was asked for; NULL: none */
+    cwi_array_list *list; /* where arrays are listed; NULL: nobody asks */
+    char others[400];     /* names and types of arrays that are not read, for messages */
 } cwi_vti_choice;
 
 /* What the elements say, as far as they have been seen. */
@@ -51,7 +53,7 @@ typedef struct cwi_vti {
 cw_status cwi_vti_image(cwi_vti *v, cwi_attributes a, cw_error *err);
 cw_status cwi_vti_extent(cwi_attributes a, int64_t extent[6], cw_error *err);
 cw_status cwi_vti_piece(cwi_vti *v, cwi_attributes a, cw_error *err);
-void cwi_vti_data_start(cwi_vti_data *data, cwi_attributes a);
+void cwi_vti_data_start(cwi_vti_data *data, bool of_cells, cwi_attributes a);
 
 /* One array; *kept when it is the best so far, and is now data->best. */
 cw_status cwi_vti_data_array(cwi_vti_choice *choice, cwi_vti_data *data, cwi_attributes a,

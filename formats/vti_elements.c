@@ -62,10 +62,11 @@ cw_status cwi_vti_piece(cwi_vti *v, cwi_attributes a, cw_error *err)
     return cwi_vti_extent(a, v->extent, err);
 }
 
-void cwi_vti_data_start(cwi_vti_data *data, cwi_attributes a)
+void cwi_vti_data_start(cwi_vti_data *data, bool of_cells, cwi_attributes a)
 {
     const char *scalars = cwi_attribute(a, "Scalars");
     snprintf(data->scalars, sizeof data->scalars, "%s", scalars ? scalars : "");
+    data->of_cells = of_cells;
 }
 
 static void note_other(cwi_vti_choice *choice, const cwi_vtk_array *array)
@@ -98,6 +99,8 @@ cw_status cwi_vti_data_array(cwi_vti_choice *choice, cwi_vti_data *data, cwi_att
         return st;
     const bool is_read = array.data.is_known && !array.data.wide && array.data.components <= 16;
     array.rank = is_read ? rank_of(choice, data, &array.data) : CWI_VTI_NONE;
+    cwi_array_list_add(choice->list, array.data.name, array.data.type_name,
+                       array.data.components, data->of_cells, is_read && *array.data.name);
     if (array.rank == CWI_VTI_NONE)
         note_other(choice, &array.data);
     *kept = array.rank > data->best.rank;

@@ -59,14 +59,14 @@ static cw_status start_piece(void *user, cwi_xml *x, cwi_attributes a, cw_error 
 static cw_status start_points(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
     (void)x, (void)err;
-    cwi_vti_data_start(&((parsing *)user)->vti.points, a);
+    cwi_vti_data_start(&((parsing *)user)->vti.points, false, a);
     return CW_OK;
 }
 
 static cw_status start_cells(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
     (void)x, (void)err;
-    cwi_vti_data_start(&((parsing *)user)->vti.cells, a);
+    cwi_vti_data_start(&((parsing *)user)->vti.cells, true, a);
     return CW_OK;
 }
 
@@ -248,7 +248,7 @@ static void set_frame(const cwi_vti *v, cw_volume *shape)
 
 cw_status cwi_vti_parse(const cwi_input *in, cwi_source *src, cw_error *err)
 {
-    parsing p = {.vti = {.choice = {.wanted = in->array}}};
+    parsing p = {.vti = {.choice = {.wanted = in->array, .list = in->arrays}}};
     cwi_vti *v = &p.vti;
     src->size_field = "Extent";
     src->frame_field = "Direction, Spacing, Origin";
@@ -261,6 +261,7 @@ cw_status cwi_vti_parse(const cwi_input *in, cwi_source *src, cw_error *err)
         st = set_sizes(v, src, err);
     if (st != CW_OK)
         return st;
+    cwi_array_list_choose(in->arrays, choose(v)->data.name, is_of_cells(v));
     if (v->rectilinear)
         st = set_coordinates(v, in, &src->shape, err);
     else

@@ -184,6 +184,10 @@ static void consider(cwi_vtk *v, const cwi_vtk_array *said, const vtk_type *type
                      const char *type_name)
 {
     const cwi_vtk_rank rank = rank_of(v, said, type);
+    if (strcmp(said->name, "vtkGhostType") != 0)
+        cwi_array_list_add(v->in->arrays, said->name, type_name, said->components,
+                           v->best == &v->cells,
+                           type->type >= 0 && said->components >= 1 && said->components <= 16);
     if (rank == CWI_VTK_NONE)
         note_other(v, said->name, type_name);
     if (rank <= v->best->rank)

@@ -224,19 +224,25 @@ static cw_status read_line(cwi_vtk *v, grid *g, cw_error *err)
     return st;
 }
 
-/* Walks the file until nothing better can come, or to its end. */
+/* Walks the file until nothing better can come, or to its end. Behind the best array only the
+ * list of them all is of interest: what is wrong there does no harm. */
 static cw_status read_lines(cwi_vtk *v, grid *g, cw_error *err)
 {
+    const bool listing = v->in->arrays && !v->to_end;
     bool more = true;
     cw_status st = CW_OK;
+    cw_error why = {0};
+    v->to_end = v->to_end || listing;
     while (st == CW_OK && !cwi_vtk_is_settled(v)) {
-        st = cwi_vtk_full_line(v, &more, err);
+        st = cwi_vtk_full_line(v, &more, &why);
         if (!more)
             break;
         if (st == CW_OK)
-            st = read_line(v, g, err);
+            st = read_line(v, g, &why);
     }
-    return st;
+    if (st == CW_OK || (listing && v->points.rank >= CWI_VTK_SCALARS))
+        return CW_OK;
+    return cw_fail(err, st, "%s", why.message);
 }
 
 /* The array that is the volume: at points, unless only cells have one. */
@@ -380,6 +386,7 @@ cw_status cwi_vtk_read_grid(const cwi_input *in, const cw_read_desc *desc, bool 
     if (st != CW_OK)
         return st;
     const cwi_vtk_array *array = choose(&v);
+    cwi_array_list_choose(in->arrays, array->name, array == &v.cells);
     const cwi_irregular all = {.pieces = &piece,
                                .piece_count = 1,
                                .point_field = "POINTS",
@@ -407,6 +414,8 @@ cw_status cwi_vtk_parse(const cwi_input *in, cwi_source *src, cw_error *err)
         st = check_found(&v, err);
     if (st == CW_OK)
         st = describe(&v, &g, src, err);
+    if (st == CW_OK)
+        cwi_array_list_choose(in->arrays, choose(&v)->name, choose(&v) == &v.cells);
     if (st == CW_OK && g.kind == RECTILINEAR)
         return set_coordinates(&v, &g, src, err);
     set_frame(&v, &g, &src->shape);

@@ -131,14 +131,14 @@ static piece *at_hand(parsing *p)
 static cw_status start_point_data(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
     (void)x, (void)err;
-    cwi_vti_data_start(&at_hand(user)->points, a);
+    cwi_vti_data_start(&at_hand(user)->points, false, a);
     return CW_OK;
 }
 
 static cw_status start_cell_data(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
     (void)x, (void)err;
-    cwi_vti_data_start(&at_hand(user)->cells, a);
+    cwi_vti_data_start(&at_hand(user)->cells, true, a);
     return CW_OK;
 }
 
@@ -364,7 +364,7 @@ static cw_status read_grid(parsing *p, const cw_read_desc *desc, cw_volume *volu
 cw_status cwi_vtu_read(const cwi_input *in, const cw_read_desc *desc, bool *is_grid,
                        cw_volume *volume, cw_error *err)
 {
-    parsing p = {.in = in, .choice = {.wanted = in->array}};
+    parsing p = {.in = in, .choice = {.wanted = in->array, .list = in->arrays}};
     *is_grid = true;
     cw_status st = cwi_xml_read_file(&rules, &p, in, err);
     if (st == CW_OK)
@@ -372,8 +372,10 @@ cw_status cwi_vtu_read(const cwi_input *in, const cw_read_desc *desc, bool *is_g
     drop_empty(&p);
     if (st == CW_OK)
         st = choose(&p, err);
-    if (st == CW_OK)
+    if (st == CW_OK) {
+        cwi_array_list_choose(in->arrays, values_of(&p, 0)->data.name, p.of_cells);
         st = read_grid(&p, desc, volume, err);
+    }
     cwi_free(p.pieces);
     cwi_free(p.grid);
     return st;

@@ -65,7 +65,7 @@ typedef struct cw_read_desc {
     double timeout_s; /* for one file; default 60 */
 
     /* Called on the calling thread with one line for each thing that was found and decided on:
-     * a tilt, slices left out. Default: none. */
+     * a tilt, slices left out, which of several arrays is taken. Default: none. */
     void (*note)(void *user, const char *text);
     void *note_user;
     cw_progress progress; /* default: none */
@@ -122,6 +122,26 @@ CW_API cw_status cw_steps_list(const char *const *paths, size_t path_count,
                                const cw_read_desc *desc, char ***files, size_t *count,
                                cw_error *err);
 CW_API void cw_steps_free(char **files, size_t count);
+
+/* One of the arrays of values that a file has with names, or a grid of OpenVDB. */
+typedef struct cw_array {
+    char name[64];
+    char type[32]; /* as the file calls it: "Float32", "unsigned_char" */
+    size_t components;
+    bool of_cells;   /* a value for each cell; else for each sample */
+    bool is_read;    /* cw_volume_read() takes it by its name */
+    bool is_default; /* it is the one that is taken when none is named */
+} cw_array;
+
+/* Lists the arrays of a file of VTK, the quantities of PLOT3D or the grids of OpenVDB. Files of
+ * other formats, folders and patterns have none. Of two of one name, one at points and one at
+ * cells, that at points is read.
+ *
+ * arrays   set to *count of them, to be freed with cw_arrays_free(); NULL when there are none
+ * Returns  as cw_volume_read() for a header */
+CW_API cw_status cw_arrays_list(const char *path, const cw_read_desc *desc, cw_array **arrays,
+                                size_t *count, cw_error *err);
+CW_API void cw_arrays_free(cw_array *arrays);
 
 /* One series of images in a folder of DICOM files. */
 typedef struct cw_series {

@@ -31,7 +31,8 @@ typedef enum cw_type {
 typedef enum cw_known {
     CW_KNOWN_UNIT = 1,
     CW_KNOWN_FRAME = 2,
-    CW_KNOWN_LEVEL_SET = 4 /* values are distances from the surface at 0, negative inside */
+    CW_KNOWN_LEVEL_SET = 4, /* values are distances from the surface at 0, negative inside */
+    CW_KNOWN_LABELS = 8     /* values are the numbers of labels */
 } cw_known;
 
 /* Cells of an irregular grid; their corners are numbered as VTK's cells of that name. */
@@ -135,6 +136,34 @@ CW_API cw_status cw_volume_resolve(const cw_volume *in, cw_volume *out, cw_error
  * Returns CW_ERR_ARGUMENT when there is none such. */
 CW_API cw_status cw_volume_select(const cw_volume *in, size_t component, size_t step,
                                   cw_volume *out, cw_error *err);
+
+/* The length of the vector that the components of a voxel are, at one time step: the root of
+ * the sum of their squares, scaled, in double precision, as CW_F32. NaN where a component has
+ * no value.
+ *
+ * out      owns its voxels, and borrows coordinates or cells of *in; free it before that
+ * Returns  CW_ERR_ARGUMENT  no such step, or one component; as cw_volume_resolve()
+ *          CW_ERR_UNSUPPORTED on a sparse grid; CW_ERR_LIMIT; CW_ERR_NO_MEMORY */
+CW_API cw_status cw_volume_magnitude(const cw_volume *in, size_t step, int threads,
+                                     cw_volume *out, cw_error *err);
+
+enum { CW_LABELS_MOST = 255 };
+
+/* What a volume has of labels: whole numbers that stand for things, not for amounts. */
+typedef struct cw_labels {
+    bool found;                   /* CW_KNOWN_LABELS, or values that look so */
+    bool more;                    /* than are listed: of a volume that says it holds labels */
+    size_t count;                 /* of values; at most CW_LABELS_MOST */
+    double value[CW_LABELS_MOST]; /* rising */
+} cw_labels;
+
+/* Finds whether the first component and step holds labels. The values of a volume that does not
+ * say so must be whole, 3 to CW_LABELS_MOST; of neighbours along x that are not both the most
+ * frequent value, 7 in 10 must be equal; and of those that differ, 2 in 10 must skip a value
+ * that occurs. A smooth picture skips none, and a noisy one has no equal neighbours. At most
+ * 2^22 voxels are looked at, in rows spread evenly. Returns CW_ERR_ARGUMENT as
+ * cw_volume_resolve(). */
+CW_API cw_status cw_volume_labels(const cw_volume *volume, cw_labels *out, cw_error *err);
 
 /* A borrowed view of the voxels inside a box; its affine places them where they were.
  * Returns CW_ERR_ARGUMENT when the box is empty or leaves the volume. */

@@ -26,7 +26,7 @@ cat >g.vtu <<'END'
 </UnstructuredGrid></VTKFile>
 END
 cubewright info g.vtu
-cubewright info g.vtu --array region | sed -n 2,9p
+cubewright info g.vtu --array region | sed -n 2,12p
 cubewright info g.vtu --array flow --component 1 | sed -n -e 2p -e /values/p
 cubewright info g.vtu --json | sed -n -e '/"dims"/,/"frame"/p' -e '/"notes"/,/]/p'
 cubewright info g.vtu g.vtu

@@ -18,7 +18,7 @@ awk 'BEGIN {
     print "</DataArray></CellData></Piece></RectilinearGrid></VTKFile>"
 }' >g.vtr
 cubewright info g.vtr
-cubewright info g.vtr --array layer | sed -n 2,6p
+cubewright info g.vtr --array layer | sed -n 2,8p
 cubewright info g.vtr --json | sed -n -e '/"spacing"/,/"unit"/p'
 cubewright extract g.vtr --iso 0 -o closed.ply
 cubewright extract g.vtr --iso 0 -o open.ply --open --name closed -q

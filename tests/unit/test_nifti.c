@@ -87,6 +87,21 @@ static void turn_bytes(nifti_file *f)
     reverse(f->bytes + f->layout->voxels, 12, 2);
 }
 
+static void the_intent_tells_labels(void **state)
+{
+    (void)state;
+    for (int version = 1; version <= 2; version++) {
+        nifti_file f = make_nifti(version);
+        cw_volume v;
+        cw_error err = {0};
+        put(&f, CWI_NIFTI_INTENT_CODE, 0, 1002);
+        save(&f, "a.nii");
+        assert_ok(cw_volume_read(test_path("a.nii"), NULL, &v, NULL, &err), err);
+        assert_true(v.known & CW_KNOWN_LABELS);
+        cw_volume_free(&v);
+    }
+}
+
 static void both_versions_byte_orders_and_packings_are_the_same(void **state)
 {
     (void)state;
@@ -460,6 +475,7 @@ int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
     const struct CMUnitTest tests[] = {
+        TEST(the_intent_tells_labels),
         TEST(both_versions_byte_orders_and_packings_are_the_same),
         TEST(sform_goes_before_qform),
         TEST(qform_is_a_rotation_an_offset_and_a_mirror),

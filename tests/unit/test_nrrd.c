@@ -49,6 +49,18 @@ static void a_plain_header_gives_its_voxels(void **state)
     cw_volume_free(&v);
 }
 
+static void slicer_says_that_its_values_are_labels(void **state)
+{
+    (void)state;
+    cw_volume v;
+    cw_error err = {0};
+    put_file("a.nrrd", U8_3D "Segment0_ID:=Segment_1\nSegment0_LabelValue:=1\n\n", counting,
+             sizeof counting);
+    assert_ok(cw_volume_read(test_path("a.nrrd"), NULL, &v, NULL, &err), err);
+    assert_int_equal(v.known, CW_KNOWN_LABELS);
+    cw_volume_free(&v);
+}
+
 /* What headers say of place and direction, and the affine on paper. */
 static void frames_are_turned_to_lps_millimetres(void **state)
 {
@@ -662,6 +674,7 @@ int main(void)
 #define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
     const struct CMUnitTest tests[] = {
         TEST(a_plain_header_gives_its_voxels),
+        TEST(slicer_says_that_its_values_are_labels),
         TEST(frames_are_turned_to_lps_millimetres),
         TEST(axes_find_their_roles),
         TEST(interleaved_values_are_reached_by_strides),

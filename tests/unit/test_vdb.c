@@ -168,6 +168,13 @@ static void test_several_grids(void **state)
     assert_non_null(strstr(notes, "grid 'surface', level set"));
     assert_non_null(strstr(notes, "4 grids: 'v', 'density', 'surface', 'copy'"));
     cw_volume_free(&v);
+    cw_array *grids;
+    size_t count;
+    assert_ok(cw_arrays_list(test_path("a.vdb"), NULL, &grids, &count, &err), err);
+    assert_int_equal(count, 4);
+    assert_true(!grids[0].is_read && grids[1].is_read && !grids[1].is_default);
+    assert_true(grids[2].is_default);
+    cw_arrays_free(grids);
     v = read_kind("several", &(cw_read_desc){.array = "density"});
     assert_int_equal(v.known, 0);
     cw_volume_free(&v);

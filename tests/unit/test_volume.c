@@ -426,9 +426,79 @@ static void there_is_no_value_beside_a_gap(void **state)
     assert_true(isnan(cw_volume_sample(&v, (const double[3]){NAN, 0, 0})));
 }
 
+/* 3, 4 and 12 make 13; a component without a value leaves none. */
+static void the_magnitude_is_the_length_of_all_components(void **state)
+{
+    (void)state;
+    const int16_t voxels[] = {3, 4, 12, 0, -5, 0, 1, 99, 1};
+    cw_volume v = {.data = voxels,
+                   .type = CW_I16,
+                   .dim = {3, 1, 1},
+                   .components = 3,
+                   .slope = 2,
+                   .has_nodata = true,
+                   .nodata = 99};
+    cw_volume m;
+    cw_error err = {0};
+    v.affine[0][0] = v.affine[1][1] = v.affine[2][2] = 7;
+    assert_ok(cw_volume_magnitude(&v, 0, 1, &m, &err), err);
+    assert_int_equal(m.type, CW_F32);
+    assert_true(cw_volume_value(&m, 0, 0, 0) == 26);
+    assert_true(cw_volume_value(&m, 1, 0, 0) == 10);
+    assert_true(isnan(cw_volume_value(&m, 2, 0, 0)));
+    assert_true(m.affine[1][1] == 7);
+    cw_volume_free(&m);
+    assert_fails(cw_volume_magnitude(&v, 1, 1, &m, &err), CW_ERR_ARGUMENT, "step 1", err);
+    v.components = 1;
+    assert_fails(cw_volume_magnitude(&v, 0, 1, &m, &err), CW_ERR_ARGUMENT, "has one", err);
+}
+
+enum { SIDE = 40 };
+
+/* Four kinds of values: boxes of labels, the same with noise, a ramp in steps of several
+ * voxels, one box of ones. */
+static uint8_t value_of_kind(int kind, size_t i, size_t j, size_t k)
+{
+    const bool inside = i > 5 && i < 35 && j > 5 && j < 35 && k > 5;
+    const size_t label = inside ? 3 + i / 12 + 3 * (j / 16) + 5 * (k / 20) : 0;
+    const size_t noise = (i + 2 * j + k) % 3;
+    switch (kind) {
+    case 0:
+        return (uint8_t)label;
+    case 1:
+        return (uint8_t)(inside ? 10 * label + noise : 0);
+    case 2:
+        return (uint8_t)(i / 5);
+    default:
+        return inside;
+    }
+}
+
+static void label_maps_are_told_from_pictures(void **state)
+{
+    (void)state;
+    static uint8_t voxels[SIDE * SIDE * SIDE];
+    cw_volume v = {.data = voxels, .type = CW_U8, .dim = {SIDE, SIDE, SIDE}};
+    cw_labels labels;
+    cw_error err = {0};
+    for (int kind = 0; kind < 4; kind++) {
+        for (size_t n = 0; n < sizeof voxels; n++)
+            voxels[n] = value_of_kind(kind, n % SIDE, n / SIDE % SIDE, n / SIDE / SIDE);
+        assert_ok(cw_volume_labels(&v, &labels, &err), err);
+        assert_int_equal(labels.found, kind == 0);
+        if (kind == 0)
+            assert_true(labels.count > 5 && labels.value[0] == 0 && labels.value[1] == 3);
+    }
+    v.known = CW_KNOWN_LABELS;
+    assert_ok(cw_volume_labels(&v, &labels, &err), err);
+    assert_true(labels.found && labels.count == 2 && labels.value[1] == 1);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(the_magnitude_is_the_length_of_all_components),
+        cmocka_unit_test(label_maps_are_told_from_pictures),
         cmocka_unit_test(a_zeroed_volume_resolves_to_its_defaults),
         cmocka_unit_test(unusable_volumes_are_refused_by_name),
         cmocka_unit_test(all_eight_types_read_the_same),

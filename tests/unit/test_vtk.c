@@ -223,6 +223,36 @@ static void damaged_files_are_told_where(void **state)
     free(large);
 }
 
+/* All that are there, also behind the one that is read; what is damaged there does no harm. */
+static void arrays_are_listed(void **state)
+{
+    (void)state;
+    static const char text[] =
+        HEAD("ASCII") GRID "POINT_DATA 12\nSCALARS s int\n" TABLE "0 1 2 3 4 5 6 7 8 9 10 11\n"
+                           "VECTORS w float\n0 0 0 1 1 1 2 2 2 3 3 3 4 4 4 5 5 5 6 6 6 7 7 7 "
+                           "8 8 8 9 9 9 0 0 0 1 1 1\n"
+                           "CELL_DATA 2\nFIELD f 2\nc 1 2 long\n1 2\nd 1 2 ";
+    cw_array *a;
+    size_t count;
+    cw_error err = {0};
+    for (int damaged = 0; damaged < 2; damaged++) {
+        put_file("a.vtk", text, damaged ? "what\n" : "short\n5 6\n", damaged ? 5 : 10);
+        assert_ok(cw_arrays_list(test_path("a.vtk"), NULL, &a, &count, &err), err);
+        assert_int_equal(count, damaged ? 3 : 4);
+        assert_string_equal(a[0].name, "s");
+        assert_true(a[0].is_default && a[0].is_read && !a[0].of_cells);
+        assert_string_equal(a[1].name, "w");
+        assert_int_equal(a[1].components, 3);
+        assert_string_equal(a[1].type, "float");
+        assert_true(a[2].of_cells && !a[2].is_read && !a[2].is_default);
+        cw_arrays_free(a);
+    }
+    put_file("a.nrrd", "NRRD0004\ntype: uint8\nencoding: raw\ndimension: 3\nsizes: 2 3 2\n\n",
+             counting, sizeof counting);
+    assert_ok(cw_arrays_list(test_path("a.nrrd"), NULL, &a, &count, &err), err);
+    assert_true(!a && count == 0);
+}
+
 /* No more is claimed than the file holds before memory is taken. */
 static void sizes_are_checked_before_memory_is_taken(void **state)
 {
@@ -277,6 +307,7 @@ int main(void)
         TEST(every_type_is_big_endian_or_text),
         TEST(scalars_go_before_other_arrays),
         TEST(binary_arrays_are_passed_over_by_their_size),
+        TEST(arrays_are_listed),
         TEST(damaged_files_are_told_where),
         TEST(sizes_are_checked_before_memory_is_taken),
         TEST(a_cut_is_never_a_volume),

@@ -37,8 +37,8 @@ static void check_file(void)
     assert_cell(&v, 1, CW_TETRAHEDRON, 6, (const uint32_t[]){0, 1, 2, 3});
     assert_point(&v, 4, 1, 0, 1);
     assert_value(&v, 0, -3);
-    assert_string_equal(notes,
-                        "left out, as they have fewer than three dimensions: 1 of 3 cells\n");
+    assert_non_null(
+        strstr(notes, "left out, as they have fewer than three dimensions: 1 of 3 cells\n"));
     cw_volume_free(&v);
 }
 
