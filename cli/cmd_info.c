@@ -499,9 +499,8 @@ static cw_status list_files(const info_args *args, char *const *files, size_t co
             return st;
         }
         first = n ? first : step.volume.whole; /* whose coordinates soon are gone */
-        if (finding->status == CW_OK &&
-            (st = cli_agree(&first, files[0], &step.volume.whole, finding)) != CW_OK)
-            cwi_fail_in(finding, st, files[n]);
+        if (finding->status == CW_OK)
+            cli_agree(&first, files[0], &step.volume.whole, files[n], finding);
         if (args->json)
             json_step(j, &step);
         else
@@ -630,11 +629,11 @@ const cli_command cli_info = {
     .about = "what is in a file: size, type, frame, values, suggested levels",
     .more =
         "Several series of DICOM images are listed, and --series chooses one.\n"
-        "Several volumes, or a quoted pattern, are the steps of a time series: each is listed "
-        "with\n"
-        "the range of its values, and the first that cannot be of one series with the others "
-        "is\n"
-        "named.\n\n"
+        "Several volumes, a quoted pattern, their folder or a .pvd list are the steps of a "
+        "time\n"
+        "series: each is listed with the range of its values, and the first that cannot be of "
+        "one\n"
+        "series with the first of all is named.\n\n"
         "Suggested levels part the histogram into two (otsu) or four classes (dark, medium,\n"
         "bright) with the largest variance between them.\n\n"
         "Examples\n"

@@ -126,7 +126,10 @@ static cw_status check_told_apart(const char *text, const cli_series *series,
     snprintf(why, sizeof why, "--iso lists %zu levels", levels->count);
     if (levels->count > 1 && !parts[LEVEL].used)
         return ask_for("level", text, why, err);
-    snprintf(why, sizeof why, "there are %zu steps", series->count);
+    snprintf(why, sizeof why,
+             series->files.count ? "%zu files are taken as the steps of a series, a mesh each"
+                                 : "there are %zu steps",
+             series->count);
     if (series->count > 1 && !parts[STEP].used && !(series->files.count && parts[STEM].used))
         return ask_for("step", text, why, err);
     return CW_OK;

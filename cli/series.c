@@ -9,35 +9,38 @@ static cw_status fail_memory(cw_error *err)
     return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the steps of a series");
 }
 
-static cw_status check_known(unsigned first, const char *first_path, unsigned other,
-                             unsigned flag, const char *what, cw_error *err)
+static cw_status check_known(const cw_volume *first, const char *first_path,
+                             const cw_volume *other, const char *other_path, unsigned flag,
+                             const char *what, cw_error *err)
 {
-    if ((first & flag) == (other & flag))
+    const bool said = first->known & flag;
+    if (said == (bool)(other->known & flag))
         return CW_OK;
     return cw_fail(err, CW_ERR_FORMAT,
-                   "names %s %s, and %s, the first of the series, %s; files of a series must "
-                   "agree",
-                   other & flag ? "a" : "no", what, first_path,
-                   first & flag ? "does" : "does not");
+                   "%s and %s are not of one series: the first names %s %s, the second %s",
+                   first_path, other_path, said ? "a" : "no", what, said ? "does not" : "does");
 }
 
 cw_status cli_agree(const cw_volume *first, const char *first_path, const cw_volume *other,
-                    cw_error *err)
+                    const char *other_path, cw_error *err)
 {
-    if (other->steps > 1)
+    const cw_volume *several = first->steps > 1 ? first : other;
+    if (several->steps > 1)
         return cw_fail(err, CW_ERR_FORMAT,
-                       "holds %zu time steps; a file of a series of files holds one",
-                       other->steps);
+                       "%s: holds %zu time steps; a file of a series of files holds one",
+                       several == first ? first_path : other_path, several->steps);
     if (other->components != first->components)
-        return cw_fail(err, CW_ERR_FORMAT,
-                       "has %zu values a voxel, and %s, the first of the series, %zu; files of "
-                       "a series must agree",
-                       other->components, first_path, first->components);
+        return cw_fail(
+            err, CW_ERR_FORMAT,
+            "%s and %s are not of one series: the first has %zu value%s a voxel, the "
+            "second %zu",
+            first_path, other_path, first->components, first->components == 1 ? "" : "s",
+            other->components);
     cw_status st =
-        check_known(first->known, first_path, other->known, CW_KNOWN_UNIT, "unit", err);
-    return st == CW_OK ? check_known(first->known, first_path, other->known, CW_KNOWN_FRAME,
-                                     "frame", err)
-                       : st;
+        check_known(first, first_path, other, other_path, CW_KNOWN_UNIT, "unit", err);
+    return st == CW_OK
+               ? check_known(first, first_path, other, other_path, CW_KNOWN_FRAME, "frame", err)
+               : st;
 }
 
 static cw_status check_files(const cli_series *series, const cli_input *input, cw_error *err)
@@ -51,10 +54,8 @@ static cw_status check_files(const cli_series *series, const cli_input *input, c
         if (st != CW_OK)
             return st;
         first = n ? first : other; /* whose coordinates soon are gone */
-        st = cli_agree(&first, series->files.path[0], &other, err);
+        st = cli_agree(&first, series->files.path[0], &other, path, err);
         cw_volume_free(&other);
-        if (st != CW_OK)
-            return cwi_fail_in(err, st, path);
     }
     return st;
 }
@@ -82,7 +83,23 @@ static cw_status choose(cli_series *series, const cli_steps *asked, size_t total
     return CW_OK;
 }
 
-static cw_status find_in_files(cli_series *series, const cli_input *input,
+/* A list of files has a time for each. */
+static cw_status take_times(cli_series *series, const char *path, const cli_input *input,
+                            cw_error *err)
+{
+    const cw_read_desc desc = cli_read_desc(input);
+    cw_pvd_entry *entries;
+    size_t count;
+    cw_status st = cw_pvd_read(path, &desc, &entries, &count, err);
+    for (size_t n = 0; n < series->count && st == CW_OK; n++)
+        if (series->moments[n].number < count) /* the file may have changed */
+            series->moments[n].time_s = entries[series->moments[n].number].time;
+    series->timed = st == CW_OK;
+    cw_pvd_free(entries, count);
+    return st;
+}
+
+static cw_status find_in_files(cli_series *series, const char *path, const cli_input *input,
                                const cli_steps *steps, cw_error *err)
 {
     if (input->step)
@@ -94,7 +111,7 @@ static cw_status find_in_files(cli_series *series, const cli_input *input,
         st = choose(series, steps, series->files.count, err);
     for (size_t n = 0; n < series->count; n++)
         series->moments[n].path = series->files.path[series->moments[n].number];
-    return st;
+    return st == CW_OK && cw_pvd_is(path) ? take_times(series, path, input, err) : st;
 }
 
 static cw_status find_in_file(cli_series *series, const char *path, const cli_input *input,
@@ -143,7 +160,7 @@ cw_status cli_find_series(cli_series *series, const cli_common *common, const cl
     if (st != CW_OK)
         return st;
     series->given = steps->given || series->files.count;
-    return series->files.count ? find_in_files(series, input, steps, err)
+    return series->files.count ? find_in_files(series, paths[0], input, steps, err)
            : steps->given      ? find_in_file(series, paths[0], input, steps, err)
                                : take_one(series, paths[0], input->step, err);
 }

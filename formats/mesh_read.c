@@ -1,6 +1,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "formats/parts.h"
+#include "formats/pvd.h"
 #include "formats/readers.h"
 #include "formats/table.h"
 
@@ -58,6 +59,35 @@ static const char *extensions_of(const char *name)
     return format->extensions;
 }
 
+static const reader *find_by_content(const unsigned char *head, size_t size, uint64_t file_size)
+{
+    for (size_t i = 0; i < READER_COUNT; i++)
+        if (readers[i].sniff && readers[i].sniff(head, size, file_size))
+            return &readers[i];
+    return NULL;
+}
+
+static const reader *find_by_extension(const char *path)
+{
+    for (size_t i = 0; i < READER_COUNT; i++)
+        if (cwi_has_extension(path, extensions_of(readers[i].format)))
+            return &readers[i];
+    return NULL;
+}
+
+const char *cwi_mesh_format_by_content(const unsigned char *head, size_t size,
+                                       uint64_t file_size)
+{
+    const reader *found = find_by_content(head, size, file_size);
+    return found ? found->format : NULL;
+}
+
+const char *cwi_mesh_format_by_extension(const char *path)
+{
+    const reader *found = find_by_extension(path);
+    return found ? found->format : NULL;
+}
+
 static cw_status find_by_file(const cwi_input *in, const reader **found, cw_error *err)
 {
     unsigned char head[CWI_SNIFF_BYTES];
@@ -66,14 +96,20 @@ static cw_status find_by_file(const cwi_input *in, const reader **found, cw_erro
     cw_status st = cwi_input_read_at(in->fd, 0, head, sizeof head, &size, err);
     if (st != CW_OK)
         return st;
-    for (size_t i = 0; i < READER_COUNT && !*found; i++)
-        if (readers[i].sniff && readers[i].sniff(head, size, in->size))
-            *found = &readers[i];
-    for (size_t i = 0; i < READER_COUNT && !*found; i++)
-        if (cwi_has_extension(in->path, extensions_of(readers[i].format)))
-            *found = &readers[i];
+    *found = find_by_content(head, size, in->size);
+    if (!*found)
+        *found = find_by_extension(in->path);
     if (*found)
         return CW_OK;
+    if (cwi_pvd_sniff(head, size))
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "this is a list of the files of a time series (pvd); here one of the "
+                       "meshes that it lists is expected");
+    const char *volume = cwi_volume_format_of(in);
+    if (volume)
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "this is a volume (%s), and not a mesh: extract makes a mesh of it",
+                       volume);
     return cw_fail(err, CW_ERR_FORMAT,
                    "neither content nor extension is of a mesh format that is read (%s)",
                    reader_names(names));

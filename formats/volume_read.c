@@ -2,6 +2,8 @@
 #include "core/status.h"
 #include "core/volume.h"
 #include "formats/files.h"
+#include "formats/mesh_readers.h"
+#include "formats/pvd.h"
 #include "formats/readers.h"
 #include "formats/stream.h"
 #include "formats/table.h"
@@ -89,6 +91,45 @@ static cw_status read_head(const cwi_input *in, unsigned char *head, size_t *siz
     return CW_OK;
 }
 
+/* By its content, or NULL. The meshes of VTK's XML are no volumes, nor are lists. */
+static const reader *find_by_content(const unsigned char *head, size_t size, bool gzipped)
+{
+    if (cwi_vtp_sniff(head, size, 0) || cwi_pvd_sniff(head, size))
+        return NULL;
+    for (size_t i = 0; i < READER_COUNT; i++)
+        if ((readers[i].gzipped || !gzipped) && readers[i].sniff(head, size))
+            return &readers[i];
+    return NULL;
+}
+
+static const reader *find_by_extension(const char *path)
+{
+    for (size_t i = 0; i < READER_COUNT; i++)
+        if (cwi_has_extension(path, readers[i].extensions))
+            return &readers[i];
+    return NULL;
+}
+
+const char *cwi_volume_format_of(const cwi_input *in)
+{
+    unsigned char head[CWI_SNIFF_BYTES];
+    size_t size;
+    bool gzipped;
+    const reader *found = NULL;
+    if (read_head(in, head, &size, &gzipped, NULL) == CW_OK)
+        found = find_by_content(head, size, gzipped);
+    if (!found)
+        found = find_by_extension(in->path);
+    return found ? found->name : NULL;
+}
+
+static cw_status fail_mesh(const char *format, cw_error *err)
+{
+    return cw_fail(err, CW_ERR_FORMAT,
+                   "this is a mesh (%s), and not a volume: check, convert and simplify take it",
+                   format);
+}
+
 static cw_status find_by_file(const cwi_input *in, const reader **found, cw_error *err)
 {
     unsigned char head[CWI_SNIFF_BYTES];
@@ -98,14 +139,18 @@ static cw_status find_by_file(const cwi_input *in, const reader **found, cw_erro
     cw_status st = read_head(in, head, &size, &gzipped, err);
     if (st != CW_OK)
         return st;
-    for (size_t i = 0; i < READER_COUNT && !*found; i++)
-        if ((readers[i].gzipped || !gzipped) && readers[i].sniff(head, size))
-            *found = &readers[i];
-    for (size_t i = 0; i < READER_COUNT && !*found; i++)
-        if (cwi_has_extension(in->path, readers[i].extensions))
-            *found = &readers[i];
+    *found = find_by_content(head, size, gzipped);
+    const char *mesh = *found ? NULL : cwi_mesh_format_by_content(head, size, in->size);
+    if (!*found && !mesh)
+        *found = find_by_extension(in->path);
     if (*found)
         return CW_OK;
+    if (cwi_pvd_sniff(head, size))
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "this is a list of the files of a time series (pvd); here one of the "
+                       "volumes that it lists is expected");
+    if (mesh || (mesh = cwi_mesh_format_by_extension(in->path)))
+        return fail_mesh(mesh, err);
     return cw_fail(
         err, CW_ERR_FORMAT,
         "neither content nor extension is of a format that is read (%s); a headerless "
@@ -195,6 +240,7 @@ static cw_status fail_no_slice(const opened *o, cw_error *err)
 
 static cw_status find_by_files(opened *o, cw_error *err)
 {
+    const char *format, *volume;
     for (size_t r = 0; r < READER_COUNT; r++)
         for (size_t i = 0; readers[r].read && i < o->names.count; i++)
             if (is_of(&o->in, o->names.items[i], &readers[r])) {
@@ -496,30 +542,149 @@ static cw_status refuse_slices(const cwi_names *names, const cw_read_desc *desc,
     return CW_OK;
 }
 
+/* The reader of one volume a file that all files of a folder have which are of any; NULL: they
+ * are of several, or a slice is among them. Those of none are taken off the list. */
+static const reader *find_common(const cwi_input *in, cwi_names *names)
+{
+    const reader *common = NULL;
+    size_t kept = 0;
+    bool mixed = false;
+    for (size_t i = 0; i < names->count; i++) {
+        const reader *r = readers;
+        while (r < readers + READER_COUNT && !is_of(in, names->items[i], r))
+            r++;
+        if (r < readers + READER_COUNT) {
+            mixed = mixed || r->read || (common && common != r);
+            common = r;
+            names->items[kept++] = names->items[i];
+        } else {
+            cwi_free(names->items[i]);
+        }
+    }
+    names->count = kept;
+    return mixed ? NULL : common;
+}
+
+static bool have_numbers(const cwi_names *names)
+{
+    double *numbers = cwi_alloc_array(names->count, sizeof *numbers);
+    const bool have = numbers && cwi_files_numbers(names, numbers);
+    cwi_free(numbers);
+    return have;
+}
+
+static cw_status add_below(const char *folder, const cwi_names *found, cwi_names *names,
+                           cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (size_t i = 0; i < found->count && st == CW_OK; i++) {
+        const size_t room = strlen(folder) + strlen(found->items[i]) + 2;
+        char *path = cwi_alloc_array(room, 1);
+        if (!path)
+            return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the files of a folder");
+        const bool slash = folder[strlen(folder) - 1] == '/';
+        snprintf(path, room, "%s%s%s", folder, slash ? "" : "/", found->items[i]);
+        st = cwi_names_add(names, path, err);
+        cwi_free(path);
+    }
+    return st;
+}
+
+/* The volumes of a folder, if they are a series: of one format, with names alike but for a
+ * number. */
+static cw_status list_folder(const char *folder, const cw_read_desc *desc, cwi_names *names,
+                             cw_error *err)
+{
+    cwi_input in = {.allow_external = desc->allow_external};
+    cwi_names found = {0};
+    size_t links = 0;
+    cw_status st = cwi_files_find(&in, folder, false, &found, &links, NULL);
+    in.allow_external = in.allow_external || desc->allow_external;
+    const bool is_series =
+        st == CW_OK && found.count && find_common(&in, &found) && have_numbers(&found);
+    cwi_input_close(&in);
+    st = is_series ? add_below(folder, &found, names, err) : CW_OK;
+    cwi_names_free(&found);
+    return st;
+}
+
+/* The format of a file, if it is a mesh; else NULL. */
+static const char *mesh_format_of(const char *path)
+{
+    unsigned char head[CWI_SNIFF_BYTES];
+    cwi_input in;
+    size_t size;
+    const char *format = NULL;
+    if (cwi_input_open(&in, path, NULL) != CW_OK)
+        return NULL;
+    if (cwi_input_read_at(in.fd, 0, head, sizeof head, &size, NULL) == CW_OK &&
+        !find_by_content(head, size, false))
+        format = cwi_mesh_format_by_content(head, size, in.size);
+    cwi_input_close(&in);
+    return format;
+}
+
+static cw_status list_pvd(const char *path, const cw_read_desc *desc, cwi_names *names,
+                          cw_error *err)
+{
+    cw_pvd_entry *entries;
+    size_t count;
+    cw_status st = cw_pvd_read(path, desc, &entries, &count, err);
+    for (size_t n = 0; n < count && st == CW_OK; n++) {
+        const char *mesh = mesh_format_of(entries[n].path);
+        st = mesh ? cw_fail(err, CW_ERR_FORMAT,
+                            "%s: lists meshes, such as '%s' (%s), and not volumes: check, "
+                            "convert and simplify take them, one at a time",
+                            path, entries[n].path, mesh)
+                  : cwi_names_add(names, entries[n].path, err);
+    }
+    cw_pvd_free(entries, count);
+    return st;
+}
+
+/* Several paths, or a pattern. */
+static cw_status list_paths(const char *const *paths, size_t path_count,
+                            const cw_read_desc *desc, cwi_names *names, cw_error *err)
+{
+    const bool several = path_count > 1;
+    cw_status st = CW_OK;
+    for (size_t i = 0; i < path_count && st == CW_OK; i++)
+        st = cw_pvd_is(paths[i])
+                 ? cw_fail(err, CW_ERR_ARGUMENT,
+                           "%s: a list of files (pvd) is a series by itself, and these are %zu "
+                           "arguments",
+                           paths[i], path_count)
+                 : add_path(paths[i], names, err);
+    if (!several && (st != CW_OK || !is_series(names, desc))) {
+        cwi_names_free(names);
+        return CW_OK;
+    }
+    if (st == CW_OK)
+        st = refuse_slices(names, desc, err);
+    if (st == CW_OK)
+        cwi_files_sort(names);
+    return st;
+}
+
 cw_status cw_steps_list(const char *const *paths, size_t path_count, const cw_read_desc *desc,
                         char ***files, size_t *count, cw_error *err)
 {
     const cw_read_desc d = desc ? *desc : (cw_read_desc){0};
-    const bool several = path_count > 1;
+    const bool several = path_count > 1, pattern = cwi_files_is_pattern(paths[0]);
     cwi_names names = {0};
     cw_status st = CW_OK;
     *files = NULL;
     *count = 0;
-    if (!several && (d.raw || !cwi_files_is_pattern(paths[0])))
-        return CW_OK;
-    for (size_t i = 0; i < path_count && st == CW_OK; i++)
-        st = add_path(paths[i], &names, err);
-    if (!several && (st != CW_OK || !is_series(&names, &d))) {
-        cwi_names_free(&names);
-        return CW_OK;
-    }
-    if (st == CW_OK)
-        st = refuse_slices(&names, &d, err);
+    if (several || (!d.raw && pattern))
+        st = list_paths(paths, path_count, &d, &names, err);
+    else if (!d.raw && !d.reader && cwi_is_folder(paths[0]))
+        st = list_folder(paths[0], &d, &names, err);
+    else if (!d.raw && cw_pvd_is(paths[0]))
+        st = list_pvd(paths[0], &d, &names, err);
     if (st != CW_OK) {
         cwi_names_free(&names);
         return st;
     }
-    cwi_files_sort(&names);
     *files = names.items;
     *count = names.count;
     return CW_OK;

@@ -108,16 +108,19 @@ CW_API cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_v
 
 /* Lists the files of a time series, of which each is a volume, and a step. Paths name files or
  * folders of slices, patterns stand for the files that match; numbers in names count as
- * numbers, so that 2 comes before 10.
+ * numbers, so that 2 comes before 10. A .pvd file by itself stands for the files that it lists,
+ * and so does a folder whose volumes are of one format and have names alike but for a number;
+ * files of no format in it do not matter.
  *
- * No series, but one volume for cw_volume_read(), is a path that is no pattern, a pattern of
- * slices (DICOM images, TIFF files of one page), and a pattern with a layout (raw): *count is
- * 0.
+ * No series, but one volume for cw_volume_read(), is any other path that is no pattern, a
+ * pattern of slices (DICOM images, TIFF files of one page), and a pattern with a layout (raw):
+ * *count is 0.
  *
  * files    set to an array of *count, to be freed with cw_steps_free()
  * Returns  CW_ERR_ARGUMENT  several paths, and one is a slice, or there is a layout
  *          CW_ERR_IO        a pattern among several paths that nothing matches; CW_ERR_LIMIT;
- *                           CW_ERR_NO_MEMORY */
+ *                           CW_ERR_NO_MEMORY; as cw_pvd_read()
+ *          CW_ERR_FORMAT    a .pvd file of meshes */
 CW_API cw_status cw_steps_list(const char *const *paths, size_t path_count,
                                const cw_read_desc *desc, char ***files, size_t *count,
                                cw_error *err);
@@ -434,6 +437,21 @@ typedef struct cw_pvd_entry {
     const char *path; /* as this program names it */
     double time;
 } cw_pvd_entry;
+
+/* Reads a .pvd file, in the order of times; a file without a time is of time 0. Entries name
+ * files that are there, as they are reached from here. Of desc only allow_external counts: else
+ * they lie below the .pvd's folder.
+ * entries  set to *count of them, to be freed with cw_pvd_free()
+ * Returns  CW_ERR_IO           it or one of its files is missing, or no regular file
+ *          CW_ERR_FORMAT       no list, an empty one, a time that is no number
+ *          CW_ERR_UNSAFE       a file outside the .pvd's folder; an XML document type
+ *          CW_ERR_UNSUPPORTED  several files of one time; CW_ERR_LIMIT; CW_ERR_NO_MEMORY */
+CW_API cw_status cw_pvd_read(const char *path, const cw_read_desc *desc, cw_pvd_entry **entries,
+                             size_t *count, cw_error *err);
+CW_API void cw_pvd_free(cw_pvd_entry *entries, size_t count);
+
+/* Whether a path names a .pvd file, by its content. */
+CW_API bool cw_pvd_is(const char *path);
 
 /* Writes a .pvd file, which ParaView opens as a time series: it lists files, such as .vtp, with
  * the time of each, by names relative to its own folder. Files of one time in a row are parts

@@ -207,7 +207,7 @@ static void damaged_files_are_told_where(void **state)
     } cases[] = {
         {"<VTKFile", "line 1 is no XML"},
         {"<html><VTKFile></html>", "the first element is not VTKFile"},
-        {"<VTKFile type='PolyData'>", "the VTK file is 'PolyData'; only ImageData"},
+        {"<VTKFile type='Table'>", "the VTK file is 'Table'; only ImageData"},
         {"<VTKFile type='PUnstructuredGrid'>", "the VTK file is 'PUnstructuredGrid'"},
         {"<VTKFile type='PImageData'>", "the VTK file is 'PImageData'"},
         {"<VTKFile>", "the VTK file is ''"},
