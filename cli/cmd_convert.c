@@ -14,7 +14,7 @@ typedef struct convert_args {
     cli_written written;
     const char *output, *json;
     int progress;
-    bool merge, split, check;
+    bool merge, split, check, orient;
 } convert_args;
 
 static const convert_args defaults = {.check = true};
@@ -26,6 +26,9 @@ static const cli_option options[] = {
     {"merge", 0, CLI_FLAG, NULL, "all parts as one mesh (parts, where the format has them)",
      offsetof(convert_args, merge)},
     {"split", 0, CLI_FLAG, NULL, "a file for each part", offsetof(convert_args, split)},
+    {"orient", 0, CLI_FLAG, NULL,
+     "turn shells round that face the wrong way: outer ones outward, cavities inward (off)",
+     offsetof(convert_args, orient)},
     {"check", 0, CLI_FLAG, NULL, "measure the mesh: closed, manifold, size (on; --no-check)",
      offsetof(convert_args, check)},
     {"json", 0, CLI_TEXT, "FILE", "write a report; - is the standard output",
@@ -57,6 +60,7 @@ static void put_params(cli_json *j, const void *p, const cli_made *made)
     cli_json_written(j, &args->written, made->path);
     cli_json_bool(j, "merge", args->merge);
     cli_json_bool(j, "split", args->split);
+    cli_json_bool(j, "orient", args->orient);
 }
 
 static void put_facts(cli_json *j, const void *p)
@@ -112,6 +116,8 @@ static cw_status read_input(run_state *s, cw_error *err)
     cli_report_begin(&s->report);
     cw_status st = parts ? cli_read_parts(path, args->input.reader, &args->input, &s->mesh, err)
                          : cli_read_mesh(path, args->input.reader, &args->input, &s->mesh, err);
+    if (st == CW_OK && args->orient)
+        st = cli_orient_mesh(&s->mesh, (int)args->input.threads, err);
     if (st != CW_OK)
         return st;
     cli_report_end(&s->report, "read", 1, cli_mesh_triangles(&s->mesh));
@@ -196,7 +202,9 @@ const cli_command cli_convert = {
     .about = "a mesh to another format, unit or frame",
     .more =
         "Reads a mesh, says what is in it, measures it and writes it, whatever it is like.\n"
-        "What the new format has no place for is told, and what single precision loses.\n\n"
+        "What the new format has no place for is told, and what single precision loses. "
+        "Closed\n"
+        "shells that face the wrong way are told, too, and --orient turns them round.\n\n"
         "Inside, coordinates are LPS millimetres; a file that names no unit is taken as that.\n"
         "--unit, --up and --frame change how they stand in the file, which names them where "
         "it\n"

@@ -61,6 +61,11 @@ static void add_quality(cw_quality *sum, const cw_quality *q)
                                     COUNT(nonmanifold_vertices),
                                     COUNT(duplicates),
                                     COUNT(degenerate),
+                                    COUNT(cavities),
+                                    COUNT(inside_out),
+                                    COUNT(nested),
+                                    COUNT(open_inward),
+                                    COUNT(to_turn),
                                     COUNT(needles),
                                     COUNT(caps)};
 #undef COUNT
@@ -76,10 +81,29 @@ static void add_quality(cw_quality *sum, const cw_quality *q)
     }
 }
 
+/* Which way shells face. Those that are open as indexed may be closed once vertices at the same
+ * place are one. */
+static cw_status find_facing(const cw_mesh *mesh, int threads, cw_quality *q, cw_error *err)
+{
+    const cw_quality_desc desc = {.weld = CW_WELD_LOCAL, .shells = true, .threads = threads};
+    cw_quality welded;
+    if (!q->open_edges)
+        return CW_OK;
+    cw_status st = cw_quality_measure(mesh, &desc, &welded, err);
+    if (st != CW_OK || welded.open_edges == q->open_edges)
+        return st;
+    q->cavities = welded.cavities;
+    q->inside_out = welded.inside_out;
+    q->nested = welded.nested;
+    q->to_turn = welded.to_turn;
+    return CW_OK;
+}
+
 static cw_status check(cli_report *report, const cli_delivery *how, const load *l,
                        cli_made *made, cw_error *err)
 {
     const cw_quality_desc desc = {.threads = how->threads,
+                                  .shells = how->unpromised,
                                   .progress =
                                       cli_progress((double)l->triangles / 1e6, "Mtriangle")};
     cw_status st = CW_OK;
@@ -87,6 +111,8 @@ static cw_status check(cli_report *report, const cli_delivery *how, const load *
     for (size_t p = 0; p < l->part_count && st == CW_OK; p++) {
         cw_quality q;
         st = cw_quality_measure(l->parts[p].mesh, &desc, &q, err);
+        if (st == CW_OK && desc.shells)
+            st = find_facing(l->parts[p].mesh, how->threads, &q, err);
         if (st == CW_OK && p == 0)
             made->quality = q;
         else if (st == CW_OK)
@@ -96,6 +122,7 @@ static cw_status check(cli_report *report, const cli_delivery *how, const load *
         return st;
     cli_report_end(report, "check", l->triangles, l->triangles);
     made->measured = true;
+    made->shells = how->unpromised;
     return hold_to_promise(how, made, err);
 }
 
@@ -174,6 +201,11 @@ static void print_findings(const cw_quality *q)
     for (size_t i = 0; i < sizeof faults / sizeof *faults; i++)
         if (faults[i].count)
             cli_result("; %s %s", cli_count(faults[i].count), faults[i].what);
+    if (q->to_turn && q->to_turn == q->components)
+        cli_result("; inside out (--orient turns it round)");
+    else if (q->to_turn)
+        cli_result("; %s shell%s facing the wrong way (--orient turns them round)",
+                   cli_count(q->to_turn), q->to_turn == 1 ? "" : "s");
 }
 
 static void print_promise(const cli_delivery *how, const cw_quality *q, size_t border_loops)

@@ -2,6 +2,9 @@
 
 #include "cli/console.h"
 #include "cli/quantity.h"
+#include "core/status.h"
+
+#include <cubewright/quality.h>
 
 #include <sha2.h>
 #include <sys/stat.h>
@@ -84,6 +87,22 @@ cw_status cli_read_parts(const char *path, const char *reader, const cli_input *
                          cli_mesh *mesh, cw_error *err)
 {
     return read_file(path, reader, input, true, mesh, err);
+}
+
+cw_status cli_orient_mesh(cli_mesh *m, int threads, cw_error *err)
+{
+    size_t turned = 0;
+    cw_status st = CW_OK;
+    for (size_t p = 0; p < (m->parts ? m->part_count : 1) && st == CW_OK; p++) {
+        cw_orient_counts counts;
+        cw_mesh *mesh = m->parts ? (cw_mesh *)(uintptr_t)m->parts[p].mesh : &m->mesh;
+        st = cw_mesh_orient(mesh, threads, &counts, err);
+        turned += counts.turned;
+    }
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, m->path);
+    cli_say("%s: %s shell%s turned round", m->path, cli_count(turned), turned == 1 ? "" : "s");
+    return CW_OK;
 }
 
 void cli_free_mesh(cli_mesh *mesh)

@@ -68,6 +68,9 @@ cw_status cli_read_mesh(const char *path, const char *reader, const cli_input *i
 cw_status cli_read_parts(const char *path, const char *reader, const cli_input *input,
                          cli_mesh *mesh, cw_error *err);
 
+/* Turns shells round that face the wrong way, of each part by itself, and says how many. */
+cw_status cli_orient_mesh(cli_mesh *mesh, int threads, cw_error *err);
+
 /* Of all parts. */
 size_t cli_mesh_triangles(const cli_mesh *mesh);
 

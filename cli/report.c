@@ -141,6 +141,7 @@ static void put_mesh(cli_json *j, const cli_made *made)
         cli_json_count(j, "cavities", q->cavities);
         cli_json_count(j, "inside_out", q->inside_out);
         cli_json_count(j, "nested", q->nested);
+        cli_json_count(j, "facing_wrong", q->to_turn);
     }
     if (made->crossings)
         cli_json_count(j, "self_intersections", made->crossings->count);

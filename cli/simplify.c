@@ -31,6 +31,9 @@ typedef struct run_state {
     double start;
 } run_state;
 
+/* Of the box's diagonal. */
+static const double LARGE_ERROR = 0.05;
+
 static const char *const attribute_names[3] = {"normal", "color", "scalar"};
 
 static void put_attributes(cli_json *j, const cli_weights *weights)
@@ -65,6 +68,7 @@ static void put_params(cli_json *j, const void *p, const cli_made *made)
     cli_json_count(j, "merged_vertices", s->pieces.merged);
     cli_json_bool(j, "allow_intersections", args->allow_intersections);
     cli_json_bool(j, "keep_border", args->keep_border);
+    cli_json_bool(j, "orient", args->orient);
     if (args->attributes.given)
         put_attributes(j, &args->attributes);
     cli_json_bool(j, "merge", args->merge);
@@ -178,6 +182,8 @@ static cw_status read_inputs(run_state *s, cw_error *err)
     cli_report_begin(&s->report);
     cw_status st = parts ? cli_read_parts(path, args->mesh_reader, &args->input, &s->mesh, err)
                          : cli_read_mesh(path, args->mesh_reader, &args->input, &s->mesh, err);
+    if (st == CW_OK && args->orient)
+        st = cli_orient_mesh(&s->mesh, s->threads, err);
     if (st == CW_OK && args->source)
         st = cli_read_volume(args->source, &args->input, false, &s->source, err);
     if (st == CW_OK)
@@ -238,10 +244,29 @@ static cw_simplify_desc simplify_desc(const run_state *s, size_t triangles)
                               .progress = cli_progress((double)triangles / 1e6, "Mtriangle")};
 }
 
+/* A bound as large as the details of the shape leaves little of it, most often because the file
+ * is in another unit than millimetres. */
+static void warn_of_large_error(run_state *s)
+{
+    const double share = s->error_mm / s->pieces.diagonal_mm;
+    if (!(share > LARGE_ERROR))
+        return;
+    const bool known = s->mesh.file.known & CW_KNOWN_UNIT;
+    cli_report_warn(
+        &s->report,
+        "--error %.6g mm is %.3g %% of the diagonal of the box, %.6g mm: little of the "
+        "shape may be left%s",
+        s->error_mm, 100 * share, s->pieces.diagonal_mm,
+        known || s->args->error.unit != CLI_MM
+            ? ""
+            : "; the file names no unit and was taken as mm");
+}
+
 static cw_status simplify(run_state *s, cw_error *err)
 {
     size_t triangles = 0;
     cw_status st = CW_OK;
+    warn_of_large_error(s);
     cli_report_begin(&s->report);
     for (size_t n = 0; n < s->pieces.count && st == CW_OK; n++) {
         cli_piece *p = &s->pieces.piece[n];

@@ -17,7 +17,7 @@ typedef struct cli_simplify_args {
     cli_counts lod;
     cli_weights attributes; /* normal, color, scalar */
     int inside, progress;
-    bool allow_intersections, keep_border, merge, measure;
+    bool allow_intersections, keep_border, merge, measure, orient;
 } cli_simplify_args;
 
 /* Fails when they contradict each other, or lack what is needed; looks at no file. */

@@ -67,6 +67,7 @@ typedef struct cw_quality {
     size_t inside_out;  /* such components facing inward, but not so */
     size_t nested;      /* such components facing outward, inside another one */
     size_t open_inward; /* open, oriented components that seem to face inward */
+    size_t to_turn;     /* components that cw_mesh_orient() would turn round */
     int64_t euler;      /* used vertices - edges + triangles */
     int64_t genus;      /* handles of all components; -1 unless an oriented manifold */
     double area_mm2;
@@ -77,10 +78,12 @@ typedef struct cw_quality {
 
 typedef struct cw_quality_desc {
     cw_weld weld;     /* default: as indexed */
-    bool shells;      /* count cavities to open_inward too; default: they stay 0 */
+    bool shells;      /* count cavities to to_turn too; default: they stay 0 */
     int threads;      /* default: all */
     uint8_t *defects; /* triangle_count: bits of cw_defect are set in it; default: none kept */
     cw_progress progress; /* default: none */
+    uint8_t *turn;    /* triangle_count, with shells: 1 where cw_mesh_orient() turns the shell
+                         round, else 0; default: none kept */
 } cw_quality_desc;
 
 /* Measures a mesh in time proportional to its triangles.
@@ -91,6 +94,24 @@ CW_API cw_status cw_quality_measure(const cw_mesh *mesh, const cw_quality_desc *
 
 /* The bytes that measuring takes beside the mesh; for one with open edges a third more. */
 CW_API size_t cw_quality_bytes(size_t vertices, size_t triangles);
+
+/* What cw_mesh_orient() did. */
+typedef struct cw_orient_counts {
+    size_t turned;    /* shells, that is components */
+    size_t triangles; /* of these */
+} cw_orient_counts;
+
+/* Turns shells round that face the wrong way: outer ones shall face outward, those inside an
+ * odd number of closed others are cavities and face inward. Left as they are: open shells, of
+ * which a bowl may face either way, and those whose triangles do not agree with each other or
+ * that are no manifold. Vertices at equal positions count as one. Normals are turned with their
+ * shell where they agreed with its triangles.
+ *
+ * mesh     in place: the corners of triangles change places; as it was on failure
+ * counts   may be NULL
+ * Returns  as cw_quality_measure() */
+CW_API cw_status cw_mesh_orient(cw_mesh *mesh, int threads, cw_orient_counts *counts,
+                                cw_error *err);
 
 /* No open, no non-manifold and no misoriented edge, no non-manifold vertex. */
 CW_API bool cw_quality_is_closed_manifold(const cw_quality *quality);

@@ -17,6 +17,7 @@ typedef struct work {
     cwi_boxes tree;
     uint32_t *closed; /* the roots of closed shells */
     int *around;      /* how often the other shells wind around each of these */
+    size_t *depth;    /* how many triangles of closed ones a ray from it meets */
     size_t count;
 } work;
 
@@ -26,6 +27,7 @@ typedef struct ray {
     uint32_t shell; /* where it starts */
     const float *start;
     int winding;
+    size_t met; /* triangles of closed shells */
 } ray;
 
 static int sign_of(float x)
@@ -65,8 +67,10 @@ static void meet(ray *r, uint32_t triangle)
     for (int n = 0; n < 3; n++)
         corner[n] = w->points + 3 * (size_t)v[n];
     const int winding = winding_of(corner, r->start);
-    if (winding && winding * cwi_orient3d(corner[0], corner[1], corner[2], r->start) < 0)
+    if (winding && winding * cwi_orient3d(corner[0], corner[1], corner[2], r->start) < 0) {
         r->winding += winding;
+        r->met += !r->w->shells->unbounded[r->w->part[v[0]]];
+    }
 }
 
 static void box_around(const ray *r, float box[6])
@@ -92,11 +96,12 @@ static bool meet_node(void *context, size_t node)
 static void wind_around(void *context, size_t k)
 {
     work *w = context;
-    ray r = {w, w->closed[k], w->welded->points + 3 * (size_t)w->closed[k], 0};
+    ray r = {w, w->closed[k], w->welded->points + 3 * (size_t)w->closed[k], 0, 0};
     float box[6];
     box_around(&r, box);
     cwi_boxes_visit(&w->tree, box, 0, meet_node, &r);
     w->around[k] = r.winding;
+    w->depth[k] = r.met;
 }
 
 /* An open shell has no volume for certain. One that has a tenth of a sphere's of its area, seen
@@ -111,20 +116,31 @@ static void find_open_inward(const work *w, uint8_t *wrong, cw_quality *q)
     }
 }
 
+enum { WRONG = 1, TURN = 2 };
+
+/* Which way a shell should face is told by where it is, whichever way others do: in a solid it
+ * is where it is inside an odd number of them. An open shell is never turned: a bowl may face
+ * either way. */
 static void judge(const work *w, const cw_quality_desc *d, cw_quality *q)
 {
-    uint8_t *wrong = w->shells->unbounded; /* has served its purpose */
-    find_open_inward(w, wrong, q);
+    uint8_t *found = w->shells->unbounded; /* has served its purpose */
+    find_open_inward(w, found, q);
     for (size_t k = 0; k < w->count; k++) {
         const bool inward = w->shells->volume[w->closed[k]] < 0;
         q->cavities += inward && w->around[k] == 1;
         q->inside_out += inward && w->around[k] != 1;
         q->nested += !inward && w->around[k] != 0;
-        wrong[w->closed[k]] = w->around[k] != (inward ? 1 : 0);
+        found[w->closed[k]] = (w->around[k] != (inward ? 1 : 0) ? WRONG : 0) |
+                              (inward != (w->depth[k] % 2 == 1) ? TURN : 0);
+        q->to_turn += (found[w->closed[k]] & TURN) != 0;
     }
-    for (size_t t = 0; t < w->welded->mesh->triangle_count && d->defects; t++)
-        if (!cwi_is_collapsed(w->welded, t) && wrong[w->part[w->welded->vertex[3 * t]]])
+    for (size_t t = 0; t < w->welded->mesh->triangle_count && (d->defects || d->turn); t++) {
+        const uint8_t here = found[w->part[w->welded->vertex[3 * t]]];
+        if (d->turn)
+            d->turn[t] = here & TURN ? 1 : 0;
+        if (d->defects && here & WRONG && !cwi_is_collapsed(w->welded, t))
             d->defects[t] |= CW_DEFECT_INSIDE_OUT;
+    }
 }
 
 /* Roots are found once and for all, so that threads may read them. */
@@ -145,7 +161,8 @@ bool cwi_measure_shells(const cwi_welded *welded, const cwi_shells *shells,
     work w = {.welded = welded, .shells = shells, .part = shells->part};
     w.closed = cwi_alloc_array(vertices, sizeof *w.closed);
     w.around = cwi_alloc_zeroed(vertices, sizeof *w.around);
-    const bool ok = w.closed && w.around && cwi_welded_sort(welded, &w.tree);
+    w.depth = cwi_alloc_zeroed(vertices, sizeof *w.depth);
+    const bool ok = w.closed && w.around && w.depth && cwi_welded_sort(welded, &w.tree);
     if (ok) {
         list_closed(&w);
         cwi_each_layer(w.count, 1 << 12, desc->threads, &desc->progress, "checking",
@@ -155,5 +172,6 @@ bool cwi_measure_shells(const cwi_welded *welded, const cwi_shells *shells,
     cwi_boxes_free(&w.tree);
     cwi_free(w.closed);
     cwi_free(w.around);
+    cwi_free(w.depth);
     return ok;
 }

@@ -351,9 +351,59 @@ static void memory_running_out_is_an_error_at_every_allocation(void **state)
     cw_mesh_free(&mesh);
 }
 
+/* A cube of a side, its corner at a place, wound outward or inward, added to a mesh. */
+static void add_cube(cw_mesh *m, float at, float side, bool inward)
+{
+    static const uint32_t faces[12][3] = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6},
+                                          {0, 1, 4}, {1, 5, 4}, {2, 6, 3}, {3, 6, 7},
+                                          {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+    const uint32_t first = (uint32_t)m->vertex_count;
+    for (uint32_t v = 0; v < 8; v++)
+        for (uint32_t a = 0; a < 3; a++) {
+            m->positions[3 * m->vertex_count + a] = at + (v >> a & 1 ? side : 0);
+            m->normals[3 * m->vertex_count + a] =
+                (inward ? -1.0f : 1.0f) * (v >> a & 1 ? 1 : -1) / sqrtf(3);
+            m->vertex_count += a == 2;
+        }
+    for (size_t t = 0; t < 12; t++, m->triangle_count++)
+        for (size_t c = 0; c < 3; c++)
+            m->triangles[3 * m->triangle_count + c] = first + faces[t][c && inward ? 3 - c : c];
+}
+
+/* A solid, a cavity in it, an island in that, and a cube beside them: each either way. */
+static void shells_are_turned_by_where_they_are(void **state)
+{
+    (void)state;
+    for (unsigned inward = 0; inward < 16; inward++) {
+        float positions[96], normals[96];
+        uint32_t triangles[144];
+        cw_mesh m = {.positions = positions, .normals = normals, .triangles = triangles};
+        cw_orient_counts counts;
+        cw_quality q;
+        cw_error err = {0};
+        add_cube(&m, 0, 10, inward & 1);
+        add_cube(&m, 2, 6, inward & 2);
+        add_cube(&m, 3, 4, inward & 4);
+        add_cube(&m, 20, 1, inward & 8);
+        const size_t wrong = (inward & 1) + !(inward & 2) + (inward >> 2 & 1) + (inward >> 3);
+        const cw_quality_desc desc = {.shells = true};
+        assert_ok(cw_quality_measure(&m, &desc, &q, &err), err);
+        assert_int_equal(q.to_turn, wrong);
+        assert_ok(cw_mesh_orient(&m, 1, &counts, &err), err);
+        assert_int_equal(counts.turned, wrong);
+        assert_int_equal(counts.triangles, 12 * wrong);
+        assert_ok(cw_quality_measure(&m, &desc, &q, &err), err);
+        assert_true(q.to_turn == 0 && q.cavities == 1);
+        assert_near(q.volume_mm3, 1000 - 216 + 64 + 1, 1e-3);
+        /* outward normals of the solid, and of the cavity into it */
+        assert_true(m.normals[0] < 0 && m.normals[24] > 0);
+    }
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
+        cmocka_unit_test(shells_are_turned_by_where_they_are),
         cmocka_unit_test(a_cube_is_all_it_should_be),
         cmocka_unit_test(a_missing_triangle_opens_three_edges),
         cmocka_unit_test(a_flipped_triangle_misorients_three_edges),
