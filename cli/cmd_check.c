@@ -55,6 +55,7 @@ static const cli_option options[] = {
      offsetof(check_args, progress)},
     {"mesh-reader", 0, CLI_TEXT, "NAME", "read meshes as this format of 'formats' (by content)",
      offsetof(check_args, mesh_reader)},
+    CLI_CLAIM_OPTIONS("source", "the source", CLI_INPUT_ROW(check_args, source_claim)),
     CLI_INPUT_OPTIONS(check_args),
 };
 
@@ -166,10 +167,11 @@ static cw_status read_inputs(run_state *s, cw_error *err)
     cw_status st =
         cli_read_mesh(args->common.inputs[0], args->mesh_reader, &args->input, &s->mesh, err);
     if (st == CW_OK && args->reference)
-        st =
-            cli_read_mesh(args->reference, args->mesh_reader, &args->input, &s->reference, err);
+        st = cli_read_reference(args->reference, args->mesh_reader, &args->input, &s->reference,
+                                err);
+    const cli_input source = cli_source_input(&args->input);
     if (st == CW_OK && args->source)
-        st = cli_read_volume(args->source, &args->input, false, &s->volume, err);
+        st = cli_read_volume(args->source, &source, false, &s->volume, err);
     if (st == CW_OK)
         cli_report_end(&s->report, "read", 1, s->mesh.mesh.triangle_count);
     return st;

@@ -210,7 +210,8 @@ const cli_command cli_convert = {
         "it\n"
         "can, so that cubewright reads the same mesh back. glTF has a unit and axes of its "
         "own:\n"
-        "metres, +Y up.\n\n"
+        "metres, +Y up. --input-unit, --input-up and --input-frame say how coordinates of the\n"
+        "input are meant, where it does not say so itself.\n\n"
         "Parts (objects of OBJ, solids of an STL text, nodes of glTF) stay parts where the "
         "new\n"
         "format has them, and become one mesh elsewhere. --merge makes one of them anywhere,\n"
@@ -219,6 +220,7 @@ const cli_command cli_convert = {
         "  cubewright convert bone.stl -o bone.glb\n"
         "  cubewright convert bone.glb -o web.glb --compress draco --tolerance 0.05mm\n"
         "  cubewright convert scene.glb -o scene.obj --unit m --up y\n"
+        "  cubewright convert artist.obj -o print.stl --input-unit in --input-up y\n"
         "  cubewright convert skeleton.obj --split -o 'out/{stem}-{name}.stl' --ascii\n",
     .options = options,
     .option_count = sizeof options / sizeof *options,

@@ -59,6 +59,7 @@ static const cli_option options[] = {
      CLI_INPUT_ROW(cli_simplify_args, max_triangles)},
     CLI_WRITTEN_OPTIONS(cli_simplify_args),
     CLI_COMPRESS_OPTIONS(cli_simplify_args),
+    CLI_CLAIM_OPTIONS("source", "the source", CLI_INPUT_ROW(cli_simplify_args, source_claim)),
     CLI_INPUT_OPTIONS(cli_simplify_args),
 };
 

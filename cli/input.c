@@ -389,6 +389,24 @@ static cw_status read_voxels(const char *path, cw_read_desc *desc, const cli_inp
     return st;
 }
 
+cw_claim cli_claim_of(const cli_claim *c)
+{
+    return (cw_claim){.has_unit = c->unit > 0,
+                      .has_frame = c->frame > 0,
+                      .has_up = c->up > 0,
+                      .axes = {.unit = (cw_unit)(c->unit > 0 ? c->unit - 1 : 0),
+                               .ras = c->frame == 2,
+                               .y_up = c->up == 2},
+                      .rule = c->override ? CW_CLAIM_OVERRIDE : CW_CLAIM_AGREE};
+}
+
+cli_input cli_source_input(const cli_input *input)
+{
+    cli_input source = *input;
+    source.claim = input->source_claim;
+    return source;
+}
+
 cw_read_desc cli_read_desc(const cli_input *input)
 {
     cw_read_desc desc = {.reader = input->reader,
@@ -400,6 +418,7 @@ cw_read_desc cli_read_desc(const cli_input *input)
                          .tilt = (cw_tilt)input->tilt,
                          .no_sandbox = input->no_sandbox,
                          .timeout_s = (double)input->timeout_s,
+                         .claim = cli_claim_of(&input->claim),
                          .max_voxels = input->max_voxels,
                          .max_bytes = cli_memory_limit(input)};
     if (input->spacing.given)

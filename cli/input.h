@@ -8,12 +8,46 @@
 
 #include <cubewright/formats.h>
 
+/* What is said of a file's coordinates; the first choice of each is that nothing is. */
+typedef struct cli_claim {
+    int unit, up, frame;
+    bool override;
+} cli_claim;
+
+/* Rows for what is said of the input, or with another prefix of another file. */
+#define CLI_CLAIM_OPTIONS(prefix, what, row)                                                   \
+    {prefix "-unit",                                                                           \
+     0,                                                                                        \
+     CLI_CHOICE,                                                                               \
+     "file/mm/um/cm/m/in/ft",                                                                  \
+     "of the coordinates in " what ", where it names none (as the file says, else mm)",        \
+     row + offsetof(cli_claim, unit)},                                                         \
+        {prefix "-up",                                                                         \
+         0,                                                                                    \
+         CLI_CHOICE,                                                                           \
+         "file/z/y",                                                                           \
+         "which axis points up in " what ", where it does not say (z)",                        \
+         row + offsetof(cli_claim, up)},                                                       \
+        {prefix "-frame",                                                                      \
+         0,                                                                                    \
+         CLI_CHOICE,                                                                           \
+         "file/lps/ras",                                                                       \
+         "what x and y of a patient mean in " what ", where it does not say (lps)",            \
+         row + offsetof(cli_claim, frame)},                                                    \
+    {                                                                                          \
+        prefix "-override", 0, CLI_FLAG, NULL,                                                 \
+            "these three count also where the file says otherwise (an error)",                 \
+            row + offsetof(cli_claim, override)                                                \
+    }
+
 typedef struct cli_input {
     const char *reader, *raw, *series, *array, *points;
     int gaps, tilt; /* cw_gaps, cw_tilt */
     bool no_sandbox;
     size_t timeout_s;
     cli_lengths spacing;
+    cli_claim claim;        /* of the input */
+    cli_claim source_claim; /* of the source volume, in commands that take a mesh and that */
     cli_ranges crop;
     cli_component component;
     size_t step;
@@ -46,6 +80,7 @@ typedef struct cli_input {
          "X[,Y,Z]",                                                                            \
          "the distance of voxels, e.g. 0.5mm or 1x1x2mm (the file's)",                         \
          CLI_INPUT_ROW(args, spacing)},                                                        \
+        CLI_CLAIM_OPTIONS("input", "the input", CLI_INPUT_ROW(args, claim)),                   \
         {"series",                                                                             \
          0,                                                                                    \
          CLI_TEXT,                                                                             \
@@ -158,6 +193,12 @@ typedef struct cli_volume {
 
 /* The least and the largest step along an axis of a rectilinear grid. */
 void cli_spacing_range(const cli_volume *volume, int axis, double mm[2]);
+
+/* What is said of a file's coordinates, for the library. */
+cw_claim cli_claim_of(const cli_claim *claim);
+
+/* The options for a source volume beside a mesh: what is said of the input is of the mesh. */
+cli_input cli_source_input(const cli_input *input);
 
 /* What the options say of reading. */
 cw_read_desc cli_read_desc(const cli_input *input);

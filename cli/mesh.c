@@ -57,7 +57,7 @@ static double file_bytes(const char *path)
 }
 
 static cw_status read_file(const char *path, const char *reader, const cli_input *input,
-                           bool parts, cli_mesh *mesh, cw_error *err)
+                           bool parts, bool reference, cli_mesh *mesh, cw_error *err)
 {
     cw_mesh_read_desc desc = {
         .reader = reader,
@@ -66,7 +66,10 @@ static cw_status read_file(const char *path, const char *reader, const cli_input
         .max_bytes = cli_memory_limit(input),
         .no_sandbox = input->no_sandbox,
         .timeout_s = (double)input->timeout_s,
+        .claim = cli_claim_of(&input->claim),
     };
+    if (reference)
+        desc.claim.rule = CW_CLAIM_FILL;
     desc.progress = cli_progress(file_bytes(path) / 1e6, "MB");
     *mesh = (cli_mesh){.path = path};
     cw_status st =
@@ -80,13 +83,19 @@ static cw_status read_file(const char *path, const char *reader, const cli_input
 cw_status cli_read_mesh(const char *path, const char *reader, const cli_input *input,
                         cli_mesh *mesh, cw_error *err)
 {
-    return read_file(path, reader, input, false, mesh, err);
+    return read_file(path, reader, input, false, false, mesh, err);
+}
+
+cw_status cli_read_reference(const char *path, const char *reader, const cli_input *input,
+                             cli_mesh *mesh, cw_error *err)
+{
+    return read_file(path, reader, input, false, true, mesh, err);
 }
 
 cw_status cli_read_parts(const char *path, const char *reader, const cli_input *input,
                          cli_mesh *mesh, cw_error *err)
 {
-    return read_file(path, reader, input, true, mesh, err);
+    return read_file(path, reader, input, true, false, mesh, err);
 }
 
 cw_status cli_orient_mesh(cli_mesh *m, int threads, cw_error *err)

@@ -14,6 +14,7 @@
      "NAME",                                                                                   \
      "read as this format of 'formats' (by content)",                                          \
      CLI_INPUT_ROW(args, reader)},                                                             \
+        CLI_CLAIM_OPTIONS("input", "the input", CLI_INPUT_ROW(args, claim)),                   \
         {"allow-external",                                                                     \
          0,                                                                                    \
          CLI_FLAG,                                                                             \
@@ -63,6 +64,11 @@ typedef struct cli_mesh {
  * reader  a name of 'formats'; NULL: by content        input  for its memory and safety */
 cw_status cli_read_mesh(const char *path, const char *reader, const cli_input *input,
                         cli_mesh *mesh, cw_error *err);
+
+/* A mesh to compare the input with: what is said of that counts where this file does not say.
+ */
+cw_status cli_read_reference(const char *path, const char *reader, const cli_input *input,
+                             cli_mesh *mesh, cw_error *err);
 
 /* Reads the parts of a file, each as a mesh, and says what was found. */
 cw_status cli_read_parts(const char *path, const char *reader, const cli_input *input,

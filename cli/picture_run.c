@@ -225,7 +225,7 @@ static cw_status read_beside(cli_pictures *p, cw_error *err)
     cli_mesh file;
     if (p->source.mesh.triangle_count)
         return CW_OK;
-    cw_status st = cli_read_mesh(p->args->mesh, NULL, &p->args->input, &file, err);
+    cw_status st = cli_read_reference(p->args->mesh, NULL, &p->args->input, &file, err);
     p->source.mesh = file.mesh;
     return st;
 }

@@ -176,6 +176,7 @@ static cw_status read_inputs(run_state *s, cw_error *err)
 {
     const cli_simplify_args *args = s->args;
     const char *path = args->common.inputs[0];
+    const cli_input source = cli_source_input(&args->input);
     const cw_format *format = cw_mesh_format(args->output, args->written.format);
     const bool parts =
         !args->merge && !args->lod.count && format && format->keeps & CW_KEEPS_PARTS;
@@ -185,7 +186,7 @@ static cw_status read_inputs(run_state *s, cw_error *err)
     if (st == CW_OK && args->orient)
         st = cli_orient_mesh(&s->mesh, s->threads, err);
     if (st == CW_OK && args->source)
-        st = cli_read_volume(args->source, &args->input, false, &s->source, err);
+        st = cli_read_volume(args->source, &source, false, &s->source, err);
     if (st == CW_OK)
         st = take_pieces(s, err);
     for (size_t n = 0; n < s->pieces.count && st == CW_OK && args->source; n++)
@@ -259,7 +260,7 @@ static void warn_of_large_error(run_state *s)
         s->error_mm, 100 * share, s->pieces.diagonal_mm,
         known || s->args->error.unit != CLI_MM
             ? ""
-            : "; the file names no unit and was taken as mm");
+            : "; the file names no unit and was taken as mm (--input-unit)");
 }
 
 static cw_status simplify(run_state *s, cw_error *err)

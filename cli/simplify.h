@@ -7,7 +7,7 @@
 
 typedef struct cli_simplify_args {
     cli_common common;
-    cli_input input; /* of the source volume; limits and safety are the mesh's, too */
+    cli_input input; /* of the source volume; limits, safety and claims are the mesh's, too */
     cli_compress compress;
     cli_written written;
     const char *output, *json, *source, *mesh_reader;

@@ -1,5 +1,6 @@
 #include "core/memory.h"
 #include "core/status.h"
+#include "formats/claim.h"
 #include "formats/parts.h"
 #include "formats/pvd.h"
 #include "formats/readers.h"
@@ -154,6 +155,8 @@ static cw_status read_open_file(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file 
     st = found->read(in, mesh, said, err);
     if (st == CW_OK)
         drop_broken_normals(mesh);
+    if (st == CW_OK)
+        st = cwi_claim_mesh(&in->desc.claim, said, mesh, err);
     if (st == CW_OK)
         st = cwi_turn_back(mesh, &said->axes, err);
     const size_t parts = count_marks(&in->marks, mesh);

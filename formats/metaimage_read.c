@@ -304,6 +304,7 @@ static void set_affine(const metaimage *m, const double *spacing, const double *
         shape->affine[r][3] = r < n ? origin[r] * mm : 0;
     }
     shape->known = n < 3 ? 0 : CW_KNOWN_UNIT | CW_KNOWN_FRAME;
+    shape->said_unit_mm = mm;
 }
 
 static cw_status read_frame(const metaimage *m, cwi_source *src, cw_error *err)

@@ -272,6 +272,7 @@ static cw_status read_frame(const mrc *m, cwi_source *src, cw_error *err)
         for (int c = 0; c < 3; c++)
             src->shape.affine[r][c] = edges[r][c] * spacing[c];
     src->shape.known = known ? CW_KNOWN_UNIT : 0;
+    src->shape.said_unit_mm = known ? mm_per_angstrom : 0;
     set_origin(m, known ? mm_per_angstrom : 1, &src->shape);
     return CW_OK;
 }

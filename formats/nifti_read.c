@@ -404,6 +404,7 @@ static void read_units(const nifti *n, cw_volume *shape)
     if (scale == 0)
         return;
     shape->known |= CW_KNOWN_UNIT;
+    shape->said_unit_mm = scale;
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 4; c++)
             shape->affine[r][c] *= scale;
@@ -434,6 +435,7 @@ static cw_status read_frame(const nifti *n, cwi_source *src, cw_error *err)
     if (sform || qform) {
         cwi_flip_ras(src->shape.affine);
         src->shape.known |= CW_KNOWN_FRAME;
+        src->shape.said_ras = true;
     }
     read_units(n, &src->shape);
     return CW_OK;

@@ -345,6 +345,9 @@ static void turn_world(const cwi_nrrd *n, bool axes_have_units, cw_volume *shape
     shape->known = (anatomical && directed ? CW_KNOWN_FRAME : 0u) |
                    (anatomical || world_has_units || axes_have_units ? CW_KNOWN_UNIT : 0u) |
                    (n->has_segments ? CW_KNOWN_LABELS : 0u);
+    shape->said_unit_mm = n->world_mm[0] != 0 ? n->world_mm[0] : n->axis[0].mm;
+    shape->said_ras =
+        n->space >= 0 && spaces[n->space].sign[0] < 0 && spaces[n->space].sign[1] < 0;
 }
 
 static double step_seconds(const cwi_nrrd *n, size_t i)

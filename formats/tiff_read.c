@@ -153,6 +153,7 @@ static void set_frame(const cwi_tiff_facts *f, const cw_read_desc *desc, cw_volu
                                                         : 1;
     }
     v->known = known ? CW_KNOWN_UNIT : 0;
+    v->said_unit_mm = known ? f->unit_mm[0] : 0;
     if (some && !known && !(desc->spacing_mm[0] > 0))
         cwi_note(desc,
                  "the file does not say all sizes of a voxel: what is missing is taken as "

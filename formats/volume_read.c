@@ -1,6 +1,7 @@
 #include "core/memory.h"
 #include "core/status.h"
 #include "core/volume.h"
+#include "formats/claim.h"
 #include "formats/files.h"
 #include "formats/mesh_readers.h"
 #include "formats/pvd.h"
@@ -411,11 +412,18 @@ cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *
     opened o = {0};
     memset(volume, 0, sizeof *volume);
     cw_status st = check_spacing(d.spacing_mm, err);
+    if (st == CW_OK && d.spacing_mm[0] > 0 && d.claim.has_unit)
+        st = cw_fail(
+            err, CW_ERR_ARGUMENT,
+            "its spacing in mm and its unit are both said (--spacing, --input-unit): one "
+            "was expected");
     if (st == CW_OK)
         st = open_path(&o, path, &d, err);
     o.in.arrays = d.note && !d.array ? &arrays : NULL;
     if (st == CW_OK)
         st = read_opened(&o, &d, volume, err);
+    if (st == CW_OK && (st = cwi_claim_volume(&d.claim, volume, err)) != CW_OK)
+        cw_volume_free(volume);
     if (st == CW_OK)
         st = expect_thin(&d, volume, err);
     if (st == CW_OK)

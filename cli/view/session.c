@@ -143,7 +143,7 @@ static cw_status read_beside(view *v, cw_error *err)
     const char *path = v->state.args.mesh;
     if (!path || v->source.is_mesh)
         return CW_OK;
-    cw_status st = cli_read_mesh(path, NULL, &v->state.args.input, &file, err);
+    cw_status st = cli_read_reference(path, NULL, &v->state.args.input, &file, err);
     v->source.mesh = file.mesh;
     return st;
 }

@@ -34,6 +34,47 @@ typedef enum cw_tilt {
     CW_TILT_KEEP     /* stack them up as if they were not shifted */
 } cw_tilt;
 
+/* Units of coordinates in files: constant, name, millimetres. */
+#define CW_UNIT_TABLE(X)                                                                       \
+    X(CW_UNIT_MM, "mm", 1)                                                                     \
+    X(CW_UNIT_UM, "um", 1e-3)                                                                  \
+    X(CW_UNIT_CM, "cm", 10)                                                                    \
+    X(CW_UNIT_M, "m", 1000)                                                                    \
+    X(CW_UNIT_IN, "in", 25.4)                                                                  \
+    X(CW_UNIT_FT, "ft", 304.8)
+
+typedef enum cw_unit {
+#define CW_UNIT_ENUM(constant, name, mm) constant,
+    CW_UNIT_TABLE(CW_UNIT_ENUM)
+#undef CW_UNIT_ENUM
+        CW_UNIT_COUNT
+} cw_unit;
+
+CW_API const char *cw_unit_name(cw_unit unit);
+CW_API double cw_unit_mm(cw_unit unit);
+
+/* What coordinates in a file mean. Zeroed: LPS millimetres, +Z up. */
+typedef struct cw_axes {
+    cw_unit unit;
+    bool ras;  /* x to the right and y to the front; default: to the left and to the back */
+    bool y_up; /* (x, y, z) stands as (x, z, -y) */
+} cw_axes;
+
+/* What to do where a file says something else than its reader's caller. */
+typedef enum cw_claim_rule {
+    CW_CLAIM_AGREE,   /* CW_ERR_ARGUMENT */
+    CW_CLAIM_FILL,    /* what the file says counts */
+    CW_CLAIM_OVERRIDE /* what the caller says counts */
+} cw_claim_rule;
+
+/* What a caller says of the coordinates in a file that may name neither unit nor frame: as with
+ * OpenVDB, which by custom is in metres and y-up. Zeroed: nothing. */
+typedef struct cw_claim {
+    bool has_unit, has_frame, has_up; /* which of these is said */
+    cw_axes axes;                     /* unit; ras; y_up */
+    cw_claim_rule rule;
+} cw_claim;
+
 /* How to read a volume. Zero-initialise it; a zero field means the default named beside it. */
 typedef struct cw_read_desc {
     const char *reader;       /* a name of cw_formats(); default: by content, then extension */
@@ -48,6 +89,7 @@ typedef struct cw_read_desc {
     uint64_t max_bytes;       /* of voxels in memory, of an irregular grid with all that reading
                                  it takes; default: no limit */
     double spacing_mm[3];     /* in place of the file's; default: all 0, the file's */
+    cw_claim claim;           /* of the file's coordinates; default: as it says, else LPS mm */
     const char *array;        /* by its name, where files have several; default: the one that
                                  the file names, else the first of one value */
 
@@ -102,7 +144,9 @@ typedef struct cw_read_desc {
  *          CW_ERR_BACKEND      a library died of the file, or took too long
  *          CW_ERR_LIMIT        more voxels or bytes than allowed; CW_ERR_NO_MEMORY
  *          CW_ERR_ARGUMENT     no such reader or array; a region that is empty or leaves the
- *                              volume; a spacing for an irregular grid; CW_ERR_CANCELLED */
+ *                              volume; a spacing for an irregular grid, or beside the claim
+ *                              of a unit; a claim that the file contradicts; CW_ERR_CANCELLED
+ */
 CW_API cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *volume,
                                 const char **format, cw_error *err);
 
@@ -174,32 +218,6 @@ CW_API void cw_series_free(cw_series *series);
  * Returns CW_ERR_ARGUMENT naming the key that is wrong. */
 CW_API cw_status cw_raw_layout_parse(const char *text, cw_raw_layout *layout, cw_error *err);
 
-/* Units of coordinates in mesh files: constant, name, millimetres. */
-#define CW_UNIT_TABLE(X)                                                                       \
-    X(CW_UNIT_MM, "mm", 1)                                                                     \
-    X(CW_UNIT_UM, "um", 1e-3)                                                                  \
-    X(CW_UNIT_CM, "cm", 10)                                                                    \
-    X(CW_UNIT_M, "m", 1000)                                                                    \
-    X(CW_UNIT_IN, "in", 25.4)                                                                  \
-    X(CW_UNIT_FT, "ft", 304.8)
-
-typedef enum cw_unit {
-#define CW_UNIT_ENUM(constant, name, mm) constant,
-    CW_UNIT_TABLE(CW_UNIT_ENUM)
-#undef CW_UNIT_ENUM
-        CW_UNIT_COUNT
-} cw_unit;
-
-CW_API const char *cw_unit_name(cw_unit unit);
-CW_API double cw_unit_mm(cw_unit unit);
-
-/* What coordinates in a mesh file mean. Zeroed: LPS millimetres, +Z up. */
-typedef struct cw_axes {
-    cw_unit unit;
-    bool ras;  /* x to the right and y to the front; default: to the left and to the back */
-    bool y_up; /* (x, y, z) stands as (x, z, -y) */
-} cw_axes;
-
 /* How to read a mesh. Zero-initialise it; a zero field means the default named beside it. */
 typedef struct cw_mesh_read_desc {
     const char *reader;     /* a name of cw_formats(); default: by content, then extension */
@@ -208,6 +226,7 @@ typedef struct cw_mesh_read_desc {
     uint64_t max_bytes;     /* of the arrays that a mesh takes while read; default: no limit */
     bool no_sandbox;        /* run libraries in this process, not in one without rights */
     double timeout_s;       /* for a library; default 60 */
+    cw_claim claim;         /* of the file's coordinates; default: as it says, else LPS mm */
     cw_progress progress;   /* default: none */
 } cw_mesh_read_desc;
 
@@ -266,7 +285,8 @@ typedef struct cw_mesh_file {
  *                              draws its meshes so often that 2^26 triangles and the bytes of
  *                              its files are exceeded, 3MF whose text is 64 MiB and 100 times
  *                              its archive, unless max_triangles is stated
- *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED; CW_ERR_ARGUMENT: no such reader
+ *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
+ *          CW_ERR_ARGUMENT     no such reader; a claim that the file contradicts
  * Cost     one pass over the file; 24 bytes a vertex and 12 a triangle while it is read */
 CW_API cw_status cw_mesh_read(const char *path, const cw_mesh_read_desc *desc, cw_mesh *mesh,
                               cw_mesh_file *file, cw_error *err);

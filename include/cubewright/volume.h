@@ -98,6 +98,8 @@ typedef struct cw_volume {
     bool has_nodata; /* voxels equal to nodata, before scaling, are outside the domain */
     double nodata;
     unsigned known;           /* cw_known flags */
+    double said_unit_mm;      /* what the file's own unit was, before it became mm; 0: mm */
+    bool said_ras;            /* and whether its own x and y went to the right and the front */
     void *owned, *owned_grid; /* memory freed by cw_volume_free(), of voxels and of coordinates,
                                  cells or leaves; NULL for a borrowed view */
 } cw_volume;

@@ -87,6 +87,49 @@ static void turn_bytes(nifti_file *f)
     reverse(f->bytes + f->layout->voxels, 12, 2);
 }
 
+/* The file is in RAS mm: a caller may say otherwise, if the rule lets him. */
+static void claims_are_held_against_the_file(void **state)
+{
+    (void)state;
+    const struct {
+        cw_claim claim;
+        double affine[12];
+        const char *words;
+    } cases[] = {
+        {{.has_unit = true, .axes.unit = CW_UNIT_MM},
+         {-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0},
+         NULL},
+        {{.has_unit = true, .axes.unit = CW_UNIT_M}, {0}, "its unit is mm, and not m"},
+        {{.has_frame = true}, {0}, "its frame is ras, and not lps"},
+        {{.has_up = true, .axes.y_up = true}, {0}, "z is up, and not y"},
+        {{.has_unit = true, .axes.unit = CW_UNIT_M, .rule = CW_CLAIM_FILL},
+         {-1, 0, 0, 0, 0, -1, 0, 0, 0, 0, 1, 0},
+         NULL},
+        {{.has_unit = true, .axes.unit = CW_UNIT_CM, .rule = CW_CLAIM_OVERRIDE},
+         {-10, 0, 0, 0, 0, -10, 0, 0, 0, 0, 10, 0},
+         NULL},
+        {{.has_frame = true, .has_up = true, .axes.y_up = true, .rule = CW_CLAIM_OVERRIDE},
+         {1, 0, 0, 0, 0, 0, -1, 0, 0, 1, 0, 0},
+         NULL},
+    };
+    const nifti_file f = make_nifti(1);
+    save(&f, "a.nii");
+    for (size_t n = 0; n < sizeof cases / sizeof *cases; n++) {
+        const cw_read_desc desc = {.claim = cases[n].claim};
+        cw_volume v;
+        cw_error err = {0};
+        const cw_status st = cw_volume_read(test_path("a.nii"), &desc, &v, NULL, &err);
+        if (cases[n].words) {
+            assert_fails(st, CW_ERR_ARGUMENT, cases[n].words, err);
+            assert_null(v.data);
+            continue;
+        }
+        assert_ok(st, err);
+        check_affine(&v, cases[n].affine);
+        cw_volume_free(&v);
+    }
+}
+
 static void the_intent_tells_labels(void **state)
 {
     (void)state;
@@ -475,6 +518,7 @@ int main(void)
 {
 #define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
     const struct CMUnitTest tests[] = {
+        TEST(claims_are_held_against_the_file),
         TEST(the_intent_tells_labels),
         TEST(both_versions_byte_orders_and_packings_are_the_same),
         TEST(sform_goes_before_qform),
