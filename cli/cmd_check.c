@@ -1,6 +1,7 @@
 #include "cli/commands.h"
 #include "cli/console.h"
 #include "cli/mesh.h"
+#include "cli/missing.h"
 #include "cli/output.h"
 #include "cli/quantity.h"
 #include "cli/report.h"
@@ -18,6 +19,7 @@ typedef struct check_args {
     const char *source, *reference, *defects, *json, *mesh_reader;
     cli_number iso;
     cli_length tolerance;
+    cli_amount least;
     int profile, inside, progress;
     bool deep, open, histogram;
 } check_args;
@@ -39,6 +41,9 @@ static const cli_option options[] = {
      offsetof(check_args, inside)},
     {"open", 0, CLI_FLAG, NULL, "the source's surface ends where the volume does (closed)",
      offsetof(check_args, open)},
+    {"min-volume", 0, CLI_VOLUME, "V",
+     "leave components of the source's surface that enclose less out: 500mm3, 30vox (none)",
+     offsetof(check_args, least)},
     {"reference", 0, CLI_TEXT, "MESH", "measure the distance to this mesh, and back",
      offsetof(check_args, reference)},
     {"tolerance", 0, CLI_LENGTH, "L",
@@ -76,6 +81,15 @@ typedef struct run_state {
     cli_report report;
 } run_state;
 
+static double least_mm3(const run_state *s)
+{
+    const cli_amount *least = &s->args->least;
+    const double *spacing = s->volume.spacing;
+    return !least->given   ? 0
+           : least->voxels ? least->value * spacing[0] * spacing[1] * spacing[2]
+                           : least->value;
+}
+
 static void put_params(cli_json *j, const void *p, const cli_made *made)
 {
     const run_state *s = p;
@@ -87,6 +101,8 @@ static void put_params(cli_json *j, const void *p, const cli_made *made)
         cli_json_number(j, "iso", args->iso.value);
         cli_json_text(j, "inside", args->inside ? "below" : "above");
         cli_json_bool(j, "open", args->open);
+        if (args->least.given)
+            cli_json_number(j, "min_volume_mm3", least_mm3(s));
     }
     if (args->tolerance.given)
         cli_json_number(j, "tolerance_mm", s->findings.tolerance_mm);
@@ -106,6 +122,13 @@ static void put_facts(cli_json *j, const void *p)
     cli_json_text(j, "profile", profiles[s->args->profile]);
     cli_json_verdicts(j, s->verdicts, s->verdict_count);
     cli_json_errors(j, &s->findings);
+    if (s->findings.missing) {
+        cli_json_open(j, "missing", '{');
+        cli_json_count(j, "components", s->findings.missing);
+        cli_json_number(j, "largest_mm3", s->findings.missing_mm3);
+        cli_json_number(j, "max_mm", s->findings.missing_mm);
+        cli_json_close(j, '}');
+    }
     cli_json_shapes(j, &s->quality.shapes);
 }
 
@@ -152,6 +175,9 @@ static cw_status check_args_of(run_state *s, cw_error *err)
     if (args->iso.given && !args->source)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "--iso needs the volume it is of: --source VOLUME");
+    if (args->least.given && !args->source)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--min-volume is of the source's components: --source VOLUME");
     if (args->tolerance.given && !args->source && !args->reference)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "--tolerance needs something to measure from: --source or --reference");
@@ -230,7 +256,34 @@ static cw_status ask_cgal(run_state *s, cw_error *err)
     return in_mesh(s, st, err);
 }
 
-static cw_status measure_from_field(run_state *s, const cw_mesh *surface, cw_error *err)
+/* What the mesh lacks altogether is told apart from how far the rest is: a component with nothing
+ * of the mesh within a quarter of a voxel was left out. Of one that is there, if only coarser,
+ * some vertices are on the mesh, or nearly so. */
+static cw_status part_missing(run_state *s, cw_mesh *surface, const cw_mesh_distance_desc *back,
+                              cw_error *err)
+{
+    const double *spacing = s->volume.spacing;
+    const double near = 0.25 * cbrt(spacing[0] * spacing[1] * spacing[2]);
+    float *distance = calloc(surface->vertex_count + 1, sizeof *distance);
+    cli_missing missing = {0};
+    cw_status st = distance ? CW_OK
+                            : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu distances",
+                                      surface->vertex_count);
+    if (st == CW_OK)
+        st = cw_distance_to_mesh(surface, &s->mesh.mesh, back, &s->from_field, distance, err);
+    for (size_t v = 0; st == CW_OK && v < surface->vertex_count; v++)
+        distance[v] = fabsf(distance[v]);
+    if (st == CW_OK)
+        st = cli_drop_missing(surface, distance, fmax(near, s->findings.tolerance_mm), &missing,
+                              err);
+    free(distance);
+    s->findings.missing = missing.count;
+    s->findings.missing_mm3 = missing.largest_mm3;
+    s->findings.missing_mm = missing.max_mm;
+    return st;
+}
+
+static cw_status measure_from_field(run_state *s, cw_mesh *surface, cw_error *err)
 {
     const cw_mesh_distance_desc back = {
         .vertices_only = true, /* those are on the field's surface */
@@ -239,6 +292,8 @@ static cw_status measure_from_field(run_state *s, const cw_mesh *surface, cw_err
     cw_status st = cw_quality_measure(surface, &(cw_quality_desc){.threads = back.threads},
                                       &s->field, err);
     if (st == CW_OK)
+        st = part_missing(s, surface, &back, err);
+    if (st == CW_OK && s->findings.missing)
         st = cw_distance_to_mesh(surface, &s->mesh.mesh, &back, &s->from_field, NULL, err);
     if (st == CW_OK) {
         s->findings.field = &s->field;
@@ -253,6 +308,7 @@ static cw_status compare_with_field(run_state *s, cw_error *err)
     const check_args *args = s->args;
     const cw_mesh *mesh = &s->mesh.mesh;
     cw_mesh surface = {0};
+    cw_extract_counts counts;
     const cw_field_distance_desc desc = {
         .isovalue = args->iso.value,
         .inside_is_low = args->inside,
@@ -267,13 +323,13 @@ static cw_status compare_with_field(run_state *s, cw_error *err)
     if (st != CW_OK)
         return in_mesh(s, st, err);
     s->findings.to_field = &s->to_field;
-    st = cli_extract_surface(&s->volume, NULL,
-                             &(cw_extract_desc){.isovalue = args->iso.value,
-                                                .inside_is_low = args->inside,
-                                                .leave_open = args->open,
-                                                .no_normals = true,
-                                                .threads = desc.threads},
-                             &surface, NULL, err);
+    const cli_wanted wanted = {.extract = {.isovalue = args->iso.value,
+                                           .inside_is_low = args->inside,
+                                           .leave_open = args->open,
+                                           .no_normals = true,
+                                           .threads = desc.threads},
+                               .least_mm3 = least_mm3(s)};
+    st = cli_extract_wanted(&s->volume, NULL, &wanted, &surface, &counts, NULL, err);
     if (st == CW_OK)
         st = measure_from_field(s, &surface, err);
     cw_mesh_free(&surface);

@@ -266,6 +266,9 @@ static void print_comparison(const cli_comparison *c)
     if (c->has_field)
         cli_result("; at most %.3g mm from the field's surface, rms %.3g mm",
                    c->to_field.max_mm, c->to_field.rms_mm);
+    if (c->has_full_field)
+        cli_result(" (the full surface %.3g mm, rms %.3g mm)", c->full_to_field.max_mm,
+                   c->full_to_field.rms_mm);
 }
 
 /* The last step is shown as long as the one before it. */

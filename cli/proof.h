@@ -11,7 +11,8 @@ cw_status cli_extract_full(const cli_volume *volume, const cli_wanted *wanted, c
                            cw_mesh *full, cw_error *err);
 
 /* Measures how far a mesh is from the full surface, and that from it.
- * simplify  with the error that was promised
+ * Where the mesh was measured from the field, the full surface is, too.
+ * simplify  with the error that was promised; 0: none was
  * Returns   CW_ERR_CHECK when one of the two is farther */
 cw_status cli_prove_error(const cli_volume *volume, const cli_wanted *wanted,
                           const cw_simplify_desc *simplify, const cw_mesh *mesh,

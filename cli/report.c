@@ -204,7 +204,8 @@ static void put_dropped_components(cli_json *j, double least_mm3, const cw_drop_
 }
 
 /* What a camera's picture was promised, what was measured, and what it saved. */
-static void put_proof(cli_json *j, const cli_proof *p)
+/* full_to_field  how far the full mesh is from the field; NULL: not measured */
+static void put_proof(cli_json *j, const cli_proof *p, const cw_distance *full_to_field)
 {
     cli_json_open(j, "proof", '{');
     cli_json_text(j, "against", "full mesh");
@@ -212,6 +213,8 @@ static void put_proof(cli_json *j, const cli_proof *p)
         cli_json_number(j, "promised_pixels", p->promised_pixels);
     cli_json_number(j, "promised_mm", p->promised_mm);
     cli_json_number(j, "max_mm", p->mm);
+    if (full_to_field)
+        cli_json_number(j, "full_max_from_field_mm", full_to_field->max_mm);
     if (p->count)
         put_views(j, p);
     if (p->voxels) {
@@ -255,7 +258,7 @@ static void put_facts(cli_json *j, const cli_made *m)
     if (m->crop.made)
         put_crop(j, &m->crop);
     if (m->proof.made)
-        put_proof(j, &m->proof);
+        put_proof(j, &m->proof, m->compared.has_full_field ? &m->compared.full_to_field : NULL);
 }
 
 static void put_moment(cli_json *j, const cli_made *m)

@@ -24,6 +24,8 @@ typedef struct cli_comparison {
     bool made, has_field; /* there are the first two, the third */
     cw_distance to_input, from_input;
     cw_distance to_field;
+    bool has_full_field; /* that of what it was made of, by the same measure */
+    cw_distance full_to_field;
     double diagonal_mm; /* of the input's box */
     double promised_mm; /* 0: no error was promised */
     const char *other;  /* what it was made of; default: the input */

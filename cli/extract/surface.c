@@ -11,6 +11,10 @@
  * rounded about another origin. */
 static const double SAME_PICTURE = 1e-4;
 
+/* The largest full surface that --simplify is compared with, in triangles, and what one of them
+ * takes then: a few seconds, and a quarter of a gigabyte. */
+enum { MOST_COMPARED = 1000000, COMPARED_BYTES = 256 };
+
 static size_t voxel_count(const cw_volume *v)
 {
     return v->dim[0] * v->dim[1] * v->dim[2];
@@ -145,6 +149,52 @@ cw_status cli_extract_make(cli_extract_run *s, cli_made *made, cw_mesh *mesh,
 }
 
 /* The distance from the field would not tell of cubic crossings. */
+static cw_status measure_from_field(cli_extract_run *s, cli_made *made, const cw_mesh *mesh,
+                                    cw_error *err)
+{
+    if (s->args->placement)
+        return CW_OK;
+    if (cwi_volume_kind(&s->volume.view)) {
+        cli_say("%s: %s: the distance to its field is not measured", s->volume.path,
+                cwi_volume_kind(&s->volume.view));
+        return CW_OK;
+    }
+    cli_report_begin(&s->report);
+    cw_status st = cli_compare_with_field(mesh, &s->volume, made->iso, cli_extract_is_low(s),
+                                          (int)s->args->input.threads, &made->compared, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, s->volume.path);
+    cli_report_end(&s->report, "measure", mesh->triangle_count, mesh->triangle_count);
+    return CW_OK;
+}
+
+/* The full surface is extracted for that, which --simplify is there to do without: only one of
+ * a size that costs little memory and time. */
+static cw_status measure_from_full(cli_extract_run *s, cli_made *made, const cw_mesh *mesh,
+                                   const cw_extract_counts *counts, cw_error *err)
+{
+    const cli_wanted w = wanted(s, made->iso);
+    const bool fits = counts->triangles <= MOST_COMPARED &&
+                      counts->triangles < s->volume.memory_left / COMPARED_BYTES;
+    double error;
+    if (!fits) {
+        cli_say("%s: the full surface has %s triangles: the distance to it is not measured "
+                "(--max-error does)",
+                s->volume.path, cli_count(counts->triangles));
+        return CW_OK;
+    }
+    cli_report_begin(&s->report);
+    cw_status st = find_error(s, &error, err);
+    const cw_simplify_desc simplify = simplify_desc(s, error);
+    made->proof.bytes = counts->bytes;
+    if (st == CW_OK)
+        st = cli_prove_error(&s->volume, &w, &simplify, mesh, &made->proof, &made->compared,
+                             err);
+    if (st == CW_OK)
+        cli_report_end(&s->report, "prove", made->proof.full_triangles, mesh->triangle_count);
+    return st;
+}
+
 cw_status cli_extract_judge(cli_extract_run *s, cli_made *made, const cw_mesh *mesh,
                             const cw_extract_counts *counts, cw_error *err)
 {
@@ -156,20 +206,12 @@ cw_status cli_extract_judge(cli_extract_run *s, cli_made *made, const cw_mesh *m
                         "%s triangles were asked for, %s are left: where more would go, the "
                         "surface would tear, turn over or meet itself",
                         cli_count(args->simplify.triangles), cli_count(mesh->triangle_count));
-    if (!args->check || args->placement)
+    if (!args->check)
         return CW_OK;
-    if (cwi_volume_kind(&s->volume.view)) {
-        cli_say("%s: %s: the distance to its field is not measured", s->volume.path,
-                cwi_volume_kind(&s->volume.view));
-        return CW_OK;
-    }
-    cli_report_begin(&s->report);
-    cw_status st = cli_compare_with_field(mesh, &s->volume, made->iso, cli_extract_is_low(s),
-                                          (int)args->input.threads, &made->compared, err);
-    if (st != CW_OK)
-        return cwi_fail_in(err, st, s->volume.path);
-    cli_report_end(&s->report, "measure", mesh->triangle_count, mesh->triangle_count);
-    return CW_OK;
+    cw_status st = measure_from_field(s, made, mesh, err);
+    return st == CW_OK && !s->view_count && !args->pixel.most.given
+               ? measure_from_full(s, made, mesh, counts, err)
+               : st;
 }
 
 static cw_status hold_to_pixels(const cli_extract_run *s, const cli_proof *p, cw_error *err)

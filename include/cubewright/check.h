@@ -34,6 +34,10 @@ typedef struct cw_findings {
     const cw_distance *to_field;   /* cw_distance_to_field() */
     const cw_distance *from_field; /* cw_distance_to_mesh() from the field's own surface */
     const cw_quality *field;       /* cw_quality_measure() of the field's own surface */
+    size_t missing; /* components of that surface that the mesh has nothing near: from_field is
+                       without them */
+    double missing_mm3,
+        missing_mm; /* what the largest encloses; how far the mesh is from one */
     const cw_distance *to_reference, *from_reference; /* cw_distance_to_mesh() both ways */
     double tolerance_mm; /* for the distances; 0: none, they are only told */
     bool has_normals;

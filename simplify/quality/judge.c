@@ -211,7 +211,7 @@ static void judge_look(bench *b)
 
 /* There, and back: the mesh may be near all of it and yet leave parts of it out. */
 static void judge_distance(bench *b, const char *name, const char *other, const cw_distance *to,
-                           const cw_distance *back)
+                           const char *rest, const cw_distance *back)
 {
     if (!to)
         return;
@@ -232,8 +232,24 @@ static void judge_distance(bench *b, const char *name, const char *other, const 
             : covers         ? CW_GRADE_OK
                              : CW_GRADE_FAIL,
             back->max_mm);
-    say(v, "%s is at most %.4g mm from the mesh, rms %.3g; farthest at %.8g, %.8g, %.8g", other,
+    say(v, "%s is at most %.4g mm from the mesh, rms %.3g; farthest at %.8g, %.8g, %.8g", rest,
         back->max_mm, back->rms_mm, back->where[0], back->where[1], back->where[2]);
+}
+
+/* Components that were left out, such as specks: no distance of what is there. */
+static void judge_missing(bench *b)
+{
+    const cw_findings *f = b->f;
+    if (!f->missing)
+        return;
+    cw_verdict *v = add(b, "missing", f->tolerance_mm > 0 ? CW_GRADE_FAIL : CW_GRADE_WARN,
+                        (double)f->missing);
+    say(v,
+        "%zu component%s of the field's surface %s no counterpart; the largest encloses %.4g "
+        "mm3, and %s up to %.4g mm from the mesh",
+        f->missing, plural(f->missing), f->missing == 1 ? "has" : "have", f->missing_mm3,
+        f->missing == 1 ? "it is" : "they are", f->missing_mm);
+    v->advice = "--min-volume leaves small ones out of the comparison";
 }
 
 static void judge_topology(bench *b)
@@ -313,9 +329,12 @@ size_t cw_check_judge(const cw_findings *findings, cw_profile profile,
     judge_shapes(&b);
     judge_look(&b);
     judge_topology(&b);
+    judge_missing(&b);
     judge_distance(&b, "to field", "the field's surface", findings->to_field,
+                   findings->missing ? "the rest of the field's surface"
+                                     : "the field's surface",
                    findings->from_field);
-    judge_distance(&b, "to reference", "the reference", findings->to_reference,
+    judge_distance(&b, "to reference", "the reference", findings->to_reference, "the reference",
                    findings->from_reference);
     judge_agreement(&b);
     sort(verdicts, b.count);

@@ -12,6 +12,12 @@ for volume in 5e14um3 500cm3 500000mm3 500000; do
 done
 rm unit.ply
 cubewright check one.ply | grep -o '^one.ply: 1 component'
+# what was left out is told apart from how far the rest is; in the comparison it can be left out, too
+cubewright check one.ply --source ct.nrrd --iso 300 | grep -A 1 -e missing -e covered | sed 's/, rms.*//'
+cubewright check one.ply --source ct.nrrd --iso 300 --tolerance 1mm 2>e | grep FAIL | sed 's/;.*//'
+cubewright check one.ply --source ct.nrrd --iso 300 --json - -q | sed -n '/"missing": {/,/}/p'
+cubewright check one.ply --source ct.nrrd --iso 300 --min-volume 500ml --tolerance 1mm | grep -e topology -e missing -e covered | sed 's/, rms.*//'
+cubewright check one.ply --min-volume 500ml || echo "exit $?"
 # the full surface that simplification is held against is what was kept
 if cubewright version --features | grep -q '^simplify *yes'; then
     cubewright extract ct.nrrd --iso 300 -o simple.ply --min-volume 500ml --max-error 1mm -q
