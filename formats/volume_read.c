@@ -241,7 +241,6 @@ static cw_status fail_no_slice(const opened *o, cw_error *err)
 
 static cw_status find_by_files(opened *o, cw_error *err)
 {
-    const char *format, *volume;
     for (size_t r = 0; r < READER_COUNT; r++)
         for (size_t i = 0; readers[r].read && i < o->names.count; i++)
             if (is_of(&o->in, o->names.items[i], &readers[r])) {

@@ -250,7 +250,7 @@ static void the_table_of_formats_is_whole_and_always_the_same(void **state)
     (void)state;
     static const char wanted[] =
         "nrrd nifti metaimage vtk vtu vti mrc inr dicom tiff vdb plot3d "
-        "raw glb gltf stl ply obj off 3mf vtp ";
+        "raw glb gltf stl ply obj off 3mf vtp drc ";
     char names[160] = "";
     size_t count, again;
     const cw_format *formats = cw_formats(&count);

@@ -717,7 +717,8 @@ static void it_can_be_stopped(void **state)
         const size_t calls = l.calls;
         if (desc.threads == 1) /* otherwise others do what they do */
             assert_true(calls > mesh.triangle_count / 4096);
-        for (size_t n = 0; n < 6; n++) {
+        /* sanitizers do not know exceptions of modules, by which C++ is left */
+        for (size_t n = 0; n < (CWI_SANITIZED ? 1 : 6); n++) {
             const size_t at = desc.threads == 1 ? n * (calls - 1) / 5 : n;
             l = (listener){.caller = pthread_self(), .stop_at = 1 + at};
             assert_fails(cw_simplify(&mesh, &desc, &out, NULL, &err), CW_ERR_CANCELLED,
