@@ -256,9 +256,9 @@ static cw_status ask_cgal(run_state *s, cw_error *err)
     return in_mesh(s, st, err);
 }
 
-/* What the mesh lacks altogether is told apart from how far the rest is: a component with nothing
- * of the mesh within a quarter of a voxel was left out. Of one that is there, if only coarser,
- * some vertices are on the mesh, or nearly so. */
+/* What the mesh lacks altogether is told apart from how far the rest is: a component with
+ * nothing of the mesh within a quarter of a voxel was left out. Of one that is there, if only
+ * coarser, some vertices are on the mesh, or nearly so. */
 static cw_status part_missing(run_state *s, cw_mesh *surface, const cw_mesh_distance_desc *back,
                               cw_error *err)
 {

@@ -10,10 +10,10 @@ typedef struct cwi_input {
     const char *path; /* borrowed */
     int folder;       /* where side files are looked up */
     int fd;
-    uint64_t size;       /* bytes, as the system says */
-    bool allow_external; /* side files may lie elsewhere */
-    const char *array;   /* that is asked for; NULL: any */
-    cwi_array_list *arrays;  /* where readers list those there are; NULL: nobody asks */
+    uint64_t size;          /* bytes, as the system says */
+    bool allow_external;    /* side files may lie elsewhere */
+    const char *array;      /* that is asked for; NULL: any */
+    cwi_array_list *arrays; /* where readers list those there are; NULL: nobody asks */
 } cwi_input;
 
 /* Opens the file a user named; links are followed, as the user may well have made them.

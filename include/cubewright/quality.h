@@ -82,8 +82,8 @@ typedef struct cw_quality_desc {
     int threads;      /* default: all */
     uint8_t *defects; /* triangle_count: bits of cw_defect are set in it; default: none kept */
     cw_progress progress; /* default: none */
-    uint8_t *turn;    /* triangle_count, with shells: 1 where cw_mesh_orient() turns the shell
-                         round, else 0; default: none kept */
+    uint8_t *turn; /* triangle_count, with shells: 1 where cw_mesh_orient() turns the shell
+                      round, else 0; default: none kept */
 } cw_quality_desc;
 
 /* Measures a mesh in time proportional to its triangles.

@@ -952,8 +952,7 @@ static void a_scene_cannot_multiply_itself_without_end(void **state)
     cw_error err = {0};
     assert_fails(read_repeated(600, &plain, &err), CW_ERR_LIMIT, "draws its triangles so often",
                  err);
-    assert_fails(read_repeated(400, &small, &err), CW_ERR_LIMIT, "100 MiB allowed",
-                 err);
+    assert_fails(read_repeated(400, &small, &err), CW_ERR_LIMIT, "100 MiB allowed", err);
     assert_fails(read_repeated(100, &few, &err), CW_ERR_LIMIT, "more than 1048576 triangles",
                  err);
     assert_ok(read_repeated(100, &many, &err), err);
