@@ -7,6 +7,7 @@
 #include "cli/report.h"
 #include "cli/surface.h"
 #include "cli/verdicts.h"
+#include "core/memory.h"
 #include "core/status.h"
 
 #include <math.h>
@@ -376,9 +377,9 @@ static cw_status measure(run_state *s, cw_error *err)
     const check_args *args = s->args;
     const cw_mesh *mesh = &s->mesh.mesh;
     if (args->defects) {
-        s->defects = calloc(mesh->triangle_count + 1, 1);
+        s->defects = cwi_alloc_zeroed(mesh->triangle_count + 1, 1);
         if (args->source || args->reference)
-            s->distances = calloc(mesh->vertex_count + 1, sizeof *s->distances);
+            s->distances = cwi_alloc_zeroed(mesh->vertex_count + 1, sizeof *s->distances);
         if (!s->defects || ((args->source || args->reference) && !s->distances))
             return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to paint %zu triangles",
                            mesh->triangle_count);
@@ -487,8 +488,8 @@ static void free_state(run_state *s)
     cli_free_mesh(&s->mesh);
     cli_free_mesh(&s->reference);
     cli_free_volume(&s->volume);
-    free(s->defects);
-    free(s->distances);
+    cwi_free(s->defects);
+    cwi_free(s->distances);
     cli_report_free(&s->report);
 }
 
