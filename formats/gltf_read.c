@@ -1,5 +1,6 @@
 /* glTF: a scene's triangles, placed by its nodes, merged into one mesh of LPS millimetres. */
 #include "core/memory.h"
+#include "core/module.h"
 #include "core/status.h"
 #include "core/text.h"
 #include "formats/gltf_reader.h"
@@ -286,7 +287,10 @@ static cw_status read_scene(cwi_mesh_input *in, bool binary, cw_mesh *mesh, cw_m
     uint64_t json = 0, json_size = in->file.size;
     r.unpacker.desc = &in->desc;
     r.bytes.unpacker = &r.unpacker;
-    cw_status st = binary ? find_chunks(&r, &json, &json_size, err) : CW_OK;
+    /* what is missing is told first; what is there is loaded where the file is parsed */
+    cw_status st = cwi_module_present("gltf") ? CW_OK : cwi_gltf_prepare(err);
+    if (st == CW_OK && binary)
+        st = find_chunks(&r, &json, &json_size, err);
     if (st == CW_OK)
         st = parse_json(&r, json, json_size, err);
     if (st == CW_OK)
