@@ -1,6 +1,7 @@
-#define _GNU_SOURCE /* sigaction, clock_gettime */
+#define _GNU_SOURCE /* sigaction */
 #include "cli/console.h"
 
+#include "core/clock.h"
 #include "core/outfile.h"
 
 #include <signal.h>
@@ -10,7 +11,6 @@
 #include <string.h>
 #include <sys/resource.h>
 #include <sys/time.h>
-#include <time.h>
 #include <unistd.h>
 
 static struct {
@@ -216,9 +216,7 @@ void cli_catch_signals(void)
 
 double cli_seconds(void)
 {
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+    return cwi_now_s();
 }
 
 size_t cli_peak_bytes(void)

@@ -207,16 +207,15 @@ static size_t coarsening(const cli_input *input)
     return input->coarsen ? input->coarsen : input->preview ? 4 : 1;
 }
 
-/* Every so many-th voxel of `part`; along thin axes fewer are passed over, so that two are
- * left. */
+/* Chooses to keep one voxel in `asked` along each axis; a thin axis keeps its first and last.
+ */
 static void choose_coarsening(size_t asked, const cw_volume *part, size_t step[3])
 {
     for (int a = 0; a < 3; a++)
         step[a] = asked < part->dim[a] ? asked : part->dim[a] > 2 ? part->dim[a] - 1 : 1;
 }
 
-/* As many rows and slices as a quarter of a GiB holds, or half of the limit, of any number of
- * components and steps. */
+/* Chooses rows and slices that take 256 MiB, or half of the limit, at most. */
 static void choose_sample(const cw_volume *part, size_t limit, size_t step[3])
 {
     const double most = fmin(256 << 20, 0.5 * (double)limit);

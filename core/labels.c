@@ -18,7 +18,7 @@ typedef struct census {
     uint32_t (*pairs)[CW_LABELS_MOST]; /* of neighbours, by the numbers of both */
 } census;
 
-static size_t find(const census *c, double value)
+static size_t find_value(const census *c, double value)
 {
     size_t low = 0, high = c->count;
     while (low < high) {
@@ -33,7 +33,7 @@ static size_t find(const census *c, double value)
 
 static size_t number_of(census *c, double value)
 {
-    const size_t at = find(c, value);
+    const size_t at = find_value(c, value);
     if (at < c->count && c->value[at] == value)
         return c->number[at];
     if (c->count == CW_LABELS_MOST) {

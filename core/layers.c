@@ -31,7 +31,7 @@ static void finish_thread(finishers *f)
     pthread_mutex_unlock(&f->lock);
 }
 
-/* Waits a tenth of a second at most; true when so many threads have finished. */
+/* Waits up to 0.1 s for `count` threads; true when all have finished. */
 static bool wait_for_threads(finishers *f, int count)
 {
     struct timespec until;

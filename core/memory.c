@@ -98,7 +98,7 @@ static size_t room_of(void *memory)
 }
 
 /* What was taken beforehand for memory becomes what it has. Passes it on. */
-static void *settle(void *memory, size_t taken)
+static void *count_memory(void *memory, size_t taken)
 {
     const size_t has = room_of(memory);
     if (has > taken)
@@ -159,7 +159,8 @@ static void wish_large_pages(char *memory, size_t bytes)
 void *cwi_alloc_array(size_t count, size_t size)
 {
     size_t bytes;
-    return take_array(count, size, &bytes) ? settle(malloc(bytes ? bytes : 1), bytes) : NULL;
+    return take_array(count, size, &bytes) ? count_memory(malloc(bytes ? bytes : 1), bytes)
+                                           : NULL;
 }
 
 void *cwi_alloc_zeroed(size_t count, size_t size)
@@ -167,7 +168,7 @@ void *cwi_alloc_zeroed(size_t count, size_t size)
     size_t bytes;
     if (!take_array(count, size, &bytes))
         return NULL;
-    char *memory = settle(calloc(bytes ? bytes : 1, 1), bytes);
+    char *memory = count_memory(calloc(bytes ? bytes : 1, 1), bytes);
     wish_large_pages(memory, bytes);
     return memory;
 }
@@ -179,9 +180,9 @@ void *cwi_alloc_large(size_t count, size_t size)
     if (!take_array(count, size, &bytes))
         return NULL;
     if (bytes < 2 * page || bytes > PTRDIFF_MAX - page)
-        return settle(malloc(bytes ? bytes : 1), bytes);
+        return count_memory(malloc(bytes ? bytes : 1), bytes);
     const size_t whole = (bytes + page - 1) / page * page;
-    void *memory = settle(aligned_alloc(page, whole), bytes);
+    void *memory = count_memory(aligned_alloc(page, whole), bytes);
     wish_large_pages(memory, whole);
     return memory;
 }
@@ -207,7 +208,7 @@ void *cwi_realloc_array(void *memory, size_t count, size_t size)
         return NULL;
     void *moved = realloc(memory, bytes ? bytes : 1);
     if (moved)
-        settle(moved, before + more);
+        count_memory(moved, before + more);
     else
         cwi_memory_give(more);
     return moved;

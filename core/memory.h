@@ -34,7 +34,7 @@ CW_API void *cwi_renew_large(void *memory, size_t count, size_t size);
 CW_API bool cwi_memory_take(size_t bytes);
 CW_API void cwi_memory_give(size_t bytes);
 
-/* The bytes that the limit leaves; SIZE_MAX: there is none. */
+/* Bytes that may still be allocated; SIZE_MAX without a limit. */
 CW_API size_t cwi_memory_left(void);
 
 /* The bytes that the limit refused last, and those that were left then; 0: it refused none. */

@@ -1,6 +1,7 @@
 #define _GNU_SOURCE /* close_range, SCM_RIGHTS, strsignal */
 #include "core/sandbox.h"
 
+#include "core/clock.h"
 #include "core/memory.h"
 #include "core/status.h"
 
@@ -227,13 +228,6 @@ _Noreturn static void live(const cwi_sandbox *box, int socket, pid_t parent)
 
 /* --- the parent -------------------------------------------------------------------------- */
 
-static double now_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
-
 static double timeout_s(const cwi_sandbox *box)
 {
     return box->desc.timeout_s > 0 ? box->desc.timeout_s : 60;
@@ -242,14 +236,14 @@ static double timeout_s(const cwi_sandbox *box)
 /* Waits until there is something to receive, be it that the child is gone. */
 static cw_status wait_for_answer(const cwi_sandbox *box, cw_error *err)
 {
-    const double start = now_s();
+    const double start = cwi_now_s();
     struct pollfd p = {.fd = box->socket, .events = POLLIN};
     while (poll(&p, 1, POLL_MS) < 1) {
         cw_status st =
             box->progress ? cwi_progress(box->progress, "reading", box->done, err) : CW_OK;
         if (st != CW_OK)
             return st;
-        if (now_s() - start > timeout_s(box))
+        if (cwi_now_s() - start > timeout_s(box))
             return cw_fail(err, CW_ERR_BACKEND,
                            "%s was stopped after %.6g s without a result; the file is damaged, "
                            "or needs a longer --timeout",

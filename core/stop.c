@@ -5,7 +5,7 @@ void cwi_stop_init(cwi_stop *stop, const cw_progress *progress)
     *stop = (cwi_stop){.progress = progress, .caller = pthread_self()};
 }
 
-static bool report(void *user, const char *step, double done)
+static bool report_progress(void *user, const char *step, double done)
 {
     cwi_stop *s = user;
     bool stopped = __atomic_load_n(&s->stopped, __ATOMIC_RELAXED);
@@ -20,5 +20,5 @@ static bool report(void *user, const char *step, double done)
 
 cw_progress cwi_stop_progress(cwi_stop *stop)
 {
-    return (cw_progress){.report = report, .user = stop};
+    return (cw_progress){.report = report_progress, .user = stop};
 }

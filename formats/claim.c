@@ -62,6 +62,8 @@ static cw_status check_agreement(const cw_claim *claim, const saying *s, cw_erro
 {
     static const char hint[] = "to be read so all the same, say --input-override";
     char text[32];
+    if (claim->rule != CW_CLAIM_AGREE)
+        return CW_OK;
     if (claim->has_unit && s->has_unit && !is_unit(s->axes.unit_mm, claim->axes.unit))
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "the file says that its unit is %s, and not %s; %s",
@@ -77,7 +79,7 @@ static cw_status check_agreement(const cw_claim *claim, const saying *s, cw_erro
 }
 
 /* The axes that count, by the rule. */
-static axes settle(const cw_claim *claim, const saying *s)
+static axes choose_axes(const cw_claim *claim, const saying *s)
 {
     const bool fills = claim->rule == CW_CLAIM_FILL;
     axes x = s->axes;
@@ -128,10 +130,10 @@ cw_status cwi_claim_volume(const cw_claim *claim, cw_volume *v, cw_error *err)
     double m[3][3];
     if (is_silent(claim))
         return CW_OK;
-    cw_status st = claim->rule == CW_CLAIM_AGREE ? check_agreement(claim, &said, err) : CW_OK;
+    cw_status st = check_agreement(claim, &said, err);
     if (st != CW_OK)
         return st;
-    const axes x = settle(claim, &said);
+    const axes x = choose_axes(claim, &said);
     set_change(&said.axes, &x, m);
     if (v->cells && v->cells->points) /* which are the volume's own */
         turn_points(m, (double *)(uintptr_t)v->cells->points, v->dim[0]);
@@ -191,10 +193,10 @@ cw_status cwi_claim_mesh(const cw_claim *claim, cw_mesh_file *file, cw_mesh *mes
         .has_up = gltf || framed || file->axes.y_up};
     if (is_silent(claim))
         return CW_OK;
-    cw_status st = claim->rule == CW_CLAIM_AGREE ? check_agreement(claim, &said, err) : CW_OK;
+    cw_status st = check_agreement(claim, &said, err);
     if (st != CW_OK)
         return st;
-    const axes x = settle(claim, &said);
+    const axes x = choose_axes(claim, &said);
     if (gltf)
         return turn_mesh(&said.axes, &x, mesh, err);
     if (claim->has_unit && x.unit_mm != said.axes.unit_mm)

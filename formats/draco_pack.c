@@ -1,20 +1,12 @@
-#define _GNU_SOURCE /* clock_gettime */
 #include "formats/draco_pack.h"
 
+#include "core/clock.h"
 #include "core/memory.h"
 #include "formats/verify.h"
 
 #include <string.h>
-#include <time.h>
 
 enum { NORMAL_BITS = 10, LEVEL = 7 };
-
-static double now_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static bool names_a_vertex_twice(const uint32_t *triangle)
 {
@@ -47,8 +39,8 @@ void cwi_draco_packed_free(cwi_draco_packed *packed)
     *packed = (cwi_draco_packed){0};
 }
 
-static cw_status verify(const cw_mesh *mesh, const cwi_grid *grid, const cwi_arrays *a,
-                        double *normal_degrees, cw_error *err)
+static cw_status verify_decoded(const cw_mesh *mesh, const cwi_grid *grid, const cwi_arrays *a,
+                                double *normal_degrees, cw_error *err)
 {
     const cwi_decoded decoded = {.vertex_count = a->vertex_count,
                                  .triangle_count = a->triangle_count,
@@ -73,19 +65,19 @@ cw_status cwi_draco_pack(const cw_mesh *mesh, const uint8_t *colors, const cwi_g
                                          .normal_bits = NORMAL_BITS,
                                          .level = desc->level ? desc->level : LEVEL,
                                          .comment = comment};
-    const double start = now_s();
+    const double start = cwi_now_s();
     *packed = (cwi_draco_packed){0};
     cw_status st = cwi_draco_functions_load(&draco, err);
     if (st == CW_OK)
         st =
             draco->encode(&arrays, &settings, &packed->bytes, &packed->size, &packed->ids, err);
-    const double encoded = now_s();
+    const double encoded = cwi_now_s();
     if (st == CW_OK)
         st = draco->decode(packed->bytes, packed->size, &packed->ids, SIZE_MAX, grid,
                            &packed->decoded, err);
     if (st == CW_OK)
-        st = verify(mesh, grid, &packed->decoded, &told->normal_degrees, err);
+        st = verify_decoded(mesh, grid, &packed->decoded, &told->normal_degrees, err);
     told->encode_s += encoded - start;
-    told->decode_s += now_s() - encoded;
+    told->decode_s += cwi_now_s() - encoded;
     return st;
 }

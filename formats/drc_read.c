@@ -34,11 +34,10 @@ typedef struct counts {
     char comment[CWI_DRACO_COMMENT];
 } counts;
 
-/* Of the child; `in` is read in the parent only. */
+/* The child's state. */
 typedef struct decoder {
     const cwi_draco_functions *draco;
     cwi_arrays arrays;
-    size_t shared;
 } decoder;
 
 bool cwi_drc_sniff(const unsigned char *head, size_t size, uint64_t file_size)
@@ -49,13 +48,13 @@ bool cwi_drc_sniff(const unsigned char *head, size_t size, uint64_t file_size)
 
 /* --- in the child ------------------------------------------------------------------------- */
 
-static cw_status prepare(void *state, cw_error *err)
+static cw_status load_draco(void *state, cw_error *err)
 {
     decoder *d = state;
     return cwi_draco_functions_load(&d->draco, err);
 }
 
-static cw_status decode(decoder *d, const request *r, void *shared, cw_error *err)
+static cw_status decode_file(decoder *d, const request *r, void *shared, cw_error *err)
 {
     cwi_arrays_free(&d->arrays);
     cw_status st = d->draco->decode(shared, (size_t)r->count, NULL, (size_t)r->most, NULL,
@@ -70,7 +69,8 @@ static cw_status decode(decoder *d, const request *r, void *shared, cw_error *er
     return st;
 }
 
-static cw_status work(void *state, int fd, const void *bytes, void *shared, cw_error *err)
+static cw_status answer_request(void *state, int fd, const void *bytes, void *shared,
+                                cw_error *err)
 {
     decoder *d = state;
     request r;
@@ -81,7 +81,7 @@ static cw_status work(void *state, int fd, const void *bytes, void *shared, cw_e
                                   [COPY_COLORS] = d->arrays.colors,
                                   [COPY_TRIANGLES] = d->arrays.triangles};
     if (r.op == DECODE)
-        return decode(d, &r, shared, err);
+        return decode_file(d, &r, shared, err);
     memcpy(shared, (const char *)arrays[r.op] + r.from, (size_t)r.count);
     return CW_OK;
 }
@@ -189,8 +189,8 @@ cw_status cwi_drc_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw
     _Static_assert(sizeof(request) <= CWI_SANDBOX_REQUEST, "a request fits");
     cw_status st = cwi_mesh_take_bytes(in, in->file.size, err);
     const cwi_sandbox_desc desc = {.library = "Draco",
-                                   .prepare = prepare,
-                                   .work = work,
+                                   .prepare = load_draco,
+                                   .work = answer_request,
                                    .state = &d,
                                    .shared_bytes =
                                        in->file.size > WINDOW ? (size_t)in->file.size : WINDOW,

@@ -1,8 +1,8 @@
 /* Compression that keeps its promise: a grid fine enough for the tolerance and the shape, one
  * for all parts; and what was compressed is decoded and held against what it was made of. */
-#define _GNU_SOURCE /* clock_gettime */
 #include "formats/gltf_pack.h"
 
+#include "core/clock.h"
 #include "core/memory.h"
 #include "core/mesh.h"
 #include "core/status.h"
@@ -12,14 +12,6 @@
 
 #include <math.h>
 #include <string.h>
-#include <time.h>
-
-static double now_s(void)
-{
-    struct timespec t;
-    clock_gettime(CLOCK_MONOTONIC, &t);
-    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
-}
 
 static cw_status fail_memory(cw_error *err)
 {
@@ -299,13 +291,13 @@ static cw_status compress_pieces(cwi_gltf_plan *plan, const cw_write_desc *desc,
 {
     const bool draco = desc->compression == CW_COMPRESS_DRACO;
     const cwi_meshopt_functions *by_meshopt = NULL;
-    const double start = now_s();
+    const double start = cwi_now_s();
     cw_status st = draco ? CW_OK : cwi_meshopt_functions_load(&by_meshopt, err);
     for (size_t p = 0; st == CW_OK && p < plan->parts.count; p++)
         st = draco ? compress_draco(plan, &plan->pieces[p], desc, told, err)
                    : compress_meshopt(plan, p, by_meshopt, err);
     if (!draco)
-        told->encode_s = now_s() - start;
+        told->encode_s = cwi_now_s() - start;
     told->bytes = plan->document.bytes;
     return st;
 }

@@ -3,6 +3,7 @@
 #include "core/status.h"
 #include "core/text.h"
 #include "formats/pvd.h"
+#include "formats/vtk_xml.h"
 #include "formats/xml.h"
 
 #include <math.h>
@@ -20,14 +21,7 @@ typedef struct parsing {
 
 bool cwi_pvd_sniff(const unsigned char *head, size_t size)
 {
-    static const char tag[] = "<VTKFile", kind[] = "Collection";
-    const char *text = (const char *)head;
-    for (size_t i = 0; i + sizeof tag - 1 <= size; i++)
-        if (memcmp(text + i, tag, sizeof tag - 1) == 0)
-            for (size_t k = i; k + sizeof kind - 1 <= size && text[k] != '>'; k++)
-                if (memcmp(text + k, kind, sizeof kind - 1) == 0)
-                    return true;
-    return false;
+    return cwi_vtk_xml_sniff(head, size, "Collection");
 }
 
 static cw_status start_file(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)

@@ -514,7 +514,7 @@ static void choose_steps(const cwi_source *src, const cw_read_desc *desc, size_t
 }
 
 /* Shape and bytes of every n-th voxel in place of those of all. */
-static cw_status thin(const cw_read_desc *desc, cwi_source *out, cw_error *err)
+static cw_status thin_source(const cw_read_desc *desc, cwi_source *out, cw_error *err)
 {
     size_t every[3], step[3];
     cwi_axis axes[CWI_ROLE_COUNT];
@@ -573,7 +573,7 @@ cw_status cwi_source_load(const cwi_source *src, const cwi_input *in, const cw_r
     if (st == CW_OK && desc->region)
         st = narrow(src, desc->region, &wanted, err);
     if (st == CW_OK)
-        st = thin(desc, &wanted, err);
+        st = thin_source(desc, &wanted, err);
     if (st == CW_OK)
         st = cwi_check_limits(&wanted.shape, wanted.bytes, wanted.size_field, desc, err);
     if (st != CW_OK || !desc->header_only)

@@ -218,7 +218,7 @@ static cw_status load_voxels(cw_volume v, size_t bytes, reading *r, const cw_rea
 }
 
 /* Strides of so many columns, rows and slices in memory, in place of those of all slices. */
-static void pack(cw_volume *v, size_t slices, const size_t count[3])
+static void pack_strides(cw_volume *v, size_t slices, const size_t count[3])
 {
     const ptrdiff_t plane = v->stride[2], all = plane * (ptrdiff_t)slices;
     v->stride[1] = v->stride[0] * (ptrdiff_t)count[0];
@@ -245,7 +245,7 @@ static cw_status narrow(const cw_read_desc *desc, reading *r, size_t held[3], cw
     }
     r->every = every[2];
     held[2] = (held[2] - 1) / every[2] + 1;
-    pack(v, slices, held);
+    pack_strides(v, slices, held);
     st = cwi_volume_thin(v, every, err);
     v->stride[0] *= (ptrdiff_t)every[0];
     v->stride[1] *= (ptrdiff_t)every[1];

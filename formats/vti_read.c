@@ -13,11 +13,7 @@ enum { MOST_ELEMENTS = 10000 };
 /* The first element is VTKFile: of image data or of something else, which is then refused. */
 bool cwi_vti_sniff(const unsigned char *head, size_t size)
 {
-    static const char tag[] = "<VTKFile";
-    for (size_t i = 0; i + sizeof tag - 1 <= size; i++)
-        if (memcmp(head + i, tag, sizeof tag - 1) == 0)
-            return true;
-    return false;
+    return cwi_vtk_xml_sniff(head, size, "");
 }
 
 /* --- elements ---------------------------------------------------------------------------- */

@@ -7,6 +7,18 @@
 #include <stdio.h>
 #include <string.h>
 
+bool cwi_vtk_xml_sniff(const unsigned char *head, size_t size, const char *word)
+{
+    static const char tag[] = "<VTKFile";
+    const size_t length = strlen(word);
+    for (size_t i = 0; i + sizeof tag - 1 <= size; i++)
+        if (memcmp(head + i, tag, sizeof tag - 1) == 0)
+            for (size_t k = i; k + length <= size && head[k] != '>'; k++)
+                if (memcmp(head + k, word, length) == 0)
+                    return true;
+    return false;
+}
+
 /* --- elements ---------------------------------------------------------------------------- */
 
 /* Sets *found to the row of a word that must be one of them; it keeps its value when there is

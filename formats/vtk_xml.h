@@ -11,6 +11,9 @@ typedef enum cwi_vtk_form { CWI_VTK_ASCII, CWI_VTK_BINARY, CWI_VTK_APPENDED } cw
 
 typedef enum cwi_vtk_compressor { CWI_VTK_PLAIN, CWI_VTK_ZLIB, CWI_VTK_LZ4 } cwi_vtk_compressor;
 
+/* Whether a VTKFile element starts in the first bytes of a file, with this word in its tag. */
+bool cwi_vtk_xml_sniff(const unsigned char *head, size_t size, const char *word);
+
 /* What the attributes of VTKFile and AppendedData say. */
 typedef struct cwi_vtk_xml {
     bool has_order, big_endian;

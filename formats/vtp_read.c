@@ -44,15 +44,8 @@ typedef struct vtp {
 
 bool cwi_vtp_sniff(const unsigned char *head, size_t size, uint64_t file_size)
 {
-    static const char tag[] = "<VTKFile", kind[] = "PolyData";
-    const char *text = (const char *)head;
     (void)file_size;
-    for (size_t i = 0; i + sizeof tag - 1 <= size; i++)
-        if (memcmp(text + i, tag, sizeof tag - 1) == 0)
-            for (size_t k = i; k + sizeof kind - 1 <= size && text[k] != '>'; k++)
-                if (memcmp(text + k, kind, sizeof kind - 1) == 0)
-                    return true;
-    return false;
+    return cwi_vtk_xml_sniff(head, size, "PolyData");
 }
 
 /* --- elements ---------------------------------------------------------------------------- */
