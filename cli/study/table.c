@@ -174,7 +174,7 @@ void cli_put_study_json(FILE *out, const void *study)
     const cli_study *s = study;
     cli_json j = {.out = out};
     cli_json_open(&j, NULL, '{');
-    cli_json_text(&j, "schema", "cubewright-report-1");
+    cli_json_text(&j, "schema", "cubewright-study-1");
     cli_json_text(&j, "tool", "cubewright");
     cli_json_text(&j, "version", cw_version());
     cli_json_input(&j, "input", s->volume);

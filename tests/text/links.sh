@@ -1,0 +1,33 @@
+#!/bin/sh
+# Looks for what the documents point to: sh links.sh
+# Every relative link leads to a file of the tree, and every #heading to a heading there.
+set -u
+root=$(cd "$(dirname "$0")/../.." && pwd)
+cd "$root" || exit 1
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+bad=0 count=0
+
+anchors_of() { # as Git hosts make them of headings
+    sed -n 's/^##* //p' "$1" | tr '[:upper:]' '[:lower:]' | sed 's/[^a-z0-9 _-]//g; s/ /-/g'
+}
+
+for document in ./*.md ./*/*.md ./tests/*/*.md; do
+    case $document in ./build/*) continue ;; esac
+    sed 's/`[^`]*`//g' "$document" | grep -o '](\([^)]*\))' | sed 's/^](//; s/)$//' >"$folder/links"
+    while IFS= read -r link; do
+        case $link in http*) continue ;; esac
+        count=$((count + 1))
+        path=${link%%#*}
+        file=$document
+        [ -z "$path" ] || file=$(dirname "$document")/$path
+        [ -e "$file" ] || { echo "$document: $link leads nowhere"; bad=1; continue; }
+        case $link in
+        *'#'*) anchors_of "$file" | grep -q -x -F -e "${link#*#}" ||
+            { echo "$document: $link: $file has no such heading"; bad=1; } ;;
+        esac
+    done <"$folder/links"
+done
+[ "$count" -gt 0 ] || { echo "no links found"; bad=1; }
+echo "$count links"
+exit $bad
