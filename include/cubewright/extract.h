@@ -115,7 +115,7 @@ typedef struct cw_extract_counts {
  * Threads  reentrant; the mesh is the same to the bit for any number of threads
  * Source   [Lorensen1987]; faces [Nielson1991]; tunnels after [Chernyaev1995]; simple_topology
  *          [Montani1994]; tetrahedra [Doi1991]; snapping after [Moore1992]; ranks in place of
- *          maps as in extract/README.md */
+ *          maps as in extract/dense-grids.md */
 CW_API cw_status cw_extract(const cw_volume *volume, const cw_extract_desc *desc, cw_mesh *mesh,
                             cw_extract_counts *counts, cw_error *err);
 

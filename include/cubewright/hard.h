@@ -1,5 +1,5 @@
 /* Fields that extractors break on, sampled into volumes: the hard cases, by name. What becomes
- * of each, and why, is in extract/README.md. */
+ * of each, and why, is in extract/hard-cases.md. */
 #ifndef CUBEWRIGHT_HARD_H
 #define CUBEWRIGHT_HARD_H
 

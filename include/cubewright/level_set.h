@@ -52,7 +52,7 @@ typedef struct cw_level_set_desc {
  * Cost     some three microseconds of one processor for a voxel that is kept; 9 bytes for each
  *          within the larger of the two distances, and for those around them
  * Threads  reentrant; the same to the bit for any number of threads
- * Source   distances by OpenVDB [Museth2013]; signs as in extract/README.md */
+ * Source   distances by OpenVDB [Museth2013]; signs as in extract/level-sets.md */
 CW_API cw_status cw_level_set_from_mesh(const cw_mesh *mesh, const cw_level_set_desc *desc,
                                         cw_volume *volume, cw_error *err);
 

@@ -1,6 +1,7 @@
 #!/bin/sh
 # Looks for what the documents point to: sh links.sh
-# Every relative link leads to a file of the tree, and every #heading to a heading there.
+# Every relative link leads to a file of the tree, and every #heading to a heading there. Every key
+# of a paper resolves.
 set -u
 root=$(cd "$(dirname "$0")/../.." && pwd)
 cd "$root" || exit 1
@@ -28,6 +29,14 @@ for document in ./*.md ./*/*.md ./tests/*/*.md; do
         esac
     done <"$folder/links"
 done
+# Keys of papers, such as [Lorensen1987], stand in a list of papers or sources.
+key='\[[A-Z][A-Za-z]*\(19\|20\)[0-9][0-9]\]'
+grep -r -h -o "$key" include core extract simplify formats viewer cli tests/support | sort -u >"$folder/keys"
+grep -h -o "^- $key" ./*/*.md | sed 's/^- //' >"$folder/papers"
+grep -v -x -F -f "$folder/papers" "$folder/keys" >"$folder/missing" &&
+    { sed 's/$/ is in no list of papers/' "$folder/missing"; bad=1; }
+[ -s "$folder/keys" ] || { echo "no keys of papers found"; bad=1; }
+
 [ "$count" -gt 0 ] || { echo "no links found"; bad=1; }
 echo "$count links"
 exit $bad
