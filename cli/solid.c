@@ -277,12 +277,12 @@ static void tell_hollow(run_state *s)
 {
     const cw_hollow_facts *f = &s->facts;
     const int used =
-        snprintf(s->found, sizeof s->found, "; %s cavit%s, %s sealed; %.6g mm3 taken out",
+        snprintf(s->found, sizeof s->found, "; %s cavit%s, %s sealed; %.6g mm3 removed",
                  cli_count(f->cavities), f->cavities == 1 ? "y" : "ies", cli_count(f->sealed),
                  f->removed_mm3);
     if (s->args->measure)
-        snprintf(s->found + used, sizeof s->found - (size_t)used, "; wall %.4g to %.4g mm",
-                 f->wall_min_mm, f->wall_max_mm);
+        snprintf(s->found + used, sizeof s->found - (size_t)used,
+                 "; wall %.4g to %.4g mm thick", f->wall_min_mm, f->wall_max_mm);
 }
 
 static cw_status hollow(run_state *s, cw_error *err)
@@ -369,9 +369,8 @@ static cw_status measure_offset(run_state *s, cw_error *err)
         s->off_max_mm = fmax(d.max_mm - by, by - least);
         s->off_rms_mm = sqrt(fmax(d.rms_mm * d.rms_mm - 2 * by * d.mean_mm + by * by, 0));
         snprintf(s->found, sizeof s->found,
-                 "; %.6g mm from the input, off by at most %.3g mm, "
-                 "rms %.3g mm",
-                 by, s->off_max_mm, s->off_rms_mm);
+                 "; %.6g mm from the input, deviating by at most %.3g mm, RMS %.3g mm", by,
+                 s->off_max_mm, s->off_rms_mm);
     }
     cwi_free(each);
     return st;

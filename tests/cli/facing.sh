@@ -12,7 +12,7 @@ OFF
 3 1 3 2
 END
 line() {
-    sed -E 's/^[^;]*; //;s/; box.*//'
+    sed -E 's/^[^:]*: //;s/; box.*//'
 }
 cubewright convert in.off -o out.stl | line
 cubewright convert in.off -o out.stl --orient --json r.json | line

@@ -40,7 +40,7 @@ list() {
 }
 list 2.5 run/t_1.vti 1 run/t_10.vti -1 run/t_2.vti >run.pvd
 cubewright info run.pvd
-cubewright extract run.pvd --iso 0.5 -o 'p{step}.vtp' --pvd p.pvd | sed 's/:.*; at/: at/;s/; [0-9.]* s$//'
+cubewright extract run.pvd --iso 0.5 -o 'p{step}.vtp' --pvd p.pvd | sed 's/:.*; at/: at/;s/ s;.*/ s/'
 grep DataSet p.pvd
 cubewright extract run.pvd --iso 0.5 --steps 1 -o 'one{step}.ply' -q && ls one*
 cubewright extract run.pvd --iso 0.5 --animate -o run.glb -q && ls run.glb
