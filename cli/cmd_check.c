@@ -525,30 +525,7 @@ const cli_command cli_check = {
     .name = "check",
     .usage = "MESH [--profile NAME] [--source VOLUME --iso V] [options]",
     .about = "verdicts on a mesh: closed, manifold, free of crossings, near its source",
-    .more =
-        "Reads a mesh and says, the worst first, what holds and what does not, with the "
-        "number\n"
-        "and what to do. Vertices at the same place count as one, as they do for slicers. "
-        "Exit\n"
-        "code 1 when the profile's promise does not hold.\n\n"
-        "  basic  an oriented manifold without flat or duplicate triangles, open or closed\n"
-        "  print  basic, closed, no triangle meets another; 5 to 400 mm\n"
-        "  web    oriented outward; normals, at most a million triangles\n"
-        "  fem    as print in any size; no angle below 10 degrees, no aspect ratio above 10\n\n"
-        "With --source and --iso the distance to the surface of the volume's trilinear field "
-        "is\n"
-        "measured, not to another mesh of it: largest, RMS, 99th percentile, and where. Then "
-        "the\n"
-        "way back, from the field's surface to the mesh, which finds what the mesh leaves "
-        "out,\n"
-        "and the topology of both. --tolerance makes a promise of it, or of --reference.\n\n"
-        "--deep looks for self-intersections in every profile (exact; print and fem always "
-        "do),\n"
-        "and asks CGAL the same questions: its answers must agree.\n\n"
-        "Examples\n"
-        "  cubewright check bone.stl --profile print\n"
-        "  cubewright check bone.glb --source ct.nrrd --iso 300 --tolerance 0.1mm\n"
-        "  cubewright check small.ply --reference bone.ply --defects where.ply\n",
+    .page = cli_page_check,
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .min_inputs = 1,

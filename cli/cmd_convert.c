@@ -200,28 +200,7 @@ const cli_command cli_convert = {
     .name = "convert",
     .usage = "MESH -o MESH [options]",
     .about = "a mesh to another format, unit or frame",
-    .more =
-        "Reads a mesh, says what is in it, measures it and writes it, whatever it is like.\n"
-        "What the new format has no place for is told, and what single precision loses. "
-        "Closed\n"
-        "shells that face the wrong way are told, too, and --orient turns them round.\n\n"
-        "Inside, coordinates are LPS millimetres; a file that names no unit is taken as that.\n"
-        "--unit, --up and --frame change how they stand in the file, which names them where "
-        "it\n"
-        "can, so that cubewright reads the same mesh back. glTF has a unit and axes of its "
-        "own:\n"
-        "metres, +Y up. --input-unit, --input-up and --input-frame say how coordinates of the\n"
-        "input are meant, where it does not say so itself.\n\n"
-        "Parts (objects of OBJ, solids of an STL text, nodes of glTF) stay parts where the "
-        "new\n"
-        "format has them, and become one mesh elsewhere. --merge makes one of them anywhere,\n"
-        "--split a file of each: {name} in -o is the part's name, {part} its number.\n\n"
-        "Examples\n"
-        "  cubewright convert bone.stl -o bone.glb\n"
-        "  cubewright convert bone.glb -o web.glb --compress draco --tolerance 0.05mm\n"
-        "  cubewright convert scene.glb -o scene.obj --unit m --up y\n"
-        "  cubewright convert artist.obj -o print.stl --input-unit in --input-up y\n"
-        "  cubewright convert skeleton.obj --split -o 'out/{stem}-{name}.stl' --ascii\n",
+    .page = cli_page_convert,
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .min_inputs = 1,

@@ -64,7 +64,7 @@ static cw_status search(const char *word, cw_error *err)
         search_options("every command", cli_common_options, cli_common_option_count, word);
     for (size_t n = 0; cli_commands[n]; n++) {
         const cli_command *c = cli_commands[n];
-        if (contains(c->name, word) || contains(c->about, word) || contains(c->more, word)) {
+        if (contains(c->name, word) || contains(c->about, word) || contains(c->page, word)) {
             printf("%s: %s\n", c->name, c->about);
             found++;
         }
@@ -101,6 +101,7 @@ const cli_command cli_help = {
     .name = "help",
     .usage = "[COMMAND | exit]",
     .about = "what a command does, with examples; the exit codes",
+    .page = cli_page_help,
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .max_inputs = 1,

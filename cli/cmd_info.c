@@ -627,20 +627,7 @@ const cli_command cli_info = {
     .name = "info",
     .usage = "VOLUME... [options]",
     .about = "what is in a file: size, type, frame, values, suggested levels",
-    .more =
-        "Several series of DICOM images are listed, and --series chooses one.\n"
-        "Several volumes, a quoted pattern, their folder or a .pvd list are the steps of a "
-        "time\n"
-        "series: each is listed with the range of its values, and the first that cannot be of "
-        "one\n"
-        "series with the first of all is named.\n\n"
-        "Suggested levels part the histogram into two (otsu) or four classes (dark, medium,\n"
-        "bright) with the largest variance between them.\n\n"
-        "Examples\n"
-        "  cubewright info head.nii.gz --levels\n"
-        "  cubewright info ct.nrrd --histogram 16 --json\n"
-        "  cubewright info dicom/ --series 3\n"
-        "  cubewright info 'scan-*.nrrd'\n",
+    .page = cli_page_info,
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .min_inputs = 1,

@@ -179,18 +179,7 @@ const cli_command cli_make = {
     .name = "make",
     .usage = "FIELD -o VOLUME [options]",
     .about = "a volume whose surface is known on paper, for trying and testing",
-    .more =
-        "Samples a field around the world's zero. 'cubewright make --list' lists the fields.\n"
-        "Floats, and CT numbers, are kept as they are; integer types spread the field over\n"
-        "their range, and the line printed says which isovalue is then its surface.\n"
-        "Those named hard/... are what extractors break on: ties, saddles, thin things, "
-        "cusps,\n"
-        "noise, gaps, the ends of the number line. Integer types hold small numbers of theirs\n"
-        "as they are or times a whole number, so that ties stay ties; some need floats.\n\n"
-        "Examples\n"
-        "  cubewright make sphere -o sphere.nrrd --dims 128\n"
-        "  cubewright make ct-head -o head.nii.gz --dims 256 --type i16 --noise 20\n"
-        "  cubewright make hard/mc33 -o cases.nrrd --dims 46\n",
+    .page = cli_page_make,
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .max_inputs = 1,

@@ -58,44 +58,7 @@ const cli_command cli_render = {
     .name = "render",
     .usage = "VOLUME|MESH -o PNG [options]",
     .about = "a picture of a volume, a mesh, or the surface at an isovalue; needs no display",
-    .more =
-        "Draws a volume in one of the classic modes, a mesh in its colours if it has some, or\n"
-        "the surface that extract makes of a volume. A mesh by itself is drawn on the CPU in\n"
-        "double precision, lit from the camera, its inside red; volumes, and meshes that are\n"
-        "cut, tinted or see-through, by OpenGL off-screen. Several volumes are a time series.\n"
-        "Without --tf a transfer function is fitted to the histogram: air goes, the rest "
-        "fades\n"
-        "in. That of mip, minip, average and slices is grey.\n\n"
-        "Modes\n"
-        "  mesh            triangles, lit\n"
-        "  composite       ray casting: emission and absorption\n"
-        "  mip, minip      the highest, the lowest value along each ray\n"
-        "  average         the mean along each ray, as an X-ray\n"
-        "  local-mip       the first maximum above --threshold\n"
-        "  projection      cells as polygons, back to front   --linear-opacity\n"
-        "  splat           footprints, sheet by sheet\n"
-        "  splat-tree      footprints of an octree's nodes    --tree-error\n"
-        "  texture         slices through a 3D texture        --slices, --target\n"
-        "  shaded-texture  ... of quantised gradients         --normals, --boundary\n"
-        "  slices          axial, coronal, sagittal, oblique  --planes\n"
-        "  vbuffer         ray casting cell by cell, on the CPU\n"
-        "  reference       the rendering integral itself, on the CPU\n"
-        "--compare draws a scene twice, left and right, and prints how far they are apart "
-        "(RMSE\n"
-        "in 1/255, CIEDE2000). A side is options by comma without their dashes, the first a\n"
-        "mode; what holds for both sides stands outside.\n"
-        "An option that does nothing in the mode at hand is an error that names its modes.\n\n"
-        "Cameras are named in the patient's frame: front looks at the face, heads are up, and\n"
-        "the patient's left is on the right of the picture. 90,0 is left, 0,90 from above.\n\n"
-        "Examples\n"
-        "  cubewright render head.nii.gz -o head.png\n"
-        "  cubewright render ct.nrrd --tf ct-bone --camera iso -o bone.png\n"
-        "  cubewright render angio.nrrd --mode mip --turntable 36 -o 'a-{turn:02d}.png'\n"
-        "  cubewright render ct.nrrd --mode composite --iso 300 --clip 0,1,0,0 -o cut.png\n"
-        "  cubewright render head.nii.gz --iso 50 --camera 30,20 -o head.png\n"
-        "  cubewright render ct.nrrd --compare 'composite,step-length=2|reference' -o two.png\n"
-        "  cubewright render run.nii.gz --steps all -o 'run-{step:04d}.png'\n"
-        "  cubewright render defects.ply -o defects.png\n",
+    .page = cli_page_render,
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .min_inputs = 1,

@@ -324,30 +324,7 @@ const cli_command cli_report_command = {
     .name = "report",
     .usage = "VOLUME|FIELD -o HTML [options]",
     .about = "a page of what settings cost and how close they come, to choose from",
-    .more =
-        "Tries the settings there are on a volume, or on a field of 'make' whose surface is\n"
-        "known on paper, and measures each: extraction (placement, snapping, previews),\n"
-        "simplification (errors, numbers of triangles), compression (quantised, meshopt, "
-        "Draco)\n"
-        "and rendering (modes, steps, slices, errors). The page plots time, triangles or "
-        "bytes\n"
-        "against the error, marks what nothing else beats, and has the command of every "
-        "point.\n"
-        "It is one file, without anything from a network; it can be printed.\n\n"
-        "What matters most is tried first. When the budget is spent no more is begun, and "
-        "what\n"
-        "runs is stopped; the page, the JSON and the CSV list what was left out, and why. The\n"
-        "plain surface is made and measured in any case.\n\n"
-        "Errors of meshes are distances to the surface of the volume's field; of a field of\n"
-        "'make', to the surface on paper. Those of pictures are against the rendering "
-        "integral.\n"
-        "Of more than 32M voxels every other one, or fewer, is studied for meshes "
-        "(--coarsen).\n"
-        "Commands on the page name the input as it was named here.\n\n"
-        "Examples\n"
-        "  cubewright report head.nii.gz --iso 50 -o head.html\n"
-        "  cubewright report gyroid -o gyroid.html --dims 64 --budget 30s --csv gyroid.csv\n"
-        "  cubewright report ct.nrrd -o ct.html --crop 100:200,100:200,50:120 --json ct.json\n",
+    .page = cli_page_report,
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .min_inputs = 1,

@@ -125,49 +125,7 @@ const cli_command cli_simplify = {
     .name = "simplify",
     .usage = "MESH -o MESH --error L|--triangles N|--ratio R|--lod N,... [options]",
     .about = "a mesh with fewer triangles, under a promise of how far it is from the input",
-    .more =
-        "Reads a mesh, collapses edges, those first that move the surface least, measures how\n"
-        "far the result is from the input, and writes it. Of several targets the one that is\n"
-        "met first ends it.\n\n"
-        "With --error no point of the result is farther from the input, and none of the input\n"
-        "farther from the result. In any case components, handles and border loops stay what\n"
-        "they are, nothing turns over, and no triangles meet that did not meet before\n"
-        "(--allow-intersections drops the last). Where that leaves more triangles than asked\n"
-        "for, it is told. Exit code 1, and no file, when the result should not be as "
-        "promised.\n\n"
-        "--keep-border leaves borders of open surfaces to the bit as they are: what was cut\n"
-        "from one whole, as tiles are, fits together again when each piece is simplified.\n\n"
-        "The error that is printed, and in the report, is measured both ways over the whole\n"
-        "surfaces: the largest distance, the root of the mean square, the 99th percentile.\n"
-        "--no-measure skips it.\n\n"
-        "Vertices at equal positions are made one first. --drop-components then leaves out\n"
-        "specks; the error is measured against what is left.\n\n"
-        "Parts (of OBJ, 3MF, glTF) stay parts where the output's format has them: each is\n"
-        "simplified by itself, with its share of the triangles, and crossings are looked for\n"
-        "within each. --merge makes them one mesh.\n\n"
-        "--lod makes levels of detail, each from the one before, of all parts merged: a file\n"
-        "each, whose names tell them apart by {lod}, or by -lod0, -lod1, ... without it. "
-        "Where\n"
-        "that is glTF, the file named itself holds them all: its scene shows level 0, and the\n"
-        "extension MSFT_lod names the others, with the share of the screen below which each\n"
-        "is enough. Most engines read a file a level; few know MSFT_lod. Triangles and errors\n"
-        "of each are in the report and in the extras of its node.\n\n"
-        "Normals, colours, scalars and labels are those of the closest point of the input.\n"
-        "--attributes spends triangles on what they would lose otherwise: with a weight of 1 "
-        "as\n"
-        "large a difference as there can be (a colour from none to full, scalars from the\n"
-        "lowest to the highest, normals by 60 degrees) counts as 1 % of its box's diagonal.\n"
-        "--source takes normals from the field of the volume that the mesh is a surface of, "
-        "so\n"
-        "that it shades as the full one does; with --iso the distance to the field's surface\n"
-        "is measured, too.\n\n"
-        "Examples\n"
-        "  cubewright simplify bone.stl --error 0.1mm -o small.stl\n"
-        "  cubewright simplify bone.glb --triangles 50k --error 0.05% -o web.glb \\\n"
-        "      --compress meshopt\n"
-        "  cubewright simplify scan.ply --drop-components 2mm --error 0.2mm -o scan.glb\n"
-        "  cubewright simplify cloud.glb --lod 50k,12k,3k -o cloud-web.glb\n"
-        "  cubewright simplify bone.glb --ratio 0.1 -o tenth.glb --source ct.nrrd --iso 300\n",
+    .page = cli_page_simplify,
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .min_inputs = 1,

@@ -226,17 +226,7 @@ const cli_command cli_view = {
     .name = "view",
     .usage = "[VOLUME...|MESH|FOLDER] [options]",
     .about = "a window: everything that render draws, a drag away",
-    .more =
-        "Shows a good picture at once: a mode, colours and opacities that suit the file. Drag\n"
-        "to turn it, drop files on it, press H for the keys. While things move the picture is\n"
-        "rough; it gets better when they rest. A session can be saved, as commands or as a\n"
-        "command line; --hidden does the same without a window and without a display.\n\n"
-        "Examples\n"
-        "  cubewright view head.nii.gz\n"
-        "  cubewright view ct.nrrd --tf ct-bone --layout quad\n"
-        "  cubewright view ct.nrrd --iso 300\n"
-        "  cubewright view head.nii.gz --compare 'composite|reference'\n"
-        "  cubewright view head.nii.gz --exec 'mode mip; orbit 30' -o a.png\n",
+    .page = cli_page_view,
     .options = options,
     .option_count = sizeof options / sizeof *options,
     .max_inputs = SIZE_MAX,

@@ -465,14 +465,16 @@ static void print_option(const cli_option *o)
 void cli_print_help(const cli_command *command, bool long_form)
 {
     const cli_option *o;
-    printf("cubewright %s %s\n%s\n", command->name, command->usage, command->about);
-    if (long_form && command->more)
-        printf("\n%s", command->more);
+    printf("cubewright %s%s%s\n", command->name, *command->usage ? " " : "", command->usage);
+    if (long_form)
+        printf("\n%s", command->page);
+    else
+        printf("%s\n", command->about);
     puts("\nOptions");
     for (size_t n = 0; (o = option_at(command, n)); n++)
         print_option(o);
     if (long_form && command->print_more)
         command->print_more();
-    if (!long_form && command->more)
-        printf("\n'cubewright help %s' has more and examples.\n", command->name);
+    if (!long_form)
+        printf("\n'cubewright help %s' explains more, with examples.\n", command->name);
 }

@@ -132,7 +132,7 @@ typedef struct cli_command {
     const char *name;
     const char *usage; /* after the name */
     const char *about; /* one line */
-    const char *more;  /* paragraphs and examples for the long help */
+    const char *page;  /* the long help, help/NAME.txt: paragraphs and examples */
     const cli_option *options;
     size_t option_count;
     size_t min_inputs, max_inputs;
@@ -159,7 +159,7 @@ size_t cli_option_size(const cli_option *option);
  * choices, numbers, counts, lengths and ranges. false: nothing was said. */
 bool cli_option_text(const cli_option *option, const void *args, char *text, size_t size);
 
-/* The help of a command: long adds its paragraphs. */
+/* The help of a command: the options, and in the long form its page before them. */
 void cli_print_help(const cli_command *command, bool long_form);
 
 /* The candidate most like a word, or NULL when none is close; names end with a NULL. */

@@ -1,4 +1,4 @@
-# Every command has a short and a long help, and says which options it takes.
+# Every command has a short help, and a long one: a page with examples that a terminal can show.
 cubewright
 cubewright --version
 cubewright help exit
@@ -6,5 +6,7 @@ for c in extract simplify convert hollow offset info render report bench view ma
     cubewright $c -h >short || exit
     cubewright help $c >long || exit
     grep -q -e '--quiet' short && grep -q "^cubewright $c" long || echo "$c lacks its help"
+    grep -A1 '^Examples$' long | grep -q "^  cubewright $c" || echo "$c has no examples"
+    sed '/^Options/,$d' long | awk -v c="$c" 'length > 96 { print c ": a long line: " $0 }'
 done
 cubewright help --search isovalue
