@@ -21,23 +21,27 @@ static const convert_args defaults = {.check = true};
 
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE",
-     "the mesh, in the format of its extension; may hold {stem}, with --split {name}, {part}",
+     "Mesh to write, in the format of its extension; may hold {stem}, with --split {name} "
+     "and {part}",
      offsetof(convert_args, output)},
-    {"merge", 0, CLI_FLAG, NULL, "all parts as one mesh (parts, where the format has them)",
+    CLI_HEADED("Parts and checks"),
+    {"merge", 0, CLI_FLAG, NULL,
+     "Join all parts to one mesh (off: keep parts where the format has them)",
      offsetof(convert_args, merge)},
-    {"split", 0, CLI_FLAG, NULL, "a file for each part", offsetof(convert_args, split)},
+    {"split", 0, CLI_FLAG, NULL, "Write a file for each part (off)",
+     offsetof(convert_args, split)},
     {"orient", 0, CLI_FLAG, NULL,
-     "turn shells round that face the wrong way: outer ones outward, cavities inward (off)",
+     "Flip shells that face the wrong way: outer ones outward, cavities inward (off)",
      offsetof(convert_args, orient)},
-    {"check", 0, CLI_FLAG, NULL, "measure the mesh: closed, manifold, size (on; --no-check)",
+    {"check", 0, CLI_FLAG, NULL, "Measure the mesh: closed, manifold, size (on; --no-check)",
      offsetof(convert_args, check)},
-    {"json", 0, CLI_TEXT, "FILE", "write a report; - is the standard output",
+    {"json", 0, CLI_TEXT, "FILE", "Write a report as JSON; - is the standard output",
      offsetof(convert_args, json)},
-    {"progress", 0, CLI_CHOICE, "auto/plain/json/none", "how to show it, on stderr (auto)",
-     offsetof(convert_args, progress)},
     CLI_WRITTEN_OPTIONS(convert_args),
     CLI_COMPRESS_OPTIONS(convert_args),
     CLI_MESH_INPUT_OPTIONS(convert_args),
+    {"progress", 0, CLI_CHOICE, "auto/plain/json/none", "Progress display on stderr (auto)",
+     offsetof(convert_args, progress)},
 };
 
 typedef struct run_state {
@@ -199,7 +203,7 @@ static cw_status run(void *p, cw_error *err)
 const cli_command cli_convert = {
     .name = "convert",
     .usage = "MESH -o MESH [options]",
-    .about = "a mesh to another format, unit or frame",
+    .about = "Convert a mesh to another format, unit or coordinate frame",
     .page = cli_page_convert,
     .options = options,
     .option_count = sizeof options / sizeof *options,

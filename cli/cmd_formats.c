@@ -119,13 +119,13 @@ static cw_status run_version(void *p, cw_error *err)
 }
 
 static const cli_option formats_options[] = {
-    {"json", 0, CLI_FLAG, NULL, "one JSON object", offsetof(formats_args, json)},
+    {"json", 0, CLI_FLAG, NULL, "Print one JSON object (off)", offsetof(formats_args, json)},
 };
 
 const cli_command cli_formats = {
     .name = "formats",
     .usage = "",
-    .about = "the files this build reads and writes",
+    .about = "List the file formats that this build reads and writes",
     .page = cli_page_formats,
     .options = formats_options,
     .option_count = sizeof formats_options / sizeof *formats_options,
@@ -134,16 +134,17 @@ const cli_command cli_formats = {
 };
 
 static const cli_option version_options[] = {
-    {"features", 0, CLI_FLAG, NULL, "also what this build has, and why it lacks the rest",
+    {"features", 0, CLI_FLAG, NULL,
+     "List the optional parts of this build, and why any is missing (off)",
      offsetof(formats_args, features)},
-    {"json", 0, CLI_FLAG, NULL, "one JSON object, with formats and features",
+    {"json", 0, CLI_FLAG, NULL, "Print one JSON object, with formats and features (off)",
      offsetof(formats_args, json)},
 };
 
 const cli_command cli_version = {
     .name = "version",
     .usage = "",
-    .about = "the version of this program",
+    .about = "Print the version and the parts of this build",
     .page = cli_page_version,
     .options = version_options,
     .option_count = sizeof version_options / sizeof *version_options,

@@ -93,14 +93,14 @@ static cw_status run(void *p, cw_error *err)
 }
 
 static const cli_option options[] = {
-    {"search", 's', CLI_TEXT, "WORD", "lines of help that hold a word",
+    {"search", 's', CLI_TEXT, "WORD", "Find commands and options by a word or its synonyms",
      offsetof(help_args, search)},
 };
 
 const cli_command cli_help = {
     .name = "help",
     .usage = "[COMMAND | exit]",
-    .about = "what a command does, with examples; the exit codes",
+    .about = "Explain a command, list the exit codes, or search the help",
     .page = cli_page_help,
     .options = options,
     .option_count = sizeof options / sizeof *options,

@@ -2,12 +2,13 @@
 #include "cli/solid.h"
 
 static const cli_option options[] = {
-    {"wall", 'w', CLI_LENGTH, "L", "how thick what stays is: 2mm, or 1% of the box's diagonal",
+    {"wall", 'w', CLI_LENGTH, "L", "Thickness of the wall: 2mm, or 1% of the box's diagonal",
      offsetof(cli_solid_args, wall)},
     {"drain", 0, CLI_TEXT, "D@AXIS[,...]",
-     "holes so wide out of the largest cavity: 4mm@-z, or 4mm@-z,3mm@+x (none)",
+     "Diameter and direction of drain holes out of the largest cavity: 4mm@-z, or "
+     "4mm@-z,3mm@+x (none)",
      offsetof(cli_solid_args, drain)},
-    {"measure", 0, CLI_FLAG, NULL, "measure how thick the wall is (on; --no-measure)",
+    {"measure", 0, CLI_FLAG, NULL, "Measure the thickness of the wall (on; --no-measure)",
      offsetof(cli_solid_args, measure)},
     CLI_SOLID_OPTIONS,
 };
@@ -15,7 +16,7 @@ static const cli_option options[] = {
 const cli_command cli_hollow = {
     .name = "hollow",
     .usage = "MESH -o MESH --wall L [--drain D@AXIS,...] [options]",
-    .about = "a solid with a wall of some thickness and nothing inside, for print",
+    .about = "Turn a solid into a shell, to save print material",
     .page = cli_page_hollow,
     .options = options,
     .option_count = sizeof options / sizeof *options,

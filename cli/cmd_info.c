@@ -22,14 +22,15 @@ typedef struct info_args {
 } info_args;
 
 static const cli_option options[] = {
-    {"histogram", 0, CLI_COUNT, "N", "print the values in N bins (0)",
+    {"histogram", 0, CLI_COUNT, "N", "Print a histogram of the values with N bins (0)",
      offsetof(info_args, histogram)},
-    {"levels", 0, CLI_FLAG, NULL, "predict the triangles at each suggested level",
+    {"levels", 0, CLI_FLAG, NULL,
+     "Predict the number of triangles at each suggested isovalue (off)",
      offsetof(info_args, levels)},
     {"deep", 0, CLI_FLAG, NULL,
-     "read all voxels; default: of more than 256 MiB some rows, unless --levels needs all",
+     "Read all voxels (off: above 256 MiB a part of the rows, unless --levels needs all)",
      offsetof(info_args, deep)},
-    {"json", 0, CLI_FLAG, NULL, "one JSON object", offsetof(info_args, json)},
+    {"json", 0, CLI_FLAG, NULL, "Print one JSON object (off)", offsetof(info_args, json)},
     CLI_INPUT_OPTIONS(info_args),
 };
 
@@ -626,7 +627,7 @@ static cw_status run(void *p, cw_error *err)
 const cli_command cli_info = {
     .name = "info",
     .usage = "VOLUME... [options]",
-    .about = "what is in a file: size, type, frame, values, suggested levels",
+    .about = "Describe a volume: size, type, frame, values, suggested isovalues",
     .page = cli_page_info,
     .options = options,
     .option_count = sizeof options / sizeof *options,

@@ -24,20 +24,23 @@ typedef struct make_args {
 static const make_args defaults = {.type = CW_F32, .dims = {.count = 3, .n = {64, 64, 64}}};
 
 static const cli_option options[] = {
-    {"output", 'o', CLI_TEXT, "FILE", "the volume: .nrrd, .nii, .nii.gz or .mha",
+    {"output", 'o', CLI_TEXT, "FILE", "Volume to write: .nrrd, .nii, .nii.gz or .mha",
      offsetof(make_args, output)},
-    {"dims", 'd', CLI_SIZES, "N|XxYxZ", "voxels along the axes (64)",
-     offsetof(make_args, dims)},
-    {"type", 0, CLI_CHOICE, TYPE_NAMES, "of the voxels (f32)", offsetof(make_args, type)},
-    {"noise", 0, CLI_NUMBER, "SIGMA", "Gaussian noise, in the field's unit (0)",
-     offsetof(make_args, noise)},
-    {"seed", 0, CLI_COUNT, "N", "of the noise (0)", offsetof(make_args, seed)},
-    {"threads", 't', CLI_COUNT, "N", "to use; results do not depend on it (0: all)",
-     offsetof(make_args, threads)},
-    {"no-clobber", 0, CLI_FLAG, NULL, "fail when the output exists (replace it)",
-     offsetof(make_args, no_clobber)},
-    {"list", 'l', CLI_FLAG, NULL, "list the fields and their isovalues",
+    {"list", 'l', CLI_FLAG, NULL, "List the fields and their isovalues",
      offsetof(make_args, list)},
+    {"no-clobber", 0, CLI_FLAG, NULL, "Fail if the output exists (off: replace it)",
+     offsetof(make_args, no_clobber)},
+    CLI_HEADED("Samples"),
+    {"dims", 'd', CLI_SIZES, "N|XxYxZ", "Voxels along the axes (64)",
+     offsetof(make_args, dims)},
+    {"type", 0, CLI_CHOICE, TYPE_NAMES, "Type of the voxels (f32)", offsetof(make_args, type)},
+    {"noise", 0, CLI_NUMBER, "SIGMA",
+     "Standard deviation of Gaussian noise, in the unit of the field (0)",
+     offsetof(make_args, noise)},
+    {"seed", 0, CLI_COUNT, "N", "Seed of the noise (0)", offsetof(make_args, seed)},
+    CLI_HEADED("Limits and messages"),
+    {"threads", 't', CLI_COUNT, "N", "Number of threads; results do not depend on it (0: all)",
+     offsetof(make_args, threads)},
 };
 
 /* What can be made: fields, and behind them the hard cases. */
@@ -178,7 +181,7 @@ static cw_status run(void *p, cw_error *err)
 const cli_command cli_make = {
     .name = "make",
     .usage = "FIELD -o VOLUME [options]",
-    .about = "a volume whose surface is known on paper, for trying and testing",
+    .about = "Make a test volume whose surface is known exactly",
     .page = cli_page_make,
     .options = options,
     .option_count = sizeof options / sizeof *options,

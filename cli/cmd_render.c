@@ -11,28 +11,27 @@ static const render_args defaults = {.scene = CLI_SCENE_DEFAULTS,
 
 static const cli_option options[] = {
     {"output", 'o', CLI_TEXT, "FILE",
-     "the picture, a .png; may hold {turn}, {step} (or {step:04d}) and {stem}",
+     "Picture to write, a .png file; may hold {turn}, {step} or {step:04d}, and {stem}",
      offsetof(render_args, output)},
 #include "cli/options_what.inc"
-    {"size", 0, CLI_SIZES, "WxH", "of the picture, in pixels (1280x720)",
+    {"size", 0, CLI_SIZES, "WxH", "Size of the picture in pixels (1280x720)",
      offsetof(render_args, size)},
     {"backend", 0, CLI_CHOICE, "auto/egl/cpu",
-     "OpenGL without a display, or the CPU: meshes, vbuffer, reference (auto)",
+     "OpenGL without a display, or the CPU for meshes, vbuffer and reference (auto)",
      offsetof(render_args, backend)},
-    {"json", 0, CLI_TEXT, "FILE", "write a report; - is the standard output",
+    {"json", 0, CLI_TEXT, "FILE", "Write a report as JSON; - is the standard output",
      offsetof(render_args, json)},
-    {"save-tf", 0, CLI_TEXT, "FILE", "write the transfer function as a .json file",
+    {"save-tf", 0, CLI_TEXT, "FILE", "File to write the transfer function to, as .json",
      offsetof(render_args, save_transfer)},
     CLI_HEADED("Camera"),
 #include "cli/options_camera.inc"
-    {"save-camera", 0, CLI_TEXT, "FILE", "write the camera as a .json file",
+    {"save-camera", 0, CLI_TEXT, "FILE", "File to write the camera to, as .json",
      offsetof(render_args, save_camera)},
-    {"turntable", 0, CLI_COUNT, "N", "N pictures around the up axis (1)",
+    {"turntable", 0, CLI_COUNT, "N", "Number of pictures around the up axis (1)",
      offsetof(render_args, turns) + offsetof(cli_turns, count)},
-    {"orbit", 0, CLI_NUMBER, "DEG", "how far round they go (360)",
+    {"orbit", 0, CLI_NUMBER, "DEG", "Angle of the turntable in degrees (360)",
      offsetof(render_args, turns) + offsetof(cli_turns, orbit)},
 #include "cli/options_look.inc"
-    CLI_HEADED("Reading"),
     CLI_INPUT_OPTIONS(render_args),
 };
 
@@ -57,7 +56,7 @@ static cw_status run(void *p, cw_error *err)
 const cli_command cli_render = {
     .name = "render",
     .usage = "VOLUME|MESH -o PNG [options]",
-    .about = "a picture of a volume, a mesh, or the surface at an isovalue; needs no display",
+    .about = "Draw a volume, a mesh or an isosurface to a picture, without a display",
     .page = cli_page_render,
     .options = options,
     .option_count = sizeof options / sizeof *options,

@@ -16,24 +16,24 @@ static const render_args defaults = {.scene = CLI_SCENE_DEFAULTS,
 
 static const cli_option options[] = {
     {"exec", 'e', CLI_TEXT, "COMMANDS",
-     "do this first, such as 'mode mip; orbit 30; screenshot a.png'",
+     "Commands to run first, such as 'mode mip; orbit 30; screenshot a.png'",
      offsetof(render_args, exec)},
-    {"run", 0, CLI_TEXT, "FILE", "do what is written in a file, such as a saved session",
+    {"run", 0, CLI_TEXT, "FILE", "File of commands to run first, such as a saved session",
      offsetof(render_args, run)},
     {"config", 0, CLI_TEXT, "FILE|none",
-     "settings for what is not said here (~/.config/cubewright/view; hidden: none)",
+     "File of default settings (~/.config/cubewright/view; with --hidden none)",
      offsetof(render_args, config)},
-    {"hidden", 0, CLI_FLAG, NULL, "no window: do that, and end; needs no display (off)",
+    {"hidden", 0, CLI_FLAG, NULL, "Run the commands and end, without window and display (off)",
      offsetof(render_args, hidden)},
-    {"output", 'o', CLI_TEXT, "FILE", "the same, and write the picture as a .png in the end",
+    {"output", 'o', CLI_TEXT, "FILE",
+     "Run as --hidden, and write the last picture as a .png file",
      offsetof(render_args, output)},
-    {"size", 0, CLI_SIZES, "WxH", "of the window, in pixels (1280x800)",
+    {"size", 0, CLI_SIZES, "WxH", "Size of the window in pixels (1280x800)",
      offsetof(render_args, size)},
 #include "cli/options_what.inc"
     CLI_HEADED("Camera"),
 #include "cli/options_camera.inc"
 #include "cli/options_look.inc"
-    CLI_HEADED("Reading"),
     CLI_INPUT_OPTIONS(render_args),
 };
 
@@ -225,7 +225,7 @@ static void print_more(void)
 const cli_command cli_view = {
     .name = "view",
     .usage = "[VOLUME...|MESH|FOLDER] [options]",
-    .about = "a window: everything that render draws, a drag away",
+    .about = "Open a window with everything that render draws",
     .page = cli_page_view,
     .options = options,
     .option_count = sizeof options / sizeof *options,

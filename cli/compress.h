@@ -15,26 +15,30 @@ typedef struct cli_compress {
 /* Rows for a command whose struct has the field `compress`. */
 #define CLI_COMPRESS_ROW(args, field) offsetof(args, compress) + offsetof(cli_compress, field)
 #define CLI_COMPRESS_OPTIONS(args)                                                             \
-    {"compress",                                                                               \
-     0,                                                                                        \
-     CLI_CHOICE,                                                                               \
-     "none/quantize/draco/meshopt",                                                            \
-     "glTF that viewers need an extension for; decoded and checked (none)",                    \
-     CLI_COMPRESS_ROW(args, kind)},                                                            \
+    CLI_HEADED("Compression"),                                                                 \
+        {"compress",                                                                           \
+         0,                                                                                    \
+         CLI_CHOICE,                                                                           \
+         "none/quantize/draco/meshopt",                                                        \
+         "Compression of a glTF file; viewers need its extension; verified by decoding "       \
+         "(none)",                                                                             \
+         CLI_COMPRESS_ROW(args, kind)},                                                        \
         {"tolerance",                                                                          \
          0,                                                                                    \
          CLI_LENGTH,                                                                           \
          "L",                                                                                  \
-         "compression may move a vertex so far, e.g. 0.05mm or 0.01% (0.005% of the box)",     \
+         "Largest movement of a vertex by compression, such as 0.05mm (0.005% of the box's "   \
+         "diagonal)",                                                                          \
          CLI_COMPRESS_ROW(args, tolerance)},                                                   \
         {"bits",                                                                               \
          0,                                                                                    \
          CLI_COUNT,                                                                            \
          "N",                                                                                  \
-         "of a coordinate: to 16, meshopt 24, draco 30; whatever that does (as it takes)",     \
+         "Bits of a coordinate in place of a tolerance: up to 16, meshopt 24, draco 30 (by "   \
+         "tolerance)",                                                                         \
          CLI_COMPRESS_ROW(args, bits)},                                                        \
     {                                                                                          \
-        "level", 0, CLI_COUNT, "N", "of Draco, 1 (fast) to 10 (small) (7)",                    \
+        "level", 0, CLI_COUNT, "N", "Effort of Draco, from 1 (fast) to 10 (small) (7)",        \
             CLI_COMPRESS_ROW(args, level)                                                      \
     }
 

@@ -20,23 +20,23 @@ typedef struct cli_claim {
      0,                                                                                        \
      CLI_CHOICE,                                                                               \
      "file/mm/um/cm/m/in/ft",                                                                  \
-     "of the coordinates in " what ", where it names none (as the file says, else mm)",        \
+     "Unit of the coordinates, if " what " names none (as the file says, else mm)",            \
      row + offsetof(cli_claim, unit)},                                                         \
         {prefix "-up",                                                                         \
          0,                                                                                    \
          CLI_CHOICE,                                                                           \
          "file/z/y",                                                                           \
-         "which axis points up in " what ", where it does not say (z)",                        \
+         "Axis that points up, if " what " does not say (z)",                                  \
          row + offsetof(cli_claim, up)},                                                       \
         {prefix "-frame",                                                                      \
          0,                                                                                    \
          CLI_CHOICE,                                                                           \
          "file/lps/ras",                                                                       \
-         "what x and y of a patient mean in " what ", where it does not say (lps)",            \
+         "Directions of x and y, if " what " does not say: LPS or RAS (lps)",                  \
          row + offsetof(cli_claim, frame)},                                                    \
     {                                                                                          \
         prefix "-override", 0, CLI_FLAG, NULL,                                                 \
-            "these three count also where the file says otherwise (an error)",                 \
+            "Apply these three even where " what " says otherwise (off: that is an error)",    \
             row + offsetof(cli_claim, override)                                                \
     }
 
@@ -62,107 +62,117 @@ typedef struct cli_input {
 /* Rows for a command whose struct has the field `input`. */
 #define CLI_INPUT_ROW(args, field) offsetof(args, input) + offsetof(cli_input, field)
 #define CLI_INPUT_OPTIONS(args)                                                                \
-    {"reader",                                                                                 \
-     0,                                                                                        \
-     CLI_TEXT,                                                                                 \
-     "NAME",                                                                                   \
-     "read as this format of 'formats' (by content)",                                          \
-     CLI_INPUT_ROW(args, reader)},                                                             \
+    CLI_HEADED(CLI_READING),                                                                   \
+        {"reader",                                                                             \
+         0,                                                                                    \
+         CLI_TEXT,                                                                             \
+         "NAME",                                                                               \
+         "Read the file as this format; names as in 'formats' (by content)",                   \
+         CLI_INPUT_ROW(args, reader)},                                                         \
         {"raw",                                                                                \
          0,                                                                                    \
          CLI_TEXT,                                                                             \
          "LAYOUT",                                                                             \
-         "headerless voxels: dims=64x64x93,type=u16le,offset=0,spacing=1x1x2",                 \
+         "Layout of headerless voxels: dims=64x64x93,type=u16le,offset=0,spacing=1x1x2",       \
          CLI_INPUT_ROW(args, raw)},                                                            \
         {"spacing",                                                                            \
          0,                                                                                    \
          CLI_LENGTHS,                                                                          \
          "X[,Y,Z]",                                                                            \
-         "the distance of voxels, e.g. 0.5mm or 1x1x2mm (the file's)",                         \
+         "Distance between voxels, such as 0.5mm or 1x1x2mm (the file's)",                     \
          CLI_INPUT_ROW(args, spacing)},                                                        \
         CLI_CLAIM_OPTIONS("input", "the input", CLI_INPUT_ROW(args, claim)),                   \
         {"series",                                                                             \
          0,                                                                                    \
          CLI_TEXT,                                                                             \
          "N",                                                                                  \
-         "of a DICOM folder: its number as 'info' lists it, or UID (the only one)",            \
+         "DICOM series of a folder: its number in 'info', or its UID (the only one)",          \
          CLI_INPUT_ROW(args, series)},                                                         \
         {"array",                                                                              \
          0,                                                                                    \
          CLI_TEXT,                                                                             \
          "NAME",                                                                               \
-         "of files with several: that one (the file's choice, else the first of one value)",   \
+         "Array to read, of files with several (the file's choice, else the first with one "   \
+         "value)",                                                                             \
          CLI_INPUT_ROW(args, array)},                                                          \
         {"grid",                                                                               \
          0,                                                                                    \
          CLI_TEXT,                                                                             \
          "NAME",                                                                               \
-         "of OpenVDB files: that one (the first level set, else the first of one value)",      \
+         "OpenVDB grid to read (the first level set, else the first with one value)",          \
          CLI_INPUT_ROW(args, array)},                                                          \
         {"points",                                                                             \
          0,                                                                                    \
          CLI_TEXT,                                                                             \
          "FILE",                                                                               \
-         "of PLOT3D solutions: the file of the grid's points",                                 \
+         "File with the grid points of a PLOT3D solution",                                     \
          CLI_INPUT_ROW(args, points)},                                                         \
         {"gaps",                                                                               \
          0,                                                                                    \
          CLI_CHOICE,                                                                           \
          "stop/interpolate/allow",                                                             \
-         "where slices are missing or uneven (stop)",                                          \
+         "What to do where slices are missing or uneven (stop)",                               \
          CLI_INPUT_ROW(args, gaps)},                                                           \
         {"tilt",                                                                               \
          0,                                                                                    \
          CLI_CHOICE,                                                                           \
          "correct/keep",                                                                       \
-         "slices of a tilted gantry: where they were, or straight up (correct)",               \
+         "Place slices of a tilted gantry where they were, or straight above each other "      \
+         "(correct)",                                                                          \
          CLI_INPUT_ROW(args, tilt)},                                                           \
         {"crop",                                                                               \
          0,                                                                                    \
          CLI_RANGES,                                                                           \
          "X:X,Y:Y,Z:Z",                                                                        \
-         "only these voxels, ends included; with units, those in a box of LPS mm",             \
+         "Read only these voxels, ends included; with units, those in a box of LPS mm (all)",  \
          CLI_INPUT_ROW(args, crop)},                                                           \
         {"component",                                                                          \
          0,                                                                                    \
          CLI_COMPONENT,                                                                        \
          "N/mag",                                                                              \
-         "of volumes with several values a voxel; mag: the length of their vector (0)",        \
+         "Component of voxels with several values; mag is the length of their vector (0)",     \
          CLI_INPUT_ROW(args, component)},                                                      \
-        {"step", 0, CLI_COUNT, "N", "of time series (0)", CLI_INPUT_ROW(args, step)},          \
+        {"step",                                                                               \
+         0,                                                                                    \
+         CLI_COUNT,                                                                            \
+         "N",                                                                                  \
+         "Time step to read, counted from 0 (0)",                                              \
+         CLI_INPUT_ROW(args, step)},                                                           \
         {"allow-external",                                                                     \
          0,                                                                                    \
          CLI_FLAG,                                                                             \
          NULL,                                                                                 \
-         "follow headers to files outside their own folder, and links in a folder (off)",      \
+         "Follow headers to files outside their folder, and links in a folder (off)",          \
          CLI_INPUT_ROW(args, allow_external)},                                                 \
         {"no-sandbox",                                                                         \
          0,                                                                                    \
          CLI_FLAG,                                                                             \
          NULL,                                                                                 \
-         "let libraries read in this process, not in one without rights (off)",                \
+         "Let libraries read in this process, not in a sandboxed one (off)",                   \
          CLI_INPUT_ROW(args, no_sandbox)},                                                     \
+        CLI_HEADED(CLI_LIMITS),                                                                \
         {"timeout",                                                                            \
          0,                                                                                    \
          CLI_COUNT,                                                                            \
          "SECONDS",                                                                            \
-         "that a library may take for one file (60)",                                          \
+         "Time limit of a library for one file (60)",                                          \
          CLI_INPUT_ROW(args, timeout_s)},                                                      \
         {"threads",                                                                            \
          't',                                                                                  \
          CLI_COUNT,                                                                            \
          "N",                                                                                  \
-         "to use; results do not depend on it (0: all)",                                       \
+         "Number of threads; results do not depend on it (0: all)",                            \
          CLI_INPUT_ROW(args, threads)},                                                        \
         {"max-voxels",                                                                         \
          0,                                                                                    \
          CLI_COUNT,                                                                            \
          "N",                                                                                  \
-         "stop before reading more voxels, e.g. 500M (2^40)",                                  \
+         "Stop before reading more voxels than this, such as 500M (2^40)",                     \
          CLI_INPUT_ROW(args, max_voxels)},                                                     \
     {                                                                                          \
         "memory", 0, CLI_BYTES, "SIZE",                                                        \
-            "stop before the program takes more, checks included (75 % of the machine's)",     \
+            "Memory limit of the program, checks included, such as 8G (75 % of the "           \
+            "machine's)",                                                                      \
             CLI_INPUT_ROW(args, memory)                                                        \
     }
 

@@ -42,7 +42,7 @@ static void limit_memory(const cli_command *command, const cli_common *args)
     for (size_t n = 0; n < command->option_count; n++) {
         const cli_option *o = &command->options[n];
         cli_input input = {0};
-        if (strcmp(o->name, "memory") != 0)
+        if (o->kind == CLI_HEADING || strcmp(o->name, "memory") != 0)
             continue;
         memcpy(&input.memory, (const char *)args + o->offset, sizeof input.memory);
         const size_t asked = cli_memory_limit(&input), limit = asked > LEAST ? asked : LEAST;

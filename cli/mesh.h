@@ -8,46 +8,49 @@
 
 /* Rows for a command that reads meshes and no volumes; its struct has the field `input`. */
 #define CLI_MESH_INPUT_OPTIONS(args)                                                           \
-    {"reader",                                                                                 \
-     0,                                                                                        \
-     CLI_TEXT,                                                                                 \
-     "NAME",                                                                                   \
-     "read as this format of 'formats' (by content)",                                          \
-     CLI_INPUT_ROW(args, reader)},                                                             \
+    CLI_HEADED(CLI_READING),                                                                   \
+        {"reader",                                                                             \
+         0,                                                                                    \
+         CLI_TEXT,                                                                             \
+         "NAME",                                                                               \
+         "Read the file as this format; names as in 'formats' (by content)",                   \
+         CLI_INPUT_ROW(args, reader)},                                                         \
         CLI_CLAIM_OPTIONS("input", "the input", CLI_INPUT_ROW(args, claim)),                   \
         {"allow-external",                                                                     \
          0,                                                                                    \
          CLI_FLAG,                                                                             \
          NULL,                                                                                 \
-         "follow a .gltf to buffers outside its own folder (off)",                             \
+         "Follow a .gltf file to buffers outside its folder (off)",                            \
          CLI_INPUT_ROW(args, allow_external)},                                                 \
         {"no-sandbox",                                                                         \
          0,                                                                                    \
          CLI_FLAG,                                                                             \
          NULL,                                                                                 \
-         "let libraries read in this process, not in one without rights (off)",                \
+         "Let libraries read in this process, not in a sandboxed one (off)",                   \
          CLI_INPUT_ROW(args, no_sandbox)},                                                     \
+        CLI_HEADED(CLI_LIMITS),                                                                \
         {"timeout",                                                                            \
          0,                                                                                    \
          CLI_COUNT,                                                                            \
          "SECONDS",                                                                            \
-         "that a library may take for one file (60)",                                          \
+         "Time limit of a library for one file (60)",                                          \
          CLI_INPUT_ROW(args, timeout_s)},                                                      \
         {"threads",                                                                            \
          't',                                                                                  \
          CLI_COUNT,                                                                            \
          "N",                                                                                  \
-         "to use; results do not depend on it (0: all)",                                       \
+         "Number of threads; results do not depend on it (0: all)",                            \
          CLI_INPUT_ROW(args, threads)},                                                        \
         {"max-triangles",                                                                      \
          0,                                                                                    \
          CLI_COUNT,                                                                            \
          "N",                                                                                  \
-         "stop before reading more, e.g. 100M (no limit)",                                     \
+         "Stop before reading more triangles than this, such as 100M (no limit)",              \
          CLI_INPUT_ROW(args, max_triangles)},                                                  \
     {                                                                                          \
         "memory", 0, CLI_BYTES, "SIZE",                                                        \
-            "stop before the program takes more, checks included (75 % of the machine's)",     \
+            "Memory limit of the program, checks included, such as 8G (75 % of the "           \
+            "machine's)",                                                                      \
             CLI_INPUT_ROW(args, memory)                                                        \
     }
 

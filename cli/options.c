@@ -8,10 +8,11 @@
 #include <string.h>
 
 const cli_option cli_common_options[] = {
-    {"quiet", 'q', CLI_FLAG, NULL, "no messages but errors", offsetof(cli_common, quiet)},
-    {"verbose", 'v', CLI_LOUDER, NULL, "print each step's time and memory; -vv also settings",
+    {"quiet", 'q', CLI_FLAG, NULL, "Print errors only", offsetof(cli_common, quiet)},
+    {"verbose", 'v', CLI_LOUDER, NULL,
+     "Print the time and memory of each step; -vv also the settings",
      offsetof(cli_common, verbose)},
-    {"help", 'h', CLI_FLAG, NULL, "this help", offsetof(cli_common, help)},
+    {"help", 'h', CLI_FLAG, NULL, "Print this help", offsetof(cli_common, help)},
 };
 const size_t cli_common_option_count = sizeof cli_common_options / sizeof *cli_common_options;
 
@@ -446,20 +447,64 @@ cw_status cli_parse(const cli_command *command, int count, char **words, void *a
     return st == CW_OK ? check_inputs(command, p.args, err) : st;
 }
 
+/* What help is as wide as, and where the texts of options begin. */
+enum { HELP_WIDTH = 96, TEXT_COLUMN = 32 };
+
+/* Prints a text from TEXT_COLUMN on, in lines that end before HELP_WIDTH. */
+static void print_wrapped(const char *text)
+{
+    size_t column = TEXT_COLUMN;
+    for (bool first = true; *text; first = false) {
+        const size_t length = strcspn(text, " ");
+        if (!first && column + 1 + length > HELP_WIDTH) {
+            printf("\n%*s", TEXT_COLUMN, "");
+            column = TEXT_COLUMN;
+        } else if (!first) {
+            putchar(' ');
+            column++;
+        }
+        printf("%.*s", (int)length, text);
+        column += length;
+        text += length + (text[length] == ' ');
+    }
+    putchar('\n');
+}
+
+/* Prints "--mode a/b/c", after a '/' in a new line where it would be too long; returns its
+ * length, or HELP_WIDTH where it took several lines. */
+static size_t print_head(const cli_option *o)
+{
+    const int start =
+        printf("  %c%c%s--%s%s", o->letter ? '-' : ' ', o->letter ? o->letter : ' ',
+               o->letter ? ", " : "  ", o->name, o->value ? " " : "");
+    size_t column = (size_t)start;
+    bool broken = false;
+    for (const char *v = o->value ? o->value : ""; *v;) {
+        const size_t length = strcspn(v, "/") + (strchr(v, '/') != NULL);
+        if (column + length > HELP_WIDTH) {
+            printf("\n%*s", start, "");
+            column = (size_t)start;
+            broken = true;
+        }
+        printf("%.*s", (int)length, v);
+        column += length;
+        v += length;
+    }
+    return broken ? HELP_WIDTH : column;
+}
+
 static void print_option(const cli_option *o)
 {
-    char head[256];
     if (o->kind == CLI_HEADING) {
         printf("\n%s\n", o->name);
         return;
     }
-    const int length = snprintf(head, sizeof head, "  %c%c%s--%s%s%s", o->letter ? '-' : ' ',
-                                o->letter ? o->letter : ' ', o->letter ? ", " : "  ", o->name,
-                                o->value ? " " : "", o->value ? o->value : "");
-    if (length > 30)
-        printf("%s\n%32s%s\n", head, "", o->about);
+    const size_t length = print_head(o);
+    if (length > TEXT_COLUMN - 2)
+        printf("\n%*s", TEXT_COLUMN, "");
     else
-        printf("%-32s%s\n", head, o->about);
+        printf("%*s", (int)(TEXT_COLUMN - length), "");
+    print_wrapped(o->about);
 }
 
 void cli_print_help(const cli_command *command, bool long_form)
@@ -470,7 +515,7 @@ void cli_print_help(const cli_command *command, bool long_form)
         printf("\n%s", command->page);
     else
         printf("%s\n", command->about);
-    puts("\nOptions");
+    puts("\nOptions (the default in brackets)");
     for (size_t n = 0; (o = option_at(command, n)); n++)
         print_option(o);
     if (long_form && command->print_more)

@@ -112,9 +112,19 @@ typedef struct cli_option {
     char letter;      /* of the short form; 0: none */
     cli_kind kind;
     const char *value; /* what help calls the value; for CLI_CHOICE the choices */
-    const char *about; /* for help; defaults stand in brackets at the end */
+    const char *about; /* for help; the default stands in brackets at the end */
     size_t offset;     /* of its field in the command's struct */
 } cli_option;
+
+/* A row that is no option: the options below it stand under this name in the help. */
+#define CLI_HEADED(name)                                                                       \
+    {                                                                                          \
+        name, 0, CLI_HEADING, NULL, "", 0                                                      \
+    }
+
+/* Headings of options that a command must know before it opens a file. */
+#define CLI_READING "Reading"
+#define CLI_LIMITS  "Limits and messages"
 
 enum { CLI_MAX_OPTIONS = 128 }; /* rows of a command's table */
 

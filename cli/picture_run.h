@@ -31,10 +31,6 @@ typedef struct render_args {
 /* For the rows of options_what.inc, options_camera.inc and options_look.inc. */
 #define CLI_SCENE_AT(field) offsetof(render_args, scene) + offsetof(cli_scene, field)
 #define CLI_MARKS_AT(field) offsetof(render_args, marks) + offsetof(cli_marks, field)
-#define CLI_HEADED(name)                                                                       \
-    {                                                                                          \
-        name, 0, CLI_HEADING, NULL, "", 0                                                      \
-    }
 
 /* One side of --compare: the run's arguments, changed. */
 typedef struct cli_side {

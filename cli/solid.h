@@ -23,28 +23,26 @@ typedef struct cli_solid_args {
      0,                                                                                        \
      CLI_TEXT,                                                                                 \
      "L",                                                                                      \
-     "of the level set: auto, 0.2mm or 0.1% of the box's diagonal (auto)",                     \
+     "Voxel size of the level set: auto, 0.2mm or 0.1% of the box's diagonal (auto)",          \
      offsetof(cli_solid_args, voxel)},                                                         \
         {"output",                                                                             \
          'o',                                                                                  \
          CLI_TEXT,                                                                             \
          "FILE",                                                                               \
-         "the mesh, in the format of its extension; may hold {stem}",                          \
+         "Mesh to write, in the format of its extension; may hold {stem}",                     \
          offsetof(cli_solid_args, output)},                                                    \
         {"json",                                                                               \
          0,                                                                                    \
          CLI_TEXT,                                                                             \
          "FILE",                                                                               \
-         "write a report; - is the standard output",                                           \
+         "Write a report as JSON; - is the standard output",                                   \
          offsetof(cli_solid_args, json)},                                                      \
-        {"progress",                                                                           \
-         0,                                                                                    \
-         CLI_CHOICE,                                                                           \
-         "auto/plain/json/none",                                                               \
-         "how to show it, on stderr (auto)",                                                   \
-         offsetof(cli_solid_args, progress)},                                                  \
         CLI_WRITTEN_OPTIONS(cli_solid_args), CLI_COMPRESS_OPTIONS(cli_solid_args),             \
-        CLI_MESH_INPUT_OPTIONS(cli_solid_args)
+        CLI_MESH_INPUT_OPTIONS(cli_solid_args),                                                \
+    {                                                                                          \
+        "progress", 0, CLI_CHOICE, "auto/plain/json/none",                                     \
+            "Progress display on stderr (auto)", offsetof(cli_solid_args, progress)            \
+    }
 
 extern const cli_solid_args cli_solid_defaults;
 

@@ -16,50 +16,51 @@ typedef struct cli_written {
 /* Rows for a command whose struct has the field `written`. */
 #define CLI_WRITTEN_ROW(args, field) offsetof(args, written) + offsetof(cli_written, field)
 #define CLI_WRITTEN_OPTIONS(args)                                                              \
-    {"format",                                                                                 \
-     0,                                                                                        \
-     CLI_TEXT,                                                                                 \
-     "NAME",                                                                                   \
-     "write this format of 'formats' (by extension)",                                          \
-     CLI_WRITTEN_ROW(args, format)},                                                           \
+    CLI_HEADED("Output file"),                                                                 \
+        {"format",                                                                             \
+         0,                                                                                    \
+         CLI_TEXT,                                                                             \
+         "NAME",                                                                               \
+         "Format to write; names as in 'formats' (by extension)",                              \
+         CLI_WRITTEN_ROW(args, format)},                                                       \
         {"ascii",                                                                              \
          0,                                                                                    \
          CLI_FLAG,                                                                             \
          NULL,                                                                                 \
-         "STL and PLY as text (binary)",                                                       \
+         "Write STL and PLY as text (off: binary)",                                            \
          CLI_WRITTEN_ROW(args, ascii)},                                                        \
         {"unit",                                                                               \
          0,                                                                                    \
          CLI_CHOICE,                                                                           \
          "mm/um/cm/m/in/ft",                                                                   \
-         "of the coordinates in the file (mm)",                                                \
+         "Unit of the coordinates in the file (mm)",                                           \
          CLI_WRITTEN_ROW(args, unit)},                                                         \
         {"up",                                                                                 \
          0,                                                                                    \
          CLI_CHOICE,                                                                           \
          "z/y",                                                                                \
-         "which axis points to the head (z; glTF: always y)",                                  \
+         "Axis that points to the head (z; glTF: always y)",                                   \
          CLI_WRITTEN_ROW(args, up)},                                                           \
         {"frame",                                                                              \
          0,                                                                                    \
          CLI_CHOICE,                                                                           \
          "keep/lps/ras",                                                                       \
-         "what x and y of a patient mean (as the input says, else lps)",                       \
+         "Directions of x and y: LPS or RAS (the input's, else lps)",                          \
          CLI_WRITTEN_ROW(args, frame)},                                                        \
         {"local",                                                                              \
          0,                                                                                    \
          CLI_FLAG,                                                                             \
          NULL,                                                                                 \
-         "coordinates relative to the mesh's origin, which is printed (the world's)",          \
+         "Write coordinates relative to the mesh's origin, which is printed (off: world)",     \
          CLI_WRITTEN_ROW(args, local)},                                                        \
         {"name",                                                                               \
          0,                                                                                    \
          CLI_TEXT,                                                                             \
          "TEXT",                                                                               \
-         "of the object inside the file (the part's, or the stem)",                            \
+         "Name of the object inside the file (the part's, else the file's)",                   \
          CLI_WRITTEN_ROW(args, name)},                                                         \
     {                                                                                          \
-        "no-clobber", 0, CLI_FLAG, NULL, "fail when the output exists (replace it)",           \
+        "no-clobber", 0, CLI_FLAG, NULL, "Fail if the output exists (off: replace it)",        \
             CLI_WRITTEN_ROW(args, no_clobber)                                                  \
     }
 

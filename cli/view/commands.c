@@ -71,11 +71,11 @@ static const view_verb *find_verb(const char *name)
 
 static cw_status fail_unknown(const view *v, const char *name, cw_error *err)
 {
-    const char *names[128] = {0};
+    const char *names[256] = {0};
     size_t count = 0;
-    for (size_t n = 0; view_verb_at(n) && count < 127; n++)
+    for (size_t n = 0; view_verb_at(n) && count < 255; n++)
         names[count++] = view_verb_at(n)->name;
-    for (size_t n = 0; n < v->command->option_count && count < 127; n++)
+    for (size_t n = 0; n < v->command->option_count && count < 255; n++)
         if (view_find_option(v, v->command->options[n].name))
             names[count++] = v->command->options[n].name;
     const char *nearest = cli_nearest(name, names);

@@ -361,9 +361,9 @@ static void show_side(view *v)
         show_time(v);
         show_compare(v);
         show_options(v, "Light");
-        show_options(v, "Rays, slices, splats");
+        show_options(v, "Sampling");
         show_options(v, "Meshes");
-        show_options(v, "On the picture");
+        show_options(v, "Marks on the picture");
     }
     v->ui->panel_end(v->window);
 }

@@ -274,7 +274,7 @@ static void put_options(const view *v, FILE *out, bool shell, bool of_reading)
     for (size_t n = 0; n < v->command->option_count; n++) {
         const cli_option *o = &v->command->options[n];
         if (o->kind == CLI_HEADING)
-            is_reading = strcmp(o->name, "Reading") == 0;
+            is_reading = strcmp(o->name, CLI_READING) == 0 || strcmp(o->name, CLI_LIMITS) == 0;
         else if (is_reading == of_reading && view_find_option(v, o->name) &&
                  !is_default(v, o) && !is_outdone(&v->state, o->name))
             put_option(v, out, shell, o);
