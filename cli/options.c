@@ -450,15 +450,14 @@ cw_status cli_parse(const cli_command *command, int count, char **words, void *a
 /* What help is as wide as, and where the texts of options begin. */
 enum { HELP_WIDTH = 96, TEXT_COLUMN = 32 };
 
-/* Prints a text from TEXT_COLUMN on, in lines that end before HELP_WIDTH. */
-static void print_wrapped(const char *text)
+void cli_print_wrapped(const char *text, size_t from)
 {
-    size_t column = TEXT_COLUMN;
+    size_t column = from;
     for (bool first = true; *text; first = false) {
         const size_t length = strcspn(text, " ");
         if (!first && column + 1 + length > HELP_WIDTH) {
-            printf("\n%*s", TEXT_COLUMN, "");
-            column = TEXT_COLUMN;
+            printf("\n%*s", (int)from, "");
+            column = from;
         } else if (!first) {
             putchar(' ');
             column++;
@@ -504,7 +503,7 @@ static void print_option(const cli_option *o)
         printf("\n%*s", TEXT_COLUMN, "");
     else
         printf("%*s", (int)(TEXT_COLUMN - length), "");
-    print_wrapped(o->about);
+    cli_print_wrapped(o->about, TEXT_COLUMN);
 }
 
 void cli_print_help(const cli_command *command, bool long_form)

@@ -172,6 +172,10 @@ bool cli_option_text(const cli_option *option, const void *args, char *text, siz
 /* The help of a command: the options, and in the long form its page before them. */
 void cli_print_help(const cli_command *command, bool long_form);
 
+/* Prints a text to the standard output, where the cursor stands in a column: in lines of up to
+ * 96 columns that begin there. */
+void cli_print_wrapped(const char *text, size_t column);
+
 /* The candidate most like a word, or NULL when none is close; names end with a NULL. */
 const char *cli_nearest(const char *word, const char *const *names);
 

@@ -9,4 +9,3 @@ for c in extract simplify convert hollow offset info render report bench view ma
     grep -A1 '^Examples$' long | grep -q "^  cubewright $c" || echo "$c has no examples"
     sed '/^Options/,$d' long | awk -v c="$c" 'length > 96 { print c ": a long line: " $0 }'
 done
-cubewright help --search isovalue

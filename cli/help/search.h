@@ -1,0 +1,22 @@
+/* help --search: finds options and commands by a word, or by what others call it. */
+#ifndef CLI_HELP_SEARCH_H
+#define CLI_HELP_SEARCH_H
+
+#include <cubewright/core.h>
+
+/* A row of the table of synonyms. Lists are parted by '|'. */
+typedef struct cli_synonym {
+    const char *words; /* lower case; a word of 4 letters or more also stands for longer ones */
+    const char *name;  /* what it is called here; NULL: the same, or we do not have it */
+    const char *terms; /* to look for: a text, or --option for that option alone */
+    const char *note;  /* printed before the results; NULL: nothing */
+} cli_synonym;
+
+/* The last row has no words. */
+extern const cli_synonym cli_synonyms[];
+
+/* Prints what is found, each option once with the commands that have it. Every word of the
+ * query must occur, by itself or as a synonym. CW_ERR_ARGUMENT: nothing is found. */
+cw_status cli_search(const char *query, cw_error *err);
+
+#endif

@@ -1,0 +1,32 @@
+# help --search knows what people call things, lists shared options once, and is honest about what
+# there is not.
+# found WORDS: the first lines, without what the texts of options say
+found() {
+    echo "- $*"
+    cubewright help --search "$*" | sed 's/^\([a-z, 0-9]*: --[a-z-]*\).*/\1/' | head -n "${lines:-3}"
+}
+found threshold
+found THRESHOLDS
+found decimation
+found label
+found units
+lines=9
+found slice thickness
+found watertight
+found smoothing
+found colour map
+lines=2
+found hounsfield
+found undo
+# each word, wherever it stands; and a word that options of 11 commands have
+cubewright help --search 'memory checks'
+cubewright help --search timeout | cut -c 1-60
+for word in level contour reduce low-poly LOD segmentation mask scale mm inch hole repair resample downsample crop \
+    hollow shell wall HU CT DICOM opacity screenshot turntable animation normals draco quantize RAM memory stl obj \
+    gltf print printable 'poly count' 'transfer function' 'level of detail' isovalue spacing; do
+    cubewright help --search "$word" >found || echo "nothing for $word"
+    [ "$(grep -c ': --' found)" -eq "$(grep ': --' found | sort -u | wc -l)" ] || echo "$word: a line twice"
+done
+cubewright help --search xyzzy || echo "exit $?"
+cubewright help --search 'threshold xyzzy' || echo "exit $?"
+cubewright help --search ' ' || echo "exit $?"
