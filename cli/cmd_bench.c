@@ -69,14 +69,13 @@ static cw_status take_field(const char *name, bool wanted[CW_FIELD_COUNT], cw_er
     if (found)
         wanted[field] = true;
     else if (nearest)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--fields: '%s' is no field; did you mean '%s'?",
-                       name, nearest);
-    return found
-               ? CW_OK
-               : cw_fail(err, CW_ERR_ARGUMENT,
-                         "--fields: '%s' is no field that is known on paper; 'cubewright make "
-                         "--list' begins with those",
-                         name);
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--fields: '%s' is not a field; did you mean '%s'?", name, nearest);
+    return found ? CW_OK
+                 : cw_fail(err, CW_ERR_ARGUMENT,
+                           "--fields: '%s' is not a field with a known surface; 'cubewright "
+                           "make --list' lists those first",
+                           name);
 }
 
 static cw_status choose_fields(const bench_args *args, bool wanted[CW_FIELD_COUNT],
@@ -120,7 +119,7 @@ static cw_status check_outputs(const bench_args *args, cw_error *err)
         return st;
     if (strcmp(args->json, "-") == 0 && strcmp(args->csv, "-") == 0)
         return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--json and --csv: one of them on the standard output");
+                       "--json and --csv: only one of them can use the standard output");
     return cli_check_apart(args->json, args->csv, err);
 }
 

@@ -179,16 +179,15 @@ static cw_status check_args_of(run_state *s, cw_error *err)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "--source needs the isovalue of its surface: --iso V");
     if (args->iso.given && !args->source)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--iso needs the volume it is of: --source VOLUME");
+        return cw_fail(err, CW_ERR_ARGUMENT, "--iso needs a volume: --source VOLUME");
     if (args->least.given && !args->source)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--min-volume is of the source's components: --source VOLUME");
+        return cw_fail(err, CW_ERR_ARGUMENT, "--min-volume needs a volume: --source VOLUME");
     if (args->tolerance.given && !args->source && !args->reference)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "--tolerance needs something to measure from: --source or --reference");
     if (args->tolerance.unit == CLI_VOXELS && !args->source)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--tolerance in voxels needs those of a --source");
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--tolerance in voxels needs a volume: --source VOLUME");
     return args->defects ? check_defects_path(args, err) : CW_OK;
 }
 
@@ -251,7 +250,7 @@ static cw_status ask_cgal(run_state *s, cw_error *err)
     if (!s->args->deep)
         return CW_OK;
     if (!cw_quality_has_cgal()) {
-        cli_say("no second opinion: CGAL is not in this build");
+        cli_say("CGAL is not asked: it is not in this build");
         return CW_OK;
     }
     cli_report_begin(&s->report);
@@ -462,7 +461,7 @@ static cw_status hold_to_profile(const run_state *s, cw_error *err)
             const size_t used = strlen(names);
             snprintf(names + used, sizeof names - used, "%s%s", used ? ", " : "", v->name);
         }
-    return cw_fail(err, CW_ERR_CHECK, "%s: does not hold for profile %s: %s", s->mesh.path,
+    return cw_fail(err, CW_ERR_CHECK, "%s: does not meet profile %s: %s", s->mesh.path,
                    profiles[s->args->profile], names);
 }
 
@@ -482,7 +481,7 @@ static cw_status judge(run_state *s, double start, cw_error *err)
     if (st == CW_OK)
         st = hold_to_profile(s, err);
     if (st == CW_OK)
-        cli_result("%s: holds for profile %s; %.2f s\n", s->mesh.path, profiles[args->profile],
+        cli_result("%s: meets profile %s; %.2f s\n", s->mesh.path, profiles[args->profile],
                    cli_seconds() - start);
     return st;
 }

@@ -127,7 +127,7 @@ static cw_status read_input(run_state *s, cw_error *err)
     cli_report_end(&s->report, "read", 1, cli_mesh_triangles(&s->mesh));
     return cli_mesh_triangles(&s->mesh)
                ? CW_OK
-               : cw_fail(err, CW_ERR_EMPTY, "%s: there are no triangles in it", path);
+               : cw_fail(err, CW_ERR_EMPTY, "%s: it has no triangles", path);
 }
 
 static cw_status convert(run_state *s, size_t n, const cw_part *parts, size_t count,

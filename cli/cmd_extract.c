@@ -270,11 +270,11 @@ static cw_status open_step(cli_extract_run *s, const cli_moment *moment, cw_erro
 
 static cw_status fail_empty(const cli_extract_run *s, size_t empty, size_t count, cw_error *err)
 {
-    const char *what = s->series.count == 1      ? "levels"
+    const char *what = s->series.count == 1      ? "isovalues"
                        : s->args->iso.count == 1 ? "steps"
                                                  : "surfaces";
-    return cw_fail(err, CW_ERR_EMPTY, "%s: empty %s: %zu of %zu", s->args->common.inputs[0],
-                   what, empty, count);
+    return cw_fail(err, CW_ERR_EMPTY, "%s: %zu of %zu %s are empty", s->args->common.inputs[0],
+                   empty, count, what);
 }
 
 static cw_status make_steps(cli_extract_run *s, size_t *empty, cw_error *err)
@@ -315,11 +315,12 @@ static cw_status plan_frames(cli_extract_run *s, cw_error *err)
     if (!args->animate)
         return CW_OK;
     if (s->series.count < 2)
-        return cw_fail(err, CW_ERR_ARGUMENT, "%s: --animate shows several steps, and here is 1",
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "%s: --animate needs several time steps; there is 1",
                        args->common.inputs[0]);
     s->fps = args->fps.given ? args->fps.value : s->series.timed ? 0 : DEFAULT_FPS;
     if (!args->fps.given && !s->series.timed)
-        cli_say("%s: steps have no times: %d a second are shown (--fps)",
+        cli_say("%s: the steps have no times; the animation shows %d a second (--fps)",
                 args->common.inputs[0], DEFAULT_FPS);
     return cli_frames_reserve(&s->frames, s->series.count, err);
 }

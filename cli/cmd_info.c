@@ -540,7 +540,7 @@ static cw_status print_files(const info_args *args, char *const *files, size_t c
     cw_error finding = {0};
     if (args->histogram || args->levels)
         return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--histogram and --levels are of one file, and these are %zu", count);
+                       "--histogram and --levels need a single file; there are %zu", count);
     open_list(args, count, &j);
     cw_status st = list_files(args, files, count, &j, &finding, err);
     close_list(args, st == CW_OK ? &finding : err, &j);

@@ -91,10 +91,10 @@ static cw_status unknown_subject(const char *name, cw_error *err)
         names[n] = s.name;
     const char *nearest = cli_nearest(name, names);
     if (nearest)
-        return cw_fail(err, CW_ERR_ARGUMENT, "'%s' is no field; did you mean '%s'?", name,
+        return cw_fail(err, CW_ERR_ARGUMENT, "'%s' is not a field; did you mean '%s'?", name,
                        nearest);
     return cw_fail(err, CW_ERR_ARGUMENT,
-                   "'%s' is no field; 'cubewright make --list' lists them", name);
+                   "'%s' is not a field; 'cubewright make --list' lists them", name);
 }
 
 static double mega_voxels(const make_args *args)

@@ -113,7 +113,7 @@ static cw_status check_outputs(const report_args *args, cw_error *err)
     if (st == CW_OK && args->json && args->csv && strcmp(args->json, "-") == 0 &&
         strcmp(args->csv, "-") == 0)
         return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--json and --csv: one of them on the standard output");
+                       "--json and --csv: only one of them can use the standard output");
     return st;
 }
 
@@ -122,7 +122,8 @@ static cw_status check_name(const char *name, cw_error *err)
 {
     const char *nearest = cli_nearest_field(name);
     return nearest ? cw_fail(err, CW_ERR_ARGUMENT,
-                             "'%s' is no file, and no field; did you mean '%s'?", name, nearest)
+                             "'%s' is neither a file nor a field; did you mean '%s'?", name,
+                             nearest)
                    : CW_OK;
 }
 
@@ -140,7 +141,7 @@ static cw_status check_args(run_state *s, cw_error *err)
         return cw_fail(err, CW_ERR_ARGUMENT, "report needs an output: -o FILE");
     if (strcmp(args->output, "-") == 0 && args->json && strcmp(args->json, "-") == 0)
         return cw_fail(err, CW_ERR_ARGUMENT,
-                       "-o and --json: one of them on the standard output");
+                       "-o and --json: only one of them can use the standard output");
     if (s->study.is_field && args->input.coarsen)
         return cw_fail(err, CW_ERR_ARGUMENT, "--coarsen is for files; --dims samples fewer");
     if (!s->study.is_field && args->dims.count)

@@ -72,14 +72,14 @@ static cw_status check_lod(const cli_simplify_args *args, cw_error *err)
     const cli_counts *lod = &args->lod;
     if (args->error.given || args->triangles || args->ratio.given)
         return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--lod says how far to go: --error, --triangles and --ratio are for one "
-                       "mesh");
+                       "--lod has its own targets; --error, --triangles and --ratio are for a "
+                       "single mesh");
     for (size_t n = 0; n < lod->count; n++)
         if (!lod->n[n] || (n && lod->n[n] >= lod->n[n - 1]))
             return cw_fail(err, CW_ERR_ARGUMENT,
-                           "--lod lists %zu triangles%s; each level needs some, and fewer than "
-                           "the one before",
-                           lod->n[n], n ? " behind as many or fewer" : "");
+                           "--lod lists %zu triangles%s; each level needs at least 1, and "
+                           "fewer than the one before",
+                           lod->n[n], n ? " after a level with as many or fewer" : "");
     return CW_OK;
 }
 
@@ -89,8 +89,8 @@ static cw_status check_targets(const cli_simplify_args *args, cw_error *err)
         return check_lod(args, err);
     if (!args->error.given && !args->triangles && !args->ratio.given)
         return cw_fail(err, CW_ERR_ARGUMENT,
-                       "simplify needs to know how far to go: --error 0.1mm, --triangles 50k, "
-                       "--ratio 0.25 or --lod 50k,12k,3k");
+                       "simplify needs a target: --error 0.1mm, --triangles 50k, --ratio 0.25 "
+                       "or --lod 50k,12k,3k");
     return CW_OK;
 }
 
@@ -102,14 +102,13 @@ static cw_status check_values(const cli_simplify_args *args, cw_error *err)
                        args->error.unit == CLI_VOXELS ? "error" : "drop-components");
     if (args->ratio.given && !(args->ratio.value > 0 && args->ratio.value < 1))
         return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--ratio is a share of the triangles, above 0 and below 1, and not %g",
+                       "--ratio %g: a fraction above 0 and below 1 was expected",
                        args->ratio.value);
     if (args->iso.given && !args->source)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--iso needs the volume it is of: --source VOLUME");
+        return cw_fail(err, CW_ERR_ARGUMENT, "--iso needs a volume: --source VOLUME");
     if (args->iso.given && !args->measure)
         return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--iso is there to be measured from: not with --no-measure");
+                       "--iso is for measuring; it cannot be combined with --no-measure");
     return CW_OK;
 }
 

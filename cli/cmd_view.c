@@ -73,7 +73,7 @@ static cw_status check(const render_args *args, cw_error *err)
     if (args->output && (!dot || strcmp(dot, ".png") != 0))
         return cw_fail(err, CW_ERR_ARGUMENT, "%s: view writes .png", args->output);
     if (args->common.input_count == 0 && args->output && !args->exec && !args->run)
-        return cw_fail(err, CW_ERR_ARGUMENT, "a picture of what? name a file");
+        return cw_fail(err, CW_ERR_ARGUMENT, "view -o needs a file to draw");
     return CW_OK;
 }
 
@@ -201,7 +201,7 @@ static cw_status run(void *p, cw_error *err)
         st = run_session(v, args, err);
     end_session(v);
     if (st == CW_OK)
-        cli_say_v("most memory held: %.0f MB", (double)cli_peak_bytes() / 1e6);
+        cli_say_v("peak memory: %.0f MB", (double)cli_peak_bytes() / 1e6);
     return st;
 }
 

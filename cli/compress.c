@@ -21,12 +21,12 @@ cw_status cli_check_compress(const cli_compress *c, bool voxels, cw_error *err)
     if (lonely)
         return cw_fail(err, CW_ERR_ARGUMENT, "--%s is for --compress", lonely);
     if (c->bits && c->tolerance.given)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--bits and --tolerance: one of the two decides");
+        return cw_fail(err, CW_ERR_ARGUMENT, "--bits or --tolerance, not both");
     if (c->level && (c->kind != CW_COMPRESS_DRACO || c->level > 10))
-        return cw_fail(err, CW_ERR_ARGUMENT, "--level %zu: it is 1 to 10, and for Draco",
-                       c->level);
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--level %zu: 1 to 10 was expected, with --compress draco", c->level);
     if (c->bits > 30)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--bits %zu: there are 1 to 30", c->bits);
+        return cw_fail(err, CW_ERR_ARGUMENT, "--bits %zu: 1 to 30 was expected", c->bits);
     if (c->tolerance.given && !(c->tolerance.value > 0))
         return cw_fail(err, CW_ERR_ARGUMENT, "--tolerance: it must be above 0");
     if (c->tolerance.unit == CLI_VOXELS && !voxels)

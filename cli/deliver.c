@@ -134,8 +134,8 @@ static void warn_of_loss(cli_report *report, const cli_made *made, const load *l
     if (loss->merged_vertices || loss->flat_triangles)
         cli_report_warn(
             report,
-            "%s: so far from zero single precision has steps of %.3g mm: %s of %s vertices "
-            "fall together, %s of %s triangles lose their area; --local or .glb keeps them",
+            "%s: this far from zero, single precision has steps of %.3g mm; %s of %s vertices "
+            "coincide, and %s of %s triangles lose their area; --local or .glb keeps them",
             cli_shown_path(made->path), loss->step_mm, cli_count(loss->merged_vertices),
             cli_count(l->vertices), cli_count(loss->flat_triangles), cli_count(l->triangles));
 }
@@ -149,7 +149,7 @@ static void tell_dropped(const cli_made *made)
             used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", used ? ", " : "",
                                      cli_kept[i].name);
     if (used)
-        cli_say("%s: not in it, as its format has no place for them: %s", made->path, list);
+        cli_say("%s: left out, because the format cannot hold them: %s", made->path, list);
 }
 
 static cw_status write_mesh(cli_report *report, const cli_delivery *how, const load *l,

@@ -134,9 +134,8 @@ static cw_status check_choice(const cli_input *input, const cw_volume *v, cw_err
 {
     const cli_component *c = &input->component;
     if (c->magnitude && v->components < 2)
-        return cw_fail(
-            err, CW_ERR_ARGUMENT,
-            "--component mag: it is of vectors, and the volume has one value a voxel");
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--component mag needs vectors; the volume has one value a voxel");
     if (!c->magnitude && c->number >= v->components)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "--component %zu: the volume has %zu, counted from 0", c->number,
@@ -190,8 +189,8 @@ static cw_status find_box(const cli_input *input, const cw_volume *v, cw_box *bo
         const size_t size = v->dim[a];
         if (!clip_range(r.low[a], r.high[a], size, &box->first[a], &box->count[a]))
             return cw_fail(err, CW_ERR_ARGUMENT,
-                           "--crop leaves no voxel along %c: the volume's are 0 to %zu, asked "
-                           "for are %.6g to %.6g",
+                           "--crop leaves no voxel along %c: the volume has voxels 0 to %zu; "
+                           "%.6g to %.6g were requested",
                            "xyz"[a], size - 1, r.low[a], r.high[a]);
     }
     if (st == CW_OK)
@@ -234,8 +233,8 @@ static void choose_sample(const cw_volume *part, size_t limit, size_t step[3])
 static void tell_preview(const cli_volume *volume, const size_t all[3])
 {
     const size_t *step = volume->coarsen, *dim = volume->view.dim;
-    cli_say("preview: one voxel in %zu x %zu x %zu, %zu x %zu x %zu of %zu x %zu x %zu; what "
-            "is thinner may be lost",
+    cli_say("preview: one voxel in %zu x %zu x %zu, %zu x %zu x %zu of %zu x %zu x %zu; "
+            "thinner parts may be lost",
             step[0], step[1], step[2], dim[0], dim[1], dim[2], all[0], all[1], all[2]);
 }
 

@@ -27,9 +27,11 @@ const cli_command *cli_find_command(const char *name, cw_error *err)
     }
     const char *nearest = cli_nearest(name, names);
     if (nearest)
-        cw_fail(err, CW_ERR_ARGUMENT, "'%s' is no command; did you mean '%s'?", name, nearest);
+        cw_fail(err, CW_ERR_ARGUMENT, "'%s' is not a command; did you mean '%s'?", name,
+                nearest);
     else
-        cw_fail(err, CW_ERR_ARGUMENT, "'%s' is no command; 'cubewright help' lists them", name);
+        cw_fail(err, CW_ERR_ARGUMENT, "'%s' is not a command; 'cubewright help' lists them",
+                name);
     return NULL;
 }
 
@@ -62,7 +64,7 @@ static void explain_memory(cw_error *err)
         return;
     cwi_print_memory(asked, asked_text);
     cwi_print_memory(left, left_text);
-    cw_fail(err, said.status, "%.400s; %s were asked for, and --memory leaves %s", said.message,
+    cw_fail(err, said.status, "%.400s; %s were needed, and --memory leaves %s", said.message,
             asked_text, left_text);
 }
 

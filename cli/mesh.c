@@ -110,7 +110,7 @@ cw_status cli_orient_mesh(cli_mesh *m, int threads, cw_error *err)
     }
     if (st != CW_OK)
         return cwi_fail_in(err, st, m->path);
-    cli_say("%s: %s shell%s turned round", m->path, cli_count(turned), turned == 1 ? "" : "s");
+    cli_say("%s: %s shell%s flipped", m->path, cli_count(turned), turned == 1 ? "" : "s");
     return CW_OK;
 }
 

@@ -420,7 +420,7 @@ static cw_status check_inputs(const cli_command *c, const cli_common *args, cw_e
     return cw_fail(err, CW_ERR_ARGUMENT,
                    "'%s' is one argument too many%s; usage: cubewright %s %s",
                    args->inputs[c->max_inputs],
-                   c->slices ? " (slices in files of their own: name their folder, or put "
+                   c->slices ? " (for slices in separate files, name their folder or put "
                                "quotes around a pattern)"
                              : "",
                    c->name, c->usage);

@@ -42,7 +42,7 @@ cw_status cli_check_pictures(const render_args *args, cw_error *err)
         return cw_fail(err, CW_ERR_ARGUMENT, "--difference is for --compare");
     if (args->difference.given && cli_has_marks(&args->marks))
         return cw_fail(err, CW_ERR_ARGUMENT,
-                       "nothing is written on the three pictures of --difference");
+                       "--difference cannot be combined with marks on the picture");
     if (args->marks.layout == CLI_LAYOUT_QUAD && args->compare)
         return cw_fail(err, CW_ERR_ARGUMENT, "--layout quad or --compare, not both");
     if (args->marks.layout == CLI_LAYOUT_QUAD && (args->size.n[0] < 2 || args->size.n[1] < 2))
@@ -89,10 +89,10 @@ static cw_status check_hidden(cli_pictures *p, cw_error *err)
         (args->iso.given || args->mesh || p->source.is_mesh))
         p->mode = CW_MODE_MESH;
     else if (args->scene.hide == CLI_HIDE_VOLUME)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--hide volume leaves nothing to be seen");
+        return cw_fail(err, CW_ERR_ARGUMENT, "--hide volume leaves nothing to draw");
     if (args->scene.hide == CLI_HIDE_MESH && p->mode == CW_MODE_MESH)
         return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--hide mesh leaves nothing to be seen in the mode mesh");
+                       "--hide mesh leaves nothing to draw in the mode mesh");
     return CW_OK;
 }
 
@@ -138,8 +138,8 @@ static cw_status check_mode(cli_pictures *p, cw_error *err)
     if (p->mode == CW_MODE_MESH && !p->source.is_mesh && !args->mesh && !args->iso.given &&
         !p->source.is_level_set)
         return cw_fail(err, CW_ERR_ARGUMENT,
-                       "the surface of a volume needs a level: --iso V; 'cubewright info %s' "
-                       "suggests some",
+                       "the surface of a volume needs an isovalue: --iso V; 'cubewright info "
+                       "%s' suggests some",
                        args->common.inputs[0]);
     if (p->mode == CW_MODE_MESH && args->backend == CW_BACKEND_CPU && gl)
         return cw_fail(err, CW_ERR_ARGUMENT,
@@ -316,7 +316,7 @@ static cw_status draw_picture(cli_pictures *p, cw_picture *picture, cw_error *er
         st = cw_render(p->renderer, &p->scene, picture, err);
     if (st == CW_ERR_UNSUPPORTED && draws_volume(p) && p->mode != CW_MODE_VBUFFER &&
         (!p->renderer || strcmp(cw_renderer_name(p->renderer), "CPU") == 0))
-        cli_say("without OpenGL there are --mode vbuffer and --mode reference");
+        cli_say("without OpenGL, use --mode vbuffer or --mode reference");
     return st;
 }
 

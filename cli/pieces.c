@@ -52,10 +52,10 @@ cw_status cli_weld_pieces(cli_pieces *p, const cli_mesh *mesh, cw_error *err)
     *p = (cli_pieces){.path = mesh->path};
     cw_status st = weld_parts(p, mesh, err);
     if (st == CW_OK && p->merged)
-        cli_say("%s: %s vertices were at the place of another and made one with it", p->path,
+        cli_say("%s: %s vertices at the position of another were merged", p->path,
                 cli_count(p->merged));
     if (st == CW_OK && !p->count)
-        st = cw_fail(err, CW_ERR_EMPTY, "there are no triangles in it");
+        st = cw_fail(err, CW_ERR_EMPTY, "it has no triangles");
     if (st == CW_OK)
         measure_box(p);
     return in_file(p, st, err);
@@ -119,10 +119,9 @@ cw_status cli_compare_pieces(const cli_pieces *p, int threads, cli_comparison *c
                          area, err);
     const double most = fmax(c->to_input.max_mm, c->from_input.max_mm);
     if (st == CW_OK && c->promised_mm > 0 && most > c->promised_mm)
-        st =
-            cw_fail(err, CW_ERR_CHECK,
-                    "not as promised: %.6g mm from the input, and not %.6g; nothing is written",
-                    most, c->promised_mm);
+        st = cw_fail(err, CW_ERR_CHECK,
+                     "not as promised: %.6g mm from the input, not %.6g; nothing is written",
+                     most, c->promised_mm);
     return in_file(p, st, err);
 }
 

@@ -27,7 +27,7 @@ static cw_status check(const cli_pixel_args *a, cw_error *err)
                                           : "--size");
     if (a->camera && !a->pixels.given && (!a->cull || a->shading.given || a->most.given))
         return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--camera needs --pixel-error: how many pixels the surface may be off%s",
+                       "--camera needs --pixel-error: how many pixels the surface may move%s",
                        a->cull ? "" : "; or --cull");
     if (a->pixels.given && !(isfinite(a->pixels.value) && a->pixels.value > 0))
         return cw_fail(err, CW_ERR_ARGUMENT, "--pixel-error %g: it must be above 0",

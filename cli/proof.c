@@ -65,10 +65,10 @@ cw_status cli_prove_error(const cli_volume *volume, const cli_wanted *wanted,
     proof->mm = fmax(compared->to_input.max_mm, compared->from_input.max_mm);
     if (proof->mm <= promised || promised == 0)
         return CW_OK;
-    return cw_fail(err, CW_ERR_CHECK,
-                   "%s: not as promised: %.6g mm from the full surface, and not %.6g; nothing "
-                   "is written",
-                   volume->path, proof->mm, promised);
+    return cw_fail(
+        err, CW_ERR_CHECK,
+        "%s: not as promised: %.6g mm from the full surface, not %.6g; nothing is written",
+        volume->path, proof->mm, promised);
 }
 
 /* --- a part of the volume ----------------------------------------------------------------- */

@@ -14,7 +14,7 @@ cw_status cli_check_pvd(const char *path, const cli_outputs *outputs, const char
     for (size_t n = 0; n < outputs->count && st == CW_OK; n++) {
         const cw_format *format = cw_mesh_format(outputs->path[n], desc->format);
         if (!format || strcmp(format->name, "vtp") != 0)
-            return cw_fail(err, CW_ERR_ARGUMENT, "--pvd lists .vtp files, and %s is none",
+            return cw_fail(err, CW_ERR_ARGUMENT, "--pvd lists .vtp files; %s is not one",
                            outputs->path[n]);
         st = cli_check_apart(path, outputs->path[n], err);
     }

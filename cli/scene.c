@@ -114,7 +114,7 @@ static void warn_of_units(const char *preset, const cw_statistics *s, const cli_
     cli_say("warning: --tf %s is in Hounsfield units, of which air is -1000; these values are "
             "%g to %g%s",
             preset, s->min, s->max,
-            s->max > 1500 ? ": if air is at 0, --shift 1024 puts it right" : "");
+            s->max > 1500 ? ": if air is at 0, --shift 1024 corrects it" : "");
 }
 
 /* Nothing to be seen is rarely what was meant. */
@@ -126,8 +126,7 @@ static void warn_of_nothing(const cw_transfer *t, const cw_statistics *s)
         most = s->bins[b] ? fmax(most, opacity) : most;
     }
     if (most < 1e-3)
-        cli_say("warning: the transfer function leaves nothing of values from %g to %g to be "
-                "seen",
+        cli_say("warning: the transfer function makes all values from %g to %g invisible",
                 s->min, s->max);
 }
 

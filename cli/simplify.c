@@ -131,7 +131,7 @@ static cw_status check_args(run_state *s, cw_error *err)
         return st;
     if (!cw_simplify_available())
         return cw_fail(err, CW_ERR_UNSUPPORTED,
-                       "simplify needs OpenMesh, which this build is without: install "
+                       "simplify needs OpenMesh, which this build lacks: install "
                        "libopenmesh-dev and build again");
     st = args->lod.count
              ? cli_name_lod_outputs(&s->outputs, args->output, args->common.inputs[0],
@@ -218,19 +218,19 @@ static size_t target_of(const run_state *s)
 static void tell_missed(run_state *s, size_t target, size_t triangles)
 {
     if (target && s->pieces.triangles <= target)
-        cli_say("%s: has no more than the %s triangles asked for: they stay", s->mesh.path,
+        cli_say("%s: already has no more than the %s triangles requested", s->mesh.path,
                 cli_count(target));
     if (!target || triangles <= target)
         return;
     if (s->args->error.given)
-        cli_say("%s: %s triangles, and not %s: with fewer it would be more than %.6g mm off",
+        cli_say("%s: %s triangles, not %s: fewer would exceed the error limit of %.6g mm",
                 s->mesh.path, cli_count(triangles), cli_count(target), s->error_mm);
     else
         cli_report_warn(&s->report,
-                        "%s triangles were asked for, %s are left: where more would go, the "
-                        "surface would tear, turn over%s or meet itself",
+                        "%s triangles were requested, %s are left: removing more would tear "
+                        "the surface%s, flip it or make it intersect itself",
                         cli_count(target), cli_count(triangles),
-                        s->args->keep_border ? ", lose its border" : "");
+                        s->args->keep_border ? ", move its border" : "");
 }
 
 /* How to simplify a mesh of so many triangles: all but how far. */
@@ -343,7 +343,7 @@ static cw_status order(run_state *s, cw_error *err)
     const cw_status st = cw_mesh_optimize(&s->pieces.piece->out, &why);
     if (st == CW_ERR_UNSUPPORTED) {
         if (!s->unordered)
-            cli_say("levels are not put in the order that draws fast: %s", why.message);
+            cli_say("levels are not optimised for fast drawing: %s", why.message);
         s->unordered = true;
         return CW_OK;
     }

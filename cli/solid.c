@@ -151,7 +151,7 @@ static cw_status parse_drain(const char *text, cli_length *wide, cw_drain *drain
     }
     return cw_fail(
         err, CW_ERR_ARGUMENT,
-        "--drain '%s': expected a width and where it leads, +x to -z, such as 4mm@-z", text);
+        "--drain '%s': expected a diameter and a direction, +x to -z, such as 4mm@-z", text);
 }
 
 static cw_status parse_drains(const char *text, wishes *w, cw_error *err)
@@ -196,12 +196,12 @@ static cw_status parse_wishes(const cli_solid_args *args, bool hollow, wishes *w
 {
     cw_status st = CW_OK;
     if (hollow && !args->wall.given)
-        return cw_fail(err, CW_ERR_ARGUMENT, "hollow needs to know how thick: --wall 2mm");
+        return cw_fail(err, CW_ERR_ARGUMENT, "hollow needs a wall thickness: --wall 2mm");
     if (hollow && args->wall.unit == CLI_VOXELS)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "--wall: a mesh has no voxels; give mm, or %% of its box's diagonal");
     if (!hollow && !args->by)
-        return cw_fail(err, CW_ERR_ARGUMENT, "offset needs to know how far: --by 1mm");
+        return cw_fail(err, CW_ERR_ARGUMENT, "offset needs a distance: --by 1mm");
     if (args->drain)
         st = parse_drains(args->drain, w, err);
     if (st == CW_OK && args->by)
@@ -227,11 +227,10 @@ static cw_status check_args(run_state *s, cw_error *err)
     if (st == CW_OK)
         st = cli_check_compress(&args->compress, false, err);
     if (st == CW_OK && !cw_level_set_available())
-        st =
-            cw_fail(err, CW_ERR_UNSUPPORTED,
-                    "%s needs OpenVDB, which this build is without: install libopenvdb-dev and "
-                    "build again",
-                    s->report.command);
+        st = cw_fail(
+            err, CW_ERR_UNSUPPORTED,
+            "%s needs OpenVDB, which this build lacks: install libopenvdb-dev and build again",
+            s->report.command);
     if (st == CW_OK)
         st = cli_name_output(&s->outputs, args->output, args->common.inputs[0], err);
     if (st == CW_OK && args->json) {
@@ -301,14 +300,14 @@ static cw_status hollow(run_state *s, cw_error *err)
         return st;
     s->voxel_mm = s->facts.voxel_mm;
     if (!desc.drain_count)
-        cli_say("%s: the outer surface stays as it is; what is added has voxels of %.4g mm",
+        cli_say("%s: the outer surface stays as it is; the cavities have voxels of %.4g mm",
                 s->mesh.path, s->voxel_mm);
     else
-        cli_say("%s: made anew with voxels of %.4g mm", s->mesh.path, s->voxel_mm);
+        cli_say("%s: rebuilt with voxels of %.4g mm", s->mesh.path, s->voxel_mm);
     if (s->facts.sealed)
         cli_say("%s: %s cavit%s sealed%s", s->mesh.path, cli_count(s->facts.sealed),
                 s->facts.sealed == 1 ? "y is" : "ies are",
-                desc.drain_count ? "" : ": nothing gets out (--drain 4mm@-z)");
+                desc.drain_count ? "" : ": print material stays inside (--drain 4mm@-z)");
     tell_hollow(s);
     return CW_OK;
 }
@@ -317,18 +316,18 @@ static void tell_offset(const run_state *s)
 {
     const cw_offset_facts *f = &s->offset;
     if (f->voxel_mm < f->asked_mm)
-        cli_say("%s: voxels of %.4g mm, in place of %.4g mm: those would have lost more than "
-                "half of one",
-                s->mesh.path, f->voxel_mm, f->asked_mm);
+        cli_say(
+            "%s: voxels of %.4g mm in place of %.4g mm, whose error would exceed half a voxel",
+            s->mesh.path, f->voxel_mm, f->asked_mm);
     else if (f->least_mm > 0)
-        cli_say("%s: voxels of %.4g mm, parts of %.4g mm where those would have lost more than "
-                "half of one",
-                s->mesh.path, f->voxel_mm, f->least_mm);
+        cli_say(
+            "%s: voxels of %.4g mm, and of %.4g mm where their error would exceed half a voxel",
+            s->mesh.path, f->voxel_mm, f->least_mm);
     else
         cli_say("%s: voxels of %.4g mm", s->mesh.path, f->voxel_mm);
     if (f->more_components || f->more_handles)
-        cli_say("%s: %s more pieces and %s more handles than there were: some of it is thinner "
-                "than that",
+        cli_say("%s: %s more components and %s more handles than the input: some parts are "
+                "thinner than these voxels",
                 s->mesh.path, cli_count(f->more_components), cli_count(f->more_handles));
 }
 
@@ -423,11 +422,10 @@ static cw_status hold_to_input(const run_state *s, cw_error *err)
 {
     if (!s->offset.is_astray)
         return CW_OK;
-    return cw_fail(
-        err, CW_ERR_CHECK,
-        "%s: written, but not within half a voxel of %.4g mm of the input both ways: "
-        "something is too thin; smaller voxels lose less",
-        s->mesh.path, s->offset.asked_mm);
+    return cw_fail(err, CW_ERR_CHECK,
+                   "%s: written, but not within half a voxel of %.4g mm of the input both "
+                   "ways: some parts are too thin; smaller voxels help",
+                   s->mesh.path, s->offset.asked_mm);
 }
 
 static cw_status make(run_state *s, cli_made *made, cw_error *err)

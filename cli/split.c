@@ -27,7 +27,7 @@ static cw_status add_word(char **words, int *count, const char *item, cw_error *
     const bool mode = *count == 0 && is_mode(item);
     if (!mode && !cli_is_setting(bare))
         return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--compare: '%s' is no mode and no setting of a picture, such as "
+                       "--compare: '%s' is neither a mode nor an option of pictures, such as "
                        "step-length=2 or no-lit",
                        item);
     if (*count == MOST_WORDS)

@@ -14,11 +14,11 @@ static cw_status explain_empty(const cli_volume *volume, const cw_extract_desc *
         return st;
     if (!range.finite)
         return cw_fail(err, CW_ERR_EMPTY, "no voxel has a finite value");
-    return cw_fail(
-        err, CW_ERR_EMPTY,
-        "isovalue %g crosses nothing: values%s are %g to %g, and it must be above the "
-        "lowest and at most the highest",
-        desc->isovalue, cli_is_preview(volume) ? " of the preview" : "", range.min, range.max);
+    return cw_fail(err, CW_ERR_EMPTY,
+                   "no surface at isovalue %g: values%s are %g to %g, and it must be above the "
+                   "lowest and at most the highest",
+                   desc->isovalue, cli_is_preview(volume) ? " of the preview" : "", range.min,
+                   range.max);
 }
 
 /* Of the limit to voxels and surface, and of that to the whole process. */
@@ -148,6 +148,6 @@ cw_status cli_find_level(const cli_volume *volume, int threads, double *iso, con
     const bool found = cw_statistics_otsu(&statistics, 1, iso);
     cw_statistics_free(&statistics);
     return found ? CW_OK
-                 : cw_fail(err, CW_ERR_EMPTY, "%s: no level parts its values; give --iso V",
-                           volume->path);
+                 : cw_fail(err, CW_ERR_EMPTY,
+                           "%s: no isovalue separates its values; give --iso V", volume->path);
 }

@@ -18,8 +18,8 @@ static cw_status unknown_part(const char *text, const char *name, size_t length,
         used += (size_t)snprintf(names + used, sizeof names - used, "%s{%s}", p ? ", " : "",
                                  parts[p].name);
     return cw_fail(err, CW_ERR_ARGUMENT,
-                   "%s: there is no {%.*s}; there are %s, and {{ for a brace", text,
-                   (int)length, name, names);
+                   "%s: {%.*s} is unknown; known are %s, and {{ for a brace", text, (int)length,
+                   name, names);
 }
 
 /* Up to the brace: nothing, or ":04d", as many digits as that; -1 for anything else. */
@@ -37,7 +37,7 @@ static cw_status put_value(FILE *out, const char *text, const char *width, cli_p
 {
     const int digits = width_of(width, part->number);
     if (digits < 0)
-        return cw_fail(err, CW_ERR_ARGUMENT, "%s: behind {%s was expected }%s", text,
+        return cw_fail(err, CW_ERR_ARGUMENT, "%s: after {%s a } was expected%s", text,
                        part->name, part->number ? ", or a width as in {step:04d}" : "");
     for (int length = (int)strlen(part->value); length < digits; length++)
         fputc('0', out);

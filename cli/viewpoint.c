@@ -91,7 +91,7 @@ cw_status cli_check_camera(const cli_scene *args, const cli_turns *turns, cw_err
         return cw_fail(err, CW_ERR_ARGUMENT, "--fov %g: 0 to 180 degrees were expected",
                        args->fov.value);
     if (is_whole(args->camera) && (args->ortho || args->fov.given))
-        return cw_fail(err, CW_ERR_ARGUMENT, "%s is a whole camera, which leaves nothing to %s",
+        return cw_fail(err, CW_ERR_ARGUMENT, "%s is a complete camera; %s cannot change it",
                        cli_camera_title(args), args->ortho ? "--ortho" : "--fov");
     if (is_whole(args->camera))
         return is_json(args->camera) ? read_camera(args->camera, &camera, err) : CW_OK;

@@ -201,7 +201,7 @@ static cw_status shut_in(const cwi_sandbox_desc *d, cw_error *err)
     if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 || prctl(PR_SET_DUMPABLE, 0) != 0 ||
         !lock())
         return cw_fail(err, CW_ERR_BACKEND,
-                       "the process that is to read with %s cannot be shut in (seccomp); "
+                       "the process that is to read with %s cannot be sandboxed (seccomp); "
                        "--no-sandbox reads in this one",
                        d->library);
     return CW_OK;
@@ -259,7 +259,7 @@ static cw_status fail_dead(cwi_sandbox *box, cw_error *err)
     box->child = 0;
     if (child > 0 && WIFSIGNALED(how))
         return cw_fail(err, CW_ERR_BACKEND,
-                       "%s died of it (signal %d, %s), in a process of its own; the file is "
+                       "%s crashed on it (signal %d, %s), in a process of its own; the file is "
                        "damaged or hostile%s",
                        box->desc.library, WTERMSIG(how), strsignal(WTERMSIG(how)),
                        cwi_memory_is_limited() ? ", or memory is short (ulimit -v)" : "");

@@ -181,7 +181,7 @@ cw_status cw_volume_resolve(const cw_volume *in, cw_volume *out, cw_error *err)
     cw_volume v = *in;
     size_t bytes;
     if (!cw_type_size(v.type))
-        return cw_fail(err, CW_ERR_ARGUMENT, "%d is no voxel type", (int)v.type);
+        return cw_fail(err, CW_ERR_ARGUMENT, "%d is not a voxel type", (int)v.type);
     if (!v.dim[0] || !v.dim[1] || !v.dim[2])
         return cw_fail(err, CW_ERR_ARGUMENT, "the volume is empty: %zu x %zu x %zu", v.dim[0],
                        v.dim[1], v.dim[2]);

@@ -25,7 +25,7 @@ static cw_status check_snap(const cw_extract_desc *d, cw_error *err)
     if (d->snap >= 0 && d->snap <= CW_EXTRACT_MAX_SNAP)
         return CW_OK;
     return cw_fail(err, CW_ERR_ARGUMENT,
-                   "snap is a share of an edge from 0 (off) to %g, and not %g",
+                   "snap is a fraction of an edge from 0 (off) to %g, not %g",
                    CW_EXTRACT_MAX_SNAP, d->snap);
 }
 

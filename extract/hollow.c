@@ -354,7 +354,7 @@ cw_status cw_mesh_hollow(const cw_mesh *mesh, const cw_hollow_desc *desc, cw_mes
         st = take_surface(&h, -desc->wall_mm, mesh->normals, &h.inner, err);
     if (st == CW_OK && !h.inner.triangle_count)
         st = cw_fail(err, CW_ERR_EMPTY,
-                     "a wall of %g mm leaves no cavity: no point is so deep inside",
+                     "a wall of %g mm leaves no cavity: no point is that deep inside",
                      desc->wall_mm);
     if (st == CW_OK)
         st = find_cavities(&h, err);

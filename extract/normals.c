@@ -71,7 +71,7 @@ cw_status cwi_mend_normals(cw_mesh *mesh, double scale, cw_error *err)
         return CW_OK;
     bool *missing = cwi_alloc_zeroed(mesh->vertex_count, sizeof *missing);
     if (!missing)
-        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to mend %zu normals", count);
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to repair %zu normals", count);
     for (size_t v = 0; v < mesh->vertex_count; v++) {
         const float *n = mesh->normals + 3 * v;
         missing[v] = n[0] == 0 && n[1] == 0 && n[2] == 0;

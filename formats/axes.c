@@ -136,7 +136,7 @@ cw_status cwi_turn_back(cw_mesh *mesh, const cw_axes *axes, cw_error *err)
         ok = ok && isfinite(mesh->origin[a]);
     if (!ok)
         return cw_fail(err, CW_ERR_FORMAT,
-                       "its unit is '%s'; single precision cannot say its places in mm",
+                       "its unit is '%s'; single precision cannot hold its coordinates in mm",
                        cw_unit_name(axes->unit));
     t.times = t.over = 1;
     if (mesh->normals)

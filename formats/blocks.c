@@ -41,7 +41,7 @@ static cw_status check_head(cwi_blocks *b, const unsigned char *head, uint64_t w
         __builtin_mul_overflow(last ? count - 1 : count, bytes, &total) ||
         __builtin_add_overflow(total, last, &total) || total != wanted)
         return cw_fail(err, CW_ERR_FORMAT,
-                       "the table of compressed blocks tells of %llu blocks of %llu bytes, the "
+                       "the table of compressed blocks lists %llu blocks of %llu bytes, the "
                        "last of %llu; %llu bytes are needed in all",
                        (unsigned long long)count, (unsigned long long)bytes,
                        (unsigned long long)(last ? last : bytes), (unsigned long long)wanted);
@@ -50,10 +50,9 @@ static cw_status check_head(cwi_blocks *b, const unsigned char *head, uint64_t w
                        "the compressed blocks have %llu bytes each; at most %d are read",
                        (unsigned long long)bytes, INT_MAX);
     if (count > there / b->form.word_bytes)
-        return cw_fail(
-            err, CW_ERR_FORMAT,
-            "the table of compressed blocks tells of %llu; the file holds %llu bytes",
-            (unsigned long long)count, (unsigned long long)there);
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "the table of compressed blocks lists %llu; the file holds %llu bytes",
+                       (unsigned long long)count, (unsigned long long)there);
     b->count = (size_t)count;
     b->bytes = (size_t)bytes;
     b->last = (size_t)(last ? last : bytes);

@@ -141,7 +141,7 @@ cw_status cwi_claim_volume(const cw_claim *claim, cw_volume *v, cw_error *err)
         turn_affine(m, v->affine);
     for (int r = 0; r < 3; r++)
         if (!isfinite(v->affine[r][3]))
-            return cw_fail(err, CW_ERR_FORMAT, "its places in mm are beyond all numbers");
+            return cw_fail(err, CW_ERR_FORMAT, "its coordinates in mm are out of range");
     v->known |=
         (claim->has_unit ? CW_KNOWN_UNIT : 0u) | (claim->has_frame ? CW_KNOWN_FRAME : 0u);
     v->said_unit_mm = x.unit_mm;
@@ -173,7 +173,8 @@ static cw_status turn_mesh(const axes *from, const axes *to, cw_mesh *mesh, cw_e
     set_change(from, to, m);
     turn_points(m, mesh->origin, 1);
     if (!turn_floats(m, mesh->positions, mesh->vertex_count, 1))
-        return cw_fail(err, CW_ERR_FORMAT, "single precision cannot say its places in mm");
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "single precision cannot hold its coordinates in mm");
     if (mesh->normals)
         turn_floats(m, mesh->normals, mesh->vertex_count, from->unit_mm / to->unit_mm);
     return CW_OK;

@@ -528,7 +528,7 @@ cw_status take_facts(DicomFile &d, cwi_dicom_facts *f, size_t room, cw_error *er
     refuse(f, check_sizes(l));
     if (f->kind == CWI_DICOM_SEGMENTATION &&
         text_of(data, DCM_SegmentationType) == "FRACTIONAL")
-        refuse(f, "it is a segmentation by shares (FRACTIONAL), not by yes and no");
+        refuse(f, "it is a segmentation of type FRACTIONAL, which is not read");
     if (l.frames > (room - sizeof *f) / sizeof(cwi_dicom_frame))
         return cw_fail(err, CW_ERR_LIMIT, "'NumberOfFrames' is %u; at most %zu are read",
                        l.frames, (room - sizeof *f) / sizeof(cwi_dicom_frame));

@@ -53,12 +53,15 @@ static void note_scan(const cw_read_desc *desc, const cwi_dicom_scan *found, boo
 {
     cwi_note_links(desc, found->links);
     if (found->damaged)
-        cwi_note(desc, "left out, as not readable: %zu files beside it, the first %s",
+        cwi_note(desc,
+                 "left out, because they cannot be read: %zu files beside it, the first %s",
                  found->damaged, found->damage);
     if (folder && found->strangers)
-        cwi_note(desc, "left out, as no DICOM images: %zu of its files", found->strangers);
+        cwi_note(desc, "left out, because they are not DICOM images: %zu of its files",
+                 found->strangers);
     if (folder && found->copies)
-        cwi_note(desc, "left out, as copies of others: %zu images", found->copies);
+        cwi_note(desc, "left out, because they are copies of others: %zu images",
+                 found->copies);
 }
 
 cw_status cwi_dicom_read(const cwi_input *in, cwi_names *names, const cw_read_desc *desc,

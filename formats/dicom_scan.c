@@ -96,7 +96,7 @@ static cw_status check_facts(const cwi_dicom_facts *f, uint64_t file_bytes, cw_e
 {
     if (!IS_TERMINATED(f->series) || !IS_TERMINATED(f->instance) ||
         !IS_TERMINATED(f->modality) || !IS_TERMINATED(f->refusal))
-        return cw_fail(err, CW_ERR_BACKEND, "DCMTK's answer makes no sense");
+        return cw_fail(err, CW_ERR_BACKEND, "DCMTK's answer is not valid");
     if (f->kind == CWI_DICOM_NO_IMAGE)
         return CW_OK;
     if (f->refusal[0])
@@ -107,7 +107,7 @@ static cw_status check_facts(const cwi_dicom_facts *f, uint64_t file_bytes, cw_e
         !cw_type_size(f->type))
         return cw_fail(err, CW_ERR_FORMAT,
                        "'Columns' %u, 'Rows' %u, 'SamplesPerPixel' %u and 'NumberOfFrames' %u "
-                       "are no sizes of an image",
+                       "are not valid image sizes",
                        f->columns, f->rows, f->samples, f->frame_count);
     return check_claim(f, file_bytes, err);
 }

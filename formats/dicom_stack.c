@@ -176,7 +176,8 @@ static void keep_first_of_each(sorting *s)
     for (size_t i = 0; i < s->count; i++)
         if (kept == 0 || s->planes[i].place != s->planes[kept - 1].place)
             s->planes[kept++] = s->planes[i];
-    cwi_note(s->desc, "left out, as they stand where others do: %zu images", s->count - kept);
+    cwi_note(s->desc, "left out, because others have the same position: %zu images",
+             s->count - kept);
     s->count = kept;
 }
 

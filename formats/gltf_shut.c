@@ -123,7 +123,7 @@ static cw_status take_uri(tape *t, char **uri, cw_error *err)
     uint64_t size;
     *uri = NULL;
     if (!take(t, &size, sizeof size) || (size != NO_URI && size > (size_t)(t->end - t->at)))
-        return cw_fail(err, CW_ERR_BACKEND, "tinygltf's answer makes no sense");
+        return cw_fail(err, CW_ERR_BACKEND, "tinygltf's answer is not valid");
     if (size == NO_URI)
         return CW_OK;
     *uri = cwi_alloc_array((size_t)size + 1, 1);
@@ -138,7 +138,7 @@ static cw_status take_column(tape *t, const column *c, cwi_gltf_scene *s, cw_err
 {
     uint64_t count;
     if (!take(t, &count, sizeof count) || count > (size_t)(t->end - t->at) / c->size)
-        return cw_fail(err, CW_ERR_BACKEND, "tinygltf's answer makes no sense");
+        return cw_fail(err, CW_ERR_BACKEND, "tinygltf's answer is not valid");
     void *array = cwi_alloc_array((size_t)count, c->size);
     if (!array)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the scene");
@@ -191,7 +191,7 @@ cw_status cwi_gltf_take_scene(const void *from, size_t size, cwi_gltf_scene *s, 
     for (size_t i = 0; st == CW_OK && i < s->buffer_count; i++)
         st = take_uri(t, &s->buffers[i].uri, err);
     if (st == CW_OK && !mend_scene(s))
-        return cw_fail(err, CW_ERR_BACKEND, "tinygltf's answer makes no sense");
+        return cw_fail(err, CW_ERR_BACKEND, "tinygltf's answer is not valid");
     return st;
 }
 

@@ -19,7 +19,7 @@ cw_status cwi_grid_check_bits(const cw_write_desc *desc, cw_error *err)
 {
     const cw_compression kind = desc->compression;
     if ((size_t)kind >= sizeof kinds / sizeof *kinds)
-        return cw_fail(err, CW_ERR_ARGUMENT, "%d is no compression", (int)kind);
+        return cw_fail(err, CW_ERR_ARGUMENT, "%d is not a compression", (int)kind);
     if (desc->bits < 0 || desc->bits > kinds[kind].most_bits)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "%d bits a coordinate; there may be 1 to %d with %s", desc->bits,

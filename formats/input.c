@@ -35,7 +35,7 @@ static cw_status open_regular(int folder, const char *name, int flags, int *fd, 
     struct stat info;
     *fd = openat(folder, name, O_RDONLY | O_NONBLOCK | O_CLOEXEC | flags);
     if (*fd < 0 && errno == ELOOP && flags & O_NOFOLLOW)
-        return cw_fail(err, CW_ERR_UNSAFE, "a symbolic link; a data file must be none");
+        return cw_fail(err, CW_ERR_UNSAFE, "a symbolic link, which a data file must not be");
     if (*fd < 0)
         return fail_system(err, "cannot be opened");
     cw_status st = CW_OK;

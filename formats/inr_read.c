@@ -243,7 +243,7 @@ static cw_status read_frame(const inr *n, cwi_source *src, cw_error *err)
         st = read_three(n, K_RX, turns, err);
     if (st == CW_OK && (turns[0] != 0 || turns[1] != 0 || turns[2] != 0))
         return cw_fail(err, CW_ERR_FORMAT,
-                       "'RX', 'RY', 'RZ' are %g %g %g; turned images are not read", turns[0],
+                       "'RX', 'RY', 'RZ' are %g %g %g; rotated images are not read", turns[0],
                        turns[1], turns[2]);
     for (int a = 0; a < 3; a++) {
         src->shape.affine[a][a] = spacing[a];

@@ -543,7 +543,7 @@ static cw_status merge_samples(building *b, cw_error *err)
         for (size_t c = 0; c < b->corner_count; c++)
             b->corners[c] = map[b->corners[c]];
         b->volume.dim[0] -= same;
-        cwi_note(b->desc, "merged, as others have the same place%s: %zu of %zu points",
+        cwi_note(b->desc, "merged, because others have the same position%s: %zu of %zu points",
                  b->g->of_cells ? "" : " and value", same, samples);
     }
     cwi_free(map);

@@ -109,7 +109,7 @@ static cw_status find_by_file(const cwi_input *in, const reader **found, cw_erro
     const char *volume = cwi_volume_format_of(in);
     if (volume)
         return cw_fail(err, CW_ERR_FORMAT,
-                       "this is a volume (%s), and not a mesh: extract makes a mesh of it",
+                       "this is a volume (%s), not a mesh; 'extract' makes a mesh of it",
                        volume);
     return cw_fail(err, CW_ERR_FORMAT,
                    "neither content nor extension is of a mesh format that is read (%s)",

@@ -99,10 +99,10 @@ static cw_status check_single(const cwi_part *part, cw_error *err)
     cwi_part_bounds(part, low, high);
     for (int a = 0; a < 3; a++)
         if (low[a] < -(double)FLT_MAX || high[a] > (double)FLT_MAX)
-            return cw_fail(err, CW_ERR_LIMIT,
-                           "the mesh stands at %g, which the format's single precision cannot "
-                           "say",
-                           high[a]);
+            return cw_fail(
+                err, CW_ERR_LIMIT,
+                "the mesh stands at %g, which the format's single precision cannot hold",
+                high[a]);
     return CW_OK;
 }
 
@@ -163,7 +163,7 @@ static cw_status check_axes(const writer *w, const cw_axes *axes, cw_error *err)
 {
     const bool metres = axes->unit == CW_UNIT_MM || axes->unit == CW_UNIT_M;
     if (axes->unit >= CW_UNIT_COUNT)
-        return cw_fail(err, CW_ERR_ARGUMENT, "%d is no unit", (int)axes->unit);
+        return cw_fail(err, CW_ERR_ARGUMENT, "%d is not a unit", (int)axes->unit);
     if (w->own_axes && (!metres || axes->ras))
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "%s is in metres, +Y up and facing +Z: it has no other unit or frame",

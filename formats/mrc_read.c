@@ -207,8 +207,9 @@ static cw_status cell_edges(const double angle[3], double edges[3][3], cw_error 
     const double sine = sqrt(1 - c[2] * c[2]), y = (c[0] - c[1] * c[2]) / sine;
     const double z = 1 - c[1] * c[1] - y * y;
     if (!(sine > 0 && z > 0))
-        return cw_fail(err, CW_ERR_FORMAT, "'CELLB' is %g %g %g; these are no angles of a cell",
-                       angle[0], angle[1], angle[2]);
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "'CELLB' is %g %g %g; these are not the angles of a cell", angle[0],
+                       angle[1], angle[2]);
     const double columns[3][3] = {{1, 0, 0}, {c[2], sine, 0}, {c[1], y, sqrt(z)}};
     for (int r = 0; r < 3; r++)
         for (int k = 0; k < 3; k++)

@@ -83,7 +83,7 @@ static cw_status keep_field(cwi_nrrd *n, const char *line, cw_error *err)
     const int f =
         cwi_field_find(field_names, CWI_NRRD_FIELD_COUNT, line, (size_t)(colon - line));
     if (f < 0)
-        return cw_fail(err, CW_ERR_FORMAT, "line %zu: '%.*s' is no field of NRRD",
+        return cw_fail(err, CW_ERR_FORMAT, "line %zu: '%.*s' is not a field of NRRD",
                        n->lines.number, (int)(colon - line < 60 ? colon - line : 60), line);
     if (n->value[f] && f != CWI_NRRD_IGNORED)
         return cw_fail(err, CW_ERR_FORMAT, "line %zu: the field '%.*s' appears a second time",

@@ -113,7 +113,7 @@ static cw_status parse_property(cwi_ply_header *h, const char *rest, const char 
     char word[CWI_WORD_BYTES] = "";
     const char *behind = rest;
     if (h->element_count == 0)
-        return cw_fail(err, CW_ERR_FORMAT, "'%.60s' stands in front of any element", line);
+        return cw_fail(err, CW_ERR_FORMAT, "'%.60s' stands before any element", line);
     if (h->property_count == CWI_PLY_PROPERTIES)
         return cw_fail(err, CW_ERR_FORMAT, "the header has more than %d properties",
                        CWI_PLY_PROPERTIES);
@@ -175,7 +175,7 @@ static cw_status parse_line(cwi_ply_header *h, const char *line, bool *ours, boo
         *done = true;
     else if (*word && strcmp(word, "obj_info") != 0)
         return cw_fail(err, CW_ERR_FORMAT,
-                       "the header holds '%.40s', which is none of its words", line);
+                       "the header holds '%.40s', which is not a keyword of PLY", line);
     return CW_OK;
 }
 

@@ -18,7 +18,7 @@ static cw_status resolve(const char *path, char full[PATH_MAX], cw_error *err)
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
     const size_t length = (size_t)(name - path);
     if (length >= sizeof folder || !*name)
-        return cw_fail(err, CW_ERR_ARGUMENT, "'%.200s' is no name of a file", path);
+        return cw_fail(err, CW_ERR_ARGUMENT, "'%.200s' is not a file name", path);
     memcpy(folder, path, length);
     strcpy(folder + length, length ? "" : ".");
     const bool found = realpath(folder, full);

@@ -126,7 +126,7 @@ static cw_status parse_pair(const char *pair, unsigned *seen, cw_raw_layout *lay
         return keys[k].parse(pair + length + 1, layout, err);
     }
     return cw_fail(err, CW_ERR_ARGUMENT,
-                   "'%.*s' is no key of a layout; there are dims, type, offset, spacing, "
+                   "'%.*s' is not a key of a layout; known are dims, type, offset, spacing, "
                    "components, steps",
                    (int)(length < 40 ? length : 40), pair);
 }
@@ -178,7 +178,7 @@ static void set_frame(const cw_raw_layout *layout, cw_volume *shape)
 static cw_status check_layout(const cw_raw_layout *layout, cw_error *err)
 {
     if (!cw_type_size(layout->type))
-        return cw_fail(err, CW_ERR_ARGUMENT, "'type' is %d, which is no voxel type",
+        return cw_fail(err, CW_ERR_ARGUMENT, "'type' is %d, which is not a voxel type",
                        (int)layout->type);
     for (int a = 0; a < 3; a++)
         if (layout->dim[a] < 1 || layout->dim[a] > INT32_MAX)

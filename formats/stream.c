@@ -156,7 +156,7 @@ static cw_status fetch_hex(cwi_stream *s, unsigned char *to, size_t size, size_t
                 break;
         }
         if (!take_hex(s, s->text[s->text_next++], to, got))
-            st = cw_fail(err, CW_ERR_FORMAT, "byte %llu of the file is no hexadecimal digit",
+            st = cw_fail(err, CW_ERR_FORMAT, "byte %llu of the file is not a hexadecimal digit",
                          (unsigned long long)(s->offset - s->text_size + s->text_next - 1));
     }
     return st;

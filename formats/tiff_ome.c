@@ -77,7 +77,7 @@ static cw_status read_sizes(parsing *p, attributes a)
     uint32_t x, y, z, c, t;
     if (!whole(a, "SizeX", 0, &x) || !whole(a, "SizeY", 0, &y) || !whole(a, "SizeZ", 0, &z) ||
         !whole(a, "SizeC", 0, &c) || !whole(a, "SizeT", 0, &t))
-        return cw_fail(p->err, CW_ERR_FORMAT, "the OME-XML has a size that is no number");
+        return cw_fail(p->err, CW_ERR_FORMAT, "the OME-XML has a size that is not a number");
     if (x != f->columns || y != f->rows)
         return cw_fail(p->err, CW_ERR_FORMAT,
                        "'SizeX' and 'SizeY' of the OME-XML are %u x %u; the first page is %u x "
@@ -295,7 +295,7 @@ static cw_status fail_xml(const parsing *p)
         return p->status;
     if (code == XML_ERROR_NO_MEMORY)
         return cw_fail(p->err, CW_ERR_NO_MEMORY, "no memory to read XML with");
-    return cw_fail(p->err, CW_ERR_FORMAT, "line %lu of the OME-XML is no XML: %s",
+    return cw_fail(p->err, CW_ERR_FORMAT, "line %lu of the OME-XML is not XML: %s",
                    (unsigned long)XML_GetCurrentLineNumber(p->expat), XML_ErrorString(code));
 }
 

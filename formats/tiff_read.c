@@ -61,7 +61,7 @@ static cw_status check_numbers(const cwi_tiff_facts *f, cw_error *err)
     if (!is_said(f->step_seconds) || !isfinite(f->slope) || !isfinite(f->intercept) ||
         f->slope == 0)
         return cw_fail(err, CW_ERR_FORMAT,
-                       "'ImageDescription' has numbers of time or value that are none");
+                       "'ImageDescription' has times or values that are not numbers");
     return CW_OK;
 }
 
@@ -75,7 +75,7 @@ static cw_status check_facts(const cwi_tiff_facts *f, uint64_t file_bytes, cw_er
         f->page_count > most || f->slices < 1 || f->slices > most || f->channels < 1 ||
         f->channels > most || f->steps < 1 || f->steps > most || planes_of(f) > f->page_count ||
         !memchr(f->note, '\0', sizeof f->note))
-        return cw_fail(err, CW_ERR_BACKEND, "libtiff's answer makes no sense");
+        return cw_fail(err, CW_ERR_BACKEND, "libtiff's answer is not valid");
     if (f->channels > MOST_CHANNELS || (f->channels > 1 && f->samples > 1))
         return cw_fail(
             err, CW_ERR_FORMAT,
@@ -107,7 +107,7 @@ static cw_status take_facts(cwi_planes *planes, int fd, uint64_t file_bytes, cwi
     memcpy(*order, (const char *)shared + sizeof *f, count * sizeof **order);
     for (size_t i = 0; i < count; i++)
         if ((*order)[i] >= f->page_count)
-            return cw_fail(err, CW_ERR_BACKEND, "libtiff's answer makes no sense");
+            return cw_fail(err, CW_ERR_BACKEND, "libtiff's answer is not valid");
     return CW_OK;
 }
 
@@ -231,7 +231,7 @@ static cw_status find_files(slices *s, const cwi_names *names, cw_error *err)
     if (st == CW_OK && s->files.count == 0)
         return cw_fail(err, CW_ERR_FORMAT, "it holds no TIFF file");
     if (st == CW_OK && s->files.count < names->count)
-        cwi_note(s->desc, "left out, as no TIFF: %zu of its files",
+        cwi_note(s->desc, "left out, because they are not TIFF: %zu of its files",
                  names->count - s->files.count);
     return st;
 }
@@ -370,9 +370,8 @@ static cw_status stack_files(slices *s, cwi_stack *stack, cw_error *err)
 static void note_facts(const cw_read_desc *desc, cwi_tiff_facts *f)
 {
     if (f->turned)
-        cwi_note(desc,
-                 "'PhotometricInterpretation' is 0 (white is 0): values are turned round, "
-                 "so that more is brighter");
+        cwi_note(desc, "'PhotometricInterpretation' is 0 (white is 0): values are inverted, so "
+                       "that larger is brighter");
     for (char *c = f->note; *c; c++)
         if ((unsigned char)*c < ' ' || (unsigned char)*c > '~')
             *c = '?';

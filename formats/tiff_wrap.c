@@ -211,10 +211,9 @@ static cw_status find_colours(TIFF *tiff, cwi_tiff_layout *l, cw_error *err)
     const char *name = "";
     const bool white_is_zero = l->photometric == PHOTOMETRIC_MINISWHITE;
     if (white_is_zero && l->format == SAMPLEFORMAT_IEEEFP)
-        return cw_fail(
-            err, CW_ERR_FORMAT,
-            "'PhotometricInterpretation' is 0 (white is 0), and how floats are to be "
-            "turned round is not said");
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "'PhotometricInterpretation' is 0 (white is 0), and how to invert "
+                       "floats is not defined");
     l->turned = white_is_zero;
     if (l->photometric <= PHOTOMETRIC_PALETTE)
         return CW_OK;
@@ -241,8 +240,9 @@ static cw_status find_bands(TIFF *tiff, cwi_tiff_layout *l, cw_error *err)
     if (l->band_rows > l->rows && !l->tiled)
         l->band_rows = l->rows;
     if (l->band_rows == 0 || l->tile_width == 0 || (l->tiled && l->tile_width % 8))
-        return cw_fail(err, CW_ERR_FORMAT, "'TileWidth' %u and 'TileLength' %u are no sizes",
-                       l->tile_width, l->band_rows);
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "'TileWidth' %u and 'TileLength' %u are not valid sizes", l->tile_width,
+                       l->band_rows);
     const uint64_t row = (l->tile_width * samples * l->bits + 7) / 8;
     const uint64_t theirs = l->tiled ? TIFFTileRowSize64(tiff) : TIFFScanlineSize64(tiff);
     if (theirs != row)
@@ -257,8 +257,9 @@ static cw_status find_bands(TIFF *tiff, cwi_tiff_layout *l, cw_error *err)
 static cw_status check_sizes(TIFF *tiff, cwi_tiff_layout *l, cw_error *err)
 {
     if (l->columns < 1 || l->columns > INT32_MAX || l->rows < 1 || l->rows > INT32_MAX)
-        return cw_fail(err, CW_ERR_FORMAT, "'ImageWidth' %u and 'ImageLength' %u are no sizes",
-                       l->columns, l->rows);
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "'ImageWidth' %u and 'ImageLength' %u are not valid sizes", l->columns,
+                       l->rows);
     if (l->samples < 1 || l->samples > MOST_SAMPLES)
         return cw_fail(err, CW_ERR_FORMAT, "'SamplesPerPixel' is %u; 1 to %d are read",
                        l->samples, MOST_SAMPLES);

@@ -127,8 +127,7 @@ const char *cwi_volume_format_of(const cwi_input *in)
 static cw_status fail_mesh(const char *format, cw_error *err)
 {
     return cw_fail(err, CW_ERR_FORMAT,
-                   "this is a mesh (%s), and not a volume: check, convert and simplify take it",
-                   format);
+                   "this is a mesh (%s), not a volume; use check, convert or simplify", format);
 }
 
 static cw_status find_by_file(const cwi_input *in, const reader **found, cw_error *err)

@@ -182,7 +182,7 @@ static cw_status fail_xml(const cwi_xml *x)
         return x->status;
     if (code == XML_ERROR_NO_MEMORY)
         return cw_fail(x->err, CW_ERR_NO_MEMORY, "no memory to read XML with");
-    return cw_fail(x->err, CW_ERR_FORMAT, "line %lu is no XML: %s",
+    return cw_fail(x->err, CW_ERR_FORMAT, "line %lu is not XML: %s",
                    (unsigned long)XML_GetCurrentLineNumber(x->expat), XML_ErrorString(code));
 }
 

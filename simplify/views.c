@@ -165,8 +165,9 @@ cw_status cwi_views_init(cwi_views *views, const cw_simplify_desc *d, cw_error *
                        "pixel_error is %g, and there are no views to hold it in",
                        d->pixel_error);
     if (!(d->error_mm > 0))
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "views need an error_mm: how far what none of them sees may go");
+        return cw_fail(
+            err, CW_ERR_ARGUMENT,
+            "views need an error_mm: the error limit where none of them sees the surface");
     views->view = cwi_alloc_array(d->view_count, sizeof *views->view);
     if (!views->view)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu views", d->view_count);

@@ -110,7 +110,7 @@ double cwi_delta_e(const double a[3], const double b[3])
 static cw_status expect_same_size(const cw_picture *a, const cw_picture *b, cw_error *err)
 {
     if (!a->pixels || !b->pixels)
-        return cw_fail(err, CW_ERR_ARGUMENT, "a picture of nothing cannot be compared");
+        return cw_fail(err, CW_ERR_ARGUMENT, "an empty picture cannot be compared");
     if (a->width != b->width || a->height != b->height)
         return cw_fail(err, CW_ERR_ARGUMENT, "a picture of %zu x %zu beside one of %zu x %zu",
                        a->width, a->height, b->width, b->height);

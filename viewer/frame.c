@@ -30,7 +30,8 @@ static cw_status fill_in(cw_scene *s, cw_error *err)
     static const cw_light headlight = {{0, 0, 1}, {1, 1, 1}};
     static const float bone[4] = {240 / 255.0f, 229 / 255.0f, 208 / 255.0f, 1};
     if ((unsigned)s->mode >= CW_MODE_COUNT)
-        return cw_fail(err, CW_ERR_ARGUMENT, "mode %d is none", (int)s->mode);
+        return cw_fail(err, CW_ERR_ARGUMENT, "%d is not a render mode (0 to %d)", (int)s->mode,
+                       CW_MODE_COUNT - 1);
     if (draws_volume(s->mode) && !(s->volume && s->transfer))
         return cw_fail(err, CW_ERR_ARGUMENT, "%s needs a volume and a transfer function",
                        cw_mode_name(s->mode));

@@ -72,7 +72,8 @@ cw_status cwi_tint_range(const cw_scene *scene, double range[2], cw_error *err)
     range[0] = 0;
     range[1] = 1;
     if ((unsigned)scene->tint >= CW_TINT_COUNT)
-        return cw_fail(err, CW_ERR_ARGUMENT, "tint %d is none", (int)scene->tint);
+        return cw_fail(err, CW_ERR_ARGUMENT, "%d is not a tint (0 to %d)", (int)scene->tint,
+                       CW_TINT_COUNT - 1);
     if (scene->tint == CW_TINT_SCALARS && !scene->mesh->scalars)
         return cw_fail(err, CW_ERR_ARGUMENT, "the mesh has no scalars to be coloured by");
     if (scene->tint == CW_TINT_COLORS)

@@ -472,7 +472,7 @@ static cw_status take_frame(const cw_scene *scene, const cw_image *image, cwi_fr
                             cw_error *err)
 {
     if (!image->pixels)
-        return cw_fail(err, CW_ERR_ARGUMENT, "an image of nothing");
+        return cw_fail(err, CW_ERR_ARGUMENT, "the image is empty");
     cw_status st = cwi_frame_init(frame, scene, err);
     if (st != CW_OK)
         return st;

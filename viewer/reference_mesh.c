@@ -448,8 +448,9 @@ static cw_status check_sizes(const cwi_render_desc *d, cw_error *err)
         return cw_fail(err, CW_ERR_ARGUMENT, "a picture of %zu x %zu; the most is %d a side",
                        d->width, d->height, MAX_SIZE);
     if (d->samples < 1 || d->samples > MAX_SAMPLES)
-        return cw_fail(err, CW_ERR_ARGUMENT, "%d samples a side of a pixel; 1 to %d can be had",
-                       d->samples, MAX_SAMPLES);
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "%d samples a side of a pixel; 1 to %d was expected", d->samples,
+                       MAX_SAMPLES);
     if (d->depth_mm && d->samples != 1)
         return cw_fail(err, CW_ERR_ARGUMENT, "depths are of one sample a pixel, not of %d x %d",
                        d->samples, d->samples);

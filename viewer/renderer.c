@@ -53,7 +53,8 @@ cw_status cw_renderer_new(cw_backend backend, cw_renderer **renderer, cw_error *
 {
     *renderer = NULL;
     if ((unsigned)backend >= CW_BACKEND_COUNT)
-        return cw_fail(err, CW_ERR_ARGUMENT, "backend %d is none", (int)backend);
+        return cw_fail(err, CW_ERR_ARGUMENT, "%d is not a backend (0 to %d)", (int)backend,
+                       CW_BACKEND_COUNT - 1);
     cw_renderer *r = cwi_alloc_zeroed(1, sizeof *r);
     if (!r)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a renderer");

@@ -24,11 +24,12 @@ static cw_status find_cell(const cw_image *images, size_t count, size_t cell[2],
     cell[0] = cell[1] = 0;
     for (size_t n = 0; n < count; n++) {
         if (!images[n].pixels)
-            return cw_fail(err, CW_ERR_ARGUMENT, "image %zu of a sheet is one of nothing", n);
+            return cw_fail(err, CW_ERR_ARGUMENT, "image %zu of a sheet is empty", n);
         cell[0] = images[n].width > cell[0] ? images[n].width : cell[0];
         cell[1] = images[n].height > cell[1] ? images[n].height : cell[1];
     }
-    return count > 0 ? CW_OK : cw_fail(err, CW_ERR_ARGUMENT, "a sheet of no images");
+    return count > 0 ? CW_OK
+                     : cw_fail(err, CW_ERR_ARGUMENT, "a sheet needs at least one image");
 }
 
 /* The fewest columns that make the sheet at least as wide as high. */

@@ -9,7 +9,8 @@ static cw_status check_value(const char *list, size_t n, double value, double be
                              cw_error *err)
 {
     if (!isfinite(value))
-        return cw_fail(err, CW_ERR_ARGUMENT, "point %zu of '%s' stands at no number", n, list);
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "point %zu of '%s' has a position that is not a number", n, list);
     if (value < before)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "point %zu of '%s' stands at %g, the one before at %g", n, list, value,

@@ -6,10 +6,10 @@ static cw_status check_desc(const cwi_ui_desc *desc, cw_error *err)
     if (desc->width < 1 || desc->width > CWI_UI_LARGEST || desc->height < 1 ||
         desc->height > CWI_UI_LARGEST)
         return cw_fail(err, CW_ERR_ARGUMENT,
-                       "a window of %zu x %zu pixels; 1 x 1 to %d x %d can be had", desc->width,
-                       desc->height, CWI_UI_LARGEST, CWI_UI_LARGEST);
+                       "a window of %zu x %zu pixels; 1 x 1 to %d x %d was expected",
+                       desc->width, desc->height, CWI_UI_LARGEST, CWI_UI_LARGEST);
     if (!(desc->scale == 0 || (desc->scale >= 0.25 && desc->scale <= 8)))
-        return cw_fail(err, CW_ERR_ARGUMENT, "letters scaled by %g; 0.25 to 8 can be read",
+        return cw_fail(err, CW_ERR_ARGUMENT, "a scale of letters of %g; 0.25 to 8 was expected",
                        desc->scale);
     return CW_OK;
 }

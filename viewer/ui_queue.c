@@ -57,11 +57,11 @@ bool cwi_ui_queue_put(cwi_ui *ui, const cwi_ui_event *event, bool repeats)
 static cw_status check_place(const cwi_ui_event *e, cw_error *err)
 {
     if (!isfinite(e->x) || !isfinite(e->y))
-        return cw_fail(err, CW_ERR_ARGUMENT, "input at a place that is no number");
+        return cw_fail(err, CW_ERR_ARGUMENT, "an input has a position that is not a number");
     if (e->kind == CWI_UI_RESIZE &&
         !(e->x >= 1 && e->x <= CWI_UI_LARGEST && e->y >= 1 && e->y <= CWI_UI_LARGEST))
         return cw_fail(err, CW_ERR_ARGUMENT,
-                       "a window of %g x %g pixels; 1 x 1 to %d x %d can be had", e->x, e->y,
+                       "a window of %g x %g pixels; 1 x 1 to %d x %d was expected", e->x, e->y,
                        CWI_UI_LARGEST, CWI_UI_LARGEST);
     return CW_OK;
 }
@@ -84,7 +84,7 @@ cw_status cwi_ui_feed(cwi_ui *ui, const cwi_ui_event *event, cw_error *err)
 {
     const bool pressed = event->kind == CWI_UI_PRESS || event->kind == CWI_UI_LIFT;
     if ((unsigned)event->kind > CWI_UI_CLOSE)
-        return cw_fail(err, CW_ERR_ARGUMENT, "no input is of kind %d", (int)event->kind);
+        return cw_fail(err, CW_ERR_ARGUMENT, "%d is not a kind of input", (int)event->kind);
     if (pressed && (event->button < 0 || event->button >= CWI_UI_BUTTONS))
         return cw_fail(err, CW_ERR_ARGUMENT, "a mouse has no button %d; there are 0 to %d",
                        event->button, CWI_UI_BUTTONS - 1);

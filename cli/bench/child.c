@@ -66,7 +66,7 @@ cw_status cli_child_start(cli_child *c, const char *const *argv, const char *fol
     close(c->in);
     close(c->out);
     *c = (cli_child){0};
-    return cw_fail(err, CW_ERR_BACKEND, "no process can be had for it: %s", strerror(why));
+    return cw_fail(err, CW_ERR_BACKEND, "no process could be started: %s", strerror(why));
 }
 
 void cli_child_stop(cli_child *c)
@@ -127,7 +127,7 @@ static cw_status how_it_ended(cli_child *c, cw_error *err)
     if (status == 0)
         return CW_OK;
     if (status == -1)
-        return cw_fail(err, CW_ERR_BACKEND, "it closed its output and went on");
+        return cw_fail(err, CW_ERR_BACKEND, "it closed its output but did not end");
     if (WIFSIGNALED(status))
         return cw_fail(err, CW_ERR_BACKEND, "it was ended by signal %d (%s)%s",
                        WTERMSIG(status), strsignal(WTERMSIG(status)), words);
@@ -184,7 +184,7 @@ cw_status cli_child_ask(cli_child *c, const char *line, char *answer, size_t roo
         }
         if (have + 1 == room) {
             cli_child_stop(c);
-            return cw_fail(err, CW_ERR_BACKEND, "its answer is no line that was expected");
+            return cw_fail(err, CW_ERR_BACKEND, "its answer is not understood");
         }
     }
 }

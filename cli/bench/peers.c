@@ -76,7 +76,7 @@ static cw_status find_python(cli_peers *p, cli_peer *peer, const char *own, cw_e
             continue;
         }
         snprintf(why, sizeof why, "%.200s",
-                 st == CW_OK ? "its answer is no line that was expected" : err->message);
+                 st == CW_OK ? "its answer is not understood" : err->message);
         set_state(peer, CLI_PEER_FAILED, why);
         break;
     }
@@ -213,7 +213,7 @@ static cw_status ask(cli_peer *peer, const char *line, double *numbers, size_t c
     if (good && *at == '\0')
         return CW_OK;
     cli_child_stop(&peer->child);
-    return cw_fail(err, CW_ERR_BACKEND, "its answer is no line that was expected");
+    return cw_fail(err, CW_ERR_BACKEND, "its answer is not understood");
 }
 
 /* What a voxel outside the surface may hold, in the file's numbers. */
@@ -282,7 +282,7 @@ static cw_status read_result(const cli_peers *p, const double n[3], cw_mesh *mes
                 n[0] < UINT32_MAX && n[0] == floor(n[0]) && n[1] == floor(n[1]);
     if (good && n[1] < 1) {
         fclose(f);
-        return cw_fail(err, CW_ERR_BACKEND, "it made no triangle");
+        return cw_fail(err, CW_ERR_BACKEND, "it made no triangles");
     }
     if (good) {
         mesh->vertex_count = (size_t)n[0];
@@ -296,7 +296,7 @@ static cw_status read_result(const cli_peers *p, const double n[3], cw_mesh *mes
     if (f)
         fclose(f);
     if (!good || cw_mesh_check(mesh, NULL) != CW_OK)
-        return cw_fail(err, CW_ERR_BACKEND, "what it wrote is no mesh");
+        return cw_fail(err, CW_ERR_BACKEND, "its output is not a mesh");
     return CW_OK;
 }
 

@@ -21,8 +21,8 @@ void cli_bench_tell_start(const cli_bench *b)
     cli_result("cubewright %s, %d of %ld processors", cw_version(), b->threads,
                sysconf(_SC_NPROCESSORS_ONLN));
     if (isfinite(b->load))
-        cli_result(" (%.1f at work before)", b->load);
-    cli_result("; medians of %zu run%s by turns", b->repeat, b->repeat == 1 ? "" : "s");
+        cli_result(" (load before: %.1f)", b->load);
+    cli_result("; median of %zu run%s", b->repeat, b->repeat == 1 ? "" : "s");
     for (int n = 0; n < CLI_PEER_COUNT && b->with_peers; n++) {
         const cli_peer *p = &b->peers.of[n];
         if (p->state != CLI_PEER_READY)
@@ -30,7 +30,7 @@ void cli_bench_tell_start(const cli_bench *b)
         cli_result("%s%s%s%s", before, p->name, *p->version ? " " : "", p->version);
         before = ", ";
     }
-    cli_result("%s\n", b->with_peers && *before == ';' ? "; no peer is here" : "");
+    cli_result("%s\n", b->with_peers && *before == ';' ? "; no peer is installed" : "");
 }
 
 /* A cell of the table; empty when there is nothing to tell. */
@@ -67,7 +67,7 @@ static void tell_defects(const cli_bench_row *r)
     if (r->zero_area)
         cli_result("  %s triangles without area", cli_count(r->zero_area));
     if (r->at_vertices.missed)
-        cli_result("  %s vertices that lead to no surface", cli_count(r->at_vertices.missed));
+        cli_result("  %s vertices with no surface nearby", cli_count(r->at_vertices.missed));
 }
 
 static void tell_row(const cli_bench_row *r)

@@ -211,7 +211,7 @@ static cw_status take_meshopt(cli_bench *b, const cli_bench_kind *kind, cw_mesh 
     const size_t point_bytes = 3 * sizeof(float) * in->vertex_count;
     cw_status st = take_made(b, kind, mesh, bytes, err);
     if (mesh->triangle_count == 0)
-        return cw_fail(err, CW_ERR_BACKEND, "it left no triangle");
+        return cw_fail(err, CW_ERR_BACKEND, "it left no triangles");
     memcpy(mesh->origin, in->origin, sizeof mesh->origin);
     mesh->vertex_count = in->vertex_count;
     mesh->positions = copy_of(in->positions, point_bytes);

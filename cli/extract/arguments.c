@@ -100,12 +100,10 @@ static cw_status check_crop(const cli_extract_args *args, cw_error *err)
     if (!args->prove_crop)
         return CW_OK;
     if (!input->crop.given)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--prove-crop is for what --crop leaves");
+        return cw_fail(err, CW_ERR_ARGUMENT, "--prove-crop needs --crop");
     if (input->preview || input->coarsen || args->snap.value > 0)
-        return cw_fail(
-            err, CW_ERR_ARGUMENT,
-            "--prove-crop is for all voxels and their crossings: it cannot be with %s",
-            args->snap.value > 0 ? "--snap" : "a preview");
+        return cw_fail(err, CW_ERR_ARGUMENT, "--prove-crop cannot be combined with %s",
+                       args->snap.value > 0 ? "--snap" : "a preview");
     return CW_OK;
 }
 
@@ -122,27 +120,26 @@ cw_status cli_extract_check_args(cli_extract_run *s, cw_error *err)
         return cw_fail(err, CW_ERR_ARGUMENT, "extract needs an output: -o FILE");
     if (!args->iso.count)
         return cw_fail(err, CW_ERR_ARGUMENT,
-                       "extract needs a level: --iso V; 'cubewright info %s' suggests some",
+                       "extract needs an isovalue: --iso V; 'cubewright info %s' suggests some",
                        input[0]);
     if (!(args->snap.value >= 0 && args->snap.value <= CW_EXTRACT_MAX_SNAP))
         return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--snap is a share of an edge, 0 to %g, and not %g", CW_EXTRACT_MAX_SNAP,
-                       args->snap.value);
+                       "--snap is a fraction of an edge from 0 to %g, not %g",
+                       CW_EXTRACT_MAX_SNAP, args->snap.value);
     st = check_pixels(s, err);
     if (st == CW_OK)
         st = check_crop(args, err);
     if (st != CW_OK)
         return st;
     if (args->pixel.cull && args->snap.value > 0)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--cull needs the plain surface: it cannot be with --snap");
+        return cw_fail(err, CW_ERR_ARGUMENT, "--cull cannot be combined with --snap");
     if (cli_extract_is_simplified(args) && args->snap.value > 0)
         return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--snap and %s both remove needles: give one of them", reducer(args));
+                       "--snap or %s, not both: each removes thin triangles", reducer(args));
     if (cli_extract_is_simplified(args) && !cw_simplify_available())
         return cw_fail(err, CW_ERR_UNSUPPORTED,
-                       "%s needs OpenMesh, which this build is without: install "
-                       "libopenmesh-dev and build again",
+                       "%s needs OpenMesh, which this build lacks: install libopenmesh-dev and "
+                       "build again",
                        reducer(args));
     return check_animation(args, err);
 }

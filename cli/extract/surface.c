@@ -109,11 +109,10 @@ static cw_status extract_for_views(cli_extract_run *s, const cli_wanted *w,
 static void tell_components(const cli_extract_run *s, const cli_made *made)
 {
     const cw_drop_counts *c = &made->components;
-    cli_say(
-        "%s: %s component%s kept, of %.6g mm3 or more; %s dropped (< %.6g mm3), of %.6g mm3 "
-        "or less: %s triangles fewer",
-        s->volume.path, cli_count(c->kept), c->kept == 1 ? "" : "s", c->least_kept_mm3,
-        cli_count(c->dropped), made->least_mm3, c->largest_mm3, cli_count(c->triangles));
+    cli_say("%s: %s component%s kept, the smallest of %.6g mm3; %s dropped (< %.6g mm3), the "
+            "largest of %.6g mm3; %s triangles fewer",
+            s->volume.path, cli_count(c->kept), c->kept == 1 ? "" : "s", c->least_kept_mm3,
+            cli_count(c->dropped), made->least_mm3, c->largest_mm3, cli_count(c->triangles));
 }
 
 cw_status cli_extract_make(cli_extract_run *s, cli_made *made, cw_mesh *mesh,
@@ -140,11 +139,11 @@ cw_status cli_extract_make(cli_extract_run *s, cli_made *made, cw_mesh *mesh,
     if (w.least_mm3 > 0)
         tell_components(s, made);
     if (s->args->pixel.cull)
-        cli_say(
-            "%s: %.3g %% of the voxels are in bricks that cameras see; %s triangles of these "
-            "that none does are left out",
-            s->volume.path, 100 * (double)made->proof.seen_voxels / (double)made->proof.voxels,
-            cli_count(made->proof.culled));
+        cli_say("%s: %.3g %% of the voxels are in bricks that cameras see; %s triangles in "
+                "them that no camera sees are left out",
+                s->volume.path,
+                100 * (double)made->proof.seen_voxels / (double)made->proof.voxels,
+                cli_count(made->proof.culled));
     return CW_OK;
 }
 
@@ -203,8 +202,8 @@ cw_status cli_extract_judge(cli_extract_run *s, cli_made *made, const cw_mesh *m
             cli_count(counts->triangles), cli_count(mesh->triangle_count));
     if (args->simplify.triangles && mesh->triangle_count > args->simplify.triangles)
         cli_report_warn(&s->report,
-                        "%s triangles were asked for, %s are left: where more would go, the "
-                        "surface would tear, turn over or meet itself",
+                        "%s triangles were requested, %s are left: removing more would tear "
+                        "the surface, flip it or make it intersect itself",
                         cli_count(args->simplify.triangles), cli_count(mesh->triangle_count));
     if (!args->check)
         return CW_OK;
@@ -272,8 +271,8 @@ cw_status cli_extract_prove_crop(cli_extract_run *s, const cli_moment *moment, c
     if (st != CW_OK)
         return st;
     cli_report_end(&s->report, "prove crop", p->whole_triangles, p->triangles);
-    cli_say("%s: %s triangles, as the whole surface has them there: %.3g %% of its %s, of "
-            "%.3g %% of the voxels; %s and %.3g s in place of %s and %.3g s",
+    cli_say("%s: the same %s triangles as in the whole surface: %.3g %% of its %s, from %.3g "
+            "%% of the voxels; %s and %.3g s in place of %s and %.3g s",
             s->volume.path, cli_count(p->triangles),
             100 * (double)p->triangles / (double)p->whole_triangles,
             cli_count(p->whole_triangles), 100 * (double)p->voxels / (double)p->whole_voxels,

@@ -30,10 +30,10 @@ void cli_plan_extraction(cli_study *s)
         p->tried.snap = rows[n].snap;
         p->shown = n < 3 || (n == 3 && s->is_field);
         if (rows[n].cubic && rows[n].coarsen == 1 && !s->is_field)
-            p->aside = "its vertices are where a cubic has the level, and the error beside is "
-                       "to the field that is linear between voxels: that would count what is "
-                       "gained as lost. The previews tell: they are measured against voxels "
-                       "that they have not seen";
+            p->aside = "its vertices lie where a cubic has the isovalue, but the error is "
+                       "measured to a field that is linear between voxels, and would count the "
+                       "gain as a loss. The previews show the gain: they are measured against "
+                       "voxels that they did not use";
     }
 }
 

@@ -99,15 +99,15 @@ static void put_intro(FILE *out, const cli_study *s)
     fputs("</h1>\n<p>Speed against error: ", out);
     fprintf(out, "%zu settings were tried on ", count_points(s, true));
     if (s->is_field) {
-        fputs("a field whose surface is known on paper: ", out);
+        fputs("a field whose surface is known exactly: ", out);
         cli_put_html(out, cw_field_about(s->field));
     } else {
         cli_put_html(out, cli_describe(s->volume));
     }
     fprintf(out,
-            "; %zu were left out, each with its reason. In every plot left is cheaper and "
-            "down is closer to the truth. Full dots, on the dashed line, are worth "
-            "choosing: nothing that was tried is both cheaper and closer. Each row has "
+            "; %zu were left out, each with its reason. In every plot left is cheaper and down "
+            "is closer to the truth. Full dots, on the dashed line, are worth choosing: no "
+            "other point is both cheaper and closer. They form the Pareto front. Each row has "
             "its command, to copy.</p>\n",
             count_points(s, false));
     if (s->coarsen > 1)
@@ -250,7 +250,7 @@ static void put_key(FILE *out, const cli_study *s, cli_family family)
         cli_put_html(out, groups[n]);
         fputs("</span>", out);
     }
-    fputs("<span><em></em>the front</span></div>\n", out);
+    fputs("<span><em></em>Pareto front</span></div>\n", out);
 }
 
 static void put_cell(FILE *out, bool known, double value)
@@ -362,39 +362,34 @@ static void put_about(FILE *out, const cli_study *s, cli_family family)
 {
     static const char *const about[CLI_FAMILY_COUNT] = {
         "From voxels to triangles. Memory is what the work took beside the voxels. The "
-        "distance "
-        "to the field is from points all over the mesh to the surface of the field; back is "
-        "from the vertices of the plain surface (linear, all voxels) to the mesh, which tells "
-        "what a mesh has lost. Distances to the field beyond 4 voxels count as 4.",
-        "Fewer triangles, while extracting: the time is of both. An error is a promise, kept "
-        "both ways, towards the plain surface; the plot shows what is left between the mesh "
-        "and "
-        "the field.",
-        "The file of the plain surface: written, read back, and measured as it came back: how "
-        "far "
-        "from the plain surface (back); what is exact is drawn at the bottom. The distance to "
-        "the "
-        "field, in the table, tells from how many bits on that no longer matters. The "
-        "time is that of writing it, with the check of what was decoded.",
-        "Pictures of the volume, unlit, from the front, against the rendering integral itself. "
-        "The time is of a picture after the first, the median of three, of slow ones that of "
-        "one."};
+        "distance to the field is measured from points all over the mesh to the isosurface of "
+        "the field. Back is measured from the vertices of the plain surface (linear, all "
+        "voxels) to the mesh; it shows what a mesh has lost. Distances to the field beyond 4 "
+        "voxels count as 4.",
+        "Fewer triangles, made while extracting; the time includes both. An error limit holds "
+        "both ways, to the plain surface. The plot shows the distance that remains between the "
+        "mesh and the field.",
+        "The plain surface is written to a file, read back and measured. The error is the "
+        "distance to the plain surface (back); exact results are drawn at the bottom. The "
+        "distance to the field, in the table, shows how many bits are enough. The time is that "
+        "of writing, with the verification by decoding.",
+        "Pictures of the volume, unlit, from the front, compared with the rendering integral "
+        "itself. The time is that of a picture after the first: the median of three, or of one "
+        "if it is slow."};
     fprintf(out, "<p>%s", about[family]);
     if (*s->part_words && (family == CLI_SIMPLIFICATION || family == CLI_COMPRESSION))
-        fprintf(
-            out,
-            " So that all is done in time these are of a box of the volume, whose surface has "
-            "%s of all %s triangles; of all of it time and bytes are about %.2g times as "
-            "much, and errors much the same.",
-            cli_count(cli_part_mesh(s)->triangle_count), cli_count(s->full.triangle_count),
-            (double)s->full.triangle_count / (double)cli_part_mesh(s)->triangle_count);
+        fprintf(out,
+                " To save time, a box of the volume is used, whose surface has %s of all %s "
+                "triangles. For the whole volume, time and bytes are about %.2g times as "
+                "large, and errors are about the same.",
+                cli_count(cli_part_mesh(s)->triangle_count), cli_count(s->full.triangle_count),
+                (double)s->full.triangle_count / (double)cli_part_mesh(s)->triangle_count);
     if (family == CLI_EXTRACTION)
-        fprintf(
-            out,
-            " Where the surface is larger than %s faces of voxels, errors here and below are "
-            "those of a sample of about so many triangles, chosen at random but always the "
-            "same: RMS and 99 %% are sure to a percent or so, maxima may be missed.",
-            cli_count(CLI_STUDY_SAMPLE));
+        fprintf(out,
+                " Surfaces larger than %s faces of voxels are measured at a sample of about "
+                "that many triangles, here and below. The sample is random but always the "
+                "same. RMS and 99 %% are accurate to about a percent; maxima may be missed.",
+                cli_count(CLI_STUDY_SAMPLE));
     if (family == CLI_RENDERING) {
         fprintf(out, " They are %d \xc3\x97 %d pixels", CLI_STUDY_WIDTH, CLI_STUDY_HEIGHT);
         if (*s->backend) {
@@ -405,8 +400,8 @@ static void put_about(FILE *out, const cli_study *s, cli_family family)
             fprintf(out, "; the integral itself took %s", seconds_text(s->reference_seconds));
         fputs(".", out);
     } else if (s->is_field && family != CLI_COMPRESSION) {
-        fputs(" The error of the plot is to the surface as known on paper, along the field's "
-              "gradient; that to the field is to what lies between the samples.",
+        fputs(" The error in the plot is the distance to the exact surface, along the field's "
+              "gradient. The distance to the field is that to the field between the samples.",
               out);
     }
     fputs("</p>\n", out);
@@ -429,8 +424,8 @@ static void put_family(FILE *out, const cli_study *s, cli_family family)
 
 static void put_quality(FILE *out, const cli_study *s)
 {
-    fputs("<h2>Shapes of triangles</h2>\n<p>Small angles and large aspect ratios are what "
-          "simulations, and shading, suffer from.</p>\n<div class=\"hists\">\n",
+    fputs("<h2>Shapes of triangles</h2>\n<p>Small angles and large aspect ratios harm "
+          "simulations and shading.</p>\n<div class=\"hists\">\n",
           out);
     for (size_t n = 0; n < s->point_count; n++) {
         const cli_point *p = &s->points[n];

@@ -71,7 +71,7 @@ static cw_status run_point(cli_study *s, cli_point *p, cw_error *err)
     cw_error why = {0};
     const bool first = !s->points[0].done;
     if (!first && cli_time_is_up(s)) {
-        leave_out(p, "the budget was spent before its turn came");
+        leave_out(p, "the budget was spent before it was tried");
         return CW_OK;
     }
     cli_say_v("%s: %s", cli_family_names[p->family], p->name);
@@ -83,7 +83,7 @@ static cw_status run_point(cli_study *s, cli_point *p, cw_error *err)
         *err = why;
         return st;
     }
-    leave_out(p, st == CW_ERR_CANCELLED ? "it was not done when the budget was spent"
+    leave_out(p, st == CW_ERR_CANCELLED ? "it was still running when the budget was spent"
                                         : why.message);
     return CW_OK;
 }

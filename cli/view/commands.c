@@ -79,10 +79,10 @@ static cw_status fail_unknown(const view *v, const char *name, cw_error *err)
         if (view_find_option(v, v->command->options[n].name))
             names[count++] = v->command->options[n].name;
     const char *nearest = cli_nearest(name, names);
-    return nearest ? cw_fail(err, CW_ERR_ARGUMENT, "'%s' is no command; did you mean '%s'?",
+    return nearest ? cw_fail(err, CW_ERR_ARGUMENT, "'%s' is not a command; did you mean '%s'?",
                              name, nearest)
                    : cw_fail(err, CW_ERR_ARGUMENT,
-                             "'%s' is no command; 'cubewright help view' lists them", name);
+                             "'%s' is not a command; 'cubewright help view' lists them", name);
 }
 
 cw_status view_run(view *v, int count, char **words, cw_error *err)

@@ -96,7 +96,7 @@ cw_status view_choose_mode(view *v, cw_error *err)
     if (v->path && v->mode != CW_MODE_MESH && !v->has_volume)
         return cw_fail(err, CW_ERR_ARGUMENT, "the mode %s draws volumes on even grids; %s",
                        cw_mode_name(v->mode),
-                       v->source.is_mesh ? "this is a mesh" : "of this one there are surfaces");
+                       v->source.is_mesh ? "this is a mesh" : "this grid is shown as surfaces");
     if (v->mode != CW_MODE_MESH && v->state.iso_is_ours) {
         args->iso = (cli_number){0};
         v->state.iso_is_ours = false;

@@ -191,7 +191,7 @@ cw_status view_set(view *v, const char *name, const char *value, cw_error *err)
     const view_state before = v->state;
     const cw_mode mode = v->mode;
     if (!o)
-        return cw_fail(err, CW_ERR_ARGUMENT, "'%s' is no setting", name);
+        return cw_fail(err, CW_ERR_ARGUMENT, "'%s' is not a setting", name);
     if (v->is_configuring && v->state.args.common.given[o - v->command->options])
         return CW_OK; /* the command line outdoes it */
     cw_status st = parse_setting(v, o, value, err);

@@ -38,7 +38,7 @@ static cw_status open_near(view *v, int by, cw_error *err)
     int at = 0;
     while (at < count && strcmp(list[at]->d_name, own) != 0)
         at++;
-    st = cw_fail(err, CW_ERR_ARGUMENT, "%s: nothing else to open beside it", v->path);
+    st = cw_fail(err, CW_ERR_ARGUMENT, "%s: its folder has no other file to open", v->path);
     for (int n = 1; n < count && at < count && st != CW_OK; n++) {
         struct stat info;
         cw_volume shape = {0};

@@ -153,7 +153,8 @@ static cw_status run_run(view *v, int count, char **args, cw_error *err)
 {
     (void)count; /* a file may run others, but not itself for ever */
     if (v->depth >= 8)
-        return cw_fail(err, CW_ERR_LIMIT, "run %s: files that run files, 8 deep", args[0]);
+        return cw_fail(err, CW_ERR_LIMIT, "run %s: files run each other more than 8 deep",
+                       args[0]);
     v->depth++;
     cw_status st = view_exec_file(v, args[0], err);
     v->depth--;

@@ -75,7 +75,8 @@ static cw_status run_toggle(view *v, int count, char **args, cw_error *err)
     bool on;
     bool *shown = view_shown_flag(v, args[0]);
     if (!view_find_flag(v, args[0], &on))
-        return cw_fail(err, CW_ERR_ARGUMENT, "toggle '%s': nothing that is on or off", args[0]);
+        return cw_fail(err, CW_ERR_ARGUMENT, "toggle '%s': not a setting that is on or off",
+                       args[0]);
     if (count == 2 && strcmp(args[1], "on") != 0 && strcmp(args[1], "off") != 0)
         return cw_fail(err, CW_ERR_ARGUMENT, "toggle '%s': on or off was expected", args[1]);
     const bool wanted = count == 2 ? strcmp(args[1], "on") == 0 : !on;

@@ -66,7 +66,7 @@ static void judge_size(bench *b)
     const cw_quality *q = b->f->quality;
     if (q->triangles == 0) {
         cw_verdict *v = add(b, "triangles", CW_GRADE_FAIL, 0);
-        say(v, "there are none");
+        say(v, "the mesh has none");
         v->advice = "the file holds no surface: look at what wrote it";
         return;
     }

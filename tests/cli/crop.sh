@@ -6,7 +6,7 @@ cmp half.stl same.stl && echo same
 # what it left is the whole surface's, to a few roundings, and what it saved is told
 cubewright extract s.nrrd --iso 0 -o half.ply --crop 0:20,5:40,0:40 --prove-crop --json - 2>note |
     sed -n -e '/"crop": {/,/}/p'
-grep -o '^s.nrrd: .* triangles, as the whole surface has them there: .* % of its .*, of .* % of the voxels' note
+grep -o '^s.nrrd: the same .* triangles as in the whole surface: .* % of its .*, from .* % of the voxels' note
 cubewright extract s.nrrd --iso 0 -o no.stl --prove-crop || echo "exit $?"
 cubewright extract s.nrrd --iso 0 -o no.stl --crop 0:20,0:40,0:40 --prove-crop --preview || echo "exit $?"
 cubewright extract s.nrrd --iso 0 -o no.stl --crop 0:20,0:40,0:40 --prove-crop --snap 0.3 || echo "exit $?"

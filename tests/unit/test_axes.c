@@ -137,7 +137,7 @@ static void gltf_has_its_own(void **state)
     }
     const cw_write_desc none = {.axes = {.unit = (cw_unit)CW_UNIT_COUNT}};
     assert_fails(cw_mesh_write(test_path("a.stl"), &mesh, &none, &err), CW_ERR_ARGUMENT,
-                 "6 is no unit", err);
+                 "6 is not a unit", err);
     cw_mesh_free(&mesh);
 }
 
@@ -192,7 +192,7 @@ static void only_our_words_count(void **state)
     }
     assert_fails(
         read_text("a.obj", "# cubewright 1, LPS, m\nv 3e36 0 0\n" FACES, &mesh, NULL, &err),
-        CW_ERR_FORMAT, "its unit is 'm'; single precision cannot say", err);
+        CW_ERR_FORMAT, "its unit is 'm'; single precision cannot hold", err);
     assert_null(mesh.positions);
 }
 

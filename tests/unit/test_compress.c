@@ -438,7 +438,7 @@ static void what_makes_no_sense_is_refused(void **state)
         {{.compression = CW_COMPRESS_MESHOPT, .bits = 25}, "there may be 1 to 24 with meshopt"},
         {{.compression = CW_COMPRESS_DRACO, .bits = 31}, "there may be 1 to 30 with Draco"},
         {{.compression = CW_COMPRESS_DRACO, .bits = -1}, "-1 bits a coordinate"},
-        {{.compression = CW_COMPRESS_MESHOPT + 1}, "4 is no compression"},
+        {{.compression = CW_COMPRESS_MESHOPT + 1}, "4 is not a compression"},
     };
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
         assert_fails(cw_mesh_write_check(test_path("a.glb"), &rows[i].desc, &err),

@@ -1126,8 +1126,8 @@ static void damaged_neighbours_are_left_out(void **state)
     assert_ok(cw_volume_read(test_path("89.dcm"), &desc, &v, NULL, &err), err);
     assert_int_equal(v.dim[2], 3);
     cw_volume_free(&v);
-    assert_non_null(
-        strstr(notes, "left out, as not readable: 1 files beside it, the first 10.dcm: "));
+    assert_non_null(strstr(
+        notes, "left out, because they cannot be read: 1 files beside it, the first 10.dcm: "));
     assert_refused(NULL, CW_ERR_FORMAT, "10.dcm: its elements are damaged or cut off");
     assert_fails(read_back("10.dcm", &v, &err), CW_ERR_FORMAT, "damaged or cut off", err);
 }

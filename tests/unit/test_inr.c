@@ -161,7 +161,7 @@ static void damaged_headers_are_told_key_by_key(void **state)
         {U8 "VX=x\n", "'VX' holds 'x'"},
         {U8 "VX=0\n", "gives axis 0 no length"},
         {U8 "TZ=nan\n", "not finite"},
-        {U8 "RY=0.5\n", "'RX', 'RY', 'RZ' are 0 0.5 0; turned images are not read"},
+        {U8 "RY=0.5\n", "'RX', 'RY', 'RZ' are 0 0.5 0; rotated images are not read"},
         {"XDIM=2147483647\nYDIM=2147483647\nZDIM=1\nTYPE=unsigned fixed\nPIXSIZE=8 bits\n",
          "asks for 4611686014132420609 bytes of voxels; the file holds 12"},
     };

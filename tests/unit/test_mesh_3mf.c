@@ -303,7 +303,7 @@ static void broken_models_are_told_by_line(void **state)
 {
     (void)state;
     static const refused rows[] = {
-        {"<model", "line 1 is no XML"},
+        {"<model", "line 1 is not XML"},
         {"<models/>", "the first element is not model"},
         {"<model unit='parsec'/>", "'3D/3dmodel.model', line 1: 'unit' is 'parsec'"},
         {"<model>\n<resources>\n<object/>", "line 3: 'id' is ''"},

@@ -1015,7 +1015,7 @@ static void a_scene_crosses_between_processes(void **state)
         char *piece = malloc(cut + 1); /* its own size, for sanitizers */
         memcpy(piece, bytes, cut);
         assert_fails(cwi_gltf_take_scene(piece, cut, &back, &err), CW_ERR_BACKEND,
-                     "makes no sense", err);
+                     "is not valid", err);
         cwi_gltf_scene_free(&back);
         free(piece);
     }

@@ -240,7 +240,7 @@ static void broken_files_are_told_apart(void **state)
         {"ply\n", "the second line is not 'format ...'"},
         {"ply \nformat binary 1.0\n", "'format' is 'binary'"},
         {HEAD, "the header has no 'end_header'"},
-        {HEAD "property float x\n", "stands in front of any element"},
+        {HEAD "property float x\n", "stands before any element"},
         {HEAD "element vertex 3\nproperty half x\n", "a property of type 'half'"},
         {HEAD "element vertex -3\n", "'element' is"},
         {HEAD "element vertex 99999999999999999999\n", "'element' is"},

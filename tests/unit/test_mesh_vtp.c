@@ -233,7 +233,7 @@ static void damaged_files_are_told_where(void **state)
 {
     (void)state;
     static const refused rows[] = {
-        {"<VTKFile type='PolyData'", "line 1 is no XML"},
+        {"<VTKFile type='PolyData'", "line 1 is not XML"},
         {"<VTKFile type='PolyData' byte_order='LittleEndian'/>", "PolyData holds no Piece"},
         {HEAD "<Piece NumberOfPoints='-1'>", "'NumberOfPoints' is '-1'"},
         {HEAD "<Piece NumberOfPolys='99999999999999999999'>", "'NumberOfPolys' is '9999"},

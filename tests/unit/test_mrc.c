@@ -319,7 +319,7 @@ static void damaged_headers_are_told_field_by_field(void **state)
         {28, 0, "'CELLA' and 'MX' give axis 0 20 Angstrom in 0 intervals"},
         {44, 0, "'CELLA' and 'MY' give axis 1 0 Angstrom in 10 intervals"},
         {44, 0x7fc00000, "'CELLA' and 'MY' give axis 1 nan"},
-        {60, 0x43340000, "'CELLB' is 90 90 180; these are no angles"},
+        {60, 0x43340000, "'CELLB' is 90 90 180; these are not the angles"},
         {196, 0x7fc00000, "'CELLA, ORIGIN' has numbers that are not finite"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {

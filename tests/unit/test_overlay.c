@@ -361,7 +361,7 @@ static void what_cannot_be_drawn_is_refused(void **state)
     scene.tint = CW_TINT_QUALITY;
     assert_ok(cw_overlay_draw(&(cw_overlay){.color_bar = true}, &scene, &image, &err), err);
     assert_fails(cw_overlay_draw(&(cw_overlay){0}, &scene, &(cw_image){0}, &err),
-                 CW_ERR_ARGUMENT, "nothing", err);
+                 CW_ERR_ARGUMENT, "empty", err);
     cw_mesh_free(&cube);
     cw_image_free(&image);
     cw_volume_free(&v);
@@ -397,7 +397,7 @@ static void images_are_tiled(void **state)
     assert_int_equal(sheet.width, 30); /* two columns would be higher than wide */
     cw_image_free(&sheet);
     assert_fails(cw_image_tile(images, 0, 2, 3, back, &sheet, &err), CW_ERR_ARGUMENT,
-                 "no images", err);
+                 "at least one image", err);
     assert_fails(cw_image_tile(images, 5, 5, 9999, back, &sheet, &err), CW_ERR_LIMIT, "16384",
                  err);
     for (int n = 0; n < 5; n++)

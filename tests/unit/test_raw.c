@@ -82,7 +82,7 @@ static void wrong_keys_are_named(void **state)
         {"dims=1x1x1,type=u8,spacing=1xnanx1", "'spacing' is '1xnanx1'"},
         {"dims=1x1x1,type=u8,components=17", "'components' is '17'"},
         {"dims=1x1x1,type=u8,steps=0", "'steps' is '0'"},
-        {"dims=1x1x1,type=u8,size=3", "'size' is no key of a layout"},
+        {"dims=1x1x1,type=u8,size=3", "'size' is not a key of a layout"},
         {"dims=1x1x1,dims=1x1x1", "'dims' is given twice"},
         {"dims", "'dims' needs a value"},
     };

@@ -201,7 +201,7 @@ static void test_what_a_library_dies_of_is_told(void **state)
         cwi_sandbox box = open_box(false, 0);
         cw_error err = {0};
         const cw_status st = ask(&box, deaths[n], 0, -1, &err);
-        assert_fails(st, CW_ERR_BACKEND, "libtest died of it (signal", err);
+        assert_fails(st, CW_ERR_BACKEND, "libtest crashed on it (signal", err);
         assert_fails(ask(&box, ADD, 1, -1, &err), CW_ERR_BACKEND, "no longer running", err);
         cwi_sandbox_close(&box);
     }
@@ -315,7 +315,7 @@ static void test_trusted_work_may_die(void **state)
     assert_ok(cwi_sandbox_open(&box, &desc, &err), err);
     assert_ok(ask(&box, OPEN, 0, -1, &err), err);
     assert_true(found(&box)->number >= 0);
-    assert_fails(ask(&box, ABORT, 0, -1, &err), CW_ERR_BACKEND, "libtest died of it", err);
+    assert_fails(ask(&box, ABORT, 0, -1, &err), CW_ERR_BACKEND, "libtest crashed on it", err);
     assert_false(box.open);
     cwi_sandbox_close(&box);
 }

@@ -239,7 +239,7 @@ static void white_is_never_0(void **state)
                                        .pixels = pixels});
         save(&t, "a.tif");
         read_good("a.tif", &v);
-        assert_non_null(strstr(notes, "turned round, so that more is brighter"));
+        assert_non_null(strstr(notes, "inverted, so that larger is brighter"));
         for (size_t i = 0; i < (size_t)WIDE * HIGH; i++) {
             const size_t at[3] = {i % WIDE, i / WIDE, 0};
             assert_true(value_at(&v, at, 0, 0) == ends[kind] - number_of(kind, 2 * i));
@@ -661,7 +661,7 @@ static void what_is_not_read_is_refused_by_name(void **state)
         {{.photometric = 6, .samples = 3}, "takes"}, /* libtiff expects fewer samples */
         {{.photometric = 8, .samples = 3}, "'PhotometricInterpretation' is 8 (CIELab)"},
         {{.photometric = 32803}, "'PhotometricInterpretation' is 32803 (a colour filter)"},
-        {{.photometric = 100, .bits = 32, .format = 3}, "how floats are to be turned round"},
+        {{.photometric = 100, .bits = 32, .format = 3}, "how to invert floats"},
         {{.orientation = 6}, "'Orientation' is 6; 1 to 4 are read"},
         {{.compression = 6}, "'Compression' is 6 (JPEG as of TIFF 6)"},
         {{.compression = 8, .low_bit_first = true}, "'FillOrder' is 2 and 'Compression' 8"},
@@ -976,9 +976,9 @@ static void ome_that_contradicts_the_file_is_not_believed(void **state)
     const struct {
         const char *text, *words;
     } cases[] = {
-        {OME_HEAD OME_SIZES ">", "of the OME-XML is no XML: no element found"},
-        {OME_HEAD OME_SIZES "><b></a>", "is no XML: mismatched tag"},
-        {"<OME>", "is no XML"},
+        {OME_HEAD OME_SIZES ">", "of the OME-XML is not XML: no element found"},
+        {OME_HEAD OME_SIZES "><b></a>", "is not XML: mismatched tag"},
+        {"<OME>", "is not XML"},
         {"<OME></OME>", "the OME-XML describes no image"},
         {"<!DOCTYPE a [<!ENTITY b \"c\">]><OME></OME>", "document type (<!DOCTYPE>)"},
         {deep, "more than 1048576 elements, or 64 inside each other"},
@@ -1108,7 +1108,8 @@ static void numbers_in_names_count_as_numbers(void **state)
         assert_int_equal(v.dim[2], 3);
         for (size_t z = 0; z < 3; z++)
             assert_true(cw_volume_value(&v, 0, 0, z) == 10 * (double)(z + 1));
-        assert_string_equal(notes, i == 1 ? "" : "left out, as no TIFF: 1 of its files\n");
+        assert_string_equal(
+            notes, i == 1 ? "" : "left out, because they are not TIFF: 1 of its files\n");
         cw_volume_free(&v);
     }
 }

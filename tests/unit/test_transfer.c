@@ -67,7 +67,8 @@ static void unusable_points_are_named(void **state)
                  "point 2 of 'opacities' stands at 4, the one before at 5", err);
     t = good;
     t.colors[0].value = NAN;
-    assert_fails(cw_transfer_check(&t, &err), CW_ERR_ARGUMENT, "stands at no number", err);
+    assert_fails(cw_transfer_check(&t, &err), CW_ERR_ARGUMENT,
+                 "has a position that is not a number", err);
     t = good;
     t.colors[1].color[2] = 1.5f;
     assert_fails(cw_transfer_check(&t, &err), CW_ERR_ARGUMENT, "1.5, not 0 to 1", err);

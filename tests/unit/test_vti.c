@@ -205,7 +205,7 @@ static void damaged_files_are_told_where(void **state)
     const struct {
         const char *text, *words;
     } cases[] = {
-        {"<VTKFile", "line 1 is no XML"},
+        {"<VTKFile", "line 1 is not XML"},
         {"<html><VTKFile></html>", "the first element is not VTKFile"},
         {"<VTKFile type='Table'>", "the VTK file is 'Table'; only ImageData"},
         {"<VTKFile type='PUnstructuredGrid'>", "the VTK file is 'PUnstructuredGrid'"},
@@ -217,7 +217,7 @@ static void damaged_files_are_told_where(void **state)
          "'compressor' is 'vtkLZMADataCompressor'; those that are read are vtkZLib"},
         {"<!DOCTYPE x [<!ENTITY a 'b'>]><VTKFile type='ImageData'/>", "a document type"},
         {"<!DOCTYPE x SYSTEM 'file:///etc/passwd'><VTKFile/>", "a document type"},
-        {FILE_TAG "&a;</VTKFile>", "no XML: undefined entity"},
+        {FILE_TAG "&a;</VTKFile>", "not XML: undefined entity"},
         {FILE_TAG "</VTKFile>", "no array that is read"},
         {FILE_TAG "<ImageData TimeValues='0 1'>", "'TimeValues' is '0 1'"},
         {FILE_TAG "<ImageData Origin='1 2'>", "'Origin' lists 2 numbers"},
@@ -281,7 +281,7 @@ static void damaged_files_are_told_where(void **state)
         {ARRAY("type='UInt8'>1</DataArray>") END, "'Extent' asks for 2 bytes"},
         {ARRAY("type='UInt8'>1  </DataArray>") END, "the voxels end after 1 numbers"},
         {ARRAY("type='UInt8'>1 300</DataArray>") END, "number 2 of the voxels is '300'"},
-        {ARRAY("type='UInt8'>1 2</DataArray>") TAIL, "line 1 is no XML"},
+        {ARRAY("type='UInt8'>1 2</DataArray>") TAIL, "line 1 is not XML"},
         {"<VTKFile type='ImageData'><ImageData><Piece Extent='0 1 0 0 0 0'><PointData>"
          "<DataArray type='UInt8' format='binary'>AgAAAAEC</DataArray>" END,
          "'byte_order' is missing"},
@@ -300,12 +300,12 @@ static void tables_of_blocks_are_checked_before_memory_is_taken(void **state)
         uint32_t words[6];
         const char *told;
     } cases[] = {
-        {{0, 0, 0, 0}, "tells of 0 blocks of 0 bytes"},
-        {{1, 0, 0, 2}, "tells of 1 blocks of 0 bytes"},
-        {{1, 3, 0, 2}, "tells of 1 blocks of 3 bytes, the last of 3; 2 bytes are needed"},
-        {{2, 2, 0, 2, 2}, "tells of 2 blocks of 2 bytes"},
-        {{1, 1, 2, 2}, "tells of 1 blocks of 1 bytes, the last of 2"},
-        {{0xffffffff, 0xffffffff, 0xffffffff, 9}, "tells of 4294967295 blocks"},
+        {{0, 0, 0, 0}, "lists 0 blocks of 0 bytes"},
+        {{1, 0, 0, 2}, "lists 1 blocks of 0 bytes"},
+        {{1, 3, 0, 2}, "lists 1 blocks of 3 bytes, the last of 3; 2 bytes are needed"},
+        {{2, 2, 0, 2, 2}, "lists 2 blocks of 2 bytes"},
+        {{1, 1, 2, 2}, "lists 1 blocks of 1 bytes, the last of 2"},
+        {{0xffffffff, 0xffffffff, 0xffffffff, 9}, "lists 4294967295 blocks"},
         {{2, 1, 0, 9, 0xffffffff}, "compressed block 1 of 2 has 4294967295 bytes; the file"},
         {{2, 1, 0, 0, 9}, "block 0 of 2 has 1 bytes, compressed 0"},
         {{1, 2, 2, 4}, "compressed block 0 of 1 is damaged"},

@@ -233,8 +233,8 @@ static void pieces_become_one_grid(void **state)
     assert_cell(&v, 1, CW_TETRAHEDRON, 4, (const uint32_t[]){4, 0, 2, 1});
     assert_point(&v, 4, 0, 0, -1);
     assert_value(&v, 4, 5);
-    assert_string_equal(notes,
-                        "merged, as others have the same place and value: 3 of 8 points\n");
+    assert_string_equal(
+        notes, "merged, because others have the same position and value: 3 of 8 points\n");
     cw_volume_free(&v);
     check_starved("a.vtu", NULL);
 
@@ -275,7 +275,7 @@ static void values_of_cells_are_averaged(void **state)
                         "left out, as they have fewer than three dimensions: 1 of 3 cells\n"
                         "'c' has a value for each cell: samples are the mean of the cells "
                         "around them\n"
-                        "merged, as others have the same place: 3 of 9 points\n");
+                        "merged, because others have the same position: 3 of 9 points\n");
     cw_volume_free(&v);
     check_starved("a.vtu", NULL);
 }
@@ -610,7 +610,7 @@ static void cells_in_rows_are_hexahedra(void **state)
     assert_int_equal(v.dim[0], 12);
     assert_int_equal(v.cells->count, 2);
     assert_cell(&v, 1, CW_HEXAHEDRON, 8, (const uint32_t[]){1, 8, 9, 3, 5, 10, 11, 7});
-    assert_non_null(strstr(notes, "same place and value: 4 of 16 points"));
+    assert_non_null(strstr(notes, "same position and value: 4 of 16 points"));
     cw_volume_free(&v);
 }
 
