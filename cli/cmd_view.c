@@ -50,7 +50,7 @@ static bool show_progress(void *user, const char *step, double done)
     const cwi_ui_rect rect = {0.5 * ((double)in->width - 320 * scale), 0.5 * (double)in->height,
                               320 * scale, 0};
     v->quits |= in->close;
-    v->ui->panel_begin(v->window, "One moment", &rect, CWI_UI_FIXED, NULL);
+    v->ui->panel_begin(v->window, "Working", &rect, CWI_UI_FIXED, NULL);
     v->ui->progress(v->window, done, step);
     v->ui->panel_end(v->window);
     v->ui->end(v->window, NULL);
@@ -210,15 +210,15 @@ static void print_more(void)
 {
     puts("\nKeys");
     view_print_keys();
-    puts("\nCommands, for --exec, --run and what keys do; every option above without its "
-         "dashes\n"
-         "is one, too: 'iso 300', 'lit off', 'clip-box default'. ';' or a line's end parts "
-         "them.");
+    puts("\nCommands for --exec and --run\n"
+         "Every option above is a command, too, without its dashes: 'iso 300', 'lit off',\n"
+         "'clip-box default'. A ';' or the end of a line separates commands.");
     const view_verb *verb;
     for (size_t n = 0; (verb = view_verb_at(n)); n++) {
         char head[64];
         snprintf(head, sizeof head, "%s %s", verb->name, verb->takes);
-        printf("  %-28s%s\n", head, verb->about);
+        printf("  %-28s", head);
+        cli_print_wrapped(verb->about, 30);
     }
 }
 

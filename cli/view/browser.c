@@ -128,7 +128,7 @@ void view_browse(view *v)
             view_ask_open(v, b->folder);
             v->shown.files = false;
         }
-        v->ui->tip(v->window, "slices, or files that are steps of a series");
+        v->ui->tip(v->window, "Open slices, or the steps of a time series");
         v->ui->rule(v->window);
         for (size_t n = 0; n < b->count; n++)
             if (v->ui->item(v->window, b->names[n], NULL, false, true))

@@ -198,7 +198,7 @@ void view_curve(view *v)
     cwi_ui_area curve, colors;
     char text[128];
     v->ui->area(v->window, "Curve", 0, 130 * scale, &curve);
-    v->ui->tip(v->window, "drag points; double click: a new one; right click: away with it");
+    v->ui->tip(v->window, "Drag points; double-click adds one; right-click removes it");
     v->ui->box(v->window, CWI_UI_PANEL, &curve.rect, back, true);
     show_histogram(v, &curve.rect);
     show_iso(v, &curve.rect);
@@ -206,7 +206,8 @@ void view_curve(view *v)
         show_opacities(v, &curve.rect);
         use_curve(v, &curve);
         v->ui->area(v->window, "Colours", 0, 16 * scale, &colors);
-        v->ui->tip(v->window, "click to choose a colour, drag it; double click: a new one");
+        v->ui->tip(v->window,
+                   "Click to choose a colour; drag to move it; double-click adds one");
         show_colors(v, &colors.rect);
         use_colors(v, &colors);
         choose_color(v);

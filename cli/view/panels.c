@@ -184,7 +184,7 @@ static void show_mode(view *v)
 
 static void show_preset(view *v)
 {
-    const char *names[MOST_NAMES] = {"as suits the mode"};
+    const char *names[MOST_NAMES] = {"by mode"};
     const char *now = v->state.args.scene.transfer;
     size_t count = 1, chosen = 0;
     for (const char *name;
@@ -210,10 +210,10 @@ static void show_shift(view *v)
     double shift = s->shift.value, opacity = log10(s->opacity.given ? s->opacity.value : 1);
     if (v->ui->slider(v->window, "Shift", &shift, -0.5 * range, 0.5 * range, "%.4g"))
         view_ask(v, "shift %.9g", shift);
-    v->ui->tip(v->window, "moves all colours and opacities to other values");
+    v->ui->tip(v->window, "Number to add to all values of the transfer function");
     if (v->ui->slider(v->window, "Opacity", &opacity, -2, 2, "10^%.2f"))
         view_ask(v, "opacity %.6g", pow(10, opacity));
-    v->ui->tip(v->window, "makes all more or less opaque");
+    v->ui->tip(v->window, "Factor for all opacities");
 }
 
 static void show_scene(view *v)
@@ -273,7 +273,7 @@ static void show_cut(view *v)
     if (v->ui->check(v->window, "Handles", &on))
         view_ask(v, "toggle handles %s", on ? "on" : "off");
     v->ui->same_line(v->window);
-    if (v->ui->button(v->window, "Cut nothing"))
+    if (v->ui->button(v->window, "Remove all cuts"))
         view_ask(v, "clip-box off; cut-away off; clip off");
     show_faces(v);
     if (v->state.args.scene.clip_box.given || v->state.args.scene.clips)
@@ -332,7 +332,8 @@ static void show_compare(view *v)
     snprintf(text, sizeof text, "%s", now ? now : "");
     if (v->ui->input(v->window, "Left | right", text, sizeof text))
         ask_setting(v, "compare", text);
-    v->ui->tip(v->window, "settings such as  texture,step-length=2 | reference;  Enter");
+    v->ui->tip(v->window,
+               "Two sets of options, such as texture,step-length=2 | reference; press Enter");
     if (!now && v->ui->button(v->window, "With the reference"))
         view_ask(v, "compare '%s|reference'", cw_mode_name(v->mode));
     if (!now)
@@ -344,7 +345,9 @@ static void show_compare(view *v)
     snprintf(said, sizeof said,
              "rmse %.3g, max %.3g of 255\ndelta-E %.3g, 99 %% below %.3g\nSSIM %.5f", m->rmse,
              m->max, m->delta_e_mean, m->delta_e_p99, m->ssim);
-    v->ui->text(v->window, v->is_measured ? said : "measured when both are done ...");
+    v->ui->text(v->window, v->is_measured
+                               ? said
+                               : "The difference is measured when both are finished ...");
 }
 
 static void show_side(view *v)
@@ -390,12 +393,11 @@ static void show_keys(view *v)
     const cwi_ui_rect rect = {0.5 * ((double)v->width - width), 40 * scale, width,
                               fmax(100, (double)v->height - 80 * scale)};
     if (v->ui->panel_begin(v->window, "Keys", &rect, 0, &v->shown.help)) {
-        v->ui->text(
-            v->window,
-            "Left drag: orbit.  Middle or Shift+left: pan.  Right drag, wheel: nearer.\n"
-            "Ctrl+left: shift and opacity.  Double click: cross-hair.\n"
-            "On slices: left moves the cross-hair, right sets black and white, the "
-            "wheel goes through,\nCtrl+wheel zooms.");
+        v->ui->text(v->window,
+                    "Left drag: orbit.  Middle or Shift+left: pan.  Right drag, wheel: zoom.\n"
+                    "Ctrl+left: shift and opacity.  Double-click: set the cross-hair.\n"
+                    "On slices: left moves the cross-hair, right sets black and white,\n"
+                    "the wheel changes the slice, Ctrl+wheel zooms.");
         v->ui->rule(v->window);
         for (size_t n = 0; n < view_key_count; n++)
             show_key(v, n);
@@ -452,8 +454,7 @@ static void show_message(view *v)
         v->message[0] = '\0';
     if (!v->message[0])
         return;
-    if (v->ui->panel_begin(v->window, v->is_error ? "That did not work" : "Note", &rect, 0,
-                           &open))
+    if (v->ui->panel_begin(v->window, v->is_error ? "Error" : "Note", &rect, 0, &open))
         v->ui->text(v->window, v->message);
     v->ui->panel_end(v->window);
     if (!open)

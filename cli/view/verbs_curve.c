@@ -150,12 +150,12 @@ static cw_status run_remove_color(view *v, int count, char **args, cw_error *err
 }
 
 static const view_verb rows[] = {
-    EDIT("point", "N VALUE OPACITY", "move a point of the opacities", 3, 3, run_point),
-    EDIT("add-point", "VALUE OPACITY", "put one in", 2, 2, run_add_point),
-    EDIT("remove-point", "N", "take one out", 1, 1, run_remove_point),
-    EDIT("color-point", "N COLOR", "change a colour", 2, 2, run_color_point),
-    EDIT("move-color", "N VALUE", "move one", 2, 2, run_move_color),
-    EDIT("add-color", "VALUE COLOR", "put one in", 2, 2, run_add_color),
-    EDIT("remove-color", "N", "take one out", 1, 1, run_remove_color),
+    EDIT("point", "N VALUE OPACITY", "Move a point of the opacity curve", 3, 3, run_point),
+    EDIT("add-point", "VALUE OPACITY", "Add a point to the opacity curve", 2, 2, run_add_point),
+    EDIT("remove-point", "N", "Remove a point of the opacity curve", 1, 1, run_remove_point),
+    EDIT("color-point", "N COLOR", "Change the colour of a point", 2, 2, run_color_point),
+    EDIT("move-color", "N VALUE", "Move a colour point", 2, 2, run_move_color),
+    EDIT("add-color", "VALUE COLOR", "Add a colour point", 2, 2, run_add_color),
+    EDIT("remove-color", "N", "Remove a colour point", 1, 1, run_remove_color),
 };
 const view_verbs view_curve_verbs = {rows, sizeof rows / sizeof *rows};

@@ -89,10 +89,10 @@ static cw_status run_step(view *v, int count, char **args, cw_error *err)
 }
 
 static const view_verb rows[] = {
-    VERB("open", "PATH", "open a file or a folder", 1, 1, run_open),
-    VERB("next", "", "the next file in the folder", 0, 0, run_next),
-    VERB("previous", "", "the one before", 0, 0, run_previous),
-    VERB("step", "N|next|previous", "a step of a time series", 1, 1, run_step),
-    VERB("quit", "", "close the window", 0, 0, run_quit),
+    VERB("open", "PATH", "Open a file or a folder", 1, 1, run_open),
+    VERB("next", "", "Open the next file of the folder", 0, 0, run_next),
+    VERB("previous", "", "Open the previous file of the folder", 0, 0, run_previous),
+    VERB("step", "N|next|previous", "Go to a step of a time series", 1, 1, run_step),
+    VERB("quit", "", "Close the window", 0, 0, run_quit),
 };
 const view_verbs view_files_verbs = {rows, sizeof rows / sizeof *rows};

@@ -174,16 +174,16 @@ static cw_status run_copy_command(view *v, int count, char **args, cw_error *err
 }
 
 static const view_verb rows[] = {
-    VERB("undo", "", "take back the last change", 0, 0, run_undo),
-    VERB("redo", "", "and make it after all", 0, 0, run_redo),
-    VERB("screenshot", "[FILE]", "write the picture as a .png", 0, 1, run_screenshot),
-    VERB("capture", "FILE", "write the whole window as a .png", 1, 1, run_capture),
-    VERB("turntable", "N FILE", "write N pictures all round; FILE holds {turn}", 2, 2,
+    VERB("undo", "", "Undo the last change", 0, 0, run_undo),
+    VERB("redo", "", "Redo the last undone change", 0, 0, run_redo),
+    VERB("screenshot", "[FILE]", "Save the picture as a .png file", 0, 1, run_screenshot),
+    VERB("capture", "FILE", "Save the whole window as a .png file", 1, 1, run_capture),
+    VERB("turntable", "N FILE", "Save N pictures around the scene; FILE holds {turn}", 2, 2,
          run_turntable),
-    VERB("save-state", "[FILE]", "write the session, as commands", 0, 1, run_save_state),
-    VERB("save-tf", "FILE", "write the transfer function", 1, 1, run_save_tf),
-    VERB("save-camera", "FILE", "write the camera", 1, 1, run_save_camera),
-    VERB("run", "FILE", "do what is written in a file", 1, 1, run_run),
-    VERB("copy-command", "", "copy the session as a command line", 0, 0, run_copy_command),
+    VERB("save-state", "[FILE]", "Save the session as commands", 0, 1, run_save_state),
+    VERB("save-tf", "FILE", "Save the transfer function", 1, 1, run_save_tf),
+    VERB("save-camera", "FILE", "Save the camera", 1, 1, run_save_camera),
+    VERB("run", "FILE", "Run the commands of a file", 1, 1, run_run),
+    VERB("copy-command", "", "Copy the session as a command line", 0, 0, run_copy_command),
 };
 const view_verbs view_save_verbs = {rows, sizeof rows / sizeof *rows};

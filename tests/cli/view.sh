@@ -41,7 +41,7 @@ alike mip.png o.png
 echo "keys and menus"
 view 'key M; print mode; key Shift+M; print mode; click Scene; capture a.png; click "Scene/Next mode"; print mode;
       click Mode; click Mode/average; print mode; key L; print lit; click Scene; click Scene/Light; print lit;
-      key Q; print quad; print layout; click View; click "View/Slices beside it"; print layout;
+      key Q; print quad; print layout; click View; click "View/Slices beside the scene"; print layout;
       key Space; print playing; key H; capture help.png; key Escape; print help; key ?; print help; key Escape;
       key 3; wait; screenshot right.png; key Ctrl+1; screenshot back.png; key 5; screenshot ortho.png; print ortho;
       key Enter; key Left; screenshot left.png; key Tab; print panels; capture bare.png'
