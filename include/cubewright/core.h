@@ -28,14 +28,14 @@ extern "C" {
     X(CW_ERR_ARGUMENT, 2, "usage", "the command or an argument is not usable")                 \
     X(CW_ERR_IO, 3, "unreadable", "an input cannot be opened or read")                         \
     X(CW_ERR_FORMAT, 3, "bad-input", "an input is damaged or of a kind that is not supported") \
-    X(CW_ERR_BACKEND, 3, "library-failed", "a library gave up on an input")                    \
+    X(CW_ERR_BACKEND, 3, "library-failed", "a library failed on an input")                     \
     X(CW_ERR_UNSAFE, 4, "unsafe-input", "an input is readable but unsafe to trust")            \
     X(CW_ERR_UNSUPPORTED, 5, "not-in-this-build", "the feature is not in this build")          \
     X(CW_ERR_OUTPUT, 6, "output-not-written", "an output was not written")                     \
     X(CW_ERR_BATCH, 7, "batch-failed", "some files of a batch failed")                         \
     X(CW_ERR_LIMIT, 8, "over-limit", "a memory, voxel or triangle limit would be exceeded")    \
     X(CW_ERR_NO_MEMORY, 8, "no-memory", "memory ran out")                                      \
-    X(CW_ERR_EMPTY, 9, "empty", "the result is empty: the level crosses nothing")              \
+    X(CW_ERR_EMPTY, 9, "empty", "the result is empty: no surface at this isovalue")            \
     X(CW_ERR_CANCELLED, 130, "interrupted", "interrupted; partial files are removed")
 
 typedef enum cw_status {
