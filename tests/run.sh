@@ -116,7 +116,7 @@ for stage in $stages; do
         configure_and_build minimal
         say "minimal: testing"
         export CUBEWRIGHT_TEST_LONG=1
-        run_tests minimal -R 'unit|fuzz|install'
+        run_tests minimal -R 'unit|fuzz|install|examples'
         unset CUBEWRIGHT_TEST_LONG
         ;;
     fresh)

@@ -1,7 +1,7 @@
 #!/bin/sh
 # Looks for what the documents point to: sh links.sh
 # Every relative link leads to a file of the tree, and every #heading to a heading there. Every key
-# of a paper resolves.
+# of a paper resolves. No picture is large.
 set -u
 root=$(cd "$(dirname "$0")/../.." && pwd)
 cd "$root" || exit 1
@@ -36,6 +36,10 @@ grep -h -o "^- $key" ./*/*.md | sed 's/^- //' >"$folder/papers"
 grep -v -x -F -f "$folder/papers" "$folder/keys" >"$folder/missing" &&
     { sed 's/$/ is in no list of papers/' "$folder/missing"; bad=1; }
 [ -s "$folder/keys" ] || { echo "no keys of papers found"; bad=1; }
+
+# A picture takes 400 kB at most, or nobody waits for the page.
+find . -path ./build -prune -o \( -name '*.png' -o -name '*.jpg' \) -size +400k -print >"$folder/large"
+[ ! -s "$folder/large" ] || { sed 's/$/ is larger than 400 kB/' "$folder/large"; bad=1; }
 
 [ "$count" -gt 0 ] || { echo "no links found"; bad=1; }
 echo "$count links"
