@@ -2,7 +2,7 @@
 #ifndef CLI_COMMANDS_H
 #define CLI_COMMANDS_H
 
-#include "cli/options.h"
+#include "cli/framework/options.h"
 
 extern const cli_command cli_bench_command, cli_check, cli_convert, cli_extract, cli_formats,
     cli_help, cli_hollow, cli_info, cli_make, cli_offset, cli_render, cli_report_command,

@@ -1,10 +1,10 @@
 #include "cli/commands.h"
-#include "cli/console.h"
-#include "cli/input.h"
-#include "core/memory.h"
-#include "core/outfile.h"
-#include "core/status.h"
-#include "core/text.h"
+#include "cli/framework/console.h"
+#include "cli/inputs/volume_input.h"
+#include "core/base/memory.h"
+#include "core/base/atomic_file.h"
+#include "core/base/status.h"
+#include "core/base/text.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -1,19 +1,19 @@
 #include <cubewright/extract.h>
 
-#include "core/affine.h"
-#include "core/layers.h"
-#include "core/memory.h"
-#include "core/mesh.h"
-#include "core/status.h"
-#include "core/volume.h"
-#include "extract/cases.h"
-#include "extract/cells.h"
-#include "extract/crossing.h"
-#include "extract/limits.h"
-#include "extract/normals.h"
-#include "extract/plan.h"
-#include "extract/snap.h"
-#include "extract/sparse.h"
+#include "core/geometry/affine.h"
+#include "core/base/parallel.h"
+#include "core/base/memory.h"
+#include "core/mesh/mesh.h"
+#include "core/base/status.h"
+#include "core/volume/volume.h"
+#include "extract/cases/case_tables.h"
+#include "extract/irregular/cell_surface.h"
+#include "extract/dense/edge_crossing.h"
+#include "extract/common/extract_limits.h"
+#include "extract/common/field_normals.h"
+#include "extract/dense/dense_plan.h"
+#include "extract/snap/snap.h"
+#include "extract/sparse/sparse_extract.h"
 
 #include <math.h>
 #include <string.h>

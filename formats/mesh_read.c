@@ -1,10 +1,10 @@
-#include "core/memory.h"
-#include "core/status.h"
-#include "formats/claim.h"
-#include "formats/parts.h"
-#include "formats/pvd.h"
-#include "formats/readers.h"
-#include "formats/table.h"
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "formats/volume/frame_claim.h"
+#include "formats/mesh/place_parts.h"
+#include "formats/vtk/pvd.h"
+#include "formats/volume/volume_reader.h"
+#include "formats/format_registry.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,9 +1,9 @@
 #include <cubewright/formats.h>
 
-#include "core/status.h"
-#include "core/text.h"
-#include "formats/parts.h"
-#include "formats/table.h"
+#include "core/base/status.h"
+#include "core/base/text.h"
+#include "formats/mesh/place_parts.h"
+#include "formats/format_registry.h"
 
 #include <float.h>
 #include <stdio.h>

@@ -1,13 +1,13 @@
-#include "core/memory.h"
-#include "core/status.h"
-#include "core/volume.h"
-#include "formats/claim.h"
-#include "formats/files.h"
-#include "formats/mesh_readers.h"
-#include "formats/pvd.h"
-#include "formats/readers.h"
-#include "formats/stream.h"
-#include "formats/table.h"
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/volume/volume.h"
+#include "formats/volume/frame_claim.h"
+#include "formats/bytes/file_pattern.h"
+#include "formats/mesh/mesh_reader.h"
+#include "formats/vtk/pvd.h"
+#include "formats/volume/volume_reader.h"
+#include "formats/bytes/inflate_stream.h"
+#include "formats/format_registry.h"
 
 #include <math.h>
 #include <stdarg.h>

@@ -1,8 +1,8 @@
-#include "core/memory.h"
-#include "core/status.h"
-#include "core/volume.h"
-#include "formats/table.h"
-#include "formats/volume_writers.h"
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/volume/volume.h"
+#include "formats/format_registry.h"
+#include "formats/volume/volume_writer.h"
 
 #include <string.h>
 

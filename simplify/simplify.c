@@ -1,13 +1,13 @@
 #include <cubewright/simplify.h>
 
-#include "core/memory.h"
-#include "core/mesh.h"
-#include "core/module.h"
-#include "core/status.h"
-#include "simplify/attributes.h"
-#include "simplify/blocks.h"
-#include "simplify/carry.h"
-#include "simplify/passes.h"
+#include "core/base/memory.h"
+#include "core/mesh/mesh.h"
+#include "core/base/module.h"
+#include "core/base/status.h"
+#include "simplify/attribute_weights.h"
+#include "simplify/blocks/partition.h"
+#include "simplify/attribute_transfer.h"
+#include "simplify/blocks/block_passes.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,10 +1,10 @@
 #include <cubewright/render.h>
 
-#include "core/memory.h"
-#include "core/module.h"
-#include "core/status.h"
-#include "viewer/cpu_draw.h"
-#include "viewer/gl.h"
+#include "core/base/memory.h"
+#include "core/base/module.h"
+#include "core/base/status.h"
+#include "viewer/cpu/cpu_draw.h"
+#include "viewer/gl/gl.h"
 
 struct cw_renderer {
     cw_backend backend;

@@ -1,13 +1,13 @@
 #define _GNU_SOURCE /* getloadavg */
 #include "cli/bench/bench.h"
 
-#include "cli/console.h"
-#include "cli/field.h"
-#include "cli/scratch.h"
-#include "cli/study/sample.h"
-#include "cli/surface.h"
-#include "core/memory.h"
-#include "core/status.h"
+#include "cli/framework/console.h"
+#include "cli/inputs/synthetic_input.h"
+#include "cli/framework/temp_folder.h"
+#include "cli/report/triangle_sample.h"
+#include "cli/inputs/extract_surface.h"
+#include "core/base/memory.h"
+#include "core/base/status.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,8 +2,8 @@
 #ifndef CLI_BENCH_BENCH_H
 #define CLI_BENCH_BENCH_H
 
-#include "cli/bench/peers.h"
-#include "cli/study/study.h"
+#include "cli/bench/bench_peers.h"
+#include "cli/report/study.h"
 
 #include <stdio.h>
 
@@ -30,7 +30,7 @@ enum {
     CLI_BENCH_MOST_ROWS = 16 /* of a case */
 };
 
-/* Who does which work, and how; a table in work.c. */
+/* Who does which work, and how; a table in bench_work.c. */
 typedef struct cli_bench_kind cli_bench_kind;
 
 typedef struct cli_bench_row {
@@ -99,7 +99,7 @@ typedef struct cli_bench {
 cw_status cli_bench_run(cli_bench *bench, cw_error *err);
 void cli_bench_free(cli_bench *bench);
 
-/* The rows of a case, and their runs. work.c */
+/* The rows of a case, and their runs. bench_work.c */
 void cli_bench_plan(const cli_bench *bench, cli_bench_case *c);
 cw_status cli_bench_prepare(cli_bench *bench, const cli_bench_kind *kind, cw_error *err);
 cw_status cli_bench_once(cli_bench *bench, const cli_bench_kind *kind, cli_spent *spent,
@@ -109,7 +109,7 @@ cw_status cli_bench_once(cli_bench *bench, const cli_bench_kind *kind, cli_spent
 cw_status cli_bench_take(cli_bench *bench, const cli_bench_kind *kind, cw_mesh *mesh,
                          size_t *file_bytes, cw_error *err);
 
-/* For people, and for programs. table.c */
+/* For people, and for programs. study_table.c */
 void cli_bench_tell_start(const cli_bench *bench);
 void cli_bench_tell(const cli_bench_case *c);
 void cli_bench_put_csv(FILE *out, const void *bench);

@@ -1,8 +1,8 @@
 /* Commands that change the transfer function. */
 #include "cli/view/verbs.h"
 
-#include "core/status.h"
-#include "viewer/transfer_edit.h"
+#include "core/base/status.h"
+#include "viewer/interact/transfer_edit.h"
 
 #include <math.h>
 #include <string.h>

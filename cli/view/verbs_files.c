@@ -1,7 +1,7 @@
 /* Commands that open files and go through steps. */
 #include "cli/view/verbs.h"
 
-#include "core/status.h"
+#include "core/base/status.h"
 
 #include <dirent.h>
 #include <math.h>

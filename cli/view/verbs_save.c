@@ -1,8 +1,8 @@
 /* Commands that undo and that write files. */
 #include "cli/view/verbs.h"
 
-#include "cli/template.h"
-#include "core/status.h"
+#include "cli/framework/name_template.h"
+#include "core/base/status.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 /* Commands that change what is seen, and from where. */
 #include "cli/view/verbs.h"
 
-#include "core/status.h"
+#include "core/base/status.h"
 
 #include <math.h>
 #include <stdio.h>

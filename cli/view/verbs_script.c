@@ -1,7 +1,7 @@
 /* Commands of scripts: what they are told, and input as if from outside. */
 #include "cli/view/verbs.h"
 
-#include "core/status.h"
+#include "core/base/status.h"
 
 #include <stdio.h>
 #include <stdlib.h>

@@ -3,9 +3,9 @@
 #ifndef CLI_VIEW_VIEW_H
 #define CLI_VIEW_VIEW_H
 
-#include "cli/picture_run.h"
-#include "cli/split.h"
-#include "viewer/ui.h"
+#include "cli/render/render_run.h"
+#include "cli/render/compare_options.h"
+#include "viewer/window/ui.h"
 
 #include <cubewright/extract.h>
 
@@ -130,16 +130,16 @@ typedef struct view {
     char **asked; /* commands to run after this frame */
     size_t asked_count;
     int depth; /* of files of commands that run others */
-    int drag;  /* mouse.c's */
+    int drag;  /* view_mouse.c's */
     int drag_part;
     double drag_from[2];         /* what it is measured from */
-    int curve_drag, curve_point; /* curve.c's: what is dragged there, and from where */
+    int curve_drag, curve_point; /* curve_editor.c's: what is dragged there, and from where */
     bool color_drag;
     size_t color_chosen;
     double curve_at[2], color_at;
 } view;
 
-/* session.c */
+/* view_session.c */
 cw_status view_open(view *v, const char *path, cw_error *err);
 void view_close(view *v);
 cw_status view_go_to_step(view *v, size_t step, cw_error *err);
@@ -155,7 +155,7 @@ cw_status view_need_transfer(view *v, cw_error *err);
 cw_status view_place_camera(view *v, const char *name, cw_error *err);
 cw_status view_choose_mode(view *v, cw_error *err); /* after settings have changed */
 
-/* state.c: undo, settings by name, and what is saved. */
+/* view_state.c: undo, settings by name, and what is saved. */
 void view_remember(view *v, const char *verb);
 bool view_undo(view *v, int by);
 const cli_option *view_find_option(const view *v, const char *name);
@@ -165,7 +165,7 @@ const char *view_keep_text(view *v, const char *text);
 cw_status view_write_state(const view *v, const char *path, cw_error *err);
 char *view_command_line(const view *v); /* free() it */
 
-/* commands.c, and verbs_*.c, which have the verbs */
+/* view_commands.c, and verbs_*.c, which have the verbs */
 typedef struct view_verb {
     const char *name, *takes, *about;
     int least, most; /* arguments */
@@ -176,7 +176,7 @@ const view_verb *view_verb_at(size_t n);                       /* NULL after the
 cw_status view_monkey(view *v, uint64_t *seed, cw_error *err); /* one random input */
 cw_status view_run(view *v, int count, char **words, cw_error *err);
 
-/* script.c: commands in a text, parted by ; or lines, words in quotes, # begins a comment. */
+/* view_script.c: commands in a text, parted by ; or lines, words in quotes, # begins a comment. */
 cw_status view_exec(view *v, const char *text, cw_error *err);
 cw_status view_exec_file(view *v, const char *path, cw_error *err);
 /* To be run after this frame; errors become messages. */
@@ -185,7 +185,7 @@ void view_ask_open(view *v, const char *path); /* whatever is in its name */
 void view_run_asked(view *v);
 void view_say(view *v, bool is_error, const char *text);
 
-/* keys.c: what keys and menus do. */
+/* view_keys.c: what keys and menus do. */
 typedef struct view_key {
     const char *command, *key, *menu; /* key, menu: NULL for none */
     const char *about;                /* NULL: that of the row before */
@@ -200,12 +200,12 @@ bool *view_shown_flag(view *v, const char *name); /* NULL: none of those */
 bool view_key_names(size_t n, char *names, size_t size);
 void view_print_keys(void);
 
-/* draw.c */
+/* view_draw.c */
 cw_status view_draw(view *v, view_level level, bool may_stop, cw_error *err);
 bool view_is_final(const view *v);
 cw_status view_picture(view *v, const char *path, cw_error *err);
 
-/* loop.c: frames of the window. */
+/* view_loop.c: frames of the window. */
 cw_status view_frame(view *v, double wait_s, cw_error *err);
 /* Frames until all that was fed has been taken in. */
 cw_status view_take_in(view *v, cw_error *err);
@@ -213,7 +213,7 @@ cw_status view_settle(view *v, cw_error *err); /* until all is drawn as asked fo
 cw_status view_loop(view *v, cw_error *err);
 void view_lay_out(view *v);
 
-/* mouse.c, panels.c, curve.c, browser.c */
+/* view_mouse.c, view_panels.c, curve_editor.c, file_browser.c */
 void view_browse(view *v);
 void view_close_browser(view *v);
 /* What is in a folder, in natural order, and its number; below 0: it cannot be read. */

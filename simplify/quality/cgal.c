@@ -1,7 +1,7 @@
 /* CGAL's answers: from a module, loaded when one is asked for. */
 #include "simplify/quality/cgal_wrap.h"
 
-#include "core/module.h"
+#include "core/base/module.h"
 
 static cw_status load(const cwi_cgal_functions **functions, cw_error *err)
 {

@@ -1,7 +1,7 @@
 // CGAL's Polygon Mesh Processing is under the GPL, and so is this module once it is built.
 #include "simplify/quality/cgal_wrap.h"
 
-#include "core/guard.hpp"
+#include "core/base/guard.hpp"
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <CGAL/Polygon_mesh_processing/border.h>

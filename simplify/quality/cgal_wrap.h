@@ -2,7 +2,7 @@
 #ifndef QUALITY_CGAL_WRAP_H
 #define QUALITY_CGAL_WRAP_H
 
-#include "simplify/quality/welded.h"
+#include "simplify/quality/welded_mesh.h"
 
 #ifdef __cplusplus
 extern "C" {

@@ -6,12 +6,12 @@
  * closes it without cases of its own. */
 #include <cubewright/distance.h>
 
-#include "core/affine.h"
-#include "core/status.h"
-#include "core/vector.h"
-#include "core/volume.h"
-#include "simplify/quality/patch.h"
-#include "simplify/quality/sampling.h"
+#include "core/geometry/affine.h"
+#include "core/base/status.h"
+#include "core/geometry/vec3.h"
+#include "core/volume/volume.h"
+#include "simplify/quality/trilinear_patch.h"
+#include "simplify/quality/surface_sampling.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -8,15 +8,15 @@
  * is divided into four. */
 #include <cubewright/distance.h>
 
-#include "core/layers.h"
-#include "core/memory.h"
-#include "core/status.h"
-#include "core/vector.h"
-#include "simplify/quality/boxes.h"
-#include "simplify/quality/cover.h"
-#include "simplify/quality/facet.h"
-#include "simplify/quality/sampling.h"
-#include "simplify/quality/within.h"
+#include "core/base/parallel.h"
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/geometry/vec3.h"
+#include "core/geometry/bvh.h"
+#include "core/geometry/triangle_cover.h"
+#include "core/geometry/point_triangle.h"
+#include "simplify/quality/surface_sampling.h"
+#include "simplify/quality/mesh_within.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 /* Shells that face the wrong way, turned round. */
 #include <cubewright/quality.h>
 
-#include "core/sets.h"
-#include "core/status.h"
+#include "core/geometry/union_find.h"
+#include "core/base/status.h"
 
 static void turn_triangle(uint32_t *corner)
 {

@@ -32,7 +32,7 @@ cubewright help --search 'threshold xyzzy' || echo "exit $?"
 cubewright help --search ' ' || echo "exit $?"
 # every option that the table of synonyms leads to is there
 for command in $(cubewright help | sed -n '/^Commands/,/^$/s/^  \([a-z]*\) .*/\1/p'); do cubewright "$command" -h; done >all
-grep -o -e '--[a-z][a-z-]*' "$TESTS/../cli/help/synonyms.c" | sort -u >options
+grep -o -e '--[a-z][a-z-]*' "$TESTS/../cli/help/help_synonyms.c" | sort -u >options
 [ -s options ] && while read -r option; do
     grep -q -e " $option\( \|\$\)" all || echo "no command has $option"
 done <options

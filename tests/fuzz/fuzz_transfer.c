@@ -1,4 +1,4 @@
-#include "viewer/transfer_json.h"
+#include "viewer/scene/transfer_json.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t *bytes, size_t size);
 

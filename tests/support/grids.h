@@ -2,7 +2,7 @@
 #ifndef TESTS_GRIDS_H
 #define TESTS_GRIDS_H
 
-#include "formats/cell_kinds.h"
+#include "formats/volume/vtk_cell_types.h"
 #include "support/reading.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 #include "support/integral.h"
 
-#include "viewer/frame.h"
+#include "viewer/scene/frame_setup.h"
 
-#include "core/affine.h"
+#include "core/geometry/affine.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,7 +2,7 @@
 #ifndef TESTS_MESHES_H
 #define TESTS_MESHES_H
 
-#include "core/memory.h"
+#include "core/base/memory.h"
 #include "support/support.h"
 
 #include <stdlib.h>

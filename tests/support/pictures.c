@@ -1,6 +1,6 @@
 #include "support/pictures.h"
 
-#include "core/module.h"
+#include "core/base/module.h"
 
 #include <math.h>
 

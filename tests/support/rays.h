@@ -2,7 +2,7 @@
 #ifndef TESTS_RAYS_H
 #define TESTS_RAYS_H
 
-#include "viewer/frame.h"
+#include "viewer/scene/frame_setup.h"
 
 /* The trilinear field of packed floats at a point of index space, inside of the box; and its
  * gradient per voxel: central differences, interpolated likewise. */

@@ -3,7 +3,7 @@
 #ifndef TESTS_READING_H
 #define TESTS_READING_H
 
-#include "core/memory.h"
+#include "core/base/memory.h"
 #include "support/support.h"
 
 #include <stdio.h>

@@ -1,6 +1,6 @@
 #include "support/sparse.h"
 
-#include "core/volume.h"
+#include "core/volume/volume.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -2,7 +2,7 @@
 #ifndef TESTS_VTK_XML_H
 #define TESTS_VTK_XML_H
 
-#include "formats/blocks.h"
+#include "formats/bytes/block_reader.h"
 #include "support/reading.h"
 
 enum { VTK_BLOCK = 7, VTK_MOST = 8000 };

@@ -1,6 +1,6 @@
 #include "support/unzip.h"
 
-#include "formats/mesh_writers.h"
+#include "formats/mesh/mesh_writer.h"
 
 #include <stdio.h>
 

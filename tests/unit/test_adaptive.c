@@ -2,7 +2,7 @@
  */
 #include "support/surface.h"
 
-#include "core/memory.h"
+#include "core/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

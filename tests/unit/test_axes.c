@@ -1,7 +1,7 @@
 /* Units and frames other than LPS millimetres: in the file, and back. */
 #include "support/meshes.h"
 
-#include "core/module.h"
+#include "core/base/module.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,9 +1,9 @@
 /* The proof of the case table: whatever the program that made it did, these hold. */
 #include "support/support.h"
 
-#include "extract/cases.h"
-#include "extract/cell_bits.h"
-#include "extract/cube.h"
+#include "extract/cases/case_tables.h"
+#include "extract/dense/cell_bits.h"
+#include "extract/cases/cube_numbering.h"
 
 #include <stdlib.h>
 #include <string.h>

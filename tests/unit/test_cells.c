@@ -3,9 +3,9 @@
  * the crossings stand on their edges. */
 #include "support/support.h"
 
-#include "extract/crossing.h"
-#include "extract/cube.h"
-#include "extract/topology.h"
+#include "extract/dense/edge_crossing.h"
+#include "extract/cases/cube_numbering.h"
+#include "extract/cases/cell_topology.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,7 +1,7 @@
 /* Verdicts and painted defects. */
 #include "support/planted.h"
 
-#include "core/memory.h"
+#include "core/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #include "support/support.h"
 
-#include "viewer/compare.h"
+#include "viewer/image/color_difference.h"
 
 #include <cubewright/picture.h>
 

@@ -1,8 +1,8 @@
 /* Compressed glTF: what comes back is what went in, as near as was asked for, and whole. */
 #include "support/surface.h"
 
-#include "core/memory.h"
-#include "core/module.h"
+#include "core/base/memory.h"
+#include "core/base/module.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,11 +1,11 @@
 #include "support/support.h"
 
-#include "core/memory.h"
-#include "core/module.h"
-#include "core/sandbox.h"
-#include "core/status.h"
-#include "core/text.h"
-#include "core/weld.h"
+#include "core/base/memory.h"
+#include "core/base/module.h"
+#include "core/base/sandbox.h"
+#include "core/base/status.h"
+#include "core/base/text.h"
+#include "core/mesh/weld.h"
 
 #include <locale.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 #include "support/support.h"
 
-#include "formats/decimals.h"
+#include "formats/text/number_format.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -3,7 +3,7 @@
 #include "support/reading.h"
 #include "support/regions.h"
 
-#include "core/module.h"
+#include "core/base/module.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,8 +1,8 @@
 #include "support/support.h"
 
-#include "viewer/directions.h"
+#include "viewer/proxy/quantized_normals.h"
 
-#include "core/vector.h"
+#include "core/geometry/vec3.h"
 
 #include <math.h>
 #include <stdlib.h>

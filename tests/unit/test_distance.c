@@ -1,7 +1,7 @@
 /* Distances from surfaces that are known on paper. */
 #include "support/surface.h"
 
-#include "core/memory.h"
+#include "core/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,9 +1,9 @@
 /* Distances from one mesh to another, and the tree of boxes that finds what is near. */
 #include "support/surface.h"
 
-#include "core/memory.h"
-#include "simplify/quality/boxes.h"
-#include "simplify/quality/within.h"
+#include "core/base/memory.h"
+#include "core/geometry/bvh.h"
+#include "simplify/quality/mesh_within.h"
 
 #include <math.h>
 #include <stdlib.h>

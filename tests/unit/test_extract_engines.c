@@ -3,8 +3,8 @@
 #include "support/hostile.h"
 #include "support/surface.h"
 
-#include "core/memory.h"
-#include "extract/engine.h"
+#include "core/base/memory.h"
+#include "extract/dense/isa_dispatch.h"
 
 #include <float.h>
 #include <math.h>

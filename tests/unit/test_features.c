@@ -1,6 +1,6 @@
 /* The table of optional features: what holds in every build. */
-#include "core/features.h"
-#include "core/module.h"
+#include "core/base/features.h"
+#include "core/base/module.h"
 #include "support/support.h"
 
 #include <cubewright/formats.h>

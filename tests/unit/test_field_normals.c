@@ -2,7 +2,7 @@
  * vertices, those of the true surface elsewhere. */
 #include "support/surface.h"
 
-#include "core/memory.h"
+#include "core/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 #define _GNU_SOURCE /* fork, setrlimit */
 #include "support/support.h"
 
-#include "core/module.h"
-#include "formats/mesh_writers.h"
+#include "core/base/module.h"
+#include "formats/mesh/mesh_writer.h"
 
 #include <signal.h>
 #include <stdio.h>

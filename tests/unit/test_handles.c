@@ -1,6 +1,6 @@
 #include "support/support.h"
 
-#include "viewer/handles.h"
+#include "viewer/interact/clip_box_handles.h"
 
 #include <math.h>
 #include <string.h>

@@ -3,7 +3,7 @@
 #include "support/sparse.h"
 #include "support/surface.h"
 
-#include "extract/engine.h"
+#include "extract/dense/isa_dispatch.h"
 
 #include <float.h>
 #include <math.h>

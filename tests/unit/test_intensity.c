@@ -1,7 +1,7 @@
 #include "support/pictures.h"
 #include "support/rays.h"
 
-#include "viewer/intensity.h"
+#include "viewer/cpu/intensity_projection.h"
 
 #include <math.h>
 #include <stdlib.h>

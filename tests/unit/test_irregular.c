@@ -3,10 +3,10 @@
 #include "support/cells.h"
 #include "support/surface.h"
 
-#include "core/memory.h"
-#include "core/status.h"
-#include "extract/cases.h"
-#include "extract/topology.h"
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "extract/cases/case_tables.h"
+#include "extract/cases/cell_topology.h"
 
 #include <math.h>
 #include <stdlib.h>

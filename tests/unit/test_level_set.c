@@ -1,8 +1,8 @@
 /* Level sets of meshes: that they lead back to the mesh, and what is made from them. */
 #include "support/surface.h"
 
-#include "core/memory.h"
-#include "core/sandbox.h"
+#include "core/base/memory.h"
+#include "core/base/sandbox.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 /* Meshes edited in place: what is left is as it was. */
 #include "support/support.h"
 
-#include "core/memory.h"
-#include "core/mesh.h"
+#include "core/base/memory.h"
+#include "core/mesh/mesh.h"
 
 #include <string.h>
 

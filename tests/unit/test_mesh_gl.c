@@ -1,7 +1,7 @@
 #include "support/sheets.h"
 
-#include "viewer/mesh_look.h"
-#include "viewer/reference_mesh.h"
+#include "viewer/scene/mesh_tint.h"
+#include "viewer/cpu/reference_mesh.h"
 
 #include <math.h>
 #include <stdlib.h>

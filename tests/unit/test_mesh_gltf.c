@@ -1,8 +1,8 @@
 /* glTF read: scenes by hand in every dialect, and files that mean harm. */
 #include "support/meshes.h"
 
-#include "core/module.h"
-#include "formats/gltf_scene.h"
+#include "core/base/module.h"
+#include "formats/gltf/gltf_scene.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,8 +1,8 @@
 #define _GNU_SOURCE /* mkfifo, setrlimit */
 #include "support/support.h"
 
-#include "core/memory.h"
-#include "core/module.h"
+#include "core/base/memory.h"
+#include "core/base/module.h"
 
 #include <math.h>
 #include <signal.h>

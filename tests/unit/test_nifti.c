@@ -1,5 +1,5 @@
 #define _GNU_SOURCE /* symlink */
-#include "formats/nifti.h"
+#include "formats/nifti/nifti.h"
 #include "support/reading.h"
 #include "support/regions.h"
 

@@ -1,5 +1,5 @@
 #define _GNU_SOURCE /* symlink, mkfifo */
-#include "formats/bzip2.h"
+#include "formats/bytes/bzip2.h"
 #include "support/reading.h"
 #include "support/regions.h"
 

@@ -1,8 +1,8 @@
 #define _GNU_SOURCE /* mkfifo, symlink, setrlimit, syscall */
 #include "support/support.h"
 
-#include "core/memory.h"
-#include "core/outfile.h"
+#include "core/base/memory.h"
+#include "core/base/atomic_file.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -1,6 +1,6 @@
 #include "support/pictures.h"
 
-#include "viewer/pen.h"
+#include "viewer/image/strokes.h"
 
 #include <math.h>
 #include <stdlib.h>

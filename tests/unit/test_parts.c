@@ -1,8 +1,8 @@
 /* Several meshes in one file: what becomes of their names, places and arrays. */
 #include "support/meshes.h"
 
-#include "core/module.h"
-#include "formats/mesh_writers.h"
+#include "core/base/module.h"
+#include "formats/mesh/mesh_writer.h"
 
 #include <math.h>
 

@@ -2,7 +2,7 @@
 #include "support/rays.h"
 #include "support/views.h"
 
-#include "viewer/reference_volume.h"
+#include "viewer/cpu/reference_volume.h"
 
 #include <math.h>
 #include <string.h>

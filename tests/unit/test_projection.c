@@ -1,6 +1,6 @@
 #include "support/views.h"
 
-#include "viewer/pieces.h"
+#include "viewer/proxy/projected_cells.h"
 
 #include <math.h>
 

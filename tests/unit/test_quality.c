@@ -1,7 +1,7 @@
 /* Meshes with one planted fault each, and what the checks must say of them. */
 #include "support/surface.h"
 
-#include "core/memory.h"
+#include "core/base/memory.h"
 
 #include <math.h>
 #include <stdlib.h>

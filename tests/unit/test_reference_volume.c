@@ -1,7 +1,7 @@
 #include "support/pictures.h"
 #include "support/rays.h"
 
-#include "viewer/reference_volume.h"
+#include "viewer/cpu/reference_volume.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 #include "support/support.h"
 
-#include "core/memory.h"
-#include "viewer/reference_mesh.h"
+#include "core/base/memory.h"
+#include "viewer/cpu/reference_mesh.h"
 
 #include <math.h>
 #include <png.h>

@@ -1,5 +1,5 @@
 /* Samples that stand twice. */
-#include "formats/samples.h"
+#include "formats/volume/merge_samples.h"
 #include "support/support.h"
 
 #include <stdlib.h>

@@ -1,8 +1,8 @@
 #define _GNU_SOURCE /* memfd_create */
 #include "support/support.h"
 
-#include "core/sandbox.h"
-#include "core/status.h"
+#include "core/base/sandbox.h"
+#include "core/base/status.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -1,8 +1,8 @@
 /* Self-intersections: against CGAL on triangles that touch in every way, and at the limits. */
 #include "support/surface.h"
 
-#include "core/memory.h"
-#include "simplify/quality/exact.h"
+#include "core/base/memory.h"
+#include "core/geometry/exact_predicates.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,10 +1,10 @@
 #include "support/integral.h"
 
-#include "viewer/directions.h"
-#include "viewer/frame.h"
+#include "viewer/proxy/quantized_normals.h"
+#include "viewer/scene/frame_setup.h"
 
-#include "core/memory.h"
-#include "core/vector.h"
+#include "core/base/memory.h"
+#include "core/geometry/vec3.h"
 
 #include <math.h>
 #include <string.h>

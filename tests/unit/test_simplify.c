@@ -3,10 +3,10 @@
 #include "support/planted.h"
 #include "support/surface.h"
 
-#include "core/memory.h"
-#include "core/sandbox.h"
-#include "simplify/attributes.h"
-#include "simplify/carry.h"
+#include "core/base/memory.h"
+#include "core/base/sandbox.h"
+#include "simplify/attribute_weights.h"
+#include "simplify/attribute_transfer.h"
 
 #include <math.h>
 #include <pthread.h>

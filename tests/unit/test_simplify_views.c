@@ -1,7 +1,7 @@
 /* Simplified for pictures: nothing in them moves by more pixels than asked for. */
 #include "support/surface.h"
 
-#include "simplify/quality/facet.h"
+#include "core/geometry/point_triangle.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 /* A surface a slab at a time: the same triangles, and seams that fit. */
 #include "support/surface.h"
 
-#include "core/status.h"
+#include "core/base/status.h"
 
 #include <math.h>
 #include <stdlib.h>

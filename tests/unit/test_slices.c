@@ -1,6 +1,6 @@
 #include "support/pictures.h"
 
-#include "viewer/slice.h"
+#include "viewer/scene/slice.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,6 +1,6 @@
 #include "support/views.h"
 
-#include "viewer/pyramid.h"
+#include "viewer/proxy/value_octree.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 #include "support/support.h"
 
-#include "formats/mesh_writers.h"
+#include "formats/mesh/mesh_writer.h"
 
 #include <math.h>
 #include <stdlib.h>

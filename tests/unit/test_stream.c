@@ -1,5 +1,5 @@
 #define _GNU_SOURCE /* memfd_create */
-#include "formats/stream.h"
+#include "formats/bytes/inflate_stream.h"
 #include "support/reading.h"
 
 #include <stdio.h>

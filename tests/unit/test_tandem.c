@@ -1,8 +1,8 @@
 /* Simplified while it is extracted: as good as afterwards. */
 #include "support/surface.h"
 
-#include "core/memory.h"
-#include "core/sandbox.h"
+#include "core/base/memory.h"
+#include "core/base/sandbox.h"
 
 #include <math.h>
 #include <stdlib.h>

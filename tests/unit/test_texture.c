@@ -1,9 +1,9 @@
 #include "support/integral.h"
 
-#include "viewer/slabs.h"
+#include "viewer/proxy/view_slabs.h"
 
-#include "core/affine.h"
-#include "core/vector.h"
+#include "core/geometry/affine.h"
+#include "core/geometry/vec3.h"
 
 #include <math.h>
 #include <string.h>

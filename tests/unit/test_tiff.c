@@ -1,4 +1,4 @@
-#include "core/module.h"
+#include "core/base/module.h"
 #include "support/reading.h"
 #include "support/regions.h"
 #include "support/tiffs.h"

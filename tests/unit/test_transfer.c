@@ -1,6 +1,6 @@
 #include "support/support.h"
 
-#include "viewer/transfer_json.h"
+#include "viewer/scene/transfer_json.h"
 
 #include <locale.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 #include "support/support.h"
 
-#include "viewer/transfer_edit.h"
+#include "viewer/interact/transfer_edit.h"
 
 #include <math.h>
 #include <string.h>

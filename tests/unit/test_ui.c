@@ -1,9 +1,9 @@
 /* A window that nobody sees, used by what is fed to it. */
 #include "support/pictures.h"
 
-#include "core/memory.h"
-#include "core/module.h"
-#include "viewer/ui.h"
+#include "core/base/memory.h"
+#include "core/base/module.h"
+#include "viewer/window/ui.h"
 
 #include <math.h>
 #include <stdlib.h>

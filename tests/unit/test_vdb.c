@@ -2,7 +2,7 @@
 #include "support/surface.h"
 #include "vdb/vdbs.h"
 
-#include "core/sandbox.h"
+#include "core/base/sandbox.h"
 
 #include <math.h>
 #include <stdlib.h>

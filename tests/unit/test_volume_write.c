@@ -1,7 +1,7 @@
-#define _GNU_SOURCE /* locale_t, in core/text.h */
+#define _GNU_SOURCE /* locale_t, in core/base/text.h */
 #include "support/reading.h"
 
-#include "core/volume.h"
+#include "core/volume/volume.h"
 
 #include <math.h>
 #include <stdio.h>

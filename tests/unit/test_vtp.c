@@ -1,7 +1,7 @@
 /* VTP and PVD written: what stands where, found by reading the file the simple way. */
 #include "support/support.h"
 
-#include "formats/mesh_writers.h"
+#include "formats/mesh/mesh_writer.h"
 
 #include <math.h>
 #include <stdio.h>

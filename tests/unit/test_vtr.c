@@ -2,7 +2,7 @@
 #include "support/reading.h"
 #include "support/vtk_xml.h"
 
-#include "core/memory.h"
+#include "core/base/memory.h"
 
 #include <stdio.h>
 

@@ -1,7 +1,7 @@
 #include "support/unzip.h"
 
-#include "core/memory.h"
-#include "formats/zip_write.h"
+#include "core/base/memory.h"
+#include "formats/bytes/zip_write.h"
 
 enum { BIG = 3 << 20 };
 

@@ -1,4 +1,4 @@
-// What every shader knows of the picture. See viewer/frame.h for the spaces.
+// What every shader knows of the picture. See viewer/scene/frame_setup.h for the spaces.
 layout(std140) uniform Frame {
     mat4 projection;
     mat4 eye_from_index, index_from_eye;

@@ -41,7 +41,7 @@ vec3 srgb_of(vec3 light)
     return mix(1.055 * pow(light, vec3(1.0 / 2.4)) - 0.055, 12.92 * light, lessThanEqual(light, vec3(0.0031308)));
 }
 
-// As viewer/reference_mesh.c: light from the eye, from above its left shoulder, and from everywhere.
+// As viewer/cpu/reference_mesh.c: light from the eye, from above its left shoulder, and from everywhere.
 vec3 studio(vec3 surface, vec3 n, vec3 v)
 {
     vec3 fill = normalize(vec3(-0.55, 0.65, 0.52));

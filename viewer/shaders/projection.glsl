@@ -1,5 +1,5 @@
 // Coherent projection [Wilhelms1991]: polygons over which the places where rays enter and leave a
-// cell, or in perspective their reciprocal depths, are linear. See viewer/pieces.h.
+// cell, or in perspective their reciprocal depths, are linear. See viewer/modes/projected_cells.h.
 #ifdef VERTEX
 layout(location = 0) in vec4 place;  // of the picture, -1 to 1; front depth, back minus front; in
                                      // perspective 1 / front depth, and minus 1 / back depth

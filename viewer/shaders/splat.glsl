@@ -12,7 +12,7 @@ vec3 slope_through(vec3 at)
 
 uniform int axis; // that sheets are across
 #ifdef VERTEX
-uniform samplerBuffer splats; // three texels each, see viewer/splats.h
+uniform samplerBuffer splats; // three texels each, see viewer/modes/splat_sheets.h
 uniform float sigma, radius;  // of the blob of one voxel, in voxels; of the table, in sigmas
 uniform float cell;           // volume of a voxel in eye space
 out vec2 offset;              // from the middle, in sigmas; of nodes in voxels

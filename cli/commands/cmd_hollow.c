@@ -1,0 +1,28 @@
+#include "cli/commands.h"
+#include "cli/commands/offset_hollow.h"
+
+static const cli_option options[] = {
+    {"wall", 'w', CLI_LENGTH, "L", "Thickness of the wall: 2mm, or 1% of the box's diagonal",
+     offsetof(cli_solid_args, wall)},
+    {"drain", 0, CLI_TEXT, "D@AXIS[,...]",
+     "Diameter and direction of drain holes out of the largest cavity: 4mm@-z, or "
+     "4mm@-z,3mm@+x (none)",
+     offsetof(cli_solid_args, drain)},
+    {"measure", 0, CLI_FLAG, NULL, "Measure the thickness of the wall (on; --no-measure)",
+     offsetof(cli_solid_args, measure)},
+    CLI_SOLID_OPTIONS,
+};
+
+const cli_command cli_hollow = {
+    .name = "hollow",
+    .usage = "MESH -o MESH --wall L [--drain D@AXIS,...] [options]",
+    .about = "Turn a solid into a shell, to save print material",
+    .page = cli_page_hollow,
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .min_inputs = 1,
+    .max_inputs = 1,
+    .size = sizeof(cli_solid_args),
+    .defaults = &cli_solid_defaults,
+    .run = cli_run_hollow,
+};

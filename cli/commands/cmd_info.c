@@ -1,0 +1,638 @@
+#include "cli/commands.h"
+#include "cli/framework/console.h"
+#include "cli/inputs/volume_input.h"
+#include "cli/framework/quantity.h"
+#include "cli/inputs/time_series.h"
+#include "core/base/status.h"
+#include "core/volume/volume.h"
+
+#include <cubewright/extract.h>
+
+#include <math.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+typedef struct info_args {
+    cli_common common;
+    cli_input input;
+    size_t histogram;
+    bool json, levels, deep;
+} info_args;
+
+static const cli_option options[] = {
+    {"histogram", 0, CLI_COUNT, "N", "Print a histogram of the values with N bins (0)",
+     offsetof(info_args, histogram)},
+    {"levels", 0, CLI_FLAG, NULL,
+     "Predict the number of triangles at each suggested isovalue (off)",
+     offsetof(info_args, levels)},
+    {"deep", 0, CLI_FLAG, NULL,
+     "Read all voxels (off: above 256 MiB a part of the rows, unless --levels needs all)",
+     offsetof(info_args, deep)},
+    {"json", 0, CLI_FLAG, NULL, "Print one JSON object (off)", offsetof(info_args, json)},
+    CLI_INPUT_OPTIONS(info_args),
+};
+
+/* Between how many kinds of values levels are sought, and in how many bins. */
+enum { MAX_LEVELS = 3, OTSU_BINS = 512 };
+
+/* As many as readers take. */
+enum { MOST_COMPONENTS = 16 };
+
+typedef struct level {
+    const char *name;
+    double value;
+    cw_extract_counts counts;
+} level;
+
+typedef struct facts {
+    cli_volume volume;
+    cw_series series;    /* of a DICOM image; else no images */
+    cw_statistics range; /* and the bins asked for */
+    level levels[MAX_LEVELS + 2];
+    int level_count;
+    cw_array *arrays; /* of a file that has several; else NULL */
+    size_t array_count;
+    double (*ranges)[2]; /* array_count x MOST_COMPONENTS: of those that are read */
+} facts;
+
+/* otsu parts two classes; dark, medium and bright part four [Otsu1979, Liao2001]. */
+static cw_status find_levels(facts *f, int threads, cw_error *err)
+{
+    static const char *const names[] = {"otsu", "dark", "medium", "bright"};
+    cw_statistics s;
+    double values[MAX_LEVELS + 1];
+    cw_status st = cw_volume_statistics(&f->volume.view, OTSU_BINS, threads, &s, err);
+    if (st != CW_OK)
+        return st;
+    int count = cw_statistics_otsu(&s, 1, values) ? 1 : 0;
+    if (count && cw_statistics_otsu(&s, MAX_LEVELS, values + 1))
+        count += MAX_LEVELS;
+    if (f->volume.whole.known & CW_KNOWN_LEVEL_SET)
+        f->levels[f->level_count++] = (level){.name = "zero", .value = 0};
+    for (int n = 0; n < count; n++)
+        f->levels[f->level_count++] = (level){.name = names[n], .value = values[n]};
+    cw_statistics_free(&s);
+    return CW_OK;
+}
+
+static cw_status predict(facts *f, int threads, cw_error *err)
+{
+    cw_extractor *extractor;
+    cw_status st = cw_extractor_new(&f->volume.view, &extractor, err);
+    for (int n = 0; n < f->level_count && st == CW_OK; n++) {
+        const cw_extract_desc desc = {.isovalue = f->levels[n].value,
+                                      .inside_is_low =
+                                          cli_inside_is_low(CLI_INSIDE_AUTO, &f->volume.whole),
+                                      .threads = threads};
+        st = cw_extractor_predict(extractor, &desc, &f->levels[n].counts, err);
+    }
+    cw_extractor_free(extractor);
+    return st;
+}
+
+/* Of every component, at the chosen step. */
+static cw_status find_ranges(const info_args *args, const char *name, double (*ranges)[2],
+                             cw_error *err)
+{
+    cw_read_desc desc = cli_read_desc(&args->input);
+    cw_volume all, one;
+    desc.array = name;
+    cw_status st = cw_volume_read(args->common.inputs[0], &desc, &all, NULL, err);
+    if (st != CW_OK)
+        return st;
+    for (size_t c = 0; c < all.components && c < MOST_COMPONENTS && st == CW_OK; c++) {
+        cw_statistics s = {0};
+        st = cw_volume_select(&all, c, 0, &one, err);
+        if (st == CW_OK)
+            st = cw_volume_statistics(&one, 0, (int)args->input.threads, &s, err);
+        ranges[c][0] = s.min;
+        ranges[c][1] = s.max;
+    }
+    cw_volume_free(&all);
+    return st;
+}
+
+/* Arrays of one name, at points and at cells, cannot be told apart: the second has no range. */
+static bool is_reached(const facts *f, size_t n)
+{
+    for (size_t i = 0; i < f->array_count; i++)
+        if (i != n && strcmp(f->arrays[i].name, f->arrays[n].name) == 0 &&
+            f->arrays[n].of_cells && !f->arrays[i].of_cells)
+            return false;
+    return f->arrays[n].is_read;
+}
+
+static cw_status find_arrays(const info_args *args, facts *f, cw_error *err)
+{
+    const cw_read_desc desc = cli_read_desc(&args->input);
+    if (args->input.raw)
+        return CW_OK;
+    cw_status st =
+        cw_arrays_list(args->common.inputs[0], &desc, &f->arrays, &f->array_count, err);
+    if (st != CW_OK || f->array_count < 2) {
+        cw_arrays_free(f->arrays);
+        f->arrays = NULL;
+        f->array_count = 0;
+        return st;
+    }
+    f->ranges = calloc(f->array_count * MOST_COMPONENTS, sizeof *f->ranges);
+    if (!f->ranges)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the ranges of arrays");
+    for (size_t n = 0; n < f->array_count && st == CW_OK; n++)
+        if (is_reached(f, n))
+            st = find_ranges(args, f->arrays[n].name, f->ranges + n * MOST_COMPONENTS, err);
+    return st;
+}
+
+static cw_status find_facts(const info_args *args, facts *f, cw_error *err)
+{
+    const int threads = (int)args->input.threads;
+    cli_input input = args->input;
+    input.sample = !args->deep && !args->levels;
+    cw_status st = cli_read_volume(args->common.inputs[0], &input, false, &f->volume, err);
+    if (st != CW_OK)
+        return st;
+    st = cw_volume_statistics(&f->volume.view, args->histogram, threads, &f->range, err);
+    if (st == CW_OK)
+        st = find_levels(f, threads, err);
+    if (st == CW_OK)
+        st = find_arrays(args, f, err);
+    if (st == CW_OK)
+        st = cli_tell_labels(&f->volume, NULL, 0, false, err);
+    if (st == CW_OK && args->levels)
+        st = predict(f, threads, err);
+    return st == CW_OK ? st : cwi_fail_in(err, st, f->volume.path);
+}
+
+/* "left 0.00, posterior -1.00, ..." : the world direction that each index axis mostly runs to.
+ */
+static const char *axis_letters(const cw_volume *v)
+{
+    static char text[8];
+    for (int c = 0; c < 3; c++) {
+        int most = 0;
+        for (int r = 1; r < 3; r++)
+            if (fabs(v->affine[r][c]) > fabs(v->affine[most][c]))
+                most = r;
+        text[c] = v->affine[most][c] >= 0 ? "LPS"[most] : "RAI"[most];
+    }
+    return text;
+}
+
+static void print_steps(const cw_volume *v)
+{
+    if (v->step_seconds > 0)
+        printf("  steps    %zu, %.6g s apart\n", v->steps, v->step_seconds);
+    else
+        printf("  steps    %zu, no times named\n", v->steps);
+}
+
+/* Of a rectilinear grid: the steps that the line above gives the mean of. */
+static void print_spacing(const cli_volume *volume)
+{
+    double range[3][2];
+    if (!cwi_is_rectilinear(&volume->whole))
+        return;
+    for (int a = 0; a < 3; a++)
+        cli_spacing_range(volume, a, range[a]);
+    printf("  spacing  x %.6g to %.6g, y %.6g to %.6g, z %.6g to %.6g mm\n", range[0][0],
+           range[0][1], range[1][0], range[1][1], range[2][0], range[2][1]);
+}
+
+static const char *frame_of(const cw_volume *v)
+{
+    return v->known & CW_KNOWN_FRAME ? "LPS" : "not named, taken as LPS";
+}
+
+static void print_frame(const cli_volume *volume)
+{
+    const cw_volume *v = &volume->whole;
+    const double *s = volume->spacing;
+    const double last[3] = {(double)(v->dim[0] - 1), (double)(v->dim[1] - 1),
+                            (double)(v->dim[2] - 1)};
+    double from[3], to[3];
+    cw_volume_to_world(v, (const double[3]){0, 0, 0}, from);
+    cw_volume_to_world(v, last, to);
+    print_spacing(volume);
+    printf("  size     %.6g x %.6g x %.6g mm\n", last[0] * s[0], last[1] * s[1],
+           last[2] * s[2]);
+    printf("  frame    %s, axes run to %s; first voxel (%.6g, %.6g, %.6g), last (%.6g, %.6g, "
+           "%.6g)\n",
+           frame_of(v), axis_letters(v), from[0], from[1], from[2], to[0], to[1], to[2]);
+}
+
+/* Of an irregular grid, which has no axes. */
+static void print_box(const cli_volume *volume)
+{
+    const double *low = volume->grid.low, *high = volume->grid.high;
+    printf("  size     %.6g x %.6g x %.6g mm\n", high[0] - low[0], high[1] - low[1],
+           high[2] - low[2]);
+    printf("  cells    edges of %.6g mm on average\n", volume->spacing[0]);
+    printf("  frame    %s; box from (%.6g, %.6g, %.6g) to (%.6g, %.6g, %.6g)\n",
+           frame_of(&volume->whole), low[0], low[1], low[2], high[0], high[1], high[2]);
+}
+
+static void print_arrays(const facts *f)
+{
+    for (size_t n = 0; n < f->array_count; n++) {
+        const cw_array *a = &f->arrays[n];
+        printf("  array    '%s', %zu x %s%s%s", a->name, a->components,
+               *a->type ? a->type : "of a type that is not read",
+               a->of_cells ? ", of cells" : "",
+               !a->is_read     ? ", not read"
+               : a->is_default ? ", taken unless --array names another"
+                               : "");
+        for (size_t c = 0; c < a->components && is_reached(f, n); c++) {
+            const double *r = f->ranges[n * MOST_COMPONENTS + c];
+            printf("%s %.6g to %.6g", c ? "," : ":", r[0], r[1]);
+        }
+        puts("");
+    }
+}
+
+static void json_arrays(cli_json *j, const facts *f)
+{
+    if (!f->array_count)
+        return;
+    cli_json_open(j, "arrays", '[');
+    for (size_t n = 0; n < f->array_count; n++) {
+        const cw_array *a = &f->arrays[n];
+        cli_json_open(j, NULL, '{');
+        cli_json_text(j, "name", a->name);
+        cli_json_text(j, "type", a->type);
+        cli_json_count(j, "components", a->components);
+        cli_json_text(j, "of", a->of_cells ? "cells" : "points");
+        cli_json_bool(j, "read", a->is_read);
+        cli_json_bool(j, "default", a->is_default);
+        if (is_reached(f, n)) {
+            cli_json_open(j, "ranges", '[');
+            for (size_t c = 0; c < a->components; c++)
+                cli_json_numbers(j, NULL, f->ranges[n * MOST_COMPONENTS + c], 2);
+            cli_json_close(j, ']');
+        }
+        cli_json_close(j, '}');
+    }
+    cli_json_close(j, ']');
+}
+
+static void print_geometry(const facts *f)
+{
+    const cw_volume *v = &f->volume.whole;
+    printf("%s\n  %s\n", f->volume.path, cli_describe(&f->volume));
+    if (v->cells)
+        print_box(&f->volume);
+    else
+        print_frame(&f->volume);
+    if (v->steps > 1)
+        print_steps(v);
+    if (v->slope != 1 || v->intercept != 0)
+        printf("  scaling  value = %.10g * voxel + %.10g\n", v->slope, v->intercept);
+    if (f->series.images)
+        printf("  series   %s %s, %zu images, tilt %.3g degrees\n", f->series.label,
+               f->series.modality, f->series.images, f->series.tilt_degrees);
+    print_arrays(f);
+    for (size_t n = 0; n < f->volume.note_count; n++)
+        if (!f->array_count ||
+            !strstr(f->volume.notes[n], "; --array takes")) /* listed above */
+            printf("  note     %s\n", f->volume.notes[n]);
+}
+
+static bool is_sampled(const facts *f)
+{
+    return cli_is_preview(&f->volume);
+}
+
+static void print_values(const info_args *args, const facts *f)
+{
+    const cw_statistics *r = &f->range;
+    printf("  values   %.10g to %.10g", r->min, r->max);
+    if (f->volume.whole.steps > 1)
+        printf(" in step %zu", args->input.step);
+    if (r->not_finite)
+        printf(", %s not finite", cli_count(r->not_finite));
+    if (r->nodata)
+        printf(", %s no-data", cli_count(r->nodata));
+    if (is_sampled(f))
+        printf(" in one row of %zu, one slice of %zu (--deep reads all)", f->volume.coarsen[1],
+               f->volume.coarsen[2]);
+    puts("");
+    for (size_t b = 0; b < r->bin_count; b++)
+        printf("  %12.6g  %s\n", r->min + (double)b * r->bin_width,
+               cli_count((size_t)r->bins[b]));
+}
+
+static void print_levels(const facts *f, bool predicted)
+{
+    for (int n = 0; n < f->level_count; n++) {
+        const level *l = &f->levels[n];
+        printf("  level    %-7s--iso %.6g", l->name, l->value);
+        if (predicted)
+            printf("  %s triangles, %s", cli_count(l->counts.triangles),
+                   cli_bytes((double)l->counts.bytes));
+        puts("");
+    }
+}
+
+static void json_series(cli_json *j, const cw_series *s)
+{
+    cli_json_text(j, "label", s->label);
+    cli_json_text(j, "modality", s->modality);
+    cli_json_count(j, "images", s->images);
+    if (s->status == CW_OK)
+        cli_json_number(j, "tilt_degrees", s->tilt_degrees);
+}
+
+static void print_json(const facts *f, bool predicted)
+{
+    const cw_statistics *r = &f->range;
+    cli_json j = {.out = stdout};
+    cli_json_open(&j, NULL, '{');
+    cli_json_text(&j, "schema", "cubewright-info-1");
+    cli_json_text(&j, "version", cw_version());
+    cli_json_input(&j, "input", &f->volume);
+    if (f->series.images) {
+        cli_json_open(&j, "series", '{');
+        json_series(&j, &f->series);
+        cli_json_close(&j, '}');
+    }
+    json_arrays(&j, f);
+    cli_json_numbers(&j, "range", (const double[2]){r->min, r->max}, 2);
+    if (is_sampled(f))
+        cli_json_numbers(
+            &j, "sampled",
+            (const double[3]){1, (double)f->volume.coarsen[1], (double)f->volume.coarsen[2]},
+            3);
+    cli_json_count(&j, "finite", r->finite);
+    cli_json_count(&j, "not_finite", r->not_finite);
+    cli_json_count(&j, "nodata", r->nodata);
+    if (r->bin_count) {
+        cli_json_number(&j, "bin_width", r->bin_width);
+        cli_json_open(&j, "histogram", '[');
+        for (size_t b = 0; b < r->bin_count; b++)
+            cli_json_count(&j, NULL, (size_t)r->bins[b]);
+        cli_json_close(&j, ']');
+    }
+    cli_json_open(&j, "levels", '[');
+    for (int n = 0; n < f->level_count; n++) {
+        cli_json_open(&j, NULL, '{');
+        cli_json_text(&j, "name", f->levels[n].name);
+        cli_json_number(&j, "iso", f->levels[n].value);
+        if (predicted)
+            cli_json_count(&j, "triangles", f->levels[n].counts.triangles);
+        cli_json_close(&j, '}');
+    }
+    cli_json_close(&j, ']');
+    cli_json_close(&j, '}');
+}
+
+/* --- series --------------------------------------------------------------------------------
+ */
+
+static const char *shape_of(const cw_series *s)
+{
+    static char text[128];
+    double spacing[3];
+    const size_t *dim = s->shape.dim;
+    int n = snprintf(text, sizeof text, "%zu x %zu x %zu %s", dim[0], dim[1], dim[2],
+                     cw_type_name(s->shape.type));
+    if (s->status != CW_OK)
+        return text;
+    cw_volume_spacing(&s->shape, spacing);
+    if (s->shape.steps > 1)
+        n += snprintf(text + n, sizeof text - (size_t)n, ", %zu steps", s->shape.steps);
+    snprintf(text + n, sizeof text - (size_t)n, ", %.6g x %.6g x %.6g %s, tilt %.3g",
+             spacing[0], spacing[1], spacing[2],
+             s->shape.known & CW_KNOWN_UNIT ? "mm" : "(no unit)", s->tilt_degrees);
+    return text;
+}
+
+static void print_series(const char *path, const cw_series *series, size_t count)
+{
+    printf("%s\n", path);
+    for (size_t n = 0; n < count; n++) {
+        const cw_series *s = &series[n];
+        printf("  series %-6s %-4s %4zu images  %s%s%s\n", s->label, s->modality, s->images,
+               shape_of(s), s->finding[0] ? "\n    " : "", s->finding);
+    }
+}
+
+static void json_shape(cli_json *j, const cw_series *s)
+{
+    const double dims[3] = {(double)s->shape.dim[0], (double)s->shape.dim[1],
+                            (double)s->shape.dim[2]};
+    double spacing[3];
+    cli_json_numbers(j, "dims", dims, 3);
+    cli_json_text(j, "type", cw_type_name(s->shape.type));
+    if (s->status == CW_OK) {
+        cw_volume_spacing(&s->shape, spacing);
+        cli_json_numbers(j, "spacing", spacing, 3);
+        cli_json_count(j, "steps", s->shape.steps);
+    }
+    cli_json_text(j, "status", cw_status_name(s->status));
+    cli_json_text(j, "finding", s->finding);
+}
+
+static void print_series_json(const char *path, const cw_series *series, size_t count)
+{
+    cli_json j = {.out = stdout};
+    cli_json_open(&j, NULL, '{');
+    cli_json_text(&j, "schema", "cubewright-series-1");
+    cli_json_text(&j, "version", cw_version());
+    cli_json_text(&j, "path", cli_shown_path(path));
+    cli_json_open(&j, "series", '[');
+    for (size_t n = 0; n < count; n++) {
+        cli_json_open(&j, NULL, '{');
+        json_series(&j, &series[n]);
+        json_shape(&j, &series[n]);
+        cli_json_close(&j, '}');
+    }
+    cli_json_close(&j, ']');
+    cli_json_close(&j, '}');
+}
+
+/* --- time series of files ------------------------------------------------------------------
+ */
+
+/* A step: what is in its file, and the range of its values. */
+typedef struct step_facts {
+    cli_volume volume;
+    cw_statistics range;
+} step_facts;
+
+static cw_status read_step(const info_args *args, const char *path, step_facts *step,
+                           cw_error *err)
+{
+    const int threads = (int)args->input.threads;
+    cw_status st = cli_read_volume(path, &args->input, false, &step->volume, err);
+    if (st != CW_OK)
+        return st;
+    st = cw_volume_statistics(&step->volume.view, 0, threads, &step->range, err);
+    cw_volume_free(&step->volume.voxels);
+    return st == CW_OK ? st : cwi_fail_in(err, st, path);
+}
+
+static void print_step(size_t n, const step_facts *step)
+{
+    printf("  step %-4zu%s  %s, values %.10g to %.10g\n", n, step->volume.path,
+           cli_describe(&step->volume), step->range.min, step->range.max);
+}
+
+static void json_step(cli_json *j, const step_facts *step)
+{
+    cli_json_open(j, NULL, '{');
+    cli_json_input(j, "input", &step->volume);
+    cli_json_numbers(j, "range", (const double[2]){step->range.min, step->range.max}, 2);
+    cli_json_close(j, '}');
+}
+
+/* Reads every file, also behind one that does not agree: the first such is the finding. */
+static cw_status list_files(const info_args *args, char *const *files, size_t count,
+                            cli_json *j, cw_error *finding, cw_error *err)
+{
+    cw_volume first = {0};
+    for (size_t n = 0; n < count; n++) {
+        step_facts step = {0};
+        cw_status st = read_step(args, files[n], &step, err);
+        if (st != CW_OK) {
+            cli_free_volume(&step.volume);
+            return st;
+        }
+        first = n ? first : step.volume.whole; /* whose coordinates soon are gone */
+        if (finding->status == CW_OK)
+            cli_agree(&first, files[0], &step.volume.whole, files[n], finding);
+        if (args->json)
+            json_step(j, &step);
+        else
+            print_step(n, &step);
+        cli_free_volume(&step.volume);
+    }
+    return CW_OK;
+}
+
+static void open_list(const info_args *args, size_t count, cli_json *j)
+{
+    if (!args->json) {
+        printf("%zu files, a time step each\n", count);
+        return;
+    }
+    cli_json_open(j, NULL, '{');
+    cli_json_text(j, "schema", "cubewright-steps-1");
+    cli_json_text(j, "version", cw_version());
+    cli_json_open(j, "steps", '[');
+}
+
+static void close_list(const info_args *args, const cw_error *finding, cli_json *j)
+{
+    if (!args->json)
+        return;
+    cli_json_close(j, ']');
+    cli_json_bool(j, "agree", finding->status == CW_OK);
+    cli_json_text(j, "finding", finding->message);
+    cli_json_close(j, '}');
+}
+
+static cw_status print_files(const info_args *args, char *const *files, size_t count,
+                             cw_error *err)
+{
+    cli_json j = {.out = stdout};
+    cw_error finding = {0};
+    if (args->histogram || args->levels)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--histogram and --levels need a single file; there are %zu", count);
+    open_list(args, count, &j);
+    cw_status st = list_files(args, files, count, &j, &finding, err);
+    close_list(args, st == CW_OK ? &finding : err, &j);
+    if (st == CW_OK && finding.status != CW_OK)
+        *err = finding;
+    return st == CW_OK ? finding.status : st;
+}
+
+static cw_status list_steps(const info_args *args, bool *listed, cw_error *err)
+{
+    const cw_raw_layout raw = {0}; /* only whether there is one counts here */
+    cw_read_desc desc = cli_read_desc(&args->input);
+    char **files;
+    size_t count;
+    desc.raw = args->input.raw ? &raw : NULL;
+    cw_status st = cw_steps_list(args->common.inputs, args->common.input_count, &desc, &files,
+                                 &count, err);
+    *listed = count > 0;
+    if (st == CW_OK && count)
+        st = print_files(args, files, count, err);
+    cw_steps_free(files, count);
+    return st;
+}
+
+static bool is_named(const cw_series *s, const char *name)
+{
+    return name && strcmp(s->label, name) == 0;
+}
+
+/* Several series, or one that cannot be read as it is, are listed and nothing more. */
+static cw_status list_series(const info_args *args, facts *f, bool *listed, cw_error *err)
+{
+    const char *path = args->common.inputs[0];
+    const cw_read_desc desc = cli_read_desc(&args->input);
+    cw_series *series;
+    size_t count;
+    if (args->input.raw)
+        return CW_OK;
+    cw_status st = cw_series_list(path, &desc, &series, &count, err);
+    for (size_t n = 0; n < count; n++)
+        if (count == 1 || is_named(&series[n], args->input.series))
+            f->series = series[n];
+    if (args->input.series) {
+        cw_series_free(series);
+        return st;
+    }
+    *listed = count > 1 || (count == 1 && series[0].status != CW_OK);
+    if (*listed && args->json)
+        print_series_json(path, series, count);
+    else if (*listed)
+        print_series(path, series, count);
+    cw_series_free(series);
+    return st;
+}
+
+static cw_status run(void *p, cw_error *err)
+{
+    info_args *args = p;
+    facts f = {0};
+    bool listed = false;
+    cli_common silent = args->common;
+    silent.quiet = true; /* the found line is part of the result here */
+    cli_console_start(&silent, CLI_PROGRESS_AUTO);
+    cw_status st = list_steps(args, &listed, err);
+    if (st == CW_OK && !listed)
+        st = list_series(args, &f, &listed, err);
+    if (st != CW_OK || listed)
+        return st;
+    st = find_facts(args, &f, err);
+    if (st == CW_OK && args->json) {
+        print_json(&f, args->levels);
+    } else if (st == CW_OK) {
+        print_geometry(&f);
+        print_values(args, &f);
+        print_levels(&f, args->levels);
+    }
+    cw_statistics_free(&f.range);
+    cw_arrays_free(f.arrays);
+    free(f.ranges);
+    cli_free_volume(&f.volume);
+    return st;
+}
+
+const cli_command cli_info = {
+    .name = "info",
+    .usage = "VOLUME... [options]",
+    .about = "Describe a volume: size, type, frame, values, suggested isovalues",
+    .page = cli_page_info,
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .min_inputs = 1,
+    .max_inputs = SIZE_MAX,
+    .size = sizeof(info_args),
+    .run = run,
+};

@@ -1,0 +1,192 @@
+#include "cli/commands.h"
+#include "cli/framework/console.h"
+#include "core/base/status.h"
+
+#include <cubewright/field.h>
+#include <cubewright/formats.h>
+#include <cubewright/hard.h>
+
+#include <stdio.h>
+#include <string.h>
+
+typedef struct make_args {
+    cli_common common;
+    const char *output;
+    cli_sizes dims;
+    int type;
+    cli_number noise;
+    size_t seed, threads;
+    bool no_clobber, list;
+} make_args;
+
+#define TYPE_NAMES "u8/i8/u16/i16/u32/i32/f32/f64" /* in the order of cw_type */
+
+static const make_args defaults = {.type = CW_F32, .dims = {.count = 3, .n = {64, 64, 64}}};
+
+static const cli_option options[] = {
+    {"output", 'o', CLI_TEXT, "FILE", "Volume to write: .nrrd, .nii, .nii.gz or .mha",
+     offsetof(make_args, output)},
+    {"list", 'l', CLI_FLAG, NULL, "List the fields and their isovalues",
+     offsetof(make_args, list)},
+    {"no-clobber", 0, CLI_FLAG, NULL, "Fail if the output exists (off: replace it)",
+     offsetof(make_args, no_clobber)},
+    CLI_HEADED("Samples"),
+    {"dims", 'd', CLI_SIZES, "N|XxYxZ", "Voxels along the axes (64)",
+     offsetof(make_args, dims)},
+    {"type", 0, CLI_CHOICE, TYPE_NAMES, "Type of the voxels (f32)", offsetof(make_args, type)},
+    {"noise", 0, CLI_NUMBER, "SIGMA",
+     "Standard deviation of Gaussian noise, in the unit of the field (0)",
+     offsetof(make_args, noise)},
+    {"seed", 0, CLI_COUNT, "N", "Seed of the noise (0)", offsetof(make_args, seed)},
+    CLI_HEADED("Limits and messages"),
+    {"threads", 't', CLI_COUNT, "N", "Number of threads; results do not depend on it (0: all)",
+     offsetof(make_args, threads)},
+};
+
+/* What can be made: fields, and behind them the hard cases. */
+typedef struct subject {
+    const char *name, *about;
+    double isovalue;
+    bool hard;
+    size_t number; /* of the field or the hard case */
+} subject;
+
+static bool subject_at(size_t n, subject *s)
+{
+    if (n < CW_FIELD_COUNT) {
+        const cw_field f = (cw_field)n;
+        *s = (subject){cw_field_name(f), cw_field_about(f), cw_field_isovalue(f), false, n};
+        return true;
+    }
+    const cw_hard *hard = cw_hard_at(n - CW_FIELD_COUNT);
+    if (hard)
+        *s = (subject){hard->name, hard->about, hard->isovalue, true, n - CW_FIELD_COUNT};
+    return hard != NULL;
+}
+
+static cw_status list_subjects(void)
+{
+    subject s;
+    for (size_t n = 0; subject_at(n, &s); n++)
+        printf("%-28s--iso %-5.10g %s%s\n", s.name, s.isovalue, s.about,
+               s.hard && cw_hard_at(s.number)->scale == 0 ? " (f32, f64)" : "");
+    return CW_OK;
+}
+
+static bool find_subject(const char *name, subject *s)
+{
+    for (size_t n = 0; subject_at(n, s); n++)
+        if (strcmp(s->name, name) == 0)
+            return true;
+    return false;
+}
+
+enum { MAX_SUBJECTS = 256 };
+
+static cw_status unknown_subject(const char *name, cw_error *err)
+{
+    const char *names[MAX_SUBJECTS + 1] = {0};
+    subject s;
+    for (size_t n = 0; n < MAX_SUBJECTS && subject_at(n, &s); n++)
+        names[n] = s.name;
+    const char *nearest = cli_nearest(name, names);
+    if (nearest)
+        return cw_fail(err, CW_ERR_ARGUMENT, "'%s' is not a field; did you mean '%s'?", name,
+                       nearest);
+    return cw_fail(err, CW_ERR_ARGUMENT,
+                   "'%s' is not a field; 'cubewright make --list' lists them", name);
+}
+
+static double mega_voxels(const make_args *args)
+{
+    const size_t *n = args->dims.n;
+    return 1e-6 * (double)n[0] * (double)n[1] * (double)n[2];
+}
+
+static cw_status sample_field(const make_args *args, cw_field field, cw_volume *volume,
+                              cw_error *err)
+{
+    const cw_field_desc desc = {
+        .field = field,
+        .dim = {args->dims.n[0], args->dims.n[1], args->dims.n[2]},
+        .type = (cw_type)args->type,
+        .noise = args->noise.value,
+        .seed = args->seed,
+        .threads = (int)args->threads,
+        .progress = cli_progress(mega_voxels(args), "Mvoxel"),
+    };
+    return cw_field_sample(&desc, volume, err);
+}
+
+static cw_status sample_hard(const make_args *args, size_t number, cw_volume *volume,
+                             cw_error *err)
+{
+    const cw_hard_desc desc = {
+        .number = number,
+        .dim = {args->dims.n[0], args->dims.n[1], args->dims.n[2]},
+        .type = (cw_type)args->type,
+        .noise = args->noise.value,
+        .seed = args->seed,
+        .threads = (int)args->threads,
+        .progress = cli_progress(mega_voxels(args), "Mvoxel"),
+    };
+    return cw_hard_sample(&desc, volume, err);
+}
+
+/* What the isovalue is in voxels of that type. */
+static double stored_level(const subject *s, cw_type type)
+{
+    return s->hard ? cw_hard_stored(s->number, type, s->isovalue)
+                   : cw_field_stored((cw_field)s->number, type, s->isovalue);
+}
+
+static cw_status make(const make_args *args, const subject *s, cw_error *err)
+{
+    cw_volume volume;
+    cw_status st = s->hard ? sample_hard(args, s->number, &volume, err)
+                           : sample_field(args, (cw_field)s->number, &volume, err);
+    if (st != CW_OK)
+        return st;
+    const cw_write_desc write = {.no_clobber = args->no_clobber,
+                                 .progress = cli_progress(mega_voxels(args), "Mvoxel")};
+    st = cw_volume_write(args->output, &volume, &write, err);
+    if (st == CW_OK)
+        cli_result("%s: %s, %zu x %zu x %zu %s; its surface: --iso %.10g\n", args->output,
+                   s->name, volume.dim[0], volume.dim[1], volume.dim[2],
+                   cw_type_name(volume.type), stored_level(s, volume.type));
+    cw_volume_free(&volume);
+    return st;
+}
+
+static cw_status run(void *p, cw_error *err)
+{
+    make_args *args = p;
+    subject s;
+    if (args->list)
+        return list_subjects();
+    if (args->common.input_count == 0)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "make needs a field; 'cubewright make --list' lists them");
+    if (!find_subject(args->common.inputs[0], &s))
+        return unknown_subject(args->common.inputs[0], err);
+    if (!args->output)
+        return cw_fail(err, CW_ERR_ARGUMENT, "make needs an output: -o FILE");
+    if (args->dims.count == 2)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--dims takes one number or three, not two");
+    if (args->dims.count == 1)
+        args->dims.n[1] = args->dims.n[2] = args->dims.n[0];
+    return make(args, &s, err);
+}
+
+const cli_command cli_make = {
+    .name = "make",
+    .usage = "FIELD -o VOLUME [options]",
+    .about = "Make a test volume whose surface is known exactly",
+    .page = cli_page_make,
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .max_inputs = 1,
+    .size = sizeof(make_args),
+    .defaults = &defaults,
+    .run = run,
+};

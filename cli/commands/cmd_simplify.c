@@ -1,0 +1,139 @@
+#include "cli/commands.h"
+#include "cli/commands/simplify_run.h"
+#include "core/base/status.h"
+
+static const cli_simplify_args defaults = {.measure = true};
+
+static const cli_option options[] = {
+    {"output", 'o', CLI_TEXT, "FILE",
+     "Mesh to write, in the format of its extension; may hold {stem}, with --lod {lod}",
+     offsetof(cli_simplify_args, output)},
+    CLI_HEADED("Target"),
+    {"error", 'e', CLI_LENGTH, "L", "Error limit: 0.1mm, or 0.05% of the box's diagonal",
+     offsetof(cli_simplify_args, error)},
+    {"triangles", 'n', CLI_COUNT, "N", "Triangle count to reach, such as 50k",
+     offsetof(cli_simplify_args, triangles)},
+    {"ratio", 0, CLI_NUMBER, "R", "Fraction of the triangles to keep, such as 0.25",
+     offsetof(cli_simplify_args, ratio)},
+    {"lod", 0, CLI_COUNTS, "N[,N...]",
+     "Triangle counts of levels of detail, such as 50k,12k,3k: a file each, and a glTF with "
+     "all",
+     offsetof(cli_simplify_args, lod)},
+    CLI_HEADED("What is preserved"),
+    {"attributes", 0, CLI_WEIGHTS, "normal/color/scalar",
+     "Attributes to keep sharp, with weights: normal:0.5,color:1 (as the shape allows)",
+     offsetof(cli_simplify_args, attributes)},
+    {"allow-intersections", 0, CLI_FLAG, NULL,
+     "Allow new intersections of triangles, which is faster (off)",
+     offsetof(cli_simplify_args, allow_intersections)},
+    {"keep-border", 0, CLI_FLAG, NULL,
+     "Keep the borders of open surfaces as they are, so that tiles still fit (off)",
+     offsetof(cli_simplify_args, keep_border)},
+    {"drop-components", 0, CLI_LENGTH, "L",
+     "Leave out components with a shorter box diagonal at the start, such as 2mm (none)",
+     offsetof(cli_simplify_args, drop)},
+    {"merge", 0, CLI_FLAG, NULL,
+     "Join all parts to one mesh (off: each by itself, where the format has parts)",
+     offsetof(cli_simplify_args, merge)},
+    {"orient", 0, CLI_FLAG, NULL,
+     "Flip shells that face the wrong way: outer ones outward, cavities inward (off)",
+     offsetof(cli_simplify_args, orient)},
+    CLI_HEADED("Source volume and error"),
+    {"source", 's', CLI_TEXT, "VOLUME",
+     "Volume to take normals from (off: carry over the input's)",
+     offsetof(cli_simplify_args, source)},
+    {"iso", 'i', CLI_NUMBER, "V",
+     "Isovalue of the source, to measure the distance to its surface, too",
+     offsetof(cli_simplify_args, iso)},
+    {"inside", 0, CLI_CHOICE, "above/below", "Which values of the source are inside (above)",
+     offsetof(cli_simplify_args, inside)},
+    {"measure", 0, CLI_FLAG, NULL,
+     "Measure the error, which takes longer than simplifying (on; --no-measure)",
+     offsetof(cli_simplify_args, measure)},
+    {"json", 0, CLI_TEXT, "FILE", "Write a report as JSON; - is the standard output",
+     offsetof(cli_simplify_args, json)},
+    CLI_WRITTEN_OPTIONS(cli_simplify_args),
+    CLI_COMPRESS_OPTIONS(cli_simplify_args),
+    CLI_HEADED("Reading the source"),
+    CLI_CLAIM_OPTIONS("source", "the source", CLI_INPUT_ROW(cli_simplify_args, source_claim)),
+    CLI_INPUT_OPTIONS(cli_simplify_args),
+    {"max-triangles", 0, CLI_COUNT, "N",
+     "Stop before reading more triangles than this, such as 100M (no limit)",
+     CLI_INPUT_ROW(cli_simplify_args, max_triangles)},
+    {"mesh-reader", 0, CLI_TEXT, "NAME",
+     "Read the mesh as this format; names as in 'formats' (by content)",
+     offsetof(cli_simplify_args, mesh_reader)},
+    {"progress", 0, CLI_CHOICE, "auto/plain/json/none", "Progress display on stderr (auto)",
+     offsetof(cli_simplify_args, progress)},
+};
+
+static cw_status check_lod(const cli_simplify_args *args, cw_error *err)
+{
+    const cli_counts *lod = &args->lod;
+    if (args->error.given || args->triangles || args->ratio.given)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--lod has its own targets; --error, --triangles and --ratio are for a "
+                       "single mesh");
+    for (size_t n = 0; n < lod->count; n++)
+        if (!lod->n[n] || (n && lod->n[n] >= lod->n[n - 1]))
+            return cw_fail(err, CW_ERR_ARGUMENT,
+                           "--lod lists %zu triangles%s; each level needs at least 1, and "
+                           "fewer than the one before",
+                           lod->n[n], n ? " after a level with as many or fewer" : "");
+    return CW_OK;
+}
+
+static cw_status check_targets(const cli_simplify_args *args, cw_error *err)
+{
+    if (args->lod.count)
+        return check_lod(args, err);
+    if (!args->error.given && !args->triangles && !args->ratio.given)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "simplify needs a target: --error 0.1mm, --triangles 50k, --ratio 0.25 "
+                       "or --lod 50k,12k,3k");
+    return CW_OK;
+}
+
+static cw_status check_values(const cli_simplify_args *args, cw_error *err)
+{
+    if (args->error.unit == CLI_VOXELS || args->drop.unit == CLI_VOXELS)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--%s: a mesh has no voxels; give mm, or %% of its box's diagonal",
+                       args->error.unit == CLI_VOXELS ? "error" : "drop-components");
+    if (args->ratio.given && !(args->ratio.value > 0 && args->ratio.value < 1))
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--ratio %g: a fraction above 0 and below 1 was expected",
+                       args->ratio.value);
+    if (args->iso.given && !args->source)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--iso needs a volume: --source VOLUME");
+    if (args->iso.given && !args->measure)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--iso is for measuring; it cannot be combined with --no-measure");
+    return CW_OK;
+}
+
+cw_status cli_check_simplify_args(const cli_simplify_args *args, cw_error *err)
+{
+    cw_status st = check_targets(args, err);
+    if (st == CW_OK)
+        st = check_values(args, err);
+    if (st == CW_OK)
+        st = cli_check_compress(&args->compress, false, err);
+    if (st == CW_OK && !args->output)
+        st = cw_fail(err, CW_ERR_ARGUMENT, "simplify needs an output: -o FILE");
+    return st;
+}
+
+const cli_command cli_simplify = {
+    .name = "simplify",
+    .usage = "MESH -o MESH --error L|--triangles N|--ratio R|--lod N,... [options]",
+    .about = "Reduce the triangles of a mesh, within a guaranteed error limit",
+    .page = cli_page_simplify,
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .min_inputs = 1,
+    .max_inputs = 1,
+    .size = sizeof(cli_simplify_args),
+    .defaults = &defaults,
+    .run = cli_run_simplify,
+};

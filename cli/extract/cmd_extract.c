@@ -1,0 +1,403 @@
+#include "cli/commands.h"
+#include "cli/framework/console.h"
+#include "cli/extract/extract_run.h"
+#include "cli/results/pvd_list.h"
+#include "core/base/status.h"
+
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+#include <stdint.h>
+#include <string.h>
+
+enum { DEFAULT_FPS = 10 };
+
+static const cli_extract_args defaults = {.check = true};
+
+static const cli_option options[] = {
+    {"output", 'o', CLI_TEXT, "FILE",
+     "Mesh to write, in the format of its extension; may hold {level}, {step} and {stem}",
+     offsetof(cli_extract_args, output)},
+    {"iso", 'i', CLI_NUMBERS, "V[,V...]",
+     "Isovalue, or several, in the unit of the values (required; in level sets 0)",
+     offsetof(cli_extract_args, iso)},
+    CLI_HEADED("Isovalue and surface"),
+    {"inside", 0, CLI_CHOICE, CLI_INSIDE_CHOICES,
+     "Which values are inside the solid (auto: above; in level sets below)",
+     offsetof(cli_extract_args, inside)},
+    {"open", 0, CLI_FLAG, NULL,
+     "Leave the surface open at the border of the volume (off: capped)",
+     offsetof(cli_extract_args, open)},
+    {"topology", 0, CLI_CHOICE, "field/simple",
+     "Ambiguous cells: as the trilinear field connects them, or by one table (field)",
+     offsetof(cli_extract_args, topology)},
+    {"placement", 0, CLI_CHOICE, "linear/cubic",
+     "Interpolation along an edge: linear, or cubic through the samples (linear)",
+     offsetof(cli_extract_args, placement)},
+    {"snap", 0, CLI_NUMBER, "T",
+     "Merge vertices closer to a sample than this fraction of an edge, up to 0.5; try 0.3 "
+     "(off)",
+     offsetof(cli_extract_args, snap)},
+    {"min-volume", 0, CLI_VOLUME, "V",
+     "Leave out components that enclose less, and all inside them: 500mm3, 0.5ml, 30vox "
+     "(none)",
+     offsetof(cli_extract_args, least)},
+    {"normals", 0, CLI_CHOICE, "field/none",
+     "Vertex normals from the field's gradient, or none (field)",
+     offsetof(cli_extract_args, normals)},
+    {"preview", 0, CLI_FLAG, NULL,
+     "Give a quick look from every 4th voxel along each axis (off)",
+     CLI_INPUT_ROW(cli_extract_args, preview)},
+    {"coarsen", 0, CLI_COUNT, "N",
+     "Use every N-th voxel along each axis, as a preview (4 with --preview, else 1)",
+     CLI_INPUT_ROW(cli_extract_args, coarsen)},
+    {"accel", 0, CLI_CHOICE, "octree/none",
+     "Octree that several isovalues share; the result is the same (octree)",
+     offsetof(cli_extract_args, accel)},
+    CLI_HEADED("Simplify while extracting"),
+    {"simplify", 0, CLI_REDUCTION, "L|N",
+     "Error limit (0.1mm, 0.05%, 0.5vox) or triangle count (50k) to simplify to (off)",
+     offsetof(cli_extract_args, simplify)},
+    {"max-error", 0, CLI_LENGTH, "L",
+     "Error limit as with --simplify, and measured both ways; with --camera out of sight "
+     "(off)",
+     offsetof(cli_extract_args, pixel.most)},
+    CLI_HEADED("Only what cameras see"),
+    {"camera", 0, CLI_TEXT, "FILE[,FILE...]",
+     "Keep only the detail that these cameras need: .json files of 'render', or the text of "
+     "one; with --pixel-error",
+     offsetof(cli_extract_args, pixel.camera)},
+    {"pixel-error", 0, CLI_NUMBER, "N",
+     "Largest movement of the visible surface, in pixels of --camera",
+     offsetof(cli_extract_args, pixel.pixels)},
+    {"cull", 0, CLI_FLAG, NULL,
+     "Leave out what no camera sees, outside its picture or behind the surface (off)",
+     offsetof(cli_extract_args, pixel.cull)},
+    {"size", 0, CLI_SIZES, "WxH", "Size of the cameras' pictures in pixels (1280x720)",
+     offsetof(cli_extract_args, pixel.size)},
+    {"shading", 0, CLI_NUMBER, "DEG",
+     "Simplify the visible surface only where normals agree within this angle; 180 is "
+     "anywhere (1.5)",
+     offsetof(cli_extract_args, pixel.shading)},
+    CLI_HEADED("Time series"),
+    {"steps", 0, CLI_STEPS, "A:B:S/N,.../all",
+     "Time steps to extract, counted from 0, a mesh each (of one file: --step; of files: "
+     "all)",
+     offsetof(cli_extract_args, steps)},
+    {"animate", 0, CLI_FLAG, NULL,
+     "Write one glTF file that shows the steps one after another (off)",
+     offsetof(cli_extract_args, animate)},
+    {"fps", 0, CLI_NUMBER, "N", "Steps a second of --animate (as the file times them, else 10)",
+     offsetof(cli_extract_args, fps)},
+    {"pvd", 0, CLI_TEXT, "FILE",
+     "List to write for ParaView: the .vtp files of the steps, with their times",
+     offsetof(cli_extract_args, pvd)},
+    CLI_HEADED("Output file"),
+    {"format", 0, CLI_TEXT, "NAME", "Format to write; names as in 'formats' (by extension)",
+     offsetof(cli_extract_args, format)},
+    {"name", 0, CLI_TEXT, "TEXT", "Name of the object inside the file (the file's)",
+     offsetof(cli_extract_args, name)},
+    {"local", 0, CLI_FLAG, NULL,
+     "Write coordinates relative to the mesh's origin, which is printed (off: world)",
+     offsetof(cli_extract_args, local)},
+    {"no-clobber", 0, CLI_FLAG, NULL, "Fail if the output exists (off: replace it)",
+     offsetof(cli_extract_args, no_clobber)},
+    {"json", 0, CLI_TEXT, "FILE", "Write a report as JSON; - is the standard output",
+     offsetof(cli_extract_args, json)},
+    {"check", 0, CLI_FLAG, NULL, "Measure the mesh: closed, manifold, size (on; --no-check)",
+     offsetof(cli_extract_args, check)},
+    {"prove-crop", 0, CLI_FLAG, NULL,
+     "Extract the whole volume as well, to prove that --crop changes nothing inside (off)",
+     offsetof(cli_extract_args, prove_crop)},
+    CLI_COMPRESS_OPTIONS(cli_extract_args),
+    CLI_INPUT_OPTIONS(cli_extract_args),
+    {"max-triangles", 0, CLI_COUNT, "N",
+     "Stop before making more triangles than this, such as 100M (no limit)",
+     offsetof(cli_extract_args, max_triangles)},
+    {"progress", 0, CLI_CHOICE, "auto/plain/json/none", "Progress display on stderr (auto)",
+     offsetof(cli_extract_args, progress)},
+};
+
+/* The next surface of the report; frames have no file of their own. */
+static cli_made *begin_surface(cli_extract_run *s, const cli_moment *moment, size_t level)
+{
+    const size_t n = s->report.made_count;
+    const char *path = s->args->animate ? NULL : s->outputs.path[n];
+    cli_made *made = cli_report_next(&s->report, path, s->args->iso.value[level]);
+    made->moment = s->series.given ? moment : NULL;
+    made->timed = s->series.timed;
+    return made;
+}
+
+/* An error of one step among several says of which. */
+static void name_step(const cli_extract_run *s, const cli_moment *moment, cw_error *err)
+{
+    const cw_error why = *err;
+    if (s->series.given)
+        cw_fail(err, why.status, "step %zu: %s", moment->number, why.message);
+}
+
+static cli_delivery delivery(const cli_extract_run *s)
+{
+    return (cli_delivery){.input = s->volume.path,
+                          .write = cli_extract_write_desc(s->args),
+                          .compress = &s->args->compress,
+                          .voxel_mm = cli_extract_voxel_mm(s),
+                          .unchecked = !s->args->check,
+                          .open = s->args->open,
+                          .unpromised = s->args->pixel.cull,
+                          .preview = cli_is_preview(&s->volume)};
+}
+
+/* Into its file, with the record of how it was made. */
+static cw_status deliver(cli_extract_run *s, size_t level, const cw_part *parts, size_t count,
+                         size_t border_loops, cw_error *err)
+{
+    char text[32], simplify[64];
+    cw_provenance provenance[CLI_EXTRACT_PROVENANCE];
+    cli_delivery how = delivery(s);
+    how.write.provenance = provenance;
+    how.write.provenance_count = cli_extract_provenance(s, level, text, simplify, provenance);
+    how.unchecked = how.unchecked || how.write.animated; /* each was by itself */
+    how.parts = how.write.animated ? "steps" : NULL;
+    return cli_deliver(&s->report, &how, parts, count, border_loops, s->start, err);
+}
+
+static cw_status make_surface(cli_extract_run *s, const cli_moment *moment, size_t n,
+                              cw_error *err)
+{
+    cli_made *made = begin_surface(s, moment, n);
+    const cli_delivery how = delivery(s);
+    cw_mesh mesh = {0};
+    cw_extract_counts counts = {0};
+    cw_status st = cli_extract_make(s, made, &mesh, &counts, err);
+    made->snapped = st == CW_OK && s->args->snap.value > 0;
+    made->snap = made->snapped ? counts.snap : (cw_snap_counts){0};
+    if (st == CW_OK && cli_extract_is_simplified(s->args))
+        st = cli_extract_judge(s, made, &mesh, &counts, err);
+    if (st == CW_OK)
+        st = cli_extract_prove(s, made, &mesh, counts.bytes, err);
+    if (st == CW_OK)
+        st = cli_extract_prove_crop(s, moment, made, err);
+    if (st == CW_OK)
+        st = s->args->animate
+                 ? cli_deliver_step(&s->report, &how, &mesh, counts.border_loops, s->start, err)
+                 : deliver(s, n, &(cw_part){.mesh = &mesh}, 1, counts.border_loops, err);
+    if (s->args->animate && (st == CW_OK || st == CW_ERR_EMPTY))
+        cli_frames_add(&s->frames, &mesh, moment, s->fps);
+    if (s->extractor)
+        cw_extractor_recycle(s->extractor, &mesh);
+    cw_mesh_free(&mesh);
+    s->start = cli_seconds();
+    if (st == CW_OK)
+        return CW_OK;
+    name_step(s, moment, err);
+    made->error = *err;
+    return st;
+}
+
+/* The levels of a step. An empty surface among several is told and counted; any other failure
+ * ends the run. */
+static cw_status make_surfaces(cli_extract_run *s, const cli_moment *moment, size_t *empty,
+                               cw_error *err)
+{
+    const size_t levels = s->args->iso.count;
+    for (size_t n = 0; n < levels; n++) {
+        cw_status st = make_surface(s, moment, n, err);
+        if (st != CW_OK && (st != CW_ERR_EMPTY || levels * s->series.count == 1))
+            return st;
+        if (st == CW_ERR_EMPTY && s->args->animate)
+            cli_report_warn(&s->report, "%s; nothing is shown in its time", err->message);
+        else if (st == CW_ERR_EMPTY)
+            cli_say_error(err->message);
+        *empty += st == CW_ERR_EMPTY;
+    }
+    return CW_OK;
+}
+
+/* What a step took goes back to the system: left to itself glibc keeps blocks of this size, and
+ * those of the next step do not quite fit between what else there is. */
+static void free_step(cli_extract_run *s)
+{
+    cli_free_volume(&s->volume);
+#ifdef __GLIBC__
+    malloc_trim(0);
+#endif
+}
+
+static cw_status read_volume(cli_extract_run *s, const cli_moment *moment, cw_error *err)
+{
+    cli_input input = s->args->input;
+    input.step = moment->step;
+    input.step_chosen = s->series.given;
+    free_step(s);
+    cli_report_begin(&s->report);
+    cw_status st = cli_read_volume(moment->path, &input, false, &s->volume, err);
+    if (st != CW_OK)
+        return st;
+    const cw_volume *v = &s->volume.view;
+    if (!s->report.input)
+        st = cli_tell_labels(&s->volume, s->args->iso.value, s->args->iso.count,
+                             cli_extract_is_low(s), err);
+    if (st != CW_OK)
+        return st;
+    if (!s->report.input)
+        s->first = s->volume;
+    s->report.input = &s->first;
+    cli_report_end(&s->report, "read", 1, v->dim[0] * v->dim[1] * v->dim[2]);
+    for (int r = 0; r < 3; r++)
+        cli_say_vv("affine   %12.6g %12.6g %12.6g %12.6g", v->affine[r][0], v->affine[r][1],
+                   v->affine[r][2], v->affine[r][3]);
+    return CW_OK;
+}
+
+/* The voxels of a step: those of one file are all in memory. */
+static cw_status open_step(cli_extract_run *s, const cli_moment *moment, cw_error *err)
+{
+    const bool held = s->volume.voxels.data && s->volume.path == moment->path;
+    cw_status st = held ? cli_choose_step(&s->args->input, moment->step, &s->volume, err)
+                        : read_volume(s, moment, err);
+    s->memory = held ? s->memory : s->volume.memory_left;
+    s->volume.memory_left = s->memory > s->frames.bytes ? s->memory - s->frames.bytes : 1;
+    cw_extractor_free(s->extractor);
+    s->extractor = NULL;
+    if (st != CW_OK || s->args->iso.count == 1 || s->args->accel ||
+        cli_extract_is_simplified(s->args))
+        return st;
+    st = cw_extractor_new(&s->volume.view, &s->extractor, err);
+    return st == CW_OK ? st : cwi_fail_in(err, st, s->volume.path);
+}
+
+static cw_status fail_empty(const cli_extract_run *s, size_t empty, size_t count, cw_error *err)
+{
+    const char *what = s->series.count == 1      ? "isovalues"
+                       : s->args->iso.count == 1 ? "steps"
+                                                 : "surfaces";
+    return cw_fail(err, CW_ERR_EMPTY, "%s: %zu of %zu %s are empty", s->args->common.inputs[0],
+                   empty, count, what);
+}
+
+static cw_status make_steps(cli_extract_run *s, size_t *empty, cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (size_t n = 0; n < s->series.count && st == CW_OK; n++) {
+        st = open_step(s, &s->series.moments[n], err);
+        if (st == CW_OK)
+            st = make_surfaces(s, &s->series.moments[n], empty, err);
+    }
+    return st;
+}
+
+/* An animation has a place for steps that are empty: only nothing but such is no result. */
+static cw_status animate(cli_extract_run *s, cw_error *err)
+{
+    const cli_frames *f = &s->frames;
+    if (f->empty == f->count)
+        return fail_empty(s, f->empty, f->count, err);
+    cli_made *made = cli_report_next(&s->report, s->outputs.path[0], 0);
+    made->name = "all";
+    cw_status st = deliver(s, 0, f->parts, f->count, 0, err);
+    if (st != CW_OK)
+        made->error = *err;
+    return st;
+}
+
+static cw_status write_pvd(cli_extract_run *s, cw_error *err)
+{
+    const cw_write_desc desc = cli_extract_write_desc(s->args);
+    return cli_write_pvd(&s->report, s->args->pvd, &desc, err);
+}
+
+/* A file that times its steps is believed unless --fps says otherwise. */
+static cw_status plan_frames(cli_extract_run *s, cw_error *err)
+{
+    const cli_extract_args *args = s->args;
+    if (!args->animate)
+        return CW_OK;
+    if (s->series.count < 2)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "%s: --animate needs several time steps; there is 1",
+                       args->common.inputs[0]);
+    s->fps = args->fps.given ? args->fps.value : s->series.timed ? 0 : DEFAULT_FPS;
+    if (!args->fps.given && !s->series.timed)
+        cli_say("%s: the steps have no times; the animation shows %d a second (--fps)",
+                args->common.inputs[0], DEFAULT_FPS);
+    return cli_frames_reserve(&s->frames, s->series.count, err);
+}
+
+static cw_status plan_steps(cli_extract_run *s, cw_error *err)
+{
+    const cli_extract_args *args = s->args;
+    cli_steps steps = args->steps;
+    steps.all = steps.all || (args->animate && !steps.given);
+    steps.given = steps.given || args->animate;
+    cw_status st = cli_find_series(&s->series, &args->common, &args->input, &steps, err);
+    if (st == CW_OK)
+        st = cli_extract_check_outputs(s, err);
+    const size_t surfaces = s->series.count * args->iso.count;
+    s->report.several = surfaces > 1 || s->series.given ? "surfaces" : NULL;
+    if (st == CW_OK)
+        st = cli_report_reserve(&s->report, surfaces + 1, err);
+    return st == CW_OK ? plan_frames(s, err) : st;
+}
+
+static cw_status pipeline(cli_extract_run *s, cw_error *err)
+{
+    size_t empty = 0;
+    cw_status st = cli_extract_check_args(s, err);
+    if (st == CW_OK)
+        st = plan_steps(s, err);
+    if (st == CW_OK)
+        st = make_steps(s, &empty, err);
+    if (st == CW_OK && s->args->animate)
+        return animate(s, err);
+    if (st == CW_OK && s->args->pvd)
+        st = write_pvd(s, err);
+    return st == CW_OK && empty
+               ? fail_empty(s, empty, s->series.count * s->args->iso.count, err)
+               : st;
+}
+
+static cw_status run(void *p, cw_error *err)
+{
+    cli_extract_args *args = p;
+    cli_extract_run s = {.args = args, .start = cli_seconds()};
+    if (!args->iso.count && args->output &&
+        cli_is_level_set(args->common.inputs[0], &args->input))
+        args->iso.count = 1; /* 0 */
+    s.report.command = "extract";
+    s.report.several = args->iso.count > 1 ? "surfaces" : NULL;
+    s.report.params = cli_extract_put_params;
+    s.report.facts = cli_extract_put_series;
+    s.report.args = &s;
+    cli_console_start(&args->common, (cli_progress_mode)args->progress);
+    if (args->json && strcmp(args->json, "-") == 0)
+        cli_results_to_stderr();
+    cw_status st = cli_report_reserve(&s.report, 1, err);
+    if (st == CW_OK)
+        st = pipeline(&s, err);
+    st = cli_report_write(&s.report, st, err);
+    for (size_t n = 0; n < s.view_count; n++)
+        cw_simplify_view_free(s.views + n);
+    cw_extractor_free(s.extractor);
+    cli_frames_free(&s.frames);
+    cli_free_volume(&s.volume);
+    cli_free_outputs(&s.outputs);
+    cli_free_series(&s.series);
+    cli_report_free(&s.report);
+    return st;
+}
+
+const cli_command cli_extract = {
+    .name = "extract",
+    .usage = "VOLUME... --iso V -o MESH [options]",
+    .about = "Extract the surface at an isovalue from a volume, as a mesh",
+    .page = cli_page_extract,
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .min_inputs = 1,
+    .max_inputs = SIZE_MAX,
+    .size = sizeof(cli_extract_args),
+    .defaults = &defaults,
+    .run = run,
+};

@@ -1,0 +1,145 @@
+#include "cli/extract/extract_run.h"
+
+#include "cli/results/pvd_list.h"
+#include "core/base/status.h"
+
+cw_write_desc cli_extract_write_desc(const cli_extract_args *args)
+{
+    return (cw_write_desc){.format = args->format,
+                           .name = args->name,
+                           .no_clobber = args->no_clobber,
+                           .local = args->local,
+                           .animated = args->animate,
+                           .compression = (cw_compression)args->compress.kind,
+                           .bits = (int)args->compress.bits};
+}
+
+/* The report is an output too: none is written when it is an input or a mesh. */
+static cw_status check_report(cli_extract_run *s, const char *const *inputs, size_t count,
+                              cw_error *err)
+{
+    const char *json = s->args->json;
+    s->report.path = NULL;
+    cw_status st = json ? cli_check_output(json, inputs, count, err) : CW_OK;
+    for (size_t n = 0; n < s->outputs.count && json && st == CW_OK; n++)
+        st = cli_check_apart(json, s->outputs.path[n], err);
+    s->report.path = st == CW_OK ? json : NULL;
+    return st;
+}
+
+static cw_status check_pvd(const cli_extract_run *s, const char *const *inputs, size_t count,
+                           cw_error *err)
+{
+    const cli_extract_args *args = s->args;
+    const cw_write_desc desc = cli_extract_write_desc(args);
+    cw_status st = CW_OK;
+    if (!args->pvd)
+        return CW_OK;
+    if (!s->series.given)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--pvd is for the steps of a series: --steps");
+    if (args->json)
+        st = cli_check_apart(args->pvd, args->json, err);
+    return st == CW_OK ? cli_check_pvd(args->pvd, &s->outputs, inputs, count, &desc, err) : st;
+}
+
+cw_status cli_extract_check_outputs(cli_extract_run *s, cw_error *err)
+{
+    const cli_extract_args *args = s->args;
+    const cw_write_desc desc = cli_extract_write_desc(args);
+    const size_t files = s->series.files.count, count = files ? files : 1;
+    const char *const *inputs =
+        files ? (const char *const *)s->series.files.path : args->common.inputs;
+    cli_series named = s->series;
+    named.count = args->animate ? 1 : named.count;
+    cw_status st = cli_name_outputs(&s->outputs, args->output, &named, &args->iso, err);
+    if (st == CW_OK)
+        st = check_report(s, inputs, count, err);
+    if (st == CW_OK)
+        st = cli_check_outputs(&s->outputs, inputs, count, &desc, err);
+    return st == CW_OK ? check_pvd(s, inputs, count, err) : st;
+}
+
+static cw_status check_animation(const cli_extract_args *args, cw_error *err)
+{
+    if (args->pvd && args->animate)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--pvd lists files, and --animate writes only one");
+    if (args->fps.given && !args->animate)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--fps is for --animate");
+    if (args->fps.given && !(args->fps.value > 0))
+        return cw_fail(err, CW_ERR_ARGUMENT, "--fps %g: it must be above 0", args->fps.value);
+    if (args->animate && args->iso.count > 1)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--animate shows one level; --iso lists %zu",
+                       args->iso.count);
+    return CW_OK;
+}
+
+/* What asks for fewer triangles. */
+static const char *reducer(const cli_extract_args *args)
+{
+    return args->pixel.camera       ? "--camera"
+           : args->pixel.most.given ? "--max-error"
+                                    : "--simplify";
+}
+
+static cw_status check_pixels(cli_extract_run *s, cw_error *err)
+{
+    const cli_extract_args *args = s->args;
+    cw_status st = cli_read_views(&args->pixel, s->views, &s->view_count, err);
+    if (st != CW_OK)
+        return st;
+    if ((args->pixel.camera || args->pixel.most.given) &&
+        (args->simplify.error.given || args->simplify.triangles))
+        return cw_fail(err, CW_ERR_ARGUMENT, "%s or --simplify, not both", reducer(args));
+    return CW_OK;
+}
+
+static cw_status check_crop(const cli_extract_args *args, cw_error *err)
+{
+    const cli_input *input = &args->input;
+    if (!args->prove_crop)
+        return CW_OK;
+    if (!input->crop.given)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--prove-crop needs --crop");
+    if (input->preview || input->coarsen || args->snap.value > 0)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--prove-crop cannot be combined with %s",
+                       args->snap.value > 0 ? "--snap" : "a preview");
+    return CW_OK;
+}
+
+cw_status cli_extract_check_args(cli_extract_run *s, cw_error *err)
+{
+    const cli_extract_args *args = s->args;
+    const char *const *input = args->common.inputs;
+    cw_status st = check_report(s, input, args->common.input_count, err);
+    if (st == CW_OK)
+        st = cli_check_compress(&args->compress, true, err);
+    if (st != CW_OK)
+        return st;
+    if (!args->output)
+        return cw_fail(err, CW_ERR_ARGUMENT, "extract needs an output: -o FILE");
+    if (!args->iso.count)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "extract needs an isovalue: --iso V; 'cubewright info %s' suggests some",
+                       input[0]);
+    if (!(args->snap.value >= 0 && args->snap.value <= CW_EXTRACT_MAX_SNAP))
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--snap is a fraction of an edge from 0 to %g, not %g",
+                       CW_EXTRACT_MAX_SNAP, args->snap.value);
+    st = check_pixels(s, err);
+    if (st == CW_OK)
+        st = check_crop(args, err);
+    if (st != CW_OK)
+        return st;
+    if (args->pixel.cull && args->snap.value > 0)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--cull cannot be combined with --snap");
+    if (cli_extract_is_simplified(args) && args->snap.value > 0)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--snap or %s, not both: each removes thin triangles", reducer(args));
+    if (cli_extract_is_simplified(args) && !cw_simplify_available())
+        return cw_fail(err, CW_ERR_UNSUPPORTED,
+                       "%s needs OpenMesh, which this build lacks: install libopenmesh-dev and "
+                       "build again",
+                       reducer(args));
+    return check_animation(args, err);
+}

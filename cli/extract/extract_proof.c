@@ -1,0 +1,183 @@
+#include "cli/extract/extract_proof.h"
+
+#include "cli/results/mesh_comparison.h"
+#include "cli/framework/console.h"
+#include "core/base/status.h"
+
+#include <float.h>
+#include <math.h>
+
+cw_status cli_extract_full(const cli_volume *volume, const cli_wanted *wanted, cli_proof *proof,
+                           cw_mesh *full, cw_error *err)
+{
+    cw_extract_counts counts;
+    const double start = cli_seconds();
+    cw_status st = cli_extract_wanted(volume, NULL, wanted, full, &counts, NULL, err);
+    if (st != CW_OK)
+        return st;
+    proof->made = true;
+    proof->full_seconds = cli_seconds() - start;
+    proof->full_bytes = counts.bytes;
+    proof->full_triangles = full->triangle_count;
+    return CW_OK;
+}
+
+static double diagonal_of(const cw_mesh *mesh)
+{
+    double low[3], high[3];
+    cw_mesh_bounds(mesh, low, high);
+    return hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
+}
+
+/* The mesh's distance from the field says little without that of the full surface, which the
+ * extractor leaves between the samples. */
+static cw_status measure_full(const cli_volume *volume, const cli_wanted *wanted, int threads,
+                              const cw_mesh *full, cli_comparison *compared, cw_error *err)
+{
+    cli_comparison c = {0};
+    const cw_extract_desc *d = &wanted->extract;
+    cw_status st =
+        cli_compare_with_field(full, volume, d->isovalue, d->inside_is_low, threads, &c, err);
+    compared->has_full_field = st == CW_OK;
+    compared->full_to_field = c.to_field;
+    return st;
+}
+
+cw_status cli_prove_error(const cli_volume *volume, const cli_wanted *wanted,
+                          const cw_simplify_desc *simplify, const cw_mesh *mesh,
+                          cli_proof *proof, cli_comparison *compared, cw_error *err)
+{
+    const double promised = simplify->error_mm;
+    double area[2] = {0, 0};
+    cw_mesh full;
+    cw_status st = cli_extract_full(volume, wanted, proof, &full, err);
+    if (st != CW_OK)
+        return st;
+    compared->promised_mm = proof->promised_mm = promised;
+    compared->diagonal_mm = diagonal_of(&full);
+    compared->other = "the full surface";
+    st = cli_compare(mesh, &full, promised / 20, simplify->threads, compared, area, err);
+    if (st == CW_OK && compared->has_field)
+        st = measure_full(volume, wanted, simplify->threads, &full, compared, err);
+    cw_mesh_free(&full);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, volume->path);
+    proof->mm = fmax(compared->to_input.max_mm, compared->from_input.max_mm);
+    if (proof->mm <= promised || promised == 0)
+        return CW_OK;
+    return cw_fail(
+        err, CW_ERR_CHECK,
+        "%s: not as promised: %.6g mm from the full surface, not %.6g; nothing is written",
+        volume->path, proof->mm, promised);
+}
+
+/* --- a part of the volume ----------------------------------------------------------------- */
+
+static void world_of(const cw_mesh *m, size_t triangle, size_t corner, double world[3])
+{
+    const float *p = m->positions + 3 * (size_t)m->triangles[3 * triangle + corner];
+    for (int a = 0; a < 3; a++)
+        world[a] = m->origin[a] + (double)p[a];
+}
+
+/* Whether a triangle lies in the cells of a volume. */
+static cw_status is_inside(const cw_volume *v, const cw_mesh *m, size_t triangle, bool *inside,
+                           cw_error *err)
+{
+    double middle[3] = {0, 0, 0}, index[3];
+    for (size_t k = 0; k < 3; k++) {
+        double world[3];
+        world_of(m, triangle, k, world);
+        for (int a = 0; a < 3; a++)
+            middle[a] += world[a] / 3;
+    }
+    cw_status st = cw_volume_to_index(v, middle, index, err);
+    *inside = true;
+    for (int a = 0; a < 3; a++)
+        *inside = *inside && index[a] >= 0 && index[a] <= (double)(v->dim[a] - 1);
+    return st;
+}
+
+/* Both come row by row, so that what is left of the whole is in the part's order. */
+static cw_status compare_parts(const cw_volume *v, const cw_mesh *part, const cw_mesh *whole,
+                               cli_crop_proof *proof, cw_error *err)
+{
+    size_t next = 0;
+    for (size_t t = 0; t < whole->triangle_count; t++) {
+        bool inside;
+        cw_status st = is_inside(v, whole, t, &inside, err);
+        if (st != CW_OK)
+            return st;
+        for (size_t k = 0; k < 3 && inside && next < part->triangle_count; k++) {
+            double p[3], q[3];
+            world_of(part, next, k, p);
+            world_of(whole, t, k, q);
+            const double apart = hypot(hypot(p[0] - q[0], p[1] - q[1]), p[2] - q[2]);
+            proof->apart_mm = fmax(proof->apart_mm, apart);
+        }
+        next += inside;
+    }
+    if (next != part->triangle_count)
+        return cw_fail(err, CW_ERR_CHECK,
+                       "not as promised: %zu triangles, and %zu of the whole surface there",
+                       part->triangle_count, next);
+    return CW_OK;
+}
+
+/* Single precision may round places about another origin otherwise. */
+static double rounding_of(const cw_mesh *part, const cw_mesh *whole)
+{
+    return 4 * FLT_EPSILON * (diagonal_of(part) + diagonal_of(whole));
+}
+
+static cw_status extract_open(const cli_volume *volume, const cli_wanted *wanted, cw_mesh *mesh,
+                              size_t *bytes, double *seconds, cw_error *err)
+{
+    cw_extract_desc desc = wanted->extract;
+    cw_extract_counts counts = {0};
+    const double start = cli_seconds();
+    desc.leave_open = true;
+    desc.no_normals = true;
+    cw_status st = cli_extract_surface(volume, NULL, &desc, mesh, &counts, err);
+    *bytes += counts.bytes;
+    *seconds += cli_seconds() - start;
+    return st;
+}
+
+static size_t voxels_of(const cw_volume *v)
+{
+    return v->dim[0] * v->dim[1] * v->dim[2];
+}
+
+cw_status cli_prove_crop(const cli_volume *part, const cli_input *input,
+                         const cli_wanted *wanted, cli_crop_proof *proof, cw_error *err)
+{
+    cli_volume whole;
+    cw_mesh some = {0}, all = {0};
+    const size_t voxel = cw_type_size(part->view.type);
+    *proof = (cli_crop_proof){.made = true, .voxels = voxels_of(&part->view)};
+    proof->bytes = proof->voxels * voxel;
+    cw_status st = cli_read_whole(part, input, &whole, err);
+    proof->whole_voxels = st == CW_OK ? voxels_of(&whole.view) : 0;
+    proof->whole_bytes = proof->whole_voxels * voxel;
+    if (st == CW_OK)
+        st = extract_open(part, wanted, &some, &proof->bytes, &proof->seconds, err);
+    if (st == CW_OK)
+        st =
+            extract_open(&whole, wanted, &all, &proof->whole_bytes, &proof->whole_seconds, err);
+    proof->triangles = some.triangle_count;
+    proof->whole_triangles = all.triangle_count;
+    if (st == CW_OK) {
+        st = compare_parts(&part->view, &some, &all, proof, err);
+        if (st == CW_OK && proof->apart_mm > rounding_of(&some, &all))
+            st = cw_fail(
+                err, CW_ERR_CHECK,
+                "not as promised: a vertex is %.4g mm from where the whole surface has it",
+                proof->apart_mm);
+        st = st == CW_OK ? st : cwi_fail_in(err, st, part->path);
+    }
+    cw_mesh_free(&some);
+    cw_mesh_free(&all);
+    cli_free_volume(&whole);
+    return st;
+}

@@ -1,0 +1,100 @@
+/* What the parts of the command extract share. */
+#ifndef CLI_EXTRACT_EXTRACT_RUN_H
+#define CLI_EXTRACT_EXTRACT_RUN_H
+
+#include "cli/results/write_result.h"
+#include "cli/results/animation_frames.h"
+#include "cli/results/output_names.h"
+#include "cli/extract/pixel_proof.h"
+#include "cli/framework/quantity.h"
+
+typedef struct cli_extract_args {
+    cli_common common;
+    cli_input input;
+    cli_compress compress;
+    const char *output, *name, *format, *json, *pvd;
+    cli_numbers iso;
+    cli_steps steps;
+    cli_number snap, fps;
+    cli_reduction simplify;
+    cli_amount least;
+    cli_pixel_args pixel;
+    int inside, normals, progress, topology, placement, accel;
+    bool open, no_clobber, local, check, animate, prove_crop;
+    size_t max_triangles;
+} cli_extract_args;
+
+/* A run of the command. */
+typedef struct cli_extract_run {
+    const cli_extract_args *args;
+    cli_series series;
+    cli_volume first; /* of a series of files, without voxels: what the report shows */
+    cli_volume volume;
+    cw_extractor *extractor; /* NULL: every surface by itself */
+    cli_frames frames;       /* of --animate */
+    double fps;              /* of those; 0: as the file times them */
+    size_t memory;           /* left when the voxels were read */
+    cw_simplify_view views[CLI_MOST_VIEWS];
+    size_t view_count;
+    cli_outputs outputs;
+    cli_report report;
+    double start; /* of the surface at hand */
+} cli_extract_run;
+
+enum { CLI_EXTRACT_PROVENANCE = 5 };
+
+/* ---- arguments --------------------------------------------------------------------------- */
+
+/* Everything about them that can be refused before the input is touched. */
+cw_status cli_extract_check_args(cli_extract_run *s, cw_error *err);
+
+/* Names and checks the outputs, once it is known of which steps there will be one. */
+cw_status cli_extract_check_outputs(cli_extract_run *s, cw_error *err);
+
+cw_write_desc cli_extract_write_desc(const cli_extract_args *args);
+
+/* ---- facts ------------------------------------------------------------------------------- */
+
+double cli_extract_voxel_mm(const cli_extract_run *s);
+
+/* Shares are of the diagonal of the volume's box. */
+double cli_extract_length_mm(const cli_extract_run *s, const cli_length *length);
+double cli_extract_error_mm(const cli_extract_run *s);
+
+/* What components have to enclose; 0: nothing. */
+double cli_extract_least_mm3(const cli_extract_run *s);
+
+bool cli_extract_is_low(const cli_extract_run *s);
+bool cli_extract_is_simplified(const cli_extract_args *args);
+
+/* How far normals may turn, in degrees. */
+double cli_extract_shading(const cli_extract_args *args);
+
+/* Of the report: settings, and the files of a series. p is the run. */
+void cli_extract_put_params(cli_json *j, const void *p, const cli_made *made);
+void cli_extract_put_series(cli_json *j, const void *p);
+
+/* How the surface of level n was made, for the file's own record; how many lines. Not of what:
+ * names of files may be names of patients. */
+size_t cli_extract_provenance(const cli_extract_run *s, size_t n, char level[32],
+                              char simplify[64], cw_provenance lines[CLI_EXTRACT_PROVENANCE]);
+
+/* ---- a surface --------------------------------------------------------------------------- */
+
+cw_status cli_extract_make(cli_extract_run *s, cli_made *made, cw_mesh *mesh,
+                           cw_extract_counts *counts, cw_error *err);
+
+/* What became of all the triangles of one that is simplified, and how far from the field it is.
+ */
+cw_status cli_extract_judge(cli_extract_run *s, cli_made *made, const cw_mesh *mesh,
+                            const cw_extract_counts *counts, cw_error *err);
+
+/* Measures what --camera and --max-error promise. bytes: that extraction took */
+cw_status cli_extract_prove(cli_extract_run *s, cli_made *made, const cw_mesh *mesh,
+                            size_t bytes, cw_error *err);
+
+/* Measures what --crop saved, if that is asked for. */
+cw_status cli_extract_prove_crop(cli_extract_run *s, const cli_moment *moment, cli_made *made,
+                                 cw_error *err);
+
+#endif

@@ -1,0 +1,367 @@
+#include "cli/extract/pixel_proof.h"
+
+#include "cli/framework/console.h"
+#include "cli/extract/extract_proof.h"
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/volume/volume.h"
+
+#include <cubewright/render.h>
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_SIDE = 16384, MOST_PATH = 4096, SHOWN = 2 }; /* SHOWN: a difference in 1/255 */
+
+/* --- cameras ------------------------------------------------------------------------------ */
+
+static cw_status check(const cli_pixel_args *a, cw_error *err)
+{
+    const size_t *n = a->size.n;
+    if (!a->camera && (a->pixels.given || a->shading.given || a->size.count || a->cull))
+        return cw_fail(err, CW_ERR_ARGUMENT, "%s is for the pictures of --camera",
+                       a->pixels.given    ? "--pixel-error"
+                       : a->shading.given ? "--shading"
+                       : a->cull          ? "--cull"
+                                          : "--size");
+    if (a->camera && !a->pixels.given && (!a->cull || a->shading.given || a->most.given))
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--camera needs --pixel-error: how many pixels the surface may move%s",
+                       a->cull ? "" : "; or --cull");
+    if (a->pixels.given && !(isfinite(a->pixels.value) && a->pixels.value > 0))
+        return cw_fail(err, CW_ERR_ARGUMENT, "--pixel-error %g: it must be above 0",
+                       a->pixels.value);
+    if (a->shading.given && !(a->shading.value > 0 && a->shading.value <= 180))
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--shading %g: above 0 and up to 180 degrees were expected",
+                       a->shading.value);
+    if (a->size.count && (a->size.count != 2 || n[0] > MOST_SIDE || n[1] > MOST_SIDE))
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--size takes two numbers up to %d, such as 1280x720", MOST_SIDE);
+    return CW_OK;
+}
+
+static cw_status read_files(const char *list, cw_simplify_view *views, size_t *count,
+                            cw_error *err)
+{
+    char path[MOST_PATH];
+    cw_status st = CW_OK;
+    for (const char *p = list; st == CW_OK && p; (*count)++) {
+        const size_t length = strcspn(p, ",");
+        if (length == 0 || length >= sizeof path)
+            return cw_fail(err, CW_ERR_ARGUMENT,
+                           "--camera '%s': .json files by comma were expected", list);
+        if (*count == CLI_MOST_VIEWS)
+            return cw_fail(err, CW_ERR_ARGUMENT, "--camera takes up to %d files",
+                           CLI_MOST_VIEWS);
+        memcpy(path, p, length);
+        path[length] = '\0';
+        st = cw_camera_read(path, &views[*count].camera, err);
+        p = p[length] ? p + length + 1 : NULL;
+    }
+    return st;
+}
+
+cw_status cli_read_views(const cli_pixel_args *args, cw_simplify_view *views, size_t *count,
+                         cw_error *err)
+{
+    *count = 0;
+    cw_status st = check(args, err);
+    if (st != CW_OK || !args->camera)
+        return st;
+    if (*args->camera == '{') {
+        st = cw_camera_parse(args->camera, &views[0].camera, err);
+        *count = 1;
+        st = st == CW_OK ? st : cwi_fail_in(err, st, "--camera");
+    } else {
+        st = read_files(args->camera, views, count, err);
+    }
+    for (size_t n = 0; n < *count; n++) {
+        views[n].width = args->size.count ? args->size.n[0] : 1280;
+        views[n].height = args->size.count ? args->size.n[1] : 720;
+    }
+    return st;
+}
+
+/* --- before the surface is made ----------------------------------------------------------- */
+
+static void corner_of(const cli_volume *volume, int corner, double world[3])
+{
+    const cw_volume *v = &volume->view;
+    double index[3];
+    for (int a = 0; a < 3; a++) {
+        index[a] = corner >> a & 1 ? (double)(v->dim[a] - 1) : 0;
+        world[a] = corner >> a & 1 ? volume->grid.high[a] : volume->grid.low[a];
+    }
+    if (!v->cells)
+        cw_volume_to_world(v, index, world);
+}
+
+/* At a corner's depth, on the axis: there any camera sees. */
+static cw_status error_at(const cw_simplify_view *view, double pixels, const double corner[3],
+                          double *error_mm, cw_error *err)
+{
+    cw_simplify_view bare = *view;
+    double axes[3][3], depth = 0, point[3];
+    bare.depth = NULL;
+    cw_status st = cw_camera_axes(&view->camera, axes[0], axes[1], axes[2], err);
+    for (int a = 0; a < 3; a++)
+        depth += axes[2][a] * (corner[a] - view->camera.eye[a]);
+    for (int a = 0; a < 3; a++)
+        point[a] = view->camera.eye[a] + fmax(depth, 0) * axes[2][a];
+    return st == CW_OK ? cw_simplify_view_error(&bare, pixels, point, error_mm, err) : st;
+}
+
+cw_status cli_widest_error(const cli_volume *volume, const cw_simplify_view *views,
+                           size_t count, double pixels, double *error_mm, cw_error *err)
+{
+    cw_status st = CW_OK;
+    *error_mm = 0;
+    for (size_t n = 0; n < 8 * count && st == CW_OK; n++) {
+        double corner[3], here = 0;
+        corner_of(volume, (int)(n % 8), corner);
+        st = error_at(views + n / 8, pixels, corner, &here, err);
+        *error_mm = isfinite(here) ? fmax(*error_mm, here) : *error_mm;
+    }
+    return st;
+}
+
+typedef struct drawn {
+    cw_simplify_view *views;
+    size_t count;
+} drawn;
+
+static cw_status draw(void *p, const cw_slab *slab, cw_error *err)
+{
+    const drawn *d = p;
+    cw_status st = CW_OK;
+    for (size_t n = 0; n < d->count && st == CW_OK; n++)
+        st = cw_simplify_view_draw(d->views + n, slab->mesh, err);
+    return st;
+}
+
+static cw_status draw_whole(const cli_volume *volume, const cli_wanted *wanted, drawn *all,
+                            cw_error *err)
+{
+    cw_mesh mesh;
+    cw_extract_counts counts;
+    cw_status st = cli_extract_wanted(volume, NULL, wanted, &mesh, &counts, NULL, err);
+    if (st == CW_OK)
+        st = draw(all, &(cw_slab){.mesh = &mesh}, err);
+    cw_mesh_free(&mesh);
+    return st;
+}
+
+/* Which components are large enough is known when all is there. */
+cw_status cli_draw_views(const cli_volume *volume, const cli_wanted *wanted,
+                         cw_simplify_view *views, size_t count, cw_error *err)
+{
+    cli_wanted w = *wanted;
+    drawn all = {views, count};
+    w.extract.max_bytes = volume->memory_left;
+    w.extract.no_normals = true;
+    if (w.least_mm3 > 0)
+        return draw_whole(volume, &w, &all, err);
+    cw_status st = cw_extract_slabs(&volume->view, &w.extract, CW_SIMPLIFIER_SLAB,
+                                    (cw_slab_sink){draw, &all}, NULL, err);
+    return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
+}
+
+/* --- what no view sees ---------------------------------------------------------------------
+ */
+
+enum { BRICK = 8, AROUND = 2 };
+
+/* Corners of the brick's cells that the volume has. */
+static void place_brick(const cw_volume *v, const size_t first[3], double points[8][3])
+{
+    for (int n = 0; n < 8; n++) {
+        double index[3];
+        for (int a = 0; a < 3; a++) {
+            const size_t end = first[a] + BRICK < v->dim[a] ? first[a] + BRICK : v->dim[a] - 1;
+            index[a] = (double)(n >> a & 1 ? end : first[a]);
+        }
+        cw_volume_to_world(v, index, points[n]);
+    }
+}
+
+static cw_status see_brick(const cw_simplify_view *views, size_t count, double points[8][3],
+                           bool *seen, cw_error *err)
+{
+    cw_status st = CW_OK;
+    *seen = false;
+    for (size_t n = 0; n < count && st == CW_OK && !*seen; n++) {
+        cw_simplify_view bare = views[n];
+        bare.depth = NULL;
+        st = cw_simplify_view_sees(&bare, 1, points[0], 8, seen, err);
+    }
+    return st;
+}
+
+static cw_status find_seen(const cw_volume *v, const cw_simplify_view *views, size_t count,
+                           size_t low[3], size_t high[3], cw_error *err)
+{
+    size_t at[3];
+    cw_status st = CW_OK;
+    for (int a = 0; a < 3; a++) {
+        low[a] = SIZE_MAX;
+        high[a] = 0;
+    }
+    for (at[2] = 0; at[2] + 1 < v->dim[2]; at[2] += BRICK)
+        for (at[1] = 0; at[1] + 1 < v->dim[1]; at[1] += BRICK)
+            for (at[0] = 0; at[0] + 1 < v->dim[0] && st == CW_OK; at[0] += BRICK) {
+                double points[8][3];
+                bool seen;
+                place_brick(v, at, points);
+                st = see_brick(views, count, points, &seen, err);
+                for (int a = 0; a < 3 && seen; a++) {
+                    low[a] = at[a] < low[a] ? at[a] : low[a];
+                    high[a] = at[a] + BRICK > high[a] ? at[a] + BRICK : high[a];
+                }
+            }
+    return st;
+}
+
+cw_status cli_seen_part(const cli_volume *volume, const cw_simplify_view *views, size_t count,
+                        cli_volume *part, cw_error *err)
+{
+    const cw_volume *v = &volume->view;
+    size_t low[3], high[3];
+    cw_box box;
+    *part = *volume;
+    if (cwi_volume_expect_dense(v, "bricks", NULL) != CW_OK)
+        return CW_OK;
+    cw_status st = find_seen(v, views, count, low, high, err);
+    if (st == CW_OK && low[0] == SIZE_MAX)
+        st = cw_fail(err, CW_ERR_EMPTY, "no camera sees anything of the volume");
+    for (int a = 0; a < 3 && st == CW_OK; a++) {
+        box.first[a] = low[a] > AROUND ? low[a] - AROUND : 0;
+        const size_t end = high[a] + AROUND + 1;
+        box.count[a] = (end < v->dim[a] ? end : v->dim[a]) - box.first[a];
+    }
+    if (st == CW_OK)
+        st = cw_volume_crop(v, &box, &part->view, err);
+    return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
+}
+
+cw_status cli_cull(const cli_volume *volume, const cw_simplify_view *views, size_t count,
+                   double pixels, double margin_mm, cw_mesh *mesh, size_t *dropped,
+                   cw_error *err)
+{
+    cw_status st = cw_simplify_cull(mesh, views, count, pixels, margin_mm, dropped, err);
+    if (st == CW_OK && !mesh->triangle_count)
+        st = cw_fail(err, CW_ERR_EMPTY, "no camera sees anything of the surface");
+    return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
+}
+
+/* --- the proof ---------------------------------------------------------------------------- */
+
+/* The largest distance around each vertex in pixels of the view, where it sees the vertex. */
+static cw_status measure_view(const cw_simplify_view *view, const cw_mesh *m,
+                              const float *worst, double *most, cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (size_t v = 0; v < m->vertex_count && st == CW_OK; v++) {
+        const float *p = m->positions + 3 * v;
+        const double world[3] = {m->origin[0] + (double)p[0], m->origin[1] + (double)p[1],
+                                 m->origin[2] + (double)p[2]};
+        double pixel = INFINITY;
+        st = cw_simplify_view_error(view, 1, world, &pixel, err);
+        *most = fmax(*most, (double)worst[v] / pixel);
+    }
+    return st;
+}
+
+static cw_status measure(const cw_mesh *from, const cw_mesh *to, const cw_simplify_desc *d,
+                         cli_proof *proof, double *most_mm, cw_error *err)
+{
+    cw_distance distance;
+    float *worst = cwi_alloc_zeroed(from->vertex_count + 1, sizeof *worst);
+    const cw_mesh_distance_desc how = {
+        .worst = worst, .threads = d->threads, .tolerance_mm = d->error_mm};
+    cw_status st = worst ? cw_distance_to_mesh(from, to, &how, &distance, NULL, err)
+                         : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu vertices",
+                                   from->vertex_count);
+    for (size_t n = 0; n < d->view_count && st == CW_OK; n++)
+        st = measure_view(d->views + n, from, worst, &proof->views[n].pixels, err);
+    if (st == CW_OK)
+        *most_mm = fmax(*most_mm, distance.max_mm);
+    cwi_free(worst);
+    return st;
+}
+
+static cw_status draw_picture(const cw_simplify_view *view, const cw_mesh *mesh, int threads,
+                              cw_image *image, cw_error *err)
+{
+    static const uint8_t white[2][4] = {{255, 255, 255, 255}, {255, 255, 255, 255}};
+    const cw_scene scene = {.mode = CW_MODE_MESH,
+                            .mesh = mesh,
+                            .camera = view->camera,
+                            .width = view->width,
+                            .height = view->height,
+                            .threads = threads};
+    cw_renderer *renderer = NULL;
+    cw_picture picture = {0};
+    cw_status st = cw_renderer_new(CW_BACKEND_CPU, &renderer, err);
+    if (st == CW_OK)
+        st = cw_render(renderer, &scene, &picture, err);
+    if (st == CW_OK)
+        st = cw_picture_show(&picture, white, image, err);
+    cw_picture_free(&picture);
+    cw_renderer_free(renderer);
+    return st;
+}
+
+static size_t count_apart(const cw_image *a, const cw_image *b)
+{
+    size_t apart = 0;
+    for (size_t n = 0; n < a->width * a->height; n++) {
+        int most = 0;
+        for (size_t k = 0; k < 3; k++) {
+            const int d = abs((int)a->pixels[4 * n + k] - (int)b->pixels[4 * n + k]);
+            most = d > most ? d : most;
+        }
+        apart += most > SHOWN;
+    }
+    return apart;
+}
+
+static cw_status compare_pictures(const cw_simplify_view *view, const cw_mesh *full,
+                                  const cw_mesh *mesh, int threads, cli_view_proof *proof,
+                                  cw_error *err)
+{
+    cw_image a = {0}, b = {0};
+    cw_status st = draw_picture(view, full, threads, &a, err);
+    if (st == CW_OK)
+        st = draw_picture(view, mesh, threads, &b, err);
+    if (st == CW_OK)
+        proof->apart = (double)count_apart(&a, &b) / (double)(a.width * a.height);
+    cw_image_free(&a);
+    cw_image_free(&b);
+    return st;
+}
+
+cw_status cli_prove_views(const cli_volume *volume, const cli_wanted *wanted,
+                          const cw_simplify_desc *simplify, const cw_mesh *mesh,
+                          cli_proof *proof, cw_error *err)
+{
+    cw_mesh full = {0};
+    cw_status st = cli_extract_full(volume, wanted, proof, &full, err);
+    if (st != CW_OK)
+        return st;
+    proof->count = simplify->view_count;
+    proof->promised_pixels = simplify->pixel_error;
+    proof->promised_mm = simplify->error_mm;
+    if (simplify->pixel_error > 0) {
+        double beside = 0, *back = proof->culled ? &beside : &proof->mm;
+        st = measure(mesh, &full, simplify, proof, &proof->mm, err);
+        if (st == CW_OK)
+            st = measure(&full, mesh, simplify, proof, back, err);
+    }
+    for (size_t n = 0; n < simplify->view_count && st == CW_OK; n++)
+        st = compare_pictures(simplify->views + n, &full, mesh, simplify->threads,
+                              proof->views + n, err);
+    cw_mesh_free(&full);
+    return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
+}

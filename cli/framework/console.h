@@ -1,0 +1,57 @@
+/* What people see while a command runs: messages, steps, the progress bar, interruption. */
+#ifndef CLI_FRAMEWORK_CONSOLE_H
+#define CLI_FRAMEWORK_CONSOLE_H
+
+#include "cli/framework/options.h"
+
+typedef enum cli_progress_mode {
+    CLI_PROGRESS_AUTO, /* a bar when stderr is a terminal */
+    CLI_PROGRESS_PLAIN,
+    CLI_PROGRESS_JSON,
+    CLI_PROGRESS_NONE,
+} cli_progress_mode;
+
+/* How loud to be: from the common options. Call once, before anything is printed. */
+void cli_console_start(const cli_common *common, cli_progress_mode mode);
+
+/* To stderr: always unless quiet; only with -v; only with -vv. */
+void cli_say(const char *format, ...) CW_PRINTF(1, 2);
+void cli_say_v(const char *format, ...) CW_PRINTF(1, 2);
+void cli_say_vv(const char *format, ...) CW_PRINTF(1, 2);
+
+/* The one line of an error, on stderr, in red on a terminal. */
+void cli_say_error(const char *message);
+
+/* To stdout, unless quiet; to stderr after cli_results_to_stderr(), when stdout is for JSON. */
+void cli_results_to_stderr(void);
+void cli_result(const char *format, ...) CW_PRINTF(1, 2);
+
+/* A desc's progress: draws the bar, whose rate counts units (such as "Mvoxel") of total, and
+ * cancels the call after Ctrl-C. */
+cw_progress cli_progress(double total, const char *unit);
+
+/* Somebody else who hears what is said and how far things are: a window. */
+typedef struct cli_listener {
+    void *user;
+    void (*say)(void *user, const char *line);
+    bool (*progress)(void *user, const char *step, double done); /* false: stop */
+} cli_listener;
+
+/* NULL: nobody any more. */
+void cli_console_listen(const cli_listener *listener);
+
+/* Whether Ctrl-C was pressed. */
+bool cli_interrupted(void);
+
+/* Wipes the bar before something else is printed. */
+void cli_progress_end(void);
+
+/* Turns SIGINT, SIGTERM and SIGHUP into a flag that progress polls; a second signal removes
+ * partial files and ends the program. */
+void cli_catch_signals(void);
+
+/* Seconds since some fixed moment; and the most memory the process has held so far. */
+double cli_seconds(void);
+size_t cli_peak_bytes(void);
+
+#endif

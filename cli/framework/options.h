@@ -1,0 +1,185 @@
+/* Options as tables: parsing, help and "did you mean" are made from the same rows. */
+#ifndef CLI_FRAMEWORK_OPTIONS_H
+#define CLI_FRAMEWORK_OPTIONS_H
+
+#include <cubewright/core.h>
+
+typedef enum cli_kind {
+    CLI_FLAG,      /* bool; --x and --no-x */
+    CLI_TEXT,      /* const char * */
+    CLI_CHOICE,    /* int: the position in value, names parted by '/' */
+    CLI_NUMBER,    /* cli_number */
+    CLI_NUMBERS,   /* cli_numbers: 300 or 50,300 */
+    CLI_COUNT,     /* size_t: 50k, 100M */
+    CLI_COUNTS,    /* cli_counts: 50k,12k,3k */
+    CLI_BYTES,     /* size_t: 512M, 8G (1024s) */
+    CLI_LENGTHS,   /* cli_lengths: one for all axes or three; 0.5mm, 1x1x2, bare is mm */
+    CLI_LENGTH,    /* cli_length: 0.1mm, 0.05% of the box's diagonal, 0.5vox; bare is mm */
+    CLI_VOLUME,    /* cli_amount: 500mm3, 0.5ml, 30vox; bare is mm3 */
+    CLI_SIZES,     /* cli_sizes: 64, 1280x720 or 512x512x300 */
+    CLI_RANGES,    /* cli_ranges: 10:50,0:99,20:40 in voxels, -30mm:30mm,... in the world */
+    CLI_REDUCTION, /* cli_reduction */
+    CLI_STEPS,     /* cli_steps: 0:20:2, 0,3,7 or all */
+    CLI_WEIGHTS,   /* cli_weights: normal:0.5,color:1; value has the names, parted by '/' */
+    CLI_COMPONENT, /* cli_component: its number from 0, or mag */
+    CLI_LOUDER,    /* int, counts up */
+    CLI_HEADING,   /* no option: the name of those below it in the help */
+} cli_kind;
+
+typedef struct cli_number {
+    bool given;
+    double value;
+} cli_number;
+
+enum { CLI_MAX_NUMBERS = 64 };
+
+typedef struct cli_numbers {
+    size_t count; /* 0: none given */
+    double value[CLI_MAX_NUMBERS];
+} cli_numbers;
+
+enum { CLI_MAX_COUNTS = 16 };
+
+typedef struct cli_counts {
+    size_t count; /* 0: none given */
+    size_t n[CLI_MAX_COUNTS];
+} cli_counts;
+
+typedef struct cli_lengths {
+    bool given;
+    double mm[3];
+} cli_lengths;
+
+typedef enum cli_length_unit { CLI_MM, CLI_PERCENT, CLI_VOXELS } cli_length_unit;
+
+/* A length that may be told in proportion to something. */
+typedef struct cli_length {
+    bool given;
+    double value;
+    cli_length_unit unit; /* millimetres, % of a box's diagonal, or voxels */
+} cli_length;
+
+/* A part of space. */
+typedef struct cli_amount {
+    bool given, voxels;
+    double value; /* cubic millimetres, or as many voxels */
+} cli_amount;
+
+enum { CLI_MAX_WEIGHTS = 4 };
+
+typedef struct cli_weights {
+    bool given;
+    double of[CLI_MAX_WEIGHTS]; /* the name at that position; 0: it was not named */
+} cli_weights;
+
+/* How far to simplify: to an error, or to a number of triangles. */
+typedef struct cli_reduction {
+    cli_length error; /* given, or else: */
+    size_t triangles; /* 0: neither was said */
+} cli_reduction;
+
+/* What is taken of the values of a voxel. */
+typedef struct cli_component {
+    bool given, magnitude; /* of the vector that they all are; else: */
+    size_t number;
+} cli_component;
+
+typedef struct cli_sizes {
+    int count; /* 1 to 3 given, 0: none */
+    size_t n[3];
+} cli_sizes;
+
+/* A box: from low to high along each axis, ends included. */
+typedef struct cli_ranges {
+    bool given;
+    bool world; /* LPS millimetres; else voxel indices */
+    double low[3], high[3];
+} cli_ranges;
+
+enum { CLI_MAX_STEPS = 64 };
+
+/* Steps of a time series, ascending; each row runs from first to last, both included. */
+typedef struct cli_steps {
+    bool given, all;
+    size_t count;
+    struct {
+        size_t first, last, by;
+    } rows[CLI_MAX_STEPS];
+} cli_steps;
+
+typedef struct cli_option {
+    const char *name; /* without the dashes */
+    char letter;      /* of the short form; 0: none */
+    cli_kind kind;
+    const char *value; /* what help calls the value; for CLI_CHOICE the choices */
+    const char *about; /* for help; the default stands in brackets at the end */
+    size_t offset;     /* of its field in the command's struct */
+} cli_option;
+
+/* A row that is no option: the options below it stand under this name in the help. */
+#define CLI_HEADED(name)                                                                       \
+    {                                                                                          \
+        name, 0, CLI_HEADING, NULL, "", 0                                                      \
+    }
+
+/* Headings of options that a command must know before it opens a file. */
+#define CLI_READING "Reading"
+#define CLI_LIMITS  "Limits and messages"
+
+enum { CLI_MAX_OPTIONS = 128 }; /* rows of a command's table */
+
+/* What every command's struct begins with. */
+typedef struct cli_common {
+    bool help;
+    bool quiet;
+    int verbose;
+    const char **inputs; /* the arguments that are no options */
+    size_t input_count;
+    bool given[CLI_MAX_OPTIONS]; /* rows of the command's table that were */
+} cli_common;
+
+typedef struct cli_command {
+    const char *name;
+    const char *usage; /* after the name */
+    const char *about; /* one line */
+    const char *page;  /* the long help, help/NAME.txt: paragraphs and examples */
+    const cli_option *options;
+    size_t option_count;
+    size_t min_inputs, max_inputs;
+    bool slices; /* the input may be slices, which a shell may make many arguments of */
+    size_t size; /* of the struct that options fill in; it begins with cli_common */
+    void (*print_more)(void); /* behind the options of the long help; NULL: nothing */
+    const void *defaults;     /* that struct before any option; NULL: zeros */
+    cw_status (*run)(void *args, cw_error *err);
+} cli_command;
+
+/* Fills in args (of command->size bytes, holding the defaults) from the words after the
+ * command's name. inputs has room for all words. Returns CW_ERR_ARGUMENT with the nearest name
+ * for an unknown option; checks nothing about the number of inputs when help is asked for. */
+cw_status cli_parse(const cli_command *command, int count, char **words, void *args,
+                    const char **inputs, cw_error *err);
+
+/* Whether an option was given, of that name. */
+bool cli_is_given(const cli_command *command, const cli_common *args, const char *name);
+
+/* The size of an option's field. */
+size_t cli_option_size(const cli_option *option);
+
+/* The value of an option that is no flag, as it would be said on the command line; of texts,
+ * choices, numbers, counts, lengths and ranges. false: nothing was said. */
+bool cli_option_text(const cli_option *option, const void *args, char *text, size_t size);
+
+/* The help of a command: the options, and in the long form its page before them. */
+void cli_print_help(const cli_command *command, bool long_form);
+
+/* Prints a text to the standard output, where the cursor stands in a column: in lines of up to
+ * 96 columns that begin there. */
+void cli_print_wrapped(const char *text, size_t column);
+
+/* The candidate most like a word, or NULL when none is close; names end with a NULL. */
+const char *cli_nearest(const char *word, const char *const *names);
+
+extern const cli_option cli_common_options[];
+extern const size_t cli_common_option_count;
+
+#endif

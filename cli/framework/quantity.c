@@ -1,0 +1,285 @@
+#include "cli/framework/quantity.h"
+
+#include "core/base/text.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { LONGEST = 32 }; /* number as text */
+
+bool cli_parse_number(const char *text, cli_number *out)
+{
+    out->given = cwi_parse_double(&text, &out->value) && *text == '\0' && isfinite(out->value);
+    return out->given;
+}
+
+bool cli_parse_numbers(const char *text, cli_numbers *out)
+{
+    for (out->count = 0; out->count < CLI_MAX_NUMBERS; text++) {
+        double *value = &out->value[out->count++];
+        if (!cwi_parse_double(&text, value) || !isfinite(*value))
+            return false;
+        *value += 0.0; /* -0 is 0 */
+        if (*text != ',')
+            return *text == '\0';
+    }
+    return false;
+}
+
+/* A number and its unit, as millimetres; *text moves behind it. *unit: whether there was one.
+ */
+static bool parse_length(const char **text, double *mm, bool *unit)
+{
+    static const struct {
+        const char *name;
+        double mm;
+    } units[] = {{"mm", 1}, {"um", 1e-3}, {"nm", 1e-6}, {"cm", 10}, {"m", 1e3}, {"in", 25.4}};
+    *unit = false;
+    if (!cwi_parse_double(text, mm))
+        return false;
+    for (size_t u = 0; u < sizeof units / sizeof *units && !*unit; u++)
+        if (strncmp(*text, units[u].name, strlen(units[u].name)) == 0) {
+            *mm *= units[u].mm;
+            *text += strlen(units[u].name);
+            *unit = true;
+        }
+    return isfinite(*mm);
+}
+
+bool cli_parse_lengths(const char *text, cli_lengths *out)
+{
+    char item[CWI_ITEM_BYTES], separator = 0;
+    int count = 0;
+    do {
+        const char *at = item;
+        bool unit;
+        if (count == 3 || !cwi_next_item(&text, &separator, item) ||
+            !parse_length(&at, &out->mm[count], &unit) || *at || !(out->mm[count] > 0))
+            return false;
+        count++;
+    } while (separator);
+    if (*text != '\0' || count == 2)
+        return false;
+    for (int a = count; a < 3; a++)
+        out->mm[a] = out->mm[0];
+    return out->given = true;
+}
+
+bool cli_parse_length(const char *text, cli_length *out)
+{
+    bool unit;
+    if (!parse_length(&text, &out->value, &unit) || !(out->value > 0))
+        return false;
+    out->unit = CLI_MM;
+    if (!unit && strcmp(text, "%") == 0)
+        out->unit = CLI_PERCENT;
+    else if (!unit && strcmp(text, "vox") == 0)
+        out->unit = CLI_VOXELS;
+    return out->given = *text == '\0' || out->unit != CLI_MM;
+}
+
+bool cli_parse_amount(const char *text, cli_amount *out)
+{
+    static const struct {
+        const char *name;
+        double mm3;
+    } units[] = {{"", 1}, {"mm3", 1}, {"um3", 1e-9}, {"cm3", 1e3}, {"ml", 1e3}, {"vox", 1}};
+    if (!cwi_parse_double(&text, &out->value) || !(out->value > 0))
+        return false;
+    out->voxels = strcmp(text, "vox") == 0;
+    for (size_t u = 0; u < sizeof units / sizeof *units && !out->given; u++) {
+        out->given = strcmp(text, units[u].name) == 0;
+        out->value *= out->given ? units[u].mm3 : 1;
+    }
+    return out->given && isfinite(out->value) && out->value > 0;
+}
+
+bool cli_parse_reduction(const char *text, cli_reduction *out)
+{
+    const char *end = text;
+    double value;
+    if (cli_parse_count(text, 1000, &out->triangles))
+        return out->triangles > 0;
+    return cwi_parse_double(&end, &value) && *end != '\0' &&
+           cli_parse_length(text, &out->error);
+}
+
+double cli_length_mm(const cli_length *length, double diagonal_mm, double voxel_mm)
+{
+    return length->value * (length->unit == CLI_PERCENT  ? diagonal_mm / 100
+                            : length->unit == CLI_VOXELS ? voxel_mm
+                                                         : 1);
+}
+
+bool cli_parse_sizes(const char *text, cli_sizes *out)
+{
+    char item[CWI_ITEM_BYTES], separator = 0;
+    out->count = 0;
+    do {
+        const char *at = item;
+        int64_t n;
+        if (out->count == 3 || !cwi_next_item(&text, &separator, item) ||
+            !cwi_parse_int(&at, &n) || *at || n < 1 || n > INT32_MAX)
+            return false;
+        out->n[out->count++] = (size_t)n;
+    } while (separator);
+    return *text == '\0';
+}
+
+/* "10:50" or "-30mm:30mm". *world: with units, which both ends have or none. */
+static bool parse_range(const char *text, double *low, double *high, bool *world)
+{
+    bool unit;
+    return parse_length(&text, low, world) && *text++ == ':' &&
+           parse_length(&text, high, &unit) && unit == *world && *text == '\0' && *low <= *high;
+}
+
+/* Three ranges, all with units or all bare. */
+bool cli_parse_ranges(const char *text, cli_ranges *out)
+{
+    char item[CWI_ITEM_BYTES], separator = 0;
+    for (int a = 0; a < 3; a++) {
+        bool world;
+        if (!cwi_next_item(&text, &separator, item) ||
+            !parse_range(item, &out->low[a], &out->high[a], &world) ||
+            (a > 0 && world != out->world) || (separator != 0) != (a < 2))
+            return false;
+        out->world = world;
+    }
+    return out->given = *text == '\0';
+}
+
+static bool parse_step(const char **text, size_t *step)
+{
+    int64_t n;
+    if (!cwi_parse_int(text, &n) || n < 0 || n > INT32_MAX)
+        return false;
+    *step = (size_t)n;
+    return true;
+}
+
+/* "a", "a:b" or "a:b:by". */
+static bool parse_row(const char **text, size_t *first, size_t *last, size_t *by)
+{
+    *by = 1;
+    if (!parse_step(text, first))
+        return false;
+    *last = *first;
+    if (**text != ':')
+        return true;
+    ++*text;
+    if (!parse_step(text, last) || *last < *first)
+        return false;
+    if (**text != ':')
+        return true;
+    ++*text;
+    return parse_step(text, by) && *by > 0;
+}
+
+bool cli_parse_steps(const char *text, cli_steps *out)
+{
+    *out = (cli_steps){.given = true, .all = strcmp(text, "all") == 0};
+    if (out->all)
+        return true;
+    for (; out->count < CLI_MAX_STEPS; text++) {
+        const size_t n = out->count++;
+        if (!parse_row(&text, &out->rows[n].first, &out->rows[n].last, &out->rows[n].by) ||
+            (n > 0 && out->rows[n].first <= out->rows[n - 1].last))
+            return false;
+        if (*text != ',')
+            return *text == '\0';
+    }
+    return false;
+}
+
+bool cli_parse_count(const char *text, double thousand, size_t *out)
+{
+    static const char prefixes[] = "kMGT";
+    double value;
+    if (!cwi_parse_double(&text, &value))
+        return false;
+    const char *prefix = *text ? strchr(prefixes, *text == 'K' ? 'k' : *text) : NULL;
+    if (prefix) {
+        value *= pow(thousand, (double)(prefix - prefixes + 1));
+        text++;
+    }
+    if (thousand == 1024 && prefix && *text == 'i') /* GiB: the unit is 1024 anyway */
+        text++;
+    if (thousand == 1024 && (*text == 'B' || *text == 'b'))
+        text++;
+    if (*text != '\0' || !(value >= 0) || value > 0x1p62 || value != floor(value))
+        return false;
+    *out = (size_t)value;
+    return true;
+}
+
+bool cli_parse_counts(const char *text, cli_counts *out)
+{
+    for (out->count = 0; out->count < CLI_MAX_COUNTS;) {
+        char number[LONGEST];
+        const size_t length = strcspn(text, ",");
+        if (length >= sizeof number)
+            return false;
+        memcpy(number, text, length);
+        number[length] = '\0';
+        if (!cli_parse_count(number, 1000, &out->n[out->count++]))
+            return false;
+        if (text[length] == '\0')
+            return true;
+        text += length + 1;
+    }
+    return false;
+}
+
+enum { KEPT = 8 };
+
+static char *next_buffer(void)
+{
+    static char kept[KEPT][LONGEST];
+    static int next;
+    next = (next + 1) % KEPT;
+    return kept[next];
+}
+
+const char *cli_bytes(double bytes)
+{
+    static const char *const units[] = {"bytes", "kB", "MB", "GB", "TB"};
+    char *text = next_buffer();
+    int unit = 0;
+    for (; bytes >= 1000 && unit < 4; unit++)
+        bytes /= 1000;
+    snprintf(text, LONGEST, unit ? "%.1f %s" : "%.0f %s", bytes, units[unit]);
+    return text;
+}
+
+const char *cli_count(size_t count)
+{
+    char digits[LONGEST], *text = next_buffer();
+    const int length = snprintf(digits, sizeof digits, "%zu", count);
+    int n = 0;
+    for (int i = 0; i < length; i++) {
+        if (i > 0 && (length - i) % 3 == 0)
+            text[n++] = ' ';
+        text[n++] = digits[i];
+    }
+    text[n] = '\0';
+    return text;
+}
+
+const char *cli_number_text(double value)
+{
+    char *text = next_buffer();
+    const char *end = text;
+    double same;
+    if (value == floor(value) && fabs(value) < 1e15) {
+        snprintf(text, LONGEST, "%.0f", value);
+        return text;
+    }
+    for (int digits = 1; digits <= 17; digits++, end = text) {
+        snprintf(text, LONGEST, "%.*g", digits, value);
+        if (cwi_parse_double(&end, &same) && same == value)
+            break;
+    }
+    return text;
+}

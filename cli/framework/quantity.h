@@ -1,0 +1,36 @@
+/* Quantities as people type them, and numbers as people read them. */
+#ifndef CLI_FRAMEWORK_QUANTITY_H
+#define CLI_FRAMEWORK_QUANTITY_H
+
+#include "cli/framework/options.h"
+
+bool cli_parse_number(const char *text, cli_number *out);
+bool cli_parse_numbers(const char *text, cli_numbers *out);
+bool cli_parse_lengths(const char *text, cli_lengths *out);
+bool cli_parse_length(const char *text, cli_length *out);
+
+bool cli_parse_amount(const char *text, cli_amount *out);
+
+/* A length with a unit, or a count above 0 with k, M or G. */
+bool cli_parse_reduction(const char *text, cli_reduction *out);
+
+/* In millimetres, shares of a diagonal and voxels resolved. */
+double cli_length_mm(const cli_length *length, double diagonal_mm, double voxel_mm);
+bool cli_parse_sizes(const char *text, cli_sizes *out);
+bool cli_parse_ranges(const char *text, cli_ranges *out);
+bool cli_parse_steps(const char *text, cli_steps *out);
+
+/* A count with an optional k, M, G or T of the given thousand: 1000, or 1024 for bytes. */
+bool cli_parse_count(const char *text, double thousand, size_t *out);
+
+bool cli_parse_counts(const char *text, cli_counts *out);
+
+/* "12.3 MB", "1 234 567", and a number as people would type it: the shortest text that reads
+ * back the same, whole numbers without an exponent. In static memory; the last eight results
+ * are kept.
+ */
+const char *cli_bytes(double bytes);
+const char *cli_count(size_t count);
+const char *cli_number_text(double value);
+
+#endif

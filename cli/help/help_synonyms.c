@@ -1,0 +1,73 @@
+/* What people call things, and what they are called here. Notes are honest about what
+ * cubewright cannot do, and name what comes close. */
+#include "cli/help/help_search.h"
+
+#include <stddef.h>
+
+const cli_synonym cli_synonyms[] = {
+    {"threshold|level|contour|isolevel|isocontour|cutoff", "isovalue", "isovalue|--iso", NULL},
+    {"hounsfield|hu|ct number", NULL, "hounsfield|--iso|--tf",
+     "In CT volumes the isovalue is in Hounsfield units; 'cubewright info FILE' suggests "
+     "some."},
+    {"decimat|reduc|low-poly|low poly|lowpoly|poly count|polycount|polygon count|face count",
+     "simplify", "simplify|--triangles|--ratio|--error", NULL},
+    {"lod|level of detail|levels of detail", NULL, "--lod", NULL},
+    {"remesh|retopolog", NULL, "offset|--by|--snap",
+     "'offset --by 0' makes a new mesh of the same surface; 'extract --snap' gives better "
+     "triangles."},
+    {"label|segment|mask|atlas", NULL, "label|--inside",
+     "cubewright does not extract each label of a label map as a separate mesh. An isovalue "
+     "joins all labels above it; a mask of one label works, with --iso 0.5 for values 0 and "
+     "1."},
+    {"smooth|denois|filter|laplacian|taubin|gaussian", NULL,
+     "--snap|--placement|--min-volume|--drop-components|--noise",
+     "cubewright does not smooth or denoise, neither volumes nor meshes. --snap removes thin "
+     "triangles, and --min-volume and --drop-components remove small components."},
+    {"hole|watertight|repair|heal|leak", "closed", "closed|--open|--orient|--by|--profile",
+     "cubewright does not fill holes of a mesh. 'extract' makes closed meshes, 'check' finds "
+     "open edges, and 'offset --by 0' rebuilds closed meshes that intersect themselves."},
+    {"resampl|downsampl|subsampl|resolution|thin out", "coarsen",
+     "--coarsen|--preview|--crop|--size",
+     "cubewright does not resample volumes. --coarsen uses every N-th voxel of each axis."},
+    {"slice thickness|voxel size|pixel size|pixel spacing", "spacing", "--spacing|--voxel",
+     NULL},
+    {"roi|region of interest|subvolume|sub-volume|trim", "crop", "--crop|--clip-box|--clip",
+     NULL},
+    {"unit|scale|mm|millimet|inch|micron|micromet|metre|meter", "unit",
+     "--input-unit|--unit|--source-unit|--spacing", NULL},
+    {"axis|axes|orientation|lps|ras|z-up|y-up", "frame",
+     "--input-frame|--input-up|--frame|--up|--axes|--letters", NULL},
+    {"shell|wall|infill|lighten|thickness", "hollow", "hollow|--wall|--drain", NULL},
+    {"dilat|erod|thicken|inflate|grow|expand|shrink", "offset", "offset|--by", NULL},
+    {"flip|invert|inside out|inside-out", "orient", "--orient|--inside", NULL},
+    {"island|speck|floater|debris|small parts|connected component", "components",
+     "--min-volume|--drop-components", NULL},
+    {"normal", NULL, "normals|--attributes|--shading", NULL},
+    {"ct|cbct|pacs|scanner", NULL, "dicom|--gaps|--tilt|--tf", NULL},
+    {"4d|time series|time-series|cine|gated|dynamic", "time steps",
+     "--steps|--step|--animate|--pvd|--fps", NULL},
+    {"colour map|color map|colormap|colourmap|lookup table|lut|palette", "transfer function",
+     "transfer function|--tint", NULL},
+    {"transparen|alpha|translucen|see-through", "opacity", "opacity|opacities|--color", NULL},
+    {"volume render|volume rendering|ray cast|raycast|maximum intensity", "mode",
+     "render|--mode", NULL},
+    {"screenshot|snapshot|image", "picture", "picture|screenshot", NULL},
+    {"video|movie|gif|mp4", NULL, "--turntable|--animate|--steps",
+     "cubewright writes no videos. 'render --turntable' writes numbered pictures, 'extract "
+     "--animate' an animated glTF file."},
+    {"animation|rotat|spin", NULL, "--turntable|--orbit|--animate|turntable", NULL},
+    {"quantiz|quantis|file size|smaller file|gzip|zip", "compress",
+     "--compress|--tolerance|--bits|--level", NULL},
+    {"draco|meshopt", NULL, "--compress|--tolerance|--bits|--level", NULL},
+    {"ram|out of memory", "memory", "--memory|--max-voxels|--max-triangles", NULL},
+    {"cpu|core|parallel|speed|fast|slow", "threads",
+     "--threads|--preview|--accel|--progress|bench", NULL},
+    {"stl|obj|gltf|glb|ply|off|3mf|vtp|nifti|nrrd|tiff|vdb|openvdb|export|import|file type",
+     NULL, "convert|formats|--format|--reader|--output", NULL},
+    {"print|printer|3d print|slicer|resin", NULL, "print|hollow|--profile|--drain", NULL},
+    {"quality|validate|verify|inspect|lint", "check", "check|--profile|--deep|--check", NULL},
+    {"hausdorff|deviation|accuracy|precision", "distance",
+     "distance|--error|--max-error|--source|--reference", NULL},
+    {"gpu|opengl|headless|offscreen|off-screen", NULL, "--backend|--hidden|opengl", NULL},
+    {NULL, NULL, NULL, NULL},
+};

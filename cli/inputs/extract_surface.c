@@ -1,0 +1,153 @@
+#include "cli/inputs/extract_surface.h"
+
+#include "cli/framework/console.h"
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/volume/volume.h"
+
+static cw_status explain_empty(const cli_volume *volume, const cw_extract_desc *desc,
+                               cw_error *err)
+{
+    cw_statistics range;
+    cw_status st = cw_volume_statistics(&volume->view, 0, desc->threads, &range, err);
+    if (st != CW_OK)
+        return st;
+    if (!range.finite)
+        return cw_fail(err, CW_ERR_EMPTY, "no voxel has a finite value");
+    return cw_fail(err, CW_ERR_EMPTY,
+                   "no surface at isovalue %g: values%s are %g to %g, and it must be above the "
+                   "lowest and at most the highest",
+                   desc->isovalue, cli_is_preview(volume) ? " of the preview" : "", range.min,
+                   range.max);
+}
+
+/* Of the limit to voxels and surface, and of that to the whole process. */
+static size_t memory_left(const cli_volume *volume)
+{
+    const size_t left = cwi_memory_left();
+    return left < 1 ? 1 : left < volume->memory_left ? left : volume->memory_left;
+}
+
+static cw_progress progress_of(const cli_volume *volume)
+{
+    const size_t *n = volume->view.dim;
+    return cli_progress((double)n[0] * (double)n[1] * (double)n[2] / 1e6, "Mvoxel");
+}
+
+cw_status cli_extract_surface(const cli_volume *volume, cw_extractor *extractor,
+                              const cw_extract_desc *desc, cw_mesh *mesh,
+                              cw_extract_counts *counts, cw_error *err)
+{
+    cw_extract_desc d = *desc;
+    d.max_bytes = memory_left(volume);
+    d.progress = progress_of(volume);
+    cw_status st = extractor ? cw_extractor_extract(extractor, &d, mesh, counts, err)
+                             : cw_extract(&volume->view, &d, mesh, counts, err);
+    if (st == CW_OK && mesh->triangle_count == 0)
+        st = explain_empty(volume, desc, err);
+    return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
+}
+
+static cw_status explain_dropped(const cli_wanted *wanted, const cw_drop_counts *dropped,
+                                 cw_error *err)
+{
+    return cw_fail(err, CW_ERR_EMPTY,
+                   "no component encloses %.6g mm3: the largest of %zu encloses %.6g",
+                   wanted->least_mm3, dropped->dropped, dropped->largest_mm3);
+}
+
+cw_status cli_extract_wanted(const cli_volume *volume, cw_extractor *extractor,
+                             const cli_wanted *wanted, cw_mesh *mesh, cw_extract_counts *counts,
+                             cw_drop_counts *dropped, cw_error *err)
+{
+    cw_drop_counts own, *d = dropped ? dropped : &own;
+    cw_status st = cli_extract_surface(volume, extractor, &wanted->extract, mesh, counts, err);
+    *d = (cw_drop_counts){0};
+    if (st != CW_OK || !(wanted->least_mm3 > 0))
+        return st;
+    st = cw_mesh_drop_volumes(mesh, wanted->least_mm3, d, err);
+    if (st == CW_OK && !d->kept)
+        st = explain_dropped(wanted, d, err);
+    if (st == CW_OK)
+        return CW_OK;
+    cw_mesh_free(mesh);
+    return cwi_fail_in(err, st, volume->path);
+}
+
+/* Not by slabs: the surface as a whole, whose normals are carried over. */
+static cw_status simplify_whole(const cli_volume *volume, const cli_wanted *wanted,
+                                const cw_simplify_desc *simplify, cw_mesh *mesh,
+                                cw_extract_counts *counts, cw_drop_counts *dropped,
+                                cw_error *err)
+{
+    cw_mesh whole;
+    *mesh = (cw_mesh){0};
+    cw_status st = cli_extract_wanted(volume, NULL, wanted, &whole, counts, dropped, err);
+    if (st != CW_OK)
+        return st;
+    cw_simplify_desc d = *simplify;
+    d.progress = progress_of(volume);
+    st = cw_simplify(&whole, &d, mesh, NULL, err);
+    cw_mesh_free(&whole);
+    return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
+}
+
+static cw_status simplify_slabs(const cli_volume *volume, const cw_extract_desc *desc,
+                                const cw_simplify_desc *simplify, cw_mesh *mesh,
+                                cw_extract_counts *counts, cw_error *err)
+{
+    cw_extract_desc d = *desc;
+    cw_simplify_desc s = *simplify;
+    cw_simplifier *simplifier;
+    d.max_bytes = memory_left(volume);
+    d.extra_bytes = 0; /* what is checked is what is left */
+    d.progress = s.progress = progress_of(volume);
+    *mesh = (cw_mesh){0};
+    cw_status st = cw_simplifier_new(&s, &simplifier, err);
+    if (st == CW_OK)
+        st = cw_extract_slabs(&volume->view, &d, CW_SIMPLIFIER_SLAB,
+                              (cw_slab_sink){cw_simplifier_take, simplifier}, counts, err);
+    if (st == CW_OK)
+        st = cw_simplifier_finish(simplifier, mesh, NULL, err);
+    cw_simplifier_free(simplifier);
+    if (st == CW_OK && mesh->triangle_count == 0)
+        st = explain_empty(volume, desc, err);
+    return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
+}
+
+cw_status cli_extract_simplified(const cli_volume *volume, const cli_wanted *wanted,
+                                 const cw_simplify_desc *simplify, cw_mesh *mesh,
+                                 cw_extract_counts *counts, cw_drop_counts *dropped,
+                                 cw_error *err)
+{
+    const cw_extract_desc *d = &wanted->extract;
+    const cw_normals_desc normals = {.inside_is_low = d->inside_is_low, .threads = d->threads};
+    const bool dense = cwi_volume_expect_dense(&volume->view, "slabs", NULL) == CW_OK;
+    cw_status st = dense && !(wanted->least_mm3 > 0)
+                       ? simplify_slabs(volume, d, simplify, mesh, counts, err)
+                       : simplify_whole(volume, wanted, simplify, mesh, counts, dropped, err);
+    if (st != CW_OK || !dense || d->no_normals)
+        return st;
+    st = cw_extract_normals(&volume->view, &normals, mesh, err);
+    return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
+}
+
+cw_status cli_find_level(const cli_volume *volume, int threads, double *iso, const char **how,
+                         cw_error *err)
+{
+    enum { OTSU_BINS = 1024 };
+    cw_statistics statistics;
+    *iso = 0;
+    *how = "of level sets";
+    if (volume->whole.known & CW_KNOWN_LEVEL_SET)
+        return CW_OK;
+    *how = "otsu";
+    cw_status st = cw_volume_statistics(&volume->view, OTSU_BINS, threads, &statistics, err);
+    if (st != CW_OK)
+        return st;
+    const bool found = cw_statistics_otsu(&statistics, 1, iso);
+    cw_statistics_free(&statistics);
+    return found ? CW_OK
+                 : cw_fail(err, CW_ERR_EMPTY,
+                           "%s: no isovalue separates its values; give --iso V", volume->path);
+}

@@ -1,0 +1,144 @@
+#include "cli/inputs/mesh_input.h"
+
+#include "cli/framework/console.h"
+#include "cli/framework/quantity.h"
+#include "core/base/status.h"
+
+#include <cubewright/quality.h>
+
+#include <sha2.h>
+#include <sys/stat.h>
+
+size_t cli_mesh_triangles(const cli_mesh *m)
+{
+    size_t triangles = m->mesh.triangle_count;
+    for (size_t p = 0; p < m->part_count; p++)
+        triangles += m->parts[p].mesh->triangle_count;
+    return triangles;
+}
+
+static void say_left_out(const cli_mesh *m, size_t objects, size_t triangles, const char *which)
+{
+    if (objects)
+        cli_say("%s: %zu object%s %s, with %s triangles, left out", m->path, objects,
+                objects == 1 ? "" : "s", which, cli_count(triangles));
+}
+
+static void say_what_was_found(const cli_mesh *m)
+{
+    size_t vertices = m->mesh.vertex_count;
+    for (size_t p = 0; p < m->part_count; p++)
+        vertices += m->parts[p].mesh->vertex_count;
+    cli_say("%s: %s, %s vertices, %s triangles%s", m->path, m->file.format, cli_count(vertices),
+            cli_count(cli_mesh_triangles(m)),
+            m->file.known & CW_KNOWN_UNIT ? "" : " (no unit given: taken as mm)");
+    if (m->part_count > 1)
+        cli_say("%s: %zu parts", m->path, m->part_count);
+    else if (!m->parts && m->file.parts > 1)
+        cli_say("%s: %zu parts, taken as one mesh", m->path, m->file.parts);
+    if (m->file.polygons)
+        cli_say("%s: %s polygons cut into triangles", m->path, cli_count(m->file.polygons));
+    if (m->file.skipped)
+        cli_say("%s: %s points and lines left out", m->path, cli_count(m->file.skipped));
+    if (m->file.levels)
+        cli_say("%s: %zu coarser level%s of detail left out", m->path, m->file.levels,
+                m->file.levels == 1 ? "" : "s");
+    if (m->file.hidden)
+        cli_say("%s: %zu part%s hidden by a scale of 0, as an animation does, left out",
+                m->path, m->file.hidden, m->file.hidden == 1 ? "" : "s");
+    say_left_out(m, m->file.supports, m->file.support_triangles, "for support");
+    say_left_out(m, m->file.others, m->file.other_triangles, "of type 'other'");
+}
+
+static double file_bytes(const char *path)
+{
+    struct stat info;
+    return stat(path, &info) == 0 ? (double)info.st_size : 0;
+}
+
+static cw_status read_file(const char *path, const char *reader, const cli_input *input,
+                           bool parts, bool reference, cli_mesh *mesh, cw_error *err)
+{
+    cw_mesh_read_desc desc = {
+        .reader = reader,
+        .allow_external = input->allow_external,
+        .max_triangles = input->max_triangles,
+        .max_bytes = cli_memory_limit(input),
+        .no_sandbox = input->no_sandbox,
+        .timeout_s = (double)input->timeout_s,
+        .claim = cli_claim_of(&input->claim),
+    };
+    if (reference)
+        desc.claim.rule = CW_CLAIM_FILL;
+    desc.progress = cli_progress(file_bytes(path) / 1e6, "MB");
+    *mesh = (cli_mesh){.path = path};
+    cw_status st =
+        parts ? cw_parts_read(path, &desc, &mesh->parts, &mesh->part_count, &mesh->file, err)
+              : cw_mesh_read(path, &desc, &mesh->mesh, &mesh->file, err);
+    if (st == CW_OK)
+        say_what_was_found(mesh);
+    return st;
+}
+
+cw_status cli_read_mesh(const char *path, const char *reader, const cli_input *input,
+                        cli_mesh *mesh, cw_error *err)
+{
+    return read_file(path, reader, input, false, false, mesh, err);
+}
+
+cw_status cli_read_reference(const char *path, const char *reader, const cli_input *input,
+                             cli_mesh *mesh, cw_error *err)
+{
+    return read_file(path, reader, input, false, true, mesh, err);
+}
+
+cw_status cli_read_parts(const char *path, const char *reader, const cli_input *input,
+                         cli_mesh *mesh, cw_error *err)
+{
+    return read_file(path, reader, input, true, false, mesh, err);
+}
+
+cw_status cli_orient_mesh(cli_mesh *m, int threads, cw_error *err)
+{
+    size_t turned = 0;
+    cw_status st = CW_OK;
+    for (size_t p = 0; p < (m->parts ? m->part_count : 1) && st == CW_OK; p++) {
+        cw_orient_counts counts;
+        cw_mesh *mesh = m->parts ? (cw_mesh *)(uintptr_t)m->parts[p].mesh : &m->mesh;
+        st = cw_mesh_orient(mesh, threads, &counts, err);
+        turned += counts.turned;
+    }
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, m->path);
+    cli_say("%s: %s shell%s flipped", m->path, cli_count(turned), turned == 1 ? "" : "s");
+    return CW_OK;
+}
+
+void cli_free_mesh(cli_mesh *mesh)
+{
+    cw_mesh_free(&mesh->mesh);
+    cw_parts_free(mesh->parts, mesh->part_count);
+    mesh->parts = NULL;
+    mesh->part_count = 0;
+}
+
+void cli_json_mesh_file(cli_json *j, const char *key, const cli_mesh *mesh)
+{
+    char sum[SHA256_DIGEST_STRING_LENGTH];
+    cli_json_open(j, key, '{');
+    cli_json_text(j, "path", cli_shown_path(mesh->path));
+    cli_json_text(j, "kind", mesh->file.format);
+    cli_json_count(j, "parts", mesh->file.parts);
+    const cw_axes *axes = &mesh->file.axes;
+    cli_json_text(j, "unit",
+                  mesh->file.known & CW_KNOWN_UNIT ? cw_unit_name(axes->unit) : "unknown");
+    cli_json_text(j, "frame",
+                  !(mesh->file.known & CW_KNOWN_FRAME) ? "unknown"
+                  : axes->ras                          ? "RAS"
+                                                       : "LPS");
+    if (axes->y_up)
+        cli_json_text(j, "up", "y");
+    if (SHA256File(mesh->path, sum))
+        cli_json_text(j, "sha256", sum);
+    cli_json_close(j, '}');
+}

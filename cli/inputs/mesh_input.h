@@ -1,0 +1,92 @@
+/* Reading a mesh, for every command that takes one. */
+#ifndef CLI_INPUTS_MESH_INPUT_H
+#define CLI_INPUTS_MESH_INPUT_H
+
+#include "cli/inputs/volume_input.h"
+
+#include <cubewright/formats.h>
+
+/* Rows for a command that reads meshes and no volumes; its struct has the field `input`. */
+#define CLI_MESH_INPUT_OPTIONS(args)                                                           \
+    CLI_HEADED(CLI_READING),                                                                   \
+        {"reader",                                                                             \
+         0,                                                                                    \
+         CLI_TEXT,                                                                             \
+         "NAME",                                                                               \
+         "Read the file as this format; names as in 'formats' (by content)",                   \
+         CLI_INPUT_ROW(args, reader)},                                                         \
+        CLI_CLAIM_OPTIONS("input", "the input", CLI_INPUT_ROW(args, claim)),                   \
+        {"allow-external",                                                                     \
+         0,                                                                                    \
+         CLI_FLAG,                                                                             \
+         NULL,                                                                                 \
+         "Follow a .gltf file to buffers outside its folder (off)",                            \
+         CLI_INPUT_ROW(args, allow_external)},                                                 \
+        {"no-sandbox",                                                                         \
+         0,                                                                                    \
+         CLI_FLAG,                                                                             \
+         NULL,                                                                                 \
+         "Let libraries read in this process, not in a sandboxed one (off)",                   \
+         CLI_INPUT_ROW(args, no_sandbox)},                                                     \
+        CLI_HEADED(CLI_LIMITS),                                                                \
+        {"timeout",                                                                            \
+         0,                                                                                    \
+         CLI_COUNT,                                                                            \
+         "SECONDS",                                                                            \
+         "Time limit of a library for one file (60)",                                          \
+         CLI_INPUT_ROW(args, timeout_s)},                                                      \
+        {"threads",                                                                            \
+         't',                                                                                  \
+         CLI_COUNT,                                                                            \
+         "N",                                                                                  \
+         "Number of threads; results do not depend on it (0: all)",                            \
+         CLI_INPUT_ROW(args, threads)},                                                        \
+        {"max-triangles",                                                                      \
+         0,                                                                                    \
+         CLI_COUNT,                                                                            \
+         "N",                                                                                  \
+         "Stop before reading more triangles than this, such as 100M (no limit)",              \
+         CLI_INPUT_ROW(args, max_triangles)},                                                  \
+    {                                                                                          \
+        "memory", 0, CLI_BYTES, "SIZE",                                                        \
+            "Memory limit of the program, checks included, such as 8G (75 % of the "           \
+            "machine's)",                                                                      \
+            CLI_INPUT_ROW(args, memory)                                                        \
+    }
+
+/* A mesh file: merged, or its parts. */
+typedef struct cli_mesh {
+    const char *path;
+    cw_mesh mesh;   /* of all parts; owned */
+    cw_part *parts; /* owned; NULL when they are merged */
+    size_t part_count;
+    cw_mesh_file file;
+} cli_mesh;
+
+/* Reads a mesh, all parts merged, and says what was found. Errors name the file.
+ * reader  a name of 'formats'; NULL: by content        input  for its memory and safety */
+cw_status cli_read_mesh(const char *path, const char *reader, const cli_input *input,
+                        cli_mesh *mesh, cw_error *err);
+
+/* A mesh to compare the input with: what is said of that counts where this file does not say.
+ */
+cw_status cli_read_reference(const char *path, const char *reader, const cli_input *input,
+                             cli_mesh *mesh, cw_error *err);
+
+/* Reads the parts of a file, each as a mesh, and says what was found. */
+cw_status cli_read_parts(const char *path, const char *reader, const cli_input *input,
+                         cli_mesh *mesh, cw_error *err);
+
+/* Turns shells round that face the wrong way, of each part by itself, and says how many. */
+cw_status cli_orient_mesh(cli_mesh *mesh, int threads, cw_error *err);
+
+/* Of all parts. */
+size_t cli_mesh_triangles(const cli_mesh *mesh);
+
+/* Harmless on a zeroed one. */
+void cli_free_mesh(cli_mesh *mesh);
+
+/* An object of reports; sha256 of the file, when it can be read again. */
+void cli_json_mesh_file(cli_json *j, const char *key, const cli_mesh *mesh);
+
+#endif

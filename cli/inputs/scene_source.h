@@ -1,0 +1,42 @@
+/* What there is to see: a volume, a mesh, or a series of volumes, opened a step at a time. */
+#ifndef CLI_INPUTS_SCENE_SOURCE_H
+#define CLI_INPUTS_SCENE_SOURCE_H
+
+#include "cli/inputs/time_series.h"
+
+#include <cubewright/mesh.h>
+
+/* Zeroed, there is nothing. Free with cli_close_source(). */
+typedef struct cli_source {
+    cli_series series;
+    bool is_mesh; /* the input is a mesh */
+    bool is_level_set;
+    cli_volume volume; /* of the step at hand */
+    cw_volume dense;   /* of a sparse one */
+    cw_mesh mesh;      /* the input's; else whatever is put here */
+} cli_source;
+
+bool cli_is_folder(const char *path);
+
+/* Finds the steps, and out of the headers whether it is a volume or a mesh; a mesh is read.
+ * A file that cannot be read as a volume is taken for a mesh, if it may be one: its reader's
+ * words are then the better ones, unless the file's name speaks for a volume. */
+cw_status cli_open_source(cli_source *source, const cli_common *common, const cli_input *input,
+                          const cli_steps *steps, bool may_be_mesh, cw_error *err);
+void cli_close_source(cli_source *source);
+
+/* Reads the volume of a step, unless it is there. */
+cw_status cli_read_step(cli_source *source, const cli_input *input, size_t step, cw_error *err);
+
+/* Makes a sparse volume dense, which is said, so that it can be drawn; fails for volumes that
+ * are not evenly spaced. */
+cw_status cli_need_drawable(cli_source *source, const cli_input *input, cw_error *err);
+
+/* The volume that is drawn. */
+const cw_volume *cli_drawn(const cli_source *source);
+
+/* Around what is seen: the volume that is drawn (NULL: none), a mesh (NULL: none). false:
+ * nothing is. */
+bool cli_find_box(const cw_volume *volume, const cw_mesh *mesh, double box[2][3]);
+
+#endif

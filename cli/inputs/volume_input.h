@@ -1,0 +1,265 @@
+/* The options that say how to read a volume, and the reading itself: for every command that
+ * takes one. */
+#ifndef CLI_INPUTS_VOLUME_INPUT_H
+#define CLI_INPUTS_VOLUME_INPUT_H
+
+#include "cli/framework/json_writer.h"
+#include "cli/framework/options.h"
+
+#include <cubewright/formats.h>
+
+/* What is said of a file's coordinates; the first choice of each is that nothing is. */
+typedef struct cli_claim {
+    int unit, up, frame;
+    bool override;
+} cli_claim;
+
+/* Rows for what is said of the input, or with another prefix of another file. */
+#define CLI_CLAIM_OPTIONS(prefix, what, row)                                                   \
+    {prefix "-unit",                                                                           \
+     0,                                                                                        \
+     CLI_CHOICE,                                                                               \
+     "file/mm/um/cm/m/in/ft",                                                                  \
+     "Unit of the coordinates, if " what " names none (as the file says, else mm)",            \
+     row + offsetof(cli_claim, unit)},                                                         \
+        {prefix "-up",                                                                         \
+         0,                                                                                    \
+         CLI_CHOICE,                                                                           \
+         "file/z/y",                                                                           \
+         "Axis that points up, if " what " does not say (z)",                                  \
+         row + offsetof(cli_claim, up)},                                                       \
+        {prefix "-frame",                                                                      \
+         0,                                                                                    \
+         CLI_CHOICE,                                                                           \
+         "file/lps/ras",                                                                       \
+         "Directions of x and y, if " what " does not say: LPS or RAS (lps)",                  \
+         row + offsetof(cli_claim, frame)},                                                    \
+    {                                                                                          \
+        prefix "-override", 0, CLI_FLAG, NULL,                                                 \
+            "Apply these three even where " what " says otherwise (off: that is an error)",    \
+            row + offsetof(cli_claim, override)                                                \
+    }
+
+typedef struct cli_input {
+    const char *reader, *raw, *series, *array, *points;
+    int gaps, tilt; /* cw_gaps, cw_tilt */
+    bool no_sandbox;
+    size_t timeout_s;
+    cli_lengths spacing;
+    cli_claim claim;        /* of the input */
+    cli_claim source_claim; /* of the source volume, in commands that take a mesh and that */
+    cli_ranges crop;
+    cli_component component;
+    size_t step;
+    bool step_chosen; /* by the command, of a series: nothing is to be said of it */
+    size_t threads, memory, max_voxels, max_triangles;
+    bool allow_external, preview;
+    size_t coarsen;    /* 0: 4 for a preview, else 1 */
+    bool coarsen_view; /* all voxels are read, and only the view is coarse */
+    bool sample;       /* of many voxels some rows and slices are read: cli_volume's coarsen */
+} cli_input;
+
+/* Rows for a command whose struct has the field `input`. */
+#define CLI_INPUT_ROW(args, field) offsetof(args, input) + offsetof(cli_input, field)
+#define CLI_INPUT_OPTIONS(args)                                                                \
+    CLI_HEADED(CLI_READING),                                                                   \
+        {"reader",                                                                             \
+         0,                                                                                    \
+         CLI_TEXT,                                                                             \
+         "NAME",                                                                               \
+         "Read the file as this format; names as in 'formats' (by content)",                   \
+         CLI_INPUT_ROW(args, reader)},                                                         \
+        {"raw",                                                                                \
+         0,                                                                                    \
+         CLI_TEXT,                                                                             \
+         "LAYOUT",                                                                             \
+         "Layout of headerless voxels: dims=64x64x93,type=u16le,offset=0,spacing=1x1x2",       \
+         CLI_INPUT_ROW(args, raw)},                                                            \
+        {"spacing",                                                                            \
+         0,                                                                                    \
+         CLI_LENGTHS,                                                                          \
+         "X[,Y,Z]",                                                                            \
+         "Distance between voxels, such as 0.5mm or 1x1x2mm (the file's)",                     \
+         CLI_INPUT_ROW(args, spacing)},                                                        \
+        CLI_CLAIM_OPTIONS("input", "the input", CLI_INPUT_ROW(args, claim)),                   \
+        {"series",                                                                             \
+         0,                                                                                    \
+         CLI_TEXT,                                                                             \
+         "N",                                                                                  \
+         "DICOM series of a folder: its number in 'info', or its UID (the only one)",          \
+         CLI_INPUT_ROW(args, series)},                                                         \
+        {"array",                                                                              \
+         0,                                                                                    \
+         CLI_TEXT,                                                                             \
+         "NAME",                                                                               \
+         "Array to read, of files with several (the file's choice, else the first with one "   \
+         "value)",                                                                             \
+         CLI_INPUT_ROW(args, array)},                                                          \
+        {"grid",                                                                               \
+         0,                                                                                    \
+         CLI_TEXT,                                                                             \
+         "NAME",                                                                               \
+         "OpenVDB grid to read (the first level set, else the first with one value)",          \
+         CLI_INPUT_ROW(args, array)},                                                          \
+        {"points",                                                                             \
+         0,                                                                                    \
+         CLI_TEXT,                                                                             \
+         "FILE",                                                                               \
+         "File with the grid points of a PLOT3D solution",                                     \
+         CLI_INPUT_ROW(args, points)},                                                         \
+        {"gaps",                                                                               \
+         0,                                                                                    \
+         CLI_CHOICE,                                                                           \
+         "stop/interpolate/allow",                                                             \
+         "What to do where slices are missing or uneven (stop)",                               \
+         CLI_INPUT_ROW(args, gaps)},                                                           \
+        {"tilt",                                                                               \
+         0,                                                                                    \
+         CLI_CHOICE,                                                                           \
+         "correct/keep",                                                                       \
+         "Place slices of a tilted gantry where they were, or straight above each other "      \
+         "(correct)",                                                                          \
+         CLI_INPUT_ROW(args, tilt)},                                                           \
+        {"crop",                                                                               \
+         0,                                                                                    \
+         CLI_RANGES,                                                                           \
+         "X:X,Y:Y,Z:Z",                                                                        \
+         "Read only these voxels, ends included; with units, those in a box of LPS mm (all)",  \
+         CLI_INPUT_ROW(args, crop)},                                                           \
+        {"component",                                                                          \
+         0,                                                                                    \
+         CLI_COMPONENT,                                                                        \
+         "N/mag",                                                                              \
+         "Component of voxels with several values; mag is the length of their vector (0)",     \
+         CLI_INPUT_ROW(args, component)},                                                      \
+        {"step",                                                                               \
+         0,                                                                                    \
+         CLI_COUNT,                                                                            \
+         "N",                                                                                  \
+         "Time step to read, counted from 0 (0)",                                              \
+         CLI_INPUT_ROW(args, step)},                                                           \
+        {"allow-external",                                                                     \
+         0,                                                                                    \
+         CLI_FLAG,                                                                             \
+         NULL,                                                                                 \
+         "Follow headers to files outside their folder, and links in a folder (off)",          \
+         CLI_INPUT_ROW(args, allow_external)},                                                 \
+        {"no-sandbox",                                                                         \
+         0,                                                                                    \
+         CLI_FLAG,                                                                             \
+         NULL,                                                                                 \
+         "Let libraries read in this process, not in a sandboxed one (off)",                   \
+         CLI_INPUT_ROW(args, no_sandbox)},                                                     \
+        CLI_HEADED(CLI_LIMITS),                                                                \
+        {"timeout",                                                                            \
+         0,                                                                                    \
+         CLI_COUNT,                                                                            \
+         "SECONDS",                                                                            \
+         "Time limit of a library for one file (60)",                                          \
+         CLI_INPUT_ROW(args, timeout_s)},                                                      \
+        {"threads",                                                                            \
+         't',                                                                                  \
+         CLI_COUNT,                                                                            \
+         "N",                                                                                  \
+         "Number of threads; results do not depend on it (0: all)",                            \
+         CLI_INPUT_ROW(args, threads)},                                                        \
+        {"max-voxels",                                                                         \
+         0,                                                                                    \
+         CLI_COUNT,                                                                            \
+         "N",                                                                                  \
+         "Stop before reading more voxels than this, such as 500M (2^40)",                     \
+         CLI_INPUT_ROW(args, max_voxels)},                                                     \
+    {                                                                                          \
+        "memory", 0, CLI_BYTES, "SIZE",                                                        \
+            "Memory limit of the program, checks included, such as 8G (75 % of the "           \
+            "machine's)",                                                                      \
+            CLI_INPUT_ROW(args, memory)                                                        \
+    }
+
+enum { CLI_MOST_NOTES = 8 };
+
+/* What an irregular grid has: cells of each shape and, once it was read, the box of its points.
+ */
+typedef struct cli_grid {
+    size_t cells[CW_SHAPE_COUNT];
+    bool has_box;
+    double low[3], high[3];
+} cli_grid;
+
+/* A volume as a command uses it. */
+typedef struct cli_volume {
+    const char *path, *format;
+    cw_volume whole;     /* as the file has it, spacing applied; without the voxels */
+    cw_volume voxels;    /* what was read of it: all, or what --crop leaves */
+    cw_volume magnitude; /* of the chosen step, where --component mag asks for it */
+    cw_volume view;      /* of that the chosen component, step and samples */
+    double spacing[3];   /* of an irregular grid the mean length of cells' edges */
+    cli_grid grid;       /* zeroed for other volumes */
+    size_t memory_left;  /* of the limit, after the voxels */
+    size_t coarsen[3];   /* the view's step along each axis */
+    char notes[CLI_MOST_NOTES][256]; /* what the reader found and decided on */
+    size_t note_count;
+} cli_volume;
+
+/* The least and the largest step along an axis of a rectilinear grid. */
+void cli_spacing_range(const cli_volume *volume, int axis, double mm[2]);
+
+/* What is said of a file's coordinates, for the library. */
+cw_claim cli_claim_of(const cli_claim *claim);
+
+/* The options for a source volume beside a mesh: what is said of the input is of the mesh. */
+cli_input cli_source_input(const cli_input *input);
+
+/* What the options say of reading. */
+cw_read_desc cli_read_desc(const cli_input *input);
+
+/* Reads the header, says what was found, then reads the voxels (unless header_only). Errors
+ * name the file. Free with cli_free_volume(). */
+cw_status cli_read_volume(const char *path, const cli_input *input, bool header_only,
+                          cli_volume *volume, cw_error *err);
+
+/* All voxels of what --crop left a part of, without a word: the file was told of. Free with
+ * cli_free_volume(). */
+cw_status cli_read_whole(const cli_volume *part, const cli_input *input, cli_volume *whole,
+                         cw_error *err);
+
+/* The header alone, without a word. */
+cw_status cli_read_shape(const char *path, const cli_input *input, cw_volume *shape,
+                         cw_error *err);
+
+void cli_free_volume(cli_volume *volume);
+
+/* Says, and keeps as a note, that a volume of labels has several of them inside a surface,
+ * which it joins. No levels: that any would. */
+cw_status cli_tell_labels(cli_volume *volume, const double *iso, size_t count,
+                          bool inside_is_low, cw_error *err);
+
+/* --inside, and what it means for a volume. */
+#define CLI_INSIDE_CHOICES "auto/above/below"
+enum { CLI_INSIDE_AUTO, CLI_INSIDE_ABOVE, CLI_INSIDE_BELOW };
+bool cli_inside_is_low(int inside, const cw_volume *volume);
+
+/* Whether a file is a level set, which needs no isovalue: its surface is at 0. */
+bool cli_is_level_set(const char *path, const cli_input *input);
+
+/* Makes the volume's view that of another of its time steps. */
+cw_status cli_choose_step(const cli_input *input, size_t step, cli_volume *volume,
+                          cw_error *err);
+
+/* Whether the view leaves voxels out between those it has. */
+bool cli_is_preview(const cli_volume *volume);
+
+/* "nifti, 181 x 217 x 181 u8, 1 x 1 x 1 mm", or "vtu, 21332 samples f64, 63008 tetrahedra,
+ * ..." into static memory. */
+const char *cli_describe(const cli_volume *volume);
+
+/* An object of reports, such as "input". sha256 of the file, when it can be read again. */
+void cli_json_input(cli_json *j, const char *key, const cli_volume *volume);
+
+/* In bytes: as asked for, or three quarters of the machine's. */
+size_t cli_memory_limit(const cli_input *input);
+
+/* A path as reports show it: absolute ones lose their folders. */
+const char *cli_shown_path(const char *path);
+
+#endif

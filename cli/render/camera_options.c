@@ -1,0 +1,151 @@
+#include "cli/render/camera_options.h"
+
+#include "core/base/status.h"
+#include "core/base/text.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { FOV = 30 };
+
+static bool is_file(const char *text)
+{
+    const size_t n = strlen(text);
+    return n > 5 && strcmp(text + n - 5, ".json") == 0;
+}
+
+static bool is_json(const char *text)
+{
+    return *text == '{';
+}
+
+/* A whole camera, by itself or in a file. */
+static cw_status read_camera(const char *text, cw_camera *camera, cw_error *err)
+{
+    if (!is_json(text))
+        return cw_camera_read(text, camera, err);
+    cw_status st = cw_camera_parse(text, camera, err);
+    return st == CW_OK ? st : cwi_fail_in(err, st, "--camera");
+}
+
+static bool is_whole(const char *text)
+{
+    return is_json(text) || is_file(text);
+}
+
+/* azimuth,elevation */
+static bool parse_angles(const char *text, double *azimuth, double *elevation)
+{
+    return cwi_parse_double(&text, azimuth) && *text++ == ',' &&
+           cwi_parse_double(&text, elevation) && *text == '\0';
+}
+
+const char *cli_camera_title(const cli_scene *args)
+{
+    return is_json(args->camera) ? "{...}" : args->camera;
+}
+
+static cw_fit_desc describe(const cli_scene *args)
+{
+    cw_fit_desc fit = {.view = args->camera, .fov_deg = FOV, .margin = 0.04};
+    if (args->fov.given)
+        fit.fov_deg = args->fov.value;
+    if (args->ortho)
+        fit.fov_deg = 0;
+    if (parse_angles(args->camera, &fit.azimuth_deg, &fit.elevation_deg))
+        fit.view = "front";
+    return fit;
+}
+
+double cli_turn_angle(const cli_turns *turns, size_t n)
+{
+    const double all = turns->orbit.given ? turns->orbit.value : 360;
+    const size_t gaps = fabs(all) >= 360 ? turns->count : turns->count - 1;
+    return n ? all * (double)n / (double)gaps : 0;
+}
+
+static cw_status check_turns(const cli_turns *turns, cw_error *err)
+{
+    if (turns->orbit.given && turns->count < 2)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--orbit is for the pictures of --turntable N, 2 or more");
+    if (turns->count > 100000)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--turntable %zu: at most 100000 were expected",
+                       turns->count);
+    return CW_OK;
+}
+
+cw_status cli_check_camera(const cli_scene *args, const cli_turns *turns, cw_error *err)
+{
+    cw_camera camera;
+    cw_fit_desc fit = describe(args);
+    cw_status st = check_turns(turns, err);
+    if (st != CW_OK)
+        return st;
+    if (args->zoom.given && !(isnormal(args->zoom.value) && args->zoom.value > 0))
+        return cw_fail(err, CW_ERR_ARGUMENT, "--zoom %g: above 0 was expected",
+                       args->zoom.value);
+    if (args->ortho && args->fov.given)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--ortho or --fov, not both");
+    if (args->fov.given && !(args->fov.value > 0 && args->fov.value < 180))
+        return cw_fail(err, CW_ERR_ARGUMENT, "--fov %g: 0 to 180 degrees were expected",
+                       args->fov.value);
+    if (is_whole(args->camera) && (args->ortho || args->fov.given))
+        return cw_fail(err, CW_ERR_ARGUMENT, "%s is a complete camera; %s cannot change it",
+                       cli_camera_title(args), args->ortho ? "--ortho" : "--fov");
+    if (is_whole(args->camera))
+        return is_json(args->camera) ? read_camera(args->camera, &camera, err) : CW_OK;
+    fit.max[0] = fit.max[1] = fit.max[2] = 1;
+    return cw_camera_fit(&fit, &camera, err);
+}
+
+/* As far away as the turn that needs most. */
+static cw_status fit_all(const cli_turns *turns, const cw_fit_desc *first, size_t n,
+                         cw_camera *camera, cw_error *err)
+{
+    double most[2] = {0}, away[3], far;
+    for (size_t m = 0; m <= turns->count; m++) {
+        cw_fit_desc fit = *first;
+        cw_camera c;
+        fit.azimuth_deg += cli_turn_angle(turns, m == turns->count ? n : m);
+        cw_status st = cw_camera_fit(&fit, m == turns->count ? camera : &c, err);
+        if (st != CW_OK)
+            return st;
+        if (m == turns->count)
+            break;
+        for (int a = 0; a < 3; a++)
+            away[a] = c.eye[a] - c.target[a];
+        most[0] = fmax(most[0], hypot(hypot(away[0], away[1]), away[2]));
+        most[1] = fmax(most[1], c.height_mm);
+    }
+    for (int a = 0; a < 3; a++)
+        away[a] = camera->eye[a] - camera->target[a];
+    far = hypot(hypot(away[0], away[1]), away[2]);
+    for (int a = 0; a < 3; a++)
+        camera->eye[a] = camera->target[a] + away[a] * (most[0] / far);
+    camera->height_mm = most[1];
+    return CW_OK;
+}
+
+cw_status cli_find_camera(const cli_scene *args, const cli_turns *turns, size_t n,
+                          const double box[2][3], double aspect, cw_camera *camera,
+                          cw_error *err)
+{
+    cw_fit_desc fit = describe(args);
+    cw_status st;
+    fit.aspect = aspect;
+    memcpy(fit.min, box[0], sizeof fit.min);
+    memcpy(fit.max, box[1], sizeof fit.max);
+    if (is_whole(args->camera)) {
+        st = read_camera(args->camera, camera, err);
+        if (st == CW_OK && n)
+            st = cw_camera_turn(camera, camera->up, cli_turn_angle(turns, n), err);
+    } else if (turns->count > 1) {
+        st = fit_all(turns, &fit, n, camera, err);
+    } else {
+        st = cw_camera_fit(&fit, camera, err);
+    }
+    if (st == CW_OK && args->zoom.given)
+        st = cw_camera_zoom(camera, args->zoom.value, err);
+    return st;
+}

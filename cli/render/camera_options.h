@@ -1,0 +1,27 @@
+/* Where pictures are taken from: one camera, or those of a turntable. */
+#ifndef CLI_RENDER_CAMERA_OPTIONS_H
+#define CLI_RENDER_CAMERA_OPTIONS_H
+
+#include "cli/render/scene_options.h"
+
+typedef struct cli_turns {
+    size_t count;     /* of pictures around what is seen; 0 and 1: one */
+    cli_number orbit; /* degrees from the first to the last; default: all round */
+} cli_turns;
+
+/* Fails for a camera, an angle or a zoom that is none; files are not looked at. */
+cw_status cli_check_camera(const cli_scene *args, const cli_turns *turns, cw_error *err);
+
+/* The camera of turn n, the same distance from the middle of a box at all of them. box: low and
+ * high corner of what is seen, in the world. */
+cw_status cli_find_camera(const cli_scene *args, const cli_turns *turns, size_t n,
+                          const double box[2][3], double aspect, cw_camera *camera,
+                          cw_error *err);
+
+/* What to call the camera: its view, angles or file. */
+const char *cli_camera_title(const cli_scene *args);
+
+/* How far turn n has gone, in degrees. */
+double cli_turn_angle(const cli_turns *turns, size_t n);
+
+#endif

@@ -1,0 +1,68 @@
+#include "cli/commands.h"
+#include "cli/framework/console.h"
+#include "cli/render/render_run.h"
+#include "core/base/status.h"
+
+#include <stdint.h>
+#include <string.h>
+
+static const render_args defaults = {.scene = CLI_SCENE_DEFAULTS,
+                                     .size = {.count = 2, .n = {1280, 720, 0}}};
+
+static const cli_option options[] = {
+    {"output", 'o', CLI_TEXT, "FILE",
+     "Picture to write, a .png file; may hold {turn}, {step} or {step:04d}, and {stem}",
+     offsetof(render_args, output)},
+#include "cli/render/options_what.inc"
+    {"size", 0, CLI_SIZES, "WxH", "Size of the picture in pixels (1280x720)",
+     offsetof(render_args, size)},
+    {"backend", 0, CLI_CHOICE, "auto/egl/cpu",
+     "OpenGL without a display, or the CPU for meshes, vbuffer and reference (auto)",
+     offsetof(render_args, backend)},
+    {"json", 0, CLI_TEXT, "FILE", "Write a report as JSON; - is the standard output",
+     offsetof(render_args, json)},
+    {"save-tf", 0, CLI_TEXT, "FILE", "File to write the transfer function to, as .json",
+     offsetof(render_args, save_transfer)},
+    CLI_HEADED("Camera"),
+#include "cli/render/options_camera.inc"
+    {"save-camera", 0, CLI_TEXT, "FILE", "File to write the camera to, as .json",
+     offsetof(render_args, save_camera)},
+    {"turntable", 0, CLI_COUNT, "N", "Number of pictures around the up axis (1)",
+     offsetof(render_args, turns) + offsetof(cli_turns, count)},
+    {"orbit", 0, CLI_NUMBER, "DEG", "Angle of the turntable in degrees (360)",
+     offsetof(render_args, turns) + offsetof(cli_turns, orbit)},
+#include "cli/render/options_look.inc"
+    CLI_INPUT_OPTIONS(render_args),
+};
+
+static cw_status run(void *p, cw_error *err)
+{
+    const render_args *args = p;
+    const double start = cli_seconds();
+    cli_pictures pictures = {.command = &cli_render, .args = args, .start = start};
+    if (args->json && strcmp(args->json, "-") == 0)
+        cli_results_to_stderr();
+    cw_status st = cli_check_pictures(args, err);
+    const bool writable = st == CW_OK; /* a report, too, is checked before it is written */
+    if (st == CW_OK)
+        st = cli_make_pictures(&pictures, err);
+    cli_render_report report = cli_report_pictures(&pictures);
+    report.seconds = cli_seconds() - start;
+    st = cli_render_report_write(writable ? args->json : NULL, &report, st, err);
+    cli_end_pictures(&pictures);
+    return st;
+}
+
+const cli_command cli_render = {
+    .name = "render",
+    .usage = "VOLUME|MESH -o PNG [options]",
+    .about = "Draw a volume, a mesh or an isosurface to a picture, without a display",
+    .page = cli_page_render,
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .min_inputs = 1,
+    .max_inputs = SIZE_MAX,
+    .size = sizeof(render_args),
+    .defaults = &defaults,
+    .run = run,
+};

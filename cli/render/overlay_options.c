@@ -1,0 +1,107 @@
+#include "cli/render/overlay_options.h"
+
+#include "core/base/status.h"
+
+#include <string.h>
+
+enum { BINS = 256 };
+
+bool cli_has_marks(const cli_marks *m)
+{
+    return m->axes || m->scale_bar || m->letters || m->color_bar || m->histogram || m->caption;
+}
+
+static cw_status draw(const cli_marks *m, const cw_scene *scene,
+                      const cw_statistics *statistics, cw_image *image, cw_error *err)
+{
+    const cw_overlay overlay = {.axes = m->axes,
+                                .scale_bar = m->scale_bar,
+                                .letters = m->letters,
+                                .color_bar = m->color_bar,
+                                .histogram = m->histogram,
+                                .caption = m->caption,
+                                .statistics = statistics};
+    return cw_overlay_draw(&overlay, scene, image, err);
+}
+
+cw_status cli_mark(const cli_marks *marks, const cw_scene *scene, cw_image *image,
+                   cw_error *err)
+{
+    cw_statistics statistics;
+    if (!cli_has_marks(marks))
+        return CW_OK;
+    if (!marks->histogram)
+        return draw(marks, scene, NULL, image, err);
+    if (!scene->volume)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--histogram is for volumes");
+    cw_status st = cw_volume_statistics(scene->volume, BINS, scene->threads, &statistics, err);
+    if (st == CW_OK)
+        st = draw(marks, scene, &statistics, image, err);
+    cw_statistics_free(&statistics);
+    return st;
+}
+
+/* Greys over the range of the values. */
+static cw_status make_greys(const cw_scene *scene, cw_transfer *greys, cw_error *err)
+{
+    cw_statistics statistics;
+    cw_status st = cw_volume_statistics(scene->volume, BINS, scene->threads, &statistics, err);
+    if (st == CW_OK)
+        st = cw_transfer_preset("grey", &statistics, greys, err);
+    cw_statistics_free(&statistics);
+    return st;
+}
+
+static cw_status draw_slice(const cw_scene *scene, const cw_transfer *greys, int axis,
+                            cw_renderer *renderer, cw_image *image, cw_error *err)
+{
+    static const uint8_t black[2][4] = {{0, 0, 0, 255}, {0, 0, 0, 255}};
+    static const cli_marks marks = {.scale_bar = true, .letters = true};
+    cw_picture picture;
+    double middle[3], world[3];
+    cw_scene s = {.mode = CW_MODE_SLICES,
+                  .volume = scene->volume,
+                  .transfer = greys,
+                  .width = scene->width / 2,
+                  .height = scene->height / 2,
+                  .samples = scene->samples,
+                  .slice_count = 1,
+                  .threads = scene->threads};
+    for (int a = 0; a < 3; a++)
+        middle[a] = ((double)s.volume->dim[a] - 1) / 2;
+    cw_volume_to_world(s.volume, middle, world);
+    s.slices[0].normal[axis] = 1;
+    s.slices[0].distance_mm = world[axis];
+    cw_status st = cw_slice_camera(s.volume, &s.slices[0], (double)s.width / (double)s.height,
+                                   &s.camera, err);
+    if (st == CW_OK)
+        st = cw_render(renderer, &s, &picture, err);
+    if (st != CW_OK)
+        return st;
+    st = cw_picture_show(&picture, black, image, err);
+    cw_picture_free(&picture);
+    return st == CW_OK ? cli_mark(&marks, &s, image, err) : st;
+}
+
+cw_status cli_mark_quad(const cw_scene *scene, const cw_image *shown, cw_backend backend,
+                        cw_renderer **renderer, cw_image *sheet, cw_error *err)
+{
+    static const int axes[3] = {2, 1, 0}; /* axial, coronal, sagittal */
+    cw_transfer greys;
+    const ptrdiff_t w = (ptrdiff_t)shown->width, h = (ptrdiff_t)shown->height;
+    cw_status st = make_greys(scene, &greys, err);
+    if (st == CW_OK && !*renderer)
+        st = cw_renderer_new(backend, renderer, err);
+    if (st == CW_OK)
+        st = cw_image_alloc(sheet, scene->width, scene->height, err);
+    if (st == CW_OK)
+        cw_image_place(sheet, shown, w, h);
+    for (int n = 0; n < 3 && st == CW_OK; n++) {
+        cw_image slice = {0};
+        st = draw_slice(scene, &greys, axes[n], *renderer, &slice, err);
+        if (st == CW_OK)
+            cw_image_place(sheet, &slice, n % 2 * w, n / 2 * h);
+        cw_image_free(&slice);
+    }
+    return st;
+}

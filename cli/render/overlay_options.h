@@ -1,0 +1,31 @@
+/* What is written on a picture of render, and slices beside it. */
+#ifndef CLI_RENDER_OVERLAY_OPTIONS_H
+#define CLI_RENDER_OVERLAY_OPTIONS_H
+
+#include <cubewright/overlay.h>
+
+typedef struct cli_marks {
+    bool axes, scale_bar, letters, color_bar, histogram;
+    const char *caption;
+    int layout;
+} cli_marks;
+
+enum { CLI_LAYOUT_SINGLE, CLI_LAYOUT_QUAD };
+
+/* Draws what was asked for on the picture of a scene.
+ * Returns CW_ERR_ARGUMENT for what needs a volume, without one; as cw_overlay_draw() */
+cw_status cli_mark(const cli_marks *marks, const cw_scene *scene, cw_image *image,
+                   cw_error *err);
+
+/* Whether there is something to draw. */
+bool cli_has_marks(const cli_marks *marks);
+
+/* A sheet of four: axial, coronal and sagittal slices through the middle, as radiologists see
+ * them, and the picture of the scene, lower right. A quarter each.
+ * scene     of the whole sheet's size
+ * shown     its picture, of half that size on a side
+ * renderer  NULL at first; made when needed */
+cw_status cli_mark_quad(const cw_scene *scene, const cw_image *shown, cw_backend backend,
+                        cw_renderer **renderer, cw_image *sheet, cw_error *err);
+
+#endif

@@ -1,0 +1,76 @@
+/* The work of render: from inputs to pictures. */
+#ifndef CLI_RENDER_RENDER_RUN_H
+#define CLI_RENDER_RENDER_RUN_H
+
+#include "cli/render/overlay_options.h"
+#include "cli/render/render_report.h"
+#include "cli/inputs/scene_source.h"
+#include "cli/render/camera_options.h"
+
+typedef struct render_args {
+    cli_common common;
+    cli_input input;
+    cli_scene scene;
+    cli_turns turns;
+    cli_marks marks;
+    const char *exec, *run, *config; /* of view alone, */
+    bool hidden;                     /* and this */
+    const char *output, *json, *mesh, *save_transfer, *save_camera, *compare;
+    cli_number iso, difference;
+    int inside, backend;
+    cli_sizes size;
+    size_t samples;
+    cli_steps steps;
+} render_args;
+
+#define CLI_SCENE_DEFAULTS                                                                     \
+    {                                                                                          \
+        .camera = "front", .lit = true, .preintegration = true, .skipping = true               \
+    }
+
+/* For the rows of options_what.inc, options_camera.inc and options_look.inc. */
+#define CLI_SCENE_AT(field) offsetof(render_args, scene) + offsetof(cli_scene, field)
+#define CLI_MARKS_AT(field) offsetof(render_args, marks) + offsetof(cli_marks, field)
+
+/* One side of --compare: the run's arguments, changed. */
+typedef struct cli_side {
+    render_args args;
+    cw_mode mode;
+    cw_transfer transfer;
+    char *words[32];
+    int word_count;
+} cli_side;
+
+typedef struct cli_split {
+    cli_side sides[2];
+} cli_split;
+
+/* A run as far as it has come. Free with cli_end_pictures(). */
+typedef struct cli_pictures {
+    const cli_command *command;
+    const render_args *args;
+    cli_source source; /* its mesh: what is seen beside the volume, or by itself */
+    cw_mode mode;
+    cw_transfer transfer;
+    bool has_transfer; /* of the first step, which is kept */
+    double box[2][3];  /* what the cameras see: of the first step, likewise */
+    bool has_box;
+    cw_scene scene;        /* the latest */
+    cw_renderer *renderer; /* NULL: none was needed */
+    cli_shot *shots;
+    size_t shot_count;
+    double start;
+    cli_split *split; /* NULL: nothing is compared */
+} cli_pictures;
+
+/* What can be refused before the input is touched. */
+cw_status cli_check_pictures(const render_args *args, cw_error *err);
+
+/* Reads what there is to see, draws and writes all pictures. */
+cw_status cli_make_pictures(cli_pictures *p, cw_error *err);
+void cli_end_pictures(cli_pictures *p);
+
+/* What its report says. */
+cli_render_report cli_report_pictures(const cli_pictures *p);
+
+#endif

@@ -1,0 +1,441 @@
+#include "cli/render/scene_options.h"
+
+#include "cli/framework/console.h"
+#include "cli/framework/quantity.h"
+#include "core/base/status.h"
+#include "core/base/text.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BINS = 1024 };
+/* Pictures for keeps: the library's own is 1. Lit rays have one gradient for two steps. */
+static const double STEP_VOX = 0.5, LIT_STEP_VOX = 0.25;
+
+static bool parse_hex(const char *hex, uint8_t rgba[4])
+{
+    const size_t n = strlen(hex), size = n < 6 ? 1 : 2;
+    if ((n != 3 && n != 6 && n != 8) || strspn(hex, "0123456789abcdefABCDEF") != n)
+        return false;
+    rgba[3] = 255;
+    for (size_t c = 0; c < n / size; c++) {
+        const char digits[3] = {hex[size * c], hex[size * c + size - 1], '\0'};
+        rgba[c] = (uint8_t)strtoul(digits, NULL, 16);
+    }
+    return true;
+}
+
+bool cli_parse_color(const char *text, uint8_t rgba[4])
+{
+    static const struct {
+        const char *name, *hex;
+    } names[] = {{"white", "fff"}, {"black", "000"}, {"grey", "808080"}, {"gray", "808080"}};
+    for (size_t n = 0; n < sizeof names / sizeof *names; n++)
+        if (strcmp(text, names[n].name) == 0)
+            text = names[n].hex;
+    return parse_hex(*text == '#' ? text + 1 : text, rgba);
+}
+
+static cw_status fail_color(const char *option, const char *text, cw_error *err)
+{
+    return cw_fail(err, CW_ERR_ARGUMENT,
+                   "--%s '%s': expected a colour such as #ffeedd, #fed, white, black or grey",
+                   option, text);
+}
+
+/* Two colours by comma, or one for both. */
+static bool parse_background(const char *text, uint8_t background[2][4])
+{
+    char top[16];
+    const char *comma = strchr(text, ',');
+    const size_t length = comma ? (size_t)(comma - text) : strlen(text);
+    if (length >= sizeof top)
+        return false;
+    memcpy(top, text, length);
+    top[length] = '\0';
+    return cli_parse_color(top, background[0]) &&
+           cli_parse_color(comma ? comma + 1 : top, background[1]);
+}
+
+cw_status cli_background(const cli_scene *args, cw_mode mode, uint8_t background[2][4],
+                         cw_error *err)
+{
+    static const uint8_t light[2][4] = {{248, 250, 252, 255}, {205, 213, 222, 255}},
+                         black[2][4] = {{0, 0, 0, 255}, {0, 0, 0, 255}},
+                         dark[2][4] = {{14, 17, 24, 255}, {44, 51, 63, 255}},
+                         none[2][4] = {{255, 255, 255, 0}, {255, 255, 255, 0}};
+    const char *text = args->background;
+    const bool flat = mode >= CW_MODE_MIP && mode <= CW_MODE_LOCAL_MIP;
+    const bool sliced = mode == CW_MODE_SLICES;
+    memcpy(background,
+           mode == CW_MODE_MESH ? light
+           : flat || sliced     ? black
+                                : dark,
+           sizeof light);
+    if (text && strcmp(text, "none") == 0)
+        memcpy(background, none, sizeof none);
+    else if (text && !parse_background(text, background))
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--background '%s': expected a colour such as #ffeedd, two by comma "
+                       "(top, bottom), or none",
+                       text);
+    return CW_OK;
+}
+
+static const char *default_preset(const cw_volume *v, cw_mode mode)
+{
+    switch (mode) {
+    case CW_MODE_MIP:
+    case CW_MODE_LOCAL_MIP:
+        return "mip";
+    case CW_MODE_AVERAGE:
+        return "xray";
+    case CW_MODE_MINIP:
+    case CW_MODE_SLICES:
+        return "grey";
+    default:
+        return v->known & CW_KNOWN_LEVEL_SET ? "level-set" : "auto";
+    }
+}
+
+static bool ends_with(const char *text, const char *end)
+{
+    const size_t n = strlen(text), m = strlen(end);
+    return n >= m && strcmp(text + n - m, end) == 0;
+}
+
+/* Air is -1000 in Hounsfield units: without anything below -200 there is none, or it is stored
+ * with an offset. */
+static void warn_of_units(const char *preset, const cw_statistics *s, const cli_scene *args)
+{
+    if (strncmp(preset, "ct-", 3) != 0 || args->shift.given || s->min < -200)
+        return;
+    cli_say("warning: --tf %s is in Hounsfield units, of which air is -1000; these values are "
+            "%g to %g%s",
+            preset, s->min, s->max,
+            s->max > 1500 ? ": if air is at 0, --shift 1024 corrects it" : "");
+}
+
+/* Nothing to be seen is rarely what was meant. */
+static void warn_of_nothing(const cw_transfer *t, const cw_statistics *s)
+{
+    double color[3], opacity, most = 0;
+    for (size_t b = 0; b < s->bin_count; b++) {
+        cw_transfer_at(t, s->min + s->bin_width * ((double)b + 0.5), color, &opacity);
+        most = s->bins[b] ? fmax(most, opacity) : most;
+    }
+    if (most < 1e-3)
+        cli_say("warning: the transfer function makes all values from %g to %g invisible",
+                s->min, s->max);
+}
+
+cw_status cli_change_transfer(const cli_scene *args, cw_transfer *t, cw_error *err)
+{
+    const double factor = args->opacity.given ? args->opacity.value : 1;
+    if (!(factor >= 0))
+        return cw_fail(err, CW_ERR_ARGUMENT, "--opacity %g: a factor of 0 or more was expected",
+                       factor);
+    for (size_t n = 0; n < t->color_count; n++)
+        t->colors[n].value += args->shift.value;
+    for (size_t n = 0; n < t->opacity_count; n++) {
+        t->opacities[n].value += args->shift.value;
+        t->opacities[n].opacity = (float)fmin(factor * (double)t->opacities[n].opacity, 1);
+    }
+    return cw_transfer_check(t, err);
+}
+
+/* A file, a preset, or JSON itself. */
+static cw_status find_transfer(const char *name, const cw_statistics *statistics,
+                               const cli_scene *args, cw_transfer *transfer, cw_error *err)
+{
+    if (ends_with(name, ".json") && *name != '{')
+        return cw_transfer_read(name, transfer, err);
+    cw_status st = *name == '{' ? cw_transfer_parse(name, transfer, err)
+                                : cw_transfer_preset(name, statistics, transfer, err);
+    if (st != CW_OK)
+        return cwi_fail_in(err, st, "--tf");
+    if (*name != '{')
+        warn_of_units(name, statistics, args);
+    return st;
+}
+
+cw_status cli_fit_transfer(const cli_scene *args, const cw_volume *volume, cw_mode mode,
+                           const cw_statistics *statistics, cw_transfer *transfer,
+                           cw_error *err)
+{
+    const char *name = args->transfer ? args->transfer : default_preset(volume, mode);
+    cw_status st = find_transfer(name, statistics, args, transfer, err);
+    if (st == CW_OK)
+        st = cli_change_transfer(args, transfer, err);
+    if (st == CW_OK)
+        warn_of_nothing(transfer, statistics);
+    return st;
+}
+
+cw_status cli_make_transfer(const cli_scene *args, const cw_volume *volume, cw_mode mode,
+                            int threads, cw_transfer *transfer, cw_error *err)
+{
+    cw_statistics statistics;
+    cw_status st = cw_volume_statistics(volume, BINS, threads, &statistics, err);
+    if (st == CW_OK)
+        st = cli_fit_transfer(args, volume, mode, &statistics, transfer, err);
+    cw_statistics_free(&statistics);
+    return st;
+}
+
+/* Numbers by comma or 'x', up to a semicolon or the end; how many, or -1. Text moves behind
+ * them.
+ */
+static int parse_tuple(const char **text, double *numbers, int most)
+{
+    char item[CWI_ITEM_BYTES], separator = 0;
+    int count = 0;
+    do {
+        const char *at = item;
+        if (count == most || !cwi_next_item(text, &separator, item) ||
+            !cwi_parse_double(&at, &numbers[count]) || *at || !isfinite(numbers[count]))
+            return -1;
+        count++;
+    } while (separator);
+    *text += **text == ';';
+    return count;
+}
+
+static cw_status parse_planes(const char *option, const char *text, size_t most, cw_clip *out,
+                              size_t *count, cw_error *err)
+{
+    for (const char *at = text; at && *at;) {
+        double p[4];
+        if (parse_tuple(&at, p, 4) != 4 || (p[0] == 0 && p[1] == 0 && p[2] == 0))
+            return cw_fail(err, CW_ERR_ARGUMENT,
+                           "--%s '%s': expected planes nx,ny,nz,d parted by ';': all points p "
+                           "with n . p = d, in mm",
+                           option, text);
+        if (*count == most)
+            return cw_fail(err, CW_ERR_ARGUMENT,
+                           "--%s: %zu planes at most, with those of a --clip-box", option,
+                           most);
+        const double length = sqrt(p[0] * p[0] + p[1] * p[1] + p[2] * p[2]);
+        out[(*count)++] =
+            (cw_clip){{p[0] / length, p[1] / length, p[2] / length}, p[3] / length};
+    }
+    return CW_OK;
+}
+
+/* Two planes across each axis, of the world or of the file's voxels. */
+static cw_status add_clip_box(const cli_ranges *box, const cw_volume *whole, cw_scene *s,
+                              cw_error *err)
+{
+    double at_zero[3] = {0}, at[3] = {0}, zero[3] = {0};
+    cw_status st = CW_OK;
+    if (!box->world && !whole)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--clip-box of a mesh is in mm, such as -30mm:30mm,0mm:50mm,0mm:9mm");
+    if (!box->world)
+        st = cw_volume_to_index(whole, zero, at_zero, err);
+    for (int a = 0; a < 3 && st == CW_OK; a++) {
+        cw_clip *low = &s->clips[s->clip_count++], *high = &s->clips[s->clip_count++];
+        for (int w = 0; w < 3 && st == CW_OK; w++) {
+            double unit[3] = {0};
+            unit[w] = 1;
+            if (!box->world)
+                st = cw_volume_to_index(whole, unit, at, err);
+            low->normal[w] = box->world ? w == a : at[a] - at_zero[a];
+            high->normal[w] = -low->normal[w];
+        }
+        low->distance_mm = box->low[a] - at_zero[a];
+        high->distance_mm = -(box->high[a] - at_zero[a]);
+    }
+    return st;
+}
+
+static cw_status add_clips(const cli_scene *args, const cli_subject *subject, cw_scene *s,
+                           cw_error *err)
+{
+    cw_status st = CW_OK;
+    if (args->clip_box.given)
+        st = add_clip_box(&args->clip_box, subject->whole, s, err);
+    if (st == CW_OK)
+        st = parse_planes("clip", args->clips, CW_MAX_CLIPS, s->clips, &s->clip_count, err);
+    if (st == CW_OK && args->cut_away && s->clip_count == 0)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--cut-away needs something to be cut: --clip-box or --clip");
+    s->cut_away = args->cut_away;
+    return st;
+}
+
+static cw_status add_lights(const char *text, cw_scene *s, cw_error *err)
+{
+    for (const char *at = text; at && *at;) {
+        double p[6] = {0, 0, 0, 1, 1, 1};
+        const int count = parse_tuple(&at, p, 6);
+        if ((count != 3 && count != 6) || (p[0] == 0 && p[1] == 0 && p[2] == 0))
+            return cw_fail(err, CW_ERR_ARGUMENT,
+                           "--light '%s': expected x,y,z or x,y,z,r,g,b parted by ';'", text);
+        if (s->light_count == CW_MAX_LIGHTS)
+            return cw_fail(err, CW_ERR_ARGUMENT, "--light: %d at most", CW_MAX_LIGHTS);
+        cw_light *light = &s->lights[s->light_count++];
+        for (int c = 0; c < 3; c++) {
+            light->direction[c] = p[c];
+            light->color[c] = (float)p[3 + c];
+            if (!(p[3 + c] >= 0))
+                return cw_fail(err, CW_ERR_ARGUMENT, "--light '%s': a colour is 0 or more",
+                               text);
+        }
+    }
+    return CW_OK;
+}
+
+static cw_status take_share(const char *name, const cli_number *n, double most, float *out,
+                            cw_error *err)
+{
+    if (n->given && !(n->value >= 0 && n->value <= most))
+        return cw_fail(err, CW_ERR_ARGUMENT, "--%s %g: 0 to %g was expected", name, n->value,
+                       most);
+    if (n->given)
+        *out = (float)n->value;
+    return CW_OK;
+}
+
+/* Nothing said is left to the library: meshes may have a light of their own. */
+static cw_status add_material(const cli_scene *args, cw_scene *s, cw_error *err)
+{
+    const bool given = args->ambient.given || args->diffuse.given || args->specular.given ||
+                       args->shininess.given;
+    cw_material *m = &s->material;
+    if (given)
+        *m = (cw_material){0.25f, 0.75f, 0.2f, 32};
+    cw_status st = take_share("ambient", &args->ambient, 1, &m->ambient, err);
+    if (st == CW_OK)
+        st = take_share("diffuse", &args->diffuse, 1, &m->diffuse, err);
+    if (st == CW_OK)
+        st = take_share("specular", &args->specular, 1, &m->specular, err);
+    if (st == CW_OK)
+        st = take_share("shininess", &args->shininess, 1000, &m->shininess, err);
+    if (st == CW_OK)
+        st = take_share("depth-cue", &args->depth_cue, 1, &s->depth_cue, err);
+    if (st == CW_OK && given && m->ambient + m->diffuse + m->specular == 0)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--ambient, --diffuse and --specular are all 0: nothing is lit");
+    return st == CW_OK ? add_lights(args->lights, s, err) : st;
+}
+
+static bool has_shading(cw_mode mode)
+{
+    return mode == CW_MODE_COMPOSITE || (mode >= CW_MODE_PROJECTION && mode != CW_MODE_SLICES);
+}
+
+/* As many slices as were asked for, between the nearest and the farthest corner. */
+static cw_status space_slices(const cli_scene *args, const cw_volume *v, cw_scene *s,
+                              cw_error *err)
+{
+    double axes[3][3], low = INFINITY, high = -INFINITY, spacing[3];
+    if (args->slices == 0)
+        return CW_OK;
+    if (args->step.given)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--slices or --step-length, not both");
+    cw_status st = cw_camera_axes(&s->camera, axes[0], axes[1], axes[2], err);
+    for (int n = 0; n < 8 && st == CW_OK; n++) {
+        double index[3], p[3], depth = 0;
+        for (int a = 0; a < 3; a++)
+            index[a] = n >> a & 1 ? (double)v->dim[a] - 1 : 0;
+        cw_volume_to_world(v, index, p);
+        for (int a = 0; a < 3; a++)
+            depth += p[a] * axes[2][a];
+        low = fmin(low, depth);
+        high = fmax(high, depth);
+    }
+    cw_volume_spacing(v, spacing);
+    s->step_vox = fmax(high - low, 1e-3) / (double)args->slices /
+                  fmin(fmin(spacing[0], spacing[1]), spacing[2]);
+    return st;
+}
+
+static cw_status add_steps(const cli_scene *args, const cw_volume *v, cw_scene *s,
+                           cw_error *err)
+{
+    if (args->step.given && !(args->step.value >= 1e-3 && args->step.value <= 1e3))
+        return cw_fail(err, CW_ERR_ARGUMENT, "--step-length %g: 0.001 to 1000 was expected",
+                       args->step.value);
+    if (args->tree_error.given && !(args->tree_error.value >= 0 && args->tree_error.value <= 1))
+        return cw_fail(err, CW_ERR_ARGUMENT, "--tree-error %g: 0 to 1 was expected",
+                       args->tree_error.value);
+    if (args->stop_opacity.given && !(args->stop_opacity.value > 0))
+        return cw_fail(err, CW_ERR_ARGUMENT, "--stop-opacity %g: above 0 was expected",
+                       args->stop_opacity.value);
+    s->step_vox = args->step.given                         ? args->step.value
+                  : s->lit && s->mode == CW_MODE_COMPOSITE ? LIT_STEP_VOX
+                                                           : STEP_VOX;
+    s->stop_opacity = s->mode == CW_MODE_VBUFFER ? 0.99999f : 0.9999f;
+    s->cell_steps = args->cell_steps;
+    s->no_preintegration = !args->preintegration;
+    s->jitter = args->jitter;
+    s->exact_filter = args->exact_filter;
+    s->no_skipping = !args->skipping;
+    s->threshold = args->threshold.value;
+    s->texture_edge = args->texture_edge;
+    s->target = (cw_target)args->target;
+    s->colors_first = args->colors_first;
+    s->normals = args->normals ? args->normals : 1024;
+    s->mark_boundary = args->boundary;
+    s->linear_opacity = args->linear_opacity;
+    s->tree_error = args->tree_error.value;
+    s->splat_budget = args->splat_budget;
+    cw_status st = take_share("stop-opacity", &args->stop_opacity, 1, &s->stop_opacity, err);
+    return st == CW_OK ? space_slices(args, v, s, err) : st;
+}
+
+static cw_status add_mesh(const cli_scene *args, cw_scene *s, cw_error *err)
+{
+    uint8_t rgba[4];
+    const cli_numbers *range = &args->tint_range;
+    if (args->color && !cli_parse_color(args->color, rgba))
+        return fail_color("color", args->color, err);
+    for (int c = 0; c < 4 && args->color; c++)
+        s->color[c] = (float)rgba[c] / 255;
+    if (range->count && (range->count != 2 || !(range->value[0] < range->value[1])))
+        return cw_fail(err, CW_ERR_ARGUMENT, "--tint-range takes two rising numbers");
+    if (range->count && args->tint != CW_TINT_SCALARS)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--tint-range is for --tint scalars");
+    s->tint = (cw_tint)args->tint;
+    s->tint_low = range->count ? range->value[0] : 0;
+    s->tint_high = range->count ? range->value[1] : 0;
+    s->wireframe = args->wireframe;
+    s->cap = args->cap;
+    return CW_OK;
+}
+
+/* What depth cues and slices blend with. */
+static cw_status add_background(const cli_scene *args, cw_mode mode, cw_scene *s, cw_error *err)
+{
+    uint8_t background[2][4];
+    cw_status st = cli_background(args, mode, background, err);
+    for (int n = 0; n < 2; n++)
+        for (int c = 0; c < 3; c++)
+            s->background[n][c] = (float)background[n][c] / 255;
+    return st;
+}
+
+cw_status cli_make_scene(const cli_scene *args, const cli_subject *subject, cw_mode mode,
+                         const cw_transfer *transfer, cw_scene *scene, cw_error *err)
+{
+    cw_scene *s = scene;
+    s->mode = mode;
+    s->volume = mode == CW_MODE_MESH ? NULL : subject->volume;
+    s->mesh = args->hide == CLI_HIDE_MESH ? NULL : subject->mesh;
+    s->transfer = mode == CW_MODE_MESH ? NULL : transfer;
+    s->threads = subject->threads;
+    s->lit = args->lit && has_shading(mode);
+    cw_status st = add_background(args, mode, s, err);
+    if (st == CW_OK)
+        st = add_clips(args, subject, s, err);
+    if (st == CW_OK)
+        st = add_material(args, s, err);
+    if (st == CW_OK && s->volume)
+        st = add_steps(args, s->volume, s, err);
+    if (st == CW_OK)
+        st = parse_planes("planes", args->planes, CW_MAX_SLICES, s->slices, &s->slice_count,
+                          err);
+    return st == CW_OK ? add_mesh(args, s, err) : st;
+}

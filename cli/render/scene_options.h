@@ -1,0 +1,86 @@
+/* The options that say what a picture shows and how, and the scene they make. */
+#ifndef CLI_RENDER_SCENE_OPTIONS_H
+#define CLI_RENDER_SCENE_OPTIONS_H
+
+#include "cli/inputs/volume_input.h"
+
+#include <cubewright/render.h>
+
+typedef struct cli_scene {
+    int mode; /* 0: by what there is to see; else 1 + cw_mode */
+    const char *transfer, *camera, *lights, *background, *color, *clips, *planes;
+    cli_number shift, opacity, fov, zoom;
+    bool ortho;
+    bool lit;
+    cli_number ambient, diffuse, specular, shininess, depth_cue;
+    cli_ranges clip_box;
+    bool cut_away;
+    int hide;
+    cli_number step, stop_opacity, threshold;
+    size_t slices, texture_edge, normals;
+    bool cell_steps, preintegration, jitter, exact_filter, skipping;
+    int target;
+    bool colors_first, boundary, linear_opacity;
+    cli_number tree_error;
+    size_t splat_budget;
+    int tint;
+    cli_numbers tint_range;
+    bool wireframe, cap;
+} cli_scene;
+
+enum { CLI_HIDE_NONE, CLI_HIDE_MESH, CLI_HIDE_VOLUME };
+
+#define CLI_MODE_CHOICE(name, text, about, source) "/" text
+#define CLI_MODE_CHOICES                           "auto" CW_MODE_TABLE(CLI_MODE_CHOICE)
+
+/* What is to be seen. */
+typedef struct cli_subject {
+    const cw_volume *volume; /* evenly spaced; NULL: none */
+    const cw_volume *whole;  /* the file's, whose voxels --clip-box counts; NULL: none */
+    const cw_mesh *mesh;     /* NULL: none */
+    int threads;
+} cli_subject;
+
+/* Fails with the modes that an option is for, or what it needs, when one was given that does
+ * nothing: to this mode, without a volume, without a mesh. */
+cw_status cli_check_scene(const cli_command *command, const cli_common *common, cw_mode mode,
+                          bool has_mesh, cw_error *err);
+
+/* Whether an option of that name sets how one picture looks. */
+bool cli_is_setting(const char *name);
+
+/* Whether an option of that name does something in a mode, with or without a mesh. */
+bool cli_setting_fits(const char *name, cw_mode mode, bool has_mesh);
+
+/* The first option given of those that only OpenGL draws of a mesh; NULL: none. */
+const char *cli_needs_gl(const cli_command *command, const cli_common *common,
+                         const cli_scene *args);
+
+/* A colour such as #ffeedd, #fed, #ffeedd80 or a name. */
+bool cli_parse_color(const char *text, uint8_t rgba[4]);
+
+/* Top and bottom: as asked for, else as suits the mode. CW_ERR_ARGUMENT */
+cw_status cli_background(const cli_scene *args, cw_mode mode, uint8_t background[2][4],
+                         cw_error *err);
+
+/* The transfer function for a volume: a preset, a file or JSON text, shifted and scaled. What
+ * looks wrong is said.
+ * Returns CW_ERR_ARGUMENT for an unknown preset; as cw_transfer_read() */
+cw_status cli_make_transfer(const cli_scene *args, const cw_volume *volume, cw_mode mode,
+                            int threads, cw_transfer *transfer, cw_error *err);
+
+/* The same, when the statistics of its values are there. */
+cw_status cli_fit_transfer(const cli_scene *args, const cw_volume *volume, cw_mode mode,
+                           const cw_statistics *statistics, cw_transfer *transfer,
+                           cw_error *err);
+
+/* Shifts and scales one. CW_ERR_ARGUMENT */
+cw_status cli_change_transfer(const cli_scene *args, cw_transfer *transfer, cw_error *err);
+
+/* The whole scene but camera, size and samples, which are there before: slices are counted
+ * along the line of sight. What it points to is borrowed.
+ * Returns CW_ERR_ARGUMENT for texts that are not understood, naming the option */
+cw_status cli_make_scene(const cli_scene *args, const cli_subject *subject, cw_mode mode,
+                         const cw_transfer *transfer, cw_scene *scene, cw_error *err);
+
+#endif

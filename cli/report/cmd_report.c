@@ -1,0 +1,338 @@
+#include "cli/commands.h"
+#include "cli/framework/console.h"
+#include "cli/inputs/synthetic_input.h"
+#include "cli/results/output_names.h"
+#include "cli/framework/quantity.h"
+#include "cli/results/run_report.h"
+#include "cli/report/study.h"
+#include "cli/inputs/extract_surface.h"
+#include "core/base/status.h"
+#include "core/base/text.h"
+#include "core/volume/volume.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+typedef struct report_args {
+    cli_common common;
+    cli_input input;
+    const char *output, *json, *csv, *budget, *title;
+    cli_number iso;
+    cli_sizes dims;
+    int inside, progress;
+} report_args;
+
+enum { DEFAULT_DIMS = 96, MOST_DIMS = 1024 };
+
+/* Of more voxels meshes are studied on every other one, or fewer. */
+static const double MOST_VOXELS = 33554432;
+
+static const report_args defaults = {.budget = "60s"};
+
+static const cli_option options[] = {
+    {"output", 'o', CLI_TEXT, "FILE", "Page to write, a .html file",
+     offsetof(report_args, output)},
+    {"iso", 'i', CLI_NUMBER, "V", "Isovalue (otsu, as 'info' suggests; of a field its own)",
+     offsetof(report_args, iso)},
+    {"inside", 0, CLI_CHOICE, CLI_INSIDE_CHOICES,
+     "Which values are inside the solid (auto: above; in level sets below)",
+     offsetof(report_args, inside)},
+    {"budget", 0, CLI_TEXT, "TIME",
+     "Time after which no more settings are tried, such as 90s or 5min (60s)",
+     offsetof(report_args, budget)},
+    {"dims", 'd', CLI_SIZES, "N|XxYxZ", "Samples along the axes, of a field (96)",
+     offsetof(report_args, dims)},
+    {"coarsen", 0, CLI_COUNT, "N",
+     "Use every N-th voxel along each axis for meshes (1; larger above 32M voxels)",
+     CLI_INPUT_ROW(report_args, coarsen)},
+    CLI_HEADED("Output files"),
+    {"title", 0, CLI_TEXT, "TEXT", "Title of the page (the input's name)",
+     offsetof(report_args, title)},
+    {"json", 0, CLI_TEXT, "FILE", "Write the same facts as JSON; - is the standard output",
+     offsetof(report_args, json)},
+    {"csv", 0, CLI_TEXT, "FILE",
+     "Write a table with a row for each setting; - is the standard output",
+     offsetof(report_args, csv)},
+    CLI_INPUT_OPTIONS(report_args),
+    {"progress", 0, CLI_CHOICE, "auto/plain/json/none", "Progress display on stderr (auto)",
+     offsetof(report_args, progress)},
+};
+
+typedef struct run_state {
+    report_args *args;
+    cli_volume volume;
+    char *input_words, *make_words;
+    char field_path[64];
+    cli_study study;
+} run_state;
+
+static cw_status parse_budget(const char *text, double *seconds, cw_error *err)
+{
+    const char *at = text;
+    const bool number = cwi_parse_double(&at, seconds);
+    const double unit = strcmp(at, "min") == 0 || strcmp(at, "m") == 0 ? 60
+                        : strcmp(at, "s") == 0 || *at == '\0'          ? 1
+                                                                       : 0;
+    *seconds *= unit;
+    if (!number || unit == 0 || !(*seconds > 0) || !isfinite(*seconds))
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--budget '%s': a time above 0 was expected, such as 60s or 5min", text);
+    return CW_OK;
+}
+
+static cw_status check_dims(report_args *args, cw_error *err)
+{
+    size_t *n = args->dims.n;
+    if (args->dims.count == 2)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--dims takes one number or three, not two");
+    if (args->dims.count == 0)
+        n[0] = DEFAULT_DIMS;
+    if (args->dims.count < 2)
+        n[1] = n[2] = n[0];
+    for (int a = 0; a < 3; a++)
+        if (n[a] < 8 || n[a] > MOST_DIMS)
+            return cw_fail(err, CW_ERR_ARGUMENT,
+                           "--dims: 8 to %d samples were expected, not %zu", MOST_DIMS, n[a]);
+    return CW_OK;
+}
+
+static cw_status check_outputs(const report_args *args, cw_error *err)
+{
+    const char *const files[] = {args->output, args->json, args->csv};
+    cw_status st = CW_OK;
+    for (size_t n = 0; n < 3 && st == CW_OK; n++) {
+        if (!files[n] || strcmp(files[n], "-") == 0)
+            continue;
+        st = cli_check_output(files[n], args->common.inputs, 1, err);
+        for (size_t before = 0; before < n && st == CW_OK; before++)
+            if (files[before] && strcmp(files[before], "-") != 0)
+                st = cli_check_apart(files[before], files[n], err);
+    }
+    if (st == CW_OK && args->json && args->csv && strcmp(args->json, "-") == 0 &&
+        strcmp(args->csv, "-") == 0)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--json and --csv: only one of them can use the standard output");
+    return st;
+}
+
+/* What is no file may be a field that was misspelt; else its reader's words are better. */
+static cw_status check_name(const char *name, cw_error *err)
+{
+    const char *nearest = cli_nearest_field(name);
+    return nearest ? cw_fail(err, CW_ERR_ARGUMENT,
+                             "'%s' is neither a file nor a field; did you mean '%s'?", name,
+                             nearest)
+                   : CW_OK;
+}
+
+static cw_status check_args(run_state *s, cw_error *err)
+{
+    report_args *args = s->args;
+    cw_status st = parse_budget(args->budget, &s->study.budget_s, err);
+    if (st != CW_OK)
+        return st;
+    if (!s->study.is_field && access(args->common.inputs[0], F_OK) != 0)
+        st = check_name(args->common.inputs[0], err);
+    if (st != CW_OK)
+        return st;
+    if (!args->output)
+        return cw_fail(err, CW_ERR_ARGUMENT, "report needs an output: -o FILE");
+    if (strcmp(args->output, "-") == 0 && args->json && strcmp(args->json, "-") == 0)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "-o and --json: only one of them can use the standard output");
+    if (s->study.is_field && args->input.coarsen)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--coarsen is for files; --dims samples fewer");
+    if (!s->study.is_field && args->dims.count)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--dims is for fields, and %s is a file",
+                       args->common.inputs[0]);
+    st = s->study.is_field ? check_dims(args, err) : CW_OK;
+    return st == CW_OK ? check_outputs(args, err) : st;
+}
+
+/* What was said of reading is said in commands, too: options from --reader on. */
+static void put_reading(FILE *out, const report_args *args)
+{
+    bool reading = false;
+    for (size_t n = 0; n < sizeof options / sizeof *options; n++) {
+        char text[4096];
+        const cli_option *o = &options[n];
+        reading = reading || strcmp(o->name, "reader") == 0;
+        if (!reading || !args->common.given[n])
+            continue;
+        if (o->kind == CLI_FLAG) {
+            fprintf(out, " --%s%s",
+                    *(const bool *)((const char *)args + o->offset) ? "" : "no-", o->name);
+        } else if (cli_option_text(o, args, text, sizeof text)) {
+            fprintf(out, " --%s ", o->name);
+            cli_put_word(out, text);
+        }
+    }
+}
+
+/* A name that begins with a dash would be taken for an option. */
+static cw_status tell_input(run_state *s, const char *path, cw_error *err)
+{
+    size_t size;
+    char *text;
+    FILE *out = cwi_text_open(&text, &size);
+    char *word = malloc(strlen(path) + 3);
+    if (out && word) {
+        sprintf(word, "%s%s", *path == '-' ? "./" : "", path);
+        cli_put_word(out, word);
+        put_reading(out, s->args);
+    }
+    const bool good = cwi_text_close(out, &text) && word;
+    free(word);
+    s->input_words = text;
+    return good ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a command");
+}
+
+static cw_status make_field(run_state *s, cw_error *err)
+{
+    const report_args *args = s->args;
+    const size_t *n = args->dims.n;
+    const cw_field field = s->study.field;
+    cli_volume *v = &s->volume;
+    cw_status st = cli_make_field(field, n, &args->input, v, err);
+    if (st != CW_OK)
+        return st;
+    snprintf(s->field_path, sizeof s->field_path, "%s.nrrd", cw_field_name(field));
+    v->path = s->field_path;
+    s->make_words = malloc(256);
+    if (!s->make_words)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a command");
+    snprintf(s->make_words, 256, "cubewright make %s --dims %zux%zux%zu -o %s",
+             cw_field_name(field), n[0], n[1], n[2], s->field_path);
+    return CW_OK;
+}
+
+/* As coarse as it takes, unless asked for. */
+static cw_status read_file(run_state *s, cw_error *err)
+{
+    report_args *args = s->args;
+    const char *path = args->common.inputs[0];
+    cw_volume shape;
+    cw_status st = CW_OK;
+    args->input.coarsen_view = true;
+    if (!args->input.coarsen) {
+        st = cli_read_shape(path, &args->input, &shape, err);
+        size_t step = 1;
+        while (st == CW_OK && !shape.cells && !shape.sparse &&
+               (double)(shape.dim[0] / step) * (double)(shape.dim[1] / step) *
+                       (double)(shape.dim[2] / step) >
+                   MOST_VOXELS)
+            step++;
+        args->input.coarsen = step > 1 ? step : 0;
+    }
+    return st == CW_OK ? cli_read_volume(path, &args->input, false, &s->volume, err) : st;
+}
+
+static cw_status find_level(run_state *s, cw_error *err)
+{
+    cli_study *study = &s->study;
+    if (!s->args->iso.given && !study->is_field)
+        return cli_find_level(&s->volume, study->threads, &study->iso, &study->level, err);
+    study->level = s->args->iso.given ? "as asked for" : "the field's own";
+    study->iso = s->args->iso.given ? s->args->iso.value : cw_field_isovalue(study->field);
+    return CW_OK;
+}
+
+/* The drawn volume is not the coarsened one: render reads all voxels. */
+static cw_status open_input(run_state *s, cw_error *err)
+{
+    cli_study *study = &s->study;
+    const cli_input *input = &s->args->input;
+    cw_status st = study->is_field ? make_field(s, err) : read_file(s, err);
+    const cw_volume *all =
+        input->component.magnitude ? &s->volume.magnitude : &s->volume.voxels;
+    if (st == CW_OK)
+        st = input->component.magnitude ? cw_volume_select(all, 0, 0, &study->drawn, err)
+                                        : cw_volume_select(all, input->component.number,
+                                                           input->step, &study->drawn, err);
+    if (st == CW_OK)
+        st = tell_input(s, s->volume.path, err);
+    if (st != CW_OK)
+        return st;
+    study->volume = &s->volume;
+    study->threads = (int)input->threads;
+    study->coarsen = s->volume.coarsen[0] ? s->volume.coarsen[0] : 1;
+    study->is_cropped = input->crop.given;
+    study->inside_is_low = cli_inside_is_low(s->args->inside, &s->volume.whole);
+    study->input_words = s->input_words;
+    study->make_words = s->make_words;
+    study->title = s->args->title    ? s->args->title
+                   : study->is_field ? cw_field_name(study->field)
+                                     : cli_shown_path(s->volume.path);
+    return find_level(s, err);
+}
+
+static void tell(const cli_study *study, const char *path)
+{
+    size_t done = 0;
+    for (size_t n = 0; n < study->point_count; n++)
+        done += study->points[n].done;
+    cli_result("%s: %zu settings tried, %zu left out; %.1f s\n", path, done,
+               study->point_count - done, study->seconds);
+}
+
+static cw_status pipeline(run_state *s, cw_error *err)
+{
+    const report_args *args = s->args;
+    cw_status st = check_args(s, err);
+    if (st == CW_OK)
+        st = open_input(s, err);
+    if (st == CW_OK)
+        st = cli_study_run(&s->study, err);
+    if (st == CW_OK)
+        st = cli_report_make(args->json, cli_put_study_json, &s->study, err);
+    if (st == CW_OK)
+        st = cli_report_make(args->csv, cli_put_study_csv, &s->study, err);
+    if (st == CW_OK)
+        st = cli_report_make(args->output, cli_put_page, &s->study, err);
+    if (st == CW_OK)
+        tell(&s->study, args->output);
+    return st;
+}
+
+static bool is_stdout(const char *path)
+{
+    return path && strcmp(path, "-") == 0;
+}
+
+static cw_status run(void *p, cw_error *err)
+{
+    report_args *args = p;
+    run_state *s = calloc(1, sizeof *s);
+    if (!s)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a report");
+    s->args = args;
+    /* a file of that name is meant, if there is one */
+    s->study.is_field = access(args->common.inputs[0], F_OK) != 0 &&
+                        cw_field_find(args->common.inputs[0], &s->study.field);
+    cli_console_start(&args->common, (cli_progress_mode)args->progress);
+    if (is_stdout(args->output) || is_stdout(args->json) || is_stdout(args->csv))
+        cli_results_to_stderr();
+    cw_status st = pipeline(s, err);
+    cli_study_free(&s->study);
+    cli_free_volume(&s->volume);
+    free(s->input_words);
+    free(s->make_words);
+    free(s);
+    return st;
+}
+
+const cli_command cli_report_command = {
+    .name = "report",
+    .usage = "VOLUME|FIELD -o HTML [options]",
+    .about = "Compare the cost and error of settings on your data, on one page",
+    .page = cli_page_report,
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .min_inputs = 1,
+    .max_inputs = 1,
+    .size = sizeof(report_args),
+    .defaults = &defaults,
+    .run = run,
+};

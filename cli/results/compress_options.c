@@ -1,0 +1,59 @@
+#include "cli/results/compress_options.h"
+
+#include "cli/framework/quantity.h"
+#include "core/base/status.h"
+
+#include <math.h>
+
+const char *cli_compression_name(cw_compression kind)
+{
+    static const char *const names[] = {"none", "quantize", "draco", "meshopt"};
+    return names[kind];
+}
+
+cw_status cli_check_compress(const cli_compress *c, bool voxels, cw_error *err)
+{
+    const char *lonely = c->kind              ? NULL
+                         : c->tolerance.given ? "tolerance"
+                         : c->bits            ? "bits"
+                         : c->level           ? "level"
+                                              : NULL;
+    if (lonely)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--%s is for --compress", lonely);
+    if (c->bits && c->tolerance.given)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--bits or --tolerance, not both");
+    if (c->level && (c->kind != CW_COMPRESS_DRACO || c->level > 10))
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--level %zu: 1 to 10 was expected, with --compress draco", c->level);
+    if (c->bits > 30)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--bits %zu: 1 to 30 was expected", c->bits);
+    if (c->tolerance.given && !(c->tolerance.value > 0))
+        return cw_fail(err, CW_ERR_ARGUMENT, "--tolerance: it must be above 0");
+    if (c->tolerance.unit == CLI_VOXELS && !voxels)
+        return cw_fail(err, CW_ERR_ARGUMENT, "--tolerance: a mesh has no voxels");
+    return CW_OK;
+}
+
+static double diagonal_of(const cw_part *parts, size_t count)
+{
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t p = 0; p < count; p++) {
+        double from[3], to[3];
+        cw_mesh_bounds(parts[p].mesh, from, to);
+        for (int a = 0; a < 3 && parts[p].mesh->vertex_count; a++) {
+            low[a] = fmin(low[a], from[a]);
+            high[a] = fmax(high[a], to[a]);
+        }
+    }
+    return hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
+}
+
+void cli_set_compress(const cli_compress *c, const cw_part *parts, size_t count,
+                      double voxel_mm, cw_write_desc *desc)
+{
+    desc->compression = (cw_compression)c->kind;
+    desc->bits = (int)c->bits;
+    desc->level = (int)c->level;
+    if (c->tolerance.given)
+        desc->tolerance_mm = cli_length_mm(&c->tolerance, diagonal_of(parts, count), voxel_mm);
+}

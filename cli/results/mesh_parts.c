@@ -1,0 +1,134 @@
+#include "cli/results/mesh_parts.h"
+
+#include "cli/results/mesh_comparison.h"
+#include "cli/framework/console.h"
+#include "cli/framework/quantity.h"
+#include "core/base/status.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+static cw_status in_file(const cli_pieces *p, cw_status st, cw_error *err)
+{
+    return st == CW_OK ? CW_OK : cwi_fail_in(err, st, p->path);
+}
+
+static void measure_box(cli_pieces *p)
+{
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    for (size_t n = 0; n < p->count; n++) {
+        double from[3], to[3];
+        cw_mesh_bounds(&p->piece[n].input, from, to);
+        for (int a = 0; a < 3; a++) {
+            low[a] = fmin(low[a], from[a]);
+            high[a] = fmax(high[a], to[a]);
+        }
+    }
+    p->diagonal_mm = hypot(hypot(high[0] - low[0], high[1] - low[1]), high[2] - low[2]);
+}
+
+/* Those without triangles go. */
+static cw_status weld_parts(cli_pieces *p, const cli_mesh *m, cw_error *err)
+{
+    const size_t count = m->parts ? m->part_count : 1;
+    cw_status st = CW_OK;
+    p->piece = calloc(count ? count : 1, sizeof *p->piece);
+    if (!p->piece)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu parts", count);
+    for (size_t n = 0; n < count && st == CW_OK; n++) {
+        size_t merged;
+        cli_piece *piece = &p->piece[p->count];
+        *piece = (cli_piece){.input = m->parts ? *m->parts[n].mesh : m->mesh,
+                             .name = m->parts ? m->parts[n].name : NULL};
+        st = cw_mesh_weld(&piece->input, &merged, err);
+        p->merged += merged;
+        p->count += st == CW_OK && piece->input.triangle_count > 0;
+    }
+    return st;
+}
+
+cw_status cli_weld_pieces(cli_pieces *p, const cli_mesh *mesh, cw_error *err)
+{
+    *p = (cli_pieces){.path = mesh->path};
+    cw_status st = weld_parts(p, mesh, err);
+    if (st == CW_OK && p->merged)
+        cli_say("%s: %s vertices at the position of another were merged", p->path,
+                cli_count(p->merged));
+    if (st == CW_OK && !p->count)
+        st = cw_fail(err, CW_ERR_EMPTY, "it has no triangles");
+    if (st == CW_OK)
+        measure_box(p);
+    return in_file(p, st, err);
+}
+
+cw_status cli_drop_from_pieces(cli_pieces *p, double diagonal_mm, cw_error *err)
+{
+    const size_t count = p->count;
+    size_t all_kept = 0;
+    cw_status st = CW_OK;
+    p->count = 0;
+    for (size_t n = 0; n < count && st == CW_OK; n++) {
+        size_t dropped = 0, kept = 0;
+        cli_piece *piece = &p->piece[p->count];
+        *piece = p->piece[n];
+        st = cw_mesh_drop_components(&piece->input, diagonal_mm, &dropped, &kept, err);
+        p->dropped += dropped;
+        all_kept += kept;
+        p->count += kept > 0;
+    }
+    if (st == CW_OK && !p->count)
+        st = cw_fail(err, CW_ERR_EMPTY,
+                     "no component has a diagonal of %.6g mm: nothing is left", diagonal_mm);
+    if (st == CW_OK)
+        cli_say("%s: %s component%s kept, %s dropped (< %.6g mm)", p->path, cli_count(all_kept),
+                all_kept == 1 ? "" : "s", cli_count(p->dropped), diagonal_mm);
+    return in_file(p, st, err);
+}
+
+cw_status cli_measure_pieces(cli_pieces *p, int threads, cw_error *err)
+{
+    const cw_quality_desc desc = {.weld = CW_WELD_LOCAL, .threads = threads};
+    cw_status st = CW_OK;
+    for (size_t n = 0; n < p->count && st == CW_OK; n++) {
+        st = cw_quality_measure(&p->piece[n].input, &desc, &p->piece[n].before, err);
+        p->triangles += p->piece[n].input.triangle_count;
+    }
+    return in_file(p, st, err);
+}
+
+cw_status cli_hold_pieces(const cli_pieces *p, int threads, cw_error *err)
+{
+    const cw_quality_desc desc = {.weld = CW_WELD_LOCAL, .threads = threads};
+    cw_status st = CW_OK;
+    for (size_t n = 0; n < p->count && st == CW_OK; n++) {
+        cw_quality after;
+        st = cw_quality_measure(&p->piece[n].out, &desc, &after, err);
+        if (st == CW_OK)
+            st = cli_hold_to_topology(&p->piece[n].before, &after, err);
+    }
+    return in_file(p, st, err);
+}
+
+cw_status cli_compare_pieces(const cli_pieces *p, int threads, cli_comparison *c, cw_error *err)
+{
+    double area[2] = {0, 0};
+    cw_status st = CW_OK;
+    c->diagonal_mm = p->diagonal_mm;
+    for (size_t n = 0; n < p->count && st == CW_OK; n++)
+        st = cli_compare(&p->piece[n].out, &p->piece[n].input, c->promised_mm / 100, threads, c,
+                         area, err);
+    const double most = fmax(c->to_input.max_mm, c->from_input.max_mm);
+    if (st == CW_OK && c->promised_mm > 0 && most > c->promised_mm)
+        st = cw_fail(err, CW_ERR_CHECK,
+                     "not as promised: %.6g mm from the input, not %.6g; nothing is written",
+                     most, c->promised_mm);
+    return in_file(p, st, err);
+}
+
+void cli_free_pieces(cli_pieces *p)
+{
+    for (size_t n = 0; n < p->count; n++)
+        cw_mesh_free(&p->piece[n].out);
+    free(p->piece);
+    *p = (cli_pieces){0};
+}

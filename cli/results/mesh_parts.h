@@ -1,0 +1,47 @@
+/* A mesh that is made smaller part by part, so that parts stay apart: what goes in, what comes
+ * out, and what one has to do with the other. Errors name the file. */
+#ifndef CLI_RESULTS_MESH_PARTS_H
+#define CLI_RESULTS_MESH_PARTS_H
+
+#include "cli/inputs/mesh_input.h"
+#include "cli/results/run_report.h"
+
+typedef struct cli_piece {
+    cw_mesh input; /* its arrays are those of the cli_mesh, welded */
+    const char *name;
+    cw_quality before; /* of the input */
+    cw_mesh out;       /* owned */
+} cli_piece;
+
+typedef struct cli_pieces {
+    const char *path; /* of the file */
+    cli_piece *piece;
+    size_t count, triangles; /* these of all, before */
+    size_t merged, dropped;  /* vertices; components */
+    double diagonal_mm;      /* of the box of all, as they were read */
+} cli_pieces;
+
+/* Makes a piece of each part that has triangles, vertices at equal positions one, and says so.
+ * Free it, also after failure, with cli_free_pieces().
+ * Returns  CW_ERR_EMPTY when there are no triangles */
+cw_status cli_weld_pieces(cli_pieces *p, const cli_mesh *mesh, cw_error *err);
+
+/* Leaves out components whose box has a shorter diagonal, and says how many.
+ * Returns  CW_ERR_EMPTY when nothing is left */
+cw_status cli_drop_from_pieces(cli_pieces *p, double diagonal_mm, cw_error *err);
+
+/* Looks at what goes in, for cli_hold_pieces(). */
+cw_status cli_measure_pieces(cli_pieces *p, int threads, cw_error *err);
+
+/* Fails when what came out has another topology. */
+cw_status cli_hold_pieces(const cli_pieces *p, int threads, cw_error *err);
+
+/* Measures how far what came out is from what went in, and the way back.
+ * Returns  CW_ERR_CHECK when that is more than c->promised_mm */
+cw_status cli_compare_pieces(const cli_pieces *p, int threads, cli_comparison *c,
+                             cw_error *err);
+
+/* Harmless on zeroed ones. */
+void cli_free_pieces(cli_pieces *p);
+
+#endif

@@ -1,0 +1,268 @@
+#define _GNU_SOURCE /* dev_t, ino_t */
+#include "cli/results/output_names.h"
+
+#include "cli/framework/quantity.h"
+#include "cli/framework/name_template.h"
+#include "core/base/status.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+/* What stands at a path. */
+typedef struct place {
+    bool exists;
+    dev_t device;
+    ino_t inode;
+} place;
+
+static place find_place(const char *path)
+{
+    struct stat info;
+    if (stat(path, &info) != 0)
+        return (place){0};
+    return (place){true, info.st_dev, info.st_ino};
+}
+
+static bool same_place(const place *a, const place *b)
+{
+    return a->exists && b->exists && a->device == b->device && a->inode == b->inode;
+}
+
+static bool same_file(const char *a, const char *b)
+{
+    const place x = find_place(a), y = find_place(b);
+    return same_place(&x, &y);
+}
+
+cw_status cli_check_output(const char *output, const char *const *inputs, size_t input_count,
+                           cw_error *err)
+{
+    for (size_t i = 0; i < input_count; i++)
+        if (same_file(output, inputs[i]))
+            return cw_fail(err, CW_ERR_OUTPUT,
+                           "%s: is the input; inputs are never overwritten, give another -o",
+                           output);
+    return CW_OK;
+}
+
+static cw_status fail_same(const char *a, const char *b, cw_error *err)
+{
+    return cw_fail(err, CW_ERR_ARGUMENT,
+                   "%s and %s are the same file; each output needs its own", a, b);
+}
+
+cw_status cli_check_apart(const char *a, const char *b, cw_error *err)
+{
+    return strcmp(a, b) != 0 && !same_file(a, b) ? CW_OK : fail_same(a, b, err);
+}
+
+static cw_status check_levels(const cli_numbers *levels, cw_error *err)
+{
+    for (size_t n = 0; n < levels->count; n++)
+        for (size_t m = 0; m < n; m++)
+            if (levels->value[m] == levels->value[n])
+                return cw_fail(err, CW_ERR_ARGUMENT, "--iso lists %s twice",
+                               cli_number_text(levels->value[n]));
+    return CW_OK;
+}
+
+/* Where the extension of a name begins. */
+static const char *end_of_name(const char *text)
+{
+    const char *slash = strrchr(text, '/'), *dot = strrchr(text, '.');
+    return dot && (!slash || dot > slash) ? dot : text + strlen(text);
+}
+
+/* "out-{level}.glb" for the user who wrote "out.glb". */
+static cw_status ask_for(const char *what, const char *text, const char *why, cw_error *err)
+{
+    const char *end = end_of_name(text), *width = strcmp(what, "step") == 0 ? ":04d" : "";
+    return cw_fail(err, CW_ERR_ARGUMENT, "%s: the output must hold {%s}, as in '%.*s-{%s%s}%s'",
+                   why, what, (int)(end - text), text, what, width, end);
+}
+
+static cw_status reserve(cli_outputs *outputs, size_t count, char **stem, const char *input,
+                         cw_error *err)
+{
+    outputs->path = calloc(count ? count : 1, sizeof *outputs->path);
+    *stem = cli_stem(input);
+    if (outputs->path && *stem)
+        return CW_OK;
+    return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of an output");
+}
+
+/* The next name, of the parts as they are now. */
+static cw_status add_output(cli_outputs *outputs, const char *text, cli_part *parts,
+                            size_t part_count, cw_error *err)
+{
+    return cli_fill_template(text, parts, part_count, &outputs->path[outputs->count++], err);
+}
+
+enum { STEM, LEVEL, STEP, PARTS };
+
+static cw_status name_levels(cli_outputs *outputs, const char *text, const cli_moment *moment,
+                             const cli_numbers *levels, cli_part parts[PARTS], cw_error *err)
+{
+    char number[24], *stem = cli_stem(moment->path);
+    cw_status st = stem ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a name");
+    snprintf(number, sizeof number, "%zu", moment->number);
+    parts[STEM].value = stem;
+    parts[STEP].value = number;
+    for (size_t n = 0; n < levels->count && st == CW_OK; n++) {
+        parts[LEVEL].value = cli_number_text(levels->value[n]);
+        st = add_output(outputs, text, parts, PARTS, err);
+    }
+    free(stem);
+    return st;
+}
+
+static cw_status check_told_apart(const char *text, const cli_series *series,
+                                  const cli_numbers *levels, const cli_part parts[PARTS],
+                                  cw_error *err)
+{
+    char why[64];
+    snprintf(why, sizeof why, "--iso lists %zu levels", levels->count);
+    if (levels->count > 1 && !parts[LEVEL].used)
+        return ask_for("level", text, why, err);
+    snprintf(why, sizeof why,
+             series->files.count ? "%zu files are taken as the steps of a series, a mesh each"
+                                 : "there are %zu steps",
+             series->count);
+    if (series->count > 1 && !parts[STEP].used && !(series->files.count && parts[STEM].used))
+        return ask_for("step", text, why, err);
+    return CW_OK;
+}
+
+cw_status cli_name_outputs(cli_outputs *outputs, const char *text, const cli_series *series,
+                           const cli_numbers *levels, cw_error *err)
+{
+    cli_part parts[PARTS] = {[STEM] = {.name = "stem"},
+                             [LEVEL] = {.name = "level"},
+                             [STEP] = {.name = "step", .number = true}};
+    cw_status st = check_levels(levels, err);
+    outputs->path = calloc(levels->count * series->count + 1, sizeof *outputs->path);
+    if (st == CW_OK && !outputs->path)
+        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the names of outputs");
+    for (size_t n = 0; n < series->count && st == CW_OK; n++)
+        st = name_levels(outputs, text, &series->moments[n], levels, parts, err);
+    return st == CW_OK ? check_told_apart(text, series, levels, parts, err) : st;
+}
+
+/* As part of a file name: no folder, nothing hidden. */
+static void to_file_name(const char *name, size_t number, char text[256])
+{
+    if (name)
+        snprintf(text, 256, "%s", name);
+    else
+        snprintf(text, 256, "part%zu", number);
+    for (char *c = text; *c; c++)
+        if (*c == '/' || (c == text && *c == '.'))
+            *c = '_';
+}
+
+cw_status cli_name_part_outputs(cli_outputs *outputs, const char *text, const char *input,
+                                const cw_part *parts, size_t count, cw_error *err)
+{
+    char *stem = NULL, name[256], number[24], why[64];
+    cw_status st = reserve(outputs, count, &stem, input, err);
+    cli_part fields[] = {{.name = "stem", .value = stem},
+                         {.name = "name", .value = name},
+                         {.name = "part", .value = number}};
+    for (size_t n = 0; n < count && st == CW_OK; n++) {
+        to_file_name(parts[n].name, n + 1, name);
+        snprintf(number, sizeof number, "%zu", n + 1);
+        st = add_output(outputs, text, fields, 3, err);
+    }
+    snprintf(why, sizeof why, "--split makes %zu files", count);
+    if (st == CW_OK && count > 1 && !fields[1].used && !fields[2].used)
+        st = ask_for("name", text, why, err);
+    free(stem);
+    return st;
+}
+
+/* "out.glb" is "out-lod{lod}.glb"; free it with free(). */
+static char *with_lod(const char *text)
+{
+    static const char what[] = "-lod{lod}";
+    const size_t head = (size_t)(end_of_name(text) - text);
+    char *name = malloc(strlen(text) + sizeof what);
+    if (name)
+        sprintf(name, "%.*s%s%s", (int)head, text, what, text + head);
+    return name;
+}
+
+cw_status cli_name_lod_outputs(cli_outputs *outputs, const char *text, const char *input,
+                               size_t levels, bool together, cw_error *err)
+{
+    char *stem = NULL, *plain = NULL, *made = NULL, number[24] = "0";
+    cw_status st = reserve(outputs, levels + 1, &stem, input, err);
+    cli_part parts[] = {{.name = "stem", .value = stem}, {.name = "lod", .value = number}};
+    if (st == CW_OK) /* only to see whether there is a {lod} in it */
+        st = cli_fill_template(text, parts, 2, &plain, err);
+    const bool apart = parts[1].used;
+    if (st == CW_OK && !apart && !(made = with_lod(text)))
+        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of an output");
+    for (size_t n = 0; n < levels && st == CW_OK; n++) {
+        snprintf(number, sizeof number, "%zu", n);
+        st = add_output(outputs, apart ? text : made, parts, 2, err);
+    }
+    if (st == CW_OK && !apart && together)
+        st = add_output(outputs, text, parts, 2, err);
+    free(made);
+    free(plain);
+    free(stem);
+    return st;
+}
+
+cw_status cli_name_output(cli_outputs *outputs, const char *text, const char *input,
+                          cw_error *err)
+{
+    char *stem = NULL;
+    cw_status st = reserve(outputs, 1, &stem, input, err);
+    if (st == CW_OK)
+        st = add_output(outputs, text, &(cli_part){.name = "stem", .value = stem}, 1, err);
+    free(stem);
+    return st;
+}
+
+void cli_free_outputs(cli_outputs *outputs)
+{
+    for (size_t n = 0; n < outputs->count; n++)
+        free(outputs->path[n]);
+    free(outputs->path);
+    *outputs = (cli_outputs){0};
+}
+
+/* Each output needs its own file, by name and by link. */
+static cw_status check_all_apart(const cli_outputs *outputs, cw_error *err)
+{
+    cw_status st = CW_OK;
+    place *places = calloc(outputs->count ? outputs->count : 1, sizeof *places);
+    if (!places)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to compare %zu outputs",
+                       outputs->count);
+    for (size_t n = 0; n < outputs->count && st == CW_OK; n++) {
+        places[n] = find_place(outputs->path[n]);
+        for (size_t m = 0; m < n && st == CW_OK; m++)
+            if (same_place(&places[m], &places[n]) ||
+                strcmp(outputs->path[m], outputs->path[n]) == 0)
+                st = fail_same(outputs->path[m], outputs->path[n], err);
+    }
+    free(places);
+    return st;
+}
+
+cw_status cli_check_outputs(const cli_outputs *outputs, const char *const *inputs,
+                            size_t input_count, const cw_write_desc *desc, cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (size_t n = 0; n < outputs->count && st == CW_OK; n++)
+        st = cli_check_output(outputs->path[n], inputs, input_count, err);
+    if (st == CW_OK)
+        st = check_all_apart(outputs, err);
+    for (size_t n = 0; n < outputs->count && st == CW_OK; n++)
+        st = cw_mesh_write_check(outputs->path[n], desc, err);
+    return st;
+}

@@ -1,0 +1,237 @@
+#define _GNU_SOURCE /* open_memstream */
+#include "cli/commands.h"
+#include "cli/framework/console.h"
+#include "cli/view/view.h"
+#include "core/base/module.h"
+#include "core/base/status.h"
+
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+static const render_args defaults = {.scene = CLI_SCENE_DEFAULTS,
+                                     .size = {.count = 2, .n = {1280, 800, 0}}};
+
+static const cli_option options[] = {
+    {"exec", 'e', CLI_TEXT, "COMMANDS",
+     "Commands to run first, such as 'mode mip; orbit 30; screenshot a.png'",
+     offsetof(render_args, exec)},
+    {"run", 0, CLI_TEXT, "FILE", "File of commands to run first, such as a saved session",
+     offsetof(render_args, run)},
+    {"config", 0, CLI_TEXT, "FILE|none",
+     "File of default settings (~/.config/cubewright/view; with --hidden none)",
+     offsetof(render_args, config)},
+    {"hidden", 0, CLI_FLAG, NULL, "Run the commands and end, without window and display (off)",
+     offsetof(render_args, hidden)},
+    {"output", 'o', CLI_TEXT, "FILE",
+     "Run as --hidden, and write the last picture as a .png file",
+     offsetof(render_args, output)},
+    {"size", 0, CLI_SIZES, "WxH", "Size of the window in pixels (1280x800)",
+     offsetof(render_args, size)},
+#include "cli/render/options_what.inc"
+    CLI_HEADED("Camera"),
+#include "cli/render/options_camera.inc"
+#include "cli/render/options_look.inc"
+    CLI_INPUT_OPTIONS(render_args),
+};
+
+/* Frames while something takes long: a bar, and a way to stop it. */
+static bool show_progress(void *user, const char *step, double done)
+{
+    view *v = user;
+    const double now = v->ui->seconds(v->window);
+    if (now - v->frame_shown < 0.1)
+        return !v->quits;
+    v->frame_shown = now;
+    const cwi_ui_input *in = v->ui->begin(v->window, 0);
+    const double scale = v->ui->scale(v->window);
+    const cwi_ui_rect rect = {0.5 * ((double)in->width - 320 * scale), 0.5 * (double)in->height,
+                              320 * scale, 0};
+    v->quits |= in->close;
+    v->ui->panel_begin(v->window, "Working", &rect, CWI_UI_FIXED, NULL);
+    v->ui->progress(v->window, done, step);
+    v->ui->panel_end(v->window);
+    v->ui->end(v->window, NULL);
+    return !v->quits;
+}
+
+static void hear(void *user, const char *line)
+{
+    view *v = user; /* what a file is stands in the status line as well */
+    if (!v->opening || strncmp(line, v->opening, strlen(v->opening)) != 0)
+        view_say(v, false, line);
+}
+
+static cw_status check(const render_args *args, cw_error *err)
+{
+    const char *dot = args->output ? strrchr(args->output, '.') : NULL;
+    if (args->size.count != 2 || args->size.n[0] > 8192 || args->size.n[1] > 8192)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "--size takes two numbers up to 8192, such as 1280x800");
+    if (args->output && (!dot || strcmp(dot, ".png") != 0))
+        return cw_fail(err, CW_ERR_ARGUMENT, "%s: view writes .png", args->output);
+    if (args->common.input_count == 0 && args->output && !args->exec && !args->run)
+        return cw_fail(err, CW_ERR_ARGUMENT, "view -o needs a file to draw");
+    return CW_OK;
+}
+
+static cw_status open_window(view *v, const render_args *args, cw_error *err)
+{
+    const void *functions;
+    const cwi_ui_desc desc = {.title = "cubewright",
+                              .width = args->size.n[0],
+                              .height = args->size.n[1],
+                              .hidden = args->hidden || args->output};
+    cw_status st = cwi_module_load("window", &functions, err);
+    if (st != CW_OK)
+        return st;
+    v->ui = functions;
+    v->is_hidden = desc.hidden;
+    return v->ui->open(&desc, &v->window, err);
+}
+
+/* Where there is a window, what is wrong with a file is told there. */
+static cw_status open_first(view *v, const render_args *args, cw_error *err)
+{
+    cw_error why = {0};
+    if (args->common.input_count == 0)
+        return CW_OK;
+    cw_status st = view_open(v, args->common.inputs[0], &why);
+    if (st == CW_OK)
+        return CW_OK;
+    if (v->is_hidden)
+        return cw_fail(err, st, "%s", why.message);
+    cli_say_error(why.message);
+    view_say(v, true, why.message);
+    return CW_OK;
+}
+
+/* A file that was named has to be there, the usual one need not. */
+static cw_status configure(view *v, const char *named, cw_error *err)
+{
+    char path[4096];
+    const char *home = getenv("HOME"), *folder = getenv("XDG_CONFIG_HOME");
+    if (named && strcmp(named, "none") != 0)
+        return view_exec_file(v, named, err);
+    if (named || v->is_hidden || (!home && !folder))
+        return CW_OK;
+    if (folder && *folder)
+        snprintf(path, sizeof path, "%s/cubewright/view", folder);
+    else
+        snprintf(path, sizeof path, "%s/.config/cubewright/view", home ? home : "");
+    return access(path, R_OK) == 0 ? view_exec_file(v, path, err) : CW_OK;
+}
+
+static cw_status do_asked(view *v, const render_args *args, cw_error *err)
+{
+    cw_status st = view_take_in(v, err);
+    if (st == CW_OK && args->run)
+        st = view_exec_file(v, args->run, err);
+    if (st == CW_OK && args->exec) {
+        st = view_exec(v, args->exec, err);
+        st = st == CW_OK ? st : cwi_fail_in(err, st, "--exec");
+    }
+    if (st == CW_OK && args->output)
+        st = view_frame(v, 0, err); /* lays out what came before */
+    if (st == CW_OK && args->output && !v->quits)
+        st = view_picture(v, args->output, err);
+    return st;
+}
+
+static cw_status run_session(view *v, const render_args *args, cw_error *err)
+{
+    const cli_listener listener = {v, hear, show_progress};
+    const view_shown shown = {.panels = !args->output,
+                              .cross = args->marks.layout == CLI_LAYOUT_QUAD};
+    v->command = &cli_view;
+    v->state.args = *args;
+    v->state.slice_zoom = 1;
+    v->state.share = 0.5;
+    v->shown = shown;
+    v->width = args->size.n[0];
+    v->height = args->size.n[1];
+    for (int p = 0; p < VIEW_PARTS; p++)
+        v->parts[p].scale = 0.5;
+    view_lay_out(v);
+    cli_console_listen(&listener);
+    v->is_configuring = true;
+    cw_status st = configure(v, args->config, err);
+    v->is_configuring = false;
+    if (st == CW_OK)
+        st = open_first(v, args, err);
+    if (st == CW_OK)
+        st = do_asked(v, args, err);
+    if (st == CW_OK && !v->is_hidden)
+        st = view_loop(v, err);
+    cli_console_listen(NULL);
+    return st;
+}
+
+static void end_session(view *v)
+{
+    view_close(v);
+    view_close_browser(v);
+    cw_renderer_free(v->renderer);
+    if (v->window)
+        v->ui->close(v->window);
+    for (size_t n = 0; n < v->word_count; n++)
+        free(v->words[n]);
+    for (size_t n = 0; n < v->asked_count; n++)
+        free(v->asked[n]);
+    free(v->words);
+    free(v->asked);
+    free(v);
+}
+
+static cw_status run(void *p, cw_error *err)
+{
+    const render_args *args = p;
+    const double start = cli_seconds();
+    cw_status st = check(args, err);
+    if (st != CW_OK)
+        return st;
+    view *v = calloc(1, sizeof *v);
+    if (!v)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a session");
+    v->start = start;
+    st = open_window(v, args, err);
+    if (st == CW_OK)
+        st = run_session(v, args, err);
+    end_session(v);
+    if (st == CW_OK)
+        cli_say_v("peak memory: %.0f MB", (double)cli_peak_bytes() / 1e6);
+    return st;
+}
+
+/* Keys and commands, out of their tables. */
+static void print_more(void)
+{
+    puts("\nKeys");
+    view_print_keys();
+    puts("\nCommands for --exec and --run\n"
+         "Every option above is a command, too, without its dashes: 'iso 300', 'lit off',\n"
+         "'clip-box default'. A ';' or the end of a line separates commands.");
+    const view_verb *verb;
+    for (size_t n = 0; (verb = view_verb_at(n)); n++) {
+        char head[64];
+        snprintf(head, sizeof head, "%s %s", verb->name, verb->takes);
+        printf("  %-28s", head);
+        cli_print_wrapped(verb->about, 30);
+    }
+}
+
+const cli_command cli_view = {
+    .name = "view",
+    .usage = "[VOLUME...|MESH|FOLDER] [options]",
+    .about = "Open a window with everything that render draws",
+    .page = cli_page_view,
+    .options = options,
+    .option_count = sizeof options / sizeof *options,
+    .max_inputs = SIZE_MAX,
+    .size = sizeof(render_args),
+    .defaults = &defaults,
+    .print_more = print_more,
+    .run = run,
+};

@@ -1,0 +1,383 @@
+/* Pictures of the parts, roughly while things move and better when they rest. */
+#include "cli/view/view.h"
+
+#include "cli/framework/console.h"
+#include "cli/render/compare_options.h"
+#include "cli/inputs/extract_surface.h"
+#include "core/base/status.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { THIN_FROM = 96, ROUGH_MS = 70, ROUGH_SPLATS = 20000, FEW_TRIANGLES = 200000 };
+
+/* Stops a picture that nobody will look at. */
+static bool go_on(void *user, const char *step, double done)
+{
+    view *v = user;
+    (void)step;
+    (void)done;
+    return !v->ui->pending(v->window) && !cli_interrupted();
+}
+
+/* A coarser extractor beside the full one, for surfaces that move. */
+static cw_status need_extractor(view *v, bool coarse, cw_error *err)
+{
+    const cw_volume *whole = &v->source.volume.view;
+    cw_extractor **e = coarse ? &v->coarse : &v->extractor;
+    if (*e)
+        return CW_OK;
+    if (coarse) {
+        const size_t two[3] = {2, 2, 2};
+        cw_volume_free(&v->thinned);
+        cw_status st = cw_volume_coarsen(whole, two, &v->thinned, err);
+        if (st != CW_OK)
+            return st;
+    }
+    return cw_extractor_new(coarse ? &v->thinned : whole, e, err);
+}
+
+static bool can_thin(const view *v)
+{
+    const cw_volume *w = &v->source.volume.view;
+    return !w->sparse && !w->cells && !w->coordinates[0] && w->dim[0] >= THIN_FROM &&
+           w->dim[1] >= THIN_FROM && w->dim[2] >= THIN_FROM;
+}
+
+/* The surface at the isovalue: of many triangles another one, a quarter of them, is made faster
+ * than they are drawn. Empty where it crosses nothing. */
+static cw_status need_surface(view *v, view_level level, cw_error *err)
+{
+    const render_args *args = &v->state.args;
+    const bool coarse = level == VIEW_ROUGH && v->state.is_placed && can_thin(v);
+    cw_mesh mesh;
+    const bool is_there =
+        v->mesh_iso == args->iso.value &&
+        (v->mesh_level == (coarse ? 1 : 2) ||
+         (v->mesh_level == 2 && v->source.mesh.triangle_count <= FEW_TRIANGLES));
+    if (v->source.is_mesh || !args->iso.given || is_there)
+        return CW_OK;
+    const cw_extract_desc desc = {.isovalue = args->iso.value,
+                                  .inside_is_low =
+                                      cli_inside_is_low(args->inside, &v->source.volume.whole),
+                                  .threads = (int)args->input.threads,
+                                  .max_bytes = v->source.volume.memory_left};
+    cw_status st = need_extractor(v, coarse, err);
+    if (st != CW_OK)
+        return st;
+    cw_extractor *extractor = coarse ? v->coarse : v->extractor;
+    if (v->mesh_is_drawn)
+        cw_extractor_recycle(extractor, &v->old_mesh);
+    st = cw_extractor_extract(extractor, &desc, &mesh, NULL, err);
+    if (st != CW_OK)
+        return st;
+    if (v->mesh_is_drawn)
+        v->old_mesh = v->source.mesh;
+    else
+        cw_mesh_free(&v->source.mesh);
+    v->mesh_is_drawn = false;
+    v->source.mesh = mesh;
+    v->mesh_iso = args->iso.value;
+    v->mesh_level = coarse ? 1 : 2;
+    return CW_OK;
+}
+
+/* Meshes have no volume to be around. */
+static void need_box(view *v)
+{
+    if (v->box[0][0] < v->box[1][0] || v->source.mesh.triangle_count == 0)
+        return;
+    cli_find_box(NULL, &v->source.mesh, v->box);
+    for (int a = 0; a < 3; a++)
+        v->state.cross[a] = 0.5 * (v->box[0][a] + v->box[1][a]);
+}
+
+static bool is_slow(cw_mode mode)
+{
+    return mode == CW_MODE_VBUFFER || mode == CW_MODE_REFERENCE || mode == CW_MODE_PROJECTION;
+}
+
+/* Slow modes are stood in for while things move. */
+static void make_rough(cw_scene *s)
+{
+    if (is_slow(s->mode))
+        s->mode = CW_MODE_COMPOSITE;
+    if (s->mode == CW_MODE_SPLAT)
+        s->mode = CW_MODE_SPLAT_TREE;
+    if (s->mode == CW_MODE_SPLAT_TREE)
+        s->splat_budget = ROUGH_SPLATS;
+    const bool is_coarse = s->mode == CW_MODE_TEXTURE || s->mode == CW_MODE_SHADED_TEXTURE ||
+                           s->mode == CW_MODE_AVERAGE;
+    s->step_vox = fmax(s->step_vox, is_coarse ? 4 : 2);
+    s->samples = 1;
+    s->jitter = s->exact_filter = s->cell_steps = false;
+    s->no_preintegration = true; /* its table is made anew for every curve and step */
+}
+
+static cw_status space_scene(view *v, const render_args *args, cw_mode mode,
+                             const cw_transfer *transfer, cw_scene *scene, cw_error *err)
+{
+    const cli_subject subject = {
+        .volume = v->has_volume && mode != CW_MODE_MESH ? cli_drawn(&v->source) : NULL,
+        .whole = v->source.is_mesh ? NULL : &v->source.volume.whole,
+        .mesh = view_has_mesh(v) && v->source.mesh.triangle_count ? &v->source.mesh : NULL,
+        .threads = (int)args->input.threads};
+    scene->camera = v->state.camera;
+    scene->lean = !v->is_saving;
+    scene->samples = args->samples ? (int)args->samples : mode == CW_MODE_MESH ? 2 : 1;
+    cw_status st = cli_make_scene(&args->scene, &subject, mode, transfer, scene, err);
+    if (mode == CW_MODE_SLICES && scene->slice_count == 0)
+        for (int a = 0; a < 3; a++) {
+            scene->slices[scene->slice_count].normal[a] = 1;
+            scene->slices[scene->slice_count++].distance_mm = v->state.cross[a];
+        }
+    return st;
+}
+
+static void make_greys(view *v)
+{
+    double w[2];
+    view_grey_range(v, w);
+    v->greys = (cw_transfer){.color_count = 2,
+                             .colors = {{w[0], {0, 0, 0}}, {fmax(w[1], w[0]), {1, 1, 1}}},
+                             .opacity_count = 1,
+                             .opacities = {{w[0], 1}}};
+}
+
+/* Axial, coronal and sagittal slices are across z, y and x, through the cross-hair. */
+static cw_status slice_scene(view *v, int part, cw_scene *scene, cw_error *err)
+{
+    const int axis = 3 - part;
+    *scene = (cw_scene){.mode = CW_MODE_SLICES,
+                        .volume = cli_drawn(&v->source),
+                        .transfer = &v->greys,
+                        .slice_count = 1,
+                        .width = scene->width,
+                        .height = scene->height,
+                        .samples = 1};
+    scene->slices[0].normal[axis] = 1;
+    scene->slices[0].distance_mm = v->state.cross[axis];
+    cw_status st =
+        cw_slice_camera(scene->volume, &scene->slices[0],
+                        (double)scene->width / (double)scene->height, &scene->camera, err);
+    if (st == CW_OK && v->state.slice_zoom > 0)
+        scene->camera.height_mm /= v->state.slice_zoom;
+    return st;
+}
+
+static cw_status draw_scene(view *v, const cw_scene *scene, cw_picture *picture, cw_error *err)
+{
+    cw_status st = CW_OK;
+    if (!v->renderer)
+        st = cw_renderer_new(CW_BACKEND_AUTO, &v->renderer, err);
+    if (st == CW_OK && v->values_come)
+        cw_renderer_forget(v->renderer);
+    v->values_come = v->values_come && st != CW_OK;
+    if (st == CW_OK)
+        st = cw_render(v->renderer, scene, picture, err);
+    v->mesh_is_drawn = v->mesh_is_drawn || (st == CW_OK && scene->mesh);
+    return st;
+}
+
+/* Of slow modes a small picture comes before that in full size. */
+static void size_for(const view *v, const view_part *part, view_level level, cw_scene *scene)
+{
+    const bool slow = part == &v->parts[VIEW_SPACE] &&
+                      (is_slow(v->mode) ||
+                       (v->state.args.compare && strstr(v->state.args.compare, "reference")));
+    const double scale = level == VIEW_ROUGH          ? part->scale
+                         : level == VIEW_FAIR && slow ? 0.25
+                                                      : 1;
+    scene->width = (size_t)fmax(1, round(part->rect.width * scale));
+    scene->height = (size_t)fmax(1, round(part->rect.height * scale));
+}
+
+static void suit(view_level level, cw_scene *scene)
+{
+    if (level == VIEW_ROUGH)
+        make_rough(scene);
+    if (level == VIEW_FAIR) {
+        scene->samples = 1;
+        scene->step_vox = fmax(scene->step_vox, 1);
+    }
+}
+
+/* Both sides of a comparison, and how far they are apart when both are final. */
+static cw_status draw_split(view *v, view_level level, const cw_progress *progress,
+                            cw_scene *scene, cw_picture *out, cw_error *err)
+{
+    cli_split split = {0};
+    cw_picture sides[2] = {{0}, {0}};
+    const render_args *args = &v->state.args;
+    cw_status st = view_parse_split(v, &split, err);
+    for (int n = 1; n >= 0 && st == CW_OK; n--) {
+        cli_side *side = &split.sides[n];
+        st = cli_fit_transfer(&side->args.scene, cli_drawn(&v->source), side->mode,
+                              &v->statistics, &side->transfer, err);
+        if (v->state.is_edited && !side->args.scene.transfer)
+            side->transfer = v->state.curve;
+        size_for(v, &v->parts[VIEW_SPACE], level, scene);
+        if (st == CW_OK)
+            st = space_scene(v, &side->args, side->mode, &side->transfer, scene, err);
+        suit(level, scene);
+        scene->progress = *progress;
+        if (st == CW_OK)
+            st = draw_scene(v, scene, &sides[n], err);
+    }
+    if (st == CW_OK && args->difference.given)
+        st = cw_picture_difference(&sides[0], &sides[1], args->difference.value, out, err);
+    else if (st == CW_OK)
+        st = cw_picture_split(&sides[0], &sides[1], v->state.share, out, err);
+    v->is_measured = false;
+    if (st == CW_OK && level > VIEW_ROUGH) {
+        st = cw_picture_compare(&sides[0], &sides[1], (const float(*)[3])scene->background,
+                                &v->measured, err);
+        v->is_measured = st == CW_OK;
+    }
+    cw_picture_free(&sides[0]);
+    cw_picture_free(&sides[1]);
+    cli_free_split(&split);
+    scene->transfer = &v->transfer;
+    return st;
+}
+
+static cw_status draw_space(view *v, view_level level, const cw_progress *progress,
+                            cw_scene *scene, cw_picture *picture, cw_error *err)
+{
+    cw_status st = need_surface(v, level, err);
+    need_box(v);
+    if (st == CW_OK && !v->state.is_placed)
+        st = view_place_camera(v, NULL, err);
+    if (st == CW_OK)
+        st = view_need_transfer(v, err);
+    if (st != CW_OK)
+        return st;
+    if (v->state.args.compare && view_draws_volume(v))
+        return draw_split(v, level, progress, scene, picture, err);
+    size_for(v, &v->parts[VIEW_SPACE], level, scene);
+    st = space_scene(v, &v->state.args, v->mode, &v->transfer, scene, err);
+    suit(level, scene);
+    scene->progress = *progress;
+    if (st == CW_OK && v->mode == CW_MODE_MESH && !scene->mesh) /* an empty surface */
+        return cw_picture_alloc(picture, scene->width, scene->height, err);
+    return st == CW_OK ? draw_scene(v, scene, picture, err) : st;
+}
+
+static cw_status draw_slice(view *v, int part, const cw_progress *progress, cw_scene *scene,
+                            cw_picture *picture, cw_error *err)
+{
+    make_greys(v);
+    size_for(v, &v->parts[part], VIEW_FINAL, scene);
+    cw_status st = slice_scene(v, part, scene, err);
+    scene->progress = *progress;
+    if (st == CW_OK)
+        st = draw_scene(v, scene, picture, err);
+    return st;
+}
+
+static cw_status show_part(view *v, int part, cw_scene *scene, const cw_picture *picture,
+                           cw_image *image, cw_error *err)
+{
+    static const uint8_t black[2][4] = {{0, 0, 0, 255}, {0, 0, 0, 255}};
+    static const cli_marks plain = {.scale_bar = true, .letters = true};
+    uint8_t background[2][4];
+    const bool space = part == VIEW_SPACE;
+    cw_status st = cli_background(&v->state.args.scene, v->mode, background, err);
+    if (st == CW_OK)
+        st = cw_picture_show(picture, space ? (const uint8_t(*)[4])background : black, image,
+                             err);
+    scene->progress = (cw_progress){0};
+    if (st == CW_OK && (scene->volume || scene->mesh))
+        st = cli_mark(space ? &v->state.args.marks : &plain, scene, image, err);
+    return st;
+}
+
+/* Slower or faster than wanted: the next rough picture is smaller or larger. */
+static void adapt(view_part *part, cw_mode mode, double ms)
+{
+    if (mode == CW_MODE_MESH) /* its cost is in its triangles */
+        return;
+    const double factor = sqrt(ROUGH_MS / fmax(ms, 1));
+    if (factor < 0.8 || factor > 1.1)
+        part->scale = fmin(fmax(part->scale * factor, 0.25), 0.5);
+}
+
+static cw_status draw_part(view *v, int p, view_level level, bool may_stop, cw_image *image,
+                           cw_error *err)
+{
+    view_part *part = &v->parts[p];
+    cw_scene scene = {0};
+    cw_picture picture = {0};
+    const cw_progress progress = {may_stop ? go_on : NULL, v};
+    const double start = cli_seconds();
+    cw_status st = p == VIEW_SPACE ? draw_space(v, level, &progress, &scene, &picture, err)
+                                   : draw_slice(v, p, &progress, &scene, &picture, err);
+    const double ms = 1000 * (cli_seconds() - start);
+    if (st == CW_OK)
+        st = show_part(v, p, &scene, &picture, image, err);
+    cw_picture_free(&picture);
+    if (st != CW_OK)
+        return st;
+    if (level == VIEW_ROUGH)
+        adapt(part, scene.mode, ms);
+    part->scene = scene;
+    part->ms = ms;
+    part->level = p == VIEW_SPACE ? level : VIEW_FINAL;
+    return CW_OK;
+}
+
+static void drop_picture(view *v, int p)
+{
+    v->ui->keep(v->window, p, NULL, NULL);
+    v->parts[p].level = VIEW_FINAL;
+}
+
+cw_status view_draw(view *v, view_level level, bool may_stop, cw_error *err)
+{
+    for (int p = 0; p < VIEW_PARTS; p++) {
+        cw_image image = {0};
+        view_part *part = &v->parts[p];
+        if (!part->is_shown || part->level >= level)
+            continue;
+        if (!v->path || (p != VIEW_SPACE && !v->has_volume)) {
+            drop_picture(v, p);
+            continue;
+        }
+        cw_status st = draw_part(v, p, level, may_stop, &image, err);
+        if (st == CW_OK)
+            st = v->ui->keep(v->window, p, &image, err);
+        cw_image_free(&image);
+        if (st == CW_ERR_CANCELLED && may_stop && !cli_interrupted())
+            return CW_OK;
+        if (st != CW_OK) {
+            part->level = VIEW_FINAL; /* not again and again */
+            return st;
+        }
+    }
+    return CW_OK;
+}
+
+bool view_is_final(const view *v)
+{
+    for (int p = 0; p < VIEW_PARTS; p++)
+        if (v->parts[p].is_shown && v->parts[p].level < VIEW_FINAL)
+            return false;
+    return true;
+}
+
+cw_status view_picture(view *v, const char *path, cw_error *err)
+{
+    cw_image image = {0};
+    if (!v->path)
+        return cw_fail(err, CW_ERR_ARGUMENT, "no file is open to draw");
+    v->is_saving = true;
+    cw_status st = draw_part(v, VIEW_SPACE, VIEW_FINAL, false, &image, err);
+    v->is_saving = false;
+    if (st == CW_OK) /* it counts as drawn: it is what the window shows now */
+        st = v->ui->keep(v->window, VIEW_SPACE, &image, err);
+    if (st == CW_OK)
+        st = cw_image_write(path, &image, err);
+    cw_image_free(&image);
+    return st;
+}

@@ -1,0 +1,354 @@
+#define _GNU_SOURCE /* strdup */
+#include "cli/view/view.h"
+
+#include "cli/framework/console.h"
+#include "cli/inputs/mesh_input.h"
+#include "cli/inputs/extract_surface.h"
+#include "core/base/status.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { BINS = 1024 };
+
+void view_touch(view *v, unsigned parts)
+{
+    for (int p = 0; p < VIEW_PARTS; p++)
+        if (parts >> p & 1)
+            v->parts[p].level = VIEW_STALE;
+}
+
+void view_clip_box(const view *v, double box[2][3])
+{
+    const cli_ranges *c = &v->state.args.scene.clip_box;
+    const bool is_set = c->given && c->world;
+    memcpy(box[0], is_set ? c->low : v->box[0], sizeof box[0]);
+    memcpy(box[1], is_set ? c->high : v->box[1], sizeof box[1]);
+}
+
+void view_grey_range(const view *v, double range[2])
+{
+    const double *w = v->state.window;
+    const bool all = w[0] == 0 && w[1] == 0;
+    range[0] = all ? v->statistics.min : w[0];
+    range[1] = all ? v->statistics.max : w[1];
+}
+
+bool view_draws_volume(const view *v)
+{
+    return v->has_volume && v->mode != CW_MODE_MESH;
+}
+
+bool view_has_mesh(const view *v)
+{
+    const render_args *args = &v->state.args;
+    return v->path && args->scene.hide != CLI_HIDE_MESH &&
+           (v->source.is_mesh || args->iso.given || args->mesh);
+}
+
+static void drop_surface(view *v)
+{
+    cw_extractor_free(v->extractor);
+    cw_extractor_free(v->coarse);
+    cw_volume_free(&v->thinned);
+    v->extractor = v->coarse = NULL;
+    v->mesh_level = 0;
+}
+
+void view_close(view *v)
+{
+    drop_surface(v);
+    cw_mesh_free(&v->old_mesh);
+    cw_statistics_free(&v->statistics);
+    cli_close_source(&v->source);
+    if (v->renderer)
+        cw_renderer_forget(v->renderer);
+    free(v->path);
+    v->path = NULL;
+    v->has_volume = false;
+}
+
+/* Between the two classes of values; of a level set 0. */
+double view_suggest_iso(const view *v)
+{
+    double level;
+    if (v->source.is_level_set)
+        return 0;
+    return cw_statistics_otsu(&v->statistics, 1, &level)
+               ? level
+               : 0.5 * (v->statistics.min + v->statistics.max);
+}
+
+/* What there is decides where nothing was asked for. */
+cw_status view_choose_mode(view *v, cw_error *err)
+{
+    render_args *args = &v->state.args;
+    const int asked = args->scene.mode;
+    v->mode =
+        asked ? (cw_mode)(asked - 1)
+        : v->has_volume && !v->source.is_level_set && (!args->iso.given || v->state.iso_is_ours)
+            ? CW_MODE_COMPOSITE
+            : CW_MODE_MESH;
+    if (args->scene.hide == CLI_HIDE_VOLUME)
+        v->mode = CW_MODE_MESH;
+    if (v->path && v->mode != CW_MODE_MESH && !v->has_volume)
+        return cw_fail(err, CW_ERR_ARGUMENT, "the mode %s draws volumes on even grids; %s",
+                       cw_mode_name(v->mode),
+                       v->source.is_mesh ? "this is a mesh" : "this grid is shown as surfaces");
+    if (v->mode != CW_MODE_MESH && v->state.iso_is_ours) {
+        args->iso = (cli_number){0};
+        v->state.iso_is_ours = false;
+    }
+    if (v->path && v->mode == CW_MODE_MESH && !v->source.is_mesh && !args->mesh &&
+        !args->iso.given) {
+        args->iso = (cli_number){true, view_suggest_iso(v)};
+        v->state.iso_is_ours = true;
+    }
+    return CW_OK;
+}
+
+static cw_status read_statistics(view *v, cw_error *err)
+{
+    cw_statistics_free(&v->statistics);
+    return cw_volume_statistics(&v->source.volume.view, BINS, (int)v->state.args.input.threads,
+                                &v->statistics, err);
+}
+
+/* Volumes that cannot be drawn still have surfaces. */
+static cw_status read_step(view *v, size_t step, cw_error *err)
+{
+    cli_source *s = &v->source;
+    cw_error why = {0};
+    drop_surface(v);
+    v->has_volume = false;
+    if (s->is_mesh)
+        return CW_OK;
+    cw_status st = cli_read_step(s, &v->state.args.input, step, err);
+    if (st == CW_OK)
+        st = read_statistics(v, err);
+    if (st != CW_OK)
+        return st;
+    v->has_volume = cli_need_drawable(s, &v->state.args.input, &why) == CW_OK;
+    if (!v->has_volume)
+        cli_say("shown as a surface: %s", why.message);
+    v->values_come = v->transfer_is_old = true;
+    return CW_OK;
+}
+
+static cw_status read_beside(view *v, cw_error *err)
+{
+    cli_mesh file;
+    const char *path = v->state.args.mesh;
+    if (!path || v->source.is_mesh)
+        return CW_OK;
+    cw_status st = cli_read_reference(path, NULL, &v->state.args.input, &file, err);
+    v->source.mesh = file.mesh;
+    return st;
+}
+
+/* Steps of a file are a series without being asked for. */
+static cw_status open_as(view *v, const char **paths, size_t count, cw_error *err)
+{
+    const cli_common common = {.inputs = paths, .input_count = count};
+    const cli_input *input = &v->state.args.input;
+    cli_steps steps = v->state.args.steps;
+    cw_volume shape;
+    if (!steps.given && input->step == 0 && count == 1 &&
+        cli_read_shape(paths[0], input, &shape, NULL) == CW_OK) {
+        steps.given = steps.all = shape.steps > 1;
+        cw_volume_free(&shape);
+    }
+    return cli_open_source(&v->source, &common, input, &steps, true, err);
+}
+
+/* Of several series in one folder that with the most images, unless one was asked for. */
+static void choose_series(view *v)
+{
+    char text[256];
+    cw_series *list = NULL;
+    size_t count = 0, most = 0;
+    const cw_read_desc desc = cli_read_desc(&v->state.args.input);
+    if (desc.series || cw_series_list(v->path, &desc, &list, &count, NULL) != CW_OK)
+        return;
+    for (size_t n = 0; n < count; n++)
+        most = list[n].images > list[most].images ? n : most;
+    if (count > 1) {
+        v->state.args.input.series = view_keep_text(v, list[most].label);
+        snprintf(text, sizeof text, "one of %zu series: %s, of %zu images; --series chooses",
+                 count, list[most].label, list[most].images);
+        view_say(v, false, text);
+    }
+    cw_series_free(list);
+}
+
+/* Files that the command line names are steps; so are those in a folder that is no volume
+ * itself, if they agree. */
+static cw_status open_source(view *v, cw_error *err)
+{
+    char pattern[4096];
+    const char *one[] = {v->path}, *all[] = {pattern};
+    const cli_common *said = &v->state.args.common;
+    const bool several = said->input_count > 1 && strcmp(v->path, said->inputs[0]) == 0;
+    cw_status st =
+        several ? open_as(v, said->inputs, said->input_count, err) : open_as(v, one, 1, err);
+    if (st != CW_OK || several || !cli_is_folder(v->path))
+        return st;
+    cw_volume shape = {0};
+    st = cli_read_shape(v->path, &v->state.args.input, &shape, err);
+    cw_volume_free(&shape);
+    if (st == CW_OK)
+        return CW_OK;
+    snprintf(pattern, sizeof pattern, "%.4000s/*", v->path);
+    cli_close_source(&v->source);
+    return open_as(v, all, 1, NULL) == CW_OK ? CW_OK : st;
+}
+
+static void fresh_look(view *v)
+{
+    double(*box)[3] = v->box;
+    if (!cli_find_box(v->has_volume ? cli_drawn(&v->source) : NULL,
+                      v->source.mesh.triangle_count ? &v->source.mesh : NULL, box))
+        memset(box, 0, sizeof v->box);
+    for (int a = 0; a < 3; a++)
+        v->state.cross[a] = 0.5 * (box[0][a] + box[1][a]);
+    v->state.is_placed = false;
+    view_touch(v, VIEW_ALL);
+}
+
+static cw_status open_path(view *v, const char *path, cw_error *err)
+{
+    v->path = strdup(path);
+    if (!v->path)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a name");
+    v->opening = v->path;
+    const char *series = v->state.args.input.series;
+    choose_series(v);
+    cw_status st = open_source(v, err);
+    if (st == CW_OK)
+        st = read_step(v, v->state.step, err);
+    v->opening = NULL;
+    v->state.args.input.series = series; /* which is not for what is opened next */
+    if (st == CW_OK)
+        st = read_beside(v, err);
+    return st == CW_OK ? view_choose_mode(v, err) : st;
+}
+
+/* What suited another file only: its levels, its places. */
+static void forget_look(view *v)
+{
+    view_state *s = &v->state;
+    if (!v->history.count)
+        return; /* the first file: what the command line says is for it */
+    s->args.iso = (cli_number){0};
+    s->args.scene.clip_box = (cli_ranges){0};
+    s->args.scene.clips = s->args.scene.planes = NULL;
+    s->args.scene.shift = (cli_number){0};
+    s->args.scene.tint_range = (cli_numbers){0};
+    s->is_edited = false;
+    s->window[0] = s->window[1] = 0;
+    s->step = 0;
+    if (s->args.scene.mode == 1 + CW_MODE_MESH)
+        s->args.scene.mode = 0;
+}
+
+/* What is open stays open for what is none of ours. */
+static cw_status expect_readable(const view *v, const char *path, cw_error *err)
+{
+    cw_volume shape = {0};
+    if (!v->path || cli_is_folder(path) || cw_mesh_format(path, NULL))
+        return CW_OK;
+    cw_status st = cli_read_shape(path, &v->state.args.input, &shape, err);
+    cw_volume_free(&shape);
+    return st;
+}
+
+/* "head.nii.gz - cubewright" */
+static void name_window(view *v)
+{
+    char title[256];
+    snprintf(title, sizeof title, "%.200s%scubewright", v->path ? cli_shown_path(v->path) : "",
+             v->path ? " - " : "");
+    v->ui->set_title(v->window, title);
+}
+
+cw_status view_open(view *v, const char *path, cw_error *err)
+{
+    cw_status st = expect_readable(v, path, err);
+    if (st != CW_OK)
+        return st;
+    char *copy = strdup(path); /* it may be the path that is closed */
+    if (!copy)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a name");
+    v->message[0] = '\0'; /* it was of another file */
+    view_close(v);
+    forget_look(v);
+    st = open_path(v, copy, err);
+    free(copy);
+    if (st != CW_OK && v->state.args.scene.mode && v->path && !v->has_volume &&
+        (v->source.is_mesh || v->source.volume.voxels.data)) {
+        v->state.args.scene.mode = 0; /* it was another file's */
+        st = view_choose_mode(v, err);
+    }
+    if (st != CW_OK)
+        view_close(v);
+    fresh_look(v);
+    name_window(v);
+    v->history.count = 0;
+    if (st == CW_OK)
+        view_remember(v, "open");
+    return st;
+}
+
+cw_status view_go_to_step(view *v, size_t step, cw_error *err)
+{
+    if (!v->path || step >= v->source.series.count)
+        return cw_fail(err, CW_ERR_ARGUMENT, "step %zu: there are 0 to %zu", step,
+                       v->source.series.count ? v->source.series.count - 1 : 0);
+    cw_status st = read_step(v, step, err);
+    if (st == CW_OK)
+        v->state.step = step;
+    view_touch(v, VIEW_ALL);
+    return st;
+}
+
+/* The transfer function of the scene, as edited or out of the settings. */
+cw_status view_need_transfer(view *v, cw_error *err)
+{
+    cw_status st = CW_OK;
+    if (!v->has_volume || !v->transfer_is_old)
+        return CW_OK;
+    if (v->state.is_edited) {
+        v->transfer = v->state.curve;
+        st = cli_change_transfer(&v->state.args.scene, &v->transfer, err);
+    } else {
+        st = cli_fit_transfer(&v->state.args.scene, cli_drawn(&v->source), v->mode,
+                              &v->statistics, &v->transfer, err);
+    }
+    v->transfer_is_old = st != CW_OK;
+    return st;
+}
+
+cw_status view_place_camera(view *v, const char *name, cw_error *err)
+{
+    static const cli_turns one = {0};
+    const view_part *space = &v->parts[VIEW_SPACE];
+    const double aspect = space->rect.height > 0 ? space->rect.width / space->rect.height : 1.6;
+    cli_scene scene = v->state.args.scene;
+    cw_camera camera;
+    double box[2][3];
+    if (v->mode != CW_MODE_MESH || !cli_find_box(NULL, &v->source.mesh, box))
+        memcpy(box, v->box, sizeof box);
+    if (name)
+        scene.camera = name;
+    cw_status st = cli_check_camera(&scene, &one, err);
+    if (st == CW_OK)
+        st = cli_find_camera(&scene, &one, 0, (const double(*)[3])box, aspect, &camera, err);
+    if (st != CW_OK)
+        return st;
+    v->state.camera = camera;
+    v->state.is_placed = true;
+    view_touch(v, 1 << VIEW_SPACE);
+    return CW_OK;
+}

@@ -1,0 +1,384 @@
+#define _GNU_SOURCE /* renameat2, getrandom, O_PATH */
+#include "core/base/atomic_file.h"
+
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/base/text.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <limits.h>
+#include <stdarg.h>
+#include <stdatomic.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/random.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { BUFFER_BYTES = 256 * 1024, SLOT_COUNT = 64, NAME_TRIES = 100 };
+
+struct cwi_outfile {
+    int fd, folder;
+    char name[NAME_MAX + 1]; /* in the folder, after links are followed */
+    char temporary[NAME_MAX +
+                   1]; /* in the same folder; "" before it exists and once it is gone */
+    bool no_clobber;
+    int failure;   /* errno of the first write that failed */
+    int slot;      /* in the registry; -1 for none */
+    uint64_t size; /* bytes so far, those in the buffer too */
+    size_t used;
+    unsigned char *buffer;
+};
+
+/* Temporaries in progress. A signal handler reads them, so they are copies in static memory
+ * that is never freed, each guarded by its own state. */
+static struct {
+    atomic_int state;
+    int folder;
+    char name[NAME_MAX + 1];
+} slots[SLOT_COUNT];
+
+enum { SLOT_FREE, SLOT_CHANGING, SLOT_LIVE };
+
+static int slot_take(int folder, const char *name)
+{
+    for (int i = 0; i < SLOT_COUNT; i++) {
+        int expected = SLOT_FREE;
+        if (atomic_compare_exchange_strong(&slots[i].state, &expected, SLOT_CHANGING)) {
+            slots[i].folder = folder;
+            strcpy(slots[i].name, name);
+            atomic_store(&slots[i].state, SLOT_LIVE);
+            return i;
+        }
+    }
+    return -1;
+}
+
+static void slot_drop(int *slot)
+{
+    if (*slot >= 0)
+        atomic_store(&slots[*slot].state, SLOT_FREE);
+    *slot = -1;
+}
+
+void cwi_outfile_remove_all(void)
+{
+    const int before = errno;
+    for (int i = 0; i < SLOT_COUNT; i++)
+        if (atomic_load(&slots[i].state) == SLOT_LIVE)
+            unlinkat(slots[i].folder, slots[i].name, 0);
+    errno = before;
+}
+
+static cw_status fail_system(cw_error *err, const char *what, int number)
+{
+    return cw_fail(err, CW_ERR_OUTPUT, "%s: %s", what, strerror(number));
+}
+
+/* What stands at the path decides: nothing (exists false), a regular file, or an error. */
+static cw_status inspect(const char *path, bool no_clobber, bool *exists, mode_t *mode,
+                         cw_error *err)
+{
+    struct stat link, info;
+    *exists = lstat(path, &link) == 0;
+    if (!*exists)
+        return CW_OK; /* a missing folder is found, and named, when it is opened */
+    if (no_clobber)
+        return cw_fail(err, CW_ERR_OUTPUT, "it exists, and is not to be replaced");
+    if (stat(path, &info) != 0)
+        return cw_fail(err, CW_ERR_OUTPUT, "it is a link that leads nowhere");
+    if (S_ISDIR(info.st_mode))
+        return cw_fail(err, CW_ERR_OUTPUT, "it is a folder");
+    if (!S_ISREG(info.st_mode))
+        return cw_fail(err, CW_ERR_OUTPUT, "it is a device, pipe or socket, not a file");
+    *mode = info.st_mode & 0777;
+    return CW_OK;
+}
+
+/* Opens the folder of a path whose links are resolved, and keeps the last name. */
+static cw_status open_folder(cwi_outfile *f, char *path, cw_error *err)
+{
+    char *slash = strrchr(path, '/');
+    const char *name = slash ? slash + 1 : path;
+    if (!*name)
+        return cw_fail(err, CW_ERR_OUTPUT, "it names no file");
+    if (strlen(name) > NAME_MAX)
+        return fail_system(err, "it cannot be made", ENAMETOOLONG);
+    strcpy(f->name, name);
+    if (slash)
+        slash[slash == path] = '\0'; /* the root keeps its slash */
+    const char *folder = slash ? path : ".";
+    f->folder = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    if (f->folder < 0 && errno == EACCES) /* a folder one may write to, but not list */
+        f->folder = open(folder, O_PATH | O_DIRECTORY | O_CLOEXEC);
+    if (f->folder < 0 && errno == ENOENT)
+        return cw_fail(err, CW_ERR_OUTPUT, "the folder '%s' does not exist", folder);
+    if (f->folder < 0)
+        return cw_fail(err, CW_ERR_OUTPUT, "the folder '%s' cannot be opened: %s", folder,
+                       strerror(errno));
+    return CW_OK;
+}
+
+/* ".head.glb.k3x0aq.part"; long names are cut so that the whole fits a directory entry. */
+static void name_temporary(cwi_outfile *f)
+{
+    static const char letters[] = "abcdefghijklmnopqrstuvwxyz012345";
+    unsigned char random[6] = {0};
+    char word[sizeof random + 1] = "";
+    if (getrandom(random, sizeof random, GRND_NONBLOCK) != (ssize_t)sizeof random)
+        for (size_t i = 0; i < sizeof random; i++) /* early in boot: O_EXCL still protects */
+            random[i] = (unsigned char)rand();
+    for (size_t i = 0; i < sizeof random; i++)
+        word[i] = letters[random[i] % 32];
+    const int room = NAME_MAX - (int)(sizeof "..XXXXXX.part" - 1);
+    snprintf(f->temporary, sizeof f->temporary, ".%.*s.%s.part", room, f->name, word);
+}
+
+/* The kernel takes the umask off a new file's 0666. A replaced file's mode is narrowed at
+ * creation already, so that no one can open the temporary who could not open the old file. */
+static cw_status make_temporary(cwi_outfile *f, bool replaces, mode_t mode, cw_error *err)
+{
+    for (int i = 0; i < NAME_TRIES; i++) {
+        name_temporary(f);
+        f->fd = openat(f->folder, f->temporary,
+                       O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW,
+                       replaces ? mode : 0666);
+        if (f->fd >= 0 || errno != EEXIST)
+            break;
+    }
+    if (f->fd < 0) {
+        f->temporary[0] = '\0';
+        return fail_system(err, "no file can be made in its folder", errno);
+    }
+    f->slot = slot_take(f->folder, f->temporary);
+    if (replaces && fchmod(f->fd, mode) != 0 && errno != EPERM && errno != ENOTSUP)
+        return fail_system(err, "its permissions cannot be kept", errno);
+    return CW_OK;
+}
+
+static void close_and_free(cwi_outfile **f)
+{
+    if ((*f)->fd >= 0)
+        close((*f)->fd);
+    if ((*f)->temporary[0])
+        unlinkat((*f)->folder, (*f)->temporary, 0);
+    slot_drop(&(*f)->slot);
+    if ((*f)->folder >= 0)
+        close((*f)->folder);
+    cwi_free((*f)->buffer);
+    cwi_free(*f);
+    *f = NULL;
+}
+
+static cw_status open_beside(cwi_outfile *f, const char *path, cw_error *err)
+{
+    bool exists;
+    mode_t mode = 0;
+    cw_status st = inspect(path, f->no_clobber, &exists, &mode, err);
+    if (st != CW_OK)
+        return st;
+    char *real = exists ? realpath(path, NULL) : cwi_strdup(path);
+    if (!real)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for its name");
+    st = open_folder(f, real, err);
+    free(real); /* realpath allocates with malloc, and so does cwi_strdup */
+    if (st == CW_OK)
+        st = make_temporary(f, exists, mode, err);
+    return st;
+}
+
+cw_status cwi_outfile_open(cwi_outfile **out, const char *path, bool no_clobber, cw_error *err)
+{
+    cwi_outfile *f = cwi_alloc_zeroed(1, sizeof *f);
+    *out = NULL;
+    if (!f || !path) { /* a name that nobody had memory for */
+        cwi_free(f);
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to write a file");
+    }
+    f->fd = f->folder = f->slot = -1;
+    f->no_clobber = no_clobber;
+    f->buffer = cwi_alloc_array(BUFFER_BYTES, 1);
+    cw_status st = f->buffer ? open_beside(f, path, err)
+                             : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to write a file");
+    if (st != CW_OK)
+        close_and_free(&f);
+    *out = f;
+    return st;
+}
+
+static cw_status fail_write(const cwi_outfile *f, cw_error *err)
+{
+    return fail_system(err, "it cannot be written", f->failure);
+}
+
+/* At the end of the file, or (at is not negative) over what stands there. */
+static cw_status write_through(cwi_outfile *f, const unsigned char *bytes, size_t size,
+                               off_t at, cw_error *err)
+{
+    while (size && !f->failure) {
+        const ssize_t n = at < 0 ? write(f->fd, bytes, size) : pwrite(f->fd, bytes, size, at);
+        if (n > 0) {
+            bytes += n;
+            size -= (size_t)n;
+            at += at < 0 ? 0 : n;
+        } else if (n == 0) {
+            f->failure = ENOSPC; /* a regular file takes nothing only when there is no room */
+        } else if (errno != EINTR) {
+            f->failure = errno;
+        }
+    }
+    return f->failure ? fail_write(f, err) : CW_OK;
+}
+
+static cw_status flush(cwi_outfile *f, cw_error *err)
+{
+    const size_t size = f->used;
+    f->used = 0;
+    return write_through(f, f->buffer, size, -1, err);
+}
+
+cw_status cwi_outfile_write(cwi_outfile *f, const void *bytes, size_t size, cw_error *err)
+{
+    if (f->failure)
+        return fail_write(f, err);
+    f->size += size;
+    if (size > BUFFER_BYTES - f->used) {
+        cw_status st = flush(f, err);
+        if (st != CW_OK || size >= BUFFER_BYTES)
+            return st == CW_OK ? write_through(f, bytes, size, -1, err) : st;
+    }
+    if (size)
+        memcpy(f->buffer + f->used, bytes, size);
+    f->used += size;
+    return CW_OK;
+}
+
+uint64_t cwi_outfile_size(const cwi_outfile *f)
+{
+    return f->size;
+}
+
+cw_status cwi_outfile_patch(cwi_outfile *f, uint64_t at, const void *bytes, size_t size,
+                            cw_error *err)
+{
+    cw_status st = f->failure ? fail_write(f, err) : flush(f, err);
+    return st == CW_OK ? write_through(f, bytes, size, (off_t)at, err) : st;
+}
+
+/* Formats straight into the buffer; what does not fit is formatted again into its own. */
+CW_PRINTF(3, 0)
+static cw_status print_args(cwi_outfile *f, cw_error *err, const char *format, va_list args)
+{
+    va_list again;
+    va_copy(again, args);
+    const size_t room = BUFFER_BYTES - f->used;
+    const int length = vsnprintf((char *)f->buffer + f->used, room, format, args);
+    cw_status st = CW_OK;
+    if (length < 0) {
+        st = fail_system(err, "text cannot be formatted", errno);
+    } else if ((size_t)length < room) {
+        f->used += (size_t)length;
+        f->size += (size_t)length;
+    } else {
+        char *text = cwi_alloc_array((size_t)length + 1, 1);
+        if (text)
+            vsnprintf(text, (size_t)length + 1, format, again);
+        st = text ? cwi_outfile_write(f, text, (size_t)length, err)
+                  : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %d bytes of text", length);
+        cwi_free(text);
+    }
+    va_end(again);
+    return st;
+}
+
+cw_status cwi_outfile_printf(cwi_outfile *f, cw_error *err, const char *format, ...)
+{
+    if (f->failure)
+        return fail_write(f, err);
+    va_list args;
+    va_start(args, format);
+    void *before = cwi_locale_c();
+    cw_status st = print_args(f, err, format, args);
+    cwi_locale_restore(before);
+    va_end(args);
+    return st;
+}
+
+/* Some file systems cannot fsync; that is no reason to refuse a file that is whole. */
+static bool cannot_sync(int number)
+{
+    return number == EINVAL || number == ENOTSUP || number == EROFS;
+}
+
+static cw_status finish_bytes(cwi_outfile *f, cw_error *err)
+{
+    cw_status st = f->failure ? fail_write(f, err) : flush(f, err);
+    if (st != CW_OK)
+        return st;
+    int synced;
+    do
+        synced = fsync(f->fd);
+    while (synced != 0 && errno == EINTR);
+    if (synced != 0 && !cannot_sync(errno))
+        return fail_system(err, "it cannot be flushed to the disk", errno);
+    const int closed = close(f->fd);
+    f->fd = -1;
+    if (closed != 0 && errno != EINTR) /* Linux has closed it even then */
+        return fail_system(err, "it cannot be closed", errno);
+    return CW_OK;
+}
+
+/* The kernel refuses the rename when the name is taken; where the file system does not know
+ * how, a hard link does the same. */
+static int rename_new(cwi_outfile *f)
+{
+    if (renameat2(f->folder, f->temporary, f->folder, f->name, RENAME_NOREPLACE) == 0)
+        return 0;
+    if (errno != EINVAL && errno != ENOSYS && errno != ENOTSUP)
+        return -1;
+    if (linkat(f->folder, f->temporary, f->folder, f->name, 0) != 0)
+        return -1;
+    return unlinkat(f->folder, f->temporary, 0);
+}
+
+static cw_status put_in_place(cwi_outfile *f, cw_error *err)
+{
+    const int renamed =
+        f->no_clobber ? rename_new(f) : renameat(f->folder, f->temporary, f->folder, f->name);
+    if (renamed != 0 && f->no_clobber && errno == EEXIST)
+        return cw_fail(err, CW_ERR_OUTPUT, "it exists, and is not to be replaced");
+    if (renamed != 0)
+        return fail_system(err, "it cannot be put in its place", errno);
+    f->temporary[0] = '\0';
+    fsync(f->folder); /* best effort: the file is whole under its name whatever this says */
+    return CW_OK;
+}
+
+cw_status cwi_outfile_commit(cwi_outfile **f, cw_error *err)
+{
+    cw_status st = finish_bytes(*f, err);
+    if (st == CW_OK)
+        st = put_in_place(*f, err);
+    close_and_free(f);
+    return st;
+}
+
+void cwi_outfile_abort(cwi_outfile **f)
+{
+    if (*f)
+        close_and_free(f);
+}
+
+cw_status cwi_outfile_save(const char *path, const void *bytes, size_t size, cw_error *err)
+{
+    cwi_outfile *file = NULL;
+    cw_status st = cwi_outfile_open(&file, path, false, err);
+    if (st == CW_OK)
+        st = cwi_outfile_write(file, bytes, size, err);
+    if (st == CW_OK)
+        st = cwi_outfile_commit(&file, err);
+    cwi_outfile_abort(&file);
+    return st == CW_OK ? st : cwi_fail_in(err, st, path);
+}

@@ -1,0 +1,59 @@
+// The boundary between C and a C++ library: nothing thrown crosses it.
+#ifndef CORE_BASE_GUARD_HPP
+#define CORE_BASE_GUARD_HPP
+
+#include "core/base/memory.h"
+#include "core/base/status.h"
+
+#include <exception>
+#include <new>
+
+namespace cw
+{
+
+// Memory that a library takes for itself, counted by an estimate as long as this lives.
+class Taken
+{
+public:
+    explicit Taken(size_t bytes_) : bytes(bytes_)
+    {
+        if (!cwi_memory_take(bytes))
+            throw std::bad_alloc();
+    }
+    ~Taken()
+    {
+        cwi_memory_give(bytes);
+    }
+    Taken(const Taken &) = delete;
+    Taken &operator=(const Taken &) = delete;
+
+private:
+    size_t bytes;
+};
+
+// Thrown where the caller's progress asks to stop.
+struct Cancelled {
+};
+
+// Runs a function that returns cw_status. bad_alloc becomes CW_ERR_NO_MEMORY, Cancelled
+// CW_ERR_CANCELLED; everything else becomes CW_ERR_BACKEND with the library's name and its own
+// words.
+template <typename Body>
+cw_status guard(cw_error *err, const char *library, Body &&body) noexcept
+{
+    try {
+        return body();
+    } catch (const std::bad_alloc &) {
+        return cw_fail(err, CW_ERR_NO_MEMORY, "memory ran out in %s", library);
+    } catch (const Cancelled &) {
+        return cw_fail(err, CW_ERR_CANCELLED, "interrupted in %s", library);
+    } catch (const std::exception &e) {
+        return cw_fail(err, CW_ERR_BACKEND, "%s failed: %s", library, e.what());
+    } catch (...) {
+        return cw_fail(err, CW_ERR_BACKEND, "%s failed without saying why", library);
+    }
+}
+
+} // namespace cw
+
+#endif

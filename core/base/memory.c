@@ -1,0 +1,234 @@
+#define _DEFAULT_SOURCE /* madvise */
+#include "core/base/memory.h"
+
+#ifdef __linux__
+#include <malloc.h>
+#endif
+#include <stdatomic.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+#include <sys/resource.h>
+
+/* Per thread, so that a test that starves itself starves no one else. */
+static _Thread_local long allocations_left = -1;
+static _Thread_local bool one_failed;
+
+bool cwi_alloc_fail_after(long n)
+{
+    const bool failed = one_failed;
+    one_failed = false;
+    allocations_left = n;
+    return failed;
+}
+
+static bool starved(void)
+{
+    if (allocations_left < 0)
+        return false;
+    if (allocations_left > 0) {
+        allocations_left--;
+        return false;
+    }
+    one_failed = true;
+    return true;
+}
+
+/* --- the limit ----------------------------------------------------------------------------
+ */
+
+/* Of all arrays that are allocated now. */
+static atomic_size_t used, limit;
+/* What the limit refused last, and what it had left then. */
+static atomic_size_t refused, refused_left;
+
+void cw_memory_limit(size_t bytes)
+{
+    atomic_store(&limit, bytes);
+    atomic_store(&refused, 0);
+}
+
+size_t cw_memory_used(void)
+{
+    return atomic_load(&used);
+}
+
+size_t cwi_memory_refused(size_t *left)
+{
+    *left = atomic_load(&refused_left);
+    return atomic_load(&refused);
+}
+
+size_t cwi_memory_left(void)
+{
+    const size_t most = atomic_load(&limit), now = atomic_load(&used);
+    return !most ? SIZE_MAX : most > now ? most - now : 0;
+}
+
+bool cwi_memory_take(size_t bytes)
+{
+    const size_t most = atomic_load_explicit(&limit, memory_order_relaxed);
+    const size_t before = atomic_fetch_add_explicit(&used, bytes, memory_order_relaxed);
+    if (!most || (before <= most && bytes <= most - before))
+        return true;
+    atomic_fetch_sub_explicit(&used, bytes, memory_order_relaxed);
+    atomic_store(&refused_left, most > before ? most - before : 0);
+    atomic_store(&refused, bytes);
+    return false;
+}
+
+/* Never below 0: a caller's own arrays, which were not counted, may be freed here, too. */
+void cwi_memory_give(size_t bytes)
+{
+    size_t now = atomic_load_explicit(&used, memory_order_relaxed);
+    while (!atomic_compare_exchange_weak_explicit(&used, &now, now > bytes ? now - bytes : 0,
+                                                  memory_order_relaxed, memory_order_relaxed))
+        ;
+}
+
+/* The bytes that allocated memory has; 0: not known, and then it is not counted. */
+static size_t room_of(void *memory)
+{
+#ifdef __linux__
+    return malloc_usable_size(memory);
+#else
+    (void)memory;
+    return 0;
+#endif
+}
+
+/* What was taken beforehand for memory becomes what it has. Passes it on. */
+static void *count_memory(void *memory, size_t taken)
+{
+    const size_t has = room_of(memory);
+    if (has > taken)
+        atomic_fetch_add_explicit(&used, has - taken, memory_order_relaxed);
+    else
+        cwi_memory_give(taken - has);
+    return memory;
+}
+
+/* --- allocation ---------------------------------------------------------------------------
+ */
+
+bool cwi_size_mul(size_t a, size_t b, size_t *out)
+{
+    size_t product;
+    if (__builtin_mul_overflow(a, b, &product))
+        return false;
+    *out = product;
+    return true;
+}
+
+bool cwi_size_add(size_t a, size_t b, size_t *out)
+{
+    size_t sum;
+    if (__builtin_add_overflow(a, b, &sum))
+        return false;
+    *out = sum;
+    return true;
+}
+
+/* Sizes beyond PTRDIFF_MAX cannot be indexed; malloc refuses them, and compilers warn. */
+static bool is_usable(size_t count, size_t size, size_t *bytes)
+{
+    return cwi_size_mul(count, size, bytes) && *bytes <= PTRDIFF_MAX && !starved();
+}
+
+/* The same, and takes the bytes. */
+static bool take_array(size_t count, size_t size, size_t *bytes)
+{
+    return is_usable(count, size, bytes) && cwi_memory_take(*bytes);
+}
+
+enum { LARGE_PAGE = 2 << 20 };
+
+/* Asks for large pages where whole ones lie in large memory: no harm if they are not granted.
+ */
+static void wish_large_pages(char *memory, size_t bytes)
+{
+#ifdef MADV_HUGEPAGE
+    const size_t skip = -(uintptr_t)memory % LARGE_PAGE;
+    if (memory && bytes >= 2 * (size_t)LARGE_PAGE)
+        madvise(memory + skip, (bytes - skip) / LARGE_PAGE * LARGE_PAGE, MADV_HUGEPAGE);
+#else
+    (void)memory, (void)bytes;
+#endif
+}
+
+void *cwi_alloc_array(size_t count, size_t size)
+{
+    size_t bytes;
+    return take_array(count, size, &bytes) ? count_memory(malloc(bytes ? bytes : 1), bytes)
+                                           : NULL;
+}
+
+void *cwi_alloc_zeroed(size_t count, size_t size)
+{
+    size_t bytes;
+    if (!take_array(count, size, &bytes))
+        return NULL;
+    char *memory = count_memory(calloc(bytes ? bytes : 1, 1), bytes);
+    wish_large_pages(memory, bytes);
+    return memory;
+}
+
+void *cwi_alloc_large(size_t count, size_t size)
+{
+    const size_t page = LARGE_PAGE;
+    size_t bytes;
+    if (!take_array(count, size, &bytes))
+        return NULL;
+    if (bytes < 2 * page || bytes > PTRDIFF_MAX - page)
+        return count_memory(malloc(bytes ? bytes : 1), bytes);
+    const size_t whole = (bytes + page - 1) / page * page;
+    void *memory = count_memory(aligned_alloc(page, whole), bytes);
+    wish_large_pages(memory, whole);
+    return memory;
+}
+
+void *cwi_renew_large(void *memory, size_t count, size_t size)
+{
+    const size_t room = room_of(memory), more = memory ? count / 8 : 0;
+    size_t bytes;
+    if (memory && is_usable(count, size, &bytes) && bytes <= room && bytes >= room / 2)
+        return memory;
+    cwi_free(memory);
+    return cwi_alloc_large(count + more, size);
+}
+
+void *cwi_realloc_array(void *memory, size_t count, size_t size)
+{
+    const size_t before = room_of(memory);
+    size_t bytes;
+    if (!is_usable(count, size, &bytes))
+        return NULL;
+    const size_t more = bytes > before ? bytes - before : 0;
+    if (!cwi_memory_take(more))
+        return NULL;
+    void *moved = realloc(memory, bytes ? bytes : 1);
+    if (moved)
+        count_memory(moved, before + more);
+    else
+        cwi_memory_give(more);
+    return moved;
+}
+
+void cwi_free(void *memory)
+{
+    cwi_memory_give(room_of(memory));
+    free(memory);
+}
+
+char *cwi_strdup(const char *text)
+{
+    const size_t bytes = strlen(text) + 1;
+    char *copy = cwi_alloc_array(bytes, 1);
+    return copy ? memcpy(copy, text, bytes) : NULL;
+}
+
+bool cwi_memory_is_limited(void)
+{
+    struct rlimit space;
+    return getrlimit(RLIMIT_AS, &space) == 0 && space.rlim_cur != RLIM_INFINITY;
+}

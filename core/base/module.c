@@ -1,0 +1,121 @@
+#define _GNU_SOURCE /* dladdr */
+#include "core/base/module.h"
+
+#include "core/base/features.h"
+#include "core/base/memory.h"
+
+#include <dlfcn.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+/* Beside the object this function is in: the library, or a program that linked it statically.
+ */
+static bool module_path(const char *name, char *path, size_t size)
+{
+    static const char *const folders[] = {"cubewright", "../lib/cubewright", CW_MODULE_DIR};
+    Dl_info here;
+    if (!dladdr((const void *)&folders, &here) || !here.dli_fname)
+        return false;
+    const char *slash = strrchr(here.dli_fname, '/');
+    const int folder_length = slash ? (int)(slash - here.dli_fname) : 1;
+    const char *folder = slash ? here.dli_fname : ".";
+    for (size_t i = 0; i < sizeof folders / sizeof *folders; i++) {
+        const int length = snprintf(path, size, "%.*s/%s/cubewright-%s.so", folder_length,
+                                    folder, folders[i], name);
+        if (length > 0 && (size_t)length < size && access(path, R_OK) == 0)
+            return true;
+    }
+    return false;
+}
+
+bool cwi_module_present(const char *name)
+{
+    char path[4096];
+    return module_path(name, path, sizeof path);
+}
+
+/* Loads a module in a process that may die of it: constructors of C++ libraries end theirs when
+ * memory runs out. False where it died; whatever else is wrong, loading it here tells. */
+static bool survives_loading(const char *path)
+{
+    int how = 0;
+    void *loaded = dlopen(path, RTLD_LAZY | RTLD_NOLOAD);
+    if (loaded) {
+        dlclose(loaded);
+        return true;
+    }
+    const pid_t child = fork();
+    if (child == 0) {
+        const int nowhere = open("/dev/null", O_WRONLY | O_CLOEXEC);
+        if (nowhere >= 0)
+            dup2(nowhere, STDERR_FILENO);
+        _exit(dlopen(path, RTLD_NOW | RTLD_LOCAL) ? 0 : 1);
+    }
+    while (child > 0 && waitpid(child, &how, 0) < 0 && errno == EINTR) {
+    }
+    return child < 0 || !WIFSIGNALED(how);
+}
+
+static bool tells_of_memory(const char *words)
+{
+    return strstr(words, "failed to map segment") || strstr(words, "annot allocate") ||
+           strstr(words, "annot create") || strstr(words, "out of memory");
+}
+
+static cw_status fail_memory(const char *name, cw_error *err)
+{
+    return cw_fail(err, CW_ERR_NO_MEMORY, "memory ran out while the %s module was loaded",
+                   name);
+}
+
+static cw_status fail_load(const char *name, const char *packages, cw_error *err)
+{
+    const char *words = dlerror();
+    if (words && tells_of_memory(words))
+        return fail_memory(name, err);
+    return cw_fail(err, CW_ERR_UNSUPPORTED, "the %s module cannot be loaded: %s (Debian: %s)",
+                   name, words ? words : "unknown error", packages);
+}
+
+/* The path of a module that this build has. */
+static cw_status find_module(const char *name, char *path, size_t size,
+                             const cwi_feature_row **row, cw_error *err)
+{
+    *row = cwi_find_module_row(name);
+    if (!*row)
+        return cw_fail(err, CW_ERR_UNSUPPORTED, "there is no module '%s'", name);
+    if (!module_path(name, path, size))
+        return cw_fail(err, CW_ERR_UNSUPPORTED,
+                       "the %s module is not in this build (%s); configure with -D%s=ON and "
+                       "the Debian package%s %s",
+                       name, *(*row)->reason ? (*row)->reason : "its file was removed",
+                       (*row)->option, strchr((*row)->packages, ' ') ? "s" : "",
+                       (*row)->packages);
+    return CW_OK;
+}
+
+cw_status cwi_module_find(const char *name, cw_error *err)
+{
+    char path[4096];
+    const cwi_feature_row *row;
+    return find_module(name, path, sizeof path, &row, err);
+}
+
+cw_status cwi_module_load(const char *name, const void **functions, cw_error *err)
+{
+    char path[4096], symbol[64];
+    const cwi_feature_row *row;
+    cw_status st = find_module(name, path, sizeof path, &row, err);
+    if (st != CW_OK)
+        return st;
+    if (cwi_memory_is_limited() && !survives_loading(path))
+        return fail_memory(name, err);
+    void *module = dlopen(path, RTLD_NOW | RTLD_LOCAL);
+    snprintf(symbol, sizeof symbol, "cwi_module_%s", name);
+    *functions = module ? dlsym(module, symbol) : NULL;
+    return *functions ? CW_OK : fail_load(name, row->packages, err);
+}

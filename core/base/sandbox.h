@@ -1,0 +1,85 @@
+/* Work on the bytes of strangers in a child process: where a library crashes, hangs or is taken
+ * over, the child is lost and an error remains.
+ *
+ * The child has no files but those it is handed one by one, and the system calls left to it
+ * (seccomp) read them, take memory and answer: it opens, starts and sends nothing. What it
+ * finds goes into memory that both sides see. That memory, like its answers, is a stranger's:
+ * copy, then check. */
+#ifndef CORE_BASE_SANDBOX_H
+#define CORE_BASE_SANDBOX_H
+
+#include <cubewright/core.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Sanitizers keep terabytes of address space for themselves: memory has no limit then. */
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define CWI_SANITIZED 1
+#elif defined(__has_feature)
+#define CWI_SANITIZED (__has_feature(address_sanitizer) || __has_feature(thread_sanitizer))
+#else
+#define CWI_SANITIZED 0
+#endif
+
+/* One piece of work, done in the child.
+ * state    as in the description: the child's own copy, kept from piece to piece
+ * fd       the file handed over: the work's own from now on; -1: none
+ * request  a copy of what cwi_sandbox_run() was given
+ * shared   the memory that both sides see */
+typedef cw_status (*cwi_sandbox_work)(void *state, int fd, const void *request, void *shared,
+                                      cw_error *err);
+
+/* What comes first in the child, while it may still open files: loading a library, whose
+ * constructors may well end a process that is short of memory. */
+typedef cw_status (*cwi_sandbox_prepare)(void *state, cw_error *err);
+
+enum { CWI_SANDBOX_REQUEST = 64 };
+#define CWI_SANDBOX_MEMORY ((uint64_t)2 << 30) /* bytes, where nothing else is said */
+
+typedef struct cwi_sandbox_desc {
+    const char *library;         /* for messages: "DCMTK" */
+    cwi_sandbox_prepare prepare; /* NULL: nothing */
+    cwi_sandbox_work work;
+    void *state;
+    size_t shared_bytes; /* of the memory that both sides see */
+    uint64_t memory;     /* bytes that the child may take besides; 0: CWI_SANDBOX_MEMORY */
+    double timeout_s;    /* for one piece of work; 0: 60 */
+    bool inside;         /* no child: the work is done here */
+    bool trusted; /* the work is on data of our own: a child that may die, without limits */
+} cwi_sandbox_desc;
+
+/* A zeroed sandbox is closed. */
+typedef struct cwi_sandbox {
+    cwi_sandbox_desc desc;
+    void *shared;
+    bool open;
+    int socket;
+    int child;                   /* process id; 0: none */
+    const cw_progress *progress; /* may be set between pieces: asked every 100 ms ... */
+    double done;                 /* ... with this share */
+} cwi_sandbox;
+
+/* Starts the child.
+ * Returns what its preparation returned; CW_ERR_BACKEND when the system gives no process, or
+ * has no seccomp; CW_ERR_NO_MEMORY, also when the child died of its preparation */
+CW_API cw_status cwi_sandbox_open(cwi_sandbox *box, const cwi_sandbox_desc *desc,
+                                  cw_error *err);
+
+/* Has a piece of work done and waits for it.
+ * fd       borrowed; -1: none
+ * request  at most CWI_SANDBOX_REQUEST bytes
+ * Returns  what the work returned; CW_ERR_BACKEND when the child died or took too long, which
+ *          closes the sandbox; CW_ERR_CANCELLED */
+CW_API cw_status cwi_sandbox_run(cwi_sandbox *box, int fd, const void *request, size_t size,
+                                 cw_error *err);
+
+/* Ends the child. Harmless on a zeroed or already closed sandbox. */
+CW_API void cwi_sandbox_close(cwi_sandbox *box);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,74 @@
+#include "core/base/status.h"
+
+#include <omp.h>
+#include <stdarg.h>
+#include <stdio.h>
+#include <string.h>
+
+static const struct {
+    int exit_code;
+    const char *name, *text;
+} table[CW_STATUS_COUNT] = {
+#define ROW(name, exit_code, json, text) {exit_code, json, text},
+    CW_STATUS_TABLE(ROW)
+#undef ROW
+};
+
+static cw_status known(cw_status status)
+{
+    return (unsigned)status < CW_STATUS_COUNT ? status : CW_ERR_BACKEND;
+}
+
+const char *cw_version(void)
+{
+    return CW_VERSION;
+}
+
+int cw_status_exit_code(cw_status status)
+{
+    return table[known(status)].exit_code;
+}
+
+const char *cw_status_name(cw_status status)
+{
+    return table[known(status)].name;
+}
+
+const char *cw_status_text(cw_status status)
+{
+    return table[known(status)].text;
+}
+
+cw_status cw_fail(cw_error *err, cw_status status, const char *format, ...)
+{
+    if (err) {
+        va_list args;
+        va_start(args, format);
+        err->status = status;
+        vsnprintf(err->message, sizeof err->message, format, args);
+        va_end(args);
+    }
+    return status;
+}
+
+cw_status cwi_fail_in(cw_error *err, cw_status status, const char *subject)
+{
+    if (err) {
+        const cw_error inner = *err;
+        cw_fail(err, status, "%s: %s", subject, inner.message);
+    }
+    return status;
+}
+
+cw_status cwi_progress(const cw_progress *progress, const char *step, double done,
+                       cw_error *err)
+{
+    if (progress->report && !progress->report(progress->user, step, done))
+        return cw_fail(err, CW_ERR_CANCELLED, "interrupted while %s", step);
+    return CW_OK;
+}
+
+int cwi_threads(int asked)
+{
+    return asked > 0 ? asked : omp_get_max_threads();
+}

@@ -1,0 +1,179 @@
+#include "core/geometry/bvh.h"
+
+#include "core/base/memory.h"
+#include "core/base/status.h"
+
+#include <string.h>
+
+typedef struct keyed {
+    uint64_t key;
+    uint32_t item;
+} keyed;
+
+/* Spreads 16 bits so that two zeros follow each. */
+static uint64_t spread(uint64_t x)
+{
+    x = (x | x << 16) & UINT64_C(0x0000ff0000ff);
+    x = (x | x << 8) & UINT64_C(0x00f00f00f00f);
+    x = (x | x << 4) & UINT64_C(0x0c30c30c30c3);
+    return (x | x << 2) & UINT64_C(0x249249249249);
+}
+
+/* Where each box's middle stands on the curve through a cube of 2^16 places an edge. */
+static void set_keys(const float (*boxes)[6], size_t count, keyed *keys)
+{
+    double low[3] = {INFINITY, INFINITY, INFINITY}, high = 0;
+    for (size_t n = 0; n < count; n++)
+        for (int a = 0; a < 3; a++)
+            low[a] = fmin(low[a], (double)boxes[n][a] + (double)boxes[n][a + 3]);
+    for (size_t n = 0; n < count; n++)
+        for (int a = 0; a < 3; a++)
+            high = fmax(high, (double)boxes[n][a] + (double)boxes[n][a + 3] - low[a]);
+    const double scale = high > 0 ? 65535 / high : 0;
+    for (size_t n = 0; n < count; n++) {
+        uint64_t key = 0;
+        for (int a = 0; a < 3; a++) {
+            const double x = (double)boxes[n][a] + (double)boxes[n][a + 3] - low[a];
+            key |= spread((uint64_t)(x * scale)) << a;
+        }
+        keys[n] = (keyed){key, (uint32_t)n};
+    }
+}
+
+/* By 16 bits of the key at a time; equal keys stay as they are. False when memory is out. */
+static bool sort_keys(keyed **keys, size_t count)
+{
+    enum { DIGITS = 1 << 16 };
+    keyed *other = cwi_alloc_array(count, sizeof *other);
+    size_t *place = cwi_alloc_array(DIGITS, sizeof *place);
+    const bool ok = other && place;
+    for (int shift = 0; shift < 48 && ok; shift += 16) {
+        memset(place, 0, DIGITS * sizeof *place);
+        for (size_t n = 0; n < count; n++)
+            place[(*keys)[n].key >> shift & (DIGITS - 1)]++;
+        for (size_t d = 0, sum = 0; d < DIGITS; d++) {
+            const size_t here = place[d];
+            place[d] = sum;
+            sum += here;
+        }
+        for (size_t n = 0; n < count; n++)
+            other[place[(*keys)[n].key >> shift & (DIGITS - 1)]++] = (*keys)[n];
+        keyed *sorted = other;
+        other = *keys;
+        *keys = sorted;
+    }
+    cwi_free(other);
+    cwi_free(place);
+    return ok;
+}
+
+void cwi_boxes_around(const cwi_boxes_node *n, float box[6])
+{
+    for (int a = 0; a < 3; a++) {
+        box[a] = n->low[a][0];
+        box[a + 3] = n->high[a][0];
+        for (int c = 1; c < CWI_WIDTH; c++) {
+            box[a] = fminf(box[a], n->low[a][c]);
+            box[a + 3] = fmaxf(box[a + 3], n->high[a][c]);
+        }
+    }
+}
+
+static void fill_level(cwi_boxes *t, const float (*boxes)[6], int level, size_t children)
+{
+    const float empty[6] = {INFINITY, INFINITY, INFINITY, -INFINITY, -INFINITY, -INFINITY};
+    cwi_boxes_node *nodes = t->nodes + t->first[level];
+    float box[6];
+    size_t c = 0;
+    for (; c < children; c++)
+        if (level == 0) {
+            cwi_boxes_put(nodes, c, boxes[t->order[c]]);
+        } else {
+            cwi_boxes_around(t->nodes + t->first[level - 1] + c, box);
+            cwi_boxes_put(nodes, c, box);
+        }
+    for (; c % CWI_WIDTH; c++)
+        cwi_boxes_put(nodes, c, empty);
+}
+
+static void fill(cwi_boxes *t, const float (*boxes)[6])
+{
+    size_t children = t->count;
+    for (int level = 0; level < t->levels; level++) {
+        fill_level(t, boxes, level, children);
+        children = (children + CWI_WIDTH - 1) / CWI_WIDTH;
+    }
+    for (size_t n = 0; n < t->count; n++)
+        for (int a = 0; a < 6; a++)
+            t->most = fmaxf(t->most, fabsf(boxes[n][a]));
+}
+
+/* Lays out the levels; returns the number of nodes. */
+static size_t plan_levels(cwi_boxes *t)
+{
+    size_t nodes = 0, level = t->count;
+    do {
+        level = (level + CWI_WIDTH - 1) / CWI_WIDTH;
+        t->first[t->levels++] = nodes;
+        nodes += level;
+    } while (level > 1);
+    return nodes;
+}
+
+cw_status cwi_boxes_build(cwi_boxes *tree, const float (*boxes)[6], size_t count, cw_error *err)
+{
+    *tree = (cwi_boxes){.count = count};
+    if (!count)
+        return CW_OK;
+    tree->nodes = cwi_alloc_array(plan_levels(tree), sizeof *tree->nodes);
+    tree->order = cwi_alloc_array(count, sizeof *tree->order);
+    keyed *keys = cwi_alloc_array(count, sizeof *keys);
+    bool ok = tree->nodes && tree->order && keys;
+    if (ok)
+        set_keys(boxes, count, keys);
+    ok = ok && sort_keys(&keys, count);
+    for (size_t n = 0; n < count && ok; n++)
+        tree->order[n] = keys[n].item;
+    if (ok)
+        fill(tree, boxes);
+    cwi_free(keys);
+    if (ok)
+        return CW_OK;
+    cwi_boxes_free(tree);
+    return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a tree of %zu boxes", count);
+}
+
+void cwi_boxes_free(cwi_boxes *tree)
+{
+    cwi_free(tree->nodes);
+    cwi_free(tree->order);
+    *tree = (cwi_boxes){0};
+}
+
+void cwi_boxes_visit(const cwi_boxes *tree, const float box[6], size_t first,
+                     bool (*visit)(void *context, size_t node), void *context)
+{
+    struct {
+        int level;
+        size_t node;
+    } stack[CWI_LEVELS * CWI_WIDTH] = {{tree->levels - 1, 0}};
+    size_t depth = first < cwi_boxes_nodes(tree);
+    while (depth) {
+        const int level = stack[--depth].level;
+        const size_t node = stack[depth].node;
+        if (level == 0) {
+            if (!visit(context, node))
+                return;
+            continue;
+        }
+        const unsigned meeting =
+            cwi_boxes_meeting(tree->nodes + tree->first[level] + node, box);
+        for (size_t c = CWI_WIDTH; c-- > 0;) {
+            const size_t child = node * CWI_WIDTH + c;
+            if (!(meeting >> c & 1) || child < first >> 3 * (level - 1)) /* ends before it */
+                continue;
+            stack[depth].level = level - 1;
+            stack[depth++].node = child;
+        }
+    }
+}

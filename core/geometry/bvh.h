@@ -1,0 +1,190 @@
+/* A tree of boxes: what is near a point, what overlaps a box? */
+#ifndef CORE_GEOMETRY_BVH_H
+#define CORE_GEOMETRY_BVH_H
+
+#include <cubewright/core.h>
+
+#include <math.h>
+#include <string.h>
+#ifdef __SSE2__
+#include <emmintrin.h>
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { CWI_WIDTH = 8, CWI_LEVELS = 12 };
+
+/* The boxes of eight neighbours, side by side for arithmetic on several at a time; those that
+ * are not there are empty, low above high. */
+typedef struct cwi_boxes_node {
+    float low[3][CWI_WIDTH], high[3][CWI_WIDTH];
+} cwi_boxes_node;
+
+/* Items are sorted along a curve that fills space; eight in a row make a node, eight nodes one
+ * of the next level, up to a single one. So the tree has no pointers and no depth to fear: any
+ * boxes, equal ones too, give the same shape. Zeroed: empty. */
+typedef struct cwi_boxes {
+    size_t count;
+    uint32_t *order; /* items as the tree has them: in slot s stands item order[s] */
+    cwi_boxes_node *nodes;
+    int levels;
+    size_t first[CWI_LEVELS]; /* node of each level; 0 holds items, the last is one node */
+    float most;               /* the largest coordinate, without its sign */
+} cwi_boxes;
+
+/* Sorts boxes into a tree. They are not needed afterwards.
+ * boxes    count x 6: low x, y, z, high x, y, z; finite; fewer than 2^32
+ * Returns  CW_ERR_NO_MEMORY; free with cwi_boxes_free()
+ * Cost     28 bytes an item, 32 more meanwhile
+ * Source   the curve [Morton1966] */
+CW_API cw_status cwi_boxes_build(cwi_boxes *tree, const float (*boxes)[6], size_t count,
+                                 cw_error *err);
+CW_API void cwi_boxes_free(cwi_boxes *tree);
+
+/* Calls visit for each node of level 0, from node `first` on and in rising order, that may hold
+ * boxes sharing a point with this one, until it returns false. Item s of the tree's order is
+ * box s % CWI_WIDTH of node s / CWI_WIDTH. box  low x, y, z, high x, y, z; ends may be infinite
+ */
+void cwi_boxes_visit(const cwi_boxes *tree, const float box[6], size_t first,
+                     bool (*visit)(void *context, size_t node), void *context);
+
+/* The box around a node's boxes. */
+void cwi_boxes_around(const cwi_boxes_node *node, float box[6]);
+
+/* The box around a triangle. points: vertices x 3; v: three of them */
+static inline void cwi_boxes_triangle(const float *points, const uint32_t v[3], float box[6])
+{
+    for (int a = 0; a < 3; a++) {
+        const float *p = points + a;
+        const float x = p[3 * (size_t)v[0]], y = p[3 * (size_t)v[1]], z = p[3 * (size_t)v[2]];
+        box[a] = x < y ? (x < z ? x : z) : (y < z ? y : z);
+        box[a + 3] = x > y ? (x > z ? x : z) : (y > z ? y : z);
+    }
+}
+
+/* Sets box `child` of a row of nodes. */
+static inline void cwi_boxes_put(cwi_boxes_node *nodes, size_t child, const float box[6])
+{
+    for (int a = 0; a < 3; a++) {
+        nodes[child / CWI_WIDTH].low[a][child % CWI_WIDTH] = box[a];
+        nodes[child / CWI_WIDTH].high[a][child % CWI_WIDTH] = box[a + 3];
+    }
+}
+
+/* A node of empty boxes. */
+static inline void cwi_boxes_clear(cwi_boxes_node *node)
+{
+    const float empty[6] = {INFINITY, INFINITY, INFINITY, -INFINITY, -INFINITY, -INFINITY};
+    for (size_t c = 0; c < CWI_WIDTH; c++)
+        cwi_boxes_put(node, c, empty);
+}
+
+/* Four numbers at a time, said so: compilers make jumps of loops this short. */
+typedef float cwi_lanes __attribute__((vector_size(16)));
+typedef int32_t cwi_mask __attribute__((vector_size(16)));
+
+/* Bit c: lane c of a mask is set. */
+static inline unsigned cwi_mask_bits(const cwi_mask *mask)
+{
+#ifdef __SSE2__
+    return (unsigned)_mm_movemask_ps((__m128)*mask);
+#else
+    const cwi_mask bits = *mask & (cwi_mask){1, 2, 4, 8};
+    return (unsigned)(bits[0] | bits[1] | bits[2] | bits[3]);
+#endif
+}
+
+/* Bit c: box c of the node shares a point with the box. */
+static inline unsigned cwi_boxes_meeting(const cwi_boxes_node *n, const float box[6])
+{
+    unsigned meeting = 0;
+    for (int c = 0; c < CWI_WIDTH; c += 4) {
+        cwi_mask meet = {-1, -1, -1, -1};
+        for (int a = 0; a < 3; a++) {
+            cwi_lanes low, high;
+            memcpy(&low, n->low[a] + c, sizeof low);
+            memcpy(&high, n->high[a] + c, sizeof high);
+            meet &= (low <= box[a + 3]) & (high >= box[a]);
+        }
+        meeting |= cwi_mask_bits(&meet) << c;
+    }
+    return meeting;
+}
+
+/* How many nodes of level 0 there are. */
+static inline size_t cwi_boxes_nodes(const cwi_boxes *tree)
+{
+    return (tree->count + CWI_WIDTH - 1) / CWI_WIDTH;
+}
+
+/* Squares of a point's distances from eight boxes, never too large: all is widened by slack. A
+ * point is beyond at most one of a box's ends. */
+static inline void cwi_boxes_squares(const cwi_boxes_node *n, const float p[3], float slack,
+                                     float squares[CWI_WIDTH])
+{
+    for (int c = 0; c < CWI_WIDTH; c += 4) {
+        cwi_lanes sum = {0, 0, 0, 0};
+        for (int a = 0; a < 3; a++) {
+            cwi_lanes low, high;
+            memcpy(&low, n->low[a] + c, sizeof low);
+            memcpy(&high, n->high[a] + c, sizeof high);
+            const cwi_lanes below = low - (p[a] + slack), above = (p[a] - slack) - high;
+            const cwi_mask is_below = below > 0, is_above = above > 0;
+            const cwi_lanes d =
+                (cwi_lanes)(((cwi_mask)below & is_below) | ((cwi_mask)above & is_above));
+            sum += d * d;
+        }
+        memcpy(squares + c, &sum, sizeof sum);
+    }
+}
+
+/* Lowers *square, of a distance, to the least that `measure` finds among items in reach.
+ * Inline, so that measure becomes part of the loop. It lowers *square for the item in a slot,
+ * if that is nearer. */
+static inline void cwi_boxes_nearest(const cwi_boxes *tree, const double point[3],
+                                     void (*measure)(void *context, size_t slot,
+                                                     double *square),
+                                     void *context, double *square)
+{
+    struct entry {
+        float square;
+        int level;
+        size_t node;
+    } stack[CWI_LEVELS * CWI_WIDTH];
+    const struct entry root = {0, tree->levels - 1, 0};
+    const float p[3] = {(float)point[0], (float)point[1], (float)point[2]};
+    const float far = fmaxf(fmaxf(fabsf(p[0]), fabsf(p[1])), fmaxf(fabsf(p[2]), tree->most));
+    const float slack = far * 0x1p-21f;
+    size_t depth = 0;
+    if (tree->count)
+        stack[depth++] = root;
+    while (depth) {
+        const struct entry e = stack[--depth];
+        if ((double)e.square * (1 - 0x1p-20) >= *square)
+            continue;
+        float squares[CWI_WIDTH];
+        const size_t child = e.node * CWI_WIDTH, base = depth;
+        cwi_boxes_squares(tree->nodes + tree->first[e.level] + e.node, p, slack, squares);
+        for (size_t c = 0; c < CWI_WIDTH; c++) {
+            if (!((double)squares[c] * (1 - 0x1p-20) < *square))
+                continue;
+            if (e.level == 0) {
+                measure(context, child + c, square);
+                continue;
+            }
+            const struct entry found = {squares[c], e.level - 1, child + c};
+            size_t s = depth++; /* the nearest one comes last, and is taken first */
+            for (; s > base && stack[s - 1].square < squares[c]; s--)
+                stack[s] = stack[s - 1];
+            stack[s] = found;
+        }
+    }
+}
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,99 @@
+/* A point and a triangle. */
+#ifndef CORE_GEOMETRY_POINT_TRIANGLE_H
+#define CORE_GEOMETRY_POINT_TRIANGLE_H
+
+#include "core/geometry/vec3.h"
+
+#include <math.h>
+
+/* Along a segment, 0 to 1, the point closest to that which lies `from` its start. */
+static inline double cwi_segment_nearest(const double from[3], const double along[3])
+{
+    const double square = cwi_dot(along, along);
+    const double t = square > 0 ? cwi_dot(from, along) / square : 0;
+    return cwi_lesser(cwi_greater(t, 0), 1);
+}
+
+static inline double cwi_segment_square(const double from[3], const double along[3])
+{
+    const double t = cwi_segment_nearest(from, along);
+    double way[3];
+    for (int k = 0; k < 3; k++)
+        way[k] = from[k] - t * along[k];
+    return cwi_dot(way, way);
+}
+
+/* A point seen from a triangle: areas of the three triangles that it makes with the sides,
+ * signed, times the triangle's own. */
+typedef struct cwi_facet_view {
+    double ab[3], ac[3], bc[3], ap[3], bp[3], normal[3];
+    double square, in_a, in_b, in_c;
+} cwi_facet_view;
+
+static inline cwi_facet_view cwi_facet_look(const float a[3], const float b[3],
+                                            const float c[3], const double p[3])
+{
+    cwi_facet_view f;
+    double x[3], y[3];
+    for (int k = 0; k < 3; k++) {
+        f.ab[k] = (double)b[k] - (double)a[k];
+        f.ac[k] = (double)c[k] - (double)a[k];
+        f.ap[k] = p[k] - (double)a[k];
+        f.bc[k] = f.ac[k] - f.ab[k];
+        f.bp[k] = f.ap[k] - f.ab[k];
+    }
+    cwi_cross(f.ab, f.ac, f.normal);
+    cwi_cross(f.ab, f.ap, x);
+    cwi_cross(f.ap, f.ac, y);
+    f.square = cwi_dot(f.normal, f.normal);
+    f.in_c = cwi_dot(x, f.normal);
+    f.in_b = cwi_dot(y, f.normal);
+    f.in_a = f.square - f.in_b - f.in_c;
+    return f;
+}
+
+/* The square of the point's distance from the triangle. The nearest point is in the triangle's
+ * plane or on a side that the point is beyond: which are the signs of three areas. Without an
+ * area all sides are asked. */
+static inline double cwi_facet_square(const float a[3], const float b[3], const float c[3],
+                                      const double p[3])
+{
+    const cwi_facet_view f = cwi_facet_look(a, b, c, p);
+    double best = INFINITY;
+    if (f.square > 0 && f.in_a >= 0 && f.in_b >= 0 && f.in_c >= 0) {
+        const double height = cwi_dot(f.ap, f.normal);
+        return height * height / f.square;
+    }
+    if (!(f.in_c >= 0) || !(f.square > 0))
+        best = cwi_segment_square(f.ap, f.ab);
+    if (!(f.in_b >= 0) || !(f.square > 0))
+        best = cwi_lesser(best, cwi_segment_square(f.ap, f.ac));
+    if (!(f.in_a >= 0) || !(f.square > 0))
+        best = cwi_lesser(best, cwi_segment_square(f.bp, f.bc));
+    return best;
+}
+
+/* The shares of the corners in the point of the triangle that is closest to p. */
+static inline void cwi_facet_nearest(const float a[3], const float b[3], const float c[3],
+                                     const double p[3], double share[3])
+{
+    const cwi_facet_view f = cwi_facet_look(a, b, c, p);
+    if (f.square > 0 && f.in_a >= 0 && f.in_b >= 0 && f.in_c >= 0) {
+        share[0] = f.in_a / f.square;
+        share[1] = f.in_b / f.square;
+        share[2] = f.in_c / f.square;
+        return;
+    }
+    const double on_ab = cwi_segment_square(f.ap, f.ab), on_ac = cwi_segment_square(f.ap, f.ac),
+                 on_bc = cwi_segment_square(f.bp, f.bc);
+    const int from = on_bc < on_ab && on_bc < on_ac ? 1 : 0,
+              to = from == 1 || on_ac < on_ab ? 2 : 1;
+    const double t = from == 1 ? cwi_segment_nearest(f.bp, f.bc)
+                     : to == 2 ? cwi_segment_nearest(f.ap, f.ac)
+                               : cwi_segment_nearest(f.ap, f.ab);
+    share[0] = share[1] = share[2] = 0;
+    share[from] = 1 - t;
+    share[to] = t;
+}
+
+#endif

@@ -1,0 +1,82 @@
+#include "core/mesh/mesh.h"
+
+#include "core/base/memory.h"
+#include "core/base/status.h"
+
+#include <math.h>
+#include <string.h>
+
+cw_status cwi_mesh_renew(cw_mesh *mesh, size_t vertices, size_t triangles, bool normals,
+                         cw_error *err)
+{
+    cw_mesh made = {.vertex_count = vertices, .triangle_count = triangles};
+    made.positions = cwi_renew_large(mesh->positions, vertices, 3 * sizeof *made.positions);
+    made.triangles = cwi_renew_large(mesh->triangles, triangles, 3 * sizeof *made.triangles);
+    mesh->positions = NULL;
+    mesh->triangles = NULL;
+    if (normals) {
+        made.normals = cwi_renew_large(mesh->normals, vertices, 3 * sizeof *made.normals);
+        mesh->normals = NULL;
+    }
+    cw_mesh_free(mesh);
+    if (!made.positions || !made.triangles || (normals && !made.normals)) {
+        cw_mesh_free(&made);
+        return cw_fail(err, CW_ERR_NO_MEMORY,
+                       "no memory for a mesh of %zu vertices, %zu triangles", vertices,
+                       triangles);
+    }
+    *mesh = made;
+    return CW_OK;
+}
+
+cw_status cwi_mesh_alloc(cw_mesh *mesh, size_t vertices, size_t triangles, bool normals,
+                         cw_error *err)
+{
+    *mesh = (cw_mesh){0};
+    return cwi_mesh_renew(mesh, vertices, triangles, normals, err);
+}
+
+void cw_mesh_free(cw_mesh *mesh)
+{
+    cwi_free(mesh->positions);
+    cwi_free(mesh->normals);
+    cwi_free(mesh->triangles);
+    cwi_free(mesh->scalars);
+    cwi_free(mesh->colors);
+    cwi_free(mesh->labels);
+    memset(mesh, 0, sizeof *mesh);
+}
+
+cw_status cw_mesh_check(const cw_mesh *mesh, cw_error *err)
+{
+    if ((mesh->vertex_count && !mesh->positions) || (mesh->triangle_count && !mesh->triangles))
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "a mesh with elements needs positions and triangles");
+    for (int a = 0; a < 3; a++)
+        if (!isfinite(mesh->origin[a]))
+            return cw_fail(err, CW_ERR_ARGUMENT, "the mesh's origin is not finite");
+    for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
+        if (!isfinite(mesh->positions[i]))
+            return cw_fail(err, CW_ERR_ARGUMENT, "the position of vertex %zu is not finite",
+                           i / 3);
+    for (size_t i = 0; i < 3 * mesh->triangle_count; i++)
+        if (mesh->triangles[i] >= mesh->vertex_count)
+            return cw_fail(err, CW_ERR_ARGUMENT, "triangle %zu names vertex %u of %zu", i / 3,
+                           mesh->triangles[i], mesh->vertex_count);
+    return CW_OK;
+}
+
+bool cw_mesh_bounds(const cw_mesh *mesh, double min[3], double max[3])
+{
+    for (int a = 0; a < 3; a++) {
+        float low = INFINITY, high = -INFINITY;
+        for (size_t v = 0; v < mesh->vertex_count; v++) {
+            const float p = mesh->positions[3 * v + (size_t)a];
+            low = p < low ? p : low;
+            high = p > high ? p : high;
+        }
+        min[a] = mesh->vertex_count ? mesh->origin[a] + (double)low : 0;
+        max[a] = mesh->vertex_count ? mesh->origin[a] + (double)high : 0;
+    }
+    return mesh->vertex_count > 0;
+}

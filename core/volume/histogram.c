@@ -1,0 +1,330 @@
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/volume/volume.h"
+
+#include <math.h>
+#include <string.h>
+
+static bool is_integer(cw_type type)
+{
+    return type != CW_F32 && type != CW_F64;
+}
+
+/* One row's values, scaled; returns how many were no-data and leaves those out. */
+static size_t load_row(const cw_volume *v, size_t j, size_t k, double *values, size_t *nodata)
+{
+    const char *p = cwi_voxel_address(v, 0, j, k);
+    size_t n = 0;
+    for (size_t i = 0; i < v->dim[0]; i++, p += v->stride[0]) {
+        const double x = cwi_voxel_at(v->type, p);
+        if (v->has_nodata && x == v->nodata)
+            (*nodata)++;
+        else
+            values[n++] = v->slope * x + v->intercept;
+    }
+    return n;
+}
+
+/* Range and counts of the layers; both are the same in any order. */
+static void scan_row(const double *values, size_t n, cw_statistics *s)
+{
+    for (size_t i = 0; i < n; i++) {
+        if (!isfinite(values[i])) {
+            s->not_finite++;
+            continue;
+        }
+        s->finite++;
+        s->min = values[i] < s->min ? values[i] : s->min;
+        s->max = values[i] > s->max ? values[i] : s->max;
+    }
+}
+
+/* The bin of a finite value. Values of integer types are counted in whole steps: a slope such
+ * as 2.02 must not round one into the bin below. */
+static size_t bin_of(const cw_statistics *s, double value)
+{
+    const bool whole = s->quantum > 0;
+    const double steps = whole ? rint((s->max - s->min) / s->quantum) + 1 : 0;
+    const double bins = (double)s->bin_count;
+    double bin = (value - s->min) / (whole ? s->quantum : s->bin_width);
+    bin = whole ? rint(bin) * bins / steps : bin;
+    return bin < bins ? (size_t)bin : s->bin_count - 1;
+}
+
+static void count_row(const double *values, size_t n, cw_statistics *s)
+{
+    for (size_t i = 0; i < n; i++)
+        if (isfinite(values[i]))
+            s->bins[bin_of(s, values[i])]++;
+}
+
+static void set_bins(cw_statistics *s, size_t bin_count)
+{
+    double span = s->max - s->min;
+    if (s->quantum > 0) {
+        span += s->quantum;
+        const double values = span / s->quantum;
+        bin_count = values < (double)bin_count ? (size_t)(values + 0.5) : bin_count;
+    } else if (span == 0) {
+        bin_count = 1;
+    }
+    s->bin_count = bin_count;
+    s->bin_width = span > 0 ? span / (double)bin_count : 1;
+}
+
+/* Calls one of the two row functions for every row; each thread has its own sums, added in
+ * any order because they are whole numbers, minima and maxima. */
+static cw_status each_row(const cw_volume *v, int threads, bool bins, cw_statistics *total,
+                          cw_error *err)
+{
+    bool starved = false;
+    threads = cwi_threads(threads);
+#pragma omp parallel num_threads(threads)
+    {
+        cw_statistics s = *total;
+        double *values = cwi_alloc_array(v->dim[0], sizeof *values);
+        s.bins = bins ? cwi_alloc_zeroed(s.bin_count, sizeof *s.bins) : NULL;
+        const bool ready = values && (s.bins || !bins);
+#pragma omp for schedule(static)
+        for (size_t k = 0; k < v->dim[2]; k++)
+            for (size_t j = 0; j < v->dim[1] && ready; j++) {
+                const size_t n = load_row(v, j, k, values, &s.nodata);
+                (bins ? count_row : scan_row)(values, n, &s);
+            }
+#pragma omp critical
+        {
+            starved = starved || !ready;
+            if (bins && ready)
+                for (size_t b = 0; b < s.bin_count; b++)
+                    total->bins[b] += s.bins[b];
+            if (!bins) {
+                total->min = fmin(total->min, s.min);
+                total->max = fmax(total->max, s.max);
+                total->finite += s.finite;
+                total->not_finite += s.not_finite;
+                total->nodata += s.nodata;
+            }
+        }
+        cwi_free(values);
+        cwi_free(s.bins);
+    }
+    return starved ? cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a histogram") : CW_OK;
+}
+
+/* Types of so few numbers that how often each occurs can be counted. */
+static bool is_short(cw_type type)
+{
+    return is_integer(type) && cw_type_size(type) <= 2;
+}
+
+enum { SHORTS = 1 << 16, SHORT_ZERO = 1 << 15 };
+
+static void count_shorts(const cw_volume *v, size_t j, size_t k, uint64_t *counts)
+{
+    const char *p = cwi_voxel_address(v, 0, j, k);
+    switch (v->type) {
+#define CASE(name, ctype)                                                                      \
+    case name:                                                                                 \
+        for (size_t i = 0; i < v->dim[0]; i++)                                                 \
+            counts[SHORT_ZERO + *(const ctype *)(p + (ptrdiff_t)i * v->stride[0])]++;          \
+        break;
+        CASE(CW_U8, uint8_t)
+        CASE(CW_I8, int8_t)
+        CASE(CW_I16, int16_t)
+#undef CASE
+    case CW_U16: /* which has no numbers below 0 */
+        for (size_t i = 0; i < v->dim[0]; i++)
+            counts[*(const uint16_t *)(p + (ptrdiff_t)i * v->stride[0])]++;
+        break;
+    default:
+        break;
+    }
+}
+
+/* How often each number occurs, from the lowest; NULL: no memory. */
+static uint64_t *count_all_shorts(const cw_volume *v, int threads)
+{
+    uint64_t *total = cwi_alloc_zeroed(SHORTS, sizeof *total);
+    bool starved = !total;
+    threads = cwi_threads(threads);
+#pragma omp parallel num_threads(threads) reduction(|| : starved)
+    {
+        uint64_t *own = cwi_alloc_zeroed(SHORTS, sizeof *own);
+        starved = starved || !own;
+#pragma omp for schedule(static)
+        for (size_t k = 0; k < v->dim[2]; k++)
+            for (size_t j = 0; j < v->dim[1] && own; j++)
+                count_shorts(v, j, k, own);
+#pragma omp critical
+        for (size_t n = 0; n < SHORTS && own && total; n++)
+            total[n] += own[n];
+        cwi_free(own);
+    }
+    if (starved) {
+        cwi_free(total);
+        total = NULL;
+    }
+    return total;
+}
+
+static double short_at(const cw_volume *v, size_t n)
+{
+    return (double)n - (v->type == CW_U16 ? 0 : SHORT_ZERO);
+}
+
+/* What scan_row() finds of all rows. */
+static void scan_shorts(const cw_volume *v, const uint64_t *counts, cw_statistics *s)
+{
+    for (size_t n = 0; n < SHORTS; n++) {
+        const double x = short_at(v, n), value = v->slope * x + v->intercept;
+        if (!counts[n])
+            continue;
+        if (v->has_nodata && x == v->nodata) {
+            s->nodata += counts[n];
+            continue;
+        }
+        if (!isfinite(value)) {
+            s->not_finite += counts[n];
+            continue;
+        }
+        s->finite += counts[n];
+        s->min = fmin(s->min, value);
+        s->max = fmax(s->max, value);
+    }
+}
+
+static void bin_shorts(const cw_volume *v, const uint64_t *counts, cw_statistics *s)
+{
+    for (size_t n = 0; n < SHORTS; n++) {
+        const double x = short_at(v, n), value = v->slope * x + v->intercept;
+        if (counts[n] && isfinite(value) && !(v->has_nodata && x == v->nodata))
+            s->bins[bin_of(s, value)] += counts[n];
+    }
+}
+
+/* Range first, then bins: of short types both from the counts of all numbers. */
+static cw_status gather(const cw_volume *v, size_t bin_count, int threads, cw_statistics *s,
+                        cw_error *err)
+{
+    cw_status st = CW_OK;
+    uint64_t *counts = NULL;
+    if (is_short(v->type) && !(counts = count_all_shorts(v, threads)))
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a histogram");
+    if (counts)
+        scan_shorts(v, counts, s);
+    else
+        st = each_row(v, threads, false, s, err);
+    if (!s->finite)
+        s->min = s->max = 0;
+    if (st == CW_OK && bin_count && s->finite) {
+        set_bins(s, bin_count);
+        s->bins = cwi_alloc_zeroed(s->bin_count, sizeof *s->bins);
+        if (!s->bins)
+            st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bins", s->bin_count);
+        else if (counts)
+            bin_shorts(v, counts, s);
+        else
+            st = each_row(v, threads, true, s, err);
+    }
+    cwi_free(counts);
+    return st;
+}
+
+cw_status cw_volume_statistics(const cw_volume *volume, size_t bin_count, int threads,
+                               cw_statistics *out, cw_error *err)
+{
+    cw_volume v;
+    memset(out, 0, sizeof *out);
+    cw_status st = cw_volume_select(volume, 0, 0, &v, err);
+    if (st != CW_OK)
+        return st;
+    if (v.sparse) { /* leaves stand one behind another */
+        v.dim[0] = v.dim[1] = CWI_LEAF;
+        v.dim[2] = CWI_LEAF * v.sparse->leaf_count;
+    }
+    cw_statistics s = {.min = INFINITY, .max = -INFINITY};
+    s.quantum = is_integer(v.type) ? fabs(v.slope) : 0;
+    st = gather(&v, bin_count, threads, &s, err);
+    if (st == CW_OK)
+        *out = s;
+    else
+        cw_statistics_free(&s);
+    return st;
+}
+
+void cw_statistics_free(cw_statistics *statistics)
+{
+    cwi_free(statistics->bins);
+    memset(statistics, 0, sizeof *statistics);
+}
+
+/* Zeroth and first moments of the bins before b, so that a class is a difference of two. */
+typedef struct moments {
+    double *count, *sum;
+} moments;
+
+/* What a class of bins [from, to) adds to the variance between classes, up to a constant. */
+static double class_variance(const moments *m, size_t from, size_t to)
+{
+    const double count = m->count[to] - m->count[from], sum = m->sum[to] - m->sum[from];
+    return count > 0 ? sum * sum / count : -1;
+}
+
+/* best[c][b]: the largest variance of bins [0, b) in c + 1 classes, none empty; from[c][b]:
+ * where the last of them begins. */
+static void divide(const moments *m, size_t bins, int classes, double *best, size_t *from)
+{
+    const size_t row = bins + 1;
+    for (size_t b = 0; b <= bins; b++)
+        best[b] = class_variance(m, 0, b);
+    for (size_t c = 1; c < (size_t)classes; c++)
+        for (size_t b = 0; b <= bins; b++) {
+            best[c * row + b] = -1;
+            for (size_t a = c; a < b; a++) {
+                const double head = best[(c - 1) * row + a], tail = class_variance(m, a, b);
+                if (head >= 0 && tail >= 0 && head + tail > best[c * row + b]) {
+                    best[c * row + b] = head + tail;
+                    from[c * row + b] = a;
+                }
+            }
+        }
+}
+
+/* The level between two classes: the middle of the empty bins between them, and for integers
+ * between two values, where no sample stands. */
+static double level_before(const cw_statistics *s, size_t bin)
+{
+    size_t below = bin;
+    while (below > 0 && s->bins[below - 1] == 0)
+        below--;
+    return s->min + 0.5 * (double)(below + bin) * s->bin_width - 0.5 * s->quantum;
+}
+
+bool cw_statistics_otsu(const cw_statistics *s, int level_count, double *levels)
+{
+    const size_t bins = s->bin_count, row = bins + 1, classes = (size_t)level_count + 1;
+    if (level_count < 1 || level_count > 3 || !s->bins)
+        return false;
+    double *memory = cwi_alloc_zeroed((2 + classes) * row, sizeof *memory);
+    size_t *from = cwi_alloc_zeroed(classes * row, sizeof *from);
+    bool found = memory && from;
+    if (found) {
+        const moments m = {memory, memory + row};
+        double *best = memory + 2 * row;
+        for (size_t b = 0; b < bins; b++) {
+            m.count[b + 1] = m.count[b] + (double)s->bins[b];
+            m.sum[b + 1] = m.sum[b] + (double)s->bins[b] * ((double)b + 0.5);
+        }
+        divide(&m, bins, (int)classes, best, from);
+        found = best[(classes - 1) * row + bins] >= 0;
+        for (size_t c = classes - 1, b = bins; c > 0 && found; c--) {
+            b = from[c * row + b];
+            while (b + 1 < bins && s->bins[b] == 0)
+                b++;
+            levels[c - 1] = level_before(s, b);
+        }
+    }
+    cwi_free(memory);
+    cwi_free(from);
+    return found;
+}

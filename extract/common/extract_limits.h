@@ -1,0 +1,11 @@
+/* What an extraction needs, held against what its descriptor allows. */
+#ifndef EXTRACT_COMMON_EXTRACT_LIMITS_H
+#define EXTRACT_COMMON_EXTRACT_LIMITS_H
+
+#include <cubewright/extract.h>
+
+size_t cwi_extract_mesh_bytes(const cw_extract_counts *counts, bool normals);
+cw_status cwi_extract_check_limits(const cw_extract_desc *desc, const cw_extract_counts *counts,
+                                   cw_error *err);
+
+#endif

@@ -1,0 +1,272 @@
+#include "extract/common/field_normals.h"
+
+#include "core/geometry/affine.h"
+#include "core/base/parallel.h"
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/geometry/vec3.h"
+#include "core/volume/volume.h"
+#include "extract/common/vertex_writer.h"
+
+#include <cubewright/extract.h>
+
+#include <math.h>
+#include <string.h>
+
+void cwi_outward(const cw_volume *volume, bool invert, double cofactor[3][3])
+{
+    const double *affine = volume->affine[0];
+    const double sign = (cwi_affine_determinant(affine) < 0) != invert ? 1 : -1;
+    double largest = 0;
+    cwi_affine_cofactor(affine, cofactor);
+    for (int i = 0; i < 9; i++)
+        largest = fmax(largest, fabs(cofactor[i / 3][i % 3]));
+    for (int i = 0; i < 9; i++)
+        cofactor[i / 3][i % 3] *= sign / largest;
+}
+
+/* --- from triangles ---------------------------------------------------------------------- */
+
+static void add_triangle_normal(const cw_mesh *mesh, double scale, const uint32_t *t,
+                                float *normal)
+{
+    const float *p = mesh->positions;
+    double u[3], v[3], across[3];
+    for (size_t a = 0; a < 3; a++) {
+        u[a] = scale * ((double)p[3 * (size_t)t[1] + a] - (double)p[3 * (size_t)t[0] + a]);
+        v[a] = scale * ((double)p[3 * (size_t)t[2] + a] - (double)p[3 * (size_t)t[0] + a]);
+    }
+    cwi_cross(u, v, across);
+    for (int a = 0; a < 3; a++)
+        normal[a] += (float)across[a];
+}
+
+static void normalise(float *n)
+{
+    const double length = sqrt((double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2]);
+    for (int a = 0; a < 3; a++)
+        n[a] = length > 0 ? (float)(n[a] / length) : a == 2;
+}
+
+double cwi_voxel_scale(const cw_volume *v)
+{
+    double largest = 0;
+    int exponent;
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+            largest = fmax(largest, fabs(v->affine[r][c]));
+    frexp(largest, &exponent);
+    return ldexp(1, -exponent);
+}
+
+/* One thread, in the order of triangles: sums do not depend on the number of threads. */
+cw_status cwi_mend_normals(cw_mesh *mesh, double scale, cw_error *err)
+{
+    size_t count = 0;
+    for (size_t v = 0; v < mesh->vertex_count; v++) {
+        const float *n = mesh->normals + 3 * v;
+        count += n[0] == 0 && n[1] == 0 && n[2] == 0;
+    }
+    if (!count)
+        return CW_OK;
+    bool *missing = cwi_alloc_zeroed(mesh->vertex_count, sizeof *missing);
+    if (!missing)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to repair %zu normals", count);
+    for (size_t v = 0; v < mesh->vertex_count; v++) {
+        const float *n = mesh->normals + 3 * v;
+        missing[v] = n[0] == 0 && n[1] == 0 && n[2] == 0;
+    }
+    for (size_t t = 0; t < mesh->triangle_count; t++) {
+        const uint32_t *triangle = mesh->triangles + 3 * t;
+        for (int c = 0; c < 3; c++)
+            if (missing[triangle[c]])
+                add_triangle_normal(mesh, scale, triangle,
+                                    mesh->normals + 3 * (size_t)triangle[c]);
+    }
+    for (size_t v = 0; v < mesh->vertex_count; v++)
+        if (missing[v])
+            normalise(mesh->normals + 3 * v);
+    cwi_free(missing);
+    return CW_OK;
+}
+
+/* --- from the field ---------------------------------------------------------------------- */
+
+enum { CHUNK = 4096 };
+
+/* So much of a voxel may rounding have put a point beyond the last sample; the vertices of a
+ * cap are four times as far out. */
+#define REACH (1.0 / 4096)
+
+typedef struct shading {
+    cw_volume volume; /* resolved */
+    cw_mesh *mesh;
+    float *normals;
+    double inverse[3][3]; /* world to index, of differences */
+    double outward[3][3];
+} shading;
+
+static bool fetch(const cw_volume *v, const size_t at[3], int axis, int step, double *value)
+{
+    size_t i[3] = {at[0], at[1], at[2]};
+    i[axis] += (size_t)step; /* -1 from 0 is beyond any dim, too */
+    if (i[axis] >= v->dim[axis])
+        return false;
+    *value = cwi_voxel_at(v->type, cwi_voxel_address(v, i[0], i[1], i[2]));
+    return !isnan(*value) && !(v->has_nodata && *value == v->nodata);
+}
+
+/* The derivative along an axis where distances differ: the slopes on both sides, each by the
+ * distance on the other one, which is exact for parabolas. Values are halves; NaN: none. */
+static double uneven(const cw_volume *v, int axis, size_t i, double before, double centre,
+                     double after)
+{
+    const double *x = v->coordinates[axis];
+    const double low = i > 0 ? x[i] - x[i - 1] : 1,
+                 high = i + 1 < v->dim[axis] ? x[i + 1] - x[i] : 1;
+    const double below = 2 * (centre - before) / low, above = 2 * (after - centre) / high;
+    if (!isfinite(centre) || (isnan(before) && isnan(after)))
+        return 0;
+    if (isnan(before) || isnan(after))
+        return isnan(before) ? above : below;
+    return (below * high + above * low) / (low + high);
+}
+
+/* As extraction does at a sample: central differences of the stored numbers, one-sided where a
+ * neighbour is missing or infinite. False at a sample without value. */
+static bool gradient(const cw_volume *v, const size_t at[3], double g[3])
+{
+    double centre;
+    if (!fetch(v, at, 0, 0, &centre))
+        return false;
+    for (int a = 0; a < 3; a++) {
+        double before = 0, after = 0;
+        const bool has_before = fetch(v, at, a, -1, &before) && isfinite(before);
+        const bool has_after = fetch(v, at, a, 1, &after) && isfinite(after);
+        before *= 0.5; /* halves first, so that differences of huge doubles stay finite */
+        after *= 0.5;
+        if (cwi_is_rectilinear(v))
+            g[a] = uneven(v, a, at[a], has_before ? before : NAN, centre * 0.5,
+                          has_after ? after : NAN);
+        else if (has_before && has_after)
+            g[a] = after - before;
+        else if (isfinite(centre) && (has_before || has_after))
+            g[a] = has_after ? 2 * (after - centre * 0.5) : 2 * (centre * 0.5 - before);
+        else
+            g[a] = 0;
+    }
+    return true;
+}
+
+/* The cell of a vertex, and where in it; false outside the volume. */
+static bool find_cell(const shading *s, size_t vertex, size_t cell[3], double share[3])
+{
+    const cw_volume *v = &s->volume;
+    double p[3];
+    for (size_t r = 0; r < 3; r++)
+        p[r] =
+            s->mesh->origin[r] - v->affine[r][3] + (double)s->mesh->positions[3 * vertex + r];
+    for (int a = 0; a < 3; a++) {
+        const double last = (double)(v->dim[a] - 1);
+        double x = cwi_coordinate_index(v, a, cwi_dot(s->inverse[a], p));
+        if (!(x >= -REACH && x <= last + REACH))
+            return false;
+        x = x < 0 ? 0 : x > last ? last : x;
+        cell[a] = x < last ? (size_t)x : v->dim[a] - 2;
+        share[a] = x - (double)cell[a];
+    }
+    return true;
+}
+
+/* The gradient at a vertex, in index space. False outside the domain: where a sample without
+ * value has more weight than rounding gives it. */
+static bool interpolate(const shading *s, size_t vertex, double sum[3])
+{
+    size_t cell[3];
+    double share[3], total = 0;
+    if (!find_cell(s, vertex, cell, share))
+        return false;
+    for (size_t corner = 0; corner < 8; corner++) {
+        size_t at[3];
+        double weight = 1, g[3];
+        for (int a = 0; a < 3; a++) {
+            const bool high = corner >> a & 1;
+            at[a] = cell[a] + high;
+            weight *= high ? share[a] : 1 - share[a];
+        }
+        if (!(weight > 0) || !gradient(&s->volume, at, g))
+            continue;
+        total += weight;
+        for (int a = 0; a < 3; a++)
+            sum[a] += weight * g[a];
+    }
+    return total > 1 - REACH;
+}
+
+static void shade_chunk(void *context, size_t chunk)
+{
+    const shading *s = context;
+    const size_t last = s->mesh->vertex_count, end = (chunk + 1) * CHUNK;
+    for (size_t v = chunk * CHUNK; v < (end < last ? end : last); v++) {
+        double g[3] = {0, 0, 0}, n[3] = {0, 0, 0};
+        if (!interpolate(s, v, g) || !cwi_normalise(g))
+            continue;
+        for (int r = 0; r < 3; r++)
+            n[r] = cwi_dot(s->outward[r], g);
+        for (size_t r = 0; r < 3 && cwi_normalise(n); r++)
+            s->normals[3 * v + r] = (float)n[r];
+    }
+}
+
+static cw_status begin(shading *s, const cw_volume *volume, const cw_normals_desc *d,
+                       cw_mesh *mesh, cw_error *err)
+{
+    double cofactor[3][3];
+    cw_status st = cw_volume_select(volume, 0, 0, &s->volume, err);
+    const cw_volume *v = &s->volume;
+    if (st == CW_OK)
+        st = cwi_volume_expect_dense(v, "shading by the field", err);
+    for (int a = 0; a < 3 && st == CW_OK; a++)
+        if (v->dim[a] < 2)
+            st = cw_fail(err, CW_ERR_ARGUMENT,
+                         "the volume has %zu voxel along %c; a gradient needs 2", v->dim[a],
+                         "xyz"[a]);
+    if (st == CW_OK)
+        st = cw_mesh_check(mesh, err);
+    if (st != CW_OK)
+        return st;
+    s->mesh = mesh;
+    cwi_outward(v, (v->slope < 0) != d->inside_is_low, s->outward);
+    cwi_affine_cofactor(v->affine[0], cofactor);
+    for (int i = 0; i < 9; i++)
+        s->inverse[i % 3][i / 3] =
+            cofactor[i / 3][i % 3] / cwi_affine_determinant(v->affine[0]);
+    const size_t bytes = mesh->vertex_count * 3 * sizeof *s->normals;
+    s->normals = cwi_alloc_zeroed(mesh->vertex_count, 3 * sizeof *s->normals);
+    if (!s->normals)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu normals", mesh->vertex_count);
+    if (mesh->normals)
+        memcpy(s->normals, mesh->normals, bytes);
+    return CW_OK;
+}
+
+cw_status cw_extract_normals(const cw_volume *volume, const cw_normals_desc *desc,
+                             cw_mesh *mesh, cw_error *err)
+{
+    const cw_normals_desc d = desc ? *desc : (cw_normals_desc){0};
+    shading s = {0};
+    cw_status st = begin(&s, volume, &d, mesh, err);
+    if (st == CW_OK)
+        st = cwi_each_layer((mesh->vertex_count + CHUNK - 1) / CHUNK, CHUNK, d.threads,
+                            &d.progress, "shading", shade_chunk, &s, err);
+    cw_mesh shaded = *mesh; /* so that a failure leaves the mesh as it was */
+    shaded.normals = s.normals;
+    if (st == CW_OK)
+        st = cwi_mend_normals(&shaded, cwi_voxel_scale(&s.volume), err);
+    if (st == CW_OK) {
+        s.normals = mesh->normals;
+        mesh->normals = shaded.normals;
+    }
+    cwi_free(s.normals);
+    return st;
+}

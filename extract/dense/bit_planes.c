@@ -1,0 +1,353 @@
+#include "extract/dense/bit_planes.h"
+
+#include "core/base/parallel.h"
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/volume/volume.h"
+#include "extract/dense/crossed_edges.h"
+#include "extract/dense/isa_dispatch.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+/* Words after the last row that loads of several words may reach: 0. */
+enum { BEYOND = 8 };
+
+uint64_t *cwi_grid_plane(const cwi_grid *g)
+{
+    const size_t words = g->rows * g->words;
+    uint64_t *plane = cwi_alloc_large(words + BEYOND, sizeof *plane);
+    if (plane)
+        memset(plane + words, 0, BEYOND * sizeof *plane);
+    return plane;
+}
+
+static cw_status no_memory(const cwi_grid *g, cw_error *err)
+{
+    const size_t *dim = g->volume.dim;
+    return cw_fail(err, CW_ERR_NO_MEMORY,
+                   "no memory for the bit planes of %zu x %zu x %zu voxels", dim[0], dim[1],
+                   dim[2]);
+}
+
+static cw_status allocate(cwi_grid *g, cw_error *err)
+{
+    const size_t *dim = g->volume.dim;
+    size_t samples = 0;
+    g->words = (dim[0] + 2 + 63) / 64;
+    g->masks = (g->words + 63) / 64;
+    g->rows_y = dim[1] + 2;
+    g->rows_z = dim[2] + 2;
+    g->bricks_y = (g->rows_y - 1 + CWI_BRICK - 1) / CWI_BRICK;
+    g->bricks_z = (g->rows_z - 1 + CWI_BRICK - 1) / CWI_BRICK;
+    if (!cwi_size_mul(g->rows_y, g->rows_z, &g->rows) ||
+        !cwi_size_mul(g->rows, 64 * g->words, &samples))
+        return no_memory(g, err);
+    g->inside = cwi_grid_plane(g);
+    g->busy = cwi_alloc_large(g->rows * g->masks, sizeof *g->busy);
+    g->filled = cwi_alloc_zeroed(g->rows, sizeof *g->filled);
+    g->layers = cwi_alloc_zeroed(g->rows_z, sizeof *g->layers);
+    return g->inside && g->busy && g->filled && g->layers ? CW_OK : no_memory(g, err);
+}
+
+/* Positions are floats: they cannot tell voxels apart that are too small, and cannot reach the
+ * ends of volumes that are too large. */
+cw_status cwi_extract_check_range(const cw_volume *v, cw_error *err)
+{
+    double spacing[3];
+    cw_volume_spacing(v, spacing);
+    for (int a = 0; a < 3; a++)
+        if (spacing[a] < (double)FLT_MIN ||
+            spacing[a] * (double)v->dim[a] > 0.5 * (double)FLT_MAX)
+            return cw_fail(err, CW_ERR_ARGUMENT,
+                           "%zu voxels of %g mm along %c are beyond what positions can hold",
+                           v->dim[a], spacing[a], "xyz"[a]);
+    return CW_OK;
+}
+
+cw_status cwi_grid_init(cwi_grid *g, const cw_volume *volume, cw_error *err)
+{
+    memset(g, 0, sizeof *g);
+    cw_status st = cw_volume_select(volume, 0, 0, &g->volume, err);
+    if (st == CW_OK)
+        st = cwi_volume_expect_dense(&g->volume, "extraction", err);
+    for (int a = 0; a < 3 && st == CW_OK; a++)
+        if (g->volume.dim[a] < 2)
+            st = cw_fail(err, CW_ERR_ARGUMENT,
+                         "the volume has %zu voxel along %c; a surface needs 2",
+                         g->volume.dim[a], "xyz"[a]);
+    if (st == CW_OK)
+        st = cwi_extract_check_range(&g->volume, err);
+    return st == CW_OK ? allocate(g, err) : st;
+}
+
+/* The cells all of whose samples have values: each needs its own row of these and the next. */
+static void find_live(const cwi_grid *g)
+{
+    for (size_t r = 0; r < g->rows; r++) {
+        const size_t j = r % g->rows_y, k = r / g->rows_y;
+        const uint64_t *row = g->has + r * g->words;
+        const bool last = j + 1 == g->rows_y || k + 1 == g->rows_z;
+        for (size_t w = 0; w < g->words; w++) {
+            uint64_t cells = last ? 0 : ~UINT64_C(0);
+            for (size_t n = 0; n < 4 && !last; n++) {
+                const uint64_t *samples = row + ((n & 1) + (n >> 1) * g->rows_y) * g->words;
+                cells &= samples[w] & cwi_next_samples(samples, w);
+            }
+            g->live[r * g->words + w] = cells;
+        }
+    }
+}
+
+/* Clears cells of a row: the cells in `cells`, and with `before` each one's neighbour at i - 1.
+ */
+static void clear_cells(uint64_t *row, size_t w, uint64_t cells, bool before)
+{
+    row[w] &= ~cells;
+    if (!before)
+        return;
+    row[w] &= ~(cells >> 1);
+    if (w > 0)
+        row[w - 1] &= ~(cells << 63);
+}
+
+/* Word w of row (j, k) of cells may hold crossings. */
+static bool is_wanted(const cwi_grid *g, size_t j, size_t k, size_t w)
+{
+    if (j + 1 >= g->rows_y || k + 1 >= g->rows_z)
+        return false;
+    return g->everything || cwi_grid_wanted(g, j, k)[w / 64] >> w % 64 & 1;
+}
+
+/* Drops cells that meet in nothing but a crossed edge: two live ones, diagonal, the other two
+ * dead. Both would put triangles at its vertex, in two fans. One sweep; true if any was
+ * dropped, which may have left others so. */
+static bool drop_pinched(cwi_grid *g)
+{
+    bool changed = false;
+    for (size_t k = 1; k < g->rows_z; k++)
+        for (size_t j = 1; j < g->rows_y; j++)
+            for (int axis = 0; axis < 3; axis++) {
+                uint64_t *here = g->live + (k * g->rows_y + j) * g->words;
+                uint64_t *below = here - (axis == 1 ? g->rows_y : 1) * g->words;
+                uint64_t *side = here - g->rows_y * g->words, *corner = side - g->words;
+                for (size_t w = 0; w < g->words; w++) {
+                    const uint64_t crossed = cwi_grid_crossed(g, axis, j, k, w);
+                    if (!crossed || !is_wanted(g, j, k, w))
+                        continue;
+                    const uint64_t a = here[w], b = below[w];
+                    uint64_t c, d; /* beside a, beside b */
+                    if (axis == 0) {
+                        c = side[w];
+                        d = corner[w];
+                    } else {
+                        c = a << 1 | (w ? here[w - 1] >> 63 : 0);
+                        d = b << 1 | (w ? below[w - 1] >> 63 : 0);
+                    }
+                    const uint64_t pinched = ((a & d & ~b & ~c) | (b & c & ~a & ~d)) & crossed;
+                    if (!pinched)
+                        continue;
+                    changed = true;
+                    clear_cells(here, w, pinched, axis != 0);
+                    clear_cells(below, w, pinched, axis != 0);
+                    if (axis == 0) {
+                        clear_cells(side, w, pinched, false);
+                        clear_cells(corner, w, pinched, false);
+                    }
+                }
+            }
+    return changed;
+}
+
+cw_status cwi_level_find(const cw_volume *v, const cw_extract_desc *desc, cwi_level *level,
+                         cw_error *err)
+{
+    level->at = (desc->isovalue - v->intercept) / v->slope;
+    level->strict = v->slope < 0;
+    level->invert = (v->slope < 0) != desc->inside_is_low;
+    if (!isfinite(desc->isovalue) || !isfinite(level->at))
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "isovalue %g is not finite, or not after slope %g and intercept %g",
+                       desc->isovalue, v->slope, v->intercept);
+    return CW_OK;
+}
+
+cw_status cwi_grid_set_level(cwi_grid *g, const cw_extract_desc *desc, cw_error *err)
+{
+    cwi_level level;
+    cw_status st = cwi_level_find(&g->volume, desc, &level, err);
+    g->level = level.at;
+    g->strict = level.strict;
+    g->invert = level.invert;
+    g->simple = desc->simple_topology;
+    g->cubic = desc->cubic_placement;
+    return st;
+}
+
+/* A layer of padding, and one of the others, which are alike. */
+static cw_status set_box(cwi_grid *g, cw_error *err)
+{
+    const size_t layer = g->rows_y * g->words;
+    g->live = cwi_alloc_zeroed(2 * layer + BEYOND, sizeof *g->live);
+    if (!g->live)
+        return no_memory(g, err);
+    for (size_t n = g->words; n < g->volume.dim[1] * g->words; n++)
+        g->live[layer + n] = cwi_bits_between(64 * (n % g->words), 1, g->volume.dim[0]);
+    return CW_OK;
+}
+
+/* Cells at the end of the domain are dropped where the surface stays open. */
+static cw_status set_live(cwi_grid *g, bool leave_open, cw_error *err)
+{
+    cwi_free(g->live);
+    g->live = NULL;
+    g->boxed = leave_open && !g->gaps;
+    if (!leave_open)
+        return CW_OK;
+    if (g->boxed)
+        return set_box(g, err);
+    g->live = cwi_grid_plane(g);
+    if (!g->live)
+        return no_memory(g, err);
+    find_live(g);
+    while (drop_pinched(g))
+        ;
+    return CW_OK;
+}
+
+typedef struct classification {
+    const cwi_grid *grid;
+    const cwi_engine *engine;
+    cwi_octree *grow; /* its leaves are to be measured; may be NULL */
+    bool in, out;     /* there are samples with values inside, and outside */
+} classification;
+
+static void classify_layer(void *context, size_t b)
+{
+    classification *c = context;
+    bool in = false, out = false;
+    cwi_range *leaves =
+        c->grow ? c->grow->level[0] + b * c->grow->dim[0][1] * c->grow->dim[0][0] : NULL;
+    c->engine->classify_layer(c->grid, b, leaves, &in, &out);
+    if (in) {
+#pragma omp atomic write
+        c->in = true;
+    }
+    if (out) {
+#pragma omp atomic write
+        c->out = true;
+    }
+}
+
+/* Marks what is wanted, and whether a tree is to be grown while everything is read. */
+static cw_status plan_classification(classification *c, cwi_grid *g, cwi_octree *tree,
+                                     cw_error *err)
+{
+    const size_t bricks = g->bricks_z * g->bricks_y;
+    if (tree && !g->wanted)
+        g->wanted = cwi_alloc_array(bricks * g->masks, sizeof *g->wanted);
+    if (tree && !g->leaves)
+        g->leaves = cwi_alloc_array(bricks * g->words, sizeof *g->leaves);
+    if (tree && (!g->wanted || !g->leaves))
+        return no_memory(g, err);
+    c->grow = tree && !tree->grown ? tree : NULL;
+    g->everything = !tree || !tree->grown;
+    if (!g->everything)
+        g->everything = cwi_octree_mark(tree, g) * tree->leaf_bytes >
+                        cwi_octree_leaves(tree) * cw_type_size(g->volume.type);
+    return CW_OK;
+}
+
+static bool any_gap(const cwi_grid *g)
+{
+    unsigned any = 0;
+    for (size_t r = 0; r < g->rows; r++)
+        any |= g->filled[r];
+    return any & CWI_GAP;
+}
+
+/* Compares what is wanted. Once that was everything it is known whether there are gaps; without
+ * them nothing is to be looked for later. */
+static cw_status compare(classification *c, cwi_grid *g, const cw_extract_desc *desc,
+                         cw_error *err)
+{
+    const cw_status st =
+        cwi_each_layer(g->bricks_z, CWI_BRICK * g->volume.dim[0] * g->volume.dim[1],
+                       desc->threads, &desc->progress, "classifying", classify_layer, c, err);
+    if (st == CW_OK && c->grow)
+        cwi_octree_grow(c->grow);
+    c->grow = NULL;
+    if (st == CW_OK && g->everything) {
+        g->gaps = any_gap(g);
+        g->volume.has_nodata = g->volume.has_nodata && g->gaps;
+    }
+    return st;
+}
+
+/* The same of everything, and which samples have values. */
+static cw_status compare_all(classification *c, cwi_grid *g, const cw_extract_desc *desc,
+                             cw_error *err)
+{
+    g->has = cwi_grid_plane(g);
+    if (!g->has)
+        return no_memory(g, err);
+    g->find_values = g->everything = true;
+    const cw_status st = compare(c, g, desc, err);
+    g->find_values = false;
+    if (st != CW_OK || !g->gaps) {
+        cwi_free(g->has);
+        g->has = NULL;
+    }
+    return st;
+}
+
+cw_status cwi_grid_classify(cwi_grid *g, const cwi_engine *engine, cwi_octree *tree,
+                            const cw_extract_desc *desc, cw_error *err)
+{
+    classification c = {.grid = g, .engine = engine};
+    cw_status st = cwi_grid_set_level(g, desc, err);
+    if (st == CW_OK)
+        st = plan_classification(&c, g, tree, err);
+    const bool at_once = g->volume.has_nodata && !g->has;
+    if (st == CW_OK && !at_once)
+        st = compare(&c, g, desc, err);
+    /* few volumes of floats have NaN, and for few of these it matters */
+    if (st == CW_OK && (at_once || (desc->leave_open && g->gaps && !g->has)))
+        st = compare_all(&c, g, desc, err);
+    if (st != CW_OK)
+        return st;
+    g->crossed = g->everything ? c.in && c.out : cwi_octree_crossed(tree, g);
+    return set_live(g, desc->leave_open, err);
+}
+
+void cwi_grid_free(cwi_grid *g)
+{
+    for (size_t k = 0; g->layers && k < g->rows_z; k++)
+        cwi_free(g->layers[k].plans);
+    cwi_free(g->layers);
+    cwi_free(g->inside);
+    cwi_free(g->has);
+    cwi_free(g->live);
+    cwi_free(g->window);
+    cwi_free(g->busy);
+    cwi_free(g->filled);
+    cwi_free(g->wanted);
+    cwi_free(g->leaves);
+    memset(g, 0, sizeof *g);
+}
+
+size_t cwi_grid_bytes(const cwi_grid *g)
+{
+    const size_t planes = 1 + (g->has != NULL) + (g->live && !g->boxed);
+    const size_t box = g->boxed ? 2 * g->rows_y * g->words : 0;
+    const size_t bricks = g->leaves ? g->bricks_z * g->bricks_y : 0;
+    size_t plans = 0;
+    for (size_t k = 0; k < g->rows_z; k++)
+        plans += g->layers[k].plan_room;
+    return plans * sizeof *g->layers->plans + g->rows_z * sizeof *g->layers +
+           (planes * g->rows * g->words + box + (g->rows + bricks) * g->masks) *
+               sizeof *g->inside +
+           g->rows * (sizeof(cwi_row) + sizeof *g->filled) +
+           bricks * g->words * sizeof *g->leaves;
+}

@@ -1,0 +1,212 @@
+/* Bit planes: one bit per sample, set where the sample is inside. They decide which cells and
+ * edges the surface crosses, 64 at a time, and number its vertices.
+ *
+ * The samples are padded by one layer on every side, outside the solid, so that the solid is
+ * closed where the volume ends; padded sample (i, j, k) is voxel (i-1, j-1, k-1). Row r =
+ * k * rows_y + j holds `words` words; bit i % 64 of word i / 64 is sample i. Cell (i, j, k)
+ * lies between samples i and i+1, j and j+1, k and k+1. */
+#ifndef EXTRACT_DENSE_BIT_PLANES_H
+#define EXTRACT_DENSE_BIT_PLANES_H
+
+#include <cubewright/extract.h>
+
+/* The sides of the isovalue that some samples are on. */
+enum { CWI_OUTSIDE = 1, CWI_INSIDE = 2, CWI_BOTH = CWI_OUTSIDE | CWI_INSIDE };
+
+/* The surface is looked for in bricks of 8 x 8 x 8 cells. */
+enum { CWI_BRICK = 8 };
+
+/* Of the eight leaves in a word, bit b for leaf b: those that the octree cannot rule out, and
+ * of the others those that are inside. */
+typedef struct cwi_leaf_bits {
+    uint8_t wanted, solid;
+} cwi_leaf_bits;
+
+/* What counting notes of a layer. */
+typedef struct cwi_layer {
+    size_t vertices, triangles;
+    bool at_border;  /* the solid meets the volume's border here */
+    uint32_t *plans; /* how its ambiguous cells resolve, in their order */
+    size_t plan_count, plan_room;
+    bool plans_lost; /* there was no memory */
+} cwi_layer;
+
+/* The isovalue in stored numbers, and which side of it is inside. */
+typedef struct cwi_level {
+    double at;
+    bool strict; /* crossed upward above, not at, the level: values fall as numbers rise */
+    bool invert; /* inside is where the comparison fails */
+} cwi_level;
+
+cw_status cwi_level_find(const cw_volume *volume, const cw_extract_desc *desc, cwi_level *level,
+                         cw_error *err);
+
+typedef struct cwi_octree cwi_octree;
+typedef struct cwi_engine cwi_engine;
+
+/* Some sample of a row is inside; its first is, or its last; some has no value. */
+enum { CWI_ANY_INSIDE = 1, CWI_FIRST_INSIDE = 2, CWI_LAST_INSIDE = 4, CWI_GAP = 8 };
+
+typedef struct cwi_grid {
+    cw_volume volume; /* resolved: one component, one step */
+    double level;     /* the isovalue in stored numbers */
+    bool strict;      /* crossed upward above, not at, the level: values fall as numbers rise */
+    bool invert;      /* inside is where the comparison fails */
+    size_t words;     /* of 64 samples in a padded row */
+    size_t rows_y, rows_z, rows;
+    uint64_t *inside; /* rows x words */
+    uint8_t *filled;  /* rows: what their samples are; known where everything is wanted */
+    uint64_t *has;    /* rows x words: which samples have values; NULL: not known, or all but
+                         the padding */
+    uint64_t *live;   /* rows x words: cells all of whose samples have values, but pinched ones;
+                         see cwi_live_layer(); NULL: all cells */
+    uint64_t *window; /* of a block, whose rows are one word: four planes, of cells that are
+                         live or beside a live one, and of edges of live cells along x, y and z.
+                         NULL: to be found out from `live` */
+    bool roomy;       /* wherever a row of voxels begins, 64 may be read */
+    size_t masks;     /* words of a mask that has a bit for every word of a row */
+    uint64_t *busy;   /* rows x masks, found when a row is counted: bit w is set where a cell of
+                         word w has corners on both sides. No other word holds crossings */
+    cwi_layer *layers; /* rows_z */
+    size_t bricks_y, bricks_z;
+    uint64_t
+        *wanted; /* bricks_z x bricks_y x masks: words with cells the octree cannot rule out */
+    cwi_leaf_bits
+        *leaves;      /* bricks_z x bricks_y x words: of wanted words, and those after them */
+    bool gaps;        /* some voxel has no value: known once everything was wanted */
+    bool boxed;       /* the live cells are all but those of padding */
+    bool find_values; /* `has` is filled while samples are compared */
+    bool everything;  /* all words are wanted; else the others mean nothing in the planes */
+    bool cubic;       /* crossings stand on the cubic through four samples where there is one */
+    bool simple;      /* one rule for ambiguous faces, in place of the field's topology */
+    bool crossed;     /* some samples with values are inside and some are not */
+} cwi_grid;
+
+/* Per-row numbers: of the first vertex on the row's x-, y- and z-edges and inside its cells,
+ * and of its cells' first triangle. */
+typedef struct cwi_row {
+    uint32_t first[4];
+    size_t triangle;
+} cwi_row;
+
+/* Looks at a volume and makes room for its planes. Free with cwi_grid_free(), also after an
+ * error. */
+cw_status cwi_grid_init(cwi_grid *grid, const cw_volume *volume, cw_error *err);
+void cwi_grid_free(cwi_grid *grid);
+
+/* Compares the samples with the isovalue: all of them, or where a tree tells which are wanted,
+ * those. A tree that is not grown yet is, on the way; it may be NULL. */
+cw_status cwi_grid_classify(cwi_grid *grid, const cwi_engine *engine, cwi_octree *tree,
+                            const cw_extract_desc *desc, cw_error *err);
+size_t cwi_grid_bytes(const cwi_grid *grid);
+
+/* What of classification is the same for every sample: the isovalue in stored numbers, and
+ * which side of it is inside. */
+cw_status cwi_grid_set_level(cwi_grid *grid, const cw_extract_desc *desc, cw_error *err);
+
+/* Whether positions can tell the voxels apart and reach all of them. */
+cw_status cwi_extract_check_range(const cw_volume *volume, cw_error *err);
+
+/* A plane of bits for the grid, not cleared; NULL without memory. */
+uint64_t *cwi_grid_plane(const cwi_grid *grid);
+
+/* Closed curves along which the surface meets the sides of the volume's box. */
+cw_status cwi_grid_border_loops(const cwi_grid *grid, size_t *loops, cw_error *err);
+
+static inline const uint64_t *cwi_grid_row(const cwi_grid *g, size_t row)
+{
+    return g->inside + row * g->words;
+}
+
+static inline const uint64_t *cwi_grid_busy(const cwi_grid *g, size_t row)
+{
+    return g->busy + row * g->masks;
+}
+
+/* The row of bricks that row (j, k) of cells lies in. */
+static inline size_t cwi_grid_bricks(const cwi_grid *g, size_t j, size_t k)
+{
+    return k / CWI_BRICK * g->bricks_y + j / CWI_BRICK;
+}
+
+/* The wanted words of row (j, k) of cells. */
+static inline const uint64_t *cwi_grid_wanted(const cwi_grid *g, size_t j, size_t k)
+{
+    return g->wanted + cwi_grid_bricks(g, j, k) * g->masks;
+}
+
+/* The rows of bricks that row (j, k) of samples, of voxels, is a side of: one to four. */
+typedef struct cwi_brick_rows {
+    size_t count, row[4];
+} cwi_brick_rows;
+
+static inline cwi_brick_rows cwi_rows_around(const cwi_grid *g, size_t j, size_t k)
+{
+    const size_t here = cwi_grid_bricks(g, j, k), below = here - g->bricks_y;
+    cwi_brick_rows b = {1, {here, 0, 0, 0}};
+    if (j % CWI_BRICK == 0)
+        b.row[b.count++] = here - 1;
+    if (k % CWI_BRICK == 0)
+        b.row[b.count++] = below;
+    if (j % CWI_BRICK == 0 && k % CWI_BRICK == 0)
+        b.row[b.count++] = below - 1;
+    return b;
+}
+
+/* The words of the row that cells of wanted words look at, in mask word m. */
+static inline uint64_t cwi_wanted_samples(const cwi_grid *g, const cwi_brick_rows *b, size_t m)
+{
+    uint64_t wanted = 0;
+    for (size_t n = 0; n < b->count; n++)
+        wanted |= g->wanted[b->row[n] * g->masks + m];
+    return wanted;
+}
+
+static inline bool cwi_any_wanted(const cwi_grid *g, const cwi_brick_rows *b)
+{
+    uint64_t any = 0;
+    for (size_t m = 0; m < g->masks; m++)
+        any |= cwi_wanted_samples(g, b, m);
+    return any;
+}
+
+/* Eight bits to the samples of eight leaves. */
+static inline uint64_t cwi_spread_leaves(unsigned bits)
+{
+    const uint64_t apart =
+        (bits * UINT64_C(0x8040201008040201) & UINT64_C(0x8080808080808080)) >> 7;
+    return __builtin_bswap64(apart) * 255;
+}
+
+/* The first word at or after w whose bit is set in a mask; `words` when there is none. */
+static inline size_t cwi_next_word(const uint64_t *mask, size_t w, size_t words)
+{
+    for (; w < words; w = (w | 63) + 1) {
+        const uint64_t left = mask[w / 64] >> w % 64;
+        if (left)
+            return w + (size_t)__builtin_ctzll(left);
+    }
+    return words;
+}
+
+/* Word w of a row moved down by one sample: bit i is sample i + 1. After a row's last word
+ * comes the next row's first, whose lowest bit is padding, as the one beyond this row would be.
+ */
+static inline uint64_t cwi_next_samples(const uint64_t *row, size_t w)
+{
+    return row[w] >> 1 | row[w + 1] << 63;
+}
+
+/* Bit i: samples i and i + 1 along axis from row (j, k) are on different sides. */
+static inline uint64_t cwi_grid_crossed(const cwi_grid *g, int axis, size_t j, size_t k,
+                                        size_t w)
+{
+    const uint64_t *row = cwi_grid_row(g, k * g->rows_y + j);
+    if (axis == 0)
+        return row[w] ^ cwi_next_samples(row, w);
+    if (axis == 1)
+        return j + 1 < g->rows_y ? row[w] ^ row[g->words + w] : 0;
+    return k + 1 < g->rows_z ? row[w] ^ row[g->rows_y * g->words + w] : 0;
+}
+
+#endif

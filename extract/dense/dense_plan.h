@@ -1,0 +1,27 @@
+/* What an extraction holds between counting and writing. */
+#ifndef EXTRACT_DENSE_DENSE_PLAN_H
+#define EXTRACT_DENSE_DENSE_PLAN_H
+
+#include "extract/dense/isa_dispatch.h"
+
+/* Also what an extractor keeps from one extraction to the next. */
+typedef struct cw_extractor {
+    const cwi_engine *engine;
+    cwi_grid grid;
+    cwi_octree tree; /* no levels: not asked for */
+    cwi_row *rows;   /* and one after the last, with the totals */
+    cw_extract_counts counts;
+    cw_mesh spare; /* arrays for the next mesh */
+} cwi_plan;
+
+/* Counts the rows of a classified grid, and gives them their first numbers. */
+cw_status cwi_plan_count(cwi_plan *plan, int threads, const cw_progress *progress,
+                         cw_error *err);
+void cwi_plan_free(cwi_plan *plan);
+
+/* Where vertices of a volume go: the mesh's arrays, relative to an origin, which it gets, in
+ * the middle of the volume. invert, simple: as in cwi_grid */
+cwi_vertex_sink cwi_make_sink(const cw_volume *volume, bool invert, cw_mesh *mesh);
+cwi_emission cwi_make_emission(const cw_volume *volume, bool simple);
+
+#endif

@@ -1,0 +1,70 @@
+#include "extract/dense/isa_dispatch.h"
+
+static bool always(void)
+{
+    return true;
+}
+
+#ifdef CWI_X86
+static bool has_avx2(void)
+{
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi") &&
+           __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("popcnt");
+}
+
+static bool has_avx512(void)
+{
+    return has_avx2() && __builtin_cpu_supports("avx512f") &&
+           __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl") &&
+           __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vbmi") &&
+           __builtin_cpu_supports("avx512vbmi2") && __builtin_cpu_supports("avx512vpopcntdq") &&
+           __builtin_cpu_supports("gfni");
+}
+/* Name, test, what compares samples, and what marches: baseline x86-64 has an instruction that
+ * gathers comparisons in bits, but none that would make marching faster. */
+#define ENGINES(X)                                                                             \
+    X(plain, always, plain, plain)                                                             \
+    X(sse2, always, sse2, plain)                                                               \
+    X(avx2, has_avx2, avx2, avx2)                                                              \
+    X(avx512, has_avx512, avx512, avx512)
+#else
+#define ENGINES(X) X(plain, always, plain, plain)
+#endif
+
+#define DECLARE(engine, test, compare, march)                                                  \
+    void cwi_classify_layer_##engine(const cwi_grid *, size_t, cwi_range *, bool *, bool *);   \
+    void cwi_classify_rows_##engine(const cwi_grid *, size_t, size_t, size_t, bool *, bool *); \
+    void cwi_find_sides_##engine(const cwi_grid *, const void *, size_t, bool *, bool *);      \
+    void cwi_count_layer_##engine(const cwi_grid *, size_t, cwi_row *);                        \
+    void cwi_write_layers_##engine(const cwi_grid *, size_t, size_t, size_t, const cwi_row *,  \
+                                   const cwi_emission *, cwi_vertex_sink *, uint32_t *);
+ENGINES(DECLARE)
+
+static const cwi_engine engines[] = {
+#define ROW(engine, test, compare, march)                                                      \
+    {#engine,                                                                                  \
+     test,                                                                                     \
+     cwi_classify_layer_##compare,                                                             \
+     cwi_classify_rows_##compare,                                                              \
+     cwi_find_sides_##compare,                                                                 \
+     cwi_count_layer_##march,                                                                  \
+     cwi_write_layers_##march},
+    ENGINES(ROW)
+#undef ROW
+};
+
+const cwi_engine *cwi_engine_at(size_t n)
+{
+    for (size_t e = 0; e < sizeof engines / sizeof *engines; e++)
+        if (engines[e].usable() && n-- == 0)
+            return &engines[e];
+    return NULL;
+}
+
+const cwi_engine *cwi_engine_best(void)
+{
+    const cwi_engine *best = NULL, *next;
+    for (size_t n = 0; (next = cwi_engine_at(n)); n++)
+        best = next;
+    return best;
+}

@@ -1,0 +1,113 @@
+/* The inner loops of extraction, compiled once for any machine and again for what better ones
+ * can do. All engines give the same bytes. */
+#ifndef EXTRACT_DENSE_ISA_DISPATCH_H
+#define EXTRACT_DENSE_ISA_DISPATCH_H
+
+#include "extract/cases/case_tables.h"
+#include "extract/cases/cube_numbering.h"
+#include "extract/dense/minmax_octree.h"
+
+#include <cubewright/mesh.h>
+
+/* Triangles of a case, in the order they are written: three edges each, with room to take 16 at
+ * once. */
+typedef struct cwi_case_emission {
+    _Alignas(32) uint8_t edge[16];
+    uint8_t crossed[CWI_EDGE_ROWS]; /* 1 where the edge in the row is */
+    uint8_t edges;                  /* how many; 0: signs alone do not settle the surface */
+} cwi_case_emission;
+
+/* What is written of cells: of those of each case, and of a configuration of one that has no
+ * vertices inside. */
+typedef struct cwi_emission {
+    cwi_case_emission of_case[256];
+    uint8_t config_edge[CWI_CASE_CONFIGS][32];
+    uint8_t config_edges[CWI_CASE_CONFIGS]; /* how many; 0: there are vertices inside */
+    bool flip; /* triangles are turned round, as the affine mirrors */
+} cwi_emission;
+
+/* Where vertices go. */
+typedef struct cwi_vertex_sink {
+    float *positions, *normals; /* normals may be NULL */
+    double affine[3][3];        /* index to world directions */
+    bool diagonal;              /* only that is not 0 */
+    double centre[3];           /* index, or coordinate, that stands at the mesh's origin */
+    const cw_volume *grid;      /* whose coordinates these are */
+    double cofactor[3][3];      /* index gradient to outward world direction */
+    float cap[3][2][3];         /* normals of caps across an axis, low and high side */
+    bool missing;               /* some normal is zero as the gradient vanished */
+} cwi_vertex_sink;
+
+struct cwi_engine {
+    const char *name;
+    bool (*usable)(void);
+    /* Writes the inside bits of what is wanted in brick layer b, that is eight layers of padded
+     * samples, or as many as are left; where values are to be found, which samples have
+     * values; and, unless leaves is NULL, the ranges of the layer's bricks. Tells whether it
+     * saw samples with values on each side. */
+    void (*classify_layer)(const cwi_grid *grid, size_t b, cwi_range *leaves, bool *in,
+                           bool *out);
+    /* Writes the inside bits of so many rows of layer k, from row j on, all of them wanted; and
+     * tells as classify_layer. */
+    void (*classify_rows)(const cwi_grid *grid, size_t j, size_t k, size_t rows, bool *in,
+                          bool *out);
+    /* Tells, in addition, whether some of so many packed voxels, a multiple of 64, are inside,
+     * and some are not. */
+    void (*find_sides)(const cwi_grid *grid, const void *voxels, size_t count, bool *in,
+                       bool *out);
+    /* Leaves a layer's counts, not yet first numbers, in its rows. */
+    void (*count_layer)(const cwi_grid *grid, size_t k, cwi_row *rows);
+    /* Writes the vertices of the layers begin to end, and the triangles of those begin to
+     * cells, to their places. */
+    void (*write_layers)(const cwi_grid *grid, size_t begin, size_t end, size_t cells,
+                         const cwi_row *rows, const cwi_emission *emission,
+                         cwi_vertex_sink *sink, uint32_t *triangles);
+};
+
+/* The n-th engine this machine can use, the plain one first; NULL when there are fewer. */
+CW_API const cwi_engine *cwi_engine_at(size_t n);
+const cwi_engine *cwi_engine_best(void);
+
+/* cw_extract() and cw_extractor_new() with an engine of the caller's choice, for tests.
+ * leaf_bytes: as in cwi_octree; 0: only wanted leaves are read, however many they are. */
+CW_API cw_status cwi_extract_with(const cwi_engine *engine, const cw_volume *volume,
+                                  const cw_extract_desc *desc, cw_mesh *mesh,
+                                  cw_extract_counts *counts, cw_error *err);
+
+CW_API cw_status cwi_extractor_new_with(const cwi_engine *engine, size_t leaf_bytes,
+                                        const cw_volume *volume, cw_extractor **out,
+                                        cw_error *err);
+
+/* In files that are compiled for each engine, CWI_ENGINE is its name, and CWI_WIDE tells
+ * whether it may shuffle, count and compress bytes and bits in words of 512 bits. */
+#ifdef CWI_ENGINE
+#if defined __AVX512VBMI2__ && defined __AVX512VBMI__ && defined __GFNI__ &&                   \
+    defined __AVX512VPOPCNTDQ__
+#define CWI_WIDE 1
+#else
+#define CWI_WIDE 0
+#endif
+#define CWI_PASTE(a, b)    a##_##b
+#define CWI_EXPAND(a, b)   CWI_PASTE(a, b)
+#define CWI_OF_ENGINE(a)   CWI_EXPAND(a, CWI_ENGINE)
+#define cwi_classify_layer CWI_OF_ENGINE(cwi_classify_layer)
+#define cwi_classify_rows  CWI_OF_ENGINE(cwi_classify_rows)
+#define cwi_find_sides     CWI_OF_ENGINE(cwi_find_sides)
+#define cwi_count_layer    CWI_OF_ENGINE(cwi_count_layer)
+#define cwi_write_layers   CWI_OF_ENGINE(cwi_write_layers)
+#define cwi_write_vertices CWI_OF_ENGINE(cwi_write_vertices)
+
+void cwi_classify_layer(const cwi_grid *grid, size_t b, cwi_range *leaves, bool *in, bool *out);
+void cwi_classify_rows(const cwi_grid *grid, size_t j, size_t k, size_t rows, bool *in,
+                       bool *out);
+void cwi_find_sides(const cwi_grid *grid, const void *voxels, size_t count, bool *in,
+                    bool *out);
+void cwi_count_layer(const cwi_grid *grid, size_t k, cwi_row *rows);
+void cwi_write_layers(const cwi_grid *grid, size_t begin, size_t end, size_t cells,
+                      const cwi_row *rows, const cwi_emission *emission, cwi_vertex_sink *sink,
+                      uint32_t *triangles);
+void cwi_write_vertices(const cwi_grid *grid, size_t begin, size_t end, const cwi_row *rows,
+                        cwi_vertex_sink *sink);
+#endif
+
+#endif

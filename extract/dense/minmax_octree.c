@@ -1,0 +1,163 @@
+#include "extract/dense/minmax_octree.h"
+
+#include "core/base/memory.h"
+#include "core/base/status.h"
+
+#include <math.h>
+#include <string.h>
+
+static size_t halves(size_t n)
+{
+    return (n + 1) / 2;
+}
+
+static size_t bricks_at(const cwi_octree *t, int level)
+{
+    return t->dim[level][0] * t->dim[level][1] * t->dim[level][2];
+}
+
+cw_status cwi_octree_init(cwi_octree *t, const cwi_grid *g, cw_error *err)
+{
+    memset(t, 0, sizeof *t);
+    for (int a = 0; a < 3; a++)
+        t->dim[0][a] = (g->volume.dim[a] + 1 + CWI_BRICK - 1) / CWI_BRICK;
+    for (int l = 0;; l++) {
+        t->level[l] = cwi_alloc_array(bricks_at(t, l), sizeof **t->level);
+        t->levels = l + 1;
+        if (!t->level[l])
+            return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu octree nodes",
+                           bricks_at(t, l));
+        if (bricks_at(t, l) == 1)
+            return CW_OK;
+        for (int a = 0; a < 3; a++)
+            t->dim[l + 1][a] = halves(t->dim[l][a]);
+    }
+}
+
+void cwi_octree_free(cwi_octree *t)
+{
+    for (int l = 0; l < t->levels; l++)
+        cwi_free(t->level[l]);
+    memset(t, 0, sizeof *t);
+}
+
+size_t cwi_octree_bytes(const cwi_octree *t)
+{
+    size_t bricks = 0;
+    for (int l = 0; l < t->levels; l++)
+        bricks += bricks_at(t, l);
+    return bricks * sizeof(cwi_range);
+}
+
+static const cwi_range *node(const cwi_octree *t, int level, size_t x, size_t y, size_t z)
+{
+    return t->level[level] + (z * t->dim[level][1] + y) * t->dim[level][0] + x;
+}
+
+/* The up to eight children of a node: where they stand a level below. */
+#define EACH_CHILD(t, l, at, x, y, z)                                                          \
+    for (size_t z = 2 * at[2]; z < 2 * at[2] + 2 && z < t->dim[l - 1][2]; z++)                 \
+        for (size_t y = 2 * at[1]; y < 2 * at[1] + 2 && y < t->dim[l - 1][1]; y++)             \
+            for (size_t x = 2 * at[0]; x < 2 * at[0] + 2 && x < t->dim[l - 1][0]; x++)
+
+static cwi_range join_children(const cwi_octree *t, int l, const size_t at[3])
+{
+    cwi_range r = {INFINITY, -INFINITY, false};
+    EACH_CHILD(t, l, at, x, y, z)
+    {
+        const cwi_range *child = node(t, l - 1, x, y, z);
+        r.low = fmin(r.low, child->low);
+        r.high = fmax(r.high, child->high);
+        r.gap = r.gap || child->gap;
+    }
+    return r;
+}
+
+void cwi_octree_grow(cwi_octree *t)
+{
+    for (int l = 1; l < t->levels; l++) {
+        cwi_range *range = t->level[l];
+        size_t at[3];
+        for (at[2] = 0; at[2] < t->dim[l][2]; at[2]++)
+            for (at[1] = 0; at[1] < t->dim[l][1]; at[1]++)
+                for (at[0] = 0; at[0] < t->dim[l][0]; at[0]++)
+                    *range++ = join_children(t, l, at);
+    }
+    t->grown = true;
+}
+
+/* Which sides of the grid's level the numbers of a brick are on. */
+static void sides(const cwi_range *r, const cwi_grid *g, bool *in, bool *out)
+{
+    const bool any_above = g->strict ? r->high > g->level : r->high >= g->level;
+    const bool any_below = g->strict ? r->low <= g->level : r->low < g->level;
+    *in = g->invert ? any_below : any_above;
+    *out = g->invert ? any_above : any_below;
+}
+
+bool cwi_octree_crossed(const cwi_octree *t, const cwi_grid *g)
+{
+    bool in, out;
+    sides(t->level[t->levels - 1], g, &in, &out);
+    return in && out;
+}
+
+/* Some cell of the brick may have corners on both sides; what has no value is outside. */
+static bool straddles(const cwi_range *r, const cwi_grid *g)
+{
+    bool in, out;
+    sides(r, g, &in, &out);
+    return in && (out || r->gap);
+}
+
+static size_t mark_below(const cwi_octree *t, int l, const size_t at[3], cwi_grid *g)
+{
+    size_t leaves = 0;
+    if (!straddles(node(t, l, at[0], at[1], at[2]), g))
+        return 0;
+    if (l == 0) {
+        const size_t word = at[0] * CWI_BRICK / 64;
+        uint64_t *mask = g->wanted + (at[2] * g->bricks_y + at[1]) * g->masks;
+        mask[word / 64] |= UINT64_C(1) << word % 64;
+        return 1;
+    }
+    EACH_CHILD(t, l, at, x, y, z)
+    leaves += mark_below(t, l - 1, (const size_t[3]){x, y, z}, g);
+    return leaves;
+}
+
+/* What the tree says of the eight leaves in a word of a row of bricks. */
+static cwi_leaf_bits leaf_bits(const cwi_octree *t, const cwi_grid *g, size_t row, size_t w)
+{
+    const cwi_range *leaves = t->level[0] + row * t->dim[0][0];
+    cwi_leaf_bits bits = {0, 0};
+    for (size_t b = 0; b < 8 && 8 * w + b < t->dim[0][0]; b++) {
+        bool in, out;
+        sides(leaves + 8 * w + b, g, &in, &out);
+        const bool wanted = straddles(leaves + 8 * w + b, g);
+        bits.wanted |= (uint8_t)(wanted << b);
+        bits.solid |= (uint8_t)((in && !wanted) << b);
+    }
+    return bits;
+}
+
+size_t cwi_octree_leaves(const cwi_octree *t)
+{
+    return bricks_at(t, 0);
+}
+
+size_t cwi_octree_mark(const cwi_octree *t, cwi_grid *g)
+{
+    const size_t rows = g->bricks_z * g->bricks_y;
+    memset(g->wanted, 0, rows * g->masks * sizeof *g->wanted);
+    memset(g->leaves, 0, rows * g->words * sizeof *g->leaves);
+    const size_t leaves = mark_below(t, t->levels - 1, (const size_t[3]){0, 0, 0}, g);
+    for (size_t row = 0; row < rows; row++) {
+        const uint64_t *mask = g->wanted + row * g->masks;
+        for (size_t w = cwi_next_word(mask, 0, g->words); w < g->words;
+             w = cwi_next_word(mask, w + 1, g->words))
+            for (size_t x = w; x < w + 2 && x < g->words; x++)
+                g->leaves[row * g->words + x] = leaf_bits(t, g, row, x);
+    }
+    return leaves;
+}

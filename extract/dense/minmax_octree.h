@@ -1,0 +1,45 @@
+/* A branch-on-need octree of the lowest and highest number in each brick of cells
+ * [Wilhelms1992].
+ *
+ * Cells are those of the padded grid (extract/dense/bit_planes.h); a leaf is a brick of 8 x 8 x 8 of them,
+ * and its range is over the 9 x 9 x 9 samples around them. Each level above halves the bricks
+ * along every axis, rounding up: no level is padded to a power of two. */
+#ifndef EXTRACT_DENSE_MINMAX_OCTREE_H
+#define EXTRACT_DENSE_MINMAX_OCTREE_H
+
+#include "extract/dense/bit_planes.h"
+
+enum { CWI_OCTREE_LEVELS = 64, CWI_LEAF_BYTES = 20 /* measured */ };
+
+/* The numbers in a brick; none: from infinity to -infinity. */
+typedef struct cwi_range {
+    double low, high;
+    bool gap; /* some samples are padding or have no value */
+} cwi_range;
+
+struct cwi_octree {
+    bool grown;        /* the nodes hold ranges */
+    size_t leaf_bytes; /* a leaf by itself takes as long to read as so many bytes a sample in a
+                          row: with more leaves wanted than that makes up for, all are read */
+    int levels;
+    size_t dim[CWI_OCTREE_LEVELS][3]; /* bricks along each axis; level 0 has the leaves */
+    cwi_range *level[CWI_OCTREE_LEVELS];
+};
+
+/* Makes room for the leaves of a grid; freeing an empty or already freed tree is harmless. */
+cw_status cwi_octree_init(cwi_octree *tree, const cwi_grid *grid, cw_error *err);
+void cwi_octree_free(cwi_octree *tree);
+size_t cwi_octree_bytes(const cwi_octree *tree);
+
+/* Makes the levels above the leaves, which hold their ranges. */
+void cwi_octree_grow(cwi_octree *tree);
+
+/* Some numbers are inside and some are not. */
+bool cwi_octree_crossed(const cwi_octree *tree, const cwi_grid *grid);
+
+/* Marks, in the grid, the words of cells that straddling leaves lie in. Returns how many leaves
+ * these are. */
+size_t cwi_octree_mark(const cwi_octree *tree, cwi_grid *grid);
+size_t cwi_octree_leaves(const cwi_octree *tree);
+
+#endif

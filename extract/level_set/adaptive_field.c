@@ -1,0 +1,158 @@
+#include "extract/level_set/adaptive_field.h"
+
+#include "core/base/parallel.h"
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/geometry/vec3.h"
+#include "core/geometry/point_in_mesh.h"
+#include "extract/level_set/level_set.h"
+#include "core/geometry/closest_point.h"
+
+#include <math.h>
+
+enum { CHUNK = 256 };
+
+/* ---- values ------------------------------------------------------------------------------ */
+
+void cwi_adaptive_from_mesh(const cwi_adaptive *a, const cw_mesh *m, uint32_t vertex,
+                            double place[3])
+{
+    const float *p = m->positions + 3 * (size_t)vertex;
+    for (int k = 0; k < 3; k++)
+        place[k] = (m->origin[k] - a->mesh->origin[k] + (double)p[k] - a->corner[k]) / a->voxel;
+}
+
+void cwi_adaptive_to_mesh(const cwi_adaptive *a, const double place[3], double p[3])
+{
+    for (int k = 0; k < 3; k++)
+        p[k] = a->corner[k] + a->voxel * place[k];
+}
+
+bool cwi_adaptive_is_inside(const cwi_adaptive *a, const double place[3])
+{
+    double p[3];
+    cwi_adaptive_to_mesh(a, place, p);
+    return cwi_is_inside(a->mesh, &a->tree, (const double(*)[3])a->normals, p);
+}
+
+static double distance_at(const cwi_adaptive *a, const double place[3])
+{
+    double p[3];
+    cwi_adaptive_to_mesh(a, place, p);
+    const cwi_closest c = cwi_closest_find(a->mesh, &a->tree, p);
+    const double way[3] = {p[0] - c.point[0], p[1] - c.point[1], p[2] - c.point[2]};
+    return sqrt(cwi_dot(way, way));
+}
+
+static void measure_point(cwi_adaptive *a, size_t n)
+{
+    uint32_t at[3];
+    cwi_place_of_key(a->points.keys[n], at);
+    const bool is_whole = (at[0] | at[1] | at[2]) % CWI_PARTS == 0;
+    const uint32_t voxel[3] = {at[0] / CWI_PARTS, at[1] / CWI_PARTS, at[2] / CWI_PARTS};
+    const float *known = is_whole ? cwi_level_set_voxel(a->volume, &a->leaves, voxel) : NULL;
+    double *place = a->places[n];
+    bool inside;
+    if (!cwi_adaptive_place(a, at, place, &inside))
+        inside = known ? *known < 0 : cwi_adaptive_is_inside(a, place);
+    const double distance = known ? fabs((double)*known) : distance_at(a, place);
+    a->values[n] = (float)((inside ? -1 : 1) * fmax(distance, CWI_THIN * a->voxel));
+}
+
+static void measure_chunk(void *context, size_t chunk)
+{
+    cwi_adaptive *a = context;
+    const size_t begin = a->measured + CHUNK * chunk;
+    for (size_t n = begin; n < begin + CHUNK && n < a->points.count; n++)
+        measure_point(a, n);
+}
+
+cw_status cwi_adaptive_measure(cwi_adaptive *a, cw_error *err)
+{
+    const size_t count = a->points.count - a->measured;
+    float *values = cwi_realloc_array(a->values, a->points.count, sizeof *values);
+    a->values = values ? values : a->values;
+    double(*places)[3] = cwi_realloc_array(a->places, a->points.count, sizeof *places);
+    a->places = places ? places : a->places;
+    if (!values || !places)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu samples", a->points.count);
+    const cw_status st =
+        cwi_each_layer((count + CHUNK - 1) / CHUNK, CHUNK * CHUNK, a->desc->threads,
+                       &a->desc->progress, "finer samples", measure_chunk, a, err);
+    a->measured = a->points.count;
+    return st;
+}
+
+/* ---- cells ------------------------------------------------------------------------------- */
+
+/* Cells that touch one that is divided are as large, or smaller. Cells of the size before are
+ * divided first, and so on: the depth is that of sizes. */
+bool cwi_adaptive_put(cwi_adaptive *a, int size, const uint32_t at[3])
+{
+    const size_t before = a->divided[size].count;
+    if (cwi_places_add(&a->divided[size], cwi_place_key(at)) == CWI_NO_PLACE)
+        return false;
+    bool ok = true;
+    if (a->divided[size].count == before || size == 0)
+        return true;
+    for (int n = 0; n < 27 && ok; n++) {
+        const uint32_t whole[3] = {(at[0] + (uint32_t)(n % 3) - 1) / 2,
+                                   (at[1] + (uint32_t)(n / 3 % 3) - 1) / 2,
+                                   (at[2] + (uint32_t)(n / 9) - 1) / 2};
+        ok = cwi_adaptive_put(a, size - 1, whole);
+    }
+    return ok;
+}
+
+double cwi_adaptive_least(const cwi_adaptive *a)
+{
+    int size = 0;
+    while (size < CWI_DIVISIONS && a->divided[size].count)
+        size++;
+    return ldexp(a->voxel, -size);
+}
+
+/* ---- all of it --------------------------------------------------------------------------- */
+
+static void find_normals(cwi_adaptive *a)
+{
+    const cw_mesh *m = a->mesh;
+    for (size_t t = 0; t < m->triangle_count; t++) {
+        const uint32_t *v = m->triangles + 3 * t;
+        double way[2][3];
+        for (int k = 0; k < 2; k++)
+            for (int x = 0; x < 3; x++)
+                way[k][x] = (double)m->positions[3 * (size_t)v[k + 1] + (size_t)x] -
+                            (double)m->positions[3 * (size_t)v[0] + (size_t)x];
+        cwi_cross(way[0], way[1], a->normals[t]);
+    }
+}
+
+cw_status cwi_adaptive_init(cwi_adaptive *a, const cw_mesh *mesh, const cw_volume *volume,
+                            const cw_offset_desc *desc, cw_error *err)
+{
+    *a = (cwi_adaptive){
+        .mesh = mesh, .volume = volume, .desc = desc, .voxel = volume->affine[0][0]};
+    for (int k = 0; k < 3; k++)
+        a->corner[k] = volume->affine[k][3] - mesh->origin[k];
+    cw_status st = cwi_closest_build(mesh, &a->tree, err);
+    a->normals = cwi_alloc_array(mesh->triangle_count, sizeof *a->normals);
+    if (st == CW_OK && (!a->normals || !cwi_level_set_leaves(volume, &a->leaves)))
+        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for finer samples");
+    if (st == CW_OK)
+        find_normals(a);
+    return st;
+}
+
+void cwi_adaptive_free(cwi_adaptive *a)
+{
+    cwi_boxes_free(&a->tree);
+    cwi_free(a->normals);
+    cwi_places_free(&a->leaves);
+    cwi_places_free(&a->points);
+    for (int n = 0; n <= CWI_DIVISIONS; n++)
+        cwi_places_free(&a->divided[n]);
+    cwi_free(a->places);
+    cwi_free(a->values);
+    *a = (cwi_adaptive){0};
+}

@@ -1,0 +1,146 @@
+/* Where points between the corners of the smallest cells stand: on the side of the surface that
+ * most of the corners around are not on, if that comes near enough, else in the middle. So they
+ * follow each other through walls and gaps thinner than the cells. */
+#include "extract/level_set/adaptive_field.h"
+#include "core/geometry/polygon_clip.h"
+
+#include "core/geometry/vec3.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Tried one after the other, in voxels: how far from a triangle. On it a point may be called
+ * inside or outside: what it is in becomes as thick as CWI_THIN says anyway. */
+static const double depths[] = {0.02, 0.005, 0.001, 0};
+
+/* Of a way from the middle to the end: how far a point goes at most. */
+static const double most = 0.97;
+
+/* The inside of an edge, a face or a cell, which is what a point may be put in. */
+typedef struct room {
+    const cwi_adaptive *a;
+    double middle[3], reach[3]; /* voxels; a reach of 0: it stays on that plane */
+    bool inside;                /* which side the point is to be on */
+    double square;              /* of the least way from the middle so far */
+    double place[3];
+} room;
+
+/* How many of a room's corners are inside, of how many. */
+static int count_inside(const room *r, int *of)
+{
+    int count = 0;
+    *of = 0;
+    for (int n = 0; n < 8; n++) {
+        double p[3];
+        bool twice = false;
+        for (int a = 0; a < 3; a++) {
+            twice |= r->reach[a] == 0 && n >> a & 1;
+            p[a] = r->middle[a] + (n >> a & 1 ? 1 : -1) * r->reach[a];
+        }
+        *of += !twice;
+        count += !twice && cwi_adaptive_is_inside(r->a, p);
+    }
+    return count;
+}
+
+/* So far from x as the room goes: a place, and squares of its ways from there and from the
+ * middle. */
+static void keep_in(const room *r, const double x[3], double place[3], double squares[2])
+{
+    squares[0] = squares[1] = 0;
+    for (int a = 0; a < 3; a++) {
+        const double reach = most * r->reach[a];
+        const double way = fmax(-reach, fmin(reach, x[a] - r->middle[a]));
+        place[a] = r->middle[a] + way;
+        squares[0] += (place[a] - x[a]) * (place[a] - x[a]);
+        squares[1] += way * way;
+    }
+}
+
+/* A place beside x, on the mesh, along a triangle's normal. */
+static void step_in(room *r, const double x[3], const double normal[3])
+{
+    double n[3], length = 0;
+    for (int a = 0; a < 3; a++) {
+        n[a] = r->reach[a] > 0 ? normal[a] : 0;
+        length = hypot(length, n[a]);
+    }
+    for (size_t k = 0; k < sizeof depths / sizeof *depths && length > 0; k++) {
+        double beside[3], p[3], squares[2];
+        for (int a = 0; a < 3; a++)
+            beside[a] = x[a] + depths[k] * (r->inside ? -1 : 1) * n[a] / length;
+        keep_in(r, beside, p, squares);
+        if (squares[1] >= r->square)
+            return;
+        if (depths[k] > 0 ? cwi_adaptive_is_inside(r->a, p) != r->inside
+                          : squares[0] > CWI_THIN * CWI_THIN)
+            continue;
+        r->square = squares[1];
+        memcpy(r->place, p, sizeof p);
+        return;
+    }
+}
+
+static void try_triangle(room *r, uint32_t t)
+{
+    const cwi_adaptive *a = r->a;
+    cwi_polygon p[2] = {{.count = 3}};
+    double x[3] = {0};
+    for (size_t c = 0; c < 3; c++)
+        cwi_adaptive_from_mesh(a, a->mesh, a->mesh->triangles[3 * (size_t)t + c], p[0].p[c]);
+    for (int k = 0; k < 3; k++) {
+        cwi_polygon_clip(&p[0], k, r->middle[k] - r->reach[k], -1, &p[1]);
+        cwi_polygon_clip(&p[1], k, r->middle[k] + r->reach[k], 1, &p[0]);
+    }
+    for (int n = 0; n < p[0].count; n++)
+        for (int k = 0; k < 3; k++)
+            x[k] += p[0].p[n][k] / p[0].count;
+    if (p[0].count)
+        step_in(r, x, a->normals[t]);
+}
+
+static bool visit(void *context, size_t node)
+{
+    room *r = context;
+    const cwi_boxes *tree = &r->a->tree;
+    for (size_t s = CWI_WIDTH * node; s < CWI_WIDTH * (node + 1) && s < tree->count; s++)
+        try_triangle(r, tree->order[s]);
+    return true;
+}
+
+/* Triangles around the room, a little widened for rounding. */
+static void try_triangles(room *r)
+{
+    float box[6];
+    double low[3], high[3];
+    for (int k = 0; k < 3; k++) {
+        low[k] = r->middle[k] - r->reach[k];
+        high[k] = r->middle[k] + r->reach[k];
+    }
+    cwi_adaptive_to_mesh(r->a, low, low);
+    cwi_adaptive_to_mesh(r->a, high, high);
+    for (int k = 0; k < 3; k++) {
+        box[k] = nextafterf((float)low[k], -INFINITY);
+        box[k + 3] = nextafterf((float)high[k], INFINITY);
+    }
+    cwi_boxes_visit(&r->a->tree, box, 0, visit, r);
+}
+
+bool cwi_adaptive_place(const cwi_adaptive *a, const uint32_t at[3], double place[3],
+                        bool *inside)
+{
+    room r = {.a = a, .square = INFINITY};
+    bool stays = true;
+    int of = 0;
+    for (int k = 0; k < 3; k++) {
+        r.place[k] = r.middle[k] = (double)at[k] / CWI_PARTS;
+        r.reach[k] = at[k] % 2 ? 1.0 / CWI_PARTS : 0;
+        stays &= at[k] % 2 == 0;
+    }
+    const int count = stays ? 0 : count_inside(&r, &of);
+    *inside = r.inside = 2 * count < of;
+    if (!stays && 2 * count != of)
+        try_triangles(&r);
+    memcpy(place, r.place, sizeof r.place);
+    return r.square < INFINITY;
+}

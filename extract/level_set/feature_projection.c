@@ -1,0 +1,380 @@
+#include "extract/level_set/feature_warp.h"
+
+#include "core/base/parallel.h"
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/geometry/vec3.h"
+#include "core/geometry/closest_point.h"
+#include "core/geometry/triangle_intersect.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { CHUNK = 1024, ROUNDS = 5 };
+
+/* Of a voxel: vertices nearer to the mesh stay; what is farther is tangled; and triangles are
+ * flat below such a height. */
+static const double near = 0.02, tangled = 0.15, low = 1e-4;
+
+/* A vertex on its way: at `from` with share 0, at from + way with share 1. */
+typedef struct mover {
+    uint32_t vertex;
+    float from[3], way[3], share;
+    bool moved; /* in this round */
+} mover;
+
+typedef struct motion {
+    const cw_mesh *mesh;
+    cw_mesh *surface;
+    cwi_boxes tree;
+    mover *movers;
+    size_t count;
+    uint32_t *mover_of; /* of vertices; UINT32_MAX: none */
+    float (*ways)[3];   /* of vertices, to the mesh */
+    float (*means)[4];  /* of vertices' neighbours: sums, and how many */
+    double voxel, far;  /* from where on vertices are pulled */
+    bool by_means;      /* to the mesh from where neighbours are on average */
+} motion;
+
+static float *position(const cw_mesh *m, uint32_t v)
+{
+    return m->positions + 3 * (size_t)v;
+}
+
+static void place(const motion *m, const mover *k)
+{
+    for (int a = 0; a < 3; a++)
+        position(m->surface, k->vertex)[a] = k->from[a] + k->share * k->way[a];
+}
+
+static void add_mover(motion *m, uint32_t v, const float way[3])
+{
+    mover *k = m->movers + m->count;
+    *k = (mover){.vertex = v, .share = 1, .moved = true, .way = {way[0], way[1], way[2]}};
+    memcpy(k->from, position(m->surface, v), sizeof k->from);
+    m->mover_of[v] = (uint32_t)m->count++;
+    place(m, k);
+}
+
+static void forget_movers(motion *m)
+{
+    memset(m->mover_of, 0xff, m->surface->vertex_count * sizeof *m->mover_of);
+    m->count = 0;
+}
+
+/* ---- as far as nothing crosses ----------------------------------------------------------- */
+
+/* Triangles that moved, looked at for what they cross. */
+typedef struct settling {
+    motion *motion;
+    cwi_boxes tree;    /* of all triangles, wherever on their ways their corners stop */
+    uint32_t *asked;   /* those that moved since they were looked at */
+    uint8_t *is_asked; /* of triangles */
+    uint8_t *crosses;  /* likewise: something */
+    size_t asked_count;
+} settling;
+
+/* A triangle that is looked at. */
+typedef struct look {
+    const settling *s;
+    uint32_t triangle;
+    float box[6];
+} look;
+
+static const uint32_t *corners(const motion *m, size_t triangle)
+{
+    return m->surface->triangles + 3 * triangle;
+}
+
+static mover *mover_at(const motion *m, uint32_t vertex)
+{
+    const uint32_t k = m->mover_of[vertex];
+    return k == UINT32_MAX ? NULL : m->movers + k;
+}
+
+/* Rounding keeps what is between the ends between them. */
+static void box_of_ways(const motion *m, size_t triangle, float box[6])
+{
+    cwi_boxes_triangle(m->surface->positions, corners(m, triangle), box);
+    for (int n = 0; n < 3; n++) {
+        const mover *k = mover_at(m, corners(m, triangle)[n]);
+        for (int a = 0; a < 3 && k; a++) {
+            const float ends[2] = {k->from[a], k->from[a] + k->way[a]};
+            box[a] = fminf(box[a], fminf(ends[0], ends[1]));
+            box[a + 3] = fmaxf(box[a + 3], fmaxf(ends[0], ends[1]));
+        }
+    }
+}
+
+static void note_crossing(const settling *s, uint32_t triangle)
+{
+#pragma omp atomic write
+    s->crosses[triangle] = 1;
+}
+
+/* Of two that are both looked at only one looks. */
+static void test_pair(const look *l, uint32_t other)
+{
+    const settling *s = l->s;
+    const motion *m = s->motion;
+    const float *points = m->surface->positions;
+    if (other == l->triangle || (s->is_asked[other] && other < l->triangle))
+        return;
+    if (cwi_has_area(points, corners(m, other)) &&
+        cwi_triangles_meet(points, corners(m, l->triangle), corners(m, other))) {
+        note_crossing(s, l->triangle);
+        note_crossing(s, other);
+    }
+}
+
+static bool meet_node(void *context, size_t node)
+{
+    const look *l = context;
+    const cwi_boxes *tree = &l->s->tree;
+    const unsigned meeting = cwi_boxes_meeting(&tree->nodes[node], l->box);
+    for (size_t c = 0; meeting >> c; c++)
+        if (meeting >> c & 1)
+            test_pair(l, tree->order[node * CWI_WIDTH + c]);
+    return true;
+}
+
+static void look_at_chunk(void *context, size_t chunk)
+{
+    const settling *s = context;
+    const float *points = s->motion->surface->positions;
+    for (size_t n = chunk * CHUNK; n < (chunk + 1) * CHUNK && n < s->asked_count; n++) {
+        look l = {.s = s, .triangle = s->asked[n]};
+        const uint32_t *v = corners(s->motion, l.triangle);
+        if (!cwi_has_area(points, v))
+            continue;
+        cwi_boxes_triangle(points, v, l.box);
+        cwi_boxes_visit(&s->tree, l.box, 0, meet_node, &l);
+    }
+}
+
+/* Its corners go back half of their ways, or the last tenth. */
+static void hold_back(motion *m, size_t triangle)
+{
+    for (size_t n = 0; n < 3; n++) {
+        mover *k = mover_at(m, corners(m, triangle)[n]);
+        if (!k || k->share == 0)
+            continue;
+        k->share = k->share > 0.1f ? k->share / 2 : 0;
+        k->moved = true;
+        place(m, k);
+    }
+}
+
+static bool is_flat(const motion *m, size_t triangle)
+{
+    const uint32_t *v = corners(m, triangle);
+    double way[3][3], n[3], longest = 0;
+    for (int k = 0; k < 3; k++) {
+        for (int a = 0; a < 3; a++)
+            way[k][a] = (double)position(m->surface, v[(k + 1) % 3])[a] -
+                        (double)position(m->surface, v[k])[a];
+        longest = fmax(longest, cwi_dot(way[k], way[k]));
+    }
+    cwi_cross(way[0], way[1], n);
+    return !(cwi_dot(n, n) > longest * low * low * m->voxel * m->voxel);
+}
+
+static void hold_back_all(settling *s)
+{
+    motion *m = s->motion;
+    for (size_t t = 0; t < m->surface->triangle_count; t++)
+        if (s->crosses[t] || (s->is_asked[t] && is_flat(m, t)))
+            hold_back(m, t);
+}
+
+/* Triangles at what moved are looked at next. */
+static void ask_moved(settling *s)
+{
+    motion *m = s->motion;
+    const size_t count = m->surface->triangle_count;
+    memset(s->crosses, 0, count);
+    s->asked_count = 0;
+    for (size_t t = 0; t < count; t++) {
+        s->is_asked[t] = 0;
+        for (int n = 0; n < 3; n++) {
+            const mover *k = mover_at(m, corners(m, t)[n]);
+            s->is_asked[t] |= k && k->moved;
+        }
+        if (s->is_asked[t])
+            s->asked[s->asked_count++] = (uint32_t)t;
+    }
+    for (size_t k = 0; k < m->count; k++)
+        m->movers[k].moved = false;
+}
+
+static cw_status find_places(settling *s, cw_error *err)
+{
+    const size_t count = s->motion->surface->triangle_count;
+    float(*boxes)[6] = cwi_alloc_array(count, sizeof *boxes);
+    s->asked = cwi_alloc_array(count, sizeof *s->asked);
+    s->is_asked = cwi_alloc_array(count, sizeof *s->is_asked);
+    s->crosses = cwi_alloc_array(count, sizeof *s->crosses);
+    const bool ok = boxes && s->asked && s->is_asked && s->crosses;
+    for (size_t t = 0; t < count && ok; t++)
+        box_of_ways(s->motion, t, boxes[t]);
+    const cw_status st =
+        ok ? cwi_boxes_build(&s->tree, (const float(*)[6])boxes, count, err)
+           : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to move %zu triangles", count);
+    cwi_free(boxes);
+    return st;
+}
+
+/* With every vertex back at its start nothing crosses: so there is an end. */
+static cw_status settle(motion *m, int threads, const cw_progress *progress, cw_error *err)
+{
+    settling s = {.motion = m};
+    if (!m->count)
+        return CW_OK;
+    cw_status st = find_places(&s, err);
+    if (st == CW_OK)
+        ask_moved(&s);
+    while (st == CW_OK && s.asked_count) {
+        st = cwi_each_layer((s.asked_count + CHUNK - 1) / CHUNK, 64 * CHUNK, threads, progress,
+                            "edges", look_at_chunk, &s, err);
+        hold_back_all(&s);
+        ask_moved(&s);
+    }
+    cwi_boxes_free(&s.tree);
+    cwi_free(s.asked);
+    cwi_free(s.is_asked);
+    cwi_free(s.crosses);
+    return st;
+}
+
+/* ---- where samples went ------------------------------------------------------------------ */
+
+/* Trilinear between the moves of the samples around: on an edge of the grid, of its ends. */
+static bool way_at(const cwi_warp *w, const double at[3], float way[3])
+{
+    double sum[3] = {0};
+    bool any = false;
+    for (int n = 0; n < 8; n++) {
+        uint32_t corner[3];
+        const double share = cwi_warp_corner(at, n, corner);
+        const cwi_move *m = share > 1e-6 ? cwi_warp_find(w, corner) : NULL;
+        for (int a = 0; a < 3 && m; a++)
+            sum[a] += share * m->way[a];
+        any |= m != NULL;
+    }
+    for (int a = 0; a < 3; a++)
+        way[a] = (float)(w->voxel * sum[a]);
+    return any;
+}
+
+static void follow_samples(const cwi_warp *w, motion *m)
+{
+    forget_movers(m);
+    for (uint32_t v = 0; v < m->surface->vertex_count; v++) {
+        const float *p = position(m->surface, v);
+        double at[3];
+        float way[3];
+        for (int a = 0; a < 3; a++)
+            at[a] = (m->surface->origin[a] + (double)p[a] - w->corner[a]) / w->voxel;
+        if (way_at(w, at, way))
+            add_mover(m, v, way);
+    }
+}
+
+/* ---- on to the mesh ---------------------------------------------------------------------- */
+
+static void find_means(motion *m)
+{
+    const cw_mesh *s = m->surface;
+    memset(m->means, 0, s->vertex_count * sizeof *m->means);
+    for (size_t c = 0; c < 3 * s->triangle_count; c++) {
+        const float *next = position(s, s->triangles[c % 3 < 2 ? c + 1 : c - 2]);
+        float *mean = m->means[s->triangles[c]];
+        for (int a = 0; a < 3; a++)
+            mean[a] += next[a];
+        mean[3]++;
+    }
+}
+
+static double find_way(const motion *m, const double x[3], const double y[3], float way[3])
+{
+    const cwi_closest c = cwi_closest_find(m->mesh, &m->tree, y);
+    double square = 0;
+    for (int a = 0; a < 3; a++) {
+        way[a] = (float)(c.point[a] - x[a]);
+        square += (c.point[a] - x[a]) * (c.point[a] - x[a]);
+    }
+    return sqrt(square);
+}
+
+static void find_ways(void *context, size_t chunk)
+{
+    motion *m = context;
+    for (size_t v = chunk * CHUNK; v < (chunk + 1) * CHUNK && v < m->surface->vertex_count;
+         v++) {
+        const float *p = position(m->surface, (uint32_t)v), *mean = m->means[v];
+        double x[3], y[3];
+        for (int a = 0; a < 3; a++) {
+            x[a] = m->surface->origin[a] + (double)p[a] - m->mesh->origin[a];
+            y[a] = x[a] + (double)mean[a] / (double)mean[3] - (double)p[a];
+        }
+        if (!(find_way(m, x, x, m->ways[v]) > m->far * m->voxel))
+            memset(m->ways[v], 0, sizeof m->ways[v]);
+        else if (m->by_means)
+            find_way(m, x, y, m->ways[v]);
+    }
+}
+
+/* To the closest points of the mesh; every other time only what is tangled, from where its
+ * neighbours are on average: that frees it. */
+static cw_status pull(motion *m, bool by_means, int threads, const cw_progress *progress,
+                      cw_error *err)
+{
+    const size_t count = m->surface->vertex_count;
+    m->by_means = by_means;
+    m->far = by_means ? tangled : near;
+    find_means(m);
+    cw_status st = cwi_each_layer((count + CHUNK - 1) / CHUNK, 64 * CHUNK, threads, progress,
+                                  "edges", find_ways, m, err);
+    forget_movers(m);
+    for (uint32_t v = 0; v < count && st == CW_OK; v++)
+        if (m->ways[v][0] != 0 || m->ways[v][1] != 0 || m->ways[v][2] != 0)
+            add_mover(m, v, m->ways[v]);
+    return st;
+}
+
+/* ---- all of it --------------------------------------------------------------------------- */
+
+static bool make_room(motion *m)
+{
+    const size_t n = m->surface->vertex_count;
+    m->movers = cwi_alloc_array(n, sizeof *m->movers);
+    m->mover_of = cwi_alloc_array(n, sizeof *m->mover_of);
+    m->ways = cwi_alloc_array(n, sizeof *m->ways);
+    m->means = cwi_alloc_array(n, sizeof *m->means);
+    return m->movers && m->mover_of && m->ways && m->means;
+}
+
+cw_status cwi_unwarp(const cwi_warp *w, const cw_mesh *mesh, int threads,
+                     const cw_progress *progress, cw_mesh *surface, cw_error *err)
+{
+    motion m = {.mesh = mesh, .surface = surface, .voxel = w->voxel};
+    cw_status st = make_room(&m)
+                       ? cwi_closest_build(mesh, &m.tree, err)
+                       : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to move %zu vertices",
+                                 surface->vertex_count);
+    if (st == CW_OK) {
+        follow_samples(w, &m);
+        st = settle(&m, threads, progress, err);
+    }
+    for (int round = 0; round < ROUNDS && st == CW_OK; round++) {
+        st = pull(&m, round % 2, threads, progress, err);
+        if (st == CW_OK)
+            st = settle(&m, threads, progress, err);
+    }
+    cwi_boxes_free(&m.tree);
+    cwi_free(m.movers);
+    cwi_free(m.mover_of);
+    cwi_free(m.ways);
+    cwi_free(m.means);
+    return st;
+}

@@ -1,0 +1,665 @@
+#include "extract/level_set/sharp_edges.h"
+
+#include "core/base/parallel.h"
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/geometry/vec3.h"
+#include "core/geometry/closest_point.h"
+
+#include <cubewright/quality.h>
+
+#include <math.h>
+#include <string.h>
+
+enum { CHUNK = 1024, ROUNDS = 12 };
+
+/* Cosines: planes that meet at more than 30 degrees make an edge; a part of a triangle does not
+ * turn away from all planes at the triangle's corners. */
+static const double edge = 0.866, faces = 0;
+/* Of the parallelepiped that three planes' normals span, at least. */
+static const double corner = 0.2;
+/* Of a voxel, at most: from the middle of what is cut to the cut, and from a vertex to its
+ * plane; off the surface. At least: between vertices, and a triangle's height. */
+static const double reach = 2.5, near = 0.5, off = 0.02, apart = 0.02, low = 0.002;
+
+/* Of the surface near a vertex: n . x = at. No normal: 0. */
+typedef struct plane {
+    double n[3], at;
+} plane;
+
+/* A vertex that there might be. */
+typedef struct cut {
+    bool is_on;
+    float x[3], n[3];
+    uint32_t vertex; /* its number */
+} cut;
+
+/* Points are numbered: vertices, then cuts of sides, then those of triangles. */
+typedef struct sharpener {
+    const cw_mesh *from;
+    cw_mesh *mesh, made;
+    double offset, voxel, shift[3]; /* from the mesh's origin to from's */
+    cwi_boxes tree;
+    plane *planes;
+    size_t side_count;
+    uint32_t *first, *upper; /* sides from each vertex to one with a higher number */
+    cut *sides, *middles;
+    float *places;     /* of vertices */
+    uint32_t *parent;  /* of the triangles made */
+    uint32_t *changed; /* triangles with a side that is cut, or a corner that is moved */
+    size_t changed_count;
+} sharpener;
+
+static void place_of(const cw_mesh *m, uint32_t v, double x[3])
+{
+    for (int a = 0; a < 3; a++)
+        x[a] = (double)m->positions[3 * (size_t)v + a];
+}
+
+/* ---- planes ------------------------------------------------------------------------------ */
+
+static bool scale_to_one(double n[3])
+{
+    const double length = sqrt(cwi_dot(n, n));
+    for (int a = 0; a < 3; a++)
+        n[a] = length > 0 ? n[a] / length : 0;
+    return length > 0;
+}
+
+static void normal_of(const cw_mesh *m, size_t triangle, double n[3])
+{
+    double p[3][3], u[3], v[3];
+    for (size_t k = 0; k < 3; k++)
+        place_of(m, m->triangles[3 * triangle + k], p[k]);
+    for (int a = 0; a < 3; a++) {
+        u[a] = p[1][a] - p[0][a];
+        v[a] = p[2][a] - p[0][a];
+    }
+    cwi_cross(u, v, n);
+}
+
+static cwi_closest find_closest(const sharpener *s, const double x[3])
+{
+    const double p[3] = {x[0] - s->shift[0], x[1] - s->shift[1], x[2] - s->shift[2]};
+    cwi_closest c = cwi_closest_find(s->from, &s->tree, p);
+    for (int a = 0; a < 3; a++)
+        c.point[a] += s->shift[a];
+    return c;
+}
+
+/* At no distance the normal is a triangle's; else it is along the shortest way. */
+static plane plane_near(const sharpener *s, const double x[3])
+{
+    const cwi_closest c = find_closest(s, x);
+    plane p = {0};
+    if (s->offset == 0)
+        normal_of(s->from, c.triangle, p.n);
+    for (int a = 0; a < 3 && s->offset != 0; a++)
+        p.n[a] = (x[a] - c.point[a]) * (s->offset < 0 ? -1 : 1);
+    if (scale_to_one(p.n))
+        p.at = cwi_dot(p.n, c.point) + s->offset;
+    return p;
+}
+
+static bool is_on_surface(const sharpener *s, const double x[3])
+{
+    const cwi_closest c = find_closest(s, x);
+    const double way[3] = {x[0] - c.point[0], x[1] - c.point[1], x[2] - c.point[2]};
+    return fabs(sqrt(cwi_dot(way, way)) - fabs(s->offset)) <= off * s->voxel;
+}
+
+static void find_planes(void *context, size_t chunk)
+{
+    sharpener *s = context;
+    for (size_t v = chunk * CHUNK; v < (chunk + 1) * CHUNK && v < s->mesh->vertex_count; v++) {
+        double x[3];
+        place_of(s->mesh, (uint32_t)v, x);
+        s->planes[v] = plane_near(s, x);
+    }
+}
+
+/* ---- where planes meet ------------------------------------------------------------------- */
+
+/* The least way on to two planes that are `near_p` and `near_q` away along their normals. */
+static void meet_two(const plane *p, const plane *q, double near_p, double near_q,
+                     double way[3])
+{
+    const double c = cwi_dot(p->n, q->n), d = 1 - c * c;
+    const double along_p = (near_p - c * near_q) / d, along_q = (near_q - c * near_p) / d;
+    for (int a = 0; a < 3; a++)
+        way[a] = along_p * p->n[a] + along_q * q->n[a];
+}
+
+static void meet_three(const plane *const p[3], const double away[3], double way[3])
+{
+    double cross[3][3];
+    for (int k = 0; k < 3; k++)
+        cwi_cross(p[(k + 1) % 3]->n, p[(k + 2) % 3]->n, cross[k]);
+    const double volume = cwi_dot(p[0]->n, cross[0]);
+    for (int a = 0; a < 3; a++)
+        way[a] =
+            (away[0] * cross[0][a] + away[1] * cross[1][a] + away[2] * cross[2][a]) / volume;
+}
+
+/* Whether the way from x leads to the surface, and not too far: then there is the cut. */
+static bool take_way(const sharpener *s, const double x[3], const double way[3], cut *c)
+{
+    const double to[3] = {x[0] + way[0], x[1] + way[1], x[2] + way[2]};
+    if (!(sqrt(cwi_dot(way, way)) <= reach * s->voxel) || !is_on_surface(s, to))
+        return false;
+    for (int a = 0; a < 3; a++)
+        c->x[a] = (float)to[a];
+    return true;
+}
+
+static void take_normal(const plane *const *p, int count, cut *c)
+{
+    double sum[3] = {0};
+    for (int n = 0; n < count; n++)
+        for (int a = 0; a < 3; a++)
+            sum[a] += p[n]->n[a];
+    scale_to_one(sum);
+    for (int a = 0; a < 3; a++)
+        c->n[a] = (float)sum[a];
+}
+
+static bool is_apart(const sharpener *s, const cut *c, const double x[3])
+{
+    const double way[3] = {(double)c->x[0] - x[0], (double)c->x[1] - x[1],
+                           (double)c->x[2] - x[2]};
+    return cwi_dot(way, way) >= apart * apart * s->voxel * s->voxel;
+}
+
+static bool is_plane(const plane *p)
+{
+    return cwi_dot(p->n, p->n) > 0;
+}
+
+/* ---- sides ------------------------------------------------------------------------------- */
+
+/* From the middle of the side to where the planes at its ends meet. */
+static void cut_side(const sharpener *s, uint32_t u, uint32_t v, cut *c)
+{
+    const plane *p[2] = {s->planes + u, s->planes + v};
+    double x[3], y[3], middle[3], way[3];
+    if (!is_plane(p[0]) || !is_plane(p[1]) || cwi_dot(p[0]->n, p[1]->n) > edge)
+        return;
+    place_of(s->mesh, u, x);
+    place_of(s->mesh, v, y);
+    for (int a = 0; a < 3; a++)
+        middle[a] = (x[a] + y[a]) / 2;
+    meet_two(p[0], p[1], p[0]->at - cwi_dot(p[0]->n, middle),
+             p[1]->at - cwi_dot(p[1]->n, middle), way);
+    c->is_on = take_way(s, middle, way, c) && is_apart(s, c, x) && is_apart(s, c, y);
+    take_normal(p, 2, c);
+}
+
+static void cut_sides(void *context, size_t chunk)
+{
+    const sharpener *s = context;
+    for (size_t v = chunk * CHUNK; v < (chunk + 1) * CHUNK && v < s->mesh->vertex_count; v++)
+        for (uint32_t n = s->first[v]; n < s->first[v + 1]; n++)
+            cut_side(s, (uint32_t)v, s->upper[n], s->sides + n);
+}
+
+/* In a closed, oriented surface each side is once run through from the lower vertex. Counts,
+ * then ends, then fills from the ends: first[v] comes to where v's begin. */
+static void find_sides(sharpener *s)
+{
+    const cw_mesh *m = s->mesh;
+    memset(s->first, 0, (m->vertex_count + 1) * sizeof *s->first);
+    for (size_t c = 0; c < 3 * m->triangle_count; c++) {
+        const uint32_t u = m->triangles[c], v = m->triangles[c % 3 < 2 ? c + 1 : c - 2];
+        s->first[u] += u < v;
+    }
+    for (size_t v = 1; v <= m->vertex_count; v++)
+        s->first[v] += s->first[v - 1];
+    s->side_count = s->first[m->vertex_count];
+    for (size_t c = 3 * m->triangle_count; c-- > 0;) {
+        const uint32_t u = m->triangles[c], v = m->triangles[c % 3 < 2 ? c + 1 : c - 2];
+        if (u < v)
+            s->upper[--s->first[u]] = v;
+    }
+}
+
+/* The cut of side k of a triangle. */
+static cut *side_of(const sharpener *s, size_t t, size_t k)
+{
+    const uint32_t u = s->mesh->triangles[3 * t + k],
+                   v = s->mesh->triangles[3 * t + (k + 1) % 3];
+    uint32_t n = s->first[u < v ? u : v];
+    while (s->upper[n] != (u < v ? v : u))
+        n++;
+    return s->sides + n;
+}
+
+/* ---- triangles --------------------------------------------------------------------------- */
+
+/* Where three planes meet in a triangle of which two sides are cut: beyond the corner the third
+ * pair of planes may not meet on the surface. */
+static void cut_triangle(const sharpener *s, size_t t, cut *c)
+{
+    const plane *p[3];
+    double x[3], middle[3] = {0}, away[3], way[3], line[3];
+    int cuts = 0;
+    for (size_t k = 0; k < 3; k++) {
+        const uint32_t v = s->mesh->triangles[3 * t + k];
+        cuts += side_of(s, t, k)->is_on;
+        p[k] = s->planes + v;
+        place_of(s->mesh, v, x);
+        for (int a = 0; a < 3; a++)
+            middle[a] += x[a] / 3;
+    }
+    cwi_cross(p[0]->n, p[1]->n, line);
+    if (cuts < 2 || fabs(cwi_dot(line, p[2]->n)) < corner)
+        return;
+    for (int k = 0; k < 3; k++)
+        away[k] = p[k]->at - cwi_dot(p[k]->n, middle);
+    meet_three(p, away, way);
+    c->is_on = take_way(s, middle, way, c);
+    take_normal(p, 3, c);
+}
+
+static void cut_triangles(void *context, size_t chunk)
+{
+    const sharpener *s = context;
+    for (size_t t = chunk * CHUNK; t < (chunk + 1) * CHUNK && t < s->mesh->triangle_count; t++)
+        cut_triangle(s, t, s->middles + t);
+}
+
+/* Samples on both sides of an edge put vertices off the surface: to its plane with one. */
+static void settle(const sharpener *s, uint32_t v)
+{
+    const plane *p = s->planes + v;
+    double x[3];
+    place_of(s->mesh, v, x);
+    const double way = p->at - cwi_dot(p->n, x);
+    for (int a = 0; a < 3; a++)
+        x[a] += way * p->n[a];
+    for (size_t a = 0; a < 3 && fabs(way) <= near * s->voxel && is_on_surface(s, x); a++)
+        s->places[3 * (size_t)v + a] = (float)x[a];
+}
+
+static void settle_ends(const sharpener *s)
+{
+    memcpy(s->places, s->mesh->positions, 3 * s->mesh->vertex_count * sizeof *s->places);
+    for (size_t v = 0; v < s->mesh->vertex_count; v++)
+        for (uint32_t n = s->first[v]; n < s->first[v + 1]; n++)
+            if (s->sides[n].is_on) {
+                settle(s, (uint32_t)v);
+                settle(s, s->upper[n]);
+            }
+}
+
+/* A corner of a part of a triangle. */
+typedef struct point {
+    double x[3];
+    uint32_t vertex;
+} point;
+
+static point corner_point(const sharpener *s, uint32_t v)
+{
+    const float *x = s->places + 3 * (size_t)v;
+    return (point){{(double)x[0], (double)x[1], (double)x[2]}, v};
+}
+
+static point cut_point(const cut *c)
+{
+    return (point){{(double)c->x[0], (double)c->x[1], (double)c->x[2]}, c->vertex};
+}
+
+static double square_between(const point *p, const point *q)
+{
+    const double way[3] = {q->x[0] - p->x[0], q->x[1] - p->x[1], q->x[2] - p->x[2]};
+    return cwi_dot(way, way);
+}
+
+typedef struct part {
+    const point *corner[3];
+} part;
+
+enum { MOST_PARTS = 6 };
+
+/* The parts of a triangle around a point of it. */
+static int divide_around(const point *c, const point v[3], const point *const m[3],
+                         part parts[MOST_PARTS])
+{
+    const point *rim[MOST_PARTS];
+    int count = 0;
+    for (int k = 0; k < 3; k++) {
+        rim[count++] = &v[k];
+        if (m[k])
+            rim[count++] = m[k];
+    }
+    for (int n = 0; n < count; n++)
+        parts[n] = (part){{rim[n], rim[(n + 1) % count], c}};
+    return count;
+}
+
+/* The parts of a triangle between its corners v and the cuts m of its sides (NULL: none). */
+static int divide(const point v[3], const point *const m[3], part parts[MOST_PARTS])
+{
+    const int cuts = !!m[0] + !!m[1] + !!m[2];
+    int k = 0; /* one cut: it; two: the first of them */
+    while (cuts > 0 && cuts < 3 && !(m[k] && (cuts == 1 || m[(k + 1) % 3])))
+        k++;
+    const point *p = v + k, *q = v + (k + 1) % 3, *r = v + (k + 2) % 3;
+    const point *pq = m[k], *qr = m[(k + 1) % 3], *rp = m[(k + 2) % 3];
+    int n = 0;
+    if (cuts == 0) {
+        parts[n++] = (part){{p, q, r}};
+    } else if (cuts == 1) {
+        parts[n++] = (part){{p, pq, r}};
+        parts[n++] = (part){{pq, q, r}};
+    } else if (cuts == 2) {
+        const bool is_short = square_between(p, qr) <= square_between(pq, r);
+        parts[n++] = (part){{pq, q, qr}};
+        parts[n++] = is_short ? (part){{p, pq, qr}} : (part){{p, pq, r}};
+        parts[n++] = is_short ? (part){{p, qr, r}} : (part){{pq, qr, r}};
+    } else {
+        parts[n++] = (part){{p, pq, rp}};
+        parts[n++] = (part){{q, qr, pq}};
+        parts[n++] = (part){{r, rp, qr}};
+        parts[n++] = (part){{pq, qr, rp}};
+    }
+    return n;
+}
+
+/* A triangle and its points. */
+typedef struct division {
+    point v[3], m[3], c;
+    part parts[MOST_PARTS];
+    int count;
+} division;
+
+static void divide_triangle(const sharpener *s, size_t t, division *d)
+{
+    const point *m[3] = {NULL};
+    int cuts = 0;
+    for (size_t k = 0; k < 3; k++) {
+        const cut *side = side_of(s, t, k);
+        d->v[k] = corner_point(s, s->mesh->triangles[3 * t + k]);
+        d->m[k] = cut_point(side);
+        m[k] = side->is_on ? &d->m[k] : NULL;
+        cuts += side->is_on;
+    }
+    d->c = cut_point(s->middles + t);
+    d->count = cuts >= 2 && s->middles[t].is_on ? divide_around(&d->c, d->v, m, d->parts)
+                                                : divide(d->v, m, d->parts);
+}
+
+/* ---- what stays as it is ----------------------------------------------------------------- */
+
+/* Whether a part is no sliver, and faces as one of three planes does. */
+static bool is_sound(const sharpener *s, const part *p, const plane *const planes[3])
+{
+    double u[3], v[3], n[3], longest = 0, best = -1;
+    for (int a = 0; a < 3; a++) {
+        u[a] = p->corner[1]->x[a] - p->corner[0]->x[a];
+        v[a] = p->corner[2]->x[a] - p->corner[0]->x[a];
+    }
+    for (int k = 0; k < 3; k++)
+        longest = fmax(longest, square_between(p->corner[k], p->corner[(k + 1) % 3]));
+    cwi_cross(u, v, n);
+    if (!(cwi_dot(n, n) > longest * low * low * s->voxel * s->voxel) || !scale_to_one(n))
+        return false;
+    for (int k = 0; k < 3; k++)
+        best = fmax(best, cwi_dot(n, planes[k]->n));
+    return best >= faces;
+}
+
+/* Whether a corner of it is not where it was. */
+static bool has_moved(const sharpener *s, size_t t)
+{
+    bool has = false;
+    for (size_t k = 0; k < 3; k++) {
+        const size_t at = 3 * (size_t)s->mesh->triangles[3 * t + k];
+        has |= memcmp(s->places + at, s->mesh->positions + at, 3 * sizeof *s->places) != 0;
+    }
+    return has;
+}
+
+/* Leaves its corners and sides as they were. */
+static void restore(const sharpener *s, size_t t)
+{
+    for (size_t k = 0; k < 3; k++) {
+        const size_t at = 3 * (size_t)s->mesh->triangles[3 * t + k];
+        memcpy(s->places + at, s->mesh->positions + at, 3 * sizeof *s->places);
+        side_of(s, t, k)->is_on = false;
+    }
+}
+
+/* Leaves the shortest of its sides that are cut whole, as the least is lost there; with none,
+ * its corners where they were. */
+static void restore_some(const sharpener *s, size_t t, const division *d)
+{
+    cut *shortest = NULL;
+    double least = INFINITY;
+    for (size_t k = 0; k < 3; k++) {
+        cut *side = side_of(s, t, k);
+        const double square = square_between(&d->v[k], &d->v[(k + 1) % 3]);
+        if (side->is_on && square < least) {
+            least = square;
+            shortest = side;
+        }
+    }
+    if (shortest)
+        shortest->is_on = false;
+    else
+        restore(s, t);
+}
+
+/* Whether something had to be restored. */
+static bool restore_unsound(const sharpener *s, size_t t)
+{
+    const plane *planes[3];
+    division d;
+    divide_triangle(s, t, &d);
+    for (size_t k = 0; k < 3; k++)
+        planes[k] = s->planes + s->mesh->triangles[3 * t + k];
+    bool is_unsound = false;
+    for (int n = 0; (d.count > 1 || has_moved(s, t)) && n < d.count; n++)
+        is_unsound |= !is_sound(s, &d.parts[n], planes);
+    if (is_unsound)
+        restore_some(s, t, &d);
+    return is_unsound;
+}
+
+/* What is whole stays so: nothing is cut or moved from here on, only put back. */
+static void find_changed(sharpener *s)
+{
+    s->changed_count = 0;
+    for (size_t t = 0; t < s->mesh->triangle_count; t++) {
+        bool is_changed = has_moved(s, t);
+        for (size_t k = 0; k < 3; k++)
+            is_changed |= side_of(s, t, k)->is_on;
+        if (is_changed)
+            s->changed[s->changed_count++] = (uint32_t)t;
+    }
+}
+
+static void restore_all_unsound(const sharpener *s)
+{
+    for (bool again = true; again;) {
+        again = false;
+        for (size_t n = 0; n < s->changed_count; n++)
+            again |= restore_unsound(s, s->changed[n]);
+    }
+}
+
+/* ---- what is made ------------------------------------------------------------------------ */
+
+static void number(cut *cuts, size_t count, size_t *vertices)
+{
+    for (size_t n = 0; n < count; n++)
+        if (cuts[n].is_on)
+            cuts[n].vertex = (uint32_t)(*vertices)++;
+}
+
+static void put_cuts(const cut *cuts, size_t count, cw_mesh *m)
+{
+    for (size_t n = 0; n < count; n++)
+        if (cuts[n].is_on) {
+            memcpy(m->positions + 3 * (size_t)cuts[n].vertex, cuts[n].x, sizeof cuts[n].x);
+            memcpy(m->normals + 3 * (size_t)cuts[n].vertex, cuts[n].n, sizeof cuts[n].n);
+        }
+}
+
+/* Corners are cut in where two sides are, at least: into five parts or six. */
+static size_t count_parts(const sharpener *s)
+{
+    size_t count = 0;
+    for (size_t t = 0; t < s->mesh->triangle_count; t++) {
+        division d;
+        divide_triangle(s, t, &d);
+        s->middles[t].is_on = d.count >= 5;
+        count += (size_t)d.count;
+    }
+    return count;
+}
+
+static bool make_room_for(sharpener *s, size_t vertices, size_t triangles)
+{
+    cw_mesh *m = &s->made;
+    cw_mesh_free(m);
+    *m = (cw_mesh){.vertex_count = vertices, .triangle_count = triangles};
+    m->positions = cwi_alloc_array(3 * vertices, sizeof *m->positions);
+    m->normals = cwi_alloc_array(3 * vertices, sizeof *m->normals);
+    m->triangles = cwi_alloc_array(3 * triangles, sizeof *m->triangles);
+    cwi_free(s->parent);
+    s->parent = cwi_alloc_array(triangles, sizeof *s->parent);
+    return m->positions && m->normals && m->triangles && s->parent;
+}
+
+static cw_status make(sharpener *s, cw_error *err)
+{
+    const cw_mesh *m = s->mesh;
+    const size_t triangles = count_parts(s);
+    size_t vertices = m->vertex_count, n = 0;
+    number(s->sides, s->side_count, &vertices);
+    number(s->middles, m->triangle_count, &vertices);
+    if (vertices > UINT32_MAX || !make_room_for(s, vertices, triangles))
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu triangles with edges",
+                       triangles);
+    memcpy(s->made.positions, s->places, 3 * m->vertex_count * sizeof *m->positions);
+    memcpy(s->made.normals, m->normals, 3 * m->vertex_count * sizeof *m->normals);
+    put_cuts(s->sides, s->side_count, &s->made);
+    put_cuts(s->middles, m->triangle_count, &s->made);
+    for (size_t t = 0; t < m->triangle_count; t++) {
+        division d;
+        divide_triangle(s, t, &d);
+        for (int p = 0; p < d.count; p++, n++) {
+            s->parent[n] = (uint32_t)t;
+            for (size_t k = 0; k < 3; k++)
+                s->made.triangles[3 * n + k] = d.parts[p].corner[k]->vertex;
+        }
+    }
+    return CW_OK;
+}
+
+/* Makes it without what crosses, until nothing does; false: there is no such way. */
+static cw_status make_clear(sharpener *s, const cw_offset_desc *desc, bool *is_clear,
+                            cw_error *err)
+{
+    const cw_crossings_desc how = {.threads = desc->threads, .progress = desc->progress};
+    cw_status st = CW_OK;
+    *is_clear = false;
+    for (int round = 0; round < ROUNDS && st == CW_OK && !*is_clear; round++) {
+        cw_crossings found = {0};
+        restore_all_unsound(s);
+        st = make(s, err);
+        if (st == CW_OK)
+            st = cw_self_intersections(&s->made, &how, &found, err);
+        *is_clear = st == CW_OK && !found.count;
+        for (size_t n = 0; n < 2 * found.count; n++)
+            restore(s, s->parent[found.pairs[n]]);
+        cw_crossings_free(&found);
+    }
+    return st;
+}
+
+/* ---- all of it --------------------------------------------------------------------------- */
+
+static bool make_room(sharpener *s)
+{
+    const size_t n = s->mesh->vertex_count, t = s->mesh->triangle_count;
+    s->planes = cwi_alloc_array(n, sizeof *s->planes);
+    s->places = cwi_alloc_array(3 * n, sizeof *s->places);
+    s->first = cwi_alloc_array(n + 1, sizeof *s->first);
+    s->upper = cwi_alloc_array(3 * t / 2 + 1, sizeof *s->upper);
+    s->sides = cwi_alloc_zeroed(3 * t / 2 + 1, sizeof *s->sides);
+    s->middles = cwi_alloc_zeroed(t, sizeof *s->middles);
+    s->changed = cwi_alloc_array(t, sizeof *s->changed);
+    return s->planes && s->places && s->first && s->upper && s->sides && s->middles &&
+           s->changed;
+}
+
+static void free_room(sharpener *s)
+{
+    cwi_free(s->planes);
+    cwi_free(s->places);
+    cwi_free(s->first);
+    cwi_free(s->upper);
+    cwi_free(s->sides);
+    cwi_free(s->middles);
+    cwi_free(s->parent);
+    cwi_free(s->changed);
+    cwi_boxes_free(&s->tree);
+    cw_mesh_free(&s->made);
+}
+
+static size_t chunks_of(size_t count)
+{
+    return (count + CHUNK - 1) / CHUNK;
+}
+
+static cw_status find_cuts(sharpener *s, const cw_offset_desc *d, cw_error *err)
+{
+    static void (*const steps[])(void *, size_t) = {find_planes, cut_sides, cut_triangles};
+    const size_t vertices = chunks_of(s->mesh->vertex_count),
+                 triangles = chunks_of(s->mesh->triangle_count);
+    find_sides(s);
+    cw_status st = cwi_closest_build(s->from, &s->tree, err);
+    for (int n = 0; n < 3 && st == CW_OK; n++)
+        st = cwi_each_layer(n < 2 ? vertices : triangles, 64 * CHUNK, d->threads, &d->progress,
+                            "sharpening", steps[n], s, err);
+    if (st != CW_OK)
+        return st;
+    settle_ends(s);
+    find_changed(s);
+    return CW_OK;
+}
+
+static void hand_over(sharpener *s)
+{
+    cw_mesh *m = s->mesh, was = *m;
+    m->vertex_count = s->made.vertex_count;
+    m->triangle_count = s->made.triangle_count;
+    m->positions = s->made.positions;
+    m->normals = s->made.normals;
+    m->triangles = s->made.triangles;
+    s->made.positions = was.positions;
+    s->made.normals = was.normals;
+    s->made.triangles = was.triangles;
+}
+
+cw_status cwi_sharpen(const cw_mesh *from, const cw_offset_desc *desc, double voxel_mm,
+                      cw_mesh *mesh, cw_error *err)
+{
+    sharpener s = {.from = from, .mesh = mesh, .offset = desc->offset_mm, .voxel = voxel_mm};
+    bool is_clear = false;
+    for (int a = 0; a < 3; a++)
+        s.shift[a] = from->origin[a] - mesh->origin[a];
+    cw_status st = CW_OK;
+    if (!make_room(&s))
+        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the edges of %zu triangles",
+                     mesh->triangle_count);
+    if (st == CW_OK)
+        st = find_cuts(&s, desc, err);
+    if (st == CW_OK)
+        st = make_clear(&s, desc, &is_clear, err);
+    if (is_clear)
+        hand_over(&s);
+    free_room(&s);
+    return st;
+}

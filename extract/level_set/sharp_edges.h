@@ -1,0 +1,23 @@
+/* Edges and corners that samples of a distance cannot tell. */
+#ifndef EXTRACT_LEVEL_SET_SHARP_EDGES_H
+#define EXTRACT_LEVEL_SET_SHARP_EDGES_H
+
+#include <cubewright/level_set.h>
+
+/* Gives a surface at a distance from a mesh the edges and corners back that a level set's
+ * voxels have cut off: sides of triangles across an edge get a vertex on it, triangles across a
+ * corner one in it, and vertices beside these, which are off the surface, are put on it. What
+ * would fold, flatten or cross is left as it is.
+ *
+ * mesh      at desc->offset_mm from `from`, closed, oriented, free of crossings; it has
+ *           positions, triangles and normals alone. Vertices and triangles are added
+ * voxel_mm  of the level set
+ * Returns   CW_ERR_NO_MEMORY, CW_ERR_CANCELLED, as cw_self_intersections(): the mesh is then
+ *           as it was
+ * Threads   the same to the bit for any number
+ * Source    after [Kobbelt2001] and [Attene2005]; planes are the offset mesh's, not of samples
+ */
+cw_status cwi_sharpen(const cw_mesh *from, const cw_offset_desc *desc, double voxel_mm,
+                      cw_mesh *mesh, cw_error *err);
+
+#endif

@@ -1,0 +1,174 @@
+#include "extract/level_set/winding_rows.h"
+
+#include "core/base/memory.h"
+#include "core/base/status.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Across the rows, vertices are moved to the corners of a grid so fine that nothing is seen of
+ * it, and so coarse that whole numbers decide exactly which triangles a row meets. Then no row
+ * slips through between two of them, and the mesh is left as often as it is entered. */
+enum { FINE = 1 << 14 };
+
+typedef struct corner {
+    double x;
+    int64_t y, z;
+} corner;
+
+typedef struct mapping {
+    const cw_mesh *mesh;
+    const double *first;
+    double voxel_mm;
+} mapping;
+
+static corner corner_of(const mapping *m, uint32_t vertex)
+{
+    const float *p = m->mesh->positions + 3 * (size_t)vertex;
+    double at[3];
+    for (int a = 0; a < 3; a++)
+        at[a] = ((double)p[a] - m->first[a]) / m->voxel_mm;
+    return (corner){at[0], llrint(at[1] * FINE), llrint(at[2] * FINE)};
+}
+
+/* Twice the area of a, b and the row, seen along it: positive when they run counter-clockwise.
+ */
+static int64_t area(const corner *a, const corner *b, int64_t y, int64_t z)
+{
+    return (b->y - a->y) * (z - a->z) - (b->z - a->z) * (y - a->y);
+}
+
+/* Whether the row is to the left of the edge. One that meets it passes by as if it stood at
+ * (y + e, z + e * e), for an e that is smaller than any number. */
+static bool is_left(int64_t twice_area, const corner *a, const corner *b)
+{
+    if (twice_area != 0)
+        return twice_area > 0;
+    return a->z != b->z ? a->z > b->z : b->y > a->y;
+}
+
+static int64_t ceil_div(int64_t a)
+{
+    return a > 0 ? (a + FINE - 1) / FINE : a / FINE;
+}
+
+static int64_t least(int64_t a, int64_t b, int64_t c)
+{
+    const int64_t low = a < b ? a : b;
+    return low < c ? low : c;
+}
+
+/* Rows that a triangle crosses: they are counted, or kept where there is a place for them. */
+static void cross_rows(cwi_winding *w, const corner c[3], int turn, bool keep)
+{
+    const int64_t low_y = ceil_div(least(c[0].y, c[1].y, c[2].y)),
+                  low_z = ceil_div(least(c[0].z, c[1].z, c[2].z)),
+                  high_y = -ceil_div(least(-c[0].y, -c[1].y, -c[2].y)),
+                  high_z = -ceil_div(least(-c[0].z, -c[1].z, -c[2].z));
+    for (int64_t k = low_z; k <= high_z; k++)
+        for (int64_t j = low_y; j <= high_y; j++) {
+            int64_t side[3];
+            bool in = true;
+            for (int n = 0; n < 3 && in; n++) {
+                const corner *from = &c[(n + 1) % 3], *to = &c[(n + 2) % 3];
+                side[n] = area(from, to, j * FINE, k * FINE);
+                in = is_left(side[n], from, to);
+            }
+            if (!in)
+                continue;
+            size_t *place = &w->first[(size_t)k * w->rows_y + (size_t)j];
+            if (keep) {
+                const double all = (double)side[0] + (double)side[1] + (double)side[2];
+                w->cross[*place].x = ((double)side[0] * c[0].x + (double)side[1] * c[1].x +
+                                      (double)side[2] * c[2].x) /
+                                     all;
+                w->cross[*place].turn = turn;
+            }
+            ++*place;
+        }
+}
+
+/* Goes through all triangles: those that run counter-clockwise, seen from high x, are left
+ * through. */
+static void each_triangle(cwi_winding *w, const mapping *m, bool keep)
+{
+    for (size_t t = 0; t < m->mesh->triangle_count; t++) {
+        corner c[3];
+        for (int n = 0; n < 3; n++)
+            c[n] = corner_of(m, m->mesh->triangles[3 * t + (size_t)n]);
+        const int64_t twice = area(&c[0], &c[1], c[2].y, c[2].z);
+        if (twice < 0) {
+            const corner swap = c[1];
+            c[1] = c[2];
+            c[2] = swap;
+        }
+        if (twice != 0)
+            cross_rows(w, c, twice > 0 ? -1 : 1, keep);
+    }
+}
+
+/* Counts become first numbers; the last is that of all. */
+static size_t sum_rows(cwi_winding *w, size_t rows)
+{
+    size_t sum = 0;
+    for (size_t n = 0; n <= rows; n++) {
+        const size_t count = n < rows ? w->first[n] : 0;
+        w->first[n] = sum;
+        sum += count;
+    }
+    return sum;
+}
+
+static int compare(const void *a, const void *b)
+{
+    const double x = ((const cwi_crossing *)a)->x, y = ((const cwi_crossing *)b)->x;
+    return (x > y) - (x < y);
+}
+
+cw_status cwi_winding_init(cwi_winding *w, const cw_mesh *mesh, const double first[3],
+                           double voxel_mm, const size_t dim[3], cw_error *err)
+{
+    const mapping m = {mesh, first, voxel_mm};
+    const size_t rows = dim[1] * dim[2];
+    *w = (cwi_winding){.rows_y = dim[1], .rows_z = dim[2]};
+    w->first = cwi_alloc_zeroed(rows + 1, sizeof *w->first);
+    if (!w->first)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu rows", rows);
+    each_triangle(w, &m, false);
+    const size_t all = sum_rows(w, rows);
+    w->cross = cwi_alloc_array(all, sizeof *w->cross);
+    if (!w->cross)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu crossings", all);
+    each_triangle(w, &m, true);
+    memmove(w->first + 1, w->first, rows * sizeof *w->first); /* each is where the next began */
+    w->first[0] = 0;
+    for (size_t n = 0; n < rows; n++)
+        if (w->first[n + 1] - w->first[n] > 1)
+            qsort(w->cross + w->first[n], w->first[n + 1] - w->first[n], sizeof *w->cross,
+                  compare);
+    return CW_OK;
+}
+
+void cwi_winding_free(cwi_winding *w)
+{
+    cwi_free(w->first);
+    cwi_free(w->cross);
+    *w = (cwi_winding){0};
+}
+
+void cwi_winding_row(const cwi_winding *w, size_t i, size_t j, size_t k, size_t count,
+                     bool *inside)
+{
+    memset(inside, 0, count * sizeof *inside);
+    if (j >= w->rows_y || k >= w->rows_z)
+        return;
+    const cwi_crossing *c = w->cross + w->first[k * w->rows_y + j],
+                       *end = w->cross + w->first[k * w->rows_y + j + 1];
+    int around = 0;
+    for (size_t n = 0; n < count; n++) {
+        for (; c < end && c->x < (double)(i + n); c++)
+            around += c->turn;
+        inside[n] = around > 0;
+    }
+}

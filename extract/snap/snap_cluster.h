@@ -1,0 +1,106 @@
+/* What the files that snap share: a mesh while it is snapped, and one sample's cluster. */
+#ifndef EXTRACT_SNAP_SNAP_CLUSTER_H
+#define EXTRACT_SNAP_SNAP_CLUSTER_H
+
+#include "extract/dense/bit_planes.h"
+#include "extract/cases/cell_topology.h"
+
+#include <cubewright/mesh.h>
+
+enum {
+    CWI_MEMBERS = 6, /* edges at a sample */
+    CWI_STAR = 8 * CWI_CELL_MAX_TRIANGLES,
+    CWI_NEAR = 64 * CWI_CELL_MAX_TRIANGLES,
+    CWI_RIM = 64, /* bits in a word; a dozen is usual */
+};
+
+/* What the mesh does not tell of a vertex. */
+typedef struct cwi_place {
+    double x[3];   /* its position as stored, in padded index */
+    uint64_t near; /* 1 + the sample it is close to; 0: none */
+} cwi_place;
+
+/* Of 64 cells in a row, those that have triangles, and how many cells before them do. */
+typedef struct cwi_cell_word {
+    uint64_t has;
+    uint32_t before;
+} cwi_cell_word;
+
+typedef struct cwi_snapping {
+    const cwi_grid *grid;
+    const cwi_row *rows;
+    cw_mesh *mesh;
+    double share;
+    double inverse[3][3], centre[3]; /* positions to padded index */
+    double edge;                     /* of voxels that are cubes; else 0 */
+    double shrink;        /* along any line, a voxel's length is no less in the world */
+    cwi_place *places;    /* of vertices */
+    uint32_t *into;       /* vertex: what it became */
+    float *before;        /* positions */
+    cwi_cell_word *cells; /* rows x words */
+    uint32_t *ends; /* from a row's first triangle on: where its cells' triangles end, counted
+                       from there, cell by cell that has any */
+} cwi_snapping;
+
+/* Crossings close to a sample, and the triangles around them. */
+typedef struct cwi_cluster {
+    size_t at[3]; /* padded sample */
+    uint64_t sample;
+    int count, star_count, rim_count;
+    uint32_t member[CWI_MEMBERS];
+    size_t star[CWI_STAR]; /* its triangles, in order */
+    uint32_t rim[CWI_RIM]; /* vertices around the star, in order */
+    size_t owner[CWI_RIM]; /* the star's triangle at the rim's side from here to the next */
+} cwi_cluster;
+
+/* The vertex after the n-th of the rim. */
+static inline int cwi_rim_next(const cwi_cluster *c, int n)
+{
+    return n + 1 < c->rim_count ? n + 1 : 0;
+}
+
+uint64_t cwi_sample_number(const cwi_grid *grid, size_t i, size_t j, size_t k);
+void cwi_sample_place(const cwi_grid *grid, uint64_t sample, size_t at[3]);
+
+/* Positions in the mesh to padded index, and back. */
+void cwi_to_index(const cwi_snapping *s, const float position[3], double x[3]);
+void cwi_to_position(const cwi_snapping *s, const double x[3], float position[3]);
+
+static inline const float *cwi_position(const cwi_snapping *s, uint32_t v)
+{
+    return s->mesh->positions + 3 * (size_t)v;
+}
+
+/* A triangle that was between vertices that became one. */
+static inline bool cwi_is_gone(const uint32_t *t)
+{
+    return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
+}
+
+/* Where a vertex is, in padded index. */
+static inline const double *cwi_index(const cwi_snapping *s, uint32_t v)
+{
+    return s->places[v].x;
+}
+
+/* The triangles of the cells up to `reach` (1 or 2) from a sample: CWI_STAR or CWI_NEAR at
+ * most. */
+int cwi_find_triangles(const cwi_snapping *s, const size_t at[3], size_t reach, size_t *out);
+
+bool cwi_is_member(const cwi_cluster *c, uint32_t v);
+
+/* The vertices close to v's sample that sides of triangles join to it; if there are any beside
+ * v, their star. */
+void cwi_cluster_find(const cwi_snapping *s, uint32_t v, cwi_cluster *c);
+
+/* Finds the rim; false unless the star is a disc with all members inside. */
+bool cwi_cluster_is_disc(const cwi_snapping *s, cwi_cluster *c);
+
+/* Finds where all members may go: padded index, and the position that is to be stored. */
+bool cwi_cluster_place(const cwi_snapping *s, const cwi_cluster *c, double x[3],
+                       float position[3]);
+
+/* The cone from x over the rim crosses neither itself nor what is around the star. */
+bool cwi_cone_is_clear(const cwi_snapping *s, const cwi_cluster *c, const double x[3]);
+
+#endif

@@ -1,0 +1,243 @@
+/* Where a cluster goes, and whether the cone over the rim of its star is good enough. */
+#include "core/geometry/vec3.h"
+#include "extract/dense/ambiguous_cells.h"
+#include "core/geometry/triangle_separation.h"
+#include "extract/snap/snap_cluster.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A vertex stays as close to its sample as crossings are that it is made of, and keeps off the
+ * middle between two samples: voxels. */
+#define FARTHEST 0.49
+#define ROUNDING 1e-4
+
+/* A vertex that is merged is left at most so far from the surface: voxels, times the share. */
+#define MOST_ERROR 0.25
+
+/* ---- where a cluster goes --------------------------------------------------------------- */
+
+/* The trilinear field and its gradient; NaN where it has none. */
+static double field(const cwi_grid *g, const double x[3], double gradient[3])
+{
+    size_t at[3];
+    double t[3], corner[8], value = 0;
+    for (int a = 0; a < 3; a++) {
+        at[a] = (size_t)x[a];
+        t[a] = x[a] - (double)at[a];
+        gradient[a] = 0;
+    }
+    cwi_corner_values(g, at, corner);
+    for (size_t c = 0; c < 8; c++) {
+        const double f = corner[c];
+        double weight[3];
+        for (int a = 0; a < 3; a++)
+            weight[a] = c >> a & 1 ? t[a] : 1 - t[a];
+        value += f * weight[0] * weight[1] * weight[2];
+        for (int a = 0; a < 3; a++)
+            gradient[a] += (c >> a & 1 ? f : -f) * weight[(a + 1) % 3] * weight[(a + 2) % 3];
+    }
+    return value;
+}
+
+/* One step of Newton's along the gradient, the locked axes kept, towards a value. */
+static bool approach(const cwi_grid *g, double target, const bool locked[3], double x[3])
+{
+    double gradient[3], largest = 0, square = 0;
+    const double miss = field(g, x, gradient) - target;
+    for (int a = 0; a < 3; a++) {
+        gradient[a] = locked[a] ? 0 : gradient[a];
+        largest = fmax(largest, fabs(gradient[a]));
+    }
+    for (int a = 0; a < 3; a++) {
+        gradient[a] /= largest;
+        square += gradient[a] * gradient[a];
+    }
+    for (int a = 0; a < 3; a++)
+        x[a] -= miss / largest / square * gradient[a];
+    return isfinite(x[0]) && isfinite(x[1]) && isfinite(x[2]);
+}
+
+/* The middle of some vertices, and the mean of the field there. */
+static double find_middle(const cwi_snapping *s, const uint32_t *vertex, int count,
+                          double middle[3])
+{
+    double value = 0, unused[3];
+    middle[0] = middle[1] = middle[2] = 0;
+    for (int n = 0; n < count; n++) {
+        const double *x = cwi_index(s, vertex[n]);
+        value += field(s->grid, x, unused) / count;
+        for (int a = 0; a < 3; a++)
+            middle[a] += x[a] / count;
+    }
+    return value;
+}
+
+/* From the middle to where the field is what it was at the vertices (the isovalue, where these
+ * were placed by the trilinear field); not far. */
+static bool find_place(const cwi_snapping *s, double target, const double middle[3],
+                       const bool locked[3], double place[3])
+{
+    memcpy(place, middle, 3 * sizeof *place);
+    for (int step = 0; step < 3; step++) {
+        if (!approach(s->grid, target, locked, place))
+            return false;
+        for (int a = 0; a < 3; a++)
+            if (fabs(place[a] - middle[a]) > 0.5 * s->share)
+                return false;
+    }
+    return true;
+}
+
+/* Where the volume ends the surface has a crease. Caps are flat: their vertices have no say
+ * where there are others in the same plane, and they alone where there are none. */
+static int find_voters(const cwi_snapping *s, const cwi_cluster *c, uint32_t *vertex,
+                       bool locked[3])
+{
+    const size_t *dim = s->grid->volume.dim;
+    int count = 0;
+    locked[0] = locked[1] = locked[2] = false;
+    for (int m = 0; m < c->count; m++)
+        for (int a = 0; a < 3; a++) {
+            const double x = cwi_index(s, c->member[m])[a];
+            locked[a] = locked[a] || x < 1 || x > (double)dim[a];
+        }
+    for (int pass = 0; pass < 2 && count == 0; pass++)
+        for (int m = 0; m < c->count; m++) {
+            const double *x = cwi_index(s, c->member[m]);
+            bool chosen = true;
+            for (int a = 0; a < 3; a++)
+                chosen = chosen && (!locked[a] || fabs(x[a] - (double)c->at[a]) <
+                                                      (pass ? 2.0 / 1024 : 0.5 / 1024));
+            if (chosen)
+                vertex[count++] = c->member[m];
+        }
+    return count;
+}
+
+/* ---- whether it may go there ------------------------------------------------------------ */
+
+typedef struct shape {
+    double normal[3]; /* times twice the area */
+    double sharpness; /* square of the cotangent of the smallest angle */
+} shape;
+
+/* An angle's cotangent is the dot product of its sides over twice the area. */
+static shape shape_of(const float *p, const float *q, const float *r)
+{
+    double u[3], v[3], w[3];
+    shape out;
+    for (int a = 0; a < 3; a++) {
+        u[a] = (double)q[a] - (double)p[a];
+        v[a] = (double)r[a] - (double)q[a];
+        w[a] = (double)p[a] - (double)r[a];
+    }
+    for (int a = 0; a < 3; a++)
+        out.normal[a] = u[(a + 1) % 3] * v[(a + 2) % 3] - u[(a + 2) % 3] * v[(a + 1) % 3];
+    const double x = -cwi_dot(u, v), y = -cwi_dot(v, w), z = -cwi_dot(w, u), xy = x > y ? x : y;
+    const double largest = xy > z ? xy : z;
+    out.sharpness = largest * largest / cwi_dot(out.normal, out.normal);
+    return out;
+}
+
+static shape shape_at(const cwi_snapping *s, size_t triangle)
+{
+    const uint32_t *t = s->mesh->triangles + 3 * triangle;
+    return shape_of(cwi_position(s, t[0]), cwi_position(s, t[1]), cwi_position(s, t[2]));
+}
+
+/* What a cluster's triangles look like before it goes anywhere. */
+typedef struct looks {
+    double normal[CWI_RIM][3]; /* of the owners */
+    double worst;              /* sharpness */
+} looks;
+
+static void look_at(const cwi_snapping *s, const cwi_cluster *c, looks *before)
+{
+    before->worst = 0;
+    for (int n = 0; n < c->star_count; n++) {
+        const shape is = shape_at(s, c->star[n]);
+        before->worst = fmax(before->worst, is.sharpness);
+        for (int m = 0; m < c->rim_count; m++)
+            if (c->owner[m] == c->star[n])
+                memcpy(before->normal[m], is.normal, sizeof is.normal);
+    }
+}
+
+/* In the world, where angles matter: none is turned over, none has a smaller angle than all had
+ * before. */
+static bool looks_good(const cwi_snapping *s, const cwi_cluster *c, const looks *before,
+                       const float p[3])
+{
+    for (int n = 0; n < c->rim_count; n++) {
+        const shape is = shape_of(p, cwi_position(s, c->rim[n]),
+                                  cwi_position(s, c->rim[cwi_rim_next(c, n)]));
+        if (!(cwi_dot(before->normal[n], is.normal) > 0) || !(is.sharpness <= before->worst))
+            return false;
+    }
+    return true;
+}
+
+/* Square of the distance from a point to the nearest point of the new triangles; or to one that
+ * is near enough. */
+static double square_from(const cwi_snapping *s, const cwi_cluster *c, const double x[3],
+                          const double from[3], double enough)
+{
+    cwi_triangle t;
+    double nearest[3];
+    for (int a = 0; a < 3; a++)
+        nearest[a] = t.p[0][a] = x[a] - from[a];
+    for (int n = 0; n < c->rim_count && cwi_dot(nearest, nearest) > enough; n++) {
+        const double *q = cwi_index(s, c->rim[n]),
+                     *r = cwi_index(s, c->rim[cwi_rim_next(c, n)]);
+        for (int a = 0; a < 3; a++) {
+            t.p[1][a] = q[a] - from[a];
+            t.p[2][a] = r[a] - from[a];
+        }
+        cwi_nearest_of_triangle(&t, nearest);
+    }
+    return cwi_dot(nearest, nearest);
+}
+
+/* No member is left far from the new triangles. */
+static bool is_faithful(const cwi_snapping *s, const cwi_cluster *c, const double x[3])
+{
+    const double most = MOST_ERROR * s->share;
+    for (int m = 0; m < c->count; m++)
+        if (square_from(s, c, x, cwi_index(s, c->member[m]), most * most) > most * most)
+            return false;
+    return true;
+}
+
+static bool may_go(const cwi_snapping *s, const cwi_cluster *c, const looks *before,
+                   const double place[3], double x[3], float p[3])
+{
+    const double most = fmin(s->share + ROUNDING, FARTHEST);
+    double from[3];
+    cwi_to_position(s, place, p);
+    cwi_to_index(s, p, x);
+    for (int a = 0; a < 3; a++)
+        from[a] = x[a] - (double)c->at[a];
+    return cwi_dot(from, from) < most * most && looks_good(s, c, before, p) &&
+           is_faithful(s, c, x) && cwi_cone_is_clear(s, c, x);
+}
+
+bool cwi_cluster_place(const cwi_snapping *s, const cwi_cluster *c, double x[3],
+                       float position[3])
+{
+    uint32_t vertex[CWI_MEMBERS];
+    double middle[3], place[3];
+    bool locked[3];
+    looks before;
+    const int count = find_voters(s, c, vertex, locked);
+    if (count == 0)
+        return false;
+    const double target = find_middle(s, vertex, count, middle);
+    if (!find_place(s, target, middle, locked, place))
+        memcpy(place, middle, sizeof place);
+    look_at(s, c, &before);
+    bool fits = may_go(s, c, &before, place, x, position);
+    for (int n = 0; n < count && !fits; n++)
+        fits = may_go(s, c, &before, cwi_index(s, vertex[n]), x, position);
+    return fits;
+}

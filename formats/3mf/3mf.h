@@ -1,0 +1,89 @@
+/* A 3MF package on its way to a mesh: what its models say, and where their objects stand. */
+#ifndef FORMATS_3MF_3MF_H
+#define FORMATS_3MF_3MF_H
+
+#include "formats/mesh/mesh_reader.h"
+#include "formats/text/xml.h"
+#include "formats/bytes/zip_read.h"
+
+typedef enum cwi_3mf_type {
+    CWI_3MF_SHAPE,   /* model, surface: what is read */
+    CWI_3MF_SUPPORT, /* support, solidsupport */
+    CWI_3MF_OTHER
+} cwi_3mf_type;
+
+/* Points and triangles of one mesh, or components; a run of each among those of all. */
+typedef struct cwi_3mf_object {
+    size_t first_point, end_point, first_triangle, end_triangle;
+    size_t first_component, end_component;
+    size_t name; /* where it starts among the names */
+    cwi_3mf_type type;
+} cwi_3mf_object;
+
+/* An object of a model, placed: a component of another one, or an item of the build. */
+typedef struct cwi_3mf_component {
+    uint32_t model, id;
+    double place[12]; /* an affine */
+} cwi_3mf_component;
+
+/* A resource of a model: an object, or a group of colours. */
+typedef struct cwi_3mf_resource {
+    uint64_t key; /* of model and id; 0: none */
+    bool is_group;
+    size_t object;     /* ... which */
+    size_t first, end; /* among the colours */
+} cwi_3mf_resource;
+
+/* Few enough that even ids made to collide are found in no time. */
+enum { CWI_3MF_MODELS = 1024, CWI_3MF_RESOURCES = 1 << 16 };
+
+typedef struct cwi_3mf {
+    cwi_mesh_input *in;
+    cw_mesh *mesh;
+    cw_mesh_file *said;
+    cwi_unzip zip;
+
+    /* The models: the package's own, and those that its relationships name. */
+    char *models[CWI_3MF_MODELS];
+    bool is_wanted[CWI_3MF_MODELS];
+    size_t model_count;
+
+    /* What they hold. Triangles count points from the first of all. */
+    cwi_mesh_build build;
+    uint32_t *point_colors; /* which of the colours, or cwi_3mf_none; of the first so many */
+    size_t point_color_room, point_color_count;
+    bool mixed_colors; /* some point has two: then none are kept */
+    uint32_t *colors;  /* 0xRRGGBBAA */
+    size_t color_count, color_room;
+    cwi_3mf_object *objects;
+    size_t object_count, object_room;
+    cwi_3mf_component *components;
+    size_t component_count, component_room;
+    cwi_3mf_component *items;
+    size_t item_count, item_room;
+    bool has_build;
+    char *names; /* each ends with a zero */
+    size_t name_bytes, name_room;
+    cwi_3mf_resource *resources; /* a hash table */
+    size_t resource_count, slots;
+    uint64_t text_left; /* bytes of XML that may still be read */
+} cwi_3mf;
+
+extern const uint32_t cwi_3mf_none;
+
+/* Reads a model of the package, by its number, with all that is in it.
+ * Returns CW_ERR_FORMAT, CW_ERR_UNSAFE (a document type), CW_ERR_UNSUPPORTED (it needs an
+ * extension that is not read), CW_ERR_LIMIT, CW_ERR_NO_MEMORY */
+cw_status cwi_3mf_read_model(cwi_3mf *m, size_t model, cw_error *err);
+
+/* Puts the objects where the build wants them, into the mesh. Returns the same. */
+cw_status cwi_3mf_place(cwi_3mf *m, cw_error *err);
+
+/* Reads an entry of the package as XML. CW_ERR_LIMIT for more text than may be read. */
+cw_status cwi_3mf_read_xml(cwi_3mf *m, const char *path, const cwi_xml_rules *rules, void *user,
+                           cw_error *err);
+
+/* The resource of a model and id; NULL when there is none. */
+cwi_3mf_resource *cwi_3mf_find(const cwi_3mf *m, size_t model, uint32_t id);
+
+#endif

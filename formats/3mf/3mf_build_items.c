@@ -1,0 +1,310 @@
+/* Where the objects of a 3MF package stand. */
+#include "core/geometry/affine.h"
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "formats/3mf/3mf.h"
+
+#include <math.h>
+#include <string.h>
+
+/* How deep components may nest; how many placings may be made, and how many triangles and
+ * points may be drawn in any case. */
+enum { DEEPEST = 64, MOST_PLACINGS = 1 << 20, FREE_COUNT = 1 << 26 };
+
+/* A mesh of an object, in its place. */
+typedef struct instance {
+    size_t object;
+    double place[12];
+    bool starts_part; /* it is the first of a build item */
+    size_t name;
+} instance;
+
+typedef struct placing {
+    cwi_3mf *m;
+    instance *instances;
+    size_t count, room;
+    size_t visits;
+    uint64_t drawn, most; /* points and triangles */
+} placing;
+
+/* --- which objects stand where ----------------------------------------------------------- */
+
+static void multiply(const double *a, const double *b, double *out)
+{
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 4; c++)
+            out[4 * r + c] = a[4 * r] * b[c] + a[4 * r + 1] * b[4 + c] +
+                             a[4 * r + 2] * b[8 + c] + (c == 3 ? a[4 * r + 3] : 0);
+}
+
+static cw_status add_instance(placing *p, size_t index, const double *place, cw_error *err)
+{
+    const cwi_3mf_object *o = &p->m->objects[index];
+    p->drawn += o->end_point - o->first_point + o->end_triangle - o->first_triangle;
+    if (p->drawn > p->most)
+        return cw_fail(
+            err, CW_ERR_LIMIT,
+            "objects are placed so often that their points and triangles are more than "
+            "%llu; state a limit if that is meant (--max-triangles)",
+            (unsigned long long)p->most);
+    cw_status st = cwi_mesh_grow(p->m->in, &p->instances, &p->room, p->count + 1,
+                                 sizeof *p->instances, err);
+    if (st == CW_OK) {
+        instance *i = &p->instances[p->count++];
+        *i = (instance){.object = index};
+        memcpy(i->place, place, sizeof i->place);
+    }
+    return st;
+}
+
+/* Counts the triangles of an object that is left out, or of what it is made of. */
+static void count_left_out(const placing *p, cwi_3mf_type type, const cwi_3mf_object *o)
+{
+    cw_mesh_file *said = p->m->said;
+    const size_t triangles = o->end_triangle - o->first_triangle;
+    if (type == CWI_3MF_SUPPORT)
+        said->support_triangles += triangles;
+    if (type == CWI_3MF_OTHER)
+        said->other_triangles += triangles;
+}
+
+/* Components nest no deeper than DEEPEST, so this goes no deeper, either. An object that is
+ * left out leaves out what it is made of: `type` is that of the outermost such object. */
+static cw_status visit(placing *p, const cwi_3mf_component *c, const double *parent, int depth,
+                       cwi_3mf_type type, cw_error *err)
+{
+    double place[12];
+    const cwi_3mf_resource *r = cwi_3mf_find(p->m, c->model, c->id);
+    if (!r || r->is_group)
+        return cw_fail(err, CW_ERR_FORMAT, "'%s' places object %u, which is not there",
+                       p->m->models[c->model], c->id);
+    if (depth == DEEPEST)
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "components are nested deeper than %d, or hold themselves", DEEPEST);
+    if (p->visits++ == MOST_PLACINGS)
+        return cw_fail(err, CW_ERR_LIMIT, "objects are placed more than %d times",
+                       MOST_PLACINGS);
+    multiply(parent, c->place, place);
+    for (int i = 0; i < 12; i++)
+        if (!isfinite(place[i]))
+            return cw_fail(err, CW_ERR_FORMAT, "a transform is not finite");
+    const cwi_3mf_object *o = &p->m->objects[r->object];
+    cw_status st = CW_OK;
+    if (type == CWI_3MF_SHAPE) {
+        type = o->type;
+        p->m->said->supports += type == CWI_3MF_SUPPORT;
+        p->m->said->others += type == CWI_3MF_OTHER;
+    }
+    if (type != CWI_3MF_SHAPE)
+        count_left_out(p, type, o);
+    else if (o->end_triangle > o->first_triangle)
+        st = add_instance(p, r->object, place, err);
+    for (size_t i = o->first_component; i < o->end_component && st == CW_OK; i++)
+        st = visit(p, &p->m->components[i], place, depth + 1, type, err);
+    return st;
+}
+
+/* A file of nothing but what is left out would be an empty mesh without a word. */
+static cw_status check_left_out(const placing *p, cw_error *err)
+{
+    const cw_mesh_file *said = p->m->said;
+    if (p->count || !(said->supports + said->others))
+        return CW_OK;
+    return cw_fail(err, CW_ERR_FORMAT,
+                   "it builds only what is left out: %zu objects for support (%zu triangles) "
+                   "and %zu of type 'other' (%zu triangles)",
+                   said->supports, said->support_triangles, said->others,
+                   said->other_triangles);
+}
+
+static cw_status find_instances(placing *p, cw_error *err)
+{
+    static const double unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    cw_status st = CW_OK;
+    for (size_t i = 0; i < p->m->item_count && st == CW_OK; i++) {
+        const cwi_3mf_component *item = &p->m->items[i];
+        const size_t first = p->count;
+        st = visit(p, item, unit, 0, CWI_3MF_SHAPE, err);
+        if (st != CW_OK || p->count == first)
+            continue;
+        const cwi_3mf_resource *r = cwi_3mf_find(p->m, item->model, item->id);
+        p->instances[first].starts_part = true;
+        p->instances[first].name = p->m->objects[r->object].name;
+    }
+    return st;
+}
+
+/* --- placing ----------------------------------------------------------------------------- */
+
+/* Where all are moved alike and not turned, the move becomes the mesh's origin and their places
+ * keep their bits. */
+static bool take_origin(placing *p)
+{
+    double *origin = p->m->mesh->origin;
+    for (size_t i = 0; i < p->count; i++)
+        for (int k = 0; k < 12; k++) {
+            const double *place = p->instances[i].place;
+            if (k % 4 == 3 ? place[k] != p->instances[0].place[k] : place[k] != (k % 5 == 0))
+                return false;
+        }
+    for (int a = 0; a < 3 && p->count; a++)
+        origin[a] += p->instances[0].place[4 * a + 3];
+    return p->count > 0;
+}
+
+static bool is_mirrored(const instance *i)
+{
+    return cwi_affine_determinant(i->place) < 0;
+}
+
+/* Whether the objects that are read are those that are built, each once and in that order. */
+static bool is_in_order(const placing *p)
+{
+    size_t next = 0;
+    for (size_t o = 0; o < p->m->object_count; o++) {
+        const cwi_3mf_object *object = &p->m->objects[o];
+        if (object->end_point == object->first_point)
+            continue;
+        if (next == p->count || p->instances[next++].object != o)
+            return false;
+    }
+    return next == p->count;
+}
+
+static void swap_corners(uint32_t *triangle)
+{
+    const uint32_t second = triangle[1];
+    triangle[1] = triangle[2];
+    triangle[2] = second;
+}
+
+/* Moves the object's points where they are. */
+static void move_object(cwi_mesh_build *b, const cwi_3mf_object *o, const instance *i,
+                        bool origin_taken)
+{
+    for (size_t v = o->first_point; v < o->end_point && !origin_taken; v++) {
+        const double at[3] = {b->points[3 * v], b->points[3 * v + 1], b->points[3 * v + 2]};
+        cwi_affine_apply(i->place, at, b->points + 3 * v);
+    }
+    for (size_t t = o->first_triangle; t < o->end_triangle && is_mirrored(i); t++)
+        swap_corners(b->triangles + 3 * t);
+}
+
+/* Adds a copy of the object's points and triangles, and of the colours that points have. */
+static cw_status copy_object(cwi_3mf *m, cwi_mesh_build *to, uint32_t **colors,
+                             size_t *color_room, const cwi_3mf_object *o, cw_error *err)
+{
+    const size_t first = to->point_count, count = o->end_point - o->first_point;
+    const size_t triangles = o->end_triangle - o->first_triangle;
+    cw_status st = cwi_build_reserve(to, (uint64_t)first + count,
+                                     (uint64_t)to->triangle_count + triangles, err);
+    if (st == CW_OK && m->point_colors)
+        st = cwi_mesh_grow(m->in, colors, color_room, first + count, sizeof **colors, err);
+    if (st != CW_OK)
+        return st;
+    memcpy(to->points + 3 * first, m->build.points + 3 * o->first_point,
+           3 * count * sizeof *to->points);
+    for (size_t v = 0; v < count && m->point_colors; v++) {
+        const size_t from = o->first_point + v;
+        (*colors)[first + v] =
+            from < m->point_color_count ? m->point_colors[from] : cwi_3mf_none;
+    }
+    for (size_t i = 0; i < 3 * triangles; i++)
+        to->triangles[3 * to->triangle_count + i] =
+            m->build.triangles[3 * o->first_triangle + i] - (uint32_t)o->first_point +
+            (uint32_t)first;
+    to->point_count += count;
+    to->triangle_count += triangles;
+    return CW_OK;
+}
+
+/* Makes the build consist of the instances in their order, each with points of its own. */
+static cw_status copy_objects(placing *p, cw_error *err)
+{
+    cwi_3mf *m = p->m;
+    cwi_mesh_build to = {.in = m->in};
+    uint32_t *colors = NULL;
+    size_t color_room = 0;
+    cw_status st = CW_OK;
+    for (size_t i = 0; i < p->count && st == CW_OK; i++) {
+        const cwi_3mf_object *o = &m->objects[p->instances[i].object];
+        st = copy_object(m, &to, &colors, &color_room, o, err);
+    }
+    if (st != CW_OK) {
+        cwi_build_free(&to);
+        cwi_free(colors);
+        return st;
+    }
+    cwi_build_free(&m->build);
+    cwi_free(m->point_colors);
+    m->build = to;
+    m->point_colors = colors;
+    m->point_color_count = colors ? to.point_count : 0;
+    return CW_OK;
+}
+
+/* Moves the points of every instance, which stand in their order, and marks the parts. */
+static cw_status move_instances(placing *p, cw_error *err)
+{
+    cwi_3mf *m = p->m;
+    const bool origin_taken = take_origin(p);
+    size_t point = 0, triangle = 0;
+    cw_status st = CW_OK;
+    for (size_t i = 0; i < p->count && st == CW_OK; i++) {
+        const instance *at = &p->instances[i];
+        const cwi_3mf_object *o = &m->objects[at->object];
+        const cwi_3mf_object here = {.first_point = point,
+                                     .end_point = point + o->end_point - o->first_point,
+                                     .first_triangle = triangle,
+                                     .end_triangle =
+                                         triangle + o->end_triangle - o->first_triangle};
+        if (at->starts_part)
+            st = cwi_mesh_begin_part(m->in, m->names + at->name, triangle, err);
+        move_object(&m->build, &here, at, origin_taken);
+        point = here.end_point;
+        triangle = here.end_triangle;
+    }
+    return st;
+}
+
+/* Colours of points that none is given are white, as they are when drawn. */
+static cw_status color_points(cwi_3mf *m, size_t count, cw_error *err)
+{
+    size_t room = 0;
+    if (!m->point_colors || m->mixed_colors)
+        return CW_OK;
+    cw_status st = cwi_mesh_grow(m->in, &m->mesh->colors, &room, count, 4, err);
+    for (size_t v = 0; v < count && st == CW_OK; v++) {
+        const uint32_t index = v < m->point_color_count ? m->point_colors[v] : cwi_3mf_none;
+        const uint32_t color = index == cwi_3mf_none ? UINT32_MAX : m->colors[index];
+        for (int c = 0; c < 4; c++)
+            m->mesh->colors[4 * v + (size_t)c] = (uint8_t)(color >> (24 - 8 * c));
+    }
+    return st;
+}
+
+static cw_status build_mesh(placing *p, cw_error *err)
+{
+    cwi_3mf *m = p->m;
+    cw_status st = is_in_order(p) ? CW_OK : copy_objects(p, err);
+    if (st == CW_OK)
+        st = move_instances(p, err);
+    if (st == CW_OK)
+        st = color_points(m, m->build.point_count, err);
+    return st == CW_OK ? cwi_build_finish(&m->build, m->mesh, err) : st;
+}
+
+cw_status cwi_3mf_place(cwi_3mf *m, cw_error *err)
+{
+    const bool stated = m->in->desc.max_triangles < UINT32_MAX;
+    placing p = {.m = m, .most = stated ? UINT64_MAX : FREE_COUNT + m->in->file.size};
+    cw_status st = m->has_build
+                       ? find_instances(&p, err)
+                       : cw_fail(err, CW_ERR_FORMAT, "'%s' has no 'build'", m->models[0]);
+    if (st == CW_OK)
+        st = check_left_out(&p, err);
+    if (st == CW_OK)
+        st = build_mesh(&p, err);
+    cwi_free(p.instances);
+    return st;
+}

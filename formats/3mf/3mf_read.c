@@ -1,0 +1,164 @@
+/* 3MF: the package. Its relationships name the model, and that one's the models it takes parts
+ * of; nothing else in the archive is looked at. */
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "formats/3mf/3mf.h"
+
+#include <stdio.h>
+#include <string.h>
+
+/* Text may be so many times as large as the archive, beyond what is free: the XML of real
+ * models packs to a tenth. */
+enum { FREE_TEXT = 64 << 20, MOST_RATIO = 100 };
+
+bool cwi_3mf_sniff(const unsigned char *head, size_t size, uint64_t file_size)
+{
+    (void)file_size;
+    return size >= 4 && memcmp(head, "PK\3\4", 4) == 0;
+}
+
+/* --- entries as XML ---------------------------------------------------------------------- */
+
+static cw_status take_text(cwi_3mf *m, const cwi_unzip_entry *entry, cw_error *err)
+{
+    if (entry->size > m->text_left)
+        return cw_fail(
+            err, CW_ERR_LIMIT,
+            "'%s' has %llu bytes of text in an archive of %llu; state a limit if that "
+            "is meant (--max-triangles)",
+            entry->name, (unsigned long long)entry->size, (unsigned long long)m->in->file.size);
+    m->text_left -= entry->size;
+    return CW_OK;
+}
+
+/* An entry on its way into the parser, with progress. */
+typedef struct reading {
+    cwi_unzip_stream stream;
+    const cw_progress *progress;
+} reading;
+
+static cw_status read_some(void *from, void *to, size_t size, size_t *got, cw_error *err)
+{
+    reading *r = from;
+    const cwi_unzip_entry *entry = &r->stream.entry;
+    const double done = entry->size ? (double)r->stream.given / (double)entry->size : 0;
+    cw_status st = cwi_progress(r->progress, "reading", done, err);
+    return st == CW_OK ? cwi_unzip_some(&r->stream, to, size, got, err) : st;
+}
+
+cw_status cwi_3mf_read_xml(cwi_3mf *m, const char *path, const cwi_xml_rules *rules, void *user,
+                           cw_error *err)
+{
+    reading r = {.progress = &m->in->desc.progress};
+    cwi_unzip_entry entry;
+    cw_status st = cwi_unzip_find(&m->zip, path, &entry, err);
+    if (st == CW_OK)
+        st = take_text(m, &entry, err);
+    if (st == CW_OK)
+        st = cwi_unzip_start(&r.stream, &m->zip, &entry, err);
+    if (st == CW_OK)
+        st = cwi_xml_read(rules, user, read_some, &r, err);
+    cwi_unzip_end(&r.stream);
+    return st;
+}
+
+/* --- relationships ----------------------------------------------------------------------- */
+
+static cw_status start_relationship(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
+{
+    static const char model[] = "/3dmodel";
+    cwi_3mf *m = user;
+    const char *type = cwi_attribute(a, "Type"), *target = cwi_attribute(a, "Target");
+    const char *mode = cwi_attribute(a, "TargetMode");
+    const size_t length = type ? strlen(type) : 0;
+    (void)x;
+    if (length < strlen(model) || strcmp(type + length - strlen(model), model) != 0 || !target)
+        return CW_OK;
+    if (mode && strcmp(mode, "External") == 0)
+        return cw_fail(err, CW_ERR_UNSAFE, "its model '%.80s' is outside the package", target);
+    if (m->model_count == CWI_3MF_MODELS)
+        return cw_fail(err, CW_ERR_LIMIT, "the package names more than %d models",
+                       CWI_3MF_MODELS);
+    m->models[m->model_count] = cwi_strdup(target + (*target == '/'));
+    if (!m->models[m->model_count])
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the names of models");
+    m->model_count++;
+    return CW_OK;
+}
+
+enum { E_RELATIONSHIPS, E_RELATIONSHIP, ELEMENT_COUNT, MOST_RELATIONSHIPS = 10000 };
+
+static const cwi_xml_element elements[ELEMENT_COUNT] = {
+    [E_RELATIONSHIPS] = {"Relationships", CWI_XML_ROOT, NULL, NULL},
+    [E_RELATIONSHIP] = {"Relationship", E_RELATIONSHIPS, start_relationship, NULL},
+};
+
+static const cwi_xml_rules rules = {
+    .elements = elements, .element_count = ELEMENT_COUNT, .most_elements = MOST_RELATIONSHIPS};
+
+/* Adds the models that the relationships of a part name: "3D/_rels/3dmodel.model.rels" for
+ * "3D/3dmodel.model". */
+static cw_status add_related(cwi_3mf *m, const char *part, cw_error *err)
+{
+    char path[512];
+    const char *slash = strrchr(part, '/'), *name = slash ? slash + 1 : part;
+    snprintf(path, sizeof path, "%.*s_rels/%s.rels", (int)(name - part), part, name);
+    return cwi_unzip_has(&m->zip, path) ? cwi_3mf_read_xml(m, path, &rules, m, err) : CW_OK;
+}
+
+/* --- the package ------------------------------------------------------------------------- */
+
+static cw_status read_models(cwi_3mf *m, cw_error *err)
+{
+    cw_status st = cwi_3mf_read_xml(m, "_rels/.rels", &rules, m, err);
+    if (st == CW_OK && m->model_count == 0)
+        return cw_fail(err, CW_ERR_FORMAT, "the package has no model");
+    if (st == CW_OK && m->model_count > 1)
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "the package names %zu models to build, '%.80s' and '%.80s'; one was "
+                       "expected",
+                       m->model_count, m->models[0], m->models[1]);
+    if (st == CW_OK)
+        st = add_related(m, m->models[0], err);
+    if (st == CW_OK)
+        st = cwi_3mf_read_model(m, 0, err);
+    for (size_t i = 1; i < m->model_count && st == CW_OK; i++)
+        if (m->is_wanted[i])
+            st = cwi_3mf_read_model(m, i, err);
+    return st;
+}
+
+static void free_package(cwi_3mf *m)
+{
+    for (size_t i = 0; i < m->model_count; i++)
+        cwi_free(m->models[i]);
+    cwi_build_free(&m->build);
+    cwi_free(m->point_colors);
+    cwi_free(m->colors);
+    cwi_free(m->objects);
+    cwi_free(m->components);
+    cwi_free(m->items);
+    cwi_free(m->names);
+    cwi_free(m->resources);
+    cwi_unzip_close(&m->zip);
+    cwi_free(m);
+}
+
+cw_status cwi_3mf_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw_error *err)
+{
+    const bool stated = in->desc.max_triangles < UINT32_MAX;
+    cwi_3mf *m = cwi_alloc_zeroed(1, sizeof *m);
+    if (!m)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a package");
+    m->in = m->build.in = in;
+    m->mesh = mesh;
+    m->said = said;
+    m->text_left = stated ? UINT64_MAX : FREE_TEXT + MOST_RATIO * in->file.size;
+    cw_status st = cwi_unzip_open(&m->zip, &in->file, err);
+    if (st == CW_OK)
+        st = read_models(m, err);
+    if (st == CW_OK)
+        st = cwi_3mf_place(m, err);
+    free_package(m);
+    return st;
+}

@@ -1,0 +1,30 @@
+/* Data in blocks that are each compressed by zlib, behind a table of their sizes: as VTK's XML
+ * files hold them, and as block_reader.h reads them. Words are of 64 bits, little end first. */
+#ifndef FORMATS_BYTES_BLOCK_WRITER_H
+#define FORMATS_BYTES_BLOCK_WRITER_H
+
+#include "formats/bytes/deflate_file.h"
+
+/* A zeroed one is closed. */
+typedef struct cwi_block_sink {
+    cwi_outfile *file; /* borrowed */
+    z_stream z;
+    bool deflates;
+    unsigned char *block, *packed; /* one as it is, and compressed */
+    size_t packed_room, held;      /* bytes of the block so far */
+    unsigned char *table;          /* of the array under way */
+    size_t table_bytes, count, next;
+    uint64_t table_at;
+} cwi_block_sink;
+
+cw_status cwi_block_sink_open(cwi_block_sink *b, cwi_outfile *file, cw_error *err);
+
+/* Starts an array of so many bytes (not 0): its table is filled in when it ends. */
+cw_status cwi_block_sink_begin(cwi_block_sink *b, uint64_t bytes, cw_error *err);
+
+/* Bytes of the array; b is a cwi_block_sink. */
+cw_status cwi_block_sink_put(void *b, const void *bytes, size_t size, cw_error *err);
+cw_status cwi_block_sink_end(cwi_block_sink *b, cw_error *err);
+void cwi_block_sink_close(cwi_block_sink *b);
+
+#endif

@@ -1,0 +1,235 @@
+#define _GNU_SOURCE /* O_PATH, fdopendir */
+#include "formats/bytes/file_pattern.h"
+
+#include "core/base/memory.h"
+#include "core/base/status.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <glob.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { DEEPEST = 16 };
+
+static bool is_digit(char c)
+{
+    return c >= '0' && c <= '9';
+}
+
+/* Numbers of any length: the longer one is larger once leading zeros are gone. */
+static int compare_numbers(const char **a, const char **b)
+{
+    *a += strspn(*a, "0");
+    *b += strspn(*b, "0");
+    const size_t m = strspn(*a, "0123456789"), n = strspn(*b, "0123456789");
+    const int order = m != n ? (m < n ? -1 : 1) : strncmp(*a, *b, m);
+    *a += m;
+    *b += n;
+    return order;
+}
+
+int cwi_natural_order(const char *a, const char *b)
+{
+    const char *s = a, *t = b;
+    while (*s && *t) {
+        int order;
+        if (is_digit(*s) && is_digit(*t))
+            order = compare_numbers(&s, &t);
+        else
+            order = (unsigned char)*s++ - (unsigned char)*t++;
+        if (order)
+            return order;
+    }
+    return *s || *t ? (*s ? 1 : -1) : strcmp(a, b); /* 1 and 01 are no equals either */
+}
+
+static int compare_names(const void *a, const void *b)
+{
+    return cwi_natural_order(*(char *const *)a, *(char *const *)b);
+}
+
+void cwi_files_sort(cwi_names *names)
+{
+    if (names->count)
+        qsort(names->items, names->count, sizeof *names->items, compare_names);
+}
+
+bool cwi_files_is_pattern(const char *path)
+{
+    return strpbrk(path, "*?[") && access(path, F_OK) != 0;
+}
+
+bool cwi_is_folder(const char *path)
+{
+    struct stat info;
+    return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
+}
+
+/* --- numbers in names --------------------------------------------------------------------- */
+
+static const char DIGITS[] = "0123456789";
+
+enum { UNLIKE = -2, SAME = -1 };
+
+/* Which number, counted from 0, is all that two names differ by; SAME where they differ by
+ * leading zeros at most. */
+static int differing_number(const char *a, const char *b)
+{
+    int found = SAME, number = 0;
+    while (*a && *b) {
+        if (is_digit(*a) && is_digit(*b)) {
+            if (compare_numbers(&a, &b) != 0) {
+                if (found != SAME)
+                    return UNLIKE;
+                found = number;
+            }
+            number++;
+        } else if (*a++ != *b++) {
+            return UNLIKE;
+        }
+    }
+    return *a || *b ? UNLIKE : found;
+}
+
+static bool number_at(const char *name, int which, double *number)
+{
+    for (; *name; which--) {
+        name += strcspn(name, DIGITS);
+        const size_t length = strspn(name, DIGITS);
+        *number = 0;
+        for (size_t i = 0; i < length; i++)
+            *number = 10 * *number + (name[i] - '0');
+        if (which == 0)
+            return length > 0 && length <= 15;
+        name += length;
+    }
+    return false;
+}
+
+bool cwi_files_numbers(const cwi_names *names, double *numbers)
+{
+    int which = SAME;
+    for (size_t i = 1; i < names->count; i++) {
+        const int here = differing_number(names->items[0], names->items[i]);
+        if (here == UNLIKE || (which != SAME && here != SAME && here != which))
+            return false;
+        which = here == SAME ? which : here;
+    }
+    bool good = true;
+    for (size_t i = 0; good && i < names->count; i++)
+        good = number_at(names->items[i], which == SAME ? 0 : which, &numbers[i]);
+    return good;
+}
+
+/* --- a folder ---------------------------------------------------------------------------- */
+
+typedef struct listing {
+    const cwi_input *in;
+    bool deep;
+    cwi_names *names;
+    size_t links;
+} listing;
+
+static cw_status list(listing *l, const char *folder, int depth, cw_error *err);
+
+/* What stands under one name: left out, listed, or gone into. */
+static cw_status take_entry(listing *l, int folder, const char *prefix, const char *name,
+                            int depth, cw_error *err)
+{
+    char path[1024];
+    struct stat info;
+    const bool named = depth == 0 && cwi_input_is_named(l->in, name); /* the user's own words */
+    const int follow = l->in->allow_external || named ? 0 : AT_SYMLINK_NOFOLLOW;
+    if ((name[0] == '.' && !named) || fstatat(folder, name, &info, follow) != 0)
+        return CW_OK;
+    l->links += S_ISLNK(info.st_mode);
+    const int length = snprintf(path, sizeof path, "%s%s", prefix, name);
+    if (length >= (int)sizeof path - 1)
+        return cw_fail(err, CW_ERR_LIMIT, "a path in it is longer than %zu bytes",
+                       sizeof path - 2);
+    if (S_ISREG(info.st_mode))
+        return cwi_names_add(l->names, path, err);
+    if (!S_ISDIR(info.st_mode) || !l->deep)
+        return CW_OK;
+    path[length] = '/';
+    path[length + 1] = '\0';
+    return list(l, path, depth + 1, err);
+}
+
+/* prefix: empty, or a folder with its slash. */
+static cw_status list(listing *l, const char *prefix, int depth, cw_error *err)
+{
+    const int flags = O_RDONLY | O_DIRECTORY | O_CLOEXEC;
+    if (depth > DEEPEST)
+        return cw_fail(err, CW_ERR_LIMIT, "its folders are nested deeper than %d", DEEPEST);
+    const int fd = openat(l->in->folder, *prefix ? prefix : ".", flags);
+    DIR *folder = fd >= 0 ? fdopendir(fd) : NULL;
+    if (!folder) {
+        const char *why = strerrordesc_np(errno);
+        if (fd >= 0)
+            close(fd);
+        return cw_fail(err, CW_ERR_IO, "the folder '%s' cannot be listed: %s",
+                       *prefix ? prefix : ".", why ? why : "unknown error");
+    }
+    cw_status st = CW_OK;
+    for (const struct dirent *e; st == CW_OK && (e = readdir(folder));)
+        st = take_entry(l, fd, prefix, e->d_name, depth, err);
+    closedir(folder);
+    return st;
+}
+
+static cw_status list_all(listing *l, cw_error *err)
+{
+    cw_status st = list(l, "", 0, err);
+    cwi_files_sort(l->names);
+    return st;
+}
+
+cw_status cwi_files_beside(const cwi_input *in, cwi_names *names, size_t *links, cw_error *err)
+{
+    listing l = {.in = in, .names = names};
+    cw_status st = list_all(&l, err);
+    *links = l.links;
+    return st;
+}
+
+/* --- a pattern --------------------------------------------------------------------------- */
+
+static cw_status match(const char *pattern, cwi_names *names, cw_error *err)
+{
+    glob_t found = {0};
+    struct stat info;
+    const int code = glob(pattern, GLOB_NOSORT, NULL, &found);
+    cw_status st = CW_OK;
+    if (code == GLOB_NOSPACE)
+        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the names that match");
+    for (size_t i = 0; st == CW_OK && code == 0 && i < found.gl_pathc; i++)
+        if (stat(found.gl_pathv[i], &info) == 0 && S_ISREG(info.st_mode))
+            st = cwi_names_add(names, found.gl_pathv[i], err);
+    globfree(&found);
+    if (st == CW_OK && names->count == 0)
+        return cw_fail(err, CW_ERR_IO, "no file matches");
+    cwi_files_sort(names);
+    return st;
+}
+
+cw_status cwi_files_find(cwi_input *in, const char *path, bool deep, cwi_names *names,
+                         size_t *links, cw_error *err)
+{
+    const bool pattern = cwi_files_is_pattern(path);
+    const bool external = in->allow_external;
+    cw_status st = cwi_input_open_folder(in, pattern ? "." : path, err);
+    in->path = path;
+    in->allow_external = external || pattern; /* the user's own words */
+    if (st != CW_OK || pattern)
+        return st == CW_OK ? match(path, names, err) : st;
+    listing l = {.in = in, .deep = deep, .names = names};
+    st = list_all(&l, err);
+    *links = l.links;
+    return st;
+}

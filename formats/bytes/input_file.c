@@ -1,0 +1,274 @@
+#define _GNU_SOURCE /* O_PATH, strerrordesc_np */
+#include "formats/bytes/input_file.h"
+
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/base/text.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+enum { MOST_NAMES = 65536, LONGEST_NAME = 1023 };
+
+static cw_status fail_system(cw_error *err, const char *what)
+{
+    const char *why = strerrordesc_np(errno);
+    return cw_fail(err, CW_ERR_IO, "%s: %s", what, why ? why : "unknown error");
+}
+
+static const char *kind_of_file(mode_t mode)
+{
+    return S_ISDIR(mode)    ? "a folder"
+           : S_ISFIFO(mode) ? "a named pipe"
+           : S_ISSOCK(mode) ? "a socket"
+                            : "a device";
+}
+
+/* O_NONBLOCK keeps a pipe or a tape from holding us up before fstat has told what it is. */
+static cw_status open_regular(int folder, const char *name, int flags, int *fd, uint64_t *size,
+                              cw_error *err)
+{
+    struct stat info;
+    *fd = openat(folder, name, O_RDONLY | O_NONBLOCK | O_CLOEXEC | flags);
+    if (*fd < 0 && errno == ELOOP && flags & O_NOFOLLOW)
+        return cw_fail(err, CW_ERR_UNSAFE, "a symbolic link, which a data file must not be");
+    if (*fd < 0)
+        return fail_system(err, "cannot be opened");
+    cw_status st = CW_OK;
+    if (fstat(*fd, &info) != 0)
+        st = fail_system(err, "cannot be looked at");
+    else if (!S_ISREG(info.st_mode))
+        st = cw_fail(err, CW_ERR_IO, "%s, not a file", kind_of_file(info.st_mode));
+    else if (info.st_size == 0)
+        st = cw_fail(err, CW_ERR_IO, "the file is empty");
+    else if (fcntl(*fd, F_SETFL, 0) != 0)
+        st = fail_system(err, "cannot be set to blocking");
+    if (st == CW_OK) {
+        *size = (uint64_t)info.st_size;
+        return CW_OK;
+    }
+    close(*fd);
+    *fd = -1;
+    return st;
+}
+
+static int open_folder(const char *path, size_t length)
+{
+    char name[4096];
+    if (length >= sizeof name) {
+        errno = ENAMETOOLONG;
+        return -1;
+    }
+    memcpy(name, path, length);
+    name[length] = '\0';
+    return open(length ? name : ".", O_PATH | O_DIRECTORY | O_CLOEXEC);
+}
+
+cw_status cwi_input_open(cwi_input *in, const char *path, cw_error *err)
+{
+    const char *slash = strrchr(path, '/');
+    const char *base = slash ? slash + 1 : path;
+    *in = (cwi_input){.path = path, .fd = -1};
+    in->folder = open_folder(path, (size_t)(base - path));
+    if (in->folder < 0)
+        return fail_system(err, "cannot be opened");
+    cw_status st =
+        open_regular(in->folder, *base || !slash ? base : ".", 0, &in->fd, &in->size, err);
+    if (st != CW_OK)
+        cwi_input_close(in);
+    return st;
+}
+
+cw_status cwi_input_open_folder(cwi_input *in, const char *path, cw_error *err)
+{
+    *in = (cwi_input){.path = path, .fd = -1, .folder = open_folder(path, strlen(path))};
+    return in->folder < 0 ? fail_system(err, "cannot be opened") : CW_OK;
+}
+
+void cwi_input_close(cwi_input *in)
+{
+    if (in->path && in->folder >= 0)
+        close(in->folder);
+    if (in->path && in->fd >= 0)
+        close(in->fd);
+    *in = (cwi_input){.folder = -1, .fd = -1};
+}
+
+static bool has_parent_step(const char *name)
+{
+    for (const char *s = strstr(name, ".."); s; s = strstr(s + 1, ".."))
+        if ((s == name || s[-1] == '/') && (s[2] == '/' || s[2] == '\0'))
+            return true;
+    return false;
+}
+
+static cw_status check_name(const char *name, cw_error *err)
+{
+    const char *why = name[0] == '/'                ? "an absolute path"
+                      : has_parent_step(name)       ? "a path with '..'"
+                      : strstr(name, "://")         ? "an address"
+                      : strpbrk(name, "\\%")        ? "a name with '\\' or '%'"
+                      : strlen(name) > LONGEST_NAME ? "a name of more than 1023 bytes"
+                                                    : NULL;
+    if (why)
+        return cw_fail(err, CW_ERR_UNSAFE,
+                       "%s; a data file must lie in its header's folder unless external files "
+                       "are allowed",
+                       why);
+    return CW_OK;
+}
+
+/* Walks down folder by folder, so that no link on the way can lead out. */
+static cw_status open_below(int folder, const char *name, int *fd, uint64_t *size,
+                            cw_error *err)
+{
+    const char *slash = strchr(name, '/');
+    if (!slash)
+        return open_regular(folder, name, O_NOFOLLOW, fd, size, err);
+    char step[LONGEST_NAME + 1];
+    const size_t length = (size_t)(slash - name);
+    memcpy(step, name, length);
+    step[length] = '\0';
+    const int next =
+        openat(folder, length ? step : ".", O_PATH | O_DIRECTORY | O_NOFOLLOW | O_CLOEXEC);
+    if (next < 0)
+        return fail_system(err, "its folder cannot be opened or is a link");
+    cw_status st = open_below(next, slash + 1, fd, size, err);
+    close(next);
+    return st;
+}
+
+bool cwi_input_is_named(const cwi_input *in, const char *name)
+{
+    if (!in->path || in->fd < 0)
+        return false;
+    const char *slash = strrchr(in->path, '/');
+    return strcmp(slash ? slash + 1 : in->path, name) == 0;
+}
+
+cw_status cwi_input_open_side(const cwi_input *in, const char *name, int *fd, uint64_t *size,
+                              cw_error *err)
+{
+    if (cwi_input_is_named(in, name)) {
+        *fd = fcntl(in->fd, F_DUPFD_CLOEXEC, 0);
+        *size = in->size;
+        return *fd < 0 ? fail_system(err, "cannot be opened") : CW_OK;
+    }
+    if (in->allow_external)
+        return open_regular(in->folder, name, 0, fd, size, err);
+    cw_status st = check_name(name, err);
+    return st == CW_OK ? open_below(in->folder, name, fd, size, err) : st;
+}
+
+cw_status cwi_input_read_at(int fd, uint64_t offset, void *to, size_t size, size_t *got,
+                            cw_error *err)
+{
+    *got = 0;
+    while (*got < size) {
+        if (offset + *got > INT64_MAX)
+            return CW_OK;
+        const ssize_t n = pread(fd, (char *)to + *got, size - *got, (off_t)(offset + *got));
+        if (n < 0 && errno != EINTR)
+            return fail_system(err, "cannot be read");
+        if (n == 0)
+            return CW_OK;
+        *got += n > 0 ? (size_t)n : 0;
+    }
+    return CW_OK;
+}
+
+cw_status cwi_names_add(cwi_names *names, const char *name, cw_error *err)
+{
+    const size_t n = names->count;
+    if (n >= MOST_NAMES)
+        return cw_fail(err, CW_ERR_LIMIT, "more than %d data files", MOST_NAMES);
+    if ((n & (n - 1)) == 0) { /* full at every power of two */
+        char **items = cwi_realloc_array(names->items, n ? 2 * n : 1, sizeof *items);
+        if (!items)
+            return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu file names", n + 1);
+        names->items = items;
+    }
+    names->items[n] = cwi_strdup(name);
+    if (!names->items[n])
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu file names", n + 1);
+    names->count = n + 1;
+    return CW_OK;
+}
+
+void cwi_names_free(cwi_names *names)
+{
+    for (size_t i = 0; i < names->count; i++)
+        cwi_free(names->items[i]);
+    cwi_free(names->items);
+    *names = (cwi_names){0};
+}
+
+/* A file name with one number in it, taken apart. */
+typedef struct pattern {
+    int head; /* bytes in front of the number */
+    int width;
+    bool zeros;       /* pad with zeros, not blanks */
+    const char *tail; /* what follows the number */
+    int tail_length;
+} pattern;
+
+/* Never handed to printf: a stranger's format string is a stranger's program. */
+static bool take_apart(const char *text, size_t length, pattern *p)
+{
+    const char *percent = memchr(text, '%', length);
+    if (!percent || length > LONGEST_NAME - 20)
+        return false;
+    const char *s = percent + 1;
+    p->head = (int)(percent - text);
+    p->zeros = *s == '0';
+    s += p->zeros;
+    p->width = *s >= '1' && *s <= '9' ? *s++ - '0' : 0;
+    p->tail = s + 1;
+    p->tail_length = (int)(text + length - p->tail);
+    return *s == 'd' && !memchr(p->tail, '%', (size_t)p->tail_length);
+}
+
+static cw_status add_number(cwi_names *names, const char *text, const pattern *p,
+                            int64_t number, cw_error *err)
+{
+    char name[LONGEST_NAME + 1], digits[24];
+    if (p->zeros)
+        snprintf(digits, sizeof digits, "%0*lld", p->width, (long long)number);
+    else
+        snprintf(digits, sizeof digits, "%*lld", p->width, (long long)number);
+    snprintf(name, sizeof name, "%.*s%s%.*s", p->head, text, digits, p->tail_length, p->tail);
+    return cwi_names_add(names, name, err);
+}
+
+cw_status cwi_names_expand(cwi_names *names, const char *text, int64_t *depth, cw_error *err)
+{
+    pattern p;
+    int64_t first, last, step;
+    const char *s = text + strcspn(text, " \t");
+    if (!take_apart(text, (size_t)(s - text), &p))
+        return cw_fail(
+            err, CW_ERR_FORMAT,
+            "the pattern '%.64s' needs one %%d, with a width up to 9 and without blanks", text);
+    if (!cwi_parse_int(&s, &first) || !cwi_parse_int(&s, &last) || !cwi_parse_int(&s, &step) ||
+        (cwi_parse_int(&s, depth), *s))
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "the pattern '%.64s' needs three numbers behind it: first, last, step",
+                       text);
+    if (step < 1 || first < 0 || last < first)
+        return cw_fail(
+            err, CW_ERR_FORMAT,
+            "the pattern counts from %lld to %lld by %lld; it must count up from 0 or "
+            "more",
+            (long long)first, (long long)last, (long long)step);
+    cw_status st = CW_OK;
+    for (int64_t n = first; st == CW_OK && n <= last; n += step) {
+        st = add_number(names, text, &p, n, err);
+        if (step > last - n)
+            break;
+    }
+    return st;
+}

@@ -1,0 +1,135 @@
+/* How fine a grid has to be: for the tolerance, and so that the shape stays. */
+#include "formats/codec/quantization_grid.h"
+
+#include "core/base/status.h"
+
+#include <math.h>
+
+enum { SHORT_BITS = 16, EXPONENTIAL_BITS = 24 };
+static const double DIAGONALS = 20000; /* that the default tolerance goes into */
+
+static const struct {
+    const char *name;
+    int most_bits;
+} kinds[] = {[CW_COMPRESS_QUANTIZE] = {"quantize", SHORT_BITS},
+             [CW_COMPRESS_DRACO] = {"Draco", CWI_MOST_GRID_BITS},
+             [CW_COMPRESS_MESHOPT] = {"meshopt", EXPONENTIAL_BITS}};
+
+cw_status cwi_grid_check_bits(const cw_write_desc *desc, cw_error *err)
+{
+    const cw_compression kind = desc->compression;
+    if ((size_t)kind >= sizeof kinds / sizeof *kinds)
+        return cw_fail(err, CW_ERR_ARGUMENT, "%d is not a compression", (int)kind);
+    if (desc->bits < 0 || desc->bits > kinds[kind].most_bits)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "%d bits a coordinate; there may be 1 to %d with %s", desc->bits,
+                       kinds[kind].most_bits, kinds[kind].name);
+    return CW_OK;
+}
+
+static double default_tolerance(const cwi_parts *parts, const cwi_grid *grid)
+{
+    double squares = 0;
+    for (int a = 0; a < 3; a++) {
+        double high = -INFINITY;
+        for (size_t p = 0; p < parts->count; p++)
+            for (size_t v = 0; v < parts->items[p].mesh.vertex_count; v++)
+                high = fmax(high, (double)parts->items[p].mesh.positions[3 * v + (size_t)a]);
+        squares += (high - (double)grid->low[a]) * (high - (double)grid->low[a]);
+    }
+    return sqrt(squares) / DIAGONALS;
+}
+
+static cw_status fail_shape(const cwi_grid *grid, const cwi_grid_harm *harm, double tolerance,
+                            cw_error *err)
+{
+    if (cwi_grid_error(grid) > tolerance)
+        return cw_fail(
+            err, CW_ERR_CHECK,
+            "%d bits a coordinate, the most there are, move vertices by up to %.3g mm; "
+            "%.3g mm are allowed",
+            grid->bits, cwi_grid_error(grid), tolerance);
+    return cw_fail(
+        err, CW_ERR_CHECK,
+        "with %d bits a coordinate, the most there are, %zu vertices fall onto others "
+        "and %zu triangles lose their area%s",
+        grid->bits, harm->merged, harm->flat,
+        grid->bits < CWI_MOST_GRID_BITS ? "; meshopt has up to 24, Draco up to 30" : "");
+}
+
+/* Beyond integers of 16 bits, meshopt's exponential filter makes multiples of a power of two.
+ */
+static void lay_grid(cwi_grid *grid, cw_compression kind, int bits)
+{
+    cwi_grid_refine(grid, bits, kind == CW_COMPRESS_MESHOPT && bits > SHORT_BITS);
+    grid->single = kind == CW_COMPRESS_DRACO;
+}
+
+/* The most that a vertex is moved: from where it was to where a decoder puts it. */
+static double measure_error(const cwi_grid *grid, const cwi_parts *parts)
+{
+    double worst = 0;
+    for (size_t p = 0; p < parts->count; p++) {
+        const cw_mesh *m = &parts->items[p].mesh;
+        for (size_t v = 0; v < m->vertex_count; v++) {
+            double squares = 0;
+            for (int a = 0; a < 3; a++) {
+                const float x = m->positions[3 * v + (size_t)a];
+                const double moved =
+                    cwi_grid_decode(grid, cwi_grid_round(grid, x, a), a) - (double)x;
+                squares += moved * moved;
+            }
+            worst = squares > worst ? squares : worst;
+        }
+    }
+    return sqrt(worst);
+}
+
+/* The coarsest grid that keeps tolerance and shape; *found is false when none does. */
+static cw_status find_grid(cwi_grid *grid, const cwi_parts *parts, cw_compression kind,
+                           double tolerance, bool *found, cwi_grid_harm *harm, cw_error *err)
+{
+    const int most = kinds[kind].most_bits;
+    cw_status st = CW_OK;
+    *found = false;
+    for (int bits = 1; bits <= most && st == CW_OK && !*found; bits++) {
+        lay_grid(grid, kind, bits);
+        const bool fine =
+            cwi_grid_error(grid) <= tolerance && measure_error(grid, parts) <= tolerance;
+        if (fine || bits == most)
+            st = cwi_grid_measure(grid, parts, harm, err);
+        *found = fine && harm->merged == 0 && harm->flat == 0;
+    }
+    return st;
+}
+
+cw_status cwi_grid_choose(cwi_grid *grid, const cwi_parts *parts, const cw_write_desc *desc,
+                          cw_compressed *told, cw_error *err)
+{
+    cwi_grid_harm harm = {0};
+    bool found = true;
+    cw_status st;
+    *grid = cwi_grid_around(parts);
+    if (!isfinite(grid->range))
+        return cw_fail(err, CW_ERR_LIMIT, "the box is too large to be divided into steps");
+    const double tolerance =
+        desc->tolerance_mm > 0 ? desc->tolerance_mm : default_tolerance(parts, grid);
+    if (desc->bits) {
+        lay_grid(grid, desc->compression, desc->bits);
+        st = cwi_grid_measure(grid, parts, &harm, err);
+    } else {
+        st = find_grid(grid, parts, desc->compression, tolerance, &found, &harm, err);
+    }
+    if (st == CW_OK && !found && desc->compression == CW_COMPRESS_MESHOPT)
+        grid->bits = 0; /* then positions stay as they are */
+    else if (st == CW_OK && !found)
+        return fail_shape(grid, &harm, tolerance, err);
+    if (st == CW_OK && found) {
+        told->merged = harm.merged;
+        told->flat = harm.flat;
+        told->step_mm = grid->step;
+        told->error_mm = measure_error(grid, parts);
+    }
+    told->bits = grid->bits;
+    return st;
+}

@@ -1,0 +1,83 @@
+#include "formats/codec/draco_pack.h"
+
+#include "core/base/clock.h"
+#include "core/base/memory.h"
+#include "formats/codec/verify_decoded.h"
+
+#include <string.h>
+
+enum { NORMAL_BITS = 10, LEVEL = 7 };
+
+static bool names_a_vertex_twice(const uint32_t *triangle)
+{
+    return triangle[0] == triangle[1] || triangle[1] == triangle[2] ||
+           triangle[2] == triangle[0];
+}
+
+size_t cwi_draco_count_degenerate(const cw_mesh *mesh)
+{
+    size_t count = 0;
+    for (size_t t = 0; t < mesh->triangle_count; t++)
+        count += names_a_vertex_twice(mesh->triangles + 3 * t);
+    return count;
+}
+
+void cwi_draco_drop_degenerate(cw_mesh *mesh)
+{
+    size_t kept = 0;
+    for (size_t t = 0; t < mesh->triangle_count; t++)
+        if (!names_a_vertex_twice(mesh->triangles + 3 * t))
+            memmove(mesh->triangles + 3 * kept++, mesh->triangles + 3 * t,
+                    3 * sizeof(uint32_t));
+    mesh->triangle_count = kept;
+}
+
+void cwi_draco_packed_free(cwi_draco_packed *packed)
+{
+    cwi_free(packed->bytes);
+    cwi_arrays_free(&packed->decoded);
+    *packed = (cwi_draco_packed){0};
+}
+
+static cw_status verify_decoded(const cw_mesh *mesh, const cwi_grid *grid, const cwi_arrays *a,
+                                double *normal_degrees, cw_error *err)
+{
+    const cwi_decoded decoded = {.vertex_count = a->vertex_count,
+                                 .triangle_count = a->triangle_count,
+                                 .places = a->places,
+                                 .normals = a->normals,
+                                 .triangles = a->triangles};
+    return cwi_verify(mesh, grid, &decoded, normal_degrees, err);
+}
+
+cw_status cwi_draco_pack(const cw_mesh *mesh, const uint8_t *colors, const cwi_grid *grid,
+                         const char *comment, const cw_write_desc *desc,
+                         cwi_draco_packed *packed, cw_compressed *told, cw_error *err)
+{
+    const cwi_draco_functions *draco;
+    const cwi_arrays arrays = {.vertex_count = mesh->vertex_count,
+                               .triangle_count = mesh->triangle_count,
+                               .positions = mesh->positions,
+                               .normals = mesh->normals,
+                               .colors = (uint8_t *)(uintptr_t)colors,
+                               .triangles = mesh->triangles};
+    const cwi_draco_settings settings = {.grid = *grid,
+                                         .normal_bits = NORMAL_BITS,
+                                         .level = desc->level ? desc->level : LEVEL,
+                                         .comment = comment};
+    const double start = cwi_now_s();
+    *packed = (cwi_draco_packed){0};
+    cw_status st = cwi_draco_functions_load(&draco, err);
+    if (st == CW_OK)
+        st =
+            draco->encode(&arrays, &settings, &packed->bytes, &packed->size, &packed->ids, err);
+    const double encoded = cwi_now_s();
+    if (st == CW_OK)
+        st = draco->decode(packed->bytes, packed->size, &packed->ids, SIZE_MAX, grid,
+                           &packed->decoded, err);
+    if (st == CW_OK)
+        st = verify_decoded(mesh, grid, &packed->decoded, &told->normal_degrees, err);
+    told->encode_s += encoded - start;
+    told->decode_s += cwi_now_s() - encoded;
+    return st;
+}

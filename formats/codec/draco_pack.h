@@ -1,0 +1,33 @@
+/* A mesh as Draco's bytes, decoded again and held against what it was made of. */
+#ifndef FORMATS_CODEC_DRACO_PACK_H
+#define FORMATS_CODEC_DRACO_PACK_H
+
+#include "formats/codec/draco_wrap.h"
+
+/* What came out. Free it with cwi_draco_packed_free(). */
+typedef struct cwi_draco_packed {
+    unsigned char *bytes;
+    size_t size;
+    cwi_draco_ids ids;
+    cwi_arrays decoded; /* places on the grid in place of positions */
+} cwi_draco_packed;
+
+/* Encodes a mesh on a grid. No triangle may name a vertex twice.
+ * colors   vertex_count x 4, in place of the mesh's; NULL: none
+ * comment  of the file; NULL: none
+ * desc     for its level
+ * told     the seconds it took are added, and the normals' error goes up to what it was
+ * Returns  CW_ERR_CHECK when the decoded mesh is not the one that was encoded; CW_ERR_BACKEND;
+ *          CW_ERR_UNSUPPORTED; CW_ERR_NO_MEMORY */
+cw_status cwi_draco_pack(const cw_mesh *mesh, const uint8_t *colors, const cwi_grid *grid,
+                         const char *comment, const cw_write_desc *desc,
+                         cwi_draco_packed *packed, cw_compressed *told, cw_error *err);
+void cwi_draco_packed_free(cwi_draco_packed *packed);
+
+/* Triangles that name a vertex twice: Draco has no form for them. */
+size_t cwi_draco_count_degenerate(const cw_mesh *mesh);
+
+/* Leaves them out of a mesh whose triangles are its own; no edge opens where they go. */
+void cwi_draco_drop_degenerate(cw_mesh *mesh);
+
+#endif

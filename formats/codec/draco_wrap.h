@@ -1,0 +1,61 @@
+/* Draco behind plain C: the functions of the module "draco". */
+#ifndef FORMATS_CODEC_DRACO_WRAP_H
+#define FORMATS_CODEC_DRACO_WRAP_H
+
+#include "formats/codec/quantization_grid.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { CWI_DRACO_COMMENT = 256 };
+
+/* The arrays of one mesh; those that are not there are NULL. A zeroed one is empty. */
+typedef struct cwi_arrays {
+    size_t vertex_count, triangle_count;
+    float *positions;                /* vertex_count x 3 */
+    uint32_t *places;                /* vertex_count x 3: positions counted on a grid */
+    float *normals;                  /* vertex_count x 3 */
+    uint8_t *colors;                 /* vertex_count x 4, linear */
+    uint32_t *triangles;             /* triangle_count x 3 */
+    char comment[CWI_DRACO_COMMENT]; /* that our own writer left; empty: none */
+} cwi_arrays;
+
+/* Frees with cwi_free() what a decoder has made. */
+void cwi_arrays_free(cwi_arrays *arrays);
+
+/* Draco's numbers for attributes; -1: not there. */
+typedef struct cwi_draco_ids {
+    int position, normal, color;
+} cwi_draco_ids;
+
+typedef struct cwi_draco_settings {
+    cwi_grid grid;       /* for positions */
+    int normal_bits;     /* of each of two octahedral coordinates */
+    int level;           /* 0 (fast) to 10 (small) */
+    const char *comment; /* of the file, kept as metadata; NULL: none */
+} cwi_draco_settings;
+
+typedef struct cwi_draco_functions {
+    /* Encodes by edgebreaker. The bytes are freed with cwi_free(). */
+    cw_status (*encode)(const cwi_arrays *arrays, const cwi_draco_settings *settings,
+                        unsigned char **bytes, size_t *size, cwi_draco_ids *ids, cw_error *err);
+
+    /* Decodes the attributes that ids name; NULL: the first of each kind. Indices are below the
+     * vertex count, whatever the bytes: more than most vertices or triangles are CW_ERR_LIMIT,
+     * damage is CW_ERR_FORMAT. grid  NULL: positions are floats. Otherwise they stay places on
+     * this grid, on which they were encoded; CW_ERR_CHECK: it was another one. */
+    cw_status (*decode)(const void *bytes, size_t size, const cwi_draco_ids *ids, size_t most,
+                        const cwi_grid *grid, cwi_arrays *arrays, cw_error *err);
+} cwi_draco_functions;
+
+/* Loads the module. CW_ERR_UNSUPPORTED: not in this build. */
+cw_status cwi_draco_functions_load(const cwi_draco_functions **functions, cw_error *err);
+
+extern CW_API const cwi_draco_functions cwi_module_draco;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

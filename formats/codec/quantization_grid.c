@@ -1,0 +1,148 @@
+#include "formats/codec/quantization_grid.h"
+
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/mesh/weld.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { LEAST_EXPONENT = -126 }; /* decoders make the power in single precision */
+
+cwi_grid cwi_grid_around(const cwi_parts *parts)
+{
+    float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
+    cwi_grid grid = {0};
+    for (size_t p = 0; p < parts->count; p++) {
+        const cw_mesh *mesh = &parts->items[p].mesh;
+        for (size_t i = 0; i < 3 * mesh->vertex_count; i++) {
+            low[i % 3] = fminf(low[i % 3], mesh->positions[i]);
+            high[i % 3] = fmaxf(high[i % 3], mesh->positions[i]);
+        }
+    }
+    for (int a = 0; a < 3; a++) {
+        grid.low[a] = low[a];
+        grid.range = fmaxf(grid.range, high[a] - low[a]);
+    }
+    if (!(grid.range > 0)) /* a single point */
+        grid.range = 1;
+    return grid;
+}
+
+/* The box ends between multiples of the step, and range is rounded itself: that takes up to
+ * three places. */
+static void lay_dyadic(cwi_grid *grid)
+{
+    frexp((double)grid->range / (double)((1u << grid->bits) - 4), &grid->exponent);
+    if (grid->exponent < LEAST_EXPONENT)
+        grid->exponent = LEAST_EXPONENT;
+    grid->step = ldexp(1, grid->exponent);
+    for (int a = 0; a < 3; a++)
+        grid->origin[a] = (float)(floor((double)grid->low[a] / grid->step) * grid->step);
+}
+
+void cwi_grid_refine(cwi_grid *grid, int bits, bool dyadic)
+{
+    grid->bits = bits;
+    grid->dyadic = dyadic;
+    grid->step = (double)grid->range / (double)((1u << bits) - 1);
+    memcpy(grid->origin, grid->low, sizeof grid->origin);
+    if (dyadic)
+        lay_dyadic(grid);
+}
+
+double cwi_grid_error(const cwi_grid *grid)
+{
+    return grid->step * sqrt(3) / 2;
+}
+
+/* --- harm -----------------------------------------------------------------------------------
+ */
+
+/* Places, and where they are found again; places of exact grids are below 2^24 and serve as
+ * both. */
+static void round_points(const cwi_grid *grid, const cw_mesh *mesh, uint32_t *places,
+                         float *found)
+{
+    for (size_t i = 0; i < 3 * mesh->vertex_count; i++) {
+        places[i] = cwi_grid_round(grid, mesh->positions[i], (int)(i % 3));
+        found[i] = grid->single ? (float)cwi_grid_decode(grid, places[i], (int)(i % 3))
+                                : (float)places[i];
+    }
+}
+
+/* Whether two corners' differences from the third are not parallel: exact, below 2^62. */
+static bool spans_places(const uint32_t *points, const uint32_t *t)
+{
+    const uint32_t *p = points + 3 * (size_t)t[0], *q = points + 3 * (size_t)t[1],
+                   *r = points + 3 * (size_t)t[2];
+    int64_t u[3], v[3];
+    for (int a = 0; a < 3; a++) {
+        u[a] = (int64_t)q[a] - p[a];
+        v[a] = (int64_t)r[a] - p[a];
+    }
+    return u[0] * v[1] != u[1] * v[0] || u[1] * v[2] != u[2] * v[1] ||
+           u[2] * v[0] != u[0] * v[2];
+}
+
+static bool has_area(const float *points, const uint32_t *t)
+{
+    const float *p = points + 3 * (size_t)t[0], *q = points + 3 * (size_t)t[1],
+                *r = points + 3 * (size_t)t[2];
+    double u[3], v[3];
+    for (int a = 0; a < 3; a++) {
+        u[a] = (double)q[a] - (double)p[a];
+        v[a] = (double)r[a] - (double)p[a];
+    }
+    return u[0] * v[1] != u[1] * v[0] || u[1] * v[2] != u[2] * v[1] ||
+           u[2] * v[0] != u[0] * v[2];
+}
+
+static bool is_elsewhere(const float *points, size_t v, size_t u)
+{
+    const float *p = points + 3 * v, *q = points + 3 * u;
+    return p[0] != q[0] || p[1] != q[1] || p[2] != q[2];
+}
+
+static void count_harm(const cw_mesh *mesh, const uint32_t *places, const float *found,
+                       const uint32_t *map, cwi_grid_harm *harm)
+{
+    for (size_t v = 0; v < mesh->vertex_count; v++)
+        harm->merged += map[v] != v && is_elsewhere(mesh->positions, v, map[v]);
+    for (size_t t = 0; t < mesh->triangle_count; t++) {
+        const uint32_t *triangle = mesh->triangles + 3 * t;
+        harm->flat += !(spans_places(places, triangle) && has_area(found, triangle)) &&
+                      has_area(mesh->positions, triangle);
+    }
+}
+
+static cw_status measure_part(const cwi_grid *grid, const cw_mesh *mesh, cwi_grid_harm *harm,
+                              cw_error *err)
+{
+    const size_t count = mesh->vertex_count;
+    uint32_t *places = cwi_alloc_array(count, 3 * sizeof *places);
+    float *found = cwi_alloc_array(count, 3 * sizeof *found);
+    uint32_t *map = cwi_alloc_array(count, sizeof *map);
+    bool ok = places && found && map;
+    if (ok) {
+        round_points(grid, mesh, places, found);
+        ok = cwi_weld(found, count, map);
+    }
+    if (ok)
+        count_harm(mesh, places, found, map, harm);
+    cwi_free(places);
+    cwi_free(found);
+    cwi_free(map);
+    return ok ? CW_OK
+              : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to compare %zu vertices", count);
+}
+
+cw_status cwi_grid_measure(const cwi_grid *grid, const cwi_parts *parts, cwi_grid_harm *harm,
+                           cw_error *err)
+{
+    cw_status st = CW_OK;
+    *harm = (cwi_grid_harm){0};
+    for (size_t p = 0; st == CW_OK && p < parts->count; p++)
+        st = measure_part(grid, &parts->items[p].mesh, harm, err);
+    return st;
+}

@@ -1,0 +1,123 @@
+#include "formats/codec/verify_decoded.h"
+
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/geometry/vec3.h"
+#include "core/mesh/weld.h"
+
+#include <math.h>
+#include <string.h>
+
+static const double DEGREES = 180 / 3.14159265358979323846;
+
+/* Sums over triangles, the same in any order of them. */
+typedef struct sums {
+    uint64_t a, b;
+} sums;
+
+/* [Steele2014] A hash of one number. */
+static uint64_t mix(uint64_t x)
+{
+    x += 0x9e3779b97f4a7c15u;
+    x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ x >> 27) * 0x94d049bb133111ebu;
+    return x ^ x >> 31;
+}
+
+/* Corners by the first vertex at their place, the lowest of them first: turning a triangle
+ * changes nothing, turning it over does, unless two of its corners are one. */
+static uint64_t hash_triangle(const uint32_t *triangle, const uint32_t *map)
+{
+    uint64_t c[3];
+    for (int k = 0; k < 3; k++)
+        c[k] = map[triangle[k]];
+    if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0])
+        return mix(mix(c[0]) + mix(c[1]) + mix(c[2]));
+    const int k = c[0] < c[1] && c[0] < c[2] ? 0 : c[1] < c[2] ? 1 : 2;
+    return mix(c[k] ^ mix(c[(k + 1) % 3] ^ mix(c[(k + 2) % 3])));
+}
+
+static sums sum_triangles(const uint32_t *triangles, size_t count, const uint32_t *map)
+{
+    sums s = {0, 0};
+    for (size_t t = 0; t < count; t++) {
+        const uint64_t h = hash_triangle(triangles + 3 * t, map);
+        s.a += h;
+        s.b += mix(h);
+    }
+    return s;
+}
+
+/* Places of the mesh, and behind them those of the decoded one: as bits of floats, for below
+ * 2^30 they are finite. */
+static void put_places(const cw_mesh *mesh, const cwi_grid *grid, const cwi_decoded *d,
+                       float *places)
+{
+    const size_t count = 3 * mesh->vertex_count;
+    for (size_t i = 0; i < count; i++) {
+        const uint32_t place = cwi_grid_round(grid, mesh->positions[i], (int)(i % 3));
+        memcpy(places + i, &place, sizeof place);
+    }
+    memcpy(places + count, d->places, 3 * d->vertex_count * sizeof *d->places);
+}
+
+static double angle_between(const float *a, const float *b)
+{
+    const double u[3] = {(double)a[0], (double)a[1], (double)a[2]},
+                 v[3] = {(double)b[0], (double)b[1], (double)b[2]};
+    double w[3];
+    cwi_cross(u, v, w);
+    return atan2(sqrt(cwi_dot(w, w)), cwi_dot(u, v)) * DEGREES;
+}
+
+/* Marks places that several vertices of the mesh are at: which of them a decoded one was, is
+ * not to be told. */
+static void mark_shared(const uint32_t *map, size_t count, bool *shared)
+{
+    for (size_t v = 0; v < count; v++)
+        if (map[v] != v)
+            shared[map[v]] = true;
+}
+
+static cw_status compare(const cw_mesh *mesh, const cwi_decoded *d, const uint32_t *map,
+                         const bool *shared, double *normal_degrees, cw_error *err)
+{
+    const size_t count = mesh->vertex_count;
+    for (size_t v = 0; v < d->vertex_count; v++) {
+        const uint32_t original = map[count + v];
+        if (original >= count)
+            return cw_fail(err, CW_ERR_CHECK, "decoded vertex %zu stands where none was", v);
+        if (d->normals && mesh->normals && !shared[original])
+            *normal_degrees =
+                fmax(*normal_degrees,
+                     angle_between(d->normals + 3 * v, mesh->normals + 3 * (size_t)original));
+    }
+    const sums was = sum_triangles(mesh->triangles, mesh->triangle_count, map);
+    const sums is = sum_triangles(d->triangles, d->triangle_count, map + count);
+    if (was.a != is.a || was.b != is.b)
+        return cw_fail(err, CW_ERR_CHECK, "the decoded triangles are not those encoded");
+    return CW_OK;
+}
+
+cw_status cwi_verify(const cw_mesh *mesh, const cwi_grid *grid, const cwi_decoded *decoded,
+                     double *normal_degrees, cw_error *err)
+{
+    const size_t count = mesh->vertex_count + decoded->vertex_count;
+    if (decoded->triangle_count != mesh->triangle_count)
+        return cw_fail(err, CW_ERR_CHECK, "%zu triangles were encoded, and %zu decoded",
+                       mesh->triangle_count, decoded->triangle_count);
+    float *places = cwi_alloc_array(count, 3 * sizeof *places);
+    uint32_t *map = cwi_alloc_array(count, sizeof *map);
+    bool *shared = cwi_alloc_zeroed(mesh->vertex_count, sizeof *shared);
+    if (places)
+        put_places(mesh, grid, decoded, places);
+    cw_status st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory to compare %zu vertices", count);
+    if (places && map && shared && cwi_weld(places, count, map)) {
+        mark_shared(map, mesh->vertex_count, shared);
+        st = compare(mesh, decoded, map, shared, normal_degrees, err);
+    }
+    cwi_free(shared);
+    cwi_free(places);
+    cwi_free(map);
+    return st;
+}

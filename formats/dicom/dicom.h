@@ -1,0 +1,80 @@
+/* What a DICOM file says of itself: the facts that the module "dicom" (DCMTK, in a process of
+ * its own) puts into the shared memory. Nothing in here has been checked, and nothing of it is
+ * a patient's: neither name nor number nor date is ever taken out of a file. */
+#ifndef FORMATS_DICOM_DICOM_H
+#define FORMATS_DICOM_DICOM_H
+
+#include "formats/volume/sandboxed_planes.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What may tell frames at one place apart, the surest first. */
+enum {
+    CWI_DICOM_TEMPORAL,  /* TemporalPositionIdentifier, TemporalPositionIndex */
+    CWI_DICOM_REFERENCE, /* FrameReferenceTime */
+    CWI_DICOM_TRIGGER,   /* TriggerTime */
+    CWI_DICOM_ECHO,      /* EchoTime */
+    CWI_DICOM_B_VALUE,   /* DiffusionBValue */
+    CWI_DICOM_ACQUISITION,
+    CWI_DICOM_KEYS
+};
+
+typedef enum cwi_dicom_has {
+    CWI_DICOM_POSITION = 1,
+    CWI_DICOM_ORIENTATION = 2,
+    CWI_DICOM_SPACING = 4,
+    CWI_DICOM_BETWEEN = 8
+} cwi_dicom_has;
+
+typedef struct cwi_dicom_frame {
+    double position[3]; /* of the first pixel's centre, mm, LPS */
+    double axes[2][3];  /* directions along a row (to the next column) and along a column */
+    double spacing[2];  /* mm between columns, between rows */
+    double between;     /* SpacingBetweenSlices, else SliceThickness */
+    double slope, intercept;
+    double keys[CWI_DICOM_KEYS]; /* NaN: not said */
+    uint32_t has;                /* cwi_dicom_has */
+    uint32_t segment;            /* of a segmentation: its number */
+} cwi_dicom_frame;
+
+typedef enum cwi_dicom_kind {
+    CWI_DICOM_NO_IMAGE, /* a directory, a report, ... */
+    CWI_DICOM_IMAGE,
+    CWI_DICOM_SEGMENTATION, /* a frame holds the pixels of one segment, yes or no */
+    CWI_DICOM_LABELMAP      /* a pixel is the number of a segment */
+} cwi_dicom_kind;
+
+typedef struct cwi_dicom_facts {
+    cwi_dicom_kind kind;
+    char series[72], instance[72], modality[20];
+    char refusal[160];               /* why its pixels are not read; empty: they are */
+    int64_t number, instance_number; /* SeriesNumber; INT64_MIN: none */
+    uint32_t columns, rows, samples, frame_count;
+    cw_type type;         /* of the pixels that are given out */
+    uint64_t pixel_bytes; /* of pixels as they are stored; 0: compressed */
+    bool deflated;        /* the file as a whole */
+    bool has_padding;
+    double padding[2];
+} cwi_dicom_facts; /* frame_count frames follow */
+
+/* What an image within DICOM must be. */
+typedef struct cwi_dicom_image {
+    uint32_t columns, rows, samples;
+    cw_type type;
+} cwi_dicom_image;
+
+/* JPEG 2000: the pixels of one image, interleaved, as numbers of the type.
+ * Returns CW_ERR_FORMAT for one that is damaged or not of that size, CW_ERR_UNSUPPORTED,
+ * CW_ERR_NO_MEMORY. */
+cw_status cwi_dicom_jpeg2000(const void *data, size_t size, const cwi_dicom_image *image,
+                             void *pixels, cw_error *err);
+
+extern CW_API const cwi_plane_functions cwi_module_dicom;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

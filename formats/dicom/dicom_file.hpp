@@ -1,0 +1,73 @@
+// The file that the module "dicom" has open, and what its two halves need to know of it.
+#ifndef FORMATS_DICOM_DICOM_FILE_HPP
+#define FORMATS_DICOM_DICOM_FILE_HPP
+
+#include "formats/dicom/dicom.h"
+#include "formats/dicom/dicom_stream.hpp"
+
+#include <dcmtk/dcmdata/dctk.h>
+
+#include <memory>
+#include <vector>
+
+namespace cw
+{
+
+// How pixels are stored: the attributes of the Image Pixel module.
+struct PixelLayout {
+    uint32_t columns = 0, rows = 0, samples = 1, frames = 1;
+    unsigned allocated = 0, stored = 0, high = 0;
+    bool is_signed = false, by_plane = false;
+    cw_type type = CW_U8;
+    size_t count() const
+    {
+        return size_t(columns) * rows * samples;
+    } // numbers of a frame
+};
+
+// Slices side by side in one image, row by row; without a mosaic it is one by one.
+struct Mosaic {
+    uint32_t across = 1, count = 1;
+    double normal[3] = {0, 0, 0}; // from a slice to the next one
+};
+
+struct DicomFile {
+    int fd = -1;
+    std::unique_ptr<FileStream> stream;
+    std::unique_ptr<DcmFileFormat> file;
+    PixelLayout layout;
+    Mosaic mosaic;
+    std::vector<unsigned char> pixels; // of the frame decoded last
+    int64_t decoded = -1;
+    ~DicomFile()
+    {
+        close_file();
+    }
+
+    DcmDataset *data()
+    {
+        return file->getDataset();
+    }
+    void close_file()
+    {
+        file.reset();
+        stream.reset();
+        decoded = -1;
+        if (fd >= 0)
+            close(fd);
+        fd = -1;
+    }
+};
+
+// The text of a value; empty where there is none.
+OFString text_of(DcmItem *item, const DcmTagKey &tag, unsigned long at = 0);
+
+// A number, whatever its representation; false where there is none, or none that is finite.
+bool number_of(DcmItem *item, const DcmTagKey &tag, unsigned long at, double *out);
+
+// Decodes a frame into file.pixels: packed, interleaved, of the layout's type.
+cw_status decode_frame(DicomFile &file, uint32_t frame, cw_error *err);
+
+} // namespace cw
+
+#endif

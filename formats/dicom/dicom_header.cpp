@@ -1,0 +1,619 @@
+// DCMTK behind plain C, the first half: from a file to its facts.
+#include "core/base/guard.hpp"
+#include "core/base/text.h"
+#include "formats/dicom/dicom_csa.h"
+#include "formats/dicom/dicom_file.hpp"
+
+#include <dcmtk/dcmdata/dccodec.h>
+#include <dcmtk/dcmdata/dcrledrg.h>
+#include <dcmtk/dcmjpeg/djdecode.h>
+#include <dcmtk/dcmjpls/djdecode.h>
+#include <dcmtk/oflog/oflog.h>
+
+#include <cmath>
+#include <cstdio>
+#include <cstring>
+
+namespace cw
+{
+
+OFString text_of(DcmItem *item, const DcmTagKey &tag, unsigned long at)
+{
+    OFString text;
+    if (!item || item->findAndGetOFString(tag, text, at).bad())
+        text.clear();
+    return text;
+}
+
+bool number_of(DcmItem *item, const DcmTagKey &tag, unsigned long at, double *out)
+{
+    Float64 value = 0;
+    if (!item)
+        return false;
+    if (item->findAndGetFloat64(tag, value, at).bad()) { // none of the real representations
+        const OFString text = text_of(item, tag, at);
+        const char *s = text.c_str();
+        if (!cwi_parse_double(&s, &value))
+            return false;
+    }
+    *out = value;
+    return std::isfinite(value);
+}
+
+} // namespace cw
+
+using namespace cw;
+
+namespace
+{
+
+uint32_t count_of(DcmItem *item, const DcmTagKey &tag, uint32_t otherwise)
+{
+    double value;
+    return number_of(item, tag, 0, &value) && value >= 0 && value <= UINT32_MAX
+               ? uint32_t(value)
+               : otherwise;
+}
+
+int64_t integer_of(DcmItem *item, const DcmTagKey &tag)
+{
+    double value;
+    return number_of(item, tag, 0, &value) && std::fabs(value) < 1e15 ? int64_t(value)
+                                                                      : INT64_MIN;
+}
+
+// 0 where it is stated, and no whole number above 0.
+uint32_t frames_of(DcmItem *data)
+{
+    double value;
+    if (text_of(data, DCM_NumberOfFrames).empty())
+        return 1;
+    return number_of(data, DCM_NumberOfFrames, 0, &value) && value >= 1 &&
+                   value <= UINT32_MAX && value == std::floor(value)
+               ? uint32_t(value)
+               : 0;
+}
+
+bool numbers_of(DcmItem *item, const DcmTagKey &tag, unsigned count, double *out)
+{
+    for (unsigned n = 0; n < count; n++)
+        if (!number_of(item, tag, n, out + n))
+            return false;
+    return true;
+}
+
+template <size_t size> void copy_text(char (&to)[size], const OFString &text)
+{
+    std::snprintf(to, size, "%s", text.c_str());
+}
+
+void refuse(cwi_dicom_facts *f, const char *why)
+{
+    if (why && !f->refusal[0])
+        copy_text(f->refusal, why);
+}
+
+DcmItem *first_item(DcmItem *item, const DcmTagKey &sequence)
+{
+    DcmItem *found = nullptr;
+    if (item && item->findAndGetSequenceItem(sequence, found, 0).good())
+        return found;
+    return nullptr;
+}
+
+// DCMTK 3.6.7 does not know the class of label maps.
+cwi_dicom_kind kind_of(DcmItem *data)
+{
+    static const char label_map[] = "1.2.840.10008.5.1.4.1.1.66.7";
+    const OFString what = text_of(data, DCM_SOPClassUID);
+    const bool labels = text_of(data, DCM_SegmentationType) == "LABELMAP";
+    if (what == label_map || (what == UID_SegmentationStorage && labels))
+        return CWI_DICOM_LABELMAP;
+    return what == UID_SegmentationStorage ? CWI_DICOM_SEGMENTATION : CWI_DICOM_IMAGE;
+}
+
+// --- the pixels' layout
+// ------------------------------------------------------------------------
+
+bool layout_type(PixelLayout &l, const char **why)
+{
+    static const cw_type types[2][3] = {{CW_U8, CW_U16, CW_U32}, {CW_I8, CW_I16, CW_I32}};
+    const bool whole =
+        l.allocated == 1 || l.allocated == 8 || l.allocated == 16 || l.allocated == 32;
+    *why = !whole ? "BitsAllocated is none of 1, 8, 16, 32"
+           : l.stored < 1 || l.stored > l.allocated || l.high + 1 < l.stored ||
+                   l.high >= l.allocated
+               ? "BitsStored and HighBit do not fit BitsAllocated"
+               : nullptr;
+    if (*why)
+        return false;
+    l.type = types[l.is_signed][l.allocated == 32 ? 2 : l.allocated == 16 ? 1 : 0];
+    return true;
+}
+
+// Colours are taken as they are stored; what is compressed, DCMTK turns into RGB.
+const char *check_colour(DcmItem *data, uint32_t samples, bool compressed)
+{
+    const OFString model = text_of(data, DCM_PhotometricInterpretation);
+    if (samples == 1 && model != "PALETTE COLOR")
+        return nullptr;
+    if (samples == 3 && (model == "RGB" || (compressed && model.substr(0, 3) == "YBR")))
+        return nullptr;
+    return samples == 1 ? "its pixels are colours of a palette"
+                        : "its colours are not stored as RGB";
+}
+
+// The colours of a palette are looks: its indices are the numbers of segments.
+const char *check_labels(const PixelLayout &l)
+{
+    return l.samples != 1 || l.is_signed || (l.type != CW_U8 && l.type != CW_U16)
+               ? "it is a label map, and its pixels are not one number of 8 or 16 bits"
+               : nullptr;
+}
+
+struct Stored {
+    DcmElement *element = nullptr;
+    const char *why_not = nullptr;
+};
+
+Stored find_pixels(DcmItem *data, PixelLayout &l, cwi_dicom_kind kind, bool compressed)
+{
+    Stored s;
+    l.columns = count_of(data, DCM_Columns, 0);
+    l.rows = count_of(data, DCM_Rows, 0);
+    l.samples = count_of(data, DCM_SamplesPerPixel, 1);
+    l.frames = frames_of(data);
+    l.allocated = count_of(data, DCM_BitsAllocated, 0);
+    l.stored = count_of(data, DCM_BitsStored, l.allocated);
+    l.high = count_of(data, DCM_HighBit, l.stored - 1);
+    l.is_signed = count_of(data, DCM_PixelRepresentation, 0) == 1;
+    l.by_plane = count_of(data, DCM_PlanarConfiguration, 0) == 1;
+    if (data->findAndGetElement(DCM_FloatPixelData, s.element).good())
+        l.type = CW_F32;
+    else if (data->findAndGetElement(DCM_DoubleFloatPixelData, s.element).good())
+        l.type = CW_F64;
+    else if (data->findAndGetElement(DCM_PixelData, s.element).good() &&
+             layout_type(l, &s.why_not))
+        s.why_not = kind == CWI_DICOM_LABELMAP ? check_labels(l)
+                                               : check_colour(data, l.samples, compressed);
+    return s;
+}
+
+bool is_real(const PixelLayout &l)
+{
+    return l.type == CW_F32 || l.type == CW_F64;
+}
+
+// As stored, without a sign: the padding value is one of the pixels.
+double padding_of(DcmItem *data, const DcmTagKey &tag, const PixelLayout &l, double otherwise)
+{
+    double value;
+    if (!number_of(data, tag, 0, &value))
+        return otherwise;
+    const double range = std::ldexp(1, int(l.stored));
+    return l.is_signed && value >= range / 2 ? value - range : value;
+}
+
+void take_padding(DcmItem *data, const PixelLayout &l, cwi_dicom_facts *f)
+{
+    double value;
+    f->has_padding = !is_real(l) && number_of(data, DCM_PixelPaddingValue, 0, &value);
+    if (!f->has_padding)
+        return;
+    const double a = padding_of(data, DCM_PixelPaddingValue, l, 0);
+    const double b = padding_of(data, DCM_PixelPaddingRangeLimit, l, a);
+    f->padding[0] = a < b ? a : b;
+    f->padding[1] = a < b ? b : a;
+}
+
+// --- the frames
+// --------------------------------------------------------------------------------
+
+void take_keys(DcmItem *item, cwi_dicom_frame *f)
+{
+    static const struct {
+        int key;
+        DcmTagKey tag;
+    } rows[] = {{CWI_DICOM_TEMPORAL, DCM_TemporalPositionIdentifier},
+                {CWI_DICOM_TEMPORAL, DCM_TemporalPositionIndex},
+                {CWI_DICOM_REFERENCE, DCM_FrameReferenceTime},
+                {CWI_DICOM_TRIGGER, DCM_TriggerTime},
+                {CWI_DICOM_ECHO, DCM_EchoTime},
+                {CWI_DICOM_ECHO, DCM_EffectiveEchoTime},
+                {CWI_DICOM_B_VALUE, DCM_DiffusionBValue},
+                {CWI_DICOM_ACQUISITION, DCM_AcquisitionNumber}};
+    double value;
+    for (const auto &row : rows)
+        if (number_of(item, row.tag, 0, &value))
+            f->keys[row.key] = value;
+}
+
+// Geometry and scaling, where an item has them.
+void take_plane(DcmItem *item, cwi_dicom_frame *f)
+{
+    double spacing[2], value;
+    if (numbers_of(item, DCM_ImagePositionPatient, 3, f->position))
+        f->has |= CWI_DICOM_POSITION;
+    if (numbers_of(item, DCM_ImageOrientationPatient, 6, &f->axes[0][0]))
+        f->has |= CWI_DICOM_ORIENTATION;
+    if (numbers_of(item, DCM_PixelSpacing, 2, spacing)) {
+        f->spacing[0] = spacing[1]; // "row spacing" comes first: that between rows
+        f->spacing[1] = spacing[0];
+        f->has |= CWI_DICOM_SPACING;
+    }
+    if (number_of(item, DCM_SpacingBetweenSlices, 0, &value) ||
+        (!(f->has & CWI_DICOM_BETWEEN) && number_of(item, DCM_SliceThickness, 0, &value))) {
+        f->between = std::fabs(value);
+        f->has |= CWI_DICOM_BETWEEN;
+    }
+    if (number_of(item, DCM_RescaleSlope, 0, &value))
+        f->slope = value;
+    if (number_of(item, DCM_RescaleIntercept, 0, &value))
+        f->intercept = value;
+}
+
+cwi_dicom_frame plain_frame(DcmItem *data)
+{
+    cwi_dicom_frame f = {};
+    f.slope = 1;
+    for (double &key : f.keys)
+        key = NAN;
+    take_plane(first_item(data, DCM_DetectorInformationSequence), &f); // nuclear medicine
+    take_plane(data, &f);
+    take_keys(data, &f);
+    double scaling;
+    if (number_of(data, DCM_DoseGridScaling, 0, &scaling))
+        f.slope = scaling;
+    return f;
+}
+
+// The functional groups of a multi-frame object: those of all frames, then those of one.
+void take_groups(DcmItem *groups, cwi_dicom_frame *f)
+{
+    static const DcmTagKey planes[] = {DCM_PixelMeasuresSequence, DCM_PlaneOrientationSequence,
+                                       DCM_PlanePositionSequence,
+                                       DCM_PixelValueTransformationSequence};
+    static const DcmTagKey keys[] = {DCM_FrameContentSequence, DCM_MREchoSequence,
+                                     DCM_MRDiffusionSequence};
+    for (const DcmTagKey &tag : planes)
+        take_plane(first_item(groups, tag), f);
+    for (const DcmTagKey &tag : keys)
+        take_keys(first_item(groups, tag), f);
+    DcmItem *segment = first_item(groups, DCM_SegmentIdentificationSequence);
+    if (segment)
+        f->segment = count_of(segment, DCM_ReferencedSegmentNumber, 0);
+}
+
+// Frames at equal distances from the first, or at stated ones, along the normal.
+void take_offset(DcmItem *data, uint32_t n, cwi_dicom_frame *f)
+{
+    const double(&a)[2][3] = f->axes;
+    double offset = n * f->between;
+    const bool stated = number_of(data, DCM_GridFrameOffsetVector, n, &offset);
+    if (!stated && !(n == 0 || text_of(data, DCM_Modality) == "NM"))
+        f->has &= ~unsigned(CWI_DICOM_POSITION);
+    for (int c = 0; c < 3; c++) {
+        const int d = (c + 1) % 3, e = (c + 2) % 3;
+        f->position[c] += offset * (a[0][d] * a[1][e] - a[0][e] * a[1][d]);
+    }
+}
+
+void take_frames(DcmItem *data, cwi_dicom_facts *facts)
+{
+    DcmSequenceOfItems *each = nullptr;
+    cwi_dicom_frame *frames = reinterpret_cast<cwi_dicom_frame *>(facts + 1);
+    cwi_dicom_frame common = plain_frame(data);
+    take_groups(first_item(data, DCM_SharedFunctionalGroupsSequence), &common);
+    if (data->findAndGetSequence(DCM_PerFrameFunctionalGroupsSequence, each).bad())
+        each = nullptr;
+    for (uint32_t n = 0; n < facts->frame_count; n++) {
+        cwi_dicom_frame *f = frames + n;
+        *f = common;
+        if (each)
+            take_groups(each->getItem(n), f);
+        else if (facts->frame_count > 1)
+            take_offset(data, n, f);
+    }
+}
+
+// --- mosaics
+// -----------------------------------------------------------------------------------
+
+// Siemens scanners show the slices of one moment side by side.
+bool is_mosaic(DcmItem *data, const PixelLayout &l)
+{
+    for (unsigned long n = 0; n < 16; n++)
+        if (text_of(data, DCM_ImageType, n) == "MOSAIC")
+            return l.frames == 1;
+    return false;
+}
+
+// The element of the private group that a name has reserved; NULL where there is none.
+const Uint8 *private_bytes(DcmItem *data, Uint16 group, const char *name, Uint16 number,
+                           size_t *size)
+{
+    for (unsigned block = 0x10; block < 0x100; block++) {
+        DcmElement *element = nullptr;
+        Uint8 *bytes = nullptr;
+        if (text_of(data, DcmTagKey(group, Uint16(block))) != name ||
+            data->findAndGetElement(DcmTagKey(group, Uint16(block << 8 | number)), element)
+                .bad() ||
+            element->getUint8Array(bytes).bad() || !bytes)
+            continue;
+        *size = element->getLength();
+        return bytes;
+    }
+    return nullptr;
+}
+
+// Reads how many slices there are, and where they go; returns why not.
+const char *read_mosaic(DcmItem *data, const PixelLayout &l, Mosaic &m)
+{
+    size_t size = 0;
+    double count = 0;
+    const Uint8 *csa = private_bytes(data, 0x0029, "SIEMENS CSA HEADER", 0x10, &size);
+    if (!csa)
+        return "it is a mosaic of slices, and has no CSA header (0029,1010) that says where "
+               "they lie";
+    if (!cwi_csa_numbers(csa, size, "NumberOfImagesInMosaic", 1, &count) ||
+        !cwi_csa_numbers(csa, size, "SliceNormalVector", 3, m.normal))
+        return "it is a mosaic of slices, and its CSA header (0029,1010) is damaged or has no "
+               "NumberOfImagesInMosaic or SliceNormalVector";
+    if (!(count >= 1 && count <= 4096) || count != std::floor(count))
+        return "NumberOfImagesInMosaic of its CSA header is not from 1 to 4096";
+    m.count = uint32_t(count);
+    m.across = uint32_t(std::ceil(std::sqrt(count)));
+    if (l.columns % m.across || l.rows % m.across)
+        return "it is a mosaic of slices, and Rows and Columns are no multiples of a slice's";
+    return nullptr;
+}
+
+// The stated place is that of a slice as large as the mosaic, around the same middle.
+const char *place_slices(const Mosaic &m, cwi_dicom_facts *f)
+{
+    cwi_dicom_frame *frames = reinterpret_cast<cwi_dicom_frame *>(f + 1), first = frames[0];
+    const unsigned needed =
+        CWI_DICOM_POSITION | CWI_DICOM_ORIENTATION | CWI_DICOM_SPACING | CWI_DICOM_BETWEEN;
+    const double(&a)[2][3] = first.axes;
+    double along = 0;
+    if ((first.has & needed) != needed || !(first.between > 0))
+        return "it is a mosaic of slices without one of ImagePositionPatient, "
+               "ImageOrientationPatient, PixelSpacing and SpacingBetweenSlices";
+    for (int c = 0; c < 3; c++) {
+        const int d = (c + 1) % 3, e = (c + 2) % 3;
+        along += m.normal[c] * (a[0][d] * a[1][e] - a[0][e] * a[1][d]);
+        first.position[c] +=
+            (m.across - 1) / 2.0 *
+            (a[0][c] * first.spacing[0] * f->columns + a[1][c] * first.spacing[1] * f->rows);
+    }
+    if (!(std::fabs(std::fabs(along) - 1) < 1e-2))
+        return "SliceNormalVector of its CSA header is not normal to ImageOrientationPatient";
+    for (uint32_t n = 0; n < f->frame_count; n++) {
+        frames[n] = first;
+        for (int c = 0; c < 3; c++)
+            frames[n].position[c] += n * first.between * m.normal[c];
+    }
+    return nullptr;
+}
+
+void unfold(DicomFile &d, cwi_dicom_facts *f)
+{
+    d.mosaic = Mosaic();
+    if (!is_mosaic(d.data(), d.layout))
+        return;
+    const char *why = read_mosaic(d.data(), d.layout, d.mosaic);
+    if (!why) {
+        f->columns /= d.mosaic.across;
+        f->rows /= d.mosaic.across;
+        f->frame_count = d.mosaic.count;
+        why = place_slices(d.mosaic, f);
+    }
+    refuse(f, why);
+}
+
+// --- the file
+// ----------------------------------------------------------------------------------
+
+// What the file itself says its pixels are stored as.
+OFString syntax_of(DicomFile &d)
+{
+    const OFString text = text_of(d.file->getMetaInfo(), DCM_TransferSyntaxUID);
+    return text.substr(0, text.find_first_not_of("0123456789."));
+}
+
+// Refuses by name what DCMTK does not know, or knows but does not decode.
+void check_syntax(DicomFile &d, cwi_dicom_facts *f)
+{
+    static const struct {
+        const char *uid, *name;
+    } unknown[] = {{"1.2.840.10008.1.2.4.110", "JPEG XL lossless"},
+                   {"1.2.840.10008.1.2.4.111", "JPEG XL recompressed"},
+                   {"1.2.840.10008.1.2.4.112", "JPEG XL"},
+                   {"1.2.840.10008.1.2.4.201", "HTJ2K lossless"},
+                   {"1.2.840.10008.1.2.4.202", "HTJ2K lossless RPCL"},
+                   {"1.2.840.10008.1.2.4.203", "HTJ2K"},
+                   {"1.2.840.10008.1.2.8.1", "frames deflated one by one"}};
+    const OFString uid = syntax_of(d);
+    const DcmXfer syntax(uid.c_str());
+    const E_TransferSyntax known = syntax.getXfer();
+    if (uid.empty()) // a file without a head says nothing
+        return;
+    if (known != EXS_Unknown &&
+        (!syntax.isEncapsulated() || known == EXS_JPEG2000LosslessOnly ||
+         known == EXS_JPEG2000 ||
+         DcmCodecList::canChangeCoding(known, EXS_LittleEndianExplicit)))
+        return;
+    const char *name = known == EXS_Unknown ? "unknown" : syntax.getXferName();
+    for (const auto &row : unknown)
+        if (uid == row.uid)
+            name = row.name;
+    std::snprintf(f->refusal, sizeof f->refusal,
+                  "its transfer syntax %.64s (%.60s) is not read", uid.c_str(), name);
+}
+
+cw_status open_dicom(DicomFile &d, int fd, uint64_t size, cw_error *err)
+{
+    d.close_file();
+    d.fd = fd;
+    d.stream.reset(new FileStream(fd, int64_t(size)));
+    d.file.reset(new DcmFileFormat);
+    d.file->transferInit();
+    const OFCondition read = d.file->read(*d.stream, EXS_Unknown, EGL_noChange, 1 << 16);
+    d.file->transferEnd();
+    if (read.bad())
+        return cw_fail(err, CW_ERR_FORMAT, "its elements are damaged or cut off: %s",
+                       read.text());
+    return CW_OK;
+}
+
+bool is_compressed(DicomFile &d)
+{
+    return DcmXfer(d.data()->getOriginalXfer()).isEncapsulated();
+}
+
+const char *why_unreadable(DicomFile &d)
+{
+    const E_TransferSyntax syntax = d.data()->getOriginalXfer();
+    const bool mpeg = syntax >= EXS_MPEG2MainProfileAtMainLevel && is_compressed(d) &&
+                      std::strstr(DcmXfer(syntax).getXferName(), "MPEG");
+    if (mpeg)
+        return "its frames are a film (MPEG)";
+    if (is_compressed(d) && d.layout.allocated == 1 && syntax != EXS_RLELossless &&
+        syntax != EXS_JPEG2000 && syntax != EXS_JPEG2000LosslessOnly)
+        return "its pixels of one bit are compressed by something other than run lengths";
+    if (DcmXfer(syntax).isBigEndian() && d.layout.allocated == 32)
+        return "its numbers of 32 bits are big-endian";
+    return nullptr;
+}
+
+const char *check_sizes(const PixelLayout &l)
+{
+    const size_t row = size_t(l.columns) * l.samples * cw_type_size(l.type);
+    return l.columns < 1 || l.rows < 1  ? "Rows or Columns is missing or 0"
+           : l.samples < 1              ? "SamplesPerPixel is 0"
+           : row > CWI_PLANES_SHARED    ? "a row of pixels takes more than 64 MiB"
+           : l.frames < 1               ? "NumberOfFrames is no whole number above 0"
+           : l.count() > INT32_MAX / 16 ? "a frame holds more than 2^27 numbers"
+                                        : nullptr;
+}
+
+cw_status take_facts(DicomFile &d, cwi_dicom_facts *f, size_t room, cw_error *err)
+{
+    DcmDataset *data = d.data();
+    d.layout = PixelLayout();
+    *f = cwi_dicom_facts();
+    const cwi_dicom_kind kind = kind_of(data);
+    const Stored s = find_pixels(data, d.layout, kind, is_compressed(d));
+    if (!s.element)
+        return CW_OK; // no image, and no matter
+    const char *unreadable = why_unreadable(d);
+    if (unreadable)
+        refuse(f, unreadable);
+    else
+        check_syntax(d, f);
+    const PixelLayout &l = d.layout;
+    f->kind = kind;
+    copy_text(f->series, text_of(data, DCM_SeriesInstanceUID));
+    copy_text(f->instance, text_of(data, DCM_SOPInstanceUID));
+    copy_text(f->modality, text_of(data, DCM_Modality));
+    f->number = integer_of(data, DCM_SeriesNumber);
+    f->instance_number = integer_of(data, DCM_InstanceNumber);
+    f->columns = l.columns;
+    f->rows = l.rows;
+    f->samples = l.samples;
+    f->type = l.type;
+    f->pixel_bytes = is_compressed(d) ? 0 : s.element->getLengthField();
+    f->deflated = d.data()->getOriginalXfer() == EXS_DeflatedLittleEndianExplicit;
+    refuse(f, s.why_not);
+    refuse(f, check_sizes(l));
+    if (f->kind == CWI_DICOM_SEGMENTATION &&
+        text_of(data, DCM_SegmentationType) == "FRACTIONAL")
+        refuse(f, "it is a segmentation of type FRACTIONAL, which is not read");
+    if (l.frames > (room - sizeof *f) / sizeof(cwi_dicom_frame))
+        return cw_fail(err, CW_ERR_LIMIT, "'NumberOfFrames' is %u; at most %zu are read",
+                       l.frames, (room - sizeof *f) / sizeof(cwi_dicom_frame));
+    f->frame_count = l.frames;
+    take_padding(data, l, f);
+    take_frames(data, f);
+    unfold(d, f);
+    return CW_OK;
+}
+
+cw_status copy_rows(DicomFile &d, const cwi_plane_request *q, void *shared, cw_error *err)
+{
+    const PixelLayout &l = d.layout;
+    const Mosaic &m = d.mosaic;
+    const bool unfolded = m.count > 1;
+    const uint32_t rows = l.rows / m.across, frame = unfolded ? 0 : q->plane;
+    if (!d.file || (unfolded ? q->plane >= m.count : q->plane >= l.frames) ||
+        q->first_row > rows || q->row_count > rows - q->first_row)
+        return cw_fail(err, CW_ERR_FORMAT, "frame %u has no rows %u to %u", q->plane,
+                       q->first_row, q->first_row + q->row_count);
+    cw_status st = frame == d.decoded ? CW_OK : decode_frame(d, frame, err);
+    if (st != CW_OK)
+        return st;
+    const size_t all = size_t(l.columns) * l.samples * cw_type_size(l.type);
+    const size_t row = all / m.across, tile = unfolded ? q->plane : 0;
+    const unsigned char *from =
+        d.pixels.data() + tile % m.across * row + (tile / m.across * rows + q->first_row) * all;
+    for (uint32_t n = 0; n < q->row_count; n++)
+        std::memcpy(static_cast<char *>(shared) + n * row, from + n * all, row);
+    return CW_OK;
+}
+
+cw_status work(void *state, int fd, const void *request, void *shared, cw_error *err)
+{
+    DicomFile &d = *static_cast<DicomFile *>(state);
+    cwi_plane_request q;
+    std::memcpy(&q, request, sizeof q);
+    return guard(err, "DCMTK", [&] {
+        if (q.op == CWI_PLANE_PIXELS)
+            return copy_rows(d, &q, shared, err);
+        cw_status st = open_dicom(d, fd, q.file_bytes, err);
+        return st == CW_OK ? take_facts(d, static_cast<cwi_dicom_facts *>(shared),
+                                        CWI_PLANES_SHARED, err)
+                           : st;
+    });
+}
+
+// What DCMTK does once in a process. It reads its dictionary from a file, and would log what it
+// reads.
+struct Library {
+    Library()
+    {
+        OFLog::configure(OFLogger::OFF_LOG_LEVEL);
+        DcmRLEDecoderRegistration::registerCodecs();
+        DJDecoderRegistration::registerCodecs();
+        DJLSDecoderRegistration::registerCodecs();
+        dcmDataDict.rdlock();
+        dcmDataDict.rdunlock();
+    }
+    ~Library()
+    {
+        DJLSDecoderRegistration::cleanup();
+        DJDecoderRegistration::cleanup();
+        DcmRLEDecoderRegistration::cleanup();
+    }
+};
+
+cw_status prepare(cw_error *err)
+{
+    return guard(err, "DCMTK", [&] {
+        static const Library library;
+        return CW_OK;
+    });
+}
+
+void *state_new()
+{
+    return new (std::nothrow) DicomFile;
+}
+
+void state_free(void *state)
+{
+    delete static_cast<DicomFile *>(state);
+}
+
+} // namespace
+
+const cwi_plane_functions cwi_module_dicom = {state_new, state_free, prepare, work};

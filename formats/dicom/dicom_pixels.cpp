@@ -1,0 +1,251 @@
+// DCMTK behind plain C, the second half: from a frame to its pixels.
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "formats/dicom/dicom_file.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <dcmtk/dcmdata/dcpixseq.h>
+#include <dcmtk/dcmdata/dcpxitem.h>
+
+using namespace cw;
+
+namespace
+{
+
+// Moves the bits that are stored to the bottom, and a sign to the top; what is above them, as
+// old overlays are, is no part of a pixel.
+template <typename Unsigned, typename Signed>
+void mend_bits(const PixelLayout &l, void *pixels, size_t count)
+{
+    const unsigned all = 8 * sizeof(Unsigned), up = all - 1 - l.high, down = all - l.stored;
+    Unsigned *p = static_cast<Unsigned *>(pixels);
+    if (up == 0 && down == 0)
+        return;
+    for (size_t i = 0; i < count; i++) {
+        const Unsigned top = Unsigned(p[i] << up);
+        p[i] = l.is_signed ? Unsigned(Signed(top) >> down) : Unsigned(top >> down);
+    }
+}
+
+void mend(const PixelLayout &l, void *pixels)
+{
+    if (l.type == CW_U8 || l.type == CW_I8)
+        mend_bits<uint8_t, int8_t>(l, pixels, l.count());
+    else if (l.type == CW_U16 || l.type == CW_I16)
+        mend_bits<uint16_t, int16_t>(l, pixels, l.count());
+    else if (l.type == CW_U32 || l.type == CW_I32)
+        mend_bits<uint32_t, int32_t>(l, pixels, l.count());
+}
+
+void interleave(const PixelLayout &l, std::vector<unsigned char> &pixels)
+{
+    const size_t size = cw_type_size(l.type), plane = size_t(l.columns) * l.rows;
+    const std::vector<unsigned char> planes(pixels);
+    for (size_t i = 0; i < plane; i++)
+        for (size_t c = 0; c < l.samples; c++)
+            std::memcpy(&pixels[(i * l.samples + c) * size], &planes[(c * plane + i) * size],
+                        size);
+}
+
+cw_status fail_frame(uint32_t frame, const char *why, cw_error *err)
+{
+    return cw_fail(err, CW_ERR_FORMAT, "the pixels of frame %u cannot be read: %s", frame + 1,
+                   why);
+}
+
+cw_status fail_short(uint32_t frame, cw_error *err)
+{
+    return fail_frame(frame, "'PixelData' ends before it", err);
+}
+
+// One bit a pixel, from a place among the bits on.
+void spread_bits(DicomFile &d, const Uint8 *bytes, uint64_t first)
+{
+    const size_t count = d.layout.count();
+    d.pixels.resize(count);
+    for (size_t i = 0; i < count; i++)
+        d.pixels[i] = bytes[(first + i) / 8] >> ((first + i) % 8) & 1;
+}
+
+// One bit a pixel: frames follow each other without a gap, be it within a byte.
+cw_status read_bits(DicomFile &d, uint32_t frame, cw_error *err)
+{
+    const size_t count = d.layout.count();
+    const Uint8 *bytes = nullptr;
+    unsigned long size = 0;
+    DcmElement *element = nullptr;
+    if (d.data()->findAndGetElement(DCM_PixelData, element).bad())
+        return fail_short(frame, err);
+    Uint8 *mine = nullptr;
+    Uint16 *words = nullptr;
+    if (element->getUint8Array(mine).good() && mine)
+        bytes = mine;
+    else if (element->getUint16Array(words).good() && words)
+        bytes = reinterpret_cast<const Uint8 *>(words); // little-endian words are the bytes
+    size = element->getLengthField();
+    const uint64_t first = uint64_t(frame) * count;
+    if (!bytes || (first + count + 7) / 8 > size)
+        return fail_short(frame, err);
+    spread_bits(d, bytes, first);
+    return CW_OK;
+}
+
+DcmPixelData *pixel_data(DicomFile &d)
+{
+    DcmElement *element = nullptr;
+    d.data()->findAndGetElement(DCM_PixelData, element);
+    return dynamic_cast<DcmPixelData *>(element);
+}
+
+// Adds a fragment of compressed pixels; false where there is none of that number.
+bool add_fragment(DcmPixelSequence *fragments, unsigned long number,
+                  std::vector<unsigned char> &bytes)
+{
+    DcmPixelItem *item = nullptr;
+    Uint8 *data = nullptr;
+    if (fragments->getItem(item, number).bad() || item->getUint8Array(data).bad() || !data)
+        return false;
+    bytes.insert(bytes.end(), data, data + item->getLength());
+    return true;
+}
+
+// A frame has a fragment of its own, or the only frame has all. The first is a table of
+// offsets.
+cw_status read_fragments(DicomFile &d, uint32_t frame, std::vector<unsigned char> &bytes,
+                         cw_error *err)
+{
+    const PixelLayout &l = d.layout;
+    DcmPixelSequence *fragments = nullptr;
+    DcmPixelData *data = pixel_data(d);
+    if (!data ||
+        data->getEncapsulatedRepresentation(d.data()->getOriginalXfer(), nullptr, fragments)
+            .bad())
+        return fail_short(frame, err);
+    const unsigned long count = fragments->card();
+    const bool whole = l.frames == 1;
+    if (count < 2 || (!whole && count != l.frames + 1ul))
+        return fail_frame(frame, "compressed frames must have one fragment each", err);
+    for (unsigned long n = whole ? 1 : frame + 1ul; n < (whole ? count : frame + 2ul); n++)
+        if (!add_fragment(fragments, n, bytes))
+            return fail_short(frame, err);
+    return CW_OK;
+}
+
+// Runs of bytes (PackBits): n < 128 is followed by n + 1 bytes, n > 128 repeats one 257 - n
+// times. Returns how many bytes there are, at most room.
+size_t unpack_runs(const unsigned char *from, size_t size, unsigned char *to, size_t room)
+{
+    size_t at = 0, filled = 0;
+    while (at + 1 < size && filled < room) {
+        const unsigned n = from[at++];
+        const bool repeats = n > 128;
+        const size_t wanted = n == 128 ? 0 : repeats ? 257 - n : n + 1;
+        const size_t count = std::min(wanted, room - filled);
+        if (!repeats && count > size - at)
+            return filled;
+        if (repeats)
+            std::memset(to + filled, from[at], count);
+        else
+            std::memcpy(to + filled, from + at, count);
+        filled += count;
+        at += repeats ? 1 : wanted;
+    }
+    return filled;
+}
+
+// Runs of bytes that hold eight pixels each: DCMTK decodes whole bytes alone. The head counts
+// segments and says where each starts; here is but one.
+cw_status read_runs_of_bits(DicomFile &d, uint32_t frame, cw_error *err)
+{
+    enum { HEAD = 64 };
+    std::vector<unsigned char> bytes;
+    cw_status st = read_fragments(d, frame, bytes, err);
+    if (st != CW_OK)
+        return st;
+    if (bytes.size() < HEAD || bytes[0] != 1 || bytes[1] || bytes[2] || bytes[3] ||
+        bytes[4] != HEAD || bytes[5] || bytes[6] || bytes[7])
+        return fail_frame(frame, "its head of run lengths does not count one segment", err);
+    std::vector<unsigned char> bits((d.layout.count() + 7) / 8);
+    if (unpack_runs(bytes.data() + HEAD, bytes.size() - HEAD, bits.data(), bits.size()) <
+        bits.size())
+        return fail_frame(frame, "its run lengths end early", err);
+    spread_bits(d, bits.data(), 0);
+    return CW_OK;
+}
+
+cw_status read_jpeg2000(DicomFile &d, uint32_t frame, cw_error *err)
+{
+    const PixelLayout &l = d.layout;
+    std::vector<unsigned char> bytes;
+    cw_status st = read_fragments(d, frame, bytes, err);
+    if (st != CW_OK)
+        return st;
+    const cwi_dicom_image image = {l.columns, l.rows, l.samples, l.type};
+    d.pixels.resize(l.count() * cw_type_size(l.type));
+    return cwi_dicom_jpeg2000(bytes.data(), bytes.size(), &image, d.pixels.data(), err);
+}
+
+// Floats are no "pixel data" to DCMTK.
+cw_status read_reals(DicomFile &d, uint32_t frame, cw_error *err)
+{
+    const PixelLayout &l = d.layout;
+    const size_t bytes = l.count() * cw_type_size(l.type);
+    const DcmTagKey &tag = l.type == CW_F32 ? DCM_FloatPixelData : DCM_DoubleFloatPixelData;
+    DcmElement *element = nullptr;
+    d.pixels.resize(bytes);
+    if (d.data()->findAndGetElement(tag, element).bad() ||
+        (uint64_t(frame) + 1) * bytes > element->getLengthField())
+        return fail_short(frame, err);
+    const OFCondition read = element->getPartialValue(d.pixels.data(), Uint32(frame * bytes),
+                                                      Uint32(bytes), nullptr, gLocalByteOrder);
+    return read.good() ? CW_OK : fail_frame(frame, read.text(), err);
+}
+
+cw_status read_integers(DicomFile &d, uint32_t frame, cw_error *err)
+{
+    const PixelLayout &l = d.layout;
+    DcmPixelData *data = pixel_data(d);
+    OFString colours;
+    Uint32 fragment = 0, bytes = 0;
+    if (!data)
+        return fail_short(frame, err);
+    OFCondition done = data->getUncompressedFrameSize(d.data(), bytes);
+    const size_t wanted = l.count() * cw_type_size(l.type);
+    if (done.good() && bytes != wanted)
+        return fail_frame(frame, "its size is not what rows, columns and bits make", err);
+    d.pixels.assign(wanted + wanted % 2, 0);
+    if (done.good())
+        done = data->getUncompressedFrame(d.data(), frame, fragment, d.pixels.data(),
+                                          Uint32(d.pixels.size()), colours);
+    return done.good() ? CW_OK : fail_frame(frame, done.text(), err);
+}
+
+bool is_jpeg2000(E_TransferSyntax syntax)
+{
+    return syntax == EXS_JPEG2000LosslessOnly || syntax == EXS_JPEG2000;
+}
+
+} // namespace
+
+cw_status cw::decode_frame(DicomFile &d, uint32_t frame, cw_error *err)
+{
+    const PixelLayout &l = d.layout;
+    const bool real = l.type == CW_F32 || l.type == CW_F64;
+    const E_TransferSyntax syntax = d.data()->getOriginalXfer();
+    const bool compressed = DcmXfer(syntax).isEncapsulated();
+    d.decoded = -1;
+    cw_status st = real                              ? read_reals(d, frame, err)
+                   : l.allocated == 1 && !compressed ? read_bits(d, frame, err)
+                   : is_jpeg2000(syntax)             ? read_jpeg2000(d, frame, err)
+                   : l.allocated == 1                ? read_runs_of_bits(d, frame, err)
+                                                     : read_integers(d, frame, err);
+    if (st != CW_OK)
+        return st;
+    if (l.samples > 1 && l.by_plane && !compressed)
+        interleave(l, d.pixels);
+    if (l.allocated > 1)
+        mend(l, d.pixels.data());
+    d.decoded = frame;
+    return CW_OK;
+}

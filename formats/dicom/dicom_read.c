@@ -1,0 +1,156 @@
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "formats/dicom/dicom_stack.h"
+#include "formats/bytes/file_pattern.h"
+#include "formats/volume/volume_reader.h"
+#include "formats/volume/voxel_source.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static cw_status open_library(cwi_planes *planes, const cw_read_desc *desc, cw_error *err)
+{
+    return cwi_planes_open(planes, "dicom", "DCMTK", desc, err);
+}
+
+/* The facts of the one file that was named. */
+static cw_status facts_of_file(const cwi_input *in, cwi_planes *planes, cwi_dicom_facts *f,
+                               cw_error *err)
+{
+    const void *shared;
+    cw_status st = cwi_dicom_facts_of(planes, in->fd, in->size, &shared, err);
+    if (st != CW_OK)
+        return st;
+    memcpy(f, shared, sizeof *f);
+    f->series[sizeof f->series - 1] = f->refusal[sizeof f->refusal - 1] = '\0';
+    if (f->refusal[0])
+        return cw_fail(err, CW_ERR_FORMAT, "%s", f->refusal);
+    if (f->kind == CWI_DICOM_NO_IMAGE)
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "DICOM without an image; to read a series, name its folder");
+    return CW_OK;
+}
+
+/* All files of a folder, or those beside one file that are of its series. */
+static cw_status scan(const cwi_input *in, cwi_names *names, cwi_planes *planes,
+                      cwi_dicom_scan *found, cw_error *err)
+{
+    cwi_dicom_facts facts;
+    cwi_names beside = {0};
+    if (names)
+        return cwi_dicom_scan_files(found, in, names, NULL, planes, err);
+    cw_status st = facts_of_file(in, planes, &facts, err);
+    if (st == CW_OK)
+        st = cwi_files_beside(in, &beside, &found->links, err);
+    if (st == CW_OK)
+        st = cwi_dicom_scan_files(found, in, &beside, &facts, planes, err);
+    cwi_names_free(&beside);
+    return st;
+}
+
+/* Of a folder all of it counts, of a file's neighbours what may have been meant. */
+static void note_scan(const cw_read_desc *desc, const cwi_dicom_scan *found, bool folder)
+{
+    cwi_note_links(desc, found->links);
+    if (found->damaged)
+        cwi_note(desc,
+                 "left out, because they cannot be read: %zu files beside it, the first %s",
+                 found->damaged, found->damage);
+    if (folder && found->strangers)
+        cwi_note(desc, "left out, because they are not DICOM images: %zu of its files",
+                 found->strangers);
+    if (folder && found->copies)
+        cwi_note(desc, "left out, because they are copies of others: %zu images",
+                 found->copies);
+}
+
+cw_status cwi_dicom_read(const cwi_input *in, cwi_names *names, const cw_read_desc *desc,
+                         cw_volume *volume, cw_error *err)
+{
+    cwi_planes planes = {0};
+    cwi_dicom_scan found = {0};
+    cwi_dicom_findings findings;
+    cwi_stack stack = {0};
+    size_t series = 0;
+    cw_status st = open_library(&planes, desc, err);
+    if (st == CW_OK)
+        st = scan(in, names, &planes, &found, err);
+    if (st == CW_OK)
+        st = cwi_dicom_choose(&found, desc->series, &series, err);
+    if (st == CW_OK)
+        note_scan(desc, &found, names != NULL);
+    if (st == CW_OK)
+        st = cwi_dicom_stack(&found, series, desc, &stack, &findings, err);
+    if (st == CW_OK)
+        st = cwi_check_frame(&stack.shape, "ImagePositionPatient", err);
+    if (st == CW_OK) {
+        cwi_set_spacing(&stack.shape, desc);
+        stack.files = found.files; /* lent */
+        st = cwi_stack_load(&stack, in, &planes, desc, volume, err);
+        stack.files = (cwi_names){0};
+    }
+    cwi_stack_free(&stack);
+    cwi_dicom_scan_free(&found);
+    cwi_planes_close(&planes);
+    return st;
+}
+
+/* --- the list ------------------------------------------------------------------------------
+ */
+
+static void describe(cwi_dicom_scan *found, size_t n, const cw_read_desc *desc, cw_series *s)
+{
+    cwi_stack stack = {0};
+    cwi_dicom_findings findings;
+    cw_error err = {0};
+    const cw_read_desc quiet = {.gaps = desc->gaps, .tilt = desc->tilt};
+    const cwi_dicom_series *from = &found->series[n];
+    snprintf(s->label, sizeof s->label, "%s", from->label);
+    snprintf(s->modality, sizeof s->modality, "%s", from->sample->file->modality);
+    s->images = from->count;
+    s->status = cwi_dicom_stack(found, n, &quiet, &stack, &findings, &err);
+    s->shape = stack.shape;
+    s->tilt_degrees = findings.tilt_degrees;
+    snprintf(s->finding, sizeof s->finding, "%s",
+             s->status == CW_OK ? findings.gaps : err.message);
+    if (s->status != CW_OK) { /* what is known all the same */
+        s->shape.type = from->sample->file->type;
+        s->shape.dim[0] = from->sample->file->columns;
+        s->shape.dim[1] = from->sample->file->rows;
+        s->shape.dim[2] = from->count;
+    }
+    cwi_stack_free(&stack);
+}
+
+static cw_status list(cwi_dicom_scan *found, const cw_read_desc *desc, cw_series **series,
+                      size_t *count, cw_error *err)
+{
+    cw_series *all = cwi_alloc_zeroed(found->series_count, sizeof *all);
+    if (!all)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu series", found->series_count);
+    for (size_t n = 0; n < found->series_count; n++)
+        describe(found, n, desc, &all[n]);
+    *series = all;
+    *count = found->series_count;
+    return CW_OK;
+}
+
+cw_status cwi_dicom_list(const cwi_input *in, cwi_names *names, const cw_read_desc *desc,
+                         cw_series **series, size_t *count, cw_error *err)
+{
+    cwi_planes planes = {0};
+    cwi_dicom_scan found = {0};
+    cw_status st = open_library(&planes, desc, err);
+    if (st == CW_OK)
+        st = scan(in, names, &planes, &found, err);
+    if (st == CW_OK)
+        st = list(&found, desc, series, count, err);
+    cwi_dicom_scan_free(&found);
+    cwi_planes_close(&planes);
+    return st;
+}
+
+void cw_series_free(cw_series *series)
+{
+    cwi_free(series);
+}

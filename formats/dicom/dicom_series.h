@@ -1,0 +1,59 @@
+/* The DICOM files of a folder: their facts, and the series they belong to. */
+#ifndef FORMATS_DICOM_DICOM_SERIES_H
+#define FORMATS_DICOM_DICOM_SERIES_H
+
+#include "formats/dicom/dicom.h"
+#include "formats/bytes/input_file.h"
+
+/* One frame of one file. */
+typedef struct cwi_dicom_plane {
+    const cwi_dicom_facts *file; /* its facts */
+    size_t index;                /* of the file */
+    uint32_t number;             /* of the frame in it */
+    size_t series;
+    double distance; /* along the normal, mm: set by cwi_dicom_stack() */
+    size_t place, step;
+    cwi_dicom_frame frame;
+} cwi_dicom_plane;
+
+/* Planes of one scanner series, of one size, type and direction. */
+typedef struct cwi_dicom_series {
+    char label[32]; /* SeriesNumber; with .1, .2 ... where it has several of them */
+    const cwi_dicom_plane *sample;
+    size_t count; /* of planes */
+} cwi_dicom_series;
+
+/* A zeroed scan is empty. */
+typedef struct cwi_dicom_scan {
+    cwi_names files; /* those that hold images */
+    cwi_dicom_facts **facts;
+    cwi_dicom_plane *planes;
+    size_t plane_count, plane_room;
+    cwi_dicom_series *series;
+    size_t series_count;
+    size_t strangers; /* files that are no DICOM images */
+    size_t copies;    /* ... and that are there more than once */
+    size_t links;     /* beside the one that was named, left out */
+    size_t damaged;   /* files beside the one that was named */
+    char damage[320]; /* of the first of them */
+} cwi_dicom_scan;
+
+/* Has DCMTK read a file that was found to be fit for it. */
+cw_status cwi_dicom_facts_of(cwi_planes *planes, int fd, uint64_t size, const void **shared,
+                             cw_error *err);
+
+/* Takes the facts of the files among names that are DICOM images, and sorts them into series.
+ * only  NULL, or the facts of the file that was named: its series, and images like it, are what
+ *       is wanted; files beside it that are damaged are left out, and counted
+ * Returns  CW_ERR_FORMAT for a file that is damaged, or whose facts contradict each other */
+cw_status cwi_dicom_scan_files(cwi_dicom_scan *scan, const cwi_input *in, cwi_names *names,
+                               const cwi_dicom_facts *only, cwi_planes *planes, cw_error *err);
+void cwi_dicom_scan_free(cwi_dicom_scan *scan);
+
+/* Finds a series by its label or UID; without a name the only one.
+ * Returns CW_ERR_UNSAFE when there are several, CW_ERR_ARGUMENT when there is none of that
+ * name. */
+cw_status cwi_dicom_choose(const cwi_dicom_scan *scan, const char *name, size_t *series,
+                           cw_error *err);
+
+#endif

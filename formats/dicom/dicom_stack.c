@@ -1,0 +1,604 @@
+#define _GNU_SOURCE /* qsort_r */
+#include "formats/dicom/dicom_stack.h"
+
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/geometry/vec3.h"
+#include "formats/volume/volume_reader.h"
+#include "formats/volume/slice_spacing.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+static const double PI = 3.14159265358979323846;
+
+/* The planes of the series, sorted on the way to a stack. */
+typedef struct sorting {
+    cwi_dicom_plane *planes;
+    size_t count;
+    size_t places; /* how many different ones they stand at */
+    size_t steps;  /* planes at each place */
+    double normal[3];
+    const cw_read_desc *desc;
+    cwi_dicom_findings *findings;
+} sorting;
+
+/* --- geometry that is there ----------------------------------------------------------------
+ */
+
+static bool states_spacing(const cw_read_desc *desc)
+{
+    return desc->spacing_mm[0] > 0;
+}
+
+static cw_status check_has(const sorting *s, unsigned flag, const char *field, cw_error *err)
+{
+    size_t missing = 0;
+    for (size_t i = 0; i < s->count; i++)
+        missing += !(s->planes[i].frame.has & flag);
+    if (missing == 0)
+        return CW_OK;
+    return cw_fail(err, CW_ERR_UNSAFE,
+                   "%zu of %zu images have no '%s', so where they lie is not known; --spacing "
+                   "X,Y,Z takes them in the order of their numbers, at that distance",
+                   missing, s->count, field);
+}
+
+static bool is_placed(const sorting *s)
+{
+    const unsigned both = CWI_DICOM_POSITION | CWI_DICOM_ORIENTATION;
+    for (size_t i = 0; i < s->count; i++)
+        if ((s->planes[i].frame.has & both) != both)
+            return false;
+    return true;
+}
+
+static cw_status check_geometry(const sorting *s, cw_error *err)
+{
+    const double *x = s->planes[0].frame.axes[0], *y = s->planes[0].frame.axes[1];
+    cw_status st = check_has(s, CWI_DICOM_POSITION, "ImagePositionPatient", err);
+    if (st == CW_OK)
+        st = check_has(s, CWI_DICOM_ORIENTATION, "ImageOrientationPatient", err);
+    if (st == CW_OK && !states_spacing(s->desc))
+        st = check_has(s, CWI_DICOM_SPACING, "PixelSpacing", err);
+    if (st != CW_OK)
+        return st;
+    if (fabs(cwi_dot(x, x) - 1) > 1e-2 || fabs(cwi_dot(y, y) - 1) > 1e-2 ||
+        fabs(cwi_dot(x, y)) > 1e-2)
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "'ImageOrientationPatient' gives no two directions of length 1 at right "
+                       "angles");
+    return CW_OK;
+}
+
+/* --- order ---------------------------------------------------------------------------------
+ */
+
+static int by_distance(const void *x, const void *y)
+{
+    const cwi_dicom_plane *a = x, *b = y;
+    return (a->distance > b->distance) - (a->distance < b->distance);
+}
+
+static int by_place_and_step(const void *x, const void *y)
+{
+    const cwi_dicom_plane *a = x, *b = y;
+    if (a->place != b->place)
+        return a->place < b->place ? -1 : 1;
+    return (a->step > b->step) - (a->step < b->step);
+}
+
+static void sort(sorting *s, int (*compare)(const void *, const void *))
+{
+    qsort(s->planes, s->count, sizeof *s->planes, compare);
+}
+
+static int by_place_and_number(const void *x, const void *y)
+{
+    const cwi_dicom_plane *a = x, *b = y;
+    if (a->place != b->place)
+        return a->place < b->place ? -1 : 1;
+    const int64_t m = a->file->instance_number, n = b->file->instance_number;
+    return m != n ? (m < n ? -1 : 1) : (a->number > b->number) - (a->number < b->number);
+}
+
+/* Places that differ by less than a thousandth of a pixel are one. */
+static void find_places(sorting *s)
+{
+    const double *x = s->planes[0].frame.axes[0], *y = s->planes[0].frame.axes[1];
+    const double same = 1e-3 * s->planes[0].frame.spacing[0];
+    cwi_cross(x, y, s->normal);
+    for (size_t i = 0; i < s->count; i++)
+        s->planes[i].distance = cwi_dot(s->planes[i].frame.position, s->normal);
+    sort(s, by_distance);
+    s->places = 0;
+    for (size_t i = 0; i < s->count; i++) {
+        const bool next = i > 0 && s->planes[i].distance - s->planes[i - 1].distance > same;
+        s->places += i == 0 || next;
+        s->planes[i].place = s->places - 1;
+    }
+    sort(s, by_place_and_number);
+}
+
+/* Planes at one place, from *first on. */
+static size_t planes_here(const sorting *s, size_t first)
+{
+    size_t n = first;
+    while (n < s->count && s->planes[n].place == s->planes[first].place)
+        n++;
+    return n - first;
+}
+
+/* The rank of each plane among those at its place, by one key; false where two have the same.
+ */
+static bool rank_here(cwi_dicom_plane *planes, size_t count, int key)
+{
+    for (size_t i = 0; i < count; i++) {
+        const double mine = planes[i].frame.keys[key];
+        planes[i].step = 0;
+        for (size_t o = 0; o < count; o++) {
+            const double other = planes[o].frame.keys[key];
+            if (o != i && !(other < mine || other > mine)) /* NaN too */
+                return false;
+            planes[i].step += other < mine;
+        }
+    }
+    return true;
+}
+
+static bool rank_all(sorting *s, int key)
+{
+    for (size_t i = 0; i < s->count; i += s->steps)
+        if (!rank_here(s->planes + i, s->steps, key))
+            return false;
+    return true;
+}
+
+static cw_status fail_duplicates(const sorting *s, cw_error *err)
+{
+    size_t i = 0, places = 0, first = 0;
+    for (size_t n; i < s->count; i += n) {
+        n = planes_here(s, i);
+        first = n > 1 && places == 0 ? i : first;
+        places += n > 1;
+    }
+    return cw_fail(err, CW_ERR_UNSAFE,
+                   "%zu of %zu places hold more than one image, the first at %.6g mm along the "
+                   "normal, and not as many as others do; --gaps allow takes the first of each",
+                   places, s->places, s->planes[first].distance);
+}
+
+static void keep_first_of_each(sorting *s)
+{
+    size_t kept = 0;
+    for (size_t i = 0; i < s->count; i++)
+        if (kept == 0 || s->planes[i].place != s->planes[kept - 1].place)
+            s->planes[kept++] = s->planes[i];
+    cwi_note(s->desc, "left out, because others have the same position: %zu images",
+             s->count - kept);
+    s->count = kept;
+}
+
+/* As many planes at every place: a series in time, of echoes, or the like. */
+static cw_status find_steps(sorting *s, cw_error *err)
+{
+    static const char *const names[] = {"TemporalPosition", "FrameReferenceTime",
+                                        "TriggerTime",      "EchoTime",
+                                        "DiffusionBValue",  "AcquisitionNumber"};
+    s->steps = planes_here(s, 0);
+    for (size_t i = 0; i < s->count; i += s->steps)
+        if (planes_here(s, i) != s->steps) {
+            if (s->desc->gaps != CW_GAPS_ALLOW)
+                return fail_duplicates(s, err);
+            keep_first_of_each(s);
+            s->steps = 1;
+        }
+    int key = 0;
+    for (size_t i = 0; i < s->count; i++)
+        s->planes[i].step = i % s->steps; /* in the order of instance numbers */
+    if (s->steps == 1)
+        return CW_OK;
+    while (key < CWI_DICOM_KEYS && !rank_all(s, key))
+        key++;
+    for (size_t i = 0; key == CWI_DICOM_KEYS && i < s->count; i++)
+        s->planes[i].step = i % s->steps;
+    cwi_note(s->desc, "%zu images at each of %zu places: taken as steps, in the order of %s",
+             s->steps, s->places, key < CWI_DICOM_KEYS ? names[key] : "InstanceNumber");
+    sort(s, by_place_and_step);
+    return CW_OK;
+}
+
+/* --- the row of slices ---------------------------------------------------------------------
+ */
+
+/* The way from the first to the last place for each millimetre along the normal. */
+static void find_row(const sorting *s, double along[3])
+{
+    const cwi_dicom_plane *a = &s->planes[0], *b = &s->planes[s->count - 1];
+    for (int r = 0; r < 3; r++)
+        along[r] = s->places > 1 ? (b->frame.position[r] - a->frame.position[r]) /
+                                       (b->distance - a->distance)
+                                 : s->normal[r];
+}
+
+/* How far a plane stands beside the row, mm. */
+static double off_row(const sorting *s, const cwi_dicom_plane *p, const double along[3])
+{
+    const cwi_dicom_plane *first = &s->planes[0];
+    double off[3];
+    for (int r = 0; r < 3; r++)
+        off[r] = p->frame.position[r] - first->frame.position[r] -
+                 (p->distance - first->distance) * along[r];
+    return sqrt(cwi_dot(off, off));
+}
+
+static double smaller_spacing(const sorting *s)
+{
+    return cwi_lesser(s->planes[0].frame.spacing[0], s->planes[0].frame.spacing[1]);
+}
+
+/* Slices shifted evenly against each other make a sheared frame, which is where they are. */
+static cw_status find_tilt(sorting *s, double along[3], cw_error *err)
+{
+    double worst = 0;
+    find_row(s, along);
+    s->findings->tilt_degrees = atan(sqrt(fmax(0, cwi_dot(along, along) - 1))) * 180 / PI;
+    for (size_t i = 0; i < s->count; i++)
+        worst = fmax(worst, off_row(s, &s->planes[i], along));
+    if (s->desc->tilt == CW_TILT_KEEP) {
+        memcpy(along, s->normal, sizeof s->normal);
+    } else if (worst > 0.1 * smaller_spacing(s)) {
+        return cw_fail(
+            err, CW_ERR_UNSAFE,
+            "slices are shifted against each other, unevenly, by up to %.6g mm; --tilt "
+            "keep stacks them up as if they were not",
+            worst);
+    }
+    return CW_OK;
+}
+
+static cw_status lay_slices(const sorting *s, cwi_slices *slices, cw_error *err)
+{
+    double *places = cwi_alloc_array(s->places, sizeof *places);
+    if (!places)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu places", s->places);
+    for (size_t i = 0; i < s->places; i++)
+        places[i] = s->planes[i * s->steps].distance;
+    cw_status st =
+        cwi_slices_lay(places, s->places, "mm along the normal", s->desc->gaps, slices, err);
+    cwi_free(places);
+    memcpy(s->findings->gaps, slices->finding, sizeof slices->finding);
+    s->findings->made = slices->made;
+    return st;
+}
+
+/* --- the stack -----------------------------------------------------------------------------
+ */
+
+static bool same_scaling(const sorting *s)
+{
+    const cwi_dicom_frame *first = &s->planes[0].frame;
+    for (size_t i = 1; i < s->count; i++)
+        if (s->planes[i].frame.slope != first->slope ||
+            s->planes[i].frame.intercept != first->intercept)
+            return false;
+    return true;
+}
+
+static cw_status check_scaling(const sorting *s, cw_error *err)
+{
+    for (size_t i = 0; i < s->count; i++) {
+        const cwi_dicom_frame *f = &s->planes[i].frame;
+        if (!isfinite(f->slope) || !isfinite(f->intercept) || f->slope == 0)
+            return cw_fail(err, CW_ERR_FORMAT, "'RescaleSlope' is %g, 'RescaleIntercept' %g",
+                           f->slope, f->intercept);
+    }
+    return CW_OK;
+}
+
+/* PET scanners scale each slice by itself: then the values are stored, not the pixels. */
+static void set_values(const sorting *s, cwi_stack *stack)
+{
+    const cwi_dicom_facts *f = s->planes[0].file;
+    cw_volume *v = &stack->shape;
+    stack->type = v->type = f->type;
+    stack->scaled = !same_scaling(s);
+    v->slope = stack->scaled ? 1 : s->planes[0].frame.slope;
+    v->intercept = stack->scaled ? 0 : s->planes[0].frame.intercept;
+    if (stack->scaled)
+        v->type = cw_type_size(f->type) > 2 ? CW_F64 : CW_F32;
+    stack->has_padding = f->has_padding;
+    memcpy(stack->padding, f->padding, sizeof f->padding);
+    v->has_nodata = f->has_padding && !stack->scaled;
+    v->nodata = v->has_nodata ? f->padding[0] : 0;
+}
+
+static void set_sizes(const sorting *s, size_t slices, cwi_stack *stack)
+{
+    const cwi_dicom_facts *f = s->planes[0].file;
+    cw_volume *v = &stack->shape;
+    const ptrdiff_t size = (ptrdiff_t)cw_type_size(v->type);
+    stack->size_field = "Rows";
+    stack->samples = v->components = f->samples;
+    v->component_stride = size;
+    v->dim[0] = f->columns;
+    v->dim[1] = f->rows;
+    v->dim[2] = slices;
+    v->steps = s->steps;
+    v->stride[0] = size * (ptrdiff_t)f->samples;
+    v->stride[1] = v->stride[0] * (ptrdiff_t)f->columns;
+    v->stride[2] = v->stride[1] * (ptrdiff_t)f->rows;
+    v->step_stride = v->stride[2] * (ptrdiff_t)slices;
+}
+
+static void set_frame(const sorting *s, const double along[3], double step, cwi_stack *stack)
+{
+    const cwi_dicom_frame *f = &s->planes[0].frame;
+    cw_volume *v = &stack->shape;
+    for (int r = 0; r < 3; r++) {
+        v->affine[r][0] = f->axes[0][r] * f->spacing[0];
+        v->affine[r][1] = f->axes[1][r] * f->spacing[1];
+        v->affine[r][2] = along[r] * step;
+        v->affine[r][3] = f->position[r];
+    }
+    v->known = CW_KNOWN_UNIT | CW_KNOWN_FRAME;
+}
+
+static cw_status make_room(const sorting *s, size_t slots, cwi_stack *stack, cw_error *err)
+{
+    stack->planes = cwi_alloc_array(s->count, sizeof *stack->planes);
+    stack->slots = cwi_alloc_array(slots, sizeof *stack->slots);
+    if (!stack->planes || !stack->slots)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu planes", s->count);
+    stack->plane_count = s->count;
+    stack->slot_count = slots;
+    for (size_t i = 0; i < s->count; i++) {
+        const cwi_dicom_plane *p = &s->planes[i];
+        stack->planes[i] = (cwi_plane){p->index, p->number, p->frame.slope, p->frame.intercept};
+    }
+    return CW_OK;
+}
+
+/* Each file is opened once, and read from its start to its end. */
+static int by_file(const void *x, const void *y, void *planes)
+{
+    const cwi_plane *a = (const cwi_plane *)planes + ((const cwi_slot *)x)->low;
+    const cwi_plane *b = (const cwi_plane *)planes + ((const cwi_slot *)y)->low;
+    if (a->file != b->file)
+        return a->file < b->file ? -1 : 1;
+    return (a->number > b->number) - (a->number < b->number);
+}
+
+static cw_status fill_slots(const sorting *s, const cwi_slices *slices, cwi_stack *stack,
+                            cw_error *err)
+{
+    cw_status st = make_room(s, slices->count * s->steps, stack, err);
+    for (size_t k = 0; st == CW_OK && k < slices->count; k++)
+        for (size_t t = 0; t < s->steps; t++) {
+            const cwi_slice *from = &slices->items[k];
+            stack->slots[k * s->steps + t] = (cwi_slot){.place = t * slices->count + k,
+                                                        .low = from->low * s->steps + t,
+                                                        .high = from->high * s->steps + t,
+                                                        .t = from->t};
+        }
+    if (st == CW_OK)
+        qsort_r(stack->slots, stack->slot_count, sizeof *stack->slots, by_file, stack->planes);
+    return st;
+}
+
+static void note_findings(const sorting *s)
+{
+    const cwi_dicom_findings *f = s->findings;
+    if (f->tilt_degrees > 0.05)
+        cwi_note(s->desc, "slices are tilted by %.4g degrees: %s", f->tilt_degrees,
+                 s->desc->tilt == CW_TILT_KEEP
+                     ? "stacked up as if they were not, the shape is sheared"
+                     : "corrected, each stands where it was taken");
+    if (f->gaps[0])
+        cwi_note(s->desc, "%s: %s", f->gaps,
+                 s->desc->gaps == CW_GAPS_ALLOW ? "taken as if they were even"
+                                                : "interpolated to even ones");
+}
+
+/* Slices with a known place. */
+static cw_status stack_placed(sorting *s, cwi_stack *stack, cw_error *err)
+{
+    cwi_slices slices = {0};
+    double along[3];
+    cw_status st = check_geometry(s, err);
+    if (st != CW_OK)
+        return st;
+    find_places(s);
+    st = find_steps(s, err);
+    if (st == CW_OK)
+        st = find_tilt(s, along, err);
+    if (st == CW_OK)
+        st = lay_slices(s, &slices, err);
+    if (st == CW_OK) {
+        const cwi_dicom_frame *f = &s->planes[0].frame;
+        const double single = f->has & CWI_DICOM_BETWEEN && f->between > 0 ? f->between : 1;
+        set_values(s, stack);
+        set_sizes(s, slices.count, stack);
+        set_frame(s, along, s->places > 1 ? slices.step : single, stack);
+        st = fill_slots(s, &slices, stack, err);
+    }
+    if (st == CW_OK)
+        note_findings(s);
+    cwi_slices_free(&slices);
+    return st;
+}
+
+/* --- segmentations -------------------------------------------------------------------------
+ */
+
+/* The distance of slices: stated, or the smallest there is. Where a segment has nothing, a
+ * slice may be left out, so gaps tell nothing. */
+static double segment_step(const sorting *s)
+{
+    const cwi_dicom_frame *f = &s->planes[0].frame;
+    double least = INFINITY;
+    for (size_t i = 1; i < s->count; i++)
+        if (s->planes[i].place != s->planes[i - 1].place)
+            least = fmin(least, s->planes[i].distance - s->planes[i - 1].distance);
+    return f->has & CWI_DICOM_BETWEEN && f->between > 0 ? f->between
+           : isfinite(least)                            ? least
+                                                        : 1;
+}
+
+/* Puts each plane's place on the row; *slices is how long that is. */
+static cw_status find_segment_places(sorting *s, double step, size_t *slices, cw_error *err)
+{
+    for (size_t i = 0; i < s->count; i++) {
+        const double at = (s->planes[i].distance - s->planes[0].distance) / step;
+        const double nearest = nearbyint(at);
+        if (fabs(at - nearest) > 0.05 || nearest >= 65536)
+            return cw_fail(err, CW_ERR_UNSAFE,
+                           "the frame at %.6g mm along the normal is not on a row of slices "
+                           "%.6g mm apart",
+                           s->planes[i].distance, step);
+        s->planes[i].place = (size_t)nearest;
+        *slices = s->planes[i].place + 1;
+    }
+    return CW_OK;
+}
+
+static uint32_t highest_segment(const sorting *s)
+{
+    uint32_t most = 0;
+    for (size_t i = 0; i < s->count; i++)
+        most = s->planes[i].frame.segment > most ? s->planes[i].frame.segment : most;
+    return most;
+}
+
+/* Where segments overlap, the one of the highest number stays. */
+static int by_label(const void *x, const void *y)
+{
+    const cwi_slot *a = x, *b = y;
+    if (a->label != b->label)
+        return a->label < b->label ? -1 : 1;
+    return (a->low > b->low) - (a->low < b->low);
+}
+
+static cw_status fill_labels(const sorting *s, cwi_stack *stack, cw_error *err)
+{
+    cw_status st = make_room(s, s->count, stack, err);
+    for (size_t i = 0; st == CW_OK && i < s->count; i++) {
+        const cwi_dicom_plane *p = &s->planes[i];
+        if (p->frame.segment < 1 || p->frame.segment > UINT16_MAX)
+            return cw_fail(err, CW_ERR_FORMAT,
+                           "'ReferencedSegmentNumber' of frame %u is %u; it must be 1 to 65535",
+                           p->number + 1, p->frame.segment);
+        stack->slots[i] =
+            (cwi_slot){.place = p->place, .low = i, .high = i, .label = p->frame.segment};
+    }
+    if (st == CW_OK)
+        qsort(stack->slots, stack->slot_count, sizeof *stack->slots, by_label);
+    return st;
+}
+
+/* A frame of a label map holds all segments of its place. */
+static cw_status fill_maps(const sorting *s, cwi_stack *stack, cw_error *err)
+{
+    cw_status st = make_room(s, s->count, stack, err);
+    for (size_t i = 0; st == CW_OK && i < s->count; i++) {
+        const cwi_dicom_plane *p = &s->planes[i];
+        if (i > 0 && p->place == s->planes[i - 1].place)
+            return cw_fail(err, CW_ERR_UNSAFE,
+                           "two frames of the label map stand at %.6g mm along the normal; one "
+                           "was expected at each place",
+                           p->distance);
+        stack->slots[i] = (cwi_slot){.place = p->place, .low = i, .high = i};
+    }
+    if (st == CW_OK)
+        qsort_r(stack->slots, stack->slot_count, sizeof *stack->slots, by_file, stack->planes);
+    return st;
+}
+
+static cw_status stack_segments(sorting *s, cwi_stack *stack, cw_error *err)
+{
+    double along[3];
+    size_t slices = 1;
+    cw_status st = check_geometry(s, err);
+    if (st != CW_OK)
+        return st;
+    find_places(s);
+    s->steps = 1;
+    const double step = segment_step(s);
+    st = find_tilt(s, along, err);
+    if (st == CW_OK)
+        st = find_segment_places(s, step, &slices, err);
+    if (st != CW_OK)
+        return st;
+    const bool map = s->planes[0].file->kind == CWI_DICOM_LABELMAP;
+    if (map) {
+        set_values(s, stack);
+    } else {
+        stack->type = CW_U8;
+        stack->shape.type = highest_segment(s) > UINT8_MAX ? CW_U16 : CW_U8;
+        stack->shape.slope = 1;
+    }
+    stack->sparse = true;
+    set_sizes(s, slices, stack);
+    set_frame(s, along, step, stack);
+    return map ? fill_maps(s, stack, err) : fill_labels(s, stack, err);
+}
+
+/* --- images without a place ----------------------------------------------------------------
+ */
+
+/* Slices whose distance a person stated: in the order of their numbers. */
+static cw_status stack_numbered(sorting *s, cwi_stack *stack, cw_error *err)
+{
+    for (size_t i = 1; i < s->count; i++) /* the scan has sorted them */
+        if (s->planes[i].file->instance_number == s->planes[i - 1].file->instance_number &&
+            s->planes[i].number == s->planes[i - 1].number)
+            return cw_fail(err, CW_ERR_UNSAFE,
+                           "images have neither place nor 'InstanceNumber': their order is not "
+                           "known");
+    s->steps = 1;
+    s->places = s->count;
+    set_values(s, stack);
+    set_sizes(s, s->count, stack);
+    for (int a = 0; a < 3; a++)
+        stack->shape.affine[a][a] = 1;
+    cw_status st = make_room(s, s->count, stack, err);
+    for (size_t i = 0; st == CW_OK && i < s->count; i++)
+        stack->slots[i] = (cwi_slot){.place = i, .low = i, .high = i};
+    cwi_note(s->desc, "where images lie is not said: taken in the order of their numbers");
+    return st;
+}
+
+static cw_status gather(cwi_dicom_scan *scan, size_t series, sorting *s, cw_error *err)
+{
+    s->planes = cwi_alloc_array(scan->series[series].count, sizeof *s->planes);
+    if (!s->planes)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu planes", s->count);
+    for (size_t i = 0; i < scan->plane_count; i++)
+        if (scan->planes[i].series == series) {
+            cwi_dicom_frame *f = &s->planes[s->count].frame;
+            s->planes[s->count++] = scan->planes[i];
+            if (!(f->has & CWI_DICOM_SPACING))
+                f->spacing[0] = f->spacing[1] = 1;
+        }
+    return CW_OK;
+}
+
+cw_status cwi_dicom_stack(cwi_dicom_scan *scan, size_t series, const cw_read_desc *desc,
+                          cwi_stack *stack, cwi_dicom_findings *findings, cw_error *err)
+{
+    sorting s = {.desc = desc, .findings = findings};
+    *findings = (cwi_dicom_findings){0};
+    cw_status st = gather(scan, series, &s, err);
+    if (st == CW_OK)
+        st = check_scaling(&s, err);
+    if (st == CW_OK && s.planes[0].file->kind != CWI_DICOM_IMAGE)
+        st = stack_segments(&s, stack, err);
+    else if (st == CW_OK && !is_placed(&s) && states_spacing(desc))
+        st = stack_numbered(&s, stack, err);
+    else if (st == CW_OK)
+        st = stack_placed(&s, stack, err);
+    cwi_free(s.planes);
+    return st;
+}

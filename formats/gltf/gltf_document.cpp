@@ -1,0 +1,391 @@
+// glTF on its way out: plain numbers become JSON, by tinygltf. The bytes of buffers pass it by.
+#include "formats/gltf/gltf_module.hpp"
+
+#include "core/base/guard.hpp"
+#include "core/base/memory.h"
+
+#include <cmath>
+#include <sstream>
+#include <string>
+
+namespace
+{
+
+using Object = tinygltf::Value::Object;
+using Array = tinygltf::Value::Array;
+
+tinygltf::Value whole(uint64_t number)
+{
+    return tinygltf::Value(int(number));
+}
+
+tinygltf::Value text(const std::string &words)
+{
+    return tinygltf::Value(words);
+}
+
+const char *const attributes[CWI_GLTF_USES] = {"", "POSITION", "NORMAL", "COLOR_0"};
+
+tinygltf::Value meshopt_extension(const cwi_gltf_array &a)
+{
+    Object extension = {{"buffer", whole(0)},
+                        {"byteOffset", whole(a.packed_at)},
+                        {"byteLength", whole(a.packed)},
+                        {"byteStride", whole(a.stride)},
+                        {"count", whole(a.count)},
+                        {"mode", text(a.use == CWI_GLTF_INDICES ? "TRIANGLES" : "ATTRIBUTES")}};
+    if (a.exponential)
+        extension["filter"] = text("EXPONENTIAL");
+    return tinygltf::Value(extension);
+}
+
+// Where an array's bytes are. meshopt's are packed; its view is of a buffer that no file has.
+int add_view(tinygltf::Model &model, const cwi_gltf_array &a)
+{
+    const bool indices = a.use == CWI_GLTF_INDICES;
+    const size_t element =
+        size_t(a.numbers) * size_t(tinygltf::GetComponentSizeInBytes(uint32_t(a.component)));
+    tinygltf::BufferView view;
+    view.buffer = a.packed ? 1 : 0;
+    view.byteOffset = size_t(a.at);
+    view.byteLength = size_t(a.count * a.stride);
+    view.byteStride = !indices && element != a.stride ? size_t(a.stride) : 0;
+    view.target = indices ? TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER : TINYGLTF_TARGET_ARRAY_BUFFER;
+    if (a.packed) // see name_extensions()
+        view.extras = tinygltf::Value(Object{{GLTF_MESHOPT, meshopt_extension(a)}});
+    model.bufferViews.push_back(view);
+    return int(model.bufferViews.size()) - 1;
+}
+
+// Draco's accessors say what comes out, and have no view.
+int add_accessor(tinygltf::Model &model, const cwi_gltf_piece &piece, const cwi_gltf_array &a)
+{
+    tinygltf::Accessor accessor;
+    accessor.bufferView = piece.draco ? -1 : add_view(model, a);
+    accessor.componentType = a.component;
+    accessor.type = a.numbers == 1   ? TINYGLTF_TYPE_SCALAR
+                    : a.numbers == 3 ? TINYGLTF_TYPE_VEC3
+                                     : TINYGLTF_TYPE_VEC4;
+    accessor.count = size_t(a.count);
+    accessor.normalized = a.normalized;
+    if (a.use == CWI_GLTF_POSITION) {
+        accessor.minValues.assign(piece.low, piece.low + 3);
+        accessor.maxValues.assign(piece.high, piece.high + 3);
+    }
+    model.accessors.push_back(accessor);
+    return int(model.accessors.size()) - 1;
+}
+
+tinygltf::Value draco_extension(tinygltf::Model &model, const cwi_gltf_piece &piece)
+{
+    tinygltf::BufferView view;
+    view.buffer = 0;
+    view.byteOffset = size_t(piece.draco_at);
+    view.byteLength = size_t(piece.draco);
+    model.bufferViews.push_back(view);
+    Object ids = {{"POSITION", tinygltf::Value(piece.ids.position)}};
+    if (piece.ids.normal >= 0)
+        ids["NORMAL"] = tinygltf::Value(piece.ids.normal);
+    if (piece.ids.color >= 0)
+        ids["COLOR_0"] = tinygltf::Value(piece.ids.color);
+    return tinygltf::Value(Object{{"bufferView", whole(model.bufferViews.size() - 1)},
+                                  {"attributes", tinygltf::Value(ids)}});
+}
+
+// Vertex colours are multiplied with the base colour, so with them it is white. Pieces that
+// look alike share a material.
+int find_material(tinygltf::Model &model, const cwi_gltf_piece &piece)
+{
+    const double grey = piece.part->mesh.colors ? 1.0 : 0.8;
+    const std::string mode = piece.translucent ? "BLEND" : "OPAQUE";
+    for (size_t i = 0; i < model.materials.size(); i++)
+        if (model.materials[i].alphaMode == mode &&
+            model.materials[i].pbrMetallicRoughness.baseColorFactor[0] == grey)
+            return int(i);
+    tinygltf::Material material;
+    material.name = "surface";
+    material.pbrMetallicRoughness.baseColorFactor = {grey, grey, grey, 1.0};
+    material.pbrMetallicRoughness.metallicFactor = 0.0;
+    material.pbrMetallicRoughness.roughnessFactor = 0.8;
+    material.alphaMode = mode;
+    model.materials.push_back(material);
+    return int(model.materials.size()) - 1;
+}
+
+Object make_extras(const cw_mesh &mesh, const double *origin)
+{
+    Object extras = {{"frame", text("LPS")}, {"unit", text("mm")}};
+    Array affine;
+    bool has_affine = false;
+    for (const double(&row)[4] : mesh.affine)
+        for (double number : row) {
+            affine.push_back(tinygltf::Value(number));
+            has_affine = has_affine || number != 0;
+        }
+    if (has_affine)
+        extras["affine"] = tinygltf::Value(affine);
+    if (origin)
+        extras["origin"] =
+            tinygltf::Value(Array{tinygltf::Value(origin[0]), tinygltf::Value(origin[1]),
+                                  tinygltf::Value(origin[2])});
+    return extras;
+}
+
+void tell_level(const cwi_part &part, Object &extras)
+{
+    extras["triangles"] = whole(part.mesh.triangle_count);
+    if (part.max_error_mm > 0) {
+        extras["max_error_mm"] = tinygltf::Value(part.max_error_mm);
+        extras["rms_error_mm"] = tinygltf::Value(part.rms_error_mm);
+    }
+}
+
+// LPS millimetres to glTF's metres, +Y up, front towards +Z: (x, y, z) goes to 0.001 (x, z,
+// -y). The node does it, so that the vertices stay as they are. Adding 0.0 turns -0 into 0. Of
+// a local scene the origin is told, not applied.
+tinygltf::Node make_node(const cwi_gltf_piece &piece, const double *local_origin)
+{
+    const double half = std::sqrt(0.5), scale = 0.001 * piece.step, *t = piece.translation;
+    tinygltf::Node node;
+    node.name = piece.part->name;
+    node.rotation = {-half, 0, 0, half};
+    node.scale = {scale, scale, scale};
+    if (!local_origin || t[0] != 0 || t[1] != 0 || t[2] != 0)
+        node.translation = {0.001 * t[0] + 0.0, 0.001 * t[2] + 0.0, -0.001 * t[1] + 0.0};
+    return node;
+}
+
+// The node of level 0 names those of the others, and the shares of the screen down to which
+// each is shown: where the next one would have as many triangles to an area as level 0 has on
+// all of it. The last is shown down to nothing.
+void add_levels(tinygltf::Node &node, const cwi_gltf_piece *levels, size_t count, int first,
+                Object &extras)
+{
+    Array ids, coverage;
+    for (size_t n = 1; n < count; n++) {
+        ids.push_back(tinygltf::Value(first + int(n)));
+        coverage.push_back(tinygltf::Value(double(levels[n].part->mesh.triangle_count) /
+                                           double(levels[0].part->mesh.triangle_count)));
+    }
+    coverage.push_back(tinygltf::Value(0.0));
+    node.extensions[GLTF_LOD] = tinygltf::Value(Object{{"ids", tinygltf::Value(ids)}});
+    extras["MSFT_screencoverage"] = tinygltf::Value(coverage);
+}
+
+// How many pieces are levels of the first one, with it.
+size_t count_levels(const cwi_gltf_piece *pieces, size_t count)
+{
+    size_t n = 1;
+    while (n < count && pieces[n].part->level > 0)
+        n++;
+    return n;
+}
+
+// One of `left` pieces, of which the others come next.
+void add_piece(tinygltf::Model &model, const cwi_gltf_piece &piece, size_t left,
+               const double *local_origin)
+{
+    tinygltf::Primitive primitive;
+    for (size_t n = 0; n < piece.array_count; n++) {
+        const cwi_gltf_array &a = piece.arrays[n];
+        const int accessor = add_accessor(model, piece, a);
+        if (a.use == CWI_GLTF_INDICES)
+            primitive.indices = accessor;
+        else
+            primitive.attributes[attributes[a.use]] = accessor;
+    }
+    if (piece.draco)
+        primitive.extensions[GLTF_DRACO] = draco_extension(model, piece);
+    primitive.material = find_material(model, piece);
+    primitive.mode = TINYGLTF_MODE_TRIANGLES;
+
+    tinygltf::Mesh mesh;
+    mesh.name = piece.part->name;
+    mesh.primitives.push_back(primitive);
+    model.meshes.push_back(mesh);
+    tinygltf::Node node = make_node(piece, local_origin);
+    node.mesh = int(model.meshes.size()) - 1;
+    const bool is_level = piece.part->level > 0;
+    const size_t levels = is_level ? 1 : count_levels(&piece, left);
+    const int index = int(model.nodes.size());
+    Object extras = make_extras(piece.part->mesh, local_origin);
+    if (is_level || levels > 1)
+        tell_level(*piece.part, extras);
+    if (levels > 1)
+        add_levels(node, &piece, levels, index, extras);
+    node.extras = tinygltf::Value(extras);
+    model.nodes.push_back(node);
+    if (!is_level)
+        model.scenes[0].nodes.push_back(index);
+}
+
+// A view of floats that are no attributes.
+int add_key_view(tinygltf::Model &model, uint64_t at, uint64_t floats)
+{
+    tinygltf::BufferView view;
+    view.buffer = 0;
+    view.byteOffset = size_t(at);
+    view.byteLength = size_t(floats * sizeof(float));
+    model.bufferViews.push_back(view);
+    return int(model.bufferViews.size()) - 1;
+}
+
+int add_key_accessor(tinygltf::Model &model, int view, size_t first, size_t count, int numbers)
+{
+    tinygltf::Accessor accessor;
+    accessor.bufferView = view;
+    accessor.byteOffset = first * size_t(numbers) * sizeof(float);
+    accessor.componentType = TINYGLTF_COMPONENT_TYPE_FLOAT;
+    accessor.type = numbers == 1 ? TINYGLTF_TYPE_SCALAR : TINYGLTF_TYPE_VEC3;
+    accessor.count = count;
+    model.accessors.push_back(accessor);
+    return int(model.accessors.size()) - 1;
+}
+
+// Pieces that begin and end alike share the accessor of their scales.
+int find_scales(tinygltf::Model &model, int view, const cwi_gltf_piece &piece)
+{
+    const size_t offset = piece.first_scale * 3 * sizeof(float);
+    for (size_t i = 0; i < model.accessors.size(); i++)
+        if (model.accessors[i].bufferView == view && model.accessors[i].byteOffset == offset)
+            return int(i);
+    return add_key_accessor(model, view, piece.first_scale, piece.time_count, 3);
+}
+
+// A node above that of a piece, which the animation scales: the piece's own stays exact. Who
+// plays no animation sees the first.
+void add_step(tinygltf::Model &model, const cwi_gltf_piece &piece, int child)
+{
+    tinygltf::Node node;
+    node.name = piece.part->name;
+    node.children = {child};
+    if (child > 0)
+        node.scale = {0, 0, 0};
+    node.extras = tinygltf::Value(Object{{"time_s", tinygltf::Value(piece.part->time_s)}});
+    model.nodes.push_back(node);
+    model.scenes[0].nodes.push_back(int(model.nodes.size()) - 1);
+}
+
+void add_channel(tinygltf::Animation &animation, int times, int scales, int node)
+{
+    tinygltf::AnimationSampler sampler;
+    sampler.input = times;
+    sampler.output = scales;
+    sampler.interpolation = "STEP";
+    animation.samplers.push_back(sampler);
+    tinygltf::AnimationChannel channel;
+    channel.sampler = int(animation.samplers.size()) - 1;
+    channel.target_node = node;
+    channel.target_path = "scale";
+    animation.channels.push_back(channel);
+}
+
+void add_animation(tinygltf::Model &model, const cwi_gltf_document &document)
+{
+    const size_t scales = document.scale_count * 3;
+    const int scale_view = add_key_view(model, document.keys_at, scales);
+    size_t first = 0, total = 0;
+    for (size_t p = 0; p < document.count; p++)
+        total += document.pieces[p].time_count;
+    const int time_view = add_key_view(model, document.keys_at + scales * sizeof(float), total);
+    tinygltf::Animation animation;
+    animation.name = "steps";
+    model.scenes[0].nodes.clear();
+    for (size_t p = 0; p < document.count; p++) {
+        const cwi_gltf_piece &piece = document.pieces[p];
+        const int times = add_key_accessor(model, time_view, first, piece.time_count, 1);
+        model.accessors.back().minValues = {double(piece.times[0])};
+        model.accessors.back().maxValues = {double(piece.times[piece.time_count - 1])};
+        add_step(model, piece, int(p));
+        add_channel(animation, times, find_scales(model, scale_view, piece),
+                    int(model.nodes.size()) - 1);
+        first += piece.time_count;
+    }
+    model.animations.push_back(animation);
+}
+
+void use_extension(tinygltf::Model &model, const char *name)
+{
+    model.extensionsUsed.push_back(name);
+    model.extensionsRequired.push_back(name);
+}
+
+void set_asset(tinygltf::Model &model, const cwi_gltf_document &document)
+{
+    Object provenance;
+    model.asset.version = "2.0";
+    model.asset.generator = std::string("cubewright ") + CW_VERSION;
+    for (size_t i = 0; i < document.provenance_count; i++)
+        provenance[document.provenance[i].key] = text(document.provenance[i].value);
+    if (!provenance.empty())
+        model.asset.extras = tinygltf::Value(provenance);
+}
+
+bool has_levels(const cwi_gltf_document &document)
+{
+    for (size_t p = 0; p < document.count; p++)
+        if (document.pieces[p].part->level > 0)
+            return true;
+    return false;
+}
+
+tinygltf::Model make_model(const cwi_gltf_document &document)
+{
+    tinygltf::Model model;
+    set_asset(model, document);
+    model.scenes.resize(1);
+    model.defaultScene = 0;
+    for (size_t p = 0; p < document.count; p++)
+        add_piece(model, document.pieces[p], document.count - p, document.local_origin);
+    if (document.end_s > 0)
+        add_animation(model, document);
+    if (has_levels(document))
+        model.extensionsUsed.push_back(GLTF_LOD); // readers may do without
+    if (document.quantized)
+        use_extension(model, "KHR_mesh_quantization");
+    if (document.unpacked)
+        use_extension(model, GLTF_MESHOPT);
+    if (document.count && document.pieces[0].draco)
+        use_extension(model, GLTF_DRACO);
+    return model;
+}
+
+// tinygltf writes no extensions of views, but extras: those of meshopt are renamed.
+void name_extensions(std::string &json)
+{
+    const std::string from = std::string("\"extras\":{\"") + GLTF_MESHOPT;
+    const std::string to = std::string("\"extensions\":{\"") + GLTF_MESHOPT;
+    for (size_t at = json.find(from); at != std::string::npos; at = json.find(from, at))
+        json.replace(at, from.size(), to);
+}
+
+// tinygltf keeps offsets of extensions in 31 bits.
+cw_status check_packed(const cwi_gltf_document &document, cw_error *err)
+{
+    if (document.unpacked && document.bytes > INT32_MAX)
+        return cw_fail(err, CW_ERR_LIMIT, "meshopt's bytes are more than 2 GiB");
+    return CW_OK;
+}
+
+} // namespace
+
+cw_status cwi_gltf_document_make(const cwi_gltf_document *document, char **json, size_t *size,
+                                 cw_error *err)
+{
+    return cw::guard(err, "tinygltf", [&] {
+        const cw_status st = check_packed(*document, err);
+        if (st != CW_OK)
+            return st;
+        const tinygltf::Model model = make_model(*document);
+        std::ostringstream stream;
+        if (!tinygltf::TinyGLTF().WriteGltfSceneToStream(&model, stream, false, false))
+            return cw_fail(err, CW_ERR_BACKEND, "tinygltf could not write the scene");
+        std::string words = stream.str();
+        while (!words.empty() && words.back() != '}')
+            words.pop_back();
+        name_extensions(words);
+        *size = words.size();
+        *json = cwi_strdup(words.c_str());
+        return *json ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the JSON");
+    });
+}

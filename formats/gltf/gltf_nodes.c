@@ -1,0 +1,159 @@
+/* The nodes of a glTF scene: which meshes stand where. */
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/base/text.h"
+#include "formats/gltf/gltf_reader.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+
+enum { DEEPEST_NODE = 1024 };
+
+static void multiply(const double *a, const double *b, double *out)
+{
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 4; c++)
+            out[4 * r + c] = a[4 * r] * b[c] + a[4 * r + 1] * b[4 + c] +
+                             a[4 * r + 2] * b[8 + c] + (c == 3 ? a[4 * r + 3] : 0);
+}
+
+static const double to_lps[12] = {1000, 0, 0, 0, 0, 0, -1000, 0, 0, 1000, 0, 0};
+
+static bool is_unturned(const double *place)
+{
+    for (int i = 0; i < 12; i++)
+        if (i % 4 != 3 && !(fabs(place[i] - (i % 5 == 0)) < 1e-9))
+            return false;
+    return true;
+}
+
+/* The millimetres that were meant by metres. Our writer's 0.001 times an origin may have come
+ * from several: the one with the fewest digits is taken. */
+static double from_metres(double metres)
+{
+    const double millimetres = 1000 * metres;
+    const double near[] = {millimetres, nextafter(millimetres, INFINITY),
+                           nextafter(millimetres, -INFINITY)};
+    void *locale = cwi_locale_c();
+    double found = millimetres;
+    bool same = false;
+    for (int digits = 1; digits <= 15 && !same; digits++) {
+        char text[32];
+        snprintf(text, sizeof text, "%.*e", digits - 1, millimetres);
+        found = strtod(text, NULL);
+        same = 0.001 * found == metres;
+    }
+    for (int i = 0; i < 3 && !same; i++) {
+        found = near[i];
+        same = 0.001 * found == metres;
+    }
+    cwi_locale_restore(locale);
+    return same ? found : millimetres;
+}
+
+/* Where a node's mesh stands. Where our writer left the origin of a local file, it is added. */
+static cw_status set_place(cwi_gltf_instance *at, const double *world, cw_mesh_file *said,
+                           cw_error *err)
+{
+    double *place = at->place[0];
+    multiply(to_lps, world, place);
+    for (int i = 0; i < 12; i++)
+        if (!isfinite(place[i]))
+            return cw_fail(err, CW_ERR_FORMAT, "a node's matrix is not finite");
+    at->unturned = is_unturned(place);
+    if (!at->unturned)
+        return CW_OK;
+    at->place[0][3] = from_metres(world[3]);
+    at->place[1][3] = from_metres(-world[11]);
+    at->place[2][3] = from_metres(world[7]);
+    for (int a = 0; at->node->has_origin && a < 3; a++)
+        at->place[a][3] += at->node->origin[a]; /* a local file: the scene counts from there */
+    said->local = said->local || at->node->has_origin;
+    return CW_OK;
+}
+
+/* A scale of 0 along all axes is how an animation hides what is not to be seen now. */
+static bool is_hidden(const double *world)
+{
+    for (int i = 0; i < 12; i++)
+        if (i % 4 != 3 && world[i] != 0)
+            return false;
+    return true;
+}
+
+/* A node with its children to be visited. */
+typedef struct visit {
+    int node, parent;
+    size_t depth;
+} visit;
+
+static cw_status enter_node(cwi_gltf_reader *r, visit v, bool *visited, cw_mesh_file *said,
+                            cw_error *err)
+{
+    static const double unit[12] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0};
+    const cwi_gltf_scene *scene = &r->scene;
+    if (v.node < 0 || (size_t)v.node >= scene->node_count)
+        return cw_fail(err, CW_ERR_FORMAT, "node %d is named; there are %zu", v.node,
+                       scene->node_count);
+    if (visited[v.node])
+        return cw_fail(err, CW_ERR_FORMAT, "node %d is reached in two ways, or holds itself",
+                       v.node);
+    if (v.depth > DEEPEST_NODE)
+        return cw_fail(err, CW_ERR_FORMAT, "nodes are nested deeper than %d", DEEPEST_NODE);
+    visited[v.node] = true;
+    const cwi_gltf_node *n = &scene->nodes[v.node];
+    said->levels = n->levels > said->levels ? n->levels : said->levels;
+    multiply(v.parent < 0 ? unit : r->world[v.parent], n->local[0], r->world[v.node]);
+    if (n->mesh < 0)
+        return CW_OK;
+    if ((size_t)n->mesh >= scene->mesh_count)
+        return cw_fail(err, CW_ERR_FORMAT, "node %d names mesh %d; there are %zu", v.node,
+                       n->mesh, scene->mesh_count);
+    if (is_hidden(r->world[v.node])) {
+        said->hidden++;
+        return CW_OK;
+    }
+    cwi_gltf_instance *at = &r->instances[r->instance_count++];
+    *at = (cwi_gltf_instance){.mesh = n->mesh, .node = n};
+    return set_place(at, r->world[v.node], said, err);
+}
+
+/* Depth first, in the order of the file. The stack cannot overflow: every node is pushed by its
+ * one parent or is a root, else there is one that is reached in two ways. */
+static cw_status walk(cwi_gltf_reader *r, visit *stack, size_t room, bool *visited,
+                      cw_mesh_file *said, cw_error *err)
+{
+    const cwi_gltf_scene *scene = &r->scene;
+    size_t count = 0;
+    for (size_t i = scene->root_count; i > 0; i--)
+        stack[count++] = (visit){scene->roots[i - 1], -1, 1};
+    cw_status st = CW_OK;
+    while (st == CW_OK && count > 0) {
+        const visit v = stack[--count];
+        st = enter_node(r, v, visited, said, err);
+        if (st != CW_OK)
+            break;
+        const cwi_gltf_node *n = &scene->nodes[v.node];
+        if (n->end - n->first > room - count)
+            return cw_fail(err, CW_ERR_FORMAT, "the nodes are no tree");
+        for (size_t i = n->end; i > n->first; i--)
+            stack[count++] = (visit){scene->children[i - 1], v.node, v.depth + 1};
+    }
+    return st;
+}
+
+cw_status cwi_gltf_find_instances(cwi_gltf_reader *r, cw_mesh_file *said, cw_error *err)
+{
+    const size_t count = r->scene.node_count, room = r->scene.root_count + r->scene.child_count;
+    visit *stack = cwi_alloc_array(room, sizeof *stack);
+    bool *visited = cwi_alloc_zeroed(count, sizeof *visited);
+    r->world = cwi_alloc_array(count, sizeof *r->world);
+    r->instances = cwi_alloc_array(count, sizeof *r->instances);
+    cw_status st = stack && visited && r->world && r->instances
+                       ? walk(r, stack, room, visited, said, err)
+                       : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu nodes", count);
+    cwi_free(stack);
+    cwi_free(visited);
+    return st;
+}

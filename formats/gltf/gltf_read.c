@@ -1,0 +1,317 @@
+/* glTF: a scene's triangles, placed by its nodes, merged into one mesh of LPS millimetres. */
+#include "core/base/memory.h"
+#include "core/base/module.h"
+#include "core/base/status.h"
+#include "core/base/text.h"
+#include "formats/gltf/gltf_reader.h"
+#include "formats/gltf/gltf_wrap.h"
+
+#include <string.h>
+
+enum { TRIANGLES_MODE = 4, GLB_HEADER = 12, CHUNK_HEADER = 8, FREE_COUNT = 1 << 24 };
+
+void cwi_gltf_scene_free(cwi_gltf_scene *scene)
+{
+    for (size_t i = 0; scene->buffers && i < scene->buffer_count; i++)
+        cwi_free(scene->buffers[i].uri);
+    cwi_free(scene->buffers);
+    cwi_free(scene->views);
+    cwi_free(scene->accessors);
+    cwi_free(scene->primitives);
+    cwi_free(scene->meshes);
+    cwi_free(scene->nodes);
+    cwi_free(scene->children);
+    cwi_free(scene->roots);
+    *scene = (cwi_gltf_scene){0};
+}
+
+/* --- the file ---------------------------------------------------------------------------- */
+
+static uint32_t u32_at(const unsigned char *b)
+{
+    return b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+}
+
+bool cwi_glb_sniff(const unsigned char *head, size_t size, uint64_t file_size)
+{
+    (void)file_size;
+    return size >= 4 && memcmp(head, "glTF", 4) == 0;
+}
+
+bool cwi_gltf_sniff(const unsigned char *head, size_t size, uint64_t file_size)
+{
+    size_t i = 0;
+    (void)file_size;
+    while (i < size && (head[i] == ' ' || (head[i] >= '\t' && head[i] <= '\r')))
+        i++;
+    return i < size && head[i] == '{';
+}
+
+/* A chunk's size and where its bytes are; false where the file has no more. */
+static cw_status find_chunk(const cwi_input *in, uint64_t at, uint64_t end, const char *kind,
+                            uint64_t *size, cw_error *err)
+{
+    unsigned char head[CHUNK_HEADER];
+    size_t got;
+    cw_status st = cwi_input_read_at(in->fd, at, head, sizeof head, &got, err);
+    if (st != CW_OK)
+        return st;
+    *size = got == sizeof head ? u32_at(head) : 0;
+    if (got < sizeof head || memcmp(head + 4, kind, 4) != 0 || *size > end - at - CHUNK_HEADER)
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "the chunk at byte %llu is not a whole one of kind %.4s",
+                       (unsigned long long)at, kind);
+    return CW_OK;
+}
+
+/* The header, a chunk of JSON, and as a rule one of bytes. */
+static cw_status find_chunks(cwi_gltf_reader *r, uint64_t *json, uint64_t *json_size,
+                             cw_error *err)
+{
+    const cwi_input *in = &r->in->file;
+    unsigned char head[GLB_HEADER];
+    size_t got;
+    cw_status st = cwi_input_read_at(in->fd, 0, head, sizeof head, &got, err);
+    if (st != CW_OK)
+        return st;
+    if (got < sizeof head || memcmp(head, "glTF", 4) != 0)
+        return cw_fail(err, CW_ERR_FORMAT, "the file does not begin with 'glTF'");
+    const uint64_t end = u32_at(head + 8);
+    if (u32_at(head + 4) != 2)
+        return cw_fail(err, CW_ERR_FORMAT, "it is of version %u; version 2 is read",
+                       u32_at(head + 4));
+    if (end > in->size || end < GLB_HEADER + CHUNK_HEADER)
+        return cw_fail(err, CW_ERR_FORMAT, "the header says %llu bytes; the file has %llu",
+                       (unsigned long long)end, (unsigned long long)in->size);
+    st = find_chunk(in, GLB_HEADER, end, "JSON", json_size, err);
+    *json = GLB_HEADER + CHUNK_HEADER;
+    if (st != CW_OK || *json + *json_size + CHUNK_HEADER > end)
+        return st;
+    r->bytes.chunk = *json + *json_size + CHUNK_HEADER;
+    return find_chunk(in, *json + *json_size, end, "BIN\0", &r->bytes.chunk_size, err);
+}
+
+/* A range of bytes within what a buffer says that it has. */
+static cw_status check_range(const cwi_gltf_scene *scene, size_t view, const char *member,
+                             int64_t buffer, uint64_t offset, uint64_t bytes, cw_error *err)
+{
+    if (buffer < 0 || (uint64_t)buffer >= scene->buffer_count)
+        return cw_fail(err, CW_ERR_FORMAT, "bufferViews[%zu]%s: there is no buffer %lld", view,
+                       member, (long long)buffer);
+    const uint64_t held = scene->buffers[buffer].bytes;
+    if (offset <= held && bytes <= held - offset)
+        return CW_OK;
+    return cw_fail(err, CW_ERR_FORMAT,
+                   "bufferViews[%zu]%s: %llu bytes from byte %llu on are more than the %llu of "
+                   "buffers[%lld]",
+                   view, member, (unsigned long long)bytes, (unsigned long long)offset,
+                   (unsigned long long)held, (long long)buffer);
+}
+
+static cw_status check_views(const cwi_gltf_scene *scene, cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (size_t i = 0; i < scene->view_count && st == CW_OK; i++) {
+        const cwi_gltf_view *v = &scene->views[i];
+        st = check_range(scene, i, "", v->buffer, v->offset, v->bytes, err);
+        if (st == CW_OK && v->packed_buffer >= 0)
+            st = check_range(scene, i, ".extensions.EXT_meshopt_compression", v->packed_buffer,
+                             v->packed_offset, v->packed_bytes, err);
+    }
+    return st;
+}
+
+static cw_status parse_json(cwi_gltf_reader *r, uint64_t at, uint64_t size, cw_error *err)
+{
+    size_t got;
+    if (size > UINT32_MAX)
+        return cw_fail(err, CW_ERR_LIMIT, "the JSON has more than 4 GiB");
+    char *json = cwi_alloc_array((size_t)size + 1, 1);
+    if (!json)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the JSON");
+    cw_status st = cwi_input_read_at(r->in->file.fd, at, json, (size_t)size, &got, err);
+    if (st == CW_OK)
+        st = cwi_gltf_check(json, got, err);
+    if (st == CW_OK)
+        st = cwi_gltf_blind(json, got, err);
+    if (st == CW_OK)
+        st = cwi_gltf_parse(json, got, &r->in->desc, &r->scene, err);
+    if (st == CW_OK)
+        st = check_views(&r->scene, err);
+    cwi_free(json);
+    return st;
+}
+
+/* --- the scene --------------------------------------------------------------------------- */
+
+/* Where all instances are moved alike and not turned, their positions stay to the bit. */
+static bool is_shifted(const cwi_gltf_reader *r)
+{
+    for (size_t i = 0; i < r->instance_count; i++)
+        for (int a = 0; a < 3; a++)
+            if (!r->instances[i].unturned ||
+                r->instances[i].place[a][3] != r->instances[0].place[a][3])
+                return false;
+    return r->instance_count > 0;
+}
+
+/* The frame is known where each node says so and none has been turned since. */
+static void describe(const cwi_gltf_reader *r, cw_mesh *mesh, cw_mesh_file *said)
+{
+    const cwi_gltf_instance *one = r->instances;
+    bool lps = r->instance_count > 0;
+    for (size_t i = 0; i < r->instance_count; i++)
+        lps = lps && r->instances[i].unturned && r->instances[i].node->lps;
+    said->known = CW_KNOWN_UNIT | (lps ? CW_KNOWN_FRAME : 0u);
+    if (lps && r->instance_count == 1 && one->node->has_affine)
+        memcpy(mesh->affine, one->node->affine, sizeof mesh->affine);
+    for (int a = 0; a < 3 && r->shifted; a++)
+        mesh->origin[a] = one->place[a][3];
+}
+
+/* As many as there are bytes in truth: a small file that draws itself over and over must not
+ * take all memory. */
+static uint64_t most_elements(const cwi_gltf_reader *r)
+{
+    uint64_t largest = 0;
+    if (r->in->desc.max_triangles < UINT32_MAX) /* the caller knows */
+        return 3 * r->in->desc.max_triangles + FREE_COUNT;
+    for (size_t i = 0; i < r->scene.buffer_count; i++) {
+        const uint64_t bytes = cwi_gltf_file_bytes(&r->bytes, &r->scene.buffers[i]);
+        largest = bytes > largest ? bytes : largest;
+    }
+    return FREE_COUNT + r->in->file.size + largest;
+}
+
+static uint64_t claimed_count(const cwi_gltf_scene *scene, int accessor)
+{
+    const bool known = accessor >= 0 && (size_t)accessor < scene->accessor_count;
+    const uint64_t count = known ? scene->accessors[accessor].count : 0;
+    return count < UINT32_MAX ? count : UINT32_MAX;
+}
+
+/* What drawing a mesh adds, by its own words. */
+typedef struct drawing {
+    uint64_t vertices, triangles;
+    bool counted;
+} drawing;
+
+/* A primitive of nothing counts as a triangle: it takes time, too. */
+static drawing count_drawing(const cwi_gltf_scene *scene, const cwi_gltf_mesh *mesh)
+{
+    drawing sum = {.counted = true};
+    for (size_t i = mesh->first; i < mesh->end; i++) {
+        const cwi_gltf_primitive *p = &scene->primitives[i];
+        const uint64_t vertices = claimed_count(scene, p->position);
+        const uint64_t corners = p->indices >= 0 ? claimed_count(scene, p->indices) : vertices;
+        const bool shared = i > mesh->first && p->position == p[-1].position;
+        sum.vertices += shared ? 0 : vertices;
+        sum.triangles += 1 + (p->mode > TRIANGLES_MODE ? corners : corners / 3);
+    }
+    return sum;
+}
+
+/* The arrays that a mesh takes while it is put together: points are doubles until then. */
+static cw_status check_memory(const cwi_gltf_reader *r, const drawing *sum, cw_error *err)
+{
+    const uint64_t limit = r->in->desc.max_bytes;
+    const uint64_t bytes =
+        3 * sizeof(double) * sum->vertices + 3 * sizeof(uint32_t) * sum->triangles;
+    if (!limit || bytes <= limit)
+        return CW_OK;
+    char text[CWI_MEMORY_TEXT];
+    cwi_print_memory(limit, text);
+    return cw_fail(err, CW_ERR_LIMIT,
+                   "the scene draws its triangles so often that they need more memory than the "
+                   "%s allowed (--memory)",
+                   text);
+}
+
+/* Meshes that are drawn again and again are added up before the first one is drawn. */
+static cw_status check_repeats(const cwi_gltf_reader *r, cw_error *err)
+{
+    const size_t count = r->scene.mesh_count;
+    drawing *each = cwi_alloc_zeroed(count, sizeof *each), sum = {0};
+    cw_status st =
+        each ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu meshes", count);
+    for (size_t i = 0; i < r->instance_count && st == CW_OK; i++) {
+        const int mesh = r->instances[i].mesh;
+        sum.vertices += each[mesh].vertices;
+        sum.triangles += each[mesh].triangles;
+        st =
+            cwi_gltf_limit(r, sum.vertices > sum.triangles ? sum.vertices : sum.triangles, err);
+        if (st == CW_OK)
+            st = cwi_mesh_limit_triangles(r->in, sum.triangles, err);
+        if (st == CW_OK)
+            st = check_memory(r, &sum, err);
+        if (!each[mesh].counted)
+            each[mesh] = count_drawing(&r->scene, &r->scene.meshes[mesh]);
+    }
+    cwi_free(each);
+    return st;
+}
+
+static cw_status build_scene(cwi_gltf_reader *r, cw_mesh *mesh, cw_mesh_file *said,
+                             cw_error *err)
+{
+    cw_status st = cwi_gltf_find_instances(r, said, err);
+    r->shifted = st == CW_OK && is_shifted(r);
+    r->most = most_elements(r);
+    said->parts = 0;
+    if (st == CW_OK)
+        st = check_repeats(r, err);
+    for (size_t i = 0; i < r->instance_count && st == CW_OK; i++) {
+        st = cwi_progress(&r->in->desc.progress, "reading",
+                          (double)i / (double)r->instance_count, err);
+        if (st == CW_OK)
+            st = cwi_mesh_begin_part(r->in, "", r->build.triangle_count, err);
+        if (st == CW_OK)
+            st = cwi_gltf_add_instance(r, &r->instances[i], said, err);
+    }
+    if (st != CW_OK)
+        return st;
+    describe(r, mesh, said);
+    mesh->colors = r->colors;
+    r->colors = NULL;
+    if (!r->no_normals) {
+        mesh->normals = r->normals;
+        r->normals = NULL;
+    }
+    return cwi_build_finish(&r->build, mesh, err);
+}
+
+static cw_status read_scene(cwi_mesh_input *in, bool binary, cw_mesh *mesh, cw_mesh_file *said,
+                            cw_error *err)
+{
+    cwi_gltf_reader r = {.in = in, .build = {.in = in}, .bytes = {.in = &in->file}};
+    uint64_t json = 0, json_size = in->file.size;
+    r.unpacker.desc = &in->desc;
+    r.bytes.unpacker = &r.unpacker;
+    /* what is missing is told first; what is there is loaded where the file is parsed */
+    cw_status st = cwi_module_present("gltf") ? CW_OK : cwi_gltf_prepare(err);
+    if (st == CW_OK && binary)
+        st = find_chunks(&r, &json, &json_size, err);
+    if (st == CW_OK)
+        st = parse_json(&r, json, json_size, err);
+    if (st == CW_OK)
+        st = build_scene(&r, mesh, said, err);
+    cwi_build_free(&r.build);
+    cwi_arrays_free(&r.arrays);
+    cwi_gltf_unpacker_close(&r.unpacker);
+    cwi_free(r.world);
+    cwi_free(r.instances);
+    cwi_free(r.normals);
+    cwi_free(r.colors);
+    cwi_gltf_scene_free(&r.scene);
+    return st;
+}
+
+cw_status cwi_glb_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw_error *err)
+{
+    return read_scene(in, true, mesh, said, err);
+}
+
+cw_status cwi_gltf_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw_error *err)
+{
+    return read_scene(in, false, mesh, said, err);
+}

@@ -1,0 +1,45 @@
+/* A glTF scene on its way to a mesh: what the parts of its reader share. */
+#ifndef FORMATS_GLTF_GLTF_READER_H
+#define FORMATS_GLTF_GLTF_READER_H
+
+#include "formats/gltf/gltf_scene.h"
+#include "formats/gltf/gltf_decompress.h"
+
+/* A node of the scene that has a mesh. */
+typedef struct cwi_gltf_instance {
+    int mesh;
+    const cwi_gltf_node *node;
+    double place[3][4]; /* to LPS millimetres */
+    bool unturned;      /* nothing but a translation */
+} cwi_gltf_instance;
+
+typedef struct cwi_gltf_reader {
+    cwi_mesh_input *in;
+    cwi_gltf_bytes bytes;
+    cwi_gltf_unpacker unpacker;
+    cwi_arrays arrays; /* of the primitive that was decoded last */
+    cwi_gltf_scene scene;
+    double (*world)[12]; /* of each node */
+    cwi_gltf_instance *instances;
+    size_t instance_count;
+    bool shifted;  /* every instance is moved by the mesh's origin, and nothing else */
+    uint64_t most; /* vertices, and triangles, that the scene may be drawn with */
+    cwi_mesh_build build;
+    float *normals; /* a place for each point; NULL: none so far */
+    uint8_t *colors;
+    size_t normal_room, color_room;
+    bool no_normals; /* some primitive has none: then none are kept */
+} cwi_gltf_reader;
+
+/* Walks the scene's nodes and finds those that have a mesh, and where it stands.
+ * Returns CW_ERR_FORMAT for nodes that are no forest, or nest too deeply. */
+cw_status cwi_gltf_find_instances(cwi_gltf_reader *r, cw_mesh_file *said, cw_error *err);
+
+/* Adds the vertices and triangles of one of them. */
+cw_status cwi_gltf_add_instance(cwi_gltf_reader *r, const cwi_gltf_instance *at,
+                                cw_mesh_file *said, cw_error *err);
+
+/* CW_ERR_LIMIT for more vertices or triangles than r->most. */
+cw_status cwi_gltf_limit(const cwi_gltf_reader *r, uint64_t count, cw_error *err);
+
+#endif

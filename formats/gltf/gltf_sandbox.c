@@ -1,0 +1,300 @@
+/* tinygltf, shut in a process of its own: JSON goes in, and a scene comes out, through memory
+ * that both sides see. What comes out is the work of a stranger's file: every size and range in
+ * it is checked. */
+#include "core/base/memory.h"
+#include "core/base/sandbox.h"
+#include "core/base/status.h"
+#include "formats/gltf/gltf_wrap.h"
+
+#include <stddef.h>
+#include <string.h>
+
+enum { LARGEST_ELEMENT = 256, MOST_JSON = 32 << 20, HEAD = 64 << 10 };
+static const uint64_t NO_URI = UINT64_MAX;
+
+/* One array of a scene. */
+typedef struct column {
+    size_t array, count; /* where the pointer and the number of elements are */
+    size_t size;         /* of an element */
+} column;
+
+#define COLUMN(name, counter)                                                                  \
+    {                                                                                          \
+        offsetof(cwi_gltf_scene, name), offsetof(cwi_gltf_scene, counter),                     \
+            sizeof *((cwi_gltf_scene *)0)->name                                                \
+    }
+static const column columns[] = {
+    COLUMN(buffers, buffer_count),     COLUMN(views, view_count),
+    COLUMN(accessors, accessor_count), COLUMN(primitives, primitive_count),
+    COLUMN(meshes, mesh_count),        COLUMN(nodes, node_count),
+    COLUMN(children, child_count),     COLUMN(roots, root_count),
+};
+#undef COLUMN
+enum { COLUMNS = sizeof columns / sizeof *columns };
+
+static void *array_of(const cwi_gltf_scene *s, const column *c)
+{
+    void *array;
+    memcpy(&array, (const char *)s + c->array, sizeof array);
+    return array;
+}
+
+static size_t count_of(const cwi_gltf_scene *s, const column *c)
+{
+    return *(const size_t *)(const void *)((const char *)s + c->count);
+}
+
+/* A part of the shared memory, written or read from its start on. */
+typedef struct tape {
+    char *at, *end;
+} tape;
+
+static bool put(tape *t, const void *bytes, size_t size)
+{
+    if ((size_t)(t->end - t->at) < size)
+        return false;
+    if (size)
+        memcpy(t->at, bytes, size);
+    t->at += size;
+    return true;
+}
+
+static bool take(tape *t, void *bytes, size_t size)
+{
+    if ((size_t)(t->end - t->at) < size)
+        return false;
+    if (size)
+        memcpy(bytes, t->at, size);
+    t->at += size;
+    return true;
+}
+
+/* --- in the child ------------------------------------------------------------------------- */
+
+static bool put_uri(tape *t, const char *uri)
+{
+    const uint64_t size = uri ? strlen(uri) : NO_URI;
+    return put(t, &size, sizeof size) && (!uri || put(t, uri, strlen(uri)));
+}
+
+/* Every array, its length in front; behind them the places of buffers. */
+bool cwi_gltf_put_scene(const cwi_gltf_scene *s, void *to, size_t room)
+{
+    tape tape_to = {.at = to, .end = (char *)to + room}, *t = &tape_to;
+    bool good = true;
+    for (size_t n = 0; good && n < COLUMNS; n++) {
+        const uint64_t count = count_of(s, &columns[n]);
+        good = put(t, &count, sizeof count) &&
+               put(t, array_of(s, &columns[n]), (size_t)count * columns[n].size);
+    }
+    for (size_t i = 0; good && i < s->buffer_count; i++)
+        good = put_uri(t, s->buffers[i].uri);
+    return good;
+}
+
+typedef struct job {
+    const cwi_gltf_functions *functions; /* loaded there */
+    size_t json, shared;                 /* bytes */
+} job;
+
+static cw_status load(void *state, cw_error *err)
+{
+    job *j = state;
+    return cwi_gltf_functions_load(&j->functions, err);
+}
+
+static cw_status work(void *state, int fd, const void *request, void *shared, cw_error *err)
+{
+    const job *j = state;
+    cwi_gltf_scene scene = {0};
+    (void)fd, (void)request;
+    cw_status st = j->functions->parse(shared, j->json, &scene, err);
+    if (st == CW_OK &&
+        !cwi_gltf_put_scene(&scene, (char *)shared + j->json, j->shared - j->json))
+        st = cw_fail(err, CW_ERR_LIMIT, "the scene takes more memory than its JSON allows for");
+    cwi_gltf_scene_free(&scene);
+    return st;
+}
+
+/* --- in the parent ------------------------------------------------------------------------ */
+
+static cw_status take_uri(tape *t, char **uri, cw_error *err)
+{
+    uint64_t size;
+    *uri = NULL;
+    if (!take(t, &size, sizeof size) || (size != NO_URI && size > (size_t)(t->end - t->at)))
+        return cw_fail(err, CW_ERR_BACKEND, "tinygltf's answer is not valid");
+    if (size == NO_URI)
+        return CW_OK;
+    *uri = cwi_alloc_array((size_t)size + 1, 1);
+    if (!*uri)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the scene");
+    take(t, *uri, (size_t)size);
+    (*uri)[size] = '\0';
+    return CW_OK;
+}
+
+static cw_status take_column(tape *t, const column *c, cwi_gltf_scene *s, cw_error *err)
+{
+    uint64_t count;
+    if (!take(t, &count, sizeof count) || count > (size_t)(t->end - t->at) / c->size)
+        return cw_fail(err, CW_ERR_BACKEND, "tinygltf's answer is not valid");
+    void *array = cwi_alloc_array((size_t)count, c->size);
+    if (!array)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the scene");
+    take(t, array, (size_t)count * c->size);
+    memcpy((char *)s + c->array, &array, sizeof array);
+    *(size_t *)(void *)((char *)s + c->count) = (size_t)count;
+    return CW_OK;
+}
+
+/* A bool of a stranger's may hold anything. */
+static void mend_bool(bool *b)
+{
+    unsigned char byte;
+    memcpy(&byte, b, 1);
+    *b = byte != 0;
+}
+
+/* What our own module takes care of, and its process may not have. */
+static bool mend_scene(cwi_gltf_scene *s)
+{
+    for (size_t i = 0; i < s->accessor_count; i++) {
+        cwi_gltf_accessor *a = &s->accessors[i];
+        mend_bool(&a->normalized);
+        if (a->numbers < 0 || a->numbers > 4)
+            return false;
+    }
+    for (size_t i = 0; i < s->mesh_count; i++)
+        if (s->meshes[i].first > s->meshes[i].end || s->meshes[i].end > s->primitive_count)
+            return false;
+    for (size_t i = 0; i < s->node_count; i++) {
+        cwi_gltf_node *n = &s->nodes[i];
+        mend_bool(&n->lps);
+        mend_bool(&n->has_origin);
+        mend_bool(&n->has_affine);
+        if (n->first > n->end || n->end > s->child_count)
+            return false;
+    }
+    return true;
+}
+
+cw_status cwi_gltf_take_scene(const void *from, size_t size, cwi_gltf_scene *s, cw_error *err)
+{
+    tape tape_from = {.at = (char *)(uintptr_t)from}, *t = &tape_from;
+    cw_status st = CW_OK;
+    t->end = t->at + size;
+    for (size_t n = 0; st == CW_OK && n < COLUMNS; n++)
+        st = take_column(t, &columns[n], s, err);
+    for (size_t i = 0; i < s->buffer_count; i++) /* addresses of the child's */
+        s->buffers[i].uri = NULL;
+    for (size_t i = 0; st == CW_OK && i < s->buffer_count; i++)
+        st = take_uri(t, &s->buffers[i].uri, err);
+    if (st == CW_OK && !mend_scene(s))
+        return cw_fail(err, CW_ERR_BACKEND, "tinygltf's answer is not valid");
+    return st;
+}
+
+cw_status cwi_gltf_parse(const char *json, size_t size, const cw_mesh_read_desc *desc,
+                         cwi_gltf_scene *scene, cw_error *err)
+{
+    const size_t dense = size < MOST_JSON ? size : MOST_JSON; /* beside its strings */
+    job j = {.json = size, .shared = 2 * size + LARGEST_ELEMENT * dense + HEAD};
+    cwi_sandbox box = {0};
+    const cwi_sandbox_desc shut = {.library = "tinygltf",
+                                   .prepare = load,
+                                   .work = work,
+                                   .state = &j,
+                                   .shared_bytes = j.shared,
+                                   .memory = desc->max_bytes,
+                                   .timeout_s = desc->timeout_s,
+                                   .inside = desc->no_sandbox};
+    cw_status st = cwi_sandbox_open(&box, &shut, err);
+    if (st != CW_OK)
+        return st;
+    memcpy(box.shared, json, size);
+    box.progress = &desc->progress;
+    st = cwi_sandbox_run(&box, -1, "", 1, err);
+    if (st == CW_OK)
+        st = cwi_gltf_take_scene((char *)box.shared + size, j.shared - size, scene, err);
+    cwi_sandbox_close(&box);
+    return st;
+}
+
+/* --- writing ------------------------------------------------------------------------------ */
+
+/* The JSON of a document goes the other way: its size, then its bytes. */
+typedef struct writing {
+    const cwi_gltf_functions *functions; /* loaded there */
+    const cwi_gltf_document *document;
+    size_t room;
+} writing;
+
+static cw_status load_writer(void *state, cw_error *err)
+{
+    writing *w = state;
+    return cwi_gltf_functions_load(&w->functions, err);
+}
+
+static cw_status make_json(void *state, int fd, const void *request, void *shared,
+                           cw_error *err)
+{
+    const writing *w = state;
+    char *json = NULL;
+    size_t size = 0;
+    (void)fd, (void)request;
+    cw_status st = w->functions->document(w->document, &json, &size, err);
+    tape t = {.at = shared, .end = (char *)shared + w->room};
+    if (st == CW_OK && (!put(&t, &size, sizeof size) || !put(&t, json, size)))
+        st = cw_fail(err, CW_ERR_LIMIT, "the JSON takes more than %zu bytes", w->room);
+    cwi_free(json);
+    return st;
+}
+
+/* Far more than the JSON takes, of which no more is used than there is. */
+static size_t room_for_json(const cwi_gltf_document *d)
+{
+    enum { BASE = 1 << 20, PER_PIECE = 16 << 10, WORST_ESCAPE = 6 };
+    size_t words = 0;
+    for (size_t i = 0; i < d->provenance_count; i++)
+        words += strlen(d->provenance[i].key) + strlen(d->provenance[i].value);
+    return BASE + PER_PIECE * d->count + WORST_ESCAPE * words;
+}
+
+static cw_status take_json(const void *shared, char **json, size_t *size, cw_error *err)
+{
+    memcpy(size, shared, sizeof *size);
+    *json = cwi_alloc_array(*size, 1);
+    if (!*json)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the JSON");
+    memcpy(*json, (const char *)shared + sizeof *size, *size);
+    return CW_OK;
+}
+
+/* Where the system gives no process, it is done here. */
+cw_status cwi_gltf_make_json(const cwi_gltf_document *document, char **json, size_t *size,
+                             cw_error *err)
+{
+    writing w = {.document = document, .room = room_for_json(document)};
+    cwi_sandbox box = {0};
+    cwi_sandbox_desc apart = {.library = "tinygltf",
+                              .prepare = load_writer,
+                              .work = make_json,
+                              .state = &w,
+                              .shared_bytes = w.room,
+                              .trusted = true};
+    cw_status st = cwi_sandbox_open(&box, &apart, err);
+    if (st == CW_ERR_BACKEND) {
+        apart.inside = true;
+        st = cwi_sandbox_open(&box, &apart, err);
+    }
+    if (st != CW_OK)
+        return st;
+    st = cwi_sandbox_run(&box, -1, "", 1, err);
+    if (st == CW_ERR_BACKEND && !box.open)
+        st = cw_fail(err, CW_ERR_NO_MEMORY, "memory ran out while tinygltf made the JSON");
+    if (st == CW_OK)
+        st = take_json(box.shared, json, size, err);
+    cwi_sandbox_close(&box);
+    return st;
+}

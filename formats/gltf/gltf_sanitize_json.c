@@ -1,0 +1,91 @@
+/* JSON, made fit for a library that trusts it. */
+#include "core/base/status.h"
+#include "formats/gltf/gltf_scene.h"
+
+#include <string.h>
+
+enum {
+    PRIMITIVE_DEPTH = 5, /* {"meshes": [{"primitives": [{ */
+    MOST_DEPTH = 64,
+    MOST_STRUCTURE = 32 << 20
+};
+
+/* The end of a string that starts at its first quote: behind the last one. */
+static size_t string_end(const char *json, size_t size, size_t at)
+{
+    for (at++; at < size && json[at] != '"'; at++)
+        at += json[at] == '\\';
+    return at < size ? at + 1 : size;
+}
+
+static bool is_key(const char *json, size_t size, size_t at)
+{
+    while (at < size && strchr(" \t\r\n", json[at]) && json[at])
+        at++;
+    return at < size && json[at] == ':';
+}
+
+static bool is_wanted(const char *key, size_t length)
+{
+    static const char *const wanted[] = {
+        "asset",  "scene",     "scenes",      "nodes",
+        "meshes", "accessors", "bufferViews", "extensionsRequired"};
+    for (size_t i = 0; i < sizeof wanted / sizeof *wanted; i++)
+        if (strlen(wanted[i]) == length && memcmp(key, wanted[i], length) == 0)
+            return true;
+    return false;
+}
+
+/* A key of the outermost object, with its quotes: in the same number of bytes. */
+static void rename_key(char *key, size_t size)
+{
+    static const char buffers[] = "\"buffers\"", instead[] = "\"extras\" ";
+    if (size == strlen(buffers) && memcmp(key, buffers, size) == 0)
+        memcpy(key, instead, size);
+    else if (size > 2 && !is_wanted(key + 1, size - 2))
+        memset(key + 1, '_', size - 2);
+}
+
+static bool is_number(const char *json, size_t size, size_t at)
+{
+    while (at < size && strchr(" \t\r\n:", json[at]) && json[at])
+        at++;
+    return at < size && (json[at] == '-' || (json[at] >= '0' && json[at] <= '9'));
+}
+
+/* A key of a primitive: its indices are hidden from tinygltf, which refuses those that Draco
+ * compressed, in its "extras". Behind the key is at end. */
+static void hide_indices(char *json, size_t size, size_t at, size_t end)
+{
+    static const char indices[] = "\"indices\"", extras[] = "\"extras\"";
+    if (end - at == strlen(indices) && memcmp(json + at, indices, end - at) == 0 &&
+        is_number(json, size, end))
+        memcpy(json + at, "\"extras\" ", end - at);
+    else if (end - at == strlen(extras) && memcmp(json + at, extras, end - at) == 0)
+        memset(json + at + 1, '_', end - at - 2);
+}
+
+cw_status cwi_gltf_blind(char *json, size_t size, cw_error *err)
+{
+    size_t depth = 0, structure = 0;
+    for (size_t i = 0; i < size; i++) {
+        if (json[i] == '"') {
+            const size_t end = string_end(json, size, i);
+            if (depth == 1 && is_key(json, size, end))
+                rename_key(json + i, end - i);
+            if (depth == PRIMITIVE_DEPTH && is_key(json, size, end))
+                hide_indices(json, size, i, end);
+            i = end - 1;
+        } else {
+            depth += json[i] == '{' || json[i] == '[';
+            depth -= depth && (json[i] == '}' || json[i] == ']');
+        }
+        if (depth > MOST_DEPTH)
+            return cw_fail(err, CW_ERR_FORMAT, "the JSON nests deeper than %d", MOST_DEPTH);
+        if (++structure > MOST_STRUCTURE)
+            return cw_fail(err, CW_ERR_LIMIT,
+                           "the JSON has more than %d MiB beside its strings",
+                           MOST_STRUCTURE >> 20);
+    }
+    return CW_OK;
+}

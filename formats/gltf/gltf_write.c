@@ -1,0 +1,233 @@
+/* glTF: the JSON is made by a module, the bytes are written beside it, a piece at a time. */
+#include "core/base/memory.h"
+#include "core/base/module.h"
+#include "core/base/status.h"
+#include "formats/bytes/base64.h"
+#include "formats/gltf/gltf_pack.h"
+#include "formats/gltf/gltf_wrap.h"
+#include "formats/codec/meshopt_wrap.h"
+
+#include <stdio.h>
+
+enum { CHUNK_BYTES = 3 << 14, GLB_HEADER = 12, CHUNK_HEADER = 8 };
+
+cw_status cwi_gltf_functions_load(const cwi_gltf_functions **functions, cw_error *err)
+{
+    const void *module;
+    cw_status st = cwi_module_load("gltf", &module, err);
+    if (st == CW_OK)
+        *functions = module;
+    return st;
+}
+
+cw_status cwi_draco_functions_load(const cwi_draco_functions **functions, cw_error *err)
+{
+    const void *module;
+    cw_status st = cwi_module_load("draco", &module, err);
+    if (st == CW_OK)
+        *functions = module;
+    return st;
+}
+
+cw_status cwi_meshopt_functions_load(const cwi_meshopt_functions **functions, cw_error *err)
+{
+    const void *module;
+    cw_status st = cwi_module_load("meshopt", &module, err);
+    if (st == CW_OK)
+        *functions = module;
+    return st;
+}
+
+void cwi_arrays_free(cwi_arrays *arrays)
+{
+    cwi_free(arrays->positions);
+    cwi_free(arrays->places);
+    cwi_free(arrays->normals);
+    cwi_free(arrays->colors);
+    cwi_free(arrays->triangles);
+    *arrays = (cwi_arrays){0};
+}
+
+cw_status cwi_gltf_prepare(cw_error *err)
+{
+    return cwi_module_find("gltf", err);
+}
+
+/* --- the buffer's bytes --------------------------------------------------------------------
+ */
+
+/* Bytes on their way to the file: as they are, or (text) as base64. */
+typedef struct pipe {
+    cwi_mesh_output *out;
+    bool text;
+    size_t held;
+    unsigned char bytes[CHUNK_BYTES];
+} pipe;
+
+static cw_status flush(pipe *p, cw_error *err)
+{
+    char text[CHUNK_BYTES / 3 * 4 + 4];
+    const size_t size = p->text ? cwi_base64_encode(p->bytes, p->held, text) : p->held;
+    cw_status st =
+        cwi_outfile_write(p->out->file, p->text ? (void *)text : p->bytes, size, err);
+    p->out->done += p->held;
+    p->held = 0;
+    return st == CW_OK ? cwi_progress(p->out->progress, "writing",
+                                      (double)p->out->done / (double)p->out->total, err)
+                       : st;
+}
+
+static cw_status push(pipe *p, const unsigned char *bytes, size_t size, cw_error *err)
+{
+    cw_status st = CW_OK;
+    while (st == CW_OK && size > 0) {
+        const size_t room = CHUNK_BYTES - p->held, step = size < room ? size : room;
+        memcpy(p->bytes + p->held, bytes, step);
+        p->held += step;
+        bytes += step;
+        size -= step;
+        if (p->held == CHUNK_BYTES)
+            st = flush(p, err);
+    }
+    return st;
+}
+
+static cw_status push_zeros(pipe *p, size_t size, cw_error *err)
+{
+    static const unsigned char zeros[8];
+    return push(p, zeros, size, err);
+}
+
+static cw_status push_array(pipe *p, const cwi_gltf_plan *plan, const cwi_gltf_piece *piece,
+                            const cwi_gltf_array *a, cw_error *err)
+{
+    unsigned char element[16];
+    cw_status st = CW_OK;
+    for (size_t i = 0; st == CW_OK && i < a->count; i++) {
+        cwi_gltf_put(plan, piece, a, i, element);
+        st = push(p, element, (size_t)a->stride, err);
+    }
+    return st == CW_OK ? push_zeros(p, (size_t)(-(a->count * a->stride) % 4), err) : st;
+}
+
+static cw_status push_buffer(pipe *p, const cwi_gltf_plan *plan, cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (size_t b = 0; st == CW_OK && b < plan->block_count; b++) {
+        st = push(p, plan->blocks[b].bytes, plan->blocks[b].size, err);
+        if (st == CW_OK)
+            st = push_zeros(p, -plan->blocks[b].size % 8, err);
+    }
+    for (size_t n = 0; !plan->blocks && n < plan->parts.count; n++)
+        for (size_t a = 0; st == CW_OK && a < plan->pieces[n].array_count; a++)
+            st = push_array(p, plan, &plan->pieces[n], &plan->pieces[n].arrays[a], err);
+    if (st == CW_OK)
+        st = push(p, plan->keys, plan->keys_size, err);
+    return st == CW_OK ? flush(p, err) : st;
+}
+
+static cw_status write_buffer(const cwi_gltf_plan *plan, cwi_mesh_output *out, bool text,
+                              cw_error *err)
+{
+    pipe *p = cwi_alloc_zeroed(1, sizeof *p);
+    if (!p)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to write with");
+    p->out = out;
+    p->text = text;
+    cw_status st = push_buffer(p, plan, err);
+    cwi_free(p);
+    return st;
+}
+
+/* --- the file ------------------------------------------------------------------------------
+ */
+
+/* "buffers" goes in front of what the module made: it leaves that out, as it holds no bytes.
+ * The second one is that of meshopt's unpacked bytes, which no file has. */
+static int print_buffers(const cwi_gltf_plan *plan, const char *uri, char *text, size_t size)
+{
+    const cwi_gltf_document *d = &plan->document;
+    return snprintf(text, size, "{\"buffers\":[{\"byteLength\":%llu%s",
+                    (unsigned long long)d->bytes, uri);
+}
+
+static int print_unpacked(const cwi_gltf_plan *plan, char *text, size_t size)
+{
+    const unsigned long long bytes = plan->document.unpacked;
+    if (!bytes)
+        return snprintf(text, size, "}],");
+    return snprintf(text, size,
+                    "},{\"byteLength\":%llu,\"extensions\":{\"EXT_meshopt_compression\":"
+                    "{\"fallback\":true}}}],",
+                    bytes);
+}
+
+static cw_status write_glb(const cwi_gltf_plan *plan, const char *json, size_t size,
+                           cwi_mesh_output *out, cw_error *err)
+{
+    unsigned char header[GLB_HEADER + CHUNK_HEADER] = "glTF", chunk[CHUNK_HEADER];
+    char first[128], second[160];
+    const size_t a = (size_t)print_buffers(plan, "", first, sizeof first);
+    const size_t b = (size_t)print_unpacked(plan, second, sizeof second);
+    const size_t text = a + b + size - 1, padded = (text + 3) / 4 * 4;
+    const uint32_t bytes = (uint32_t)plan->document.bytes;
+    cwi_put_u32(header + 4, 2);
+    cwi_put_u32(header + 8, (uint32_t)(sizeof header + padded + CHUNK_HEADER + bytes));
+    cwi_put_u32(header + 12, (uint32_t)padded);
+    memcpy(header + 16, "JSON", 4);
+    cwi_put_u32(chunk, bytes);
+    memcpy(chunk + 4, "BIN", 4);
+    cw_status st = cwi_outfile_write(out->file, header, sizeof header, err);
+    if (st == CW_OK)
+        st = cwi_outfile_printf(out->file, err, "%s%s", first, second);
+    if (st == CW_OK)
+        st = cwi_outfile_write(out->file, json + 1, size - 1, err);
+    if (st == CW_OK)
+        st = cwi_outfile_write(out->file, "   ", padded - text, err);
+    if (st == CW_OK)
+        st = cwi_outfile_write(out->file, chunk, sizeof chunk, err);
+    return st == CW_OK ? write_buffer(plan, out, false, err) : st;
+}
+
+static cw_status write_gltf(const cwi_gltf_plan *plan, const char *json, size_t size,
+                            cwi_mesh_output *out, cw_error *err)
+{
+    static const char uri[] = ",\"uri\":\"data:application/octet-stream;base64,";
+    char first[128], second[160];
+    print_buffers(plan, uri, first, sizeof first);
+    print_unpacked(plan, second, sizeof second);
+    cw_status st = cwi_outfile_printf(out->file, err, "%s", first);
+    if (st == CW_OK)
+        st = write_buffer(plan, out, true, err);
+    if (st == CW_OK)
+        st = cwi_outfile_printf(out->file, err, "\"%s", second);
+    return st == CW_OK ? cwi_outfile_write(out->file, json + 1, size - 1, err) : st;
+}
+
+static cw_status write_scene(const cwi_parts *parts, cwi_mesh_output *out, bool binary,
+                             cw_error *err)
+{
+    cwi_gltf_plan plan = {0};
+    char *json = NULL;
+    size_t size = 0;
+    cw_status st = cwi_gltf_plan_make(&plan, parts, out, err);
+    if (st == CW_OK)
+        st = cwi_gltf_make_json(&plan.document, &json, &size, err);
+    out->total = plan.document.bytes ? (size_t)plan.document.bytes : 1;
+    if (st == CW_OK)
+        st = binary ? write_glb(&plan, json, size, out, err)
+                    : write_gltf(&plan, json, size, out, err);
+    cwi_free(json);
+    cwi_gltf_plan_free(&plan);
+    return st;
+}
+
+cw_status cwi_glb_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *err)
+{
+    return write_scene(parts, out, true, err);
+}
+
+cw_status cwi_gltf_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *err)
+{
+    return write_scene(parts, out, false, err);
+}

@@ -1,0 +1,307 @@
+/* Points and faces, as a file gives them, become a mesh. */
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/base/text.h"
+#include "core/geometry/vec3.h"
+#include "formats/mesh/mesh_axes.h"
+#include "formats/mesh/mesh_reader.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+/* --- memory within limits ---------------------------------------------------------------- */
+
+/* Twice the room, or what is asked for, or (at the limit) as much as there may be. */
+static size_t next_room(const cwi_mesh_input *in, size_t room, size_t count, size_t size)
+{
+    const uint64_t limit = in->desc.max_bytes;
+    size_t more = room < SIZE_MAX / 2 && 2 * room > count ? 2 * room : count;
+    if (limit && (limit - in->bytes) / size < more - room)
+        more = room + (size_t)((limit - in->bytes) / size);
+    return more;
+}
+
+static cw_status fail_limit(const cwi_mesh_input *in, cw_error *err)
+{
+    char limit[CWI_MEMORY_TEXT];
+    cwi_print_memory(in->desc.max_bytes, limit);
+    return cw_fail(err, CW_ERR_LIMIT,
+                   "the mesh needs more memory than the %s allowed (--memory)", limit);
+}
+
+cw_status cwi_mesh_take_bytes(cwi_mesh_input *in, uint64_t bytes, cw_error *err)
+{
+    if (in->desc.max_bytes && bytes > in->desc.max_bytes - in->bytes)
+        return fail_limit(in, err);
+    in->bytes += bytes;
+    return CW_OK;
+}
+
+cw_status cwi_mesh_grow(cwi_mesh_input *in, void *array, size_t *room, size_t count,
+                        size_t size, cw_error *err)
+{
+    void *memory;
+    if (count <= *room)
+        return CW_OK;
+    const size_t next = next_room(in, *room, count, size);
+    if (next < count)
+        return fail_limit(in, err);
+    memcpy(&memory, array, sizeof memory);
+    memory = cwi_realloc_array(memory, next, size);
+    if (!memory)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu elements of the mesh", count);
+    memcpy(array, &memory, sizeof memory);
+    in->bytes += (next - *room) * size;
+    *room = next;
+    return CW_OK;
+}
+
+cw_status cwi_mesh_begin_part(cwi_mesh_input *in, const char *name, size_t triangle,
+                              cw_error *err)
+{
+    cwi_marks *m = &in->marks;
+    const bool empty = m->count && m->items[m->count - 1].triangle == triangle;
+    const bool untitled = m->count == 0 && triangle > 0; /* what was there before */
+    const size_t length = strlen(name);
+    if (empty)
+        m->name_bytes = m->items[--m->count].name;
+    cw_status st = cwi_mesh_grow(in, &m->items, &m->room, m->count + 2, sizeof *m->items, err);
+    if (st == CW_OK)
+        st = cwi_mesh_grow(in, &m->names, &m->name_room, m->name_bytes + length + 2, 1, err);
+    if (st != CW_OK)
+        return st;
+    if (untitled) {
+        m->items[m->count++] = (cwi_mark){0, m->name_bytes};
+        m->names[m->name_bytes++] = '\0';
+    }
+    m->items[m->count++] = (cwi_mark){triangle, m->name_bytes};
+    memcpy(m->names + m->name_bytes, name, length + 1);
+    m->name_bytes += length + 1;
+    return CW_OK;
+}
+
+cw_status cwi_mesh_limit_triangles(const cwi_mesh_input *in, uint64_t count, cw_error *err)
+{
+    if (count <= in->desc.max_triangles)
+        return CW_OK;
+    return cw_fail(err, CW_ERR_LIMIT, "more than %llu triangles, the most allowed",
+                   (unsigned long long)in->desc.max_triangles);
+}
+
+/* --- points and faces -------------------------------------------------------------------- */
+
+static cw_status limit_points(uint64_t count, cw_error *err)
+{
+    if (count <= UINT32_MAX)
+        return CW_OK;
+    return cw_fail(err, CW_ERR_LIMIT, "more than %u vertices, the most a mesh can have",
+                   UINT32_MAX);
+}
+
+cw_status cwi_build_reserve(cwi_mesh_build *b, uint64_t points, uint64_t triangles,
+                            cw_error *err)
+{
+    cw_status st = limit_points(points, err);
+    if (st == CW_OK)
+        st = cwi_mesh_limit_triangles(b->in, triangles, err);
+    if (st == CW_OK)
+        st = cwi_mesh_grow(b->in, &b->points, &b->point_room, (size_t)points,
+                           3 * sizeof *b->points, err);
+    if (st == CW_OK)
+        st = cwi_mesh_grow(b->in, &b->triangles, &b->triangle_room, (size_t)triangles,
+                           3 * sizeof *b->triangles, err);
+    return st;
+}
+
+cw_status cwi_build_point(cwi_mesh_build *b, const double point[3], cw_error *err)
+{
+    if (b->point_count == b->point_room) {
+        cw_status st = cwi_build_reserve(b, (uint64_t)b->point_count + 1, 0, err);
+        if (st != CW_OK)
+            return st;
+    }
+    memcpy(b->points + 3 * b->point_count++, point, 3 * sizeof *point);
+    return CW_OK;
+}
+
+static cw_status add_triangle(cwi_mesh_build *b, uint32_t corner, cw_error *err)
+{
+    if (b->triangle_count == b->triangle_room ||
+        b->triangle_count >= b->in->desc.max_triangles) {
+        cw_status st = cwi_build_reserve(b, 0, (uint64_t)b->triangle_count + 1, err);
+        if (st != CW_OK)
+            return st;
+    }
+    uint32_t *t = b->triangles + 3 * b->triangle_count++;
+    t[0] = b->first;
+    t[1] = b->last;
+    t[2] = corner;
+    return CW_OK;
+}
+
+cw_status cwi_build_corner(cwi_mesh_build *b, int64_t point, cw_error *err)
+{
+    if (point < 0 || point >= UINT32_MAX)
+        return cw_fail(err, CW_ERR_FORMAT, "triangle %zu names vertex %lld, which cannot be",
+                       b->triangle_count, (long long)point);
+    const uint32_t corner = (uint32_t)point;
+    cw_status st = b->corners >= 2 ? add_triangle(b, corner, err) : CW_OK;
+    if (b->corners == 0)
+        b->first = corner;
+    b->last = corner;
+    b->corners++;
+    return st;
+}
+
+void cwi_build_end_face(cwi_mesh_build *b, cw_mesh_file *said)
+{
+    said->skipped += b->corners < 3;
+    said->polygons += b->corners > 3;
+    b->corners = 0;
+}
+
+/* --- the mesh ---------------------------------------------------------------------------- */
+
+static cw_status check_points(const cwi_mesh_build *b, cw_error *err)
+{
+    for (size_t i = 0; i < 3 * b->point_count; i++)
+        if (!isfinite(b->points[i]))
+            return cw_fail(err, CW_ERR_FORMAT, "'%c' of vertex %zu is %g; it must be finite",
+                           "xyz"[i % 3], i / 3 + (size_t)b->base, b->points[i]);
+    return CW_OK;
+}
+
+static cw_status check_triangles(const cwi_mesh_build *b, cw_error *err)
+{
+    for (size_t i = 0; i < 3 * b->triangle_count; i++)
+        if (b->triangles[i] >= b->point_count)
+            return cw_fail(err, CW_ERR_FORMAT, "triangle %zu names vertex %llu of %zu", i / 3,
+                           (unsigned long long)b->triangles[i] + (unsigned)b->base,
+                           b->point_count);
+    return CW_OK;
+}
+
+static bool all_single(const cwi_mesh_build *b)
+{
+    for (size_t i = 0; i < 3 * b->point_count; i++)
+        if (fabs(b->points[i]) > (double)FLT_MAX || (double)(float)b->points[i] != b->points[i])
+            return false;
+    return true;
+}
+
+/* 0 where single precision holds the places as they are, or nearly as well as it would hold
+ * them relative to another one. The rule is that of the OBJ writer: far is ten times the size.
+ * Halves are added, so that the largest doubles have a middle, too. */
+static void choose_origin(const cwi_mesh_build *b, double origin[3])
+{
+    double middle[3], size = 0, distance = 0;
+    for (int a = 0; a < 3; a++) {
+        double low = INFINITY, high = -INFINITY;
+        for (size_t v = 0; v < b->point_count; v++) {
+            low = cwi_lesser(low, b->points[3 * v + (size_t)a]);
+            high = cwi_greater(high, b->points[3 * v + (size_t)a]);
+        }
+        middle[a] = low / 2 + high / 2;
+        size = fmax(size, high - low);
+        distance = fmax(distance, fmax(fabs(low), fabs(high)));
+    }
+    const bool far = b->point_count && distance > 10 * size && !all_single(b);
+    for (int a = 0; a < 3; a++)
+        origin[a] = far ? middle[a] : 0;
+}
+
+/* Doubles to floats in the same memory: float i lies in front of every double still to come. */
+static cw_status round_points(cwi_mesh_build *b, const double origin[3], cw_error *err)
+{
+    char *memory = (char *)b->points;
+    for (size_t i = 0; i < 3 * b->point_count; i++) {
+        double exact;
+        memcpy(&exact, memory + i * sizeof exact, sizeof exact);
+        exact -= origin[i % 3];
+        if (fabs(exact) > (double)FLT_MAX)
+            return cw_fail(err, CW_ERR_FORMAT,
+                           "'%c' of vertex %zu is %g, which is beyond single precision",
+                           "xyz"[i % 3], i / 3 + (size_t)b->base, exact);
+        const float rounded = (float)exact;
+        memcpy(memory + i * sizeof rounded, &rounded, sizeof rounded);
+    }
+    return CW_OK;
+}
+
+static cw_status shrink(void *array, size_t count, size_t size, cw_error *err)
+{
+    void *memory;
+    memcpy(&memory, array, sizeof memory);
+    memory = cwi_realloc_array(memory, count, size);
+    if (!memory)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the mesh's arrays");
+    memcpy(array, &memory, sizeof memory);
+    return CW_OK;
+}
+
+cw_status cwi_mesh_shrink(cw_mesh *mesh, cw_error *err)
+{
+    cw_status st =
+        shrink(&mesh->positions, mesh->vertex_count, 3 * sizeof *mesh->positions, err);
+    if (st == CW_OK)
+        st = shrink(&mesh->triangles, mesh->triangle_count, 3 * sizeof *mesh->triangles, err);
+    return st;
+}
+
+/* The floats that round_points() left where the doubles were. */
+static cw_status move_arrays(cwi_mesh_build *b, cw_mesh *mesh, cw_error *err)
+{
+    void *memory = b->points;
+    mesh->positions = memory;
+    mesh->vertex_count = b->point_count;
+    mesh->triangles = b->triangles;
+    mesh->triangle_count = b->triangle_count;
+    b->points = NULL;
+    b->triangles = NULL;
+    return cwi_mesh_shrink(mesh, err);
+}
+
+cw_status cwi_build_finish(cwi_mesh_build *b, cw_mesh *mesh, cw_error *err)
+{
+    double origin[3];
+    cw_status st = check_points(b, err);
+    if (st == CW_OK)
+        st = check_triangles(b, err);
+    if (st != CW_OK)
+        return st;
+    choose_origin(b, origin);
+    for (int a = 0; a < 3; a++)
+        mesh->origin[a] += origin[a];
+    st = round_points(b, origin, err);
+    return st == CW_OK ? move_arrays(b, mesh, err) : st;
+}
+
+void cwi_build_free(cwi_mesh_build *b)
+{
+    cwi_free(b->points);
+    cwi_free(b->triangles);
+    *b = (cwi_mesh_build){0};
+}
+
+void cwi_take_comment(const char *text, bool *ours, cw_mesh *mesh, cw_mesh_file *said)
+{
+    static const char name[] = "cubewright ", origin[] = "origin ";
+    if (strncmp(text, name, strlen(name)) == 0) {
+        const char *comma = strchr(text, ',');
+        const char *axes = comma ? comma + 1 + strspn(comma + 1, " ") : "";
+        *ours = cwi_parse_axes(&axes, said) || *ours;
+    } else if (*ours && strncmp(text, origin, strlen(origin)) == 0) {
+        said->local = cwi_parse_origin(text + strlen(origin), mesh->origin) || said->local;
+    }
+}
+
+bool cwi_parse_origin(const char *text, double origin[3])
+{
+    double number[3];
+    for (int a = 0; a < 3; a++)
+        if (!cwi_parse_double(&text, &number[a]) || !isfinite(number[a]))
+            return false;
+    memcpy(origin, number, sizeof number);
+    return true;
+}

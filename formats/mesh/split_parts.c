@@ -1,0 +1,216 @@
+/* A mesh taken apart where its marks say. */
+#include "core/base/memory.h"
+#include "core/geometry/union_find.h"
+#include "core/base/status.h"
+#include "core/base/text.h"
+#include "formats/mesh/place_parts.h"
+
+static const uint32_t NONE = UINT32_MAX;
+
+/* All in one piece of memory: the parts, and behind them what they point to. */
+typedef struct held {
+    cw_mesh mesh;
+    char name[CWI_NAME_BYTES];
+} held;
+
+typedef struct split {
+    cw_mesh *whole;
+    const cwi_marks *marks;
+    size_t run_count;  /* marks, or 1 */
+    uint32_t *part_of; /* of each run of triangles between two marks */
+    uint32_t *run_of;  /* of each vertex: the first run that names it */
+    uint32_t *new;     /* its number in its part */
+    cw_part *parts;
+    held *held;
+    size_t count;
+} split;
+
+static size_t run_start(const split *s, size_t run)
+{
+    return run == 0                ? 0
+           : run < s->marks->count ? s->marks->items[run].triangle
+                                   : s->whole->triangle_count;
+}
+
+/* --- which runs are one part ------------------------------------------------------------- */
+
+/* Runs that share a vertex are one set. */
+static void join_runs(split *s)
+{
+    for (size_t v = 0; v < s->whole->vertex_count; v++)
+        s->run_of[v] = NONE;
+    for (uint32_t run = 0; run < s->run_count; run++)
+        for (size_t i = 3 * run_start(s, run); i < 3 * run_start(s, run + 1); i++) {
+            uint32_t *first = &s->run_of[s->whole->triangles[i]];
+            if (*first == NONE)
+                *first = run;
+            cwi_sets_join(s->part_of, *first, run);
+        }
+}
+
+/* Numbers them in the order of the file; runs without triangles are none. A root is met before
+ * what is joined with it. */
+static void number_parts(split *s)
+{
+    for (uint32_t run = 0; run < s->run_count; run++) {
+        const bool is_root = s->part_of[run] == run;
+        const bool empty = run_start(s, run) == run_start(s, run + 1);
+        s->part_of[run] = empty     ? NONE
+                          : is_root ? (uint32_t)s->count++
+                                    : s->part_of[s->part_of[run]];
+    }
+}
+
+/* --- the parts --------------------------------------------------------------------------- */
+
+static void count_elements(split *s)
+{
+    for (size_t run = 0; run < s->run_count; run++)
+        if (s->part_of[run] != NONE)
+            s->held[s->part_of[run]].mesh.triangle_count +=
+                run_start(s, run + 1) - run_start(s, run);
+    for (size_t v = 0; v < s->whole->vertex_count; v++)
+        if (s->run_of[v] != NONE)
+            s->new[v] = (uint32_t)s->held[s->part_of[s->run_of[v]]].mesh.vertex_count++;
+}
+
+/* The arrays that the whole has. */
+static bool make_arrays(const cw_mesh *whole, cw_mesh *m)
+{
+    const size_t n = m->vertex_count;
+    m->positions = cwi_alloc_array(n, 3 * sizeof *m->positions);
+    m->triangles = cwi_alloc_array(m->triangle_count, 3 * sizeof *m->triangles);
+    m->normals = whole->normals ? cwi_alloc_array(n, 3 * sizeof *m->normals) : NULL;
+    m->colors = whole->colors ? cwi_alloc_array(n, 4) : NULL;
+    m->scalars = whole->scalars ? cwi_alloc_array(n, sizeof *m->scalars) : NULL;
+    m->labels = whole->labels ? cwi_alloc_array(n, sizeof *m->labels) : NULL;
+    return m->positions && m->triangles && !m->normals == !whole->normals &&
+           !m->colors == !whole->colors && !m->scalars == !whole->scalars &&
+           !m->labels == !whole->labels;
+}
+
+static void copy_vertex(const cw_mesh *from, size_t v, cw_mesh *to, size_t n)
+{
+    memcpy(to->positions + 3 * n, from->positions + 3 * v, 3 * sizeof *to->positions);
+    if (to->normals)
+        memcpy(to->normals + 3 * n, from->normals + 3 * v, 3 * sizeof *to->normals);
+    if (to->colors)
+        memcpy(to->colors + 4 * n, from->colors + 4 * v, 4);
+    if (to->scalars)
+        to->scalars[n] = from->scalars[v];
+    if (to->labels)
+        to->labels[n] = from->labels[v];
+}
+
+static void copy_elements(split *s)
+{
+    for (size_t v = 0; v < s->whole->vertex_count; v++)
+        if (s->run_of[v] != NONE)
+            copy_vertex(s->whole, v, &s->held[s->part_of[s->run_of[v]]].mesh, s->new[v]);
+    for (size_t p = 0; p < s->count; p++)
+        s->held[p].mesh.triangle_count = 0;
+    for (size_t run = 0; run < s->run_count; run++) {
+        if (s->part_of[run] == NONE)
+            continue;
+        cw_mesh *m = &s->held[s->part_of[run]].mesh;
+        uint32_t *to = m->triangles + 3 * m->triangle_count;
+        for (size_t i = 3 * run_start(s, run); i < 3 * run_start(s, run + 1); i++)
+            *to++ = s->new[s->whole->triangles[i]];
+        m->triangle_count += run_start(s, run + 1) - run_start(s, run);
+    }
+}
+
+static bool take_apart(split *s)
+{
+    count_elements(s);
+    for (size_t p = 0; p < s->count; p++) {
+        cw_mesh *m = &s->held[p].mesh;
+        memcpy(m->origin, s->whole->origin, sizeof m->origin);
+        memcpy(m->affine, s->whole->affine, sizeof m->affine);
+        if (!make_arrays(s->whole, m))
+            return false;
+    }
+    copy_elements(s);
+    return true;
+}
+
+/* Each has the name of its first run. */
+static void name_parts(split *s)
+{
+    for (size_t run = s->marks->count; run-- > 0;)
+        if (s->part_of[run] != NONE) {
+            const char *name = s->marks->names + s->marks->items[run].name;
+            cwi_clean_name(name, strlen(name), s->held[s->part_of[run]].name);
+        }
+    for (size_t p = 0; p < s->count; p++)
+        s->parts[p] = (cw_part){.mesh = &s->held[p].mesh,
+                                .name = s->held[p].name[0] ? s->held[p].name : NULL};
+}
+
+static bool make_parts(split *s)
+{
+    if (s->run_count > 1) {
+        join_runs(s);
+        number_parts(s);
+    }
+    const size_t count = s->count ? s->count : 1; /* a mesh of nothing is one, too */
+    s->parts = cwi_alloc_zeroed(count, sizeof *s->parts + sizeof *s->held);
+    if (!s->parts)
+        return false;
+    s->held = (held *)(s->parts + count);
+    if (s->count > 1)
+        return take_apart(s);
+    s->count = 1;
+    s->held->mesh = *s->whole;
+    *s->whole = (cw_mesh){0};
+    return true;
+}
+
+/* The copies stand beside the whole for a while. */
+static cw_status limit_memory(const cwi_mesh_input *in, const cw_mesh *m, cw_error *err)
+{
+    const uint64_t limit = in->desc.max_bytes;
+    const uint64_t vertex = 12 + (m->normals ? 12 : 0) + (m->colors ? 4 : 0) +
+                            (m->scalars ? 4 : 0) + (m->labels ? 4 : 0) +
+                            sizeof(uint32_t) * 2 /* run_of, new */;
+    const uint64_t bytes = vertex * m->vertex_count + 12 * (uint64_t)m->triangle_count;
+    if (!limit || in->marks.count <= 1 || in->bytes + bytes <= limit)
+        return CW_OK;
+    char text[CWI_MEMORY_TEXT];
+    cwi_print_memory(limit, text);
+    return cw_fail(err, CW_ERR_LIMIT,
+                   "the parts need more memory than the %s allowed (--memory)", text);
+}
+
+cw_status cwi_parts_split(const cwi_mesh_input *in, cw_mesh *mesh, cw_part **parts,
+                          size_t *count, cw_error *err)
+{
+    split s = {
+        .whole = mesh, .marks = &in->marks, .run_count = in->marks.count ? in->marks.count : 1};
+    const size_t vertices = s.run_count > 1 ? mesh->vertex_count : 0;
+    cw_status st = limit_memory(in, mesh, err);
+    if (st != CW_OK)
+        return st;
+    s.part_of = cwi_sets_alloc(s.run_count);
+    s.run_of = cwi_alloc_array(vertices, sizeof *s.run_of);
+    s.new = cwi_alloc_array(vertices, sizeof *s.new);
+    const bool ok = s.part_of && s.run_of && s.new &&make_parts(&s);
+    if (ok)
+        name_parts(&s);
+    else
+        cw_parts_free(s.parts, s.parts ? s.count : 0);
+    cwi_free(s.part_of);
+    cwi_free(s.run_of);
+    cwi_free(s.new);
+    *parts = ok ? s.parts : NULL;
+    *count = ok ? s.count : 0;
+    return ok ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to take the mesh apart");
+}
+
+void cw_parts_free(cw_part *parts, size_t count)
+{
+    held *h = parts ? (held *)(parts + count) : NULL;
+    for (size_t p = 0; p < count; p++)
+        cw_mesh_free(&h[p].mesh);
+    cwi_free(parts);
+}

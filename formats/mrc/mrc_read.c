@@ -1,0 +1,297 @@
+/* MRC2014 and CCP4 maps: a header of 256 words. ccpem.ac.uk/mrc-format/mrc2014, and IMOD's
+ * additions to it. */
+#include "core/base/status.h"
+#include "formats/volume/volume_reader.h"
+#include "formats/bytes/inflate_stream.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum {
+    HEADER = 1024,
+    IMOD_STAMP = 1146047817,
+    IMOD_SIGNED = 1,
+    IMOD_ORIGIN = 4,
+    IMOD_NIBBLES = 16
+};
+enum { STACK_GROUP = 401, LAST_STACK_GROUP = 630 }; /* space group + 400: a stack of volumes */
+
+static const double mm_per_angstrom = 1e-7;
+static const double radians = 3.14159265358979323846 / 180;
+
+/* Offsets of fields; those of three are for columns, rows, sections or for X, Y, Z. */
+typedef enum field {
+    NX = 0,
+    MODE = 12,
+    NXSTART = 16,
+    MX = 28,
+    CELL = 40,
+    ANGLES = 52,
+    MAPC = 64,
+    ISPG = 88,
+    NSYMBT = 92,
+    STAMP = 152,
+    FLAGS = 156,
+    ORIGIN = 196,
+    MAP = 208,
+    MACHINE = 212
+} field;
+
+static const struct {
+    int mode;
+    int type; /* cw_type, or -1: refused */
+    const char *name;
+} modes[] = {
+    {0, CW_I8, "bytes"},      {1, CW_I16, "int16"},       {2, CW_F32, "float32"},
+    {3, -1, "complex int16"}, {4, -1, "complex float32"}, {6, CW_U16, "uint16"},
+    {12, -1, "float16"},      {16, -1, "RGB bytes"},      {101, -1, "4 bits"},
+};
+
+typedef struct mrc {
+    unsigned char bytes[HEADER];
+    bool big;
+    bool gzipped;
+    int imod_flags; /* as if not IMOD's, where they are not */
+    size_t size[3];
+    int axis[3]; /* of the cell, 0 to 2: along columns, rows, sections */
+    size_t steps;
+} mrc;
+
+static int32_t word(const mrc *m, field at, int index)
+{
+    const unsigned char *b = m->bytes + (size_t)at + 4 * (size_t)index;
+    const uint32_t little =
+        b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+    return (int32_t)(m->big ? __builtin_bswap32(little) : little);
+}
+
+static double number(const mrc *m, field at, int index)
+{
+    const int32_t bits = word(m, at, index);
+    float value;
+    memcpy(&value, &bits, sizeof value);
+    return (double)value;
+}
+
+/* --- byte order -------------------------------------------------------------------------- */
+
+/* In this byte order the header makes sense: sizes, a mode, and axes that are a permutation, or
+ * left zero. */
+static bool is_plausible(const mrc *m)
+{
+    unsigned axes = 0, zeros = 0;
+    for (int a = 0; a < 3; a++) {
+        const int32_t axis = word(m, MAPC, a);
+        axes |= axis >= 1 && axis <= 3 ? 1u << axis : 0;
+        zeros += axis == 0;
+        if (word(m, NX, a) < 1)
+            return false;
+    }
+    return (axes == 14 || zeros == 3) && word(m, MODE, 0) >= 0 && word(m, MODE, 0) <= 101;
+}
+
+/* The machine stamp decides where there is one, else what is plausible. */
+static bool find_order(mrc *m)
+{
+    const unsigned char *stamp = m->bytes + MACHINE;
+    m->big = stamp[0] == 0x11;
+    if (is_plausible(m))
+        return true;
+    m->big = !m->big;
+    return stamp[0] != 0x11 && stamp[0] != 0x44 && is_plausible(m);
+}
+
+/* "MAP " stands in all files but old ones, which go by their extension. */
+bool cwi_mrc_sniff(const unsigned char *head, size_t size)
+{
+    mrc m = {0};
+    if (size < CWI_SNIFF_BYTES || memcmp(head + MAP, "MAP", 3) != 0)
+        return false;
+    memcpy(m.bytes, head, CWI_SNIFF_BYTES);
+    return find_order(&m);
+}
+
+static cw_status read_header(const cwi_input *in, mrc *m, cw_error *err)
+{
+    size_t got;
+    cw_status st = cwi_stream_head(in->fd, m->bytes, HEADER, &got, &m->gzipped, err);
+    if (st == CW_OK && got < HEADER)
+        return cw_fail(err, CW_ERR_FORMAT, "the header ends after %zu of %d bytes", got,
+                       HEADER);
+    if (st == CW_OK && !find_order(m))
+        return cw_fail(
+            err, CW_ERR_FORMAT,
+            "'NX', 'NY', 'NZ', 'MODE' and 'MAPC', 'MAPR', 'MAPS' are those of no MRC "
+            "file in either byte order");
+    m->imod_flags = IMOD_SIGNED | IMOD_ORIGIN;
+    if (word(m, STAMP, 0) == IMOD_STAMP)
+        m->imod_flags = word(m, FLAGS, 0);
+    return st;
+}
+
+/* --- voxels ------------------------------------------------------------------------------ */
+
+static cw_status read_type(const mrc *m, cwi_source *src, cw_error *err)
+{
+    const int mode = word(m, MODE, 0);
+    char name[40];
+    snprintf(name, sizeof name, "%d", mode);
+    if (mode == 0 && m->imod_flags & IMOD_NIBBLES)
+        return cwi_fail_type(err, "MODE", "0 (two numbers of 4 bits)");
+    for (size_t i = 0; i < sizeof modes / sizeof *modes; i++) {
+        if (modes[i].mode != mode)
+            continue;
+        snprintf(name, sizeof name, "%d (%s)", mode, modes[i].name);
+        if (modes[i].type < 0)
+            break;
+        src->shape.type = (cw_type)modes[i].type;
+        if (mode == 0 && !(m->imod_flags & IMOD_SIGNED))
+            src->shape.type = CW_U8;
+        return CW_OK;
+    }
+    return cwi_fail_type(err, "MODE", name);
+}
+
+/* A stack of volumes holds them one after another along its sections, MZ of them each. */
+static cw_status read_steps(mrc *m, cw_error *err)
+{
+    const int32_t group = word(m, ISPG, 0), each = word(m, MX, 2);
+    m->steps = 1;
+    if (group < STACK_GROUP || group > LAST_STACK_GROUP)
+        return CW_OK;
+    if (each < 1 || m->size[2] % (size_t)each != 0)
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "'ISPG' is %d, a stack of volumes; 'NZ' is %zu, which is no multiple of "
+                       "'MZ', %d",
+                       (int)group, m->size[2], (int)each);
+    m->steps = m->size[2] / (size_t)each;
+    m->size[2] = (size_t)each;
+    return CW_OK;
+}
+
+static cw_status read_axes(mrc *m, cwi_source *src, cw_error *err)
+{
+    static const cwi_role roles[3] = {CWI_AXIS_X, CWI_AXIS_Y, CWI_AXIS_Z};
+    for (int a = 0; a < 3; a++) {
+        const int32_t axis = word(m, MAPC, a);
+        m->axis[a] = axis ? axis - 1 : a;
+        m->size[a] = (size_t)word(m, NX, a);
+    }
+    cw_status st = read_steps(m, err);
+    cwi_axis axes[4] = {[3] = {CWI_AXIS_STEP, m->steps}};
+    for (int a = 0; a < 3; a++)
+        axes[a] = (cwi_axis){roles[m->axis[a]], m->size[a]};
+    return st == CW_OK ? cwi_source_set_axes(src, axes, 4, err) : st;
+}
+
+static cw_status read_place(const mrc *m, cwi_source *src, cw_error *err)
+{
+    const int32_t extra = word(m, NSYMBT, 0);
+    if (extra < 0)
+        return cw_fail(err, CW_ERR_FORMAT, "'NSYMBT' is %d; it must be 0 or more", (int)extra);
+    src->skip = HEADER + (uint64_t)extra;
+    src->encoding = m->gzipped ? CWI_DEFLATED : CWI_RAW;
+    src->big_endian = m->big;
+    return CW_OK;
+}
+
+/* --- frame ------------------------------------------------------------------------------- */
+
+/* The cell's edges for its lengths and angles: a along x, b in the plane of x and y. */
+static cw_status cell_edges(const double angle[3], double edges[3][3], cw_error *err)
+{
+    double c[3];
+    for (int a = 0; a < 3; a++) /* 0: not said */
+        c[a] = angle[a] == 0 || angle[a] == 90 ? 0 : cos(angle[a] * radians);
+    const double sine = sqrt(1 - c[2] * c[2]), y = (c[0] - c[1] * c[2]) / sine;
+    const double z = 1 - c[1] * c[1] - y * y;
+    if (!(sine > 0 && z > 0))
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "'CELLB' is %g %g %g; these are not the angles of a cell", angle[0],
+                       angle[1], angle[2]);
+    const double columns[3][3] = {{1, 0, 0}, {c[2], sine, 0}, {c[1], y, sqrt(z)}};
+    for (int r = 0; r < 3; r++)
+        for (int k = 0; k < 3; k++)
+            edges[r][k] = columns[k][r];
+    return CW_OK;
+}
+
+/* Whether the cell has lengths at all; simple writers leave them zero. */
+static bool has_cell(const mrc *m)
+{
+    for (int a = 0; a < 3; a++)
+        if (number(m, CELL, a) != 0)
+            return true;
+    return false;
+}
+
+static cw_status read_spacing(const mrc *m, double spacing[3], cw_error *err)
+{
+    for (int a = 0; a < 3; a++) {
+        const double length = number(m, CELL, a);
+        const int32_t intervals = word(m, MX, a);
+        if (!(length > 0 && length < 1e30) || intervals < 1)
+            return cw_fail(
+                err, CW_ERR_FORMAT,
+                "'CELLA' and 'M%c' give axis %d %g Angstrom in %d intervals; both must "
+                "be above 0",
+                'X' + a, a, length, (int)intervals);
+        spacing[a] = length / intervals * mm_per_angstrom;
+    }
+    return CW_OK;
+}
+
+/* Where the first voxel stands: ORIGIN says so in Angstrom, else the START words in voxels.
+ * IMOD used to write the way back to zero instead. */
+static void set_origin(const mrc *m, double mm, cw_volume *shape)
+{
+    const double sign = m->imod_flags & IMOD_ORIGIN ? mm : -mm;
+    bool said = false;
+    for (int r = 0; r < 3; r++) {
+        const double place = number(m, ORIGIN, r);
+        said |= place != 0;
+        shape->affine[r][3] = place == 0 ? 0 : sign * place;
+    }
+    for (int a = 0; !said && a < 3; a++)
+        for (int r = 0; r < 3; r++)
+            shape->affine[r][3] += shape->affine[r][m->axis[a]] * word(m, NXSTART, a);
+}
+
+static cw_status read_frame(const mrc *m, cwi_source *src, cw_error *err)
+{
+    double spacing[3] = {1, 1, 1}, angle[3], edges[3][3];
+    const bool known = has_cell(m);
+    for (int a = 0; a < 3; a++)
+        angle[a] = number(m, ANGLES, a);
+    cw_status st = cell_edges(angle, edges, err);
+    if (st == CW_OK && known)
+        st = read_spacing(m, spacing, err);
+    if (st != CW_OK)
+        return st;
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+            src->shape.affine[r][c] = edges[r][c] * spacing[c];
+    src->shape.known = known ? CW_KNOWN_UNIT : 0;
+    src->shape.said_unit_mm = known ? mm_per_angstrom : 0;
+    set_origin(m, known ? mm_per_angstrom : 1, &src->shape);
+    return CW_OK;
+}
+
+cw_status cwi_mrc_parse(const cwi_input *in, cwi_source *src, cw_error *err)
+{
+    mrc m = {0};
+    src->size_field = "NX, NY, NZ";
+    src->frame_field = "CELLA, ORIGIN";
+    src->shape.slope = 1;
+    cw_status st = read_header(in, &m, err);
+    if (st == CW_OK)
+        st = read_type(&m, src, err);
+    if (st == CW_OK)
+        st = read_axes(&m, src, err);
+    if (st == CW_OK)
+        st = read_place(&m, src, err);
+    if (st == CW_OK)
+        st = read_frame(&m, src, err);
+    return st;
+}

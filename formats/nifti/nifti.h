@@ -1,0 +1,54 @@
+/* Where the fields of the two NIfTI headers stand: the reader and the writer share the table.
+ */
+#ifndef FORMATS_NIFTI_NIFTI_H
+#define FORMATS_NIFTI_NIFTI_H
+
+#include <cubewright/volume.h>
+
+/* The fields that mean something to us; the rest of a header is zero, or ignored. */
+typedef enum cwi_nifti_field {
+    CWI_NIFTI_SIZEOF_HDR,
+    CWI_NIFTI_DATATYPE,
+    CWI_NIFTI_BITPIX,
+    CWI_NIFTI_DIM,    /* 8 numbers: how many are used, then sizes */
+    CWI_NIFTI_PIXDIM, /* 8 numbers: qfac, then spacings */
+    CWI_NIFTI_VOX_OFFSET,
+    CWI_NIFTI_SCL_SLOPE,
+    CWI_NIFTI_SCL_INTER,
+    CWI_NIFTI_QFORM_CODE,
+    CWI_NIFTI_SFORM_CODE,
+    CWI_NIFTI_QUATERN, /* b, c, d */
+    CWI_NIFTI_QOFFSET, /* x, y, z */
+    CWI_NIFTI_SROW,    /* x, y, z: 4 numbers each */
+    CWI_NIFTI_XYZT_UNITS,
+    CWI_NIFTI_INTENT_CODE,
+    CWI_NIFTI_FIELD_COUNT
+} cwi_nifti_field;
+
+/* A version of the header. */
+typedef struct cwi_nifti_layout {
+    size_t bytes;                /* of the header, as sizeof_hdr says */
+    size_t voxels;               /* where the voxels start at the earliest */
+    size_t magic, magic_bytes;   /* offset and length */
+    const char *one_file, *pair; /* the two magics */
+    size_t descrip;              /* offset of 80 bytes of text */
+    struct {
+        unsigned short offset;
+        char kind; /* b, h, i, l: integers of 1, 2, 4, 8 bytes; f, d: floats of 4, 8 */
+    } field[CWI_NIFTI_FIELD_COUNT];
+} cwi_nifti_layout;
+
+/* NIfTI-1, NIfTI-2. */
+CW_API extern const cwi_nifti_layout cwi_nifti_layouts[2];
+
+/* A number of a field, in either byte order. Every kind fits a double as far as sizes go that
+ * are read at all. */
+CW_API double cwi_nifti_get(const cwi_nifti_layout *layout, const unsigned char *header,
+                            bool swapped, cwi_nifti_field field, int index);
+CW_API void cwi_nifti_put(const cwi_nifti_layout *layout, unsigned char *header,
+                          cwi_nifti_field field, int index, double value);
+
+/* NIfTI's number for a voxel type. */
+int cwi_nifti_datatype(cw_type type);
+
+#endif

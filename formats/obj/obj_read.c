@@ -1,0 +1,232 @@
+/* Wavefront OBJ: vertices, normals and faces, in objects or groups; materials do not matter. */
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/base/text.h"
+#include "formats/mesh/mesh_reader.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static const uint32_t NONE = UINT32_MAX;
+
+typedef struct obj {
+    cwi_mesh_build build;
+    float *normals;      /* normal_count x 3 */
+    uint32_t *normal_of; /* a vertex's normal, or NONE; for the first named of them */
+    size_t normal_count, normal_room, named, named_room;
+    bool mixed;       /* some vertex has two normals, or a corner none: then none are kept */
+    bool ours;        /* a comment is that of our writer */
+    bool has_objects; /* then groups are no parts */
+} obj;
+
+/* --- normals ----------------------------------------------------------------------------- */
+
+static cw_status read_normal(obj *o, cwi_scan *s, cw_error *err)
+{
+    if (o->normal_count == UINT32_MAX - 1)
+        return cw_fail(err, CW_ERR_LIMIT, "more than %u normals", UINT32_MAX - 1);
+    cw_status st = cwi_mesh_grow(o->build.in, &o->normals, &o->normal_room, o->normal_count + 1,
+                                 3 * sizeof *o->normals, err);
+    for (size_t a = 0; a < 3 && st == CW_OK; a++) {
+        double number = 0;
+        st = cwi_scan_double(s, "a normal's coordinate", &number, err);
+        if (st == CW_OK) /* one that is beyond single precision is no normal */
+            o->normals[3 * o->normal_count + a] = fabs(number) < 1e30 ? (float)number : NAN;
+    }
+    o->normal_count += st == CW_OK;
+    return st;
+}
+
+static bool same_normal(const obj *o, uint32_t m, uint32_t n)
+{
+    return m == n || (m < o->normal_count && n < o->normal_count &&
+                      memcmp(o->normals + 3 * (size_t)m, o->normals + 3 * (size_t)n,
+                             3 * sizeof *o->normals) == 0);
+}
+
+/* A corner of the vertex has this normal. Once any vertex has two, none are kept; nor are they
+ * where a face comes before its vertices, whose number could then be anything. */
+static cw_status name_normal(obj *o, uint32_t vertex, int64_t normal, cw_error *err)
+{
+    o->mixed = o->mixed || normal < 0 || normal >= NONE || vertex >= o->build.point_count;
+    if (o->mixed)
+        return CW_OK;
+    cw_status st = cwi_mesh_grow(o->build.in, &o->normal_of, &o->named_room, (size_t)vertex + 1,
+                                 sizeof *o->normal_of, err);
+    if (st != CW_OK)
+        return st;
+    while (o->named <= vertex)
+        o->normal_of[o->named++] = NONE;
+    uint32_t *n = &o->normal_of[vertex];
+    o->mixed = *n != NONE && !same_normal(o, *n, (uint32_t)normal);
+    *n = (uint32_t)normal;
+    return CW_OK;
+}
+
+static bool every_vertex_has_a_normal(const obj *o, size_t vertices)
+{
+    if (o->mixed || o->named < vertices || vertices == 0)
+        return false;
+    for (size_t v = 0; v < vertices; v++)
+        if (o->normal_of[v] >= o->normal_count)
+            return false;
+    return true;
+}
+
+static cw_status keep_normals(obj *o, cw_mesh *mesh, cw_error *err)
+{
+    size_t room = 0;
+    if (!every_vertex_has_a_normal(o, mesh->vertex_count))
+        return CW_OK;
+    cw_status st = cwi_mesh_grow(o->build.in, &mesh->normals, &room, mesh->vertex_count,
+                                 3 * sizeof *mesh->normals, err);
+    for (size_t v = 0; v < mesh->vertex_count && st == CW_OK; v++)
+        memcpy(mesh->normals + 3 * v, o->normals + 3 * (size_t)o->normal_of[v],
+               3 * sizeof *mesh->normals);
+    return st;
+}
+
+/* --- faces ------------------------------------------------------------------------------- */
+
+/* The file counts from 1, or with negative numbers back from the last one so far. */
+static int64_t to_index(int64_t number, size_t count)
+{
+    return number < 0 ? (int64_t)count + number : number - 1;
+}
+
+/* "v", "v/t", "v//n" or "v/t/n"; a normal of 0 is none. */
+static bool parse_corner(const cwi_word *word, int64_t *vertex, int64_t *normal)
+{
+    const char *at = word->text, *end = word->text + word->size;
+    int64_t texture;
+    *normal = 0;
+    if (!cwi_parse_int(&at, vertex))
+        return false;
+    if (*at == '/' && *++at != '/' && at < end && !cwi_parse_int(&at, &texture))
+        return false;
+    if (at < end && *at == '/' && ++at < end && !cwi_parse_int(&at, normal))
+        return false;
+    return at == end;
+}
+
+static cw_status add_corner(obj *o, const cwi_scan *s, const cwi_word *word, cw_error *err)
+{
+    int64_t vertex, normal;
+    if (!parse_corner(word, &vertex, &normal))
+        return cwi_scan_fail(s, word, "a corner", "numbers as in 1/2/3", err);
+    const int64_t index = to_index(vertex, o->build.point_count);
+    if (vertex == 0 || index < 0 || index >= UINT32_MAX)
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "line %zu: a corner names vertex %lld; there are %zu so far, from 1",
+                       s->line, (long long)vertex, o->build.point_count);
+    cw_status st = cwi_build_corner(&o->build, index, err);
+    if (st == CW_OK && o->normal_count)
+        st = name_normal(o, (uint32_t)index, normal ? to_index(normal, o->normal_count) : -1,
+                         err);
+    return st;
+}
+
+static cw_status read_face(obj *o, cwi_scan *s, cw_mesh_file *said, cw_error *err)
+{
+    cwi_word word;
+    cw_status st = cwi_scan_word(s, &word, err);
+    while (st == CW_OK && word.size && word.text[0] != '#') {
+        st = add_corner(o, s, &word, err);
+        if (st == CW_OK)
+            st = cwi_scan_word(s, &word, err);
+    }
+    if (st == CW_OK)
+        cwi_build_end_face(&o->build, said);
+    return st == CW_OK ? cwi_scan_end_line(s, err) : st;
+}
+
+/* --- lines ------------------------------------------------------------------------------- */
+
+/* What follows x y z may be a weight or a colour, and is left out. */
+static cw_status read_vertex(obj *o, cwi_scan *s, cw_error *err)
+{
+    double point[3] = {0};
+    cw_status st = CW_OK;
+    for (int a = 0; a < 3 && st == CW_OK; a++)
+        st = cwi_scan_double(s, "a coordinate", &point[a], err);
+    if (st == CW_OK)
+        st = cwi_build_point(&o->build, point, err);
+    return st == CW_OK ? cwi_scan_end_line(s, err) : st;
+}
+
+static cw_status read_comment(obj *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *said,
+                              cw_error *err)
+{
+    char text[CWI_REST_BYTES];
+    cw_status st = cwi_scan_rest(s, text, err);
+    if (st == CW_OK)
+        cwi_take_comment(text, &o->ours, mesh, said);
+    return st == CW_OK ? cwi_scan_end_line(s, err) : st;
+}
+
+static cw_status read_part(obj *o, cwi_scan *s, bool is_object, cw_error *err)
+{
+    char name[CWI_REST_BYTES];
+    if (!is_object && o->has_objects)
+        return cwi_scan_end_line(s, err);
+    o->has_objects = is_object;
+    cw_status st = cwi_scan_rest(s, name, err);
+    if (st == CW_OK)
+        st = cwi_mesh_begin_part(o->build.in, name, o->build.triangle_count, err);
+    return st == CW_OK ? cwi_scan_end_line(s, err) : st;
+}
+
+static cw_status read_line(obj *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *said,
+                           cw_error *err)
+{
+    cwi_word word;
+    cw_status st = cwi_scan_word(s, &word, err);
+    if (st != CW_OK)
+        return st;
+    if (cwi_word_is(&word, "v"))
+        return read_vertex(o, s, err);
+    if (cwi_word_is(&word, "vn"))
+        st = read_normal(o, s, err);
+    else if (cwi_word_is(&word, "f"))
+        return read_face(o, s, said, err);
+    else if (cwi_word_is(&word, "#"))
+        return read_comment(o, s, mesh, said, err);
+    else if (cwi_word_is(&word, "o") || cwi_word_is(&word, "g"))
+        return read_part(o, s, word.text[0] == 'o', err);
+    else if (cwi_word_is(&word, "l") || cwi_word_is(&word, "p"))
+        said->skipped++;
+    return st == CW_OK ? cwi_scan_end_line(s, err) : st;
+}
+
+static cw_status read_lines(obj *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *said,
+                            cw_error *err)
+{
+    bool found;
+    cw_status st = cwi_scan_next_line(s, &found, err);
+    while (st == CW_OK && found) {
+        st = read_line(o, s, mesh, said, err);
+        if (st == CW_OK)
+            st = cwi_scan_next_line(s, &found, err);
+    }
+    return st;
+}
+
+cw_status cwi_obj_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw_error *err)
+{
+    obj o = {.build = {.in = in, .base = 1}};
+    cwi_scan s = {0};
+    cw_status st = cwi_scan_open_text(&s, &in->file, 0, &in->desc.progress, err);
+    s.by_line = true;
+    if (st == CW_OK)
+        st = read_lines(&o, &s, mesh, said, err);
+    if (st == CW_OK)
+        st = cwi_build_finish(&o.build, mesh, err);
+    if (st == CW_OK)
+        st = keep_normals(&o, mesh, err);
+    cwi_scan_close(&s);
+    cwi_build_free(&o.build);
+    cwi_free(o.normals);
+    cwi_free(o.normal_of);
+    return st;
+}

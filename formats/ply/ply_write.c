@@ -1,0 +1,92 @@
+/* PLY, binary little-endian or text: everything a mesh holds but its affine. */
+#include "formats/mesh/mesh_writer.h"
+
+#include "core/base/status.h"
+
+static unsigned char *encode_vertex(const cwi_part *part, size_t v, unsigned char *to)
+{
+    const cw_mesh *mesh = &part->mesh;
+    for (int a = 0; a < 3; a++)
+        to = cwi_put_f32(to, (float)cwi_coordinate(part, v, a));
+    if (mesh->normals) {
+        float normal[3];
+        cwi_normal(part, v, normal);
+        to = cwi_put_f32x3(to, normal);
+    }
+    if (mesh->colors) {
+        memcpy(to, mesh->colors + 4 * v, 4);
+        to += 4;
+    }
+    if (mesh->scalars)
+        to = cwi_put_f32(to, mesh->scalars[v]);
+    if (mesh->labels)
+        to = cwi_put_u32(to, mesh->labels[v]);
+    return to;
+}
+
+static unsigned char *encode_face(const cwi_part *part, size_t t, unsigned char *to)
+{
+    *to++ = 3;
+    for (int c = 0; c < 3; c++)
+        to = cwi_put_u32(to, (uint32_t)cwi_corner_number(part, t, c));
+    return to;
+}
+
+static unsigned char *encode_text_vertex(const cwi_part *part, size_t v, unsigned char *to)
+{
+    const cw_mesh *mesh = &part->mesh;
+    float place[3];
+    for (int a = 0; a < 3; a++)
+        place[a] = (float)cwi_coordinate(part, v, a);
+    to = cwi_put_singles(to, place);
+    if (mesh->normals)
+        to = cwi_put_normal(cwi_put_text(to, " "), part, v);
+    for (size_t c = 0; mesh->colors && c < 4; c++)
+        to = cwi_put_integer(cwi_put_text(to, " "), mesh->colors[4 * v + c]);
+    if (mesh->scalars)
+        to = cwi_put_decimal(cwi_put_text(to, " "), (double)mesh->scalars[v], 9);
+    if (mesh->labels)
+        to = cwi_put_integer(cwi_put_text(to, " "), mesh->labels[v]);
+    return cwi_put_text(to, "\n");
+}
+
+static cw_status write_header(const cwi_parts *parts, const cwi_mesh_output *out, cw_error *err)
+{
+    const cw_mesh *mesh = &parts->items[0].mesh; /* all have the same arrays */
+    /* int is what readers expect; uint only when the numbers need it */
+    const char *index = parts->vertices > INT32_MAX ? "uint" : "int";
+    char origin[CWI_ORIGIN_BYTES];
+    cwi_print_origin(out, "comment origin ", "\n", origin);
+    return cwi_outfile_printf(
+        out->file, err,
+        "ply\nformat %s 1.0\n"
+        "comment cubewright %s\ncomment object %s\ncomment unit %s\ncomment frame %s\n%s%s"
+        "element vertex %ju\nproperty float x\nproperty float y\nproperty float z\n%s%s%s%s"
+        "element face %ju\nproperty list uchar %s vertex_indices\nend_header\n",
+        out->text ? "ascii" : "binary_little_endian", CW_VERSION, out->name,
+        cw_unit_name(out->axes->unit), out->axes->ras ? "RAS" : "LPS",
+        out->axes->y_up ? "comment up Y\n" : "", origin, (uintmax_t)parts->vertices,
+        mesh->normals ? "property float nx\nproperty float ny\nproperty float nz\n" : "",
+        mesh->colors ? "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                       "property uchar alpha\n"
+                     : "",
+        mesh->scalars ? "property float scalar\n" : "",
+        mesh->labels ? "property uint label\n" : "", (uintmax_t)parts->triangles, index);
+}
+
+cw_status cwi_ply_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *err)
+{
+    if (parts->vertices > UINT32_MAX)
+        return cw_fail(err, CW_ERR_LIMIT, "PLY counts at most %u vertices; the mesh has %llu",
+                       UINT32_MAX, (unsigned long long)parts->vertices);
+    out->total = (size_t)(parts->vertices + parts->triangles);
+    cw_status st = cwi_check_single(parts, err);
+    if (st == CW_OK)
+        st = write_header(parts, out, err);
+    if (st == CW_OK)
+        st =
+            cwi_write_vertices(parts, out, out->text ? encode_text_vertex : encode_vertex, err);
+    if (st == CW_OK)
+        st = cwi_write_triangles(parts, out, out->text ? cwi_put_face_line : encode_face, err);
+    return st;
+}

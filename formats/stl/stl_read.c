@@ -1,0 +1,292 @@
+/* STL, binary and text. Facets share nothing; corners at one place become one vertex. */
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/base/text.h"
+#include "core/mesh/weld.h"
+#include "formats/mesh/mesh_axes.h"
+#include "formats/mesh/mesh_reader.h"
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+#include <strings.h>
+
+enum { HEADER = 80, START = 84, FACET = 50, BATCH = 64 };
+
+static uint32_t u32_at(const unsigned char *b)
+{
+    return b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
+}
+
+/* Size decides, as binary files may well begin with "solid". Some are longer than their facets,
+ * so that rule is left to files that cannot be text. */
+static bool is_binary(const unsigned char *head, size_t size, uint64_t file_size)
+{
+    return size >= START && file_size == START + (uint64_t)FACET * u32_at(head + HEADER);
+}
+
+static bool is_text(const unsigned char *head, size_t size)
+{
+    size_t i = 0;
+    while (i < size && (head[i] == ' ' || (head[i] >= '\t' && head[i] <= '\r')))
+        i++;
+    return size - i >= 5 && strncasecmp((const char *)head + i, "solid", 5) == 0;
+}
+
+bool cwi_stl_sniff(const unsigned char *head, size_t size, uint64_t file_size)
+{
+    return is_binary(head, size, file_size) || is_text(head, size);
+}
+
+/* The mesh as it grows: our welder's points, and three of them for each facet. */
+typedef struct facets {
+    cwi_mesh_input *in;
+    cwi_welder welder;
+    uint32_t *triangles;
+    size_t count, room;
+} facets;
+
+/* The welder's memory counts when it has grown: its points and its table. */
+static cw_status limit_memory(const facets *f, cw_error *err)
+{
+    const uint64_t limit = f->in->desc.max_bytes;
+    const uint64_t welder = 12 * (uint64_t)f->welder.room + 4 * (uint64_t)f->welder.slots;
+    if (!limit || f->in->bytes + welder <= limit)
+        return CW_OK;
+    char text[CWI_MEMORY_TEXT];
+    cwi_print_memory(limit, text);
+    return cw_fail(err, CW_ERR_LIMIT,
+                   "the mesh needs more memory than the %s allowed (--memory)", text);
+}
+
+static cw_status check_corners(const facets *f, const float *corners, size_t count,
+                               cw_error *err)
+{
+    for (size_t i = 0; i < 9 * count; i++)
+        if (!isfinite(corners[i]))
+            return cw_fail(err, CW_ERR_FORMAT,
+                           "'%c' of corner %zu of facet %zu is %g; it must be finite",
+                           "xyz"[i % 3], i / 3 % 3, f->count + i / 9, (double)corners[i]);
+    return CW_OK;
+}
+
+/* Facets of nine coordinates each; there is room for them. */
+static cw_status add_facets(facets *f, const float *corners, size_t count, cw_error *err)
+{
+    const size_t room = f->welder.room;
+    cw_status st = check_corners(f, corners, count, err);
+    if (st != CW_OK)
+        return st;
+    if (!cwi_welder_add(&f->welder, corners, 3 * count, f->triangles + 3 * f->count))
+        return cw_fail(err, f->welder.count < UINT32_MAX - 1 ? CW_ERR_NO_MEMORY : CW_ERR_LIMIT,
+                       "no memory or number for vertex %zu", f->welder.count);
+    f->count += count;
+    return f->welder.room == room ? CW_OK : limit_memory(f, err);
+}
+
+static cw_status make_room(facets *f, uint64_t count, cw_error *err)
+{
+    cw_status st = cwi_mesh_limit_triangles(f->in, count, err);
+    if (st == CW_OK)
+        st = cwi_mesh_grow(f->in, &f->triangles, &f->room, (size_t)count,
+                           3 * sizeof *f->triangles, err);
+    return st;
+}
+
+/* "cubewright, LPS, mm from 1 2 3", as our writer leaves it: frame and unit, and the origin of
+ * a local file. */
+static void take_words(const char *text, cw_mesh *mesh, cw_mesh_file *said)
+{
+    static const char ours[] = "cubewright, ", from[] = " from ";
+    const char *rest = text + strlen(ours);
+    if (strncmp(text, ours, strlen(ours)) != 0 || !cwi_parse_axes(&rest, said))
+        return;
+    said->local = strncmp(rest, from, strlen(from)) == 0;
+    if (said->local && !cwi_parse_origin(rest + strlen(from), mesh->origin))
+        said->known = CW_KNOWN_UNIT;
+}
+
+/* --- binary ------------------------------------------------------------------------------ */
+
+static cw_status read_binary_facets(facets *f, cwi_scan *s, size_t count, cw_error *err)
+{
+    float corners[9 * BATCH];
+    cw_status st = CW_OK;
+    for (size_t t = 0; t < count && st == CW_OK; t++) {
+        const unsigned char *b;
+        st = cwi_scan_take(s, FACET, "a facet", &b, err);
+        for (size_t i = 0; i < 9 && st == CW_OK; i++) {
+            const uint32_t bits = u32_at(b + 12 + 4 * i);
+            memcpy(&corners[9 * t + i], &bits, sizeof bits);
+        }
+    }
+    return st == CW_OK ? add_facets(f, corners, count, err) : st;
+}
+
+static cw_status read_binary(facets *f, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *said,
+                             cw_error *err)
+{
+    const unsigned char *head;
+    cw_status st = cwi_scan_take(s, START, "the header", &head, err);
+    if (st != CW_OK)
+        return st;
+    char text[HEADER + 1] = "";
+    const uint32_t count = u32_at(head + HEADER);
+    const uint64_t held = cwi_scan_left(s) / FACET;
+    memcpy(text, head, HEADER);
+    take_words(text, mesh, said);
+    if (count > held)
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "the header counts %u facets; the file has room for %llu", count,
+                       (unsigned long long)held);
+    st = make_room(f, count, err);
+    while (st == CW_OK && f->count < count) {
+        const size_t left = count - f->count;
+        st = read_binary_facets(f, s, left < BATCH ? left : BATCH, err);
+    }
+    return st;
+}
+
+/* --- text -------------------------------------------------------------------------------- */
+
+/* Whether a word is a keyword, in any case of letters. */
+static bool is_keyword(const cwi_word *word, const char *keyword)
+{
+    size_t i = 0;
+    while (i < word->size && keyword[i] && (word->text[i] | 32) == keyword[i])
+        i++;
+    return i == word->size && !keyword[i];
+}
+
+static cw_status expect(cwi_scan *s, const char *keyword, cw_error *err)
+{
+    cwi_word word;
+    cw_status st = cwi_scan_word(s, &word, err);
+    if (st == CW_OK && !is_keyword(&word, keyword))
+        return cwi_scan_fail(s, &word, "the next word", keyword, err);
+    return st;
+}
+
+static cw_status read_text_corner(cwi_scan *s, float point[3], cw_error *err)
+{
+    cw_status st = expect(s, "vertex", err);
+    for (int a = 0; a < 3 && st == CW_OK; a++) {
+        double number = 0;
+        st = cwi_scan_double(s, "a coordinate", &number, err);
+        if (fabs(number) > (double)FLT_MAX)
+            number = copysign((double)INFINITY, number);
+        point[a] = (float)number;
+    }
+    return st;
+}
+
+/* Behind the word "facet". The normal may be anything, "nan" too. */
+static cw_status read_text_facet(facets *f, cwi_scan *s, cw_error *err)
+{
+    cwi_word word;
+    float corners[9];
+    cw_status st = make_room(f, (uint64_t)f->count + 1, err);
+    if (st == CW_OK)
+        st = expect(s, "normal", err);
+    for (int a = 0; a < 3 && st == CW_OK; a++)
+        st = cwi_scan_word(s, &word, err);
+    if (st == CW_OK)
+        st = expect(s, "outer", err);
+    if (st == CW_OK)
+        st = expect(s, "loop", err);
+    for (int c = 0; c < 3 && st == CW_OK; c++)
+        st = read_text_corner(s, corners + 3 * c, err);
+    if (st == CW_OK)
+        st = expect(s, "endloop", err);
+    if (st == CW_OK)
+        st = expect(s, "endfacet", err);
+    return st == CW_OK ? add_facets(f, corners, 1, err) : st;
+}
+
+/* Takes our words off the end of a solid's name. */
+static void take_name(char *name, cw_mesh *mesh, cw_mesh_file *said)
+{
+    static const char ours[] = "cubewright, ";
+    char *at = name + strlen(name);
+    while (at > name && strncmp(at, ours, strlen(ours)) != 0)
+        at--;
+    take_words(at, mesh, said);
+    while (said->known && at > name && at[-1] == ' ')
+        at--;
+    if (said->known)
+        *at = '\0';
+}
+
+/* Behind the word "solid"; its name may be any words. */
+static cw_status read_solid(facets *f, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *said,
+                            cw_error *err)
+{
+    char name[CWI_REST_BYTES];
+    cwi_word word = {0};
+    cw_status st = cwi_scan_rest(s, name, err);
+    if (st == CW_OK && f->count == 0)
+        take_name(name, mesh, said);
+    if (st == CW_OK)
+        st = cwi_mesh_begin_part(f->in, name, f->count, err);
+    if (st == CW_OK)
+        st = cwi_scan_end_line(s, err);
+    while (st == CW_OK) {
+        st = cwi_scan_word(s, &word, err);
+        if (st == CW_OK && is_keyword(&word, "facet"))
+            st = read_text_facet(f, s, err);
+        else if (st == CW_OK && is_keyword(&word, "endsolid"))
+            return cwi_scan_end_line(s, err);
+        else if (st == CW_OK)
+            return cwi_scan_fail(s, &word, "the next word", "facet or endsolid", err);
+    }
+    return st;
+}
+
+static cw_status read_text(facets *f, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *said,
+                           cw_error *err)
+{
+    cwi_word word;
+    cw_status st = cwi_scan_word(s, &word, err);
+    while (st == CW_OK && word.size) {
+        if (!is_keyword(&word, "solid"))
+            return cwi_scan_fail(s, &word, "the next word", "solid", err);
+        st = read_solid(f, s, mesh, said, err);
+        if (st == CW_OK)
+            st = cwi_scan_word(s, &word, err);
+    }
+    return st;
+}
+
+/* --- either ------------------------------------------------------------------------------ */
+
+static cw_status move_arrays(facets *f, cw_mesh *mesh, cw_error *err)
+{
+    mesh->positions = f->welder.points;
+    mesh->vertex_count = f->welder.count;
+    mesh->triangles = f->triangles;
+    mesh->triangle_count = f->count;
+    f->welder.points = NULL;
+    f->triangles = NULL;
+    return cwi_mesh_shrink(mesh, err);
+}
+
+cw_status cwi_stl_read(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said, cw_error *err)
+{
+    unsigned char head[START];
+    size_t size;
+    facets f = {.in = in};
+    cwi_scan s = {0};
+    cw_status st = cwi_input_read_at(in->file.fd, 0, head, sizeof head, &size, err);
+    const bool text = is_text(head, size) && !is_binary(head, size, in->file.size);
+    if (st == CW_OK)
+        st = text ? cwi_scan_open_text(&s, &in->file, 0, &in->desc.progress, err)
+                  : cwi_scan_open(&s, &in->file, 0, &in->desc.progress, err);
+    if (st == CW_OK)
+        st = text ? read_text(&f, &s, mesh, said, err) : read_binary(&f, &s, mesh, said, err);
+    if (st == CW_OK)
+        st = move_arrays(&f, mesh, err);
+    cwi_scan_close(&s);
+    cwi_welder_free(&f.welder);
+    cwi_free(f.triangles);
+    return st;
+}

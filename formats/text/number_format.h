@@ -1,0 +1,48 @@
+/* Numbers as text, in records that a writer puts together: some ten times as fast as printf,
+ * and with a point in any locale. Each function returns the end of what it put. */
+#ifndef FORMATS_TEXT_NUMBER_FORMAT_H
+#define FORMATS_TEXT_NUMBER_FORMAT_H
+
+#include <cubewright/core.h>
+
+#include <string.h>
+
+/* As "%.*g" does, but for the last digit of a tie. 9 digits bring a float back to the bit, 17 a
+ * double. Takes up to 24 bytes; there is no negative zero. */
+CW_API unsigned char *cwi_put_decimal(unsigned char *to, double value, int digits);
+CW_API unsigned char *cwi_put_integer(unsigned char *to, uint64_t value);
+
+enum { CWI_NUMBER_BYTES = 26, CWI_POINT_BYTES = 3 * CWI_NUMBER_BYTES };
+
+/* "1.5", "1 2 3.5": the fewest digits that read back the same, and a zero behind them. */
+void cwi_print_number(double value, char text[CWI_NUMBER_BYTES]);
+void cwi_print_point(const double point[3], char text[CWI_POINT_BYTES]);
+
+static inline unsigned char *cwi_put_text(unsigned char *to, const char *text)
+{
+    const size_t size = strlen(text);
+    memcpy(to, text, size);
+    return to + size;
+}
+
+/* Three numbers with a blank between them. */
+static inline unsigned char *cwi_put_decimals(unsigned char *to, const double values[3],
+                                              int digits)
+{
+    for (int i = 0; i < 3; i++) {
+        if (i > 0)
+            *to++ = ' ';
+        to = cwi_put_decimal(to, values[i], digits);
+    }
+    return to;
+}
+
+static inline unsigned char *cwi_put_singles(unsigned char *to, const float values[3])
+{
+    double exact[3];
+    for (int i = 0; i < 3; i++)
+        exact[i] = (double)values[i];
+    return cwi_put_decimals(to, exact, 9);
+}
+
+#endif

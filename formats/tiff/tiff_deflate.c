@@ -1,0 +1,103 @@
+/* Strips and tiles that are deflated, and the predictors in front of that. Not left to libtiff:
+ * where a damaged stream asks for more room than there is, that takes what it has for all, and
+ * it verifies no checksum of a strip that it reads by zlib. */
+#include "core/base/status.h"
+#include "formats/volume/voxel_source.h"
+#include "formats/bytes/inflate_stream.h"
+#include "formats/tiff/tiff_file.h"
+
+#include <string.h>
+
+enum { NO_PREDICTOR = 1, DIFFERENCES = 2, FLOATS = 3 };
+
+/* The sum of numbers up to each, samples apart. */
+static void add_up(void *row, size_t count, size_t stride, size_t size)
+{
+    uint8_t *u8 = row;
+    uint16_t *u16 = row;
+    uint32_t *u32 = row;
+    uint64_t *u64 = row;
+    for (size_t i = stride; size == 1 && i < count; i++)
+        u8[i] = (uint8_t)(u8[i] + u8[i - stride]);
+    for (size_t i = stride; size == 2 && i < count; i++)
+        u16[i] = (uint16_t)(u16[i] + u16[i - stride]);
+    for (size_t i = stride; size == 4 && i < count; i++)
+        u32[i] += u32[i - stride];
+    for (size_t i = stride; size == 8 && i < count; i++)
+        u64[i] += u64[i - stride];
+}
+
+/* Floats come as all their high bytes, then all the next ones, ..., whatever the file's order.
+ */
+static void join_floats(unsigned char *row, unsigned char *copy, size_t count, size_t size)
+{
+    memcpy(copy, row, count * size);
+    for (size_t b = 0; b < size; b++) {
+        const size_t to = cwi_machine_is_big_endian() ? b : size - 1 - b;
+        for (size_t i = 0; i < count; i++)
+            row[i * size + to] = copy[b * count + i];
+    }
+}
+
+/* From what was deflated to numbers of this machine. */
+static void undo(const cwi_tiff_file *f, unsigned char *row, size_t bytes, unsigned char *copy)
+{
+    const cwi_tiff_layout *l = &f->layout;
+    const size_t size = l->bits < 8 ? 1 : l->bits / 8;
+    const size_t stride = l->planes > 1 ? 1 : l->samples;
+    if (l->predictor == FLOATS) {
+        add_up(row, bytes, stride, 1);
+        join_floats(row, copy, bytes / size, size);
+        return;
+    }
+    if (TIFFIsByteSwapped(f->tiff))
+        cwi_swap_bytes(row, bytes / size, size);
+    if (l->predictor == DIFFERENCES)
+        add_up(row, bytes / size, stride, size);
+}
+
+static cw_status check_predictor(const cwi_tiff_layout *l, cw_error *err)
+{
+    const bool good = l->predictor == NO_PREDICTOR ||
+                      (l->predictor == DIFFERENCES && l->bits >= 8) ||
+                      (l->predictor == FLOATS && l->format == SAMPLEFORMAT_IEEEFP);
+    return good ? CW_OK
+                : cw_fail(err, CW_ERR_FORMAT, "'Predictor' is %u, with %u bits a sample",
+                          l->predictor, l->bits);
+}
+
+/* On to the checksum, past rows that some writers put behind a short strip's. What follows in
+ * the strip's bytes is nobody's. */
+static cw_status finish(cwi_stream *s, size_t bytes, cw_error *err)
+{
+    unsigned char waste[4096];
+    cw_status st = CW_OK;
+    for (size_t n = 0, got; st == CW_OK && !s->ended && n <= bytes; n += got)
+        st = cwi_stream_some(s, waste, sizeof waste, &got, err);
+    if (st == CW_OK && s->truncated)
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "the compressed data break off before their checksum");
+    return st;
+}
+
+cw_status cwi_tiff_inflate(cwi_tiff_file *f, uint32_t strile, unsigned char *to, size_t bytes,
+                           size_t row_bytes, cw_error *err)
+{
+    const uint64_t at = TIFFGetStrileOffset(f->tiff, strile);
+    cwi_stream stream = {0};
+    cw_status st = check_predictor(&f->layout, err);
+    if (st == CW_OK)
+        st = cwi_stream_open(&stream, f->fd, at, true, err);
+    if (st == CW_OK) {
+        cwi_stream_end_at(&stream, at + TIFFGetStrileByteCount(f->tiff, strile));
+        st = cwi_stream_read(&stream, to, bytes, err);
+        if (st == CW_OK)
+            st = finish(&stream, bytes, err);
+        cwi_stream_close(&stream);
+    }
+    if (st == CW_OK && f->layout.predictor == FLOATS)
+        st = cwi_tiff_make_room(&f->line, &f->line_room, row_bytes, err);
+    for (size_t r = 0; st == CW_OK && r < bytes; r += row_bytes)
+        undo(f, to + r, row_bytes, f->line);
+    return st;
+}

@@ -1,0 +1,247 @@
+/* What a description says of the pages of a TIFF file: ImageJ's lines are read here. */
+#include "core/base/status.h"
+#include "core/base/text.h"
+#include "formats/tiff/tiff_file.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+/* --- units ---------------------------------------------------------------------------------
+ */
+
+typedef struct unit {
+    const char *name;
+    double value;
+} unit;
+
+static double find_unit(const unit *units, size_t count, const char *name, size_t length)
+{
+    for (size_t i = 0; i < count; i++)
+        if (strlen(units[i].name) == length && memcmp(units[i].name, name, length) == 0)
+            return units[i].value;
+    return 0;
+}
+
+/* The micro sign is Unicode's, a Greek letter, Latin-1's, or as Java escapes it. */
+double cwi_tiff_length(const char *name, size_t length)
+{
+    static const unit units[] = {
+        {"mm", 1},           {"millimeter", 1},    {"millimetre", 1},
+        {"cm", 10},          {"centimeter", 10},   {"m", 1000},
+        {"meter", 1000},     {"um", 1e-3},         {"micron", 1e-3},
+        {"microns", 1e-3},   {"micrometer", 1e-3}, {"\xc2\xb5m", 1e-3},
+        {"\xce\xbcm", 1e-3}, {"\xb5m", 1e-3},      {"\\u00B5m", 1e-3},
+        {"\\u00b5m", 1e-3},  {"nm", 1e-6},         {"nanometer", 1e-6},
+        {"pm", 1e-9},        {"\xc3\x85", 1e-7},   {"\xe2\x84\xab", 1e-7},
+        {"angstrom", 1e-7},  {"in", 25.4},         {"inch", 25.4},
+        {"inches", 25.4}};
+    return find_unit(units, sizeof units / sizeof *units, name, length);
+}
+
+double cwi_tiff_time(const char *name, size_t length)
+{
+    static const unit units[] = {{"s", 1},     {"sec", 1},     {"second", 1}, {"seconds", 1},
+                                 {"ms", 1e-3}, {"msec", 1e-3}, {"min", 60},   {"h", 3600}};
+    return find_unit(units, sizeof units / sizeof *units, name, length);
+}
+
+/* --- ImageJ --------------------------------------------------------------------------------
+ */
+
+/* The rest of the line KEY=; NULL: there is none. */
+static const char *find_line(const char *text, const char *key, size_t *length)
+{
+    const size_t size = strlen(key);
+    for (const char *line = text; *line; line += *line == '\n') {
+        *length = strcspn(line, "\r\n");
+        if (*length > size && memcmp(line, key, size) == 0 && line[size] == '=') {
+            *length -= size + 1;
+            return line + size + 1;
+        }
+        line += strcspn(line, "\n");
+    }
+    return NULL;
+}
+
+static bool find_number(const char *text, const char *key, double *value)
+{
+    size_t length;
+    const char *at = find_line(text, key, &length);
+    return at && cwi_parse_double(&at, value) && isfinite(*value);
+}
+
+static cw_status find_count(const char *text, const char *key, uint32_t *count, cw_error *err)
+{
+    double value;
+    if (!find_number(text, key, &value))
+        return CW_OK;
+    if (!(value >= 1) || value > CWI_TIFF_MOST_PAGES || value != floor(value))
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "'ImageDescription' says %s=%.6g; it must be 1 to %d", key, value,
+                       CWI_TIFF_MOST_PAGES);
+    *count = (uint32_t)value;
+    return CW_OK;
+}
+
+static bool is_one_run(const cwi_tiff_file *f)
+{
+    const cwi_tiff_layout *l = &f->layout;
+    const uint64_t start = TIFFGetStrileOffset(f->tiff, 0);
+    if (f->offset_count > 1 || l->tiled || l->compression != COMPRESSION_NONE || l->planes > 1)
+        return false;
+    for (uint32_t s = 0; s < l->bands; s++)
+        if (TIFFGetStrileOffset(f->tiff, s) !=
+            start + (uint64_t)s * l->band_rows * l->stored_row)
+            return false;
+    return true;
+}
+
+/* Stacks of more than 4 GiB: one directory, and all images behind the first one. */
+static cw_status find_images(cwi_tiff_file *f, uint32_t images, cw_error *err)
+{
+    const cwi_tiff_layout *l = &f->layout;
+    uint64_t bytes = (uint64_t)l->rows * l->stored_row; /* below 2^57 */
+    if (images == f->page_count)
+        return CW_OK;
+    if (f->page_count > 1 || !is_one_run(f))
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "'ImageDescription' says images=%u; the file holds %u pages", images,
+                       f->page_count);
+    const uint64_t start = TIFFGetStrileOffset(f->tiff, 0);
+    if (__builtin_mul_overflow(bytes, images, &bytes) || bytes > f->size - start)
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "'ImageDescription' says images=%u, which would be %llu bytes; the file "
+                       "has %llu behind the first %llu",
+                       images, (unsigned long long)bytes, (unsigned long long)(f->size - start),
+                       (unsigned long long)start);
+    if (f->offsets[0] >= start && f->offsets[0] < start + bytes)
+        return cw_fail(
+            err, CW_ERR_FORMAT,
+            "'ImageDescription' says images=%u, which would be %llu bytes behind the "
+            "first %llu; the file's directory is among those",
+            images, (unsigned long long)bytes, (unsigned long long)start);
+    f->behind = start;
+    f->page_count = images;
+    return CW_OK;
+}
+
+/* Pages are in the order channel, slice, frame; what is not said is 1, and slices the rest. */
+static cw_status order_images(const cwi_tiff_file *f, const char *text, cwi_tiff_facts *facts,
+                              uint32_t *order, cw_error *err)
+{
+    uint32_t c = 1, z = 0, t = 1;
+    cw_status st = find_count(text, "channels", &c, err);
+    if (st == CW_OK)
+        st = find_count(text, "slices", &z, err);
+    if (st == CW_OK)
+        st = find_count(text, "frames", &t, err);
+    if (st != CW_OK)
+        return st;
+    if (z == 0)
+        z = (uint32_t)(f->page_count / ((uint64_t)c * t));
+    if ((uint64_t)c * t > CWI_TIFF_MOST_PAGES || (uint64_t)c * t * z != f->page_count)
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "'ImageDescription' says %u channels, %u slices and %u frames; the file "
+                       "holds %u images",
+                       c, z, t, f->page_count);
+    facts->channels = c;
+    facts->slices = z;
+    facts->steps = t;
+    for (uint32_t p = 0; p < f->page_count; p++)
+        order[(p / c / z * c + p % c) * z + p / c % z] = p;
+    return CW_OK;
+}
+
+/* Pixels per unit; of files that ImageJ has not calibrated, 72 in an inch. */
+static void find_pixels(const cwi_tiff_file *f, const char *text, cwi_tiff_facts *facts)
+{
+    static const char *const keys[] = {"unit", "yunit", "zunit"};
+    uint16_t resolution = RESUNIT_NONE;
+    double value;
+    size_t length;
+    TIFFGetFieldDefaulted(f->tiff, TIFFTAG_RESOLUTIONUNIT, &resolution);
+    const char *name = resolution == RESUNIT_INCH         ? "inch"
+                       : resolution == RESUNIT_CENTIMETER ? "cm"
+                                                          : "";
+    const double usual = cwi_tiff_length(name, strlen(name));
+    for (int a = 0; a < 3; a++) {
+        const char *said = find_line(text, keys[a], &length);
+        said = said ? said : find_line(text, keys[0], &length);
+        facts->unit_mm[a] = said ? cwi_tiff_length(said, length) : usual;
+    }
+    for (int a = 0; a < 2; a++)
+        if (cwi_tiff_rational(f, a ? TIFFTAG_YRESOLUTION : TIFFTAG_XRESOLUTION, &value) &&
+            value > 0 && isfinite(value) && (value != 72 || resolution != RESUNIT_INCH))
+            facts->spacing[a] = 1 / value;
+    const bool stated = find_number(text, "spacing", &value) && value != 0;
+    facts->spacing[2] = stated ? fabs(value) : facts->slices > 1 ? 1 : 0;
+    if (!stated && facts->slices > 1 && facts->spacing[0] > 0 && facts->unit_mm[2] > 0)
+        snprintf(facts->note, sizeof facts->note,
+                 "ImageJ's description has no 'spacing' of slices, which stands for 1");
+}
+
+static void find_values(const char *text, cwi_tiff_facts *facts)
+{
+    double interval, function, c0, c1;
+    size_t length;
+    const char *name = find_line(text, "tunit", &length);
+    if (find_number(text, "finterval", &interval) && interval > 0)
+        facts->step_seconds = interval * (name ? cwi_tiff_time(name, length) : 1);
+    if (!find_number(text, "cf", &function))
+        return;
+    if (function == 0 && find_number(text, "c0", &c0) && find_number(text, "c1", &c1) &&
+        c1 != 0) {
+        facts->slope = c1;
+        facts->intercept = c0;
+    } else {
+        snprintf(facts->note, sizeof facts->note,
+                 "ImageJ's calibration by function %.6g is left out: values are as stored",
+                 function);
+    }
+}
+
+static cw_status describe_imagej(cwi_tiff_file *f, const char *text, cwi_tiff_facts *facts,
+                                 uint32_t *order, cw_error *err)
+{
+    uint32_t images = f->page_count;
+    cw_status st = find_count(text, "images", &images, err);
+    if (st == CW_OK)
+        st = find_images(f, images, err);
+    if (st == CW_OK)
+        st = order_images(f, text, facts, order, err);
+    if (st != CW_OK)
+        return st;
+    find_pixels(f, text, facts);
+    find_values(text, facts);
+    return CW_OK;
+}
+
+/* --- whose description it is ---------------------------------------------------------------
+ */
+
+static bool is_ome(const char *text)
+{
+    return *text == '<' && (strstr(text, "<OME") || strstr(text, ":OME "));
+}
+
+cw_status cwi_tiff_describe(cwi_tiff_file *f, const char *text, cwi_tiff_facts *facts,
+                            uint32_t *order, cw_error *err)
+{
+    if (strncmp(text, "\xef\xbb\xbf", 3) == 0)
+        text += 3;
+    text += strspn(text, " \t\r\n");
+    if (strncmp(text, "ImageJ=", 7) == 0)
+        return describe_imagej(f, text, facts, order, err);
+    if (is_ome(text))
+        return cwi_tiff_ome(f, text, facts, order, err);
+    if (strncmp(text, "{\"shape\":", 9) == 0 && strstr(text, "\"truncated\": true"))
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "'ImageDescription' says that tifffile wrote one directory for several "
+                       "pages; such files are not read");
+    facts->slices = f->page_count;
+    facts->channels = facts->steps = 1;
+    for (uint32_t p = 0; p < f->page_count; p++)
+        order[p] = p;
+    return CW_OK;
+}

@@ -1,0 +1,347 @@
+/* OME-TIFF: the first description is a document in XML that says which page is which plane of
+ * an image, and how large its voxels are. */
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/base/text.h"
+#include "formats/tiff/tiff_file.h"
+
+#include <expat.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+enum { MOST_DEPTH = 64, MOST_ELEMENTS = 1 << 20, LONGEST = 64 << 20, CHUNK = 1 << 20 };
+static const uint32_t NONE = UINT32_MAX;
+
+typedef enum axis { AXIS_Z, AXIS_C, AXIS_T, AXIS_COUNT } axis;
+
+typedef struct parsing {
+    XML_Parser expat;
+    const cwi_tiff_file *file;
+    cwi_tiff_facts *facts;
+    uint32_t *order;
+    uint32_t size[AXIS_COUNT]; /* as many pages; C: that hold all samples of theirs */
+    axis axes[AXIS_COUNT];     /* the fastest first */
+    size_t depth, elements, images;
+    bool placed;    /* some planes are */
+    char name[256]; /* of the file that planes are in; empty: not said */
+    cw_status status;
+    cw_error *err;
+} parsing;
+
+typedef const XML_Char *const *attributes;
+
+static const char *find(attributes a, const char *name)
+{
+    for (; a[0]; a += 2)
+        if (strcmp(a[0], name) == 0)
+            return a[1];
+    return NULL;
+}
+
+/* A whole number from 0 on; false where there is another thing. */
+static bool whole(attributes a, const char *name, uint32_t otherwise, uint32_t *value)
+{
+    const char *text = find(a, name);
+    int64_t n;
+    *value = otherwise;
+    if (!text)
+        return true;
+    if (!cwi_parse_int(&text, &n) || *text || n < 0 || n > INT32_MAX)
+        return false;
+    *value = (uint32_t)n;
+    return true;
+}
+
+/* --- sizes ---------------------------------------------------------------------------------
+ */
+
+static cw_status read_order(parsing *p, const char *text)
+{
+    static const char letters[] = "ZCT";
+    unsigned seen = 0;
+    for (int i = 0; text && strlen(text) == 5 && i < AXIS_COUNT; i++) {
+        const char *letter = strchr(letters, text[2 + i]);
+        p->axes[i] = letter ? (axis)(letter - letters) : AXIS_Z;
+        seen |= letter ? 1u << p->axes[i] : 0;
+    }
+    if (seen == 7 && strncmp(text, "XY", 2) == 0)
+        return CW_OK;
+    return cw_fail(p->err, CW_ERR_FORMAT, "'DimensionOrder' of the OME-XML is '%.16s'",
+                   text ? text : "");
+}
+
+static cw_status read_sizes(parsing *p, attributes a)
+{
+    const cwi_tiff_facts *f = p->facts;
+    uint32_t x, y, z, c, t;
+    if (!whole(a, "SizeX", 0, &x) || !whole(a, "SizeY", 0, &y) || !whole(a, "SizeZ", 0, &z) ||
+        !whole(a, "SizeC", 0, &c) || !whole(a, "SizeT", 0, &t))
+        return cw_fail(p->err, CW_ERR_FORMAT, "the OME-XML has a size that is not a number");
+    if (x != f->columns || y != f->rows)
+        return cw_fail(p->err, CW_ERR_FORMAT,
+                       "'SizeX' and 'SizeY' of the OME-XML are %u x %u; the first page is %u x "
+                       "%u",
+                       x, y, f->columns, f->rows);
+    if (c % f->samples || z < 1 || c < 1 || t < 1 || z > CWI_TIFF_MOST_PAGES ||
+        c > CWI_TIFF_MOST_PAGES || t > CWI_TIFF_MOST_PAGES ||
+        (uint64_t)z * (c / f->samples) * t > CWI_TIFF_MOST_PAGES)
+        return cw_fail(
+            p->err, CW_ERR_FORMAT,
+            "'SizeZ', 'SizeC' and 'SizeT' of the OME-XML are %u, %u and %u, pages of "
+            "%u samples; at most %d pages are read",
+            z, c, t, f->samples, CWI_TIFF_MOST_PAGES);
+    p->facts->slices = p->size[AXIS_Z] = z;
+    p->facts->channels = p->size[AXIS_C] = c / f->samples;
+    p->facts->steps = p->size[AXIS_T] = t;
+    return CW_OK;
+}
+
+static cw_status read_length(parsing *p, attributes a, int n)
+{
+    static const char *const names[3][2] = {{"PhysicalSizeX", "PhysicalSizeXUnit"},
+                                            {"PhysicalSizeY", "PhysicalSizeYUnit"},
+                                            {"PhysicalSizeZ", "PhysicalSizeZUnit"}};
+    const char *text = find(a, names[n][0]), *unit = find(a, names[n][1]);
+    double value;
+    if (!text)
+        return CW_OK;
+    const char *at = text;
+    if (!cwi_parse_double(&at, &value) || *at || !(value > 0))
+        return cw_fail(p->err, CW_ERR_FORMAT, "'%s' of the OME-XML is '%.32s'", names[n][0],
+                       text);
+    p->facts->spacing[n] = value;
+    p->facts->unit_mm[n] = unit ? cwi_tiff_length(unit, strlen(unit)) : 1e-3;
+    return CW_OK;
+}
+
+static cw_status read_pixels(parsing *p, attributes a)
+{
+    const char *step = find(a, "TimeIncrement"), *unit = find(a, "TimeIncrementUnit");
+    double value;
+    cw_status st = read_order(p, find(a, "DimensionOrder"));
+    if (st == CW_OK)
+        st = read_sizes(p, a);
+    for (int n = 0; st == CW_OK && n < 3; n++)
+        st = read_length(p, a, n);
+    if (st == CW_OK && step && cwi_parse_double(&step, &value) && value > 0)
+        p->facts->step_seconds = value * (unit ? cwi_tiff_time(unit, strlen(unit)) : 1);
+    for (size_t i = 0; st == CW_OK && i < CWI_TIFF_MOST_PAGES; i++)
+        p->order[i] = NONE;
+    return st;
+}
+
+/* --- planes --------------------------------------------------------------------------------
+ */
+
+static uint32_t plane_count(const parsing *p)
+{
+    return p->size[AXIS_Z] * p->size[AXIS_C] * p->size[AXIS_T];
+}
+
+static int compare(const void *a, const void *b)
+{
+    const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
+    return (x > y) - (x < y);
+}
+
+static cw_status place(parsing *p, uint32_t directory, const uint32_t at[AXIS_COUNT])
+{
+    const cwi_tiff_file *f = p->file;
+    const uint32_t *page =
+        bsearch(&directory, f->pages, f->page_count, sizeof *f->pages, compare);
+    if (!page)
+        return cw_fail(
+            p->err, CW_ERR_FORMAT,
+            "the OME-XML has a plane in directory %u; of the file's %u there is none "
+            "such of full resolution",
+            directory + 1, f->offset_count);
+    uint32_t *to =
+        &p->order[(at[AXIS_T] * p->size[AXIS_C] + at[AXIS_C]) * p->size[AXIS_Z] + at[AXIS_Z]];
+    if (*to != NONE)
+        return cw_fail(p->err, CW_ERR_FORMAT,
+                       "the OME-XML has two pages for slice %u, channel %u, step %u",
+                       at[AXIS_Z], at[AXIS_C], at[AXIS_T]);
+    *to = (uint32_t)(page - f->pages);
+    return CW_OK;
+}
+
+/* Directories from one on are planes from one on. */
+static cw_status place_all(parsing *p, uint32_t directory, uint32_t at[AXIS_COUNT],
+                           uint32_t count)
+{
+    cw_status st = CW_OK;
+    p->placed = true;
+    for (uint32_t i = 0; st == CW_OK && i < count; i++) {
+        if (at[AXIS_Z] >= p->size[AXIS_Z] || at[AXIS_C] >= p->size[AXIS_C] ||
+            at[AXIS_T] >= p->size[AXIS_T])
+            return cw_fail(p->err, CW_ERR_FORMAT,
+                           "the OME-XML has a plane for slice %u, channel %u, step %u, and "
+                           "sizes of %u, %u, %u",
+                           at[AXIS_Z], at[AXIS_C], at[AXIS_T], p->size[AXIS_Z], p->size[AXIS_C],
+                           p->size[AXIS_T]);
+        st = place(p, directory + i, at);
+        for (int n = 0; n < AXIS_COUNT && ++at[p->axes[n]] == p->size[p->axes[n]]; n++)
+            if (n < AXIS_COUNT - 1)
+                at[p->axes[n]] = 0;
+    }
+    return st;
+}
+
+static cw_status read_data(parsing *p, attributes a)
+{
+    uint32_t directory, count, at[AXIS_COUNT];
+    const uint32_t usual = find(a, "IFD") ? 1 : plane_count(p);
+    if (!whole(a, "IFD", 0, &directory) || !whole(a, "PlaneCount", usual, &count) ||
+        !whole(a, "FirstZ", 0, &at[AXIS_Z]) || !whole(a, "FirstC", 0, &at[AXIS_C]) ||
+        !whole(a, "FirstT", 0, &at[AXIS_T]))
+        return cw_fail(p->err, CW_ERR_FORMAT, "a 'TiffData' of the OME-XML has no numbers");
+    at[AXIS_C] /= p->facts->samples;
+    return place_all(p, directory, at, count);
+}
+
+static cw_status read_name(parsing *p, attributes a)
+{
+    const char *name = find(a, "FileName");
+    if (!name)
+        return CW_OK;
+    if (!p->name[0])
+        snprintf(p->name, sizeof p->name, "%s", name);
+    if (strncmp(p->name, name, sizeof p->name - 1) == 0)
+        return CW_OK;
+    return cw_fail(
+        p->err, CW_ERR_FORMAT,
+        "the OME-XML spreads its planes over several files; only those are read that "
+        "hold all of theirs");
+}
+
+/* --- elements ------------------------------------------------------------------------------
+ */
+
+static cw_status fail_elsewhere(parsing *p)
+{
+    return cw_fail(p->err, CW_ERR_FORMAT, "the OME-XML is in another file ('BinaryOnly')");
+}
+
+static cw_status open_element(parsing *p, const char *name, attributes a)
+{
+    const bool inside = p->size[AXIS_Z] > 0;
+    if (strcmp(name, "BinaryOnly") == 0)
+        return fail_elsewhere(p);
+    if (strcmp(name, "Image") == 0 && p->images++ > 0)
+        return cw_fail(p->err, CW_ERR_FORMAT,
+                       "the OME-XML describes several images; files of one are read");
+    if (strcmp(name, "Pixels") == 0 && !inside)
+        return read_pixels(p, a);
+    if (strcmp(name, "TiffData") == 0 && inside)
+        return read_data(p, a);
+    return strcmp(name, "UUID") == 0 && inside ? read_name(p, a) : CW_OK;
+}
+
+static void stop(parsing *p, cw_status status)
+{
+    p->status = status;
+    XML_StopParser(p->expat, XML_FALSE);
+}
+
+static void XMLCALL on_start(void *user, const XML_Char *name, const XML_Char **a)
+{
+    parsing *p = user;
+    const char *colon = strrchr(name, ':');
+    cw_status st = CW_OK;
+    if (p->depth++ == MOST_DEPTH || p->elements++ == MOST_ELEMENTS)
+        st = cw_fail(p->err, CW_ERR_FORMAT,
+                     "the OME-XML has more than %d elements, or %d inside each other",
+                     MOST_ELEMENTS, MOST_DEPTH);
+    else
+        st = open_element(p, colon ? colon + 1 : name, (attributes)a);
+    if (st != CW_OK)
+        stop(p, st);
+}
+
+static void XMLCALL on_end(void *user, const XML_Char *name)
+{
+    parsing *p = user;
+    (void)name;
+    p->depth--;
+}
+
+static void XMLCALL on_doctype(void *user, const XML_Char *name, const XML_Char *system,
+                               const XML_Char *public_id, int internal)
+{
+    parsing *p = user;
+    (void)name, (void)system, (void)public_id, (void)internal;
+    stop(p, cw_fail(p->err, CW_ERR_UNSAFE,
+                    "the OME-XML has a document type (<!DOCTYPE>); none is read"));
+}
+
+/* --- the document --------------------------------------------------------------------------
+ */
+
+static void *give_memory(size_t size)
+{
+    return cwi_alloc_array(size, 1);
+}
+
+static void *resize_memory(void *memory, size_t size)
+{
+    return cwi_realloc_array(memory, size, 1);
+}
+
+static cw_status fail_xml(const parsing *p)
+{
+    const enum XML_Error code = XML_GetErrorCode(p->expat);
+    if (p->status != CW_OK)
+        return p->status;
+    if (code == XML_ERROR_NO_MEMORY)
+        return cw_fail(p->err, CW_ERR_NO_MEMORY, "no memory to read XML with");
+    return cw_fail(p->err, CW_ERR_FORMAT, "line %lu of the OME-XML is not XML: %s",
+                   (unsigned long)XML_GetCurrentLineNumber(p->expat), XML_ErrorString(code));
+}
+
+/* Everything must have its page. */
+static cw_status finish(parsing *p)
+{
+    uint32_t first[AXIS_COUNT] = {0, 0, 0};
+    cw_status st = CW_OK;
+    if (p->size[AXIS_Z] == 0)
+        return cw_fail(p->err, CW_ERR_FORMAT, "the OME-XML describes no image");
+    if (!p->placed)
+        st = place_all(p, 0, first, plane_count(p));
+    for (uint32_t i = 0; st == CW_OK && i < plane_count(p); i++)
+        if (p->order[i] == NONE)
+            st = cw_fail(p->err, CW_ERR_FORMAT,
+                         "the OME-XML names no page for slice %u, channel %u, step %u",
+                         i % p->size[AXIS_Z], i / p->size[AXIS_Z] % p->size[AXIS_C],
+                         i / p->size[AXIS_Z] / p->size[AXIS_C]);
+    if (st == CW_OK && plane_count(p) < p->file->page_count)
+        snprintf(p->facts->note, sizeof p->facts->note,
+                 "left out, as the OME-XML has no place for them: %u pages",
+                 p->file->page_count - plane_count(p));
+    return st;
+}
+
+cw_status cwi_tiff_ome(const cwi_tiff_file *f, const char *xml, cwi_tiff_facts *facts,
+                       uint32_t *order, cw_error *err)
+{
+    const XML_Memory_Handling_Suite memory = {give_memory, resize_memory, cwi_free};
+    const size_t size = strlen(xml);
+    parsing p = {.file = f, .facts = facts, .order = order, .err = err};
+    if (size > LONGEST)
+        return cw_fail(err, CW_ERR_FORMAT, "the OME-XML has %zu bytes; the most are %d", size,
+                       LONGEST);
+    p.expat = XML_ParserCreate_MM(NULL, &memory, NULL);
+    if (!p.expat)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to read XML with");
+    XML_SetUserData(p.expat, &p);
+    XML_SetElementHandler(p.expat, on_start, on_end);
+    XML_SetStartDoctypeDeclHandler(p.expat, on_doctype);
+    cw_status st = CW_OK;
+    for (size_t at = 0, n; st == CW_OK && at < size; at += n) {
+        n = size - at < CHUNK ? size - at : CHUNK;
+        if (XML_Parse(p.expat, xml + at, (int)n, at + n == size) != XML_STATUS_OK)
+            st = fail_xml(&p);
+    }
+    XML_ParserFree(p.expat);
+    return st == CW_OK ? finish(&p) : st;
+}

@@ -1,0 +1,148 @@
+#include "formats/volume/slice_spacing.h"
+
+#include "core/base/memory.h"
+#include "core/base/status.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* Positions in headers are rounded to a tenth or a hundredth of a millimetre: a step is even
+ * within a twentieth. */
+static const double TOLERANCE = 0.05;
+enum { FINEST = 8, MOST_SLICES = 65536 };
+
+void cwi_slices_free(cwi_slices *slices)
+{
+    cwi_free(slices->items);
+    *slices = (cwi_slices){0};
+}
+
+static int compare(const void *a, const void *b)
+{
+    const double x = *(const double *)a, y = *(const double *)b;
+    return (x > y) - (x < y);
+}
+
+/* The distances between neighbours, ascending; NULL: no memory. */
+static double *distances(const double *places, size_t count)
+{
+    double *d = cwi_alloc_array(count, sizeof *d);
+    for (size_t i = 0; d && i + 1 < count; i++)
+        d[i] = places[i + 1] - places[i];
+    if (d)
+        qsort(d, count - 1, sizeof *d, compare);
+    return d;
+}
+
+/* Whether all places are on a row of so many steps from the first to the last, no two at one.
+ */
+static bool on_row(const double *places, size_t count, double steps)
+{
+    const double step = (places[count - 1] - places[0]) / steps;
+    double before = 0;
+    for (size_t i = 1; i < count; i++) {
+        const double at = (places[i] - places[0]) / step, nearest = nearbyint(at);
+        if (fabs(at - nearest) > TOLERANCE || nearest <= before)
+            return false;
+        before = nearest;
+    }
+    return true;
+}
+
+/* The first place with more than a step and a half behind it. */
+static size_t first_gap(const double *places, size_t count, double step)
+{
+    size_t i = 0;
+    while (i + 2 < count && places[i + 1] - places[i] < 1.5 * step)
+        i++;
+    return i;
+}
+
+/* One slice of a row of count from the first place to the last. */
+static cwi_slice slice_at(const double *places, size_t count, size_t *low, double at,
+                          double step)
+{
+    while (*low + 2 < count && places[*low + 1] <= at)
+        (*low)++;
+    const double gap = places[*low + 1] - places[*low];
+    const double t = (at - places[*low]) / gap;
+    if (t * gap <= TOLERANCE * step)
+        return (cwi_slice){*low, *low, 0};
+    if ((1 - t) * gap <= TOLERANCE * step)
+        return (cwi_slice){*low + 1, *low + 1, 0};
+    return (cwi_slice){*low, *low + 1, t};
+}
+
+static cw_status lay_row(const double *places, size_t count, double steps, cwi_slices *s,
+                         cw_error *err)
+{
+    if (steps >= MOST_SLICES)
+        return cw_fail(err, CW_ERR_LIMIT, "%s: %.6g slices would be needed; the most are %d",
+                       s->finding, steps + 1, MOST_SLICES);
+    s->count = (size_t)steps + 1;
+    s->step = (places[count - 1] - places[0]) / steps;
+    s->items = cwi_alloc_array(s->count, sizeof *s->items);
+    if (!s->items)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu slices", s->count);
+    for (size_t k = 0, low = 0; k < s->count; k++) {
+        s->items[k] = slice_at(places, count, &low, places[0] + (double)k * s->step, s->step);
+        s->made += s->items[k].t > 0;
+    }
+    return CW_OK;
+}
+
+/* The slices as they come, one step apart. */
+static cw_status lay_as_even(const double *places, size_t count, cwi_slices *s, cw_error *err)
+{
+    s->count = count;
+    s->step = count > 1 ? (places[count - 1] - places[0]) / (double)(count - 1) : 0;
+    s->items = cwi_alloc_array(count, sizeof *s->items);
+    if (!s->items)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu slices", count);
+    for (size_t k = 0; k < count; k++)
+        s->items[k] = (cwi_slice){k, k, 0};
+    return CW_OK;
+}
+
+/* Steps of the row that slices are missing from, or of one that is fine enough. */
+static double find_row(const double *places, size_t count, const double *gaps, const char *unit,
+                       cwi_slices *s)
+{
+    const double span = places[count - 1] - places[0], usual = gaps[(count - 2) / 2];
+    const double steps = nearbyint(span / usual), missing = steps - (double)(count - 1);
+    if (missing >= 1 && on_row(places, count, steps)) {
+        const size_t i = first_gap(places, count, span / steps);
+        snprintf(s->finding, sizeof s->finding,
+                 "%.0f slice%s %s missing; the first gap is from %.6g to %.6g %s, where others "
+                 "are %.6g apart",
+                 missing, missing > 1 ? "s" : "", missing > 1 ? "are" : "is", places[i],
+                 places[i + 1], unit, span / steps);
+        return steps;
+    }
+    snprintf(s->finding, sizeof s->finding,
+             "the distances between slices vary from %.6g to %.6g %s", gaps[0], gaps[count - 2],
+             unit);
+    return ceil(span / fmax(gaps[0], usual / FINEST) - TOLERANCE);
+}
+
+cw_status cwi_slices_lay(const double *places, size_t count, const char *unit, cw_gaps gaps,
+                         cwi_slices *slices, cw_error *err)
+{
+    *slices = (cwi_slices){0};
+    if (count < 3 || on_row(places, count, (double)(count - 1)))
+        return lay_as_even(places, count, slices, err);
+    double *sorted = distances(places, count);
+    if (!sorted)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu slices", count);
+    const double steps = find_row(places, count, sorted, unit, slices);
+    cwi_free(sorted);
+    if (gaps == CW_GAPS_STOP)
+        return cw_fail(err, CW_ERR_UNSAFE,
+                       "%s; --gaps interpolate makes slices at equal distances, --gaps allow "
+                       "takes these as if they were",
+                       slices->finding);
+    return gaps == CW_GAPS_ALLOW ? lay_as_even(places, count, slices, err)
+                                 : lay_row(places, count, steps, slices, err);
+}

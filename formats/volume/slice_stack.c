@@ -1,0 +1,276 @@
+#include "formats/volume/slice_stack.h"
+
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/volume/volume.h"
+#include "formats/volume/voxel_source.h"
+
+#include <math.h>
+#include <string.h>
+#include <unistd.h>
+
+void cwi_stack_free(cwi_stack *stack)
+{
+    cwi_names_free(&stack->files);
+    cwi_free(stack->planes);
+    cwi_free(stack->slots);
+    *stack = (cwi_stack){0};
+}
+
+/* The reading of a stack. */
+typedef struct reading {
+    const cwi_stack *stack;
+    const cwi_input *in;
+    cwi_planes *planes;
+    size_t file;               /* the one handed over last; SIZE_MAX: none */
+    cw_box box;                /* what is wanted */
+    size_t every;              /* of its slices, the n-th */
+    size_t pixels;             /* wanted of a plane, samples counted */
+    unsigned char *low, *high; /* planes as the module gives them */
+    char *voxels;
+} reading;
+
+/* --- from pixels to voxels -----------------------------------------------------------------
+ */
+
+static bool is_padding(const cwi_stack *s, double pixel)
+{
+    return s->has_padding && pixel >= s->padding[0] && pixel <= s->padding[1];
+}
+
+/* What a pixel of a plane is in the result; *nodata where it is padding. */
+static double value_of(const reading *r, const cwi_plane *plane, const unsigned char *pixels,
+                       size_t i, bool *nodata)
+{
+    const cwi_stack *s = r->stack;
+    const double pixel = cwi_voxel_at(s->type, pixels + i * cw_type_size(s->type));
+    *nodata = is_padding(s, pixel);
+    return s->scaled ? plane->slope * pixel + plane->intercept : pixel;
+}
+
+static void put_values(const reading *r, const cwi_slot *slot, char *to)
+{
+    const cwi_stack *s = r->stack;
+    const cw_type type = s->shape.type;
+    const size_t size = cw_type_size(type);
+    const cwi_plane *low = &s->planes[slot->low], *high = &s->planes[slot->high];
+    const double nodata = s->shape.has_nodata ? s->shape.nodata : NAN;
+    bool lost[2] = {false, false};
+    for (size_t i = 0; i < r->pixels; i++) {
+        double value = value_of(r, low, r->low, i, &lost[0]);
+        if (slot->t > 0)
+            value = (1 - slot->t) * value + slot->t * value_of(r, high, r->high, i, &lost[1]);
+        cwi_voxel_put(type, to + i * size, lost[0] || lost[1] ? nodata : value);
+    }
+}
+
+static void put_label(const reading *r, const cwi_slot *slot, char *to)
+{
+    const cwi_stack *s = r->stack;
+    const size_t in = cw_type_size(s->type), out = cw_type_size(s->shape.type);
+    for (size_t i = 0; i < r->pixels; i++)
+        if (cwi_voxel_at(s->type, r->low + i * in) != 0)
+            cwi_voxel_put(s->shape.type, to + i * out, slot->label);
+}
+
+/* --- from files to pixels ------------------------------------------------------------------
+ */
+
+/* NULL: the file that is open. */
+static const char *file_name(const cwi_stack *s, size_t file)
+{
+    return s->files.count ? s->files.items[file] : NULL;
+}
+
+static cw_status hand_over(reading *r, size_t file, cw_error *err)
+{
+    const char *name = file_name(r->stack, file);
+    const void *facts;
+    uint64_t size = r->in->size;
+    int fd = r->in->fd;
+    if (file == r->file)
+        return CW_OK;
+    cw_status st = name ? cwi_input_open_side(r->in, name, &fd, &size, err) : CW_OK;
+    if (st == CW_OK) {
+        st = cwi_planes_facts(r->planes, fd, size, &facts, err);
+        if (name)
+            close(fd);
+    }
+    r->file = st == CW_OK ? file : SIZE_MAX;
+    return st;
+}
+
+/* Leaves the wanted columns of rows, one behind another. */
+static void keep_columns(const reading *r, char *rows)
+{
+    const cwi_stack *s = r->stack;
+    const size_t pixel = s->samples * cw_type_size(s->type);
+    const size_t row = s->shape.dim[0] * pixel, kept = r->box.count[0] * pixel;
+    for (size_t j = 0; kept < row && j < r->box.count[1]; j++)
+        memmove(rows + j * kept, rows + j * row + r->box.first[0] * pixel, kept);
+}
+
+/* The wanted rows of a plane; there must be room for whole ones. */
+static cw_status read_plane(reading *r, size_t index, void *to, cw_error *err)
+{
+    const cwi_stack *s = r->stack;
+    const cwi_plane *plane = &s->planes[index];
+    cw_status st = hand_over(r, plane->file, err);
+    if (st == CW_OK)
+        st = cwi_planes_read(r->planes, plane->number, r->box.first[1], r->box.count[1],
+                             s->shape.dim[0] * s->samples * cw_type_size(s->type), to, err);
+    if (st == CW_OK)
+        keep_columns(r, to);
+    return st == CW_OK || st == CW_ERR_CANCELLED || !file_name(s, plane->file)
+               ? st
+               : cwi_fail_in(err, st, file_name(s, plane->file));
+}
+
+/* Whether voxels are the module's pixels and nothing else. */
+static bool is_plain(const cwi_stack *s, const cwi_slot *slot)
+{
+    const bool ranged =
+        s->has_padding && (s->padding[0] != s->padding[1] || s->padding[0] != s->shape.nodata);
+    return !s->scaled && !slot->label && slot->t == 0 && !ranged && s->shape.type == s->type;
+}
+
+static cw_status read_slot(reading *r, const cwi_slot *slot, cw_error *err)
+{
+    const cwi_stack *s = r->stack;
+    const size_t slices = s->shape.dim[2], z = slot->place % slices - r->box.first[2];
+    const size_t kept = (r->box.count[2] - 1) / r->every + 1;
+    const size_t bytes = r->pixels * cw_type_size(s->shape.type);
+    const bool plain = is_plain(s, slot);
+    if (z >= r->box.count[2] || z % r->every) /* in front of it, too */
+        return CW_OK;
+    char *to = r->voxels + (slot->place / slices * kept + z / r->every) * bytes;
+    if (plain && r->box.count[0] == s->shape.dim[0])
+        return read_plane(r, slot->low, to, err);
+    cw_status st = read_plane(r, slot->low, r->low, err);
+    if (st == CW_OK && slot->t > 0)
+        st = read_plane(r, slot->high, r->high, err);
+    if (st == CW_OK && plain)
+        memcpy(to, r->low, bytes);
+    else if (st == CW_OK && slot->label)
+        put_label(r, slot, to);
+    else if (st == CW_OK)
+        put_values(r, slot, to);
+    return st;
+}
+
+static cw_status read_slots(reading *r, const cw_progress *progress, cw_error *err)
+{
+    const cwi_stack *s = r->stack;
+    cw_status st = CW_OK;
+    for (size_t i = 0; st == CW_OK && i < s->slot_count; i++) {
+        r->planes->box.done = (double)i / (double)s->slot_count;
+        st = cwi_progress(progress, "reading", r->planes->box.done, err);
+        if (st == CW_OK)
+            st = read_slot(r, &s->slots[i], err);
+    }
+    return st == CW_OK ? cwi_progress(progress, "reading", 1, err) : st;
+}
+
+/* Of what the sizes ask for; false when that is more than an address space holds. */
+static bool count_bytes(const cw_volume *v, const size_t held[3], size_t *bytes)
+{
+    return cwi_size_mul(held[0], held[1], bytes) && cwi_size_mul(*bytes, held[2], bytes) &&
+           cwi_size_mul(*bytes, v->steps, bytes) &&
+           cwi_size_mul(*bytes, v->components, bytes) &&
+           cwi_size_mul(*bytes, cw_type_size(v->type), bytes) && *bytes <= PTRDIFF_MAX;
+}
+
+/* What no slot claims. */
+static void fill_voxels(const cwi_stack *s, char *voxels, size_t bytes)
+{
+    const size_t size = cw_type_size(s->shape.type);
+    memset(voxels, 0, bytes);
+    for (size_t i = 0; s->shape.has_nodata && i < bytes; i += size)
+        cwi_voxel_put(s->shape.type, voxels + i, s->shape.nodata);
+}
+
+/* `v` is the shape of what is wanted. */
+static cw_status load_voxels(cw_volume v, size_t bytes, reading *r, const cw_read_desc *desc,
+                             cw_volume *volume, cw_error *err)
+{
+    const cwi_stack *s = r->stack;
+    const size_t row = s->shape.dim[0] * s->samples * cw_type_size(s->type);
+    r->pixels = r->box.count[0] * r->box.count[1] * s->samples;
+    r->low = cwi_alloc_array(r->box.count[1], row);
+    r->high = cwi_alloc_array(r->box.count[1], row);
+    v.owned = cwi_alloc_large(bytes, 1);
+    r->voxels = v.owned;
+    cw_status st = CW_OK;
+    if (!r->low || !r->high || !v.owned)
+        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of voxels", bytes);
+    else if (s->sparse)
+        fill_voxels(s, r->voxels, bytes);
+    if (st == CW_OK)
+        st = read_slots(r, &desc->progress, err);
+    cwi_free(r->low);
+    cwi_free(r->high);
+    v.data = v.owned;
+    if (st == CW_OK)
+        *volume = v;
+    else
+        cw_volume_free(&v);
+    return st;
+}
+
+/* Strides of so many columns, rows and slices in memory, in place of those of all slices. */
+static void pack_strides(cw_volume *v, size_t slices, const size_t count[3])
+{
+    const ptrdiff_t plane = v->stride[2], all = plane * (ptrdiff_t)slices;
+    v->stride[1] = v->stride[0] * (ptrdiff_t)count[0];
+    v->stride[2] = v->stride[1] * (ptrdiff_t)count[1];
+    const ptrdiff_t packed = v->stride[2] * (ptrdiff_t)count[2];
+    v->step_stride = v->step_stride / all * packed;
+    if (v->component_stride >= plane) /* components in planes of their own */
+        v->component_stride = v->component_stride / all * packed;
+}
+
+/* The shape of every n-th voxel of a box. In memory are `held` voxels: columns and rows are all
+ * there, and every n-th slice. */
+static cw_status narrow(const cw_read_desc *desc, reading *r, size_t held[3], cw_volume *v,
+                        cw_error *err)
+{
+    const size_t slices = v->dim[2];
+    size_t every[3];
+    cw_status st = desc->region ? cwi_volume_shrink(v, desc->region, err) : CW_OK;
+    if (st != CW_OK)
+        return st;
+    for (int a = 0; a < 3; a++) {
+        every[a] = desc->every[a] ? desc->every[a] : 1;
+        held[a] = r->box.count[a] = v->dim[a];
+    }
+    r->every = every[2];
+    held[2] = (held[2] - 1) / every[2] + 1;
+    pack_strides(v, slices, held);
+    st = cwi_volume_thin(v, every, err);
+    v->stride[0] *= (ptrdiff_t)every[0];
+    v->stride[1] *= (ptrdiff_t)every[1];
+    return st;
+}
+
+cw_status cwi_stack_load(const cwi_stack *stack, const cwi_input *in, cwi_planes *planes,
+                         const cw_read_desc *desc, cw_volume *volume, cw_error *err)
+{
+    size_t bytes, held[3];
+    cw_volume v = stack->shape;
+    reading r = {.stack = stack, .in = in, .planes = planes, .file = SIZE_MAX};
+    if (desc->region)
+        r.box = *desc->region;
+    cw_status st = narrow(desc, &r, held, &v, err);
+    if (st != CW_OK)
+        return st;
+    if (!count_bytes(&v, held, &bytes))
+        return cw_fail(err, CW_ERR_LIMIT,
+                       "'%s' asks for more voxels than an address space holds",
+                       stack->size_field);
+    st = cwi_check_limits(&v, bytes, desc->region ? "region" : stack->size_field, desc, err);
+    if (st == CW_OK && desc->header_only)
+        *volume = v;
+    else if (st == CW_OK)
+        st = load_voxels(v, bytes, &r, desc, volume, err);
+    return st;
+}

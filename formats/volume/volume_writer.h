@@ -1,0 +1,27 @@
+/* The writers of volumes, and what they share. */
+#ifndef FORMATS_VOLUME_VOLUME_WRITER_H
+#define FORMATS_VOLUME_VOLUME_WRITER_H
+
+#include "formats/bytes/deflate_file.h"
+
+#include <cubewright/formats.h>
+
+/* One volume on its way into one file. */
+typedef struct cwi_save {
+    const cw_volume *volume; /* resolved */
+    cwi_outfile *file;
+    const char *name; /* one line of text */
+    bool gzip;        /* the path ends in .gz */
+    const cw_progress *progress;
+} cwi_save;
+
+cw_status cwi_nrrd_save(const cwi_save *save, cw_error *err);
+cw_status cwi_nifti_save(const cwi_save *save, cw_error *err);
+cw_status cwi_metaimage_save(const cwi_save *save, cw_error *err);
+
+/* Hands the voxels to the sink and finishes it: x fastest, then y, z, time; the components
+ * interleaved in front of x, or one whole series after another. */
+cw_status cwi_save_voxels(const cwi_save *save, bool components_last, cwi_sink *sink,
+                          cw_error *err);
+
+#endif

@@ -1,0 +1,100 @@
+/* What a header parser finds out, and the one way from there to voxels in memory. */
+#ifndef FORMATS_VOLUME_VOXEL_SOURCE_H
+#define FORMATS_VOLUME_VOXEL_SOURCE_H
+
+#include "formats/bytes/block_reader.h"
+#include "formats/bytes/input_file.h"
+
+#include <cubewright/volume.h>
+
+/* How voxels are written down. */
+typedef enum cwi_encoding {
+    CWI_RAW,
+    CWI_DEFLATED, /* gzip or zlib, told apart by content */
+    CWI_BZIP2,
+    CWI_ASCII, /* decimal numbers with blanks between them */
+    CWI_HEX,   /* two hexadecimal digits a byte; blanks between them do not matter */
+    CWI_BLOCKS /* compressed block by block, behind a table */
+} cwi_encoding;
+
+/* What an axis of the file stands for. */
+typedef enum cwi_role {
+    CWI_AXIS_X,
+    CWI_AXIS_Y,
+    CWI_AXIS_Z,
+    CWI_AXIS_COMPONENT,
+    CWI_AXIS_STEP,
+    CWI_ROLE_COUNT
+} cwi_role;
+
+typedef struct cwi_axis {
+    cwi_role role;
+    size_t size;
+} cwi_axis;
+
+/* A zeroed source describes nothing. Free it with cwi_source_free(). */
+typedef struct cwi_source {
+    cw_volume shape;               /* everything but the voxels; strides as the file has them */
+    size_t bytes;                  /* of all voxels */
+    cwi_axis axes[CWI_ROLE_COUNT]; /* the fastest first; a role stands in it once at most */
+    size_t axis_count;
+    const char *size_field;  /* the header's name for the sizes, for messages */
+    const char *frame_field; /* ... and for directions, spacing and origin */
+    const char *noun;        /* for what is stored, in messages; NULL: voxels */
+
+    cwi_names files; /* data files, each with an equal share; none: the header's own file */
+    cwi_encoding encoding;
+    cwi_block_form blocks; /* of CWI_BLOCKS */
+    bool base64;           /* all that is encoded is once more encoded, as text */
+    bool big_endian;
+    uint64_t offset; /* bytes at the start of each file in front of everything else */
+    uint64_t span;   /* bytes of the file behind the offset, voxels among them; 0: all */
+    uint64_t lines;  /* lines behind the offset to leave out */
+    uint64_t skip;   /* decoded bytes in front of the first voxel */
+    uint64_t packed; /* compressed bytes, as "CompressedDataSize" says; 0: it is not known */
+    bool at_end;     /* raw: the voxels are the last bytes of the file instead */
+    bool has_arrays; /* with names: it is the one that was asked for, if any was */
+    char note[200];  /* what the user should know; empty: nothing */
+} cwi_source;
+
+/* Sets axes, sizes, strides and bytes from the file's axes, the fastest first; roles left out
+ * have size 1. shape.type must be set.
+ * Returns CW_ERR_FORMAT for more than 16 components, CW_ERR_LIMIT when the size overflows. */
+cw_status cwi_source_set_axes(cwi_source *src, const cwi_axis *axes, size_t count,
+                              cw_error *err);
+
+/* Refuses a voxel type by its name in the file, and lists those that are read. */
+cw_status cwi_fail_type(cw_error *err, const char *field, const char *name);
+
+/* Turns a right-anterior-superior affine to LPS or back. */
+void cwi_flip_ras(double affine[3][4]);
+
+/* Fills columns that are all zero (2D data have no third axis) with a unit vector at right
+ * angles to the others. */
+void cwi_fill_columns(double affine[3][4]);
+
+/* Turns round the bytes of each of count numbers; for size 1 it does nothing. */
+void cwi_swap_bytes(void *numbers, size_t count, size_t size);
+
+/* Whether this machine keeps the high byte first. */
+bool cwi_machine_is_big_endian(void);
+
+/* Refuses an affine with columns that are not finite, have no length or lie in one plane. */
+cw_status cwi_check_frame(const cw_volume *shape, const char *field, cw_error *err);
+
+/* Refuses more voxels, or bytes of them, than the description allows. */
+cw_status cwi_check_limits(const cw_volume *shape, size_t bytes, const char *field,
+                           const cw_read_desc *desc, cw_error *err);
+
+/* Checks the source, but its frame, against its files and the limits, then reads the voxels
+ * (unless desc->header_only), all of them or desc->region. Nothing is allocated before every
+ * size is known to be possible.
+ *
+ * volume   filled on success, else untouched
+ * Returns  as cw_volume_read() */
+cw_status cwi_source_load(const cwi_source *src, const cwi_input *in, const cw_read_desc *desc,
+                          cw_volume *volume, cw_error *err);
+
+void cwi_source_free(cwi_source *src);
+
+#endif

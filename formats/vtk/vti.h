@@ -1,0 +1,71 @@
+/* VTK's XML image data and rectilinear grids, between the file that finds the elements and the
+ * one that reads them.
+ */
+#ifndef FORMATS_VTK_VTI_H
+#define FORMATS_VTK_VTI_H
+
+#include "formats/vtk/vtk_xml.h"
+
+/* How well an array will do as the volume: the one that was asked for goes before the one that
+ * PointData or CellData names as its scalars, that before others of one value, and those before
+ * arrays of several. */
+typedef enum cwi_vti_rank {
+    CWI_VTI_NONE,
+    CWI_VTI_SEVERAL,
+    CWI_VTI_ONE,
+    CWI_VTI_SCALARS,
+    CWI_VTI_ASKED_FOR
+} cwi_vti_rank;
+
+/* A DataArray of PointData or CellData. */
+typedef struct cwi_vti_array {
+    cwi_vtk_array data;
+    cwi_vti_rank rank;
+} cwi_vti_array;
+
+/* Arrays for the same places. */
+typedef struct cwi_vti_data {
+    char scalars[CWI_WORD_BYTES]; /* the name that the element gives */
+    bool of_cells;
+    cwi_vti_array best;
+} cwi_vti_data;
+
+/* What there is to choose from. */
+typedef struct cwi_vti_choice {
+    const char *wanted;   /* the name of the array that was asked for; NULL: none */
+    cwi_array_list *list; /* where arrays are listed; NULL: nobody asks */
+    char others[400];     /* names and types of arrays that are not read, for messages */
+} cwi_vti_choice;
+
+/* What the elements say, as far as they have been seen. */
+typedef struct cwi_vti {
+    cwi_vtk_xml file;
+    cwi_vti_choice choice;
+    int64_t extent[6]; /* of the piece: first and last index along x, y, z */
+    double origin[3], spacing[3], direction[9];
+    bool rectilinear;
+    cwi_vtk_array coordinates[3];
+    size_t pieces, coordinate_arrays;
+    cwi_vti_data points, cells;
+} cwi_vti;
+
+/* The elements that mean something, each filling in what its attributes say. */
+cw_status cwi_vti_image(cwi_vti *v, cwi_attributes a, cw_error *err);
+cw_status cwi_vti_extent(cwi_attributes a, int64_t extent[6], cw_error *err);
+cw_status cwi_vti_piece(cwi_vti *v, cwi_attributes a, cw_error *err);
+void cwi_vti_data_start(cwi_vti_data *data, bool of_cells, cwi_attributes a);
+
+/* One array; *kept when it is the best so far, and is now data->best. */
+cw_status cwi_vti_data_array(cwi_vti_choice *choice, cwi_vti_data *data, cwi_attributes a,
+                             bool *kept, cw_error *err);
+
+/* Says that none of the arrays will do. */
+cw_status cwi_vti_fail_choice(const cwi_vti_choice *choice, cw_error *err);
+
+/* Several time steps in one file are refused. */
+cw_status cwi_vti_check_times(cwi_attributes a, cw_error *err);
+
+/* One array of coordinates, v->coordinates[*n]. */
+cw_status cwi_vti_coordinates(cwi_vti *v, cwi_attributes a, size_t *n, cw_error *err);
+
+#endif

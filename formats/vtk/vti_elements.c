@@ -1,0 +1,136 @@
+/* What the attributes of .vti elements mean. */
+#include "core/base/status.h"
+#include "core/base/text.h"
+#include "formats/vtk/vti.h"
+
+#include <stdio.h>
+#include <string.h>
+
+static cw_status numbers(cwi_attributes a, const char *name, size_t count, double *out,
+                         cw_error *err)
+{
+    const char *value = cwi_attribute(a, name);
+    return value ? cwi_field_doubles(name, value, count, "ImageData", out, err) : CW_OK;
+}
+
+cw_status cwi_vti_check_times(cwi_attributes a, cw_error *err)
+{
+    const char *times = cwi_attribute(a, "TimeValues");
+    if (!times || !strchr(times, ' '))
+        return CW_OK;
+    return cw_fail(err, CW_ERR_FORMAT,
+                   "'TimeValues' is '%.40s'; several time steps in one file are not read",
+                   times);
+}
+
+cw_status cwi_vti_image(cwi_vti *v, cwi_attributes a, cw_error *err)
+{
+    static const double identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+    for (int i = 0; i < 3; i++)
+        v->spacing[i] = 1;
+    memcpy(v->direction, identity, sizeof identity);
+    cw_status st = cwi_vti_check_times(a, err);
+    if (st == CW_OK)
+        st = numbers(a, "Origin", 3, v->origin, err);
+    if (st == CW_OK)
+        st = numbers(a, "Spacing", 3, v->spacing, err);
+    return st == CW_OK ? numbers(a, "Direction", 9, v->direction, err) : st;
+}
+
+cw_status cwi_vti_extent(cwi_attributes a, int64_t extent[6], cw_error *err)
+{
+    const char *text = cwi_attribute(a, "Extent"), *s = text ? text : "";
+    for (int i = 0; i < 6; i++)
+        if (!cwi_parse_int(&s, &extent[i]) || extent[i] > INT32_MAX || extent[i] < INT32_MIN)
+            return cw_fail(err, CW_ERR_FORMAT,
+                           "'Extent' is '%.60s'; six whole numbers were expected",
+                           text ? text : "");
+    for (int i = 0; i < 6; i += 2)
+        if (extent[i + 1] < extent[i] || extent[i + 1] - extent[i] >= INT32_MAX)
+            return cw_fail(err, CW_ERR_FORMAT,
+                           "'Extent' is '%.60s'; it must hold 1 to 2147483647 points along "
+                           "each axis",
+                           text);
+    return CW_OK;
+}
+
+cw_status cwi_vti_piece(cwi_vti *v, cwi_attributes a, cw_error *err)
+{
+    if (v->pieces++)
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "the file has several Piece elements; files of one are read");
+    return cwi_vti_extent(a, v->extent, err);
+}
+
+void cwi_vti_data_start(cwi_vti_data *data, bool of_cells, cwi_attributes a)
+{
+    const char *scalars = cwi_attribute(a, "Scalars");
+    snprintf(data->scalars, sizeof data->scalars, "%s", scalars ? scalars : "");
+    data->of_cells = of_cells;
+}
+
+static void note_other(cwi_vti_choice *choice, const cwi_vtk_array *array)
+{
+    const size_t used = strlen(choice->others), room = sizeof choice->others - used;
+    char text[2 * CWI_WORD_BYTES + 40];
+    snprintf(text, sizeof text, "'%s' (%zu %s)", array->name, array->components,
+             *array->type_name ? array->type_name : "of no type");
+    if (!strstr(choice->others, text)) /* other pieces have the same */
+        snprintf(choice->others + used, room, "%s%s", used ? ", " : "", text);
+}
+
+static cwi_vti_rank rank_of(const cwi_vti_choice *choice, const cwi_vti_data *data,
+                            const cwi_vtk_array *array)
+{
+    if (choice->wanted)
+        return strcmp(array->name, choice->wanted) == 0 ? CWI_VTI_ASKED_FOR : CWI_VTI_NONE;
+    if (*array->name && strcmp(array->name, data->scalars) == 0)
+        return CWI_VTI_SCALARS;
+    return array->components == 1 ? CWI_VTI_ONE : CWI_VTI_SEVERAL;
+}
+
+cw_status cwi_vti_data_array(cwi_vti_choice *choice, cwi_vti_data *data, cwi_attributes a,
+                             bool *kept, cw_error *err)
+{
+    cwi_vti_array array = {0};
+    cw_status st = cwi_vtk_xml_array(&array.data, a, err);
+    *kept = false;
+    if (st != CW_OK)
+        return st;
+    const bool is_read = array.data.is_known && !array.data.wide && array.data.components <= 16;
+    array.rank = is_read ? rank_of(choice, data, &array.data) : CWI_VTI_NONE;
+    cwi_array_list_add(choice->list, array.data.name, array.data.type_name,
+                       array.data.components, data->of_cells, is_read && *array.data.name);
+    if (array.rank == CWI_VTI_NONE)
+        note_other(choice, &array.data);
+    *kept = array.rank > data->best.rank;
+    if (*kept)
+        data->best = array;
+    return CW_OK;
+}
+
+cw_status cwi_vti_fail_choice(const cwi_vti_choice *choice, cw_error *err)
+{
+    const char *others = choice->others, *there = *others ? "; there are " : "";
+    if (choice->wanted)
+        return cw_fail(err, CW_ERR_ARGUMENT, "there is no array '%.100s' that is read%s%s",
+                       choice->wanted, there, others);
+    return cw_fail(err, CW_ERR_FORMAT, "PointData and CellData hold no array that is read%s%s",
+                   there, others);
+}
+
+cw_status cwi_vti_coordinates(cwi_vti *v, cwi_attributes a, size_t *n, cw_error *err)
+{
+    *n = v->coordinate_arrays++;
+    if (*n > 2)
+        return cw_fail(err, CW_ERR_FORMAT, "Coordinates has more than three arrays");
+    cwi_vtk_array *array = &v->coordinates[*n];
+    cw_status st = cwi_vtk_xml_array(array, a, err);
+    if (st == CW_OK && (!array->is_known || array->wide || array->components != 1))
+        return cw_fail(
+            err, CW_ERR_FORMAT,
+            "coordinates along %c are %zu of type '%s' each; one number of a type of "
+            "up to 32 bits, or Float64, was expected",
+            "xyz"[*n], array -> components, array -> type_name);
+    return st;
+}

@@ -1,0 +1,266 @@
+/* VTK's XML image data (.vti) and rectilinear grids (.vtr). The elements are read as a stream:
+ * the text of arrays only passes through, and reading stops where appended data start, which
+ * need be no XML at all. */
+#include "core/base/status.h"
+#include "formats/volume/volume_reader.h"
+#include "formats/vtk/vti.h"
+#include "formats/vtk/vtk_grid.h"
+
+#include <string.h>
+
+enum { MOST_ELEMENTS = 10000 };
+
+/* The first element is VTKFile: of image data or of something else, which is then refused. */
+bool cwi_vti_sniff(const unsigned char *head, size_t size)
+{
+    return cwi_vtk_xml_sniff(head, size, "");
+}
+
+/* --- elements ---------------------------------------------------------------------------- */
+
+typedef struct parsing {
+    cwi_vti vti;
+    cwi_vtk_array *open; /* the next tag ends its text; NULL: none that is wanted */
+} parsing;
+
+static cw_status start_file(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
+{
+    static const char *const kinds[3][2] = {
+        {"ImageData", "a volume"},
+        {"RectilinearGrid", "a volume"},
+        {"ImageData, RectilinearGrid (vti), StructuredGrid or UnstructuredGrid (vtu)",
+         "a volume"}};
+    parsing *p = user;
+    const char *type = cwi_attribute(a, "type");
+    int kind = 0;
+    (void)x;
+    while (kind < 2 && !(type && strcmp(type, kinds[kind][0]) == 0))
+        kind++;
+    p->vti.rectilinear = kind == 1;
+    return cwi_vtk_xml_file(&p->vti.file, a, kinds[kind], err);
+}
+
+static cw_status start_image(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
+{
+    (void)x;
+    return cwi_vti_image(&((parsing *)user)->vti, a, err);
+}
+
+static cw_status start_piece(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
+{
+    (void)x;
+    return cwi_vti_piece(&((parsing *)user)->vti, a, err);
+}
+
+static cw_status start_points(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
+{
+    (void)x, (void)err;
+    cwi_vti_data_start(&((parsing *)user)->vti.points, false, a);
+    return CW_OK;
+}
+
+static cw_status start_cells(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
+{
+    (void)x, (void)err;
+    cwi_vti_data_start(&((parsing *)user)->vti.cells, true, a);
+    return CW_OK;
+}
+
+static void open_text(parsing *p, cwi_xml *x, cwi_vtk_array *array)
+{
+    p->open = array;
+    array->start = cwi_xml_tag_end(x);
+}
+
+static cw_status start_data_array(parsing *p, cwi_vti_data *data, cwi_xml *x, cwi_attributes a,
+                                  cw_error *err)
+{
+    bool kept;
+    cw_status st = cwi_vti_data_array(&p->vti.choice, data, a, &kept, err);
+    if (kept)
+        open_text(p, x, &data->best.data);
+    return st;
+}
+
+static cw_status start_array(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
+{
+    parsing *p = user;
+    return start_data_array(p, &p->vti.points, x, a, err);
+}
+
+static cw_status start_cell_array(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
+{
+    parsing *p = user;
+    return start_data_array(p, &p->vti.cells, x, a, err);
+}
+
+static cw_status start_coordinates(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
+{
+    parsing *p = user;
+    size_t n;
+    cw_status st = cwi_vti_coordinates(&p->vti, a, &n, err);
+    if (st == CW_OK)
+        open_text(p, x, &p->vti.coordinates[n]);
+    return st;
+}
+
+static cw_status start_appended(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
+{
+    parsing *p = user;
+    p->vti.file.appended = cwi_xml_tag_end(x);
+    cwi_xml_stop(x);
+    return cwi_vtk_xml_appended(&p->vti.file, a, err);
+}
+
+static cw_status end_text(void *user, cwi_xml *x, cw_error *err)
+{
+    parsing *p = user;
+    (void)err;
+    if (p->open)
+        p->open->end = cwi_xml_tag_start(x);
+    p->open = NULL;
+    return CW_OK;
+}
+
+typedef enum element {
+    E_FILE,
+    E_IMAGE,
+    E_IMAGE_PIECE,
+    E_IMAGE_POINTS,
+    E_IMAGE_CELLS,
+    E_GRID,
+    E_GRID_PIECE,
+    E_GRID_POINTS,
+    E_GRID_CELLS,
+    E_COORDINATES,
+    E_COORDINATE_ARRAY,
+    E_IMAGE_ARRAY,
+    E_IMAGE_CELL_ARRAY,
+    E_GRID_ARRAY,
+    E_GRID_CELL_ARRAY,
+    E_APPENDED,
+    ELEMENT_COUNT
+} element;
+
+static const cwi_xml_element elements[ELEMENT_COUNT] = {
+    [E_FILE] = {"VTKFile", CWI_XML_ROOT, start_file, NULL},
+    [E_IMAGE] = {"ImageData", E_FILE, start_image, NULL},
+    [E_IMAGE_PIECE] = {"Piece", E_IMAGE, start_piece, NULL},
+    [E_IMAGE_POINTS] = {"PointData", E_IMAGE_PIECE, start_points, NULL},
+    [E_IMAGE_CELLS] = {"CellData", E_IMAGE_PIECE, start_cells, NULL},
+    [E_GRID] = {"RectilinearGrid", E_FILE, start_image, NULL},
+    [E_GRID_PIECE] = {"Piece", E_GRID, start_piece, NULL},
+    [E_GRID_POINTS] = {"PointData", E_GRID_PIECE, start_points, NULL},
+    [E_GRID_CELLS] = {"CellData", E_GRID_PIECE, start_cells, NULL},
+    [E_COORDINATES] = {"Coordinates", E_GRID_PIECE, NULL, NULL},
+    [E_COORDINATE_ARRAY] = {"DataArray", E_COORDINATES, start_coordinates, NULL},
+    [E_IMAGE_ARRAY] = {"DataArray", E_IMAGE_POINTS, start_array, NULL},
+    [E_IMAGE_CELL_ARRAY] = {"DataArray", E_IMAGE_CELLS, start_cell_array, NULL},
+    [E_GRID_ARRAY] = {"DataArray", E_GRID_POINTS, start_array, NULL},
+    [E_GRID_CELL_ARRAY] = {"DataArray", E_GRID_CELLS, start_cell_array, NULL},
+    [E_APPENDED] = {"AppendedData", E_FILE, start_appended, NULL},
+};
+
+static const cwi_xml_rules rules = {.elements = elements,
+                                    .element_count = ELEMENT_COUNT,
+                                    .most_elements = MOST_ELEMENTS,
+                                    .tag = end_text};
+
+/* --- the array ---------------------------------------------------------------------------- */
+
+/* The array that is the volume: at points, unless only cells have one. */
+static const cwi_vti_array *choose(const cwi_vti *v)
+{
+    return v->points.best.rank != CWI_VTI_NONE ? &v->points.best : &v->cells.best;
+}
+
+static bool is_of_cells(const cwi_vti *v)
+{
+    return choose(v) == &v->cells.best;
+}
+
+static cw_status check_found(const cwi_vti *v, cw_error *err)
+{
+    if (v->rectilinear && v->coordinate_arrays != 3)
+        return cw_fail(err, CW_ERR_FORMAT,
+                       "Coordinates has %zu arrays; one for x, y and z each was expected",
+                       v->coordinate_arrays);
+    return choose(v)->rank != CWI_VTI_NONE ? CW_OK : cwi_vti_fail_choice(&v->choice, err);
+}
+
+/* --- coordinates -------------------------------------------------------------------------- */
+
+static size_t points_along(const cwi_vti *v, int axis)
+{
+    return (size_t)(v->extent[2 * axis + 1] - v->extent[2 * axis] + 1);
+}
+
+static cw_status set_coordinates(const cwi_vti *v, const cwi_input *in, cw_volume *shape,
+                                 cw_error *err)
+{
+    cwi_source rows[3];
+    cw_status st = CW_OK;
+    for (int a = 0; a < 3 && st == CW_OK; a++) {
+        const cwi_vtk_array *array = &v->coordinates[a];
+        st = cwi_vtk_grid_row(&rows[a], "Extent", array->type, points_along(v, a), err);
+        if (st == CW_OK)
+            st = cwi_vtk_xml_place(&v->file, array, in, &rows[a], err);
+    }
+    return st == CW_OK ? cwi_vtk_grid_place(rows, in, is_of_cells(v), shape, err) : st;
+}
+
+/* --- to a source ------------------------------------------------------------------------- */
+
+static cw_status set_sizes(const cwi_vti *v, cwi_source *src, cw_error *err)
+{
+    const cwi_vtk_array *array = &choose(v)->data;
+    size_t dim[3] = {points_along(v, 0), points_along(v, 1), points_along(v, 2)};
+    cw_status st = is_of_cells(v) ? cwi_vtk_grid_to_cells(src, array->name, dim, err) : CW_OK;
+    const cwi_axis axes[] = {{CWI_AXIS_COMPONENT, array->components},
+                             {CWI_AXIS_X, dim[0]},
+                             {CWI_AXIS_Y, dim[1]},
+                             {CWI_AXIS_Z, dim[2]}};
+    src->shape.type = array->type;
+    src->shape.slope = 1;
+    src->has_arrays = true;
+    return st == CW_OK ? cwi_source_set_axes(src, axes, 4, err) : st;
+}
+
+/* World = Origin + Direction (Spacing * index), the index counted from the extent's; of cells
+ * half a step on. */
+static void set_frame(const cwi_vti *v, cw_volume *shape)
+{
+    for (int r = 0; r < 3; r++)
+        shape->affine[r][3] = v->origin[r];
+    for (int c = 0; c < 3; c++) {
+        const double spacing = shape->dim[c] == 1 && v->spacing[c] == 0 ? 1 : v->spacing[c];
+        for (int r = 0; r < 3; r++) {
+            shape->affine[r][c] = v->direction[3 * r + c] * spacing;
+            shape->affine[r][3] +=
+                shape->affine[r][c] * ((double)v->extent[2 * c] + (is_of_cells(v) ? 0.5 : 0));
+        }
+    }
+}
+
+cw_status cwi_vti_parse(const cwi_input *in, cwi_source *src, cw_error *err)
+{
+    parsing p = {.vti = {.choice = {.wanted = in->array, .list = in->arrays}}};
+    cwi_vti *v = &p.vti;
+    src->size_field = "Extent";
+    src->frame_field = "Direction, Spacing, Origin";
+    cw_status st = cwi_xml_read_file(&rules, &p, in, err);
+    if (st == CW_OK)
+        st = cwi_vtk_xml_find_appended(in, &v->file, err);
+    if (st == CW_OK)
+        st = check_found(v, err);
+    if (st == CW_OK)
+        st = set_sizes(v, src, err);
+    if (st != CW_OK)
+        return st;
+    cwi_array_list_choose(in->arrays, choose(v)->data.name, is_of_cells(v));
+    if (v->rectilinear)
+        st = set_coordinates(v, in, &src->shape, err);
+    else
+        set_frame(v, &src->shape);
+    return st == CW_OK ? cwi_vtk_xml_place(&v->file, &choose(v)->data, in, src, err) : st;
+}

@@ -1,0 +1,212 @@
+/* VTK's XML PolyData: arrays appended as they are, each in blocks compressed by zlib. */
+#include "formats/bytes/block_writer.h"
+#include "formats/mesh/place_parts.h"
+
+#include <stdio.h>
+
+/* --- records ----------------------------------------------------------------------------- */
+
+static unsigned char *encode_place(const cwi_part *part, size_t v, unsigned char *to)
+{
+    for (int a = 0; a < 3; a++)
+        to = cwi_put_f32(to, (float)cwi_coordinate(part, v, a));
+    return to;
+}
+
+static unsigned char *encode_normal(const cwi_part *part, size_t v, unsigned char *to)
+{
+    float normal[3];
+    cwi_normal(part, v, normal);
+    return cwi_put_f32x3(to, normal);
+}
+
+static unsigned char *encode_color(const cwi_part *part, size_t v, unsigned char *to)
+{
+    memcpy(to, part->mesh.colors + 4 * v, 4);
+    return to + 4;
+}
+
+static unsigned char *encode_scalar(const cwi_part *part, size_t v, unsigned char *to)
+{
+    return cwi_put_f32(to, part->mesh.scalars[v]);
+}
+
+static unsigned char *encode_label(const cwi_part *part, size_t v, unsigned char *to)
+{
+    return cwi_put_u32(to, part->mesh.labels[v]);
+}
+
+static unsigned char *encode_corners(const cwi_part *part, size_t t, unsigned char *to)
+{
+    for (int c = 0; c < 3; c++)
+        to = cwi_put_u32(to, (uint32_t)cwi_corner_number(part, t, c));
+    return to;
+}
+
+static unsigned char *encode_wide_corners(const cwi_part *part, size_t t, unsigned char *to)
+{
+    for (int c = 0; c < 3; c++)
+        to = cwi_put_u64(to, cwi_corner_number(part, t, c));
+    return to;
+}
+
+/* Where a polygon's corners end among those of all. */
+static unsigned char *encode_end(const cwi_part *part, size_t t, unsigned char *to)
+{
+    return cwi_put_u32(to, (uint32_t)(3 * (part->first_triangle + t + 1)));
+}
+
+static unsigned char *encode_wide_end(const cwi_part *part, size_t t, unsigned char *to)
+{
+    return cwi_put_u64(to, 3 * (part->first_triangle + t + 1));
+}
+
+/* --- arrays ------------------------------------------------------------------------------ */
+
+typedef enum width { ANY, NARROW, WIDE } width;
+
+/* An array of the file. */
+typedef struct array {
+    unsigned keeps; /* there when the mesh has it; 0: always */
+    width width;    /* there when numbers need 64 bits, or do not */
+    const char *type, *name;
+    size_t numbers, bytes; /* of a vertex or triangle */
+    bool of_triangles;     /* else of vertices */
+    cwi_record_encoder *encode;
+    const char *before, *behind; /* tags of the elements around it */
+} array;
+
+/* In the order of the file. */
+static const array arrays[] = {
+    {CW_KEEPS_NORMALS, ANY, "Float32", "Normals", 3, 12, false, encode_normal, "", ""},
+    {CW_KEEPS_COLORS, ANY, "UInt8", "RGBA", 4, 4, false, encode_color, "", ""},
+    {CW_KEEPS_SCALARS, ANY, "Float32", "scalar", 1, 4, false, encode_scalar, "", ""},
+    {CW_KEEPS_LABELS, ANY, "UInt32", "label", 1, 4, false, encode_label, "", ""},
+    {0, ANY, "Float32", "Points", 3, 12, false, encode_place, "</PointData>\n<Points>\n",
+     "</Points>\n"},
+    {0, NARROW, "Int32", "connectivity", 1, 12, true, encode_corners, "<Polys>\n", ""},
+    {0, NARROW, "Int32", "offsets", 1, 4, true, encode_end, "", "</Polys>\n"},
+    {0, WIDE, "Int64", "connectivity", 1, 24, true, encode_wide_corners, "<Polys>\n", ""},
+    {0, WIDE, "Int64", "offsets", 1, 8, true, encode_wide_end, "", "</Polys>\n"},
+};
+enum { ARRAY_COUNT = sizeof arrays / sizeof *arrays, OFFSET_DIGITS = 20 };
+
+typedef struct vtp {
+    cwi_mesh_output *out;
+    const cwi_parts *parts;
+    cwi_block_sink blocks;
+    bool has[ARRAY_COUNT];
+    uint64_t offset_at[ARRAY_COUNT]; /* where the file tells where the array is */
+} vtp;
+
+static void choose_arrays(vtp *f, bool wide)
+{
+    const unsigned has = cwi_arrays_of(&f->parts->items[0].mesh); /* all have the same */
+    for (int i = 0; i < ARRAY_COUNT; i++)
+        f->has[i] = (!arrays[i].keeps || arrays[i].keeps & has) &&
+                    (arrays[i].width == ANY || (arrays[i].width == WIDE) == wide);
+}
+
+static cw_status declare_array(vtp *f, int i, cw_error *err)
+{
+    const array *a = &arrays[i];
+    cwi_outfile *file = f->out->file;
+    cw_status st =
+        cwi_outfile_printf(file, err,
+                           "%s<DataArray type=\"%s\" Name=\"%s\" "
+                           "NumberOfComponents=\"%zu\" format=\"appended\" offset=\"",
+                           a->before, a->type, a->name, a->numbers);
+    f->offset_at[i] = cwi_outfile_size(file);
+    return st == CW_OK
+               ? cwi_outfile_printf(file, err, "%0*d\"/>\n%s", OFFSET_DIGITS, 0, a->behind)
+               : st;
+}
+
+/* What viewers show at first: scalars, else colours. */
+static const char *shown_array(const vtp *f)
+{
+    const cw_mesh *mesh = &f->parts->items[0].mesh;
+    return mesh->scalars ? " Scalars=\"scalar\"" : mesh->colors ? " Scalars=\"RGBA\"" : "";
+}
+
+static cw_status write_head(vtp *f, cw_error *err)
+{
+    const cwi_mesh_output *out = f->out;
+    char axes[CWI_AXES_BYTES], origin[CWI_ORIGIN_BYTES];
+    cwi_print_axes(out->axes, axes);
+    cwi_print_origin(out, "<!-- origin ", " -->\n", origin);
+    cw_status st = cwi_outfile_printf(
+        out->file, err,
+        "<?xml version=\"1.0\"?>\n<!-- cubewright %s, %s -->\n%s"
+        "<VTKFile type=\"PolyData\" version=\"1.0\" byte_order=\"LittleEndian\" "
+        "header_type=\"UInt64\" compressor=\"vtkZLibDataCompressor\">\n<PolyData>\n"
+        "<Piece NumberOfPoints=\"%ju\" NumberOfVerts=\"0\" NumberOfLines=\"0\" "
+        "NumberOfStrips=\"0\" NumberOfPolys=\"%ju\">\n<PointData%s%s>\n",
+        CW_VERSION, axes, origin, (uintmax_t)f->parts->vertices, (uintmax_t)f->parts->triangles,
+        f->has[0] ? " Normals=\"Normals\"" : "", shown_array(f));
+    for (int i = 0; i < ARRAY_COUNT && st == CW_OK; i++)
+        if (f->has[i])
+            st = declare_array(f, i, err);
+    return st == CW_OK ? cwi_outfile_printf(out->file, err,
+                                            "</Piece>\n</PolyData>\n"
+                                            "<AppendedData encoding=\"raw\">\n_")
+                       : st;
+}
+
+/* The bytes of an array; they start so far behind the underscore. */
+static cw_status write_array(vtp *f, int i, uint64_t offset, cw_error *err)
+{
+    const array *a = &arrays[i];
+    char digits[OFFSET_DIGITS + 1];
+    const uint64_t count = a->of_triangles ? f->parts->triangles : f->parts->vertices;
+    snprintf(digits, sizeof digits, "%0*ju", OFFSET_DIGITS, (uintmax_t)offset);
+    cw_status st = cwi_outfile_patch(f->out->file, f->offset_at[i], digits, OFFSET_DIGITS, err);
+    if (st == CW_OK)
+        st = cwi_block_sink_begin(&f->blocks, count * a->bytes, err);
+    if (st == CW_OK && a->of_triangles)
+        st = cwi_write_triangles(f->parts, f->out, a->encode, err);
+    else if (st == CW_OK)
+        st = cwi_write_vertices(f->parts, f->out, a->encode, err);
+    return st == CW_OK ? cwi_block_sink_end(&f->blocks, err) : st;
+}
+
+static cw_status write_arrays(vtp *f, cw_error *err)
+{
+    const uint64_t start = cwi_outfile_size(f->out->file);
+    cw_status st = cwi_block_sink_open(&f->blocks, f->out->file, err);
+    f->out->drain = cwi_block_sink_put;
+    f->out->drain_to = &f->blocks;
+    for (int i = 0; i < ARRAY_COUNT && st == CW_OK; i++)
+        if (f->has[i])
+            st = write_array(f, i, cwi_outfile_size(f->out->file) - start, err);
+    cwi_block_sink_close(&f->blocks);
+    return st;
+}
+
+static cw_status write_file(const cwi_parts *parts, cwi_mesh_output *out, bool wide,
+                            cw_error *err)
+{
+    vtp f = {.out = out, .parts = parts};
+    choose_arrays(&f, wide);
+    for (int i = 0; i < ARRAY_COUNT; i++)
+        if (f.has[i])
+            out->total += (size_t)(arrays[i].of_triangles ? parts->triangles : parts->vertices);
+    cw_status st = cwi_check_single(parts, err);
+    if (st == CW_OK)
+        st = write_head(&f, err);
+    if (st == CW_OK)
+        st = write_arrays(&f, err);
+    return st == CW_OK ? cwi_outfile_printf(out->file, err, "\n</AppendedData>\n</VTKFile>\n")
+                       : st;
+}
+
+cw_status cwi_vtp_write_wide(const cwi_parts *parts, cwi_mesh_output *out, cw_error *err)
+{
+    return write_file(parts, out, true, err);
+}
+
+cw_status cwi_vtp_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *err)
+{
+    const bool wide = 3 * parts->triangles > INT32_MAX || parts->vertices > INT32_MAX;
+    return write_file(parts, out, wide, err);
+}

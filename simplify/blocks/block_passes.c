@@ -1,0 +1,644 @@
+#include "simplify/blocks/block_passes.h"
+
+#include "core/base/parallel.h"
+#include "core/base/memory.h"
+#include "core/mesh/mesh.h"
+#include "core/base/module.h"
+#include "core/base/status.h"
+#include "simplify/blocks/partition.h"
+#include "simplify/quality/mesh_within.h"
+
+#include <math.h>
+#include <string.h>
+
+/* The share of the error that is kept: others may measure it by bounds that are wider. */
+static const double TIGHTER = 0.95;
+
+/* --- what passes share ------------------------------------------------------------------- */
+
+static cw_status check(const cw_simplify_desc *d, cw_error *err)
+{
+    if (!(d->error_mm >= 0) || !isfinite(d->error_mm))
+        return cw_fail(err, CW_ERR_ARGUMENT, "error_mm is %g; it must be 0 or more",
+                       d->error_mm);
+    if (!(d->normal_deg >= 0) || !(d->normal_deg <= 180))
+        return cw_fail(err, CW_ERR_ARGUMENT, "normal_deg is %g; it must be 0 to 180",
+                       d->normal_deg);
+    if (!(d->ratio >= 0) || !(d->ratio < 1))
+        return cw_fail(err, CW_ERR_ARGUMENT, "ratio is %g; it must be at least 0 and below 1",
+                       d->ratio);
+    return CW_OK;
+}
+
+cw_status cwi_passes_init(cwi_passes *p, const cw_simplify_desc *desc, cw_error *err)
+{
+    const void *module;
+    *p = (cwi_passes){.desc = desc,
+                      .error = desc->error_mm,
+                      .block_desc = {.error = TIGHTER * desc->error_mm,
+                                     .allow_crossings = desc->allow_crossings,
+                                     .keep_border = desc->keep_border,
+                                     .progress = &p->poll}};
+    cwi_stop_init(&p->stop, &desc->progress);
+    p->poll = cwi_stop_progress(&p->stop);
+    cw_status st = check(desc, err);
+    if (st == CW_OK)
+        st = cwi_module_load("openmesh", &module, err);
+    if (st == CW_OK)
+        p->openmesh = module;
+    return st == CW_OK ? cwi_views_init(&p->views, desc, err) : st;
+}
+
+void cwi_passes_place(cwi_passes *p, const double origin[3], double scale)
+{
+    cwi_views_place(&p->views, origin, scale);
+    p->error *= scale;
+    p->block_desc.error *= scale;
+}
+
+static void forget(cwi_passes *p)
+{
+    cwi_free(p->first);
+    cwi_free(p->around);
+    cwi_free(p->next);
+    cwi_free(p->care);
+    cwi_free(p->allowed);
+    cwi_free(p->normals);
+    cwi_free(p->lists);
+    p->first = p->around = p->next = p->lists = NULL;
+    p->care = NULL;
+    p->allowed = NULL;
+    p->normals = NULL;
+    p->original = (cwi_original){0};
+}
+
+void cwi_passes_free(cwi_passes *p)
+{
+    forget(p);
+    cwi_views_free(&p->views);
+}
+
+static double limit_of(const cwi_passes *p, const cw_mesh *m, size_t t, double margin)
+{
+    const uint32_t *c = m->triangles + 3 * t;
+    const float *const corners[3] = {m->positions + 3 * (size_t)c[0],
+                                     m->positions + 3 * (size_t)c[1],
+                                     m->positions + 3 * (size_t)c[2]};
+    return cwi_views_limit(&p->views, corners, p->error, margin);
+}
+
+/* Normals of what a view sees, from the triangles around; the others stay 0. */
+static void add_normals(cwi_passes *p, const uint8_t *seen)
+{
+    const cw_mesh *m = &p->input;
+    for (size_t t = 0; t < m->triangle_count; t++) {
+        const uint32_t *c = m->triangles + 3 * t;
+        const float *a = m->positions + 3 * (size_t)c[0], *b = m->positions + 3 * (size_t)c[1],
+                    *d = m->positions + 3 * (size_t)c[2];
+        const float u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]},
+                    w[3] = {d[0] - a[0], d[1] - a[1], d[2] - a[2]},
+                    n[3] = {u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2],
+                            u[0] * w[1] - u[1] * w[0]};
+        for (size_t k = 0; k < 3; k++)
+            for (size_t i = 0; i < 3 && seen[c[k]]; i++)
+                p->normals[3 * (size_t)c[k] + i] += n[i];
+    }
+    for (size_t v = 0; v < m->vertex_count; v++) {
+        float *n = p->normals + 3 * v;
+        const double length = sqrt((double)n[0] * (double)n[0] + (double)n[1] * (double)n[1] +
+                                   (double)n[2] * (double)n[2]);
+        for (size_t i = 0; i < 3 && length > 0; i++)
+            n[i] = (float)((double)n[i] / length);
+    }
+}
+
+static cw_status find_normals(cwi_passes *p, cw_error *err)
+{
+    const cw_mesh *m = &p->input;
+    if (!p->views.count || p->desc->normal_deg == 0)
+        return CW_OK;
+    uint8_t *seen = cwi_alloc_zeroed(m->vertex_count, 1);
+    p->normals = cwi_alloc_zeroed(3 * m->vertex_count, sizeof *p->normals);
+    const bool ok = seen && p->normals;
+    for (size_t t = 0; t < m->triangle_count && ok; t++)
+        if (isfinite(limit_of(p, m, t, p->error)))
+            for (size_t k = 0; k < 3; k++)
+                seen[m->triangles[3 * t + k]] = 1;
+    if (ok)
+        add_normals(p, seen);
+    cwi_free(seen);
+    return ok ? CW_OK
+              : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the normals of %zu vertices",
+                        m->vertex_count);
+}
+
+/* At a point, what is allowed on all triangles around it. What is simplified may come into view
+ * on its way: so views are wider here by as much as that is. */
+static cw_status allow(cwi_passes *p, cw_error *err)
+{
+    const cw_mesh *m = &p->input;
+    if (!p->views.count)
+        return CW_OK;
+    p->allowed = cwi_alloc_array(m->vertex_count, sizeof *p->allowed);
+    if (!p->allowed)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error of %zu vertices",
+                       m->vertex_count);
+    for (size_t v = 0; v < m->vertex_count; v++)
+        p->allowed[v] = (float)p->block_desc.error;
+    for (size_t t = 0; t < m->triangle_count; t++) {
+        const float here = (float)(TIGHTER * limit_of(p, m, t, p->error));
+        for (size_t k = 0; k < 3; k++) {
+            float *at = p->allowed + m->triangles[3 * t + k];
+            *at = fminf(*at, here);
+        }
+    }
+    return CW_OK;
+}
+
+static void sort_around(cwi_passes *p)
+{
+    const cw_mesh *m = &p->input;
+    memset(p->first, 0, (m->vertex_count + 2) * sizeof *p->first);
+    for (size_t c = 0; c < 3 * m->triangle_count; c++)
+        p->first[m->triangles[c] + 2]++;
+    for (size_t v = 0; v < m->vertex_count; v++)
+        p->first[v + 2] += p->first[v + 1];
+    for (size_t c = 0; c < 3 * m->triangle_count; c++)
+        p->around[p->first[m->triangles[c] + 1]++] = (uint32_t)(c / 3);
+}
+
+cw_status cwi_passes_remember(cwi_passes *p, const cw_mesh *input, cw_error *err)
+{
+    const size_t vertices = input->vertex_count;
+    forget(p);
+    p->input = *input;
+    p->first = cwi_alloc_array(vertices + 2, sizeof *p->first);
+    p->around = cwi_alloc_array(3 * input->triangle_count, sizeof *p->around);
+    p->next = cwi_alloc_array(vertices, sizeof *p->next);
+    p->care = cwi_alloc_zeroed(vertices, sizeof *p->care);
+    p->lists = cwi_alloc_array(vertices, sizeof *p->lists);
+    if (!p->first || !p->around || !p->next || !p->care || !p->lists)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error of %zu triangles",
+                       input->triangle_count);
+    sort_around(p);
+    for (size_t v = 0; v < vertices; v++)
+        p->next[v] = (uint32_t)v; /* in no list */
+    p->original = (cwi_original){.points = input->positions,
+                                 .corners = input->triangles,
+                                 .first = p->first,
+                                 .around = p->around,
+                                 .next = p->next,
+                                 .care = p->care};
+    cw_status st = allow(p, err);
+    if (st == CW_OK)
+        st = find_normals(p, err);
+    p->original.allowed = p->allowed;
+    p->original.normals = p->normals;
+    p->original.straight = (float)cos(p->desc->normal_deg * acos(-1) / 180);
+    return st;
+}
+
+cw_status cwi_passes_list(cwi_passes *p, cwi_block *b, cw_error *err)
+{
+    b->lists = cwi_alloc_array(b->triangles, sizeof *b->lists);
+    if (!b->lists)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error of %zu triangles",
+                       b->triangles);
+    memset(b->lists, 0xff, b->triangles * sizeof *b->lists);
+    for (size_t c = 0; c < 3 * b->triangles; c++) {
+        const uint32_t point = b->corners[c];
+        if (p->next[point] != point)
+            continue;
+        p->next[point] = b->lists[c / 3];
+        b->lists[c / 3] = point;
+    }
+    return CW_OK;
+}
+
+static const cwi_original *original_of(const cwi_passes *p)
+{
+    return p->next ? &p->original : NULL;
+}
+
+/* --- keeping the error -------------------------------------------------------------------- */
+
+/* A part of the input and what became of it. */
+typedef struct part {
+    const cwi_block *from;
+    cw_mesh input;         /* a view of it */
+    const uint32_t *names; /* of its vertices in all of the input; NULL: their numbers */
+    cwi_block *left;
+    float cost; /* how far it went */
+    size_t target;
+    int threads;
+} part;
+
+/* Own triangles of a block as a mesh. */
+static cw_mesh view(const cwi_block *b)
+{
+    return (cw_mesh){.vertex_count = b->vertices,
+                     .triangle_count = b->own,
+                     .positions = b->points,
+                     .triangles = b->corners};
+}
+
+static cw_status run_once(const cwi_passes *p, const part *x, float cost, cw_error *err)
+{
+    cwi_decimater *d;
+    cw_status st = p->openmesh->open(x->from, &p->block_desc, original_of(p), &d, err);
+    if (st != CW_OK)
+        return st;
+    st = p->openmesh->run(d, cost, x->target, err);
+    if (st == CW_OK)
+        st = p->openmesh->take(d, x->left, err);
+    p->openmesh->close(d);
+    return st;
+}
+
+/* Lists of the pass become what they were before. */
+static void put_back(const cwi_passes *p, const cwi_block *left)
+{
+    for (size_t t = 0; t < left->own; t++)
+        for (uint32_t v = left->lists[t], next; v != UINT32_MAX; v = next) {
+            next = p->next[v];
+            p->next[v] = p->lists[v];
+        }
+}
+
+enum { MARK = 0x80 };
+
+/* Marks the vertices of the part of the input that is too far from the result. Those held for
+ * other parts are these parts' business. */
+static size_t mark_input(const cwi_passes *p, const part *x, const uint8_t *beyond)
+{
+    const uint8_t *held = x->names ? x->from->held : NULL;
+    size_t broken = 0;
+    for (size_t t = 0; t < x->input.triangle_count; t++) {
+        const uint32_t *c = x->input.triangles + 3 * t;
+        broken += beyond[t];
+        for (size_t k = 0; k < 3 && beyond[t]; k++)
+            if (!held || !held[c[k]])
+                p->care[x->names ? x->names[c[k]] : c[k]] |= MARK;
+    }
+    return broken;
+}
+
+/* Marks the points listed around the triangles of the result that are too far from the input.
+ */
+static size_t mark_result(const cwi_passes *p, const part *x, const uint8_t *beyond,
+                          uint8_t *near)
+{
+    const cwi_block *left = x->left;
+    size_t broken = 0;
+    for (size_t t = 0; t < left->own; t++) {
+        broken += beyond[t];
+        for (size_t k = 0; k < 3 && beyond[t]; k++)
+            near[left->corners[3 * t + k]] = 1;
+    }
+    for (size_t t = 0; t < left->own && broken; t++) {
+        const uint32_t *c = left->corners + 3 * t;
+        if (near[c[0]] || near[c[1]] || near[c[2]])
+            for (uint32_t v = left->lists[t]; v != UINT32_MAX; v = p->next[v])
+                p->care[v] |= MARK;
+    }
+    return broken;
+}
+
+/* More care for the marked points of the part; false when all had the most already. */
+static bool take_care(const cwi_passes *p, const part *x)
+{
+    bool more = false;
+    for (size_t t = 0; t < x->left->own; t++)
+        for (uint32_t v = x->left->lists[t]; v != UINT32_MAX; v = p->next[v])
+            if (p->care[v] & MARK) {
+                p->care[v] &= (uint8_t)~MARK;
+                if (p->care[v] < CWI_MOST_CARE) {
+                    p->care[v]++;
+                    more = true;
+                }
+            }
+    for (size_t v = 0; v < p->input.vertex_count && !x->names; v++)
+        p->care[v] &= (uint8_t)~MARK; /* listed elsewhere */
+    return more;
+}
+
+/* The result, and with it what is in the way: it is part of the surface, too. */
+static cw_status add_obstacles(const part *x, cw_mesh *mesh, cw_error *err)
+{
+    const cwi_block *from = x->from, *left = x->left;
+    const size_t more = from->triangles - from->own;
+    cw_status st =
+        cwi_mesh_alloc(mesh, left->vertices + 3 * more, left->own + more, false, err);
+    if (st != CW_OK)
+        return st;
+    memcpy(mesh->positions, left->points, 3 * left->vertices * sizeof *left->points);
+    memcpy(mesh->triangles, left->corners, 3 * left->own * sizeof *left->corners);
+    for (size_t c = 0; c < 3 * more; c++) {
+        const size_t v = left->vertices + c;
+        memcpy(mesh->positions + 3 * v,
+               from->points + 3 * (size_t)from->corners[3 * from->own + c], 3 * sizeof(float));
+        mesh->triangles[3 * left->own + c] = (uint32_t)v;
+    }
+    return CW_OK;
+}
+
+/* What triangles of a mesh must keep; NULL where that is the same for all. */
+static cw_status find_limits(const cwi_passes *p, const cw_mesh *m, double **limits,
+                             cw_error *err)
+{
+    *limits = NULL;
+    if (!p->views.count)
+        return CW_OK;
+    *limits = cwi_alloc_array(m->triangle_count, sizeof **limits);
+    if (!*limits)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error of %zu triangles",
+                       m->triangle_count);
+    for (size_t t = 0; t < m->triangle_count; t++)
+        (*limits)[t] = fmin(p->error, limit_of(p, m, t, 0));
+    return CW_OK;
+}
+
+static cw_status find_beyond(const cwi_passes *p, const cw_mesh *mesh, const cw_mesh *reference,
+                             int threads, uint8_t *beyond, cw_error *err)
+{
+    double *limits;
+    cw_status st = find_limits(p, mesh, &limits, err);
+    if (st == CW_OK)
+        st = cwi_mesh_within(mesh, reference, p->error, limits, threads, &p->poll, beyond, err);
+    cwi_free(limits);
+    return st;
+}
+
+/* Whether the result keeps the distance; where it does not, more care is taken the next time.
+ */
+static cw_status judge(const cwi_passes *p, const part *x, bool *kept, bool *hope,
+                       cw_error *err)
+{
+    const cw_mesh result = view(x->left);
+    cw_mesh all = {0};
+    uint8_t *input_beyond = cwi_alloc_array(x->input.triangle_count, 1);
+    uint8_t *beyond = cwi_alloc_array(result.triangle_count, 1);
+    uint8_t *near = cwi_alloc_zeroed(result.vertex_count, 1);
+    cw_status st = input_beyond && beyond && near
+                       ? add_obstacles(x, &all, err)
+                       : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to keep the error");
+    if (st == CW_OK)
+        st = find_beyond(p, &x->input, &all, x->threads, input_beyond, err);
+    if (st == CW_OK)
+        st = find_beyond(p, &result, &x->input, x->threads, beyond, err);
+    if (st == CW_OK) {
+        const size_t broken = mark_input(p, x, input_beyond) + mark_result(p, x, beyond, near);
+        *kept = broken == 0;
+        *hope = *kept || take_care(p, x);
+    }
+    cw_mesh_free(&all);
+    cwi_free(input_beyond);
+    cwi_free(beyond);
+    cwi_free(near);
+    return st;
+}
+
+/* Collapses look at what is near them only. Where that was not enough the part is done again
+ * with more care; when that does not help, it stays as it was. */
+static cw_status keep(const cwi_passes *p, const part *x, size_t *repeats, cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (bool kept = x->left->own == 0, hope = true; st == CW_OK && !kept;) {
+        st = judge(p, x, &kept, &hope, err);
+        if (st != CW_OK || kept)
+            break;
+        put_back(p, x->left);
+        cwi_block_free(x->left);
+        st = run_once(p, x, hope ? x->cost : -1, err);
+        kept = !hope;
+        ++*repeats;
+    }
+    return st;
+}
+
+/* --- passes over blocks --------------------------------------------------------------------
+ */
+
+typedef struct crew {
+    const cwi_passes *passes;
+    cwi_block *blocks, *left;
+    cwi_decimater **decimaters;
+    cw_status *statuses;
+    cw_error *errors;
+    size_t *repeats;
+    size_t count, target;
+    float cost;
+} crew;
+
+static void open_block(void *context, size_t n)
+{
+    crew *c = context;
+    const cwi_passes *p = c->passes;
+    c->statuses[n] = p->openmesh->open(c->blocks + n, &p->block_desc, original_of(p),
+                                       c->decimaters + n, c->errors + n);
+    if (!p->next)
+        cwi_block_free(c->blocks + n);
+}
+
+static void run_block(void *context, size_t n)
+{
+    crew *c = context;
+    c->statuses[n] = c->passes->openmesh->run(c->decimaters[n], c->cost, 0, c->errors + n);
+}
+
+static void take_block(void *context, size_t n)
+{
+    crew *c = context;
+    const cwi_openmesh_functions *openmesh = c->passes->openmesh;
+    c->statuses[n] = openmesh->take(c->decimaters[n], c->left + n, c->errors + n);
+    openmesh->close(c->decimaters[n]);
+    c->decimaters[n] = NULL;
+}
+
+/* Without a number of triangles to meet a block knows by itself how far to go. */
+static void keep_block(void *context, size_t n)
+{
+    crew *c = context;
+    const cwi_passes *p = c->passes;
+    cw_error *err = c->errors + n;
+    const part x = {.from = c->blocks + n,
+                    .input = view(c->blocks + n),
+                    .names = c->blocks[n].names,
+                    .left = c->left + n,
+                    .cost = c->cost,
+                    .threads = 1};
+    cw_status st = c->target ? CW_OK : run_once(p, &x, c->cost, err);
+    if (st == CW_OK)
+        st = keep(p, &x, c->repeats + n, err);
+    c->statuses[n] = st;
+    cwi_block_free(c->blocks + n);
+}
+
+/* All blocks, shared out to threads; the first that failed is the one that is told. */
+static cw_status each_block(crew *c, void (*work)(void *context, size_t n), cw_error *err)
+{
+    const cwi_passes *p = c->passes;
+    cw_status st = cwi_each_layer(c->count, CWI_BLOCK, p->desc->threads, &p->poll,
+                                  "simplifying", work, c, err);
+    for (size_t n = 0; n < c->count && st == CW_OK; n++)
+        if (c->statuses[n] != CW_OK)
+            return cw_fail(err, c->statuses[n], "%s", c->errors[n].message);
+    return st;
+}
+
+static size_t count_left(const crew *c, float *next)
+{
+    const cwi_openmesh_functions *openmesh = c->passes->openmesh;
+    size_t left = 0;
+    *next = INFINITY;
+    for (size_t n = 0; n < c->count; n++) {
+        left += openmesh->triangles(c->decimaters[n]);
+        *next = fminf(*next, openmesh->next(c->decimaters[n]));
+    }
+    return left;
+}
+
+/* What costs the same anywhere goes at the same time everywhere: the limit rises by and by
+ * until few enough triangles are left. Errors of size^4 on areas of size^2 make it rise by the
+ * cube of what the number falls by; half of that way at a time. */
+static cw_status run_to_target(crew *c, cw_error *err)
+{
+    cw_status st = each_block(c, open_block, err);
+    float next;
+    c->cost = 0;
+    for (size_t left;
+         st == CW_OK && (left = count_left(c, &next)) > c->target && next < INFINITY;) {
+        const float more = (float)left / (float)c->target, step = more * sqrtf(more);
+        c->cost = fmaxf(c->cost, next) * fminf(fmaxf(step, 1.1f), 8);
+        st = each_block(c, run_block, err);
+    }
+    return st == CW_OK ? each_block(c, take_block, err) : st;
+}
+
+/* Seams between blocks stay as fine as they were: that many triangles more than the target are
+ * left to the second pass. */
+static size_t first_target(const crew *c, size_t target)
+{
+    size_t held = 0;
+    for (size_t n = 0; n < c->count; n++)
+        for (size_t v = 0; v < c->blocks[n].vertices; v++)
+            held += c->blocks[n].held[v];
+    return target ? target + 3 * held / 2 : 0;
+}
+
+static cw_status run_crew(crew *c, cw_error *err)
+{
+    c->left = cwi_alloc_zeroed(c->count, sizeof *c->left);
+    c->decimaters = cwi_alloc_zeroed(c->count, sizeof(cwi_decimater *));
+    c->statuses = cwi_alloc_zeroed(c->count, sizeof *c->statuses);
+    c->errors = cwi_alloc_zeroed(c->count, sizeof *c->errors);
+    c->repeats = cwi_alloc_zeroed(c->count, sizeof *c->repeats);
+    if (!c->left || !c->decimaters || !c->statuses || !c->errors || !c->repeats)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu blocks", c->count);
+    c->cost = INFINITY;
+    cw_status st = c->target ? run_to_target(c, err) : CW_OK;
+    return st == CW_OK && c->passes->next ? each_block(c, keep_block, err) : st;
+}
+
+static void free_crew(crew *c)
+{
+    for (size_t n = 0; n < c->count; n++) {
+        cwi_block_free(c->blocks + n);
+        if (c->left)
+            cwi_block_free(c->left + n);
+        if (c->decimaters && c->decimaters[n])
+            c->passes->openmesh->close(c->decimaters[n]);
+    }
+    cwi_free(c->blocks);
+    cwi_free(c->left);
+    cwi_free(c->decimaters);
+    cwi_free(c->statuses);
+    cwi_free(c->errors);
+    cwi_free(c->repeats);
+}
+
+static void begin_pass(const cwi_passes *p)
+{
+    if (p->next)
+        memcpy(p->lists, p->next, p->input.vertex_count * sizeof *p->lists);
+}
+
+/* Borders that were known before the pass are so still. */
+static void keep_known(const uint8_t *seam, cwi_block *left)
+{
+    for (size_t v = 0; v < left->vertices && seam; v++)
+        left->seam[v] &= seam[left->names[v]];
+}
+
+static cw_status run_blocks(cwi_passes *p, cwi_block *whole, size_t target, double share,
+                            cw_error *err)
+{
+    const size_t names = whole->vertices;
+    crew c = {.passes = p};
+    size_t repeats = 0;
+    begin_pass(p);
+    cw_status st = cwi_blocks_cut(whole, CWI_BLOCK, share, &c.blocks, &c.count, err);
+    if (st != CW_OK)
+        return st;
+    c.target = first_target(&c, target);
+    uint8_t *seam = whole->seam;
+    whole->seam = NULL;
+    cwi_block_free(whole);
+    st = run_crew(&c, err);
+    for (size_t n = 0; n < c.count && st == CW_OK; n++)
+        repeats = c.repeats[n] > repeats ? c.repeats[n] : repeats;
+    p->repeats += repeats;
+    if (st == CW_OK)
+        st = cwi_blocks_join(c.left, c.count, names, whole, err);
+    if (st == CW_OK)
+        keep_known(seam, whole);
+    cwi_free(seam);
+    free_crew(&c);
+    return st;
+}
+
+cw_status cwi_passes_blocks(cwi_passes *p, cwi_block *whole, size_t target, cw_error *err)
+{
+    return run_blocks(p, whole, target, 0.5, err);
+}
+
+cw_status cwi_passes_seams(cwi_passes *p, cwi_block *whole, size_t target, cw_error *err)
+{
+    if (p->next || whole->triangles <= CWI_BLOCK || whole->triangles <= target + target / 4)
+        return CW_OK;
+    cwi_block_number(whole);
+    return run_blocks(p, whole, target, 7.0 / 16, err);
+}
+
+/* --- the last pass ------------------------------------------------------------------------ */
+
+static cw_status run_levels(const cwi_passes *p, const cwi_block *whole, const size_t *targets,
+                            size_t levels, cwi_block *left, size_t *cut, cw_error *err)
+{
+    cwi_decimater *d;
+    cw_status st = p->openmesh->open(whole, &p->block_desc, original_of(p), &d, err);
+    if (st != CW_OK)
+        return st;
+    *cut = p->openmesh->cut(d);
+    for (size_t n = 0; n < levels && st == CW_OK; n++) {
+        st = p->openmesh->run(d, INFINITY, targets[n], err);
+        if (st == CW_OK)
+            st = p->openmesh->take(d, left + n, err);
+    }
+    p->openmesh->close(d);
+    return st;
+}
+
+cw_status cwi_passes_whole(cwi_passes *p, const cwi_block *whole, const size_t *targets,
+                           size_t levels, cwi_block *left, size_t *cut, cw_error *err)
+{
+    begin_pass(p);
+    cw_status st = run_levels(p, whole, targets, levels, left, cut, err);
+    const part x = {.from = whole,
+                    .input = p->input,
+                    .left = left,
+                    .cost = INFINITY,
+                    .target = targets[0],
+                    .threads = p->desc->threads};
+    return st == CW_OK && p->next ? keep(p, &x, &p->repeats, err) : st;
+}

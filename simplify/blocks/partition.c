@@ -1,0 +1,464 @@
+#include "simplify/blocks/partition.h"
+
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/geometry/bvh.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { BINS = 1024 };
+
+/* What becomes of a vertex. */
+enum { FREE, HELD, GIVEN }; /* the last: held, and some block has its quadric */
+
+static const uint32_t NOT_THERE = UINT32_MAX;
+
+/* A box of space and the triangles whose middle is in it: low <= x < high. */
+typedef struct leaf {
+    size_t begin, end; /* in order */
+    float low[3], high[3];
+} leaf;
+
+/* All that is needed to share triangles out. */
+typedef struct plan {
+    const cwi_block *whole;
+    uint32_t *order; /* of the triangles, by leaf */
+    uint32_t *spare;
+    float *middles; /* of triangles, x 3 */
+    leaf *leaves;
+    size_t count;
+    double share;        /* of a leaf's triangles that are below where it is divided */
+    uint8_t *held;       /* vertices: as above */
+    uint32_t *obstacles; /* triangles by leaf, from first[leaf] on */
+    size_t *first;
+} plan;
+
+void cwi_block_free(cwi_block *block)
+{
+    cwi_free(block->points);
+    cwi_free(block->corners);
+    cwi_free(block->names);
+    cwi_free(block->held);
+    cwi_free(block->seam);
+    cwi_free(block->quadrics);
+    cwi_free(block->values);
+    cwi_free(block->areas);
+    cwi_free(block->trends);
+    cwi_free(block->lists);
+    *block = (cwi_block){0};
+}
+
+void cwi_block_span(cwi_block *block)
+{
+    block->own = block->triangles;
+    for (int a = 0; a < 3; a++) {
+        block->low[a] = -INFINITY;
+        block->high[a] = INFINITY;
+        block->along[a] = 0;
+    }
+    block->from = -INFINITY;
+    block->to = INFINITY;
+}
+
+void cwi_block_number(cwi_block *block)
+{
+    for (size_t v = 0; v < block->vertices; v++)
+        block->names[v] = (uint32_t)v;
+}
+
+static float coordinate(const cwi_block *b, size_t corner, int axis)
+{
+    return b->points[3 * (size_t)b->corners[corner] + (size_t)axis];
+}
+
+static void find_middles(plan *p)
+{
+    const cwi_block *b = p->whole;
+    for (size_t t = 0; t < b->triangles; t++)
+        for (int a = 0; a < 3; a++)
+            p->middles[3 * t + (size_t)a] =
+                (coordinate(b, 3 * t, a) + coordinate(b, 3 * t + 1, a) +
+                 coordinate(b, 3 * t + 2, a)) /
+                3;
+}
+
+static float middle(const plan *p, size_t triangle, int axis)
+{
+    return p->middles[3 * triangle + (size_t)axis];
+}
+
+static int longest_axis(const plan *p, const leaf *l, float low[3], float high[3])
+{
+    int longest = 0;
+    for (int a = 0; a < 3; a++) {
+        low[a] = INFINITY;
+        high[a] = -INFINITY;
+        for (size_t i = l->begin; i < l->end; i++) {
+            const float x = middle(p, p->order[i], a);
+            low[a] = x < low[a] ? x : low[a];
+            high[a] = x > high[a] ? x : high[a];
+        }
+        if (high[a] - low[a] > high[longest] - low[longest])
+            longest = a;
+    }
+    return longest;
+}
+
+/* A place along the axis with about the share of the triangles below. */
+static float find_place(const plan *p, const leaf *l, int axis, float low, float high)
+{
+    size_t bins[BINS] = {0}, below = 0;
+    const float scale = high > low ? BINS / (high - low) : 0;
+    for (size_t i = l->begin; i < l->end; i++) {
+        const float place = (middle(p, p->order[i], axis) - low) * scale;
+        bins[place < BINS - 1 ? (size_t)place : BINS - 1]++;
+    }
+    const size_t enough = (size_t)(p->share * (double)(l->end - l->begin));
+    size_t b = 0;
+    while (b < BINS - 1 && below + bins[b] <= enough)
+        below += bins[b++];
+    return low + (float)(b + (b == 0)) * (high - low) / BINS;
+}
+
+/* Divides a leaf; the second part becomes *other. */
+static void divide(plan *p, leaf *l, leaf *other)
+{
+    float low[3], high[3];
+    const int axis = longest_axis(p, l, low, high);
+    const float at = find_place(p, l, axis, low[axis], high[axis]);
+    size_t kept = l->begin, gone = 0;
+    for (size_t i = l->begin; i < l->end; i++) {
+        const uint32_t t = p->order[i];
+        if (middle(p, t, axis) < at)
+            p->order[kept++] = t;
+        else
+            p->spare[gone++] = t;
+    }
+    memcpy(p->order + kept, p->spare, gone * sizeof *p->spare);
+    *other = *l;
+    other->begin = l->end = kept;
+    other->low[axis] = l->high[axis] = at;
+}
+
+static void make_leaves(plan *p)
+{
+    size_t step = p->count;
+    p->leaves[0] = (leaf){.end = p->whole->triangles};
+    for (int a = 0; a < 3; a++) {
+        p->leaves[0].low[a] = -INFINITY;
+        p->leaves[0].high[a] = INFINITY;
+    }
+    for (; step > 1; step /= 2)
+        for (size_t n = 0; n < p->count; n += step)
+            divide(p, p->leaves + n, p->leaves + n + step / 2);
+}
+
+static bool lies_in(const leaf *l, const float box[6])
+{
+    for (int a = 0; a < 3; a++)
+        if (!(box[a] >= l->low[a] && box[a + 3] < l->high[a]))
+            return false;
+    return true;
+}
+
+static bool reaches(const leaf *l, const float box[6])
+{
+    for (int a = 0; a < 3; a++)
+        if (box[a + 3] < l->low[a] || box[a] > l->high[a])
+            return false;
+    return true;
+}
+
+/* Calls put for each triangle that leaves a leaf, and each other leaf that it reaches. */
+static void each_obstacle(plan *p, void (*put)(plan *p, size_t to, uint32_t triangle))
+{
+    float box[6];
+    for (size_t n = 0; n < p->count; n++)
+        for (size_t i = p->leaves[n].begin; i < p->leaves[n].end; i++) {
+            cwi_boxes_triangle(p->whole->points, p->whole->corners + 3 * (size_t)p->order[i],
+                               box);
+            if (lies_in(p->leaves + n, box))
+                continue;
+            for (int k = 0; k < 3; k++)
+                p->held[p->whole->corners[3 * (size_t)p->order[i] + (size_t)k]] = HELD;
+            for (size_t m = 0; m < p->count; m++)
+                if (m != n && reaches(p->leaves + m, box))
+                    put(p, m, p->order[i]);
+        }
+}
+
+static void count_obstacle(plan *p, size_t to, uint32_t triangle)
+{
+    (void)triangle;
+    p->first[to + 2]++;
+}
+
+static void put_obstacle(plan *p, size_t to, uint32_t triangle)
+{
+    p->obstacles[p->first[to + 1]++] = triangle;
+}
+
+static bool find_obstacles(plan *p)
+{
+    each_obstacle(p, count_obstacle);
+    for (size_t n = 0; n < p->count; n++)
+        p->first[n + 2] += p->first[n + 1];
+    p->obstacles = cwi_alloc_array(p->first[p->count + 1], sizeof *p->obstacles);
+    if (!p->obstacles)
+        return false;
+    each_obstacle(p, put_obstacle);
+    return true;
+}
+
+static uint32_t triangle_of(const plan *p, size_t n, size_t i)
+{
+    const leaf *l = p->leaves + n;
+    return i < l->end - l->begin ? p->order[l->begin + i]
+                                 : p->obstacles[p->first[n] + i - (l->end - l->begin)];
+}
+
+static bool alloc_vertices(cwi_block *b, const cwi_block *whole)
+{
+    b->points = cwi_alloc_array(3 * b->vertices, sizeof *b->points);
+    b->held = cwi_alloc_array(b->vertices, sizeof *b->held);
+    if (whole->quadrics)
+        b->quadrics = cwi_alloc_array(b->vertices, sizeof *b->quadrics);
+    if (whole->seam)
+        b->seam = cwi_alloc_array(b->vertices, sizeof *b->seam);
+    return b->points && b->held && !b->quadrics == !whole->quadrics && !b->seam == !whole->seam;
+}
+
+/* What a vertex has gathered goes to one block only, one of which is left what names it. */
+static void copy_vertex(const plan *p, cwi_block *b, size_t v, bool own)
+{
+    const cwi_block *w = p->whole;
+    const size_t from = b->names[v];
+    memcpy(b->points + 3 * v, w->points + 3 * from, 3 * sizeof *b->points);
+    b->held[v] = p->held[from] != FREE;
+    if (b->seam)
+        b->seam[v] = w->seam[from];
+    if (!b->quadrics)
+        return;
+    const bool given = own && p->held[from] != GIVEN;
+    b->quadrics[v] = given ? w->quadrics[from] : (cwi_quadric){.c = 0};
+    if (b->trends) {
+        b->areas[v] = given ? w->areas[from] : 0;
+        memcpy(b->trends + w->attributes * v, w->trends + w->attributes * from,
+               w->attributes * sizeof *b->trends);
+    }
+    if (own && p->held[from] == HELD)
+        p->held[from] = GIVEN;
+}
+
+static bool alloc_trends(const cwi_block *whole, cwi_block *b)
+{
+    b->areas = cwi_alloc_array(b->vertices, sizeof *b->areas);
+    b->trends = cwi_alloc_array(whole->attributes * b->vertices, sizeof *b->trends);
+    return b->areas && b->trends;
+}
+
+/* For vertices that have names. */
+static bool fill_values(const cwi_block *whole, cwi_block *b)
+{
+    const size_t count = b->attributes = whole->attributes;
+    if (!count)
+        return true;
+    if (whole->trends)
+        return alloc_trends(whole, b);
+    b->values = cwi_alloc_array(count * b->vertices, sizeof *b->values);
+    for (size_t v = 0; v < b->vertices && b->values; v++)
+        memcpy(b->values + count * v, whole->values + count * b->names[v],
+               count * sizeof *b->values);
+    return b->values;
+}
+
+/* Numbers the vertices of leaf n as they come; *place must be NOT_THERE everywhere, and is so
+ * again. */
+static cw_status fill_block(const plan *p, size_t n, uint32_t *place, cwi_block *b,
+                            cw_error *err)
+{
+    const cwi_block *w = p->whole;
+    b->own = p->leaves[n].end - p->leaves[n].begin;
+    b->triangles = b->own + p->first[n + 1] - p->first[n];
+    memcpy(b->low, p->leaves[n].low, sizeof b->low);
+    memcpy(b->high, p->leaves[n].high, sizeof b->high);
+    memcpy(b->along, w->along, sizeof b->along);
+    b->from = w->from;
+    b->to = w->to;
+    b->corners = cwi_alloc_array(3 * b->triangles, sizeof *b->corners);
+    b->names = cwi_alloc_array(3 * b->triangles, sizeof *b->names);
+    if (w->lists)
+        b->lists = cwi_alloc_array(b->own, sizeof *b->lists);
+    if (!b->corners || !b->names || !b->lists != !w->lists)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %zu triangles",
+                       b->triangles);
+    size_t own = 0; /* vertices of own triangles come first */
+    for (size_t i = 0; i < b->triangles; i++) {
+        for (size_t k = 0; k < 3; k++) {
+            const uint32_t v = w->corners[3 * (size_t)triangle_of(p, n, i) + k];
+            if (place[v] == NOT_THERE) {
+                place[v] = (uint32_t)b->vertices;
+                b->names[b->vertices++] = v;
+            }
+            b->corners[3 * i + k] = place[v];
+        }
+        own = i < b->own ? b->vertices : own;
+    }
+    for (size_t i = 0; i < b->own && w->lists; i++)
+        b->lists[i] = w->lists[triangle_of(p, n, i)];
+    const bool ok = alloc_vertices(b, w) && fill_values(w, b);
+    for (size_t v = 0; v < b->vertices; v++) {
+        if (ok)
+            copy_vertex(p, b, v, v < own);
+        place[b->names[v]] = NOT_THERE;
+    }
+    return ok ? CW_OK
+              : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %zu triangles",
+                        b->triangles);
+}
+
+static cw_status fill_blocks(const plan *p, cwi_block *blocks, cw_error *err)
+{
+    uint32_t *place = cwi_alloc_array(p->whole->vertices, sizeof *place);
+    if (!place)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to cut a mesh into blocks");
+    memset(place, 0xff, p->whole->vertices * sizeof *place);
+    cw_status st = CW_OK;
+    for (size_t n = 0; n < p->count && st == CW_OK; n++)
+        st = fill_block(p, n, place, blocks + n, err);
+    cwi_free(place);
+    return st;
+}
+
+cw_status cwi_blocks_cut(const cwi_block *whole, size_t most, double share, cwi_block **out,
+                         size_t *count, cw_error *err)
+{
+    plan p = {.whole = whole, .count = 1, .share = share};
+    while (p.count * most < whole->triangles)
+        p.count *= 2;
+    *count = p.count;
+    p.order = cwi_alloc_array(whole->triangles, sizeof *p.order);
+    p.spare = cwi_alloc_array(whole->triangles, sizeof *p.spare);
+    p.middles = cwi_alloc_array(3 * whole->triangles, sizeof *p.middles);
+    p.leaves = cwi_alloc_array(p.count, sizeof *p.leaves);
+    p.held = cwi_alloc_zeroed(whole->vertices, sizeof *p.held);
+    p.first = cwi_alloc_zeroed(p.count + 2, sizeof *p.first);
+    *out = cwi_alloc_zeroed(p.count, sizeof **out);
+    bool ok = p.order && p.spare && p.middles && p.leaves && p.held && p.first && *out;
+    for (size_t t = 0; t < whole->triangles && ok; t++)
+        p.order[t] = (uint32_t)t;
+    for (size_t v = 0; v < whole->vertices && ok && whole->held; v++)
+        p.held[v] = whole->held[v] ? HELD : FREE;
+    if (ok) {
+        find_middles(&p);
+        make_leaves(&p);
+    }
+    cwi_free(p.spare);
+    cwi_free(p.middles);
+    ok = ok && find_obstacles(&p);
+    cw_status st = ok ? fill_blocks(&p, *out, err)
+                      : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to cut a mesh into blocks");
+    for (size_t n = 0; n < p.count && st != CW_OK && *out; n++)
+        cwi_block_free(*out + n);
+    if (st != CW_OK) {
+        cwi_free(*out);
+        *out = NULL;
+    }
+    cwi_free(p.order);
+    cwi_free(p.leaves);
+    cwi_free(p.held);
+    cwi_free(p.first);
+    cwi_free(p.obstacles);
+    return st;
+}
+
+/* Vertex v of a block has become n of the whole, which may know it from another block. */
+static void join_vertex(const cwi_block *b, size_t v, cwi_block *whole, size_t n, bool known)
+{
+    const size_t count = whole->attributes;
+    if (known) {
+        cwi_quadric_add(whole->quadrics + n, b->quadrics + v);
+        if (count)
+            cwi_trends_join(whole->quadrics + n, whole->areas + n, whole->trends + count * n,
+                            b->areas[v], b->trends + count * v, count);
+        return;
+    }
+    whole->quadrics[n] = b->quadrics[v];
+    if (count) {
+        whole->areas[n] = b->areas[v];
+        memcpy(whole->trends + count * n, b->trends + count * v, count * sizeof *b->trends);
+    }
+}
+
+/* Where the vertices of a block go: held ones of one name to one place. */
+static void join_vertices(const cwi_block *b, uint32_t *place, uint32_t *to, cwi_block *whole)
+{
+    for (size_t v = 0; v < b->vertices; v++) {
+        const size_t name = b->names[v];
+        const bool known = b->held[v] && place[name] != NOT_THERE;
+        const size_t n = known ? place[name] : whole->vertices++;
+        to[v] = (uint32_t)n;
+        if (b->held[v])
+            place[name] = (uint32_t)n;
+        whole->names[n] = (uint32_t)name;
+        whole->seam[n] = b->held[v] || (b->seam && b->seam[v]);
+        memcpy(whole->points + 3 * n, b->points + 3 * v, 3 * sizeof *whole->points);
+        join_vertex(b, v, whole, n, known);
+    }
+}
+
+static bool alloc_joined(const cwi_block *blocks, size_t count, cwi_block *whole)
+{
+    size_t vertices = 0, triangles = 0;
+    for (size_t n = 0; n < count; n++) {
+        vertices += blocks[n].vertices;
+        triangles += blocks[n].triangles;
+    }
+    whole->points = cwi_alloc_array(3 * vertices, sizeof *whole->points);
+    whole->names = cwi_alloc_array(vertices, sizeof *whole->names);
+    whole->seam = cwi_alloc_array(vertices, sizeof *whole->seam);
+    whole->quadrics = cwi_alloc_array(vertices, sizeof *whole->quadrics);
+    whole->corners = cwi_alloc_array(3 * triangles, sizeof *whole->corners);
+    if (count && blocks[0].lists)
+        whole->lists = cwi_alloc_array(triangles, sizeof *whole->lists);
+    whole->attributes = count ? blocks[0].attributes : 0;
+    if (whole->attributes) {
+        whole->areas = cwi_alloc_array(vertices, sizeof *whole->areas);
+        whole->trends = cwi_alloc_array(whole->attributes * vertices, sizeof *whole->trends);
+        if (!whole->areas || !whole->trends)
+            return false;
+    }
+    return whole->points && whole->names && whole->seam && whole->quadrics && whole->corners &&
+           (!count || !blocks[0].lists || whole->lists);
+}
+
+cw_status cwi_blocks_join(const cwi_block *blocks, size_t count, size_t names, cwi_block *whole,
+                          cw_error *err)
+{
+    *whole = (cwi_block){0};
+    size_t most = 0;
+    for (size_t n = 0; n < count; n++)
+        most = blocks[n].vertices > most ? blocks[n].vertices : most;
+    uint32_t *place = cwi_alloc_array(names, sizeof *place);
+    uint32_t *to = cwi_alloc_array(most, sizeof *to);
+    const bool ok = alloc_joined(blocks, count, whole) && place && to;
+    if (ok)
+        memset(place, 0xff, names * sizeof *place);
+    for (size_t n = 0; n < count && ok; n++) {
+        const cwi_block *b = blocks + n;
+        join_vertices(b, place, to, whole);
+        for (size_t c = 0; c < 3 * b->triangles; c++)
+            whole->corners[3 * whole->triangles + c] = to[b->corners[c]];
+        if (whole->lists)
+            memcpy(whole->lists + whole->triangles, b->lists, b->triangles * sizeof *b->lists);
+        whole->triangles += b->triangles;
+    }
+    cwi_block_span(whole);
+    cwi_free(place);
+    cwi_free(to);
+    if (ok)
+        return CW_OK;
+    cwi_block_free(whole);
+    return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to join blocks of a mesh");
+}

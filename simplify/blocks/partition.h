@@ -1,0 +1,33 @@
+/* A mesh cut into blocks, each with a box of space of its own, that are simplified apart. */
+#ifndef SIMPLIFY_BLOCKS_PARTITION_H
+#define SIMPLIFY_BLOCKS_PARTITION_H
+
+#include "simplify/collapse/openmesh_wrap.h"
+
+void cwi_block_free(cwi_block *block);
+
+/* All of the block's triangles are its own, and they may be anywhere. */
+void cwi_block_span(cwi_block *block);
+
+/* Vertices get their numbers for names. */
+void cwi_block_number(cwi_block *block);
+
+/* Shares the triangles of a block out to blocks of about `most` at the most: boxes that fill
+ * space, divided where a share of the triangles is below. Triangles that do not lie in
+ * one box are held: they stay in one block, and are in the way in the others that they reach.
+ * What moves inside one box then never meets what moves inside another.
+ *
+ * whole      its triangles are all its own; vertices are named by their numbers
+ * share      of a box's triangles, about a half: with others of it places are others
+ * out        *count blocks; free each, and the array with cwi_free()
+ * Returns    CW_ERR_NO_MEMORY */
+cw_status cwi_blocks_cut(const cwi_block *whole, size_t most, double share, cwi_block **out,
+                         size_t *count, cw_error *err);
+
+/* The blocks' own triangles as one block; held vertices of the same name become one, whose
+ * quadric is the sum. `seam` is what was held.
+ * names    are below this */
+cw_status cwi_blocks_join(const cwi_block *blocks, size_t count, size_t names, cwi_block *whole,
+                          cw_error *err);
+
+#endif

@@ -1,0 +1,110 @@
+// What vertices carry, as linear functions of place, so that losing it costs like moving.
+#ifndef SIMPLIFY_COLLAPSE_ATTRIBUTE_QUADRIC_HPP
+#define SIMPLIFY_COLLAPSE_ATTRIBUTE_QUADRIC_HPP
+
+#include "simplify/collapse/quadric.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace cw
+{
+
+// Around a vertex each attribute follows a line, another one in each triangle. How far these
+// are from their mean, squared and over the area, is a quadric of place: that of [Hoppe1999]
+// with the attributes of the vertex at their best. Areas that become one are put together as
+// samples are [Chan1979]: what their means differ by is added to the quadric, so that it only
+// grows.
+class Trends
+{
+public:
+    explicit Trends(const cwi_block &block)
+        : count(block.attributes), areas(count ? block.vertices : 0),
+          all(count * block.vertices)
+    {
+        if (!block.trends || !count)
+            return;
+        std::copy_n(block.areas, areas.size(), areas.begin());
+        std::copy_n(block.trends, all.size(), all.begin());
+    }
+
+    bool is_asked() const
+    {
+        return count > 0;
+    }
+
+    size_t size() const
+    {
+        return count;
+    }
+
+    float area(size_t vertex) const
+    {
+        return areas[vertex];
+    }
+
+    const cwi_trend *of(size_t vertex) const
+    {
+        return &all[vertex * count];
+    }
+
+    // A triangle, with the sides from its first corner; slivers tell nothing of slopes.
+    template <typename Quadric>
+    void add_face(const size_t corner[3], const Vec &ab, const Vec &ac, const float *values,
+                  Quadric &&quadric_of)
+    {
+        const Vec normal = ab % ac, to_b = ac % normal, to_c = normal % ab;
+        const float square = normal.sqrnorm(),
+                    longest =
+                        std::max(ab.sqrnorm(), std::max(ac.sqrnorm(), (ac - ab).sqrnorm()));
+        if (!(square > 1e-7f * longest * longest))
+            return;
+        for (size_t k = 0; k < count; k++) {
+            const float a = values[corner[0] * count + k];
+            const Vec slope = ((values[corner[1] * count + k] - a) * to_b +
+                               (values[corner[2] * count + k] - a) * to_c) /
+                              square;
+            std::copy_n(slope.data(), 3, joined[k].slope);
+        }
+        for (size_t i = 0; i < 3; i++) {
+            for (size_t k = 0; k < count; k++)
+                joined[k].value = values[corner[i] * count + k];
+            cwi_trends_join(&quadric_of(corner[i]), &areas[corner[i]], &all[corner[i] * count],
+                            0.5f * std::sqrt(square), joined, count);
+        }
+    }
+
+    // Those of two vertices, about the first; the quadric gets what they differ by.
+    void join(size_t at, size_t other, const Vec &way, cwi_quadric &quadric)
+    {
+        joined_area = areas[other];
+        std::copy_n(of(other), count, joined);
+        move(-way);
+        cwi_trends_join(&quadric, &joined_area, joined, areas[at], of(at), count);
+    }
+
+    // A vertex, `way` from where they were joined, has what was joined.
+    void put(size_t vertex, const Vec &way)
+    {
+        move(way);
+        areas[vertex] = joined_area;
+        std::copy_n(joined, count, &all[vertex * count]);
+    }
+
+private:
+    void move(const Vec &way)
+    {
+        for (size_t k = 0; k < count; k++)
+            joined[k].value += Vec(joined[k].slope) | way;
+    }
+
+    size_t count;
+    std::vector<float> areas;
+    std::vector<cwi_trend> all; // vertices x count
+    cwi_trend joined[CWI_MOST_ATTRIBUTES];
+    float joined_area = 0;
+};
+
+} // namespace cw
+
+#endif

@@ -1,0 +1,366 @@
+#include "simplify/collapse/collapse_checks.hpp"
+
+#include "core/geometry/triangle_intersect.h"
+
+#include <cmath>
+#include <cstring>
+
+namespace cw
+{
+
+namespace
+{
+
+Vec point(const Surface &surface, uint32_t v)
+{
+    return surface.point(VertexHandle(int(v)));
+}
+
+// At least that of Euclid.
+float length(const Vec &v)
+{
+    return std::abs(v[0]) + std::abs(v[1]) + std::abs(v[2]);
+}
+
+// On which side of a plane a point certainly is: 1, -1; 0 when that takes exact arithmetic. The
+// normal is a product of vectors whose lengths have the product `scale`.
+int clear_side(const Vec &normal, float scale, const Vec &way)
+{
+    const float height = normal | way, doubt = 2e-6f * scale * length(way);
+    return height > doubt ? 1 : height < -doubt ? -1 : 0;
+}
+
+// Triangles around a vertex but those at the edge to the other.
+void add_spokes(const Surface &surface, VertexHandle center, VertexHandle other, Star &star)
+{
+    const Vec old = surface.point(center);
+    for (auto h = surface.cvoh_ccwiter(center); h.is_valid(); ++h) {
+        const FaceHandle f = surface.face_handle(*h);
+        if (!f.is_valid()) {
+            star.closed = false;
+            continue;
+        }
+        const VertexHandle a = surface.to_vertex_handle(*h),
+                           b = surface.to_vertex_handle(surface.next_halfedge_handle(*h));
+        if (a == other || b == other)
+            continue;
+        const Vec pa = surface.point(a), pb = surface.point(b), side = pb - pa;
+        star.spokes.push_back({uint32_t(f.idx()), uint32_t(a.idx()), uint32_t(b.idx()), pa, pb,
+                               (pa - old) % side, (pa - star.place) % side});
+    }
+}
+
+} // namespace
+
+bool Star::gather(const Surface &surface, HalfedgeHandle collapsed, const Vec &to)
+{
+    const VertexHandle u = surface.from_vertex_handle(collapsed),
+                       v = surface.to_vertex_handle(collapsed);
+    const HalfedgeHandle back = surface.opposite_halfedge_handle(collapsed);
+    vertex = uint32_t(v.idx());
+    place = to;
+    closed = true;
+    spokes.clear();
+    gone.clear();
+    for (HalfedgeHandle h : {collapsed, back})
+        if (surface.face_handle(h).is_valid())
+            gone.push_back(uint32_t(surface.face_handle(h).idx()));
+    add_spokes(surface, u, v, *this);
+    add_spokes(surface, v, u, *this);
+    return spokes.size() >= (closed ? 3 : 1);
+}
+
+Box Star::box(const Spoke &spoke) const
+{
+    Box box;
+    box.add(place);
+    box.add(spoke.pa);
+    box.add(spoke.pb);
+    return box;
+}
+
+bool Shape::is_kept(const Star &star) const
+{
+    for (unsigned k = 0; k < 3; k++)
+        if (!(star.place[k] >= low[k] && star.place[k] < high[k]))
+            return false;
+    const float height = star.place | along;
+    if (!(height >= from && height <= to))
+        return false;
+    for (const Spoke &s : star.spokes) {
+        const float now = s.normal.sqrnorm(), before = s.old_normal.sqrnorm(),
+                    turn = s.normal | s.old_normal;
+        if (!(turn > 0) || turn * turn < 0.04f * now * before)
+            return false;
+        const float longest =
+            std::max((s.pb - s.pa).sqrnorm(),
+                     std::max((s.pa - star.place).sqrnorm(), (s.pb - star.place).sqrnorm()));
+        if (now < 1e-7f * longest * longest)
+            return false;
+    }
+    return true;
+}
+
+// --- Contact -------------------------------------------------------------------------------
+
+Contact::Contact(const cwi_block &block, const Surface &surface)
+    : own(block.own), live(block.triangles),
+      corners(block.corners, block.corners + 3 * block.triangles), marks(block.triangles)
+{
+#ifdef __x86_64__
+    has_avx2 = __builtin_cpu_supports("avx2");
+#endif
+    build(surface);
+}
+
+void Contact::build(const Surface &surface)
+{
+    std::vector<uint32_t> faces;
+    std::vector<Box> all;
+    faces.reserve(live);
+    all.reserve(live);
+    for (uint32_t f = 0; f < marks.size(); f++) {
+        if (f < own && surface.status(FaceHandle(int(f))).deleted())
+            continue;
+        Box box;
+        for (size_t k = 0; k < 3; k++)
+            box.add(point(surface, corners[3 * size_t(f) + k]));
+        faces.push_back(f);
+        all.push_back(box);
+    }
+    nearby = std::make_unique<Nearby>(faces, all, marks.size());
+    built = live = faces.size();
+}
+
+namespace
+{
+
+struct Corners {
+    uint32_t id[3];
+    Vec at[3];
+};
+
+bool has(const Corners &t, uint32_t id)
+{
+    return t.id[0] == id || t.id[1] == id || t.id[2] == id;
+}
+
+// The side of a plane that all corners are on but those shared with the other triangle.
+int common_side(const Corners &t, const Corners &other, const Vec &normal, float scale,
+                const Vec &place)
+{
+    int above = 0, below = 0, all = 0;
+    for (int k = 0; k < 3; k++) {
+        if (has(other, t.id[k]))
+            continue;
+        const int side = clear_side(normal, scale, t.at[k] - place);
+        above += side > 0;
+        below += side < 0;
+        all++;
+    }
+    return above == all ? 1 : below == all ? -1 : 0;
+}
+
+// Whether the other triangle certainly is on one side of the triangle's plane, or beyond one of
+// its sides; there they may share corners.
+bool is_apart(const Corners &t, const Corners &other)
+{
+    const Vec ab = t.at[1] - t.at[0], ac = t.at[2] - t.at[0], normal = ab % ac;
+    const float scale = length(ab) * length(ac);
+    if (common_side(other, t, normal, scale, t.at[0]))
+        return true;
+    for (int k = 0; k < 3; k++) {
+        const Vec side = t.at[(k + 1) % 3] - t.at[k];
+        if (!has(other, t.id[(k + 2) % 3]) &&
+            common_side(other, t, side % normal, scale * length(side), t.at[k]) > 0)
+            return true;
+    }
+    return false;
+}
+
+void put(Eight &eight, size_t lane, const Star &star, const Spoke &s)
+{
+    const Vec along = s.pb - s.pa, way = s.pa - star.place, out = along % s.normal;
+    const float scale = 2e-6f * length(way) * length(along);
+    cwi_boxes_put(&eight.boxes, lane, star.box(s).side);
+    eight.a[lane] = s.a;
+    eight.b[lane] = s.b;
+    for (unsigned k = 0; k < 3; k++) {
+        eight.face[k][lane] = s.normal[k];
+        eight.side[k][lane] = out[k];
+    }
+    eight.face_doubt[lane] = scale;
+    eight.side_height[lane] = out | way;
+    eight.side_doubt[lane] = scale * length(along);
+    eight.reach[lane] = length(way);
+}
+
+// Eight numbers at a time, said so.
+typedef float Lanes __attribute__((vector_size(32)));
+typedef int32_t Mask __attribute__((vector_size(32)));
+
+template <typename Vector, typename T>
+inline __attribute__((always_inline)) void load(Vector &vector, const T (&from)[8])
+{
+    std::memcpy(&vector, from, sizeof vector);
+}
+
+// Which of the spokes may meet a triangle: it is not clearly on one side of their planes, nor
+// beyond their outer sides, but for corners that they share.
+inline __attribute__((always_inline)) unsigned candidates(const Eight &e, const Corners &other,
+                                                          const Vec &center)
+{
+    Mask a, b, above = Mask{} - 1, below = above, beyond = above;
+    Lanes face[3], side[3], face_doubt, side_height, side_doubt, reach;
+    for (int k = 0; k < 3; k++) {
+        load(face[k], e.face[k]);
+        load(side[k], e.side[k]);
+    }
+    load(a, e.a);
+    load(b, e.b);
+    load(face_doubt, e.face_doubt);
+    load(side_height, e.side_height);
+    load(side_doubt, e.side_doubt);
+    load(reach, e.reach);
+    for (int k = 0; k < 3; k++) {
+        const Vec w = other.at[k] - center;
+        const float far = length(w);
+        const int32_t id = int32_t(other.id[k]);
+        const Mask shared = (a == id) | (b == id);
+        const Lanes height = face[0] * w[0] + face[1] * w[1] + face[2] * w[2],
+                    out = side[0] * w[0] + side[1] * w[1] + side[2] * w[2] - side_height,
+                    doubt = face_doubt * far, out_doubt = side_doubt * (reach + far);
+        above &= shared | (height > doubt);
+        below &= shared | (height < -doubt);
+        beyond &= shared | (out > out_doubt);
+    }
+    const Mask left = ~(above | below | beyond);
+    cwi_mask halves[2];
+    std::memcpy(halves, &left, sizeof halves);
+    return cwi_mask_bits(halves) | cwi_mask_bits(halves + 1) << 4;
+}
+
+} // namespace
+
+// The moved vertex stands at its new place already.
+inline __attribute__((always_inline)) bool Contact::meets(const Surface &surface,
+                                                          const Star &star, uint32_t face,
+                                                          const float box[6]) const
+{
+    Corners other;
+    std::memcpy(other.id, &corners[3 * size_t(face)], sizeof other.id);
+    for (int k = 0; k < 3; k++)
+        other.at[k] = point(surface, other.id[k]);
+    for (size_t n = 0; n < spokes.size(); n++) {
+        unsigned near = cwi_boxes_meeting(&spokes[n].boxes, box);
+        if (near)
+            near &= candidates(spokes[n], other, star.place);
+        for (; near; near &= near - 1) {
+            const Spoke &s = star.spokes[8 * n + unsigned(__builtin_ctz(near))];
+            const Corners mine = {{star.vertex, s.a, s.b}, {star.place, s.pa, s.pb}};
+            if (!is_apart(other, mine) && !is_apart(mine, other) &&
+                cwi_triangles_meet(surface.points()->data(), mine.id, other.id))
+                return true;
+        }
+    }
+    return false;
+}
+
+// Seen along the sum of its normals a star opens like a fan if all triangles face that way and
+// go round once: then no two of them meet.
+bool Contact::opens_like_a_fan(const Star &star) const
+{
+    Vec axis(0), x;
+    for (const Spoke &s : star.spokes)
+        axis += s.normal;
+    x = axis % (std::abs(axis[0]) < std::abs(axis[1]) ? Vec(1, 0, 0) : Vec(0, 1, 0));
+    int rounds = 0;
+    for (const Spoke &s : star.spokes) {
+        const float scale = length(s.pa - star.place) * length(s.pb - s.pa);
+        if (clear_side(s.normal, scale, axis) <= 0)
+            return false;
+        rounds += (x | (s.pa - star.place)) < 0 && (x | (s.pb - star.place)) >= 0;
+    }
+    return rounds == 1 && star.closed;
+}
+
+bool Contact::star_meets_itself(const Surface &surface, const Star &star) const
+{
+    for (const Spoke &s : star.spokes)
+        for (const Spoke *t = &s + 1; t < star.spokes.data() + star.spokes.size(); t++) {
+            const uint32_t mine[3] = {star.vertex, s.a, s.b},
+                           other[3] = {star.vertex, t->a, t->b};
+            if (cwi_triangles_meet(surface.points()->data(), mine, other))
+                return true;
+        }
+    return false;
+}
+
+inline __attribute__((always_inline)) bool
+Contact::meets_others(const Surface &surface, const Star &star, const Box &around) const
+{
+    return nearby->any(
+        around, [&](uint32_t face, const float box[6]) __attribute__((always_inline)) {
+            return marks[face] != mark && meets(surface, star, face, box);
+        });
+}
+
+#ifdef __x86_64__
+__attribute__((target("avx2"))) bool
+Contact::meets_others_avx2(const Surface &surface, const Star &star, const Box &around) const
+{
+    return meets_others(surface, star, around);
+}
+#endif
+
+bool Contact::find_others(const Surface &surface, const Star &star, const Box &around) const
+{
+#ifdef __x86_64__
+    if (has_avx2)
+        return meets_others_avx2(surface, star, around);
+#endif
+    return meets_others(surface, star, around);
+}
+
+bool Contact::arises(Surface &surface, const Star &star)
+{
+    const VertexHandle moving(int(star.vertex));
+    const Vec before = surface.point(moving);
+    Box all;
+    all.add(star.place);
+    mark++;
+    spokes.resize((star.spokes.size() + 7) / 8);
+    cwi_boxes_clear(&spokes.back().boxes);
+    for (size_t i = 0; i < star.spokes.size(); i++) {
+        const Spoke &s = star.spokes[i];
+        put(spokes[i / 8], i % 8, star, s);
+        all.add(s.pa);
+        all.add(s.pb);
+        marks[s.face] = mark;
+    }
+    for (uint32_t f : star.gone)
+        marks[f] = mark;
+    surface.set_point(moving, star.place);
+    const bool found = (!opens_like_a_fan(star) && star_meets_itself(surface, star)) ||
+                       find_others(surface, star, all);
+    surface.set_point(moving, before);
+    return found;
+}
+
+// As its triangles become fewer the tree is made anew, or it would be empty boxes mostly.
+void Contact::change(const Surface &surface, const Star &star)
+{
+    for (uint32_t f : star.gone)
+        nearby->remove(f);
+    for (size_t i = 0; i < star.spokes.size(); i++) {
+        const Spoke &s = star.spokes[i];
+        const uint32_t now[3] = {star.vertex, s.a, s.b};
+        std::memcpy(&corners[3 * size_t(s.face)], now, sizeof now);
+        nearby->move(s.face, star.box(s));
+    }
+    live -= star.gone.size();
+    if (2 * live < built && live > 1024)
+        build(surface);
+}
+
+} // namespace cw

@@ -1,0 +1,93 @@
+// What a collapse must not break. Each check looks at the star: the triangles around the edge
+// as they are, and as they would be.
+#ifndef SIMPLIFY_COLLAPSE_COLLAPSE_CHECKS_HPP
+#define SIMPLIFY_COLLAPSE_COLLAPSE_CHECKS_HPP
+
+#include "simplify/collapse/dynamic_bvh.hpp"
+#include "simplify/collapse/halfedge_mesh.hpp"
+
+#include <memory>
+#include <vector>
+
+namespace cw
+{
+
+// A triangle that stays, with the moved vertex for a corner and two others across from it.
+struct Spoke {
+    uint32_t face, a, b;
+    Vec pa, pb;     // of a and b
+    Vec old_normal; // these are not of unit length: twice the area
+    Vec normal;
+};
+
+struct Star {
+    // Of the collapse of a halfedge's start into its end, moved to a place.
+    bool gather(const Surface &surface, HalfedgeHandle collapsed, const Vec &to);
+
+    Box box(const Spoke &spoke) const;
+
+    uint32_t vertex; // that stays
+    Vec place;
+    bool closed; // the triangles go all the way round
+    std::vector<Spoke> spokes;
+    std::vector<uint32_t> gone; // triangles at the edge
+};
+
+// Triangles keep facing where they did, and a shape; vertices stay in their box.
+class Shape
+{
+public:
+    explicit Shape(const cwi_block &block)
+        : low(Vec(block.low)), high(Vec(block.high)), along(Vec(block.along)), from(block.from),
+          to(block.to)
+    {
+    }
+
+    bool is_kept(const Star &star) const;
+
+private:
+    Vec low, high, along;
+    float from, to;
+};
+
+// Eight spokes side by side, for arithmetic on several at a time: their boxes, planes through
+// the moved vertex, and planes through the sides across from it, facing outward. Doubts are
+// what a point's height above a plane is wrong by at most, for a way of length 1.
+struct Eight {
+    cwi_boxes_node boxes;
+    uint32_t a[8], b[8];
+    float face[3][8], face_doubt[8];
+    float side[3][8], side_height[8], side_doubt[8], reach[8];
+};
+
+// No triangles meet that are not neighbours.
+class Contact
+{
+public:
+    Contact(const cwi_block &block, const Surface &surface);
+
+    bool arises(Surface &surface, const Star &star);
+    void change(const Surface &surface, const Star &star); // it has become so
+
+private:
+    void build(const Surface &surface);
+    bool meets(const Surface &surface, const Star &star, uint32_t face,
+               const float box[6]) const;
+    bool meets_others(const Surface &surface, const Star &star, const Box &around) const;
+    bool meets_others_avx2(const Surface &surface, const Star &star, const Box &around) const;
+    bool find_others(const Surface &surface, const Star &star, const Box &around) const;
+    bool star_meets_itself(const Surface &surface, const Star &star) const;
+    bool opens_like_a_fan(const Star &star) const;
+
+    size_t own, live, built;
+    std::vector<uint32_t> corners; // of triangles, x 3: faster than a walk
+    std::unique_ptr<Nearby> nearby;
+    std::vector<uint32_t> marks; // faces of the star have the last number
+    uint32_t mark = 0;
+    std::vector<Eight> spokes;
+    bool has_avx2 = false;
+};
+
+} // namespace cw
+
+#endif

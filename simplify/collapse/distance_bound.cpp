@@ -1,0 +1,260 @@
+#include "simplify/collapse/distance_bound.hpp"
+
+#include "simplify/collapse/surface_walk.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace cw
+{
+
+namespace
+{
+
+// The share of a segment at which it is nearest to what lies `from` its start.
+float share_near(const Vec &from, const Vec &along)
+{
+    const float length = along.sqrnorm();
+    return length > 0 ? std::min(1.0f, std::max(0.0f, (from | along) / length)) : 0;
+}
+
+float segment_square(const Vec &from, const Vec &along)
+{
+    return (from - share_near(from, along) * along).sqrnorm();
+}
+
+float triangle_square(const Vec &p, const Vec &a, const Vec &b, const Vec &c)
+{
+    const Vec ab = b - a, ac = c - a, ap = p - a, n = ab % ac;
+    const float area = n.sqrnorm(), in_c = (ab % ap) | n, in_b = (ap % ac) | n;
+    if (area > 0 && in_b >= 0 && in_c >= 0 && in_b + in_c <= area) {
+        const float height = ap | n;
+        return height * height / area;
+    }
+    return std::min(std::min(segment_square(ap, ab), segment_square(ap, ac)),
+                    segment_square(p - b, c - b));
+}
+
+} // namespace
+
+// Room for at most so many, half of it empty.
+void Numbers::clear(size_t most)
+{
+    size_t size = 64;
+    while (size < 2 * most)
+        size *= 2;
+    slots.assign(size, {UINT32_MAX, 0});
+    count = 0;
+}
+
+uint32_t Numbers::of(uint32_t vertex, bool *fresh)
+{
+    const size_t mask = slots.size() - 1;
+    size_t at = (vertex * 2654435769u >> 7) & mask;
+    while (slots[at].vertex != UINT32_MAX && slots[at].vertex != vertex)
+        at = (at + 1) & mask;
+    *fresh = slots[at].vertex == UINT32_MAX;
+    if (*fresh)
+        slots[at] = {vertex, count++};
+    return slots[at].number;
+}
+
+Bound::Bound(const cwi_block &block, const cwi_original *original_, double error_)
+    : original(original_), error(float(error_))
+{
+    if (!original || !block.lists)
+        return;
+    asked = true;
+    heads.assign(block.lists, block.lists + block.own);
+    marks.resize(block.own);
+}
+
+void Bound::collect(uint32_t face)
+{
+    for (uint32_t p = heads[face]; p != UINT32_MAX; p = original->next[p])
+        points.push_back(p);
+}
+
+void Bound::collect(const Star &star)
+{
+    points.clear();
+    for (uint32_t f : star.gone)
+        collect(f);
+    for (const Spoke &s : star.spokes)
+        collect(s.face);
+}
+
+// The distance that holds for all of the points; negative: nothing may change. Without a point
+// nothing tells where the original is.
+float Bound::allowed() const
+{
+    uint8_t care = points.empty() ? uint8_t(CWI_MOST_CARE) : 0;
+    float least = error;
+    for (uint32_t p : points) {
+        care = std::max(care, original->care[p]);
+        if (original->allowed)
+            least = std::min(least, original->allowed[p]);
+    }
+    return care < CWI_MOST_CARE ? std::ldexp(least, -care) : -1;
+}
+
+// Whether what is seen of the star was about as even as one that is joined.
+bool Bound::is_straight() const
+{
+    Vec mean(0);
+    if (!original->normals)
+        return true;
+    for (uint32_t p : points)
+        mean += Vec(original->normals + 3 * size_t(p));
+    const float least = original->straight * mean.norm();
+    for (uint32_t p : points) {
+        const Vec normal(original->normals + 3 * size_t(p));
+        if (normal.sqrnorm() > 0 && !((normal | mean) >= least))
+            return false;
+    }
+    return true;
+}
+
+// From the triangles around the nearest point: a distance that is not too small.
+bool Bound::is_near(const Vec &place, float square)
+{
+    float least = INFINITY;
+    uint32_t start = points[0];
+    for (uint32_t p : points) {
+        const float s = (point(p) - place).sqrnorm();
+        start = s < least ? p : start;
+        least = std::min(least, s);
+    }
+    least = INFINITY;
+    for (uint32_t i = original->first[start]; i < original->first[start + 1]; i++) {
+        const uint32_t t = original->around[i], *c = corners(t);
+        const float s = triangle_square(place, point(c[0]), point(c[1]), point(c[2]));
+        nearest = s < least ? t : nearest;
+        least = std::min(least, s);
+    }
+    return least <= square;
+}
+
+// Whether every point is near a spoke.
+bool Bound::are_listed(const Star &star, float distance)
+{
+    facets.clear(distance);
+    spoke_of.clear();
+    for (const Spoke &s : star.spokes)
+        facets.add(Vec(0), s.pa - star.place, s.pb - star.place);
+    for (uint32_t p : points) {
+        float square;
+        spoke_of.push_back(uint32_t(facets.nearest(point(p) - star.place, &square)));
+        if (!(square <= distance * distance))
+            return false;
+    }
+    return true;
+}
+
+bool Bound::is_star_near(const Star &star, float distance)
+{
+    Walk walk(original, nearest, distance);
+    for (const Spoke &s : star.spokes) {
+        const float *const corner[3] = {star.place.data(), s.pa.data(), s.pb.data()};
+        if (!walk.is_near(corner))
+            return false;
+    }
+    under.swap(walk.passed);
+    std::sort(under.begin(), under.end());
+    under.erase(std::unique(under.begin(), under.end()), under.end());
+    return true;
+}
+
+void Bound::add_around(const Surface &surface, const Star &star)
+{
+    mark++;
+    for (uint32_t f : star.gone)
+        marks[f] = mark;
+    for (const Spoke &s : star.spokes)
+        marks[s.face] = mark;
+    for (const Spoke &s : star.spokes)
+        for (uint32_t v : {s.a, s.b})
+            for (auto f = surface.cvf_iter(VertexHandle(int(v))); f.is_valid(); ++f) {
+                uint32_t &last = marks[size_t(f->idx())];
+                if (last == mark)
+                    continue;
+                last = mark;
+                Vec corner[3];
+                size_t n = 0;
+                for (auto c = surface.cfv_iter(*f); c.is_valid(); ++c)
+                    corner[n++] = surface.point(*c) - star.place;
+                facets.add(corner[0], corner[1], corner[2]);
+            }
+}
+
+void Bound::see_points(const Vec &place)
+{
+    size_t most = 3 * under.size();
+    bool fresh;
+    for (uint32_t p : points)
+        most += 1 + 2 * (original->first[p + 1] - original->first[p]);
+    numbers.clear(most);
+    seen.clear();
+    for (uint32_t p : points) {
+        numbers.of(p, &fresh);
+        seen.push_back(facets.look(point(p) - place));
+    }
+}
+
+// True, too, for a triangle with a point listed before the `first`: it was asked about then.
+bool Bound::is_triangle_near(uint32_t triangle, uint32_t first, const Vec &place)
+{
+    uint32_t n[3];
+    for (int k = 0; k < 3; k++) {
+        bool fresh;
+        const uint32_t p = corners(triangle)[k];
+        n[k] = numbers.of(p, &fresh);
+        if (fresh)
+            seen.push_back(facets.look(point(p) - place));
+    }
+    return n[0] < first || n[1] < first || n[2] < first ||
+           facets.are_near(seen[n[0]], seen[n[1]], seen[n[2]]);
+}
+
+bool Bound::is_original_near(const Surface &surface, const Star &star)
+{
+    add_around(surface, star);
+    see_points(star.place);
+    for (uint32_t n = 0; n < points.size(); n++)
+        for (uint32_t i = original->first[points[n]]; i < original->first[points[n] + 1]; i++)
+            if (!is_triangle_near(original->around[i], n, star.place))
+                return false;
+    for (uint32_t t : under)
+        if (!is_triangle_near(t, uint32_t(points.size()), star.place))
+            return false;
+    return true;
+}
+
+// What refuses most for the least work comes first.
+bool Bound::is_kept(const Surface &surface, const Star &star)
+{
+    if (!is_asked())
+        return true;
+    collect(star);
+    const float distance = allowed();
+    return distance > 0 && is_straight() && is_near(star.place, distance * distance) &&
+           are_listed(star, distance) && is_star_near(star, distance) &&
+           is_original_near(surface, star);
+}
+
+void Bound::change(const Star &star)
+{
+    if (!is_asked())
+        return;
+    for (uint32_t f : star.gone)
+        heads[f] = UINT32_MAX;
+    for (const Spoke &s : star.spokes)
+        heads[s.face] = UINT32_MAX;
+    for (size_t i = 0; i < points.size(); i++) {
+        uint32_t &head = heads[star.spokes[spoke_of[i]].face];
+        original->next[points[i]] = head;
+        head = points[i];
+    }
+}
+
+} // namespace cw

@@ -1,0 +1,418 @@
+// Edge collapse by quadric error [Garland1997] on OpenMesh's kernel. Costs are looked at again
+// only when their edge comes up: a quadric that was added to never costs less, so what stands
+// in the queue is a lower bound, and the order is that of the true costs.
+#include "simplify/collapse/openmesh_wrap.h"
+
+#include "core/base/guard.hpp"
+#include "core/base/memory.h"
+#include "simplify/collapse/distance_bound.hpp"
+#include "simplify/collapse/edge_heap.hpp"
+#include "simplify/collapse/halfedge_mesh.hpp"
+#include "simplify/collapse/attribute_quadric.hpp"
+
+#include <cmath>
+#include <memory>
+
+using namespace cw;
+
+namespace
+{
+
+// What a triangle takes here, with its share of vertices, edges and what is kept of them.
+enum { TRIANGLE_BYTES = 240 };
+
+// All that a cost needs of a vertex, in one line of a cache.
+struct alignas(64) Node {
+    cwi_quadric quadric;
+    Vec point;
+    uint32_t changed; // when it last did
+    bool held, border;
+};
+
+} // namespace
+
+struct cwi_decimater {
+    cwi_decimater(const cwi_block &block, const cwi_block_desc &desc,
+                  const cwi_original *original)
+        : taken(TRIANGLE_BYTES * block.triangles),
+          names(block.names, block.names + block.vertices), nodes(block.vertices),
+          trends(block), live(block.own), shape(block), bound(block, original, desc.error),
+          progress(*desc.progress)
+    {
+        poll();
+        const std::vector<uint8_t> unsound = connect(block, surface);
+        poll();
+        if (!desc.allow_crossings)
+            contact = std::make_unique<Contact>(block, surface);
+        for (size_t v = 0; v < block.vertices; v++) {
+            poll_often();
+            const VertexHandle handle{int(v)};
+            cut += unsound[v];
+            nodes[v].point = surface.point(handle);
+            nodes[v].border = surface.is_boundary(handle);
+            nodes[v].held = unsound[v] || (block.held && block.held[v]) ||
+                            (desc.keep_border && nodes[v].border);
+        }
+        add_quadrics(block);
+        fill_queue();
+    }
+
+    void run(float most, size_t least_triangles)
+    {
+        while (!queue.empty() && Queue::cost(queue.top()) <= most && live > least_triangles) {
+            poll_often();
+            const uint32_t e = Queue::edge(queue.top());
+            if (surface.status(EdgeHandle(int(e))).deleted()) {
+                queue.pop();
+                continue;
+            }
+            const Proposal p = propose(EdgeHandle(int(e)));
+            if (p.changed > looked_at[e]) {
+                looked_at[e] = tick;
+                const uint64_t now =
+                    Queue::entry(std::max(p.cost, Queue::cost(queue.top())), e);
+                if (now > queue.top()) {
+                    queue.replace_top(now);
+                    continue;
+                }
+            }
+            queue.pop();
+            waiting[e] = false;
+            try_to_collapse(p);
+        }
+    }
+
+    Taken taken;
+    Surface surface;
+    std::vector<uint32_t> names;
+    std::vector<Node> nodes;
+    Trends trends;
+    size_t cut = 0;
+    Queue queue;
+    std::vector<uint32_t> looked_at; // edges: when their cost was
+    std::vector<bool> waiting;       // edges that are in the queue
+    uint32_t tick = 0;
+    size_t live;
+    Shape shape;
+    Bound bound;
+    std::unique_ptr<Contact> contact;
+    Star star;
+
+private:
+    // The caller may have asked to stop. A negative share repeats the last one.
+    void poll() const
+    {
+        if (cwi_progress(&progress, "simplifying", -1, nullptr) != CW_OK)
+            throw Cancelled();
+    }
+
+    // For loops of short turns: some milliseconds between two polls.
+    void poll_often()
+    {
+        if (++turns % 4096 == 0)
+            poll();
+    }
+
+    const cw_progress progress;
+    uint32_t turns = 0;
+
+    struct Proposal {
+        HalfedgeHandle halfedge; // from the vertex that goes to the one that stays
+        cwi_quadric quadric;     // about where the halfedge starts
+        Vec place;
+        float cost;
+        uint32_t changed; // the later of the two vertices
+    };
+
+    Node &node(VertexHandle v)
+    {
+        return nodes[size_t(v.idx())];
+    }
+
+    cwi_quadric &quadric(VertexHandle v)
+    {
+        return node(v).quadric;
+    }
+
+    // By area to 5/8: where triangles are of all sizes the small ones, which follow what is
+    // finest, count for more, and the root mean square falls. Trends are over areas.
+    float weight_of(float area) const
+    {
+        return trends.is_asked() ? area
+                                 : std::sqrt(area) * std::sqrt(std::sqrt(std::sqrt(area)));
+    }
+
+    void add_face(FaceHandle f, const float *values)
+    {
+        size_t corner[3], n = 0;
+        for (auto it = surface.cfv_iter(f); it.is_valid(); ++it)
+            corner[n++] = size_t(it->idx());
+        const Vec a = nodes[corner[0]].point, ab = nodes[corner[1]].point - a,
+                  ac = nodes[corner[2]].point - a;
+        Vec normal = ab % ac;
+        const float length = normal.norm();
+        if (length > 0)
+            normal /= length;
+        for (size_t v : corner)
+            add_plane(nodes[v].quadric, normal, weight_of(length / 2));
+        if (trends.is_asked())
+            trends.add_face(corner, ab, ac, values,
+                            [&](size_t v) -> cwi_quadric & { return nodes[v].quadric; });
+    }
+
+    // The plane through an edge of the border, square to its triangle.
+    void add_border(HalfedgeHandle h)
+    {
+        const HalfedgeHandle inner = surface.opposite_halfedge_handle(h);
+        const VertexHandle a = surface.from_vertex_handle(inner),
+                           b = surface.to_vertex_handle(inner),
+                           c = surface.to_vertex_handle(surface.next_halfedge_handle(inner));
+        const Vec along = surface.point(b) - surface.point(a),
+                  face = along % (surface.point(c) - surface.point(a));
+        Vec normal = along % face;
+        const float length = normal.norm();
+        if (!(length > 0))
+            return;
+        normal /= length;
+        add_plane(quadric(a), normal, weight_of(along.sqrnorm()));
+        add_plane(quadric(b), normal, weight_of(along.sqrnorm()));
+    }
+
+    // Between two vertices held for a seam no border is known; it is when one is released.
+    void add_quadrics(const cwi_block &block)
+    {
+        if (block.quadrics)
+            for (size_t v = 0; v < block.vertices; v++)
+                nodes[v].quadric = block.quadrics[v];
+        else
+            for (auto f : surface.faces()) {
+                poll_often();
+                add_face(f, block.values);
+            }
+        for (int i = 0; i < int(surface.n_halfedges()); i++) {
+            const HalfedgeHandle h(i);
+            poll_often();
+            if (!surface.is_boundary(h))
+                continue;
+            const auto a = size_t(surface.from_vertex_handle(h).idx()),
+                       b = size_t(surface.to_vertex_handle(h).idx());
+            const bool both_held = block.held && block.held[a] && block.held[b],
+                       unknown = block.seam ? block.seam[a] && block.seam[b] : true;
+            if (unknown && !both_held)
+                add_border(h);
+        }
+    }
+
+    void fill_queue()
+    {
+        const size_t edges = surface.n_edges();
+        looked_at.assign(edges, 0);
+        waiting.assign(edges, false);
+        queue.reserve(edges);
+        for (uint32_t e = 0; e < edges; e++) {
+            poll_often();
+            const HalfedgeHandle h = surface.halfedge_handle(EdgeHandle(int(e)), 0);
+            if (node(surface.from_vertex_handle(h)).held ||
+                node(surface.to_vertex_handle(h)).held)
+                continue;
+            queue.append(Queue::entry(propose(EdgeHandle(int(e))).cost, e));
+            waiting[e] = true;
+        }
+        queue.build();
+    }
+
+    // A vertex of the border moves along it only, with another one.
+    Proposal propose(EdgeHandle e)
+    {
+        Proposal p;
+        p.halfedge = surface.halfedge_handle(e, 0);
+        const Node &u = node(surface.from_vertex_handle(p.halfedge)),
+                   &v = node(surface.to_vertex_handle(p.halfedge));
+        const Vec way = v.point - u.point;
+        p.quadric = moved(v.quadric, -way);
+        cwi_quadric_add(&p.quadric, &u.quadric);
+        if (trends.is_asked())
+            join_trends(p.halfedge, p.quadric);
+        const Vec d = u.border == v.border ? least(p.quadric, 0.5f * way)
+                      : u.border           ? Vec(0)
+                                           : way;
+        p.place = u.point + d;
+        p.cost = error_at(p.quadric, d) + 1e-5f * trace(p.quadric) * way.sqrnorm();
+        p.changed = std::max(u.changed, v.changed);
+        return p;
+    }
+
+    void join_trends(HalfedgeHandle h, cwi_quadric &quadric)
+    {
+        const VertexHandle u = surface.from_vertex_handle(h), v = surface.to_vertex_handle(h);
+        trends.join(size_t(u.idx()), size_t(v.idx()), node(v).point - node(u).point, quadric);
+    }
+
+    void keep_trends(const Proposal &p)
+    {
+        cwi_quadric known = p.quadric;
+        join_trends(p.halfedge, known);
+        trends.put(size_t(surface.to_vertex_handle(p.halfedge).idx()),
+                   p.place - node(surface.from_vertex_handle(p.halfedge)).point);
+    }
+
+    void try_to_collapse(const Proposal &p)
+    {
+        if (!surface.is_collapse_ok(p.halfedge) || !star.gather(surface, p.halfedge, p.place) ||
+            !shape.is_kept(star) || !bound.is_kept(surface, star) ||
+            (contact && contact->arises(surface, star)))
+            return;
+        const VertexHandle kept = surface.to_vertex_handle(p.halfedge);
+        const Node &gone = node(surface.from_vertex_handle(p.halfedge));
+        Node &stays = node(kept);
+        bound.change(star);
+        if (trends.is_asked())
+            keep_trends(p);
+        surface.set_point(kept, p.place);
+        surface.collapse(p.halfedge);
+        if (contact)
+            contact->change(surface, star);
+        stays.quadric = moved(p.quadric, p.place - gone.point);
+        stays.point = p.place;
+        stays.border |= gone.border;
+        stays.changed = ++tick;
+        live -= star.gone.size();
+        for (auto e = surface.cve_iter(kept); e.is_valid(); ++e)
+            wait_again(*e, kept, p.cost);
+    }
+
+    // What was refused before may be fine now.
+    void wait_again(EdgeHandle e, VertexHandle kept, float cost)
+    {
+        const auto i = size_t(e.idx());
+        const HalfedgeHandle h = surface.halfedge_handle(e, 0);
+        const VertexHandle other = surface.to_vertex_handle(h) == kept
+                                       ? surface.from_vertex_handle(h)
+                                       : surface.to_vertex_handle(h);
+        if (waiting[i] || node(other).held)
+            return;
+        waiting[i] = true;
+        queue.push(Queue::entry(cost, uint32_t(i)));
+    }
+};
+
+namespace
+{
+
+cw_status open(const cwi_block *block, const cwi_block_desc *desc, const cwi_original *original,
+               cwi_decimater **out, cw_error *err)
+{
+    return guard(err, "OpenMesh", [&] {
+        *out = new cwi_decimater(*block, *desc, original);
+        return CW_OK;
+    });
+}
+
+cw_status run(cwi_decimater *decimater, float cost, size_t least, cw_error *err)
+{
+    return guard(err, "OpenMesh", [&] {
+        decimater->run(cost, least);
+        return CW_OK;
+    });
+}
+
+size_t triangles(const cwi_decimater *decimater)
+{
+    return decimater->live;
+}
+
+float next(const cwi_decimater *decimater)
+{
+    return decimater->queue.empty() ? INFINITY : Queue::cost(decimater->queue.top());
+}
+
+size_t cut(const cwi_decimater *decimater)
+{
+    return decimater->cut;
+}
+
+void close(cwi_decimater *decimater)
+{
+    delete decimater;
+}
+
+template <typename T> T *array(size_t count)
+{
+    T *memory = static_cast<T *>(cwi_alloc_array(count, sizeof(T)));
+    if (!memory)
+        throw std::bad_alloc();
+    return memory;
+}
+
+void take_trends(const cwi_decimater &d, cwi_block &out, const std::vector<uint32_t> &numbers)
+{
+    out.attributes = d.trends.size();
+    out.areas = array<float>(out.vertices);
+    out.trends = array<cwi_trend>(out.attributes * out.vertices);
+    for (size_t v = 0; v < numbers.size(); v++) {
+        if (numbers[v] == UINT32_MAX)
+            continue;
+        out.areas[numbers[v]] = d.trends.area(v);
+        std::copy_n(d.trends.of(v), out.attributes, out.trends + out.attributes * numbers[v]);
+    }
+}
+
+// Vertices that triangles are left around, in their old order.
+void take_vertices(const cwi_decimater &d, cwi_block &out, std::vector<uint32_t> &numbers)
+{
+    numbers.assign(d.surface.n_vertices(), UINT32_MAX);
+    for (const auto v : d.surface.vertices())
+        if (!v.deleted() && v.halfedge().is_valid())
+            numbers[size_t(v.idx())] = uint32_t(out.vertices++);
+    out.points = array<float>(3 * out.vertices);
+    out.names = array<uint32_t>(out.vertices);
+    out.held = array<uint8_t>(out.vertices);
+    out.quadrics = array<cwi_quadric>(out.vertices);
+    for (size_t v = 0; v < numbers.size(); v++) {
+        const size_t n = numbers[v];
+        if (n == UINT32_MAX)
+            continue;
+        for (unsigned k = 0; k < 3; k++)
+            out.points[3 * n + k] = d.surface.point(VertexHandle(int(v)))[k];
+        out.names[n] = d.names[v];
+        out.held[n] = d.nodes[v].held;
+        out.quadrics[n] = d.nodes[v].quadric;
+    }
+    if (d.trends.is_asked())
+        take_trends(d, out, numbers);
+}
+
+void take_triangles(const cwi_decimater &d, cwi_block &out,
+                    const std::vector<uint32_t> &numbers)
+{
+    out.corners = array<uint32_t>(3 * d.live);
+    if (d.bound.is_asked())
+        out.lists = array<uint32_t>(d.live);
+    for (const auto f : d.surface.faces()) {
+        if (f.deleted())
+            continue;
+        uint32_t *corner = out.corners + 3 * out.triangles;
+        for (const auto v : f.vertices())
+            *corner++ = numbers[size_t(v.idx())];
+        if (out.lists)
+            out.lists[out.triangles] = d.bound.list(uint32_t(f.idx()));
+        out.triangles++;
+    }
+    out.own = out.triangles;
+}
+
+cw_status take(const cwi_decimater *decimater, cwi_block *out, cw_error *err)
+{
+    *out = cwi_block{};
+    return guard(err, "OpenMesh", [&] {
+        std::vector<uint32_t> numbers;
+        take_vertices(*decimater, *out, numbers);
+        take_triangles(*decimater, *out, numbers);
+        return CW_OK;
+    });
+}
+
+} // namespace
+
+const cwi_openmesh_functions cwi_module_openmesh = {open, run,  triangles, next,
+                                                    cut,  take, close};

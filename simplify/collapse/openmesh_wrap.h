@@ -1,0 +1,131 @@
+/* OpenMesh behind plain C: the functions of the module "openmesh". They simplify a block: some
+ * triangles of a mesh, all of it perhaps, in a box of their own. */
+#ifndef SIMPLIFY_COLLAPSE_OPENMESH_WRAP_H
+#define SIMPLIFY_COLLAPSE_OPENMESH_WRAP_H
+
+#include <cubewright/core.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Symmetric matrix, vector and number of a quadric about its vertex's own position:
+ * error(d) = d A d + 2 b d + c, where d is the way from there. */
+typedef struct cwi_quadric {
+    float a[6]; /* xx, xy, xz, yy, yz, zz */
+    float b[3];
+    float c;
+} cwi_quadric;
+
+/* Of two about one place, the sum. */
+static inline void cwi_quadric_add(cwi_quadric *q, const cwi_quadric *other)
+{
+    for (int k = 0; k < 6; k++)
+        q->a[k] += other->a[k];
+    for (int k = 0; k < 3; k++)
+        q->b[k] += other->b[k];
+    q->c += other->c;
+}
+
+/* An attribute about a vertex's own position: at d it is d slope + value. */
+typedef struct cwi_trend {
+    float slope[3], value;
+} cwi_trend;
+
+enum { CWI_MOST_ATTRIBUTES = 8 };
+
+/* The mean over an area of `count` trends, and those of another area about the same place,
+ * become the mean over both; the quadric gets what they differ by, squared and times area. */
+static inline void cwi_trends_join(cwi_quadric *q, float *area, cwi_trend *mean,
+                                   float other_area, const cwi_trend *other, size_t count)
+{
+    static const int row[6] = {0, 0, 0, 1, 1, 2}, column[6] = {0, 1, 2, 1, 2, 2};
+    if (!(other_area > 0))
+        return;
+    const float share = other_area / (*area + other_area), weight = share * *area;
+    for (size_t n = 0; n < count; n++) {
+        const float value = other[n].value - mean[n].value;
+        float slope[3];
+        for (int k = 0; k < 3; k++)
+            slope[k] = other[n].slope[k] - mean[n].slope[k];
+        for (int k = 0; k < 6; k++)
+            q->a[k] += weight * slope[row[k]] * slope[column[k]];
+        for (int k = 0; k < 3; k++)
+            q->b[k] += weight * slope[k] * value;
+        q->c += weight * value * value;
+        for (int k = 0; k < 3; k++)
+            mean[n].slope[k] += share * slope[k];
+        mean[n].value += share * value;
+    }
+    *area += other_area;
+}
+
+/* Around points that are given so much care nothing is changed. */
+enum { CWI_MOST_CARE = 4 };
+
+/* What a surface was before it was simplified, and must stay near: each of its points belongs
+ * to the list of a triangle that it is near to. */
+typedef struct cwi_original {
+    const float *points;     /* vertices x 3 */
+    const uint32_t *corners; /* of its triangles, x 3 */
+    const uint32_t *first;   /* vertices + 1: the triangles around a vertex are */
+    const uint32_t *around;  /* around[first[v]] .. around[first[v + 1] - 1] */
+    uint32_t *next;          /* vertices: the next point in a list; UINT32_MAX ends it */
+    const uint8_t *care;     /* vertices: how often the distance is halved around them */
+    const float *allowed;    /* vertices: the distance there; NULL: the block's everywhere */
+    const float *normals;    /* vertices x 3: 0 where the next does not matter; or NULL */
+    float straight;          /* cosine: how far they are from the mean of those joined */
+} cwi_original;
+
+typedef struct cwi_block {
+    size_t vertices, triangles;
+    size_t own;            /* triangles; those behind them are in the way, and stay */
+    float *points;         /* vertices x 3 */
+    uint32_t *corners;     /* triangles x 3 */
+    uint32_t *names;       /* vertices: they keep them; of those that are joined, the same */
+    uint8_t *held;         /* vertices: must stay, with all edges to them. NULL: none */
+    uint8_t *seam;         /* vertices: were held before, when borders between two of them were
+                              not counted. NULL: none */
+    cwi_quadric *quadrics; /* vertices; NULL: from the triangles */
+    size_t attributes;     /* that count; 0: the next three are NULL */
+    float *values;         /* vertices x attributes; NULL where there are trends */
+    float *areas;          /* vertices: of the triangles whose mean the trends are */
+    cwi_trend *trends;     /* vertices x attributes; NULL: from the triangles */
+    uint32_t *lists;       /* own: first point of a list; NULL without an original */
+    float low[3], high[3]; /* vertices are moved to low <= x < high only */
+    float along[3], from, to; /* and to from <= along . x <= to */
+} cwi_block;
+
+typedef struct cwi_block_desc {
+    double error; /* the distance to keep; 0: none */
+    bool allow_crossings, keep_border;
+    const cw_progress *progress; /* asked from any thread; borrowed until the end */
+} cwi_block_desc;
+
+typedef struct cwi_decimater cwi_decimater;
+
+typedef struct cwi_openmesh_functions {
+    /* Nothing is borrowed but the original. Free with close. */
+    cw_status (*open)(const cwi_block *block, const cwi_block_desc *desc,
+                      const cwi_original *original, cwi_decimater **out, cw_error *err);
+    /* Collapses edges in order of their cost, while it is at most `cost`, and there are more
+     * than `least` triangles. */
+    cw_status (*run)(cwi_decimater *decimater, float cost, size_t least, cw_error *err);
+    /* Triangles of the block's own that are left. */
+    size_t (*triangles)(const cwi_decimater *decimater);
+    /* The cost of the next collapse to try; infinite when there is none. */
+    float (*next)(const cwi_decimater *decimater);
+    /* Vertices of the block that are no single fan, or at an edge of more than two. */
+    size_t (*cut)(const cwi_decimater *decimater);
+    /* What is left, in arrays from cwi_alloc_array(): own triangles only. */
+    cw_status (*take)(const cwi_decimater *decimater, cwi_block *out, cw_error *err);
+    void (*close)(cwi_decimater *decimater);
+} cwi_openmesh_functions;
+
+extern CW_API const cwi_openmesh_functions cwi_module_openmesh;
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

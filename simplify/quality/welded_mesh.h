@@ -1,0 +1,38 @@
+/* A mesh as the checks see it: equal points may be one vertex. */
+#ifndef SIMPLIFY_QUALITY_WELDED_MESH_H
+#define SIMPLIFY_QUALITY_WELDED_MESH_H
+
+#include <cubewright/quality.h>
+
+struct cwi_boxes;
+
+typedef struct cwi_welded {
+    const cw_mesh *mesh;
+    const float *points;    /* vertex_count x 3: single-precision world points, or positions */
+    float *own_points;      /* those of the world; or NULL */
+    const uint32_t *vertex; /* of each corner, 3 x triangle_count: the first of equal ones */
+    uint32_t *own_vertex;   /* those, where they are not the mesh's; or NULL */
+} cwi_welded;
+
+/* Checks the mesh first. Free with cwi_welded_free(), also after a failure.
+ * Returns as cw_mesh_check(); CW_ERR_LIMIT beyond 2^32 / 3 triangles; CW_ERR_NO_MEMORY. */
+cw_status cwi_welded_init(cwi_welded *welded, const cw_mesh *mesh, cw_weld how, cw_error *err);
+void cwi_welded_free(cwi_welded *welded);
+
+/* Sorts the triangles by place: the tree's order holds triangles. Those without area stay out.
+ * Free the tree; false when memory is out. */
+bool cwi_welded_sort(const cwi_welded *welded, struct cwi_boxes *tree);
+
+/* A triangle that names a vertex twice has no edges to speak of. */
+static inline bool cwi_is_collapsed(const cwi_welded *welded, size_t triangle)
+{
+    const uint32_t *v = welded->vertex + 3 * triangle;
+    return v[0] == v[1] || v[1] == v[2] || v[2] == v[0];
+}
+
+static inline uint32_t cwi_next_corner(uint32_t corner)
+{
+    return corner % 3 == 2 ? corner - 2 : corner + 1;
+}
+
+#endif

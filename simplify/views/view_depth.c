@@ -1,0 +1,92 @@
+/* What hides what: the nearest surface behind each pixel of a view. */
+#include "core/base/memory.h"
+#include "core/mesh/mesh.h"
+#include "core/base/status.h"
+#include "simplify/views/view_tolerance.h"
+
+#include <math.h>
+#include <string.h>
+
+void cw_simplify_view_free(cw_simplify_view *view)
+{
+    cwi_free(view->depth);
+    view->depth = NULL;
+}
+
+static cw_status begin(cw_simplify_view *view, cw_error *err)
+{
+    size_t pixels;
+    if (view->depth)
+        return CW_OK;
+    view->width = view->width ? view->width : CWI_VIEW_WIDTH;
+    view->height = view->height ? view->height : CWI_VIEW_HEIGHT;
+    if (cwi_size_mul(view->width, view->height, &pixels))
+        view->depth = cwi_alloc_array(pixels, sizeof *view->depth);
+    if (!view->depth)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a view of %zu x %zu pixels",
+                       view->width, view->height);
+    for (size_t n = 0; n < pixels; n++)
+        view->depth[n] = INFINITY;
+    return CW_OK;
+}
+
+/* Between two triangles there is no gap for a pixel's middle to fall into, by rounding. */
+static const double SLACK = 1e-6;
+
+/* A corner in the picture; what is linear there: the depth, its inverse with a perspective. */
+typedef struct spot {
+    double x, y, linear;
+} spot;
+
+static double twice_area(const spot *a, const spot *b, double x, double y)
+{
+    return (b->x - a->x) * (y - a->y) - (b->y - a->y) * (x - a->x);
+}
+
+/* The pixels whose middles are in a triangle, whichever way it faces. */
+static void fill(cw_simplify_view *view, const spot s[3])
+{
+    const bool perspective = view->camera.fov_deg > 0;
+    const double area = twice_area(s, s + 1, s[2].x, s[2].y);
+    const double width = (double)view->width, height = (double)view->height;
+    const double left = fmax(ceil(fmin(s[0].x, fmin(s[1].x, s[2].x)) - 0.5), 0),
+                 right = fmin(floor(fmax(s[0].x, fmax(s[1].x, s[2].x)) - 0.5), width - 1),
+                 top = fmax(ceil(fmin(s[0].y, fmin(s[1].y, s[2].y)) - 0.5), 0),
+                 bottom = fmin(floor(fmax(s[0].y, fmax(s[1].y, s[2].y)) - 0.5), height - 1);
+    for (double y = top; y <= bottom && area != 0; y++)
+        for (double x = left; x <= right; x++) {
+            double share[3], linear = 0;
+            for (int k = 0; k < 3; k++) {
+                share[k] =
+                    twice_area(s + (k + 1) % 3, s + (k + 2) % 3, x + 0.5, y + 0.5) / area;
+                linear += share[k] * s[k].linear;
+            }
+            float *at = view->depth + (size_t)y * view->width + (size_t)x;
+            if (share[0] >= -SLACK && share[1] >= -SLACK && share[2] >= -SLACK)
+                *at = fminf(*at, (float)(perspective ? 1 / linear : linear));
+        }
+}
+
+cw_status cw_simplify_view_draw(cw_simplify_view *view, const cw_mesh *mesh, cw_error *err)
+{
+    cwi_view v;
+    cw_status st = cwi_view_init(&v, view, 1, err);
+    if (st == CW_OK)
+        st = begin(view, err);
+    for (size_t t = 0; t < mesh->triangle_count && st == CW_OK; t++) {
+        spot s[3];
+        bool whole = true;
+        for (size_t k = 0; k < 3; k++) {
+            const float *p = mesh->positions + 3 * (size_t)mesh->triangles[3 * t + k];
+            const double world[3] = {mesh->origin[0] + (double)p[0],
+                                     mesh->origin[1] + (double)p[1],
+                                     mesh->origin[2] + (double)p[2]};
+            double depth;
+            whole = cwi_view_project(&v, world, &s[k].x, &s[k].y, &depth) && whole;
+            s[k].linear = view->camera.fov_deg > 0 ? 1 / depth : depth;
+        }
+        if (whole) /* what reaches behind the eye hides nothing */
+            fill(view, s);
+    }
+    return st;
+}

@@ -1,0 +1,285 @@
+#include "simplify/views/view_tolerance.h"
+
+#include "core/base/memory.h"
+#include "core/mesh/mesh.h"
+#include "core/base/status.h"
+#include "core/geometry/vec3.h"
+
+#include <math.h>
+
+/* Nearer to the eye than this share of the way to the target nothing is asked for exactly: at
+ * the eye itself a pixel has no size. */
+static const double NEAREST = 1e-3;
+
+/* --- one view ----------------------------------------------------------------------------- */
+
+/* A way of t from a point in the picture, at a distance D = z / cos from the eye, moves it by
+ * no more than t k / ((z - t) cos) pixels, where k pixels are as wide as far away; and cos is
+ * least in the corner of the picture. So t = z a / (1 + a) with a = pixels cos / k. */
+static void see_perspective(cwi_view *v, const cw_camera *c, const double size[2],
+                            double pixels)
+{
+    const double open = tan(c->fov_deg * acos(-1) / 360), k = size[1] / (2 * open);
+    double away[3];
+    for (int n = 0; n < 2; n++)
+        v->slope[n] = (0.5 * size[n] + pixels) / k;
+    const double corner = hypot(hypot(v->slope[0], v->slope[1]), 1), a = pixels / (k * corner);
+    for (int n = 0; n < 3; n++)
+        away[n] = c->target[n] - c->eye[n];
+    v->rate = a / (1 + a);
+    v->pixel = 1 / k;
+    v->nearest = NEAREST * sqrt(cwi_dot(away, away));
+}
+
+static void see_parallel(cwi_view *v, const cw_camera *c, const double size[2], double pixels)
+{
+    const double pixel = c->height_mm / size[1];
+    for (int n = 0; n < 2; n++)
+        v->half[n] = (0.5 * size[n] + pixels) * pixel;
+    v->even = pixels * pixel;
+    v->pixel = pixel;
+    v->nearest = -INFINITY;
+}
+
+cw_status cwi_view_init(cwi_view *v, const cw_simplify_view *from, double pixels, cw_error *err)
+{
+    const cw_camera *c = &from->camera;
+    const double size[2] = {(double)(from->width ? from->width : CWI_VIEW_WIDTH),
+                            (double)(from->height ? from->height : CWI_VIEW_HEIGHT)};
+    *v = (cwi_view){
+        .size = {size[0], size[1]}, .depth = from->depth, .unit = 1, .pixels = pixels};
+    if (!(pixels > 0) || !isfinite(pixels))
+        return cw_fail(err, CW_ERR_ARGUMENT, "pixel_error is %g; it must be above 0", pixels);
+    cw_status st = cw_camera_axes(c, v->axes[0], v->axes[1], v->axes[2], err);
+    if (st != CW_OK)
+        return st;
+    for (int n = 0; n < 3; n++)
+        v->eye[n] = c->eye[n];
+    if (c->fov_deg > 0)
+        see_perspective(v, c, size, pixels);
+    else
+        see_parallel(v, c, size, pixels);
+    return CW_OK;
+}
+
+typedef struct place {
+    double across[2], depth;
+} place;
+
+static place place_of(const cwi_view *v, const double p[3])
+{
+    const double way[3] = {p[0] - v->eye[0], p[1] - v->eye[1], p[2] - v->eye[2]};
+    return (place){{cwi_dot(way, v->axes[0]), cwi_dot(way, v->axes[1])},
+                   cwi_dot(way, v->axes[2])};
+}
+
+static double pixel_at(const cwi_view *v, double depth)
+{
+    return v->rate > 0 ? v->pixel * depth : v->pixel;
+}
+
+bool cwi_view_project(const cwi_view *v, const double point[3], double *x, double *y,
+                      double *depth)
+{
+    const place p = place_of(v, point);
+    const double pixel = pixel_at(v, p.depth);
+    *x = 0.5 * v->size[0] + p.across[0] / pixel;
+    *y = 0.5 * v->size[1] - p.across[1] / pixel;
+    *depth = p.depth;
+    return p.depth > v->nearest;
+}
+
+/* By how much a place is beyond one of the five planes that a view sees up to. */
+static double beyond(const cwi_view *v, const place *p, int plane)
+{
+    if (plane == 4)
+        return v->nearest > 0 ? -p->depth : -INFINITY;
+    const int n = plane / 2;
+    const double out = plane % 2 ? -p->across[n] : p->across[n];
+    return (out - v->half[n] - v->slope[n] * p->depth) / hypot(1, v->slope[n]);
+}
+
+/* What has all of its corners beyond one plane is not seen. */
+static bool is_seen(const cwi_view *v, const place *p, int corners, double margin)
+{
+    for (int plane = 0; plane < 5; plane++) {
+        double least = INFINITY;
+        for (int c = 0; c < corners; c++)
+            least = fmin(least, beyond(v, p + c, plane));
+        if (least > margin)
+            return false;
+    }
+    return true;
+}
+
+/* What a surface is in front of at all pixels around it. Each of the two may move by `most`,
+ * and as far as that is in the picture the other one's edge may be away. */
+static bool is_hidden(const cwi_view *v, const place *p, int corners, double most,
+                      double margin)
+{
+    double nearest = INFINITY, low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
+    for (int c = 0; c < corners; c++)
+        nearest = fmin(nearest, p[c].depth);
+    if (!v->depth || nearest - 2 * most - margin <= v->nearest)
+        return false;
+    const double around = 1 + 2 * v->pixels + (most + margin) / pixel_at(v, nearest);
+    for (int c = 0; c < corners; c++) {
+        const double pixel = pixel_at(v, p[c].depth),
+                     at[2] = {0.5 * v->size[0] + p[c].across[0] / pixel,
+                              0.5 * v->size[1] - p[c].across[1] / pixel};
+        for (int a = 0; a < 2; a++) {
+            low[a] = fmin(low[a], fmax(floor(at[a] - around), 0));
+            high[a] = fmax(high[a], fmin(floor(at[a] + around), v->size[a] - 1));
+        }
+    }
+    const double before = (nearest - 2 * most - margin) / v->unit;
+    for (double y = low[1]; y <= high[1]; y++)
+        for (double x = low[0]; x <= high[0]; x++)
+            if ((double)v->depth[(size_t)(y * v->size[0] + x)] >= before)
+                return false;
+    return true;
+}
+
+static double limit(const cwi_view *v, const place *p, int corners, double most, double margin)
+{
+    double least = INFINITY;
+    if (!is_seen(v, p, corners, margin) || is_hidden(v, p, corners, most, margin))
+        return least;
+    for (int c = 0; c < corners; c++) {
+        const double depth = v->rate > 0 ? fmax(p[c].depth, v->nearest) : 0;
+        least = fmin(least, v->even + v->rate * depth);
+    }
+    return least;
+}
+
+/* --- all of them -------------------------------------------------------------------------- */
+
+cw_status cwi_views_init(cwi_views *views, const cw_simplify_desc *d, cw_error *err)
+{
+    cw_status st = CW_OK;
+    *views = (cwi_views){0};
+    if (!d->view_count && d->pixel_error == 0)
+        return CW_OK;
+    if (!d->view_count)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "pixel_error is %g, and there are no views to hold it in",
+                       d->pixel_error);
+    if (!(d->error_mm > 0))
+        return cw_fail(
+            err, CW_ERR_ARGUMENT,
+            "views need an error_mm: the error limit where none of them sees the surface");
+    views->view = cwi_alloc_array(d->view_count, sizeof *views->view);
+    if (!views->view)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu views", d->view_count);
+    views->count = d->view_count;
+    for (size_t n = 0; n < d->view_count && st == CW_OK; n++)
+        st = cwi_view_init(views->view + n, d->views + n, d->pixel_error, err);
+    return st;
+}
+
+void cwi_views_free(cwi_views *views)
+{
+    cwi_free(views->view);
+    *views = (cwi_views){0};
+}
+
+void cwi_views_place(cwi_views *views, const double origin[3], double scale)
+{
+    for (size_t i = 0; i < views->count; i++) {
+        cwi_view *v = &views->view[i];
+        for (int n = 0; n < 3; n++)
+            v->eye[n] = scale * (v->eye[n] - origin[n]);
+        for (int n = 0; n < 2; n++)
+            v->half[n] *= scale;
+        v->even *= scale;
+        v->unit *= scale;
+        v->pixel *= v->rate > 0 ? 1 : scale;
+        v->nearest *= scale;
+    }
+}
+
+double cwi_views_limit(const cwi_views *views, const float *const corners[3], double most,
+                       double margin)
+{
+    double least = INFINITY;
+    for (size_t i = 0; i < views->count; i++) {
+        const cwi_view *v = &views->view[i];
+        place p[3];
+        for (int c = 0; c < 3; c++)
+            p[c] = place_of(v, (const double[3]){(double)corners[c][0], (double)corners[c][1],
+                                                 (double)corners[c][2]});
+        least = fmin(least, limit(v, p, 3, most, margin));
+    }
+    return least;
+}
+
+cw_status cw_simplify_view_sees(const cw_simplify_view *view, double pixels,
+                                const double *points, size_t count, bool *seen, cw_error *err)
+{
+    cwi_view v;
+    place p[CWI_VIEW_HULL];
+    cw_status st = cwi_view_init(&v, view, pixels, err);
+    if (st == CW_OK && (count < 1 || count > CWI_VIEW_HULL))
+        st = cw_fail(err, CW_ERR_ARGUMENT, "a hull of %zu points; 1 to %d were expected", count,
+                     CWI_VIEW_HULL);
+    if (st != CW_OK)
+        return st;
+    for (size_t n = 0; n < count; n++)
+        p[n] = place_of(&v, points + 3 * n);
+    *seen = isfinite(limit(&v, p, (int)count, 0, 0));
+    return CW_OK;
+}
+
+static void mark_unseen(const cwi_views *views, const cw_mesh *m, double margin, bool *unseen,
+                        size_t *count)
+{
+    *count = 0;
+    for (size_t t = 0; t < m->triangle_count; t++) {
+        const uint32_t *c = m->triangles + 3 * t;
+        const float *const corners[3] = {m->positions + 3 * (size_t)c[0],
+                                         m->positions + 3 * (size_t)c[1],
+                                         m->positions + 3 * (size_t)c[2]};
+        unseen[t] = !isfinite(cwi_views_limit(views, corners, margin, margin));
+        *count += unseen[t];
+    }
+}
+
+cw_status cw_simplify_cull(cw_mesh *mesh, const cw_simplify_view *views, size_t count,
+                           double pixels, double margin_mm, size_t *dropped, cw_error *err)
+{
+    /* the error is never looked at */
+    const cw_simplify_desc desc = {
+        .error_mm = 1, .views = views, .view_count = count, .pixel_error = pixels};
+    cwi_views all = {0};
+    size_t unseen;
+    cw_status st = cw_mesh_check(mesh, err);
+    if (st == CW_OK)
+        st = cwi_views_init(&all, &desc, err);
+    bool *marks = cwi_alloc_array(mesh->triangle_count, sizeof *marks);
+    if (st == CW_OK && !marks)
+        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory to mark %zu triangles",
+                     mesh->triangle_count);
+    if (st == CW_OK) {
+        cwi_views_place(&all, mesh->origin, 1);
+        mark_unseen(&all, mesh, margin_mm, marks, &unseen);
+        st = cwi_mesh_drop_marked(mesh, marks, err);
+    }
+    if (st == CW_OK && dropped)
+        *dropped = unseen;
+    cwi_free(marks);
+    cwi_views_free(&all);
+    return st;
+}
+
+cw_status cw_simplify_view_error(const cw_simplify_view *view, double pixels,
+                                 const double point[3], double *error_mm, cw_error *err)
+{
+    cwi_view v;
+    cw_status st = cwi_view_init(&v, view, pixels, err);
+    *error_mm = 0;
+    if (st != CW_OK)
+        return st;
+    const place p = place_of(&v, point);
+    *error_mm = limit(&v, &p, 1, 0, 0);
+    return CW_OK;
+}

@@ -1,0 +1,94 @@
+#include "viewer/cpu/cpu_draw.h"
+
+#include "viewer/cpu/cpu_mesh.h"
+#include "viewer/cpu/intensity_projection.h"
+#include "viewer/cpu/reference_volume.h"
+#include "viewer/cpu/vbuffer.h"
+
+#include "core/base/memory.h"
+#include "core/base/status.h"
+
+#include <string.h>
+
+bool cwi_cpu_draws(cw_mode mode)
+{
+    return mode == CW_MODE_MESH || mode == CW_MODE_MIP || mode == CW_MODE_MINIP ||
+           mode == CW_MODE_AVERAGE || mode == CW_MODE_LOCAL_MIP || mode == CW_MODE_VBUFFER ||
+           mode == CW_MODE_REFERENCE;
+}
+
+void cwi_cpu_forget(cwi_cpu *cpu)
+{
+    cwi_ranges_free(&cpu->ranges);
+    *cpu = (cwi_cpu){0};
+}
+
+static cw_status take_ranges(cwi_cpu *cpu, const cwi_frame *f, cw_error *err)
+{
+    if (cpu->ranges.blocks && memcmp(&cpu->key, &f->volume, sizeof cpu->key) == 0)
+        return CW_OK;
+    cwi_cpu_forget(cpu);
+    cw_status st =
+        cwi_ranges_make(&f->volume, f->scene.threads, &f->scene.progress, &cpu->ranges, err);
+    if (st == CW_OK)
+        cpu->key = f->volume;
+    else
+        cwi_cpu_forget(cpu);
+    return st;
+}
+
+static cw_status draw_volume(cwi_cpu *cpu, const cwi_frame *f, const double *depths,
+                             cw_picture *picture, cw_error *err)
+{
+    if (f->scene.mode == CW_MODE_REFERENCE)
+        return cwi_reference_draw(f, depths, picture, NULL, err);
+    cw_status st = take_ranges(cpu, f, err);
+    if (st == CW_OK && f->scene.mode == CW_MODE_VBUFFER)
+        st = cwi_vbuffer_draw(f, &cpu->ranges, depths, picture, err);
+    else if (st == CW_OK)
+        st = cwi_intensity_draw(f, &cpu->ranges, depths, picture, err);
+    return st;
+}
+
+/* Puts an opaque mesh behind what was drawn. */
+static void put_behind(const cw_picture *mesh, cw_picture *picture)
+{
+    for (size_t p = 0; p < picture->width * picture->height; p++) {
+        float *pixel = picture->pixels + 4 * p;
+        const float through = 1 - pixel[3];
+        for (size_t c = 0; c < 4; c++)
+            pixel[c] += through * mesh->pixels[4 * p + c];
+    }
+}
+
+static cw_status draw_both(cwi_cpu *cpu, const cwi_frame *f, cw_picture *picture, cw_error *err)
+{
+    const size_t count = picture->width * picture->height;
+    cw_picture mesh = {0};
+    double *depths = cwi_alloc_array(count, sizeof *depths);
+    if (!depths)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the depths of a mesh");
+    cw_status st = cw_picture_alloc(&mesh, picture->width, picture->height, err);
+    if (st == CW_OK)
+        st = cwi_cpu_draw_mesh(f, depths, &mesh, err);
+    for (size_t p = 0; p < count && st == CW_OK; p++)
+        depths[p] /= f->unit_mm;
+    if (st == CW_OK)
+        st = draw_volume(cpu, f, depths, picture, err);
+    if (st == CW_OK)
+        put_behind(&mesh, picture);
+    cw_picture_free(&mesh);
+    cwi_free(depths);
+    return st;
+}
+
+cw_status cwi_cpu_draw(cwi_cpu *cpu, const cwi_frame *f, cw_picture *picture, cw_error *err)
+{
+    if (!cwi_cpu_draws(f->scene.mode))
+        return cw_fail(err, CW_ERR_UNSUPPORTED, "the mode %s is not drawn by the CPU",
+                       cw_mode_name(f->scene.mode));
+    if (f->scene.mode == CW_MODE_MESH)
+        return cwi_cpu_draw_mesh(f, NULL, picture, err);
+    return f->scene.mesh ? draw_both(cpu, f, picture, err)
+                         : draw_volume(cpu, f, NULL, picture, err);
+}

@@ -1,0 +1,30 @@
+/* Pictures drawn by the CPU. */
+#ifndef VIEWER_CPU_CPU_DRAW_H
+#define VIEWER_CPU_CPU_DRAW_H
+
+#include "viewer/scene/frame_setup.h"
+#include "viewer/scene/block_ranges.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* What is kept for the next picture of the same volume. Zeroed: nothing. */
+typedef struct cwi_cpu {
+    cw_volume key;
+    cwi_ranges ranges; /* of key, when it has blocks */
+} cwi_cpu;
+
+CW_API bool cwi_cpu_draws(cw_mode mode);
+
+/* Draws every sample of a frame into a zeroed picture.
+ * Returns CW_ERR_UNSUPPORTED for a mode, or a way to draw meshes, that GL alone has */
+CW_API cw_status cwi_cpu_draw(cwi_cpu *cpu, const cwi_frame *frame, cw_picture *picture,
+                              cw_error *err);
+CW_API void cwi_cpu_forget(cwi_cpu *cpu);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

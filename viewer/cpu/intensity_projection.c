@@ -1,0 +1,209 @@
+#include "viewer/cpu/intensity_projection.h"
+
+#include "viewer/cpu/ray_traversal.h"
+
+#include "core/base/parallel.h"
+
+#include <math.h>
+
+/* What is known of a ray's value so far. */
+typedef struct tally {
+    bool has_value;
+    double extreme;
+    double integral, length;
+
+    /* local-mip */
+    double threshold;
+    bool is_under_way, is_found; /* a stretch of values without a gap; the maximum */
+    double last;                 /* the highest value since it last fell */
+} tally;
+
+/* Values from 0 to 1 at the places where they turn, and at the ends; how many. */
+static int turning_values(const double c[4], double values[4])
+{
+    double turns[2];
+    int count = 0;
+    const int turn_count = cwi_cubic_turns(c, turns);
+    values[count++] = c[0];
+    for (int n = 0; n < turn_count; n++)
+        values[count++] = cwi_cubic_at(c, turns[n]);
+    values[count++] = cwi_cubic_at(c, 1);
+    return count;
+}
+
+static bool within(const double v[8], double low, double high)
+{
+    for (int n = 0; n < 8; n++)
+        if (!(v[n] >= low && v[n] <= high))
+            return false;
+    return true;
+}
+
+static void add_highest(const cwi_walk *w, const double v[8], tally *t)
+{
+    double c[4], values[4];
+    if (t->has_value && within(v, -INFINITY, t->extreme))
+        return;
+    cwi_walk_cubic(w, v, c);
+    for (int n = turning_values(c, values) - 1; n >= 0; n--) {
+        t->extreme = t->has_value ? fmax(t->extreme, values[n]) : values[n];
+        t->has_value = true;
+    }
+}
+
+static void add_lowest(const cwi_walk *w, const double v[8], tally *t)
+{
+    double c[4], values[4];
+    if (t->has_value && within(v, t->extreme, INFINITY))
+        return;
+    cwi_walk_cubic(w, v, c);
+    for (int n = turning_values(c, values) - 1; n >= 0; n--) {
+        t->extreme = t->has_value ? fmin(t->extreme, values[n]) : values[n];
+        t->has_value = true;
+    }
+}
+
+static void add_mean(const cwi_walk *w, const double v[8], tally *t)
+{
+    double c[4];
+    const double length = w->to - w->from;
+    cwi_walk_cubic(w, v, c);
+    t->integral += length * (c[0] + c[1] / 2 + c[2] / 3 + c[3] / 4);
+    t->length += length;
+    t->has_value = true;
+}
+
+/* The end of a stretch is a maximum too, if values rise towards it. */
+static void end_stretch(tally *t)
+{
+    if (t->is_under_way && t->last >= t->threshold)
+        t->is_found = true;
+    t->is_under_way = false;
+}
+
+/* Neighbouring cells agree on the value between them only but for rounding, which is no fall.
+ */
+static void add_local(const cwi_walk *w, const double v[8], tally *t)
+{
+    double c[4], values[4], rounding = 0;
+    cwi_walk_cubic(w, v, c);
+    for (int n = 0; n < 8; n++)
+        rounding = fmax(rounding, 1e-12 * fabs(v[n]));
+    const int count = turning_values(c, values);
+    for (int n = 0; n < count && !t->is_found; n++) {
+        const bool falls = t->is_under_way && values[n] < t->last - rounding;
+        t->extreme = t->has_value ? fmax(t->extreme, values[n]) : values[n];
+        t->has_value = true;
+        if (falls && t->last >= t->threshold)
+            t->is_found = true;
+        else
+            t->last = values[n];
+        t->is_under_way = true;
+    }
+}
+
+static void add_cell(cw_mode mode, const cwi_walk *w, tally *t)
+{
+    double v[8];
+    if (!cwi_walk_values(w, v))
+        end_stretch(t);
+    else if (mode == CW_MODE_MIP)
+        add_highest(w, v, t);
+    else if (mode == CW_MODE_MINIP)
+        add_lowest(w, v, t);
+    else if (mode == CW_MODE_AVERAGE)
+        add_mean(w, v, t);
+    else
+        add_local(w, v, t);
+}
+
+/* Whether a block of cells can be passed over: it has no values, or none that would be told. A
+ * stretch of values goes on behind it, below the threshold as its end was, and so as if it
+ * began there. */
+static bool is_passed_over(cw_mode mode, const float range[2], tally *t)
+{
+    const double low = (double)range[0], high = (double)range[1];
+    if (low > high) {
+        end_stretch(t);
+        return true;
+    }
+    if (mode == CW_MODE_AVERAGE || !t->has_value ||
+        !(mode == CW_MODE_MINIP ? low >= t->extreme : high <= t->extreme) ||
+        (mode == CW_MODE_LOCAL_MIP && high >= t->threshold))
+        return false;
+    t->is_under_way = false;
+    return true;
+}
+
+static void add_part(const cwi_frame *frame, const cwi_ranges *ranges, const cwi_ray *ray,
+                     int part, tally *t)
+{
+    cwi_walk walk;
+    const cw_mode mode = frame->scene.mode;
+    bool is_new_block = ranges != NULL;
+    cwi_walk_start(&walk, frame, ray, part);
+    while (!t->is_found && walk.t < walk.stop) {
+        if (is_new_block &&
+            is_passed_over(mode, ranges->blocks[cwi_walk_block(&walk, ranges->dim)], t)) {
+            cwi_walk_leap(&walk, CWI_RANGE_EDGE, 1);
+            continue;
+        }
+        if (!cwi_walk_next(&walk))
+            break;
+        is_new_block = ranges && cwi_walk_changes_block(&walk);
+        add_cell(mode, &walk, t);
+    }
+    if (!t->is_found)
+        end_stretch(t);
+}
+
+double cwi_intensity_ray(const cwi_frame *frame, const cwi_ranges *ranges, double x, double y,
+                         double depth)
+{
+    cwi_ray ray;
+    const cw_mode mode = frame->scene.mode;
+    tally t = {.threshold = mode == CW_MODE_LOCAL_MIP ? frame->scene.threshold : INFINITY};
+    cwi_ray_make(frame, x, y, depth, &ray);
+    for (int n = 0; n < ray.part_count && !t.is_found; n++)
+        add_part(frame, ranges, &ray, n, &t);
+    if (!t.has_value)
+        return NAN;
+    if (mode == CW_MODE_AVERAGE)
+        return t.integral / t.length;
+    return t.is_found ? t.last : t.extreme;
+}
+
+typedef struct job {
+    const cwi_frame *frame;
+    const cwi_ranges *ranges;
+    const double *depths;
+    cw_picture *picture;
+} job;
+
+static void draw_row(void *context, size_t y)
+{
+    const job *work = context;
+    const size_t width = work->picture->width;
+    for (size_t x = 0; x < width; x++) {
+        float *pixel = work->picture->pixels + 4 * (y * width + x);
+        const double depth = work->depths ? work->depths[y * width + x] : INFINITY;
+        const double value = cwi_intensity_ray(work->frame, work->ranges, (double)x + 0.5,
+                                               (double)y + 0.5, depth);
+        double color[3], opacity;
+        if (isnan(value))
+            continue;
+        cw_transfer_at(&work->frame->transfer, value, color, &opacity);
+        for (int c = 0; c < 3; c++)
+            pixel[c] = (float)color[c];
+        pixel[3] = 1;
+    }
+}
+
+cw_status cwi_intensity_draw(const cwi_frame *frame, const cwi_ranges *ranges,
+                             const double *depths, cw_picture *picture, cw_error *err)
+{
+    job work = {frame, ranges, depths, picture};
+    return cwi_each_layer(picture->height, picture->width * CWI_RAY_SAMPLES,
+                          frame->scene.threads, &frame->scene.progress, "drawing", draw_row,
+                          &work, err);
+}

@@ -1,0 +1,214 @@
+#include "viewer/cpu/ray_traversal.h"
+
+#include "core/geometry/affine.h"
+#include "core/volume/volume.h"
+
+#include <string.h>
+
+void cwi_ray_make(const cwi_frame *f, double x, double y, double depth, cwi_ray *ray)
+{
+    cwi_frame_ray(f, x, y, ray->origin, ray->direction);
+    cwi_affine_apply(f->index_from_eye, ray->origin, ray->index);
+    for (size_t r = 0; r < 3; r++)
+        ray->slope[r] = cwi_dot(f->index_from_eye + 4 * r, ray->direction);
+    const int count = cwi_frame_clip(f, ray->origin, ray->direction, ray->parts);
+    const double end = depth / -ray->direction[2];
+    ray->part_count = 0;
+    for (int n = 0; n < count; n++) {
+        ray->parts[n][1] = fmin(ray->parts[n][1], end);
+        ray->part_count += ray->parts[n][0] < ray->parts[n][1];
+    }
+}
+
+static ptrdiff_t cells_along(const cw_volume *v, int axis)
+{
+    return v->dim[axis] > 1 ? (ptrdiff_t)v->dim[axis] - 1 : 1;
+}
+
+void cwi_walk_start(cwi_walk *w, const cwi_frame *f, const cwi_ray *ray, int part)
+{
+    *w =
+        (cwi_walk){.volume = &f->volume, .t = ray->parts[part][0], .stop = ray->parts[part][1]};
+    memcpy(w->index, ray->index, sizeof w->index);
+    memcpy(w->slope, ray->slope, sizeof w->slope);
+    for (int a = 0; a < 3; a++) {
+        const ptrdiff_t cells = cells_along(w->volume, a);
+        const double at = w->volume->dim[a] > 1 ? floor(w->index[a] + w->t * w->slope[a]) : 0;
+        w->cell[a] = (ptrdiff_t)fmin(fmax(at, 0), (double)(cells - 1));
+        w->end[a] = w->slope[a] > 0 ? cells : -1;
+        w->inverse[a] = 1 / w->slope[a];
+        w->next[a] = cwi_walk_plane(w, a);
+    }
+}
+
+/* The cell at w->t along an axis: rounding never takes a ray back to a cell it has left, or it
+ * might go to and fro for good. */
+static ptrdiff_t cell_after(const cwi_walk *w, int axis)
+{
+    const ptrdiff_t most = cells_along(w->volume, axis) - 1, before = w->cell[axis];
+    ptrdiff_t cell = (ptrdiff_t)(w->index[axis] + w->t * w->slope[axis]);
+    if (w->slope[axis] > 0 ? cell < before : cell > before)
+        cell = before;
+    return w->volume->dim[axis] == 1 || cell < 0 ? 0 : cell > most ? most : cell;
+}
+
+void cwi_walk_leap(cwi_walk *w, int edge, int distance)
+{
+    double to = INFINITY;
+    int leave = 0;
+    ptrdiff_t cell = 0;
+    for (int a = 0; a < 3; a++) {
+        const ptrdiff_t block = w->cell[a] / edge;
+        const bool rises = w->slope[a] > 0;
+        const ptrdiff_t plane = edge * (rises ? block + distance : block - distance + 1);
+        const double t =
+            w->next[a] < INFINITY ? ((double)plane - w->index[a]) * w->inverse[a] : INFINITY;
+        if (t < to) {
+            to = t;
+            leave = a;
+            cell = rises ? plane : plane - 1;
+        }
+    }
+    w->t = cwi_greater(w->t, to);
+    if (!(w->t < w->stop))
+        return;
+    for (int a = 0; a < 3; a++) {
+        w->cell[a] = a == leave ? cell : cell_after(w, a);
+        w->next[a] = cwi_walk_plane(w, a);
+    }
+    if (cell < 0 || cell >= cells_along(w->volume, leave))
+        w->t = w->stop;
+}
+
+/* The stored numbers at the corners, from the address of the first. */
+static void read_corners(const cw_volume *volume, const char *p, double x[8])
+{
+    ptrdiff_t side[3];
+    for (int a = 0; a < 3; a++)
+        side[a] = volume->dim[a] > 1 ? volume->stride[a] : 0;
+    switch (volume->type) {
+#define CASE(name, ctype, text)                                                                \
+    case name:                                                                                 \
+        for (int n = 0; n < 8; n += 2) {                                                       \
+            const char *edge = p + (n >> 1 & 1) * side[1] + (n >> 2) * side[2];                \
+            x[n] = (double)*(const ctype *)edge;                                               \
+            x[n + 1] = (double)*(const ctype *)(edge + side[0]);                               \
+        }                                                                                      \
+        break;
+        CW_TYPE_TABLE(CASE)
+#undef CASE
+    default:
+        break;
+    }
+}
+
+bool cwi_walk_values(const cwi_walk *w, double v[8])
+{
+    const cw_volume *volume = w->volume;
+    const char *base = (const char *)volume->data + w->at[0] * volume->stride[0] +
+                       w->at[1] * volume->stride[1] + w->at[2] * volume->stride[2];
+    double x[8] = {0}, none = 0;
+    read_corners(volume, base, x);
+    for (int n = 0; n < 8; n++) {
+        none += x[n] - x[n]; /* 0, or NaN */
+        v[n] = volume->slope * x[n] + volume->intercept;
+    }
+    for (int n = 0; n < 8 && volume->has_nodata; n++)
+        if (x[n] == volume->nodata)
+            return false;
+    return none == 0;
+}
+
+/* Along x, which makes a line of each edge, then y and z, each of which raises the degree. */
+void cwi_walk_cubic(const cwi_walk *w, const double v[8], double c[4])
+{
+    double s[3], d[3], line[4][2], q[2][3];
+    for (int a = 0; a < 3; a++) {
+        s[a] = w->index[a] + w->from * w->slope[a] - (double)w->at[a];
+        d[a] = (w->to - w->from) * w->slope[a];
+    }
+    for (int n = 0; n < 4; n++) {
+        const double rise = v[2 * n + 1] - v[2 * n];
+        line[n][0] = v[2 * n] + rise * s[0];
+        line[n][1] = rise * d[0];
+    }
+    for (int n = 0; n < 2; n++) {
+        const double *a = line[2 * n], *b = line[2 * n + 1];
+        const double rise[2] = {b[0] - a[0], b[1] - a[1]};
+        q[n][0] = a[0] + rise[0] * s[1];
+        q[n][1] = a[1] + rise[1] * s[1] + rise[0] * d[1];
+        q[n][2] = rise[1] * d[1];
+    }
+    const double rise[3] = {q[1][0] - q[0][0], q[1][1] - q[0][1], q[1][2] - q[0][2]};
+    c[0] = q[0][0] + rise[0] * s[2];
+    c[1] = q[0][1] + rise[1] * s[2] + rise[0] * d[2];
+    c[2] = q[0][2] + rise[2] * s[2] + rise[1] * d[2];
+    c[3] = rise[2] * d[2];
+}
+
+static double derivative(const cw_volume *v, const char *p, int axis, size_t n)
+{
+    const size_t dim = v->dim[axis];
+    if (dim == 1)
+        return 0;
+    const bool has_low = n > 0, has_high = n + 1 < dim;
+    const double a = cwi_voxel_at(v->type, has_low ? p - v->stride[axis] : p),
+                 b = cwi_voxel_at(v->type, has_high ? p + v->stride[axis] : p);
+    const double d = v->slope * (b - a) / (has_low && has_high ? 2 : 1);
+    return isfinite(d) && !(v->has_nodata && (a == v->nodata || b == v->nodata)) ? d : 0;
+}
+
+void cwi_walk_gradients(const cwi_walk *w, double g[3][8])
+{
+    const cw_volume *v = w->volume;
+    for (int n = 0; n < 8; n++) {
+        size_t at[3];
+        for (int a = 0; a < 3; a++)
+            at[a] = (size_t)w->at[a] + (v->dim[a] > 1 && (n >> a & 1));
+        const char *p = cwi_voxel_address(v, at[0], at[1], at[2]);
+        for (int a = 0; a < 3; a++)
+            g[a][n] = derivative(v, p, a, at[a]);
+    }
+}
+
+/* The roots of 3 c3 x^2 + 2 c2 x + c1, each by the form that does not cancel. Where there is
+ * none, or a double one, the comparisons with infinity and NaN leave it out. */
+int cwi_cubic_turns(const double c[4], double x[2])
+{
+    const double square = c[2] * c[2] - 3 * c[3] * c[1];
+    if (!(square > 0))
+        return 0;
+    const double q = -(c[2] + copysign(sqrt(square), c[2]));
+    const double r[2] = {q / (3 * c[3]), c[1] / q};
+    const bool swap = r[1] < r[0];
+    int count = 0;
+    for (int n = 0; n < 2; n++) {
+        const double at = r[swap ? 1 - n : n];
+        if (at > 0 && at < 1)
+            x[count++] = at;
+    }
+    return count;
+}
+
+/* Newton's method, kept between the two places; where it leaves them or is slow, they are
+ * halved. */
+double cwi_cubic_meets(const double c[4], double from, double to, double value)
+{
+    const bool rises = cwi_cubic_at(c, from) < cwi_cubic_at(c, to);
+    double x = (from + to) / 2;
+    for (int n = 0; n < 80 && to - from > 1e-15; n++) {
+        const double above = cwi_cubic_at(c, x) - value;
+        if (above == 0)
+            return x;
+        if ((above > 0) == rises)
+            to = x;
+        else
+            from = x;
+        const double step = above / ((3 * c[3] * x + 2 * c[2]) * x + c[1]);
+        const double next = x - step;
+        if (fabs(step) < 1e-16)
+            return x;
+        x = n < 40 && next > from && next < to ? next : (from + to) / 2;
+    }
+    return x;
+}

@@ -1,0 +1,299 @@
+/* Along a ray light changes by  dC = tau c T ds,  dT = -tau T ds  [Max1995], tau the extinction
+ * and c the colour of the value there. A ray is cut at the faces of cells and where the value
+ * meets a knot of the transfer function; between cuts all of it is smooth. There, Gauss's
+ * points: optical depth and light by the integrals of the polynomials through the integrands,
+ * which is the collocation method of order 8 of [Kuntzmann1961] and [Butcher1964]. A piece that
+ * differs by too much from its halves is replaced by them, and so on. */
+#include "viewer/cpu/reference_volume.h"
+
+#include "viewer/scene/lighting.h"
+#include "viewer/cpu/ray_traversal.h"
+
+#include "core/base/parallel.h"
+#include "core/base/memory.h"
+#include "core/base/status.h"
+
+#include <math.h>
+#include <string.h>
+
+/* Of a whole ray; of a piece, whatever its length: at a jump in the gradients' factor the
+ * estimate falls only as fast as pieces get shorter. */
+static const double tolerance = 1e-8, piece_tolerance = 1e-13;
+
+/* A ray ends when so little light is left. */
+static const double dark = 1e-10;
+
+enum { MOST_HALVINGS = 40 };
+
+/* A polynomial through one point's 1 and the others' 0, and its integral up to x. */
+static double inner_weight(const double at[CWI_NODES], int node, double x)
+{
+    double p[CWI_NODES + 1] = {1}, sum = 0;
+    for (int m = 0, degree = 0; m < CWI_NODES; m++) {
+        if (m == node)
+            continue;
+        const double scale = 1 / (at[node] - at[m]);
+        degree++;
+        for (int n = degree; n >= 0; n--)
+            p[n] = ((n > 0 ? p[n - 1] : 0) - at[m] * p[n]) * scale;
+    }
+    for (int n = CWI_NODES - 1; n >= 0; n--)
+        sum = (sum + p[n] / (n + 1)) * x;
+    return sum;
+}
+
+/* The roots of Legendre's polynomial of degree 4, 35 x^4 - 30 x^2 + 3. */
+static void make_rule(cwi_rule *r)
+{
+    const double inside = sqrt((30 - sqrt(480)) / 70), outside = sqrt((30 + sqrt(480)) / 70);
+    const double roots[CWI_NODES] = {-outside, -inside, inside, outside};
+    for (int n = 0; n < CWI_NODES; n++)
+        r->at[n] = (1 + roots[n]) / 2;
+    for (int n = 0; n < CWI_NODES; n++) {
+        r->weight[n] = inner_weight(r->at, n, 1);
+        for (int i = 0; i < CWI_NODES; i++)
+            r->inner[i][n] = inner_weight(r->at, n, r->at[i]);
+    }
+}
+
+void cwi_reference_make(const cwi_frame *frame, cwi_reference *r)
+{
+    *r = (cwi_reference){.frame = frame};
+    cwi_knots_make(&frame->transfer, &r->knots);
+    make_rule(&r->rule);
+    cwi_frame_gradient_matrix(frame, r->to_eye);
+    r->has_gradients = frame->scene.lit || frame->transfer.gradient_count > 0;
+}
+
+/* What a ray meets in a cell; x goes from 0 to 1. */
+typedef struct medium {
+    const cwi_reference *reference;
+    const cwi_lighting *lighting;
+    const double *background;
+    double value[4], gradient[3][4]; /* cubics; gradients in eye space */
+    double length, depth, depth_rise;
+    const cwi_linear *linear; /* the piece's part of the transfer function */
+} medium;
+
+/* Light that came through a piece, and what the piece adds. */
+typedef struct passage {
+    double color[3], depth; /* optical */
+} passage;
+
+typedef struct sum {
+    double color[3], light, error;
+    double tolerance; /* per length */
+} sum;
+
+static double clamp(double x, double low, double high)
+{
+    return x < low ? low : x > high ? high : x;
+}
+
+/* Extinction and colour at a point. */
+static double glow(const medium *m, double x, double color[3])
+{
+    const cwi_frame *f = m->reference->frame;
+    const cwi_linear *l = m->linear;
+    const double value = clamp(cwi_cubic_at(m->value, x), l->low, l->high) - l->origin;
+    const double opacity = clamp(l->opacity + value * l->opacity_slope, 0, 1);
+    double extinction = cwi_frame_extinction(f, opacity), gradient[3];
+    for (int c = 0; c < 3; c++)
+        color[c] = l->color[c] + value * l->color_slope[c];
+    for (int a = 0; a < 3 && m->reference->has_gradients; a++)
+        gradient[a] = cwi_cubic_at(m->gradient[a], x);
+    if (f->transfer.gradient_count > 0)
+        extinction *= cw_transfer_gradient_factor(
+            &f->transfer, hypot(hypot(gradient[0], gradient[1]), gradient[2]) / f->unit_mm);
+    if (f->scene.lit)
+        cwi_lighting_shade(m->lighting, gradient, color);
+    const double cue = cwi_frame_cue(f, m->depth + x * m->depth_rise);
+    for (int c = 0; c < 3; c++)
+        color[c] = cue * color[c] + (1 - cue) * m->background[c];
+    return extinction;
+}
+
+static passage pass(const medium *m, double from, double to)
+{
+    const cwi_rule *r = &m->reference->rule;
+    const double length = (to - from) * m->length;
+    double extinction[CWI_NODES], color[CWI_NODES][3];
+    passage p = {0};
+    for (int n = 0; n < CWI_NODES; n++) {
+        extinction[n] = length * glow(m, from + r->at[n] * (to - from), color[n]);
+        p.depth += r->weight[n] * extinction[n];
+    }
+    for (int n = 0; n < CWI_NODES && p.depth > 0; n++) {
+        double before = 0;
+        for (int i = 0; i < CWI_NODES; i++)
+            before += r->inner[n][i] * extinction[i];
+        const double share = r->weight[n] * extinction[n] * exp(-before);
+        for (int c = 0; c < 3; c++)
+            p.color[c] += share * color[n][c];
+    }
+    return p;
+}
+
+static passage join(const passage *front, const passage *back)
+{
+    const double light = exp(-front->depth);
+    passage p = {.depth = front->depth + back->depth};
+    for (int c = 0; c < 3; c++)
+        p.color[c] = front->color[c] + light * back->color[c];
+    return p;
+}
+
+static double difference(const passage *a, const passage *b)
+{
+    double most = fabs(exp(-a->depth) - exp(-b->depth));
+    for (int c = 0; c < 3; c++)
+        most = fmax(most, fabs(a->color[c] - b->color[c]));
+    return most;
+}
+
+static void add(const medium *m, double from, double to, const passage *whole, int halvings,
+                sum *s)
+{
+    const double middle = (from + to) / 2;
+    const passage front = pass(m, from, middle), back = pass(m, middle, to);
+    const passage both = join(&front, &back);
+    const double error = s->light * difference(whole, &both);
+    if (error > fmax(s->tolerance * (to - from) * m->length, piece_tolerance) &&
+        halvings < MOST_HALVINGS) {
+        add(m, from, middle, &front, halvings + 1, s);
+        add(m, middle, to, &back, halvings + 1, s);
+        return;
+    }
+    for (int c = 0; c < 3; c++)
+        s->color[c] += s->light * both.color[c];
+    s->light *= exp(-both.depth);
+    s->error += error;
+}
+
+/* The gradient's cubics, in eye space. */
+static void find_gradients(medium *m, const cwi_walk *w)
+{
+    double g[3][8], cubic[3][4];
+    cwi_walk_gradients(w, g);
+    for (int a = 0; a < 3; a++)
+        cwi_walk_cubic(w, g[a], cubic[a]);
+    for (int a = 0; a < 3; a++)
+        for (int n = 0; n < 4; n++) {
+            m->gradient[a][n] = 0;
+            for (int b = 0; b < 3; b++)
+                m->gradient[a][n] += m->reference->to_eye[a][b] * cubic[b][n];
+        }
+}
+
+static bool is_visible(const cwi_knots *k, const double v[8])
+{
+    double low = v[0], high = v[0];
+    for (int n = 1; n < 8; n++) {
+        low = v[n] < low ? v[n] : low;
+        high = v[n] > high ? v[n] : high;
+    }
+    return cwi_knots_is_visible(k, low, high);
+}
+
+static void add_cell(medium *m, const cwi_walk *w, const cwi_ray *ray, sum *s)
+{
+    const cwi_knots *knots = &m->reference->knots;
+    cwi_piece pieces[CWI_PIECES];
+    double v[8];
+    bool has_gradients = !m->reference->has_gradients;
+    if (!cwi_walk_values(w, v) || !is_visible(knots, v))
+        return;
+    m->length = w->to - w->from;
+    m->depth = -w->from * ray->direction[2];
+    m->depth_rise = -m->length * ray->direction[2];
+    cwi_walk_cubic(w, v, m->value);
+    const size_t count = cwi_knots_cut(knots, m->value, pieces);
+    for (size_t n = 0; n < count; n++) {
+        if (!pieces[n].linear->is_visible)
+            continue;
+        if (!has_gradients)
+            find_gradients(m, w);
+        has_gradients = true;
+        m->linear = pieces[n].linear;
+        const passage whole = pass(m, pieces[n].from, pieces[n].to);
+        add(m, pieces[n].from, pieces[n].to, &whole, 0, s);
+    }
+}
+
+/* y is down; the background's first colour is on top. */
+static void background_at(const cwi_frame *f, double y, double color[3])
+{
+    const double share = y / (double)f->scene.height;
+    for (int c = 0; c < 3; c++)
+        color[c] = (1 - share) * (double)f->scene.background[0][c] +
+                   share * (double)f->scene.background[1][c];
+}
+
+double cwi_reference_ray(const cwi_reference *r, double x, double y, double depth,
+                         double out[4])
+{
+    cwi_ray ray;
+    cwi_walk walk;
+    cwi_lighting lighting;
+    double background[3], length = 0;
+    medium m = {.reference = r, .lighting = &lighting, .background = background};
+    sum s = {.light = 1};
+    cwi_ray_make(r->frame, x, y, depth, &ray);
+    for (int n = 0; n < ray.part_count; n++)
+        length += ray.parts[n][1] - ray.parts[n][0];
+    s.tolerance = tolerance / length;
+    background_at(r->frame, y, background);
+    cwi_lighting_make(r->frame, ray.direction, &lighting);
+    for (int n = 0; n < ray.part_count; n++) {
+        cwi_walk_start(&walk, r->frame, &ray, n);
+        while (s.light > dark && cwi_walk_next(&walk))
+            add_cell(&m, &walk, &ray, &s);
+    }
+    memcpy(out, s.color, sizeof s.color);
+    out[3] = 1 - s.light;
+    return s.error + (s.light < dark ? dark : 0);
+}
+
+typedef struct job {
+    const cwi_reference *reference;
+    const double *depths;
+    cw_picture *picture;
+    double *errors; /* of each row, the largest */
+} job;
+
+static void draw_row(void *context, size_t y)
+{
+    const job *work = context;
+    const size_t width = work->picture->width;
+    work->errors[y] = 0;
+    for (size_t x = 0; x < width; x++) {
+        double out[4];
+        const double depth = work->depths ? work->depths[y * width + x] : INFINITY;
+        const double error =
+            cwi_reference_ray(work->reference, (double)x + 0.5, (double)y + 0.5, depth, out);
+        work->errors[y] = fmax(work->errors[y], error);
+        for (size_t c = 0; c < 4; c++)
+            work->picture->pixels[4 * (y * width + x) + c] = (float)out[c];
+    }
+}
+
+cw_status cwi_reference_draw(const cwi_frame *frame, const double *depths, cw_picture *picture,
+                             double *estimate, cw_error *err)
+{
+    cwi_reference reference;
+    double *errors = cwi_alloc_zeroed(picture->height, sizeof *errors);
+    if (!errors)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu rows", picture->height);
+    cwi_reference_make(frame, &reference);
+    job work = {&reference, depths, picture, errors};
+    cw_status st =
+        cwi_each_layer(picture->height, picture->width * CWI_RAY_SAMPLES, frame->scene.threads,
+                       &frame->scene.progress, "drawing", draw_row, &work, err);
+    double most = 0;
+    for (size_t y = 0; y < picture->height; y++)
+        most = fmax(most, errors[y]);
+    if (estimate)
+        *estimate = most;
+    cwi_free(errors);
+    return st;
+}

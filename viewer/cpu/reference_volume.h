@@ -1,0 +1,46 @@
+/* The volume rendering integral of a scene, in double precision and to an error that is
+ * estimated: what faster modes are measured against. */
+#ifndef VIEWER_CPU_REFERENCE_VOLUME_H
+#define VIEWER_CPU_REFERENCE_VOLUME_H
+
+#include "viewer/scene/transfer_segments.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+enum { CWI_NODES = 4 };
+
+/* Quadrature by a polynomial through Gauss's points of 0..1: weights for the whole, and for
+ * from 0 to each point, which absorption up to there needs. */
+typedef struct cwi_rule {
+    double at[CWI_NODES], weight[CWI_NODES], inner[CWI_NODES][CWI_NODES];
+} cwi_rule;
+
+typedef struct cwi_reference {
+    const cwi_frame *frame;
+    cwi_knots knots;
+    cwi_rule rule;
+    double to_eye[3][3]; /* gradients */
+    bool has_gradients;  /* they are needed */
+} cwi_reference;
+
+CW_API void cwi_reference_make(const cwi_frame *frame, cwi_reference *reference);
+
+/* The ray through a point of the picture up to a depth (INFINITY: all of it): colour,
+ * premultiplied, and opacity. Returns the estimate of their largest error. */
+CW_API double cwi_reference_ray(const cwi_reference *reference, double x, double y,
+                                double depth, double out[4]);
+
+/* Draws a frame.
+ * depths    of the mesh in front of which everything is, a sample each; NULL: there is none
+ * estimate  the largest error of a sample, but for rounding to floats; may be NULL
+ * Returns   CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
+CW_API cw_status cwi_reference_draw(const cwi_frame *frame, const double *depths,
+                                    cw_picture *picture, double *estimate, cw_error *err);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,531 @@
+/* The V-buffer [Upson1988] went through the picture cell by cell; this goes along a ray cell by
+ * cell. In a cell it takes Gauss's two points, four values at a time: the trilinear field at
+ * both ends of the cell and at both points. Where these tell that the transfer function has a
+ * knot between them, or that the cell takes much of the light, the cell is cut, as the
+ * reference does it. Blocks of cells that the transfer function leaves empty are passed over.
+ */
+#include "viewer/cpu/vbuffer.h"
+
+#include "viewer/scene/transfer_segments.h"
+#include "viewer/scene/lighting.h"
+#include "viewer/cpu/ray_traversal.h"
+#include "viewer/scene/transfer_table.h"
+
+#include "core/base/parallel.h"
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/geometry/vec3.h"
+#include "core/volume/volume.h"
+
+#include <math.h>
+#include <string.h>
+
+typedef float lanes __attribute__((vector_size(16)));
+typedef int32_t int_lanes __attribute__((vector_size(16)));
+
+/* Two points of 0..1, both of weight 1/2, and how much of what is at the other one is taken for
+ * the way to a point: 1/4 -+ sqrt(3) / 6. */
+#define FIRST_POINT  0.21132486540518713
+#define SECOND_POINT 0.78867513459481287
+static const float to_first = -0.038675134594812866f, to_second = 0.53867513459481287f;
+
+/* Optical depth that two points are enough for. */
+static const float most_depth = 0.5f;
+
+/* What the extinction may differ by at two points of a piece, times its length. */
+static const float most_steepness = 0.1f;
+
+/* What the two points may differ by, where gradients count. */
+static const float most_turn = 2e-3f;
+
+typedef struct vbuffer vbuffer;
+
+/* Eight corners of a cell, those of even number and those of odd; false: one has no value. */
+typedef bool fetch_function(const vbuffer *b, const char *p, lanes *even, lanes *odd);
+
+/* For each row of the table (and what is below the first and above the last) the lowest and the
+ * highest part of the transfer function that its values have. */
+typedef struct row_parts {
+    uint8_t low, high;
+} row_parts;
+
+struct vbuffer {
+    const cwi_frame *frame;
+    const cwi_ranges *ranges;
+    const double *depths;
+    cw_picture *picture;
+    cwi_table table;
+    cwi_knots knots;
+    row_parts parts[CWI_TABLE_ROWS + 1];
+    uint8_t *distances; /* of blocks to visible ones */
+    fetch_function *fetch;
+    ptrdiff_t side[3];
+    double row_scale, row_bias; /* from a voxel to its row */
+    double to_eye[3][3];
+    float rows_to_eye[3][3]; /* of gradients in rows of the table */
+    bool has_gradients;
+};
+
+/* One ray under way. */
+typedef struct state {
+    const vbuffer *b;
+    const cwi_lighting *lighting;
+    cwi_ray ray;
+    cwi_walk walk;
+    lanes color;
+    float light;
+    float background[3];
+    bool has_gradient;     /* the cell's: */
+    double gradient[3][4]; /* cubics, eye space */
+} state;
+
+#define FETCH(name, ctype, text)                                                               \
+    static bool fetch_##name(const vbuffer *b, const char *p, lanes *even, lanes *odd)         \
+    {                                                                                          \
+        const cw_volume *v = &b->frame->volume;                                                \
+        bool is_whole = true;                                                                  \
+        for (int n = 0; n < 8; n++) {                                                          \
+            const double x =                                                                   \
+                (double)*(const ctype *)(p + (n & 1) * b->side[0] +                            \
+                                         (n >> 1 & 1) * b->side[1] + (n >> 2) * b->side[2]);   \
+            const float row = (float)(x * b->row_scale + b->row_bias);                         \
+            if (!isfinite(x) || (v->has_nodata && x == v->nodata))                             \
+                is_whole = false;                                                              \
+            if (n & 1)                                                                         \
+                (*odd)[n >> 1] = row;                                                          \
+            else                                                                               \
+                (*even)[n >> 1] = row;                                                         \
+        }                                                                                      \
+        return is_whole;                                                                       \
+    }
+CW_TYPE_TABLE(FETCH)
+#undef FETCH
+
+/* Packed along x, and every number that is one counts. */
+static bool fetch_floats(const vbuffer *b, const char *p, lanes *even, lanes *odd)
+{
+    const float *r0 = (const float *)p, *r1 = (const float *)(p + b->side[1]),
+                *r2 = (const float *)(p + b->side[2]),
+                *r3 = (const float *)(p + b->side[1] + b->side[2]);
+    const float scale = (float)b->row_scale, bias = (float)b->row_bias;
+    const lanes e = {r0[0], r1[0], r2[0], r3[0]}, o = {r0[1], r1[1], r2[1], r3[1]};
+    *even = e * scale + bias;
+    *odd = o * scale + bias;
+    const lanes none = (e - e) + (o - o); /* 0, or NaN */
+    return none[0] + none[1] + none[2] + none[3] == 0;
+}
+
+static fetch_function *choose_fetch(const cw_volume *v)
+{
+    static fetch_function *const functions[CW_TYPE_COUNT] = {
+#define ROW(name, ctype, text) fetch_##name,
+        CW_TYPE_TABLE(ROW)
+#undef ROW
+    };
+    if (v->type == CW_F32 && v->dim[0] > 1 && v->stride[0] == (ptrdiff_t)sizeof(float) &&
+        !v->has_nodata)
+        return fetch_floats;
+    return functions[v->type];
+}
+
+static inline lanes load(const float *p)
+{
+    lanes v;
+    memcpy(&v, p, sizeof v);
+    return v;
+}
+
+static inline lanes spread(float x)
+{
+    return (lanes){x, x, x, x};
+}
+
+/* exp(-x), to 2e-7 of itself: 2^n times a polynomial for 2^f, f from -1/2 to 1/2. */
+static inline lanes fade(lanes x)
+{
+    const int_lanes few = x < 80.0f;
+    const lanes y =
+        (lanes)(((int_lanes)x & few) | ((int_lanes)spread(80) & ~few)) * -1.44269504f;
+    const int_lanes n = __builtin_convertvector(y - 0.5f, int_lanes); /* y is hardly above 0 */
+    const lanes f = (y - __builtin_convertvector(n, lanes)) * 0.69314718f;
+    const lanes p =
+        ((((f * (1.0f / 720) + 1.0f / 120) * f + 1.0f / 24) * f + 1.0f / 6) * f + 0.5f) * f *
+            f +
+        f + 1;
+    return p * (lanes)((n + 127) << 23);
+}
+
+/* The field at four places of a line, as rows of the table. */
+static inline lanes rows_along(lanes even, lanes odd, const lanes at[3])
+{
+    const lanes rise = odd - even;
+    const lanes e0 = even[0] + rise[0] * at[0], e1 = even[1] + rise[1] * at[0];
+    const lanes e2 = even[2] + rise[2] * at[0], e3 = even[3] + rise[3] * at[0];
+    const lanes q0 = e0 + (e1 - e0) * at[1], q1 = e2 + (e3 - e2) * at[1];
+    return q0 + (q1 - q0) * at[2];
+}
+
+static inline lanes glow_of_row(const vbuffer *b, float row)
+{
+    const float most = (float)(CWI_TABLE_ROWS - 1);
+    const float at = row > 0 ? row < most ? row : most : 0;
+    int32_t n = (int32_t)at;
+    n = n > CWI_TABLE_ROWS - 2 ? CWI_TABLE_ROWS - 2 : n;
+    const lanes low = load(b->table.rows + 4 * n), high = load(b->table.rows + 4 * n + 4);
+    return low + (at - (float)n) * (high - low);
+}
+
+static void change_by_gradient(const state *s, const double gradient[3], lanes *glow)
+{
+    const cwi_frame *f = s->b->frame;
+    double color[3] = {(double)(*glow)[0], (double)(*glow)[1], (double)(*glow)[2]};
+    if (f->transfer.gradient_count > 0)
+        (*glow)[3] *= (float)cw_transfer_gradient_factor(
+            &f->transfer, sqrt(cwi_dot(gradient, gradient)) / f->unit_mm);
+    if (f->scene.lit) {
+        cwi_lighting_shade(s->lighting, gradient, color);
+        for (int a = 0; a < 3; a++)
+            (*glow)[a] = (float)color[a];
+    }
+}
+
+static void change_by_depth(const state *s, double x, lanes *glow)
+{
+    const cwi_walk *w = &s->walk;
+    const double t = w->from + x * (w->to - w->from);
+    const float cue = (float)cwi_frame_cue(s->b->frame, -t * s->ray.direction[2]);
+    for (int c = 0; c < 3; c++)
+        (*glow)[c] = cue * (*glow)[c] + (1 - cue) * s->background[c];
+}
+
+/* What a point glows with, of which the transfer function told. x: its place in the cell, 0 to
+ * 1; gradient: in eye space, if there is need of it */
+static inline lanes finish(const state *s, double x, const double gradient[3], lanes glow)
+{
+    if (s->b->has_gradients)
+        change_by_gradient(s, gradient, &glow);
+    if (s->b->frame->scene.depth_cue > 0)
+        change_by_depth(s, x, &glow);
+    return glow;
+}
+
+/* A stretch of a length by what is at its two points. What it adds is as opaque as its depth
+ * says, which is exact for more than what the points alone would add up to; they tell the
+ * colour. */
+static inline void pass(state *s, lanes first, lanes second, float length)
+{
+    const float a = first[3] * length, b = second[3] * length;
+    const lanes depths = {0.25f * a + to_first * b, to_second * a + 0.25f * b, 0.5f * (a + b),
+                          0};
+    const lanes left = fade(depths);
+    const float p = a * left[0], q = b * left[1];
+    if (!(p + q > 0))
+        return;
+    s->color += s->light * (1 - left[2]) / (p + q) * (p * first + q * second);
+    s->light *= left[2];
+}
+
+/* A point of a piece, by the transfer function itself. */
+static lanes glow_of_piece(const state *s, const cwi_linear *l, const double value[4], double x)
+{
+    double v = cwi_cubic_at(value, x);
+    v = (v < l->low ? l->low : v > l->high ? l->high : v) - l->origin;
+    const double opacity = fmin(fmax(l->opacity + v * l->opacity_slope, 0), 1);
+    lanes glow;
+    for (int c = 0; c < 3; c++)
+        glow[c] = (float)(l->color[c] + v * l->color_slope[c]);
+    glow[3] = (float)cwi_frame_extinction(s->b->frame, opacity);
+    double gradient[3] = {0};
+    for (int a = 0; a < 3 && s->has_gradient; a++)
+        gradient[a] = cwi_cubic_at(s->gradient[a], x);
+    return finish(s, x, gradient, glow);
+}
+
+/* Whether two points tell of a stretch well enough. Light may turn within a cell. */
+static inline bool is_told(const state *s, lanes first, lanes second, float length)
+{
+    const float depth = (first[3] + second[3]) * 0.5f * length;
+    if (depth > most_depth)
+        return false;
+    if (!s->b->has_gradients)
+        return true;
+    float most = fabsf(first[3] - second[3]) * length;
+    for (int c = 0; c < 3; c++)
+        most = fmaxf(most, depth * fabsf(first[c] - second[c]));
+    return s->light * most < most_turn;
+}
+
+/* A piece, in parts where two points do not tell of it. */
+static void pass_piece(state *s, const cwi_piece *piece, const double value[4])
+{
+    const float length = (float)(s->walk.to - s->walk.from);
+    double width = piece->to - piece->from;
+    for (int n = 0, parts = 1; n < parts; n++) {
+        const double from = piece->from + n * width;
+        const lanes first = glow_of_piece(s, piece->linear, value, from + FIRST_POINT * width);
+        const lanes second =
+            glow_of_piece(s, piece->linear, value, from + SECOND_POINT * width);
+        const float steepness = fabsf(first[3] - second[3]) * (float)width * length;
+        if (parts == 1 &&
+            (steepness > most_steepness || !is_told(s, first, second, (float)width * length))) {
+            const float depth = (first[3] + second[3]) * 0.5f * (float)width * length;
+            parts = (int)fminf(4 + 2 * depth / most_depth, 32);
+            width /= parts;
+            n = -1;
+            continue;
+        }
+        pass(s, first, second, (float)width * length);
+    }
+}
+
+static void find_gradients(state *s)
+{
+    double g[3][8], cubic[3][4];
+    s->has_gradient = true;
+    cwi_walk_gradients(&s->walk, g);
+    for (int a = 0; a < 3; a++)
+        cwi_walk_cubic(&s->walk, g[a], cubic[a]);
+    for (int a = 0; a < 3; a++)
+        for (int n = 0; n < 4; n++)
+            s->gradient[a][n] = s->b->to_eye[a][0] * cubic[0][n] +
+                                s->b->to_eye[a][1] * cubic[1][n] +
+                                s->b->to_eye[a][2] * cubic[2][n];
+}
+
+/* A cell with a knot in it. */
+static void pass_in_pieces(state *s)
+{
+    cwi_piece pieces[CWI_PIECES];
+    double v[8], value[4];
+    if (!cwi_walk_values(&s->walk, v))
+        return;
+    cwi_walk_cubic(&s->walk, v, value);
+    if (s->b->has_gradients)
+        find_gradients(s);
+    const size_t count = cwi_knots_cut(&s->b->knots, value, pieces);
+    for (size_t n = 0; n < count; n++)
+        if (pieces[n].linear->is_visible)
+            pass_piece(s, &pieces[n], value);
+}
+
+/* Gradients at the cell's corners, per voxel and in rows, as values are: by the cells on both
+ * sides along each axis. False: there is none on one side, or one without a value. */
+static bool fetch_gradients(const vbuffer *b, const cwi_walk *w, const char *p, lanes even,
+                            lanes odd, lanes g[3][2])
+{
+    const cw_volume *v = &b->frame->volume;
+    lanes low[3][2], high[3][2];
+    for (int a = 0; a < 3; a++)
+        if (w->at[a] < 1 || w->at[a] + 2 >= (ptrdiff_t)v->dim[a] ||
+            !b->fetch(b, p - v->stride[a], &low[a][0], &low[a][1]) ||
+            !b->fetch(b, p + v->stride[a], &high[a][0], &high[a][1]))
+            return false;
+    g[0][0] = 0.5f * (odd - low[0][0]);
+    g[0][1] = 0.5f * (high[0][1] - even);
+    for (int n = 0; n < 2; n++) {
+        const lanes e = n ? odd : even, *l = &low[1][n], *h = &high[1][n];
+        g[1][n] = 0.5f * ((lanes){e[1], (*h)[1], e[3], (*h)[3]} -
+                          (lanes){(*l)[0], e[0], (*l)[2], e[2]});
+        l = &low[2][n], h = &high[2][n];
+        g[2][n] = 0.5f * ((lanes){e[2], e[3], (*h)[2], (*h)[3]} -
+                          (lanes){(*l)[0], (*l)[1], e[0], e[1]});
+    }
+    return true;
+}
+
+/* The gradients at the two points of a cell, in eye space. */
+static void gradients_at_points(state *s, const char *p, lanes even, lanes odd,
+                                const lanes at[3], double gradients[2][3])
+{
+    lanes g[3][2], along[3];
+    if (!fetch_gradients(s->b, &s->walk, p, even, odd, g)) {
+        find_gradients(s);
+        for (int a = 0; a < 3; a++) {
+            gradients[0][a] = cwi_cubic_at(s->gradient[a], FIRST_POINT);
+            gradients[1][a] = cwi_cubic_at(s->gradient[a], SECOND_POINT);
+        }
+        return;
+    }
+    for (int a = 0; a < 3; a++)
+        along[a] = rows_along(g[a][0], g[a][1], at);
+    for (int r = 0; r < 3; r++) {
+        const float *m = s->b->rows_to_eye[r];
+        const lanes eye = m[0] * along[0] + m[1] * along[1] + m[2] * along[2];
+        gradients[0][r] = (double)eye[1];
+        gradients[1][r] = (double)eye[2];
+    }
+}
+
+static inline const row_parts *parts_of(const vbuffer *b, float row)
+{
+    const float most = (float)CWI_TABLE_ROWS;
+    const float at = row + 1;
+    return &b->parts[(int32_t)(at > 0 ? at < most ? at : most : 0)];
+}
+
+/* The values a cell may have along the ray. Where they turn, the cubic goes farther than at the
+ * four places: a parabola by half the difference, by little if it turns close to an end; a
+ * rough cubic by more. */
+static inline void range_of(lanes rows, float *low, float *high)
+{
+    *low = *high = rows[0];
+    for (int n = 1; n < 4; n++) {
+        *low = rows[n] < *low ? rows[n] : *low;
+        *high = rows[n] > *high ? rows[n] : *high;
+    }
+    const bool rises = rows[0] <= rows[1] && rows[1] <= rows[2] && rows[2] <= rows[3];
+    const bool falls = rows[0] >= rows[1] && rows[1] >= rows[2] && rows[2] >= rows[3];
+    const float beyond = (rises || falls ? 0.125f : 1.0f) * (*high - *low);
+    *low -= beyond;
+    *high += beyond;
+}
+
+static inline void pass_cell(state *s)
+{
+    const vbuffer *b = s->b;
+    const cwi_walk *w = &s->walk;
+    const cw_volume *v = &b->frame->volume;
+    lanes even, odd, at[3];
+    const char *p = (const char *)v->data + w->at[0] * v->stride[0] + w->at[1] * v->stride[1] +
+                    w->at[2] * v->stride[2];
+    if (!b->fetch(b, p, &even, &odd))
+        return;
+    const lanes x = {0, (float)FIRST_POINT, (float)SECOND_POINT, 1};
+    const double length = w->to - w->from;
+    for (int a = 0; a < 3; a++)
+        at[a] = (float)(w->index[a] + w->from * w->slope[a] - (double)w->at[a]) +
+                (float)(length * w->slope[a]) * x;
+    const lanes rows = rows_along(even, odd, at);
+    float low, high;
+    range_of(rows, &low, &high);
+    const int first = parts_of(b, low)->low, last = parts_of(b, high)->high;
+    if (first == last && !b->knots.linear[first].is_visible)
+        return;
+    if (first != last) {
+        pass_in_pieces(s);
+        return;
+    }
+    double gradients[2][3] = {0};
+    if (b->has_gradients)
+        gradients_at_points(s, p, even, odd, at, gradients);
+    const lanes front = finish(s, FIRST_POINT, gradients[0], glow_of_row(b, rows[1]));
+    const lanes back = finish(s, SECOND_POINT, gradients[1], glow_of_row(b, rows[2]));
+    if (is_told(s, front, back, (float)length))
+        pass(s, front, back, (float)length);
+    else
+        pass_in_pieces(s);
+}
+
+static void draw_part(state *s, int part, float least_light)
+{
+    cwi_walk *w = &s->walk;
+    cwi_walk_start(w, s->b->frame, &s->ray, part);
+    bool is_new = true;
+    while (w->t < w->stop && s->light > least_light) {
+        if (is_new) {
+            const int distance = s->b->distances[cwi_walk_block(w, s->b->ranges->dim)];
+            if (distance > 0) {
+                cwi_walk_leap(w, CWI_RANGE_EDGE, distance);
+                continue;
+            }
+        }
+        if (!cwi_walk_next(w))
+            break;
+        is_new = cwi_walk_changes_block(w);
+        pass_cell(s);
+    }
+}
+
+static void draw_pixel(const vbuffer *b, size_t x, size_t y)
+{
+    const size_t n = y * b->picture->width + x;
+    const cw_scene *scene = &b->frame->scene;
+    float *pixel = b->picture->pixels + 4 * n;
+    cwi_lighting lighting;
+    state s = {.b = b, .lighting = &lighting, .light = 1};
+    const float share = ((float)y + 0.5f) / (float)scene->height;
+    cwi_ray_make(b->frame, (double)x + 0.5, (double)y + 0.5,
+                 b->depths ? b->depths[n] : INFINITY, &s.ray);
+    if (scene->lit)
+        cwi_lighting_make(b->frame, s.ray.direction, &lighting);
+    for (int c = 0; c < 3; c++)
+        s.background[c] =
+            (1 - share) * scene->background[0][c] + share * scene->background[1][c];
+    for (int part = 0; part < s.ray.part_count; part++)
+        draw_part(&s, part, 1 - scene->stop_opacity);
+    for (int c = 0; c < 3; c++)
+        pixel[c] = s.color[c];
+    pixel[3] = 1 - s.light;
+}
+
+static void draw_row(void *context, size_t y)
+{
+    const vbuffer *b = context;
+    for (size_t x = 0; x < b->picture->width; x++)
+        draw_pixel(b, x, y);
+}
+
+/* Rows of the table stand at evenly spaced values; a part begins at its knot. */
+static void find_parts(vbuffer *b)
+{
+    const double step = (b->table.high - b->table.low) / (CWI_TABLE_ROWS - 1);
+    size_t before = 0; /* knots below the row's end */
+    for (size_t n = 0; n <= CWI_TABLE_ROWS; n++) {
+        const double begin = b->table.low + ((double)n - 1) * step,
+                     end = b->table.low + (double)n * step;
+        const size_t low = n > 0 ? cwi_knots_below(&b->knots, begin) : 0;
+        while (before < b->knots.count && (b->knots.at[before] < end || n == CWI_TABLE_ROWS))
+            before++;
+        b->parts[n].low = (uint8_t)low;
+        b->parts[n].high = (uint8_t)before;
+    }
+    b->parts[CWI_TABLE_ROWS].low = b->parts[CWI_TABLE_ROWS].high;
+}
+
+static bool is_visible(const void *knots, double low, double high)
+{
+    return cwi_knots_is_visible(knots, low, high);
+}
+
+static cw_status set_up(vbuffer *b, cw_error *err)
+{
+    const cw_volume *v = &b->frame->volume;
+    cw_status st = cwi_table_make(b->frame, &b->table, err);
+    if (st != CW_OK)
+        return st;
+    cwi_knots_make(&b->frame->transfer, &b->knots);
+    find_parts(b);
+    const double scale = (CWI_TABLE_ROWS - 1) / (b->table.high - b->table.low);
+    b->row_scale = v->slope * scale;
+    b->row_bias = (v->intercept - b->table.low) * scale;
+    b->fetch = choose_fetch(v);
+    for (int a = 0; a < 3; a++)
+        b->side[a] = v->dim[a] > 1 ? v->stride[a] : 0;
+    cwi_frame_gradient_matrix(b->frame, b->to_eye);
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+            b->rows_to_eye[r][c] = (float)(b->to_eye[r][c] / scale);
+    b->has_gradients = b->frame->scene.lit || b->frame->transfer.gradient_count > 0;
+    return cwi_ranges_distances(b->ranges, is_visible, &b->knots, &b->distances, err);
+}
+
+cw_status cwi_vbuffer_draw(const cwi_frame *frame, const cwi_ranges *ranges,
+                           const double *depths, cw_picture *picture, cw_error *err)
+{
+    vbuffer *b = cwi_alloc_zeroed(1, sizeof *b);
+    if (!b)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a picture");
+    b->frame = frame;
+    b->ranges = ranges;
+    b->depths = depths;
+    b->picture = picture;
+    cw_status st = set_up(b, err);
+    if (st == CW_OK)
+        st = cwi_each_layer(picture->height, picture->width * CWI_RAY_SAMPLES,
+                            frame->scene.threads, &frame->scene.progress, "drawing", draw_row,
+                            b, err);
+    cwi_free(b->distances);
+    cwi_table_free(&b->table);
+    cwi_free(b);
+    return st;
+}

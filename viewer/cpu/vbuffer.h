@@ -1,0 +1,21 @@
+/* Ray casting cell by cell, in single precision: as exact as a picture of bytes can show, and
+ * fast. */
+#ifndef VIEWER_CPU_VBUFFER_H
+#define VIEWER_CPU_VBUFFER_H
+
+#include "viewer/scene/frame_setup.h"
+#include "viewer/scene/block_ranges.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Draws a frame as cwi_reference_draw(). ranges: of the frame's volume */
+CW_API cw_status cwi_vbuffer_draw(const cwi_frame *frame, const cwi_ranges *ranges,
+                                  const double *depths, cw_picture *picture, cw_error *err);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

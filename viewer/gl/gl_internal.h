@@ -1,0 +1,200 @@
+/* What the files of the GL module share: the context, what was uploaded to it, and the modes.
+ */
+#ifndef VIEWER_GL_GL_INTERNAL_H
+#define VIEWER_GL_GL_INTERNAL_H
+
+#include "viewer/gl/gl.h"
+#include "viewer/gl/gl_context.h"
+#include "viewer/scene/block_ranges.h"
+#include "viewer/scene/transfer_table.h"
+
+/* Texture units that every shader finds the same things in. */
+enum {
+    CWI_UNIT_VOLUME,
+    CWI_UNIT_TABLE,    /* cwi_table, CWI_TABLE_ROWS x 1 */
+    CWI_UNIT_SEGMENTS, /* pre-integrated */
+    CWI_UNIT_SKIP,     /* blocks: how many blocks away the next visible one is */
+    CWI_UNIT_DEPTH,    /* of the mesh */
+    CWI_UNIT_GRADIENT,
+    CWI_UNIT_FACTOR, /* of the extinction, by the gradient's length */
+    CWI_UNIT_FREE    /* and those after it: a mode's own */
+};
+
+/* How texels are made of voxels. */
+typedef struct cwi_gl_texels {
+    GLenum inner, type;
+    size_t size;
+    bool as_is;         /* voxels of this type are texels when they are packed */
+    double scale, bias; /* voxel = texel (as shaders see it) x scale + bias */
+} cwi_gl_texels;
+
+/* A part of the volume that fits a texture: neighbours have a layer of samples in common. */
+typedef struct cwi_gl_brick {
+    size_t first[3], count[3];
+    GLuint values, gradients; /* 0 until they are needed */
+    GLuint voxels, buffer;    /* the caller's memory as a texture; 0 until it is needed */
+} cwi_gl_brick;
+
+/* A volume on the GPU. The number in a texel times scale plus bias is the scaled value. */
+typedef struct cwi_gl_volume {
+    cw_volume key; /* the view that was uploaded */
+    size_t edge;   /* as the scene had it */
+    cwi_gl_texels kind;
+    double scale, bias;
+    double range; /* of the scaled values, above 0; gradients are told in it */
+    size_t brick_count;
+    size_t texture_bytes; /* counted as taken */
+    cwi_gl_brick *bricks;
+    cwi_ranges ranges;
+    bool in_place; /* shaders read voxels, not values */
+} cwi_gl_volume;
+
+/* The transfer function on the GPU. */
+typedef struct cwi_gl_transfer {
+    cw_transfer key;
+    double opacity_units;
+    bool is_made;
+    cwi_table table;
+    GLuint rows, skip, segments, factor;
+    size_t segment_rows;   /* a side of segments */
+    uint8_t *away;         /* what skip holds */
+    double segment_length; /* of what segments holds; 0: nothing */
+    double factor_end;     /* gradient per unit of eye space at the end of factor */
+} cwi_gl_transfer;
+
+enum { CWI_FACTOR_ROWS = 1024, CWI_GL_PROGRAMS = 64 };
+
+/* Where pictures are drawn: RGBA and depth textures of the picture's size. */
+typedef struct cwi_gl_target {
+    GLuint framebuffer, color, depth;
+    GLuint rays; /* the same color without depth, which shaders may then read */
+    GLsizei width, height;
+} cwi_gl_target;
+
+/* How the scene's progress is asked while a picture is drawn. */
+typedef struct cwi_gl_watch {
+    cw_progress progress; /* report: NULL when the scene has none */
+    bool is_astray;       /* the context could not be made current again after a report */
+    double last;          /* when the last report was, in seconds */
+    double from, to;      /* shares of the picture: of what is being drawn */
+    size_t rows, layer_rows, triangles; /* to draw before the next report */
+} cwi_gl_watch;
+
+typedef struct cwi_gl_program {
+    const char *vertex, *fragment; /* addresses of the sources */
+    char defines[320];             /* the volume's before the mode's */
+    GLuint name;
+} cwi_gl_program;
+
+struct cwi_gl {
+    cwi_gl_context context;
+    char name[256];
+    const cwi_frame *frame; /* that is being drawn */
+    cwi_gl_watch watch;
+    GLuint frame_block, empty_array;
+    cwi_gl_target target;
+    cwi_gl_volume volume;
+    cwi_gl_transfer transfer;
+    size_t program_count;
+    cwi_gl_program programs[CWI_GL_PROGRAMS];
+    void *state[CW_MODE_COUNT]; /* each mode's own */
+};
+
+/* A mode: draws into gl->target, which is bound, cleared or with the mesh in it. */
+typedef struct cwi_gl_mode {
+    cw_mode mode;
+    bool goes_along_rays; /* draws into target.rays */
+    /* Of the mode's state, made at the first call. The frame is gl->frame. */
+    cw_status (*draw)(cwi_gl *gl, void **state, cw_error *err);
+    /* Frees it, when another volume or mesh comes and at the end; NULL: there is none. */
+    void (*drop)(void *state);
+    bool needs_textures; /* its shaders read values by themselves, not by texel_at() alone */
+} cwi_gl_mode;
+
+extern const cwi_gl_mode cwi_gl_composite, cwi_gl_mip, cwi_gl_minip, cwi_gl_average,
+    cwi_gl_local_mip, cwi_gl_mesh_mode, cwi_gl_projection, cwi_gl_slices, cwi_gl_splat,
+    cwi_gl_splat_tree, cwi_gl_texture_mode, cwi_gl_shaded_texture;
+
+/* The mode's row; NULL when GL does not draw it. */
+const cwi_gl_mode *cwi_gl_find_mode(cw_mode mode);
+
+/* A program of two of the sources in shaders/ (cwi_glsl_NAME), each after common.glsl; made
+ * once. The uniform block Frame and the texture units above are set.
+ *
+ * defines  "#define A 1\n...", at most 255 characters; "" for none
+ * Returns  CW_ERR_BACKEND with GL's words */
+cw_status cwi_gl_use(cwi_gl *gl, const char *vertex, const char *fragment, const char *defines,
+                     GLuint *program, cw_error *err);
+void cwi_gl_set(GLuint program, const char *name, float value);
+void cwi_gl_set3(GLuint program, const char *name, const double value[3]);
+extern const char cwi_glsl_common[], cwi_glsl_screen[];
+
+/* Draws the scene's mesh, opaque, with its depth. */
+cw_status cwi_gl_draw_mesh(cwi_gl *gl, cw_error *err);
+
+/* Defines of shaders that go along rays: what is not needed is not compiled, as machines may go
+ * through it all the same. */
+const char *cwi_gl_ray_defines(const cw_scene *scene);
+
+/* Draws a triangle over the whole picture. */
+void cwi_gl_draw_screen(cwi_gl *gl);
+
+/* Reports progress: waits for what was drawn, gives the caller its context, and takes the own
+ * one back. CW_ERR_CANCELLED; state of GL stays, but for the framebuffer's scissor. */
+cw_status cwi_gl_report(cwi_gl *gl, const char *step, double done, cw_error *err);
+/* The same, when the last report was some milliseconds ago: for loops of the CPU. */
+cw_status cwi_gl_report_soon(cwi_gl *gl, const char *step, double done, cw_error *err);
+/* What is drawn next is the n-th part of count of the picture. */
+void cwi_gl_part(cwi_gl *gl, size_t n, size_t count);
+
+/* Draws what takes long, and reports in between: the whole picture, for fragment shaders that
+ * go along rays; anything that keeps to the scissor, in bands; triangles of what is bound, by
+ * their indices or one after another. CW_ERR_CANCELLED */
+cw_status cwi_gl_draw_rays(cwi_gl *gl, cw_error *err);
+cw_status cwi_gl_draw_layer(cwi_gl *gl, void (*draw)(void *context), void *context,
+                            cw_error *err);
+cw_status cwi_gl_draw_triangles(cwi_gl *gl, size_t count, bool indexed, cw_error *err);
+
+/* Has the frame's volume for shaders: where it is, if that is not to be textures and what draws
+ * can read it there, or uploaded. What is there already stays. */
+cw_status cwi_gl_take_volume(cwi_gl *gl, bool as_textures, cw_error *err);
+/* Whether shaders can read the only brick's voxels where the caller has them: the processor
+ * draws, and they are of a type that it fetches, one after another. Then there is no upload,
+ * and no memory for another volume. */
+bool cwi_gl_find_voxels(cwi_gl *gl);
+/* x fastest, without gaps. */
+bool cwi_gl_is_packed(const cw_volume *volume);
+/* What shaders have to be defined with. */
+const char *cwi_gl_volume_defines(const cwi_gl_volume *volume);
+/* What shaders have to be defined with to find gradients. Those of a small volume become a
+ * texture; of a large one, which then would be five times as large, they are differences of
+ * interpolated values. */
+cw_status cwi_gl_need_gradients(cwi_gl *gl, const char **defines, cw_error *err);
+/* The derivatives of voxels, unscaled, along each axis: what gradients are made of. */
+void cwi_gl_derivatives(const cw_volume *volume, const size_t at[3], double derivatives[3]);
+void cwi_gl_drop_volume(cwi_gl *gl);
+
+/* Binds a brick's textures and sets the uniforms brick_first and brick_size of a program. */
+void cwi_gl_bind_brick(GLuint program, const cwi_gl_brick *brick);
+
+/* Sets the uniform last_block for a texture of so many blocks. */
+void cwi_gl_set_last_block(GLuint program, const size_t dim[3]);
+
+/* Numbers of the bricks from the farthest to the nearest; free with cwi_free(). */
+size_t *cwi_gl_order_bricks(const cwi_gl *gl);
+
+/* Uploads the frame's transfer function, unless it is there, and binds it. */
+cw_status cwi_gl_take_transfer(cwi_gl *gl, cw_error *err);
+/* And what it leaves empty: the texture skip, and away. */
+cw_status cwi_gl_need_skip(cwi_gl *gl, cw_error *err);
+/* And pre-integrated, for segments of a length in units of eye space. */
+cw_status cwi_gl_need_segments(cwi_gl *gl, double length, cw_error *err);
+void cwi_gl_drop_transfer(cwi_gl *gl);
+
+cw_status cwi_gl_take_target(cwi_gl *gl, cw_error *err);
+void cwi_gl_drop_target(cwi_gl *gl);
+
+/* A texture without mipmaps, linear or nearest, clamped to its edge, bound to a unit. */
+GLuint cwi_gl_texture(GLenum kind, int unit, bool linear);
+
+#endif

@@ -1,0 +1,143 @@
+/* Asking whether to go on. Who does not ask pays nothing: all is drawn at once then. Bands and
+ * ranges give the same picture, for fragments are the same, and in the same order. */
+#include "viewer/modes/gl_draw.h"
+
+#include "core/base/status.h"
+
+#include <omp.h>
+
+/* Seconds between two reports: not too many of them, and none too late. */
+static const double soon = 0.005, late = 0.012;
+
+enum { FIRST_ROWS = 8, MOST_ROWS = 16, LEAST_ROWS = 4, FIRST_TRIANGLES = 4096 };
+
+/* The caller finds its own context, and may make another current. */
+static bool ask(void *user, const char *step, double done)
+{
+    cwi_gl *gl = user;
+    const cw_progress *p = &gl->frame->scene.progress;
+    glFinish();
+    cwi_gl_leave(gl);
+    const bool goes_on = p->report(p->user, step, done);
+    gl->watch.is_astray = !cwi_gl_enter(gl);
+    gl->watch.last = omp_get_wtime();
+    return goes_on && !gl->watch.is_astray;
+}
+
+void cwi_gl_start_watch(cwi_gl *gl)
+{
+    gl->watch = (cwi_gl_watch){.rows = FIRST_ROWS,
+                               .layer_rows = FIRST_ROWS,
+                               .triangles = FIRST_TRIANGLES,
+                               .last = omp_get_wtime(),
+                               .to = 1};
+    if (gl->frame->scene.progress.report)
+        gl->watch.progress = (cw_progress){ask, gl};
+}
+
+static bool is_watched(const cwi_gl *gl)
+{
+    return gl->watch.progress.report != NULL;
+}
+
+cw_status cwi_gl_report(cwi_gl *gl, const char *step, double done, cw_error *err)
+{
+    return cwi_progress(&gl->watch.progress, step, done, err);
+}
+
+cw_status cwi_gl_report_soon(cwi_gl *gl, const char *step, double done, cw_error *err)
+{
+    return is_watched(gl) && omp_get_wtime() - gl->watch.last > soon
+               ? cwi_gl_report(gl, step, done, err)
+               : CW_OK;
+}
+
+void cwi_gl_part(cwi_gl *gl, size_t n, size_t count)
+{
+    gl->watch.from = (double)n / (double)count;
+    gl->watch.to = (double)(n + 1) / (double)count;
+}
+
+/* After drawing a share of a part. */
+static cw_status report_share(cwi_gl *gl, size_t n, size_t count, cw_error *err)
+{
+    const cwi_gl_watch *w = &gl->watch;
+    const double share = n < count ? (double)n / (double)count : 1;
+    return cwi_gl_report(gl, "drawing", w->from + share * (w->to - w->from), err);
+}
+
+/* More of what was quick, less of what was slow. */
+static size_t adapt(size_t drawn, double since, size_t least, size_t most)
+{
+    glFinish();
+    const double seconds = omp_get_wtime() - since;
+    const size_t next = seconds < soon ? 2 * drawn : seconds > late ? drawn / 2 : drawn;
+    return next < least ? least : next > most ? most : next;
+}
+
+/* Bands start at even rows: what shaders find out from neighbours stays the same. */
+static cw_status draw_bands(cwi_gl *gl, void (*draw)(void *), void *context, size_t *rows,
+                            size_t most, cw_error *err)
+{
+    const size_t height = (size_t)gl->target.height;
+    cw_status st = CW_OK;
+    glEnable(GL_SCISSOR_TEST);
+    for (size_t y = 0; y < height && st == CW_OK;) {
+        const double start = omp_get_wtime();
+        glScissor(0, (GLint)y, gl->target.width, (GLsizei)*rows);
+        draw(context);
+        y += *rows;
+        *rows = adapt(*rows, start, LEAST_ROWS, most);
+        st = report_share(gl, y, height, err);
+    }
+    glDisable(GL_SCISSOR_TEST);
+    return st;
+}
+
+static void draw_screen(void *gl)
+{
+    cwi_gl_draw_screen(gl);
+}
+
+/* The next rows may be much slower than the last: so bands stay narrow. */
+cw_status cwi_gl_draw_rays(cwi_gl *gl, cw_error *err)
+{
+    if (is_watched(gl))
+        return draw_bands(gl, draw_screen, gl, &gl->watch.rows, MOST_ROWS, err);
+    cwi_gl_draw_screen(gl);
+    return CW_OK;
+}
+
+cw_status cwi_gl_draw_layer(cwi_gl *gl, void (*draw)(void *), void *context, cw_error *err)
+{
+    if (is_watched(gl))
+        return draw_bands(gl, draw, context, &gl->watch.layer_rows,
+                          (size_t)gl->target.height + 1, err);
+    draw(context);
+    return CW_OK;
+}
+
+static void draw_range(size_t first, size_t count, bool indexed)
+{
+    if (indexed)
+        glDrawElements(GL_TRIANGLES, (GLsizei)(3 * count), GL_UNSIGNED_INT,
+                       (const void *)(3 * first * sizeof(uint32_t)));
+    else
+        glDrawArrays(GL_TRIANGLES, (GLint)(3 * first), (GLsizei)(3 * count));
+}
+
+cw_status cwi_gl_draw_triangles(cwi_gl *gl, size_t count, bool indexed, cw_error *err)
+{
+    cw_status st = CW_OK;
+    if (!is_watched(gl))
+        draw_range(0, count, indexed);
+    for (size_t n = 0; is_watched(gl) && n < count && st == CW_OK;) {
+        const size_t wanted = gl->watch.triangles, left = count - n;
+        const double start = omp_get_wtime();
+        draw_range(n, wanted < left ? wanted : left, indexed);
+        n += wanted;
+        gl->watch.triangles = adapt(wanted, start, 64, (size_t)1 << 20);
+        st = report_share(gl, n, count, err);
+    }
+    return st;
+}

@@ -1,0 +1,530 @@
+#include <cubewright/overlay.h>
+
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/geometry/vec3.h"
+#include "viewer/scene/mesh_tint.h"
+#include "viewer/image/strokes.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { MOST_BARS = 512, MOST_LABELS = 8, TEXT = 48 };
+
+/* A picture that is drawn on. Pixels of the image, not samples of the frame. */
+typedef struct board {
+    const cw_overlay *o;
+    const cwi_frame *frame;
+    cw_image *image;
+    double width, height, text, margin;
+    double top; /* above it the middle is taken */
+    double ink[4], halo[4];
+    double corners[8][3];
+} board;
+
+static const double axis_colors[3][3] = {
+    {0.95, 0.45, 0.40}, {0.45, 0.85, 0.45}, {0.50, 0.65, 1}};
+
+/* The longest of 1, 2, 5 times a power of ten that is not above a length. */
+static double round_down(double length)
+{
+    const double power = pow(10, floor(log10(length) + 1e-9)), share = length / power;
+    return (share >= 5 ? 5 : share >= 2 ? 2 : 1) * power;
+}
+
+static double round_up(double length)
+{
+    const double power = pow(10, floor(log10(length) + 1e-9)), share = length / power;
+    return (share <= 1 ? 1 : share <= 2 ? 2 : share <= 5 ? 5 : 10) * power;
+}
+
+static void print_length(double mm, char text[TEXT])
+{
+    if (mm < 1)
+        snprintf(text, TEXT, "%.6g \xc2\xb5m", mm * 1000);
+    else if (mm < 1000)
+        snprintf(text, TEXT, "%.6g mm", mm);
+    else
+        snprintf(text, TEXT, "%.6g m", mm / 1000);
+}
+
+/* With the minus that is as long as the plus. */
+static void print_value(double value, char text[TEXT])
+{
+    const double shown = value == 0 ? 0 : value; /* not -0 */
+    snprintf(text, TEXT, "%s%.6g", shown < 0 ? "\xe2\x88\x92" : "", fabs(shown));
+}
+
+static void tint(double color[4], const double rgb[3], double alpha)
+{
+    memcpy(color, rgb, 3 * sizeof *color);
+    color[3] = alpha;
+}
+
+/* Strokes in a colour, on a halo that keeps them apart from any picture. */
+static void draw_lines(const board *b, const cwi_stroke *strokes, size_t count, double width,
+                       const double color[4])
+{
+    cwi_pen pen = {.image = b->image, .width = width + 1.6 * b->text / 10};
+    memcpy(pen.color, b->halo, sizeof pen.color);
+    pen.color[3] *= color[3];
+    cwi_pen_draw(&pen, strokes, count);
+    pen.width = width;
+    memcpy(pen.color, color, sizeof pen.color);
+    cwi_pen_draw(&pen, strokes, count);
+}
+
+/* anchor  0: x is the text's left end; 0.5: its middle; 1: its right end */
+static void write_text(const board *b, double x, double y, double anchor, const double color[4],
+                       const char *text)
+{
+    const double left = x - anchor * cwi_text_width(b->text, text);
+    const double width = fmax(b->text / 7, 1.1);
+    cwi_pen pen = {.image = b->image, .width = 2.6 * width};
+    memcpy(pen.color, b->halo, sizeof pen.color);
+    cwi_pen_text(&pen, left, y, b->text, text);
+    pen.width = width;
+    memcpy(pen.color, color, sizeof pen.color);
+    cwi_pen_text(&pen, left, y, b->text, text);
+}
+
+/* A point of the world in the picture; false behind the eye. */
+static bool project(const board *b, const double world[3], double at[2])
+{
+    const cwi_frame *f = b->frame;
+    double d[3], eye[3];
+    for (int a = 0; a < 3; a++)
+        d[a] = (world[a] - f->eye_mm[a]) / f->unit_mm;
+    for (int a = 0; a < 3; a++)
+        eye[a] = cwi_dot(f->axes[a], d);
+    const double w = f->perspective ? -eye[2] : 1;
+    if (w < 1e-9)
+        return false;
+    at[0] = b->width / 2 * (1 + eye[0] / w / f->half[0]);
+    at[1] = b->height / 2 * (1 - eye[1] / w / f->half[1]);
+    return true;
+}
+
+/* Corners of the volume's box, else of the mesh's: bit a of a corner's number tells its end
+ * along axis a. */
+static void find_corners(board *b)
+{
+    const cwi_frame *f = b->frame;
+    double ends[2][3];
+    if (!f->volume.data)
+        cw_mesh_bounds(f->scene.mesh, ends[0], ends[1]);
+    for (int n = 0; n < 8; n++) {
+        double p[3];
+        for (int a = 0; a < 3; a++)
+            p[a] = !f->volume.data ? ends[n >> a & 1][a] : n >> a & 1 ? f->high[a] : f->low[a];
+        if (f->volume.data)
+            cw_volume_to_world(&f->volume, p, b->corners[n]);
+        else
+            memcpy(b->corners[n], p, sizeof p);
+    }
+}
+
+/* Whether the face at an end of an axis is seen from outside. */
+static bool is_seen(const board *b, int axis, int end)
+{
+    const cwi_frame *f = b->frame;
+    const int at = end << axis;
+    const double *from = b->corners[at];
+    double side[3][3], across[3], eye[3];
+    for (int a = 0; a < 3; a++) /* along the axis: from the face inwards */
+        for (int c = 0; c < 3; c++)
+            side[a][c] = b->corners[at ^ 1 << a][c] - from[c];
+    cwi_cross(side[(axis + 1) % 3], side[(axis + 2) % 3], across);
+    for (int c = 0; c < 3; c++)
+        eye[c] = f->perspective ? f->eye_mm[c] - from[c] : f->axes[2][c];
+    return cwi_dot(across, eye) * cwi_dot(across, side[axis]) < 0;
+}
+
+static void draw_box(const board *b)
+{
+    for (int edge = 0; edge < 12; edge++) {
+        const int axis = edge / 4, next = (axis + 1) % 3, last = (axis + 2) % 3;
+        const int at = (edge & 1) << next | (edge >> 1 & 1) << last;
+        const bool seen = is_seen(b, next, edge & 1) || is_seen(b, last, edge >> 1 & 1);
+        double color[4];
+        cwi_stroke s;
+        tint(color, b->ink, b->ink[3] * (seen ? 0.7 : 0.25));
+        if (project(b, b->corners[at], s.from) && project(b, b->corners[at | 1 << axis], s.to))
+            draw_lines(b, &s, 1, fmax(b->text / 9, 1), color);
+    }
+}
+
+/* The world's directions, the farthest first. */
+static void draw_triad(const board *b)
+{
+    static const char *const names[3] = {"L", "P", "S"};
+    const double size = 3.2 * b->text;
+    const double middle[2] = {b->margin + 1.5 * size, b->height - b->margin - 1.5 * size};
+    int order[3] = {0, 1, 2};
+    for (int i = 0; i < 3; i++)
+        for (int j = i + 1; j < 3; j++)
+            if (b->frame->axes[2][order[j]] < b->frame->axes[2][order[i]]) {
+                const int keep = order[i];
+                order[i] = order[j];
+                order[j] = keep;
+            }
+    for (int n = 0; n < 3; n++) {
+        const int a = order[n];
+        const double right = b->frame->axes[0][a], up = b->frame->axes[1][a];
+        const cwi_stroke s = {{middle[0], middle[1]},
+                              {middle[0] + size * right, middle[1] - size * up}};
+        double color[4];
+        tint(color, axis_colors[a], 1);
+        for (int c = 0; c < 3 && b->halo[0] > 0; c++)
+            color[c] *= 0.7; /* on a bright picture */
+        draw_lines(b, &s, 1, fmax(b->text / 5, 1.5), color);
+        write_text(b, middle[0] + 1.35 * size * right,
+                   middle[1] - 1.35 * size * up + b->text / 2, 0.5, color, names[a]);
+    }
+}
+
+/* Where a direction leads, the main way first. */
+static void name_direction(const double d[3], char text[4])
+{
+    static const char names[3][2] = {{'R', 'L'}, {'A', 'P'}, {'I', 'S'}};
+    bool used[3] = {false};
+    size_t count = 0;
+    for (int n = 0; n < 3; n++) {
+        int best = -1;
+        for (int a = 0; a < 3; a++)
+            if (!used[a] && fabs(d[a]) > 0.35 && (best < 0 || fabs(d[a]) > fabs(d[best])))
+                best = a;
+        if (best < 0)
+            break;
+        used[best] = true;
+        text[count++] = names[best][d[best] > 0];
+    }
+    text[count] = 0;
+}
+
+static void draw_letters(const board *b)
+{
+    const double low = b->height - b->margin - (b->o->scale_bar ? 3.2 * b->text : 0);
+    const struct {
+        double x, y, anchor;
+        int axis, sign;
+    } places[4] = {{b->width - b->margin, (b->height + b->text) / 2, 1, 0, 1},
+                   {b->margin, (b->height + b->text) / 2, 0, 0, -1},
+                   {b->width / 2, b->top + b->text, 0.5, 1, 1},
+                   {b->width / 2, low, 0.5, 1, -1}};
+    for (int n = 0; n < 4; n++) {
+        double d[3];
+        char text[4];
+        for (int a = 0; a < 3; a++)
+            d[a] = places[n].sign * b->frame->axes[places[n].axis][a];
+        name_direction(d, text);
+        write_text(b, places[n].x, places[n].y, places[n].anchor, b->ink, text);
+    }
+}
+
+static void find_scale_bar(const cwi_frame *f, double width, double height, double *mm,
+                           double *pixels)
+{
+    double away = 1;
+    if (f->perspective) {
+        away = 0;
+        for (int a = 0; a < 3; a++)
+            away += (f->eye_mm[a] - f->scene.camera.target[a]) / f->unit_mm * f->axes[2][a];
+    }
+    const double pixels_a_mm = height / (2 * f->half[1] * away * f->unit_mm);
+    *mm = round_down(0.25 * width / pixels_a_mm);
+    *pixels = *mm * pixels_a_mm;
+}
+
+static void draw_scale_bar(const board *b)
+{
+    double mm, length;
+    char text[TEXT];
+    find_scale_bar(b->frame, b->width, b->height, &mm, &length);
+    const double left = (b->width - length) / 2, y = b->height - b->margin, tick = b->text / 2;
+    const cwi_stroke s[3] = {{{left, y}, {left + length, y}},
+                             {{left, y - tick}, {left, y}},
+                             {{left + length, y - tick}, {left + length, y}}};
+    draw_lines(b, s, 3, fmax(b->text / 6, 1), b->ink);
+    print_length(mm, text);
+    write_text(b, b->width / 2, y - 0.7 * b->text, 0.5, b->ink, text);
+}
+
+/* From the transfer function's first point to its last. */
+static void find_range(const cw_transfer *t, double range[2])
+{
+    range[0] = INFINITY;
+    range[1] = -INFINITY;
+    for (size_t n = 0; n < t->color_count; n++)
+        range[0] = fmin(range[0], t->colors[n].value),
+        range[1] = fmax(range[1], t->colors[n].value);
+    for (size_t n = 0; n < t->opacity_count; n++)
+        range[0] = fmin(range[0], t->opacities[n].value),
+        range[1] = fmax(range[1], t->opacities[n].value);
+    if (!(range[0] < range[1])) {
+        const double middle = isfinite(range[0]) ? range[0] : 0;
+        range[0] = middle - 0.5;
+        range[1] = middle + 0.5;
+    }
+}
+
+static void frame_box(const board *b, double left, double top, double right, double bottom)
+{
+    const cwi_stroke s[4] = {{{left, top}, {right, top}},
+                             {{right, top}, {right, bottom}},
+                             {{right, bottom}, {left, bottom}},
+                             {{left, bottom}, {left, top}}};
+    cwi_pen pen = {.image = b->image, .width = fmax(b->text / 9, 1)};
+    memcpy(pen.color, b->ink, sizeof pen.color);
+    cwi_pen_draw(&pen, s, 4);
+}
+
+/* The colour of a share of the bar's range: of the volume's values, else of what tints the
+ * mesh. */
+static void bar_color(const cwi_frame *f, const double range[2], double share, double rgb[3])
+{
+    double opacity;
+    if (f->volume.data)
+        cw_transfer_at(&f->transfer, range[0] + share * (range[1] - range[0]), rgb, &opacity);
+    else
+        cwi_ramp_color(share, rgb);
+}
+
+static void fill_bar(const board *b, const double range[2], const double box[4])
+{
+    cwi_pen pen = {.image = b->image, .color = {0, 0, 0, 1}};
+    for (double y = floor(box[1]); y < box[3]; y++) {
+        const double high = fmax(y, box[1]), low = fmin(y + 1, box[3]);
+        bar_color(b->frame, range, (box[3] - (high + low) / 2) / (box[3] - box[1]), pen.color);
+        cwi_pen_fill(&pen, box[0], high, box[2], low);
+    }
+    frame_box(b, box[0], box[1], box[2], box[3]);
+}
+
+static cw_status draw_color_bar(const board *b, cw_error *err)
+{
+    double range[2];
+    const double right = b->width - b->margin;
+    const double box[4] = {right - 1.6 * b->text, 3.2 * b->margin, right, 0.44 * b->height};
+    if (b->frame->volume.data)
+        find_range(&b->frame->transfer, range);
+    else if (cwi_tint_range(&b->frame->scene, range, err) != CW_OK)
+        return CW_ERR_ARGUMENT;
+    const double span = range[1] - range[0], step = round_up(span / (MOST_LABELS - 2));
+    fill_bar(b, range, box);
+    for (double n = ceil(range[0] / step - 1e-9); n * step <= range[1] + 1e-9 * span; n++) {
+        const double y = box[3] - (n * step - range[0]) / span * (box[3] - box[1]);
+        const cwi_stroke tick = {{box[0] - b->text / 2, y}, {box[0], y}};
+        char text[TEXT];
+        draw_lines(b, &tick, 1, fmax(b->text / 9, 1), b->ink);
+        print_value(n * step, text);
+        write_text(b, box[0] - 0.9 * b->text, y + b->text / 2, 1, b->ink, text);
+    }
+    return CW_OK;
+}
+
+/* Heights of bars, 0 to 1, each of the most frequent of its bins. */
+static void find_bars(const cw_statistics *s, double *bars, size_t count)
+{
+    double most = 1;
+    memset(bars, 0, count * sizeof *bars);
+    for (size_t n = 0; n < s->bin_count; n++)
+        most = fmax(most, log1p((double)s->bins[n]));
+    for (size_t i = 0; i < count; i++)
+        for (size_t n = i * s->bin_count / count; n <= ((i + 1) * s->bin_count - 1) / count;
+             n++)
+            bars[i] = fmax(bars[i], log1p((double)s->bins[n]) / most);
+}
+
+/* The opacity at the ends of a range, and at the transfer function's points between. */
+static size_t find_curve(const cw_transfer *t, const double range[2],
+                         double points[CW_TRANSFER_POINTS + 2][2])
+{
+    double color[3];
+    size_t count = 1;
+    points[0][0] = range[0];
+    for (size_t n = 0; n < t->opacity_count; n++)
+        if (t->opacities[n].value > range[0] && t->opacities[n].value < range[1]) {
+            points[count][0] = t->opacities[n].value;
+            points[count++][1] = (double)t->opacities[n].opacity;
+        }
+    points[count][0] = range[1];
+    cw_transfer_at(t, range[0], color, &points[0][1]);
+    cw_transfer_at(t, range[1], color, &points[count][1]);
+    return count + 1;
+}
+
+/* As high as the box where it is highest, which is told. */
+static void draw_curve(const board *b, const double range[2], const double box[4])
+{
+    double points[CW_TRANSFER_POINTS + 2][2], most = 0, color[4];
+    cwi_stroke s[CW_TRANSFER_POINTS + 1];
+    char text[TEXT];
+    const size_t count = find_curve(&b->frame->transfer, range, points);
+    for (size_t n = 0; n < count; n++)
+        most = fmax(most, points[n][1]);
+    for (size_t n = 0; n < count; n++) {
+        const double at[2] = {box[0] + (points[n][0] - range[0]) / (range[1] - range[0]) *
+                                           (box[2] - box[0]),
+                              box[3] - points[n][1] / fmax(most, 1e-6) * (box[3] - box[1])};
+        if (n > 0)
+            memcpy(s[n - 1].to, at, sizeof at);
+        if (n + 1 < count)
+            memcpy(s[n].from, at, sizeof at);
+    }
+    tint(color, (const double[3]){1, 0.75, 0.2}, 1);
+    draw_lines(b, s, count - 1, fmax(b->text / 6, 1.2), color);
+    print_value(most, text);
+    write_text(b, box[0] - b->text / 2, box[1] + b->text, 1, color, text);
+}
+
+static void draw_histogram(const board *b)
+{
+    const cw_statistics *s = b->o->statistics;
+    const double range[2] = {s->min, s->max > s->min ? s->max : s->min + 1};
+    const double bottom = b->height - b->margin - 1.6 * b->text;
+    const double box[4] = {0.70 * b->width, bottom - 0.18 * b->height, b->width - b->margin,
+                           bottom};
+    double bars[MOST_BARS];
+    const size_t count = (size_t)fmin(fmax(floor(box[2] - box[0]), 1), MOST_BARS);
+    const double wide = (box[2] - box[0]) / (double)count;
+    char text[TEXT];
+    cwi_pen pen = {.image = b->image};
+    tint(pen.color, b->halo, 0.45);
+    cwi_pen_fill(&pen, box[0], box[1], box[2], box[3]);
+    find_bars(s, bars, count);
+    tint(pen.color, b->ink, 0.55);
+    for (size_t n = 0; n < count; n++)
+        cwi_pen_fill(&pen, box[0] + (double)n * wide, box[3] - bars[n] * (box[3] - box[1]),
+                     box[0] + (double)(n + 1) * wide, box[3]);
+    draw_curve(b, range, box);
+    frame_box(b, box[0], box[1], box[2], box[3]);
+    for (int end = 0; end < 2; end++) {
+        print_value(range[end], text);
+        write_text(b, box[2 * end], box[3] + 1.5 * b->text, end, b->ink, text);
+    }
+}
+
+/* The letter at the top moves below lines that reach it. */
+static cw_status draw_caption(board *b, cw_error *err)
+{
+    const char *line = b->o->caption;
+    for (double y = b->margin + b->text; line; y += 1.8 * b->text) {
+        const char *end = strchr(line, '\n');
+        const size_t length = end ? (size_t)(end - line) : strlen(line);
+        char *text = cwi_alloc_array(length + 1, 1);
+        if (!text)
+            return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a caption");
+        memcpy(text, line, length);
+        text[length] = 0;
+        write_text(b, b->margin, y, 0, b->ink, text);
+        if (b->margin + cwi_text_width(b->text, text) > b->width / 2 - 2 * b->text)
+            b->top = y + 0.8 * b->text;
+        cwi_free(text);
+        line = end ? end + 1 : NULL;
+    }
+    return CW_OK;
+}
+
+/* Of the picture's rim, where things are written; what is clear counts as dark. */
+static bool is_bright(const cw_image *image)
+{
+    const size_t w = image->width, h = image->height;
+    double sum = 0, count = 0;
+    for (size_t y = 0; y < h; y++)
+        for (size_t x = 0; x < w;
+             x += y < h / 8 || y >= h - h / 8 || w < 2 ? 1 : w - 1, count++) {
+            const uint8_t *p = image->pixels + 4 * (y * w + x);
+            sum += (0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2]) / 255 * (p[3] / 255.0);
+        }
+    return sum > 0.5 * count;
+}
+
+static void choose_ink(board *b)
+{
+    const uint8_t *c = b->o->color;
+    const bool given = c[0] || c[1] || c[2] || c[3];
+    const double plain = is_bright(b->image) ? 0 : 1;
+    for (int a = 0; a < 4; a++)
+        b->ink[a] = given ? c[a] / 255.0 : a < 3 ? plain : 1;
+    const double bright = 0.2126 * b->ink[0] + 0.7152 * b->ink[1] + 0.0722 * b->ink[2];
+    tint(b->halo, bright > 0.5 ? (const double[3]){0} : (const double[3]){1, 1, 1}, 0.5);
+}
+
+static cw_status check(const cw_overlay *o, const cwi_frame *f, cw_error *err)
+{
+    const cw_statistics *s = o->statistics;
+    if (o->histogram && !(s && s->bin_count > 0 && s->bins))
+        return cw_fail(err, CW_ERR_ARGUMENT, "a histogram needs statistics with bins");
+    if (o->histogram && !f->volume.data)
+        return cw_fail(err, CW_ERR_ARGUMENT, "a histogram is of a volume that is drawn");
+    if (o->color_bar && !f->volume.data && f->scene.tint == CW_TINT_COLORS)
+        return cw_fail(err, CW_ERR_ARGUMENT, "a colour bar needs a volume or a tinted mesh");
+    if (!(o->text_px >= 0 && o->text_px <= 1000))
+        return cw_fail(err, CW_ERR_ARGUMENT, "letters %g pixels high: expected up to 1000",
+                       o->text_px);
+    return CW_OK;
+}
+
+/* The frame of a scene, if the image has its shape to a pixel. */
+static cw_status take_frame(const cw_scene *scene, const cw_image *image, cwi_frame *frame,
+                            cw_error *err)
+{
+    if (!image->pixels)
+        return cw_fail(err, CW_ERR_ARGUMENT, "the image is empty");
+    cw_status st = cwi_frame_init(frame, scene, err);
+    if (st != CW_OK)
+        return st;
+    const double w = (double)frame->scene.width, h = (double)frame->scene.height;
+    if (fabs((double)image->width * h - (double)image->height * w) > fmax(w, h))
+        return cw_fail(err, CW_ERR_ARGUMENT, "an image of %zu x %zu is not one of this scene",
+                       image->width, image->height);
+    return CW_OK;
+}
+
+cw_status cw_scale_bar(const cw_scene *scene, const cw_image *image, double *length_mm,
+                       double *length_px, cw_error *err)
+{
+    cwi_frame frame;
+    cw_status st = take_frame(scene, image, &frame, err);
+    if (st == CW_OK)
+        find_scale_bar(&frame, (double)image->width, (double)image->height, length_mm,
+                       length_px);
+    return st;
+}
+
+cw_status cw_overlay_draw(const cw_overlay *overlay, const cw_scene *scene, cw_image *image,
+                          cw_error *err)
+{
+    cwi_frame frame;
+    cw_status st = take_frame(scene, image, &frame, err);
+    if (st == CW_OK)
+        st = check(overlay, &frame, err);
+    if (st != CW_OK)
+        return st;
+    const double h = (double)image->height;
+    board b = {.o = overlay,
+               .frame = &frame,
+               .image = image,
+               .width = (double)image->width,
+               .height = h,
+               .text = overlay->text_px > 0 ? overlay->text_px : fmax(round(h / 48), 7)};
+    b.margin = b.top = 1.2 * b.text;
+    choose_ink(&b);
+    st = draw_caption(&b, err);
+    if (overlay->axes) {
+        find_corners(&b);
+        draw_box(&b);
+        draw_triad(&b);
+    }
+    if (overlay->letters)
+        draw_letters(&b);
+    if (overlay->scale_bar)
+        draw_scale_bar(&b);
+    if (overlay->color_bar && st == CW_OK)
+        st = draw_color_bar(&b, err);
+    if (overlay->histogram)
+        draw_histogram(&b);
+    return st;
+}

@@ -1,0 +1,60 @@
+#include <cubewright/picture.h>
+
+#include "core/base/memory.h"
+#include "core/base/status.h"
+
+#include <math.h>
+
+enum { MAX_SIZE = 16384 };
+
+cw_status cw_picture_alloc(cw_picture *picture, size_t width, size_t height, cw_error *err)
+{
+    *picture = (cw_picture){0};
+    if (width < 1 || width > MAX_SIZE || height < 1 || height > MAX_SIZE)
+        return cw_fail(err, CW_ERR_ARGUMENT, "a picture of %zu x %zu: expected 1 to %d pixels",
+                       width, height, MAX_SIZE);
+    picture->pixels = cwi_alloc_zeroed(width * height, 4 * sizeof(float));
+    if (!picture->pixels)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a picture of %zu x %zu", width,
+                       height);
+    picture->width = width;
+    picture->height = height;
+    return CW_OK;
+}
+
+void cw_picture_free(cw_picture *picture)
+{
+    cwi_free(picture->pixels);
+    *picture = (cw_picture){0};
+}
+
+static uint8_t to_byte(double share)
+{
+    return (uint8_t)lround(255 * fmin(fmax(share, 0), 1));
+}
+
+/* One pixel over a background, whose colours are not premultiplied. */
+static void show_pixel(const float *pixel, const double background[4], uint8_t *out)
+{
+    const double through = fmax(1 - (double)pixel[3], 0) * background[3];
+    const double alpha = (double)pixel[3] + through;
+    for (int c = 0; c < 3; c++)
+        out[c] = alpha > 0 ? to_byte(((double)pixel[c] + through * background[c]) / alpha) : 0;
+    out[3] = to_byte(alpha);
+}
+
+cw_status cw_picture_show(const cw_picture *picture, const uint8_t background[2][4],
+                          cw_image *image, cw_error *err)
+{
+    const size_t w = picture->width, h = picture->height;
+    cw_status st = cw_image_alloc(image, w, h, err);
+    for (size_t y = 0; y < h && st == CW_OK; y++) {
+        double row[4];
+        const double share = ((double)y + 0.5) / (double)h;
+        for (int c = 0; c < 4; c++)
+            row[c] = ((1 - share) * background[0][c] + share * background[1][c]) / 255;
+        for (size_t x = 0; x < w; x++)
+            show_pixel(picture->pixels + 4 * (y * w + x), row, image->pixels + 4 * (y * w + x));
+    }
+    return st;
+}

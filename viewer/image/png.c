@@ -1,0 +1,134 @@
+#include <cubewright/picture.h>
+
+#include "core/base/memory.h"
+#include "core/base/atomic_file.h"
+#include "core/base/status.h"
+
+#include <png.h>
+#include <setjmp.h>
+#include <string.h>
+
+cw_status cw_image_alloc(cw_image *image, size_t width, size_t height, cw_error *err)
+{
+    size_t pixels;
+    *image = (cw_image){0};
+    if (cwi_size_mul(width, height, &pixels))
+        image->pixels = cwi_alloc_zeroed(pixels, 4);
+    if (!image->pixels)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a picture of %zu x %zu", width,
+                       height);
+    image->width = width;
+    image->height = height;
+    return CW_OK;
+}
+
+void cw_image_free(cw_image *image)
+{
+    cwi_free(image->pixels);
+    *image = (cw_image){0};
+}
+
+/* What libpng's callbacks need. The status outlives the jump they leave by. */
+typedef struct writer {
+    cwi_outfile *file;
+    cw_error *err;
+    cw_status status;
+    bool starved; /* libpng itself reports this in many different words */
+} writer;
+
+static void on_bytes(png_structp png, png_bytep bytes, size_t size)
+{
+    writer *w = png_get_io_ptr(png);
+    w->status = cwi_outfile_write(w->file, bytes, size, w->err);
+    if (w->status != CW_OK)
+        png_longjmp(png, 1);
+}
+
+static void on_flush(png_structp png)
+{
+    (void)png; /* the commit flushes */
+}
+
+static void on_error(png_structp png, png_const_charp words)
+{
+    writer *w = png_get_error_ptr(png);
+    w->status = w->starved ? cw_fail(w->err, CW_ERR_NO_MEMORY, "memory ran out in libpng")
+                           : cw_fail(w->err, CW_ERR_BACKEND, "libpng failed: %s", words);
+    png_longjmp(png, 1);
+}
+
+static void on_warning(png_structp png, png_const_charp words)
+{
+    (void)png, (void)words; /* about the picture's metadata; we write none */
+}
+
+static png_voidp on_malloc(png_structp png, png_alloc_size_t size)
+{
+    writer *w = png_get_mem_ptr(png);
+    void *memory = cwi_alloc_array(size, 1);
+    w->starved = w->starved || !memory;
+    return memory;
+}
+
+static void on_free(png_structp png, png_voidp memory)
+{
+    (void)png;
+    cwi_free(memory);
+}
+
+static bool is_opaque(const cw_image *image)
+{
+    for (size_t i = 0; i < image->width * image->height; i++)
+        if (image->pixels[4 * i + 3] != 255)
+            return false;
+    return true;
+}
+
+/* Leaves by libpng's jump on any error: nothing here may own memory. */
+static void put_image(png_structp png, png_infop info, const cw_image *image)
+{
+    const bool opaque = is_opaque(image);
+    png_set_IHDR(png, info, (png_uint_32)image->width, (png_uint_32)image->height, 8,
+                 opaque ? PNG_COLOR_TYPE_RGB : PNG_COLOR_TYPE_RGBA, PNG_INTERLACE_NONE,
+                 PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_sRGB(png, info, PNG_sRGB_INTENT_PERCEPTUAL);
+    png_write_info(png, info);
+    if (opaque)
+        png_set_filler(png, 0, PNG_FILLER_AFTER); /* pixels stay 4 bytes apart in memory */
+    for (size_t y = 0; y < image->height; y++)
+        png_write_row(png, image->pixels + 4 * image->width * y);
+    png_write_end(png, info);
+}
+
+static cw_status encode(writer *w, const cw_image *image)
+{
+    png_structp png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, w, on_error, on_warning,
+                                                w, on_malloc, on_free);
+    png_infop info = png ? png_create_info_struct(png) : NULL;
+    if (!info) {
+        png_destroy_write_struct(&png, &info);
+        return w->status != CW_OK
+                   ? w->status
+                   : cw_fail(w->err, CW_ERR_NO_MEMORY, "no memory to write a PNG");
+    }
+    if (setjmp(png_jmpbuf(png)) == 0) {
+        png_set_write_fn(png, w, on_bytes, on_flush);
+        put_image(png, info, image);
+    }
+    png_destroy_write_struct(&png, &info);
+    return w->status;
+}
+
+cw_status cw_image_write(const char *path, const cw_image *image, cw_error *err)
+{
+    writer w = {.err = err};
+    cw_status st = image->pixels
+                       ? cwi_outfile_open(&w.file, path, false, err)
+                       : cw_fail(err, CW_ERR_ARGUMENT, "there is no picture to write");
+    if (st == CW_OK)
+        st = encode(&w, image);
+    if (st == CW_OK)
+        st = cwi_outfile_commit(&w.file, err);
+    cwi_outfile_abort(&w.file);
+    return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
+}

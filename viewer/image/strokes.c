@@ -1,0 +1,106 @@
+#include "viewer/image/strokes.h"
+
+#include <math.h>
+
+static double clamp(double x, double low, double high)
+{
+    return fmin(fmax(x, low), high);
+}
+
+/* Over what is there; neither is premultiplied. */
+static void blend(uint8_t *pixel, const double color[4], double share)
+{
+    const double alpha = color[3] * share, below = pixel[3] / 255.0 * (1 - alpha);
+    if (alpha <= 0)
+        return;
+    for (int c = 0; c < 3; c++)
+        pixel[c] =
+            (uint8_t)lround((255 * color[c] * alpha + pixel[c] * below) / (alpha + below));
+    pixel[3] = (uint8_t)lround(255 * (alpha + below));
+}
+
+static double square_of_distance(const cwi_stroke *s, double x, double y)
+{
+    const double d[2] = {s->to[0] - s->from[0], s->to[1] - s->from[1]};
+    const double p[2] = {x - s->from[0], y - s->from[1]};
+    const double square = d[0] * d[0] + d[1] * d[1];
+    const double t = square > 0 ? clamp((p[0] * d[0] + p[1] * d[1]) / square, 0, 1) : 0;
+    const double off[2] = {p[0] - t * d[0], p[1] - t * d[1]};
+    return off[0] * off[0] + off[1] * off[1];
+}
+
+/* Pixels from low to high, cut to a picture of that size. */
+static void cut_span(double low, double high, size_t size, size_t span[2])
+{
+    span[0] = (size_t)clamp(floor(low), 0, (double)size);
+    span[1] = (size_t)clamp(ceil(high), 0, (double)size);
+}
+
+static void find_rows(const cwi_stroke *strokes, size_t count, double reach, size_t size,
+                      size_t span[2])
+{
+    double low = INFINITY, high = -INFINITY;
+    for (size_t n = 0; n < count; n++) {
+        low = fmin(low, fmin(strokes[n].from[1], strokes[n].to[1]));
+        high = fmax(high, fmax(strokes[n].from[1], strokes[n].to[1]));
+    }
+    cut_span(low - reach, high + reach, size, span);
+}
+
+/* The columns in which strokes may touch a row: those of the parts that are in reach of it. */
+static void find_columns(const cwi_stroke *strokes, size_t count, double y, double reach,
+                         size_t size, size_t span[2])
+{
+    double low = INFINITY, high = -INFINITY;
+    for (size_t n = 0; n < count; n++) {
+        const cwi_stroke *s = &strokes[n];
+        const double rise = s->to[1] - s->from[1], away = y - s->from[1];
+        double t[2] = {0, 1};
+        if (fabs(rise) > 1e-9) {
+            const double a = (away - reach) / rise, b = (away + reach) / rise;
+            t[0] = clamp(fmin(a, b), 0, 1);
+            t[1] = clamp(fmax(a, b), 0, 1);
+        }
+        for (int e = 0; e < 2 && t[0] <= t[1]; e++) {
+            const double x = s->from[0] + t[e] * (s->to[0] - s->from[0]);
+            low = fmin(low, x);
+            high = fmax(high, x);
+        }
+    }
+    cut_span(low - reach, high + reach, size, span);
+}
+
+void cwi_pen_draw(const cwi_pen *pen, const cwi_stroke *strokes, size_t count)
+{
+    const double reach = pen->width / 2 + 0.5;
+    size_t columns[2], rows[2];
+    find_rows(strokes, count, reach, pen->image->height, rows);
+    for (size_t row = rows[0]; row < rows[1]; row++) {
+        const double y = (double)row + 0.5;
+        find_columns(strokes, count, y, reach, pen->image->width, columns);
+        for (size_t x = columns[0]; x < columns[1]; x++) {
+            double near = INFINITY;
+            for (size_t n = 0; n < count; n++)
+                near = fmin(near, square_of_distance(&strokes[n], (double)x + 0.5, y));
+            blend(pen->image->pixels + 4 * (row * pen->image->width + x), pen->color,
+                  clamp(reach - sqrt(near), 0, 1) * fmin(pen->width, 1));
+        }
+    }
+}
+
+/* How much of pixel n is between two coordinates. */
+static double overlap(size_t n, double low, double high)
+{
+    return fmax(fmin(high, (double)n + 1) - fmax(low, (double)n), 0);
+}
+
+void cwi_pen_fill(const cwi_pen *pen, double left, double top, double right, double bottom)
+{
+    size_t columns[2], rows[2];
+    cut_span(left, right, pen->image->width, columns);
+    cut_span(top, bottom, pen->image->height, rows);
+    for (size_t y = rows[0]; y < rows[1]; y++)
+        for (size_t x = columns[0]; x < columns[1]; x++)
+            blend(pen->image->pixels + 4 * (y * pen->image->width + x), pen->color,
+                  overlap(x, left, right) * overlap(y, top, bottom));
+}

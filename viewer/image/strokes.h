@@ -1,0 +1,48 @@
+/* Lines and letters on images, antialiased: a pixel's share of a stroke is how far its middle
+ * is inside of the stroke's outline, from 0 half a pixel outside to 1 half a pixel inside.
+ * Coordinates are pixels from the upper left corner; the first pixel's middle is (0.5, 0.5). */
+#ifndef VIEWER_IMAGE_STROKES_H
+#define VIEWER_IMAGE_STROKES_H
+
+#include <cubewright/picture.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct cwi_pen {
+    cw_image *image;
+    double width;    /* of strokes */
+    double color[4]; /* sRGB and opacity */
+} cwi_pen;
+
+/* A line between two points. */
+typedef struct cwi_stroke {
+    double from[2], to[2];
+} cwi_stroke;
+
+/* Strokes as one figure: where several meet, the pixel is covered once. */
+CW_API void cwi_pen_draw(const cwi_pen *pen, const cwi_stroke *strokes, size_t count);
+
+/* A filled rectangle; parts of pixels count as such. */
+CW_API void cwi_pen_fill(const cwi_pen *pen, double left, double top, double right,
+                         double bottom);
+
+/* Text, UTF-8, with capitals of a height, from a point of the baseline on; and its width. What
+ * the font does not have is a box. */
+CW_API void cwi_pen_text(const cwi_pen *pen, double x, double y, double height,
+                         const char *text);
+CW_API double cwi_text_width(double height, const char *text);
+
+/* The strokes of a character, in sixths of the height of capitals, y down from their top; how
+ * many (at most as many as fit), and the character's width. 0 for one that the font does not
+ * have. */
+enum { CWI_GLYPH_STROKES = 24 };
+CW_API size_t cwi_glyph(uint32_t character, cwi_stroke strokes[CWI_GLYPH_STROKES],
+                        double *width);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,64 @@
+/* A box of the world as a person sees and drags it: a handle in the middle of each face. */
+#ifndef VIEWER_INTERACT_CLIP_BOX_HANDLES_H
+#define VIEWER_INTERACT_CLIP_BOX_HANDLES_H
+
+#include <cubewright/camera.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* A picture that is looked at. */
+typedef struct cwi_view {
+    cw_camera camera;
+    size_t width, height; /* pixels */
+} cwi_view;
+
+typedef struct cwi_world_box {
+    double low[3], high[3];
+} cwi_world_box;
+
+/* Handle 2 a is that of the low face of axis a, 2 a + 1 that of the high one. */
+enum { CWI_HANDLES = 6, CWI_HANDLE_NONE = -1, CWI_BOX_EDGES = 12 };
+
+typedef struct cwi_handle {
+    bool shown;      /* it is before the eye; else the rest is 0 */
+    double pixel[2]; /* from the upper left corner, y down; may be beyond the picture */
+    double depth_mm; /* from the eye's plane */
+    bool faces_away; /* its face is seen from inside */
+} cwi_handle;
+
+/* The part of an edge that is before the eye. */
+typedef struct cwi_box_edge {
+    bool shown;
+    double pixels[2][2];
+    bool is_behind; /* both its faces face away: the box hides it */
+} cwi_box_edge;
+
+CW_API void cwi_handles_place(const cwi_view *view, const cwi_world_box *box,
+                              cwi_handle handles[CWI_HANDLES]);
+
+/* The handle at most so many pixels away, of several the one nearest to the eye;
+ * CWI_HANDLE_NONE. */
+CW_API int cwi_handles_hit(const cwi_handle handles[CWI_HANDLES], const double pixel[2],
+                           double radius_px);
+
+/* Drags a handle's face along its axis to where that comes closest to the line of sight through
+ * a pixel. A mouse that took a handle beside its middle keeps that distance if the caller adds
+ * it to the pixel.
+ *
+ * bounds  where faces stay; the box stays that thick at least, wherever that leaves it room
+ * False, and the box is as it was, where the line of sight tells nothing: it is within 3
+ * degrees of the axis, or comes closest to it behind the eye. */
+CW_API bool cwi_handles_drag(const cwi_view *view, const cwi_world_box *bounds,
+                             double thickness_mm, int handle, const double pixel[2],
+                             cwi_world_box *box);
+
+CW_API void cwi_handles_edges(const cwi_view *view, const cwi_world_box *box,
+                              cwi_box_edge edges[CWI_BOX_EDGES]);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

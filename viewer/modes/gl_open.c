@@ -1,0 +1,84 @@
+/* Opening and closing what draws by OpenGL. */
+#include "viewer/modes/gl_draw.h"
+
+#include "core/base/memory.h"
+#include "core/base/status.h"
+
+bool cwi_gl_enter(cwi_gl *gl)
+{
+    return cwi_gl_context_enter(&gl->context);
+}
+
+void cwi_gl_leave(cwi_gl *gl)
+{
+    cwi_gl_context_leave(&gl->context);
+}
+
+/* What Mesa's software OpenGL was seen to take before there is anything to draw. */
+enum { DRIVER_BYTES = 72 << 20 };
+
+static cw_status gl_open(cwi_gl **out, cw_error *err)
+{
+    if (!cwi_memory_take(DRIVER_BYTES))
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for OpenGL");
+    cwi_gl *gl = cwi_alloc_zeroed(1, sizeof *gl);
+    cw_status st = gl ? cwi_gl_context_open(&gl->context, err)
+                      : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for OpenGL");
+    if (st != CW_OK) {
+        cwi_free(gl);
+        cwi_memory_give(DRIVER_BYTES);
+        return st;
+    }
+    cwi_gl_describe(gl->name, sizeof gl->name);
+    glGenBuffers(1, &gl->frame_block);
+    glGenVertexArrays(1, &gl->empty_array);
+    cwi_gl_leave(gl);
+    *out = gl;
+    return CW_OK;
+}
+
+static void drop_states(cwi_gl *gl)
+{
+    for (int m = 0; m < CW_MODE_COUNT; m++) {
+        const cwi_gl_mode *mode = cwi_gl_find_mode((cw_mode)m);
+        if (mode && mode->drop && gl->state[m])
+            mode->drop(gl->state[m]);
+        gl->state[m] = NULL;
+    }
+}
+
+void cwi_gl_drop_scene(cwi_gl *gl)
+{
+    drop_states(gl);
+    cwi_gl_drop_volume(gl);
+    cwi_gl_drop_transfer(gl);
+}
+
+static void gl_forget(cwi_gl *gl)
+{
+    cwi_gl_enter(gl);
+    cwi_gl_drop_scene(gl);
+    cwi_gl_leave(gl);
+}
+
+static void gl_close(cwi_gl *gl)
+{
+    cwi_gl_enter(gl);
+    cwi_gl_drop_scene(gl);
+    cwi_gl_drop_target(gl);
+    for (size_t n = 0; n < gl->program_count; n++)
+        glDeleteProgram(gl->programs[n].name);
+    glDeleteBuffers(1, &gl->frame_block);
+    glDeleteVertexArrays(1, &gl->empty_array);
+    cwi_gl_context_close(&gl->context);
+    cwi_free(gl);
+    cwi_memory_give(DRIVER_BYTES);
+}
+
+static const char *gl_name(const cwi_gl *gl)
+{
+    return gl->name;
+}
+
+CW_API extern const cwi_gl_functions cwi_module_gl;
+const cwi_gl_functions cwi_module_gl = {gl_open, gl_close, gl_name, gl_forget, cwi_gl_draw};

@@ -1,0 +1,60 @@
+/* Ray casting of volumes: emission and absorption along each ray, by a fragment shader. */
+#include "viewer/gl/gl_internal.h"
+
+#include "core/base/memory.h"
+#include "core/base/status.h"
+
+#include <stdio.h>
+
+extern const char cwi_glsl_composite[];
+
+static void describe(const cw_scene *s, const cw_transfer *t, const char *gradients,
+                     char *defines, size_t size)
+{
+    snprintf(defines, size, "%s%s%s%s%s%s%s%s%s%s", gradients,
+             s->no_preintegration ? "" : "#define SEGMENTS\n",
+             s->no_skipping ? "" : "#define SKIP\n", s->cell_steps ? "#define CELLS\n" : "",
+             cwi_gl_ray_defines(s), s->jitter ? "#define JITTER\n" : "",
+             s->depth_cue > 0 ? "#define CUE\n" : "", s->lit ? "#define LIT\n" : "",
+             t->gradient_count ? "#define FACTOR\n" : "",
+             s->exact_filter ? "#define EXACT_FILTER\n" : "");
+}
+
+static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
+{
+    (void)state;
+    char defines[256];
+    const char *gradients = "";
+    GLuint program;
+    const cw_scene *s = &gl->frame->scene;
+    /* a segment has samples at both ends and in the middle */
+    const double length = s->no_preintegration || s->cell_steps ? s->step_vox : 2 * s->step_vox;
+    cw_status st = cwi_gl_need_skip(gl, err);
+    if (st == CW_OK && !s->no_preintegration)
+        st = cwi_gl_need_segments(gl, length, err);
+    if (st == CW_OK && (s->lit || gl->frame->transfer.gradient_count > 0))
+        st = cwi_gl_need_gradients(gl, &gradients, err);
+    describe(s, &gl->frame->transfer, gradients, defines, sizeof defines);
+    if (st == CW_OK)
+        st = cwi_gl_use(gl, cwi_glsl_screen, cwi_glsl_composite, defines, &program, err);
+    if (st != CW_OK)
+        return st;
+    size_t *order = cwi_gl_order_bricks(gl);
+    if (!order)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the order of bricks");
+    cwi_gl_set(program, "step_length", (float)length);
+    cwi_gl_set_last_block(program, gl->volume.ranges.dim);
+    glDisable(GL_DEPTH_TEST);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+    for (size_t n = 0; n < gl->volume.brick_count && st == CW_OK; n++) {
+        cwi_gl_bind_brick(program, &gl->volume.bricks[order[n]]);
+        cwi_gl_part(gl, n, gl->volume.brick_count);
+        st = cwi_gl_draw_rays(gl, err);
+    }
+    glDisable(GL_BLEND);
+    cwi_free(order);
+    return st;
+}
+
+const cwi_gl_mode cwi_gl_composite = {CW_MODE_COMPOSITE, true, draw, NULL, false};

@@ -1,0 +1,142 @@
+/* Slices through 3D textures of data, or of colours when these are interpolated
+ * [Wilson1994]. */
+#include "viewer/modes/slab_textures.h"
+
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/volume/volume.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+typedef struct texture_state {
+    cwi_gl_slabs slices;
+    size_t class_count; /* as many as bricks, or 0 */
+    GLuint *classes;    /* textures of classified voxels */
+    cw_transfer key;    /* they were made for */
+    double opacity_units;
+} texture_state;
+
+static void drop_classes(texture_state *t)
+{
+    if (t->class_count)
+        glDeleteTextures((GLsizei)t->class_count, t->classes);
+    cwi_free(t->classes);
+    t->classes = NULL;
+    t->class_count = 0;
+}
+
+static void drop(void *state)
+{
+    texture_state *t = state;
+    cwi_gl_drop_slices(&t->slices);
+    drop_classes(t);
+    cwi_free(t);
+}
+
+/* Emission and extinction per unit: what is linear in how much there is of a thing, and so may
+ * be interpolated. No value, nothing. */
+static void classify(const cwi_table *t, double value, float out[4])
+{
+    memset(out, 0, 4 * sizeof *out);
+    if (isnan(value))
+        return;
+    const double share = fmin(fmax((value - t->low) / (t->high - t->low), 0), 1);
+    const double at = share * (double)(t->count - 1);
+    const size_t n = (size_t)fmin(floor(at), (double)t->count - 2);
+    const float s = (float)(at - (double)n), *row = t->rows + 4 * n;
+    for (int c = 0; c < 4; c++)
+        out[c] = row[c] + s * (row[4 + c] - row[c]);
+    for (int c = 0; c < 3; c++)
+        out[c] *= out[3];
+}
+
+/* NaN: none. */
+static double value_of(const cw_volume *v, const cwi_gl_brick *b, size_t i, size_t j, size_t k)
+{
+    const double x = cwi_voxel_at(
+        v->type, cwi_voxel_address(v, b->first[0] + i, b->first[1] + j, b->first[2] + k));
+    return v->has_nodata && x == v->nodata ? (double)NAN : v->slope * x + v->intercept;
+}
+
+static void put_layer(const cwi_gl *gl, const cwi_gl_brick *b, size_t k, float (*out)[4])
+{
+    const cw_volume *v = &gl->frame->volume;
+#pragma omp parallel for num_threads(cwi_threads(gl->frame->scene.threads))
+    for (size_t j = 0; j < b->count[1]; j++)
+        for (size_t i = 0; i < b->count[0]; i++)
+            classify(&gl->transfer.table, value_of(v, b, i, j, k), out[j * b->count[0] + i]);
+}
+
+/* Half precision is relative: enough for colours that add up, whatever the opacity. */
+static cw_status upload_classes(cwi_gl *gl, const cwi_gl_brick *b, GLuint *name, cw_error *err)
+{
+    const GLsizei w = (GLsizei)b->count[0], h = (GLsizei)b->count[1], d = (GLsizei)b->count[2];
+    float(*layer)[4] = cwi_alloc_array(b->count[0] * b->count[1], sizeof *layer);
+    if (!layer)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for classified voxels");
+    *name = cwi_gl_texture(GL_TEXTURE_3D, CWI_UNIT_CLASSES, true);
+    glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA16F, w, h, d, 0, GL_RGBA, GL_FLOAT, NULL);
+    cw_status st = CW_OK;
+    for (GLint k = 0; k < d && st == CW_OK; k++) {
+        put_layer(gl, b, (size_t)k, layer);
+        glTexSubImage3D(GL_TEXTURE_3D, 0, 0, 0, k, w, h, 1, GL_RGBA, GL_FLOAT, layer);
+        st = cwi_gl_report_soon(gl, "uploading", (double)k / (double)d, err);
+    }
+    cwi_free(layer);
+    return st;
+}
+
+static cw_status need_classes(cwi_gl *gl, texture_state *t, cw_error *err)
+{
+    const size_t count = gl->volume.brick_count;
+    cw_status st = CW_OK;
+    if (t->classes && memcmp(&t->key, &gl->frame->transfer, sizeof t->key) == 0 &&
+        t->opacity_units == gl->frame->opacity_units)
+        return CW_OK;
+    drop_classes(t);
+    t->classes = cwi_alloc_zeroed(count, sizeof *t->classes);
+    if (!t->classes)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for classified voxels");
+    t->class_count = count;
+    t->key = gl->frame->transfer;
+    t->opacity_units = gl->frame->opacity_units;
+    for (size_t n = 0; n < count && st == CW_OK; n++)
+        st = upload_classes(gl, &gl->volume.bricks[n], &t->classes[n], err);
+    if (st != CW_OK)
+        drop_classes(t);
+    return st;
+}
+
+static void bind_classes(const void *state, size_t brick)
+{
+    const texture_state *t = state;
+    glActiveTexture(GL_TEXTURE0 + CWI_UNIT_CLASSES);
+    glBindTexture(GL_TEXTURE_3D, t->classes[brick]);
+}
+
+static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
+{
+    const cw_scene *s = &gl->frame->scene;
+    char defines[64];
+    const char *gradients = "";
+    cw_status st = CW_OK;
+    if (!*state)
+        *state = cwi_alloc_zeroed(1, sizeof(texture_state));
+    texture_state *t = *state;
+    if (!t)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for slices");
+    if (s->lit || gl->frame->transfer.gradient_count > 0)
+        st = cwi_gl_need_gradients(gl, &gradients, err);
+    if (st == CW_OK && s->colors_first)
+        st = need_classes(gl, t, err);
+    if (st != CW_OK)
+        return st;
+    snprintf(defines, sizeof defines, "%s%s", gradients,
+             s->colors_first ? "#define COLORS\n" : "");
+    return cwi_gl_draw_slices(gl, &t->slices, defines, s->colors_first ? bind_classes : NULL, t,
+                              err);
+}
+
+const cwi_gl_mode cwi_gl_texture_mode = {CW_MODE_TEXTURE, true, draw, drop, true};

@@ -1,0 +1,373 @@
+#include "viewer/modes/splat_sheets.h"
+
+#include "core/geometry/affine.h"
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/geometry/vec3.h"
+#include "core/volume/volume.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+extern const char cwi_glsl_splat[], cwi_glsl_sheet[];
+
+enum {
+    CHUNK = 1 << 14, /* splats; three texels each: as many as any GL's buffers have */
+    FOOTPRINT_ROWS = 256,
+    UNIT_SHEET = CWI_UNIT_FREE,
+    UNIT_SPLATS,
+    UNIT_FOOTPRINT
+};
+
+/* Of the Gaussian of one voxel, in voxels: wide enough that what footprints on a lattice add up
+ * to varies by less than 0.6 %, and no wider; the table ends at a radius in sigmas where it has
+ * fallen to 0.3 %. */
+static const double sigma = 0.6, table_radius = 3.4;
+
+/* The footprint by the square of the distance: a Gaussian that is let down to reach 0 at the
+ * end, over its integral. */
+static void make_footprint(cwi_splats *s)
+{
+    float rows[FOOTPRINT_ROWS];
+    const double end = table_radius * table_radius / 2, rest = exp(-end);
+    const double integral = 2 * acos(-1) * (1 - rest - end * rest);
+    for (int n = 0; n < FOOTPRINT_ROWS; n++)
+        rows[n] = (float)((exp(-end * n / (FOOTPRINT_ROWS - 1)) - rest) / integral);
+    s->footprint = cwi_gl_texture(GL_TEXTURE_2D, UNIT_FOOTPRINT, true);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_R32F, FOOTPRINT_ROWS, 1, 0, GL_RED, GL_FLOAT, rows);
+}
+
+/* A buffer to add splats up in, behind the mesh's depth. */
+static void make_sheet(cwi_splats *s)
+{
+    const cwi_gl_target *t = &s->gl->target;
+    s->sheet = cwi_gl_texture(GL_TEXTURE_2D, UNIT_SHEET, false);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, t->width, t->height, 0, GL_RGBA, GL_FLOAT, NULL);
+    glGenFramebuffers(1, &s->framebuffer);
+    glBindFramebuffer(GL_FRAMEBUFFER, s->framebuffer);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, s->sheet, 0);
+    glFramebufferTexture2D(GL_FRAMEBUFFER, GL_DEPTH_ATTACHMENT, GL_TEXTURE_2D, t->depth, 0);
+    glClear(GL_COLOR_BUFFER_BIT);
+}
+
+/* Two triangles a splat. */
+static cw_status make_indices(cwi_splats *s, cw_error *err)
+{
+    static const uint32_t corners[6] = {0, 1, 2, 2, 1, 3};
+    uint32_t *all = cwi_alloc_array(CHUNK, sizeof corners);
+    if (!all)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for splats");
+    for (uint32_t n = 0; n < 6 * CHUNK; n++)
+        all[n] = 4 * (n / 6) + corners[n % 6];
+    glGenVertexArrays(1, &s->array);
+    glBindVertexArray(s->array);
+    glGenBuffers(1, &s->indices);
+    glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, s->indices);
+    glBufferData(GL_ELEMENT_ARRAY_BUFFER, CHUNK * sizeof corners, all, GL_STATIC_DRAW);
+    cwi_free(all);
+    return CW_OK;
+}
+
+static void make_buffer(cwi_splats *s)
+{
+    glGenBuffers(1, &s->buffer);
+    glBindBuffer(GL_TEXTURE_BUFFER, s->buffer);
+    glBufferData(GL_TEXTURE_BUFFER, CHUNK * sizeof *s->chunk, NULL, GL_STREAM_DRAW);
+    glGenTextures(1, &s->splats);
+    glActiveTexture(GL_TEXTURE0 + UNIT_SPLATS);
+    glBindTexture(GL_TEXTURE_BUFFER, s->splats);
+    glTexBuffer(GL_TEXTURE_BUFFER, GL_RGBA32F, s->buffer);
+}
+
+static cw_status make_programs(cwi_splats *s, bool has_nodes, cw_error *err)
+{
+    char defines[64];
+    const cwi_frame *f = s->frame;
+    snprintf(defines, sizeof defines, "%s%s%s", f->scene.lit ? "#define LIT\n" : "",
+             f->transfer.gradient_count ? "#define FACTOR\n" : "",
+             has_nodes ? "#define NODES\n" : "");
+    cw_status st = cwi_gl_use(s->gl, cwi_glsl_screen, cwi_glsl_sheet, "", &s->composite, err);
+    if (st != CW_OK)
+        return st;
+    glUniform1i(glGetUniformLocation(s->composite, "sheet"), UNIT_SHEET);
+    st = cwi_gl_use(s->gl, cwi_glsl_splat, cwi_glsl_splat, defines, &s->program, err);
+    if (st != CW_OK)
+        return st;
+    glUniform1i(glGetUniformLocation(s->program, "splats"), UNIT_SPLATS);
+    glUniform1i(glGetUniformLocation(s->program, "footprint"), UNIT_FOOTPRINT);
+    cwi_gl_set(s->program, "sigma", (float)sigma);
+    cwi_gl_set(s->program, "radius", (float)table_radius);
+    glUniform1i(glGetUniformLocation(s->program, "axis"), s->axis);
+    cwi_gl_set(s->program, "cell", (float)fabs(cwi_affine_determinant(f->eye_from_index)));
+    return CW_OK;
+}
+
+/* The axis of index space whose layers look most straight at the eye. */
+static int choose_axis(const cwi_frame *f)
+{
+    int best = 0;
+    double most = -1, middle[3], view[3] = {0, 0, 1};
+    for (int a = 0; a < 3; a++)
+        middle[a] = (f->low[a] + f->high[a]) / 2;
+    if (f->perspective)
+        cwi_affine_apply(f->eye_from_index, middle, view);
+    for (int a = 0; a < 3; a++) {
+        const double *normal = f->index_from_eye + (ptrdiff_t)4 * a;
+        const double slope = fabs(cwi_dot(normal, view)) / sqrt(cwi_dot(normal, normal));
+        if (slope > most) {
+            most = slope;
+            best = a;
+        }
+    }
+    return best;
+}
+
+static void start_bounds(cwi_splats *s)
+{
+    s->bounds[0] = s->bounds[2] = INFINITY;
+    s->bounds[1] = s->bounds[3] = -INFINITY;
+}
+
+static void measure(cwi_splats *s)
+{
+    const double *m = s->frame->eye_from_index;
+    double sum = 0;
+    for (int n = 0; n < 12; n++)
+        sum += n % 4 < 3 ? m[n] * m[n] : 0;
+    s->radius = sigma * table_radius * sqrt(sum); /* of a ball around the ellipsoid */
+    s->axis = choose_axis(s->frame);
+    s->needs_gradients = s->frame->scene.lit || s->frame->transfer.gradient_count > 0;
+    cwi_lattice_eye(s->frame, s->eye);
+    start_bounds(s);
+}
+
+cw_status cwi_splats_open(cwi_splats *s, cwi_gl *gl, bool has_nodes, cw_error *err)
+{
+    s->gl = gl;
+    s->frame = gl->frame;
+    s->err = err;
+    s->has_gaps = gl->volume.ranges.has_gaps;
+    measure(s);
+    s->chunk = cwi_alloc_array(CHUNK, sizeof *s->chunk);
+    cw_status st = cwi_visible_make(&gl->transfer.table, &s->visible, err);
+    if (st == CW_OK && !s->chunk)
+        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for splats");
+    if (st == CW_OK)
+        st = make_indices(s, err);
+    if (st == CW_OK)
+        st = make_programs(s, has_nodes, err);
+    if (st != CW_OK)
+        return st;
+    make_footprint(s);
+    make_buffer(s);
+    make_sheet(s);
+    glDepthMask(GL_FALSE);
+    glEnable(GL_BLEND);
+    glEnable(GL_SCISSOR_TEST);
+    return CW_OK;
+}
+
+void cwi_splats_close(cwi_splats *s)
+{
+    glDepthMask(GL_TRUE);
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_BLEND);
+    glDisable(GL_SCISSOR_TEST);
+    glBindVertexArray(0);
+    glDeleteVertexArrays(1, &s->array);
+    glDeleteBuffers(1, &s->indices);
+    glDeleteBuffers(1, &s->buffer);
+    glDeleteTextures(1, &s->splats);
+    glDeleteTextures(1, &s->footprint);
+    glDeleteTextures(1, &s->sheet);
+    glDeleteFramebuffers(1, &s->framebuffer);
+    cwi_visible_free(&s->visible);
+    cwi_free(s->chunk);
+    s->chunk = NULL;
+}
+
+/* Adds what is in the chunk to the sheet. */
+static void flush(cwi_splats *s)
+{
+    if (s->count == 0 || s->status != CW_OK)
+        return;
+    glDisable(GL_SCISSOR_TEST);
+    glEnable(GL_DEPTH_TEST);
+    glBlendFunc(GL_ONE, GL_ONE);
+    glUseProgram(s->program);
+    glBindVertexArray(s->array);
+    glBindBuffer(GL_TEXTURE_BUFFER, s->buffer);
+    glBufferData(GL_TEXTURE_BUFFER, CHUNK * sizeof *s->chunk, NULL, GL_STREAM_DRAW);
+    glBufferSubData(GL_TEXTURE_BUFFER, 0, (GLsizeiptr)(s->count * sizeof *s->chunk), s->chunk);
+    s->status = cwi_gl_draw_triangles(s->gl, 2 * s->count, true, s->err);
+    s->count = 0;
+}
+
+bool cwi_splats_keep(const cwi_splats *s, const double at[3], double eye[3])
+{
+    const cwi_frame *f = s->frame;
+    bool is_kept = true;
+    cwi_affine_apply(f->eye_from_index, at, eye);
+    if (f->perspective && -eye[2] <= fmax(f->near, s->radius))
+        return false;
+    for (size_t n = 0; n < f->scene.clip_count && is_kept; n++)
+        is_kept = cwi_dot(f->clips[n], eye) >= f->clips[n][3];
+    return f->scene.clip_count == 0 || is_kept != f->scene.cut_away;
+}
+
+/* Where on the picture a splat is, widened to at least half a pixel; false: beside it. */
+static bool find_bounds(const cwi_splats *s, const cwi_splat *splat, const double eye[3],
+                        double bounds[4])
+{
+    const cwi_frame *f = s->frame;
+    const double size =
+        1 + (double)fmaxf(fmaxf(splat->size[0], splat->size[1]), splat->size[2]);
+    const double scale = f->perspective ? -1 / eye[2] : 1;
+    const size_t points[2] = {f->scene.width, f->scene.height};
+    for (int a = 0; a < 2; a++) {
+        const double at = eye[a] * scale, slant = f->perspective ? sqrt(1 + at * at) : 1;
+        const double reach = s->radius * size * scale * slant / f->half[a] +
+                             2 * table_radius / (double)points[a];
+        bounds[2 * a] = at / f->half[a] - reach;
+        bounds[2 * a + 1] = at / f->half[a] + reach;
+    }
+    return bounds[0] < 1 && bounds[1] > -1 && bounds[2] < 1 && bounds[3] > -1;
+}
+
+void cwi_splats_add(cwi_splats *s, const cwi_splat *splat, const double eye[3])
+{
+    double bounds[4];
+    if (!find_bounds(s, splat, eye, bounds))
+        return;
+    for (int a = 0; a < 2; a++) {
+        s->bounds[2 * a] = cwi_lesser(s->bounds[2 * a], bounds[2 * a]);
+        s->bounds[2 * a + 1] = cwi_greater(s->bounds[2 * a + 1], bounds[2 * a + 1]);
+    }
+    if (s->count == CHUNK)
+        flush(s);
+    s->chunk[s->count++] = *splat;
+}
+
+/* Leaves alone what is outside of the sheet's splats. */
+static void cut_to_bounds(const cwi_splats *s)
+{
+    GLint at[4];
+    const double points[2] = {(double)s->gl->target.width, (double)s->gl->target.height};
+    for (int n = 0; n < 4; n++) {
+        const double p = (cwi_lesser(cwi_greater(s->bounds[n], -1), 1) + 1) / 2 * points[n / 2];
+        at[n] = (GLint)(n & 1 ? ceil(p) : floor(p));
+    }
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(at[0], at[2], at[1] - at[0], at[3] - at[2]);
+}
+
+cw_status cwi_splats_end_sheet(cwi_splats *s, size_t n, cw_error *err)
+{
+    const double done = (double)(n + 1) / (double)s->frame->volume.dim[s->axis];
+    flush(s);
+    if (s->status != CW_OK)
+        return s->status;
+    if (s->bounds[0] < s->bounds[1]) {
+        cut_to_bounds(s);
+        glDisable(GL_DEPTH_TEST);
+        glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
+        glBindFramebuffer(GL_FRAMEBUFFER, s->gl->target.rays);
+        glUseProgram(s->composite);
+        glActiveTexture(GL_TEXTURE0 + UNIT_SHEET);
+        glBindTexture(GL_TEXTURE_2D, s->sheet);
+        cwi_gl_draw_screen(s->gl);
+        glBindFramebuffer(GL_FRAMEBUFFER, s->framebuffer);
+        glClear(GL_COLOR_BUFFER_BIT);
+        start_bounds(s);
+    }
+    return cwi_gl_report(s->gl, "splats", done, err);
+}
+
+size_t *cwi_splats_order(const cwi_splats *s, cw_error *err)
+{
+    const size_t count = s->frame->volume.dim[s->axis];
+    size_t *order = cwi_alloc_array(count, sizeof *order);
+    if (order)
+        cwi_lattice_order(count, 0, 1, s->eye[s->axis], order);
+    else
+        cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the order of sheets");
+    return order;
+}
+
+void cwi_splats_voxel(cwi_splats *s, const size_t at[3])
+{
+    double eye[3], gradient[3];
+    cwi_splat splat = {0};
+    const cwi_frame *f = s->frame;
+    const double place[3] = {(double)at[0], (double)at[1], (double)at[2]};
+    cwi_lattice_load(f, &s->gl->transfer.table, at, (size_t[]){1, 1, 1}, &splat.value);
+    if (!cwi_visible_any(&s->visible, splat.value, splat.value) ||
+        !cwi_splats_keep(s, place, eye))
+        return;
+    splat.mass = (float)cwi_lattice_mass(&f->volume, at, s->has_gaps);
+    if (!(splat.mass > 0))
+        return;
+    if (s->needs_gradients) {
+        cwi_lattice_gradient(&f->volume, at, gradient);
+        for (int a = 0; a < 3; a++)
+            splat.gradient[a] = (float)(gradient[a] * f->volume.slope / s->gl->volume.range);
+    }
+    for (int a = 0; a < 3; a++)
+        splat.at[a] = (float)at[a];
+    cwi_splats_add(s, &splat, eye);
+}
+
+static bool shows_block(const cwi_splats *s, const size_t block[3])
+{
+    const cwi_ranges *r = &s->gl->volume.ranges;
+    const cwi_table *t = &s->gl->transfer.table;
+    const float *range = r->blocks[(block[2] * r->dim[1] + block[1]) * r->dim[0] + block[0]];
+    const double scale = 1 / (t->high - t->low);
+    return cwi_visible_any(&s->visible, (float)(((double)range[0] - t->low) * scale),
+                           (float)(((double)range[1] - t->low) * scale));
+}
+
+/* The voxels of a block: those at its high faces are the next block's, if there is one. */
+static size_t block_end(const cwi_splats *s, int axis, size_t block)
+{
+    const cwi_ranges *r = &s->gl->volume.ranges;
+    return block + 1 == r->dim[axis] ? s->frame->volume.dim[axis]
+                                     : CWI_RANGE_EDGE * (block + 1);
+}
+
+static void splat_layer(cwi_splats *s, size_t layer)
+{
+    const cwi_ranges *r = &s->gl->volume.ranges;
+    const int a = s->axis, b = (a + 1) % 3, c = (a + 2) % 3;
+    size_t block[3], at[3];
+    const size_t last = r->dim[a] - 1, own = layer / CWI_RANGE_EDGE;
+    block[a] = own < last ? own : last;
+    at[a] = layer;
+    for (block[c] = 0; block[c] < r->dim[c] && s->status == CW_OK; block[c]++) {
+        s->status = cwi_gl_report_soon(s->gl, "splats", s->gl->watch.from, s->err);
+        for (block[b] = 0; block[b] < r->dim[b]; block[b]++) {
+            if (!shows_block(s, block))
+                continue;
+            for (at[c] = CWI_RANGE_EDGE * block[c]; at[c] < block_end(s, c, block[c]); at[c]++)
+                for (at[b] = CWI_RANGE_EDGE * block[b]; at[b] < block_end(s, b, block[b]);
+                     at[b]++)
+                    cwi_splats_voxel(s, at);
+        }
+    }
+}
+
+cw_status cwi_splats_flat(cwi_splats *s, cw_error *err)
+{
+    cw_status st = CW_OK;
+    size_t *order = cwi_splats_order(s, err);
+    if (!order)
+        return CW_ERR_NO_MEMORY;
+    for (size_t n = 0; n < s->frame->volume.dim[s->axis] && st == CW_OK; n++) {
+        cwi_gl_part(s->gl, n, s->frame->volume.dim[s->axis]);
+        splat_layer(s, order[n]);
+        st = cwi_splats_end_sheet(s, n, err);
+    }
+    cwi_free(order);
+    return st;
+}

@@ -1,0 +1,126 @@
+#include "viewer/scene/cell_lattice.h"
+
+#include "core/geometry/affine.h"
+#include "core/base/memory.h"
+#include "core/base/status.h"
+#include "core/volume/volume.h"
+
+#include <math.h>
+
+void cwi_lattice_eye(const cwi_frame *frame, double eye[3])
+{
+    const double at[3] = {0, 0, frame->perspective ? 0 : 1e6 * fmax(fabs(frame->far), 1)};
+    cwi_affine_apply(frame->index_from_eye, at, eye);
+}
+
+void cwi_lattice_order(size_t count, double first, double step, double place, size_t *order)
+{
+    size_t low = 0, high = count;
+    while (low < high) {
+        const double below = fabs(first + step * (double)low - place);
+        const double above = fabs(first + step * (double)(high - 1) - place);
+        *order++ = below >= above ? low++ : --high;
+    }
+}
+
+cw_status cwi_visible_make(const cwi_table *table, cwi_visible *visible, cw_error *err)
+{
+    visible->count = table->count;
+    visible->before = cwi_alloc_array(table->count + 1, sizeof *visible->before);
+    if (!visible->before)
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for what is visible");
+    visible->before[0] = 0;
+    for (size_t n = 0; n < table->count; n++)
+        visible->before[n + 1] = visible->before[n] + (table->rows[4 * n + 3] > 0);
+    return CW_OK;
+}
+
+void cwi_visible_free(cwi_visible *visible)
+{
+    cwi_free(visible->before);
+    *visible = (cwi_visible){0};
+}
+
+/* Clamped; a row that is interpolated is as visible as those around it. */
+static float row_of(const cwi_visible *visible, float at)
+{
+    return (at < 0 ? 0 : at > 1 ? 1 : at) * (float)(visible->count - 1);
+}
+
+bool cwi_visible_any(const cwi_visible *visible, float low, float high)
+{
+    if (!(low <= high))
+        return false;
+    const size_t first = (size_t)floorf(row_of(visible, low)),
+                 last = (size_t)ceilf(row_of(visible, high));
+    return visible->before[last + 1] > visible->before[first];
+}
+
+void cwi_lattice_load(const cwi_frame *frame, const cwi_table *table, const size_t first[3],
+                      const size_t count[3], float *out)
+{
+    const cw_volume *v = &frame->volume;
+    const double scale = v->slope / (table->high - table->low);
+    const double bias = (v->intercept - table->low) / (table->high - table->low);
+    for (size_t k = 0; k < count[2]; k++)
+        for (size_t j = 0; j < count[1]; j++) {
+            const char *p = cwi_voxel_address(v, first[0], first[1] + j, first[2] + k);
+            for (size_t i = 0; i < count[0]; i++, p += v->stride[0]) {
+                const double x = cwi_voxel_at(v->type, p);
+                const bool is_empty = v->has_nodata && x == v->nodata;
+                *out++ = is_empty ? NAN : (float)(x * scale + bias);
+            }
+        }
+}
+
+static bool has_value(const cw_volume *v, size_t i, size_t j, size_t k)
+{
+    const double x = cwi_voxel_at(v->type, cwi_voxel_address(v, i, j, k));
+    return isfinite(x) && !(v->has_nodata && x == v->nodata);
+}
+
+/* Whether the cell between two samples along each axis has values at all corners. */
+static bool is_whole(const cw_volume *v, const size_t low[3], const size_t high[3])
+{
+    for (size_t k = low[2]; k <= high[2]; k++)
+        for (size_t j = low[1]; j <= high[1]; j++)
+            for (size_t i = low[0]; i <= high[0]; i++)
+                if (!has_value(v, i, j, k))
+                    return false;
+    return true;
+}
+
+double cwi_lattice_mass(const cw_volume *v, const size_t at[3], bool has_gaps)
+{
+    int cells = 0;
+    for (int n = 0; n < 8; n++) {
+        size_t low[3], high[3];
+        bool is_inside = true;
+        for (int a = 0; a < 3; a++) {
+            const bool is_above = n >> a & 1, is_flat = v->dim[a] == 1;
+            is_inside =
+                is_inside && (is_flat || (is_above ? at[a] + 1 < v->dim[a] : at[a] > 0));
+            low[a] = is_flat || is_above ? at[a] : at[a] - 1;
+            high[a] = is_flat || !is_above ? at[a] : at[a] + 1;
+        }
+        cells += is_inside && (!has_gaps || is_whole(v, low, high));
+    }
+    return cells / 8.0;
+}
+
+static double derivative(const cw_volume *v, const char *at, int axis, size_t n)
+{
+    const bool below = n > 0, above = n + 1 < v->dim[axis];
+    if (!below && !above)
+        return 0;
+    const double a = cwi_voxel_at(v->type, below ? at - v->stride[axis] : at);
+    const double b = cwi_voxel_at(v->type, above ? at + v->stride[axis] : at);
+    const double d = (b - a) / (below && above ? 2 : 1);
+    return isfinite(d) && !(v->has_nodata && (a == v->nodata || b == v->nodata)) ? d : 0;
+}
+
+void cwi_lattice_gradient(const cw_volume *v, const size_t at[3], double gradient[3])
+{
+    for (int a = 0; a < 3; a++)
+        gradient[a] = derivative(v, cwi_voxel_address(v, at[0], at[1], at[2]), a, at[a]);
+}

@@ -1,0 +1,371 @@
+#include "viewer/scene/frame_setup.h"
+
+#include "core/geometry/affine.h"
+#include "core/base/status.h"
+#include "core/geometry/vec3.h"
+#include "core/volume/volume.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { MAX_SIZE = 16384, MAX_SAMPLES = 4, MESH_UNITS = 256 };
+
+static bool is_camera_set(const cw_camera *c)
+{
+    return c->up[0] != 0 || c->up[1] != 0 || c->up[2] != 0;
+}
+
+static bool is_material_set(const cw_material *m)
+{
+    return m->ambient != 0 || m->diffuse != 0 || m->specular != 0 || m->shininess != 0;
+}
+
+static bool draws_volume(cw_mode mode)
+{
+    return mode != CW_MODE_MESH;
+}
+
+static cw_status fill_in(cw_scene *s, cw_error *err)
+{
+    static const cw_light headlight = {{0, 0, 1}, {1, 1, 1}};
+    static const float bone[4] = {240 / 255.0f, 229 / 255.0f, 208 / 255.0f, 1};
+    if ((unsigned)s->mode >= CW_MODE_COUNT)
+        return cw_fail(err, CW_ERR_ARGUMENT, "%d is not a render mode (0 to %d)", (int)s->mode,
+                       CW_MODE_COUNT - 1);
+    if (draws_volume(s->mode) && !(s->volume && s->transfer))
+        return cw_fail(err, CW_ERR_ARGUMENT, "%s needs a volume and a transfer function",
+                       cw_mode_name(s->mode));
+    if (!draws_volume(s->mode) && !s->mesh)
+        return cw_fail(err, CW_ERR_ARGUMENT, "the mode mesh needs a mesh");
+    if (s->width == 0 && s->height == 0)
+        s->width = 1280, s->height = 720;
+    if (s->samples == 0)
+        s->samples = 1;
+    if (s->samples < 1 || s->samples > MAX_SAMPLES)
+        return cw_fail(err, CW_ERR_ARGUMENT, "%d x %d samples a pixel: expected 1 to %d",
+                       s->samples, s->samples, MAX_SAMPLES);
+    if (s->width < 1 || s->width > MAX_SIZE || s->height < 1 || s->height > MAX_SIZE)
+        return cw_fail(err, CW_ERR_ARGUMENT, "a picture of %zu x %zu: expected 1 to %d pixels",
+                       s->width, s->height, MAX_SIZE);
+    if (s->light_count > CW_MAX_LIGHTS || s->clip_count > CW_MAX_CLIPS ||
+        s->slice_count > CW_MAX_SLICES)
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "%zu lights, %zu planes that clip, %zu slices: at most %d, %d, %d",
+                       s->light_count, s->clip_count, s->slice_count, CW_MAX_LIGHTS,
+                       CW_MAX_CLIPS, CW_MAX_SLICES);
+    if (s->light_count == 0)
+        s->lights[s->light_count++] = headlight;
+    if (!is_material_set(&s->material))
+        s->material = (cw_material){0.25f, 0.75f, 0.2f, 32};
+    if (s->step_vox == 0)
+        s->step_vox = 1;
+    if (!(s->step_vox >= 1e-3 && s->step_vox <= 1e3))
+        return cw_fail(err, CW_ERR_ARGUMENT, "a step of %g voxels: expected 0.001 to 1000",
+                       s->step_vox);
+    if (s->stop_opacity == 0)
+        s->stop_opacity = s->mode == CW_MODE_VBUFFER ? 0.99999f : 0.9999f;
+    if (!(s->stop_opacity > 0 && s->stop_opacity <= 1))
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "rays that end at an opacity of %g: expected up to 1",
+                       (double)s->stop_opacity);
+    if (!(s->depth_cue >= 0 && s->depth_cue <= 1))
+        return cw_fail(err, CW_ERR_ARGUMENT, "a depth cue of %g: expected 0 to 1",
+                       (double)s->depth_cue);
+    if (!(s->tree_error >= 0 && s->tree_error <= 1))
+        return cw_fail(err, CW_ERR_ARGUMENT, "an error of nodes of %g: expected 0 to 1",
+                       s->tree_error);
+    if (s->normals == 0)
+        s->normals = 1024;
+    if (s->color[0] == 0 && s->color[1] == 0 && s->color[2] == 0 && s->color[3] == 0)
+        memcpy(s->color, bone, sizeof bone);
+    for (int c = 0; c < 4; c++)
+        if (!(s->color[c] >= 0 && s->color[c] <= 1))
+            return cw_fail(err, CW_ERR_ARGUMENT, "a mesh's colour of %g: expected 0 to 1",
+                           (double)s->color[c]);
+    return CW_OK;
+}
+
+/* The volume's box in index space. */
+static void find_box(cwi_frame *f)
+{
+    for (int a = 0; a < 3; a++) {
+        const size_t n = f->volume.dim[a];
+        f->low[a] = n == 1 ? -0.5 : 0;
+        f->high[a] = n == 1 ? 0.5 : (double)n - 1;
+    }
+}
+
+static cw_status take_volume(cwi_frame *f, cw_error *err)
+{
+    cw_status st = cw_volume_resolve(f->scene.volume, &f->volume, err);
+    if (st == CW_OK)
+        st = cwi_volume_expect_even(&f->volume, "drawing", err);
+    if (st == CW_OK)
+        st = cw_transfer_check(f->scene.transfer, err);
+    if (st != CW_OK)
+        return st;
+    double spacing[3];
+    cw_volume_spacing(&f->volume, spacing);
+    f->unit_mm = fmin(fmin(spacing[0], spacing[1]), spacing[2]);
+    f->transfer = *f->scene.transfer;
+    f->opacity_units = f->transfer.unit_mm > 0 ? f->transfer.unit_mm / f->unit_mm : 1;
+    find_box(f);
+    return CW_OK;
+}
+
+/* A corner of the volume's box in the world. */
+static void box_corner(const cwi_frame *f, int n, double world[3])
+{
+    double p[3];
+    for (int a = 0; a < 3; a++)
+        p[a] = n >> a & 1 ? f->high[a] : f->low[a];
+    cw_volume_to_world(&f->volume, p, world);
+}
+
+/* The world box of everything that is drawn. */
+static void scene_box(const cwi_frame *f, double min[3], double max[3])
+{
+    double p[3];
+    bool any = f->scene.mesh && cw_mesh_bounds(f->scene.mesh, min, max);
+    for (int n = 0; f->volume.data && n < 8; n++, any = true) {
+        box_corner(f, n, p);
+        for (int a = 0; a < 3; a++) {
+            min[a] = any ? fmin(min[a], p[a]) : p[a];
+            max[a] = any ? fmax(max[a], p[a]) : p[a];
+        }
+    }
+    for (int a = 0; a < 3 && !any; a++)
+        min[a] = max[a] = 0;
+}
+
+static cw_status set_camera(cwi_frame *f, const double min[3], const double max[3],
+                            cw_error *err)
+{
+    cw_scene *s = &f->scene;
+    cw_camera *c = &s->camera;
+    const double aspect = (double)s->width / (double)s->height;
+    cw_fit_desc fit = {.aspect = aspect, .fov_deg = 30, .margin = 0.04};
+    cw_status st = CW_OK;
+    memcpy(fit.min, min, sizeof fit.min);
+    memcpy(fit.max, max, sizeof fit.max);
+    if (!is_camera_set(c))
+        st = cw_camera_fit(&fit, c, err);
+    if (st == CW_OK)
+        st = cw_camera_axes(c, f->axes[0], f->axes[1], f->axes[2], err);
+    if (st != CW_OK)
+        return st;
+    for (int a = 0; a < 3; a++)
+        f->axes[2][a] = -f->axes[2][a];
+    memcpy(f->eye_mm, c->eye, sizeof f->eye_mm);
+    f->perspective = c->fov_deg > 0;
+    f->half[1] =
+        f->perspective ? tan(c->fov_deg * acos(-1) / 360) : c->height_mm / 2 / f->unit_mm;
+    f->half[0] = f->half[1] * aspect;
+    return CW_OK;
+}
+
+static void to_eye(const cwi_frame *f, const double world[3], double eye[3])
+{
+    double d[3];
+    for (int a = 0; a < 3; a++)
+        d[a] = (world[a] - f->eye_mm[a]) / f->unit_mm;
+    for (int a = 0; a < 3; a++)
+        eye[a] = cwi_dot(f->axes[a], d);
+}
+
+static void invert_affine(const double m[12], double inverse[12])
+{
+    double c[3][3];
+    const double det = cwi_affine_determinant(m);
+    cwi_affine_cofactor(m, c);
+    for (int r = 0; r < 3; r++) {
+        for (int s = 0; s < 3; s++)
+            inverse[4 * r + s] = c[s][r] / det;
+        inverse[4 * r + 3] =
+            -(inverse[4 * r] * m[3] + inverse[4 * r + 1] * m[7] + inverse[4 * r + 2] * m[11]);
+    }
+}
+
+static void set_matrices(cwi_frame *f)
+{
+    const double *a = f->volume.affine[0];
+    double column[3], origin[3] = {a[3], a[7], a[11]}, eye[3];
+    to_eye(f, origin, eye);
+    for (int c = 0; c < 3; c++) {
+        for (int r = 0; r < 3; r++)
+            column[r] = a[4 * r + c] / f->unit_mm;
+        for (int r = 0; r < 3; r++)
+            f->eye_from_index[4 * r + c] = cwi_dot(f->axes[r], column);
+    }
+    for (int r = 0; r < 3; r++)
+        f->eye_from_index[4 * r + 3] = eye[r];
+    invert_affine(f->eye_from_index, f->index_from_eye);
+}
+
+static void set_depths(cwi_frame *f, const double min[3], const double max[3])
+{
+    double near = INFINITY, far = -INFINITY;
+    for (int n = 0; n < 8; n++) {
+        double p[3], eye[3];
+        for (int a = 0; a < 3; a++)
+            p[a] = n >> a & 1 ? max[a] : min[a];
+        to_eye(f, p, eye);
+        near = fmin(near, -eye[2]);
+        far = fmax(far, -eye[2]);
+    }
+    const double size = fmax(far - near, 1e-3);
+    f->near = near - 1e-3 * size;
+    f->far = far + 1e-3 * size;
+    if (f->perspective) {
+        f->near = fmax(f->near, 1e-4 * size);
+        f->far = fmax(f->far, 2 * f->near);
+    }
+}
+
+static cw_status set_clips(cwi_frame *f, cw_error *err)
+{
+    for (size_t n = 0; n < f->scene.clip_count; n++) {
+        const cw_clip *c = &f->scene.clips[n];
+        const double length = sqrt(cwi_dot(c->normal, c->normal));
+        if (!isnormal(length) || !isfinite(c->distance_mm))
+            return cw_fail(err, CW_ERR_ARGUMENT,
+                           "plane %zu that clips has no direction or place", n);
+        for (int a = 0; a < 3; a++)
+            f->clips[n][a] = cwi_dot(c->normal, f->axes[a]) / length;
+        f->clips[n][3] = (c->distance_mm - cwi_dot(c->normal, f->eye_mm)) / length / f->unit_mm;
+    }
+    return CW_OK;
+}
+
+static void choose_unit(cwi_frame *f, const double min[3], const double max[3])
+{
+    const double d[3] = {max[0] - min[0], max[1] - min[1], max[2] - min[2]};
+    if (!f->volume.data)
+        f->unit_mm = sqrt(cwi_dot(d, d)) / MESH_UNITS;
+    if (!isnormal(f->unit_mm))
+        f->unit_mm = 1;
+}
+
+cw_status cwi_frame_init(cwi_frame *frame, const cw_scene *scene, cw_error *err)
+{
+    double min[3], max[3];
+    cwi_frame *f = frame;
+    *f = (cwi_frame){.scene = *scene,
+                     .studio_light =
+                         scene->light_count == 0 && !is_material_set(&scene->material)};
+    cw_status st = fill_in(&f->scene, err);
+    if (st == CW_OK && f->scene.mesh)
+        st = cw_mesh_check(f->scene.mesh, err);
+    if (st == CW_OK && draws_volume(f->scene.mode))
+        st = take_volume(f, err);
+    if (st != CW_OK)
+        return st;
+    scene_box(f, min, max);
+    choose_unit(f, min, max);
+    st = set_camera(f, min, max, err);
+    if (st == CW_OK)
+        st = set_clips(f, err);
+    if (st == CW_OK && f->volume.data)
+        set_matrices(f);
+    if (st == CW_OK)
+        set_depths(f, min, max);
+    f->scene.width *= (size_t)f->scene.samples;
+    f->scene.height *= (size_t)f->scene.samples;
+    return st;
+}
+
+void cwi_frame_ray(const cwi_frame *f, double x, double y, double origin[3],
+                   double direction[3])
+{
+    const double u = (2 * x / (double)f->scene.width - 1) * f->half[0];
+    const double v = (1 - 2 * y / (double)f->scene.height) * f->half[1];
+    if (f->perspective) {
+        const double length = sqrt(u * u + v * v + 1);
+        memset(origin, 0, 3 * sizeof *origin);
+        direction[0] = u / length;
+        direction[1] = v / length;
+        direction[2] = -1 / length;
+    } else {
+        origin[0] = u;
+        origin[1] = v;
+        origin[2] = 0;
+        direction[0] = direction[1] = 0;
+        direction[2] = -1;
+    }
+}
+
+/* Cuts an interval to where at + t slope >= 0. */
+static void cut(double at, double slope, double t[2])
+{
+    if (slope > 0)
+        t[0] = fmax(t[0], -at / slope);
+    else if (slope < 0)
+        t[1] = fmin(t[1], -at / slope);
+    else if (at < 0)
+        t[1] = -INFINITY;
+}
+
+int cwi_frame_keep(const cwi_frame *f, const double origin[3], const double direction[3],
+                   const double interval[2], double intervals[2][2])
+{
+    const double *t = interval;
+    double kept[2] = {t[0], t[1]};
+    for (size_t n = 0; n < f->scene.clip_count; n++)
+        cut(cwi_dot(f->clips[n], origin) - f->clips[n][3], cwi_dot(f->clips[n], direction),
+            kept);
+    int count = 0;
+    const bool away = f->scene.cut_away && f->scene.clip_count > 0;
+    const double parts[2][2] = {{away ? t[0] : kept[0], away ? fmin(t[1], kept[0]) : kept[1]},
+                                {fmax(t[0], kept[1]), t[1]}};
+    if (away && !(kept[1] > kept[0])) { /* it misses what is cut away */
+        memcpy(intervals[0], t, sizeof intervals[0]);
+        return t[1] > t[0];
+    }
+    for (int n = 0; n < (away ? 2 : 1); n++)
+        if (parts[n][1] > parts[n][0])
+            memcpy(intervals[count++], parts[n], sizeof parts[n]);
+    return count;
+}
+
+int cwi_frame_clip(const cwi_frame *f, const double origin[3], const double direction[3],
+                   double intervals[2][2])
+{
+    double t[2] = {f->perspective ? f->near : -INFINITY, INFINITY};
+    double index[3], slope[3];
+    if (f->perspective) /* near is a plane */
+        t[0] = f->near / -direction[2];
+    cwi_affine_apply(f->index_from_eye, origin, index);
+    for (int r = 0; r < 3; r++) {
+        slope[r] = cwi_dot(f->index_from_eye + (size_t)4 * (size_t)r, direction);
+        cut(index[r] - f->low[r], slope[r], t);
+        cut(f->high[r] - index[r], -slope[r], t);
+    }
+    return cwi_frame_keep(f, origin, direction, t, intervals);
+}
+
+void cwi_frame_to_world(const cwi_frame *f, const double eye[3], double world[3])
+{
+    for (int a = 0; a < 3; a++)
+        world[a] =
+            f->eye_mm[a] + f->unit_mm * (eye[0] * f->axes[0][a] + eye[1] * f->axes[1][a] +
+                                         eye[2] * f->axes[2][a]);
+}
+
+double cwi_frame_extinction(const cwi_frame *f, double opacity)
+{
+    return -log1p(-fmin(opacity, CWI_MOST_OPACITY)) / f->opacity_units;
+}
+
+double cwi_frame_cue(const cwi_frame *f, double depth)
+{
+    const double share = (depth - f->near) / (f->far - f->near);
+    return 1 - f->scene.depth_cue * fmin(fmax(share, 0), 1);
+}
+
+/* The gradient of f(index(eye)): the transpose of the map's derivative. */
+void cwi_frame_gradient_matrix(const cwi_frame *f, double m[3][3])
+{
+    for (size_t r = 0; r < 3; r++)
+        for (size_t c = 0; c < 3; c++)
+            m[r][c] = f->index_from_eye[4 * c + r];
+}

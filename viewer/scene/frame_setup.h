@@ -1,0 +1,84 @@
+/* One picture of a scene, worked out: what the CPU and GL need to draw the same thing.
+ *
+ * Eye space has its origin at the eye, x to the right, y up and z towards the eye; its unit is
+ * the volume's smallest spacing (the 1/256th of the mesh's diagonal when there is no volume),
+ * so that single precision is enough for scenes of any size and place. */
+#ifndef VIEWER_SCENE_FRAME_SETUP_H
+#define VIEWER_SCENE_FRAME_SETUP_H
+
+#include <cubewright/render.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef struct cwi_frame {
+    cw_scene scene;   /* defaults filled in; width and height are samples, not pixels */
+    cw_volume volume; /* resolved; data is NULL when there is none */
+    double unit_mm;   /* of eye space */
+    double axes[3][3], eye_mm[3]; /* of the camera in the world: right, up, to the eye; unit */
+
+    /* Index space: voxel (i, j, k) is the point (i, j, k). The volume reaches from low to high:
+     * from 0 to dim - 1, along an axis of one voxel from -0.5 to 0.5. */
+    double low[3], high[3];
+    double eye_from_index[12], index_from_eye[12]; /* affines, 3x4 */
+
+    /* The picture in eye space: a ray through sample (x, y) of the picture, y down, starts at
+     * origin and goes along direction, of unit length. Perspective: half[] is the slope of the
+     * picture's edges; else half its size. */
+    bool perspective;
+    double half[2];
+
+    /* Neither lights nor a material were given: meshes are lit as in reference_mesh.c. */
+    bool studio_light;
+
+    /* Distances from the eye's plane (depth) between which all of the scene is; near is above 0
+     * in perspective. */
+    double near, far;
+
+    /* The transfer function: extinction is per unit of eye space. */
+    cw_transfer transfer;
+    double opacity_units; /* length that the transfer function's opacities are of */
+
+    /* Planes that clip, in eye space: n . p >= d is kept. */
+    double clips[CW_MAX_CLIPS][4];
+} cwi_frame;
+
+/* Works a scene out: fills in defaults, checks what every mode relies on.
+ * Returns CW_ERR_ARGUMENT, CW_ERR_UNSUPPORTED as cw_render(). */
+CW_API cw_status cwi_frame_init(cwi_frame *frame, const cw_scene *scene, cw_error *err);
+
+/* The ray through a point of the picture, in samples from its upper left corner, in eye space.
+ * Distances along it are in units of eye space. */
+CW_API void cwi_frame_ray(const cwi_frame *frame, double x, double y, double origin[3],
+                          double direction[3]);
+
+/* The parts of a ray inside of the volume's box that clips leave: up to two intervals, in
+ * order; how many. In index space for a ray in eye space. */
+CW_API int cwi_frame_clip(const cwi_frame *frame, const double origin[3],
+                          const double direction[3], double intervals[2][2]);
+
+/* The parts of an interval of a ray that clips leave: up to two, in order; how many. */
+CW_API int cwi_frame_keep(const cwi_frame *frame, const double origin[3],
+                          const double direction[3], const double interval[2],
+                          double kept[2][2]);
+
+/* The world point of one in eye space. */
+CW_API void cwi_frame_to_world(const cwi_frame *frame, const double eye[3], double world[3]);
+
+/* The extinction coefficient per unit of eye space of an opacity of the transfer function,
+ * which is taken as at most that. */
+#define CWI_MOST_OPACITY (1 - 1e-6)
+CW_API double cwi_frame_extinction(const cwi_frame *frame, double opacity);
+
+/* What is left of the light of something at a depth: 1 near, 1 - depth_cue far. */
+CW_API double cwi_frame_cue(const cwi_frame *frame, double depth);
+
+/* The matrix that takes a gradient in index space (per voxel) to eye space (per unit). */
+CW_API void cwi_frame_gradient_matrix(const cwi_frame *frame, double m[3][3]);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

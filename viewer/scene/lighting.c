@@ -1,0 +1,59 @@
+#include "viewer/scene/lighting.h"
+
+#include "core/geometry/vec3.h"
+
+#include <math.h>
+#include <string.h>
+
+static void normalize(double v[3])
+{
+    const double length = sqrt(cwi_dot(v, v));
+    for (int a = 0; a < 3 && length > 0; a++)
+        v[a] /= length;
+}
+
+/* x^power for whole powers, as most are, and others; quicker than pow(). */
+static double raise(double x, double power)
+{
+    double result = 1;
+    if (power != floor(power) || power > 1024 || power < 0)
+        return pow(x, power);
+    for (unsigned n = (unsigned)power; n > 0; n /= 2, x *= x)
+        if (n & 1)
+            result *= x;
+    return result;
+}
+
+void cwi_lighting_make(const cwi_frame *f, const double direction[3], cwi_lighting *l)
+{
+    *l = (cwi_lighting){.material = f->scene.material, .count = f->scene.light_count};
+    for (size_t n = 0; n < l->count; n++) {
+        const cw_light *light = &f->scene.lights[n];
+        memcpy(l->direction[n], light->direction, sizeof l->direction[n]);
+        normalize(l->direction[n]);
+        for (int a = 0; a < 3; a++) {
+            l->halfway[n][a] = l->direction[n][a] - direction[a];
+            l->color[n][a] = (double)light->color[a];
+        }
+        normalize(l->halfway[n]);
+    }
+}
+
+void cwi_lighting_shade(const cwi_lighting *l, const double gradient[3], double color[3])
+{
+    double n[3] = {gradient[0], gradient[1], gradient[2]};
+    double light[3];
+    const bool has_side = n[0] != 0 || n[1] != 0 || n[2] != 0;
+    normalize(n);
+    for (int c = 0; c < 3; c++)
+        light[c] = (double)l->material.ambient * color[c];
+    for (size_t i = 0; i < l->count && has_side; i++) {
+        const double diffuse = (double)l->material.diffuse * fabs(cwi_dot(n, l->direction[i]));
+        const double gloss = fabs(cwi_dot(n, l->halfway[i]));
+        const double specular =
+            (double)l->material.specular * raise(gloss, (double)l->material.shininess);
+        for (int c = 0; c < 3; c++)
+            light[c] += l->color[i][c] * (diffuse * color[c] + specular);
+    }
+    memcpy(color, light, sizeof light);
+}

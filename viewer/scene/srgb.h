@@ -1,0 +1,19 @@
+/* Between sRGB and linear light: IEC 61966-2-1. Shares, 0 to 1. */
+#ifndef VIEWER_SCENE_SRGB_H
+#define VIEWER_SCENE_SRGB_H
+
+#include <math.h>
+
+static inline double cwi_srgb_to_linear(double srgb)
+{
+    return srgb <= 0.04045 ? srgb / 12.92 : pow((srgb + 0.055) / 1.055, 2.4);
+}
+
+/* Cut to what can be shown. */
+static inline double cwi_linear_to_srgb(double linear)
+{
+    const double c = fmin(fmax(linear, 0), 1);
+    return c <= 0.0031308 ? 12.92 * c : 1.055 * pow(c, 1 / 2.4) - 0.055;
+}
+
+#endif

@@ -1,0 +1,19 @@
+/* Transfer functions from bytes in memory. */
+#ifndef VIEWER_SCENE_TRANSFER_JSON_H
+#define VIEWER_SCENE_TRANSFER_JSON_H
+
+#include <cubewright/transfer.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* As cw_transfer_read(), of the file's bytes; transfer is untouched on failure. */
+CW_API cw_status cwi_transfer_parse(const char *bytes, size_t size, cw_transfer *transfer,
+                                    cw_error *err);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

@@ -1,0 +1,363 @@
+/* Presets. Those of CT stand at Hounsfield units, per millimetre; the others are fitted to the
+ * histogram, per voxel. Colours and opacities were chosen by looking at scans. */
+#include <cubewright/transfer.h>
+
+#include "core/base/status.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+static void put_color(cw_transfer *t, double value, unsigned rgb)
+{
+    cw_color_point *p = &t->colors[t->color_count++];
+    p->value = value;
+    for (int c = 0; c < 3; c++)
+        p->color[c] = (float)(rgb >> (16 - 8 * c) & 255) / 255;
+}
+
+static void put_opacity(cw_transfer *t, double value, double opacity)
+{
+    t->opacities[t->opacity_count++] = (cw_opacity_point){value, (float)opacity};
+}
+
+/* The value below which a share of those lie that are counted from a bin on. */
+static double quantile(const cw_statistics *s, size_t first, double share)
+{
+    double total = 0, sum = 0;
+    for (size_t b = first; b < s->bin_count; b++)
+        total += (double)s->bins[b];
+    for (size_t b = first; b < s->bin_count; b++) {
+        const double count = (double)s->bins[b];
+        if (count > 0 && sum + count >= share * total)
+            return fmin(s->min + s->bin_width * ((double)b + (share * total - sum) / count),
+                        s->max);
+        sum += count;
+    }
+    return s->max;
+}
+
+/* The middle of the values that a bin counts: those of integer types end a step below the next.
+ */
+static double middle_of(const cw_statistics *s, size_t bin)
+{
+    return s->min + s->bin_width * ((double)bin + 0.5) - s->quantum / 2;
+}
+
+/* How much of all lies between two values. */
+static double mass(const cw_statistics *s, double low, double high)
+{
+    double sum = 0;
+    for (size_t b = 0; b < s->bin_count; b++) {
+        const double middle = middle_of(s, b);
+        sum += middle >= low && middle <= high ? (double)s->bins[b] : 0;
+    }
+    return s->finite ? sum / (double)s->finite : 0;
+}
+
+/* The value around which most others lie, within 2 % of a range. */
+static double find_peak(const cw_statistics *s, double low, double high)
+{
+    const double reach = fmax((high - low) / 100, s->bin_width);
+    double best = -1, peak = low;
+    for (size_t b = 0; b < s->bin_count; b++) {
+        const double middle = middle_of(s, b);
+        const double here = s->bins[b] ? mass(s, middle - reach, middle + reach) : 0;
+        if (here > best) {
+            best = here;
+            peak = middle;
+        }
+    }
+    return peak;
+}
+
+/* Where values part into what is around things, the things, and the densest of them: rising,
+ * apart, within the range. high: what nearly all values are below. */
+typedef struct classes {
+    double first, second, high;
+} classes;
+
+static size_t bin_of(const cw_statistics *s, double value)
+{
+    const double b = floor((value - s->min) / s->bin_width);
+    return b <= 0 ? 0 : b >= (double)s->bin_count ? s->bin_count - 1 : (size_t)b;
+}
+
+/* Whether most lies in the middle, and little above: that is what is around things, too, such
+ * as the noise of a scan, or what fills it. */
+static bool is_around(const cw_statistics *s, double first, double second)
+{
+    return mass(s, first, second) > 0.6 && mass(s, second, s->max) < 0.15;
+}
+
+static classes find_classes(const cw_statistics *s)
+{
+    classes c;
+    double levels[2];
+    const double range = s->max - s->min;
+    if (!cw_statistics_otsu(s, 2, levels)) {
+        levels[0] = s->min + 0.4 * range;
+        if (cw_statistics_otsu(s, 1, levels))
+            levels[0] = fmax(levels[0], s->min + 0.02 * range);
+        levels[1] = levels[0] + 0.5 * (s->max - levels[0]);
+    }
+    c.first = levels[0];
+    c.second = levels[1];
+    if (is_around(s, c.first, c.second)) {
+        c.first = c.second;
+        c.second = (c.first + s->max) / 2;
+    }
+    c.high = quantile(s, bin_of(s, c.first), 0.995);
+    c.second = fmin(c.second, c.first + 0.9 * (c.high - c.first));
+    if (!(c.high > c.first && c.second > c.first)) {
+        c.high = s->max;
+        c.second = (c.first + c.high) / 2;
+    }
+    return c;
+}
+
+/* The opacity a voxel has that covers so much along a share of the volume's width. */
+static double spread(const cw_statistics *s, double opacity, double share)
+{
+    const double across = fmax(cbrt((double)s->finite) * share, 1);
+    return -expm1(log1p(-opacity) / across);
+}
+
+static void make_ct_bone(const cw_statistics *s, cw_transfer *t)
+{
+    (void)s;
+    t->unit_mm = 1;
+    put_color(t, 150, 0xa8694a);
+    put_color(t, 300, 0xd8b48a);
+    put_color(t, 600, 0xf2e6cc);
+    put_color(t, 1500, 0xffffff);
+    put_opacity(t, 150, 0);
+    put_opacity(t, 300, 0.15);
+    put_opacity(t, 600, 0.6);
+    put_opacity(t, 1500, 0.9);
+}
+
+static void make_ct_soft(const cw_statistics *s, cw_transfer *t)
+{
+    (void)s;
+    t->unit_mm = 1;
+    put_color(t, -150, 0xd9a066);
+    put_color(t, -20, 0xc77e5a);
+    put_color(t, 60, 0xa63a35);
+    put_color(t, 180, 0xd08a6a);
+    put_color(t, 400, 0xf5ecd8);
+    put_opacity(t, -150, 0);
+    put_opacity(t, -60, 0.015);
+    put_opacity(t, 0, 0.03);
+    put_opacity(t, 80, 0.12);
+    put_opacity(t, 250, 0.3);
+    put_opacity(t, 500, 0.7);
+}
+
+static void make_ct_skin(const cw_statistics *s, cw_transfer *t)
+{
+    (void)s;
+    t->unit_mm = 1;
+    put_color(t, -500, 0xb9775a);
+    put_color(t, -100, 0xe5b593);
+    put_color(t, 300, 0xf5e6d3);
+    put_opacity(t, -600, 0);
+    put_opacity(t, -250, 0.4);
+    put_opacity(t, 0, 0.7);
+}
+
+/* Tissue as a veil, what is brighter in it dense. */
+static void make_mr(const cw_statistics *s, cw_transfer *t)
+{
+    const classes c = find_classes(s);
+    const double middle = (c.first + c.second) / 2;
+    put_color(t, c.first, 0x5a2d23);
+    put_color(t, middle, 0xb06f55);
+    put_color(t, c.second, 0xdcb896);
+    put_color(t, c.high, 0xfff8ea);
+    put_opacity(t, c.first, 0);
+    put_opacity(t, middle, spread(s, 0.6, 0.1));
+    put_opacity(t, c.second, spread(s, 0.95, 0.1));
+    put_opacity(t, c.high, spread(s, 0.99, 0.05));
+}
+
+static void make_grey_between(double low, double high, cw_transfer *t)
+{
+    put_color(t, low, 0x000000);
+    put_color(t, high, 0xffffff);
+}
+
+/* Black where most is, white at what few reach: vessels. */
+static void make_mip(const cw_statistics *s, cw_transfer *t)
+{
+    make_grey_between(quantile(s, 0, 0.5), quantile(s, 0, 0.9995), t);
+    put_opacity(t, t->colors[0].value, 1);
+}
+
+static void make_grey(const cw_statistics *s, cw_transfer *t)
+{
+    make_grey_between(s->min, s->max, t);
+    put_opacity(t, s->min, 1);
+}
+
+/* Means along rays, air and all, stay below the densest class. */
+static void make_xray(const cw_statistics *s, cw_transfer *t)
+{
+    make_grey_between(s->min, fmax(find_classes(s).second, s->min + s->bin_width), t);
+    put_opacity(t, s->min, 1);
+}
+
+static void make_fog(const cw_statistics *s, cw_transfer *t)
+{
+    const classes c = find_classes(s);
+    put_color(t, c.first, 0xb8c8dc);
+    put_color(t, c.high, 0xffffff);
+    put_opacity(t, c.first, 0);
+    put_opacity(t, c.second, spread(s, 0.5, 0.4));
+    put_opacity(t, c.high, spread(s, 0.9, 0.3));
+}
+
+/* Distances from a surface at 0, negative inside: solid, but for half a bin. */
+static void make_level_set(const cw_statistics *s, cw_transfer *t)
+{
+    const double depth = fmin(s->min, 0), soft = 0.05 * fmax(-depth, 1e-30);
+    put_color(t, depth, 0xe8ddc8);
+    put_opacity(t, -soft, 0.9);
+    put_opacity(t, 0, 0);
+}
+
+/* Quantities with a sign, mostly about 0: both sides of it, in two colours. */
+static bool is_signed(const cw_statistics *s, double low, double high)
+{
+    const double range = high - low;
+    return low < 0 && high > 0 && fmin(-low, high) > 0.2 * range &&
+           mass(s, -0.05 * range, 0.05 * range) > 0.2 &&
+           mass(s, s->min, low + 0.15 * range) < 0.05 &&
+           fabs(find_peak(s, low, high)) < 0.03 * range;
+}
+
+static void make_signed(const cw_statistics *s, double low, double high, cw_transfer *t)
+{
+    const double dense = spread(s, 0.98, 0.1), thin = spread(s, 0.4, 0.15);
+    put_color(t, low, 0x9fd8ff);
+    put_color(t, low / 4, 0x2866d8);
+    put_color(t, high / 4, 0xd8502a);
+    put_color(t, high, 0xffe08a);
+    put_opacity(t, low, dense);
+    put_opacity(t, low / 3, thin);
+    put_opacity(t, low / 8, 0);
+    put_opacity(t, high / 8, 0);
+    put_opacity(t, high / 3, thin);
+    put_opacity(t, high, dense);
+}
+
+/* Air as the highest value of all: a slide scanned by light, an inverted map. */
+static bool is_inverted(const cw_statistics *s)
+{
+    const double range = s->max - s->min;
+    return mass(s, s->max - 0.02 * range, s->max) > 0.5;
+}
+
+static void make_inverted(const cw_statistics *s, cw_transfer *t)
+{
+    const double low = quantile(s, 0, 0.005), range = s->max - low;
+    put_color(t, low, 0xfff4dc);
+    put_color(t, low + 0.5 * range, 0xd9a877);
+    put_color(t, low + 0.9 * range, 0x7a3f2c);
+    put_opacity(t, low, spread(s, 0.99, 0.05));
+    put_opacity(t, low + 0.6 * range, spread(s, 0.9, 0.1));
+    put_opacity(t, low + 0.93 * range, 0);
+}
+
+/* What is around things is left out; the rest fades in, the densest of it nearly solid. */
+static void make_above(const cw_statistics *s, cw_transfer *t)
+{
+    const classes c = find_classes(s);
+    const double fade = 0.35 * (c.second - c.first);
+    put_color(t, c.first, 0x6b3a2e);
+    put_color(t, c.first + fade, 0xb9775a);
+    put_color(t, c.second, 0xe3bd92);
+    put_color(t, c.high, 0xfff6e4);
+    put_opacity(t, c.first, 0);
+    put_opacity(t, c.first + fade, spread(s, 0.8, 0.1));
+    put_opacity(t, c.second, spread(s, 0.95, 0.1));
+    put_opacity(t, c.high, spread(s, 0.999, 0.04));
+}
+
+static void make_auto(const cw_statistics *s, cw_transfer *t)
+{
+    const double low = quantile(s, 0, 0.0005), high = quantile(s, 0, 0.9995);
+    if (is_signed(s, low, high))
+        make_signed(s, low, high, t);
+    else if (is_inverted(s))
+        make_inverted(s, t);
+    else
+        make_above(s, t);
+}
+
+static const struct {
+    const char *name, *about;
+    bool fitted; /* to the values; else at Hounsfield units */
+    void (*make)(const cw_statistics *s, cw_transfer *t);
+} presets[] = {
+    {"auto", "what is around things is left out, the rest fades in", true, make_auto},
+    {"ct-bone", "bone, in Hounsfield units", false, make_ct_bone},
+    {"ct-soft", "soft tissue over bone, in Hounsfield units", false, make_ct_soft},
+    {"ct-skin", "skin, in Hounsfield units", false, make_ct_skin},
+    {"mr", "tissue as a veil, what is bright in it dense", true, make_mr},
+    {"mip", "opaque greys from the median up, for vessels in mip", true, make_mip},
+    {"grey", "opaque greys over the whole range", true, make_grey},
+    {"xray", "opaque greys up to the densest class, for average", true, make_xray},
+    {"fog", "a thin white haze", true, make_fog},
+    {"level-set", "solid below 0", true, make_level_set},
+};
+
+enum { PRESETS = sizeof presets / sizeof *presets };
+
+const char *cw_transfer_preset_name(size_t n)
+{
+    return n < PRESETS ? presets[n].name : NULL;
+}
+
+const char *cw_transfer_preset_about(size_t n)
+{
+    return n < PRESETS ? presets[n].about : NULL;
+}
+
+static cw_status unknown(const char *name, cw_error *err)
+{
+    char list[256] = "";
+    size_t used = 0;
+    for (size_t n = 0; n < PRESETS; n++)
+        used += (size_t)snprintf(list + used, sizeof list - used, " %s", presets[n].name);
+    return cw_fail(err, CW_ERR_ARGUMENT, "no transfer function is named '%.60s'; there are%s",
+                   name, list);
+}
+
+/* One value, or none: opaque grey, as there is nothing to tell apart. */
+static void make_single(const cw_statistics *s, cw_transfer *t)
+{
+    put_color(t, s->min, 0xb8b8b8);
+    put_opacity(t, s->min, s->finite ? 0.5 : 0);
+}
+
+cw_status cw_transfer_preset(const char *name, const cw_statistics *statistics,
+                             cw_transfer *transfer, cw_error *err)
+{
+    size_t n = 0;
+    cw_transfer t = {0};
+    while (n < PRESETS && strcmp(presets[n].name, name) != 0)
+        n++;
+    if (n == PRESETS)
+        return unknown(name, err);
+    if (presets[n].fitted && !statistics)
+        return cw_fail(err, CW_ERR_ARGUMENT, "'%s' is fitted to a volume's values", name);
+    if (presets[n].fitted && !(statistics->max > statistics->min && statistics->bin_count))
+        make_single(statistics, &t);
+    else
+        presets[n].make(statistics, &t);
+    cw_status st = cw_transfer_check(&t, err);
+    if (st == CW_OK)
+        *transfer = t;
+    return st;
+}

@@ -1,0 +1,220 @@
+#include "viewer/scene/transfer_table.h"
+
+#include "core/base/parallel.h"
+#include "core/base/memory.h"
+#include "core/base/status.h"
+
+#include <math.h>
+
+/* Steps of the running integrals between rows of a pre-integrated table. */
+enum { FINE = 8 };
+static const double PIECES_PER_DEPTH = 40, MOST_PIECES = 32;
+
+static void widen(double value, double range[2])
+{
+    range[0] = fmin(range[0], value);
+    range[1] = fmax(range[1], value);
+}
+
+/* From the first point to the last. */
+static void find_range(const cw_transfer *t, double range[2])
+{
+    range[0] = INFINITY;
+    range[1] = -INFINITY;
+    if (t->color_count > 0) {
+        widen(t->colors[0].value, range);
+        widen(t->colors[t->color_count - 1].value, range);
+    }
+    if (t->opacity_count > 0) {
+        widen(t->opacities[0].value, range);
+        widen(t->opacities[t->opacity_count - 1].value, range);
+    }
+    if (!(range[0] <= range[1]))
+        range[0] = range[1] = 0;
+    if (range[0] == range[1]) { /* a jump, or constant */
+        const double around = fmax(fabs(range[0]), 1) * 1e-6;
+        range[0] -= around;
+        range[1] += around;
+    }
+}
+
+cw_status cwi_table_make(const cwi_frame *frame, cwi_table *table, cw_error *err)
+{
+    double range[2], color[3], opacity;
+    find_range(&frame->transfer, range);
+    *table = (cwi_table){.low = range[0], .high = range[1], .count = CWI_TABLE_ROWS};
+    table->rows = cwi_alloc_array(table->count, 4 * sizeof *table->rows);
+    table->visible = cwi_alloc_array(table->count, sizeof *table->visible);
+    if (!table->rows || !table->visible) {
+        cwi_table_free(table);
+        return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a transfer function");
+    }
+    for (size_t n = 0; n < table->count; n++) {
+        float *row = table->rows + 4 * n;
+        const double share = (double)n / (double)(table->count - 1);
+        cw_transfer_at(&frame->transfer, range[0] + share * (range[1] - range[0]), color,
+                       &opacity);
+        for (int c = 0; c < 3; c++)
+            row[c] = (float)color[c];
+        row[3] = (float)cwi_frame_extinction(frame, opacity);
+    }
+    size_t next = table->count;
+    for (size_t n = table->count; n-- > 0; table->visible[n] = (uint16_t)next)
+        next = table->rows[4 * n + 3] > 0 ? n : next;
+    return CW_OK;
+}
+
+void cwi_table_free(cwi_table *table)
+{
+    cwi_free(table->rows);
+    cwi_free(table->visible);
+    *table = (cwi_table){0};
+}
+
+/* The row of a value, not rounded. */
+static double row_of(const cwi_table *table, double value)
+{
+    const double share = (value - table->low) / (table->high - table->low);
+    return fmin(fmax(share, 0), 1) * (double)(table->count - 1);
+}
+
+bool cwi_table_is_visible(const cwi_table *table, double low, double high)
+{
+    const size_t first = (size_t)floor(row_of(table, low)),
+                 last = (size_t)ceil(row_of(table, high));
+    return table->visible[first] <= last;
+}
+
+/* The shortest way between two points that differ, at most so much. */
+static double narrowest(const void *points, size_t row, size_t count, double most)
+{
+    for (size_t n = 1; n < count; n++) {
+        const double a = *(const double *)((const char *)points + (n - 1) * row);
+        const double b = *(const double *)((const char *)points + n * row);
+        if (b > a && b - a < most)
+            most = b - a;
+    }
+    return most;
+}
+
+size_t cwi_table_segment_rows(const cwi_table *table, const cw_transfer *t)
+{
+    const double range = table->high - table->low;
+    double gap = narrowest(t->opacities, sizeof *t->opacities, t->opacity_count, range);
+    gap = narrowest(t->colors, sizeof *t->colors, t->color_count, gap);
+    size_t rows = 256;
+    while (rows < 1024 && (double)rows * gap < 64 * range)
+        rows *= 2;
+    return rows;
+}
+
+/* Running integrals over the table's rows, for count rows of the result: of the extinction, and
+ * of the colours times it. */
+static double (*running_integrals(const cwi_table *t, size_t count))[4]
+{
+    double(*sum)[4] = cwi_alloc_zeroed(count * FINE, sizeof *sum);
+    const double fine = (double)((count - 1) * FINE);
+    double before[4] = {0};
+    for (size_t n = 0; sum && n <= (count - 1) * FINE; n++) {
+        const double at = (double)n / fine * (double)(t->count - 1);
+        const size_t i = (size_t)fmin(floor(at), (double)t->count - 2);
+        const double share = at - (double)i;
+        double now[4];
+        for (int c = 0; c < 4; c++)
+            now[c] = (1 - share) * (double)t->rows[4 * i + (size_t)c] +
+                     share * (double)t->rows[4 * i + 4 + (size_t)c];
+        for (int c = 0; c < 3; c++)
+            now[c] *= now[3];
+        for (int c = 0; c < 4 && n > 0; c++)
+            sum[n][c] = sum[n - 1][c] + (before[c] + now[c]) / 2;
+        for (int c = 0; c < 4; c++)
+            before[c] = now[c];
+    }
+    return sum;
+}
+
+/* Within a piece all glows alike: the error falls with its depth, so deep ones are cut. */
+static size_t piece_count(double depth, size_t span)
+{
+    const double wanted = fmin(ceil(PIECES_PER_DEPTH * depth), MOST_PIECES);
+    return wanted < 1 ? 1 : wanted < (double)span ? (size_t)wanted : span;
+}
+
+/* From row x to row y, which differ: pieces from front to back. scale: length per step of the
+ * running integrals. */
+static void integrate(const double (*sum)[4], size_t x, size_t y, double scale, float out[4])
+{
+    const size_t span = (x < y ? y - x : x - y) * FINE;
+    const double all = scale * fabs(sum[y * FINE][3] - sum[x * FINE][3]);
+    const size_t pieces = piece_count(all, span);
+    double light = 1, color[3] = {0};
+    size_t from = x * FINE;
+    for (size_t p = 1; p <= pieces && all > 0 && light > 1e-9; p++) {
+        const size_t way = span * p / pieces;
+        const size_t to = x < y ? x * FINE + way : x * FINE - way;
+        const double depth = scale * fabs(sum[to][3] - sum[from][3]);
+        const double through = exp(-depth);
+        /* the share of a piece's glow that leaves it */
+        const double escape = depth > 1e-4 ? (1 - through) / depth : 1 - depth / 2;
+        for (int c = 0; c < 3; c++)
+            color[c] += light * scale * escape * fabs(sum[to][c] - sum[from][c]);
+        light *= through;
+        from = to;
+    }
+    for (int c = 0; c < 3; c++)
+        out[c] = (float)color[c];
+    out[3] = (float)(1 - light);
+}
+
+/* A segment of one value. */
+static void integrate_flat(const cwi_table *t, double at, double length, float out[4])
+{
+    const size_t i = (size_t)fmin(floor(at), (double)t->count - 2);
+    const double share = at - (double)i;
+    double row[4];
+    for (int c = 0; c < 4; c++)
+        row[c] = (1 - share) * (double)t->rows[4 * i + (size_t)c] +
+                 share * (double)t->rows[4 * i + 4 + (size_t)c];
+    const double opacity = -expm1(-row[3] * length);
+    for (int c = 0; c < 3; c++)
+        out[c] = (float)(row[c] * opacity);
+    out[3] = (float)opacity;
+}
+
+typedef struct integration {
+    const cwi_table *table;
+    double length;
+    size_t count;
+    const double (*sum)[4];
+    float *out;
+} integration;
+
+static void integrate_row(void *context, size_t y)
+{
+    const integration *w = context;
+    for (size_t x = 0; x < w->count; x++) {
+        float *to = w->out + 4 * (y * w->count + x);
+        const double span = fabs((double)x - (double)y) * FINE;
+        const double at = (double)x / (double)(w->count - 1) * (double)(w->table->count - 1);
+        if (x == y)
+            integrate_flat(w->table, at, w->length, to);
+        else
+            integrate(w->sum, x, y, w->length / span, to);
+    }
+}
+
+cw_status cwi_table_preintegrate(const cwi_table *table, double length, size_t count,
+                                 int threads, const cw_progress *progress, float *out,
+                                 cw_error *err)
+{
+    double(*sum)[4] = running_integrals(table, count);
+    if (!sum)
+        return cw_fail(err, CW_ERR_NO_MEMORY,
+                       "no memory for a pre-integrated transfer function");
+    enum { WORK = 64 }; /* an entry is as much as so many samples elsewhere */
+    integration work = {table, length, count, (const double(*)[4])sum, out};
+    cw_status st = cwi_each_layer(count, WORK * count, threads, progress, "integrating",
+                                  integrate_row, &work, err);
+    cwi_free(sum);
+    return st;
+}

@@ -1,0 +1,45 @@
+/* A transfer function as tables, for the texture unit and for fast loops on the CPU. */
+#ifndef VIEWER_SCENE_TRANSFER_TABLE_H
+#define VIEWER_SCENE_TRANSFER_TABLE_H
+
+#include "viewer/scene/frame_setup.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Colours and extinction at evenly spaced values, the ends included. Beyond them a transfer
+ * function is constant. */
+typedef struct cwi_table {
+    double low, high; /* values of the first and last row */
+    size_t count;
+    float *rows;       /* count x 4: red, green, blue, extinction per unit of eye space */
+    uint16_t *visible; /* count: the first row from there on that is not fully transparent, or
+                          count */
+} cwi_table;
+
+enum { CWI_TABLE_ROWS = 4096 };
+
+/* Of a frame's transfer function. CW_ERR_NO_MEMORY. Harmless to free twice. */
+CW_API cw_status cwi_table_make(const cwi_frame *frame, cwi_table *table, cw_error *err);
+CW_API void cwi_table_free(cwi_table *table);
+
+/* Whether something within a range of values is not fully transparent. */
+CW_API bool cwi_table_is_visible(const cwi_table *table, double low, double high);
+
+/* Rows that a pre-integrated table needs: more for narrow peaks, 256 to 1024. */
+CW_API size_t cwi_table_segment_rows(const cwi_table *table, const cw_transfer *transfer);
+
+/* Pre-integration [Engel2001]: what a segment of a length (units of eye space) adds along which
+ * the value goes linearly from row x to row y. out is count x count x 4, y slowest: colour
+ * times opacity, and opacity. Within a segment light is absorbed too: it is cut into pieces
+ * whose depth and glow are exact. */
+CW_API cw_status cwi_table_preintegrate(const cwi_table *table, double length, size_t count,
+                                        int threads, const cw_progress *progress, float *out,
+                                        cw_error *err);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

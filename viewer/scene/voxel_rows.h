@@ -1,0 +1,21 @@
+/* Rows of voxels as floats. */
+#ifndef VIEWER_SCENE_VOXEL_ROWS_H
+#define VIEWER_SCENE_VOXEL_ROWS_H
+
+#include <cubewright/volume.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Reads count numbers of a row, before slope and intercept; NaN: no value. */
+CW_API void cwi_row_load(const cw_volume *volume, const void *from, size_t count, float *to);
+/* The same, where the volume has them so already, or else in the buffer. */
+CW_API const float *cwi_row_of(const cw_volume *volume, const void *from, size_t count,
+                               float *buffer);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

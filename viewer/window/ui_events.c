@@ -1,0 +1,281 @@
+/* Input that waits, and what a frame takes of it. */
+#include "viewer/window/ui_internal.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A second press within this time and distance is one of a pair. */
+static const double twice_s = 0.35, twice_pixels = 6;
+
+static bool make_room(cwi_ui_queue *q)
+{
+    if (q->count < q->room)
+        return true;
+    const size_t room = q->room ? 2 * q->room : 32;
+    cwi_ui_event *items = cwi_realloc_array(q->items, room, sizeof *items);
+    if (items)
+        q->items = items;
+    double *times = items ? cwi_realloc_array(q->times, room, sizeof *times) : NULL;
+    if (!times)
+        return false;
+    q->times = times;
+    q->room = room;
+    return true;
+}
+
+/* What was taken is dropped when all of it was. */
+static void rewind_when_empty(cwi_ui_queue *q)
+{
+    if (q->first == q->count)
+        q->first = q->count = 0;
+}
+
+static bool waits(const cwi_ui_queue *q, const cwi_ui_event *event)
+{
+    for (size_t n = q->first; n < q->count; n++)
+        if (q->items[n].kind == event->kind && strcmp(q->items[n].text, event->text) == 0)
+            return true;
+    return false;
+}
+
+bool cwi_ui_queue_put(cwi_ui *ui, const cwi_ui_event *event, bool repeats)
+{
+    cwi_ui_queue *q = &ui->queue;
+    if (repeats && event->kind == CWI_UI_KEY && waits(q, event))
+        return true;
+    cwi_ui_event copy = *event;
+    copy.text = event->text ? cwi_strdup(event->text) : NULL;
+    if ((event->text && !copy.text) || !make_room(q)) {
+        cwi_free((char *)copy.text);
+        return false;
+    }
+    q->items[q->count] = copy;
+    q->times[q->count++] = cwi_ui_screen_seconds(ui);
+    return true;
+}
+
+static cw_status check_place(const cwi_ui_event *e, cw_error *err)
+{
+    if (!isfinite(e->x) || !isfinite(e->y))
+        return cw_fail(err, CW_ERR_ARGUMENT, "an input has a position that is not a number");
+    if (e->kind == CWI_UI_RESIZE &&
+        !(e->x >= 1 && e->x <= CWI_UI_LARGEST && e->y >= 1 && e->y <= CWI_UI_LARGEST))
+        return cw_fail(err, CW_ERR_ARGUMENT,
+                       "a window of %g x %g pixels; 1 x 1 to %d x %d was expected", e->x, e->y,
+                       CWI_UI_LARGEST, CWI_UI_LARGEST);
+    return CW_OK;
+}
+
+static cw_status check_text(const cwi_ui_event *e, cw_error *err)
+{
+    const bool has = e->kind == CWI_UI_KEY || e->kind == CWI_UI_WRITE || e->kind == CWI_UI_DROP;
+    if (has && !e->text)
+        return cw_fail(err, CW_ERR_ARGUMENT, "input without the text that it is of");
+    if (e->kind != CWI_UI_KEY ||
+        (strlen(e->text) < CWI_UI_KEY_SIZE && cwi_ui_key_number(e->text, NULL) > 0))
+        return CW_OK;
+    return cw_fail(err, CW_ERR_ARGUMENT,
+                   "no key has the name '%.40s'; names are such as A, 1, ?, Space, F1, Left, "
+                   "Shift+Left, Ctrl+S",
+                   e->text);
+}
+
+cw_status cwi_ui_feed(cwi_ui *ui, const cwi_ui_event *event, cw_error *err)
+{
+    const bool pressed = event->kind == CWI_UI_PRESS || event->kind == CWI_UI_LIFT;
+    if ((unsigned)event->kind > CWI_UI_CLOSE)
+        return cw_fail(err, CW_ERR_ARGUMENT, "%d is not a kind of input", (int)event->kind);
+    if (pressed && (event->button < 0 || event->button >= CWI_UI_BUTTONS))
+        return cw_fail(err, CW_ERR_ARGUMENT, "a mouse has no button %d; there are 0 to %d",
+                       event->button, CWI_UI_BUTTONS - 1);
+    cw_status st = check_place(event, err);
+    if (st == CW_OK)
+        st = check_text(event, err);
+    if (st == CW_OK && !cwi_ui_queue_put(ui, event, false))
+        st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for input");
+    return st;
+}
+
+/* What a frame has taken so far. */
+typedef struct taken {
+    bool any, moved, button[CWI_UI_BUTTONS], at_place, key, edit, wrote, alone;
+} taken;
+
+/* Whether an event belongs into the frame at hand too: each change must be seen, and where and
+ * in which order it was. The way to where a button goes down is not dragged, and what is
+ * dragged gets where it is let go. A key that is down must come up before it goes down again.
+ */
+static bool fits(const cwi_ui *ui, const taken *t, const cwi_ui_event *e, int last_key)
+{
+    if (t->alone)
+        return false;
+    switch (e->kind) {
+    case CWI_UI_MOVE:
+        return !t->at_place || (e->x == ui->input.x && e->y == ui->input.y);
+    case CWI_UI_PRESS:
+    case CWI_UI_LIFT:
+        return !t->moved && !t->button[e->button] && !t->wrote && !t->key;
+    case CWI_UI_WHEEL:
+        return true;
+    case CWI_UI_KEY:
+        return !t->key && !t->wrote && !t->at_place &&
+               cwi_ui_key_number(e->text, NULL) != last_key;
+    case CWI_UI_WRITE:
+        return !t->edit && !t->at_place;
+    case CWI_UI_RESIZE:
+        return !t->any;
+    default:
+        return true;
+    }
+}
+
+static void press(cwi_ui *ui, int button, double time)
+{
+    cwi_ui_input *in = &ui->input;
+    const double dx = in->x - ui->press[button].x, dy = in->y - ui->press[button].y;
+    in->down[button] = in->pressed[button] = true;
+    in->twice[button] = ui->press[button].time > 0 &&
+                        time - ui->press[button].time <= twice_s &&
+                        hypot(dx, dy) <= twice_pixels;
+    ui->press[button].time = in->twice[button] ? 0 : time;
+    ui->press[button].x = in->x;
+    ui->press[button].y = in->y;
+}
+
+static void move(cwi_ui *ui, const cwi_ui_event *e)
+{
+    cwi_ui_input *in = &ui->input;
+    if (ui->has_mouse) {
+        in->dx += e->x - in->x;
+        in->dy += e->y - in->y;
+    }
+    in->x = e->x;
+    in->y = e->y;
+    ui->has_mouse = true;
+}
+
+static void take_key(cwi_ui *ui, const char *name)
+{
+    cwi_ui_input *in = &ui->input;
+    ui->key = cwi_ui_key_number(name, &ui->key_modifiers);
+    strncpy(in->keys[in->key_count++], name, CWI_UI_KEY_SIZE - 1);
+}
+
+/* Takes over the event's text. */
+static void take_drop(cwi_ui *ui, cwi_ui_event *e)
+{
+    cwi_ui_input *in = &ui->input;
+    if (in->drop_count == ui->drop_room) {
+        const size_t room = 2 * ui->drop_room + 8;
+        char **drops = cwi_realloc_array(ui->drops, room, sizeof *drops);
+        if (!drops)
+            return;
+        ui->drops = drops;
+        ui->drop_room = room;
+    }
+    ui->drops[in->drop_count++] = (char *)e->text;
+    in->drops = ui->drops;
+    e->text = NULL;
+}
+
+static void take(cwi_ui *ui, cwi_ui_event *e, double time)
+{
+    cwi_ui_input *in = &ui->input;
+    if (e->kind <= CWI_UI_WHEEL)
+        ui->held = e->modifiers;
+    switch (e->kind) {
+    case CWI_UI_MOVE:
+        move(ui, e);
+        break;
+    case CWI_UI_PRESS:
+        press(ui, e->button, time);
+        break;
+    case CWI_UI_LIFT:
+        in->down[e->button] = false;
+        in->lifted[e->button] = true;
+        break;
+    case CWI_UI_WHEEL:
+        in->wheel += e->y;
+        break;
+    case CWI_UI_KEY:
+        take_key(ui, e->text);
+        break;
+    case CWI_UI_WRITE:
+        cwi_ui_imgui_write(e->text);
+        break;
+    case CWI_UI_DROP:
+        take_drop(ui, e);
+        break;
+    case CWI_UI_RESIZE:
+        cwi_ui_screen_resize(ui, (size_t)e->x, (size_t)e->y);
+        break;
+    case CWI_UI_CLOSE:
+        in->close = true;
+        break;
+    }
+}
+
+/* A key that edits text comes before what is written after it; one that writes does not. */
+static bool edits(const cwi_ui_event *e)
+{
+    unsigned modifiers;
+    const int number = cwi_ui_key_number(e->text, &modifiers);
+    return number >= 256 || (modifiers & (CWI_UI_CTRL | CWI_UI_ALT)) != 0;
+}
+
+static void note(taken *t, const cwi_ui_event *e)
+{
+    const bool change = e->kind == CWI_UI_PRESS || e->kind == CWI_UI_LIFT;
+    t->any = true;
+    t->moved |= e->kind == CWI_UI_MOVE;
+    if (change)
+        t->button[e->button] = true;
+    t->at_place |= change || e->kind == CWI_UI_WHEEL;
+    t->key |= e->kind == CWI_UI_KEY;
+    t->edit |= e->kind == CWI_UI_KEY && edits(e);
+    t->wrote |= e->kind == CWI_UI_WRITE;
+    t->alone |= e->kind == CWI_UI_RESIZE;
+}
+
+static void forget_frame(cwi_ui *ui)
+{
+    cwi_ui_input *in = &ui->input;
+    for (size_t n = 0; n < in->drop_count; n++)
+        cwi_free(ui->drops[n]);
+    for (int b = 0; b < CWI_UI_BUTTONS; b++)
+        in->pressed[b] = in->lifted[b] = in->twice[b] = false;
+    memset(in->keys, 0, sizeof in->keys);
+    in->drop_count = in->key_count = 0;
+    in->dx = in->dy = in->wheel = 0;
+    in->close = false;
+    ui->key = 0;
+    ui->key_modifiers = 0;
+}
+
+void cwi_ui_queue_take(cwi_ui *ui)
+{
+    cwi_ui_queue *q = &ui->queue;
+    const int last_key = ui->key ? ui->key : -1;
+    taken t = {0};
+    forget_frame(ui);
+    while (q->first < q->count && fits(ui, &t, &q->items[q->first], last_key)) {
+        cwi_ui_event *e = &q->items[q->first];
+        note(&t, e);
+        take(ui, e, q->times[q->first++]);
+        cwi_free((char *)e->text);
+    }
+    rewind_when_empty(q);
+    ui->input.modifiers = ui->held | ui->key_modifiers;
+    if (t.any)
+        ui->settle = 3;
+}
+
+void cwi_ui_queue_free(cwi_ui *ui)
+{
+    forget_frame(ui);
+    for (size_t n = ui->queue.first; n < ui->queue.count; n++)
+        cwi_free((char *)ui->queue.items[n].text);
+    cwi_free(ui->queue.items);
+    cwi_free(ui->queue.times);
+    cwi_free(ui->drops);
+}

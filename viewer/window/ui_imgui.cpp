@@ -1,0 +1,303 @@
+/* Dear ImGui itself: its context, letters and colours, what it is told of input, and a frame of
+ * it. It throws nothing, and its memory is malloc's. */
+#include "viewer/window/ui_internal.h"
+
+#include <backends/imgui_impl_opengl3.h>
+#include <imgui.h>
+#include <imgui_internal.h>
+
+#include <cfloat>
+#include <dlfcn.h>
+#include <unistd.h>
+
+namespace
+{
+
+const char letters[] = "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf";
+
+/* Latin, Greek and Cyrillic; dashes, primes; superscripts; arrows; signs of mathematics;
+ * squares, triangles and circles; ticks. */
+const ImWchar ranges[] = {0x20,   0x24f,  0x370,  0x52f,  0x2010, 0x2044,
+                          0x2070, 0x209f, 0x2190, 0x21ff, 0x2200, 0x22ff,
+                          0x25a0, 0x25ff, 0x2713, 0x2717, 0};
+
+ImVec4 gray(float value, float alpha = 1)
+{
+    return ImVec4(value * 0.94f, value * 0.98f, value * 1.06f, alpha);
+}
+
+ImVec4 accent(float alpha = 1)
+{
+    return ImVec4(0.34f, 0.63f, 0.90f, alpha);
+}
+
+void color_backgrounds(ImVec4 *c)
+{
+    c[ImGuiCol_WindowBg] = gray(0.115f, 0.96f);
+    c[ImGuiCol_PopupBg] = gray(0.135f, 0.98f);
+    c[ImGuiCol_MenuBarBg] = gray(0.135f);
+    c[ImGuiCol_TitleBg] = gray(0.15f);
+    c[ImGuiCol_TitleBgActive] = gray(0.19f);
+    c[ImGuiCol_TitleBgCollapsed] = gray(0.15f, 0.9f);
+    c[ImGuiCol_ModalWindowDimBg] = ImVec4(0, 0, 0, 0.5f);
+    c[ImGuiCol_Border] = gray(0.30f, 0.7f);
+    c[ImGuiCol_Separator] = gray(0.30f, 0.7f);
+    c[ImGuiCol_ScrollbarBg] = ImVec4(0, 0, 0, 0);
+}
+
+void color_widgets(ImVec4 *c)
+{
+    c[ImGuiCol_Text] = gray(0.92f);
+    c[ImGuiCol_TextDisabled] = gray(0.56f);
+    c[ImGuiCol_TextSelectedBg] = accent(0.45f);
+    c[ImGuiCol_FrameBg] = gray(0.20f);
+    c[ImGuiCol_FrameBgHovered] = gray(0.25f);
+    c[ImGuiCol_FrameBgActive] = gray(0.29f);
+    c[ImGuiCol_CheckMark] = accent();
+    c[ImGuiCol_SliderGrab] = accent(0.85f);
+    c[ImGuiCol_SliderGrabActive] = ImVec4(0.50f, 0.76f, 1, 1);
+    c[ImGuiCol_Button] = gray(0.25f);
+    c[ImGuiCol_ButtonHovered] = accent(0.55f);
+    c[ImGuiCol_ButtonActive] = accent(0.80f);
+    c[ImGuiCol_Header] = gray(0.185f);
+    c[ImGuiCol_HeaderHovered] = accent(0.40f);
+    c[ImGuiCol_HeaderActive] = accent(0.60f);
+    c[ImGuiCol_PlotHistogram] = accent(0.85f); /* bars of progress */
+    c[ImGuiCol_ResizeGrip] = gray(0.35f, 0.6f);
+    c[ImGuiCol_ResizeGripHovered] = accent(0.6f);
+    c[ImGuiCol_ResizeGripActive] = accent();
+    c[ImGuiCol_ScrollbarGrab] = gray(0.34f);
+}
+
+void style_all(float scale)
+{
+    ImGuiStyle &s = ImGui::GetStyle();
+    ImGui::StyleColorsDark();
+    color_backgrounds(s.Colors);
+    color_widgets(s.Colors);
+    s.WindowRounding = s.PopupRounding = 6;
+    s.FrameRounding = s.GrabRounding = s.ScrollbarRounding = 4;
+    s.WindowPadding = ImVec2(10, 9);
+    s.FramePadding = ImVec2(8, 4);
+    s.ItemSpacing = ImVec2(8, 6);
+    s.ItemInnerSpacing = ImVec2(6, 4);
+    s.GrabMinSize = 11;
+    s.ScrollbarSize = 12;
+    s.WindowTitleAlign = ImVec2(0, 0.5f);
+    s.WindowMenuButtonPosition = ImGuiDir_Right;
+    s.DisabledAlpha = 0.45f;
+    s.ScaleAllSizes(scale);
+}
+
+/* DejaVu's lines are 1.16 times as high as its letters' square: 15 pixels for letters of 13. */
+void add_letters(float scale)
+{
+    ImFontAtlas *fonts = ImGui::GetIO().Fonts;
+    ImFontConfig plain;
+    plain.SizePixels = ImFloor(13 * scale);
+    if (access(letters, R_OK) != 0 ||
+        !fonts->AddFontFromFileTTF(letters, ImFloor(15 * scale + 0.5f), nullptr, ranges))
+        fonts->AddFontDefault(&plain);
+}
+
+const char *paste(void *ui)
+{
+    return cwi_ui_screen_paste(static_cast<cwi_ui *>(ui));
+}
+
+void copy(void *ui, const char *text)
+{
+    cwi_ui_screen_copy(static_cast<cwi_ui *>(ui), text);
+}
+
+void name_keys(ImGuiIO &io)
+{
+    static const struct {
+        ImGuiKey key;
+        const char *name;
+    } keys[] = {{ImGuiKey_Tab, "Tab"},
+                {ImGuiKey_LeftArrow, "Left"},
+                {ImGuiKey_RightArrow, "Right"},
+                {ImGuiKey_UpArrow, "Up"},
+                {ImGuiKey_DownArrow, "Down"},
+                {ImGuiKey_PageUp, "PageUp"},
+                {ImGuiKey_PageDown, "PageDown"},
+                {ImGuiKey_Home, "Home"},
+                {ImGuiKey_End, "End"},
+                {ImGuiKey_Insert, "Insert"},
+                {ImGuiKey_Delete, "Delete"},
+                {ImGuiKey_Backspace, "Backspace"},
+                {ImGuiKey_Space, "Space"},
+                {ImGuiKey_Enter, "Enter"},
+                {ImGuiKey_Escape, "Escape"},
+                {ImGuiKey_A, "A"},
+                {ImGuiKey_C, "C"},
+                {ImGuiKey_V, "V"},
+                {ImGuiKey_X, "X"},
+                {ImGuiKey_Y, "Y"},
+                {ImGuiKey_Z, "Z"}};
+    for (const auto &k : keys)
+        io.KeyMap[k.key] = cwi_ui_key_number(k.name, nullptr);
+}
+
+/* The backend looks for this library and prints when it is not there. */
+bool has_libgl()
+{
+    void *library = dlopen("libGL.so.1", RTLD_LAZY | RTLD_LOCAL);
+    if (library)
+        dlclose(library);
+    return library != nullptr;
+}
+
+void tell_mouse(const cwi_ui *ui, ImGuiIO &io)
+{
+    const bool somewhere = ui->has_mouse && ui->input.x >= 0 && ui->input.y >= 0;
+    bool held = false;
+    for (int b = 0; b < CWI_UI_BUTTONS; b++) {
+        io.MouseDown[b] = ui->input.down[b]; /* ImGui counts as we do */
+        held = held || ui->input.down[b];
+    }
+    io.MousePos = somewhere || held
+                      ? ImVec2(static_cast<float>(ui->input.x), static_cast<float>(ui->input.y))
+                      : ImVec2(-FLT_MAX, -FLT_MAX);
+    io.MouseWheel = static_cast<float>(ui->input.wheel);
+}
+
+void tell_keys(const cwi_ui *ui, ImGuiIO &io)
+{
+    for (bool &down : io.KeysDown)
+        down = false;
+    if (ui->key > 0)
+        io.KeysDown[ui->key] = true;
+    io.KeyCtrl = (ui->input.modifiers & CWI_UI_CTRL) != 0;
+    io.KeyShift = (ui->input.modifiers & CWI_UI_SHIFT) != 0;
+    io.KeyAlt = (ui->input.modifiers & CWI_UI_ALT) != 0;
+}
+
+bool is_modal(const ImGuiPopupData &popup)
+{
+    return popup.Window && (popup.Window->Flags & ImGuiWindowFlags_Modal);
+}
+
+/* Escape shuts what a click beside it would shut; then it is nobody else's key. */
+void shut_by_escape(cwi_ui *ui)
+{
+    ImGuiContext &g = *ui->imgui;
+    const int open = g.OpenPopupStack.Size;
+    if (open == 0 || is_modal(g.OpenPopupStack[open - 1]) || ui->key_modifiers != 0 ||
+        ui->input.typing || ui->key != cwi_ui_key_number("Escape", nullptr))
+        return;
+    ImGui::ClosePopupToLevel(open - 1, true);
+    ui->input.key_count = 0;
+}
+
+/* A modal panel that the frame was without is over, though nobody shut it. */
+void shut_modals_not_begun(ImGuiContext &g)
+{
+    for (int n = 0; n < g.OpenPopupStack.Size; n++)
+        if (is_modal(g.OpenPopupStack[n]) &&
+            g.OpenPopupStack[n].Window->LastFrameActive < g.FrameCount)
+            ImGui::ClosePopupToLevel(n, true);
+}
+
+} // namespace
+
+cw_status cwi_ui_imgui_open(cwi_ui *ui, cw_error *err)
+{
+    if (!has_libgl())
+        return cw_fail(err, CW_ERR_UNSUPPORTED, "a window needs libGL: apt-get install libgl1");
+    ui->imgui = ImGui::CreateContext();
+    ImGui::SetCurrentContext(ui->imgui);
+    ImGuiIO &io = ImGui::GetIO();
+    io.IniFilename = io.LogFilename = nullptr;
+    io.BackendPlatformName = "cubewright";
+    io.ConfigWindowsMoveFromTitleBarOnly = true;
+    io.ClipboardUserData = ui;
+    io.GetClipboardTextFn = paste;
+    io.SetClipboardTextFn = copy;
+    name_keys(io);
+    style_all(static_cast<float>(ui->scale));
+    add_letters(static_cast<float>(ui->scale));
+    if (!ImGui_ImplOpenGL3_Init("#version 330 core") ||
+        !ImGui_ImplOpenGL3_CreateDeviceObjects())
+        return cw_fail(err, CW_ERR_BACKEND, "Dear ImGui found no use for this OpenGL");
+    return CW_OK;
+}
+
+void cwi_ui_imgui_close(cwi_ui *ui)
+{
+    if (!ui->imgui)
+        return;
+    ImGui::SetCurrentContext(ui->imgui);
+    if (ImGui::GetIO().BackendRendererUserData)
+        ImGui_ImplOpenGL3_Shutdown();
+    ImGui::DestroyContext(ui->imgui);
+    ui->imgui = nullptr;
+}
+
+void cwi_ui_imgui_choose(cwi_ui *ui)
+{
+    ImGui::SetCurrentContext(ui->imgui);
+}
+
+/* ImGui would undo, in a text that it is given anew, what was typed in the one before, and
+ * write before and behind it. */
+static void forget_typed(ImGuiContext *imgui)
+{
+    if (imgui->InputTextState.ID != imgui->ActiveId)
+        imgui->InputTextState.ID = 0;
+}
+
+void cwi_ui_imgui_write(const char *text)
+{
+    ImGui::GetIO().AddInputCharactersUTF8(text);
+}
+
+void cwi_ui_imgui_begin(cwi_ui *ui)
+{
+    ImGuiIO &io = ImGui::GetIO();
+    const double step = ui->time - ui->before;
+    io.DeltaTime = static_cast<float>(step > 1e-4 ? step : 1e-4);
+    io.DisplaySize =
+        ImVec2(static_cast<float>(ui->input.width), static_cast<float>(ui->input.height));
+    tell_mouse(ui, io);
+    tell_keys(ui, io);
+    ImGui_ImplOpenGL3_NewFrame();
+    ImGui::NewFrame();
+    forget_typed(ui->imgui);
+    ui->input.over_widget = io.WantCaptureMouse;
+    ui->input.typing = io.WantTextInput && ui->imgui->ActiveId; /* ImGui is a frame late */
+    if (ui->input.typing)
+        ui->input.key_count = 0;
+    shut_by_escape(ui);
+}
+
+void cwi_ui_imgui_layout(cwi_ui *ui)
+{
+    shut_modals_not_begun(*ui->imgui);
+    if (ui->input.typing)
+        ui->wake = 0.2; /* the caret blinks */
+    if (ui->imgui->DimBgRatio > 0 && ui->imgui->DimBgRatio < 1)
+        ui->wake = 0.02; /* it grows dark behind a modal panel */
+    ImGui::Render();
+}
+
+void cwi_ui_imgui_draw(void)
+{
+    ImGui_ImplOpenGL3_RenderDrawData(ImGui::GetDrawData());
+}
+
+int cwi_ui_imgui_cursor(const cwi_ui *ui)
+{
+    switch (ImGui::GetMouseCursor()) {
+    case ImGuiMouseCursor_TextInput:
+        return 4;
+    case ImGuiMouseCursor_ResizeNS:
+        return 5;
+    case ImGuiMouseCursor_ResizeEW:
+    case ImGuiMouseCursor_ResizeNWSE:
+        return 3;
+    default:
+        return ui->cursor;
+    }
+}

@@ -1,0 +1,77 @@
+/* Where widgets are, for those who use them by name. */
+#include "viewer/window/ui_internal.h"
+
+#include <stdio.h>
+#include <string.h>
+
+void cwi_ui_label(char out[CWI_UI_NAME_SIZE], const char *label)
+{
+    const char *end = strstr(label, "##");
+    const size_t length = end ? (size_t)(end - label) : strlen(label);
+    snprintf(out, CWI_UI_NAME_SIZE, "%.*s",
+             (int)(length < CWI_UI_NAME_SIZE ? length : CWI_UI_NAME_SIZE - 1), label);
+}
+
+void cwi_ui_places_add(cwi_ui *ui, const char *label, const cwi_ui_rect *rect)
+{
+    cwi_ui_places *p = &ui->now;
+    if (p->count == p->room) {
+        const size_t room = p->room ? 2 * p->room : 64;
+        cwi_ui_place *items = cwi_realloc_array(p->items, room, sizeof *items);
+        if (!items)
+            return; /* then it is not found */
+        p->items = items;
+        p->room = room;
+    }
+    cwi_ui_place *place = &p->items[p->count++];
+    snprintf(place->panel, sizeof place->panel, "%s",
+             ui->depth > 0 ? ui->panel[cwi_ui_panel_at(ui)] : "");
+    cwi_ui_label(place->label, label);
+    place->rect = *rect;
+}
+
+void cwi_ui_places_turn(cwi_ui *ui)
+{
+    const cwi_ui_places old = ui->last;
+    ui->last = ui->now;
+    ui->now = old;
+    ui->now.count = 0;
+}
+
+static bool is_named(const cwi_ui_place *place, const char *name)
+{
+    const size_t length = strlen(place->panel);
+    return strncmp(place->label, name, CWI_UI_NAME_SIZE - 1) == 0 ||
+           (strncmp(place->panel, name, length) == 0 && name[length] == '/' &&
+            strncmp(place->label, name + length + 1, CWI_UI_NAME_SIZE - 1) == 0);
+}
+
+bool cwi_ui_places_find(const cwi_ui *ui, const char *label, cwi_ui_rect *rect)
+{
+    for (size_t n = 0; n < ui->last.count; n++)
+        if (is_named(&ui->last.items[n], label)) {
+            *rect = ui->last.items[n].rect;
+            return true;
+        }
+    return false;
+}
+
+/* Deeper ones than there is room for share the last's name. */
+void cwi_ui_panel_enter(cwi_ui *ui, const char *title, unsigned flags)
+{
+    const int at = ui->depth < CWI_UI_DEPTH ? ui->depth : CWI_UI_DEPTH - 1;
+    cwi_ui_label(ui->panel[at], title);
+    ui->panel_flags[at] = flags;
+    ui->in_section[at] = false;
+    ui->depth++;
+}
+
+void cwi_ui_panel_leave(cwi_ui *ui)
+{
+    ui->depth--;
+}
+
+int cwi_ui_panel_at(const cwi_ui *ui)
+{
+    return ui->depth < CWI_UI_DEPTH ? ui->depth - 1 : CWI_UI_DEPTH - 1;
+}
