@@ -1,8 +1,8 @@
-#include "cli/commands.h"
+#include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/inputs/volume_input.h"
-#include "core/base/memory.h"
 #include "core/base/atomic_file.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
 

@@ -6,8 +6,8 @@
 #include <string.h>
 #include <strings.h>
 
-/* in_this_build is filled in once, at run time: a module may have been left out of a package.
- */
+/* in_this_build is filled in once, at run time: a module may have been left out of
+ * a package. */
 static const cw_format rows[] = {
     {.name = "nrrd",
      .extensions = ".nrrd .nhdr",
@@ -191,23 +191,4 @@ const cw_format *cw_formats(size_t *count)
     pthread_once(&formats_once, fill_formats);
     *count = ROW_COUNT;
     return formats;
-}
-
-static bool ends_in(const char *path, const char *extension, size_t length)
-{
-    const size_t path_length = strlen(path);
-    return path_length > length &&
-           strncasecmp(path + path_length - length, extension, length) == 0;
-}
-
-bool cwi_has_extension(const char *path, const char *extensions)
-{
-    while (*extensions) {
-        const size_t length = strcspn(extensions, " ");
-        if (length && ends_in(path, extensions, length))
-            return true;
-        extensions += length;
-        extensions += strspn(extensions, " ");
-    }
-    return false;
 }

@@ -1,10 +1,11 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
-#include "formats/volume/frame_claim.h"
-#include "formats/mesh/place_parts.h"
-#include "formats/vtk/pvd.h"
-#include "formats/volume/volume_reader.h"
+#include "formats/bytes/file_pattern.h"
 #include "formats/format_registry.h"
+#include "formats/mesh/place_parts.h"
+#include "formats/volume/frame_claim.h"
+#include "formats/volume/volume_reader.h"
+#include "formats/vtk/pvd.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,13 +1,14 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
-#include "formats/volume/frame_claim.h"
 #include "formats/bytes/file_pattern.h"
-#include "formats/mesh/mesh_reader.h"
-#include "formats/vtk/pvd.h"
-#include "formats/volume/volume_reader.h"
 #include "formats/bytes/inflate_stream.h"
 #include "formats/format_registry.h"
+#include "formats/mesh/mesh_reader.h"
+#include "formats/volume/frame_claim.h"
+#include "formats/volume/named_arrays.h"
+#include "formats/volume/volume_reader.h"
+#include "formats/vtk/pvd.h"
 
 #include <math.h>
 #include <stdarg.h>
@@ -158,8 +159,7 @@ static cw_status find_by_file(const cwi_input *in, const reader **found, cw_erro
         reader_names(names));
 }
 
-/* --- what a path stands for ----------------------------------------------------------------
- */
+/* --- what a path stands for --------------------------------------------------------------- */
 
 /* One file, or all those of a folder or a pattern. */
 typedef struct opened {
@@ -272,38 +272,7 @@ static cw_status open_path(opened *o, const char *path, const cw_read_desc *desc
     return st == CW_OK && !desc->raw ? find_reader(o, desc, err) : st;
 }
 
-/* --- reading -------------------------------------------------------------------------------
- */
-
-void cwi_note(const cw_read_desc *desc, const char *format, ...)
-{
-    char text[512];
-    va_list arguments;
-    if (!desc->note)
-        return;
-    va_start(arguments, format);
-    vsnprintf(text, sizeof text, format, arguments);
-    va_end(arguments);
-    desc->note(desc->note_user, text);
-}
-
-void cwi_note_links(const cw_read_desc *desc, size_t links)
-{
-    if (links)
-        cwi_note(desc, "left out: %zu links; --allow-external follows them", links);
-}
-
-void cwi_set_spacing(cw_volume *v, const cw_read_desc *desc)
-{
-    double spacing[3];
-    if (desc->spacing_mm[0] == 0)
-        return;
-    cw_volume_spacing(v, spacing);
-    for (int c = 0; c < 3; c++)
-        for (int r = 0; r < 3; r++)
-            v->affine[r][c] *= desc->spacing_mm[c] / spacing[c];
-    v->known |= CW_KNOWN_UNIT;
-}
+/* --- reading ------------------------------------------------------------------------------ */
 
 /* Files in a row hold whole slices, as many each. */
 static cw_status check_shares(const cw_volume *v, size_t files, cw_error *err)
@@ -481,8 +450,7 @@ cw_status cw_series_list(const char *path, const cw_read_desc *desc, cw_series *
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
 }
 
-/* --- time series ---------------------------------------------------------------------------
- */
+/* --- time series -------------------------------------------------------------------------- */
 
 typedef enum kind { UNKNOWN, SLICE, VOLUME } kind;
 

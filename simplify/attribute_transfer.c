@@ -1,10 +1,10 @@
 #include "simplify/attribute_transfer.h"
 
-#include "core/base/parallel.h"
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
-#include "core/geometry/vec3.h"
 #include "core/geometry/closest_point.h"
+#include "core/geometry/vec3.h"
 
 #include <math.h>
 

@@ -7,7 +7,7 @@
 /* Gives a mesh the normals, scalars, colours and labels of another, of those that it has: each
  * vertex those of the closest point, between corners in proportion, labels of the nearest
  * corner. Both have the same origin. */
-cw_status cwi_carry(const cw_mesh *from, int threads, const cw_progress *progress, cw_mesh *to,
-                    cw_error *err);
+CW_NODISCARD cw_status cwi_carry(const cw_mesh *from, int threads, const cw_progress *progress,
+                                 cw_mesh *to, cw_error *err);
 
 #endif

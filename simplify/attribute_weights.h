@@ -8,8 +8,8 @@
 size_t cwi_attributes_count(const cw_simplify_desc *desc);
 
 /* Fails for weights that are no weights, or of what the mesh has not. */
-cw_status cwi_attributes_check(const cw_mesh *mesh, const cw_simplify_desc *desc,
-                               cw_error *err);
+CW_NODISCARD cw_status cwi_attributes_check(const cw_mesh *mesh, const cw_simplify_desc *desc,
+                                            cw_error *err);
 
 /* Fills in vertices x count: the numbers, such that differences compare with lengths. */
 void cwi_attributes_weigh(const cw_mesh *mesh, const cw_simplify_desc *desc, float *values);

@@ -1,13 +1,13 @@
 #include <cubewright/simplify.h>
 
 #include "core/base/memory.h"
-#include "core/mesh/mesh.h"
 #include "core/base/module.h"
 #include "core/base/status.h"
-#include "simplify/attribute_weights.h"
-#include "simplify/blocks/partition.h"
+#include "core/mesh/mesh.h"
 #include "simplify/attribute_transfer.h"
+#include "simplify/attribute_weights.h"
 #include "simplify/blocks/block_passes.h"
+#include "simplify/blocks/partition.h"
 
 #include <math.h>
 #include <string.h>
@@ -66,7 +66,8 @@ static cw_status scale_mesh(const cw_mesh *mesh, double *scale, cw_mesh *scaled,
     return CW_OK;
 }
 
-static cw_status weigh(const cw_mesh *m, const cw_simplify_desc *d, cwi_block *w, cw_error *err)
+static cw_status weigh(const cw_mesh *m, const cw_simplify_desc *d, cwi_mesh_block *w,
+                       cw_error *err)
 {
     w->attributes = cwi_attributes_count(d);
     if (!w->attributes)
@@ -80,7 +81,7 @@ static cw_status weigh(const cw_mesh *m, const cw_simplify_desc *d, cwi_block *w
 }
 
 /* Triangles that name a vertex twice are no part of any surface. */
-static cw_status begin(const cw_mesh *m, cwi_block *w, cw_error *err)
+static cw_status begin(const cw_mesh *m, cwi_mesh_block *w, cw_error *err)
 {
     w->vertices = m->vertex_count;
     w->points = cwi_alloc_array(3 * w->vertices, sizeof *w->points);
@@ -102,7 +103,7 @@ static cw_status begin(const cw_mesh *m, cwi_block *w, cw_error *err)
     return CW_OK;
 }
 
-cw_status cwi_finish_mesh(const cw_mesh *mesh, const cwi_block *from, cw_mesh *out,
+cw_status cwi_finish_mesh(const cw_mesh *mesh, const cwi_mesh_block *from, cw_mesh *out,
                           cw_error *err)
 {
     cw_status st = cwi_mesh_alloc(out, from->vertices, from->triangles, false, err);
@@ -116,9 +117,9 @@ cw_status cwi_finish_mesh(const cw_mesh *mesh, const cwi_block *from, cw_mesh *o
 }
 
 static cw_status run_passes(cwi_passes *p, const cw_mesh *mesh, const size_t *targets,
-                            size_t levels, cwi_block *left, size_t *cut, cw_error *err)
+                            size_t levels, cwi_mesh_block *left, size_t *cut, cw_error *err)
 {
-    cwi_block whole = {0};
+    cwi_mesh_block whole = {0};
     cw_status st = begin(mesh, &whole, err);
     if (st == CW_OK)
         st = weigh(mesh, p->desc, &whole, err);
@@ -143,7 +144,7 @@ static cw_status simplify_levels(const cw_mesh *mesh, const cw_simplify_desc *de
     cwi_passes p = {0};
     cw_mesh scaled = {0};
     double scale = 1;
-    cwi_block *left = cwi_alloc_zeroed(levels, sizeof *left);
+    cwi_mesh_block *left = cwi_alloc_zeroed(levels, sizeof *left);
     size_t cut = 0;
     cw_status st = left ? check(mesh, desc, err)
                         : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu levels", levels);

@@ -18,9 +18,9 @@ struct cw_simplifier {
     double scale;  /* of what follows; 0 until a slab came. As in cw_simplify() */
     bool ended;
     /* with an error to keep */
-    cwi_window window;
+    cwi_slab_window window;
     /* with a number of triangles to meet */
-    cwi_block *slabs;
+    cwi_mesh_block *slabs;
     size_t count, room, triangles;
     size_t names, below; /* of vertices in seams so far; the first of the last seam */
 };
@@ -39,7 +39,7 @@ void cwi_slab_block_free(cwi_slab_block *s)
 /* Numbers vertices as triangles name them. */
 static void number_vertices(cwi_slab_block *s, const cw_mesh *m, uint32_t *number)
 {
-    cwi_block *b = &s->block;
+    cwi_mesh_block *b = &s->block;
     memset(number, 0xff, m->vertex_count * sizeof *number);
     for (size_t c = 0; c < 3 * m->triangle_count; c++) {
         uint32_t *n = number + m->triangles[c];
@@ -54,7 +54,7 @@ static void number_vertices(cwi_slab_block *s, const cw_mesh *m, uint32_t *numbe
 static void place_vertices(cwi_slab_block *s, const cw_slab *from, double scale,
                            const uint32_t *number)
 {
-    cwi_block *b = &s->block;
+    cwi_mesh_block *b = &s->block;
     for (size_t v = 0; v < from->mesh->vertex_count; v++) {
         const size_t n = number[v];
         const uint8_t seam = from->seam[v];
@@ -70,7 +70,7 @@ static void place_vertices(cwi_slab_block *s, const cw_slab *from, double scale,
     }
 }
 
-static double longest_edge(const cwi_block *b)
+static double longest_edge(const cwi_mesh_block *b)
 {
     double longest = 0;
     for (size_t c = 0; c < 3 * b->triangles; c++) {
@@ -85,7 +85,7 @@ static double longest_edge(const cwi_block *b)
 }
 
 /* Heights in the unit of the points. */
-static void set_planes(cwi_block *b, const cw_slab *from, double scale)
+static void set_planes(cwi_mesh_block *b, const cw_slab *from, double scale)
 {
     const double length =
         sqrt(from->along[0] * from->along[0] + from->along[1] * from->along[1] +
@@ -101,7 +101,7 @@ cw_status cwi_slab_block_init(cwi_slab_block *s, const cw_slab *from, double sca
 {
     const cw_mesh *m = from->mesh;
     *s = (cwi_slab_block){.last = from->last};
-    cwi_block *b = &s->block;
+    cwi_mesh_block *b = &s->block;
     uint32_t *number = cwi_alloc_array(m->vertex_count, sizeof *number);
     b->corners = cwi_alloc_array(3 * m->triangle_count, sizeof *b->corners);
     if (number && b->corners)
@@ -128,7 +128,7 @@ cw_status cwi_slab_block_init(cwi_slab_block *s, const cw_slab *from, double sca
 /* --- down to a number of triangles -------------------------------------------------------- */
 
 /* Vertices in seams get names of their own among those of all slabs; the others need none. */
-static cw_status name_seams(cw_simplifier *s, const cwi_slab_block *slab, cwi_block *b,
+static cw_status name_seams(cw_simplifier *s, const cwi_slab_block *slab, cwi_mesh_block *b,
                             cw_error *err)
 {
     const size_t first[3] = {0, s->below, s->names};
@@ -149,25 +149,25 @@ static cw_status add_slab(cw_simplifier *s, cwi_slab_block *slab, cw_error *err)
 {
     if (s->count == s->room) {
         const size_t room = 2 * s->room + 8;
-        cwi_block *slabs = cwi_realloc_array(s->slabs, room, sizeof *slabs);
+        cwi_mesh_block *slabs = cwi_realloc_array(s->slabs, room, sizeof *slabs);
         if (!slabs)
             return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu slabs", room);
         s->slabs = slabs;
         s->room = room;
     }
-    cwi_block *b = s->slabs + s->count++;
+    cwi_mesh_block *b = s->slabs + s->count++;
     *b = slab->block;
-    slab->block = (cwi_block){0};
+    slab->block = (cwi_mesh_block){0};
     const double share = (double)b->triangles / (double)s->triangles,
                  target = (double)cwi_simplify_target(&s->desc, s->triangles);
     cw_status st = cwi_passes_blocks(&s->passes, b, (size_t)(SPARE * share * target) + 1, err);
     return st == CW_OK ? name_seams(s, slab, b, err) : st;
 }
 
-static cw_status join_slabs(cw_simplifier *s, cwi_block *left, size_t *cut, cw_error *err)
+static cw_status join_slabs(cw_simplifier *s, cwi_mesh_block *left, size_t *cut, cw_error *err)
 {
     const size_t target = cwi_simplify_target(&s->desc, s->triangles);
-    cwi_block whole;
+    cwi_mesh_block whole;
     cw_status st = cwi_blocks_join(s->slabs, s->count, s->names + 1, &whole, err);
     for (size_t n = 0; n < s->count; n++)
         cwi_block_free(s->slabs + n);
@@ -244,11 +244,11 @@ cw_status cw_simplifier_take(void *simplifier, const cw_slab *from, cw_error *er
 
 static cw_status finish(cw_simplifier *s, cw_mesh *out, size_t *cut, cw_error *err)
 {
-    cwi_window *w = &s->window;
-    cwi_block left = {.vertices = w->vertices,
-                      .triangles = w->triangles,
-                      .points = w->points,
-                      .corners = w->corners};
+    cwi_slab_window *w = &s->window;
+    cwi_mesh_block left = {.vertices = w->vertices,
+                           .triangles = w->triangles,
+                           .points = w->points,
+                           .corners = w->corners};
     cw_status st = CW_OK;
     *cut = w->cut;
     if (s->desc.error_mm == 0)

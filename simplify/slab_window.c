@@ -1,6 +1,6 @@
 #include "core/base/memory.h"
-#include "core/mesh/mesh.h"
 #include "core/base/status.h"
+#include "core/mesh/mesh.h"
 #include "simplify/blocks/partition.h"
 #include "simplify/slab_simplifier.h"
 
@@ -9,7 +9,7 @@
 
 static const uint32_t NONE = UINT32_MAX;
 
-void cwi_window_free(cwi_window *w)
+void cwi_window_free(cwi_slab_window *w)
 {
     cw_mesh_free(&w->input);
     cwi_block_free(&w->rest);
@@ -19,7 +19,7 @@ void cwi_window_free(cwi_window *w)
     cwi_free(w->finished);
     cwi_free(w->points);
     cwi_free(w->corners);
-    *w = (cwi_window){0};
+    *w = (cwi_slab_window){0};
 }
 
 static cw_status no_memory(cw_error *err)
@@ -32,13 +32,12 @@ static double height_along(const float along[3], const float x[3])
     return (double)(x[0] * along[0] + x[1] * along[1] + x[2] * along[2]);
 }
 
-static double height(const cwi_block *b, size_t vertex)
+static double height(const cwi_mesh_block *b, size_t vertex)
 {
     return height_along(b->along, b->points + 3 * vertex);
 }
 
-/* --- the input near the window -------------------------------------------------------------
- */
+/* --- the input near the window ------------------------------------------------------------ */
 
 /* A slab's input and what is kept of the one before: the slab's vertices come first. */
 typedef struct merger {
@@ -51,7 +50,7 @@ typedef struct merger {
 } merger;
 
 /* Points that the rest's triangles list, and all that may be near them. */
-static void choose_old(const cwi_window *w, merger *m, double lowest)
+static void choose_old(const cwi_slab_window *w, merger *m, double lowest)
 {
     const cw_mesh *old = m->old;
     const float *along = m->slab->block.along;
@@ -65,7 +64,7 @@ static void choose_old(const cwi_window *w, merger *m, double lowest)
 
 /* Triangles with a vertex that is wanted, and their vertices: none reaches farther down than by
  * the longest edge. */
-static void number_old(merger *m, const cwi_window *w)
+static void number_old(merger *m, const cwi_slab_window *w)
 {
     cw_mesh *old = m->old, *mesh = &m->mesh;
     memset(m->number, 0xff, old->vertex_count * sizeof *m->number);
@@ -92,7 +91,7 @@ static void number_old(merger *m, const cwi_window *w)
 
 static cw_status fill_merged(merger *m, cw_error *err)
 {
-    const cwi_block *b = &m->slab->block;
+    const cwi_mesh_block *b = &m->slab->block;
     const size_t vertices = m->mesh.vertex_count, triangles = m->mesh.triangle_count;
     cw_status st = cwi_mesh_alloc(&m->mesh, vertices, triangles, false, err);
     if (st != CW_OK)
@@ -109,7 +108,7 @@ static cw_status fill_merged(merger *m, cw_error *err)
 }
 
 /* Lists and care of the rest in the new numbers. */
-static void restore(cwi_window *w, cwi_passes *p, const merger *m)
+static void restore(cwi_slab_window *w, cwi_passes *p, const merger *m)
 {
     for (size_t v = 0; v < m->old->vertex_count; v++)
         if (m->number[v] != NONE)
@@ -124,7 +123,7 @@ static void restore(cwi_window *w, cwi_passes *p, const merger *m)
     }
 }
 
-static cw_status merge_input(cwi_window *w, cwi_passes *p, const cwi_slab_block *slab,
+static cw_status merge_input(cwi_slab_window *w, cwi_passes *p, const cwi_slab_block *slab,
                              cw_error *err)
 {
     merger m = {.slab = slab, .old = &w->input, .next = p->next, .care = p->care};
@@ -155,8 +154,7 @@ static cw_status merge_input(cwi_window *w, cwi_passes *p, const cwi_slab_block 
     return st;
 }
 
-/* --- the window ----------------------------------------------------------------------------
- */
+/* --- the window --------------------------------------------------------------------------- */
 
 /* Names under which the rest and the slab are joined: vertices of the slab have their numbers,
  * those of the rest the ones behind, but in the seam between them. */
@@ -171,9 +169,9 @@ static bool is_above(const joiner *j, uint32_t name)
     return name < j->slab->vertices && j->slab->seam[name] == 2;
 }
 
-static void name_rest(cwi_window *w, joiner *j)
+static void name_rest(cwi_slab_window *w, joiner *j)
 {
-    cwi_block *rest = &w->rest;
+    cwi_mesh_block *rest = &w->rest;
     for (size_t v = 0; v < rest->vertices; v++) {
         const uint32_t rank = w->rank[v],
                        seam = rank < j->slab->ranks[1] ? j->slab->below[rank] : NONE;
@@ -184,7 +182,7 @@ static void name_rest(cwi_window *w, joiner *j)
 }
 
 /* Finished triangles that reach into the window, behind its own. */
-static cw_status add_finished(const cwi_window *w, cwi_block *b, cw_error *err)
+static cw_status add_finished(const cwi_slab_window *w, cwi_mesh_block *b, cw_error *err)
 {
     const size_t more = w->finished_count, vertices = b->vertices + 3 * more;
     float *points = cwi_realloc_array(b->points, 3 * vertices, sizeof *points);
@@ -216,7 +214,7 @@ static cw_status add_finished(const cwi_window *w, cwi_block *b, cw_error *err)
 }
 
 /* Held are now the seam above, and what the finished result begins at. */
-static cw_status hold(const joiner *j, cwi_block *b, cw_error *err)
+static cw_status hold(const joiner *j, cwi_mesh_block *b, cw_error *err)
 {
     b->held = cwi_alloc_array(b->vertices, 1);
     if (!b->held)
@@ -227,10 +225,10 @@ static cw_status hold(const joiner *j, cwi_block *b, cw_error *err)
     return CW_OK;
 }
 
-static cw_status open_window(cwi_window *w, cwi_slab_block *slab, joiner *j, cwi_block *whole,
-                             cw_error *err)
+static cw_status open_window(cwi_slab_window *w, cwi_slab_block *slab, joiner *j,
+                             cwi_mesh_block *whole, cw_error *err)
 {
-    cwi_block both[2] = {w->rest, slab->block};
+    cwi_mesh_block both[2] = {w->rest, slab->block};
     j->slab = slab;
     j->names = slab->vertices + w->rest.vertices;
     j->placed = cwi_alloc_array(j->names, sizeof *j->placed);
@@ -252,10 +250,9 @@ static cw_status open_window(cwi_window *w, cwi_slab_block *slab, joiner *j, cwi
     return st;
 }
 
-/* --- what is finished ----------------------------------------------------------------------
- */
+/* --- what is finished --------------------------------------------------------------------- */
 
-static cw_status make_room(cwi_window *w, size_t vertices, size_t triangles, cw_error *err)
+static cw_status make_room(cwi_slab_window *w, size_t vertices, size_t triangles, cw_error *err)
 {
     if (w->vertices + vertices > w->vertex_room) {
         const size_t room = (w->vertices + vertices) * 5 / 4;
@@ -276,7 +273,8 @@ static cw_status make_room(cwi_window *w, size_t vertices, size_t triangles, cw_
     return CW_OK;
 }
 
-static void place_triangle(cwi_window *w, const cwi_block *left, size_t t, uint32_t *placed)
+static void place_triangle(cwi_slab_window *w, const cwi_mesh_block *left, size_t t,
+                           uint32_t *placed)
 {
     for (size_t k = 0; k < 3; k++) {
         const size_t v = left->corners[3 * t + k];
@@ -289,7 +287,7 @@ static void place_triangle(cwi_window *w, const cwi_block *left, size_t t, uint3
     w->triangles++;
 }
 
-static bool is_rest(const cwi_window *w, const cwi_block *left, size_t t)
+static bool is_rest(const cwi_slab_window *w, const cwi_mesh_block *left, size_t t)
 {
     const uint32_t *c = left->corners + 3 * t;
     return height(left, c[0]) >= w->end && height(left, c[1]) >= w->end &&
@@ -297,7 +295,8 @@ static bool is_rest(const cwi_window *w, const cwi_block *left, size_t t)
 }
 
 /* Of finished triangles, those that a later window may come near. */
-static cw_status keep_near(cwi_window *w, const cwi_block *left, double lowest, cw_error *err)
+static cw_status keep_near(cwi_slab_window *w, const cwi_mesh_block *left, double lowest,
+                           cw_error *err)
 {
     size_t kept = 0;
     float *near = cwi_alloc_array(9 * (w->finished_count + left->triangles), sizeof *near);
@@ -324,10 +323,10 @@ static cw_status keep_near(cwi_window *w, const cwi_block *left, double lowest, 
 }
 
 /* The rest of what is left: vertices of its triangles, and all of the seam above. */
-static cw_status take_rest(cwi_window *w, const joiner *j, const cwi_block *left,
+static cw_status take_rest(cwi_slab_window *w, const joiner *j, const cwi_mesh_block *left,
                            const uint32_t *placed, uint32_t *number, cw_error *err)
 {
-    cwi_block rest = {0};
+    cwi_mesh_block rest = {0};
     memset(number, 0xff, left->vertices * sizeof *number);
     for (size_t t = 0; t < left->triangles; t++)
         for (size_t k = 0; k < 3 && is_rest(w, left, t); k++) {
@@ -374,7 +373,7 @@ static cw_status take_rest(cwi_window *w, const joiner *j, const cwi_block *left
 }
 
 /* Where the seam above has its vertices among the input's. */
-static cw_status note_seam(cwi_window *w, const cwi_slab_block *slab, cw_error *err)
+static cw_status note_seam(cwi_slab_window *w, const cwi_slab_block *slab, cw_error *err)
 {
     cwi_free(w->above);
     w->ranks = slab->ranks[2];
@@ -389,8 +388,8 @@ static cw_status note_seam(cwi_window *w, const cwi_slab_block *slab, cw_error *
 }
 
 /* Gives the lower part to the result, and leaves the rest. */
-static cw_status shut_window(cwi_window *w, const cwi_passes *p, const joiner *j,
-                             const cwi_block *left, cw_error *err)
+static cw_status shut_window(cwi_slab_window *w, const cwi_passes *p, const joiner *j,
+                             const cwi_mesh_block *left, cw_error *err)
 {
     uint32_t *placed = cwi_alloc_array(left->vertices, sizeof *placed);
     uint32_t *number = cwi_alloc_array(left->vertices, sizeof *number);
@@ -413,16 +412,17 @@ static cw_status shut_window(cwi_window *w, const cwi_passes *p, const joiner *j
 /* Halfway between the slab's lowest vertex and its upper plane. */
 static double middle_of(const cwi_slab_block *slab)
 {
-    const cwi_block *b = &slab->block;
+    const cwi_mesh_block *b = &slab->block;
     double lowest = (double)b->to;
     for (size_t v = 0; v < b->vertices; v++)
         lowest = fmin(lowest, height(b, v));
     return slab->last ? INFINITY : 0.5 * (lowest + (double)b->to);
 }
 
-cw_status cwi_window_take(cwi_window *w, cwi_passes *p, cwi_slab_block *slab, cw_error *err)
+cw_status cwi_window_take(cwi_slab_window *w, cwi_passes *p, cwi_slab_block *slab,
+                          cw_error *err)
 {
-    cwi_block *b = &slab->block, whole = {0}, left = {0};
+    cwi_mesh_block *b = &slab->block, whole = {0}, left = {0};
     const double begin = w->rest.lists ? w->end : -INFINITY, end = middle_of(slab);
     const float along[3] = {b->along[0], b->along[1], b->along[2]}, to = b->to;
     const size_t to_end = 0;

@@ -9,12 +9,13 @@
 # sanitizers  clang, address and undefined-behaviour sanitizers: unit tests and fuzz corpora
 # mutants     clang, the same: every reader on mutants of its corpus
 # threads     clang, thread sanitizer: the tests of code with threads
+# rooms       gcc: every room linked with the rooms it may use alone, to prove the walls
 # minimal     gcc, debug at -O1, no C++ library: unit tests at their full length, an installed copy
 # fresh       a bare Debian: the quickstart, and builds that lack packages (fresh.sh)
 set -eu
 cd "$(dirname "$0")/.."
 stages=${*:-release}
-[ "$stages" != all ] || stages="release sanitizers mutants threads minimal fresh"
+[ "$stages" != all ] || stages="release rooms sanitizers mutants threads minimal fresh"
 set -- # the functions of packages.sh look at $0 alone
 . cli/packages.sh
 . cli/build.sh
@@ -90,6 +91,9 @@ for stage in $stages; do
         cat build/validators.log
         say "release: testing"
         run_tests release
+        ;;
+    rooms)
+        configure_and_build rooms
         ;;
     sanitizers)
         configure_and_build fuzz

@@ -13,29 +13,6 @@ struct cw_renderer {
     cwi_cpu cpu;
 };
 
-static const struct {
-    const char *name, *about, *source;
-} modes[CW_MODE_COUNT] = {
-#define ROW(name, text, about, source) {text, about, source},
-    CW_MODE_TABLE(ROW)
-#undef ROW
-};
-
-const char *cw_mode_name(cw_mode mode)
-{
-    return (unsigned)mode < CW_MODE_COUNT ? modes[mode].name : "unknown";
-}
-
-const char *cw_mode_about(cw_mode mode)
-{
-    return (unsigned)mode < CW_MODE_COUNT ? modes[mode].about : "";
-}
-
-const char *cw_mode_source(cw_mode mode)
-{
-    return (unsigned)mode < CW_MODE_COUNT ? modes[mode].source : "";
-}
-
 /* Loads the module and opens a context, once. */
 static cw_status need_gl(cw_renderer *r, cw_error *err)
 {

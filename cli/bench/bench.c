@@ -2,10 +2,10 @@
 #include "cli/bench/bench.h"
 
 #include "cli/framework/console.h"
-#include "cli/inputs/synthetic_input.h"
 #include "cli/framework/temp_folder.h"
-#include "cli/report/triangle_sample.h"
 #include "cli/inputs/extract_surface.h"
+#include "cli/inputs/synthetic_input.h"
+#include "cli/report/triangle_sample.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 
@@ -15,8 +15,7 @@
 
 const char *const cli_bench_status_names[] = {"done", "left-out", "missing", "failed"};
 
-/* --- what is measured of a result ----------------------------------------------------------
- */
+/* --- what is measured of a result --------------------------------------------------------- */
 
 enum { MOST_VERTICES = 100000 }; /* of more, every so many-th is measured */
 
@@ -103,8 +102,7 @@ static cw_status measure(const cli_bench *b, const cw_mesh *mesh, cli_bench_row 
     return st;
 }
 
-/* --- the runs -------------------------------------------------------------------------------
- */
+/* --- the runs ----------------------------------------------------------------------------- */
 
 /* Whether a row's failure ends it alone: then why is told, without the name of a folder that
  * is soon gone, and err is for the next. */
@@ -211,8 +209,7 @@ static void compare(cli_bench_case *c)
     }
 }
 
-/* --- the cases ------------------------------------------------------------------------------
- */
+/* --- the cases ---------------------------------------------------------------------------- */
 
 static cw_status open_file(cli_bench *b, cw_error *err)
 {

@@ -96,18 +96,19 @@ typedef struct cli_bench {
  * cli_bench_free(), also after failure. What peers or settings cannot do is told in their rows.
  * Returns  CW_ERR_EMPTY  there is no surface at that level
  *          CW_ERR_CANCELLED; and whatever keeps a case from being read, or extracted */
-cw_status cli_bench_run(cli_bench *bench, cw_error *err);
+CW_NODISCARD cw_status cli_bench_run(cli_bench *bench, cw_error *err);
 void cli_bench_free(cli_bench *bench);
 
 /* The rows of a case, and their runs. bench_work.c */
 void cli_bench_plan(const cli_bench *bench, cli_bench_case *c);
-cw_status cli_bench_prepare(cli_bench *bench, const cli_bench_kind *kind, cw_error *err);
-cw_status cli_bench_once(cli_bench *bench, const cli_bench_kind *kind, cli_spent *spent,
-                         cw_error *err);
+CW_NODISCARD cw_status cli_bench_prepare(cli_bench *bench, const cli_bench_kind *kind,
+                                         cw_error *err);
+CW_NODISCARD cw_status cli_bench_once(cli_bench *bench, const cli_bench_kind *kind,
+                                      cli_spent *spent, cw_error *err);
 
 /* What the last run made, as a mesh, and the size of its file (0: it made none). */
-cw_status cli_bench_take(cli_bench *bench, const cli_bench_kind *kind, cw_mesh *mesh,
-                         size_t *file_bytes, cw_error *err);
+CW_NODISCARD cw_status cli_bench_take(cli_bench *bench, const cli_bench_kind *kind,
+                                      cw_mesh *mesh, size_t *file_bytes, cw_error *err);
 
 /* For people, and for programs. study_table.c */
 void cli_bench_tell_start(const cli_bench *bench);

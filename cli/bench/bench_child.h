@@ -17,17 +17,17 @@ typedef struct cli_child {
  * to the file "words". It leads a group of its own, so that what it starts ends with it, and
  * ends with us.
  * Returns  CW_ERR_BACKEND when the system gives no process */
-cw_status cli_child_start(cli_child *child, const char *const *argv, const char *folder,
-                          double limit_s, cw_error *err);
+CW_NODISCARD cw_status cli_child_start(cli_child *child, const char *const *argv,
+                                       const char *folder, double limit_s, cw_error *err);
 
 /* Says a line (NULL: nothing) and waits for the next one of the child, without its end.
  * Returns  CW_ERR_BACKEND   it ended, gave no answer in time, or one that is too long
  *          CW_ERR_CANCELLED after Ctrl-C; the child is stopped in any of these cases */
-cw_status cli_child_ask(cli_child *child, const char *line, char *answer, size_t room,
-                        cw_error *err);
+CW_NODISCARD cw_status cli_child_ask(cli_child *child, const char *line, char *answer,
+                                     size_t room, cw_error *err);
 
 /* Waits until it ends by itself. Errors likewise, and when its exit code is not 0. */
-cw_status cli_child_wait(cli_child *child, cw_error *err);
+CW_NODISCARD cw_status cli_child_wait(cli_child *child, cw_error *err);
 
 /* Ends it and all it started; harmless on none. */
 void cli_child_stop(cli_child *child);

@@ -32,8 +32,7 @@ static void set_state(cli_peer *peer, cli_peer_state state, const char *why)
     snprintf(peer->why, sizeof peer->why, "%s", why);
 }
 
-/* --- starting ------------------------------------------------------------------------------
- */
+/* --- starting ----------------------------------------------------------------------------- */
 
 static cw_status start_python(const cli_peers *p, cli_peer *peer, const char *own, char *answer,
                               size_t room, cw_error *err)
@@ -54,8 +53,8 @@ static bool is_version(const char *text)
            text[strspn(text, "0123456789abcdefghijklmnopqrstuvwxyz.+-")] == '\0';
 }
 
-/* Of every python3 there is, the first that can: a Python of one's own lacks what Debian's has.
- */
+/* Of every python3 there is, the first that can: a Python of one's own lacks what
+ * Debian's has. */
 static cw_status find_python(cli_peers *p, cli_peer *peer, const char *own, cw_error *err)
 {
     char answer[256], why[sizeof peer->why];
@@ -144,8 +143,7 @@ static cw_status revive(const cli_peers *p, cli_peer *peer, cw_error *err)
     return st;
 }
 
-/* --- what they are given -------------------------------------------------------------------
- */
+/* --- what they are given ------------------------------------------------------------------ */
 
 static FILE *open_file(const cli_peers *p, const char *name, const char *mode)
 {
@@ -195,8 +193,7 @@ cw_status cli_peers_put_mesh(const cli_peers *p, const cw_mesh *mesh, cw_error *
     return close_file(f, good, err);
 }
 
-/* --- what they are asked -------------------------------------------------------------------
- */
+/* --- what they are asked ------------------------------------------------------------------ */
 
 /* The numbers behind "ok", as many as are expected. */
 static cw_status ask(cli_peer *peer, const char *line, double *numbers, size_t count,
@@ -262,8 +259,7 @@ cw_status cli_peer_run(cli_peer *peer, cli_spent *spent, cw_error *err)
     return st;
 }
 
-/* --- what they give back -------------------------------------------------------------------
- */
+/* --- what they give back ------------------------------------------------------------------ */
 
 static bool read_floats(FILE *f, size_t count, float **out)
 {

@@ -59,25 +59,28 @@ typedef struct cli_spent {
 } cli_spent;
 
 /* Finds out which are there. CW_ERR_CANCELLED; what else goes wrong is in the peers' state. */
-cw_status cli_peers_start(cli_peers *peers, const char *folder, int threads, double limit_s,
-                          cw_error *err);
+CW_NODISCARD cw_status cli_peers_start(cli_peers *peers, const char *folder, int threads,
+                                       double limit_s, cw_error *err);
 void cli_peers_stop(cli_peers *peers);
 
 /* Writes the files that peers read of a case: once for all of them. CW_ERR_OUTPUT */
-cw_status cli_peers_put_volume(const cli_peers *peers, const cw_volume *volume, cw_error *err);
-cw_status cli_peers_put_mesh(const cli_peers *peers, const cw_mesh *mesh, cw_error *err);
+CW_NODISCARD cw_status cli_peers_put_volume(const cli_peers *peers, const cw_volume *volume,
+                                            cw_error *err);
+CW_NODISCARD cw_status cli_peers_put_mesh(const cli_peers *peers, const cw_mesh *mesh,
+                                          cw_error *err);
 
 /* Has a peer with a child prepare what is to be run; starts that again where it has ended.
  * Returns  CW_ERR_BACKEND, as all below, with how it failed; CW_ERR_CANCELLED */
-cw_status cli_peer_prepare_volume(cli_peers *peers, cli_peer *peer, const cw_volume *volume,
-                                  double iso, bool inside_is_low, cw_error *err);
-cw_status cli_peer_prepare_mesh(cli_peers *peers, cli_peer *peer, const cw_mesh *mesh,
-                                size_t target, cw_error *err);
-cw_status cli_peer_run(cli_peer *peer, cli_spent *spent, cw_error *err);
+CW_NODISCARD cw_status cli_peer_prepare_volume(cli_peers *peers, cli_peer *peer,
+                                               const cw_volume *volume, double iso,
+                                               bool inside_is_low, cw_error *err);
+CW_NODISCARD cw_status cli_peer_prepare_mesh(cli_peers *peers, cli_peer *peer,
+                                             const cw_mesh *mesh, size_t target, cw_error *err);
+CW_NODISCARD cw_status cli_peer_run(cli_peer *peer, cli_spent *spent, cw_error *err);
 
 /* The result, checked. placed  NULL: as it is; else it is in mm along that volume's axes, from
  * its first voxel on, and is put into its frame */
-cw_status cli_peer_take(cli_peers *peers, cli_peer *peer, const cw_volume *placed,
-                        cw_mesh *mesh, cw_error *err);
+CW_NODISCARD cw_status cli_peer_take(cli_peers *peers, cli_peer *peer, const cw_volume *placed,
+                                     cw_mesh *mesh, cw_error *err);
 
 #endif

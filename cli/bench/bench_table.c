@@ -12,8 +12,7 @@
 static const char *const work_names[CLI_BENCH_WORKS] = {"extraction", "simplification",
                                                         "compression"};
 
-/* --- for people ----------------------------------------------------------------------------
- */
+/* --- for people --------------------------------------------------------------------------- */
 
 void cli_bench_tell_start(const cli_bench *b)
 {
@@ -119,8 +118,7 @@ void cli_bench_tell(const cli_bench_case *c)
     }
 }
 
-/* --- for programs --------------------------------------------------------------------------
- */
+/* --- for programs ------------------------------------------------------------------------- */
 
 /* A file's name is somebody else's: spreadsheets take some first letters for formulas. */
 static void put_case(FILE *out, const cli_bench_case *c)

@@ -35,8 +35,7 @@ struct cli_bench_kind {
     cw_compression compression;
 };
 
-/* --- ours ----------------------------------------------------------------------------------
- */
+/* --- ours --------------------------------------------------------------------------------- */
 
 typedef struct stopwatch {
     cli_watch memory;
@@ -139,8 +138,7 @@ static cw_status take_written(cli_bench *b, const cli_bench_kind *kind, cw_mesh 
     return cw_mesh_read(path_of(b, "mesh.glb"), NULL, mesh, NULL, err);
 }
 
-/* --- peers with a child ---------------------------------------------------------------------
- */
+/* --- peers with a child ------------------------------------------------------------------- */
 
 static cw_status prepare_volume(cli_bench *b, const cli_bench_kind *kind, cw_error *err)
 {
@@ -176,8 +174,7 @@ static cw_status take_simplified(cli_bench *b, const cli_bench_kind *kind, cw_me
     return st;
 }
 
-/* --- meshoptimizer --------------------------------------------------------------------------
- */
+/* --- meshoptimizer ------------------------------------------------------------------------ */
 
 static cw_status simplify_meshopt(cli_bench *b, const cli_bench_kind *kind, cli_spent *spent,
                                   cw_error *err)
@@ -221,8 +218,7 @@ static cw_status take_meshopt(cli_bench *b, const cli_bench_kind *kind, cw_mesh 
     return st == CW_OK ? cw_mesh_drop_components(mesh, 0, NULL, NULL, err) : st;
 }
 
-/* --- draco_encoder --------------------------------------------------------------------------
- */
+/* --- draco_encoder ------------------------------------------------------------------------ */
 
 static cw_status prepare_draco(cli_bench *b, const cli_bench_kind *kind, cw_error *err)
 {
@@ -283,8 +279,7 @@ static cw_status take_draco(cli_bench *b, const cli_bench_kind *kind, cw_mesh *m
     return st;
 }
 
-/* --- the table ------------------------------------------------------------------------------
- */
+/* --- the table ---------------------------------------------------------------------------- */
 
 static const actions extracting = {NULL, extract, take_made},
                      simplifying = {NULL, simplify, take_made},

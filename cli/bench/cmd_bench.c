@@ -1,6 +1,6 @@
 #define _GNU_SOURCE /* open_memstream */
 #include "cli/bench/bench.h"
-#include "cli/commands.h"
+#include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/inputs/synthetic_input.h"
 #include "cli/results/output_names.h"
@@ -58,8 +58,7 @@ static const cli_option options[] = {
      offsetof(bench_args, progress)},
 };
 
-/* --- what is asked for ---------------------------------------------------------------------
- */
+/* --- what is asked for -------------------------------------------------------------------- */
 
 static cw_status take_field(const char *name, bool wanted[CW_FIELD_COUNT], cw_error *err)
 {
@@ -180,8 +179,7 @@ static cw_status list_cases(const bench_args *args, cli_bench *b, cw_error *err)
     return CW_OK;
 }
 
-/* --- the run -------------------------------------------------------------------------------
- */
+/* --- the run ------------------------------------------------------------------------------ */
 
 static cw_status pipeline(const bench_args *args, cli_bench *b, cw_error *err)
 {

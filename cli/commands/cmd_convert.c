@@ -1,8 +1,8 @@
-#include "cli/commands.h"
+#include "cli/framework/commands.h"
 #include "cli/framework/console.h"
-#include "cli/results/write_result.h"
-#include "cli/results/output_names.h"
 #include "cli/results/mesh_write_options.h"
+#include "cli/results/output_names.h"
+#include "cli/results/write_result.h"
 #include "core/base/status.h"
 
 #include <string.h>

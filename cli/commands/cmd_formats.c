@@ -1,5 +1,5 @@
 /* formats and version: what this build can do. */
-#include "cli/commands.h"
+#include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/framework/json_writer.h"
 

@@ -1,5 +1,5 @@
-#include "cli/commands.h"
 #include "cli/commands/offset_hollow.h"
+#include "cli/framework/commands.h"
 
 static const cli_option options[] = {
     {"wall", 'w', CLI_LENGTH, "L", "Thickness of the wall: 2mm, or 1% of the box's diagonal",

@@ -1,8 +1,8 @@
-#include "cli/commands.h"
+#include "cli/framework/commands.h"
 #include "cli/framework/console.h"
-#include "cli/inputs/volume_input.h"
 #include "cli/framework/quantity.h"
 #include "cli/inputs/time_series.h"
+#include "cli/inputs/volume_input.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
 
@@ -166,8 +166,8 @@ static cw_status find_facts(const info_args *args, facts *f, cw_error *err)
     return st == CW_OK ? st : cwi_fail_in(err, st, f->volume.path);
 }
 
-/* "left 0.00, posterior -1.00, ..." : the world direction that each index axis mostly runs to.
- */
+/* "left 0.00, posterior -1.00, ..." : the world direction that each index axis mostly
+ * runs to. */
 static const char *axis_letters(const cw_volume *v)
 {
     static char text[8];
@@ -387,8 +387,7 @@ static void print_json(const facts *f, bool predicted)
     cli_json_close(&j, '}');
 }
 
-/* --- series --------------------------------------------------------------------------------
- */
+/* --- series ------------------------------------------------------------------------------- */
 
 static const char *shape_of(const cw_series *s)
 {
@@ -452,8 +451,7 @@ static void print_series_json(const char *path, const cw_series *series, size_t 
     cli_json_close(&j, '}');
 }
 
-/* --- time series of files ------------------------------------------------------------------
- */
+/* --- time series of files ----------------------------------------------------------------- */
 
 /* A step: what is in its file, and the range of its values. */
 typedef struct step_facts {
@@ -492,6 +490,7 @@ static cw_status list_files(const info_args *args, char *const *files, size_t co
                             cli_json *j, cw_error *finding, cw_error *err)
 {
     cw_volume first = {0};
+    bool agrees = true; /* else the finding says in what they do not */
     for (size_t n = 0; n < count; n++) {
         step_facts step = {0};
         cw_status st = read_step(args, files[n], &step, err);
@@ -500,8 +499,8 @@ static cw_status list_files(const info_args *args, char *const *files, size_t co
             return st;
         }
         first = n ? first : step.volume.whole; /* whose coordinates soon are gone */
-        if (finding->status == CW_OK)
-            cli_agree(&first, files[0], &step.volume.whole, files[n], finding);
+        agrees = agrees &&
+                 cli_agree(&first, files[0], &step.volume.whole, files[n], finding) == CW_OK;
         if (args->json)
             json_step(j, &step);
         else

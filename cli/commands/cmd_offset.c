@@ -1,5 +1,5 @@
-#include "cli/commands.h"
 #include "cli/commands/offset_hollow.h"
+#include "cli/framework/commands.h"
 
 static const cli_option options[] = {
     {"by", 'b', CLI_TEXT, "L",

@@ -1,5 +1,5 @@
-#include "cli/commands.h"
 #include "cli/commands/simplify_run.h"
+#include "cli/framework/commands.h"
 #include "core/base/status.h"
 
 static const cli_simplify_args defaults = {.measure = true};

@@ -1,11 +1,11 @@
 #include "cli/commands/offset_hollow.h"
 
-#include "cli/results/mesh_comparison.h"
 #include "cli/framework/console.h"
-#include "cli/results/write_result.h"
-#include "cli/results/output_names.h"
-#include "cli/results/mesh_parts.h"
 #include "cli/framework/quantity.h"
+#include "cli/results/mesh_comparison.h"
+#include "cli/results/mesh_parts.h"
+#include "cli/results/output_names.h"
+#include "cli/results/write_result.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 
@@ -44,8 +44,7 @@ typedef struct run_state {
 
 const cli_solid_args cli_solid_defaults = {.measure = true, .sharp = true, .refine = true};
 
-/* --- the report ----------------------------------------------------------------------------
- */
+/* --- the report --------------------------------------------------------------------------- */
 
 static void put_drains(cli_json *j, const wishes *w)
 {
@@ -121,8 +120,7 @@ static void put_facts(cli_json *j, const void *p)
         put_anew(j, &s->offset);
 }
 
-/* --- what is asked for ---------------------------------------------------------------------
- */
+/* --- what is asked for -------------------------------------------------------------------- */
 
 static cw_status parse_length(const char *option, const char *text, cli_length *out,
                               cw_error *err)
@@ -242,8 +240,7 @@ static cw_status check_args(run_state *s, cw_error *err)
                        : st;
 }
 
-/* --- work ----------------------------------------------------------------------------------
- */
+/* --- work --------------------------------------------------------------------------------- */
 
 static double length_mm(const run_state *s, const cli_length *length)
 {

@@ -46,7 +46,7 @@ typedef struct cli_solid_args {
 
 extern const cli_solid_args cli_solid_defaults;
 
-cw_status cli_run_hollow(void *args, cw_error *err);
-cw_status cli_run_offset(void *args, cw_error *err);
+CW_NODISCARD cw_status cli_run_hollow(void *args, cw_error *err);
+CW_NODISCARD cw_status cli_run_offset(void *args, cw_error *err);
 
 #endif

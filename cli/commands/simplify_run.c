@@ -1,12 +1,12 @@
 #include "cli/commands/simplify_run.h"
 
-#include "cli/results/mesh_comparison.h"
 #include "cli/framework/console.h"
-#include "cli/results/write_result.h"
-#include "cli/results/output_names.h"
-#include "cli/results/mesh_parts.h"
-#include "cli/framework/quantity.h"
 #include "cli/framework/name_template.h"
+#include "cli/framework/quantity.h"
+#include "cli/results/mesh_comparison.h"
+#include "cli/results/mesh_parts.h"
+#include "cli/results/output_names.h"
+#include "cli/results/write_result.h"
 #include "core/base/status.h"
 
 #include <cubewright/simplify.h>

@@ -21,9 +21,9 @@ typedef struct cli_simplify_args {
 } cli_simplify_args;
 
 /* Fails when they contradict each other, or lack what is needed; looks at no file. */
-cw_status cli_check_simplify_args(const cli_simplify_args *args, cw_error *err);
+CW_NODISCARD cw_status cli_check_simplify_args(const cli_simplify_args *args, cw_error *err);
 
 /* Reads, simplifies, measures and writes, as the arguments say. */
-cw_status cli_run_simplify(void *args, cw_error *err);
+CW_NODISCARD cw_status cli_run_simplify(void *args, cw_error *err);
 
 #endif

@@ -1,6 +1,6 @@
-#include "cli/commands.h"
-#include "cli/framework/console.h"
 #include "cli/extract/extract_run.h"
+#include "cli/framework/commands.h"
+#include "cli/framework/console.h"
 #include "cli/results/pvd_list.h"
 #include "core/base/status.h"
 

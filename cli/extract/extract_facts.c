@@ -3,8 +3,8 @@
 #include <math.h>
 #include <stdio.h>
 
-/* Degrees: of a head in 1280 x 720 pixels 1 in 200 then looks different, of 2 degrees 1 in 100.
- */
+/* Degrees: of a head in 1280 x 720 pixels 1 in 200 then looks different, of 2 degrees 1
+ * in 100. */
 static const double SHADING = 1.5;
 
 double cli_extract_voxel_mm(const cli_extract_run *s)

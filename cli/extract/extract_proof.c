@@ -1,7 +1,7 @@
 #include "cli/extract/extract_proof.h"
 
-#include "cli/results/mesh_comparison.h"
 #include "cli/framework/console.h"
+#include "cli/results/mesh_comparison.h"
 #include "core/base/status.h"
 
 #include <float.h>

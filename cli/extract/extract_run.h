@@ -2,11 +2,11 @@
 #ifndef CLI_EXTRACT_EXTRACT_RUN_H
 #define CLI_EXTRACT_EXTRACT_RUN_H
 
-#include "cli/results/write_result.h"
-#include "cli/results/animation_frames.h"
-#include "cli/results/output_names.h"
 #include "cli/extract/pixel_proof.h"
 #include "cli/framework/quantity.h"
+#include "cli/results/animation_frames.h"
+#include "cli/results/output_names.h"
+#include "cli/results/write_result.h"
 
 typedef struct cli_extract_args {
     cli_common common;
@@ -46,10 +46,10 @@ enum { CLI_EXTRACT_PROVENANCE = 5 };
 /* ---- arguments --------------------------------------------------------------------------- */
 
 /* Everything about them that can be refused before the input is touched. */
-cw_status cli_extract_check_args(cli_extract_run *s, cw_error *err);
+CW_NODISCARD cw_status cli_extract_check_args(cli_extract_run *s, cw_error *err);
 
 /* Names and checks the outputs, once it is known of which steps there will be one. */
-cw_status cli_extract_check_outputs(cli_extract_run *s, cw_error *err);
+CW_NODISCARD cw_status cli_extract_check_outputs(cli_extract_run *s, cw_error *err);
 
 cw_write_desc cli_extract_write_desc(const cli_extract_args *args);
 
@@ -81,20 +81,21 @@ size_t cli_extract_provenance(const cli_extract_run *s, size_t n, char level[32]
 
 /* ---- a surface --------------------------------------------------------------------------- */
 
-cw_status cli_extract_make(cli_extract_run *s, cli_made *made, cw_mesh *mesh,
-                           cw_extract_counts *counts, cw_error *err);
+CW_NODISCARD cw_status cli_extract_make(cli_extract_run *s, cli_made *made, cw_mesh *mesh,
+                                        cw_extract_counts *counts, cw_error *err);
 
-/* What became of all the triangles of one that is simplified, and how far from the field it is.
- */
-cw_status cli_extract_judge(cli_extract_run *s, cli_made *made, const cw_mesh *mesh,
-                            const cw_extract_counts *counts, cw_error *err);
+/* What became of all the triangles of one that is simplified, and how far from the field
+ * it is. */
+CW_NODISCARD cw_status cli_extract_judge(cli_extract_run *s, cli_made *made,
+                                         const cw_mesh *mesh, const cw_extract_counts *counts,
+                                         cw_error *err);
 
 /* Measures what --camera and --max-error promise. bytes: that extraction took */
-cw_status cli_extract_prove(cli_extract_run *s, cli_made *made, const cw_mesh *mesh,
-                            size_t bytes, cw_error *err);
+CW_NODISCARD cw_status cli_extract_prove(cli_extract_run *s, cli_made *made,
+                                         const cw_mesh *mesh, size_t bytes, cw_error *err);
 
 /* Measures what --crop saved, if that is asked for. */
-cw_status cli_extract_prove_crop(cli_extract_run *s, const cli_moment *moment, cli_made *made,
-                                 cw_error *err);
+CW_NODISCARD cw_status cli_extract_prove_crop(cli_extract_run *s, const cli_moment *moment,
+                                              cli_made *made, cw_error *err);
 
 #endif

@@ -1,9 +1,9 @@
 #include "cli/extract/extract_run.h"
 
-#include "cli/results/mesh_comparison.h"
-#include "cli/framework/console.h"
 #include "cli/extract/extract_proof.h"
+#include "cli/framework/console.h"
 #include "cli/inputs/extract_surface.h"
+#include "cli/results/mesh_comparison.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
 

@@ -1,7 +1,7 @@
 #include "cli/extract/pixel_proof.h"
 
-#include "cli/framework/console.h"
 #include "cli/extract/extract_proof.h"
+#include "cli/framework/console.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
@@ -168,8 +168,7 @@ cw_status cli_draw_views(const cli_volume *volume, const cli_wanted *wanted,
     return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
 }
 
-/* --- what no view sees ---------------------------------------------------------------------
- */
+/* --- what no view sees -------------------------------------------------------------------- */
 
 enum { BRICK = 8, AROUND = 2 };
 

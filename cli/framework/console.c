@@ -1,8 +1,8 @@
 #define _GNU_SOURCE /* sigaction */
 #include "cli/framework/console.h"
 
-#include "core/base/clock.h"
 #include "core/base/atomic_file.h"
+#include "core/base/clock.h"
 
 #include <signal.h>
 #include <stdarg.h>

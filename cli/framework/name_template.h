@@ -4,8 +4,8 @@
 
 #include <cubewright/core.h>
 
-/* A part: its name without the braces, what stands in its place, and whether it was asked for.
- */
+/* A part: its name without the braces, what stands in its place, and whether it was
+ * asked for. */
 typedef struct cli_part {
     const char *name, *value;
     bool number; /* it may have a width: {step:04d} */
@@ -16,8 +16,8 @@ typedef struct cli_part {
  * Sets used of the parts it holds.
  * Returns CW_ERR_ARGUMENT, with the names there are, for one that is none of the parts, and for
  *         a width that is none; CW_ERR_NO_MEMORY */
-cw_status cli_fill_template(const char *text, cli_part *parts, size_t part_count, char **out,
-                            cw_error *err);
+CW_NODISCARD cw_status cli_fill_template(const char *text, cli_part *parts, size_t part_count,
+                                         char **out, cw_error *err);
 
 /* "head" of "scans/head.nii.gz": no folder, no .gz and no extension. Free it with free(); NULL
  * when there is no memory. */

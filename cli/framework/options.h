@@ -156,8 +156,8 @@ typedef struct cli_command {
 /* Fills in args (of command->size bytes, holding the defaults) from the words after the
  * command's name. inputs has room for all words. Returns CW_ERR_ARGUMENT with the nearest name
  * for an unknown option; checks nothing about the number of inputs when help is asked for. */
-cw_status cli_parse(const cli_command *command, int count, char **words, void *args,
-                    const char **inputs, cw_error *err);
+CW_NODISCARD cw_status cli_parse(const cli_command *command, int count, char **words,
+                                 void *args, const char **inputs, cw_error *err);
 
 /* Whether an option was given, of that name. */
 bool cli_is_given(const cli_command *command, const cli_common *args, const char *name);

@@ -27,8 +27,8 @@ bool cli_parse_numbers(const char *text, cli_numbers *out)
     return false;
 }
 
-/* A number and its unit, as millimetres; *text moves behind it. *unit: whether there was one.
- */
+/* A number and its unit, as millimetres; *text moves behind it. *unit: whether there
+ * was one. */
 static bool parse_length(const char **text, double *mm, bool *unit)
 {
     static const struct {

@@ -27,8 +27,7 @@ bool cli_parse_counts(const char *text, cli_counts *out);
 
 /* "12.3 MB", "1 234 567", and a number as people would type it: the shortest text that reads
  * back the same, whole numbers without an exponent. In static memory; the last eight results
- * are kept.
- */
+ * are kept. */
 const char *cli_bytes(double bytes);
 const char *cli_count(size_t count);
 const char *cli_number_text(double value);

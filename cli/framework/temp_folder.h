@@ -6,7 +6,7 @@
 
 /* Makes one in TMPDIR, or else in /tmp; CW_ERR_OUTPUT, CW_ERR_NO_MEMORY. Give its path to
  * cli_scratch_remove(), which removes it with the files in it, and is harmless on NULL. */
-cw_status cli_scratch_make(char **folder, cw_error *err);
+CW_NODISCARD cw_status cli_scratch_make(char **folder, cw_error *err);
 void cli_scratch_remove(char *folder);
 
 #endif

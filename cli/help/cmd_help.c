@@ -1,4 +1,4 @@
-#include "cli/commands.h"
+#include "cli/framework/commands.h"
 #include "cli/help/help_search.h"
 #include "core/base/status.h"
 

@@ -1,6 +1,6 @@
 #include "cli/help/help_search.h"
 
-#include "cli/commands.h"
+#include "cli/framework/commands.h"
 #include "cli/view/view.h"
 #include "core/base/status.h"
 
@@ -28,8 +28,7 @@ typedef struct query {
     size_t count;
 } query;
 
-/* --- the query -----------------------------------------------------------------------------
- */
+/* --- the query ---------------------------------------------------------------------------- */
 
 /* The next item of a list parted by '|', or NULL at its end. */
 static const char *next_item(const char **list, char item[MAX_TEXT])
@@ -104,8 +103,7 @@ static void parse_query(const char *text, query *q)
     }
 }
 
-/* --- matching ------------------------------------------------------------------------------
- */
+/* --- matching ----------------------------------------------------------------------------- */
 
 /* Blanks match any white space: pages are broken into lines. */
 static bool begins_with(const char *text, const char *term)
@@ -158,8 +156,7 @@ static bool option_fits(const cli_option *o, const query *q)
     return o->kind != CLI_HEADING && fits(&(subject){o->name, {o->value, o->about}}, q);
 }
 
-/* --- the results ---------------------------------------------------------------------------
- */
+/* --- the results -------------------------------------------------------------------------- */
 
 static bool is_same(const char *a, const char *b)
 {

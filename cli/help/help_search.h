@@ -17,6 +17,6 @@ extern const cli_synonym cli_synonyms[];
 
 /* Prints what is found, each option once with the commands that have it. Every word of the
  * query must occur, by itself or as a synonym. CW_ERR_ARGUMENT: nothing is found. */
-cw_status cli_search(const char *query, cw_error *err);
+CW_NODISCARD cw_status cli_search(const char *query, cw_error *err);
 
 #endif

@@ -9,7 +9,7 @@
  * max_voxels  of the box
  * Returns     CW_ERR_LIMIT, with the box; CW_ERR_FORMAT for leaves and tiles that leave it;
  *             CW_ERR_NO_MEMORY */
-cw_status cli_make_dense(const cw_volume *sparse, size_t max_voxels, cw_volume *dense,
-                         cw_error *err);
+CW_NODISCARD cw_status cli_make_dense(const cw_volume *sparse, size_t max_voxels,
+                                      cw_volume *dense, cw_error *err);
 
 #endif

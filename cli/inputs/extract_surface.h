@@ -10,9 +10,9 @@
 /* cw_extract() with progress, within the memory that is left, and with an empty result turned
  * into CW_ERR_EMPTY that tells the range of the values. Errors name the file.
  * extractor  of volume->view, for another surface of it; NULL: this one by itself */
-cw_status cli_extract_surface(const cli_volume *volume, cw_extractor *extractor,
-                              const cw_extract_desc *desc, cw_mesh *mesh,
-                              cw_extract_counts *counts, cw_error *err);
+CW_NODISCARD cw_status cli_extract_surface(const cli_volume *volume, cw_extractor *extractor,
+                                           const cw_extract_desc *desc, cw_mesh *mesh,
+                                           cw_extract_counts *counts, cw_error *err);
 
 /* What is wanted of a surface. */
 typedef struct cli_wanted {
@@ -23,23 +23,25 @@ typedef struct cli_wanted {
 /* The same without the components that are too small.
  * dropped   may be NULL
  * Returns   CW_ERR_EMPTY also when all are, and how much the largest encloses */
-cw_status cli_extract_wanted(const cli_volume *volume, cw_extractor *extractor,
-                             const cli_wanted *wanted, cw_mesh *mesh, cw_extract_counts *counts,
-                             cw_drop_counts *dropped, cw_error *err);
+CW_NODISCARD cw_status cli_extract_wanted(const cli_volume *volume, cw_extractor *extractor,
+                                          const cli_wanted *wanted, cw_mesh *mesh,
+                                          cw_extract_counts *counts, cw_drop_counts *dropped,
+                                          cw_error *err);
 
 /* The same, simplified slab by slab while it is extracted, so that all of it never is in
  * memory, unless components are to be left out: these are known when all is there. With normals
  * of the field, unless there are to be none.
  * simplify  as for cw_simplifier_new()
  * counts    of the surface as it came */
-cw_status cli_extract_simplified(const cli_volume *volume, const cli_wanted *wanted,
-                                 const cw_simplify_desc *simplify, cw_mesh *mesh,
-                                 cw_extract_counts *counts, cw_drop_counts *dropped,
-                                 cw_error *err);
+CW_NODISCARD cw_status cli_extract_simplified(const cli_volume *volume,
+                                              const cli_wanted *wanted,
+                                              const cw_simplify_desc *simplify, cw_mesh *mesh,
+                                              cw_extract_counts *counts,
+                                              cw_drop_counts *dropped, cw_error *err);
 
 /* The level where nobody said one: of level sets 0, else by Otsu. how  is set to a word for
  * it. CW_ERR_EMPTY: no level parts the values. */
-cw_status cli_find_level(const cli_volume *volume, int threads, double *iso, const char **how,
-                         cw_error *err);
+CW_NODISCARD cw_status cli_find_level(const cli_volume *volume, int threads, double *iso,
+                                      const char **how, cw_error *err);
 
 #endif

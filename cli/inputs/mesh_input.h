@@ -65,20 +65,21 @@ typedef struct cli_mesh {
 
 /* Reads a mesh, all parts merged, and says what was found. Errors name the file.
  * reader  a name of 'formats'; NULL: by content        input  for its memory and safety */
-cw_status cli_read_mesh(const char *path, const char *reader, const cli_input *input,
-                        cli_mesh *mesh, cw_error *err);
+CW_NODISCARD cw_status cli_read_mesh(const char *path, const char *reader,
+                                     const cli_input *input, cli_mesh *mesh, cw_error *err);
 
-/* A mesh to compare the input with: what is said of that counts where this file does not say.
- */
-cw_status cli_read_reference(const char *path, const char *reader, const cli_input *input,
-                             cli_mesh *mesh, cw_error *err);
+/* A mesh to compare the input with: what is said of that counts where this file does
+ * not say. */
+CW_NODISCARD cw_status cli_read_reference(const char *path, const char *reader,
+                                          const cli_input *input, cli_mesh *mesh,
+                                          cw_error *err);
 
 /* Reads the parts of a file, each as a mesh, and says what was found. */
-cw_status cli_read_parts(const char *path, const char *reader, const cli_input *input,
-                         cli_mesh *mesh, cw_error *err);
+CW_NODISCARD cw_status cli_read_parts(const char *path, const char *reader,
+                                      const cli_input *input, cli_mesh *mesh, cw_error *err);
 
 /* Turns shells round that face the wrong way, of each part by itself, and says how many. */
-cw_status cli_orient_mesh(cli_mesh *mesh, int threads, cw_error *err);
+CW_NODISCARD cw_status cli_orient_mesh(cli_mesh *mesh, int threads, cw_error *err);
 
 /* Of all parts. */
 size_t cli_mesh_triangles(const cli_mesh *mesh);

@@ -1,7 +1,7 @@
 #include "cli/inputs/missing_components.h"
 
-#include "core/geometry/union_find.h"
 #include "core/base/status.h"
+#include "core/geometry/union_find.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -13,7 +13,7 @@ typedef struct cli_missing {
 /* Takes out of a surface the components none of whose vertices is as near to the mesh as
  * `near`. surface      in place distance_mm  of each vertex from the mesh Returns
  * CW_ERR_NO_MEMORY */
-cw_status cli_drop_missing(cw_mesh *surface, const float *distance_mm, double near_mm,
-                           cli_missing *missing, cw_error *err);
+CW_NODISCARD cw_status cli_drop_missing(cw_mesh *surface, const float *distance_mm,
+                                        double near_mm, cli_missing *missing, cw_error *err);
 
 #endif

@@ -21,16 +21,19 @@ bool cli_is_folder(const char *path);
 /* Finds the steps, and out of the headers whether it is a volume or a mesh; a mesh is read.
  * A file that cannot be read as a volume is taken for a mesh, if it may be one: its reader's
  * words are then the better ones, unless the file's name speaks for a volume. */
-cw_status cli_open_source(cli_source *source, const cli_common *common, const cli_input *input,
-                          const cli_steps *steps, bool may_be_mesh, cw_error *err);
+CW_NODISCARD cw_status cli_open_source(cli_source *source, const cli_common *common,
+                                       const cli_input *input, const cli_steps *steps,
+                                       bool may_be_mesh, cw_error *err);
 void cli_close_source(cli_source *source);
 
 /* Reads the volume of a step, unless it is there. */
-cw_status cli_read_step(cli_source *source, const cli_input *input, size_t step, cw_error *err);
+CW_NODISCARD cw_status cli_read_step(cli_source *source, const cli_input *input, size_t step,
+                                     cw_error *err);
 
 /* Makes a sparse volume dense, which is said, so that it can be drawn; fails for volumes that
  * are not evenly spaced. */
-cw_status cli_need_drawable(cli_source *source, const cli_input *input, cw_error *err);
+CW_NODISCARD cw_status cli_need_drawable(cli_source *source, const cli_input *input,
+                                         cw_error *err);
 
 /* The volume that is drawn. */
 const cw_volume *cli_drawn(const cli_source *source);

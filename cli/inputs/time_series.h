@@ -28,16 +28,16 @@ typedef struct cli_series {
  * the steps of the only one. One file without --steps is not looked at. Files must agree in
  * what cli_agree() says. Free it, also after failure, with cli_free_series(). Returns
  * CW_ERR_ARGUMENT for a step that is not there, and as cw_steps_list(); CW_ERR_FORMAT for files
- * that do not agree, naming one and in what it differs; as cw_volume_read()
- */
-cw_status cli_find_series(cli_series *series, const cli_common *common, const cli_input *input,
-                          const cli_steps *steps, cw_error *err);
+ * that do not agree, naming one and in what it differs; as cw_volume_read() */
+CW_NODISCARD cw_status cli_find_series(cli_series *series, const cli_common *common,
+                                       const cli_input *input, const cli_steps *steps,
+                                       cw_error *err);
 void cli_free_series(cli_series *series);
 
 /* Whether a file can be a step of the series that another begins: one step in it, as many
  * values a voxel, unit and frame named alike. Sizes, places and types may differ. Errors name
  * both. */
-cw_status cli_agree(const cw_volume *first, const char *first_path, const cw_volume *other,
-                    const char *other_path, cw_error *err);
+CW_NODISCARD cw_status cli_agree(const cw_volume *first, const char *first_path,
+                                 const cw_volume *other, const char *other_path, cw_error *err);
 
 #endif

@@ -206,8 +206,8 @@ static size_t coarsening(const cli_input *input)
     return input->coarsen ? input->coarsen : input->preview ? 4 : 1;
 }
 
-/* Chooses to keep one voxel in `asked` along each axis; a thin axis keeps its first and last.
- */
+/* Chooses to keep one voxel in `asked` along each axis; a thin axis keeps its first
+ * and last. */
 static void choose_coarsening(size_t asked, const cw_volume *part, size_t step[3])
 {
     for (int a = 0; a < 3; a++)

@@ -178,8 +178,8 @@ typedef struct cli_input {
 
 enum { CLI_MOST_NOTES = 8 };
 
-/* What an irregular grid has: cells of each shape and, once it was read, the box of its points.
- */
+/* What an irregular grid has: cells of each shape and, once it was read, the box of
+ * its points. */
 typedef struct cli_grid {
     size_t cells[CW_SHAPE_COUNT];
     bool has_box;
@@ -215,24 +215,24 @@ cw_read_desc cli_read_desc(const cli_input *input);
 
 /* Reads the header, says what was found, then reads the voxels (unless header_only). Errors
  * name the file. Free with cli_free_volume(). */
-cw_status cli_read_volume(const char *path, const cli_input *input, bool header_only,
-                          cli_volume *volume, cw_error *err);
+CW_NODISCARD cw_status cli_read_volume(const char *path, const cli_input *input,
+                                       bool header_only, cli_volume *volume, cw_error *err);
 
 /* All voxels of what --crop left a part of, without a word: the file was told of. Free with
  * cli_free_volume(). */
-cw_status cli_read_whole(const cli_volume *part, const cli_input *input, cli_volume *whole,
-                         cw_error *err);
+CW_NODISCARD cw_status cli_read_whole(const cli_volume *part, const cli_input *input,
+                                      cli_volume *whole, cw_error *err);
 
 /* The header alone, without a word. */
-cw_status cli_read_shape(const char *path, const cli_input *input, cw_volume *shape,
-                         cw_error *err);
+CW_NODISCARD cw_status cli_read_shape(const char *path, const cli_input *input,
+                                      cw_volume *shape, cw_error *err);
 
 void cli_free_volume(cli_volume *volume);
 
 /* Says, and keeps as a note, that a volume of labels has several of them inside a surface,
  * which it joins. No levels: that any would. */
-cw_status cli_tell_labels(cli_volume *volume, const double *iso, size_t count,
-                          bool inside_is_low, cw_error *err);
+CW_NODISCARD cw_status cli_tell_labels(cli_volume *volume, const double *iso, size_t count,
+                                       bool inside_is_low, cw_error *err);
 
 /* --inside, and what it means for a volume. */
 #define CLI_INSIDE_CHOICES "auto/above/below"
@@ -243,8 +243,8 @@ bool cli_inside_is_low(int inside, const cw_volume *volume);
 bool cli_is_level_set(const char *path, const cli_input *input);
 
 /* Makes the volume's view that of another of its time steps. */
-cw_status cli_choose_step(const cli_input *input, size_t step, cli_volume *volume,
-                          cw_error *err);
+CW_NODISCARD cw_status cli_choose_step(const cli_input *input, size_t step, cli_volume *volume,
+                                       cw_error *err);
 
 /* Whether the view leaves voxels out between those it has. */
 bool cli_is_preview(const cli_volume *volume);

@@ -10,13 +10,14 @@ typedef struct cli_turns {
 } cli_turns;
 
 /* Fails for a camera, an angle or a zoom that is none; files are not looked at. */
-cw_status cli_check_camera(const cli_scene *args, const cli_turns *turns, cw_error *err);
+CW_NODISCARD cw_status cli_check_camera(const cli_scene *args, const cli_turns *turns,
+                                        cw_error *err);
 
 /* The camera of turn n, the same distance from the middle of a box at all of them. box: low and
  * high corner of what is seen, in the world. */
-cw_status cli_find_camera(const cli_scene *args, const cli_turns *turns, size_t n,
-                          const double box[2][3], double aspect, cw_camera *camera,
-                          cw_error *err);
+CW_NODISCARD cw_status cli_find_camera(const cli_scene *args, const cli_turns *turns, size_t n,
+                                       const double box[2][3], double aspect, cw_camera *camera,
+                                       cw_error *err);
 
 /* What to call the camera: its view, angles or file. */
 const char *cli_camera_title(const cli_scene *args);

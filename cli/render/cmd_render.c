@@ -1,4 +1,4 @@
-#include "cli/commands.h"
+#include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/render/render_run.h"
 #include "core/base/status.h"

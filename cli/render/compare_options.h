@@ -9,13 +9,13 @@
  * --compare 'A|B', which are options by comma without their dashes; the first may be a mode.
  * Returns CW_ERR_ARGUMENT for what is no setting of a picture, does nothing in its mode, or (of
  * the run's) in neither; CW_ERR_NO_MEMORY */
-cw_status cli_parse_split(const cli_command *command, const render_args *args, cli_split *split,
-                          cw_error *err);
+CW_NODISCARD cw_status cli_parse_split(const cli_command *command, const render_args *args,
+                                       cli_split *split, cw_error *err);
 void cli_free_split(cli_split *split);
 
 /* The split of two pictures, or both and their difference, and what is measured. */
-cw_status cli_draw_split(const cw_picture sides[2], const render_args *args,
-                         const uint8_t background[2][4], cw_comparison *measured,
-                         cw_picture *out, cw_error *err);
+CW_NODISCARD cw_status cli_draw_split(const cw_picture sides[2], const render_args *args,
+                                      const uint8_t background[2][4], cw_comparison *measured,
+                                      cw_picture *out, cw_error *err);
 
 #endif

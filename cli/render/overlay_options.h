@@ -14,8 +14,8 @@ enum { CLI_LAYOUT_SINGLE, CLI_LAYOUT_QUAD };
 
 /* Draws what was asked for on the picture of a scene.
  * Returns CW_ERR_ARGUMENT for what needs a volume, without one; as cw_overlay_draw() */
-cw_status cli_mark(const cli_marks *marks, const cw_scene *scene, cw_image *image,
-                   cw_error *err);
+CW_NODISCARD cw_status cli_mark(const cli_marks *marks, const cw_scene *scene, cw_image *image,
+                                cw_error *err);
 
 /* Whether there is something to draw. */
 bool cli_has_marks(const cli_marks *marks);
@@ -25,7 +25,8 @@ bool cli_has_marks(const cli_marks *marks);
  * scene     of the whole sheet's size
  * shown     its picture, of half that size on a side
  * renderer  NULL at first; made when needed */
-cw_status cli_mark_quad(const cw_scene *scene, const cw_image *shown, cw_backend backend,
-                        cw_renderer **renderer, cw_image *sheet, cw_error *err);
+CW_NODISCARD cw_status cli_mark_quad(const cw_scene *scene, const cw_image *shown,
+                                     cw_backend backend, cw_renderer **renderer,
+                                     cw_image *sheet, cw_error *err);
 
 #endif

@@ -28,7 +28,8 @@ typedef struct cli_render_report {
 
 /* Writes it to a file, or the standard output for "-". Returns the status of the run, or why
  * the report could not be written when the run itself went well. */
-cw_status cli_render_report_write(const char *path, const cli_render_report *report,
-                                  cw_status status, cw_error *err);
+CW_NODISCARD cw_status cli_render_report_write(const char *path,
+                                               const cli_render_report *report,
+                                               cw_status status, cw_error *err);
 
 #endif

@@ -1,15 +1,15 @@
 #include "cli/render/render_run.h"
 
 #include "cli/framework/console.h"
-#include "cli/inputs/mesh_input.h"
-#include "cli/results/output_names.h"
-#include "cli/framework/quantity.h"
-#include "cli/render/compare_options.h"
-#include "cli/inputs/extract_surface.h"
 #include "cli/framework/name_template.h"
+#include "cli/framework/quantity.h"
+#include "cli/inputs/extract_surface.h"
+#include "cli/inputs/mesh_input.h"
+#include "cli/render/compare_options.h"
+#include "cli/results/output_names.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
-#include "viewer/cpu/reference_mesh.h"
+#include <cubewright/render.h>
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -96,7 +96,7 @@ static cw_status check_hidden(cli_pictures *p, cw_error *err)
     return CW_OK;
 }
 
-/* Whether the picture is that of cwi_render_mesh(). */
+/* Whether the picture is that of cw_render_mesh(). */
 static bool draws_on_cpu(const cli_pictures *p)
 {
     return p->mode == CW_MODE_MESH && p->args->backend != CW_BACKEND_EGL &&
@@ -295,16 +295,16 @@ static cw_status draw_mesh(cli_pictures *p, const uint8_t background[2][4], cw_i
                            cw_error *err)
 {
     const cw_scene *s = &p->scene;
-    cwi_render_desc desc = {.camera = s->camera,
-                            .width = s->width,
-                            .height = s->height,
-                            .samples = s->samples,
-                            .threads = s->threads,
-                            .progress = s->progress};
+    cw_render_mesh_desc desc = {.camera = s->camera,
+                                .width = s->width,
+                                .height = s->height,
+                                .samples = s->samples,
+                                .threads = s->threads,
+                                .progress = s->progress};
     memcpy(desc.background, background, sizeof desc.background);
     if (p->args->scene.color)
         cli_parse_color(p->args->scene.color, desc.color);
-    return cwi_render_mesh(&p->source.mesh, &desc, image, err);
+    return cw_render_mesh(&p->source.mesh, &desc, image, err);
 }
 
 static cw_status draw_picture(cli_pictures *p, cw_picture *picture, cw_error *err)

@@ -2,10 +2,10 @@
 #ifndef CLI_RENDER_RENDER_RUN_H
 #define CLI_RENDER_RENDER_RUN_H
 
-#include "cli/render/overlay_options.h"
-#include "cli/render/render_report.h"
 #include "cli/inputs/scene_source.h"
 #include "cli/render/camera_options.h"
+#include "cli/render/overlay_options.h"
+#include "cli/render/render_report.h"
 
 typedef struct render_args {
     cli_common common;
@@ -64,10 +64,10 @@ typedef struct cli_pictures {
 } cli_pictures;
 
 /* What can be refused before the input is touched. */
-cw_status cli_check_pictures(const render_args *args, cw_error *err);
+CW_NODISCARD cw_status cli_check_pictures(const render_args *args, cw_error *err);
 
 /* Reads what there is to see, draws and writes all pictures. */
-cw_status cli_make_pictures(cli_pictures *p, cw_error *err);
+CW_NODISCARD cw_status cli_make_pictures(cli_pictures *p, cw_error *err);
 void cli_end_pictures(cli_pictures *p);
 
 /* What its report says. */

@@ -185,8 +185,7 @@ cw_status cli_make_transfer(const cli_scene *args, const cw_volume *volume, cw_m
 }
 
 /* Numbers by comma or 'x', up to a semicolon or the end; how many, or -1. Text moves behind
- * them.
- */
+ * them. */
 static int parse_tuple(const char **text, double *numbers, int most)
 {
     char item[CWI_ITEM_BYTES], separator = 0;

@@ -43,8 +43,8 @@ typedef struct cli_subject {
 
 /* Fails with the modes that an option is for, or what it needs, when one was given that does
  * nothing: to this mode, without a volume, without a mesh. */
-cw_status cli_check_scene(const cli_command *command, const cli_common *common, cw_mode mode,
-                          bool has_mesh, cw_error *err);
+CW_NODISCARD cw_status cli_check_scene(const cli_command *command, const cli_common *common,
+                                       cw_mode mode, bool has_mesh, cw_error *err);
 
 /* Whether an option of that name sets how one picture looks. */
 bool cli_is_setting(const char *name);
@@ -60,27 +60,30 @@ const char *cli_needs_gl(const cli_command *command, const cli_common *common,
 bool cli_parse_color(const char *text, uint8_t rgba[4]);
 
 /* Top and bottom: as asked for, else as suits the mode. CW_ERR_ARGUMENT */
-cw_status cli_background(const cli_scene *args, cw_mode mode, uint8_t background[2][4],
-                         cw_error *err);
+CW_NODISCARD cw_status cli_background(const cli_scene *args, cw_mode mode,
+                                      uint8_t background[2][4], cw_error *err);
 
 /* The transfer function for a volume: a preset, a file or JSON text, shifted and scaled. What
  * looks wrong is said.
  * Returns CW_ERR_ARGUMENT for an unknown preset; as cw_transfer_read() */
-cw_status cli_make_transfer(const cli_scene *args, const cw_volume *volume, cw_mode mode,
-                            int threads, cw_transfer *transfer, cw_error *err);
+CW_NODISCARD cw_status cli_make_transfer(const cli_scene *args, const cw_volume *volume,
+                                         cw_mode mode, int threads, cw_transfer *transfer,
+                                         cw_error *err);
 
 /* The same, when the statistics of its values are there. */
-cw_status cli_fit_transfer(const cli_scene *args, const cw_volume *volume, cw_mode mode,
-                           const cw_statistics *statistics, cw_transfer *transfer,
-                           cw_error *err);
+CW_NODISCARD cw_status cli_fit_transfer(const cli_scene *args, const cw_volume *volume,
+                                        cw_mode mode, const cw_statistics *statistics,
+                                        cw_transfer *transfer, cw_error *err);
 
 /* Shifts and scales one. CW_ERR_ARGUMENT */
-cw_status cli_change_transfer(const cli_scene *args, cw_transfer *transfer, cw_error *err);
+CW_NODISCARD cw_status cli_change_transfer(const cli_scene *args, cw_transfer *transfer,
+                                           cw_error *err);
 
 /* The whole scene but camera, size and samples, which are there before: slices are counted
  * along the line of sight. What it points to is borrowed.
  * Returns CW_ERR_ARGUMENT for texts that are not understood, naming the option */
-cw_status cli_make_scene(const cli_scene *args, const cli_subject *subject, cw_mode mode,
-                         const cw_transfer *transfer, cw_scene *scene, cw_error *err);
+CW_NODISCARD cw_status cli_make_scene(const cli_scene *args, const cli_subject *subject,
+                                      cw_mode mode, const cw_transfer *transfer,
+                                      cw_scene *scene, cw_error *err);
 
 #endif

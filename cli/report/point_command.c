@@ -1,7 +1,7 @@
 /* The command that does what a point does, to be copied. */
 #include "cli/report/point_command.h"
-#include "cli/results/compress_options.h"
 #include "cli/framework/quantity.h"
+#include "cli/results/compress_options.h"
 #include "core/base/text.h"
 
 #include <stdlib.h>

@@ -122,7 +122,7 @@ typedef struct cli_study {
  * says why. Free with cli_study_free(), also after failure.
  * Returns  CW_ERR_EMPTY  there is no surface at that level
  *          CW_ERR_CANCELLED; and whatever keeps the plain surface from being made */
-cw_status cli_study_run(cli_study *study, cw_error *err);
+CW_NODISCARD cw_status cli_study_run(cli_study *study, cw_error *err);
 void cli_study_free(cli_study *study);
 
 /* The axes of a family, as far as it was measured. */
@@ -141,24 +141,26 @@ void cli_plan_extraction(cli_study *study);
 void cli_plan_simplification(cli_study *study);
 void cli_plan_compression(cli_study *study);
 void cli_plan_rendering(cli_study *study);
-cw_status cli_try_extraction(cli_study *study, cli_point *point, cw_error *err);
-cw_status cli_try_simplification(cli_study *study, cli_point *point, cw_error *err);
-cw_status cli_try_compression(cli_study *study, cli_point *point, cw_error *err);
-cw_status cli_try_rendering(cli_study *study, cli_point *point, cw_error *err);
+CW_NODISCARD cw_status cli_try_extraction(cli_study *study, cli_point *point, cw_error *err);
+CW_NODISCARD cw_status cli_try_simplification(cli_study *study, cli_point *point,
+                                              cw_error *err);
+CW_NODISCARD cw_status cli_try_compression(cli_study *study, cli_point *point, cw_error *err);
+CW_NODISCARD cw_status cli_try_rendering(cli_study *study, cli_point *point, cw_error *err);
 
 /* Chooses the part that is simplified and compressed, and extracts it. */
-cw_status cli_need_part(cli_study *study, cw_error *err);
+CW_NODISCARD cw_status cli_need_part(cli_study *study, cw_error *err);
 const cw_mesh *cli_part_mesh(const cli_study *study);
 
 /* What all families of meshes measure of one: field, back, truth, bytes of its file unless they
  * are known; of a shown point its picture and the shapes of its triangles. */
-cw_status cli_measure_mesh(cli_study *study, cli_point *point, const cw_mesh *mesh,
-                           cw_error *err);
+CW_NODISCARD cw_status cli_measure_mesh(cli_study *study, cli_point *point, const cw_mesh *mesh,
+                                        cw_error *err);
 
 /* Writes a mesh and tells how large the file is; path (NULL: nobody wants it) is in static
  * memory, and the caller's to remove. */
-cw_status cli_weigh_mesh(cli_study *study, const cw_mesh *mesh, const cw_write_desc *desc,
-                         size_t *bytes, const char **path, cw_error *err);
+CW_NODISCARD cw_status cli_weigh_mesh(cli_study *study, const cw_mesh *mesh,
+                                      const cw_write_desc *desc, size_t *bytes,
+                                      const char **path, cw_error *err);
 
 /* The distance to a field's surface, known on paper, along its gradient. */
 cli_gap cli_measure_truth(cw_field field, double iso, double voxel_mm, const cw_mesh *mesh);
@@ -176,8 +178,9 @@ cli_vertex_errors cli_measure_vertices(cw_field field, double iso, double voxel_
 
 /* A picture of a mesh (from where all of another is seen), as a PNG in memory, in colours of
  * the distance at each vertex: from 0.001 to 1 voxel, by the logarithm. */
-cw_status cli_draw_errors(cli_study *study, const cw_mesh *around, const cw_mesh *mesh,
-                          const float *mm, char **png, size_t *size, cw_error *err);
+CW_NODISCARD cw_status cli_draw_errors(cli_study *study, const cw_mesh *around,
+                                       const cw_mesh *mesh, const float *mm, char **png,
+                                       size_t *size, cw_error *err);
 size_t cli_share_of(const cli_study *study, double share); /* of the plain triangles */
 void cli_error_color(double share, uint8_t rgb[3]);        /* 0 to 1 along that scale */
 

@@ -1,7 +1,7 @@
 /* Compression of the plain surface's file: written, read back, and measured as it came back. */
-#include "cli/results/compress_options.h"
 #include "cli/framework/console.h"
 #include "cli/report/study.h"
+#include "cli/results/compress_options.h"
 #include "core/base/status.h"
 
 #include <string.h>

@@ -1,8 +1,8 @@
 /* Pictures of meshes in the colours of their error: drawn on the CPU, so that every build has
  * them. */
 #include "cli/inputs/scene_source.h"
-#include "cli/report/study.h"
 #include "cli/render/camera_options.h"
+#include "cli/report/study.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 

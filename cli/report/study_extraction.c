@@ -1,7 +1,7 @@
 /* Extraction: where vertices are placed, which are merged, how many voxels are looked at. */
 #include "cli/framework/console.h"
-#include "cli/report/study.h"
 #include "cli/inputs/extract_surface.h"
+#include "cli/report/study.h"
 
 void cli_plan_extraction(cli_study *s)
 {

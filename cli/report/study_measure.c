@@ -1,7 +1,7 @@
 /* What there is to be known of a mesh: how far it is from the truth, and how large its file. */
 #include "cli/framework/console.h"
-#include "cli/report/triangle_sample.h"
 #include "cli/report/study.h"
+#include "cli/report/triangle_sample.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 

@@ -1,7 +1,7 @@
 /* The part of a volume on which is tried what would take too long on all of it: as large as may
  * be, where the surface is. */
-#include "cli/report/study.h"
 #include "cli/inputs/extract_surface.h"
+#include "cli/report/study.h"
 #include "core/volume/volume.h"
 
 #include <math.h>

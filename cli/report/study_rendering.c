@@ -1,8 +1,8 @@
 /* Rendering: modes and how finely they sample, against the rendering integral itself. */
 #include "cli/framework/console.h"
 #include "cli/inputs/scene_source.h"
-#include "cli/report/study.h"
 #include "cli/render/camera_options.h"
+#include "cli/report/study.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
 

@@ -1,7 +1,7 @@
 /* Simplification while extracting: to an error, to a share of the triangles. */
 #include "cli/framework/console.h"
-#include "cli/report/study.h"
 #include "cli/inputs/extract_surface.h"
+#include "cli/report/study.h"
 
 void cli_plan_simplification(cli_study *s)
 {

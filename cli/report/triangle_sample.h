@@ -11,8 +11,8 @@ typedef struct cli_sample {
 
 /* Takes about so many triangles at most, fewer where they are larger than the face of a voxel,
  * at random but always the same ones. CW_ERR_NO_MEMORY */
-cw_status cli_take_sample(const cw_mesh *mesh, size_t most, double voxel_mm, cli_sample *sample,
-                          cw_error *err);
+CW_NODISCARD cw_status cli_take_sample(const cw_mesh *mesh, size_t most, double voxel_mm,
+                                       cli_sample *sample, cw_error *err);
 void cli_free_sample(cli_sample *sample);
 
 /* What to measure. */

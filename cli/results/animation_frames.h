@@ -17,7 +17,7 @@ typedef struct cli_frames {
 } cli_frames;
 
 /* Room for so many. CW_ERR_NO_MEMORY */
-cw_status cli_frames_reserve(cli_frames *frames, size_t count, cw_error *err);
+CW_NODISCARD cw_status cli_frames_reserve(cli_frames *frames, size_t count, cw_error *err);
 void cli_frames_free(cli_frames *frames);
 
 /* Takes over a mesh, empty or not, as the surface of a moment: shown from its own time on or,

@@ -43,7 +43,8 @@ typedef struct cli_compress {
     }
 
 /* Refuses what contradicts itself. voxels: whether a tolerance may be told in them. */
-cw_status cli_check_compress(const cli_compress *compress, bool voxels, cw_error *err);
+CW_NODISCARD cw_status cli_check_compress(const cli_compress *compress, bool voxels,
+                                          cw_error *err);
 
 /* Fills in what a mesh is to be written with. */
 void cli_set_compress(const cli_compress *compress, const cw_part *parts, size_t count,

@@ -1,8 +1,8 @@
 #include "cli/results/mesh_comparison.h"
 
 #include "cli/framework/console.h"
-#include "core/geometry/affine.h"
 #include "core/base/status.h"
+#include "core/geometry/affine.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,8 +1,8 @@
 #include "cli/results/mesh_parts.h"
 
-#include "cli/results/mesh_comparison.h"
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
+#include "cli/results/mesh_comparison.h"
 #include "core/base/status.h"
 
 #include <math.h>

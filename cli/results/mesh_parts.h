@@ -24,22 +24,22 @@ typedef struct cli_pieces {
 /* Makes a piece of each part that has triangles, vertices at equal positions one, and says so.
  * Free it, also after failure, with cli_free_pieces().
  * Returns  CW_ERR_EMPTY when there are no triangles */
-cw_status cli_weld_pieces(cli_pieces *p, const cli_mesh *mesh, cw_error *err);
+CW_NODISCARD cw_status cli_weld_pieces(cli_pieces *p, const cli_mesh *mesh, cw_error *err);
 
 /* Leaves out components whose box has a shorter diagonal, and says how many.
  * Returns  CW_ERR_EMPTY when nothing is left */
-cw_status cli_drop_from_pieces(cli_pieces *p, double diagonal_mm, cw_error *err);
+CW_NODISCARD cw_status cli_drop_from_pieces(cli_pieces *p, double diagonal_mm, cw_error *err);
 
 /* Looks at what goes in, for cli_hold_pieces(). */
-cw_status cli_measure_pieces(cli_pieces *p, int threads, cw_error *err);
+CW_NODISCARD cw_status cli_measure_pieces(cli_pieces *p, int threads, cw_error *err);
 
 /* Fails when what came out has another topology. */
-cw_status cli_hold_pieces(const cli_pieces *p, int threads, cw_error *err);
+CW_NODISCARD cw_status cli_hold_pieces(const cli_pieces *p, int threads, cw_error *err);
 
 /* Measures how far what came out is from what went in, and the way back.
  * Returns  CW_ERR_CHECK when that is more than c->promised_mm */
-cw_status cli_compare_pieces(const cli_pieces *p, int threads, cli_comparison *c,
-                             cw_error *err);
+CW_NODISCARD cw_status cli_compare_pieces(const cli_pieces *p, int threads, cli_comparison *c,
+                                          cw_error *err);
 
 /* Harmless on zeroed ones. */
 void cli_free_pieces(cli_pieces *p);

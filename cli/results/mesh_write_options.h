@@ -1,11 +1,11 @@
-/* The options that say how a mesh is written, for every command that turns meshes into meshes.
- */
+/* The options that say how a mesh is written, for every command that turns meshes
+ * into meshes. */
 #ifndef CLI_RESULTS_MESH_WRITE_OPTIONS_H
 #define CLI_RESULTS_MESH_WRITE_OPTIONS_H
 
-#include "cli/results/compress_options.h"
 #include "cli/framework/json_writer.h"
 #include "cli/inputs/mesh_input.h"
+#include "cli/results/compress_options.h"
 
 typedef struct cli_written {
     const char *name, *format;

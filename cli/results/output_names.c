@@ -1,8 +1,8 @@
 #define _GNU_SOURCE /* dev_t, ino_t */
 #include "cli/results/output_names.h"
 
-#include "cli/framework/quantity.h"
 #include "cli/framework/name_template.h"
+#include "cli/framework/quantity.h"
 #include "core/base/status.h"
 
 #include <stdio.h>

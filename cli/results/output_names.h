@@ -1,5 +1,5 @@
-/* What can be known of outputs before the work is done: their names, and whether they can be.
- */
+/* What can be known of outputs before the work is done: their names, and whether they
+ * can be. */
 #ifndef CLI_RESULTS_OUTPUT_NAMES_H
 #define CLI_RESULTS_OUTPUT_NAMES_H
 
@@ -9,11 +9,11 @@
 #include <cubewright/formats.h>
 
 /* Fails when the output is one of the inputs, by any name. */
-cw_status cli_check_output(const char *output, const char *const *inputs, size_t input_count,
-                           cw_error *err);
+CW_NODISCARD cw_status cli_check_output(const char *output, const char *const *inputs,
+                                        size_t input_count, cw_error *err);
 
 /* Fails when two outputs are the same file, by name or by a link. */
-cw_status cli_check_apart(const char *a, const char *b, cw_error *err);
+CW_NODISCARD cw_status cli_check_apart(const char *a, const char *b, cw_error *err);
 
 /* The files of a run. */
 typedef struct cli_outputs {
@@ -26,29 +26,33 @@ typedef struct cli_outputs {
  * cli_free_outputs(). Returns CW_ERR_ARGUMENT for a level that is there twice, an unknown
  * {part}, and when several levels or steps come without a part that tells them apart;
  * CW_ERR_NO_MEMORY */
-cw_status cli_name_outputs(cli_outputs *outputs, const char *text, const cli_series *series,
-                           const cli_numbers *levels, cw_error *err);
+CW_NODISCARD cw_status cli_name_outputs(cli_outputs *outputs, const char *text,
+                                        const cli_series *series, const cli_numbers *levels,
+                                        cw_error *err);
 
 /* Names one output a part: {name} (that of the part, with what no file name may hold as '_'),
  * {part} (its number, from 1) and {stem} of the text are filled in. Free it likewise.
  * Returns CW_ERR_ARGUMENT for an unknown {part}, and when several parts come without {name} or
  * {part}; CW_ERR_NO_MEMORY */
-cw_status cli_name_part_outputs(cli_outputs *outputs, const char *text, const char *input,
-                                const cw_part *parts, size_t count, cw_error *err);
+CW_NODISCARD cw_status cli_name_part_outputs(cli_outputs *outputs, const char *text,
+                                             const char *input, const cw_part *parts,
+                                             size_t count, cw_error *err);
 
 /* Names one output a level of detail: {lod} (its number, from 0) and {stem} are filled in. A
  * text without {lod} gets "-lod0" and so on in front of its extension, and, with together, is
  * itself the name of one more output, the last. Free it likewise. */
-cw_status cli_name_lod_outputs(cli_outputs *outputs, const char *text, const char *input,
-                               size_t levels, bool together, cw_error *err);
+CW_NODISCARD cw_status cli_name_lod_outputs(cli_outputs *outputs, const char *text,
+                                            const char *input, size_t levels, bool together,
+                                            cw_error *err);
 
 /* Names the only output of a run: {stem} is filled in. Free it likewise. */
-cw_status cli_name_output(cli_outputs *outputs, const char *text, const char *input,
-                          cw_error *err);
+CW_NODISCARD cw_status cli_name_output(cli_outputs *outputs, const char *text,
+                                       const char *input, cw_error *err);
 void cli_free_outputs(cli_outputs *outputs);
 
 /* Fails when one of them could not be written, is an input or another of them. */
-cw_status cli_check_outputs(const cli_outputs *outputs, const char *const *inputs,
-                            size_t input_count, const cw_write_desc *desc, cw_error *err);
+CW_NODISCARD cw_status cli_check_outputs(const cli_outputs *outputs, const char *const *inputs,
+                                         size_t input_count, const cw_write_desc *desc,
+                                         cw_error *err);
 
 #endif

@@ -1,10 +1,10 @@
 #define _GNU_SOURCE /* reallocarray */
 #include "cli/results/run_report.h"
 
-#include "cli/results/compress_options.h"
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
 #include "cli/results/check_verdicts.h"
+#include "cli/results/compress_options.h"
 #include "core/base/atomic_file.h"
 #include "core/base/status.h"
 #include "core/base/text.h"

@@ -1,5 +1,5 @@
-/* The report of a run: what --json FILE holds. One schema for every command that makes a mesh.
- */
+/* The report of a run: what --json FILE holds. One schema for every command that makes
+ * a mesh. */
 #ifndef CLI_RESULTS_RUN_REPORT_H
 #define CLI_RESULTS_RUN_REPORT_H
 
@@ -107,11 +107,11 @@ typedef struct cli_report {
 enum { CLI_MOST_STEPS = 8 }; /* of one mesh */
 
 /* Room for so many meshes; before the first step, or for more. CW_ERR_NO_MEMORY */
-cw_status cli_report_reserve(cli_report *report, size_t meshes, cw_error *err);
+CW_NODISCARD cw_status cli_report_reserve(cli_report *report, size_t meshes, cw_error *err);
 void cli_report_free(cli_report *report);
 
-/* What meshes have and formats may not keep, by name; places are told by a warning of theirs.
- */
+/* What meshes have and formats may not keep, by name; places are told by a warning
+ * of theirs. */
 extern const struct cli_kept {
     unsigned flag; /* cw_keeps */
     const char *name;
@@ -130,13 +130,16 @@ void cli_report_warn(cli_report *report, const char *format, ...) CW_PRINTF(2, 3
 
 /* Writes the report of a run that ended so, if one was asked for. Returns that status, or why
  * the report could not be written when the run itself went well. */
-cw_status cli_report_write(const cli_report *report, cw_status status, cw_error *err);
+CW_NODISCARD cw_status cli_report_write(const cli_report *report, cw_status status,
+                                        cw_error *err);
 
 /* Writes the text of a report to a file, or the standard output for "-". CW_ERR_OUTPUT */
-cw_status cli_report_save(const char *path, const char *text, size_t size, cw_error *err);
+CW_NODISCARD cw_status cli_report_save(const char *path, const char *text, size_t size,
+                                       cw_error *err);
 
 /* The same of what `put` prints of something; nothing without a path. Also CW_ERR_NO_MEMORY */
-cw_status cli_report_make(const char *path, void (*put)(FILE *out, const void *what),
-                          const void *what, cw_error *err);
+CW_NODISCARD cw_status cli_report_make(const char *path,
+                                       void (*put)(FILE *out, const void *what),
+                                       const void *what, cw_error *err);
 
 #endif

@@ -1,8 +1,8 @@
 #include "cli/results/write_result.h"
 
-#include "cli/results/mesh_comparison.h"
 #include "cli/framework/console.h"
 #include "cli/framework/quantity.h"
+#include "cli/results/mesh_comparison.h"
 #include "core/base/status.h"
 
 #include <math.h>

@@ -29,12 +29,14 @@ typedef struct cli_delivery {
  *                        keep what was asked for, and nothing is written; or it could not with
  *                        the bits stated, and the file is as these make it
  *          or as cw_quality_measure(), cw_parts_write() */
-cw_status cli_deliver(cli_report *report, const cli_delivery *how, const cw_part *parts,
-                      size_t part_count, size_t border_loops, double start, cw_error *err);
+CW_NODISCARD cw_status cli_deliver(cli_report *report, const cli_delivery *how,
+                                   const cw_part *parts, size_t part_count, size_t border_loops,
+                                   double start, cw_error *err);
 
 /* Checks the report's latest mesh, a step of an animation that has no file of its own, and
  * tells of it in a line: the first half of cli_deliver(). */
-cw_status cli_deliver_step(cli_report *report, const cli_delivery *how, const cw_mesh *mesh,
-                           size_t border_loops, double start, cw_error *err);
+CW_NODISCARD cw_status cli_deliver_step(cli_report *report, const cli_delivery *how,
+                                        const cw_mesh *mesh, size_t border_loops, double start,
+                                        cw_error *err);
 
 #endif

@@ -1,5 +1,5 @@
 #define _GNU_SOURCE /* open_memstream */
-#include "cli/commands.h"
+#include "cli/framework/commands.h"
 #include "cli/framework/console.h"
 #include "cli/view/view.h"
 #include "core/base/module.h"

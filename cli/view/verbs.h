@@ -5,12 +5,13 @@
 #include "cli/view/view.h"
 
 /* Numbers out of words. CW_ERR_ARGUMENT naming the verb and the word */
-cw_status view_take(const char *verb, char **args, int count, double *numbers, cw_error *err);
+CW_NODISCARD cw_status view_take(const char *verb, char **args, int count, double *numbers,
+                                 cw_error *err);
 
 /* CW_ERR_ARGUMENT when nothing is open, no volume that can be drawn; a camera is placed. */
-cw_status view_need_open(const view *v, cw_error *err);
-cw_status view_need_volume(const view *v, cw_error *err);
-cw_status view_need_camera(view *v, cw_error *err);
+CW_NODISCARD cw_status view_need_open(const view *v, cw_error *err);
+CW_NODISCARD cw_status view_need_volume(const view *v, cw_error *err);
+CW_NODISCARD cw_status view_need_camera(view *v, cw_error *err);
 
 /* The verbs of a file; EDIT: what undo brings back. */
 typedef struct view_verbs {

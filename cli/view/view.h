@@ -3,8 +3,8 @@
 #ifndef CLI_VIEW_VIEW_H
 #define CLI_VIEW_VIEW_H
 
-#include "cli/render/render_run.h"
 #include "cli/render/compare_options.h"
+#include "cli/render/render_run.h"
 #include "viewer/window/ui.h"
 
 #include <cubewright/extract.h>
@@ -140,9 +140,9 @@ typedef struct view {
 } view;
 
 /* view_session.c */
-cw_status view_open(view *v, const char *path, cw_error *err);
+CW_NODISCARD cw_status view_open(view *v, const char *path, cw_error *err);
 void view_close(view *v);
-cw_status view_go_to_step(view *v, size_t step, cw_error *err);
+CW_NODISCARD cw_status view_go_to_step(view *v, size_t step, cw_error *err);
 /* Of the world, low and high corner: what is left of all by the clip box in mm, else all. */
 void view_clip_box(const view *v, double box[2][3]);
 /* Values from black to white in slices. */
@@ -151,18 +151,19 @@ void view_touch(view *v, unsigned parts); /* they have to be drawn anew */
 bool view_draws_volume(const view *v);
 bool view_has_mesh(const view *v);
 double view_suggest_iso(const view *v);
-cw_status view_need_transfer(view *v, cw_error *err);
-cw_status view_place_camera(view *v, const char *name, cw_error *err);
-cw_status view_choose_mode(view *v, cw_error *err); /* after settings have changed */
+CW_NODISCARD cw_status view_need_transfer(view *v, cw_error *err);
+CW_NODISCARD cw_status view_place_camera(view *v, const char *name, cw_error *err);
+CW_NODISCARD cw_status view_choose_mode(view *v,
+                                        cw_error *err); /* after settings have changed */
 
 /* view_state.c: undo, settings by name, and what is saved. */
 void view_remember(view *v, const char *verb);
 bool view_undo(view *v, int by);
 const cli_option *view_find_option(const view *v, const char *name);
-cw_status view_parse_split(const view *v, cli_split *split, cw_error *err);
-cw_status view_set(view *v, const char *name, const char *value, cw_error *err);
+CW_NODISCARD cw_status view_parse_split(const view *v, cli_split *split, cw_error *err);
+CW_NODISCARD cw_status view_set(view *v, const char *name, const char *value, cw_error *err);
 const char *view_keep_text(view *v, const char *text);
-cw_status view_write_state(const view *v, const char *path, cw_error *err);
+CW_NODISCARD cw_status view_write_state(const view *v, const char *path, cw_error *err);
 char *view_command_line(const view *v); /* free() it */
 
 /* view_commands.c, and verbs_*.c, which have the verbs */
@@ -172,13 +173,14 @@ typedef struct view_verb {
     bool changes;    /* what undo brings back */
     cw_status (*run)(view *v, int count, char **args, cw_error *err);
 } view_verb;
-const view_verb *view_verb_at(size_t n);                       /* NULL after the last */
-cw_status view_monkey(view *v, uint64_t *seed, cw_error *err); /* one random input */
-cw_status view_run(view *v, int count, char **words, cw_error *err);
+const view_verb *view_verb_at(size_t n); /* NULL after the last */
+CW_NODISCARD cw_status view_monkey(view *v, uint64_t *seed,
+                                   cw_error *err); /* one random input */
+CW_NODISCARD cw_status view_run(view *v, int count, char **words, cw_error *err);
 
 /* view_script.c: commands in a text, parted by ; or lines, words in quotes, # begins a comment. */
-cw_status view_exec(view *v, const char *text, cw_error *err);
-cw_status view_exec_file(view *v, const char *path, cw_error *err);
+CW_NODISCARD cw_status view_exec(view *v, const char *text, cw_error *err);
+CW_NODISCARD cw_status view_exec_file(view *v, const char *path, cw_error *err);
 /* To be run after this frame; errors become messages. */
 void view_ask(view *v, const char *format, ...) CW_PRINTF(2, 3);
 void view_ask_open(view *v, const char *path); /* whatever is in its name */
@@ -192,8 +194,8 @@ typedef struct view_key {
 } view_key;
 extern const view_key view_keys[];
 extern const size_t view_key_count;
-/* Something that is on or off: of view_shown, or a flag of the settings. false: no such thing
- */
+/* Something that is on or off: of view_shown, or a flag of the settings. false: no
+ * such thing */
 bool view_find_flag(const view *v, const char *name, bool *on);
 bool *view_shown_flag(view *v, const char *name); /* NULL: none of those */
 /* "X Y Z": the keys of a row and of those that have its about; false: none */
@@ -201,16 +203,17 @@ bool view_key_names(size_t n, char *names, size_t size);
 void view_print_keys(void);
 
 /* view_draw.c */
-cw_status view_draw(view *v, view_level level, bool may_stop, cw_error *err);
+CW_NODISCARD cw_status view_draw(view *v, view_level level, bool may_stop, cw_error *err);
 bool view_is_final(const view *v);
-cw_status view_picture(view *v, const char *path, cw_error *err);
+CW_NODISCARD cw_status view_picture(view *v, const char *path, cw_error *err);
 
 /* view_loop.c: frames of the window. */
-cw_status view_frame(view *v, double wait_s, cw_error *err);
+CW_NODISCARD cw_status view_frame(view *v, double wait_s, cw_error *err);
 /* Frames until all that was fed has been taken in. */
-cw_status view_take_in(view *v, cw_error *err);
-cw_status view_settle(view *v, cw_error *err); /* until all is drawn as asked for */
-cw_status view_loop(view *v, cw_error *err);
+CW_NODISCARD cw_status view_take_in(view *v, cw_error *err);
+CW_NODISCARD cw_status view_settle(view *v,
+                                   cw_error *err); /* until all is drawn as asked for */
+CW_NODISCARD cw_status view_loop(view *v, cw_error *err);
 void view_lay_out(view *v);
 
 /* view_mouse.c, view_panels.c, curve_editor.c, file_browser.c */

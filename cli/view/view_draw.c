@@ -2,8 +2,8 @@
 #include "cli/view/view.h"
 
 #include "cli/framework/console.h"
-#include "cli/render/compare_options.h"
 #include "cli/inputs/extract_surface.h"
+#include "cli/render/compare_options.h"
 #include "core/base/status.h"
 
 #include <math.h>

@@ -23,10 +23,10 @@ static int part_under(const view *v, double x, double y)
     return -1;
 }
 
-static cwi_view looked_at(const view *v)
+static cwi_handle_view looked_at(const view *v)
 {
     const cwi_ui_rect *r = &v->parts[VIEW_SPACE].rect;
-    return (cwi_view){v->state.camera, (size_t)r->width, (size_t)r->height};
+    return (cwi_handle_view){v->state.camera, (size_t)r->width, (size_t)r->height};
 }
 
 static cwi_world_box clip_box(const view *v)
@@ -47,7 +47,7 @@ static bool has_handles(const view *v)
 static int handle_under(const view *v, double x, double y)
 {
     cwi_handle handles[CWI_HANDLES];
-    const cwi_view look = looked_at(v);
+    const cwi_handle_view look = looked_at(v);
     const cwi_world_box box = clip_box(v);
     const double pixel[2] = {x, y};
     cwi_handles_place(&look, &box, handles);
@@ -134,7 +134,7 @@ static void shift_curve(view *v, const cwi_ui_input *in)
 static void drag_handle(view *v, const cwi_ui_input *in, int handle)
 {
     const cwi_ui_rect *r = &v->parts[VIEW_SPACE].rect;
-    const cwi_view look = looked_at(v);
+    const cwi_handle_view look = looked_at(v);
     cwi_world_box bounds, box = clip_box(v);
     const double pixel[2] = {in->x - r->x, in->y - r->y};
     const int axis = handle / 2;
@@ -272,7 +272,7 @@ static void show_handles(view *v)
 {
     static const cwi_ui_color front = {1, 0.8f, 0.3f, 0.9f}, back = {1, 0.8f, 0.3f, 0.3f};
     const cwi_ui_rect *r = &v->parts[VIEW_SPACE].rect;
-    const cwi_view look = looked_at(v);
+    const cwi_handle_view look = looked_at(v);
     const cwi_world_box box = clip_box(v);
     cwi_handle handles[CWI_HANDLES];
     cwi_box_edge edges[CWI_BOX_EDGES];

@@ -2,8 +2,8 @@
 #include "cli/view/view.h"
 
 #include "cli/framework/console.h"
-#include "cli/inputs/mesh_input.h"
 #include "cli/inputs/extract_surface.h"
+#include "cli/inputs/mesh_input.h"
 #include "core/base/status.h"
 
 #include <math.h>

@@ -146,8 +146,8 @@ static cw_status follow(view *v, const char *name, cw_error *err)
     return view_choose_mode(v, err);
 }
 
-/* What was set for other modes stays set in a session: only what a side says must do something.
- */
+/* What was set for other modes stays set in a session: only what a side says must
+ * do something. */
 cw_status view_parse_split(const view *v, cli_split *split, cw_error *err)
 {
     render_args args = v->state.args;

@@ -18,40 +18,40 @@ typedef struct cwi_outfile cwi_outfile;
  * no_clobber  fail when the path exists, here and again, race-free, at the commit
  * Returns     CW_ERR_OUTPUT  folder missing or not writable, path exists and no_clobber, path
  * is a folder, device or the like; CW_ERR_NO_MEMORY */
-CW_API cw_status cwi_outfile_open(cwi_outfile **out, const char *path, bool no_clobber,
-                                  cw_error *err);
+CW_NODISCARD cw_status cwi_outfile_open(cwi_outfile **out, const char *path, bool no_clobber,
+                                        cw_error *err);
 
 /* Appends bytes; buffered. CW_ERR_OUTPUT when they cannot be written; later writes and the
  * commit then fail with the same words. */
-CW_API cw_status cwi_outfile_write(cwi_outfile *f, const void *bytes, size_t size,
-                                   cw_error *err);
+CW_NODISCARD cw_status cwi_outfile_write(cwi_outfile *f, const void *bytes, size_t size,
+                                         cw_error *err);
 
 /* Appends text; numbers have a decimal point in any locale. */
-CW_API cw_status cwi_outfile_printf(cwi_outfile *f, cw_error *err, const char *format, ...)
-    CW_PRINTF(3, 4);
+CW_NODISCARD cw_status cwi_outfile_printf(cwi_outfile *f, cw_error *err, const char *format,
+                                          ...) CW_PRINTF(3, 4);
 
 /* Bytes appended so far. */
-CW_API uint64_t cwi_outfile_size(const cwi_outfile *f);
+uint64_t cwi_outfile_size(const cwi_outfile *f);
 
 /* Writes over bytes that were appended before: for what is known only later, such as sizes. The
  * next bytes are appended as before. Same errors as cwi_outfile_write(). */
-CW_API cw_status cwi_outfile_patch(cwi_outfile *f, uint64_t at, const void *bytes, size_t size,
-                                   cw_error *err);
+CW_NODISCARD cw_status cwi_outfile_patch(cwi_outfile *f, uint64_t at, const void *bytes,
+                                         size_t size, cw_error *err);
 
 /* Flushes to the disk and renames. Frees and NULLs the file, on failure too: the temporary is
  * then gone and the path as it was. */
-CW_API cw_status cwi_outfile_commit(cwi_outfile **f, cw_error *err);
+CW_NODISCARD cw_status cwi_outfile_commit(cwi_outfile **f, cw_error *err);
 
 /* Removes the temporary, frees and NULLs. Harmless on NULL and after a commit. */
-CW_API void cwi_outfile_abort(cwi_outfile **f);
+void cwi_outfile_abort(cwi_outfile **f);
 
 /* Writes a whole file at once; errors name the path. CW_ERR_OUTPUT, CW_ERR_NO_MEMORY */
-CW_API cw_status cwi_outfile_save(const char *path, const void *bytes, size_t size,
-                                  cw_error *err);
+CW_NODISCARD cw_status cwi_outfile_save(const char *path, const void *bytes, size_t size,
+                                        cw_error *err);
 
 /* Unlinks every temporary in progress; the program then has to exit. Async-signal-safe: for a
  * second Ctrl-C. Knows the first 64 files that are open at one time. */
-CW_API void cwi_outfile_remove_all(void);
+void cwi_outfile_remove_all(void);
 
 #ifdef __cplusplus
 }

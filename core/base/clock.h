@@ -9,7 +9,7 @@ extern "C" {
 #endif
 
 /* Seconds since some moment; they never run backwards. */
-CW_API double cwi_now_s(void);
+double cwi_now_s(void);
 
 #ifdef __cplusplus
 }

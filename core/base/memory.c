@@ -14,15 +14,7 @@
 static _Thread_local long allocations_left = -1;
 static _Thread_local bool one_failed;
 
-bool cwi_alloc_fail_after(long n)
-{
-    const bool failed = one_failed;
-    one_failed = false;
-    allocations_left = n;
-    return failed;
-}
-
-static bool starved(void)
+static bool fail_by_request(void)
 {
     if (allocations_left < 0)
         return false;
@@ -34,54 +26,79 @@ static bool starved(void)
     return true;
 }
 
-/* --- the limit ----------------------------------------------------------------------------
- */
+struct cwi_memory_account {
+    atomic_size_t used;  /* by all arrays that are allocated now */
+    atomic_size_t limit; /* 0: none */
+    atomic_size_t refused,
+        refused_left;         /* the last request beyond it, and what was left then */
+    bool (*next_fails)(void); /* of cwi_alloc_fail_after() */
+};
 
-/* Of all arrays that are allocated now. */
-static atomic_size_t used, limit;
-/* What the limit refused last, and what it had left then. */
-static atomic_size_t refused, refused_left;
+static cwi_memory_account own_account = {.next_fails = fail_by_request};
+static cwi_memory_account *account = &own_account;
+
+cwi_memory_account *cwi_memory_account_get(void)
+{
+    return account;
+}
+
+void cwi_memory_account_share(cwi_memory_account *of_the_program)
+{
+    account = of_the_program;
+}
+
+bool cwi_alloc_fail_after(long n)
+{
+    const bool failed = one_failed;
+    one_failed = false;
+    allocations_left = n;
+    return failed;
+}
+
+/* --- the limit ---------------------------------------------------------------------------- */
 
 void cw_memory_limit(size_t bytes)
 {
-    atomic_store(&limit, bytes);
-    atomic_store(&refused, 0);
+    atomic_store(&account->limit, bytes);
+    atomic_store(&account->refused, 0);
 }
 
 size_t cw_memory_used(void)
 {
-    return atomic_load(&used);
+    return atomic_load(&account->used);
 }
 
 size_t cwi_memory_refused(size_t *left)
 {
-    *left = atomic_load(&refused_left);
-    return atomic_load(&refused);
+    *left = atomic_load(&account->refused_left);
+    return atomic_load(&account->refused);
 }
 
 size_t cwi_memory_left(void)
 {
-    const size_t most = atomic_load(&limit), now = atomic_load(&used);
+    const size_t most = atomic_load(&account->limit), now = atomic_load(&account->used);
     return !most ? SIZE_MAX : most > now ? most - now : 0;
 }
 
 bool cwi_memory_take(size_t bytes)
 {
-    const size_t most = atomic_load_explicit(&limit, memory_order_relaxed);
-    const size_t before = atomic_fetch_add_explicit(&used, bytes, memory_order_relaxed);
+    const size_t most = atomic_load_explicit(&account->limit, memory_order_relaxed);
+    const size_t before =
+        atomic_fetch_add_explicit(&account->used, bytes, memory_order_relaxed);
     if (!most || (before <= most && bytes <= most - before))
         return true;
-    atomic_fetch_sub_explicit(&used, bytes, memory_order_relaxed);
-    atomic_store(&refused_left, most > before ? most - before : 0);
-    atomic_store(&refused, bytes);
+    atomic_fetch_sub_explicit(&account->used, bytes, memory_order_relaxed);
+    atomic_store(&account->refused_left, most > before ? most - before : 0);
+    atomic_store(&account->refused, bytes);
     return false;
 }
 
 /* Never below 0: a caller's own arrays, which were not counted, may be freed here, too. */
 void cwi_memory_give(size_t bytes)
 {
-    size_t now = atomic_load_explicit(&used, memory_order_relaxed);
-    while (!atomic_compare_exchange_weak_explicit(&used, &now, now > bytes ? now - bytes : 0,
+    size_t now = atomic_load_explicit(&account->used, memory_order_relaxed);
+    while (!atomic_compare_exchange_weak_explicit(&account->used, &now,
+                                                  now > bytes ? now - bytes : 0,
                                                   memory_order_relaxed, memory_order_relaxed))
         ;
 }
@@ -102,14 +119,13 @@ static void *count_memory(void *memory, size_t taken)
 {
     const size_t has = room_of(memory);
     if (has > taken)
-        atomic_fetch_add_explicit(&used, has - taken, memory_order_relaxed);
+        atomic_fetch_add_explicit(&account->used, has - taken, memory_order_relaxed);
     else
         cwi_memory_give(taken - has);
     return memory;
 }
 
-/* --- allocation ---------------------------------------------------------------------------
- */
+/* --- allocation --------------------------------------------------------------------------- */
 
 bool cwi_size_mul(size_t a, size_t b, size_t *out)
 {
@@ -132,7 +148,7 @@ bool cwi_size_add(size_t a, size_t b, size_t *out)
 /* Sizes beyond PTRDIFF_MAX cannot be indexed; malloc refuses them, and compilers warn. */
 static bool is_usable(size_t count, size_t size, size_t *bytes)
 {
-    return cwi_size_mul(count, size, bytes) && *bytes <= PTRDIFF_MAX && !starved();
+    return cwi_size_mul(count, size, bytes) && *bytes <= PTRDIFF_MAX && !account->next_fails();
 }
 
 /* The same, and takes the bytes. */
@@ -143,8 +159,8 @@ static bool take_array(size_t count, size_t size, size_t *bytes)
 
 enum { LARGE_PAGE = 2 << 20 };
 
-/* Asks for large pages where whole ones lie in large memory: no harm if they are not granted.
- */
+/* Asks for large pages where whole ones lie in large memory: no harm if they are
+ * not granted. */
 static void wish_large_pages(char *memory, size_t bytes)
 {
 #ifdef MADV_HUGEPAGE

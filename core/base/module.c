@@ -1,4 +1,4 @@
-#define _GNU_SOURCE /* dladdr */
+#define _GNU_SOURCE /* dladdr1 */
 #include "core/base/module.h"
 
 #include "core/base/features.h"
@@ -7,22 +7,39 @@
 #include <dlfcn.h>
 #include <errno.h>
 #include <fcntl.h>
+#include <limits.h>
+#include <link.h>
 #include <stdio.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* Beside the object this function is in: the library, or a program that linked it statically.
- */
+/* The file that this function is in: the library, or a program that linked it statically, which
+ * the loader names as it was called. */
+static bool find_own_file(char path[PATH_MAX])
+{
+    static const char here;
+    Dl_info info;
+    struct link_map *object;
+    if (!dladdr1(&here, &info, (void **)&object, RTLD_DL_LINKMAP))
+        return false;
+    if (*object->l_name)
+        return snprintf(path, PATH_MAX, "%s", object->l_name) < PATH_MAX;
+    const ssize_t length = readlink("/proc/self/exe", path, PATH_MAX - 1);
+    if (length > 0)
+        path[length] = 0;
+    return length > 0;
+}
+
 static bool module_path(const char *name, char *path, size_t size)
 {
     static const char *const folders[] = {"cubewright", "../lib/cubewright", CW_MODULE_DIR};
-    Dl_info here;
-    if (!dladdr((const void *)&folders, &here) || !here.dli_fname)
+    char own[PATH_MAX];
+    if (!find_own_file(own))
         return false;
-    const char *slash = strrchr(here.dli_fname, '/');
-    const int folder_length = slash ? (int)(slash - here.dli_fname) : 1;
-    const char *folder = slash ? here.dli_fname : ".";
+    const char *slash = strrchr(own, '/');
+    const int folder_length = slash ? (int)(slash - own) : 1;
+    const char *folder = slash ? own : ".";
     for (size_t i = 0; i < sizeof folders / sizeof *folders; i++) {
         const int length = snprintf(path, size, "%.*s/%s/cubewright-%s.so", folder_length,
                                     folder, folders[i], name);
@@ -117,5 +134,11 @@ cw_status cwi_module_load(const char *name, const void **functions, cw_error *er
     void *module = dlopen(path, RTLD_NOW | RTLD_LOCAL);
     snprintf(symbol, sizeof symbol, "cwi_module_%s", name);
     *functions = module ? dlsym(module, symbol) : NULL;
-    return *functions ? CW_OK : fail_load(name, row->packages, err);
+    void (*attach)(cwi_memory_account *) = NULL;
+    if (*functions)
+        *(void **)&attach = dlsym(module, "cwi_module_attach");
+    if (!attach)
+        return fail_load(name, row->packages, err);
+    attach(cwi_memory_account_get());
+    return CW_OK;
 }

@@ -14,10 +14,10 @@ extern "C" {
  *             what one does in a moment
  * threads     0 means all
  * Returns     CW_OK, or CW_ERR_CANCELLED: then some layers were left out */
-CW_API cw_status cwi_each_layer(size_t layers, size_t layer_size, int threads,
-                                const cw_progress *progress, const char *step,
-                                void (*work)(void *context, size_t k), void *context,
-                                cw_error *err);
+CW_NODISCARD cw_status cwi_each_layer(size_t layers, size_t layer_size, int threads,
+                                      const cw_progress *progress, const char *step,
+                                      void (*work)(void *context, size_t k), void *context,
+                                      cw_error *err);
 
 #ifdef __cplusplus
 }

@@ -64,19 +64,19 @@ typedef struct cwi_sandbox {
 /* Starts the child.
  * Returns what its preparation returned; CW_ERR_BACKEND when the system gives no process, or
  * has no seccomp; CW_ERR_NO_MEMORY, also when the child died of its preparation */
-CW_API cw_status cwi_sandbox_open(cwi_sandbox *box, const cwi_sandbox_desc *desc,
-                                  cw_error *err);
+CW_NODISCARD cw_status cwi_sandbox_open(cwi_sandbox *box, const cwi_sandbox_desc *desc,
+                                        cw_error *err);
 
 /* Has a piece of work done and waits for it.
  * fd       borrowed; -1: none
  * request  at most CWI_SANDBOX_REQUEST bytes
  * Returns  what the work returned; CW_ERR_BACKEND when the child died or took too long, which
  *          closes the sandbox; CW_ERR_CANCELLED */
-CW_API cw_status cwi_sandbox_run(cwi_sandbox *box, int fd, const void *request, size_t size,
-                                 cw_error *err);
+CW_NODISCARD cw_status cwi_sandbox_run(cwi_sandbox *box, int fd, const void *request,
+                                       size_t size, cw_error *err);
 
 /* Ends the child. Harmless on a zeroed or already closed sandbox. */
-CW_API void cwi_sandbox_close(cwi_sandbox *box);
+void cwi_sandbox_close(cwi_sandbox *box);
 
 #ifdef __cplusplus
 }

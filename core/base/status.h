@@ -10,19 +10,18 @@ extern "C" {
 
 /* Writes the message (err may be NULL) and returns the status, so that a failing function can
  * say why and leave in one line. */
-CW_API cw_status cw_fail(cw_error *err, cw_status status, const char *format, ...)
-    CW_PRINTF(3, 4);
+cw_status cw_fail(cw_error *err, cw_status status, const char *format, ...) CW_PRINTF(3, 4);
 
 /* Puts "subject: " in front of the message: for the caller that knows the file's name. Returns
  * status, unchanged, so that it can be passed through. */
-CW_API cw_status cwi_fail_in(cw_error *err, cw_status status, const char *subject);
+cw_status cwi_fail_in(cw_error *err, cw_status status, const char *subject);
 
 /* Reports progress and turns a refusal to go on into CW_ERR_CANCELLED. */
-CW_API cw_status cwi_progress(const cw_progress *progress, const char *step, double done,
-                              cw_error *err);
+CW_NODISCARD cw_status cwi_progress(const cw_progress *progress, const char *step, double done,
+                                    cw_error *err);
 
 /* The number of threads a desc asks for: all that OpenMP offers when it says 0 or less. */
-CW_API int cwi_threads(int asked);
+int cwi_threads(int asked);
 
 #ifdef __cplusplus
 }

@@ -19,10 +19,10 @@ typedef struct cwi_stop {
     bool stopped;
 } cwi_stop;
 
-CW_API void cwi_stop_init(cwi_stop *stop, const cw_progress *progress);
+void cwi_stop_init(cwi_stop *stop, const cw_progress *progress);
 
 /* A progress that may be reported from any thread. A negative share repeats the last one. */
-CW_API cw_progress cwi_stop_progress(cwi_stop *stop);
+cw_progress cwi_stop_progress(cwi_stop *stop);
 
 #ifdef __cplusplus
 }

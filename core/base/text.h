@@ -13,8 +13,8 @@ extern "C" {
 /* Reads one number at *text and moves *text behind it; leading blanks are skipped. False, and
  * *text unmoved, when there is none. Accepts what strtod does, "nan" and "inf" too; the integer
  * form takes decimal digits with an optional sign and refuses what does not fit. */
-CW_API bool cwi_parse_double(const char **text, double *value);
-CW_API bool cwi_parse_int(const char **text, int64_t *value);
+bool cwi_parse_double(const char **text, double *value);
+bool cwi_parse_int(const char **text, int64_t *value);
 
 /* The next item of a list on a command line, parted by commas, as in "0.5mm,0.5mm,1mm", or by
  * 'x', as in "512x512x300": copied, and *text moves behind it and what parts it from the next.
@@ -22,28 +22,28 @@ CW_API bool cwi_parse_int(const char **text, int64_t *value);
  * list is over, at a ';' or the text's end. False for an item of CWI_ITEM_BYTES or more, and
  * for a list that is parted by both. */
 enum { CWI_ITEM_BYTES = 64 };
-CW_API bool cwi_next_item(const char **text, char *separator, char item[CWI_ITEM_BYTES]);
+bool cwi_next_item(const char **text, char *separator, char item[CWI_ITEM_BYTES]);
 
 /* Makes printf and friends of this thread write points; hand the result to the second call. */
-CW_API void *cwi_locale_c(void);
-CW_API void cwi_locale_restore(void *before);
+void *cwi_locale_c(void);
+void cwi_locale_restore(void *before);
 
 /* Opens a stream into memory that grows, for text to print; NULL without memory. *text and
  * *size are good once it is closed; free the text with free(). */
-CW_API FILE *cwi_text_open(char **text, size_t *size);
+FILE *cwi_text_open(char **text, size_t *size);
 
 /* Closes the stream, NULL too. False, and *text is NULL, when memory ran out on the way: a
  * stream into memory may lose text, or all of it, and still be closed without an error. */
-CW_API bool cwi_text_close(FILE *stream, char **text);
+bool cwi_text_close(FILE *stream, char **text);
 
 enum { CWI_MEMORY_TEXT = 24 };
 
 /* Bytes of memory in the unit that --memory takes: "1.5 GiB". */
-CW_API void cwi_print_memory(uint64_t bytes, char text[CWI_MEMORY_TEXT]);
+void cwi_print_memory(uint64_t bytes, char text[CWI_MEMORY_TEXT]);
 
 /* Bytes of the UTF-8 character at text; 0 when there is none such: stray bytes, overlong forms,
  * surrogates, codes past the last. The terminating zero counts as a character of one byte. */
-CW_API size_t cwi_utf8_length(const char *text);
+size_t cwi_utf8_length(const char *text);
 
 #ifdef __cplusplus
 }

@@ -1,6 +1,6 @@
 /* The little linear algebra that frames need. An affine is the 12 numbers of a 3x4 map, row by
- * row: y = A x + t. Pass affine[0]: C17 cannot pass a double[3][4] where a const one is wanted.
- */
+ * row: y = A x + t. Pass affine[0]: C17 cannot pass a double[3][4] where a const one
+ * is wanted. */
 #ifndef CORE_GEOMETRY_AFFINE_H
 #define CORE_GEOMETRY_AFFINE_H
 

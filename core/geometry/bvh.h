@@ -39,14 +39,14 @@ typedef struct cwi_boxes {
  * Returns  CW_ERR_NO_MEMORY; free with cwi_boxes_free()
  * Cost     28 bytes an item, 32 more meanwhile
  * Source   the curve [Morton1966] */
-CW_API cw_status cwi_boxes_build(cwi_boxes *tree, const float (*boxes)[6], size_t count,
-                                 cw_error *err);
-CW_API void cwi_boxes_free(cwi_boxes *tree);
+CW_NODISCARD cw_status cwi_boxes_build(cwi_boxes *tree, const float (*boxes)[6], size_t count,
+                                       cw_error *err);
+void cwi_boxes_free(cwi_boxes *tree);
 
 /* Calls visit for each node of level 0, from node `first` on and in rising order, that may hold
  * boxes sharing a point with this one, until it returns false. Item s of the tree's order is
- * box s % CWI_WIDTH of node s / CWI_WIDTH. box  low x, y, z, high x, y, z; ends may be infinite
- */
+ * box s % CWI_WIDTH of node s / CWI_WIDTH. box  low x, y, z, high x, y, z; ends may
+ * be infinite */
 void cwi_boxes_visit(const cwi_boxes *tree, const float box[6], size_t first,
                      bool (*visit)(void *context, size_t node), void *context);
 

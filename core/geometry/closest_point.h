@@ -18,7 +18,7 @@ typedef struct cwi_closest {
 
 /* The tree of a mesh's triangles, which are not copied; free with cwi_boxes_free().
  * Returns  CW_ERR_NO_MEMORY */
-cw_status cwi_closest_build(const cw_mesh *mesh, cwi_boxes *tree, cw_error *err);
+CW_NODISCARD cw_status cwi_closest_build(const cw_mesh *mesh, cwi_boxes *tree, cw_error *err);
 
 /* All points relative to the mesh's origin; the mesh has triangles. */
 cwi_closest cwi_closest_find(const cw_mesh *mesh, const cwi_boxes *tree, const double point[3]);

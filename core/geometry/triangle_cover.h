@@ -8,8 +8,8 @@
 #ifndef CORE_GEOMETRY_TRIANGLE_COVER_H
 #define CORE_GEOMETRY_TRIANGLE_COVER_H
 
-#include "core/geometry/vec3.h"
 #include "core/geometry/point_triangle.h"
+#include "core/geometry/vec3.h"
 
 #include <stdbool.h>
 #include <string.h>
@@ -17,10 +17,10 @@
 enum { CWI_PIECE_CORNERS = 16, CWI_PIECE_CUTS = 128 };
 
 /* A convex polygon, and how often it may still be cut. */
-typedef struct cwi_piece {
+typedef struct cwi_triangle_piece {
     int count, cuts;
     double p[CWI_PIECE_CORNERS][3];
-} cwi_piece;
+} cwi_triangle_piece;
 
 typedef struct cwi_cover {
     /* Sets the corners of a facet near a point, and returns a square that its distance is not
@@ -36,7 +36,7 @@ static inline double cwi_height(const double normal[3], const double p[3], const
     return normal[0] * (p[0] - at[0]) + normal[1] * (p[1] - at[1]) + normal[2] * (p[2] - at[2]);
 }
 
-static inline void cwi_piece_add(cwi_piece *piece, const double p[3])
+static inline void cwi_piece_add(cwi_triangle_piece *piece, const double p[3])
 {
     memcpy(piece->p[piece->count++], p, sizeof piece->p[0]);
 }
@@ -61,8 +61,8 @@ static inline bool cwi_piece_fits(const double *height, int count)
 
 /* Moves what is above a plane from *piece to *above. False: all of it is on one side, or so
  * nearly that it is not worth a cut; or a part has too many corners. */
-static inline bool cwi_piece_cut(cwi_piece *piece, const double normal[3], const double at[3],
-                                 cwi_piece *above)
+static inline bool cwi_piece_cut(cwi_triangle_piece *piece, const double normal[3],
+                                 const double at[3], cwi_triangle_piece *above)
 {
     double height[CWI_PIECE_CORNERS], high = 0, low = 0;
     for (int n = 0; n < piece->count; n++) {
@@ -73,7 +73,7 @@ static inline bool cwi_piece_cut(cwi_piece *piece, const double normal[3], const
     if (!(cwi_lesser(high, low) > 1e-6 * cwi_greater(high, low)) ||
         !cwi_piece_fits(height, piece->count))
         return false;
-    cwi_piece whole;
+    cwi_triangle_piece whole;
     whole.count = piece->count;
     memcpy(whole.p, piece->p, (size_t)piece->count * sizeof piece->p[0]);
     piece->count = above->count = 0;
@@ -96,7 +96,7 @@ static inline bool cwi_piece_cut(cwi_piece *piece, const double normal[3], const
     return true;
 }
 
-static inline void cwi_piece_middle(const cwi_piece *piece, double middle[3])
+static inline void cwi_piece_middle(const cwi_triangle_piece *piece, double middle[3])
 {
     for (int k = 0; k < 3; k++) {
         middle[k] = 0;
@@ -107,7 +107,7 @@ static inline void cwi_piece_middle(const cwi_piece *piece, double middle[3])
 }
 
 /* In the middle of its longest way: where the mean of its corners is says little. */
-static inline bool cwi_piece_halve(cwi_piece *piece, cwi_piece *other)
+static inline bool cwi_piece_halve(cwi_triangle_piece *piece, cwi_triangle_piece *other)
 {
     double longest = 0, along[3] = {0, 0, 0}, middle[3] = {0, 0, 0};
     for (int n = 0; n < piece->count; n++)
@@ -126,8 +126,8 @@ static inline bool cwi_piece_halve(cwi_piece *piece, cwi_piece *other)
 }
 
 /* Bit n: corner n is too far from a facet. */
-static inline unsigned cwi_piece_far(const cwi_piece *piece, const float *const facet[3],
-                                     double square)
+static inline unsigned cwi_piece_far(const cwi_triangle_piece *piece,
+                                     const float *const facet[3], double square)
 {
     unsigned far = 0;
     for (int n = 0; n < piece->count; n++)
@@ -155,8 +155,9 @@ static inline void cwi_facet_side(const float *const facet[3], int side, const d
 
 /* Moves what is beyond one of the facet's sides, if some of the far corners are there, from
  * *piece to *beyond; what has many corners is left to be halved. */
-static inline bool cwi_piece_cut_off(cwi_piece *piece, const float *const facet[3],
-                                     unsigned far, const double normal[3], cwi_piece *beyond)
+static inline bool cwi_piece_cut_off(cwi_triangle_piece *piece, const float *const facet[3],
+                                     unsigned far, const double normal[3],
+                                     cwi_triangle_piece *beyond)
 {
     for (int side = 0; side < 3 && piece->count < CWI_PIECE_CORNERS / 2; side++) {
         double at[3], out[3];
@@ -171,7 +172,7 @@ static inline bool cwi_piece_cut_off(cwi_piece *piece, const float *const facet[
 }
 
 /* Whether all of a piece certainly is near. Cuts it up. */
-static inline bool cwi_piece_covered(const cwi_cover *c, cwi_piece *piece)
+static inline bool cwi_piece_covered(const cwi_cover *c, cwi_triangle_piece *piece)
 {
     const float *facet[3];
     double middle[3];
@@ -179,7 +180,7 @@ static inline bool cwi_piece_covered(const cwi_cover *c, cwi_piece *piece)
     if (!(c->nearest(c->context, middle, facet) <= c->square))
         return false;
     for (unsigned far; (far = cwi_piece_far(piece, facet, c->square)) != 0;) {
-        cwi_piece other;
+        cwi_triangle_piece other;
         const bool cut = cwi_piece_cut_off(piece, facet, far, c->normal, &other);
         if (piece->cuts < 0 || (!cut && !cwi_piece_halve(piece, &other)) ||
             !cwi_piece_covered(c, &other))
@@ -193,7 +194,7 @@ static inline bool cwi_piece_covered(const cwi_cover *c, cwi_piece *piece)
 /* Whether all of a triangle certainly is. Sets the normal. */
 static inline bool cwi_is_covered(cwi_cover *c, const double corners[3][3])
 {
-    cwi_piece whole;
+    cwi_triangle_piece whole;
     double ab[3], ac[3];
     for (int k = 0; k < 3; k++) {
         ab[k] = corners[1][k] - corners[0][k];

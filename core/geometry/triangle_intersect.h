@@ -16,7 +16,7 @@ bool cwi_has_area(const float *points, const uint32_t v[3]);
  * neighbours: a vertex or an edge with the same numbers. Touching counts; so does lying on each
  * other, with all three vertices the same too. Exact.
  * points  vertices x 3        a, b  three numbers of vertices each */
-CW_API bool cwi_triangles_meet(const float *points, const uint32_t a[3], const uint32_t b[3]);
+bool cwi_triangles_meet(const float *points, const uint32_t a[3], const uint32_t b[3]);
 
 #ifdef __cplusplus
 }

@@ -2,6 +2,9 @@
 #ifndef CORE_GEOMETRY_VEC3_H
 #define CORE_GEOMETRY_VEC3_H
 
+#include <math.h>
+#include <stdbool.h>
+
 static inline double cwi_dot(const double a[3], const double b[3])
 {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
@@ -12,6 +15,21 @@ static inline void cwi_cross(const double a[3], const double b[3], double out[3]
     out[0] = a[1] * b[2] - a[2] * b[1];
     out[1] = a[2] * b[0] - a[0] * b[2];
     out[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+/* Makes a vector 1 long; false, and nothing is done, where it is 0 or not finite. Scales by the largest component first: squares of tiny or huge ones do
+ * not survive. */
+static inline bool cwi_normalise(double d[3])
+{
+    const double largest = fmax(fmax(fabs(d[0]), fabs(d[1])), fabs(d[2]));
+    if (!(largest > 0) || !isfinite(largest))
+        return false;
+    for (int a = 0; a < 3; a++)
+        d[a] /= largest;
+    const double length = sqrt(d[0] * d[0] + d[1] * d[1] + d[2] * d[2]);
+    for (int a = 0; a < 3; a++)
+        d[a] /= length;
+    return true;
 }
 
 /* Without the care for NaN that makes fmin and fmax calls. */

@@ -5,15 +5,15 @@
 #include <cubewright/mesh.h>
 
 /* Uninitialised positions, triangles and, if asked, normals. */
-CW_API cw_status cwi_mesh_alloc(cw_mesh *mesh, size_t vertices, size_t triangles, bool normals,
-                                cw_error *err);
+CW_NODISCARD cw_status cwi_mesh_alloc(cw_mesh *mesh, size_t vertices, size_t triangles,
+                                      bool normals, cw_error *err);
 
 /* The same in the memory of those that a mesh has, which is emptied on failure. */
-CW_API cw_status cwi_mesh_renew(cw_mesh *mesh, size_t vertices, size_t triangles, bool normals,
-                                cw_error *err);
+CW_NODISCARD cw_status cwi_mesh_renew(cw_mesh *mesh, size_t vertices, size_t triangles,
+                                      bool normals, cw_error *err);
 
 /* Leaves out the triangles with a mark, and then vertices that no triangle names.
  * Returns  CW_ERR_NO_MEMORY, and the mesh is as it was */
-CW_API cw_status cwi_mesh_drop_marked(cw_mesh *mesh, const bool *marked, cw_error *err);
+CW_NODISCARD cw_status cwi_mesh_drop_marked(cw_mesh *mesh, const bool *marked, cw_error *err);
 
 #endif

@@ -1,8 +1,8 @@
 #include "core/base/memory.h"
-#include "core/mesh/mesh.h"
-#include "core/geometry/union_find.h"
 #include "core/base/status.h"
+#include "core/geometry/union_find.h"
 #include "core/geometry/vec3.h"
+#include "core/mesh/mesh.h"
 #include "core/mesh/weld.h"
 
 #include <cubewright/mesh.h>

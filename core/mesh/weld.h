@@ -12,7 +12,7 @@ extern "C" {
  * points  count x 3, finite; count below 2^32 - 1
  * map     count
  * Returns false when memory is out; takes 8 to 16 bytes a point. */
-CW_API bool cwi_weld(const float *points, size_t count, uint32_t *map);
+bool cwi_weld(const float *points, size_t count, uint32_t *map);
 
 /* Points met one after another, of which each place is kept once. Zeroed, it has none. */
 typedef struct cwi_welder {
@@ -25,8 +25,8 @@ typedef struct cwi_welder {
 /* Sets each index to that of a finite point (count x 3), which is new when its place was not
  * met before. Many points in a call are faster than many calls: their places are fetched
  * together. Returns false when memory is out, or after 2^32 - 2 points. */
-CW_API bool cwi_welder_add(cwi_welder *w, const float *points, size_t count, uint32_t *indices);
-CW_API void cwi_welder_free(cwi_welder *w);
+bool cwi_welder_add(cwi_welder *w, const float *points, size_t count, uint32_t *indices);
+void cwi_welder_free(cwi_welder *w);
 
 #ifdef __cplusplus
 }

@@ -1,9 +1,9 @@
 #include <cubewright/field.h>
 
-#include "core/geometry/affine.h"
-#include "core/synthetic/random_fill.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/geometry/affine.h"
+#include "core/synthetic/random_fill.h"
 
 #include <math.h>
 #include <string.h>

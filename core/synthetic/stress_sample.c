@@ -1,8 +1,8 @@
 #include "core/synthetic/stress_fields.h"
 
-#include "core/synthetic/random_fill.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/synthetic/random_fill.h"
 
 #include <math.h>
 #include <string.h>

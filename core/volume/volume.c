@@ -1,8 +1,8 @@
 #include "core/volume/volume.h"
 
-#include "core/geometry/affine.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/affine.h"
 
 #include <math.h>
 #include <string.h>
@@ -371,7 +371,7 @@ void cw_volume_to_world(const cw_volume *volume, const double index[3], double w
     for (int a = 0; a < 3 && cwi_is_rectilinear(volume); a++) {
         const double last = (double)volume->dim[a] - 1,
                      low = floor(fmin(fmax(index[a], 0), last - (last > 0)));
-        at[a] = last > 0 ? cwi_coordinate(volume, a, (ptrdiff_t)low, index[a] - low)
+        at[a] = last > 0 ? cwi_grid_coordinate(volume, a, (ptrdiff_t)low, index[a] - low)
                          : volume->coordinates[a][0];
     }
     if (is_zero(volume->affine[0]))

@@ -9,8 +9,8 @@
 /* Of a sparse grid: voxels along a side of a leaf, and in it. */
 enum { CWI_LEAF = 8, CWI_LEAF_VOXELS = CWI_LEAF * CWI_LEAF * CWI_LEAF };
 
-/* The stored number at an address, as it stands in memory; exact, as every type fits a double.
- */
+/* The stored number at an address, as it stands in memory; exact, as every type fits
+ * a double. */
 static inline double cwi_voxel_at(cw_type type, const void *p)
 {
     switch (type) {
@@ -52,11 +52,11 @@ static inline void cwi_voxel_put(cw_type type, void *p, double value)
 
 /* Sizes and affine of every step-th voxel in place of those of all; strides stay.
  * Returns CW_ERR_ARGUMENT as cw_volume_coarsen(). */
-CW_API cw_status cwi_volume_thin(cw_volume *volume, const size_t step[3], cw_error *err);
+CW_NODISCARD cw_status cwi_volume_thin(cw_volume *volume, const size_t step[3], cw_error *err);
 
 /* Leaves of a volume's shape (sizes and affine) what is inside a box; data are not touched.
  * Returns CW_ERR_ARGUMENT when the box is empty or leaves the volume. */
-CW_API cw_status cwi_volume_shrink(cw_volume *v, const cw_box *box, cw_error *err);
+CW_NODISCARD cw_status cwi_volume_shrink(cw_volume *v, const cw_box *box, cw_error *err);
 
 static inline bool cwi_is_rectilinear(const cw_volume *v)
 {
@@ -65,7 +65,8 @@ static inline bool cwi_is_rectilinear(const cw_volume *v)
 
 /* Where index i + share stands along an axis of at least 2: the coordinate, or the index
  * itself. Beyond the ends it goes on as between the last two. i: -1 to dim - 1 */
-static inline double cwi_coordinate(const cw_volume *v, int axis, ptrdiff_t i, double share)
+static inline double cwi_grid_coordinate(const cw_volume *v, int axis, ptrdiff_t i,
+                                         double share)
 {
     const double *at = v->coordinates[axis];
     const ptrdiff_t last = (ptrdiff_t)v->dim[axis] - 1;
@@ -76,18 +77,20 @@ static inline double cwi_coordinate(const cw_volume *v, int axis, ptrdiff_t i, d
 }
 
 /* The (fractional) index of a coordinate, the other way round. */
-CW_API double cwi_coordinate_index(const cw_volume *v, int axis, double coordinate);
+double cwi_coordinate_index(const cw_volume *v, int axis, double coordinate);
 
 /* Gives a volume, the copy of another, coordinates of its own. CW_ERR_NO_MEMORY */
-CW_API cw_status cwi_volume_own_coordinates(cw_volume *v, cw_error *err);
+CW_NODISCARD cw_status cwi_volume_own_coordinates(cw_volume *v, cw_error *err);
 
 /* "a rectilinear grid", or another kind that is not evenly spaced; NULL for one that is. */
-CW_API const char *cwi_volume_kind(const cw_volume *v);
+const char *cwi_volume_kind(const cw_volume *v);
 
 /* Fails with CW_ERR_UNSUPPORTED for what is made for evenly spaced grids only, and for what is
  * made for dense grids, even and rectilinear ones. */
-CW_API cw_status cwi_volume_expect_even(const cw_volume *v, const char *what, cw_error *err);
-CW_API cw_status cwi_volume_expect_dense(const cw_volume *v, const char *what, cw_error *err);
+CW_NODISCARD cw_status cwi_volume_expect_even(const cw_volume *v, const char *what,
+                                              cw_error *err);
+CW_NODISCARD cw_status cwi_volume_expect_dense(const cw_volume *v, const char *what,
+                                               cw_error *err);
 
 static inline const void *cwi_voxel_address(const cw_volume *v, size_t i, size_t j, size_t k)
 {

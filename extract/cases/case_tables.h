@@ -13,8 +13,8 @@ enum {
     CWI_CONFIGS = 802,      /* these first, then those of the other shapes */
 };
 
-/* One rule for every face, inside corners kept apart: number of triangles, and their corners.
- */
+/* One rule for every face, inside corners kept apart: number of triangles, and
+ * their corners. */
 extern const uint8_t cwi_case_count[256];
 extern const uint8_t cwi_case_triangles[256][3 * CWI_CASE_MAX_TRIANGLES];
 

@@ -498,8 +498,8 @@ static void ring_direction(int i, double d[2])
     d[1] = directions[i][1];
 }
 
-/* The loop's point that is farthest out across the ring's side from corner i to j: it sees it.
- */
+/* The loop's point that is farthest out across the ring's side from corner i to j: it
+ * sees it. */
 static int farthest(const flat_loop *f, const double centre[2], int i, int j)
 {
     double d[2], e[2], most = -INFINITY;
@@ -557,8 +557,8 @@ static void patch_centre(const builder *b, const projection *p, int corner, doub
     centre[1] /= count;
 }
 
-/* From a corner: the plane halfway between the loop's points on its three edges and their ends.
- */
+/* From a corner: the plane halfway between the loop's points on its three edges and
+ * their ends. */
 static void project_from_corner(const builder *b, int corner, projection *p)
 {
     *p = (projection){.central = true, .corner = corner};

@@ -466,7 +466,8 @@ int main(void)
     define_cube(&shapes[CW_HEXAHEDRON]);
     for (int n = 0; n < CW_SHAPE_COUNT; n++)
         complete(&shapes[n]);
-    puts("/* Made by generate_tables.c: do not edit. */\n#include \"extract/cases/case_tables.h\"");
+    puts(
+        "/* Made by generate_tables.c: do not edit. */\n#include \"extract/cases/case_tables.h\"");
     print_table("uint8_t cwi_case_count", simple_count);
     print_table("uint8_t cwi_case_ambiguous_faces", cube_ambiguous_faces);
     print_table("bool cwi_case_is_ambiguous", is_ambiguous);

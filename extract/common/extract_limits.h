@@ -5,7 +5,7 @@
 #include <cubewright/extract.h>
 
 size_t cwi_extract_mesh_bytes(const cw_extract_counts *counts, bool normals);
-cw_status cwi_extract_check_limits(const cw_extract_desc *desc, const cw_extract_counts *counts,
-                                   cw_error *err);
+CW_NODISCARD cw_status cwi_extract_check_limits(const cw_extract_desc *desc,
+                                                const cw_extract_counts *counts, cw_error *err);
 
 #endif

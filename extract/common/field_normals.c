@@ -1,12 +1,11 @@
 #include "extract/common/field_normals.h"
 
-#include "core/geometry/affine.h"
-#include "core/base/parallel.h"
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/geometry/affine.h"
 #include "core/geometry/vec3.h"
 #include "core/volume/volume.h"
-#include "extract/common/vertex_writer.h"
 
 #include <cubewright/extract.h>
 

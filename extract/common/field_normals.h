@@ -15,6 +15,6 @@ void cwi_outward(const cw_volume *volume, bool invert, double cofactor[3][3]);
 double cwi_voxel_scale(const cw_volume *volume);
 
 /* Normals that are zero become those of the triangles around their vertex, by area. */
-cw_status cwi_mend_normals(cw_mesh *mesh, double scale, cw_error *err);
+CW_NODISCARD cw_status cwi_mend_normals(cw_mesh *mesh, double scale, cw_error *err);
 
 #endif

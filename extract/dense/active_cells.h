@@ -3,8 +3,8 @@
 #ifndef EXTRACT_DENSE_ACTIVE_CELLS_H
 #define EXTRACT_DENSE_ACTIVE_CELLS_H
 
-#include "extract/dense/cell_word.h"
 #include "extract/cases/cube_numbering.h"
+#include "extract/dense/cell_word.h"
 
 #include <string.h>
 
@@ -37,7 +37,7 @@ typedef struct cell_list {
     uint8_t cases[LIST];      /* of all cells in these words */
 } cell_list;
 
-static inline void begin_row(cell_list *l, const cwi_grid *g, const cwi_row *rows, size_t j,
+static inline void begin_row(cell_list *l, const cwi_bit_grid *g, const cwi_row *rows, size_t j,
                              size_t k)
 {
     for (int n = 0; n < CWI_EDGE_ROWS; n++) {
@@ -53,7 +53,7 @@ static inline void go_on(cell_list *l, size_t words)
 }
 
 /* Vertices on the edges around a word of cells some of which are not live. */
-static inline void load_edges(cell_list *l, size_t words, const cwi_grid *g,
+static inline void load_edges(cell_list *l, size_t words, const cwi_bit_grid *g,
                               const cell_rows *samples, size_t j, size_t k, size_t w)
 {
     uint64_t own[4], *crossed = l->edges[words].crossed;
@@ -94,14 +94,14 @@ static inline void list_bits(uint64_t bits, size_t count, size_t word, uint16_t 
 
 /* Each crossed edge around row (j, k) of cells that has a vertex is one of a live cell's, so
  * that numbers need but be counted on from cell to cell. */
-static inline bool counts_on(const cwi_grid *g, size_t j, size_t k)
+static inline bool counts_on(const cwi_bit_grid *g, size_t j, size_t k)
 {
     return !g->live || cwi_is_whole(g, j, k);
 }
 
 /* Lists the active cells of word w after n others and so many words. Returns how many cells
  * there are then. */
-static inline size_t list_cells(cell_list *l, size_t words, size_t n, const cwi_grid *g,
+static inline size_t list_cells(cell_list *l, size_t words, size_t n, const cwi_bit_grid *g,
                                 const cell_rows *samples, size_t j, size_t k, size_t w)
 {
     const cell_word c = load_cells(samples, w);

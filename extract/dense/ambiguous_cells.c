@@ -3,8 +3,8 @@
 #include "core/base/memory.h"
 #include "core/volume/volume.h"
 #include "extract/cases/cube_numbering.h"
-#include "core/geometry/cubic.h"
-#include "extract/common/vertex_writer.h"
+#include "extract/dense/cubic_crossing.h"
+#include "extract/dense/vertex_writer.h"
 
 #include <math.h>
 
@@ -18,12 +18,12 @@ static double stored_at(const cw_volume *v, size_t i, size_t j, size_t k)
 }
 
 /* What a number is as the decisions see it: times this, after the level is taken off. */
-static double toward_inside(const cwi_grid *grid)
+static double toward_inside(const cwi_bit_grid *grid)
 {
     return grid->invert ? -1 : 1;
 }
 
-double cwi_value_at(const cwi_grid *grid, size_t i, size_t j, size_t k)
+double cwi_value_at(const cwi_bit_grid *grid, size_t i, size_t j, size_t k)
 {
     return toward_inside(grid) * (stored_at(&grid->volume, i, j, k) - grid->level);
 }
@@ -60,7 +60,7 @@ static void load_corners(const cw_volume *v, const size_t at[3], double level, d
     }
 }
 
-void cwi_corner_values(const cwi_grid *grid, const size_t at[3], double values[8])
+void cwi_corner_values(const cwi_bit_grid *grid, const size_t at[3], double values[8])
 {
     load_corners(&grid->volume, at, grid->level, toward_inside(grid), values);
 }
@@ -82,7 +82,7 @@ static void note(cwi_layer *layer, uint32_t code)
         layer->plans[layer->plan_count++] = code;
 }
 
-static void make_plan(const cwi_grid *grid, const size_t at[3], unsigned cube,
+static void make_plan(const cwi_bit_grid *grid, const size_t at[3], unsigned cube,
                       cwi_cell_plan *plan)
 {
     double values[8];
@@ -90,7 +90,7 @@ static void make_plan(const cwi_grid *grid, const size_t at[3], unsigned cube,
     cwi_cell_plan_make(cube, values, cwi_zero_is_inside(grid), plan);
 }
 
-void cwi_ambiguous_plan(const cwi_grid *grid, const size_t at[3], unsigned cube,
+void cwi_ambiguous_plan(const cwi_bit_grid *grid, const size_t at[3], unsigned cube,
                         cwi_cell_plan *plan)
 {
     make_plan(grid, at, cube, plan);
@@ -126,8 +126,8 @@ static void inner_gradient(const cw_volume *v, const size_t at[3], const double 
 }
 
 /* Where an edge of the cell is crossed: as its vertex says. */
-static double crossing_of(const cwi_grid *grid, const size_t cell[3], const double stored[8],
-                          int edge)
+static double crossing_of(const cwi_bit_grid *grid, const size_t cell[3],
+                          const double stored[8], int edge)
 {
     const cw_volume *v = &grid->volume;
     const size_t low = (size_t)cwi_edge_corner(edge), axis = (size_t)cwi_edge_axis(edge);
@@ -140,10 +140,10 @@ static double crossing_of(const cwi_grid *grid, const size_t cell[3], const doub
         if (cwi_cubic_crossing(x, grid->level, &t))
             return t;
     }
-    return cwi_crossing(x[1], x[2], grid->level);
+    return cwi_edge_crossing(x[1], x[2], grid->level);
 }
 
-void cwi_ambiguous_build(const cwi_grid *grid, const size_t at[3], unsigned cube, size_t n,
+void cwi_ambiguous_build(const cwi_bit_grid *grid, const size_t at[3], unsigned cube, size_t n,
                          cwi_vertex_sink *sink, size_t first, cwi_cell_plan *plan,
                          cwi_cell *out)
 {

@@ -1,7 +1,7 @@
 #include "extract/dense/bit_planes.h"
 
-#include "core/base/parallel.h"
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
 #include "extract/dense/crossed_edges.h"
@@ -14,7 +14,7 @@
 /* Words after the last row that loads of several words may reach: 0. */
 enum { BEYOND = 8 };
 
-uint64_t *cwi_grid_plane(const cwi_grid *g)
+uint64_t *cwi_grid_plane(const cwi_bit_grid *g)
 {
     const size_t words = g->rows * g->words;
     uint64_t *plane = cwi_alloc_large(words + BEYOND, sizeof *plane);
@@ -23,7 +23,7 @@ uint64_t *cwi_grid_plane(const cwi_grid *g)
     return plane;
 }
 
-static cw_status no_memory(const cwi_grid *g, cw_error *err)
+static cw_status no_memory(const cwi_bit_grid *g, cw_error *err)
 {
     const size_t *dim = g->volume.dim;
     return cw_fail(err, CW_ERR_NO_MEMORY,
@@ -31,7 +31,7 @@ static cw_status no_memory(const cwi_grid *g, cw_error *err)
                    dim[2]);
 }
 
-static cw_status allocate(cwi_grid *g, cw_error *err)
+static cw_status allocate(cwi_bit_grid *g, cw_error *err)
 {
     const size_t *dim = g->volume.dim;
     size_t samples = 0;
@@ -66,7 +66,7 @@ cw_status cwi_extract_check_range(const cw_volume *v, cw_error *err)
     return CW_OK;
 }
 
-cw_status cwi_grid_init(cwi_grid *g, const cw_volume *volume, cw_error *err)
+cw_status cwi_grid_init(cwi_bit_grid *g, const cw_volume *volume, cw_error *err)
 {
     memset(g, 0, sizeof *g);
     cw_status st = cw_volume_select(volume, 0, 0, &g->volume, err);
@@ -83,7 +83,7 @@ cw_status cwi_grid_init(cwi_grid *g, const cw_volume *volume, cw_error *err)
 }
 
 /* The cells all of whose samples have values: each needs its own row of these and the next. */
-static void find_live(const cwi_grid *g)
+static void find_live(const cwi_bit_grid *g)
 {
     for (size_t r = 0; r < g->rows; r++) {
         const size_t j = r % g->rows_y, k = r / g->rows_y;
@@ -100,8 +100,8 @@ static void find_live(const cwi_grid *g)
     }
 }
 
-/* Clears cells of a row: the cells in `cells`, and with `before` each one's neighbour at i - 1.
- */
+/* Clears cells of a row: the cells in `cells`, and with `before` each one's neighbour at i
+ * - 1. */
 static void clear_cells(uint64_t *row, size_t w, uint64_t cells, bool before)
 {
     row[w] &= ~cells;
@@ -113,7 +113,7 @@ static void clear_cells(uint64_t *row, size_t w, uint64_t cells, bool before)
 }
 
 /* Word w of row (j, k) of cells may hold crossings. */
-static bool is_wanted(const cwi_grid *g, size_t j, size_t k, size_t w)
+static bool is_wanted(const cwi_bit_grid *g, size_t j, size_t k, size_t w)
 {
     if (j + 1 >= g->rows_y || k + 1 >= g->rows_z)
         return false;
@@ -123,7 +123,7 @@ static bool is_wanted(const cwi_grid *g, size_t j, size_t k, size_t w)
 /* Drops cells that meet in nothing but a crossed edge: two live ones, diagonal, the other two
  * dead. Both would put triangles at its vertex, in two fans. One sweep; true if any was
  * dropped, which may have left others so. */
-static bool drop_pinched(cwi_grid *g)
+static bool drop_pinched(cwi_bit_grid *g)
 {
     bool changed = false;
     for (size_t k = 1; k < g->rows_z; k++)
@@ -173,7 +173,7 @@ cw_status cwi_level_find(const cw_volume *v, const cw_extract_desc *desc, cwi_le
     return CW_OK;
 }
 
-cw_status cwi_grid_set_level(cwi_grid *g, const cw_extract_desc *desc, cw_error *err)
+cw_status cwi_grid_set_level(cwi_bit_grid *g, const cw_extract_desc *desc, cw_error *err)
 {
     cwi_level level;
     cw_status st = cwi_level_find(&g->volume, desc, &level, err);
@@ -186,7 +186,7 @@ cw_status cwi_grid_set_level(cwi_grid *g, const cw_extract_desc *desc, cw_error 
 }
 
 /* A layer of padding, and one of the others, which are alike. */
-static cw_status set_box(cwi_grid *g, cw_error *err)
+static cw_status set_box(cwi_bit_grid *g, cw_error *err)
 {
     const size_t layer = g->rows_y * g->words;
     g->live = cwi_alloc_zeroed(2 * layer + BEYOND, sizeof *g->live);
@@ -198,7 +198,7 @@ static cw_status set_box(cwi_grid *g, cw_error *err)
 }
 
 /* Cells at the end of the domain are dropped where the surface stays open. */
-static cw_status set_live(cwi_grid *g, bool leave_open, cw_error *err)
+static cw_status set_live(cwi_bit_grid *g, bool leave_open, cw_error *err)
 {
     cwi_free(g->live);
     g->live = NULL;
@@ -217,7 +217,7 @@ static cw_status set_live(cwi_grid *g, bool leave_open, cw_error *err)
 }
 
 typedef struct classification {
-    const cwi_grid *grid;
+    const cwi_bit_grid *grid;
     const cwi_engine *engine;
     cwi_octree *grow; /* its leaves are to be measured; may be NULL */
     bool in, out;     /* there are samples with values inside, and outside */
@@ -241,7 +241,7 @@ static void classify_layer(void *context, size_t b)
 }
 
 /* Marks what is wanted, and whether a tree is to be grown while everything is read. */
-static cw_status plan_classification(classification *c, cwi_grid *g, cwi_octree *tree,
+static cw_status plan_classification(classification *c, cwi_bit_grid *g, cwi_octree *tree,
                                      cw_error *err)
 {
     const size_t bricks = g->bricks_z * g->bricks_y;
@@ -259,7 +259,7 @@ static cw_status plan_classification(classification *c, cwi_grid *g, cwi_octree 
     return CW_OK;
 }
 
-static bool any_gap(const cwi_grid *g)
+static bool any_gap(const cwi_bit_grid *g)
 {
     unsigned any = 0;
     for (size_t r = 0; r < g->rows; r++)
@@ -269,7 +269,7 @@ static bool any_gap(const cwi_grid *g)
 
 /* Compares what is wanted. Once that was everything it is known whether there are gaps; without
  * them nothing is to be looked for later. */
-static cw_status compare(classification *c, cwi_grid *g, const cw_extract_desc *desc,
+static cw_status compare(classification *c, cwi_bit_grid *g, const cw_extract_desc *desc,
                          cw_error *err)
 {
     const cw_status st =
@@ -286,7 +286,7 @@ static cw_status compare(classification *c, cwi_grid *g, const cw_extract_desc *
 }
 
 /* The same of everything, and which samples have values. */
-static cw_status compare_all(classification *c, cwi_grid *g, const cw_extract_desc *desc,
+static cw_status compare_all(classification *c, cwi_bit_grid *g, const cw_extract_desc *desc,
                              cw_error *err)
 {
     g->has = cwi_grid_plane(g);
@@ -302,7 +302,7 @@ static cw_status compare_all(classification *c, cwi_grid *g, const cw_extract_de
     return st;
 }
 
-cw_status cwi_grid_classify(cwi_grid *g, const cwi_engine *engine, cwi_octree *tree,
+cw_status cwi_grid_classify(cwi_bit_grid *g, const cwi_engine *engine, cwi_octree *tree,
                             const cw_extract_desc *desc, cw_error *err)
 {
     classification c = {.grid = g, .engine = engine};
@@ -321,7 +321,7 @@ cw_status cwi_grid_classify(cwi_grid *g, const cwi_engine *engine, cwi_octree *t
     return set_live(g, desc->leave_open, err);
 }
 
-void cwi_grid_free(cwi_grid *g)
+void cwi_grid_free(cwi_bit_grid *g)
 {
     for (size_t k = 0; g->layers && k < g->rows_z; k++)
         cwi_free(g->layers[k].plans);
@@ -337,7 +337,7 @@ void cwi_grid_free(cwi_grid *g)
     memset(g, 0, sizeof *g);
 }
 
-size_t cwi_grid_bytes(const cwi_grid *g)
+size_t cwi_grid_bytes(const cwi_bit_grid *g)
 {
     const size_t planes = 1 + (g->has != NULL) + (g->live && !g->boxed);
     const size_t box = g->boxed ? 2 * g->rows_y * g->words : 0;

@@ -38,8 +38,8 @@ typedef struct cwi_level {
     bool invert; /* inside is where the comparison fails */
 } cwi_level;
 
-cw_status cwi_level_find(const cw_volume *volume, const cw_extract_desc *desc, cwi_level *level,
-                         cw_error *err);
+CW_NODISCARD cw_status cwi_level_find(const cw_volume *volume, const cw_extract_desc *desc,
+                                      cwi_level *level, cw_error *err);
 
 typedef struct cwi_octree cwi_octree;
 typedef struct cwi_engine cwi_engine;
@@ -47,7 +47,7 @@ typedef struct cwi_engine cwi_engine;
 /* Some sample of a row is inside; its first is, or its last; some has no value. */
 enum { CWI_ANY_INSIDE = 1, CWI_FIRST_INSIDE = 2, CWI_LAST_INSIDE = 4, CWI_GAP = 8 };
 
-typedef struct cwi_grid {
+typedef struct cwi_bit_grid {
     cw_volume volume; /* resolved: one component, one step */
     double level;     /* the isovalue in stored numbers */
     bool strict;      /* crossed upward above, not at, the level: values fall as numbers rise */
@@ -80,7 +80,7 @@ typedef struct cwi_grid {
     bool cubic;       /* crossings stand on the cubic through four samples where there is one */
     bool simple;      /* one rule for ambiguous faces, in place of the field's topology */
     bool crossed;     /* some samples with values are inside and some are not */
-} cwi_grid;
+} cwi_bit_grid;
 
 /* Per-row numbers: of the first vertex on the row's x-, y- and z-edges and inside its cells,
  * and of its cells' first triangle. */
@@ -91,46 +91,50 @@ typedef struct cwi_row {
 
 /* Looks at a volume and makes room for its planes. Free with cwi_grid_free(), also after an
  * error. */
-cw_status cwi_grid_init(cwi_grid *grid, const cw_volume *volume, cw_error *err);
-void cwi_grid_free(cwi_grid *grid);
+CW_NODISCARD cw_status cwi_grid_init(cwi_bit_grid *grid, const cw_volume *volume,
+                                     cw_error *err);
+void cwi_grid_free(cwi_bit_grid *grid);
 
 /* Compares the samples with the isovalue: all of them, or where a tree tells which are wanted,
  * those. A tree that is not grown yet is, on the way; it may be NULL. */
-cw_status cwi_grid_classify(cwi_grid *grid, const cwi_engine *engine, cwi_octree *tree,
-                            const cw_extract_desc *desc, cw_error *err);
-size_t cwi_grid_bytes(const cwi_grid *grid);
+CW_NODISCARD cw_status cwi_grid_classify(cwi_bit_grid *grid, const cwi_engine *engine,
+                                         cwi_octree *tree, const cw_extract_desc *desc,
+                                         cw_error *err);
+size_t cwi_grid_bytes(const cwi_bit_grid *grid);
 
 /* What of classification is the same for every sample: the isovalue in stored numbers, and
  * which side of it is inside. */
-cw_status cwi_grid_set_level(cwi_grid *grid, const cw_extract_desc *desc, cw_error *err);
+CW_NODISCARD cw_status cwi_grid_set_level(cwi_bit_grid *grid, const cw_extract_desc *desc,
+                                          cw_error *err);
 
 /* Whether positions can tell the voxels apart and reach all of them. */
-cw_status cwi_extract_check_range(const cw_volume *volume, cw_error *err);
+CW_NODISCARD cw_status cwi_extract_check_range(const cw_volume *volume, cw_error *err);
 
 /* A plane of bits for the grid, not cleared; NULL without memory. */
-uint64_t *cwi_grid_plane(const cwi_grid *grid);
+uint64_t *cwi_grid_plane(const cwi_bit_grid *grid);
 
 /* Closed curves along which the surface meets the sides of the volume's box. */
-cw_status cwi_grid_border_loops(const cwi_grid *grid, size_t *loops, cw_error *err);
+CW_NODISCARD cw_status cwi_grid_border_loops(const cwi_bit_grid *grid, size_t *loops,
+                                             cw_error *err);
 
-static inline const uint64_t *cwi_grid_row(const cwi_grid *g, size_t row)
+static inline const uint64_t *cwi_grid_row(const cwi_bit_grid *g, size_t row)
 {
     return g->inside + row * g->words;
 }
 
-static inline const uint64_t *cwi_grid_busy(const cwi_grid *g, size_t row)
+static inline const uint64_t *cwi_grid_busy(const cwi_bit_grid *g, size_t row)
 {
     return g->busy + row * g->masks;
 }
 
 /* The row of bricks that row (j, k) of cells lies in. */
-static inline size_t cwi_grid_bricks(const cwi_grid *g, size_t j, size_t k)
+static inline size_t cwi_grid_bricks(const cwi_bit_grid *g, size_t j, size_t k)
 {
     return k / CWI_BRICK * g->bricks_y + j / CWI_BRICK;
 }
 
 /* The wanted words of row (j, k) of cells. */
-static inline const uint64_t *cwi_grid_wanted(const cwi_grid *g, size_t j, size_t k)
+static inline const uint64_t *cwi_grid_wanted(const cwi_bit_grid *g, size_t j, size_t k)
 {
     return g->wanted + cwi_grid_bricks(g, j, k) * g->masks;
 }
@@ -140,7 +144,7 @@ typedef struct cwi_brick_rows {
     size_t count, row[4];
 } cwi_brick_rows;
 
-static inline cwi_brick_rows cwi_rows_around(const cwi_grid *g, size_t j, size_t k)
+static inline cwi_brick_rows cwi_rows_around(const cwi_bit_grid *g, size_t j, size_t k)
 {
     const size_t here = cwi_grid_bricks(g, j, k), below = here - g->bricks_y;
     cwi_brick_rows b = {1, {here, 0, 0, 0}};
@@ -154,7 +158,8 @@ static inline cwi_brick_rows cwi_rows_around(const cwi_grid *g, size_t j, size_t
 }
 
 /* The words of the row that cells of wanted words look at, in mask word m. */
-static inline uint64_t cwi_wanted_samples(const cwi_grid *g, const cwi_brick_rows *b, size_t m)
+static inline uint64_t cwi_wanted_samples(const cwi_bit_grid *g, const cwi_brick_rows *b,
+                                          size_t m)
 {
     uint64_t wanted = 0;
     for (size_t n = 0; n < b->count; n++)
@@ -162,7 +167,7 @@ static inline uint64_t cwi_wanted_samples(const cwi_grid *g, const cwi_brick_row
     return wanted;
 }
 
-static inline bool cwi_any_wanted(const cwi_grid *g, const cwi_brick_rows *b)
+static inline bool cwi_any_wanted(const cwi_bit_grid *g, const cwi_brick_rows *b)
 {
     uint64_t any = 0;
     for (size_t m = 0; m < g->masks; m++)
@@ -179,7 +184,7 @@ static inline uint64_t cwi_spread_leaves(unsigned bits)
 }
 
 /* The first word at or after w whose bit is set in a mask; `words` when there is none. */
-static inline size_t cwi_next_word(const uint64_t *mask, size_t w, size_t words)
+static inline size_t cwi_next_marked_word(const uint64_t *mask, size_t w, size_t words)
 {
     for (; w < words; w = (w | 63) + 1) {
         const uint64_t left = mask[w / 64] >> w % 64;
@@ -190,15 +195,15 @@ static inline size_t cwi_next_word(const uint64_t *mask, size_t w, size_t words)
 }
 
 /* Word w of a row moved down by one sample: bit i is sample i + 1. After a row's last word
- * comes the next row's first, whose lowest bit is padding, as the one beyond this row would be.
- */
+ * comes the next row's first, whose lowest bit is padding, as the one beyond this row
+ * would be. */
 static inline uint64_t cwi_next_samples(const uint64_t *row, size_t w)
 {
     return row[w] >> 1 | row[w + 1] << 63;
 }
 
 /* Bit i: samples i and i + 1 along axis from row (j, k) are on different sides. */
-static inline uint64_t cwi_grid_crossed(const cwi_grid *g, int axis, size_t j, size_t k,
+static inline uint64_t cwi_grid_crossed(const cwi_bit_grid *g, int axis, size_t j, size_t k,
                                         size_t w)
 {
     const uint64_t *row = cwi_grid_row(g, k * g->rows_y + j);

@@ -12,7 +12,7 @@
 #include <string.h>
 
 typedef struct box {
-    const cwi_grid *grid;
+    const cwi_bit_grid *grid;
     size_t n[3];
     uint32_t
         *parent;     /* union-find over the samples of the six sides, from 1; 0: not yet seen */
@@ -28,8 +28,8 @@ typedef struct side {
     size_t at;
 } side;
 
-/* Number of a sample on the box's surface: the bottom layer, a ring for every layer, the top.
- */
+/* Number of a sample on the box's surface: the bottom layer, a ring for every layer,
+ * the top. */
 static size_t surface_index(const size_t n[3], const size_t p[3])
 {
     const size_t layer = n[0] * n[1], ring = 2 * (n[0] + n[1]) - 4;
@@ -46,7 +46,7 @@ static size_t surface_index(const size_t n[3], const size_t p[3])
 }
 
 /* Word w of a row of samples; bricks that are not wanted hold nothing inside at the border. */
-static inline uint64_t word_at(const cwi_grid *g, size_t j, size_t k, size_t w)
+static inline uint64_t word_at(const cwi_bit_grid *g, size_t j, size_t k, size_t w)
 {
     if (!g->everything) {
         const cwi_brick_rows around = cwi_rows_around(g, j, k);
@@ -106,7 +106,7 @@ static void load_line(const box *b, const side *s, size_t n, uint64_t *line)
                       word_at(b->grid, p[1] + 1, p[2] + 1, w + 1) << 63;
         return;
     }
-    const cwi_grid *g = b->grid;
+    const cwi_bit_grid *g = b->grid;
     const unsigned end = p[0] ? CWI_LAST_INSIDE : CWI_FIRST_INSIDE;
     for (p[1] = 0; p[1] < b->n[1]; p[1]++) {
         const size_t row = (p[2] + 1) * g->rows_y + p[1] + 1;
@@ -221,7 +221,7 @@ static void correct_edges(box *b)
         }
 }
 
-cw_status cwi_grid_border_loops(const cwi_grid *grid, size_t *loops, cw_error *err)
+cw_status cwi_grid_border_loops(const cwi_bit_grid *grid, size_t *loops, cw_error *err)
 {
     const size_t *n = grid->volume.dim;
     const size_t samples = 2 * n[0] * n[1] + (n[2] - 2) * (2 * (n[0] + n[1]) - 4);

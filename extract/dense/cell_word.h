@@ -25,7 +25,7 @@ typedef struct cell_rows {
     const uint64_t *row[4];
 } cell_rows;
 
-static inline cell_rows rows_around(const cwi_grid *g, size_t j, size_t k)
+static inline cell_rows rows_around(const cwi_bit_grid *g, size_t j, size_t k)
 {
     cell_rows r;
     for (size_t n = 0; n < 4; n++)

@@ -42,8 +42,8 @@ static inline uint64_t pack_bits(const unsigned char bytes[64])
     return bits;
 }
 
-/* Unsigned numbers are compared as signed ones with the top bit flipped: `flip` in every lane.
- */
+/* Unsigned numbers are compared as signed ones with the top bit flipped: `flip` in
+ * every lane. */
 #if defined __AVX512BW__ && defined __AVX512VL__
 
 static inline uint64_t above_8(const void *x, int8_t limit, int8_t flip)
@@ -208,7 +208,7 @@ static inline uint64_t ordered_f32(const float *x)
 
 /* What the leaves around word w of the row are. Leaves that share samples, and are not wanted,
  * are alike. */
-static cwi_leaf_bits leaves_of_samples(const cwi_grid *g, const cwi_brick_rows *b, size_t w)
+static cwi_leaf_bits leaves_of_samples(const cwi_bit_grid *g, const cwi_brick_rows *b, size_t w)
 {
     cwi_leaf_bits bits = {0, 0};
     for (size_t n = 0; n < b->count; n++) {
@@ -228,7 +228,7 @@ enum { AHEAD = 4096, LINE = 64, SECOND = 2 };
 #include "extract/dense/for_each_type.inc"
 
 /* The padding around a layer of bits, or a whole layer of it. */
-static void clear_padding(const cwi_grid *g, uint64_t *plane, size_t k)
+static void clear_padding(const cwi_bit_grid *g, uint64_t *plane, size_t k)
 {
     const size_t layer = g->rows_y * g->words, row = g->words * sizeof *plane;
     uint64_t *first = plane + k * layer;
@@ -240,9 +240,10 @@ static void clear_padding(const cwi_grid *g, uint64_t *plane, size_t k)
 /* Rows of bricks whose samples stay near the processor until they are measured. */
 enum { TOGETHER = 4 };
 
-void cwi_classify_rows(const cwi_grid *g, size_t j, size_t k, size_t rows, bool *in, bool *out)
+void cwi_classify_rows(const cwi_bit_grid *g, size_t j, size_t k, size_t rows, bool *in,
+                       bool *out)
 {
-    static void (*const classify[CW_TYPE_COUNT])(const cwi_grid *, size_t, size_t, size_t,
+    static void (*const classify[CW_TYPE_COUNT])(const cwi_bit_grid *, size_t, size_t, size_t,
                                                  bool *, bool *) = {
         [CW_U8] = classify_u8,   [CW_I8] = classify_i8,   [CW_U16] = classify_u16,
         [CW_I16] = classify_i16, [CW_U32] = classify_u32, [CW_I32] = classify_i32,
@@ -252,9 +253,9 @@ void cwi_classify_rows(const cwi_grid *g, size_t j, size_t k, size_t rows, bool 
 }
 
 /* What is wanted of the samples of a layer of bricks. */
-static void classify_bricks(const cwi_grid *g, size_t b)
+static void classify_bricks(const cwi_bit_grid *g, size_t b)
 {
-    static void (*const classify[CW_TYPE_COUNT])(const cwi_grid *, const size_t[2],
+    static void (*const classify[CW_TYPE_COUNT])(const cwi_bit_grid *, const size_t[2],
                                                  const size_t[2]) = {
         [CW_U8] = classify_bricks_u8,   [CW_I8] = classify_bricks_i8,
         [CW_U16] = classify_bricks_u16, [CW_I16] = classify_bricks_i16,
@@ -271,9 +272,9 @@ static void classify_bricks(const cwi_grid *g, size_t b)
     }
 }
 
-void cwi_classify_layer(const cwi_grid *g, size_t b, cwi_range *leaves, bool *in, bool *out)
+void cwi_classify_layer(const cwi_bit_grid *g, size_t b, cwi_range *leaves, bool *in, bool *out)
 {
-    static void (*const measure[CW_TYPE_COUNT])(const cwi_grid *, size_t, size_t,
+    static void (*const measure[CW_TYPE_COUNT])(const cwi_bit_grid *, size_t, size_t,
                                                 cwi_range *) = {
         [CW_U8] = measure_u8,   [CW_I8] = measure_i8,   [CW_U16] = measure_u16,
         [CW_I16] = measure_i16, [CW_U32] = measure_u32, [CW_I32] = measure_i32,
@@ -308,9 +309,10 @@ void cwi_classify_layer(const cwi_grid *g, size_t b, cwi_range *leaves, bool *in
     }
 }
 
-void cwi_find_sides(const cwi_grid *g, const void *voxels, size_t count, bool *in, bool *out)
+void cwi_find_sides(const cwi_bit_grid *g, const void *voxels, size_t count, bool *in,
+                    bool *out)
 {
-    static void (*const find[CW_TYPE_COUNT])(const cwi_grid *, const void *, size_t, bool *,
+    static void (*const find[CW_TYPE_COUNT])(const cwi_bit_grid *, const void *, size_t, bool *,
                                              bool *) = {
         [CW_U8] = find_sides_u8,   [CW_I8] = find_sides_i8,   [CW_U16] = find_sides_u16,
         [CW_I16] = find_sides_i16, [CW_U32] = find_sides_u32, [CW_I32] = find_sides_i32,

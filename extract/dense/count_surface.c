@@ -18,7 +18,7 @@ typedef struct word_counts {
 enum { COUNT_BITS = 16 };
 
 /* Finds out about the cells that matter, and counts. */
-static inline void count_cells(const cwi_grid *g, size_t k, size_t word,
+static inline void count_cells(const cwi_bit_grid *g, size_t k, size_t word,
                                const cwi_words corner[8], word_counts *c)
 {
     cwi_words crossed[12], cells = c->mixed, count = {0};
@@ -40,7 +40,7 @@ static inline void count_cells(const cwi_grid *g, size_t k, size_t word,
 }
 
 /* Counts the words from one of layer k on, those that are wanted: word n, bit n. */
-static inline void count_words(const cwi_grid *g, size_t k, size_t word, unsigned wanted,
+static inline void count_words(const cwi_bit_grid *g, size_t k, size_t word, unsigned wanted,
                                word_counts *c)
 {
     const size_t layer = g->rows_y * g->words, first = k * layer + word;
@@ -68,8 +68,8 @@ static inline void count_words(const cwi_grid *g, size_t k, size_t word, unsigne
 }
 
 /* Counts what becomes of the ambiguous cells in word w of row (j, k). */
-static void count_ambiguous(const cwi_grid *g, uint64_t ambiguous, size_t j, size_t k, size_t w,
-                            cwi_row *row)
+static void count_ambiguous(const cwi_bit_grid *g, uint64_t ambiguous, size_t j, size_t k,
+                            size_t w, cwi_row *row)
 {
     const cell_rows rows = rows_around(g, j, k);
     const cell_word c = load_cells(&rows, w);
@@ -96,8 +96,8 @@ static inline unsigned first_words(size_t count)
 
 /* Some of the cells of so many words from word w of row (j, k) on, the n-th that were counted,
  * are, in part, padding: there the solid meets the border. */
-static bool meets_border(const cwi_grid *g, const word_counts *c, int n, int count, size_t j,
-                         size_t k, size_t w)
+static bool meets_border(const cwi_bit_grid *g, const word_counts *c, int n, int count,
+                         size_t j, size_t k, size_t w)
 {
     const size_t *dim = g->volume.dim, last = dim[0] / 64;
     if (j == 0 || k == 0 || j == dim[1] || k == dim[2])
@@ -108,7 +108,8 @@ static bool meets_border(const cwi_grid *g, const word_counts *c, int n, int cou
 
 /* Vertices on edges of live cells, along each axis, in the busy words from word w of row (j, k)
  * on, packed like counts. */
-static uint64_t count_live_edges(const cwi_grid *g, unsigned busy, size_t j, size_t k, size_t w)
+static uint64_t count_live_edges(const cwi_bit_grid *g, unsigned busy, size_t j, size_t k,
+                                 size_t w)
 {
     uint64_t count = 0;
     for (; busy; busy &= busy - 1)
@@ -122,7 +123,7 @@ static uint64_t count_live_edges(const cwi_grid *g, unsigned busy, size_t j, siz
 /* Adds so many words from word w of row (j, k) on, the n-th that were counted, to their row's
  * counts. An edge that is crossed belongs to a cell whose corners differ, as the last samples
  * of every row, and the last rows, are padding. */
-static inline void take_words(const cwi_grid *g, const word_counts *c, int n, int count,
+static inline void take_words(const cwi_bit_grid *g, const word_counts *c, int n, int count,
                               size_t j, size_t k, size_t w, cwi_row *row)
 {
     const unsigned here = first_words((size_t)count) << n, busy = (c->busy & here) >> n;
@@ -146,7 +147,7 @@ static inline void take_words(const cwi_grid *g, const word_counts *c, int n, in
 
 /* Counts the wanted ones of CWI_WORDS words of layer k, from word w of row j on. Leaves counts,
  * not yet first numbers, in the layer's rows. */
-static void count_group(const cwi_grid *g, size_t j, size_t k, size_t w, unsigned wanted,
+static void count_group(const cwi_bit_grid *g, size_t j, size_t k, size_t w, unsigned wanted,
                         cwi_row *rows)
 {
     word_counts c;
@@ -163,7 +164,7 @@ static void count_group(const cwi_grid *g, size_t j, size_t k, size_t w, unsigne
 
 /* Some sample in the rows of samples around these rows of cells of layer k is inside, or it is
  * not known. */
-static bool any_filled(const cwi_grid *g, size_t j, size_t last, size_t k)
+static bool any_filled(const cwi_bit_grid *g, size_t j, size_t last, size_t k)
 {
     const uint8_t *filled = g->filled + k * g->rows_y;
     bool any = g->window != NULL;
@@ -172,7 +173,7 @@ static bool any_filled(const cwi_grid *g, size_t j, size_t last, size_t k)
     return any;
 }
 
-static void count_all(const cwi_grid *g, size_t k, cwi_row *rows)
+static void count_all(const cwi_bit_grid *g, size_t k, cwi_row *rows)
 {
     const size_t last = g->rows_y - 2;
     for (size_t j = 0, w = 0; j <= last;) {
@@ -187,14 +188,14 @@ static void count_all(const cwi_grid *g, size_t k, cwi_row *rows)
     }
 }
 
-static void count_wanted(const cwi_grid *g, size_t k, cwi_row *rows)
+static void count_wanted(const cwi_bit_grid *g, size_t k, cwi_row *rows)
 {
     for (size_t j = 0; j + 1 < g->rows_y; j++) {
         const uint64_t *wanted = cwi_grid_wanted(g, j, k);
-        for (size_t w = cwi_next_word(wanted, 0, g->words); w < g->words;) {
+        for (size_t w = cwi_next_marked_word(wanted, 0, g->words); w < g->words;) {
             const size_t end = (w | 63) + 1, here = end - w < CWI_WORDS ? end - w : CWI_WORDS;
             count_group(g, j, k, w, wanted[w / 64] >> w % 64 & first_words(here), rows);
-            w = cwi_next_word(wanted, w + here, g->words);
+            w = cwi_next_marked_word(wanted, w + here, g->words);
         }
     }
 }
@@ -219,7 +220,7 @@ static void sum_layer(cwi_row *rows, size_t count, cwi_layer *layer)
 }
 
 /* No cell of the layer can be crossed. */
-static bool is_unwanted(const cwi_grid *g, size_t k)
+static bool is_unwanted(const cwi_bit_grid *g, size_t k)
 {
     if (g->everything || k + 1 == g->rows_z)
         return k + 1 == g->rows_z;
@@ -230,7 +231,7 @@ static bool is_unwanted(const cwi_grid *g, size_t k)
     return !any;
 }
 
-void cwi_count_layer(const cwi_grid *g, size_t k, cwi_row *rows)
+void cwi_count_layer(const cwi_bit_grid *g, size_t k, cwi_row *rows)
 {
     cwi_layer *layer = &g->layers[k];
     const size_t first = k * g->rows_y;

@@ -5,7 +5,7 @@
 #include "extract/dense/bit_planes.h"
 
 /* Live cells of layer k: rows_y x words. Of a box's layers two are kept. */
-static inline const uint64_t *cwi_live_layer(const cwi_grid *g, size_t k)
+static inline const uint64_t *cwi_live_layer(const cwi_bit_grid *g, size_t k)
 {
     const size_t inner = k >= 1 && k < g->volume.dim[2];
     return g->live + (g->boxed ? inner : k) * g->rows_y * g->words;
@@ -13,13 +13,13 @@ static inline const uint64_t *cwi_live_layer(const cwi_grid *g, size_t k)
 
 /* All cells of row (j, k) but the padding at its ends are live: on edges around them there are
  * vertices wherever these are crossed, but along x toward padding. */
-static inline bool cwi_is_whole(const cwi_grid *g, size_t j, size_t k)
+static inline bool cwi_is_whole(const cwi_bit_grid *g, size_t j, size_t k)
 {
     return g->boxed && j >= 1 && j < g->volume.dim[1] && k >= 1 && k < g->volume.dim[2];
 }
 
 /* Live cells of word w in row (j, k) of cells; none outside the grid. */
-static inline uint64_t cwi_live_cells(const cwi_grid *g, size_t j, size_t k, size_t w)
+static inline uint64_t cwi_live_cells(const cwi_bit_grid *g, size_t j, size_t k, size_t w)
 {
     if (j >= g->rows_y - 1 || k >= g->rows_z - 1) /* true for the row before the first, too */
         return 0;
@@ -27,7 +27,8 @@ static inline uint64_t cwi_live_cells(const cwi_grid *g, size_t j, size_t k, siz
 }
 
 /* With open borders an edge has a vertex only if one of the four cells around it is live. */
-static inline uint64_t cwi_live_edges(const cwi_grid *g, int axis, size_t j, size_t k, size_t w)
+static inline uint64_t cwi_live_edges(const cwi_bit_grid *g, int axis, size_t j, size_t k,
+                                      size_t w)
 {
     if (axis == 0)
         return cwi_live_cells(g, j, k, w) | cwi_live_cells(g, j - 1, k, w) |
@@ -40,16 +41,18 @@ static inline uint64_t cwi_live_edges(const cwi_grid *g, int axis, size_t j, siz
 }
 
 /* Of a block: the edges of live cells along axis from row (j, k). */
-static inline const uint64_t *cwi_window(const cwi_grid *g, int axis, size_t j, size_t k)
+static inline const uint64_t *cwi_edge_window(const cwi_bit_grid *g, int axis, size_t j,
+                                              size_t k)
 {
     return g->window + ((size_t)axis + 1) * g->rows + k * g->rows_y + j;
 }
 
 /* Edges along axis from row (j, k) that may have vertices. */
-static inline uint64_t cwi_edge_mask(const cwi_grid *g, int axis, size_t j, size_t k, size_t w)
+static inline uint64_t cwi_edge_mask(const cwi_bit_grid *g, int axis, size_t j, size_t k,
+                                     size_t w)
 {
     if (g->window)
-        return *cwi_window(g, axis, j, k);
+        return *cwi_edge_window(g, axis, j, k);
     if (!g->live || (axis != 0 && cwi_is_whole(g, j, k)))
         return ~UINT64_C(0);
     return cwi_is_whole(g, j, k) ? cwi_live_cells(g, j, k, w)
@@ -57,7 +60,7 @@ static inline uint64_t cwi_edge_mask(const cwi_grid *g, int axis, size_t j, size
 }
 
 /* Bit i: there is a vertex on the edge along axis from sample i of row (j, k). */
-static inline uint64_t cwi_edge_vertices(const cwi_grid *g, int axis, size_t j, size_t k,
+static inline uint64_t cwi_edge_vertices(const cwi_bit_grid *g, int axis, size_t j, size_t k,
                                          size_t w)
 {
     return cwi_grid_crossed(g, axis, j, k, w) & cwi_edge_mask(g, axis, j, k, w);
@@ -65,7 +68,7 @@ static inline uint64_t cwi_edge_vertices(const cwi_grid *g, int axis, size_t j, 
 
 /* Padded index n along an axis is that of a voxel with two after it and one before it, or two
  * for cubics. */
-static inline bool cwi_is_inner(const cwi_grid *g, int axis, size_t n)
+static inline bool cwi_is_inner(const cwi_bit_grid *g, int axis, size_t n)
 {
     return n >= (g->cubic ? 3 : 2) && n + 2 <= g->volume.dim[axis];
 }
@@ -83,7 +86,7 @@ static inline uint64_t cwi_bits_between(size_t begin, size_t from, size_t to)
 
 /* Of the word at at[]: edges, along any axis, all of whose samples and their neighbours are
  * voxels. */
-static inline uint64_t cwi_inner_edges(const cwi_grid *g, const size_t at[3])
+static inline uint64_t cwi_inner_edges(const cwi_bit_grid *g, const size_t at[3])
 {
     if (!cwi_is_inner(g, 1, at[1]) || !cwi_is_inner(g, 2, at[2]))
         return 0;
@@ -102,7 +105,7 @@ static inline uint64_t cwi_moved_down(const uint64_t *row, size_t w, unsigned by
 }
 
 /* Samples of word w of an inner row (j, k) that have values, as have all six around each. */
-static inline uint64_t cwi_valued_samples(const cwi_grid *g, size_t j, size_t k, size_t w)
+static inline uint64_t cwi_valued_samples(const cwi_bit_grid *g, size_t j, size_t k, size_t w)
 {
     const size_t layer = g->rows_y * g->words;
     const uint64_t *row = g->has + k * layer + j * g->words;
@@ -112,7 +115,7 @@ static inline uint64_t cwi_valued_samples(const cwi_grid *g, size_t j, size_t k,
 
 /* Samples of word w of an inner row (j, k) that have values, as have those one and two away
  * along both axes other than this one. */
-static inline uint64_t cwi_valued_crosses(const cwi_grid *g, int axis, size_t j, size_t k,
+static inline uint64_t cwi_valued_crosses(const cwi_bit_grid *g, int axis, size_t j, size_t k,
                                           size_t w)
 {
     const ptrdiff_t beside = (ptrdiff_t)g->words, above = beside * (ptrdiff_t)g->rows_y;
@@ -130,7 +133,7 @@ static inline uint64_t cwi_valued_crosses(const cwi_grid *g, int axis, size_t j,
 }
 
 /* Inner edges along an axis all of whose samples on cubics have values. */
-static inline uint64_t cwi_valued_cubics(const cwi_grid *g, int axis, const size_t at[3],
+static inline uint64_t cwi_valued_cubics(const cwi_bit_grid *g, int axis, const size_t at[3],
                                          uint64_t inner)
 {
     const size_t w = at[0] / 64;
@@ -151,7 +154,7 @@ static inline uint64_t cwi_valued_cubics(const cwi_grid *g, int axis, const size
 
 /* Of the word at at[]: inner edges along an axis whose samples, and these's neighbours, all
  * have values. */
-static inline uint64_t cwi_valued_edges(const cwi_grid *g, int axis, const size_t at[3])
+static inline uint64_t cwi_valued_edges(const cwi_bit_grid *g, int axis, const size_t at[3])
 {
     const size_t w = at[0] / 64, j = at[1] + (axis == 1), k = at[2] + (axis == 2);
     const uint64_t inner = cwi_inner_edges(g, at);
@@ -167,7 +170,7 @@ static inline uint64_t cwi_valued_edges(const cwi_grid *g, int axis, const size_
 }
 
 /* Edges along an axis both of whose ends are voxels. */
-static inline uint64_t cwi_volume_edges(const cwi_grid *g, int axis, const size_t at[3])
+static inline uint64_t cwi_volume_edges(const cwi_bit_grid *g, int axis, const size_t at[3])
 {
     const size_t *dim = g->volume.dim;
     for (int a = 1; a < 3; a++)

@@ -7,7 +7,7 @@
 /* Also what an extractor keeps from one extraction to the next. */
 typedef struct cw_extractor {
     const cwi_engine *engine;
-    cwi_grid grid;
+    cwi_bit_grid grid;
     cwi_octree tree; /* no levels: not asked for */
     cwi_row *rows;   /* and one after the last, with the totals */
     cw_extract_counts counts;
@@ -15,13 +15,26 @@ typedef struct cw_extractor {
 } cwi_plan;
 
 /* Counts the rows of a classified grid, and gives them their first numbers. */
-cw_status cwi_plan_count(cwi_plan *plan, int threads, const cw_progress *progress,
-                         cw_error *err);
+CW_NODISCARD cw_status cwi_plan_count(cwi_plan *plan, int threads, const cw_progress *progress,
+                                      cw_error *err);
 void cwi_plan_free(cwi_plan *plan);
 
 /* Where vertices of a volume go: the mesh's arrays, relative to an origin, which it gets, in
- * the middle of the volume. invert, simple: as in cwi_grid */
+ * the middle of the volume. invert, simple: as in cwi_bit_grid */
 cwi_vertex_sink cwi_make_sink(const cw_volume *volume, bool invert, cw_mesh *mesh);
 cwi_emission cwi_make_emission(const cw_volume *volume, bool simple);
+
+/* Layers of cells from begin to end, and the layer of samples that ends them. */
+typedef struct cwi_writing {
+    const cwi_plan *plan;
+    size_t begin, end, large; /* large: so many shares are */
+    cwi_emission emission;
+    cwi_vertex_sink sink;
+    uint32_t *triangles;
+} cwi_writing;
+
+/* Writes them: their triangles, and the vertices that belong to them. */
+CW_NODISCARD cw_status cwi_write_dense_layers(cwi_writing *writing, const cw_extract_desc *desc,
+                                              cw_error *err);
 
 #endif

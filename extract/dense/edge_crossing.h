@@ -16,9 +16,9 @@ static inline double cwi_off_ends(double t)
 }
 
 /* The share of the edge from number a to number b at which the level is crossed, kept off both
- * ends. NaN is an end without a value: the crossing is then a cap, just beyond the other end.
- */
-static inline double cwi_crossing(double a, double b, double level)
+ * ends. NaN is an end without a value: the crossing is then a cap, just beyond the
+ * other end. */
+static inline double cwi_edge_crossing(double a, double b, double level)
 {
     if (isnan(a) || isnan(b))
         return isnan(a) ? 1 - CWI_NUDGE : CWI_NUDGE;

@@ -1,6 +1,6 @@
 /* Writing the vertices and triangles of layers, from bit planes. Compiled for each engine. */
-#include "extract/dense/ambiguous_cells.h"
 #include "extract/dense/active_cells.h"
+#include "extract/dense/ambiguous_cells.h"
 
 #include <string.h>
 
@@ -16,7 +16,7 @@ typedef struct cwi_cursor {
 } cwi_cursor;
 
 /* The triangles of an ambiguous cell that has vertices inside, and these. */
-static void emit_inner(const cwi_grid *g, const size_t at[3], const cell_numbers *numbers,
+static void emit_inner(const cwi_bit_grid *g, const size_t at[3], const cell_numbers *numbers,
                        unsigned cube, bool flip, cwi_vertex_sink *sink, cwi_cursor *to)
 {
     uint32_t vertex[12 + CWI_CELL_MAX_VERTICES];
@@ -35,7 +35,7 @@ static void emit_inner(const cwi_grid *g, const size_t at[3], const cell_numbers
 }
 
 /* The triangles of an ambiguous cell. */
-__attribute__((noinline)) static void emit_ambiguous(const cwi_grid *g, const size_t at[3],
+__attribute__((noinline)) static void emit_ambiguous(const cwi_bit_grid *g, const size_t at[3],
                                                      const cell_numbers *numbers, unsigned cube,
                                                      const cwi_emission *emission,
                                                      cwi_vertex_sink *sink, cwi_cursor *to)
@@ -56,7 +56,7 @@ __attribute__((noinline)) static void emit_ambiguous(const cwi_grid *g, const si
 
 /* Writes the triangles of listed cells: the one place where a cell's case becomes triangles.
  * Not inline: it needs all registers. */
-__attribute__((noinline)) static void emit_cells(const cwi_grid *g, size_t j, size_t k,
+__attribute__((noinline)) static void emit_cells(const cwi_bit_grid *g, size_t j, size_t k,
                                                  cell_list *l, size_t count,
                                                  const cwi_emission *emission,
                                                  cwi_vertex_sink *sink, cwi_cursor *to)
@@ -85,23 +85,23 @@ __attribute__((noinline)) static void emit_cells(const cwi_grid *g, size_t j, si
     to->out = out;
 }
 
-static void write_row(const cwi_grid *g, size_t j, size_t k, const cwi_row *rows,
+static void write_row(const cwi_bit_grid *g, size_t j, size_t k, const cwi_row *rows,
                       const cwi_emission *emission, cwi_vertex_sink *sink, cell_list *list,
                       cwi_cursor *to)
 {
     const cell_rows samples = rows_around(g, j, k);
     const uint64_t *busy = cwi_grid_busy(g, k * g->rows_y + j);
     begin_row(list, g, rows, j, k);
-    for (size_t w = cwi_next_word(busy, 0, g->words); w < g->words;) {
+    for (size_t w = cwi_next_marked_word(busy, 0, g->words); w < g->words;) {
         size_t words = 0, cells = 0;
-        for (; w < g->words && words < WORDS; w = cwi_next_word(busy, w + 1, g->words))
+        for (; w < g->words && words < WORDS; w = cwi_next_marked_word(busy, w + 1, g->words))
             cells = list_cells(list, words++, cells, g, &samples, j, k, w);
         emit_cells(g, j, k, list, cells, emission, sink, to);
         go_on(list, words);
     }
 }
 
-void cwi_write_layers(const cwi_grid *g, size_t begin, size_t end, size_t cells,
+void cwi_write_layers(const cwi_bit_grid *g, size_t begin, size_t end, size_t cells,
                       const cwi_row *rows, const cwi_emission *emission, cwi_vertex_sink *sink,
                       uint32_t *triangles)
 {
@@ -109,7 +109,7 @@ void cwi_write_layers(const cwi_grid *g, size_t begin, size_t end, size_t cells,
     cwi_cursor to = {.end = triangles + 3 * rows[cells * g->rows_y].triangle};
     cell_list list;
     memset(&list.edges, 0, sizeof list.edges); /* not known where numbers count on */
-    cwi_write_vertices(g, begin, end, rows, sink);
+    cwi_place_vertices(g, begin, end, rows, sink);
     for (size_t k = begin; k < cells; k++) {
         const cwi_row *layer = rows + k * g->rows_y;
         to.plan = 0;

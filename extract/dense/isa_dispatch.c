@@ -32,12 +32,15 @@ static bool has_avx512(void)
 #endif
 
 #define DECLARE(engine, test, compare, march)                                                  \
-    void cwi_classify_layer_##engine(const cwi_grid *, size_t, cwi_range *, bool *, bool *);   \
-    void cwi_classify_rows_##engine(const cwi_grid *, size_t, size_t, size_t, bool *, bool *); \
-    void cwi_find_sides_##engine(const cwi_grid *, const void *, size_t, bool *, bool *);      \
-    void cwi_count_layer_##engine(const cwi_grid *, size_t, cwi_row *);                        \
-    void cwi_write_layers_##engine(const cwi_grid *, size_t, size_t, size_t, const cwi_row *,  \
-                                   const cwi_emission *, cwi_vertex_sink *, uint32_t *);
+    void cwi_classify_layer_##engine(const cwi_bit_grid *, size_t, cwi_range *, bool *,        \
+                                     bool *);                                                  \
+    void cwi_classify_rows_##engine(const cwi_bit_grid *, size_t, size_t, size_t, bool *,      \
+                                    bool *);                                                   \
+    void cwi_find_sides_##engine(const cwi_bit_grid *, const void *, size_t, bool *, bool *);  \
+    void cwi_count_layer_##engine(const cwi_bit_grid *, size_t, cwi_row *);                    \
+    void cwi_write_layers_##engine(const cwi_bit_grid *, size_t, size_t, size_t,               \
+                                   const cwi_row *, const cwi_emission *, cwi_vertex_sink *,   \
+                                   uint32_t *);
 ENGINES(DECLARE)
 
 static const cwi_engine engines[] = {

@@ -45,38 +45,28 @@ struct cwi_engine {
      * samples, or as many as are left; where values are to be found, which samples have
      * values; and, unless leaves is NULL, the ranges of the layer's bricks. Tells whether it
      * saw samples with values on each side. */
-    void (*classify_layer)(const cwi_grid *grid, size_t b, cwi_range *leaves, bool *in,
+    void (*classify_layer)(const cwi_bit_grid *grid, size_t b, cwi_range *leaves, bool *in,
                            bool *out);
     /* Writes the inside bits of so many rows of layer k, from row j on, all of them wanted; and
      * tells as classify_layer. */
-    void (*classify_rows)(const cwi_grid *grid, size_t j, size_t k, size_t rows, bool *in,
+    void (*classify_rows)(const cwi_bit_grid *grid, size_t j, size_t k, size_t rows, bool *in,
                           bool *out);
     /* Tells, in addition, whether some of so many packed voxels, a multiple of 64, are inside,
      * and some are not. */
-    void (*find_sides)(const cwi_grid *grid, const void *voxels, size_t count, bool *in,
+    void (*find_sides)(const cwi_bit_grid *grid, const void *voxels, size_t count, bool *in,
                        bool *out);
     /* Leaves a layer's counts, not yet first numbers, in its rows. */
-    void (*count_layer)(const cwi_grid *grid, size_t k, cwi_row *rows);
+    void (*count_layer)(const cwi_bit_grid *grid, size_t k, cwi_row *rows);
     /* Writes the vertices of the layers begin to end, and the triangles of those begin to
      * cells, to their places. */
-    void (*write_layers)(const cwi_grid *grid, size_t begin, size_t end, size_t cells,
+    void (*write_layers)(const cwi_bit_grid *grid, size_t begin, size_t end, size_t cells,
                          const cwi_row *rows, const cwi_emission *emission,
                          cwi_vertex_sink *sink, uint32_t *triangles);
 };
 
 /* The n-th engine this machine can use, the plain one first; NULL when there are fewer. */
-CW_API const cwi_engine *cwi_engine_at(size_t n);
+const cwi_engine *cwi_engine_at(size_t n);
 const cwi_engine *cwi_engine_best(void);
-
-/* cw_extract() and cw_extractor_new() with an engine of the caller's choice, for tests.
- * leaf_bytes: as in cwi_octree; 0: only wanted leaves are read, however many they are. */
-CW_API cw_status cwi_extract_with(const cwi_engine *engine, const cw_volume *volume,
-                                  const cw_extract_desc *desc, cw_mesh *mesh,
-                                  cw_extract_counts *counts, cw_error *err);
-
-CW_API cw_status cwi_extractor_new_with(const cwi_engine *engine, size_t leaf_bytes,
-                                        const cw_volume *volume, cw_extractor **out,
-                                        cw_error *err);
 
 /* In files that are compiled for each engine, CWI_ENGINE is its name, and CWI_WIDE tells
  * whether it may shuffle, count and compress bytes and bits in words of 512 bits. */
@@ -95,18 +85,19 @@ CW_API cw_status cwi_extractor_new_with(const cwi_engine *engine, size_t leaf_by
 #define cwi_find_sides     CWI_OF_ENGINE(cwi_find_sides)
 #define cwi_count_layer    CWI_OF_ENGINE(cwi_count_layer)
 #define cwi_write_layers   CWI_OF_ENGINE(cwi_write_layers)
-#define cwi_write_vertices CWI_OF_ENGINE(cwi_write_vertices)
+#define cwi_place_vertices CWI_OF_ENGINE(cwi_place_vertices)
 
-void cwi_classify_layer(const cwi_grid *grid, size_t b, cwi_range *leaves, bool *in, bool *out);
-void cwi_classify_rows(const cwi_grid *grid, size_t j, size_t k, size_t rows, bool *in,
+void cwi_classify_layer(const cwi_bit_grid *grid, size_t b, cwi_range *leaves, bool *in,
+                        bool *out);
+void cwi_classify_rows(const cwi_bit_grid *grid, size_t j, size_t k, size_t rows, bool *in,
                        bool *out);
-void cwi_find_sides(const cwi_grid *grid, const void *voxels, size_t count, bool *in,
+void cwi_find_sides(const cwi_bit_grid *grid, const void *voxels, size_t count, bool *in,
                     bool *out);
-void cwi_count_layer(const cwi_grid *grid, size_t k, cwi_row *rows);
-void cwi_write_layers(const cwi_grid *grid, size_t begin, size_t end, size_t cells,
+void cwi_count_layer(const cwi_bit_grid *grid, size_t k, cwi_row *rows);
+void cwi_write_layers(const cwi_bit_grid *grid, size_t begin, size_t end, size_t cells,
                       const cwi_row *rows, const cwi_emission *emission, cwi_vertex_sink *sink,
                       uint32_t *triangles);
-void cwi_write_vertices(const cwi_grid *grid, size_t begin, size_t end, const cwi_row *rows,
+void cwi_place_vertices(const cwi_bit_grid *grid, size_t begin, size_t end, const cwi_row *rows,
                         cwi_vertex_sink *sink);
 #endif
 

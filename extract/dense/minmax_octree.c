@@ -16,7 +16,7 @@ static size_t bricks_at(const cwi_octree *t, int level)
     return t->dim[level][0] * t->dim[level][1] * t->dim[level][2];
 }
 
-cw_status cwi_octree_init(cwi_octree *t, const cwi_grid *g, cw_error *err)
+cw_status cwi_octree_init(cwi_octree *t, const cwi_bit_grid *g, cw_error *err)
 {
     memset(t, 0, sizeof *t);
     for (int a = 0; a < 3; a++)
@@ -87,7 +87,7 @@ void cwi_octree_grow(cwi_octree *t)
 }
 
 /* Which sides of the grid's level the numbers of a brick are on. */
-static void sides(const cwi_range *r, const cwi_grid *g, bool *in, bool *out)
+static void sides(const cwi_range *r, const cwi_bit_grid *g, bool *in, bool *out)
 {
     const bool any_above = g->strict ? r->high > g->level : r->high >= g->level;
     const bool any_below = g->strict ? r->low <= g->level : r->low < g->level;
@@ -95,7 +95,7 @@ static void sides(const cwi_range *r, const cwi_grid *g, bool *in, bool *out)
     *out = g->invert ? any_above : any_below;
 }
 
-bool cwi_octree_crossed(const cwi_octree *t, const cwi_grid *g)
+bool cwi_octree_crossed(const cwi_octree *t, const cwi_bit_grid *g)
 {
     bool in, out;
     sides(t->level[t->levels - 1], g, &in, &out);
@@ -103,14 +103,14 @@ bool cwi_octree_crossed(const cwi_octree *t, const cwi_grid *g)
 }
 
 /* Some cell of the brick may have corners on both sides; what has no value is outside. */
-static bool straddles(const cwi_range *r, const cwi_grid *g)
+static bool straddles(const cwi_range *r, const cwi_bit_grid *g)
 {
     bool in, out;
     sides(r, g, &in, &out);
     return in && (out || r->gap);
 }
 
-static size_t mark_below(const cwi_octree *t, int l, const size_t at[3], cwi_grid *g)
+static size_t mark_below(const cwi_octree *t, int l, const size_t at[3], cwi_bit_grid *g)
 {
     size_t leaves = 0;
     if (!straddles(node(t, l, at[0], at[1], at[2]), g))
@@ -127,7 +127,7 @@ static size_t mark_below(const cwi_octree *t, int l, const size_t at[3], cwi_gri
 }
 
 /* What the tree says of the eight leaves in a word of a row of bricks. */
-static cwi_leaf_bits leaf_bits(const cwi_octree *t, const cwi_grid *g, size_t row, size_t w)
+static cwi_leaf_bits leaf_bits(const cwi_octree *t, const cwi_bit_grid *g, size_t row, size_t w)
 {
     const cwi_range *leaves = t->level[0] + row * t->dim[0][0];
     cwi_leaf_bits bits = {0, 0};
@@ -146,7 +146,7 @@ size_t cwi_octree_leaves(const cwi_octree *t)
     return bricks_at(t, 0);
 }
 
-size_t cwi_octree_mark(const cwi_octree *t, cwi_grid *g)
+size_t cwi_octree_mark(const cwi_octree *t, cwi_bit_grid *g)
 {
     const size_t rows = g->bricks_z * g->bricks_y;
     memset(g->wanted, 0, rows * g->masks * sizeof *g->wanted);
@@ -154,8 +154,8 @@ size_t cwi_octree_mark(const cwi_octree *t, cwi_grid *g)
     const size_t leaves = mark_below(t, t->levels - 1, (const size_t[3]){0, 0, 0}, g);
     for (size_t row = 0; row < rows; row++) {
         const uint64_t *mask = g->wanted + row * g->masks;
-        for (size_t w = cwi_next_word(mask, 0, g->words); w < g->words;
-             w = cwi_next_word(mask, w + 1, g->words))
+        for (size_t w = cwi_next_marked_word(mask, 0, g->words); w < g->words;
+             w = cwi_next_marked_word(mask, w + 1, g->words))
             for (size_t x = w; x < w + 2 && x < g->words; x++)
                 g->leaves[row * g->words + x] = leaf_bits(t, g, row, x);
     }

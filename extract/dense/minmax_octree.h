@@ -27,7 +27,8 @@ struct cwi_octree {
 };
 
 /* Makes room for the leaves of a grid; freeing an empty or already freed tree is harmless. */
-cw_status cwi_octree_init(cwi_octree *tree, const cwi_grid *grid, cw_error *err);
+CW_NODISCARD cw_status cwi_octree_init(cwi_octree *tree, const cwi_bit_grid *grid,
+                                       cw_error *err);
 void cwi_octree_free(cwi_octree *tree);
 size_t cwi_octree_bytes(const cwi_octree *tree);
 
@@ -35,11 +36,11 @@ size_t cwi_octree_bytes(const cwi_octree *tree);
 void cwi_octree_grow(cwi_octree *tree);
 
 /* Some numbers are inside and some are not. */
-bool cwi_octree_crossed(const cwi_octree *tree, const cwi_grid *grid);
+bool cwi_octree_crossed(const cwi_octree *tree, const cwi_bit_grid *grid);
 
 /* Marks, in the grid, the words of cells that straddling leaves lie in. Returns how many leaves
  * these are. */
-size_t cwi_octree_mark(const cwi_octree *tree, cwi_grid *grid);
+size_t cwi_octree_mark(const cwi_octree *tree, cwi_bit_grid *grid);
 size_t cwi_octree_leaves(const cwi_octree *tree);
 
 #endif

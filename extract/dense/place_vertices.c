@@ -2,12 +2,11 @@
  *
  * Crossed edges are listed until there are enough for arithmetic on many at a time; vertices
  * beside no-data, NaN or infinite values and where the gradient vanishes are computed one by
- * one.
- */
+ * one. */
 #include "core/volume/volume.h"
 #include "extract/dense/cell_word.h"
-#include "core/geometry/cubic.h"
-#include "extract/common/vertex_writer.h"
+#include "extract/dense/cubic_crossing.h"
+#include "extract/dense/vertex_writer.h"
 
 #include <float.h>
 #include <string.h>
@@ -175,17 +174,17 @@ static inline const char *first_padded(const cw_volume *v, size_t k)
 enum { ANY_AXIS = -1 };
 
 /* A list's edges in the world. */
-typedef struct cwi_frame {
+typedef struct cwi_edge_frame {
     double affine[3][3];
     double first[2]; /* column and row that stand at the origin, as padded samples count */
     double z;        /* layers from there */
     double along[3]; /* the step along an edge */
-} cwi_frame;
+} cwi_edge_frame;
 
-static inline cwi_frame make_frame(const cwi_edge_list *list, const cwi_vertex_sink *sink)
+static inline cwi_edge_frame make_frame(const cwi_edge_list *list, const cwi_vertex_sink *sink)
 {
-    cwi_frame f = {.first = {sink->centre[0] + 1, sink->centre[1] + 1},
-                   .z = (double)list->k - 1 - sink->centre[2]};
+    cwi_edge_frame f = {.first = {sink->centre[0] + 1, sink->centre[1] + 1},
+                        .z = (double)list->k - 1 - sink->centre[2]};
     memcpy(f.affine, sink->affine, sizeof f.affine);
     f.along[list->axis] = 1;
     return f;
@@ -320,10 +319,10 @@ static void turn_cubics(cwi_cubic_lanes *restrict c, const double *restrict t,
 #define TYPED "extract/dense/place_vertices.inc"
 #include "extract/dense/for_each_type.inc"
 
-void cwi_write_vertices(const cwi_grid *g, size_t begin, size_t end, const cwi_row *rows,
+void cwi_place_vertices(const cwi_bit_grid *g, size_t begin, size_t end, const cwi_row *rows,
                         cwi_vertex_sink *sink)
 {
-    static void (*const layers[CW_TYPE_COUNT])(const cwi_grid *, size_t, size_t,
+    static void (*const layers[CW_TYPE_COUNT])(const cwi_bit_grid *, size_t, size_t,
                                                const cwi_row *, cwi_vertex_sink *) = {
         [CW_U8] = write_u8,   [CW_I8] = write_i8,   [CW_U16] = write_u16, [CW_I16] = write_i16,
         [CW_U32] = write_u32, [CW_I32] = write_i32, [CW_F32] = write_f32, [CW_F64] = write_f64,

@@ -1,6 +1,6 @@
 /* From an irregular grid to the elements that its surface is made of. */
-#include "core/base/parallel.h"
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "extract/irregular/cell_surface.h"
 
@@ -151,8 +151,8 @@ static void find_case(const cwi_cells *g, cwi_element *e)
                                  << n);
 }
 
-/* Whether a cell is an element, and that. Cells without a value at some corner are not there.
- */
+/* Whether a cell is an element, and that. Cells without a value at some corner are
+ * not there. */
 static bool take_element(const cwi_cells *g, uint8_t shape, const uint32_t *corners,
                          cwi_element *e)
 {

@@ -2,8 +2,8 @@
 #include "extract/irregular/boundary_faces.h"
 
 #include "core/base/memory.h"
-#include "core/geometry/union_find.h"
 #include "core/base/status.h"
+#include "core/geometry/union_find.h"
 
 #include <stdlib.h>
 #include <string.h>

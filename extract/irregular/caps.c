@@ -1,11 +1,11 @@
 /* Caps: what closes the solid where the grid ends. */
 #include "core/base/memory.h"
-#include "core/mesh/mesh.h"
 #include "core/base/status.h"
+#include "core/mesh/mesh.h"
 #include "core/mesh/weld.h"
-#include "extract/irregular/boundary_faces.h"
-#include "extract/dense/edge_crossing.h"
 #include "extract/cases/cell_topology.h"
+#include "extract/dense/edge_crossing.h"
+#include "extract/irregular/boundary_faces.h"
 
 #include <string.h>
 

@@ -1,15 +1,15 @@
 #include "extract/irregular/cell_surface.h"
 
-#include "core/base/parallel.h"
 #include "core/base/memory.h"
-#include "core/mesh/mesh.h"
-#include "core/geometry/union_find.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
-#include "extract/dense/edge_crossing.h"
+#include "core/geometry/union_find.h"
+#include "core/geometry/vec3.h"
+#include "core/mesh/mesh.h"
+#include "extract/cases/cell_topology.h"
 #include "extract/common/extract_limits.h"
 #include "extract/common/field_normals.h"
-#include "extract/common/vertex_writer.h"
-#include "extract/cases/cell_topology.h"
+#include "extract/dense/edge_crossing.h"
 
 #include <math.h>
 #include <string.h>
@@ -231,8 +231,8 @@ static double crossing_of(const cwi_cells *g, const cwi_element *e, int edge)
 {
     const uint32_t a = e->corners[cwi_shape_of(e)->edges[edge][0]],
                    b = e->corners[cwi_shape_of(e)->edges[edge][1]];
-    const double t = cwi_crossing(cwi_stored_at(g, a < b ? a : b),
-                                  cwi_stored_at(g, a < b ? b : a), g->level.at);
+    const double t = cwi_edge_crossing(cwi_stored_at(g, a < b ? a : b),
+                                       cwi_stored_at(g, a < b ? b : a), g->level.at);
     return a < b ? t : 1 - t;
 }
 

@@ -66,18 +66,19 @@ typedef struct cwi_cells {
 
 /* The surface of an irregular grid, as cw_extract() makes it. Without a mesh it is counted
  * only; counts may be NULL. */
-cw_status cwi_cells_extract(const cw_volume *volume, const cw_extract_desc *desc, cw_mesh *mesh,
-                            cw_extract_counts *counts, cw_error *err);
+CW_NODISCARD cw_status cwi_cells_extract(const cw_volume *volume, const cw_extract_desc *desc,
+                                         cw_mesh *mesh, cw_extract_counts *counts,
+                                         cw_error *err);
 
 /* --- active_elements.c ---------------------------------------------------------------------- */
 
 /* Checks the grid, and compares its samples with the isovalue. */
-cw_status cwi_cells_init(cwi_cells *g, const cw_volume *volume, const cw_extract_desc *desc,
-                         cw_error *err);
+CW_NODISCARD cw_status cwi_cells_init(cwi_cells *g, const cw_volume *volume,
+                                      const cw_extract_desc *desc, cw_error *err);
 void cwi_cells_free(cwi_cells *g);
 
 /* Finds the elements. */
-cw_status cwi_cells_gather(cwi_cells *g, cw_error *err);
+CW_NODISCARD cw_status cwi_cells_gather(cwi_cells *g, cw_error *err);
 
 /* --- degenerate_cells.c -------------------------------------------------------------------- */
 
@@ -108,21 +109,21 @@ cwi_face_key cwi_face_key_of(const cwi_element *e, int face);
 
 /* Finds the faces that two elements have in common, and turns elements so that neighbours
  * agree on what is out. */
-cw_status cwi_cells_pair_faces(cwi_cells *g, cw_error *err);
-cw_status cwi_cells_orient(cwi_cells *g, cw_error *err);
+CW_NODISCARD cw_status cwi_cells_pair_faces(cwi_cells *g, cw_error *err);
+CW_NODISCARD cw_status cwi_cells_orient(cwi_cells *g, cw_error *err);
 
 /* --- boundary_faces.c ---------------------------------------------------------------------- */
 
 /* Lists the border's faces, numbers the vertices of caps, after all others, and their
  * triangles, and counts border loops. */
-cw_status cwi_cells_find_border(cwi_cells *g, cw_error *err);
+CW_NODISCARD cw_status cwi_cells_find_border(cwi_cells *g, cw_error *err);
 
 /* --- caps.c ------------------------------------------------------------------------ */
 
 void cwi_cells_write_caps(const cwi_cells *g, cw_mesh *mesh);
 
 /* Moves vertices of the border that stand in one place a little apart, each into its cells. */
-cw_status cwi_cells_part(const cwi_cells *g, cw_mesh *mesh, cw_error *err);
+CW_NODISCARD cw_status cwi_cells_part(const cwi_cells *g, cw_mesh *mesh, cw_error *err);
 
 /* --- least_squares_gradients.c --------------------------------------------------------------------- */
 
@@ -133,7 +134,8 @@ typedef struct cwi_gradients {
     double (*at)[3];
 } cwi_gradients;
 
-cw_status cwi_cells_gradients(const cwi_cells *g, cwi_gradients *out, cw_error *err);
+CW_NODISCARD cw_status cwi_cells_gradients(const cwi_cells *g, cwi_gradients *out,
+                                           cw_error *err);
 void cwi_gradients_free(cwi_gradients *gradients);
 
 /* ----------------------------------------------------------------------------------------- */

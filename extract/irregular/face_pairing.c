@@ -2,12 +2,12 @@
  *
  * Faces are sorted into buckets by their least sample, where the few that may be equal are next
  * to each other. */
-#include "core/base/parallel.h"
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
-#include "extract/irregular/cell_surface.h"
 #include "extract/cases/cell_topology.h"
+#include "extract/irregular/cell_surface.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -3,7 +3,6 @@
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
 #include "extract/irregular/cell_surface.h"
-#include "extract/common/vertex_writer.h"
 
 #include <math.h>
 

@@ -1,12 +1,12 @@
 #include "extract/level_set/adaptive_field.h"
 
-#include "core/base/parallel.h"
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
-#include "core/geometry/vec3.h"
-#include "core/geometry/point_in_mesh.h"
-#include "extract/level_set/level_set.h"
 #include "core/geometry/closest_point.h"
+#include "core/geometry/point_in_mesh.h"
+#include "core/geometry/vec3.h"
+#include "extract/level_set/level_set.h"
 
 #include <math.h>
 

@@ -12,8 +12,8 @@
 #ifndef EXTRACT_LEVEL_SET_ADAPTIVE_FIELD_H
 #define EXTRACT_LEVEL_SET_ADAPTIVE_FIELD_H
 
-#include "core/geometry/lattice_map.h"
 #include "core/geometry/bvh.h"
+#include "core/geometry/lattice_map.h"
 
 #include <cubewright/level_set.h>
 
@@ -43,8 +43,9 @@ typedef struct cwi_adaptive {
 /* Free with cwi_adaptive_free(), also after an error.
  * mesh, volume, desc  borrowed; the volume is of cwi_level_set_make() with level 0
  * Returns             CW_ERR_NO_MEMORY */
-cw_status cwi_adaptive_init(cwi_adaptive *a, const cw_mesh *mesh, const cw_volume *volume,
-                            const cw_offset_desc *desc, cw_error *err);
+CW_NODISCARD cw_status cwi_adaptive_init(cwi_adaptive *a, const cw_mesh *mesh,
+                                         const cw_volume *volume, const cw_offset_desc *desc,
+                                         cw_error *err);
 void cwi_adaptive_free(cwi_adaptive *a);
 
 /* What a surface is not near. */
@@ -56,13 +57,14 @@ typedef struct cwi_beyond {
 /* Divides the cells that have of the surface what is farther than limit_mm from the mesh, and,
  * if both_ways, of the mesh what is so far from the surface.
  * Returns  CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
-cw_status cwi_adaptive_divide(cwi_adaptive *a, const cw_mesh *surface, double limit_mm,
-                              bool both_ways, cwi_beyond *beyond, cw_error *err);
+CW_NODISCARD cw_status cwi_adaptive_divide(cwi_adaptive *a, const cw_mesh *surface,
+                                           double limit_mm, bool both_ways, cwi_beyond *beyond,
+                                           cw_error *err);
 
 /* The cells at the surface as an irregular grid, whose values are borrowed from here; free it
  * with cw_volume_free(). The same for any number of threads.
  * Returns  CW_ERR_NO_MEMORY; CW_ERR_CANCELLED; CW_ERR_LIMIT for desc->max_bytes */
-cw_status cwi_adaptive_grid(cwi_adaptive *a, cw_volume *grid, cw_error *err);
+CW_NODISCARD cw_status cwi_adaptive_grid(cwi_adaptive *a, cw_volume *grid, cw_error *err);
 
 /* The side of the smallest cells, in mm. */
 double cwi_adaptive_least(const cwi_adaptive *a);
@@ -70,7 +72,7 @@ double cwi_adaptive_least(const cwi_adaptive *a);
 /* ---- between adaptive*.c ----------------------------------------------------------------- */
 
 /* Places and measures the points that are not measured yet. */
-cw_status cwi_adaptive_measure(cwi_adaptive *a, cw_error *err);
+CW_NODISCARD cw_status cwi_adaptive_measure(cwi_adaptive *a, cw_error *err);
 
 /* Where a point of the lattice stands, in voxels, and whether it was put there for a side of
  * the surface, which is then the one that it counts as being on. */

@@ -1,8 +1,8 @@
 /* Where points between the corners of the smallest cells stand: on the side of the surface that
  * most of the corners around are not on, if that comes near enough, else in the middle. So they
  * follow each other through walls and gaps thinner than the cells. */
-#include "extract/level_set/adaptive_field.h"
 #include "core/geometry/polygon_clip.h"
+#include "extract/level_set/adaptive_field.h"
 
 #include "core/geometry/vec3.h"
 

@@ -1,6 +1,6 @@
 /* Which cells to divide. */
-#include "extract/level_set/adaptive_field.h"
 #include "core/geometry/polygon_clip.h"
+#include "extract/level_set/adaptive_field.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"

@@ -1,11 +1,11 @@
 #include "extract/level_set/feature_warp.h"
 
-#include "core/base/parallel.h"
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
-#include "core/geometry/vec3.h"
 #include "core/geometry/closest_point.h"
 #include "core/geometry/triangle_intersect.h"
+#include "core/geometry/vec3.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,12 +2,12 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/closest_point.h"
+#include "core/geometry/point_in_mesh.h"
+#include "core/geometry/polygon_clip.h"
 #include "core/geometry/vec3.h"
 #include "core/volume/volume.h"
-#include "core/geometry/point_in_mesh.h"
 #include "extract/level_set/level_set.h"
-#include "core/geometry/polygon_clip.h"
-#include "core/geometry/closest_point.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -281,8 +281,8 @@ static void consider_edges(warping *g)
     cwi_free(sides);
 }
 
-/* ---- wishes: what joins samples that were moved with others -------------------------------
- */
+/* ---- wishes: what joins samples that were moved with
+ * others ------------------------------- */
 
 static int compare_wishes(const void *a, const void *b)
 {

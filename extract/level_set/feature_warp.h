@@ -34,7 +34,8 @@ typedef struct cwi_warp {
  * cwi_warp_free(), also after an error.
  * volume   of cwi_level_set_make() with level 0
  * Returns  CW_ERR_NO_MEMORY */
-cw_status cwi_warp_init(cwi_warp *warp, const cw_mesh *mesh, cw_volume *volume, cw_error *err);
+CW_NODISCARD cw_status cwi_warp_init(cwi_warp *warp, const cw_mesh *mesh, cw_volume *volume,
+                                     cw_error *err);
 void cwi_warp_free(cwi_warp *warp);
 
 /* Moves the vertices of the surface that was extracted from these samples: where the samples
@@ -42,8 +43,8 @@ void cwi_warp_free(cwi_warp *warp);
  * surface  free of crossings, before and after
  * Returns  as cw_self_intersections(); CW_ERR_NO_MEMORY: then vertices are where they may cross
  * Threads  the same to the bit for any number */
-cw_status cwi_unwarp(const cwi_warp *warp, const cw_mesh *mesh, int threads,
-                     const cw_progress *progress, cw_mesh *surface, cw_error *err);
+CW_NODISCARD cw_status cwi_unwarp(const cwi_warp *warp, const cw_mesh *mesh, int threads,
+                                  const cw_progress *progress, cw_mesh *surface, cw_error *err);
 
 /* The n-th of the eight samples around a place in the grid, and its trilinear share. */
 double cwi_warp_corner(const double at[3], int n, uint32_t corner[3]);

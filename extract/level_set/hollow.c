@@ -1,10 +1,10 @@
 #include "extract/level_set/level_set.h"
 
 #include "core/base/memory.h"
-#include "core/mesh/mesh.h"
-#include "core/geometry/union_find.h"
 #include "core/base/status.h"
+#include "core/geometry/union_find.h"
 #include "core/geometry/vec3.h"
+#include "core/mesh/mesh.h"
 #include "core/volume/volume.h"
 
 #include <cubewright/distance.h>
@@ -32,8 +32,7 @@ typedef struct hollowing {
     cw_hollow_facts facts;
 } hollowing;
 
-/* --- what is asked for ---------------------------------------------------------------------
- */
+/* --- what is asked for -------------------------------------------------------------------- */
 
 static double narrowest(const cw_hollow_desc *d)
 {
@@ -76,8 +75,7 @@ static double choose_voxel(const cw_hollow_desc *d, const cw_quality *q)
     return voxel;
 }
 
-/* --- cavities ------------------------------------------------------------------------------
- */
+/* --- cavities ----------------------------------------------------------------------------- */
 
 static cw_status take_surface(hollowing *h, double isovalue, bool normals, cw_mesh *out,
                               cw_error *err)
@@ -132,8 +130,7 @@ static cw_status find_cavities(hollowing *h, cw_error *err)
     return CW_OK;
 }
 
-/* --- drains --------------------------------------------------------------------------------
- */
+/* --- drains ------------------------------------------------------------------------------- */
 
 static double distance_to_ray(const ray *r, const double p[3])
 {
@@ -238,8 +235,7 @@ static cw_status place_rays(hollowing *h, cw_error *err)
     return CW_OK;
 }
 
-/* --- the result ----------------------------------------------------------------------------
- */
+/* --- the result --------------------------------------------------------------------------- */
 
 /* Puts the cavities' surfaces, turned inside out, behind the mesh. */
 static cw_status join(const hollowing *h, cw_mesh *out, cw_error *err)

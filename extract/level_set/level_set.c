@@ -21,8 +21,7 @@ bool cw_level_set_available(void)
 /* Voxels whose distance is asked for at one time, and what is kept for each. */
 enum { BATCH = 1 << 22, BATCH_BYTES = 4 * sizeof(float) + sizeof(float *) };
 
-/* --- before it is made ---------------------------------------------------------------------
- */
+/* --- before it is made -------------------------------------------------------------------- */
 
 cw_status cwi_level_set_check(const cw_mesh *mesh, int threads, cw_quality *q, cw_error *err)
 {
@@ -61,7 +60,7 @@ double cwi_level_set_bytes(const cw_quality *q, double voxel_mm, double reach_mm
     const double side = q->area_mm2 / (voxel_mm * voxel_mm);
     const double voxels = fmin(side * (2 * (reach_mm / voxel_mm + CWI_BAND + 1) + 12), box);
     const double rows = samples(q, 1, voxel_mm, reach_mm) * samples(q, 2, voxel_mm, reach_mm);
-    return 9 * voxels + sizeof(size_t) * rows + sizeof(cwi_crossing) * side +
+    return 9 * voxels + sizeof(size_t) * rows + sizeof(cwi_row_crossing) * side +
            fmin(voxels, BATCH) * BATCH_BYTES + 76 * (double)q->triangles;
 }
 
@@ -93,8 +92,7 @@ static cw_status check_fits(const cw_quality *q, const cw_level_set_desc *d, dou
         (double)d->max_bytes / 1e6, 1.05 * voxel);
 }
 
-/* --- leaves --------------------------------------------------------------------------------
- */
+/* --- leaves ------------------------------------------------------------------------------- */
 
 typedef struct build {
     const cw_level_set_desc *desc;
@@ -149,8 +147,7 @@ static cw_status take_leaves(build *b, cw_error *err)
     return CW_OK;
 }
 
-/* --- exact distances -----------------------------------------------------------------------
- */
+/* --- exact distances ---------------------------------------------------------------------- */
 
 typedef struct batch {
     size_t count;
@@ -220,8 +217,7 @@ static cw_status make_exact(build *b, cw_error *err)
     return st;
 }
 
-/* --- limits --------------------------------------------------------------------------------
- */
+/* --- limits ------------------------------------------------------------------------------- */
 
 /* Returns whether some voxels are not too far from the surface. */
 static bool limit_leaf(const build *b, float voxels[CWI_LEAF_VOXELS])
@@ -251,8 +247,7 @@ static void limit_leaves(build *b)
     b->voxels = less ? less : b->voxels;
 }
 
-/* --- what is inside, and far from the surface ----------------------------------------------
- */
+/* --- what is inside, and far from the surface --------------------------------------------- */
 
 static int compare_places(const void *a, const void *b)
 {
@@ -291,11 +286,10 @@ static cw_status make_tiles(build *b, cw_error *err)
     return CW_OK;
 }
 
-/* --- the volume ----------------------------------------------------------------------------
- */
+/* --- the volume --------------------------------------------------------------------------- */
 
-/* Takes the voxels over; places and tiles are copied, with the struct, to one piece of memory.
- */
+/* Takes the voxels over; places and tiles are copied, with the struct, to one piece
+ * of memory. */
 static cw_status hand_over(build *b, cw_volume *v, cw_error *err)
 {
     char *memory = cwi_alloc_array(sizeof(cw_sparse) + b->tile_count * sizeof(cw_tile) +

@@ -11,8 +11,8 @@
 enum { CWI_BAND = 3 };
 
 /* Fails with CW_ERR_ARGUMENT for a mesh that encloses nothing, and measures it. */
-cw_status cwi_level_set_check(const cw_mesh *mesh, int threads, cw_quality *quality,
-                              cw_error *err);
+CW_NODISCARD cw_status cwi_level_set_check(const cw_mesh *mesh, int threads,
+                                           cw_quality *quality, cw_error *err);
 
 /* Bytes for a level set of a mesh, by its area; with reach_mm beyond CWI_BAND voxels. */
 double cwi_level_set_bytes(const cw_quality *q, double voxel_mm, double reach_mm);
@@ -24,9 +24,9 @@ bool cwi_level_set_fits(const cw_quality *q, double voxel_mm, double reach_mm,
 /* As cw_level_set_from_mesh() of a mesh that was checked, with inside_mm and outside_mm beyond
  * CWI_BAND voxels.
  * level  what distances have to be exact near; NULL: everywhere */
-cw_status cwi_level_set_make(const cw_mesh *mesh, const cw_quality *q,
-                             const cw_level_set_desc *desc, const double *level,
-                             cw_volume *volume, cw_error *err);
+CW_NODISCARD cw_status cwi_level_set_make(const cw_mesh *mesh, const cw_quality *q,
+                                          const cw_level_set_desc *desc, const double *level,
+                                          cw_volume *volume, cw_error *err);
 
 /* Numbers a level set's leaves by their places; false: no memory. */
 bool cwi_level_set_leaves(const cw_volume *volume, cwi_places *leaves);

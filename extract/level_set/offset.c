@@ -1,8 +1,8 @@
-#include "extract/level_set/adaptive_field.h"
-#include "extract/level_set/level_set.h"
 #include "extract/common/field_normals.h"
-#include "extract/level_set/sharp_edges.h"
+#include "extract/level_set/adaptive_field.h"
 #include "extract/level_set/feature_warp.h"
+#include "extract/level_set/level_set.h"
+#include "extract/level_set/sharp_edges.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"

@@ -15,9 +15,9 @@
  * Returns   CW_ERR_NO_MEMORY, CW_ERR_CANCELLED, as cw_self_intersections(): the mesh is then
  *           as it was
  * Threads   the same to the bit for any number
- * Source    after [Kobbelt2001] and [Attene2005]; planes are the offset mesh's, not of samples
- */
-cw_status cwi_sharpen(const cw_mesh *from, const cw_offset_desc *desc, double voxel_mm,
-                      cw_mesh *mesh, cw_error *err);
+ * Source    after [Kobbelt2001] and [Attene2005]; planes are the offset mesh's, not
+ * of samples */
+CW_NODISCARD cw_status cwi_sharpen(const cw_mesh *from, const cw_offset_desc *desc,
+                                   double voxel_mm, cw_mesh *mesh, cw_error *err);
 
 #endif

@@ -32,8 +32,8 @@ static corner corner_of(const mapping *m, uint32_t vertex)
     return (corner){at[0], llrint(at[1] * FINE), llrint(at[2] * FINE)};
 }
 
-/* Twice the area of a, b and the row, seen along it: positive when they run counter-clockwise.
- */
+/* Twice the area of a, b and the row, seen along it: positive when they
+ * run counter-clockwise. */
 static int64_t area(const corner *a, const corner *b, int64_t y, int64_t z)
 {
     return (b->y - a->y) * (z - a->z) - (b->z - a->z) * (y - a->y);
@@ -122,7 +122,7 @@ static size_t sum_rows(cwi_winding *w, size_t rows)
 
 static int compare(const void *a, const void *b)
 {
-    const double x = ((const cwi_crossing *)a)->x, y = ((const cwi_crossing *)b)->x;
+    const double x = ((const cwi_row_crossing *)a)->x, y = ((const cwi_row_crossing *)b)->x;
     return (x > y) - (x < y);
 }
 
@@ -163,8 +163,8 @@ void cwi_winding_row(const cwi_winding *w, size_t i, size_t j, size_t k, size_t 
     memset(inside, 0, count * sizeof *inside);
     if (j >= w->rows_y || k >= w->rows_z)
         return;
-    const cwi_crossing *c = w->cross + w->first[k * w->rows_y + j],
-                       *end = w->cross + w->first[k * w->rows_y + j + 1];
+    const cwi_row_crossing *c = w->cross + w->first[k * w->rows_y + j],
+                           *end = w->cross + w->first[k * w->rows_y + j + 1];
     int around = 0;
     for (size_t n = 0; n < count; n++) {
         for (; c < end && c->x < (double)(i + n); c++)

@@ -6,15 +6,15 @@
 
 /* Where rows of samples along x cross the mesh: those of row (j, k) are
  * cross[first[k * rows_y + j]] up to that of the next row, from low x to high. */
-typedef struct cwi_crossing {
+typedef struct cwi_row_crossing {
     double x;
     int turn; /* 1: the mesh winds once more around what follows; -1: once less */
-} cwi_crossing;
+} cwi_row_crossing;
 
 typedef struct cwi_winding {
     size_t rows_y, rows_z;
     size_t *first; /* rows_y * rows_z + 1 */
-    cwi_crossing *cross;
+    cwi_row_crossing *cross;
 } cwi_winding;
 
 /* The most samples along an axis: so that what is computed fits 64 bits. */
@@ -22,8 +22,9 @@ enum { CWI_WINDING_MOST = 65535 };
 
 /* Crosses a mesh, whose vertices in the grid are at (positions - first) / voxel_mm, with rows.
  * Free with cwi_winding_free(), also after an error. CW_ERR_NO_MEMORY */
-cw_status cwi_winding_init(cwi_winding *w, const cw_mesh *mesh, const double first[3],
-                           double voxel_mm, const size_t dim[3], cw_error *err);
+CW_NODISCARD cw_status cwi_winding_init(cwi_winding *w, const cw_mesh *mesh,
+                                        const double first[3], double voxel_mm,
+                                        const size_t dim[3], cw_error *err);
 void cwi_winding_free(cwi_winding *w);
 
 /* Whether samples of a row, count of them from sample (i, j, k) on, are inside: the mesh winds

@@ -12,14 +12,14 @@
  * three layers apart do not see each other: every third layer is snapped at the same time. */
 #include "extract/snap/snap.h"
 
-#include "core/geometry/affine.h"
-#include "core/base/parallel.h"
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
-#include "core/geometry/vec3.h"
+#include "core/geometry/affine.h"
 #include "core/geometry/triangle_separation.h"
-#include "extract/snap/snap_cluster.h"
+#include "core/geometry/vec3.h"
 #include "extract/dense/crossed_edges.h"
+#include "extract/snap/snap_cluster.h"
 
 #include <math.h>
 #include <string.h>
@@ -47,7 +47,7 @@ typedef struct snap_run {
 /* ---- vertices, samples and cells -------------------------------------------------------- */
 
 /* Edges with cells on all sides: the vertices on others are on the mesh's border. */
-static uint64_t inner_edges(const cwi_grid *g, int axis, size_t j, size_t k, size_t w)
+static uint64_t inner_edges(const cwi_bit_grid *g, int axis, size_t j, size_t k, size_t w)
 {
     if (!g->live)
         return ~UINT64_C(0);
@@ -65,7 +65,7 @@ static uint64_t inner_edges(const cwi_grid *g, int axis, size_t j, size_t k, siz
 static void mark_vertex(cwi_snapping *s, size_t at[3], int axis, uint32_t v, bool inner)
 {
     cwi_place *place = &s->places[v];
-    cwi_to_index(s, cwi_position(s, v), place->x);
+    cwi_to_index(s, cwi_mesh_position(s, v), place->x);
     const double t = place->x[axis] - (double)at[axis];
     s->into[v] = (uint32_t)at[0] << 1 | (axis == 0);
     place->near = 0;
@@ -78,11 +78,11 @@ static void mark_vertex(cwi_snapping *s, size_t at[3], int axis, uint32_t v, boo
 
 static void mark_row(cwi_snapping *s, size_t j, size_t k, const cwi_row *row)
 {
-    const cwi_grid *g = s->grid;
+    const cwi_bit_grid *g = s->grid;
     const uint64_t *busy = cwi_grid_busy(g, k * g->rows_y + j);
     uint32_t number[3] = {row->first[0], row->first[1], row->first[2]};
-    for (size_t w = cwi_next_word(busy, 0, g->words); w < g->words;
-         w = cwi_next_word(busy, w + 1, g->words))
+    for (size_t w = cwi_next_marked_word(busy, 0, g->words); w < g->words;
+         w = cwi_next_marked_word(busy, w + 1, g->words))
         for (int axis = 0; axis < 3; axis++) {
             const uint64_t inner = inner_edges(g, axis, j, k, w);
             for (uint64_t e = cwi_edge_vertices(g, axis, j, k, w); e; e &= e - 1) {
@@ -91,7 +91,7 @@ static void mark_row(cwi_snapping *s, size_t j, size_t k, const cwi_row *row)
             }
         }
     for (uint32_t v = row->first[3]; v < row[1].first[0]; v++) {
-        cwi_to_index(s, cwi_position(s, v), s->places[v].x);
+        cwi_to_index(s, cwi_mesh_position(s, v), s->places[v].x);
         s->places[v].near = 0;
         s->into[v] = UINT32_MAX;
     }
@@ -203,7 +203,7 @@ static void snap_layer(void *context, size_t n)
     cwi_cluster c;
     double x[3];
     float p[3];
-    const cwi_grid *g = s->grid;
+    const cwi_bit_grid *g = s->grid;
     const size_t k = run->colour + EVERY * n, in_layer = g->rows_y * 64 * g->words;
     const uint64_t first = cwi_sample_number(g, 0, 0, k), end = first + in_layer;
     const uint32_t v_end = s->rows[(k + 1) * g->rows_y].first[0];
@@ -232,7 +232,7 @@ static void start_from(const cwi_snapping *s, uint32_t v, distances *d)
     d->from = s->before + 3 * (size_t)v;
     cwi_to_index(s, d->from, d->from_x);
     for (int a = 0; a < 3; a++) {
-        d->nearest[0][a] = (double)cwi_position(s, s->into[v])[a] - (double)d->from[a];
+        d->nearest[0][a] = (double)cwi_mesh_position(s, s->into[v])[a] - (double)d->from[a];
         d->nearest[1][a] = cwi_index(s, s->into[v])[a] - d->from_x[a];
     }
 }
@@ -273,7 +273,7 @@ static void try_triangle(const cwi_snapping *s, const uint32_t corner[3], distan
         return;
     for (int c = 0; c < 3; c++)
         for (int a = 0; a < 3; a++)
-            world.p[c][a] = (double)cwi_position(s, corner[c])[a] - (double)d->from[a];
+            world.p[c][a] = (double)cwi_mesh_position(s, corner[c])[a] - (double)d->from[a];
     cwi_nearest_of_triangle(&world, d->nearest[0]);
 }
 
@@ -369,7 +369,7 @@ static void close_ranks(cwi_snapping *s)
     mesh->triangle_count = triangles;
 }
 
-size_t cwi_snap_bytes(const cwi_grid *grid, size_t vertices, size_t triangles)
+size_t cwi_snap_bytes(const cwi_bit_grid *grid, size_t vertices, size_t triangles)
 {
     return vertices * (sizeof(cwi_place) + sizeof(uint32_t) + 3 * sizeof(float)) +
            triangles * sizeof(uint32_t) + grid->rows * grid->words * sizeof(cwi_cell_word);
@@ -442,7 +442,7 @@ typedef struct snap_step {
     size_t every, from; /* layers */
 } snap_step;
 
-cw_status cwi_snap(const cwi_grid *grid, const cwi_row *rows, const cw_extract_desc *desc,
+cw_status cwi_snap(const cwi_bit_grid *grid, const cwi_row *rows, const cw_extract_desc *desc,
                    cw_mesh *mesh, cw_snap_counts *counts, cw_error *err)
 {
     static const snap_step steps[] = {

@@ -1,5 +1,5 @@
-/* Merging crossings that stand close to one and the same sample: the needles between them go.
- */
+/* Merging crossings that stand close to one and the same sample: the needles between
+ * them go. */
 #ifndef EXTRACT_SNAP_SNAP_H
 #define EXTRACT_SNAP_SNAP_H
 
@@ -8,10 +8,11 @@
 #include <cubewright/mesh.h>
 
 /* What snapping a mesh of so many vertices and triangles takes, beside the mesh. */
-size_t cwi_snap_bytes(const cwi_grid *grid, size_t vertices, size_t triangles);
+size_t cwi_snap_bytes(const cwi_bit_grid *grid, size_t vertices, size_t triangles);
 
 /* Snaps a mesh that was just written from a grid and its rows. desc->snap is above 0. */
-cw_status cwi_snap(const cwi_grid *grid, const cwi_row *rows, const cw_extract_desc *desc,
-                   cw_mesh *mesh, cw_snap_counts *counts, cw_error *err);
+CW_NODISCARD cw_status cwi_snap(const cwi_bit_grid *grid, const cwi_row *rows,
+                                const cw_extract_desc *desc, cw_mesh *mesh,
+                                cw_snap_counts *counts, cw_error *err);
 
 #endif

@@ -8,8 +8,8 @@
  * Otherwise every triangle near it is looked at. Where a line along a side parts the shadows of
  * two triangles, a plane parts them. What is left, above or below the cone mostly, is compared
  * in space, triangle by triangle. */
-#include "core/geometry/vec3.h"
 #include "core/geometry/triangle_separation.h"
+#include "core/geometry/vec3.h"
 #include "extract/snap/snap_cluster.h"
 
 #include <math.h>

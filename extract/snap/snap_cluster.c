@@ -1,11 +1,11 @@
 #include "extract/snap/snap_cluster.h"
 
-uint64_t cwi_sample_number(const cwi_grid *g, size_t i, size_t j, size_t k)
+uint64_t cwi_sample_number(const cwi_bit_grid *g, size_t i, size_t j, size_t k)
 {
     return (uint64_t)((k * g->rows_y + j) * (64 * g->words) + i + 1);
 }
 
-void cwi_sample_place(const cwi_grid *g, uint64_t sample, size_t at[3])
+void cwi_sample_place(const cwi_bit_grid *g, uint64_t sample, size_t at[3])
 {
     const size_t n = (size_t)sample - 1, row = n / (64 * g->words);
     at[0] = n % (64 * g->words);
@@ -51,7 +51,7 @@ static size_t find_in_row(const cwi_snapping *s, size_t row, size_t i, unsigned 
 
 int cwi_find_triangles(const cwi_snapping *s, const size_t at[3], size_t reach, size_t *out)
 {
-    const cwi_grid *g = s->grid;
+    const cwi_bit_grid *g = s->grid;
     size_t low[3], count = 0;
     for (int a = 0; a < 3; a++)
         low[a] = at[a] < reach ? 0 : at[a] - reach;

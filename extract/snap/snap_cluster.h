@@ -2,8 +2,8 @@
 #ifndef EXTRACT_SNAP_SNAP_CLUSTER_H
 #define EXTRACT_SNAP_SNAP_CLUSTER_H
 
-#include "extract/dense/bit_planes.h"
 #include "extract/cases/cell_topology.h"
+#include "extract/dense/bit_planes.h"
 
 #include <cubewright/mesh.h>
 
@@ -27,7 +27,7 @@ typedef struct cwi_cell_word {
 } cwi_cell_word;
 
 typedef struct cwi_snapping {
-    const cwi_grid *grid;
+    const cwi_bit_grid *grid;
     const cwi_row *rows;
     cw_mesh *mesh;
     double share;
@@ -59,14 +59,14 @@ static inline int cwi_rim_next(const cwi_cluster *c, int n)
     return n + 1 < c->rim_count ? n + 1 : 0;
 }
 
-uint64_t cwi_sample_number(const cwi_grid *grid, size_t i, size_t j, size_t k);
-void cwi_sample_place(const cwi_grid *grid, uint64_t sample, size_t at[3]);
+uint64_t cwi_sample_number(const cwi_bit_grid *grid, size_t i, size_t j, size_t k);
+void cwi_sample_place(const cwi_bit_grid *grid, uint64_t sample, size_t at[3]);
 
 /* Positions in the mesh to padded index, and back. */
 void cwi_to_index(const cwi_snapping *s, const float position[3], double x[3]);
 void cwi_to_position(const cwi_snapping *s, const double x[3], float position[3]);
 
-static inline const float *cwi_position(const cwi_snapping *s, uint32_t v)
+static inline const float *cwi_mesh_position(const cwi_snapping *s, uint32_t v)
 {
     return s->mesh->positions + 3 * (size_t)v;
 }

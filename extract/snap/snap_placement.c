@@ -1,7 +1,7 @@
 /* Where a cluster goes, and whether the cone over the rim of its star is good enough. */
+#include "core/geometry/triangle_separation.h"
 #include "core/geometry/vec3.h"
 #include "extract/dense/ambiguous_cells.h"
-#include "core/geometry/triangle_separation.h"
 #include "extract/snap/snap_cluster.h"
 
 #include <math.h>
@@ -18,7 +18,7 @@
 /* ---- where a cluster goes --------------------------------------------------------------- */
 
 /* The trilinear field and its gradient; NaN where it has none. */
-static double field(const cwi_grid *g, const double x[3], double gradient[3])
+static double field(const cwi_bit_grid *g, const double x[3], double gradient[3])
 {
     size_t at[3];
     double t[3], corner[8], value = 0;
@@ -41,7 +41,7 @@ static double field(const cwi_grid *g, const double x[3], double gradient[3])
 }
 
 /* One step of Newton's along the gradient, the locked axes kept, towards a value. */
-static bool approach(const cwi_grid *g, double target, const bool locked[3], double x[3])
+static bool approach(const cwi_bit_grid *g, double target, const bool locked[3], double x[3])
 {
     double gradient[3], largest = 0, square = 0;
     const double miss = field(g, x, gradient) - target;
@@ -143,7 +143,8 @@ static shape shape_of(const float *p, const float *q, const float *r)
 static shape shape_at(const cwi_snapping *s, size_t triangle)
 {
     const uint32_t *t = s->mesh->triangles + 3 * triangle;
-    return shape_of(cwi_position(s, t[0]), cwi_position(s, t[1]), cwi_position(s, t[2]));
+    return shape_of(cwi_mesh_position(s, t[0]), cwi_mesh_position(s, t[1]),
+                    cwi_mesh_position(s, t[2]));
 }
 
 /* What a cluster's triangles look like before it goes anywhere. */
@@ -170,8 +171,8 @@ static bool looks_good(const cwi_snapping *s, const cwi_cluster *c, const looks 
                        const float p[3])
 {
     for (int n = 0; n < c->rim_count; n++) {
-        const shape is = shape_of(p, cwi_position(s, c->rim[n]),
-                                  cwi_position(s, c->rim[cwi_rim_next(c, n)]));
+        const shape is = shape_of(p, cwi_mesh_position(s, c->rim[n]),
+                                  cwi_mesh_position(s, c->rim[cwi_rim_next(c, n)]));
         if (!(cwi_dot(before->normal[n], is.normal) > 0) || !(is.sharpness <= before->worst))
             return false;
     }

@@ -8,7 +8,7 @@
 
 static const uint32_t shape[3] = {CWI_BLOCK_X, CWI_BLOCK_Y, CWI_BLOCK_Z};
 
-cw_status cwi_gathering_init(cwi_gathering *g, const cwi_blocks *blocks,
+cw_status cwi_gathering_init(cwi_gathering *g, const cwi_leaf_blocks *blocks,
                              const cwi_engine *engine, bool cubic, cw_error *err)
 {
     memset(g, 0, sizeof *g);
@@ -28,11 +28,10 @@ void cwi_gathering_free(cwi_gathering *g)
     g->voxels = NULL;
 }
 
-/* --- what is where -------------------------------------------------------------------------
- */
+/* --- what is where ------------------------------------------------------------------------ */
 
 /* The slots of a block that a region is in, along an axis: begin to end. */
-static void find_slots(const cwi_block *b, const cwi_region *r, int a, size_t slot[2])
+static void find_slots(const cwi_leaf_block *b, const cwi_region *r, int a, size_t slot[2])
 {
     const int64_t first = ((int64_t)b->at[a] - 1) * shape[a] - 1; /* the leaf in slot 0 */
     const int64_t low = (int64_t)r->at[a] - first, high = low + r->size[a], n = shape[a] + 2;
@@ -40,7 +39,7 @@ static void find_slots(const cwi_block *b, const cwi_region *r, int a, size_t sl
     slot[1] = (size_t)(high < n ? high : n);
 }
 
-static void place_region(cwi_gathering *g, const cwi_block *b, uint32_t number)
+static void place_region(cwi_gathering *g, const cwi_leaf_block *b, uint32_t number)
 {
     const cwi_region r = cwi_region_at(g->blocks->volume, number);
     size_t x[2], y[2], z[2];
@@ -55,7 +54,7 @@ static void place_region(cwi_gathering *g, const cwi_block *b, uint32_t number)
             }
 }
 
-static void place_regions(cwi_gathering *g, const cwi_block *b)
+static void place_regions(cwi_gathering *g, const cwi_leaf_block *b)
 {
     memset(g->region, 0xff, sizeof g->region); /* CWI_BACKGROUND */
     memset(g->sides, g->blocks->background, sizeof g->sides);
@@ -79,8 +78,7 @@ static bool is_idle(const cwi_gathering *g, size_t j, size_t k)
     return sides != CWI_BOTH;
 }
 
-/* --- samples -------------------------------------------------------------------------------
- */
+/* --- samples ------------------------------------------------------------------------------ */
 
 /* A slot's share of the block's samples along an axis, and the first of them in its leaf. */
 typedef struct span {
@@ -131,7 +129,7 @@ static void copy_slot(const cwi_gathering *g, uint32_t number, span x, span y, s
 }
 
 /* Bits of rows whose samples, between the padding, are all on one side. */
-static void fill_bits(const cwi_gathering *g, bool inside, span y, span z, cwi_grid *grid)
+static void fill_bits(const cwi_gathering *g, bool inside, span y, span z, cwi_bit_grid *grid)
 {
     const uint64_t bits = inside ? ((UINT64_C(1) << g->sample[0]) - 1) << 1 : 0;
     for (size_t k = z.begin; k < z.end; k++)
@@ -139,7 +137,7 @@ static void fill_bits(const cwi_gathering *g, bool inside, span y, span z, cwi_g
             grid->inside[(k + 1) * grid->rows_y + j + 1] = bits;
 }
 
-static void gather_column(const cwi_gathering *g, size_t j, size_t k, cwi_grid *grid)
+static void gather_column(const cwi_gathering *g, size_t j, size_t k, cwi_bit_grid *grid)
 {
     const span y = span_of(g, 1, j), z = span_of(g, 2, k);
     bool in = false, out = false;
@@ -153,7 +151,7 @@ static void gather_column(const cwi_gathering *g, size_t j, size_t k, cwi_grid *
         g->engine->classify_rows(grid, y.begin + 1, layer + 1, y.end - y.begin, &in, &out);
 }
 
-void cwi_gather(cwi_gathering *g, const cwi_block *block, cwi_grid *grid)
+void cwi_gather(cwi_gathering *g, const cwi_leaf_block *block, cwi_bit_grid *grid)
 {
     place_regions(g, block);
     for (size_t k = 0; k < CWI_SLOTS_Z; k++)

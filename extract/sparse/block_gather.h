@@ -14,7 +14,7 @@ enum {
 /* A block is looked at as slots for leaves: its own, one layer before them for the halo, and
  * one behind them, where its last cells end. */
 typedef struct cwi_gathering {
-    const cwi_blocks *blocks;
+    const cwi_leaf_blocks *blocks;
     const cwi_engine *engine;
     size_t halo;      /* samples before the first cell */
     size_t sample[3]; /* of the block: with the halo, and so many and one after the last cell */
@@ -26,16 +26,17 @@ typedef struct cwi_gathering {
 
 /* Makes room for samples. Free with cwi_gathering_free(), also after an error.
  * cubic  the halo is wide enough for cubics */
-cw_status cwi_gathering_init(cwi_gathering *g, const cwi_blocks *blocks,
-                             const cwi_engine *engine, bool cubic, cw_error *err);
+CW_NODISCARD cw_status cwi_gathering_init(cwi_gathering *g, const cwi_leaf_blocks *blocks,
+                                          const cwi_engine *engine, bool cubic, cw_error *err);
 void cwi_gathering_free(cwi_gathering *g);
 
 /* Samples and inside bits of a block into g->voxels and the planes of a grid over them. Where
  * no vertex needs them, samples are stale; bits are right everywhere. */
-void cwi_gather(cwi_gathering *g, const cwi_block *block, cwi_grid *grid);
+void cwi_gather(cwi_gathering *g, const cwi_leaf_block *block, cwi_bit_grid *grid);
 
 /* The index in the volume of a block's first sample. */
-static inline ptrdiff_t cwi_first_sample(const cwi_gathering *g, const cwi_block *block, int a)
+static inline ptrdiff_t cwi_first_sample(const cwi_gathering *g, const cwi_leaf_block *block,
+                                         int a)
 {
     static const int leaves[3] = {CWI_BLOCK_X, CWI_BLOCK_Y, CWI_BLOCK_Z};
     return ((ptrdiff_t)block->at[a] - 1) * leaves[a] * 8 - (ptrdiff_t)g->halo;

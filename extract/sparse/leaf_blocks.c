@@ -1,7 +1,7 @@
 #include "extract/sparse/leaf_blocks.h"
 
-#include "core/base/parallel.h"
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
 #include "core/volume/volume.h"
@@ -35,8 +35,7 @@ cwi_region cwi_region_at(const cw_volume *v, size_t n)
     return (cwi_region){{at[0], at[1], at[2]}, {1, 1, 1}, (const char *)v->data + n * bytes, 0};
 }
 
-/* --- what can be wrong ---------------------------------------------------------------------
- */
+/* --- what can be wrong -------------------------------------------------------------------- */
 
 static cw_status check_region(const cw_volume *v, size_t n, cw_error *err)
 {
@@ -92,8 +91,7 @@ static cw_status check(const cw_volume *v, cw_error *err)
     return st;
 }
 
-/* --- which sides of the isovalue a region is on --------------------------------------------
- */
+/* --- which sides of the isovalue a region is on ------------------------------------------- */
 
 enum { TOGETHER = 512 }; /* leaves that a thread looks at in a row */
 
@@ -103,9 +101,9 @@ typedef struct touch {
 } touch;
 
 typedef struct sorting {
-    cwi_blocks *blocks;
+    cwi_leaf_blocks *blocks;
     const cwi_engine *engine;
-    const cwi_grid *grid;
+    const cwi_bit_grid *grid;
     size_t max_bytes;
     touch *touches;
     size_t touch_count, touch_room;
@@ -139,10 +137,9 @@ static void find_sides(void *context, size_t part)
     }
 }
 
-/* --- the table of blocks -------------------------------------------------------------------
- */
+/* --- the table of blocks ------------------------------------------------------------------ */
 
-static size_t slot_of(const cwi_blocks *b, const uint32_t at[3])
+static size_t slot_of(const cwi_leaf_blocks *b, const uint32_t at[3])
 {
     uint64_t h = at[0] * UINT64_C(0x9e3779b97f4a7c15);
     h = (h ^ at[1]) * UINT64_C(0xbf58476d1ce4e5b9);
@@ -154,19 +151,19 @@ static size_t slot_of(const cwi_blocks *b, const uint32_t at[3])
 }
 
 /* Its number and 1; 0: there is none. */
-static uint32_t find_number(const cwi_blocks *b, const uint32_t at[3])
+static uint32_t find_number(const cwi_leaf_blocks *b, const uint32_t at[3])
 {
     return b->slots ? b->table[slot_of(b, at)] : 0;
 }
 
-const cwi_block *cwi_blocks_find(const cwi_blocks *b, const uint32_t at[3])
+const cwi_leaf_block *cwi_blocks_find(const cwi_leaf_blocks *b, const uint32_t at[3])
 {
     const uint32_t number = find_number(b, at);
     return number ? &b->block[number - 1] : NULL;
 }
 
 /* A table at most half full, of the blocks as they are. */
-static bool make_table(cwi_blocks *b, size_t slots)
+static bool make_table(cwi_leaf_blocks *b, size_t slots)
 {
     cwi_free(b->table);
     b->slots = slots;
@@ -177,7 +174,7 @@ static bool make_table(cwi_blocks *b, size_t slots)
     return b->table != NULL;
 }
 
-static cw_status grow(cwi_blocks *b, size_t max_bytes, cw_error *err)
+static cw_status grow(cwi_leaf_blocks *b, size_t max_bytes, cw_error *err)
 {
     const size_t room = b->room ? 2 * b->room : 1024, bytes = room * sizeof *b->block;
     if (room > UINT32_MAX / 2 || (max_bytes && bytes > max_bytes)) {
@@ -189,7 +186,7 @@ static cw_status grow(cwi_blocks *b, size_t max_bytes, cw_error *err)
             "blocks around leaves and tiles need %s and more; %s are left (--memory)", needed,
             left);
     }
-    cwi_block *more = cwi_realloc_array(b->block, room, sizeof *more);
+    cwi_leaf_block *more = cwi_realloc_array(b->block, room, sizeof *more);
     if (!more)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu blocks", room);
     b->block = more;
@@ -199,23 +196,22 @@ static cw_status grow(cwi_blocks *b, size_t max_bytes, cw_error *err)
                : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu blocks", room);
 }
 
-static cw_status find_or_add(cwi_blocks *b, const uint32_t at[3], size_t max_bytes,
-                             cwi_block **found, cw_error *err)
+static cw_status find_or_add(cwi_leaf_blocks *b, const uint32_t at[3], size_t max_bytes,
+                             cwi_leaf_block **found, cw_error *err)
 {
     cw_status st = b->count == b->room ? grow(b, max_bytes, err) : CW_OK;
     if (st != CW_OK)
         return st;
     uint32_t *number = &b->table[slot_of(b, at)];
     if (!*number) {
-        b->block[b->count] = (cwi_block){.at = {at[0], at[1], at[2]}};
+        b->block[b->count] = (cwi_leaf_block){.at = {at[0], at[1], at[2]}};
         *number = (uint32_t)++b->count;
     }
     *found = &b->block[*number - 1];
     return CW_OK;
 }
 
-/* --- blocks and regions --------------------------------------------------------------------
- */
+/* --- blocks and regions ------------------------------------------------------------------- */
 
 /* Along an axis, of leaves counted from a block before the first. */
 typedef struct reach {
@@ -286,7 +282,7 @@ static cw_status visit_all(sorting *s, uint32_t around, visitor visit, cw_error 
 static cw_status note_sides(sorting *s, size_t n, const reach along[3], const uint32_t at[3],
                             cw_error *err)
 {
-    cwi_block *b;
+    cwi_leaf_block *b;
     cw_status st = find_or_add(s->blocks, at, s->max_bytes, &b, err);
     if (st != CW_OK)
         return st;
@@ -298,7 +294,7 @@ static cw_status note_sides(sorting *s, size_t n, const reach along[3], const ui
 
 static int by_place(const void *a, const void *b)
 {
-    const cwi_block *p = a, *q = b;
+    const cwi_leaf_block *p = a, *q = b;
     for (int n = 2; n >= 0; n--)
         if (p->at[n] != q->at[n])
             return p->at[n] < q->at[n] ? -1 : 1;
@@ -308,11 +304,11 @@ static int by_place(const void *a, const void *b)
 /* Leaves the blocks that may be crossed, in their order. */
 static cw_status keep_crossed(sorting *s, cw_error *err)
 {
-    cwi_blocks *b = s->blocks;
+    cwi_leaf_blocks *b = s->blocks;
     size_t kept = 0;
     b->background = sides_of_value(s, b->volume->sparse->background);
     for (size_t n = 0; n < b->count; n++) {
-        cwi_block *at = &b->block[n];
+        cwi_leaf_block *at = &b->block[n];
         at->sides |= at->covered < TOUCHED ? b->background : 0;
         if (at->sides == CWI_BOTH)
             b->block[kept++] = *at;
@@ -348,7 +344,7 @@ static cw_status note_touch(sorting *s, size_t n, const reach along[3], const ui
 /* Gives each block the list of its regions. */
 static cw_status list_regions(sorting *s, cw_error *err)
 {
-    cwi_blocks *b = s->blocks;
+    cwi_leaf_blocks *b = s->blocks;
     size_t total = 0;
     cw_status st = visit_all(s, 1, note_touch, err);
     if (st != CW_OK)
@@ -362,18 +358,18 @@ static cw_status list_regions(sorting *s, cw_error *err)
         b->block[n].count = 0;
     }
     for (size_t n = 0; n < s->touch_count; n++) {
-        cwi_block *block = &b->block[s->touches[n].block];
+        cwi_leaf_block *block = &b->block[s->touches[n].block];
         b->region[block->first + block->count++] = s->touches[n].region;
     }
     return CW_OK;
 }
 
-cw_status cwi_blocks_init(cwi_blocks *b, const cwi_engine *engine, const cwi_grid *grid,
-                          const cw_extract_desc *desc, cw_error *err)
+cw_status cwi_blocks_init(cwi_leaf_blocks *b, const cwi_engine *engine,
+                          const cwi_bit_grid *grid, const cw_extract_desc *desc, cw_error *err)
 {
     const size_t count = region_count(grid->volume.sparse);
     sorting s = {.blocks = b, .engine = engine, .grid = grid, .max_bytes = desc->max_bytes};
-    *b = (cwi_blocks){.volume = &grid->volume};
+    *b = (cwi_leaf_blocks){.volume = &grid->volume};
     cw_status st = check(&grid->volume, err);
     if (st != CW_OK)
         return st;
@@ -392,7 +388,7 @@ cw_status cwi_blocks_init(cwi_blocks *b, const cwi_engine *engine, const cwi_gri
     return st;
 }
 
-void cwi_blocks_free(cwi_blocks *b)
+void cwi_blocks_free(cwi_leaf_blocks *b)
 {
     for (size_t n = 0; n < b->count && b->block; n++) {
         cwi_free(b->block[n].seam);
@@ -402,5 +398,5 @@ void cwi_blocks_free(cwi_blocks *b)
     cwi_free(b->table);
     cwi_free(b->region);
     cwi_free(b->sides);
-    *b = (cwi_blocks){0};
+    *b = (cwi_leaf_blocks){0};
 }

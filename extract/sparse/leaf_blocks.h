@@ -35,46 +35,47 @@ typedef struct cwi_stranger {
 } cwi_stranger;
 
 /* What the engine made of a block. */
-typedef struct cwi_piece {
+typedef struct cwi_block_mesh {
     void *memory; /* of all that follows */
     float *positions, *normals;
     uint32_t *triangles;
     cwi_stranger *strangers; /* by rising vertex */
     size_t vertex_count, triangle_count, stranger_count;
-} cwi_piece;
+} cwi_block_mesh;
 
-typedef struct cwi_block {
+typedef struct cwi_leaf_block {
     uint32_t at[3];
     uint32_t covered;    /* leaves whose samples its cells touch, of those that are kept */
     uint8_t sides;       /* CWI_OUTSIDE and CWI_INSIDE: of those, as far as they are kept */
-    size_t first, count; /* of its regions, in cwi_blocks.region */
+    size_t first, count; /* of its regions, in cwi_leaf_blocks.region */
     size_t vertices, triangles; /* of its own; later, of the blocks before it */
     cwi_seam *seam;             /* by rising keys */
     size_t seam_count;
-    cwi_piece piece;
-} cwi_block;
+    cwi_block_mesh piece;
+} cwi_leaf_block;
 
-typedef struct cwi_blocks {
+typedef struct cwi_leaf_blocks {
     const cw_volume *volume;
-    cwi_block *block; /* those that the surface may cross, by rising z, then y, then x */
+    cwi_leaf_block *block; /* those that the surface may cross, by rising z, then y, then x */
     size_t count, room;
     uint32_t *table; /* of `slots` places: a block's number and 1, by a hash of its place */
     size_t slots;
     uint32_t *region;   /* numbers of regions: leaves, then tiles */
     uint8_t *sides;     /* of every region */
     uint8_t background; /* the side of what no region has */
-} cwi_blocks;
+} cwi_leaf_blocks;
 
 /* Finds the blocks that the surface may cross, and what lies in them and one leaf around them.
  * grid  its level is set, its volume is sparse
  * Returns CW_ERR_ARGUMENT for a leaf or tile beyond the volume's size; CW_ERR_LIMIT,
  * CW_ERR_NO_MEMORY. Free with cwi_blocks_free(), also after an error. */
-cw_status cwi_blocks_init(cwi_blocks *blocks, const cwi_engine *engine, const cwi_grid *grid,
-                          const cw_extract_desc *desc, cw_error *err);
-void cwi_blocks_free(cwi_blocks *blocks);
+CW_NODISCARD cw_status cwi_blocks_init(cwi_leaf_blocks *blocks, const cwi_engine *engine,
+                                       const cwi_bit_grid *grid, const cw_extract_desc *desc,
+                                       cw_error *err);
+void cwi_blocks_free(cwi_leaf_blocks *blocks);
 
 /* The block at a place; NULL when the surface does not cross it. */
-const cwi_block *cwi_blocks_find(const cwi_blocks *blocks, const uint32_t at[3]);
+const cwi_leaf_block *cwi_blocks_find(const cwi_leaf_blocks *blocks, const uint32_t at[3]);
 
 cwi_region cwi_region_at(const cw_volume *volume, size_t number);
 

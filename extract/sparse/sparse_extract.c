@@ -1,16 +1,16 @@
 #include "extract/sparse/sparse_extract.h"
 
-#include "core/base/parallel.h"
 #include "core/base/memory.h"
-#include "core/mesh/mesh.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "core/mesh/mesh.h"
 #include "core/volume/volume.h"
-#include "extract/dense/crossed_edges.h"
-#include "extract/sparse/block_gather.h"
 #include "extract/common/extract_limits.h"
 #include "extract/common/field_normals.h"
+#include "extract/dense/crossed_edges.h"
 #include "extract/dense/dense_plan.h"
+#include "extract/sparse/block_gather.h"
 
 #include <omp.h>
 #include <string.h>
@@ -38,8 +38,8 @@ typedef struct worker {
 } worker;
 
 typedef struct sparse_plan {
-    cwi_blocks blocks;
-    cwi_grid whole; /* the level, and the volume; no planes */
+    cwi_leaf_blocks blocks;
+    cwi_bit_grid whole; /* the level, and the volume; no planes */
     const cwi_engine *engine;
     worker *workers;
     int threads;
@@ -51,8 +51,7 @@ typedef struct sparse_plan {
     cw_mesh *mesh;
 } sparse_plan;
 
-/* --- a block's vertices --------------------------------------------------------------------
- */
+/* --- a block's vertices ------------------------------------------------------------------- */
 
 /* Where an edge is in its block: sorted as its vertices are numbered. */
 static uint32_t key_of(const int at[3], int axis)
@@ -79,7 +78,7 @@ static void note_side(worker *w, const int at[3], int axis, uint32_t vertex)
  * all, of others those at the ends. */
 static void note_row(worker *w, size_t halo, int j, int k, int axis)
 {
-    const cwi_grid *g = &w->plan.grid;
+    const cwi_bit_grid *g = &w->plan.grid;
     const size_t first = halo + 1, row = (size_t)k + first, line = (size_t)j + first;
     const uint64_t edges = cwi_edge_vertices(g, axis, line, row, 0) >> first;
     const uint64_t ends = UINT64_C(1) | UINT64_C(1) << cells[0];
@@ -94,7 +93,7 @@ static void note_row(worker *w, size_t halo, int j, int k, int axis)
 
 static void note_sides(worker *w, size_t halo)
 {
-    const cwi_grid *g = &w->plan.grid;
+    const cwi_bit_grid *g = &w->plan.grid;
     w->seam_count = w->stranger_count = 0;
     for (int k = 0; k <= cells[2]; k++)
         for (int j = 0; j <= cells[1]; j++) {
@@ -107,7 +106,7 @@ static void note_sides(worker *w, size_t halo)
 }
 
 /* Gathers a block and counts what its cells make. */
-static cw_status look_at(const cwi_block *b, worker *w, cw_error *err)
+static cw_status look_at(const cwi_leaf_block *b, worker *w, cw_error *err)
 {
     cwi_gather(&w->gathering, b, &w->plan.grid);
     cw_status st = cwi_plan_count(&w->plan, 1, &(cw_progress){0}, err);
@@ -116,8 +115,7 @@ static cw_status look_at(const cwi_block *b, worker *w, cw_error *err)
     return st;
 }
 
-/* --- marching: each block by itself --------------------------------------------------------
- */
+/* --- marching: each block by itself ------------------------------------------------------- */
 
 static void *take(char **memory, size_t count, size_t size)
 {
@@ -126,14 +124,15 @@ static void *take(char **memory, size_t count, size_t size)
     return here;
 }
 
-static cw_status alloc_piece(const worker *w, bool normals, cwi_piece *piece, cw_error *err)
+static cw_status alloc_piece(const worker *w, bool normals, cwi_block_mesh *piece,
+                             cw_error *err)
 {
     const size_t v = w->plan.counts.vertices, t = w->plan.counts.triangles,
                  strangers = w->stranger_count;
     char *memory = cwi_alloc_array(cwi_extract_mesh_bytes(&w->plan.counts, normals) +
                                        strangers * sizeof *piece->strangers,
                                    1);
-    *piece = (cwi_piece){
+    *piece = (cwi_block_mesh){
         .memory = memory, .vertex_count = v, .triangle_count = t, .stranger_count = strangers};
     if (!memory)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %zu triangles", t);
@@ -145,7 +144,7 @@ static cw_status alloc_piece(const worker *w, bool normals, cwi_piece *piece, cw
     return CW_OK;
 }
 
-static cw_status keep_seam(const worker *w, cwi_block *b, cw_error *err)
+static cw_status keep_seam(const worker *w, cwi_leaf_block *b, cw_error *err)
 {
     b->seam_count = w->seam_count;
     b->seam = cwi_alloc_array(w->seam_count, sizeof *b->seam);
@@ -155,9 +154,9 @@ static cw_status keep_seam(const worker *w, cwi_block *b, cw_error *err)
     return CW_OK;
 }
 
-static cw_status make_piece(const sparse_plan *p, cwi_block *b, worker *w, cw_error *err)
+static cw_status make_piece(const sparse_plan *p, cwi_leaf_block *b, worker *w, cw_error *err)
 {
-    const cwi_grid *g = &w->plan.grid;
+    const cwi_bit_grid *g = &w->plan.grid;
     cwi_vertex_sink sink = p->sink;
     cw_status st = alloc_piece(w, !p->desc->no_normals, &b->piece, err);
     if (st == CW_OK)
@@ -175,14 +174,14 @@ static cw_status make_piece(const sparse_plan *p, cwi_block *b, worker *w, cw_er
     return CW_OK;
 }
 
-static size_t bytes_of(const sparse_plan *p, const cwi_block *b)
+static size_t bytes_of(const sparse_plan *p, const cwi_leaf_block *b)
 {
     const cw_extract_counts c = {.vertices = b->vertices, .triangles = b->triangles};
     return cwi_extract_mesh_bytes(&c, !p->desc->no_normals);
 }
 
 /* What is too much is told as soon as it is found, not when all is made. */
-static cw_status check_made(sparse_plan *p, const cwi_block *b, cw_error *err)
+static cw_status check_made(sparse_plan *p, const cwi_leaf_block *b, cw_error *err)
 {
     const cw_extract_desc *d = p->desc;
     size_t made, bytes;
@@ -210,7 +209,7 @@ static cw_status check_made(sparse_plan *p, const cwi_block *b, cw_error *err)
     return CW_OK;
 }
 
-static cw_status march_block(sparse_plan *p, cwi_block *b, worker *w, cw_error *err)
+static cw_status march_block(sparse_plan *p, cwi_leaf_block *b, worker *w, cw_error *err)
 {
     cw_status st = look_at(b, w, err);
     if (st != CW_OK || !w->plan.counts.vertices)
@@ -223,18 +222,17 @@ static cw_status march_block(sparse_plan *p, cwi_block *b, worker *w, cw_error *
     return st == CW_OK ? make_piece(p, b, w, err) : st;
 }
 
-/* --- joining -------------------------------------------------------------------------------
- */
+/* --- joining ------------------------------------------------------------------------------ */
 
 /* The number in the mesh of another block's vertex. That block cuts the same edge, so it was
  * kept and has the key; but for leaves that lie in each other. */
-static bool find_stranger(const sparse_plan *p, const cwi_block *b, const cwi_stranger *s,
+static bool find_stranger(const sparse_plan *p, const cwi_leaf_block *b, const cwi_stranger *s,
                           uint32_t *number)
 {
     uint32_t at[3];
     for (int a = 0; a < 3; a++)
         at[a] = b->at[a] + (s->beyond >> a & 1);
-    const cwi_block *owner = cwi_blocks_find(&p->blocks, at);
+    const cwi_leaf_block *owner = cwi_blocks_find(&p->blocks, at);
     size_t low = 0, high = owner ? owner->seam_count : 0;
     while (high - low > 1) {
         const size_t middle = low + (high - low) / 2;
@@ -250,9 +248,9 @@ static bool find_stranger(const sparse_plan *p, const cwi_block *b, const cwi_st
 }
 
 /* Copies a block's own vertices to the mesh, and tells where all are there. */
-static bool place_vertices(const sparse_plan *p, const cwi_block *b, uint32_t *number)
+static bool place_vertices(const sparse_plan *p, const cwi_leaf_block *b, uint32_t *number)
 {
-    const cwi_piece *piece = &b->piece;
+    const cwi_block_mesh *piece = &b->piece;
     const cw_mesh *mesh = p->mesh;
     size_t from = 0, to = b->vertices;
     for (size_t n = 0; n <= piece->stranger_count; n++) {
@@ -270,9 +268,9 @@ static bool place_vertices(const sparse_plan *p, const cwi_block *b, uint32_t *n
     return true;
 }
 
-static cw_status join_block(sparse_plan *p, cwi_block *b, worker *w, cw_error *err)
+static cw_status join_block(sparse_plan *p, cwi_leaf_block *b, worker *w, cw_error *err)
 {
-    cwi_piece *piece = &b->piece;
+    cwi_block_mesh *piece = &b->piece;
     if (!piece->memory)
         return CW_OK;
     if (piece->vertex_count > w->number_room) {
@@ -289,15 +287,14 @@ static cw_status join_block(sparse_plan *p, cwi_block *b, worker *w, cw_error *e
     for (size_t n = 0; n < 3 * piece->triangle_count; n++)
         to[n] = w->number[piece->triangles[n]];
     cwi_free(piece->memory);
-    *piece = (cwi_piece){0};
+    *piece = (cwi_block_mesh){0};
     return CW_OK;
 }
 
-/* --- all blocks ----------------------------------------------------------------------------
- */
+/* --- all blocks --------------------------------------------------------------------------- */
 
 /* Cells of the block itself, without the halo, make triangles. */
-static void set_live(cwi_grid *g, size_t first)
+static void set_live(cwi_bit_grid *g, size_t first)
 {
     const uint64_t bits = ((UINT64_C(1) << cells[0]) - 1) << first;
     memset(g->live, 0, g->rows * sizeof *g->live);
@@ -307,7 +304,7 @@ static void set_live(cwi_grid *g, size_t first)
 }
 
 /* What of a block's planes matters is the same for all blocks. */
-static cw_status set_window(cwi_grid *g, size_t first, cw_error *err)
+static cw_status set_window(cwi_bit_grid *g, size_t first, cw_error *err)
 {
     uint64_t *window = cwi_alloc_array(4 * g->rows, sizeof *window);
     g->live = cwi_grid_plane(g);
@@ -333,7 +330,7 @@ static cw_status set_window(cwi_grid *g, size_t first, cw_error *err)
 static cw_status init_grid(const sparse_plan *p, worker *w, cw_error *err)
 {
     const cwi_gathering *from = &w->gathering;
-    cwi_grid *g = &w->plan.grid;
+    cwi_bit_grid *g = &w->plan.grid;
     cw_volume view = p->whole.volume;
     view.sparse = NULL;
     view.data = from->voxels;
@@ -402,7 +399,7 @@ enum { BLOCK = CWI_BLOCK_X * CWI_BLOCK_Y * CWI_BLOCK_Z * CWI_LEAF_VOXELS };
 
 typedef struct turn {
     sparse_plan *plan;
-    cw_status (*work)(sparse_plan *p, cwi_block *b, worker *w, cw_error *err);
+    cw_status (*work)(sparse_plan *p, cwi_leaf_block *b, worker *w, cw_error *err);
 } turn;
 
 /* After a thread's first failure it does no more. */
@@ -415,7 +412,8 @@ static void do_block(void *context, size_t n)
 }
 
 static cw_status each_block(sparse_plan *p, const char *step,
-                            cw_status (*work)(sparse_plan *, cwi_block *, worker *, cw_error *),
+                            cw_status (*work)(sparse_plan *, cwi_leaf_block *, worker *,
+                                              cw_error *),
                             cw_error *err)
 {
     turn t = {p, work};
@@ -434,7 +432,7 @@ static cw_status number_blocks(sparse_plan *p, cw_extract_counts *c, cw_error *e
 {
     size_t v = 0, t = 0, seam = 0;
     for (size_t n = 0; n < p->blocks.count; n++) {
-        cwi_block *b = &p->blocks.block[n];
+        cwi_leaf_block *b = &p->blocks.block[n];
         const size_t vertices = b->vertices, triangles = b->triangles;
         b->vertices = v;
         b->triangles = t;

@@ -6,8 +6,8 @@
 
 /* As cw_extract(), of a volume that cw_volume_select() gave and that is sparse; with mesh NULL
  * as cw_extract_predict(). */
-cw_status cwi_extract_sparse(const cwi_engine *engine, const cw_volume *volume,
-                             const cw_extract_desc *desc, cw_mesh *mesh,
-                             cw_extract_counts *counts, cw_error *err);
+CW_NODISCARD cw_status cwi_extract_sparse(const cwi_engine *engine, const cw_volume *volume,
+                                          const cw_extract_desc *desc, cw_mesh *mesh,
+                                          cw_extract_counts *counts, cw_error *err);
 
 #endif

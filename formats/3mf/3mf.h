@@ -2,9 +2,9 @@
 #ifndef FORMATS_3MF_3MF_H
 #define FORMATS_3MF_3MF_H
 
+#include "formats/bytes/zip_read.h"
 #include "formats/mesh/mesh_reader.h"
 #include "formats/text/xml.h"
-#include "formats/bytes/zip_read.h"
 
 typedef enum cwi_3mf_type {
     CWI_3MF_SHAPE,   /* model, surface: what is read */
@@ -74,14 +74,14 @@ extern const uint32_t cwi_3mf_none;
 /* Reads a model of the package, by its number, with all that is in it.
  * Returns CW_ERR_FORMAT, CW_ERR_UNSAFE (a document type), CW_ERR_UNSUPPORTED (it needs an
  * extension that is not read), CW_ERR_LIMIT, CW_ERR_NO_MEMORY */
-cw_status cwi_3mf_read_model(cwi_3mf *m, size_t model, cw_error *err);
+CW_NODISCARD cw_status cwi_3mf_read_model(cwi_3mf *m, size_t model, cw_error *err);
 
 /* Puts the objects where the build wants them, into the mesh. Returns the same. */
-cw_status cwi_3mf_place(cwi_3mf *m, cw_error *err);
+CW_NODISCARD cw_status cwi_3mf_place(cwi_3mf *m, cw_error *err);
 
 /* Reads an entry of the package as XML. CW_ERR_LIMIT for more text than may be read. */
-cw_status cwi_3mf_read_xml(cwi_3mf *m, const char *path, const cwi_xml_rules *rules, void *user,
-                           cw_error *err);
+CW_NODISCARD cw_status cwi_3mf_read_xml(cwi_3mf *m, const char *path,
+                                        const cwi_xml_rules *rules, void *user, cw_error *err);
 
 /* The resource of a model and id; NULL when there is none. */
 cwi_3mf_resource *cwi_3mf_find(const cwi_3mf *m, size_t model, uint32_t id);

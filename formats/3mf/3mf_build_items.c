@@ -1,7 +1,7 @@
 /* Where the objects of a 3MF package stand. */
-#include "core/geometry/affine.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/affine.h"
 #include "formats/3mf/3mf.h"
 
 #include <math.h>

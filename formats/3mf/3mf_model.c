@@ -459,8 +459,8 @@ static cw_status start_item(void *user, cwi_xml *x, cwi_attributes a, cw_error *
 
 /* --- the model --------------------------------------------------------------------------- */
 
-/* Extensions that may be required: others can hold what is to be printed in ways of their own.
- */
+/* Extensions that may be required: others can hold what is to be printed in ways of
+ * their own. */
 static bool is_known_extension(const char *name)
 {
     static const char *const known[] = {"/material/", "/production/", "/trianglesets/"};

@@ -4,8 +4,8 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
-#include "formats/text/xml.h"
 #include "formats/bytes/zip_write.h"
+#include "formats/text/xml.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -108,7 +108,7 @@ static unsigned char *encode_vertex(const cwi_part *part, size_t v, unsigned cha
 {
     static const char *const before[3] = {"<vertex x=\"", "\" y=\"", "\" z=\""};
     for (int a = 0; a < 3; a++)
-        to = cwi_put_decimal(cwi_put_text(to, before[a]), cwi_coordinate(part, v, a), 9);
+        to = cwi_put_decimal(cwi_put_text(to, before[a]), cwi_file_coordinate(part, v, a), 9);
     return cwi_put_text(to, "\"/>\n");
 }
 

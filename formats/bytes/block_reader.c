@@ -15,7 +15,7 @@ static const struct {
 
 enum { HEAD_WORDS = 3 }; /* blocks, bytes of each, bytes of a last one that is smaller */
 
-static uint64_t word_at(const cwi_blocks *b, const unsigned char *words, size_t index)
+static uint64_t word_at(const cwi_packed_blocks *b, const unsigned char *words, size_t index)
 {
     const size_t n = b->form.word_bytes;
     const unsigned char *word = words + index * n;
@@ -25,13 +25,13 @@ static uint64_t word_at(const cwi_blocks *b, const unsigned char *words, size_t 
     return value;
 }
 
-static size_t block_bytes(const cwi_blocks *b, size_t index)
+static size_t block_bytes(const cwi_packed_blocks *b, size_t index)
 {
     return index + 1 == b->count ? b->last : b->bytes;
 }
 
 /* The counts in front of the table must give the bytes that are wanted. */
-static cw_status check_head(cwi_blocks *b, const unsigned char *head, uint64_t wanted,
+static cw_status check_head(cwi_packed_blocks *b, const unsigned char *head, uint64_t wanted,
                             uint64_t there, cw_error *err)
 {
     const uint64_t count = word_at(b, head, 0), bytes = word_at(b, head, 1);
@@ -60,7 +60,8 @@ static cw_status check_head(cwi_blocks *b, const unsigned char *head, uint64_t w
 }
 
 /* Sets *most to the largest block, compressed. */
-static cw_status check_table(const cwi_blocks *b, uint64_t there, uint64_t *most, cw_error *err)
+static cw_status check_table(const cwi_packed_blocks *b, uint64_t there, uint64_t *most,
+                             cw_error *err)
 {
     const uint64_t ratio = codecs[b->form.codec].ratio, besides = codecs[b->form.codec].besides;
     uint64_t sum = (uint64_t)b->count * b->form.word_bytes;
@@ -82,13 +83,13 @@ static cw_status check_table(const cwi_blocks *b, uint64_t there, uint64_t *most
     return CW_OK;
 }
 
-cw_status cwi_blocks_open(cwi_blocks *b, cwi_stream *stream, const cwi_block_form *form,
+cw_status cwi_blocks_open(cwi_packed_blocks *b, cwi_stream *stream, const cwi_block_form *form,
                           uint64_t wanted, uint64_t there, cw_error *err)
 {
     unsigned char head[HEAD_WORDS * 8];
     const size_t head_bytes = HEAD_WORDS * form->word_bytes;
     uint64_t most = 0;
-    *b = (cwi_blocks){.stream = stream, .form = *form};
+    *b = (cwi_packed_blocks){.stream = stream, .form = *form};
     cw_status st = cwi_stream_read(stream, head, head_bytes, err);
     there = there > head_bytes ? there - head_bytes : 0;
     if (st == CW_OK)
@@ -105,16 +106,16 @@ cw_status cwi_blocks_open(cwi_blocks *b, cwi_stream *stream, const cwi_block_for
     return st;
 }
 
-void cwi_blocks_close(cwi_blocks *b)
+void cwi_blocks_close(cwi_packed_blocks *b)
 {
     cwi_free(b->table);
     cwi_free(b->packed);
     cwi_free(b->held);
-    *b = (cwi_blocks){0};
+    *b = (cwi_packed_blocks){0};
 }
 
 /* One whole zlib stream, with its checksum, and nothing behind it. */
-static cw_status inflate_block(const cwi_blocks *b, size_t packed, unsigned char *to,
+static cw_status inflate_block(const cwi_packed_blocks *b, size_t packed, unsigned char *to,
                                size_t size, bool *whole, cw_error *err)
 {
     z_stream z = {.next_in = b->packed, .avail_in = (uInt)packed};
@@ -134,7 +135,7 @@ static cw_status inflate_block(const cwi_blocks *b, size_t packed, unsigned char
 }
 
 /* Decodes the next block to where there is room for it. */
-static cw_status decode(cwi_blocks *b, unsigned char *to, cw_error *err)
+static cw_status decode(cwi_packed_blocks *b, unsigned char *to, cw_error *err)
 {
     const size_t index = b->next++, size = block_bytes(b, index);
     const size_t packed = (size_t)word_at(b, b->table, index);
@@ -154,7 +155,7 @@ static cw_status decode(cwi_blocks *b, unsigned char *to, cw_error *err)
 }
 
 /* Decodes the next block to be taken in parts. */
-static cw_status hold(cwi_blocks *b, cw_error *err)
+static cw_status hold(cwi_packed_blocks *b, cw_error *err)
 {
     if (!b->held && !(b->held = cwi_alloc_array(block_bytes(b, 0), 1)))
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %zu bytes",
@@ -164,7 +165,7 @@ static cw_status hold(cwi_blocks *b, cw_error *err)
     return decode(b, b->held, err);
 }
 
-static void skip_held(cwi_blocks *b)
+static void skip_held(cwi_packed_blocks *b)
 {
     const size_t rest = b->held_bytes - b->held_next;
     const size_t n = b->skipped < rest ? (size_t)b->skipped : rest;
@@ -172,13 +173,13 @@ static void skip_held(cwi_blocks *b)
     b->skipped -= n;
 }
 
-void cwi_blocks_skip(cwi_blocks *b, uint64_t bytes)
+void cwi_blocks_skip(cwi_packed_blocks *b, uint64_t bytes)
 {
     b->skipped += bytes;
 }
 
 /* Goes to the bytes behind those to leave out. */
-static cw_status settle(cwi_blocks *b, cw_error *err)
+static cw_status settle(cwi_packed_blocks *b, cw_error *err)
 {
     cw_status st = CW_OK;
     skip_held(b);
@@ -193,7 +194,7 @@ static cw_status settle(cwi_blocks *b, cw_error *err)
     return st;
 }
 
-cw_status cwi_blocks_some(cwi_blocks *b, unsigned char *to, size_t room, size_t *got,
+cw_status cwi_blocks_some(cwi_packed_blocks *b, unsigned char *to, size_t room, size_t *got,
                           cw_error *err)
 {
     cw_status st = settle(b, err);

@@ -2,8 +2,8 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
-#include "formats/bytes/little_endian.h"
 #include "formats/bytes/inflate_stream.h"
+#include "formats/bytes/little_endian.h"
 
 #include <assert.h>
 

@@ -17,14 +17,15 @@ typedef struct cwi_block_sink {
     uint64_t table_at;
 } cwi_block_sink;
 
-cw_status cwi_block_sink_open(cwi_block_sink *b, cwi_outfile *file, cw_error *err);
+CW_NODISCARD cw_status cwi_block_sink_open(cwi_block_sink *b, cwi_outfile *file, cw_error *err);
 
 /* Starts an array of so many bytes (not 0): its table is filled in when it ends. */
-cw_status cwi_block_sink_begin(cwi_block_sink *b, uint64_t bytes, cw_error *err);
+CW_NODISCARD cw_status cwi_block_sink_begin(cwi_block_sink *b, uint64_t bytes, cw_error *err);
 
 /* Bytes of the array; b is a cwi_block_sink. */
-cw_status cwi_block_sink_put(void *b, const void *bytes, size_t size, cw_error *err);
-cw_status cwi_block_sink_end(cwi_block_sink *b, cw_error *err);
+CW_NODISCARD cw_status cwi_block_sink_put(void *b, const void *bytes, size_t size,
+                                          cw_error *err);
+CW_NODISCARD cw_status cwi_block_sink_end(cwi_block_sink *b, cw_error *err);
 void cwi_block_sink_close(cwi_block_sink *b);
 
 #endif

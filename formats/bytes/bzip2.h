@@ -13,7 +13,7 @@
  * fewest that it takes in a file: its header, tables, and a run of runs. */
 enum { CWI_BZIP2_BLOCK = 900000 / 5 * 259, CWI_BZIP2_PACKED = 32 };
 
-CW_API bool cwi_bzip2_present(void);
+bool cwi_bzip2_present(void);
 
 /* A state that decompresses; false when memory is out. */
 bool cwi_bzip2_open(void **state);

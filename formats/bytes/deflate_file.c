@@ -38,8 +38,8 @@ static cw_status put(cwi_sink *s, const void *bytes, size_t size, cw_error *err)
     return s->file ? cwi_outfile_write(s->file, bytes, size, err) : CW_OK;
 }
 
-/* Runs deflate until it has taken all its input, and given all its output when that is asked.
- */
+/* Runs deflate until it has taken all its input, and given all its output when that
+ * is asked. */
 static cw_status pump(cwi_sink *s, int flush, cw_error *err)
 {
     cw_status st = CW_OK;

@@ -22,11 +22,13 @@ typedef struct cwi_sink {
 } cwi_sink;
 
 /* The fastest level: most of the gain for a fraction of the time. */
-cw_status cwi_sink_open(cwi_sink *s, cwi_outfile *file, cwi_packing packing, cw_error *err);
-cw_status cwi_sink_write(cwi_sink *s, const void *bytes, size_t size, cw_error *err);
+CW_NODISCARD cw_status cwi_sink_open(cwi_sink *s, cwi_outfile *file, cwi_packing packing,
+                                     cw_error *err);
+CW_NODISCARD cw_status cwi_sink_write(cwi_sink *s, const void *bytes, size_t size,
+                                      cw_error *err);
 
 /* Writes what is still held back, and the checksum. */
-cw_status cwi_sink_finish(cwi_sink *s, cw_error *err);
+CW_NODISCARD cw_status cwi_sink_finish(cwi_sink *s, cw_error *err);
 void cwi_sink_close(cwi_sink *s);
 
 #endif

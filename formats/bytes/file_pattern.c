@@ -11,6 +11,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -232,4 +233,23 @@ cw_status cwi_files_find(cwi_input *in, const char *path, bool deep, cwi_names *
     st = list_all(&l, err);
     *links = l.links;
     return st;
+}
+
+static bool ends_in(const char *path, const char *extension, size_t length)
+{
+    const size_t path_length = strlen(path);
+    return path_length > length &&
+           strncasecmp(path + path_length - length, extension, length) == 0;
+}
+
+bool cwi_has_extension(const char *path, const char *extensions)
+{
+    while (*extensions) {
+        const size_t length = strcspn(extensions, " ");
+        if (length && ends_in(path, extensions, length))
+            return true;
+        extensions += length;
+        extensions += strspn(extensions, " ");
+    }
+    return false;
 }

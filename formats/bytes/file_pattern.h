@@ -6,7 +6,7 @@
 #include "formats/bytes/input_file.h"
 
 /* As strcmp(), but numbers in names go by their value: slice_9 comes before slice_10. */
-CW_API int cwi_natural_order(const char *a, const char *b);
+int cwi_natural_order(const char *a, const char *b);
 
 /* Whether a path holds one of * ? [ and there is no file of that very name. */
 bool cwi_files_is_pattern(const char *path);
@@ -17,20 +17,24 @@ bool cwi_files_is_pattern(const char *path);
  * them). Names are for cwi_input_open_side(). Close in with cwi_input_close(). Returns
  * CW_ERR_IO when the folder is not to be opened, or nothing matches; CW_ERR_LIMIT for more than
  * 65,536 files or folders nested deeper than 16. */
-cw_status cwi_files_find(cwi_input *in, const char *path, bool deep, cwi_names *names,
-                         size_t *links, cw_error *err);
+CW_NODISCARD cw_status cwi_files_find(cwi_input *in, const char *path, bool deep,
+                                      cwi_names *names, size_t *links, cw_error *err);
 
 /* Puts names into natural order. */
 void cwi_files_sort(cwi_names *names);
 
 /* Adds the files in the folder of an open input, its own among them, and no deeper; *links
  * counts those left out. */
-cw_status cwi_files_beside(const cwi_input *in, cwi_names *names, size_t *links, cw_error *err);
+CW_NODISCARD cw_status cwi_files_beside(const cwi_input *in, cwi_names *names, size_t *links,
+                                        cw_error *err);
 
 /* The numbers in names that are alike but for one number; false where they are not, or where it
  * has more than 15 digits. */
 bool cwi_files_numbers(const cwi_names *names, double *numbers);
 
 bool cwi_is_folder(const char *path);
+
+/* Whether a path ends in one of the blank-separated extensions, in any case of letters. */
+bool cwi_has_extension(const char *path, const char *extensions);
 
 #endif

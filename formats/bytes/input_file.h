@@ -1,28 +1,28 @@
-/* Opening files that someone else wrote: the header a user names, and the data files it names.
- */
+/* Opening files that someone else wrote: the header a user names, and the data files
+ * it names. */
 #ifndef FORMATS_BYTES_INPUT_FILE_H
 #define FORMATS_BYTES_INPUT_FILE_H
 
-#include "formats/volume/named_arrays.h"
+#include <cubewright/formats.h>
 
 /* An open file to read, and the folder it was named in. */
 typedef struct cwi_input {
     const char *path; /* borrowed */
     int folder;       /* where side files are looked up */
     int fd;
-    uint64_t size;          /* bytes, as the system says */
-    bool allow_external;    /* side files may lie elsewhere */
-    const char *array;      /* that is asked for; NULL: any */
-    cwi_array_list *arrays; /* where readers list those there are; NULL: nobody asks */
+    uint64_t size;                 /* bytes, as the system says */
+    bool allow_external;           /* side files may lie elsewhere */
+    const char *array;             /* that is asked for; NULL: any */
+    struct cwi_array_list *arrays; /* where readers list those there are; NULL: nobody asks */
 } cwi_input;
 
 /* Opens the file a user named; links are followed, as the user may well have made them.
  * Returns CW_ERR_IO when it is missing, empty, unreadable or anything but a regular file. */
-cw_status cwi_input_open(cwi_input *in, const char *path, cw_error *err);
+CW_NODISCARD cw_status cwi_input_open(cwi_input *in, const char *path, cw_error *err);
 void cwi_input_close(cwi_input *in);
 
 /* Opens a folder to find side files in; there is no file. CW_ERR_IO. */
-cw_status cwi_input_open_folder(cwi_input *in, const char *path, cw_error *err);
+CW_NODISCARD cw_status cwi_input_open_folder(cwi_input *in, const char *path, cw_error *err);
 
 /* Whether a name in the folder is that of the file that is open. */
 bool cwi_input_is_named(const cwi_input *in, const char *name);
@@ -31,12 +31,12 @@ bool cwi_input_is_named(const cwi_input *in, const char *name);
  * in->allow_external it must lie in the header's folder or below: no absolute path, "..",
  * scheme, backslash or percent sign, and no link on the way. The file is the caller's to close.
  * Returns CW_ERR_UNSAFE for a name that leaves the folder, else as cwi_input_open(). */
-cw_status cwi_input_open_side(const cwi_input *in, const char *name, int *fd, uint64_t *size,
-                              cw_error *err);
+CW_NODISCARD cw_status cwi_input_open_side(const cwi_input *in, const char *name, int *fd,
+                                           uint64_t *size, cw_error *err);
 
 /* Reads up to size bytes at an offset; *got is less only where the file ends. */
-cw_status cwi_input_read_at(int fd, uint64_t offset, void *to, size_t size, size_t *got,
-                            cw_error *err);
+CW_NODISCARD cw_status cwi_input_read_at(int fd, uint64_t offset, void *to, size_t size,
+                                         size_t *got, cw_error *err);
 
 /* Names of side files, in the order of their voxels. A zeroed one is empty. */
 typedef struct cwi_names {
@@ -44,11 +44,12 @@ typedef struct cwi_names {
     size_t count;
 } cwi_names;
 
-cw_status cwi_names_add(cwi_names *names, const char *name, cw_error *err);
+CW_NODISCARD cw_status cwi_names_add(cwi_names *names, const char *name, cw_error *err);
 
 /* Adds the names that "PATTERN FIRST LAST STEP [DEPTH]" stands for: one %d, %3d or %03d, a step
  * above 0. *depth gets the last number, or stays as it is when there is none. */
-cw_status cwi_names_expand(cwi_names *names, const char *text, int64_t *depth, cw_error *err);
+CW_NODISCARD cw_status cwi_names_expand(cwi_names *names, const char *text, int64_t *depth,
+                                        cw_error *err);
 void cwi_names_free(cwi_names *names);
 
 #endif

@@ -6,8 +6,8 @@
 #include <string.h>
 #include <strings.h>
 
-/* Sizes of the fixed records; how many bytes the directory may have, and a comment behind it.
- */
+/* Sizes of the fixed records; how many bytes the directory may have, and a comment
+ * behind it. */
 enum { LOCAL = 30, CENTRAL = 46, END = 22, END64 = 56, LOCATOR = 20 };
 enum { MOST_BYTES = 4 << 20, MOST_COMMENT = 65535, BUFFER_BYTES = 1 << 16 };
 enum { STORED = 0, DEFLATED = 8, ENCRYPTED = 1, MOST_RATIO = 1032 };

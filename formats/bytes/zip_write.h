@@ -24,19 +24,20 @@ typedef struct cwi_zip {
 
 /* Starts an entry. huge: it may have 4 GiB or more; some readers know no such entries.
  * Returns CW_ERR_NO_MEMORY, CW_ERR_OUTPUT */
-CW_API cw_status cwi_zip_begin(cwi_zip *z, const char *name, bool huge, cw_error *err);
+CW_NODISCARD cw_status cwi_zip_begin(cwi_zip *z, const char *name, bool huge, cw_error *err);
 
 /* Bytes of the entry; z is a cwi_zip. */
-CW_API cw_status cwi_zip_put(void *z, const void *bytes, size_t size, cw_error *err);
+CW_NODISCARD cw_status cwi_zip_put(void *z, const void *bytes, size_t size, cw_error *err);
 
 /* Ends it. CW_ERR_LIMIT when it has 4 GiB and is not huge; CW_ERR_OUTPUT */
-CW_API cw_status cwi_zip_end(cwi_zip *z, cw_error *err);
+CW_NODISCARD cw_status cwi_zip_end(cwi_zip *z, cw_error *err);
 
 /* An entry of one text. */
-CW_API cw_status cwi_zip_text(cwi_zip *z, const char *name, const char *text, cw_error *err);
+CW_NODISCARD cw_status cwi_zip_text(cwi_zip *z, const char *name, const char *text,
+                                    cw_error *err);
 
 /* Writes the directory at the end of the file. */
-CW_API cw_status cwi_zip_finish(cwi_zip *z, cw_error *err);
-CW_API void cwi_zip_close(cwi_zip *z);
+CW_NODISCARD cw_status cwi_zip_finish(cwi_zip *z, cw_error *err);
+void cwi_zip_close(cwi_zip *z);
 
 #endif

@@ -27,7 +27,7 @@ cw_status cwi_grid_check_bits(const cw_write_desc *desc, cw_error *err)
     return CW_OK;
 }
 
-static double default_tolerance(const cwi_parts *parts, const cwi_grid *grid)
+static double default_tolerance(const cwi_parts *parts, const cwi_quantization_grid *grid)
 {
     double squares = 0;
     for (int a = 0; a < 3; a++) {
@@ -40,8 +40,8 @@ static double default_tolerance(const cwi_parts *parts, const cwi_grid *grid)
     return sqrt(squares) / DIAGONALS;
 }
 
-static cw_status fail_shape(const cwi_grid *grid, const cwi_grid_harm *harm, double tolerance,
-                            cw_error *err)
+static cw_status fail_shape(const cwi_quantization_grid *grid, const cwi_grid_harm *harm,
+                            double tolerance, cw_error *err)
 {
     if (cwi_grid_error(grid) > tolerance)
         return cw_fail(
@@ -57,16 +57,16 @@ static cw_status fail_shape(const cwi_grid *grid, const cwi_grid_harm *harm, dou
         grid->bits < CWI_MOST_GRID_BITS ? "; meshopt has up to 24, Draco up to 30" : "");
 }
 
-/* Beyond integers of 16 bits, meshopt's exponential filter makes multiples of a power of two.
- */
-static void lay_grid(cwi_grid *grid, cw_compression kind, int bits)
+/* Beyond integers of 16 bits, meshopt's exponential filter makes multiples of a power
+ * of two. */
+static void lay_grid(cwi_quantization_grid *grid, cw_compression kind, int bits)
 {
     cwi_grid_refine(grid, bits, kind == CW_COMPRESS_MESHOPT && bits > SHORT_BITS);
     grid->single = kind == CW_COMPRESS_DRACO;
 }
 
 /* The most that a vertex is moved: from where it was to where a decoder puts it. */
-static double measure_error(const cwi_grid *grid, const cwi_parts *parts)
+static double measure_error(const cwi_quantization_grid *grid, const cwi_parts *parts)
 {
     double worst = 0;
     for (size_t p = 0; p < parts->count; p++) {
@@ -86,8 +86,9 @@ static double measure_error(const cwi_grid *grid, const cwi_parts *parts)
 }
 
 /* The coarsest grid that keeps tolerance and shape; *found is false when none does. */
-static cw_status find_grid(cwi_grid *grid, const cwi_parts *parts, cw_compression kind,
-                           double tolerance, bool *found, cwi_grid_harm *harm, cw_error *err)
+static cw_status find_grid(cwi_quantization_grid *grid, const cwi_parts *parts,
+                           cw_compression kind, double tolerance, bool *found,
+                           cwi_grid_harm *harm, cw_error *err)
 {
     const int most = kinds[kind].most_bits;
     cw_status st = CW_OK;
@@ -103,8 +104,8 @@ static cw_status find_grid(cwi_grid *grid, const cwi_parts *parts, cw_compressio
     return st;
 }
 
-cw_status cwi_grid_choose(cwi_grid *grid, const cwi_parts *parts, const cw_write_desc *desc,
-                          cw_compressed *told, cw_error *err)
+cw_status cwi_grid_choose(cwi_quantization_grid *grid, const cwi_parts *parts,
+                          const cw_write_desc *desc, cw_compressed *told, cw_error *err)
 {
     cwi_grid_harm harm = {0};
     bool found = true;

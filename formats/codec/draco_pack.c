@@ -39,8 +39,8 @@ void cwi_draco_packed_free(cwi_draco_packed *packed)
     *packed = (cwi_draco_packed){0};
 }
 
-static cw_status verify_decoded(const cw_mesh *mesh, const cwi_grid *grid, const cwi_arrays *a,
-                                double *normal_degrees, cw_error *err)
+static cw_status verify_decoded(const cw_mesh *mesh, const cwi_quantization_grid *grid,
+                                const cwi_arrays *a, double *normal_degrees, cw_error *err)
 {
     const cwi_decoded decoded = {.vertex_count = a->vertex_count,
                                  .triangle_count = a->triangle_count,
@@ -50,9 +50,10 @@ static cw_status verify_decoded(const cw_mesh *mesh, const cwi_grid *grid, const
     return cwi_verify(mesh, grid, &decoded, normal_degrees, err);
 }
 
-cw_status cwi_draco_pack(const cw_mesh *mesh, const uint8_t *colors, const cwi_grid *grid,
-                         const char *comment, const cw_write_desc *desc,
-                         cwi_draco_packed *packed, cw_compressed *told, cw_error *err)
+cw_status cwi_draco_pack(const cw_mesh *mesh, const uint8_t *colors,
+                         const cwi_quantization_grid *grid, const char *comment,
+                         const cw_write_desc *desc, cwi_draco_packed *packed,
+                         cw_compressed *told, cw_error *err)
 {
     const cwi_draco_functions *draco;
     const cwi_arrays arrays = {.vertex_count = mesh->vertex_count,

@@ -19,9 +19,10 @@ typedef struct cwi_draco_packed {
  * told     the seconds it took are added, and the normals' error goes up to what it was
  * Returns  CW_ERR_CHECK when the decoded mesh is not the one that was encoded; CW_ERR_BACKEND;
  *          CW_ERR_UNSUPPORTED; CW_ERR_NO_MEMORY */
-cw_status cwi_draco_pack(const cw_mesh *mesh, const uint8_t *colors, const cwi_grid *grid,
-                         const char *comment, const cw_write_desc *desc,
-                         cwi_draco_packed *packed, cw_compressed *told, cw_error *err);
+CW_NODISCARD cw_status cwi_draco_pack(const cw_mesh *mesh, const uint8_t *colors,
+                                      const cwi_quantization_grid *grid, const char *comment,
+                                      const cw_write_desc *desc, cwi_draco_packed *packed,
+                                      cw_compressed *told, cw_error *err);
 void cwi_draco_packed_free(cwi_draco_packed *packed);
 
 /* Triangles that name a vertex twice: Draco has no form for them. */

@@ -72,7 +72,7 @@ std::string print_exactly(float value)
 
 // Draco's own SetAttributeExplicitQuantization() passes the grid on as text of six decimals, so
 // that the encoder would round to another grid than ours.
-draco::Options position_options(const cwi_grid &grid)
+draco::Options position_options(const cwi_quantization_grid &grid)
 {
     draco::Options options;
     options.SetInt("quantization_bits", grid.bits);
@@ -175,7 +175,7 @@ template <typename T> bool copy_triples(const draco::PointAttribute &from, size_
 }
 
 // Whether positions that were not made floats again count on this grid.
-bool is_on_grid(const draco::PointAttribute &positions, const cwi_grid &grid)
+bool is_on_grid(const draco::PointAttribute &positions, const cwi_quantization_grid &grid)
 {
     draco::AttributeQuantizationTransform is;
     return is.InitFromAttribute(positions) && is.quantization_bits() == grid.bits &&
@@ -219,8 +219,8 @@ bool copy_faces(const draco::Mesh &mesh, uint32_t *to)
     return true;
 }
 
-cw_status copy_mesh(const draco::Mesh &mesh, const cwi_draco_ids &ids, const cwi_grid *grid,
-                    cwi_arrays &to, cw_error *err)
+cw_status copy_mesh(const draco::Mesh &mesh, const cwi_draco_ids &ids,
+                    const cwi_quantization_grid *grid, cwi_arrays &to, cw_error *err)
 {
     const draco::PointAttribute *positions = find(mesh, ids.position, 3),
                                 *normals = find(mesh, ids.normal, 3),
@@ -251,7 +251,7 @@ cw_status copy_mesh(const draco::Mesh &mesh, const cwi_draco_ids &ids, const cwi
 }
 
 cw_status decode(const void *bytes, size_t size, const cwi_draco_ids *ids, size_t most,
-                 const cwi_grid *grid, cwi_arrays *arrays, cw_error *err) noexcept
+                 const cwi_quantization_grid *grid, cwi_arrays *arrays, cw_error *err) noexcept
 {
     return cw::guard(err, "Draco", [&] {
         draco::DecoderBuffer buffer;

@@ -30,10 +30,10 @@ typedef struct cwi_draco_ids {
 } cwi_draco_ids;
 
 typedef struct cwi_draco_settings {
-    cwi_grid grid;       /* for positions */
-    int normal_bits;     /* of each of two octahedral coordinates */
-    int level;           /* 0 (fast) to 10 (small) */
-    const char *comment; /* of the file, kept as metadata; NULL: none */
+    cwi_quantization_grid grid; /* for positions */
+    int normal_bits;            /* of each of two octahedral coordinates */
+    int level;                  /* 0 (fast) to 10 (small) */
+    const char *comment;        /* of the file, kept as metadata; NULL: none */
 } cwi_draco_settings;
 
 typedef struct cwi_draco_functions {
@@ -46,11 +46,12 @@ typedef struct cwi_draco_functions {
      * damage is CW_ERR_FORMAT. grid  NULL: positions are floats. Otherwise they stay places on
      * this grid, on which they were encoded; CW_ERR_CHECK: it was another one. */
     cw_status (*decode)(const void *bytes, size_t size, const cwi_draco_ids *ids, size_t most,
-                        const cwi_grid *grid, cwi_arrays *arrays, cw_error *err);
+                        const cwi_quantization_grid *grid, cwi_arrays *arrays, cw_error *err);
 } cwi_draco_functions;
 
 /* Loads the module. CW_ERR_UNSUPPORTED: not in this build. */
-cw_status cwi_draco_functions_load(const cwi_draco_functions **functions, cw_error *err);
+CW_NODISCARD cw_status cwi_draco_functions_load(const cwi_draco_functions **functions,
+                                                cw_error *err);
 
 extern CW_API const cwi_draco_functions cwi_module_draco;
 

@@ -4,7 +4,6 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
-#include "formats/gltf/gltf_scene.h"
 
 #include <meshoptimizer.h>
 #include <string.h>
@@ -100,11 +99,11 @@ static cw_status decode_indices(void *to, size_t index_count, size_t index_size,
 
 static void filter(void *vertices, size_t count, size_t stride, int kind)
 {
-    if (kind == CWI_GLTF_OCTAHEDRAL && (stride == 4 || stride == 8))
+    if (kind == CWI_MESHOPT_OCTAHEDRAL && (stride == 4 || stride == 8))
         meshopt_decodeFilterOct(vertices, count, stride);
-    else if (kind == CWI_GLTF_QUATERNION && stride == 8)
+    else if (kind == CWI_MESHOPT_QUATERNION && stride == 8)
         meshopt_decodeFilterQuat(vertices, count, stride);
-    else if (kind == CWI_GLTF_EXPONENTIAL && stride % 4 == 0)
+    else if (kind == CWI_MESHOPT_EXPONENTIAL && stride % 4 == 0)
         meshopt_decodeFilterExp(vertices, count, stride);
 }
 

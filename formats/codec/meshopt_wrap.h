@@ -1,5 +1,5 @@
-/* meshoptimizer's codecs, and what else is asked of it: the functions of the module "meshopt".
- */
+/* meshoptimizer's codecs, and what else is asked of it: the functions of the
+ * module "meshopt". */
 #ifndef FORMATS_CODEC_MESHOPT_WRAP_H
 #define FORMATS_CODEC_MESHOPT_WRAP_H
 
@@ -8,6 +8,14 @@
 #ifdef __cplusplus
 extern "C" {
 #endif
+
+/* The filters of EXT_meshopt_compression. */
+typedef enum cwi_meshopt_filter {
+    CWI_MESHOPT_PLAIN,
+    CWI_MESHOPT_OCTAHEDRAL,
+    CWI_MESHOPT_QUATERNION,
+    CWI_MESHOPT_EXPONENTIAL
+} cwi_meshopt_filter;
 
 typedef struct cwi_meshopt_functions {
     /* An order of triangles and vertices that codes well, or (draw) draws fast: triangles are
@@ -31,7 +39,7 @@ typedef struct cwi_meshopt_functions {
     cw_status (*decode_indices)(void *to, size_t index_count, size_t index_size,
                                 const void *bytes, size_t size, cw_error *err);
 
-    /* Undoes a cwi_gltf_filter in place; a stride that is not the filter's is left as it is. */
+    /* Undoes a cwi_meshopt_filter in place; a stride that is not the filter's is left as it is. */
     void (*filter)(void *vertices, size_t count, size_t stride, int filter);
 
     /* Its own simplification, to hold ours against: triangles between some of the vertices,
@@ -41,13 +49,13 @@ typedef struct cwi_meshopt_functions {
 } cwi_meshopt_functions;
 
 /* Loads the module. CW_ERR_UNSUPPORTED: not in this build. */
-CW_API cw_status cwi_meshopt_functions_load(const cwi_meshopt_functions **functions,
-                                            cw_error *err);
+CW_NODISCARD cw_status cwi_meshopt_functions_load(const cwi_meshopt_functions **functions,
+                                                  cw_error *err);
 
 /* Puts triangles and vertices, with all that they have, in one of the orders of reorder(). The
  * mesh is as it was on failure. CW_ERR_NO_MEMORY. */
-cw_status cwi_mesh_reorder(cw_mesh *mesh, const cwi_meshopt_functions *meshopt, bool draw,
-                           cw_error *err);
+CW_NODISCARD cw_status cwi_mesh_reorder(cw_mesh *mesh, const cwi_meshopt_functions *meshopt,
+                                        bool draw, cw_error *err);
 
 extern CW_API const cwi_meshopt_functions cwi_module_meshopt;
 

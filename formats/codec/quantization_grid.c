@@ -9,10 +9,10 @@
 
 enum { LEAST_EXPONENT = -126 }; /* decoders make the power in single precision */
 
-cwi_grid cwi_grid_around(const cwi_parts *parts)
+cwi_quantization_grid cwi_grid_around(const cwi_parts *parts)
 {
     float low[3] = {INFINITY, INFINITY, INFINITY}, high[3] = {-INFINITY, -INFINITY, -INFINITY};
-    cwi_grid grid = {0};
+    cwi_quantization_grid grid = {0};
     for (size_t p = 0; p < parts->count; p++) {
         const cw_mesh *mesh = &parts->items[p].mesh;
         for (size_t i = 0; i < 3 * mesh->vertex_count; i++) {
@@ -31,7 +31,7 @@ cwi_grid cwi_grid_around(const cwi_parts *parts)
 
 /* The box ends between multiples of the step, and range is rounded itself: that takes up to
  * three places. */
-static void lay_dyadic(cwi_grid *grid)
+static void lay_dyadic(cwi_quantization_grid *grid)
 {
     frexp((double)grid->range / (double)((1u << grid->bits) - 4), &grid->exponent);
     if (grid->exponent < LEAST_EXPONENT)
@@ -41,7 +41,7 @@ static void lay_dyadic(cwi_grid *grid)
         grid->origin[a] = (float)(floor((double)grid->low[a] / grid->step) * grid->step);
 }
 
-void cwi_grid_refine(cwi_grid *grid, int bits, bool dyadic)
+void cwi_grid_refine(cwi_quantization_grid *grid, int bits, bool dyadic)
 {
     grid->bits = bits;
     grid->dyadic = dyadic;
@@ -51,18 +51,17 @@ void cwi_grid_refine(cwi_grid *grid, int bits, bool dyadic)
         lay_dyadic(grid);
 }
 
-double cwi_grid_error(const cwi_grid *grid)
+double cwi_grid_error(const cwi_quantization_grid *grid)
 {
     return grid->step * sqrt(3) / 2;
 }
 
-/* --- harm -----------------------------------------------------------------------------------
- */
+/* --- harm --------------------------------------------------------------------------------- */
 
 /* Places, and where they are found again; places of exact grids are below 2^24 and serve as
  * both. */
-static void round_points(const cwi_grid *grid, const cw_mesh *mesh, uint32_t *places,
-                         float *found)
+static void round_points(const cwi_quantization_grid *grid, const cw_mesh *mesh,
+                         uint32_t *places, float *found)
 {
     for (size_t i = 0; i < 3 * mesh->vertex_count; i++) {
         places[i] = cwi_grid_round(grid, mesh->positions[i], (int)(i % 3));
@@ -116,8 +115,8 @@ static void count_harm(const cw_mesh *mesh, const uint32_t *places, const float 
     }
 }
 
-static cw_status measure_part(const cwi_grid *grid, const cw_mesh *mesh, cwi_grid_harm *harm,
-                              cw_error *err)
+static cw_status measure_part(const cwi_quantization_grid *grid, const cw_mesh *mesh,
+                              cwi_grid_harm *harm, cw_error *err)
 {
     const size_t count = mesh->vertex_count;
     uint32_t *places = cwi_alloc_array(count, 3 * sizeof *places);
@@ -137,8 +136,8 @@ static cw_status measure_part(const cwi_grid *grid, const cw_mesh *mesh, cwi_gri
               : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to compare %zu vertices", count);
 }
 
-cw_status cwi_grid_measure(const cwi_grid *grid, const cwi_parts *parts, cwi_grid_harm *harm,
-                           cw_error *err)
+cw_status cwi_grid_measure(const cwi_quantization_grid *grid, const cwi_parts *parts,
+                           cwi_grid_harm *harm, cw_error *err)
 {
     cw_status st = CW_OK;
     *harm = (cwi_grid_harm){0};

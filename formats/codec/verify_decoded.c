@@ -50,8 +50,8 @@ static sums sum_triangles(const uint32_t *triangles, size_t count, const uint32_
 
 /* Places of the mesh, and behind them those of the decoded one: as bits of floats, for below
  * 2^30 they are finite. */
-static void put_places(const cw_mesh *mesh, const cwi_grid *grid, const cwi_decoded *d,
-                       float *places)
+static void put_places(const cw_mesh *mesh, const cwi_quantization_grid *grid,
+                       const cwi_decoded *d, float *places)
 {
     const size_t count = 3 * mesh->vertex_count;
     for (size_t i = 0; i < count; i++) {
@@ -99,8 +99,8 @@ static cw_status compare(const cw_mesh *mesh, const cwi_decoded *d, const uint32
     return CW_OK;
 }
 
-cw_status cwi_verify(const cw_mesh *mesh, const cwi_grid *grid, const cwi_decoded *decoded,
-                     double *normal_degrees, cw_error *err)
+cw_status cwi_verify(const cw_mesh *mesh, const cwi_quantization_grid *grid,
+                     const cwi_decoded *decoded, double *normal_degrees, cw_error *err)
 {
     const size_t count = mesh->vertex_count + decoded->vertex_count;
     if (decoded->triangle_count != mesh->triangle_count)

@@ -16,7 +16,8 @@ typedef struct cwi_decoded {
  * places of the grid, each as often and wound the same way.
  * normal_degrees  set to the most that a normal was turned
  * Returns CW_ERR_CHECK, saying what differs; CW_ERR_NO_MEMORY */
-cw_status cwi_verify(const cw_mesh *mesh, const cwi_grid *grid, const cwi_decoded *decoded,
-                     double *normal_degrees, cw_error *err);
+CW_NODISCARD cw_status cwi_verify(const cw_mesh *mesh, const cwi_quantization_grid *grid,
+                                  const cwi_decoded *decoded, double *normal_degrees,
+                                  cw_error *err);
 
 #endif

@@ -68,8 +68,9 @@ typedef struct cwi_dicom_image {
 /* JPEG 2000: the pixels of one image, interleaved, as numbers of the type.
  * Returns CW_ERR_FORMAT for one that is damaged or not of that size, CW_ERR_UNSUPPORTED,
  * CW_ERR_NO_MEMORY. */
-cw_status cwi_dicom_jpeg2000(const void *data, size_t size, const cwi_dicom_image *image,
-                             void *pixels, cw_error *err);
+CW_NODISCARD cw_status cwi_dicom_jpeg2000(const void *data, size_t size,
+                                          const cwi_dicom_image *image, void *pixels,
+                                          cw_error *err);
 
 extern CW_API const cwi_plane_functions cwi_module_dicom;
 

@@ -11,6 +11,6 @@ enum { CWI_DICOM_DEEPEST = 64 };
  * element. What is deflated is inflated on the way. What is damaged is left to DCMTK.
  * Returns CW_ERR_FORMAT for sequences nested deeper than CWI_DICOM_DEEPEST, and for more than
  * eight million elements; CW_ERR_LIMIT for deflated ones of more than 8 GiB; CW_ERR_IO */
-cw_status cwi_dicom_check_depth(int fd, uint64_t size, cw_error *err);
+CW_NODISCARD cw_status cwi_dicom_check_depth(int fd, uint64_t size, cw_error *err);
 
 #endif

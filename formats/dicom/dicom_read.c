@@ -1,7 +1,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
-#include "formats/dicom/dicom_stack.h"
 #include "formats/bytes/file_pattern.h"
+#include "formats/dicom/dicom_stack.h"
 #include "formats/volume/volume_reader.h"
 #include "formats/volume/voxel_source.h"
 
@@ -95,8 +95,7 @@ cw_status cwi_dicom_read(const cwi_input *in, cwi_names *names, const cw_read_de
     return st;
 }
 
-/* --- the list ------------------------------------------------------------------------------
- */
+/* --- the list ----------------------------------------------------------------------------- */
 
 static void describe(cwi_dicom_scan *found, size_t n, const cw_read_desc *desc, cw_series *s)
 {

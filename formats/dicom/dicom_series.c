@@ -67,8 +67,7 @@ void cwi_dicom_scan_free(cwi_dicom_scan *scan)
     *scan = (cwi_dicom_scan){0};
 }
 
-/* --- the facts of one file -----------------------------------------------------------------
- */
+/* --- the facts of one file ---------------------------------------------------------------- */
 
 #define IS_TERMINATED(text) (memchr((text), '\0', sizeof(text)) != NULL)
 
@@ -206,8 +205,7 @@ static cw_status take_file(cwi_dicom_scan *scan, const cwi_input *in, const char
     return st;
 }
 
-/* --- series --------------------------------------------------------------------------------
- */
+/* --- series ------------------------------------------------------------------------------- */
 
 static bool alike(const cwi_dicom_plane *a, const cwi_dicom_plane *b)
 {

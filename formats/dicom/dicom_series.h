@@ -2,8 +2,8 @@
 #ifndef FORMATS_DICOM_DICOM_SERIES_H
 #define FORMATS_DICOM_DICOM_SERIES_H
 
-#include "formats/dicom/dicom.h"
 #include "formats/bytes/input_file.h"
+#include "formats/dicom/dicom.h"
 
 /* One frame of one file. */
 typedef struct cwi_dicom_plane {
@@ -39,21 +39,22 @@ typedef struct cwi_dicom_scan {
 } cwi_dicom_scan;
 
 /* Has DCMTK read a file that was found to be fit for it. */
-cw_status cwi_dicom_facts_of(cwi_planes *planes, int fd, uint64_t size, const void **shared,
-                             cw_error *err);
+CW_NODISCARD cw_status cwi_dicom_facts_of(cwi_planes *planes, int fd, uint64_t size,
+                                          const void **shared, cw_error *err);
 
 /* Takes the facts of the files among names that are DICOM images, and sorts them into series.
  * only  NULL, or the facts of the file that was named: its series, and images like it, are what
  *       is wanted; files beside it that are damaged are left out, and counted
  * Returns  CW_ERR_FORMAT for a file that is damaged, or whose facts contradict each other */
-cw_status cwi_dicom_scan_files(cwi_dicom_scan *scan, const cwi_input *in, cwi_names *names,
-                               const cwi_dicom_facts *only, cwi_planes *planes, cw_error *err);
+CW_NODISCARD cw_status cwi_dicom_scan_files(cwi_dicom_scan *scan, const cwi_input *in,
+                                            cwi_names *names, const cwi_dicom_facts *only,
+                                            cwi_planes *planes, cw_error *err);
 void cwi_dicom_scan_free(cwi_dicom_scan *scan);
 
 /* Finds a series by its label or UID; without a name the only one.
  * Returns CW_ERR_UNSAFE when there are several, CW_ERR_ARGUMENT when there is none of that
  * name. */
-cw_status cwi_dicom_choose(const cwi_dicom_scan *scan, const char *name, size_t *series,
-                           cw_error *err);
+CW_NODISCARD cw_status cwi_dicom_choose(const cwi_dicom_scan *scan, const char *name,
+                                        size_t *series, cw_error *err);
 
 #endif

@@ -4,8 +4,8 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
-#include "formats/volume/volume_reader.h"
 #include "formats/volume/slice_spacing.h"
+#include "formats/volume/volume_reader.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -25,8 +25,7 @@ typedef struct sorting {
     cwi_dicom_findings *findings;
 } sorting;
 
-/* --- geometry that is there ----------------------------------------------------------------
- */
+/* --- geometry that is there --------------------------------------------------------------- */
 
 static bool states_spacing(const cw_read_desc *desc)
 {
@@ -73,8 +72,7 @@ static cw_status check_geometry(const sorting *s, cw_error *err)
     return CW_OK;
 }
 
-/* --- order ---------------------------------------------------------------------------------
- */
+/* --- order -------------------------------------------------------------------------------- */
 
 static int by_distance(const void *x, const void *y)
 {
@@ -131,8 +129,8 @@ static size_t planes_here(const sorting *s, size_t first)
     return n - first;
 }
 
-/* The rank of each plane among those at its place, by one key; false where two have the same.
- */
+/* The rank of each plane among those at its place, by one key; false where two have
+ * the same. */
 static bool rank_here(cwi_dicom_plane *planes, size_t count, int key)
 {
     for (size_t i = 0; i < count; i++) {
@@ -210,8 +208,7 @@ static cw_status find_steps(sorting *s, cw_error *err)
     return CW_OK;
 }
 
-/* --- the row of slices ---------------------------------------------------------------------
- */
+/* --- the row of slices -------------------------------------------------------------------- */
 
 /* The way from the first to the last place for each millimetre along the normal. */
 static void find_row(const sorting *s, double along[3])
@@ -274,8 +271,7 @@ static cw_status lay_slices(const sorting *s, cwi_slices *slices, cw_error *err)
     return st;
 }
 
-/* --- the stack -----------------------------------------------------------------------------
- */
+/* --- the stack ---------------------------------------------------------------------------- */
 
 static bool same_scaling(const sorting *s)
 {
@@ -430,8 +426,7 @@ static cw_status stack_placed(sorting *s, cwi_stack *stack, cw_error *err)
     return st;
 }
 
-/* --- segmentations -------------------------------------------------------------------------
- */
+/* --- segmentations ------------------------------------------------------------------------ */
 
 /* The distance of slices: stated, or the smallest there is. Where a segment has nothing, a
  * slice may be left out, so gaps tell nothing. */
@@ -545,8 +540,7 @@ static cw_status stack_segments(sorting *s, cwi_stack *stack, cw_error *err)
     return map ? fill_maps(s, stack, err) : fill_labels(s, stack, err);
 }
 
-/* --- images without a place ----------------------------------------------------------------
- */
+/* --- images without a place --------------------------------------------------------------- */
 
 /* Slices whose distance a person stated: in the order of their numbers. */
 static cw_status stack_numbered(sorting *s, cwi_stack *stack, cw_error *err)

@@ -16,7 +16,8 @@ typedef struct cwi_dicom_findings {
  * stack->files stays empty: its planes count in scan->files.
  * Returns CW_ERR_UNSAFE where the geometry is missing, contradicts itself or is uneven and desc
  * does not decide; CW_ERR_LIMIT, CW_ERR_NO_MEMORY */
-cw_status cwi_dicom_stack(cwi_dicom_scan *scan, size_t series, const cw_read_desc *desc,
-                          cwi_stack *stack, cwi_dicom_findings *findings, cw_error *err);
+CW_NODISCARD cw_status cwi_dicom_stack(cwi_dicom_scan *scan, size_t series,
+                                       const cw_read_desc *desc, cwi_stack *stack,
+                                       cwi_dicom_findings *findings, cw_error *err);
 
 #endif

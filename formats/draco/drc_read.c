@@ -1,9 +1,9 @@
 /* Draco files. The library decodes them in a process of its own, which keeps what came out and
  * hands it over by and by: how much that is, is known only then. */
 #include "core/base/memory.h"
-#include "core/mesh/mesh.h"
 #include "core/base/sandbox.h"
 #include "core/base/status.h"
+#include "core/mesh/mesh.h"
 #include "formats/codec/draco_wrap.h"
 #include "formats/mesh/mesh_reader.h"
 

@@ -1,7 +1,7 @@
 /* Draco files: one mesh on a grid, as Draco's own programs and three.js read it. */
 #include "core/base/memory.h"
-#include "core/mesh/mesh.h"
 #include "core/base/status.h"
+#include "core/mesh/mesh.h"
 #include "formats/codec/draco_pack.h"
 
 #include <stdio.h>
@@ -19,7 +19,7 @@ static void put_part(const cwi_part *part, cw_mesh *whole)
     for (size_t v = 0; v < m->vertex_count; v++) {
         float *to = whole->positions + 3 * (part->first + v);
         for (int a = 0; a < 3; a++)
-            to[a] = (float)cwi_coordinate(part, v, a);
+            to[a] = (float)cwi_file_coordinate(part, v, a);
         if (whole->normals)
             cwi_normal(part, v, whole->normals + 3 * (part->first + v));
     }
@@ -56,7 +56,7 @@ cw_status cwi_drc_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *
     const cwi_parts one = {.items = &whole, .count = 1};
     cwi_draco_packed packed = {0};
     cw_compressed told = {0};
-    cwi_grid grid;
+    cwi_quantization_grid grid;
     char axes[CWI_AXES_BYTES], origin[CWI_ORIGIN_BYTES], comment[CWI_DRACO_COMMENT];
     cwi_print_axes(out->axes, axes);
     cwi_print_origin(out, "\norigin ", "", origin);

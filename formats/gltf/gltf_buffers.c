@@ -1,8 +1,8 @@
 /* The bytes that a glTF file keeps its numbers in: a chunk, text, or a file of their own. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
-#include "formats/gltf/gltf_scene.h"
 #include "formats/gltf/gltf_decompress.h"
+#include "formats/gltf/gltf_scene.h"
 
 #include <stdio.h>
 #include <string.h>
@@ -283,8 +283,8 @@ static cw_status load_view(const cwi_gltf_bytes *from, const cwi_gltf_scene *sce
     return st;
 }
 
-/* The elements of a view, from an offset on: checked against it, then loaded. stride 0: packed.
- */
+/* The elements of a view, from an offset on: checked against it, then loaded. stride
+ * 0: packed. */
 static cw_status load_elements(const cwi_gltf_bytes *from, const cwi_gltf_scene *scene,
                                int64_t view, uint64_t offset, uint64_t count, uint64_t element,
                                uint64_t stride, const char *what, int accessor,

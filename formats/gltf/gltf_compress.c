@@ -4,11 +4,11 @@
 
 #include "core/base/clock.h"
 #include "core/base/memory.h"
-#include "core/mesh/mesh.h"
 #include "core/base/status.h"
+#include "core/mesh/mesh.h"
 #include "formats/codec/draco_pack.h"
-#include "formats/gltf/gltf_scene.h"
 #include "formats/codec/meshopt_wrap.h"
+#include "formats/gltf/gltf_scene.h"
 
 #include <math.h>
 #include <string.h>
@@ -31,8 +31,7 @@ cw_status cwi_gltf_prepare_codec(const cw_write_desc *desc, cw_error *err)
                                          : CW_OK;
 }
 
-/* --- one origin, arrays of our own ---------------------------------------------------------
- */
+/* --- one origin, arrays of our own -------------------------------------------------------- */
 
 /* A copy of a part that counts from another origin: parts on one grid need one. Normals and
  * colours stay the caller's unless they are to be put into another order. */
@@ -88,8 +87,7 @@ static cw_status own_parts(cwi_gltf_plan *plan, bool all, cw_error *err)
     return CW_OK;
 }
 
-/* --- blocks --------------------------------------------------------------------------------
- */
+/* --- blocks ------------------------------------------------------------------------------- */
 
 /* Takes over bytes; they begin at a multiple of 8. */
 static cw_status add_block(cwi_gltf_plan *plan, unsigned char *bytes, size_t size, uint64_t *at,
@@ -111,10 +109,9 @@ static cw_status add_block(cwi_gltf_plan *plan, unsigned char *bytes, size_t siz
     return CW_OK;
 }
 
-/* --- Draco ---------------------------------------------------------------------------------
- */
+/* --- Draco -------------------------------------------------------------------------------- */
 
-static void describe_draco(cwi_gltf_piece *piece, const cwi_grid *grid,
+static void describe_draco(cwi_gltf_piece *piece, const cwi_quantization_grid *grid,
                            const cwi_arrays *decoded)
 {
     for (int a = 0; a < 3; a++) {
@@ -157,14 +154,13 @@ static cw_status compress_draco(cwi_gltf_plan *plan, cwi_gltf_piece *piece,
     return st;
 }
 
-/* --- meshopt -------------------------------------------------------------------------------
- */
+/* --- meshopt ------------------------------------------------------------------------------ */
 
 /* Whether the filter makes of the bytes what their accessor says. */
 static bool are_stored(const cwi_meshopt_functions *meshopt, const cwi_gltf_plan *plan,
                        const float *positions, unsigned char *bytes, size_t count)
 {
-    meshopt->filter(bytes, count, 12, CWI_GLTF_EXPONENTIAL);
+    meshopt->filter(bytes, count, 12, CWI_MESHOPT_EXPONENTIAL);
     for (size_t i = 0; i < 3 * count; i++) {
         float is;
         memcpy(&is, bytes + 4 * i, sizeof is);
@@ -283,8 +279,7 @@ static void measure_normals(const cwi_gltf_plan *plan, cw_compressed *told)
     }
 }
 
-/* --- all -----------------------------------------------------------------------------------
- */
+/* --- all ---------------------------------------------------------------------------------- */
 
 static cw_status compress_pieces(cwi_gltf_plan *plan, const cw_write_desc *desc,
                                  cw_compressed *told, cw_error *err)

@@ -1,4 +1,5 @@
 #include "formats/gltf/gltf_decompress.h"
+#include "formats/codec/meshopt_wrap.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
@@ -13,7 +14,7 @@ typedef enum job_kind { JOB_VERTICES, JOB_TRIANGLES, JOB_INDICES, JOB_DRACO } jo
 /* The compressed bytes lie at the start of the shared memory, what comes out behind them. */
 typedef struct job {
     job_kind kind;
-    int filter; /* of JOB_VERTICES: cwi_gltf_filter */
+    int filter; /* of JOB_VERTICES: cwi_meshopt_filter */
     uint32_t stride;
     cwi_draco_ids ids;
     uint64_t packed, count, corners;
@@ -24,8 +25,7 @@ static size_t align(size_t size)
     return (size + 15) / 16 * 16;
 }
 
-/* --- in the child --------------------------------------------------------------------------
- */
+/* --- in the child ------------------------------------------------------------------------- */
 
 static cw_status unpack_view(const cwi_gltf_unpacker *u, const job *j, char *shared,
                              cw_error *err)
@@ -81,8 +81,7 @@ static cw_status work(void *state, int fd, const void *request, void *shared, cw
                                : unpack_view(state, &j, shared, err);
 }
 
-/* --- in the parent -------------------------------------------------------------------------
- */
+/* --- in the parent ------------------------------------------------------------------------ */
 
 void cwi_gltf_unpacker_close(cwi_gltf_unpacker *u)
 {

@@ -4,8 +4,8 @@
 
 #include "core/base/sandbox.h"
 #include "formats/codec/draco_wrap.h"
-#include "formats/gltf/gltf_scene.h"
 #include "formats/codec/meshopt_wrap.h"
+#include "formats/gltf/gltf_scene.h"
 
 /* The process and what it needs; zeroed, it has not been started. */
 typedef struct cwi_gltf_unpacker {
@@ -19,14 +19,15 @@ void cwi_gltf_unpacker_close(cwi_gltf_unpacker *u);
 
 /* Decodes a view of EXT_meshopt_compression: view->packed_count x packed_stride bytes, to be
  * freed with cwi_free(). CW_ERR_FORMAT, CW_ERR_UNSUPPORTED, CW_ERR_BACKEND, CW_ERR_NO_MEMORY */
-cw_status cwi_gltf_unpack_view(cwi_gltf_unpacker *u, const cwi_gltf_view *view,
-                               const unsigned char *packed, unsigned char **bytes,
-                               cw_error *err);
+CW_NODISCARD cw_status cwi_gltf_unpack_view(cwi_gltf_unpacker *u, const cwi_gltf_view *view,
+                                            const unsigned char *packed, unsigned char **bytes,
+                                            cw_error *err);
 
 /* Decodes a primitive of KHR_draco_mesh_compression; it must have so many vertices and corners.
  * Errors as above. */
-cw_status cwi_gltf_unpack_draco(cwi_gltf_unpacker *u, const cwi_draco_ids *ids,
-                                const unsigned char *packed, size_t size, uint64_t vertices,
-                                uint64_t corners, cwi_arrays *arrays, cw_error *err);
+CW_NODISCARD cw_status cwi_gltf_unpack_draco(cwi_gltf_unpacker *u, const cwi_draco_ids *ids,
+                                             const unsigned char *packed, size_t size,
+                                             uint64_t vertices, uint64_t corners,
+                                             cwi_arrays *arrays, cw_error *err);
 
 #endif

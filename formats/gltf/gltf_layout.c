@@ -31,8 +31,7 @@ void cwi_gltf_plan_free(cwi_gltf_plan *plan)
     *plan = (cwi_gltf_plan){0};
 }
 
-/* --- arrays --------------------------------------------------------------------------------
- */
+/* --- arrays ------------------------------------------------------------------------------- */
 
 /* 65535 as an index of 16 bits means "restart" and must not name a vertex. */
 static int index_component(const cw_mesh *mesh)
@@ -85,7 +84,7 @@ void cwi_gltf_plan_arrays(const cwi_gltf_plan *plan, cwi_gltf_piece *piece)
 
 double cwi_gltf_stored(const cwi_gltf_plan *plan, float coordinate, int axis)
 {
-    const cwi_grid *g = &plan->grid;
+    const cwi_quantization_grid *g = &plan->grid;
     return !on_grid(plan) ? (double)coordinate
            : g->dyadic    ? cwi_grid_round_signed(g, coordinate, axis) * g->step
                           : cwi_grid_round(g, coordinate, axis);
@@ -110,7 +109,7 @@ static void find_bounds(const cwi_gltf_plan *plan, cwi_gltf_piece *piece)
 /* Where the stored positions stand: the node says so. */
 static void place(const cwi_gltf_plan *plan, cwi_gltf_piece *piece)
 {
-    const cwi_grid *g = &plan->grid;
+    const cwi_quantization_grid *g = &plan->grid;
     piece->step = on_grid(plan) && !g->dyadic ? g->step : 1;
     for (int a = 0; a < 3; a++) {
         piece->translation[a] = piece->part->mesh.origin[a];
@@ -127,8 +126,7 @@ static bool is_translucent(const cw_mesh *mesh)
     return false;
 }
 
-/* --- bytes ---------------------------------------------------------------------------------
- */
+/* --- bytes -------------------------------------------------------------------------------- */
 
 /* Colours are sRGB here and linear in glTF; alpha is linear already. */
 static void fill_linear(unsigned char linear[256])
@@ -143,7 +141,7 @@ static void fill_linear(unsigned char linear[256])
 static void put_position(const cwi_gltf_plan *plan, const cwi_gltf_array *a, const float *p,
                          unsigned char *to)
 {
-    const cwi_grid *g = &plan->grid;
+    const cwi_quantization_grid *g = &plan->grid;
     if (a->exponential) { /* 24 bits of mantissa, 8 of exponent, both signed */
         for (int c = 0; c < 3; c++)
             to = cwi_put_u32(to, ((uint32_t)cwi_grid_round_signed(g, p[c], c) & 0xffffff) |
@@ -193,8 +191,7 @@ void cwi_gltf_put(const cwi_gltf_plan *plan, const cwi_gltf_piece *piece,
     }
 }
 
-/* --- the file ------------------------------------------------------------------------------
- */
+/* --- the file ----------------------------------------------------------------------------- */
 
 /* Arrays one behind another, each from a multiple of 4 bytes on, as accessors demand. */
 static cw_status lay_out(cwi_gltf_plan *plan, cw_error *err)

@@ -11,7 +11,7 @@ constexpr const char *GLTF_LOD = "MSFT_lod";
 constexpr const char *GLTF_DRACO = "KHR_draco_mesh_compression";
 
 // cwi_gltf_functions.document.
-cw_status cwi_gltf_document_make(const cwi_gltf_document *document, char **json, size_t *size,
-                                 cw_error *err);
+CW_NODISCARD cw_status cwi_gltf_document_make(const cwi_gltf_document *document, char **json,
+                                              size_t *size, cw_error *err);
 
 #endif

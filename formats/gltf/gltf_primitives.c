@@ -1,7 +1,7 @@
 /* The primitives of a glTF mesh: vertices and triangles, placed where a node says. */
-#include "core/geometry/affine.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/affine.h"
 #include "formats/gltf/gltf_reader.h"
 
 #include <float.h>

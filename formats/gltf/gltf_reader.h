@@ -2,8 +2,8 @@
 #ifndef FORMATS_GLTF_GLTF_READER_H
 #define FORMATS_GLTF_GLTF_READER_H
 
-#include "formats/gltf/gltf_scene.h"
 #include "formats/gltf/gltf_decompress.h"
+#include "formats/gltf/gltf_scene.h"
 
 /* A node of the scene that has a mesh. */
 typedef struct cwi_gltf_instance {
@@ -33,13 +33,14 @@ typedef struct cwi_gltf_reader {
 
 /* Walks the scene's nodes and finds those that have a mesh, and where it stands.
  * Returns CW_ERR_FORMAT for nodes that are no forest, or nest too deeply. */
-cw_status cwi_gltf_find_instances(cwi_gltf_reader *r, cw_mesh_file *said, cw_error *err);
+CW_NODISCARD cw_status cwi_gltf_find_instances(cwi_gltf_reader *r, cw_mesh_file *said,
+                                               cw_error *err);
 
 /* Adds the vertices and triangles of one of them. */
-cw_status cwi_gltf_add_instance(cwi_gltf_reader *r, const cwi_gltf_instance *at,
-                                cw_mesh_file *said, cw_error *err);
+CW_NODISCARD cw_status cwi_gltf_add_instance(cwi_gltf_reader *r, const cwi_gltf_instance *at,
+                                             cw_mesh_file *said, cw_error *err);
 
 /* CW_ERR_LIMIT for more vertices or triangles than r->most. */
-cw_status cwi_gltf_limit(const cwi_gltf_reader *r, uint64_t count, cw_error *err);
+CW_NODISCARD cw_status cwi_gltf_limit(const cwi_gltf_reader *r, uint64_t count, cw_error *err);
 
 #endif

@@ -19,12 +19,6 @@ typedef enum cwi_gltf_mode {
     CWI_GLTF_TRIANGLES,
     CWI_GLTF_SEQUENCE
 } cwi_gltf_mode;
-typedef enum cwi_gltf_filter {
-    CWI_GLTF_PLAIN,
-    CWI_GLTF_OCTAHEDRAL,
-    CWI_GLTF_QUATERNION,
-    CWI_GLTF_EXPONENTIAL
-} cwi_gltf_filter;
 
 typedef struct cwi_gltf_view {
     int64_t buffer;
@@ -84,25 +78,25 @@ typedef struct cwi_gltf_scene {
         child_count, root_count;
 } cwi_gltf_scene;
 
-CW_API void cwi_gltf_scene_free(cwi_gltf_scene *scene);
+void cwi_gltf_scene_free(cwi_gltf_scene *scene);
 
 /* A scene as bytes, to leave a process: false when there is no room. And back, into a zeroed
  * scene that the caller frees: CW_ERR_BACKEND for lengths, ranges or kinds that cannot be. */
-CW_API bool cwi_gltf_put_scene(const cwi_gltf_scene *scene, void *to, size_t room);
-CW_API cw_status cwi_gltf_take_scene(const void *from, size_t size, cwi_gltf_scene *scene,
-                                     cw_error *err);
+bool cwi_gltf_put_scene(const cwi_gltf_scene *scene, void *to, size_t room);
+CW_NODISCARD cw_status cwi_gltf_take_scene(const void *from, size_t size, cwi_gltf_scene *scene,
+                                           cw_error *err);
 
 /* Holds JSON against the members that are read of it: type, range, and that what must be there
  * is. What is not read may hold anything.
  * Returns CW_ERR_FORMAT, which names the member as "meshes[0].primitives[1].indices". */
-CW_API cw_status cwi_gltf_check(const char *json, size_t size, cw_error *err);
+CW_NODISCARD cw_status cwi_gltf_check(const char *json, size_t size, cw_error *err);
 
 /* Makes JSON fit for a library that trusts it: refuses nesting deeper than 64 and more than 32
  * MiB beside strings, and renames what no mesh needs (images, materials, extensions, ...), so
  * that it is never looked at. The indices of primitives become their "extras", for those that
  * Draco compressed have no view. "buffers" becomes "extras", which only describes: the bytes of
  * buffers are for cwi_gltf_load() alone. */
-cw_status cwi_gltf_blind(char *json, size_t size, cw_error *err);
+CW_NODISCARD cw_status cwi_gltf_blind(char *json, size_t size, cw_error *err);
 
 /* Where the bytes of buffers are. */
 typedef struct cwi_gltf_bytes {
@@ -116,9 +110,9 @@ typedef struct cwi_gltf_bytes {
 /* The bytes from an offset of a buffer on: copied, to be freed with cwi_free().
  * Returns CW_ERR_FORMAT where the buffer or what holds it is shorter; CW_ERR_UNSAFE,
  * CW_ERR_IO for a file of its own; CW_ERR_NO_MEMORY. */
-cw_status cwi_gltf_load(const cwi_gltf_bytes *from, const cwi_gltf_scene *scene,
-                        uint64_t buffer, uint64_t offset, uint64_t size, unsigned char **bytes,
-                        cw_error *err);
+CW_NODISCARD cw_status cwi_gltf_load(const cwi_gltf_bytes *from, const cwi_gltf_scene *scene,
+                                     uint64_t buffer, uint64_t offset, uint64_t size,
+                                     unsigned char **bytes, cw_error *err);
 
 /* The size of the file that a buffer has of its own; 0 when there is none. */
 uint64_t cwi_gltf_file_bytes(const cwi_gltf_bytes *from, const cwi_gltf_buffer *buffer);
@@ -132,9 +126,10 @@ typedef struct cwi_gltf_numbers {
 } cwi_gltf_numbers;
 
 /* what names the accessor's use in messages: "POSITION". */
-cw_status cwi_gltf_open_numbers(const cwi_gltf_bytes *from, const cwi_gltf_scene *scene,
-                                int accessor, const char *what, cwi_gltf_numbers *numbers,
-                                cw_error *err);
+CW_NODISCARD cw_status cwi_gltf_open_numbers(const cwi_gltf_bytes *from,
+                                             const cwi_gltf_scene *scene, int accessor,
+                                             const char *what, cwi_gltf_numbers *numbers,
+                                             cw_error *err);
 
 /* Number c of element i: as it is, or (normalized) as a share of its type's largest. */
 double cwi_gltf_number(const cwi_gltf_numbers *numbers, size_t i, int c);

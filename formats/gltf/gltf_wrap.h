@@ -22,18 +22,20 @@ typedef struct cwi_gltf_functions {
 } cwi_gltf_functions;
 
 /* As document(), of the module, in a process of its own: tinygltf ends that where memory runs
- * out. Returns CW_ERR_UNSUPPORTED without the module; CW_ERR_NO_MEMORY when that process died.
- */
-cw_status cwi_gltf_make_json(const cwi_gltf_document *document, char **json, size_t *size,
-                             cw_error *err);
+ * out. Returns CW_ERR_UNSUPPORTED without the module; CW_ERR_NO_MEMORY when that
+ * process died. */
+CW_NODISCARD cw_status cwi_gltf_make_json(const cwi_gltf_document *document, char **json,
+                                          size_t *size, cw_error *err);
 
 /* As parse(), of the module, in a process of its own unless desc->no_sandbox.
  * Returns CW_ERR_UNSUPPORTED without the module; CW_ERR_BACKEND when that process died. */
-cw_status cwi_gltf_parse(const char *json, size_t size, const cw_mesh_read_desc *desc,
-                         cwi_gltf_scene *scene, cw_error *err);
+CW_NODISCARD cw_status cwi_gltf_parse(const char *json, size_t size,
+                                      const cw_mesh_read_desc *desc, cwi_gltf_scene *scene,
+                                      cw_error *err);
 
 /* Loads the module. CW_ERR_UNSUPPORTED: not in this build. */
-cw_status cwi_gltf_functions_load(const cwi_gltf_functions **functions, cw_error *err);
+CW_NODISCARD cw_status cwi_gltf_functions_load(const cwi_gltf_functions **functions,
+                                               cw_error *err);
 
 extern CW_API const cwi_gltf_functions cwi_module_gltf;
 

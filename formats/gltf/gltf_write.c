@@ -3,9 +3,9 @@
 #include "core/base/module.h"
 #include "core/base/status.h"
 #include "formats/bytes/base64.h"
+#include "formats/codec/meshopt_wrap.h"
 #include "formats/gltf/gltf_pack.h"
 #include "formats/gltf/gltf_wrap.h"
-#include "formats/codec/meshopt_wrap.h"
 
 #include <stdio.h>
 
@@ -20,41 +20,12 @@ cw_status cwi_gltf_functions_load(const cwi_gltf_functions **functions, cw_error
     return st;
 }
 
-cw_status cwi_draco_functions_load(const cwi_draco_functions **functions, cw_error *err)
-{
-    const void *module;
-    cw_status st = cwi_module_load("draco", &module, err);
-    if (st == CW_OK)
-        *functions = module;
-    return st;
-}
-
-cw_status cwi_meshopt_functions_load(const cwi_meshopt_functions **functions, cw_error *err)
-{
-    const void *module;
-    cw_status st = cwi_module_load("meshopt", &module, err);
-    if (st == CW_OK)
-        *functions = module;
-    return st;
-}
-
-void cwi_arrays_free(cwi_arrays *arrays)
-{
-    cwi_free(arrays->positions);
-    cwi_free(arrays->places);
-    cwi_free(arrays->normals);
-    cwi_free(arrays->colors);
-    cwi_free(arrays->triangles);
-    *arrays = (cwi_arrays){0};
-}
-
 cw_status cwi_gltf_prepare(cw_error *err)
 {
     return cwi_module_find("gltf", err);
 }
 
-/* --- the buffer's bytes --------------------------------------------------------------------
- */
+/* --- the buffer's bytes ------------------------------------------------------------------- */
 
 /* Bytes on their way to the file: as they are, or (text) as base64. */
 typedef struct pipe {
@@ -139,8 +110,7 @@ static cw_status write_buffer(const cwi_gltf_plan *plan, cwi_mesh_output *out, b
     return st;
 }
 
-/* --- the file ------------------------------------------------------------------------------
- */
+/* --- the file ----------------------------------------------------------------------------- */
 
 /* "buffers" goes in front of what the module made: it leaves that out, as it holds no bytes.
  * The second one is that of meshopt's unpacked bytes, which no file has. */

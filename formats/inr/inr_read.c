@@ -2,9 +2,9 @@
  * voxels behind it; or all of that as a gzip file. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "formats/bytes/inflate_stream.h"
 #include "formats/text/text_header.h"
 #include "formats/volume/volume_reader.h"
-#include "formats/bytes/inflate_stream.h"
 
 #include <ctype.h>
 #include <math.h>
@@ -147,9 +147,9 @@ static cw_status read_type(const inr *n, cwi_source *src, cw_error *err)
     if (st != CW_OK)
         return st;
     const char *said = n->value[K_PIXSIZE];
-    cwi_next_word(&said, unit);
+    cwi_next_text_word(&said, unit);
     st = cwi_field_integer("PIXSIZE", unit, 1, 1024, &bits, err);
-    if (st == CW_OK && cwi_next_word(&said, unit) && strcmp(unit, "bits") != 0)
+    if (st == CW_OK && cwi_next_text_word(&said, unit) && strcmp(unit, "bits") != 0)
         return cw_fail(err, CW_ERR_FORMAT,
                        "'PIXSIZE' is '%.40s'; '8 bits' or the like was expected",
                        n->value[K_PIXSIZE]);

@@ -6,25 +6,6 @@
 #include <stdio.h>
 #include <string.h>
 
-static const struct {
-    const char *name;
-    double mm;
-} units[CW_UNIT_COUNT] = {
-#define ROW(constant, name, mm) [constant] = {name, mm},
-    CW_UNIT_TABLE(ROW)
-#undef ROW
-};
-
-const char *cw_unit_name(cw_unit unit)
-{
-    return units[unit < CW_UNIT_COUNT ? unit : CW_UNIT_MM].name;
-}
-
-double cw_unit_mm(cw_unit unit)
-{
-    return units[unit < CW_UNIT_COUNT ? unit : CW_UNIT_MM].mm;
-}
-
 /* RAS turns by half a turn about z; then (x, y, z) becomes (x, z, -y), so that z points up
  * along y. Neither mirrors, so windings stay. */
 cwi_turn cwi_turn_to(const cw_axes *axes)
@@ -64,7 +45,7 @@ static bool skip_word(const char **text, const char *word)
 bool cwi_parse_unit(const char **text, cw_mesh_file *said)
 {
     for (int u = 0; u < CW_UNIT_COUNT; u++)
-        if (skip_word(text, units[u].name)) {
+        if (skip_word(text, cw_unit_name((cw_unit)u))) {
             said->axes.unit = (cw_unit)u;
             said->known |= CW_KNOWN_UNIT;
             return true;

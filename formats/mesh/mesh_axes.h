@@ -37,7 +37,7 @@ bool cwi_parse_frame(const char **text, cw_mesh_file *said);
 
 /* Turns a mesh that was read as it stands in the file to LPS millimetres.
  * Returns CW_ERR_FORMAT for places that single precision cannot say then. */
-cw_status cwi_turn_back(cw_mesh *mesh, const cw_axes *axes, cw_error *err);
+CW_NODISCARD cw_status cwi_turn_back(cw_mesh *mesh, const cw_axes *axes, cw_error *err);
 
 #ifdef __cplusplus
 }

@@ -65,23 +65,24 @@ cwi_mesh_reader cwi_drc_read;
 /* Makes an array (array is the address of its pointer) hold at least count elements of a size;
  * what is new is not initialised. room is how many it holds.
  * Returns CW_ERR_LIMIT past desc.max_bytes, CW_ERR_NO_MEMORY; the array is then as before. */
-cw_status cwi_mesh_grow(cwi_mesh_input *in, void *array, size_t *room, size_t count,
-                        size_t size, cw_error *err);
+CW_NODISCARD cw_status cwi_mesh_grow(cwi_mesh_input *in, void *array, size_t *room,
+                                     size_t count, size_t size, cw_error *err);
 
 /* The triangles from this one on are of another part, of that name ("": none); it takes the
  * place of one that has no triangles. Returns as cwi_mesh_grow() */
-cw_status cwi_mesh_begin_part(cwi_mesh_input *in, const char *name, size_t triangle,
-                              cw_error *err);
+CW_NODISCARD cw_status cwi_mesh_begin_part(cwi_mesh_input *in, const char *name,
+                                           size_t triangle, cw_error *err);
 
 /* Counts memory that is used for a while, until the caller takes it off in->bytes again.
  * Returns CW_ERR_LIMIT past desc.max_bytes; it is not counted then. */
-cw_status cwi_mesh_take_bytes(cwi_mesh_input *in, uint64_t bytes, cw_error *err);
+CW_NODISCARD cw_status cwi_mesh_take_bytes(cwi_mesh_input *in, uint64_t bytes, cw_error *err);
 
 /* CW_ERR_LIMIT for more triangles than desc.max_triangles. */
-cw_status cwi_mesh_limit_triangles(const cwi_mesh_input *in, uint64_t count, cw_error *err);
+CW_NODISCARD cw_status cwi_mesh_limit_triangles(const cwi_mesh_input *in, uint64_t count,
+                                                cw_error *err);
 
 /* Gives back what positions and triangles have too much room for. CW_ERR_NO_MEMORY. */
-cw_status cwi_mesh_shrink(cw_mesh *mesh, cw_error *err);
+CW_NODISCARD cw_status cwi_mesh_shrink(cw_mesh *mesh, cw_error *err);
 
 /* Points and faces as they come. Zero it, but for `in`. */
 typedef struct cwi_mesh_build {
@@ -96,20 +97,20 @@ typedef struct cwi_mesh_build {
 } cwi_mesh_build;
 
 /* Room for so many, in one piece. */
-cw_status cwi_build_reserve(cwi_mesh_build *b, uint64_t points, uint64_t triangles,
-                            cw_error *err);
-cw_status cwi_build_point(cwi_mesh_build *b, const double point[3], cw_error *err);
+CW_NODISCARD cw_status cwi_build_reserve(cwi_mesh_build *b, uint64_t points, uint64_t triangles,
+                                         cw_error *err);
+CW_NODISCARD cw_status cwi_build_point(cwi_mesh_build *b, const double point[3], cw_error *err);
 
 /* The next corner of a face, counted from 0; it may name a point that is yet to come. From the
  * third on each makes a triangle with the first and the one before. */
-cw_status cwi_build_corner(cwi_mesh_build *b, int64_t point, cw_error *err);
+CW_NODISCARD cw_status cwi_build_corner(cwi_mesh_build *b, int64_t point, cw_error *err);
 
 /* The face is over: a polygon or something to skip is counted. */
 void cwi_build_end_face(cwi_mesh_build *b, cw_mesh_file *said);
 
 /* Moves points and triangles into the mesh, adds the origin chosen for them to the one there.
  * Returns CW_ERR_FORMAT for a point that is not finite, an index that names none. */
-cw_status cwi_build_finish(cwi_mesh_build *b, cw_mesh *mesh, cw_error *err);
+CW_NODISCARD cw_status cwi_build_finish(cwi_mesh_build *b, cw_mesh *mesh, cw_error *err);
 void cwi_build_free(cwi_mesh_build *b);
 
 /* What our writers leave in a comment of text files: "cubewright VERSION, LPS, mm", and behind

@@ -6,9 +6,9 @@
 #include <cubewright/formats.h>
 
 #include "core/base/atomic_file.h"
+#include "formats/bytes/little_endian.h"
 #include "formats/mesh/mesh_axes.h"
 #include "formats/text/number_format.h"
-#include "formats/bytes/little_endian.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -59,38 +59,39 @@ typedef struct cwi_mesh_output {
 
 typedef cw_status cwi_mesh_writer(const cwi_parts *parts, cwi_mesh_output *out, cw_error *err);
 
-CW_API cwi_mesh_writer cwi_stl_write;
-CW_API cwi_mesh_writer cwi_ply_write;
-CW_API cwi_mesh_writer cwi_obj_write;
-CW_API cwi_mesh_writer cwi_off_write;
-CW_API cwi_mesh_writer cwi_3mf_write;
-CW_API cwi_mesh_writer cwi_vtp_write;
-CW_API cwi_mesh_writer cwi_glb_write;
-CW_API cwi_mesh_writer cwi_gltf_write;
-CW_API cwi_mesh_writer cwi_drc_write;
+cwi_mesh_writer cwi_stl_write;
+cwi_mesh_writer cwi_ply_write;
+cwi_mesh_writer cwi_obj_write;
+cwi_mesh_writer cwi_off_write;
+cwi_mesh_writer cwi_3mf_write;
+cwi_mesh_writer cwi_vtp_write;
+cwi_mesh_writer cwi_glb_write;
+cwi_mesh_writer cwi_gltf_write;
+cwi_mesh_writer cwi_drc_write;
 
 /* As VTP with indices of 64 bits, which cwi_vtp_write() takes for meshes that need them. */
-CW_API cwi_mesh_writer cwi_vtp_write_wide;
+cwi_mesh_writer cwi_vtp_write_wide;
 
 /* Loads the module that both glTF writers need. CW_ERR_UNSUPPORTED: not in this build. */
-CW_API cw_status cwi_gltf_prepare(cw_error *err);
+CW_NODISCARD cw_status cwi_gltf_prepare(cw_error *err);
 
 /* Loads the module of the codec that is asked for, before there is anything to compress.
  * CW_ERR_ARGUMENT: it has not so many bits; CW_ERR_UNSUPPORTED. */
-cw_status cwi_gltf_prepare_codec(const cw_write_desc *desc, cw_error *err);
+CW_NODISCARD cw_status cwi_gltf_prepare_codec(const cw_write_desc *desc, cw_error *err);
 
 /* Puts record i of a part at to, where there is room for CWI_RECORD_BYTES; returns its end. */
 typedef unsigned char *cwi_record_encoder(const cwi_part *part, size_t i, unsigned char *to);
 
 /* Writes a part's records 0 to count - 1 and reports progress on the way. */
-cw_status cwi_write_records(const cwi_part *part, cwi_mesh_output *out,
-                            cwi_record_encoder *encode, size_t count, cw_error *err);
+CW_NODISCARD cw_status cwi_write_records(const cwi_part *part, cwi_mesh_output *out,
+                                         cwi_record_encoder *encode, size_t count,
+                                         cw_error *err);
 
 /* Writes a record for every vertex, or triangle, of all parts. */
-cw_status cwi_write_vertices(const cwi_parts *parts, cwi_mesh_output *out,
-                             cwi_record_encoder *encode, cw_error *err);
-cw_status cwi_write_triangles(const cwi_parts *parts, cwi_mesh_output *out,
-                              cwi_record_encoder *encode, cw_error *err);
+CW_NODISCARD cw_status cwi_write_part_vertices(const cwi_parts *parts, cwi_mesh_output *out,
+                                               cwi_record_encoder *encode, cw_error *err);
+CW_NODISCARD cw_status cwi_write_triangles(const cwi_parts *parts, cwi_mesh_output *out,
+                                           cwi_record_encoder *encode, cw_error *err);
 
 enum { CWI_ORIGIN_BYTES = 160 };
 
@@ -100,17 +101,18 @@ void cwi_print_origin(const cwi_mesh_output *out, const char *before, const char
                       char text[CWI_ORIGIN_BYTES]);
 
 /* Adds what a part loses in a file that holds its coordinates in single precision. */
-cw_status cwi_measure_loss(const cwi_part *part, cw_write_loss *loss, cw_error *err);
+CW_NODISCARD cw_status cwi_measure_loss(const cwi_part *part, cw_write_loss *loss,
+                                        cw_error *err);
 
 /* The part's box in the file. */
 void cwi_part_bounds(const cwi_part *part, double low[3], double high[3]);
 
 /* CW_ERR_LIMIT when a coordinate is beyond single precision's largest number. */
-cw_status cwi_check_single(const cwi_parts *parts, cw_error *err);
+CW_NODISCARD cw_status cwi_check_single(const cwi_parts *parts, cw_error *err);
 
 /* As it stands in the file. Summed in double: a position keeps its micrometres until the format
  * takes them. */
-static inline double cwi_coordinate(const cwi_part *part, size_t vertex, int axis)
+static inline double cwi_file_coordinate(const cwi_part *part, size_t vertex, int axis)
 {
     const int a = part->turn.from[axis];
     const double world =
@@ -130,7 +132,7 @@ static inline unsigned char *cwi_put_place(unsigned char *to, const cwi_part *pa
 {
     double place[3];
     for (int a = 0; a < 3; a++)
-        place[a] = cwi_coordinate(part, v, a);
+        place[a] = cwi_file_coordinate(part, v, a);
     return cwi_put_decimals(to, place, part->digits);
 }
 

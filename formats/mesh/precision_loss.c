@@ -12,7 +12,7 @@
 static void round_points(const cwi_part *part, float *rounded)
 {
     for (size_t i = 0; i < 3 * part->mesh.vertex_count; i++) {
-        const double world = cwi_coordinate(part, i / 3, (int)(i % 3));
+        const double world = cwi_file_coordinate(part, i / 3, (int)(i % 3));
         rounded[i] = (float)fmax(fmin(world, (double)FLT_MAX), -(double)FLT_MAX);
     }
 }

@@ -1,8 +1,8 @@
 /* A mesh taken apart where its marks say. */
 #include "core/base/memory.h"
-#include "core/geometry/union_find.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "core/geometry/union_find.h"
 #include "formats/mesh/place_parts.h"
 
 static const uint32_t NONE = UINT32_MAX;

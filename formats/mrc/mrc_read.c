@@ -1,8 +1,8 @@
 /* MRC2014 and CCP4 maps: a header of 256 words. ccpem.ac.uk/mrc-format/mrc2014, and IMOD's
  * additions to it. */
 #include "core/base/status.h"
-#include "formats/volume/volume_reader.h"
 #include "formats/bytes/inflate_stream.h"
+#include "formats/volume/volume_reader.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
-/* Where the fields of the two NIfTI headers stand: the reader and the writer share the table.
- */
+/* Where the fields of the two NIfTI headers stand: the reader and the writer share
+ * the table. */
 #ifndef FORMATS_NIFTI_NIFTI_H
 #define FORMATS_NIFTI_NIFTI_H
 
@@ -39,14 +39,14 @@ typedef struct cwi_nifti_layout {
 } cwi_nifti_layout;
 
 /* NIfTI-1, NIfTI-2. */
-CW_API extern const cwi_nifti_layout cwi_nifti_layouts[2];
+extern const cwi_nifti_layout cwi_nifti_layouts[2];
 
 /* A number of a field, in either byte order. Every kind fits a double as far as sizes go that
  * are read at all. */
-CW_API double cwi_nifti_get(const cwi_nifti_layout *layout, const unsigned char *header,
-                            bool swapped, cwi_nifti_field field, int index);
-CW_API void cwi_nifti_put(const cwi_nifti_layout *layout, unsigned char *header,
-                          cwi_nifti_field field, int index, double value);
+double cwi_nifti_get(const cwi_nifti_layout *layout, const unsigned char *header, bool swapped,
+                     cwi_nifti_field field, int index);
+void cwi_nifti_put(const cwi_nifti_layout *layout, unsigned char *header, cwi_nifti_field field,
+                   int index, double value);
 
 /* NIfTI's number for a voxel type. */
 int cwi_nifti_datatype(cw_type type);

@@ -1,10 +1,10 @@
 /* NIfTI-1 and -2: headers of fixed layout, nifti.nimh.nih.gov. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "formats/bytes/file_pattern.h"
+#include "formats/bytes/inflate_stream.h"
 #include "formats/nifti/nifti.h"
 #include "formats/volume/volume_reader.h"
-#include "formats/bytes/inflate_stream.h"
-#include "formats/format_registry.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -69,6 +69,6 @@ typedef struct cwi_nrrd {
 
 /* Reads what the header says of axes and of the world around them, and sets the source's sizes,
  * strides and frame. Needs the type and the plain sizes. */
-cw_status cwi_nrrd_describe(cwi_nrrd *n, cwi_source *src, cw_error *err);
+CW_NODISCARD cw_status cwi_nrrd_describe(cwi_nrrd *n, cwi_source *src, cw_error *err);
 
 #endif

@@ -89,7 +89,7 @@ static cw_status read_words(cwi_nrrd *n, cwi_nrrd_field f, const char *name,
     size_t count = 0;
     if (!s)
         return CW_OK;
-    for (; cwi_next_word(&s, word); count++)
+    for (; cwi_next_text_word(&s, word); count++)
         if (count < n->dimension)
             set(&n->axis[count], word);
     if (count == n->dimension)
@@ -199,7 +199,7 @@ static cw_status read_space_units(cwi_nrrd *n, cw_error *err)
     char word[CWI_WORD_BYTES];
     const char *s = n->value[CWI_NRRD_SPACE_UNITS];
     size_t count = 0;
-    for (; s && cwi_next_word(&s, word); count++)
+    for (; s && cwi_next_text_word(&s, word); count++)
         if (count < n->space_dimension)
             find_unit(word, &n->world_mm[count], &n->world_seconds);
     if (s && count != n->space_dimension)

@@ -1,6 +1,6 @@
 /* NRRD, one file, gzipped; doubles are written so that they read back to the bit. */
-#include "formats/volume/voxel_source.h"
 #include "formats/volume/volume_writer.h"
+#include "formats/volume/voxel_source.h"
 
 static const char *const types[CW_TYPE_COUNT] = {
     [CW_U8] = "uint8",   [CW_I8] = "int8",   [CW_U16] = "uint16", [CW_I16] = "int16",

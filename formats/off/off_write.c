@@ -24,7 +24,7 @@ cw_status cwi_off_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *
         mesh->colors ? "C" : "", mesh->normals ? "N" : "", CW_VERSION, axes, origin, out->name,
         (uintmax_t)parts->vertices, (uintmax_t)parts->triangles);
     if (st == CW_OK)
-        st = cwi_write_vertices(parts, out, encode_vertex, err);
+        st = cwi_write_part_vertices(parts, out, encode_vertex, err);
     if (st == CW_OK)
         st = cwi_write_triangles(parts, out, cwi_put_face_line, err);
     return st;

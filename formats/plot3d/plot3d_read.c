@@ -3,6 +3,7 @@
  * files says so: sizes have to tell how they are written. */
 #include "core/base/status.h"
 #include "formats/volume/irregular_grid.h"
+#include "formats/volume/named_arrays.h"
 #include "formats/volume/volume_reader.h"
 
 #include <stdlib.h>

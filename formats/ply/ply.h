@@ -65,7 +65,7 @@ size_t cwi_ply_type_size(cwi_ply_type type);
 
 /* Reads the header, and checks that the file is long enough for what it counts. known and local
  * of said are set. */
-cw_status cwi_ply_parse(const cwi_input *in, cwi_ply_header *h, cw_mesh_file *said,
-                        cw_error *err);
+CW_NODISCARD cw_status cwi_ply_parse(const cwi_input *in, cwi_ply_header *h, cw_mesh_file *said,
+                                     cw_error *err);
 
 #endif

@@ -49,7 +49,7 @@ static cw_status parse_type(const char **rest, const char *line, cwi_ply_type *t
                             cw_error *err)
 {
     char word[CWI_WORD_BYTES] = "";
-    cwi_next_word(rest, word);
+    cwi_next_text_word(rest, word);
     for (int t = 0; t < CWI_PLY_TYPE_COUNT; t++)
         if (strcmp(word, types[t].name) == 0 || strcmp(word, types[t].other) == 0) {
             *type = (cwi_ply_type)t;
@@ -64,7 +64,7 @@ static cw_status parse_type(const char **rest, const char *line, cwi_ply_type *t
 static cw_status parse_format(cwi_ply_header *h, const char *rest, cw_error *err)
 {
     char word[CWI_WORD_BYTES] = "";
-    cwi_next_word(&rest, word);
+    cwi_next_text_word(&rest, word);
     h->text = strcmp(word, "ascii") == 0;
     h->big_endian = strcmp(word, "binary_big_endian") == 0;
     if (h->text || h->big_endian || strcmp(word, "binary_little_endian") == 0)
@@ -79,7 +79,7 @@ static cw_status parse_element(cwi_ply_header *h, const char *rest, cw_error *er
 {
     char word[CWI_WORD_BYTES] = "";
     int64_t count;
-    cwi_next_word(&rest, word);
+    cwi_next_text_word(&rest, word);
     if (h->element_count == CWI_PLY_ELEMENTS)
         return cw_fail(err, CW_ERR_FORMAT, "the header has more than %d elements",
                        CWI_PLY_ELEMENTS);
@@ -121,7 +121,7 @@ static cw_status parse_property(cwi_ply_header *h, const char *rest, const char 
     cwi_ply_property *p = &h->properties[h->property_count++];
     e->end = h->property_count;
     *p = (cwi_ply_property){0};
-    cwi_next_word(&behind, word);
+    cwi_next_text_word(&behind, word);
     p->is_list = strcmp(word, "list") == 0;
     cw_status st = CW_OK;
     if (p->is_list) {
@@ -134,7 +134,7 @@ static cw_status parse_property(cwi_ply_header *h, const char *rest, const char 
         return cw_fail(err, CW_ERR_FORMAT, "'%.60s' counts with a type that is not whole",
                        line);
     word[0] = '\0';
-    cwi_next_word(&rest, word);
+    cwi_next_text_word(&rest, word);
     p->role = find_role(e, word, p->is_list);
     return st;
 }
@@ -144,9 +144,9 @@ static cw_status parse_property(cwi_ply_header *h, const char *rest, const char 
 static void parse_comment(cwi_ply_header *h, const char *rest, bool *ours, cw_mesh_file *said)
 {
     char word[CWI_WORD_BYTES] = "", value[CWI_WORD_BYTES] = "";
-    cwi_next_word(&rest, word);
+    cwi_next_text_word(&rest, word);
     const char *numbers = rest, *name = value;
-    cwi_next_word(&rest, value);
+    cwi_next_text_word(&rest, value);
     if (strcmp(word, "cubewright") == 0)
         *ours = true;
     else if (strcmp(word, "unit") == 0)
@@ -164,7 +164,7 @@ static cw_status parse_line(cwi_ply_header *h, const char *line, bool *ours, boo
 {
     char word[CWI_WORD_BYTES] = "";
     const char *rest = line;
-    cwi_next_word(&rest, word);
+    cwi_next_text_word(&rest, word);
     if (strcmp(word, "element") == 0)
         return parse_element(h, rest, err);
     if (strcmp(word, "property") == 0)

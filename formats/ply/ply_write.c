@@ -7,7 +7,7 @@ static unsigned char *encode_vertex(const cwi_part *part, size_t v, unsigned cha
 {
     const cw_mesh *mesh = &part->mesh;
     for (int a = 0; a < 3; a++)
-        to = cwi_put_f32(to, (float)cwi_coordinate(part, v, a));
+        to = cwi_put_f32(to, (float)cwi_file_coordinate(part, v, a));
     if (mesh->normals) {
         float normal[3];
         cwi_normal(part, v, normal);
@@ -37,7 +37,7 @@ static unsigned char *encode_text_vertex(const cwi_part *part, size_t v, unsigne
     const cw_mesh *mesh = &part->mesh;
     float place[3];
     for (int a = 0; a < 3; a++)
-        place[a] = (float)cwi_coordinate(part, v, a);
+        place[a] = (float)cwi_file_coordinate(part, v, a);
     to = cwi_put_singles(to, place);
     if (mesh->normals)
         to = cwi_put_normal(cwi_put_text(to, " "), part, v);
@@ -84,8 +84,8 @@ cw_status cwi_ply_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *
     if (st == CW_OK)
         st = write_header(parts, out, err);
     if (st == CW_OK)
-        st =
-            cwi_write_vertices(parts, out, out->text ? encode_text_vertex : encode_vertex, err);
+        st = cwi_write_part_vertices(parts, out, out->text ? encode_text_vertex : encode_vertex,
+                                     err);
     if (st == CW_OK)
         st = cwi_write_triangles(parts, out, out->text ? cwi_put_face_line : encode_face, err);
     return st;

@@ -131,8 +131,8 @@ static cw_status parse_pair(const char *pair, unsigned *seen, cw_raw_layout *lay
                    (int)(length < 40 ? length : 40), pair);
 }
 
-/* Up to a comma that a number does not follow: sizes and lengths may be parted by commas, too.
- */
+/* Up to a comma that a number does not follow: sizes and lengths may be parted by
+ * commas, too. */
 static size_t pair_length(const char *text)
 {
     size_t length = strcspn(text, ",");

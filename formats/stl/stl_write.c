@@ -28,7 +28,7 @@ static void find_facet(const cwi_part *part, size_t i, float normal[3], float co
     const uint32_t *vertex = part->mesh.triangles + 3 * i;
     for (int c = 0; c < 3; c++)
         for (int a = 0; a < 3; a++)
-            corner[c][a] = (float)cwi_coordinate(part, vertex[c], a);
+            corner[c][a] = (float)cwi_file_coordinate(part, vertex[c], a);
     facet_normal(corner, normal);
 }
 

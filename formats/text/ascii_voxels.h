@@ -17,7 +17,7 @@ typedef struct cwi_numbers {
 
 /* Reads the next count numbers into voxels of a type; to may be NULL, they are checked only.
  * Returns CW_ERR_FORMAT for fewer, for anything else, for a number the type cannot hold. */
-cw_status cwi_numbers_read(cwi_numbers *numbers, cw_type type, void *to, size_t count,
-                           cw_error *err);
+CW_NODISCARD cw_status cwi_numbers_read(cwi_numbers *numbers, cw_type type, void *to,
+                                        size_t count, cw_error *err);
 
 #endif

@@ -9,8 +9,8 @@
 
 /* As "%.*g" does, but for the last digit of a tie. 9 digits bring a float back to the bit, 17 a
  * double. Takes up to 24 bytes; there is no negative zero. */
-CW_API unsigned char *cwi_put_decimal(unsigned char *to, double value, int digits);
-CW_API unsigned char *cwi_put_integer(unsigned char *to, uint64_t value);
+unsigned char *cwi_put_decimal(unsigned char *to, double value, int digits);
+unsigned char *cwi_put_integer(unsigned char *to, uint64_t value);
 
 enum { CWI_NUMBER_BYTES = 26, CWI_POINT_BYTES = 3 * CWI_NUMBER_BYTES };
 

@@ -109,7 +109,7 @@ int cwi_field_find(const char *const *rows, int count, const char *key, size_t l
     return -1;
 }
 
-bool cwi_next_word(const char **text, char word[CWI_WORD_BYTES])
+bool cwi_next_text_word(const char **text, char word[CWI_WORD_BYTES])
 {
     const char *s = *text + strspn(*text, " \t");
     if (!*s)

@@ -16,16 +16,16 @@ typedef struct cwi_lines {
     bool cut;      /* the file goes on behind what is held */
 } cwi_lines;
 
-cw_status cwi_lines_open(cwi_lines *lines, const cwi_input *in, cw_error *err);
+CW_NODISCARD cw_status cwi_lines_open(cwi_lines *lines, const cwi_input *in, cw_error *err);
 
 /* The next line without its end and trailing blanks; NULL behind the last. It stays valid, and
  * may be written to, until the lines are closed.
  * Returns CW_ERR_FORMAT for a line over 64 KiB, a header over 1 MiB, a zero byte. */
-cw_status cwi_lines_next(cwi_lines *lines, char **line, cw_error *err);
+CW_NODISCARD cw_status cwi_lines_next(cwi_lines *lines, char **line, cw_error *err);
 void cwi_lines_close(cwi_lines *lines);
 
 /* Adds the remaining lines, but empty ones, as names. */
-cw_status cwi_lines_names(cwi_lines *lines, cwi_names *names, cw_error *err);
+CW_NODISCARD cw_status cwi_lines_names(cwi_lines *lines, cwi_names *names, cw_error *err);
 
 /* The index of a key among rows of "name|other name" in lower case without blanks; the key may
  * have capitals and blanks. -1 when there is none. */
@@ -33,17 +33,17 @@ int cwi_field_find(const char *const *rows, int count, const char *key, size_t l
 
 /* Reads the next blank-separated word, or the text between double quotes, and moves *text
  * behind it. False at the end; words too long are cut. */
-bool cwi_next_word(const char **text, char word[CWI_WORD_BYTES]);
+bool cwi_next_text_word(const char **text, char word[CWI_WORD_BYTES]);
 
 /* Reads exactly `wanted` numbers, the count that the field `by` states. The message names both.
  * Sizes are whole numbers from 1 to 2^31 - 1. */
-cw_status cwi_field_doubles(const char *field, const char *text, size_t wanted, const char *by,
-                            double *out, cw_error *err);
-cw_status cwi_field_sizes(const char *field, const char *text, size_t wanted, const char *by,
-                          size_t *out, cw_error *err);
+CW_NODISCARD cw_status cwi_field_doubles(const char *field, const char *text, size_t wanted,
+                                         const char *by, double *out, cw_error *err);
+CW_NODISCARD cw_status cwi_field_sizes(const char *field, const char *text, size_t wanted,
+                                       const char *by, size_t *out, cw_error *err);
 
 /* Reads one whole number from low to high. */
-cw_status cwi_field_integer(const char *field, const char *text, int64_t low, int64_t high,
-                            int64_t *out, cw_error *err);
+CW_NODISCARD cw_status cwi_field_integer(const char *field, const char *text, int64_t low,
+                                         int64_t high, int64_t *out, cw_error *err);
 
 #endif

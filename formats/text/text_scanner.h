@@ -24,12 +24,12 @@ typedef struct cwi_scan {
 
 /* Starts at an offset. by_line and comments may be set at any time.
  * Returns CW_ERR_NO_MEMORY. */
-cw_status cwi_scan_open(cwi_scan *s, const cwi_input *in, uint64_t offset,
-                        const cw_progress *progress, cw_error *err);
+CW_NODISCARD cw_status cwi_scan_open(cwi_scan *s, const cwi_input *in, uint64_t offset,
+                                     const cw_progress *progress, cw_error *err);
 
 /* The same for text, of which the first line's end tells how lines end. */
-cw_status cwi_scan_open_text(cwi_scan *s, const cwi_input *in, uint64_t offset,
-                             const cw_progress *progress, cw_error *err);
+CW_NODISCARD cw_status cwi_scan_open_text(cwi_scan *s, const cwi_input *in, uint64_t offset,
+                                          const cw_progress *progress, cw_error *err);
 void cwi_scan_close(cwi_scan *s);
 
 /* Bytes of the file behind the place of reading. */
@@ -37,8 +37,8 @@ uint64_t cwi_scan_left(const cwi_scan *s);
 
 /* Exactly size bytes, at most CWI_SCAN_AHEAD; valid until the next call. what names them.
  * Returns CW_ERR_FORMAT where the file ends first. */
-cw_status cwi_scan_take(cwi_scan *s, size_t size, const char *what, const unsigned char **bytes,
-                        cw_error *err);
+CW_NODISCARD cw_status cwi_scan_take(cwi_scan *s, size_t size, const char *what,
+                                     const unsigned char **bytes, cw_error *err);
 
 /* A word in place: blank, line end or zero behind it. Valid until the next call. */
 typedef struct cwi_word {
@@ -46,7 +46,7 @@ typedef struct cwi_word {
     size_t size; /* 0: the line or the file ends here */
 } cwi_word;
 
-cw_status cwi_scan_word(cwi_scan *s, cwi_word *word, cw_error *err);
+CW_NODISCARD cw_status cwi_scan_word(cwi_scan *s, cwi_word *word, cw_error *err);
 bool cwi_word_is(const cwi_word *word, const char *text);
 
 /* Whether the whole word is a number, and which. */
@@ -54,20 +54,22 @@ bool cwi_word_double(const cwi_word *word, double *value);
 bool cwi_word_integer(const cwi_word *word, int64_t *value);
 
 /* The rest of the line, without blanks around it and as far as it fits, and a zero. */
-cw_status cwi_scan_rest(cwi_scan *s, char text[CWI_REST_BYTES], cw_error *err);
+CW_NODISCARD cw_status cwi_scan_rest(cwi_scan *s, char text[CWI_REST_BYTES], cw_error *err);
 
 /* Leaves out the rest of the line. */
-cw_status cwi_scan_end_line(cwi_scan *s, cw_error *err);
+CW_NODISCARD cw_status cwi_scan_end_line(cwi_scan *s, cw_error *err);
 
 /* Goes on to the next line with a word in it; false at the end of the file. */
-cw_status cwi_scan_next_line(cwi_scan *s, bool *found, cw_error *err);
+CW_NODISCARD cw_status cwi_scan_next_line(cwi_scan *s, bool *found, cw_error *err);
 
 /* The next word as a number; what names it in the message. */
-cw_status cwi_scan_double(cwi_scan *s, const char *what, double *value, cw_error *err);
-cw_status cwi_scan_integer(cwi_scan *s, const char *what, int64_t *value, cw_error *err);
+CW_NODISCARD cw_status cwi_scan_double(cwi_scan *s, const char *what, double *value,
+                                       cw_error *err);
+CW_NODISCARD cw_status cwi_scan_integer(cwi_scan *s, const char *what, int64_t *value,
+                                        cw_error *err);
 
 /* "line 5: x is 'abc', a number was expected", or that the line or file ends instead. */
-cw_status cwi_scan_fail(const cwi_scan *s, const cwi_word *word, const char *what,
-                        const char *expected, cw_error *err);
+CW_NODISCARD cw_status cwi_scan_fail(const cwi_scan *s, const cwi_word *word, const char *what,
+                                     const char *expected, cw_error *err);
 
 #endif

@@ -42,12 +42,12 @@ typedef cw_status cwi_xml_source(void *from, void *to, size_t size, size_t *got,
  * Returns  CW_ERR_FORMAT  no XML, elements nested deeper than 64, too many of them, a tag of
  * more than 1 MiB; CW_ERR_UNSAFE a document type; CW_ERR_NO_MEMORY or what source and rules
  * return */
-cw_status cwi_xml_read(const cwi_xml_rules *rules, void *user, cwi_xml_source *source,
-                       void *from, cw_error *err);
+CW_NODISCARD cw_status cwi_xml_read(const cwi_xml_rules *rules, void *user,
+                                    cwi_xml_source *source, void *from, cw_error *err);
 
 /* Reads a file from its start. */
-cw_status cwi_xml_read_file(const cwi_xml_rules *rules, void *user, const cwi_input *in,
-                            cw_error *err);
+CW_NODISCARD cw_status cwi_xml_read_file(const cwi_xml_rules *rules, void *user,
+                                         const cwi_input *in, cw_error *err);
 
 /* Where the tag at hand begins, and where it ends, counted in bytes from the start. */
 uint64_t cwi_xml_tag_start(const cwi_xml *x);

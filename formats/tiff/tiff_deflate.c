@@ -2,9 +2,9 @@
  * where a damaged stream asks for more room than there is, that takes what it has for all, and
  * it verifies no checksum of a strip that it reads by zlib. */
 #include "core/base/status.h"
-#include "formats/volume/voxel_source.h"
 #include "formats/bytes/inflate_stream.h"
 #include "formats/tiff/tiff_file.h"
+#include "formats/volume/voxel_source.h"
 
 #include <string.h>
 
@@ -27,8 +27,8 @@ static void add_up(void *row, size_t count, size_t stride, size_t size)
         u64[i] += u64[i - stride];
 }
 
-/* Floats come as all their high bytes, then all the next ones, ..., whatever the file's order.
- */
+/* Floats come as all their high bytes, then all the next ones, ..., whatever the
+ * file's order. */
 static void join_floats(unsigned char *row, unsigned char *copy, size_t count, size_t size)
 {
     memcpy(copy, row, count * size);

@@ -7,8 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* --- units ---------------------------------------------------------------------------------
- */
+/* --- units -------------------------------------------------------------------------------- */
 
 typedef struct unit {
     const char *name;
@@ -46,8 +45,7 @@ double cwi_tiff_time(const char *name, size_t length)
     return find_unit(units, sizeof units / sizeof *units, name, length);
 }
 
-/* --- ImageJ --------------------------------------------------------------------------------
- */
+/* --- ImageJ ------------------------------------------------------------------------------- */
 
 /* The rest of the line KEY=; NULL: there is none. */
 static const char *find_line(const char *text, const char *key, size_t *length)
@@ -217,8 +215,7 @@ static cw_status describe_imagej(cwi_tiff_file *f, const char *text, cwi_tiff_fa
     return CW_OK;
 }
 
-/* --- whose description it is ---------------------------------------------------------------
- */
+/* --- whose description it is -------------------------------------------------------------- */
 
 static bool is_ome(const char *text)
 {

@@ -45,17 +45,17 @@ typedef struct cwi_tiff_file {
 
 /* Finds the directories of the file, and holds all that they point to against its size: a loop,
  * or a tag's value beyond the end, is an error. */
-cw_status cwi_tiff_walk(cwi_tiff_file *f, cw_error *err);
+CW_NODISCARD cw_status cwi_tiff_walk(cwi_tiff_file *f, cw_error *err);
 
 /* Forgets what libtiff complained of so far. */
 void cwi_tiff_listen(cwi_tiff_file *f);
 
 /* Turns to a page and finds its layout. */
-cw_status cwi_tiff_turn_to(cwi_tiff_file *f, uint32_t page, cw_error *err);
+CW_NODISCARD cw_status cwi_tiff_turn_to(cwi_tiff_file *f, uint32_t page, cw_error *err);
 
 /* Puts rows of the page turned to. */
-cw_status cwi_tiff_rows(cwi_tiff_file *f, uint32_t first, uint32_t count, unsigned char *to,
-                        cw_error *err);
+CW_NODISCARD cw_status cwi_tiff_rows(cwi_tiff_file *f, uint32_t first, uint32_t count,
+                                     unsigned char *to, cw_error *err);
 
 static inline bool cwi_tiff_is_deflated(const cwi_tiff_layout *l)
 {
@@ -63,12 +63,12 @@ static inline bool cwi_tiff_is_deflated(const cwi_tiff_layout *l)
 }
 
 /* Decodes a deflated strip or tile to rows of numbers of this machine. */
-cw_status cwi_tiff_inflate(cwi_tiff_file *f, uint32_t strile, unsigned char *to, size_t bytes,
-                           size_t row_bytes, cw_error *err);
+CW_NODISCARD cw_status cwi_tiff_inflate(cwi_tiff_file *f, uint32_t strile, unsigned char *to,
+                                        size_t bytes, size_t row_bytes, cw_error *err);
 
 /* Makes a buffer large enough; what it held is lost. */
-cw_status cwi_tiff_make_room(unsigned char **buffer, size_t *room, uint64_t bytes,
-                             cw_error *err);
+CW_NODISCARD cw_status cwi_tiff_make_room(unsigned char **buffer, size_t *room, uint64_t bytes,
+                                          cw_error *err);
 
 /* What libtiff does not tell: a short of a directory, 0 where there is none; and a rational
  * number of the first, which libtiff rounds to single precision; false where there is none. */
@@ -78,13 +78,13 @@ bool cwi_tiff_rational(const cwi_tiff_file *f, uint16_t tag, double *value);
 /* What the first directory's description says of the pages: ImageJ's, OME's or nobody's. Fills
  * in the facts behind page_count, and the order of pages. The first directory is open, and the
  * layout that of the first page. */
-cw_status cwi_tiff_describe(cwi_tiff_file *f, const char *description, cwi_tiff_facts *facts,
-                            uint32_t *order, cw_error *err);
-cw_status cwi_tiff_ome(const cwi_tiff_file *f, const char *xml, cwi_tiff_facts *facts,
-                       uint32_t *order, cw_error *err);
+CW_NODISCARD cw_status cwi_tiff_describe(cwi_tiff_file *f, const char *description,
+                                         cwi_tiff_facts *facts, uint32_t *order, cw_error *err);
+CW_NODISCARD cw_status cwi_tiff_ome(const cwi_tiff_file *f, const char *xml,
+                                    cwi_tiff_facts *facts, uint32_t *order, cw_error *err);
 
-/* The millimetres of a unit of length, and the seconds of one of time; 0: none that is known.
- */
+/* The millimetres of a unit of length, and the seconds of one of time; 0: none that
+ * is known. */
 double cwi_tiff_length(const char *name, size_t length);
 double cwi_tiff_time(const char *name, size_t length);
 

@@ -53,8 +53,7 @@ static bool whole(attributes a, const char *name, uint32_t otherwise, uint32_t *
     return true;
 }
 
-/* --- sizes ---------------------------------------------------------------------------------
- */
+/* --- sizes -------------------------------------------------------------------------------- */
 
 static cw_status read_order(parsing *p, const char *text)
 {
@@ -131,8 +130,7 @@ static cw_status read_pixels(parsing *p, attributes a)
     return st;
 }
 
-/* --- planes --------------------------------------------------------------------------------
- */
+/* --- planes ------------------------------------------------------------------------------- */
 
 static uint32_t plane_count(const parsing *p)
 {
@@ -215,8 +213,7 @@ static cw_status read_name(parsing *p, attributes a)
         "hold all of theirs");
 }
 
-/* --- elements ------------------------------------------------------------------------------
- */
+/* --- elements ----------------------------------------------------------------------------- */
 
 static cw_status fail_elsewhere(parsing *p)
 {
@@ -275,8 +272,7 @@ static void XMLCALL on_doctype(void *user, const XML_Char *name, const XML_Char 
                     "the OME-XML has a document type (<!DOCTYPE>); none is read"));
 }
 
-/* --- the document --------------------------------------------------------------------------
- */
+/* --- the document ------------------------------------------------------------------------- */
 
 static void *give_memory(size_t size)
 {

@@ -34,8 +34,7 @@ cw_status cwi_tiff_make_room(unsigned char **buffer, size_t *room, uint64_t byte
                              (unsigned long long)bytes);
 }
 
-/* --- what is not compressed ----------------------------------------------------------------
- */
+/* --- what is not compressed --------------------------------------------------------------- */
 
 static bool is_raw(const cwi_tiff_layout *l)
 {
@@ -107,8 +106,7 @@ static cw_status read_raw(const cwi_tiff_file *f, uint16_t plane, uint32_t row, 
     return st;
 }
 
-/* --- what is compressed --------------------------------------------------------------------
- */
+/* --- what is compressed ------------------------------------------------------------------- */
 
 /* Libtiff goes on over damage with a warning, and hands out what it has. */
 static cw_status check_decoded(const cwi_tiff_file *f, tmsize_t got, size_t wanted,
@@ -187,8 +185,7 @@ static cw_status decode_band(cwi_tiff_file *f, uint32_t band, cw_error *err)
     return st;
 }
 
-/* --- from stored rows to rows --------------------------------------------------------------
- */
+/* --- from stored rows to rows ------------------------------------------------------------- */
 
 static bool is_flipped(const cwi_tiff_layout *l)
 {

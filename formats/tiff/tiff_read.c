@@ -4,10 +4,9 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/bytes/file_pattern.h"
-#include "formats/volume/volume_reader.h"
 #include "formats/volume/slice_spacing.h"
 #include "formats/volume/slice_stack.h"
-#include "formats/format_registry.h"
+#include "formats/volume/volume_reader.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -22,8 +21,7 @@ bool cwi_tiff_sniff(const unsigned char *head, size_t size)
                          memcmp(head, "II+\0", 4) == 0 || memcmp(head, "MM\0+", 4) == 0);
 }
 
-/* --- the facts of one file -----------------------------------------------------------------
- */
+/* --- the facts of one file ---------------------------------------------------------------- */
 
 static uint64_t planes_of(const cwi_tiff_facts *f)
 {
@@ -111,8 +109,7 @@ static cw_status take_facts(cwi_planes *planes, int fd, uint64_t file_bytes, cwi
     return CW_OK;
 }
 
-/* --- the stack -----------------------------------------------------------------------------
- */
+/* --- the stack ---------------------------------------------------------------------------- */
 
 static void set_sizes(const cwi_tiff_facts *f, size_t slices, cwi_stack *stack)
 {
@@ -194,8 +191,7 @@ static cw_status stack_pages(const cwi_tiff_facts *f, const uint32_t *order, cwi
     return CW_OK;
 }
 
-/* --- slices in files of their own ----------------------------------------------------------
- */
+/* --- slices in files of their own --------------------------------------------------------- */
 
 typedef struct slices {
     const cwi_input *in;
@@ -364,8 +360,7 @@ static cw_status stack_files(slices *s, cwi_stack *stack, cw_error *err)
     return st;
 }
 
-/* --- reading -------------------------------------------------------------------------------
- */
+/* --- reading ------------------------------------------------------------------------------ */
 
 static void note_facts(const cw_read_desc *desc, cwi_tiff_facts *f)
 {

@@ -10,8 +10,7 @@
 
 enum { MOST_SAMPLES = 4, AT_ONCE = 1 << 30 };
 
-/* --- the file as libtiff reads it ----------------------------------------------------------
- */
+/* --- the file as libtiff reads it --------------------------------------------------------- */
 
 static tmsize_t on_read(thandle_t handle, void *to, tmsize_t size)
 {
@@ -139,8 +138,7 @@ static cw_status open_directory(cwi_tiff_file *f, uint32_t n, cw_error *err)
                             f->complaint);
 }
 
-/* --- layouts -------------------------------------------------------------------------------
- */
+/* --- layouts ------------------------------------------------------------------------------ */
 
 static uint16_t short_of(TIFF *tiff, uint32_t tag, uint16_t otherwise)
 {
@@ -328,8 +326,7 @@ cw_status cwi_tiff_turn_to(cwi_tiff_file *f, uint32_t page, cw_error *err)
     return CW_OK;
 }
 
-/* --- facts ---------------------------------------------------------------------------------
- */
+/* --- facts -------------------------------------------------------------------------------- */
 
 static size_t strile_bytes(const cwi_tiff_file *f, const cwi_tiff_layout *l, uint32_t n)
 {
@@ -443,8 +440,7 @@ static cw_status take_facts(cwi_tiff_file *f, cwi_tiff_facts *facts, cw_error *e
     return st;
 }
 
-/* --- work ----------------------------------------------------------------------------------
- */
+/* --- work --------------------------------------------------------------------------------- */
 
 static cw_status copy_rows(cwi_tiff_file *f, const cwi_plane_request *q, void *shared,
                            cw_error *err)

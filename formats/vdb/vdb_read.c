@@ -1,12 +1,13 @@
 /* OpenVDB files: level sets, fog volumes and other grids of one number a voxel, as sparse
  * grids. */
-#include "core/geometry/affine.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "core/geometry/affine.h"
 #include "core/volume/volume.h"
-#include "formats/volume/volume_reader.h"
 #include "formats/vdb/vdb.h"
+#include "formats/volume/named_arrays.h"
+#include "formats/volume/volume_reader.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -17,8 +18,7 @@ bool cwi_vdb_sniff(const unsigned char *head, size_t size)
     return size >= 8 && memcmp(head, " BDV\0\0\0\0", 8) == 0;
 }
 
-/* --- which grid ----------------------------------------------------------------------------
- */
+/* --- which grid --------------------------------------------------------------------------- */
 
 /* What is printed of a stranger's text. */
 static void clean(char *text, size_t room)
@@ -111,8 +111,7 @@ static void tell(const cw_read_desc *desc, const cwi_vdb_facts *f, const cwi_vdb
         cwi_note(desc, "it has %u grids: %s (--grid)", f->grid_count, list_names(f, names));
 }
 
-/* --- the volume ----------------------------------------------------------------------------
- */
+/* --- the volume --------------------------------------------------------------------------- */
 
 /* A leaf has a mask of 64 bytes in the file, however well its voxels are compressed. */
 static cw_status check_counts(const cwi_vdb_grid *g, uint64_t file_bytes,

@@ -19,7 +19,7 @@ typedef struct cwi_corner_list {
  * to     room for 8
  * count  set to how many were taken
  * Returns CW_ERR_FORMAT */
-cw_status cwi_corner_list_next(cwi_corner_list *list, uint8_t type, size_t base, uint32_t *to,
-                               size_t *count, cw_error *err);
+CW_NODISCARD cw_status cwi_corner_list_next(cwi_corner_list *list, uint8_t type, size_t base,
+                                            uint32_t *to, size_t *count, cw_error *err);
 
 #endif

@@ -14,12 +14,14 @@ typedef struct cwi_tuples {
 
 /* Describes so many tuples, but for where and how they are written. wide: whole numbers of 64
  * bits, and type that of their halves. field is where the file counts them. */
-cw_status cwi_tuples_describe(cwi_source *src, const char *field, cw_type type, bool wide,
-                              size_t components, size_t count, cw_error *err);
+CW_NODISCARD cw_status cwi_tuples_describe(cwi_source *src, const char *field, cw_type type,
+                                           bool wide, size_t components, size_t count,
+                                           cw_error *err);
 
 /* Reads what was described so, of which wide, components and count are given once more. */
-cw_status cwi_tuples_load(const cwi_source *src, const cwi_input *in, const cw_read_desc *desc,
-                          bool wide, cwi_tuples *tuples, cw_error *err);
+CW_NODISCARD cw_status cwi_tuples_load(const cwi_source *src, const cwi_input *in,
+                                       const cw_read_desc *desc, bool wide, cwi_tuples *tuples,
+                                       cw_error *err);
 void cwi_tuples_free(cwi_tuples *tuples);
 
 double cwi_tuples_real(const cwi_tuples *tuples, size_t i, size_t component);

@@ -4,10 +4,10 @@
 #include "core/base/status.h"
 #include "core/base/text.h"
 #include "core/volume/volume.h"
-#include "formats/volume/vtk_cell_types.h"
 #include "formats/volume/cell_connectivity.h"
-#include "formats/volume/volume_reader.h"
 #include "formats/volume/merge_samples.h"
+#include "formats/volume/volume_reader.h"
+#include "formats/volume/vtk_cell_types.h"
 
 #include <math.h>
 #include <string.h>
@@ -222,8 +222,8 @@ static void leave_out(building *b, uint8_t *type)
     *type = CWI_VTK_EMPTY;
 }
 
-/* Blanked cells, and those of curvilinear grids around blanked points; cells that others have.
- */
+/* Blanked cells, and those of curvilinear grids around blanked points; cells that
+ * others have. */
 static cw_status apply_marks(building *b, size_t piece, uint8_t *types, cw_error *err)
 {
     const cwi_grid_piece *p = &b->g->pieces[piece];

@@ -44,7 +44,7 @@ typedef struct cwi_irregular {
 
 /* How many points and cells a curvilinear grid has. field: where the file says so.
  * Returns CW_ERR_FORMAT when it is flat, CW_ERR_LIMIT */
-cw_status cwi_grid_along(cwi_grid_piece *piece, const char *field, cw_error *err);
+CW_NODISCARD cw_status cwi_grid_along(cwi_grid_piece *piece, const char *field, cw_error *err);
 
 /* Reads the grid, with the kinds of cells that we have; notes what is left out or merged.
  * Samples that are the same in place and value, as pieces have along their seams, become one.
@@ -52,7 +52,8 @@ cw_status cwi_grid_along(cwi_grid_piece *piece, const char *field, cw_error *err
  * counts and shapes, but neither points nor corners.
  *
  * Returns  as cw_volume_read() */
-cw_status cwi_irregular_read(const cwi_irregular *grid, const cwi_input *in,
-                             const cw_read_desc *desc, cw_volume *volume, cw_error *err);
+CW_NODISCARD cw_status cwi_irregular_read(const cwi_irregular *grid, const cwi_input *in,
+                                          const cw_read_desc *desc, cw_volume *volume,
+                                          cw_error *err);
 
 #endif

@@ -1,7 +1,7 @@
 #include "formats/volume/region_runs.h"
 
-/* As long as faster axes are wanted from end to end, what is wanted of an axis stands together.
- */
+/* As long as faster axes are wanted from end to end, what is wanted of an axis
+ * stands together. */
 void cwi_runs_plan(cwi_runs *runs, const cwi_source *src, const cw_box *box,
                    const size_t every[3])
 {

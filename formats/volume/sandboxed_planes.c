@@ -60,8 +60,8 @@ cw_status cwi_planes_open(cwi_planes *planes, const char *module, const char *li
                                   .memory = desc->max_bytes,
                                   .timeout_s = desc->timeout_s,
                                   .inside = desc->no_sandbox};
-    /* from the second file on, every child finds the library loaded: a tenth of a second less
-     */
+    /* from the second file on, every child finds the library loaded: a tenth of a
+     * second less */
     cw_status st = CW_OK;
     if (atomic_load(survived_of(module)) && !cwi_memory_is_limited())
         st = load(planes, err);

@@ -42,21 +42,23 @@ typedef struct cwi_planes {
 
 /* Starts a process and loads a module in it; `library` is what it has inside, for messages.
  * Returns  CW_ERR_UNSUPPORTED  not in this build; as cwi_sandbox_open() */
-cw_status cwi_planes_open(cwi_planes *planes, const char *module, const char *library,
-                          const cw_read_desc *desc, cw_error *err);
+CW_NODISCARD cw_status cwi_planes_open(cwi_planes *planes, const char *module,
+                                       const char *library, const cw_read_desc *desc,
+                                       cw_error *err);
 void cwi_planes_close(cwi_planes *planes);
 
 /* Starts the process again where it has ended. */
-cw_status cwi_planes_restart(cwi_planes *planes, cw_error *err);
+CW_NODISCARD cw_status cwi_planes_restart(cwi_planes *planes, cw_error *err);
 
 /* Hands a file over; returns its facts, or fails as the module does. Copy them, then check. */
-cw_status cwi_planes_facts(cwi_planes *planes, int fd, uint64_t file_bytes, const void **facts,
-                           cw_error *err);
+CW_NODISCARD cw_status cwi_planes_facts(cwi_planes *planes, int fd, uint64_t file_bytes,
+                                        const void **facts, cw_error *err);
 
 /* Reads rows of a plane of the file that was handed over last.
  * row_bytes  of each row as the module packs it, at most CWI_PLANES_SHARED */
-cw_status cwi_planes_read(cwi_planes *planes, uint32_t plane, size_t first_row,
-                          size_t row_count, size_t row_bytes, void *to, cw_error *err);
+CW_NODISCARD cw_status cwi_planes_read(cwi_planes *planes, uint32_t plane, size_t first_row,
+                                       size_t row_count, size_t row_bytes, void *to,
+                                       cw_error *err);
 
 #ifdef __cplusplus
 }

@@ -36,8 +36,8 @@ static double *distances(const double *places, size_t count)
     return d;
 }
 
-/* Whether all places are on a row of so many steps from the first to the last, no two at one.
- */
+/* Whether all places are on a row of so many steps from the first to the last, no two
+ * at one. */
 static bool on_row(const double *places, size_t count, double steps)
 {
     const double step = (places[count - 1] - places[0]) / steps;

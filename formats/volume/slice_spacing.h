@@ -29,8 +29,8 @@ typedef struct cwi_slices {
  * unit     of places, for messages
  * Returns  CW_ERR_UNSAFE where they are uneven and gaps says to stop; CW_ERR_LIMIT for more
  *          than 65,536 slices; CW_ERR_NO_MEMORY */
-CW_API cw_status cwi_slices_lay(const double *places, size_t count, const char *unit,
-                                cw_gaps gaps, cwi_slices *slices, cw_error *err);
-CW_API void cwi_slices_free(cwi_slices *slices);
+CW_NODISCARD cw_status cwi_slices_lay(const double *places, size_t count, const char *unit,
+                                      cw_gaps gaps, cwi_slices *slices, cw_error *err);
+void cwi_slices_free(cwi_slices *slices);
 
 #endif

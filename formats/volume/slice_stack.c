@@ -30,8 +30,7 @@ typedef struct reading {
     char *voxels;
 } reading;
 
-/* --- from pixels to voxels -----------------------------------------------------------------
- */
+/* --- from pixels to voxels ---------------------------------------------------------------- */
 
 static bool is_padding(const cwi_stack *s, double pixel)
 {
@@ -73,8 +72,7 @@ static void put_label(const reading *r, const cwi_slot *slot, char *to)
             cwi_voxel_put(s->shape.type, to + i * out, slot->label);
 }
 
-/* --- from files to pixels ------------------------------------------------------------------
- */
+/* --- from files to pixels ----------------------------------------------------------------- */
 
 /* NULL: the file that is open. */
 static const char *file_name(const cwi_stack *s, size_t file)

@@ -39,8 +39,9 @@ typedef struct cwi_stack {
 } cwi_stack;
 
 /* Checks limits, then reads (unless desc->header_only). As cwi_source_load(). */
-cw_status cwi_stack_load(const cwi_stack *stack, const cwi_input *in, cwi_planes *planes,
-                         const cw_read_desc *desc, cw_volume *volume, cw_error *err);
+CW_NODISCARD cw_status cwi_stack_load(const cwi_stack *stack, const cwi_input *in,
+                                      cwi_planes *planes, const cw_read_desc *desc,
+                                      cw_volume *volume, cw_error *err);
 
 void cwi_stack_free(cwi_stack *stack);
 

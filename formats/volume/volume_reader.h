@@ -33,41 +33,45 @@ void cwi_note_links(const cw_read_desc *desc, size_t links);
 
 /* Reads a header into a zeroed source, which the caller frees in any case. The messages name
  * the header's fields; the caller puts the file's name in front. */
-cw_status cwi_nrrd_parse(const cwi_input *in, cwi_source *src, cw_error *err);
-cw_status cwi_nifti_parse(const cwi_input *in, cwi_source *src, cw_error *err);
-cw_status cwi_metaimage_parse(const cwi_input *in, cwi_source *src, cw_error *err);
-cw_status cwi_vtk_parse(const cwi_input *in, cwi_source *src, cw_error *err);
-cw_status cwi_vti_parse(const cwi_input *in, cwi_source *src, cw_error *err);
-cw_status cwi_mrc_parse(const cwi_input *in, cwi_source *src, cw_error *err);
-cw_status cwi_inr_parse(const cwi_input *in, cwi_source *src, cw_error *err);
+CW_NODISCARD cw_status cwi_nrrd_parse(const cwi_input *in, cwi_source *src, cw_error *err);
+CW_NODISCARD cw_status cwi_nifti_parse(const cwi_input *in, cwi_source *src, cw_error *err);
+CW_NODISCARD cw_status cwi_metaimage_parse(const cwi_input *in, cwi_source *src, cw_error *err);
+CW_NODISCARD cw_status cwi_vtk_parse(const cwi_input *in, cwi_source *src, cw_error *err);
+CW_NODISCARD cw_status cwi_vti_parse(const cwi_input *in, cwi_source *src, cw_error *err);
+CW_NODISCARD cw_status cwi_mrc_parse(const cwi_input *in, cwi_source *src, cw_error *err);
+CW_NODISCARD cw_status cwi_inr_parse(const cwi_input *in, cwi_source *src, cw_error *err);
 
 /* Reads an irregular grid; *is_grid is false when the file holds something else, which
  * cwi_..._parse() then knows. */
-cw_status cwi_vtk_read_grid(const cwi_input *in, const cw_read_desc *desc, bool *is_grid,
-                            cw_volume *volume, cw_error *err);
-cw_status cwi_vtu_read(const cwi_input *in, const cw_read_desc *desc, bool *is_grid,
-                       cw_volume *volume, cw_error *err);
+CW_NODISCARD cw_status cwi_vtk_read_grid(const cwi_input *in, const cw_read_desc *desc,
+                                         bool *is_grid, cw_volume *volume, cw_error *err);
+CW_NODISCARD cw_status cwi_vtu_read(const cwi_input *in, const cw_read_desc *desc,
+                                    bool *is_grid, cw_volume *volume, cw_error *err);
 
 /* Reads slices in files of their own, shut in with the library that knows them.
  * in     the folder, or one file and its folder
  * names  of the files, sorted; NULL: in's own file */
-cw_status cwi_dicom_read(const cwi_input *in, cwi_names *names, const cw_read_desc *desc,
-                         cw_volume *volume, cw_error *err);
-cw_status cwi_tiff_read(const cwi_input *in, cwi_names *names, const cw_read_desc *desc,
-                        cw_volume *volume, cw_error *err);
+CW_NODISCARD cw_status cwi_dicom_read(const cwi_input *in, cwi_names *names,
+                                      const cw_read_desc *desc, cw_volume *volume,
+                                      cw_error *err);
+CW_NODISCARD cw_status cwi_tiff_read(const cwi_input *in, cwi_names *names,
+                                     const cw_read_desc *desc, cw_volume *volume,
+                                     cw_error *err);
 
 /* Reads one file, shut in likewise. */
-cw_status cwi_vdb_read(const cwi_input *in, const cw_read_desc *desc, cw_volume *volume,
-                       cw_error *err);
+CW_NODISCARD cw_status cwi_vdb_read(const cwi_input *in, const cw_read_desc *desc,
+                                    cw_volume *volume, cw_error *err);
 
 /* Reads one file and the one that desc->points names. */
-cw_status cwi_plot3d_read(const cwi_input *in, const cw_read_desc *desc, cw_volume *volume,
-                          cw_error *err);
+CW_NODISCARD cw_status cwi_plot3d_read(const cwi_input *in, const cw_read_desc *desc,
+                                       cw_volume *volume, cw_error *err);
 
-cw_status cwi_dicom_list(const cwi_input *in, cwi_names *names, const cw_read_desc *desc,
-                         cw_series **series, size_t *count, cw_error *err);
+CW_NODISCARD cw_status cwi_dicom_list(const cwi_input *in, cwi_names *names,
+                                      const cw_read_desc *desc, cw_series **series,
+                                      size_t *count, cw_error *err);
 
 /* The same from a layout that the caller of the library states. */
-cw_status cwi_raw_describe(const cw_raw_layout *layout, cwi_source *src, cw_error *err);
+CW_NODISCARD cw_status cwi_raw_describe(const cw_raw_layout *layout, cwi_source *src,
+                                        cw_error *err);
 
 #endif

@@ -15,13 +15,13 @@ typedef struct cwi_save {
     const cw_progress *progress;
 } cwi_save;
 
-cw_status cwi_nrrd_save(const cwi_save *save, cw_error *err);
-cw_status cwi_nifti_save(const cwi_save *save, cw_error *err);
-cw_status cwi_metaimage_save(const cwi_save *save, cw_error *err);
+CW_NODISCARD cw_status cwi_nrrd_save(const cwi_save *save, cw_error *err);
+CW_NODISCARD cw_status cwi_nifti_save(const cwi_save *save, cw_error *err);
+CW_NODISCARD cw_status cwi_metaimage_save(const cwi_save *save, cw_error *err);
 
 /* Hands the voxels to the sink and finishes it: x fastest, then y, z, time; the components
  * interleaved in front of x, or one whole series after another. */
-cw_status cwi_save_voxels(const cwi_save *save, bool components_last, cwi_sink *sink,
-                          cw_error *err);
+CW_NODISCARD cw_status cwi_save_voxels(const cwi_save *save, bool components_last,
+                                       cwi_sink *sink, cw_error *err);
 
 #endif

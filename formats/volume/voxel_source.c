@@ -1,15 +1,15 @@
 #define _GNU_SOURCE /* close */
 #include "formats/volume/voxel_source.h"
 
-#include "core/geometry/affine.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "core/geometry/affine.h"
 #include "core/volume/volume.h"
 #include "formats/bytes/bzip2.h"
+#include "formats/bytes/inflate_stream.h"
 #include "formats/text/ascii_voxels.h"
 #include "formats/volume/region_runs.h"
-#include "formats/bytes/inflate_stream.h"
 
 #include <assert.h>
 #include <math.h>
@@ -237,7 +237,7 @@ static cw_status check_share(const cwi_source *src, part *p, cw_error *err)
 /* A stream over the encoded voxels of a part, and the table of their blocks where they are in
  * blocks. Close both in any case. */
 static cw_status open_stream(const cwi_source *src, const part *p, cwi_stream *stream,
-                             cwi_blocks *blocks, cw_error *err)
+                             cwi_packed_blocks *blocks, cw_error *err)
 {
     cw_status st =
         src->encoding == CWI_BZIP2
@@ -262,7 +262,7 @@ static cw_status open_stream(const cwi_source *src, const part *p, cwi_stream *s
 static cw_status check_blocks(const cwi_source *src, const part *p, cw_error *err)
 {
     cwi_stream stream = {0};
-    cwi_blocks blocks = {0};
+    cwi_packed_blocks blocks = {0};
     if (src->encoding != CWI_BLOCKS)
         return CW_OK;
     cw_status st = open_stream(src, p, &stream, &blocks, err);
@@ -318,7 +318,7 @@ typedef struct reading {
     uint64_t at;       /* among the bytes of all voxels */
     unsigned char *to; /* where the next that are wanted have their place */
     cwi_stream stream;
-    cwi_blocks blocks;
+    cwi_packed_blocks blocks;
     cwi_numbers numbers;
 } reading;
 

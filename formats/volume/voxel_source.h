@@ -60,8 +60,8 @@ typedef struct cwi_source {
 /* Sets axes, sizes, strides and bytes from the file's axes, the fastest first; roles left out
  * have size 1. shape.type must be set.
  * Returns CW_ERR_FORMAT for more than 16 components, CW_ERR_LIMIT when the size overflows. */
-cw_status cwi_source_set_axes(cwi_source *src, const cwi_axis *axes, size_t count,
-                              cw_error *err);
+CW_NODISCARD cw_status cwi_source_set_axes(cwi_source *src, const cwi_axis *axes, size_t count,
+                                           cw_error *err);
 
 /* Refuses a voxel type by its name in the file, and lists those that are read. */
 cw_status cwi_fail_type(cw_error *err, const char *field, const char *name);
@@ -80,11 +80,12 @@ void cwi_swap_bytes(void *numbers, size_t count, size_t size);
 bool cwi_machine_is_big_endian(void);
 
 /* Refuses an affine with columns that are not finite, have no length or lie in one plane. */
-cw_status cwi_check_frame(const cw_volume *shape, const char *field, cw_error *err);
+CW_NODISCARD cw_status cwi_check_frame(const cw_volume *shape, const char *field,
+                                       cw_error *err);
 
 /* Refuses more voxels, or bytes of them, than the description allows. */
-cw_status cwi_check_limits(const cw_volume *shape, size_t bytes, const char *field,
-                           const cw_read_desc *desc, cw_error *err);
+CW_NODISCARD cw_status cwi_check_limits(const cw_volume *shape, size_t bytes, const char *field,
+                                        const cw_read_desc *desc, cw_error *err);
 
 /* Checks the source, but its frame, against its files and the limits, then reads the voxels
  * (unless desc->header_only), all of them or desc->region. Nothing is allocated before every
@@ -92,8 +93,9 @@ cw_status cwi_check_limits(const cw_volume *shape, size_t bytes, const char *fie
  *
  * volume   filled on success, else untouched
  * Returns  as cw_volume_read() */
-cw_status cwi_source_load(const cwi_source *src, const cwi_input *in, const cw_read_desc *desc,
-                          cw_volume *volume, cw_error *err);
+CW_NODISCARD cw_status cwi_source_load(const cwi_source *src, const cwi_input *in,
+                                       const cw_read_desc *desc, cw_volume *volume,
+                                       cw_error *err);
 
 void cwi_source_free(cwi_source *src);
 

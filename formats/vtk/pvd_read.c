@@ -2,9 +2,9 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
+#include "formats/text/xml.h"
 #include "formats/vtk/pvd.h"
 #include "formats/vtk/vtk_xml.h"
-#include "formats/text/xml.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,9 +1,9 @@
 /* VTK's XML image data and rectilinear grids, between the file that finds the elements and the
- * one that reads them.
- */
+ * one that reads them. */
 #ifndef FORMATS_VTK_VTI_H
 #define FORMATS_VTK_VTI_H
 
+#include "formats/volume/named_arrays.h"
 #include "formats/vtk/vtk_xml.h"
 
 /* How well an array will do as the volume: the one that was asked for goes before the one that
@@ -50,22 +50,23 @@ typedef struct cwi_vti {
 } cwi_vti;
 
 /* The elements that mean something, each filling in what its attributes say. */
-cw_status cwi_vti_image(cwi_vti *v, cwi_attributes a, cw_error *err);
-cw_status cwi_vti_extent(cwi_attributes a, int64_t extent[6], cw_error *err);
-cw_status cwi_vti_piece(cwi_vti *v, cwi_attributes a, cw_error *err);
+CW_NODISCARD cw_status cwi_vti_image(cwi_vti *v, cwi_attributes a, cw_error *err);
+CW_NODISCARD cw_status cwi_vti_extent(cwi_attributes a, int64_t extent[6], cw_error *err);
+CW_NODISCARD cw_status cwi_vti_piece(cwi_vti *v, cwi_attributes a, cw_error *err);
 void cwi_vti_data_start(cwi_vti_data *data, bool of_cells, cwi_attributes a);
 
 /* One array; *kept when it is the best so far, and is now data->best. */
-cw_status cwi_vti_data_array(cwi_vti_choice *choice, cwi_vti_data *data, cwi_attributes a,
-                             bool *kept, cw_error *err);
+CW_NODISCARD cw_status cwi_vti_data_array(cwi_vti_choice *choice, cwi_vti_data *data,
+                                          cwi_attributes a, bool *kept, cw_error *err);
 
 /* Says that none of the arrays will do. */
-cw_status cwi_vti_fail_choice(const cwi_vti_choice *choice, cw_error *err);
+CW_NODISCARD cw_status cwi_vti_fail_choice(const cwi_vti_choice *choice, cw_error *err);
 
 /* Several time steps in one file are refused. */
-cw_status cwi_vti_check_times(cwi_attributes a, cw_error *err);
+CW_NODISCARD cw_status cwi_vti_check_times(cwi_attributes a, cw_error *err);
 
 /* One array of coordinates, v->coordinates[*n]. */
-cw_status cwi_vti_coordinates(cwi_vti *v, cwi_attributes a, size_t *n, cw_error *err);
+CW_NODISCARD cw_status cwi_vti_coordinates(cwi_vti *v, cwi_attributes a, size_t *n,
+                                           cw_error *err);
 
 #endif

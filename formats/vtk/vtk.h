@@ -8,8 +8,8 @@
 enum { CWI_VTK_LINE_BYTES = 1024 };
 
 /* How well an array will do as the volume: the one that was asked for goes before attributes
- * called SCALARS, those before other arrays of one value, and those before arrays of several.
- */
+ * called SCALARS, those before other arrays of one value, and those before arrays
+ * of several. */
 typedef enum cwi_vtk_rank {
     CWI_VTK_NONE,
     CWI_VTK_SEVERAL,
@@ -18,13 +18,13 @@ typedef enum cwi_vtk_rank {
     CWI_VTK_ASKED_FOR
 } cwi_vtk_rank;
 
-typedef struct cwi_vtk_array {
+typedef struct cwi_legacy_array {
     char name[CWI_WORD_BYTES];
     cw_type type;
     size_t components;
     uint64_t offset; /* of its numbers in the file */
     cwi_vtk_rank rank;
-} cwi_vtk_array;
+} cwi_legacy_array;
 
 /* Numbers that the grid itself needs: coordinates along an axis, corners of cells. */
 typedef struct cwi_vtk_row {
@@ -53,10 +53,10 @@ typedef struct cwi_vtk {
     int version; /* the first number of it */
     char line[CWI_VTK_LINE_BYTES];
 
-    const char *wanted;          /* the name of the array that was asked for; NULL: none */
-    cwi_vtk_array points, cells; /* the best of each so far */
-    cwi_vtk_array *best;         /* of what the arrays now read are for; NULL: neither */
-    size_t count;                /* ... and the number of them */
+    const char *wanted;             /* the name of the array that was asked for; NULL: none */
+    cwi_legacy_array points, cells; /* the best of each so far */
+    cwi_legacy_array *best;         /* of what the arrays now read are for; NULL: neither */
+    size_t count;                   /* ... and the number of them */
     cwi_vtk_row coordinates[3];
     cwi_vtk_cells grid;
     bool to_end;      /* marks may stand behind the best array */
@@ -65,8 +65,8 @@ typedef struct cwi_vtk {
 
 /* Reads the next line into v->line, without its end and trailing blanks, or the next that is
  * not empty. *more is false behind the last. */
-cw_status cwi_vtk_line(cwi_vtk *v, bool *more, cw_error *err);
-cw_status cwi_vtk_full_line(cwi_vtk *v, bool *more, cw_error *err);
+CW_NODISCARD cw_status cwi_vtk_line(cwi_vtk *v, bool *more, cw_error *err);
+CW_NODISCARD cw_status cwi_vtk_full_line(cwi_vtk *v, bool *more, cw_error *err);
 
 /* The text behind the first word of v->line. */
 const char *cwi_vtk_value(const cwi_vtk *v);
@@ -78,28 +78,29 @@ static inline bool cwi_vtk_is_settled(const cwi_vtk *v)
 }
 
 /* Reads the coordinates that v->line starts: "X_COORDINATES count type", say. */
-cw_status cwi_vtk_coordinates(cwi_vtk *v, int axis, cw_error *err);
+CW_NODISCARD cw_status cwi_vtk_coordinates(cwi_vtk *v, int axis, cw_error *err);
 
 /* Reads what v->line starts: "POINTS count type", "CELLS ...", "CELL_TYPES count". */
-cw_status cwi_vtk_points(cwi_vtk *v, cw_error *err);
-cw_status cwi_vtk_cell_corners(cwi_vtk *v, cw_error *err);
-cw_status cwi_vtk_cell_types(cwi_vtk *v, cw_error *err);
+CW_NODISCARD cw_status cwi_vtk_points(cwi_vtk *v, cw_error *err);
+CW_NODISCARD cw_status cwi_vtk_cell_corners(cwi_vtk *v, cw_error *err);
+CW_NODISCARD cw_status cwi_vtk_cell_types(cwi_vtk *v, cw_error *err);
 
 /* Describes the first numbers of a row, or all of them, for cwi_tuples_load(). */
-cw_status cwi_vtk_describe(const cwi_vtk *v, const cwi_vtk_row *row, const char *field,
-                           size_t components, size_t count, cwi_source *src, bool *wide,
-                           cw_error *err);
+CW_NODISCARD cw_status cwi_vtk_describe(const cwi_vtk *v, const cwi_vtk_row *row,
+                                        const char *field, size_t components, size_t count,
+                                        cwi_source *src, bool *wide, cw_error *err);
 
 /* Passes over the numbers at hand, and sets in the row where and what they are. skipped: so
  * many in front are none of its. */
-cw_status cwi_vtk_row_pass(cwi_vtk *v, const char *field, const char *type_name, size_t skipped,
-                           size_t count, cwi_vtk_row *row, cw_error *err);
+CW_NODISCARD cw_status cwi_vtk_row_pass(cwi_vtk *v, const char *field, const char *type_name,
+                                        size_t skipped, size_t count, cwi_vtk_row *row,
+                                        cw_error *err);
 
 /* Says that a line ends too early. */
-cw_status cwi_vtk_fail_cut_short(const cwi_vtk *v, cw_error *err);
+CW_NODISCARD cw_status cwi_vtk_fail_cut_short(const cwi_vtk *v, cw_error *err);
 
 /* Reads the section that v->line starts, if it is one of arrays; they are passed over, and the
  * best of them kept. False when the line is something else. */
-cw_status cwi_vtk_section(cwi_vtk *v, bool *known, cw_error *err);
+CW_NODISCARD cw_status cwi_vtk_section(cwi_vtk *v, bool *known, cw_error *err);
 
 #endif

@@ -2,6 +2,7 @@
  * to the next, its numbers are passed over: bytes by their count, text number by number. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "formats/volume/named_arrays.h"
 #include "formats/vtk/vtk.h"
 
 #include <ctype.h>
@@ -167,7 +168,8 @@ static void note_other(cwi_vtk *v, const char *name, const char *type)
              type);
 }
 
-static cwi_vtk_rank rank_of(const cwi_vtk *v, const cwi_vtk_array *said, const vtk_type *type)
+static cwi_vtk_rank rank_of(const cwi_vtk *v, const cwi_legacy_array *said,
+                            const vtk_type *type)
 {
     if (type->type < 0 || said->components < 1 || said->components > 16)
         return CWI_VTK_NONE;
@@ -180,7 +182,7 @@ static cwi_vtk_rank rank_of(const cwi_vtk *v, const cwi_vtk_array *said, const v
 }
 
 /* Keeps an array that starts here when it is better than those before. */
-static void consider(cwi_vtk *v, const cwi_vtk_array *said, const vtk_type *type,
+static void consider(cwi_vtk *v, const cwi_legacy_array *said, const vtk_type *type,
                      const char *type_name)
 {
     const cwi_vtk_rank rank = rank_of(v, said, type);
@@ -205,7 +207,7 @@ static cw_status pass_numbers(cwi_vtk *v, const char *name, size_t count, size_t
 }
 
 /* Marks say which points or cells are hidden. */
-static void keep_marks(cwi_vtk *v, const cwi_vtk_array *said, const vtk_type *type)
+static void keep_marks(cwi_vtk *v, const cwi_legacy_array *said, const vtk_type *type)
 {
     if (strcmp(said->name, "vtkGhostType") == 0 && said->components == 1 && type->type >= 0)
         v->grid.marks[v->best == &v->cells] =
@@ -213,7 +215,7 @@ static void keep_marks(cwi_vtk *v, const cwi_vtk_array *said, const vtk_type *ty
 }
 
 /* One array starts here: perhaps it is kept; goes behind it, if there is a reason to. */
-static cw_status pass_array(cwi_vtk *v, const cwi_vtk_array *said, const char *type_name,
+static cw_status pass_array(cwi_vtk *v, const cwi_legacy_array *said, const char *type_name,
                             size_t tuples, cw_error *err)
 {
     const vtk_type *type = find_type(type_name);
@@ -260,7 +262,7 @@ cw_status cwi_vtk_coordinates(cwi_vtk *v, int axis, cw_error *err)
     const char *text = cwi_vtk_value(v);
     int64_t count;
     field[0] = "XYZ"[axis];
-    if (!cwi_next_word(&text, word) || !cwi_next_word(&text, type_name))
+    if (!cwi_next_text_word(&text, word) || !cwi_next_text_word(&text, type_name))
         return cwi_vtk_fail_cut_short(v, err);
     cw_status st = cwi_field_integer(field, word, 1, INT32_MAX, &count, err);
     if (st != CW_OK)
@@ -286,7 +288,7 @@ static char decode(const char *s)
 static bool next_name(const char **text, char name[CWI_WORD_BYTES])
 {
     char word[CWI_WORD_BYTES];
-    if (!cwi_next_word(text, word))
+    if (!cwi_next_text_word(text, word))
         return false;
     for (const char *s = word; *s; s += decode(s) ? 3 : 1)
         *name++ = decode(s) ? decode(s) : *s;
@@ -312,15 +314,15 @@ static cw_status skip_lookup_name(cwi_vtk *v, cw_error *err)
 
 static cw_status read_attribute(cwi_vtk *v, int row, cw_error *err)
 {
-    cwi_vtk_array array = {.components = attributes[row].components,
-                           .rank = attributes[row].rank};
+    cwi_legacy_array array = {.components = attributes[row].components,
+                              .rank = attributes[row].rank};
     char type[CWI_WORD_BYTES] = "", word[CWI_WORD_BYTES];
     const char *text = cwi_vtk_value(v);
     int64_t components = (int64_t)array.components;
     cw_status st = CW_OK;
     bool whole = next_name(&text, array.name);
     for (const char *w = attributes[row].words; whole && st == CW_OK && *w; w++) {
-        whole = cwi_next_word(&text, *w == 't' ? type : word);
+        whole = cwi_next_text_word(&text, *w == 't' ? type : word);
         if (whole && *w != 't')
             st = cwi_field_integer(array.name, word, 1, MOST_COMPONENTS, &components, err);
         whole |= *w == 'C';
@@ -341,7 +343,7 @@ static cw_status read_attribute(cwi_vtk *v, int row, cw_error *err)
 static void skip_name(const char **text, char name[CWI_WORD_BYTES])
 {
     name[0] = '\0';
-    cwi_next_word(text, name);
+    cwi_next_text_word(text, name);
     *text += strspn(*text, " \t");
 }
 
@@ -361,13 +363,13 @@ static cw_status read_lookup_table(cwi_vtk *v, cw_error *err)
 /* "name components tuples type" */
 static cw_status read_field_array(cwi_vtk *v, cw_error *err)
 {
-    cwi_vtk_array array = {.rank = CWI_VTK_ONE};
+    cwi_legacy_array array = {.rank = CWI_VTK_ONE};
     char words[3][CWI_WORD_BYTES];
     const char *text = v->line;
     int64_t components, tuples;
     bool whole = next_name(&text, array.name);
     for (int i = 0; i < 3; i++)
-        whole = whole && cwi_next_word(&text, words[i]);
+        whole = whole && cwi_next_text_word(&text, words[i]);
     if (!whole)
         return cw_fail(err, CW_ERR_FORMAT,
                        "line %zu is '%.60s'; it must name an array of a FIELD, its components, "

@@ -12,7 +12,7 @@ static cw_status next_count(const cwi_vtk *v, const char *field, const char **te
 {
     char word[CWI_WORD_BYTES];
     int64_t count = 0;
-    if (!cwi_next_word(text, word))
+    if (!cwi_next_text_word(text, word))
         return cwi_vtk_fail_cut_short(v, err);
     cw_status st = cwi_field_integer(field, word, 0, INT64_MAX / 8, &count, err);
     *out = (size_t)count;
@@ -25,7 +25,7 @@ cw_status cwi_vtk_points(cwi_vtk *v, cw_error *err)
     const char *text = cwi_vtk_value(v);
     size_t count = 0;
     cw_status st = next_count(v, "POINTS", &text, &count, err);
-    if (st == CW_OK && !cwi_next_word(&text, type))
+    if (st == CW_OK && !cwi_next_text_word(&text, type))
         st = cwi_vtk_fail_cut_short(v, err);
     if (st == CW_OK)
         st = cwi_vtk_row_pass(v, "POINTS", type, 0, 3 * count, &v->grid.points, err);
@@ -43,7 +43,7 @@ static cw_status read_named(cwi_vtk *v, const char *name, size_t skipped, size_t
     const char *text = v->line;
     if (st != CW_OK)
         return st;
-    if (!cwi_next_word(&text, word) || !cwi_next_word(&text, type) ||
+    if (!cwi_next_text_word(&text, word) || !cwi_next_text_word(&text, type) ||
         strcasecmp(word, name) != 0)
         return cw_fail(err, CW_ERR_FORMAT,
                        "line %zu is '%.40s'; %s and a type were expected, behind CELLS",

@@ -3,6 +3,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/volume/irregular_grid.h"
+#include "formats/volume/named_arrays.h"
 #include "formats/volume/volume_reader.h"
 #include "formats/vtk/vtk.h"
 #include "formats/vtk/vtk_grid.h"
@@ -246,7 +247,7 @@ static cw_status read_lines(cwi_vtk *v, grid *g, cw_error *err)
 }
 
 /* The array that is the volume: at points, unless only cells have one. */
-static const cwi_vtk_array *choose(const cwi_vtk *v)
+static const cwi_legacy_array *choose(const cwi_vtk *v)
 {
     return v->points.rank != CWI_VTK_NONE ? &v->points : &v->cells;
 }
@@ -269,7 +270,7 @@ static cw_status check_found(const cwi_vtk *v, cw_error *err)
 
 static cw_status describe(const cwi_vtk *v, const grid *g, cwi_source *src, cw_error *err)
 {
-    const cwi_vtk_array *array = choose(v);
+    const cwi_legacy_array *array = choose(v);
     size_t dim[3] = {g->dim[0], g->dim[1], g->dim[2]};
     cw_status st =
         array == &v->cells ? cwi_vtk_grid_to_cells(src, array->name, dim, err) : CW_OK;
@@ -322,7 +323,7 @@ static cw_status describe_array(const void *file, size_t piece, cwi_grid_role ro
                                 size_t count, cwi_source *src, bool *wide, cw_error *err)
 {
     const cwi_vtk *v = file;
-    const cwi_vtk_array *array = choose(v);
+    const cwi_legacy_array *array = choose(v);
     const cwi_vtk_row values = {.type = array->type, .count = count, .offset = array->offset};
     (void)piece;
     switch (role) {
@@ -385,7 +386,7 @@ cw_status cwi_vtk_read_grid(const cwi_input *in, const cw_read_desc *desc, bool 
         st = set_piece(&v, &g, &piece, err);
     if (st != CW_OK)
         return st;
-    const cwi_vtk_array *array = choose(&v);
+    const cwi_legacy_array *array = choose(&v);
     cwi_array_list_choose(in->arrays, array->name, array == &v.cells);
     const cwi_irregular all = {.pieces = &piece,
                                .piece_count = 1,

@@ -4,8 +4,8 @@
 #define FORMATS_VTK_VTK_XML_H
 
 #include "formats/text/text_header.h"
-#include "formats/volume/voxel_source.h"
 #include "formats/text/xml.h"
+#include "formats/volume/voxel_source.h"
 
 typedef enum cwi_vtk_form { CWI_VTK_ASCII, CWI_VTK_BINARY, CWI_VTK_APPENDED } cwi_vtk_form;
 
@@ -37,29 +37,29 @@ typedef struct cwi_vtk_array {
 
 /* The elements, each filling in what its attributes say. kind names the only one read, and what
  * it is: {"ImageData", "a volume"}. */
-cw_status cwi_vtk_xml_file(cwi_vtk_xml *v, cwi_attributes a, const char *const kind[2],
-                           cw_error *err);
-cw_status cwi_vtk_xml_array(cwi_vtk_array *array, cwi_attributes a, cw_error *err);
-cw_status cwi_vtk_xml_appended(cwi_vtk_xml *v, cwi_attributes a, cw_error *err);
+CW_NODISCARD cw_status cwi_vtk_xml_file(cwi_vtk_xml *v, cwi_attributes a,
+                                        const char *const kind[2], cw_error *err);
+CW_NODISCARD cw_status cwi_vtk_xml_array(cwi_vtk_array *array, cwi_attributes a, cw_error *err);
+CW_NODISCARD cw_status cwi_vtk_xml_appended(cwi_vtk_xml *v, cwi_attributes a, cw_error *err);
 
 /* A whole number; *out stays as it is where there is no such attribute. */
-cw_status cwi_vtk_xml_integer(cwi_attributes a, const char *name, int64_t low, int64_t high,
-                              int64_t *out, cw_error *err);
+CW_NODISCARD cw_status cwi_vtk_xml_integer(cwi_attributes a, const char *name, int64_t low,
+                                           int64_t high, int64_t *out, cw_error *err);
 
 /* Behind the last element: finds the appended data, and that the file goes on to its end. */
-cw_status cwi_vtk_xml_find_appended(const cwi_input *in, cwi_vtk_xml *v, cw_error *err);
+CW_NODISCARD cw_status cwi_vtk_xml_find_appended(const cwi_input *in, cwi_vtk_xml *v,
+                                                 cw_error *err);
 
 /* Sets where and how the numbers of an array are written; the source's sizes are set already.
- * Returns CW_ERR_FORMAT when what it needs is missing, or the file counts other bytes for it.
- */
-cw_status cwi_vtk_xml_place(const cwi_vtk_xml *v, const cwi_vtk_array *array,
-                            const cwi_input *in, cwi_source *src, cw_error *err);
+ * Returns CW_ERR_FORMAT when what it needs is missing, or the file counts other bytes
+ * for it. */
+CW_NODISCARD cw_status cwi_vtk_xml_place(const cwi_vtk_xml *v, const cwi_vtk_array *array,
+                                         const cwi_input *in, cwi_source *src, cw_error *err);
 
 /* Describes an array of so many tuples, for cwi_tuples_load(). field is where the file counts
- * them; an array of NULL is missing. In text numbers of 64 bits are numbers like any other.
- */
-cw_status cwi_vtk_xml_tuples(const cwi_vtk_xml *v, const cwi_vtk_array *array,
-                             const char *field, size_t count, const cwi_input *in,
-                             cwi_source *src, bool *wide, cw_error *err);
+ * them; an array of NULL is missing. In text numbers of 64 bits are numbers like any other. */
+CW_NODISCARD cw_status cwi_vtk_xml_tuples(const cwi_vtk_xml *v, const cwi_vtk_array *array,
+                                          const char *field, size_t count, const cwi_input *in,
+                                          cwi_source *src, bool *wide, cw_error *err);
 
 #endif

@@ -278,8 +278,8 @@ static float to_single(double number)
     return fabs(number) <= (double)FLT_MAX ? (float)number : NAN;
 }
 
-/* Reads an array of PointData into one of the mesh, with so many elements of a size a vertex.
- */
+/* Reads an array of PointData into one of the mesh, with so many elements of a size
+ * a vertex. */
 static cw_status read_attribute(vtp *v, role r, void *array, size_t size, cw_error *err)
 {
     cwi_tuples n;

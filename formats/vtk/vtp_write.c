@@ -9,7 +9,7 @@
 static unsigned char *encode_place(const cwi_part *part, size_t v, unsigned char *to)
 {
     for (int a = 0; a < 3; a++)
-        to = cwi_put_f32(to, (float)cwi_coordinate(part, v, a));
+        to = cwi_put_f32(to, (float)cwi_file_coordinate(part, v, a));
     return to;
 }
 
@@ -166,7 +166,7 @@ static cw_status write_array(vtp *f, int i, uint64_t offset, cw_error *err)
     if (st == CW_OK && a->of_triangles)
         st = cwi_write_triangles(f->parts, f->out, a->encode, err);
     else if (st == CW_OK)
-        st = cwi_write_vertices(f->parts, f->out, a->encode, err);
+        st = cwi_write_part_vertices(f->parts, f->out, a->encode, err);
     return st == CW_OK ? cwi_block_sink_end(&f->blocks, err) : st;
 }
 

@@ -33,44 +33,45 @@ CW_API const char *cw_view_name(size_t n);
 
 /* The camera of a view that sees a whole box, as large as the margin allows.
  * Returns CW_ERR_ARGUMENT for an unknown view, an unusable angle or margin. */
-CW_API cw_status cw_camera_fit(const cw_fit_desc *desc, cw_camera *camera, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_camera_fit(const cw_fit_desc *desc, cw_camera *camera,
+                                            cw_error *err);
 
 /* The picture's axes in the world, unit length. Returns CW_ERR_ARGUMENT when eye and target
  * coincide, up is along the line of sight, or angle and height make no picture. */
-CW_API cw_status cw_camera_axes(const cw_camera *camera, double right[3], double up[3],
-                                double forward[3], cw_error *err);
+CW_NODISCARD CW_API cw_status cw_camera_axes(const cw_camera *camera, double right[3],
+                                             double up[3], double forward[3], cw_error *err);
 
 /* Moves the eye around the target, to the picture's right, by an angle about an axis through
  * the target; up turns with it.
  * Returns CW_ERR_ARGUMENT for an axis without a direction and an angle that is no number. */
-CW_API cw_status cw_camera_turn(cw_camera *camera, const double axis[3], double degrees,
-                                cw_error *err);
+CW_NODISCARD CW_API cw_status cw_camera_turn(cw_camera *camera, const double axis[3],
+                                             double degrees, cw_error *err);
 
 /* What is in the picture's middle becomes so many times as large; the eye stays where it is.
  * Returns CW_ERR_ARGUMENT for a factor that is not above 0. */
-CW_API cw_status cw_camera_zoom(cw_camera *camera, double factor, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_camera_zoom(cw_camera *camera, double factor, cw_error *err);
 
 /* What is at the target becomes so many times as large, and nothing opens wider: the eye comes
  * nearer; of an orthographic camera the picture's height shrinks.
  * Returns CW_ERR_ARGUMENT for a factor that is not above 0. */
-CW_API cw_status cw_camera_dolly(cw_camera *camera, double factor, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_camera_dolly(cw_camera *camera, double factor, cw_error *err);
 
 /* Moves the eye around the target: to the picture's right, and up. As on a turntable, heads
  * stay up: the axis is that of the camera's up, and of a camera that holds its picture level,
  * the head's (z). Straight above and below is as far as it goes. The camera's up is the axis
  * then. Returns CW_ERR_ARGUMENT as cw_camera_axes(), and for what is no angle. */
-CW_API cw_status cw_camera_orbit(cw_camera *camera, double right_deg, double up_deg,
-                                 cw_error *err);
+CW_NODISCARD CW_API cw_status cw_camera_orbit(cw_camera *camera, double right_deg,
+                                              double up_deg, cw_error *err);
 
 /* What is seen turns clockwise about the picture's middle.
  * Returns CW_ERR_ARGUMENT as cw_camera_axes(), and for what is no angle. */
-CW_API cw_status cw_camera_roll(cw_camera *camera, double degrees, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_camera_roll(cw_camera *camera, double degrees, cw_error *err);
 
 /* Moves eye and target, so that what is as far away as the target goes right and down by so
  * many pixels, of which the picture is height high. Returns CW_ERR_ARGUMENT as
  * cw_camera_axes(), for a height of 0 and what is no way. */
-CW_API cw_status cw_camera_pan(cw_camera *camera, size_t height, double right_px,
-                               double down_px, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_camera_pan(cw_camera *camera, size_t height, double right_px,
+                                            double down_px, cw_error *err);
 
 /* Where a picture of that size shows a world point: in pixels from its upper left corner, y
  * down, and how far before the eye, along the line of sight (depth_mm may be NULL).
@@ -82,9 +83,10 @@ CW_API bool cw_camera_project(const cw_camera *camera, size_t width, size_t heig
 /* The line of sight through a place on such a picture, the other way round: from the eye, of an
  * orthographic camera from the plane it is in, in a direction of unit length.
  * Returns CW_ERR_ARGUMENT as cw_camera_axes(), and for a picture without pixels. */
-CW_API cw_status cw_camera_ray(const cw_camera *camera, size_t width, size_t height,
-                               const double pixel[2], double origin[3], double direction[3],
-                               cw_error *err);
+CW_NODISCARD CW_API cw_status cw_camera_ray(const cw_camera *camera, size_t width,
+                                            size_t height, const double pixel[2],
+                                            double origin[3], double direction[3],
+                                            cw_error *err);
 
 /* A camera as JSON, in a file or as text, with either of the last two; numbers are read back to
  * the bit:
@@ -95,11 +97,14 @@ CW_API cw_status cw_camera_ray(const cw_camera *camera, size_t width, size_t hei
  * Returns  CW_ERR_IO; CW_ERR_FORMAT, with the line or the field that is wrong; CW_ERR_OUTPUT;
  *          CW_ERR_ARGUMENT for a camera that is none, as cw_camera_axes() */
 enum { CW_CAMERA_TEXT = 1024 };
-CW_API cw_status cw_camera_read(const char *path, cw_camera *camera, cw_error *err);
-CW_API cw_status cw_camera_write(const char *path, const cw_camera *camera, cw_error *err);
-CW_API cw_status cw_camera_parse(const char *text, cw_camera *camera, cw_error *err);
-CW_API cw_status cw_camera_format(const cw_camera *camera, char text[CW_CAMERA_TEXT],
-                                  cw_error *err);
+CW_NODISCARD CW_API cw_status cw_camera_read(const char *path, cw_camera *camera,
+                                             cw_error *err);
+CW_NODISCARD CW_API cw_status cw_camera_write(const char *path, const cw_camera *camera,
+                                              cw_error *err);
+CW_NODISCARD CW_API cw_status cw_camera_parse(const char *text, cw_camera *camera,
+                                              cw_error *err);
+CW_NODISCARD CW_API cw_status cw_camera_format(const cw_camera *camera,
+                                               char text[CW_CAMERA_TEXT], cw_error *err);
 
 #ifdef __cplusplus
 }

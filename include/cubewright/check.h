@@ -94,9 +94,9 @@ CW_API const cw_paint *cw_check_paints(size_t *count);
  * distances  vertex_count, mm, such as cw_field_distance_desc.worst; or NULL. Kept as scalars
  * out        filled on success, emptied on failure; free it with cw_mesh_free()
  * Returns    CW_ERR_ARGUMENT as cw_mesh_check(); CW_ERR_LIMIT; CW_ERR_NO_MEMORY */
-CW_API cw_status cw_check_paint(const cw_mesh *mesh, const uint8_t *defects,
-                                const float *distances, double full_mm, cw_mesh *out,
-                                cw_error *err);
+CW_NODISCARD CW_API cw_status cw_check_paint(const cw_mesh *mesh, const uint8_t *defects,
+                                             const float *distances, double full_mm,
+                                             cw_mesh *out, cw_error *err);
 
 #ifdef __cplusplus
 }

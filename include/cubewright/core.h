@@ -15,9 +15,11 @@ extern "C" {
 #if defined(__GNUC__)
 #define CW_API                 __attribute__((visibility("default")))
 #define CW_PRINTF(text, first) __attribute__((format(printf, text, first)))
+#define CW_NODISCARD           __attribute__((warn_unused_result)) /* a status to be looked at */
 #else
 #define CW_API
 #define CW_PRINTF(text, first)
+#define CW_NODISCARD
 #endif
 
 /* One row per status: constant, exit code of the command line, name in JSON, text for people.
@@ -45,8 +47,8 @@ typedef enum cw_status {
         CW_STATUS_COUNT
 } cw_status;
 
-/* Why a call failed, for a person: subject, what is wrong, what was expected, what was there.
- */
+/* Why a call failed, for a person: subject, what is wrong, what was expected, what
+ * was there. */
 typedef struct cw_error {
     cw_status status;
     char message[512];

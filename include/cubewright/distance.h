@@ -1,5 +1,5 @@
-/* How far a mesh lies from what it should be: from the surface of a volume, from another mesh.
- */
+/* How far a mesh lies from what it should be: from the surface of a volume, from
+ * another mesh. */
 #ifndef CUBEWRIGHT_DISTANCE_H
 #define CUBEWRIGHT_DISTANCE_H
 
@@ -24,8 +24,8 @@ typedef struct cw_distance {
     size_t missed;    /* of them without a surface within reach: they count as reach */
 } cw_distance;
 
-/* How to measure from the surface of a volume. Zero fields mean the default named beside them.
- */
+/* How to measure from the surface of a volume. Zero fields mean the default named
+ * beside them. */
 typedef struct cw_field_distance_desc {
     double isovalue;      /* in the unit of the values; 0 means 0 */
     bool inside_is_low;   /* default: values at or above the isovalue are inside */
@@ -64,9 +64,10 @@ typedef struct cw_field_distance_desc {
  *          proportion to the voxels within reach
  * Threads  reentrant; the same to the bit for any number of threads
  * Source   simplify/README.md */
-CW_API cw_status cw_distance_to_field(const cw_mesh *mesh, const cw_volume *volume,
-                                      const cw_field_distance_desc *desc, cw_distance *out,
-                                      float *per_vertex, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_distance_to_field(const cw_mesh *mesh, const cw_volume *volume,
+                                                   const cw_field_distance_desc *desc,
+                                                   cw_distance *out, float *per_vertex,
+                                                   cw_error *err);
 
 /* How to measure from a mesh. Zero fields mean the default named beside them. */
 typedef struct cw_mesh_distance_desc {
@@ -101,9 +102,10 @@ typedef struct cw_mesh_distance_desc {
  * Cost     a microsecond or two for a point near the reference; 70 bytes a triangle of it
  * Threads  reentrant; the same to the bit for any number of threads
  * Source   bounds after [Tang2009] */
-CW_API cw_status cw_distance_to_mesh(const cw_mesh *mesh, const cw_mesh *reference,
-                                     const cw_mesh_distance_desc *desc, cw_distance *out,
-                                     float *per_vertex, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_distance_to_mesh(const cw_mesh *mesh, const cw_mesh *reference,
+                                                  const cw_mesh_distance_desc *desc,
+                                                  cw_distance *out, float *per_vertex,
+                                                  cw_error *err);
 
 #ifdef __cplusplus
 }

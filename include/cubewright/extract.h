@@ -9,8 +9,8 @@
 extern "C" {
 #endif
 
-/* The most that cw_extract_desc.snap may be: beyond, a crossing is close to the other sample.
- */
+/* The most that cw_extract_desc.snap may be: beyond, a crossing is close to the
+ * other sample. */
 #define CW_EXTRACT_MAX_SNAP 0.5
 
 /* How to take a surface out of a volume. Zero-initialise it and set what you need;
@@ -116,8 +116,9 @@ typedef struct cw_extract_counts {
  * Source   [Lorensen1987]; faces [Nielson1991]; tunnels after [Chernyaev1995]; simple_topology
  *          [Montani1994]; tetrahedra [Doi1991]; snapping after [Moore1992]; ranks in place of
  *          maps as in extract/dense-grids.md */
-CW_API cw_status cw_extract(const cw_volume *volume, const cw_extract_desc *desc, cw_mesh *mesh,
-                            cw_extract_counts *counts, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_extract(const cw_volume *volume, const cw_extract_desc *desc,
+                                         cw_mesh *mesh, cw_extract_counts *counts,
+                                         cw_error *err);
 
 /* The same surface a slab at a time, so that all of it never is in memory: what is left of one
  * slab is the sink's business before the next is made. Vertices are those of cw_extract(),
@@ -132,13 +133,15 @@ CW_API cw_status cw_extract(const cw_volume *volume, const cw_extract_desc *desc
  *
  * A sparse grid's surface comes as one slab.
  * Returns    as cw_extract(); CW_ERR_ARGUMENT also for snap; or what the sink returned */
-CW_API cw_status cw_extract_slabs(const cw_volume *volume, const cw_extract_desc *desc,
-                                  size_t triangles, cw_slab_sink sink,
-                                  cw_extract_counts *counts, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_extract_slabs(const cw_volume *volume,
+                                               const cw_extract_desc *desc, size_t triangles,
+                                               cw_slab_sink sink, cw_extract_counts *counts,
+                                               cw_error *err);
 
 /* Counts what cw_extract() would make, without making it; same arguments and errors. */
-CW_API cw_status cw_extract_predict(const cw_volume *volume, const cw_extract_desc *desc,
-                                    cw_extract_counts *counts, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_extract_predict(const cw_volume *volume,
+                                                 const cw_extract_desc *desc,
+                                                 cw_extract_counts *counts, cw_error *err);
 
 /* A volume that is asked for several surfaces. Of dense grids the first extraction reads all
  * voxels, and on the way builds an octree of the lowest and highest value in each brick of 8 x
@@ -154,14 +157,17 @@ typedef struct cw_extractor cw_extractor;
 
 /* Prepares to extract from a volume, which is borrowed: it has to stay, unchanged, until the
  * extractor is freed. Free with cw_extractor_free(). Errors as cw_extract(). */
-CW_API cw_status cw_extractor_new(const cw_volume *volume, cw_extractor **out, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_extractor_new(const cw_volume *volume, cw_extractor **out,
+                                               cw_error *err);
 CW_API void cw_extractor_free(cw_extractor *extractor); /* harmless on NULL */
 
 /* As cw_extract() and cw_extract_predict(). */
-CW_API cw_status cw_extractor_extract(cw_extractor *extractor, const cw_extract_desc *desc,
-                                      cw_mesh *mesh, cw_extract_counts *counts, cw_error *err);
-CW_API cw_status cw_extractor_predict(cw_extractor *extractor, const cw_extract_desc *desc,
-                                      cw_extract_counts *counts, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_extractor_extract(cw_extractor *extractor,
+                                                   const cw_extract_desc *desc, cw_mesh *mesh,
+                                                   cw_extract_counts *counts, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_extractor_predict(cw_extractor *extractor,
+                                                   const cw_extract_desc *desc,
+                                                   cw_extract_counts *counts, cw_error *err);
 
 /* In place of cw_mesh_free(), for a mesh of this extractor or any other: the next surface is
  * written to its memory, which the system then has not to clear and hand out again. A fifth to
@@ -193,8 +199,9 @@ typedef struct cw_normals_desc {
  *          CW_ERR_UNSUPPORTED  the grid is irregular; CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
  * Cost     half a microsecond a vertex
  * Threads  reentrant; the same to the bit for any number of threads */
-CW_API cw_status cw_extract_normals(const cw_volume *volume, const cw_normals_desc *desc,
-                                    cw_mesh *mesh, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_extract_normals(const cw_volume *volume,
+                                                 const cw_normals_desc *desc, cw_mesh *mesh,
+                                                 cw_error *err);
 
 #ifdef __cplusplus
 }

@@ -1,5 +1,5 @@
-/* Fields whose surfaces are known on paper, sampled into volumes: for trying and for testing.
- */
+/* Fields whose surfaces are known on paper, sampled into volumes: for trying and
+ * for testing. */
 #ifndef CUBEWRIGHT_FIELD_H
 #define CUBEWRIGHT_FIELD_H
 
@@ -58,7 +58,8 @@ CW_API double cw_field_stored(cw_field field, cw_type type, double value);
  * Returns CW_ERR_ARGUMENT for an unknown field or type, CW_ERR_LIMIT,
  * CW_ERR_NO_MEMORY, CW_ERR_CANCELLED.
  * The same bytes for the same desc, for any number of threads. */
-CW_API cw_status cw_field_sample(const cw_field_desc *desc, cw_volume *volume, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_field_sample(const cw_field_desc *desc, cw_volume *volume,
+                                              cw_error *err);
 
 #ifdef __cplusplus
 }

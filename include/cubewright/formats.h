@@ -27,8 +27,8 @@ typedef enum cw_gaps {
     CW_GAPS_ALLOW        /* take the slices as if they were at equal distances */
 } cw_gaps;
 
-/* What to do with slices that are shifted against each other, as a tilted gantry leaves them.
- */
+/* What to do with slices that are shifted against each other, as a tilted gantry
+ * leaves them. */
 typedef enum cw_tilt {
     CW_TILT_CORRECT, /* leave them where they are: the frame is sheared */
     CW_TILT_KEEP     /* stack them up as if they were not shifted */
@@ -145,10 +145,11 @@ typedef struct cw_read_desc {
  *          CW_ERR_LIMIT        more voxels or bytes than allowed; CW_ERR_NO_MEMORY
  *          CW_ERR_ARGUMENT     no such reader or array; a region that is empty or leaves the
  *                              volume; a spacing for an irregular grid, or beside the claim
- *                              of a unit; a claim that the file contradicts; CW_ERR_CANCELLED
- */
-CW_API cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *volume,
-                                const char **format, cw_error *err);
+ *                              of a unit; a claim that the file
+ * contradicts; CW_ERR_CANCELLED */
+CW_NODISCARD CW_API cw_status cw_volume_read(const char *path, const cw_read_desc *desc,
+                                             cw_volume *volume, const char **format,
+                                             cw_error *err);
 
 /* Lists the files of a time series, of which each is a volume, and a step. Paths name files or
  * folders of slices, patterns stand for the files that match; numbers in names count as
@@ -165,9 +166,9 @@ CW_API cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_v
  *          CW_ERR_IO        a pattern among several paths that nothing matches; CW_ERR_LIMIT;
  *                           CW_ERR_NO_MEMORY; as cw_pvd_read()
  *          CW_ERR_FORMAT    a .pvd file of meshes */
-CW_API cw_status cw_steps_list(const char *const *paths, size_t path_count,
-                               const cw_read_desc *desc, char ***files, size_t *count,
-                               cw_error *err);
+CW_NODISCARD CW_API cw_status cw_steps_list(const char *const *paths, size_t path_count,
+                                            const cw_read_desc *desc, char ***files,
+                                            size_t *count, cw_error *err);
 CW_API void cw_steps_free(char **files, size_t count);
 
 /* One of the arrays of values that a file has with names, or a grid of OpenVDB. */
@@ -186,8 +187,8 @@ typedef struct cw_array {
  *
  * arrays   set to *count of them, to be freed with cw_arrays_free(); NULL when there are none
  * Returns  as cw_volume_read() for a header */
-CW_API cw_status cw_arrays_list(const char *path, const cw_read_desc *desc, cw_array **arrays,
-                                size_t *count, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_arrays_list(const char *path, const cw_read_desc *desc,
+                                             cw_array **arrays, size_t *count, cw_error *err);
 CW_API void cw_arrays_free(cw_array *arrays);
 
 /* One series of images in a folder of DICOM files. */
@@ -208,15 +209,16 @@ typedef struct cw_series {
  *
  * series   set to an array of *count, to be freed with cw_series_free(); NULL when there is
  * none Returns  CW_ERR_UNSUPPORTED when the build has no DICOM; as cw_volume_read() */
-CW_API cw_status cw_series_list(const char *path, const cw_read_desc *desc, cw_series **series,
-                                size_t *count, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_series_list(const char *path, const cw_read_desc *desc,
+                                             cw_series **series, size_t *count, cw_error *err);
 CW_API void cw_series_free(cw_series *series);
 
 /* Reads a layout written as on the command line, for example
  * "dims=512x512x300,type=u16le,offset=62,spacing=0.5x0.5x1,components=1,steps=1".
  * Type is one of the eight with an optional le or be; le when left out.
  * Returns CW_ERR_ARGUMENT naming the key that is wrong. */
-CW_API cw_status cw_raw_layout_parse(const char *text, cw_raw_layout *layout, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_raw_layout_parse(const char *text, cw_raw_layout *layout,
+                                                  cw_error *err);
 
 /* How to read a mesh. Zero-initialise it; a zero field means the default named beside it. */
 typedef struct cw_mesh_read_desc {
@@ -288,8 +290,8 @@ typedef struct cw_mesh_file {
  *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
  *          CW_ERR_ARGUMENT     no such reader; a claim that the file contradicts
  * Cost     one pass over the file; 24 bytes a vertex and 12 a triangle while it is read */
-CW_API cw_status cw_mesh_read(const char *path, const cw_mesh_read_desc *desc, cw_mesh *mesh,
-                              cw_mesh_file *file, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_mesh_read(const char *path, const cw_mesh_read_desc *desc,
+                                           cw_mesh *mesh, cw_mesh_file *file, cw_error *err);
 
 /* A mesh with a name, as one of several in a file. */
 typedef struct cw_part {
@@ -312,8 +314,9 @@ typedef struct cw_part {
  *          Names are NULL where the file has none; what is no printable UTF-8 in them is '_'.
  * Returns  as cw_mesh_read()
  * Cost     that of cw_mesh_read() and, if there are several, as much memory once more */
-CW_API cw_status cw_parts_read(const char *path, const cw_mesh_read_desc *desc, cw_part **parts,
-                               size_t *count, cw_mesh_file *file, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_parts_read(const char *path, const cw_mesh_read_desc *desc,
+                                            cw_part **parts, size_t *count, cw_mesh_file *file,
+                                            cw_error *err);
 
 /* Harmless on NULL. */
 CW_API void cw_parts_free(cw_part *parts, size_t count);
@@ -374,8 +377,8 @@ typedef struct cw_write_desc {
  *          CW_ERR_OUTPUT       folder missing, disk full, path exists and no_clobber
  *          CW_ERR_UNSUPPORTED  the format is not in this build; the grid is rectilinear
  *          CW_ERR_CANCELLED */
-CW_API cw_status cw_volume_write(const char *path, const cw_volume *volume,
-                                 const cw_write_desc *desc, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_volume_write(const char *path, const cw_volume *volume,
+                                              const cw_write_desc *desc, cw_error *err);
 
 /* Writes a mesh in the same way: .glb, .gltf, .stl, .ply, .obj, .off, .3mf or .vtp.
  * glTF goes out in metres, +Y up and facing +Z, by the node's transform: vertices stay exact,
@@ -391,8 +394,8 @@ CW_API cw_status cw_volume_write(const char *path, const cw_volume *volume,
  * Returns  as cw_volume_write(); CW_ERR_ARGUMENT as cw_mesh_check(), for an empty mesh, for
  *          glTF in another unit or frame than its own, for text of a format that has none;
  *          CW_ERR_LIMIT when the format's own sizes are too small for the mesh. */
-CW_API cw_status cw_mesh_write(const char *path, const cw_mesh *mesh, const cw_write_desc *desc,
-                               cw_error *err);
+CW_NODISCARD CW_API cw_status cw_mesh_write(const char *path, const cw_mesh *mesh,
+                                            const cw_write_desc *desc, cw_error *err);
 
 /* Writes parts into one file: OBJ and 3MF get an object for each. In the others they become one
  * mesh, one behind the other, with the arrays that all of them have. Parts without triangles
@@ -411,8 +414,9 @@ CW_API cw_status cw_mesh_write(const char *path, const cw_mesh *mesh, const cw_w
  * Returns as cw_mesh_write(); CW_ERR_ARGUMENT for levels that do not follow one another, have
  * no triangles, or are for another format; for an animation of fewer than two parts, of levels,
  * or of times that do not ascend in single precision */
-CW_API cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
-                                const cw_write_desc *desc, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_parts_write(const char *path, const cw_part *parts,
+                                             size_t count, const cw_write_desc *desc,
+                                             cw_error *err);
 
 /* What a file will not hold of a mesh, above all what single precision takes from world
  * coordinates. */
@@ -431,17 +435,17 @@ typedef struct cw_write_loss {
  *
  * Returns  CW_ERR_ARGUMENT  no such writer, or as cw_mesh_check(); CW_ERR_NO_MEMORY
  * Cost     time in proportion to the triangles, and 28 bytes a vertex at most */
-CW_API cw_status cw_mesh_write_loss(const char *path, const cw_mesh *mesh,
-                                    const cw_write_desc *desc, cw_write_loss *loss,
-                                    cw_error *err);
-CW_API cw_status cw_parts_write_loss(const char *path, const cw_part *parts, size_t count,
-                                     const cw_write_desc *desc, cw_write_loss *loss,
-                                     cw_error *err);
+CW_NODISCARD CW_API cw_status cw_mesh_write_loss(const char *path, const cw_mesh *mesh,
+                                                 const cw_write_desc *desc, cw_write_loss *loss,
+                                                 cw_error *err);
+CW_NODISCARD CW_API cw_status cw_parts_write_loss(const char *path, const cw_part *parts,
+                                                  size_t count, const cw_write_desc *desc,
+                                                  cw_write_loss *loss, cw_error *err);
 
 /* Whether cw_mesh_write() could write to a path, as far as can be known before there is a mesh:
  * writer and library at hand, folder there and writable, nothing in the way. Same errors. */
-CW_API cw_status cw_mesh_write_check(const char *path, const cw_write_desc *desc,
-                                     cw_error *err);
+CW_NODISCARD CW_API cw_status cw_mesh_write_check(const char *path, const cw_write_desc *desc,
+                                                  cw_error *err);
 
 /* Orders the triangles of a mesh for the caches of graphics processors, and its vertices in the
  * order in which triangles name them.
@@ -450,7 +454,7 @@ CW_API cw_status cw_mesh_write_check(const char *path, const cw_write_desc *desc
  * Returns  CW_ERR_UNSUPPORTED  this build has no meshoptimizer; CW_ERR_ARGUMENT as
  *                              cw_mesh_check(); CW_ERR_NO_MEMORY
  * Source   meshoptimizer: optimizeVertexCache, optimizeVertexFetch */
-CW_API cw_status cw_mesh_optimize(cw_mesh *mesh, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_mesh_optimize(cw_mesh *mesh, cw_error *err);
 
 /* A file of a time series. */
 typedef struct cw_pvd_entry {
@@ -466,8 +470,8 @@ typedef struct cw_pvd_entry {
  *          CW_ERR_FORMAT       no list, an empty one, a time that is no number
  *          CW_ERR_UNSAFE       a file outside the .pvd's folder; an XML document type
  *          CW_ERR_UNSUPPORTED  several files of one time; CW_ERR_LIMIT; CW_ERR_NO_MEMORY */
-CW_API cw_status cw_pvd_read(const char *path, const cw_read_desc *desc, cw_pvd_entry **entries,
-                             size_t *count, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_pvd_read(const char *path, const cw_read_desc *desc,
+                                          cw_pvd_entry **entries, size_t *count, cw_error *err);
 CW_API void cw_pvd_free(cw_pvd_entry *entries, size_t count);
 
 /* Whether a path names a .pvd file, by its content. */
@@ -479,8 +483,9 @@ CW_API bool cw_pvd_is(const char *path);
  * Returns  CW_ERR_ARGUMENT  no entries, a time that is not finite, a file that cannot be named
  *                           from the .pvd's folder because one of both paths goes up by ".."
  *          CW_ERR_OUTPUT as cw_mesh_write() */
-CW_API cw_status cw_pvd_write(const char *path, const cw_pvd_entry *entries, size_t count,
-                              const cw_write_desc *desc, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_pvd_write(const char *path, const cw_pvd_entry *entries,
+                                           size_t count, const cw_write_desc *desc,
+                                           cw_error *err);
 
 /* What of a mesh a file of a format holds. */
 typedef enum cw_keeps {

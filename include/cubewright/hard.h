@@ -40,7 +40,8 @@ typedef struct cw_hard_desc {
  * Returns CW_ERR_ARGUMENT for an unknown case or type, an integer type where the case needs
  * floats, and noise below 0; CW_ERR_LIMIT, CW_ERR_NO_MEMORY, CW_ERR_CANCELLED.
  * The same bytes for the same desc, for any number of threads. */
-CW_API cw_status cw_hard_sample(const cw_hard_desc *desc, cw_volume *volume, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_hard_sample(const cw_hard_desc *desc, cw_volume *volume,
+                                             cw_error *err);
 
 #ifdef __cplusplus
 }

@@ -53,8 +53,9 @@ typedef struct cw_level_set_desc {
  *          within the larger of the two distances, and for those around them
  * Threads  reentrant; the same to the bit for any number of threads
  * Source   distances by OpenVDB [Museth2013]; signs as in extract/level-sets.md */
-CW_API cw_status cw_level_set_from_mesh(const cw_mesh *mesh, const cw_level_set_desc *desc,
-                                        cw_volume *volume, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_level_set_from_mesh(const cw_mesh *mesh,
+                                                     const cw_level_set_desc *desc,
+                                                     cw_volume *volume, cw_error *err);
 
 /* A surface at a distance. Zero fields mean the default named beside them. */
 typedef struct cw_offset_desc {
@@ -112,8 +113,9 @@ typedef struct cw_offset_facts {
  *          cw_level_set_from_mesh(), cw_extract(), cw_self_intersections()
  * Threads  the same to the bit for any number
  * Source   edges after [Kobbelt2001], [Attene2005]; parts of voxels after [Frisken2000] */
-CW_API cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc, cw_mesh *out,
-                                cw_offset_facts *facts, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_mesh_offset(const cw_mesh *mesh, const cw_offset_desc *desc,
+                                             cw_mesh *out, cw_offset_facts *facts,
+                                             cw_error *err);
 
 /* A round hole from the largest cavity to the outside. It starts at the cavity's farthest point
  * in a direction (on a flat floor in its middle) with a ball, and goes straight on through all
@@ -162,8 +164,9 @@ typedef struct cw_hollow_facts {
  *                           length 0; or as cw_level_set_from_mesh()
  *          CW_ERR_EMPTY     no point is so deep that the wall leaves a cavity
  *          else as cw_level_set_from_mesh(), cw_extract(), cw_distance_to_mesh() */
-CW_API cw_status cw_mesh_hollow(const cw_mesh *mesh, const cw_hollow_desc *desc, cw_mesh *out,
-                                cw_hollow_facts *facts, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_mesh_hollow(const cw_mesh *mesh, const cw_hollow_desc *desc,
+                                             cw_mesh *out, cw_hollow_facts *facts,
+                                             cw_error *err);
 
 #ifdef __cplusplus
 }

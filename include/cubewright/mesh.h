@@ -31,7 +31,7 @@ CW_API void cw_mesh_free(cw_mesh *mesh);
 
 /* Checks what code below relies on: arrays present, every index below vertex_count, positions
  * finite. Returns CW_ERR_ARGUMENT naming the first thing that is wrong. */
-CW_API cw_status cw_mesh_check(const cw_mesh *mesh, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_mesh_check(const cw_mesh *mesh, cw_error *err);
 
 /* World box of the vertices; false (and zeros) for a mesh without vertices. */
 CW_API bool cw_mesh_bounds(const cw_mesh *mesh, double min[3], double max[3]);
@@ -43,7 +43,7 @@ CW_API bool cw_mesh_bounds(const cw_mesh *mesh, double min[3], double max[3]);
  * mesh     in place: its arrays stay where they are, and only get shorter; as it was on failure
  * merged   vertices that were at the place of another; may be NULL
  * Returns  CW_ERR_ARGUMENT as cw_mesh_check(); CW_ERR_NO_MEMORY */
-CW_API cw_status cw_mesh_weld(cw_mesh *mesh, size_t *merged, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_mesh_weld(cw_mesh *mesh, size_t *merged, cw_error *err);
 
 /* Leaves out components (sets of triangles joined by vertices) whose box has a diagonal shorter
  * than so much, and then vertices that no triangle names.
@@ -52,8 +52,9 @@ CW_API cw_status cw_mesh_weld(cw_mesh *mesh, size_t *merged, cw_error *err);
  * dropped, kept   components; may be NULL
  * Returns  CW_ERR_ARGUMENT  diagonal_mm is negative or NaN, or as cw_mesh_check();
  *          CW_ERR_NO_MEMORY */
-CW_API cw_status cw_mesh_drop_components(cw_mesh *mesh, double diagonal_mm, size_t *dropped,
-                                         size_t *kept, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_mesh_drop_components(cw_mesh *mesh, double diagonal_mm,
+                                                      size_t *dropped, size_t *kept,
+                                                      cw_error *err);
 
 /* What became of components. */
 typedef struct cw_drop_counts {
@@ -77,8 +78,8 @@ typedef struct cw_drop_counts {
  * counts   may be NULL
  * Returns  CW_ERR_ARGUMENT  least_mm3 is negative or NaN, or as cw_mesh_check();
  *          CW_ERR_NO_MEMORY */
-CW_API cw_status cw_mesh_drop_volumes(cw_mesh *mesh, double least_mm3, cw_drop_counts *counts,
-                                      cw_error *err);
+CW_NODISCARD CW_API cw_status cw_mesh_drop_volumes(cw_mesh *mesh, double least_mm3,
+                                                   cw_drop_counts *counts, cw_error *err);
 
 /* A part of a surface that is made from one end to the other: what lies between two parallel
  * planes. Slabs that follow each other have the vertices in the plane between them in common:

@@ -33,12 +33,12 @@ typedef struct cw_overlay {
  * image    of that scene, of any size of the same shape
  * Returns  CW_ERR_ARGUMENT  the image is of another shape; the scene has no transfer function
  * or there are no statistics, where they are needed; as cw_render() */
-CW_API cw_status cw_overlay_draw(const cw_overlay *overlay, const cw_scene *scene,
-                                 cw_image *image, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_overlay_draw(const cw_overlay *overlay, const cw_scene *scene,
+                                              cw_image *image, cw_error *err);
 
 /* What a scale bar says: its length in mm, and in pixels of a picture of a scene. */
-CW_API cw_status cw_scale_bar(const cw_scene *scene, const cw_image *image, double *length_mm,
-                              double *length_px, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_scale_bar(const cw_scene *scene, const cw_image *image,
+                                           double *length_mm, double *length_px, cw_error *err);
 
 /* Copies one image into another, with its upper left corner at column x, row y; what would be
  * outside is left out. */
@@ -51,9 +51,10 @@ CW_API void cw_image_place(cw_image *onto, const cw_image *image, ptrdiff_t x, p
  * sheet    made anew; free it with cw_image_free()
  * Returns  CW_ERR_ARGUMENT  no images, or one of nothing; CW_ERR_LIMIT  a sheet of more than
  *          16384 pixels a side; CW_ERR_NO_MEMORY */
-CW_API cw_status cw_image_tile(const cw_image *images, size_t count, size_t columns,
-                               size_t gap_px, const uint8_t background[4], cw_image *sheet,
-                               cw_error *err);
+CW_NODISCARD CW_API cw_status cw_image_tile(const cw_image *images, size_t count,
+                                            size_t columns, size_t gap_px,
+                                            const uint8_t background[4], cw_image *sheet,
+                                            cw_error *err);
 
 #ifdef __cplusplus
 }

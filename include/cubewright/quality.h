@@ -89,8 +89,9 @@ typedef struct cw_quality_desc {
 /* Measures a mesh in time proportional to its triangles.
  * Returns  CW_ERR_ARGUMENT as cw_mesh_check(); CW_ERR_LIMIT beyond 2^32 / 3 triangles;
  *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
-CW_API cw_status cw_quality_measure(const cw_mesh *mesh, const cw_quality_desc *desc,
-                                    cw_quality *out, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_quality_measure(const cw_mesh *mesh,
+                                                 const cw_quality_desc *desc, cw_quality *out,
+                                                 cw_error *err);
 
 /* The bytes that measuring takes beside the mesh; for one with open edges a third more. */
 CW_API size_t cw_quality_bytes(size_t vertices, size_t triangles);
@@ -110,8 +111,8 @@ typedef struct cw_orient_counts {
  * mesh     in place: the corners of triangles change places; as it was on failure
  * counts   may be NULL
  * Returns  as cw_quality_measure() */
-CW_API cw_status cw_mesh_orient(cw_mesh *mesh, int threads, cw_orient_counts *counts,
-                                cw_error *err);
+CW_NODISCARD CW_API cw_status cw_mesh_orient(cw_mesh *mesh, int threads,
+                                             cw_orient_counts *counts, cw_error *err);
 
 /* No open, no non-manifold and no misoriented edge, no non-manifold vertex. */
 CW_API bool cw_quality_is_closed_manifold(const cw_quality *quality);
@@ -140,8 +141,9 @@ typedef struct cw_crossings {
  *          hundreds of triangles overlap everywhere: undecided is then set
  * Threads  the same pairs for any number
  * Source   [Guigue2003], signs by [Shewchuk1997] */
-CW_API cw_status cw_self_intersections(const cw_mesh *mesh, const cw_crossings_desc *desc,
-                                       cw_crossings *out, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_self_intersections(const cw_mesh *mesh,
+                                                    const cw_crossings_desc *desc,
+                                                    cw_crossings *out, cw_error *err);
 
 CW_API void cw_crossings_free(cw_crossings *crossings);
 
@@ -162,14 +164,15 @@ CW_API bool cw_quality_has_cgal(void);
 /* Asks CGAL's Polygon Mesh Processing; takes ten times as long as our own checks.
  * Returns  as cw_quality_measure(); CW_ERR_UNSUPPORTED without the module; CW_ERR_BACKEND with
  *          CGAL's words when it gives up */
-CW_API cw_status cw_quality_ask_cgal(const cw_mesh *mesh, cw_weld weld, cw_cgal_facts *out,
-                                     cw_error *err);
+CW_NODISCARD CW_API cw_status cw_quality_ask_cgal(const cw_mesh *mesh, cw_weld weld,
+                                                  cw_cgal_facts *out, cw_error *err);
 
 /* One-sided Hausdorff distance from a mesh to a reference by CGAL, off by at most the
  * tolerance. Returns  as cw_quality_ask_cgal(); CW_ERR_BACKEND for a mesh that is no oriented
  * manifold */
-CW_API cw_status cw_distance_by_cgal(const cw_mesh *mesh, const cw_mesh *reference,
-                                     double tolerance_mm, double *out_mm, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_distance_by_cgal(const cw_mesh *mesh, const cw_mesh *reference,
+                                                  double tolerance_mm, double *out_mm,
+                                                  cw_error *err);
 
 #ifdef __cplusplus
 }

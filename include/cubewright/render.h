@@ -193,7 +193,8 @@ typedef struct cw_renderer cw_renderer;
 /* Makes a renderer.
  * Returns  CW_ERR_UNSUPPORTED  this build has no GL, the machine has no driver, or none with
  *                              OpenGL 3.3: the message names the packages; CW_ERR_NO_MEMORY */
-CW_API cw_status cw_renderer_new(cw_backend backend, cw_renderer **renderer, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_renderer_new(cw_backend backend, cw_renderer **renderer,
+                                              cw_error *err);
 CW_API void cw_renderer_free(cw_renderer *renderer);
 
 /* What draws: "CPU", or the GL's own words. Valid as long as the renderer. */
@@ -208,8 +209,8 @@ CW_API const char *cw_renderer_name(const cw_renderer *renderer);
  *                              evenly spaced
  *          CW_ERR_BACKEND      GL failed or its context was lost: make another renderer
  *          CW_ERR_LIMIT; CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
-CW_API cw_status cw_render(cw_renderer *renderer, const cw_scene *scene, cw_picture *picture,
-                           cw_error *err);
+CW_NODISCARD CW_API cw_status cw_render(cw_renderer *renderer, const cw_scene *scene,
+                                        cw_picture *picture, cw_error *err);
 
 /* What is seen at a place on a picture. */
 typedef enum cw_pick_kind {
@@ -239,8 +240,8 @@ typedef struct cw_picked {
  * pixel    from the picture's upper left corner, y down
  * Returns  as cw_render(), and CW_ERR_ARGUMENT for a pixel that is no number
  * Cost     in proportion to the triangles (a million: some 10 ms), and to the cells met */
-CW_API cw_status cw_pick(const cw_scene *scene, const double pixel[2], cw_picked *picked,
-                         cw_error *err);
+CW_NODISCARD CW_API cw_status cw_pick(const cw_scene *scene, const double pixel[2],
+                                      cw_picked *picked, cw_error *err);
 
 /* The orthographic camera that looks straight at a slice and sees all of it, for a picture that
  * is aspect times as wide as high; with it, the mode slices draws that slice flat. Directions
@@ -250,12 +251,38 @@ CW_API cw_status cw_pick(const cw_scene *scene, const double pixel[2], cw_picked
  * seen as those they are closest to.
  * Returns CW_ERR_ARGUMENT for a slice that misses the volume or has no direction, for an aspect
  * that is none, and as cw_volume_resolve(). */
-CW_API cw_status cw_slice_camera(const cw_volume *volume, const cw_slice *slice, double aspect,
-                                 cw_camera *camera, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_slice_camera(const cw_volume *volume, const cw_slice *slice,
+                                              double aspect, cw_camera *camera, cw_error *err);
 
 /* Tells a renderer that voxels or vertices it has drawn were written to since, or freed: it
  * knows them by their address. */
 CW_API void cw_renderer_forget(cw_renderer *renderer);
+
+/* How to draw a mesh alone. Zero-initialise it; a zero field means the default named beside it. */
+typedef struct cw_render_mesh_desc {
+    cw_camera camera;         /* default (up all 0): front view of the whole mesh, 30 degrees */
+    size_t width, height;     /* pixels, at most 16384; default 1280 x 720 */
+    int samples;              /* a side: 1 to 4 squared samples a pixel; default 2 */
+    uint8_t color[4];         /* sRGB of a mesh without colours; default a bone white */
+    uint8_t background[2][4]; /* top and bottom, sRGB and alpha; all 0: a light gradient. For a
+                               * transparent one give any colour and alpha 0 */
+    double *depth_mm; /* not NULL: filled with height x width depths, along the line of sight,
+                         of what is seen; INFINITY: nothing is. One sample a pixel only */
+    int threads;      /* default: all that OpenMP offers */
+    cw_progress progress; /* default: none */
+} cw_render_mesh_desc;
+
+/* Draws a mesh on the CPU in double precision, without OpenGL: nearest surface first, lit on both sides; back faces are tinted red, so that an
+ * open or inside-out surface shows. A mesh without normals is drawn with its triangles' own.
+ *
+ * image    filled on success, emptied on failure; free it with cw_image_free()
+ * Returns  CW_ERR_ARGUMENT  as cw_mesh_check() and cw_camera_axes(); sizes out of range
+ *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
+ * Cost     in proportion to the triangles and to the samples they cover
+ * Threads  reentrant; the same bytes for any number of threads */
+CW_NODISCARD CW_API cw_status cw_render_mesh(const cw_mesh *mesh,
+                                             const cw_render_mesh_desc *desc, cw_image *image,
+                                             cw_error *err);
 
 #ifdef __cplusplus
 }

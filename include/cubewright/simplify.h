@@ -22,8 +22,8 @@ typedef struct cw_simplify_view {
 /* Draws the depths of one more mesh, or slab, of what a view shows. Free them with
  * cw_simplify_view_free(), which is harmless where there are none.
  * Returns  CW_ERR_ARGUMENT for a camera that is none; CW_ERR_NO_MEMORY */
-CW_API cw_status cw_simplify_view_draw(cw_simplify_view *view, const cw_mesh *mesh,
-                                       cw_error *err);
+CW_NODISCARD CW_API cw_status cw_simplify_view_draw(cw_simplify_view *view, const cw_mesh *mesh,
+                                                    cw_error *err);
 CW_API void cw_simplify_view_free(cw_simplify_view *view);
 
 /* How far to simplify, and what to spare. Zero-initialise it and set what you need; a zero
@@ -60,8 +60,9 @@ typedef struct cw_simplify_desc {
 /* How far a view lets a point in the world go: no place so near to it is seen more than so many
  * pixels away. Infinite where it does not see the point.
  * Returns  CW_ERR_ARGUMENT for a camera that is none, and pixels that are not above 0 */
-CW_API cw_status cw_simplify_view_error(const cw_simplify_view *view, double pixels,
-                                        const double point[3], double *error_mm, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_simplify_view_error(const cw_simplify_view *view,
+                                                     double pixels, const double point[3],
+                                                     double *error_mm, cw_error *err);
 
 /* Whether a view may see something of the convex hull of some points, with so many pixels
  * around its picture: false is certain, true is not.
@@ -69,9 +70,9 @@ CW_API cw_status cw_simplify_view_error(const cw_simplify_view *view, double pix
  * points   count x 3, in the world; count is 1 to 8
  * Returns  CW_ERR_ARGUMENT  a camera that is none, pixels that are not above 0, no points or
  *                           more than 8 */
-CW_API cw_status cw_simplify_view_sees(const cw_simplify_view *view, double pixels,
-                                       const double *points, size_t count, bool *seen,
-                                       cw_error *err);
+CW_NODISCARD CW_API cw_status cw_simplify_view_sees(const cw_simplify_view *view, double pixels,
+                                                    const double *points, size_t count,
+                                                    bool *seen, cw_error *err);
 
 /* Leaves out the triangles that certainly none of some views sees, with so many pixels around
  * their pictures: what is beside them, and what is farther than twice margin_mm behind what
@@ -83,9 +84,9 @@ CW_API cw_status cw_simplify_view_sees(const cw_simplify_view *view, double pixe
  * margin_mm  how far the mesh may be from the one whose depths were drawn
  * dropped    triangles; may be NULL
  * Returns    CW_ERR_ARGUMENT as cw_simplify_view_sees(), cw_mesh_check(); CW_ERR_NO_MEMORY */
-CW_API cw_status cw_simplify_cull(cw_mesh *mesh, const cw_simplify_view *views, size_t count,
-                                  double pixels, double margin_mm, size_t *dropped,
-                                  cw_error *err);
+CW_NODISCARD CW_API cw_status cw_simplify_cull(cw_mesh *mesh, const cw_simplify_view *views,
+                                               size_t count, double pixels, double margin_mm,
+                                               size_t *dropped, cw_error *err);
 
 /* What a simplification made. */
 typedef struct cw_simplify_facts {
@@ -119,8 +120,9 @@ typedef struct cw_simplify_facts {
  * Cost     about two microseconds of one processor for a triangle that goes
  * Threads  reentrant; the same to the bit for any number of threads
  * Source   quadrics [Garland1997], of attributes [Hoppe1999] */
-CW_API cw_status cw_simplify(const cw_mesh *mesh, const cw_simplify_desc *desc, cw_mesh *out,
-                             cw_simplify_facts *facts, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_simplify(const cw_mesh *mesh, const cw_simplify_desc *desc,
+                                          cw_mesh *out, cw_simplify_facts *facts,
+                                          cw_error *err);
 
 /* The same with several numbers of triangles: each level is made from the one before, so that
  * all take hardly longer than the last.
@@ -130,9 +132,11 @@ CW_API cw_status cw_simplify(const cw_mesh *mesh, const cw_simplify_desc *desc, 
  * facts      levels, or NULL
  *
  * Returns    CW_ERR_ARGUMENT when the numbers are not so; else as cw_simplify() */
-CW_API cw_status cw_simplify_levels(const cw_mesh *mesh, const cw_simplify_desc *desc,
-                                    const size_t *triangles, size_t levels, cw_mesh *out,
-                                    cw_simplify_facts *facts, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_simplify_levels(const cw_mesh *mesh,
+                                                 const cw_simplify_desc *desc,
+                                                 const size_t *triangles, size_t levels,
+                                                 cw_mesh *out, cw_simplify_facts *facts,
+                                                 cw_error *err);
 
 /* Simplifies a surface that comes a slab at a time, such as from cw_extract_slabs(), in tandem
  * with what makes it, so that all of it never is in memory:
@@ -156,20 +160,21 @@ typedef struct cw_simplifier cw_simplifier;
 
 /* desc      copied; an error, or else triangles or a ratio. Free with cw_simplifier_free().
  * Returns   CW_ERR_ARGUMENT for both or none, and as cw_simplify() */
-CW_API cw_status cw_simplifier_new(const cw_simplify_desc *desc, cw_simplifier **out,
-                                   cw_error *err);
+CW_NODISCARD CW_API cw_status cw_simplifier_new(const cw_simplify_desc *desc,
+                                                cw_simplifier **out, cw_error *err);
 CW_API void cw_simplifier_free(cw_simplifier *simplifier); /* harmless on NULL */
 
 /* Takes the next slab; for cw_slab_sink. After an error only freeing is of use. */
-CW_API cw_status cw_simplifier_take(void *simplifier, const cw_slab *slab, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_simplifier_take(void *simplifier, const cw_slab *slab,
+                                                 cw_error *err);
 
 /* The result, without normals: cw_extract_normals() has them. Empty when no slab came.
  *
  * out       filled on success, emptied on failure; free it with cw_mesh_free()
  * facts     may be NULL
  * Returns   CW_ERR_ARGUMENT when the last slab is missing; else as cw_simplify() */
-CW_API cw_status cw_simplifier_finish(cw_simplifier *simplifier, cw_mesh *out,
-                                      cw_simplify_facts *facts, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_simplifier_finish(cw_simplifier *simplifier, cw_mesh *out,
+                                                   cw_simplify_facts *facts, cw_error *err);
 
 /* Whether this build can: whether it has OpenMesh. */
 CW_API bool cw_simplify_available(void);

@@ -39,7 +39,7 @@ typedef struct cw_transfer {
 
 /* Returns CW_ERR_ARGUMENT, naming the point, for values that fall or are not finite, for
  * colours and opacities outside of 0 to 1, too many points, and a unit_mm that is no length. */
-CW_API cw_status cw_transfer_check(const cw_transfer *transfer, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_transfer_check(const cw_transfer *transfer, cw_error *err);
 
 /* The colour and opacity of a value, and the factor of a gradient's length. */
 CW_API void cw_transfer_at(const cw_transfer *transfer, double value, double color[3],
@@ -53,8 +53,9 @@ CW_API const char *cw_transfer_preset_about(size_t n);
 /* A preset. Those of CT stand at Hounsfield units; others are fitted to the values.
  * statistics  of the volume, with 256 bins or more; borrowed
  * Returns CW_ERR_ARGUMENT for an unknown name, with the names there are. */
-CW_API cw_status cw_transfer_preset(const char *name, const cw_statistics *statistics,
-                                    cw_transfer *transfer, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_transfer_preset(const char *name,
+                                                 const cw_statistics *statistics,
+                                                 cw_transfer *transfer, cw_error *err);
 
 /* A transfer function as JSON, in a file or as text:
  *     {"schema": "cubewright-transfer-1", "unit_mm": 1,
@@ -66,12 +67,14 @@ CW_API cw_status cw_transfer_preset(const char *name, const cw_statistics *stati
  * Returns  CW_ERR_IO; CW_ERR_FORMAT, with the line or the field that is wrong; CW_ERR_OUTPUT;
  *          CW_ERR_ARGUMENT as cw_transfer_check() */
 enum { CW_TRANSFER_TEXT = 16384 };
-CW_API cw_status cw_transfer_read(const char *path, cw_transfer *transfer, cw_error *err);
-CW_API cw_status cw_transfer_write(const char *path, const cw_transfer *transfer,
-                                   cw_error *err);
-CW_API cw_status cw_transfer_parse(const char *text, cw_transfer *transfer, cw_error *err);
-CW_API cw_status cw_transfer_format(const cw_transfer *transfer, char text[CW_TRANSFER_TEXT],
-                                    cw_error *err);
+CW_NODISCARD CW_API cw_status cw_transfer_read(const char *path, cw_transfer *transfer,
+                                               cw_error *err);
+CW_NODISCARD CW_API cw_status cw_transfer_write(const char *path, const cw_transfer *transfer,
+                                                cw_error *err);
+CW_NODISCARD CW_API cw_status cw_transfer_parse(const char *text, cw_transfer *transfer,
+                                                cw_error *err);
+CW_NODISCARD CW_API cw_status cw_transfer_format(const cw_transfer *transfer,
+                                                 char text[CW_TRANSFER_TEXT], cw_error *err);
 
 #ifdef __cplusplus
 }

@@ -77,8 +77,8 @@ typedef struct cw_sparse {
  * and stands for the value  slope * voxel + intercept  at the world point  affine * (i j k 1),
  * on a rectilinear grid at  affine * (coordinates[0][i] coordinates[1][j] coordinates[2][k] 1).
  * On an irregular grid dim is {samples, 1, 1}, and sample n stands at  affine * (point n, 1).
- * On a sparse grid dim is a box around all leaves and tiles, and strides are those in a leaf.
- */
+ * On a sparse grid dim is a box around all leaves and tiles, and strides are those in
+ * a leaf. */
 typedef struct cw_volume {
     const void *data;             /* first voxel; aligned for its type, native byte order */
     cw_type type;                 /* default CW_U8 */
@@ -117,8 +117,9 @@ CW_API const char *cw_type_name(cw_type type);
  * mean 1), identity affine. Write the voxels through cw_volume_voxels().
  * Returns CW_ERR_ARGUMENT for a zero dim, CW_ERR_LIMIT when the size overflows,
  * CW_ERR_NO_MEMORY. */
-CW_API cw_status cw_volume_alloc(cw_volume *volume, cw_type type, const size_t dim[3],
-                                 size_t components, size_t steps, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_volume_alloc(cw_volume *volume, cw_type type,
+                                              const size_t dim[3], size_t components,
+                                              size_t steps, cw_error *err);
 
 /* Frees what the volume owns and zeroes it. Harmless on a zeroed or already freed volume. */
 CW_API void cw_volume_free(cw_volume *volume);
@@ -132,12 +133,13 @@ CW_API void *cw_volume_voxels(cw_volume *volume);
  * scaling that is not finite or cannot be inverted, strides that break the type's alignment,
  * coordinates that do not rise or are not all there, more than one of coordinates, cells and
  * leaves. Corners of cells and places of leaves are checked where they are used. */
-CW_API cw_status cw_volume_resolve(const cw_volume *in, cw_volume *out, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_volume_resolve(const cw_volume *in, cw_volume *out,
+                                                cw_error *err);
 
 /* A borrowed view of one component at one time step.
  * Returns CW_ERR_ARGUMENT when there is none such. */
-CW_API cw_status cw_volume_select(const cw_volume *in, size_t component, size_t step,
-                                  cw_volume *out, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_volume_select(const cw_volume *in, size_t component,
+                                               size_t step, cw_volume *out, cw_error *err);
 
 /* The length of the vector that the components of a voxel are, at one time step: the root of
  * the sum of their squares, scaled, in double precision, as CW_F32. NaN where a component has
@@ -146,8 +148,8 @@ CW_API cw_status cw_volume_select(const cw_volume *in, size_t component, size_t 
  * out      owns its voxels, and borrows coordinates or cells of *in; free it before that
  * Returns  CW_ERR_ARGUMENT  no such step, or one component; as cw_volume_resolve()
  *          CW_ERR_UNSUPPORTED on a sparse grid; CW_ERR_LIMIT; CW_ERR_NO_MEMORY */
-CW_API cw_status cw_volume_magnitude(const cw_volume *in, size_t step, int threads,
-                                     cw_volume *out, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_volume_magnitude(const cw_volume *in, size_t step, int threads,
+                                                  cw_volume *out, cw_error *err);
 
 enum { CW_LABELS_MOST = 255 };
 
@@ -165,20 +167,21 @@ typedef struct cw_labels {
  * that occurs. A smooth picture skips none, and a noisy one has no equal neighbours. At most
  * 2^22 voxels are looked at, in rows spread evenly. Returns CW_ERR_ARGUMENT as
  * cw_volume_resolve(). */
-CW_API cw_status cw_volume_labels(const cw_volume *volume, cw_labels *out, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_volume_labels(const cw_volume *volume, cw_labels *out,
+                                               cw_error *err);
 
 /* A borrowed view of the voxels inside a box; its affine places them where they were.
  * Returns CW_ERR_ARGUMENT when the box is empty or leaves the volume. */
-CW_API cw_status cw_volume_crop(const cw_volume *in, const cw_box *box, cw_volume *out,
-                                cw_error *err);
+CW_NODISCARD CW_API cw_status cw_volume_crop(const cw_volume *in, const cw_box *box,
+                                             cw_volume *out, cw_error *err);
 
 /* A borrowed view of every step[a]-th voxel along axis a, from the first one on, each where it
  * was: for a quick look. Values are picked, not averaged. Up to step[a] - 1 voxels at the far
  * end are beyond the view. Returns CW_ERR_ARGUMENT for a step of 0 and for one, other than 1,
  * that leaves a single voxel: at most dim[a] - 1; when the affine leaves the range of doubles;
  * CW_ERR_UNSUPPORTED on a rectilinear grid. */
-CW_API cw_status cw_volume_coarsen(const cw_volume *in, const size_t step[3], cw_volume *out,
-                                   cw_error *err);
+CW_NODISCARD CW_API cw_status cw_volume_coarsen(const cw_volume *in, const size_t step[3],
+                                                cw_volume *out, cw_error *err);
 
 /* The value (scaled) of one voxel of the first component and step; slow, for tests and probes.
  * NaN outside the volume, and on a sparse grid. */
@@ -189,10 +192,10 @@ CW_API double cw_volume_value(const cw_volume *volume, size_t i, size_t j, size_
 CW_API void cw_volume_to_world(const cw_volume *volume, const double index[3], double world[3]);
 CW_API void cw_volume_spacing(const cw_volume *volume, double spacing_mm[3]);
 
-/* The (fractional) index of a world point. CW_ERR_ARGUMENT when the affine cannot be inverted.
- */
-CW_API cw_status cw_volume_to_index(const cw_volume *volume, const double world[3],
-                                    double index[3], cw_error *err);
+/* The (fractional) index of a world point. CW_ERR_ARGUMENT when the affine cannot
+ * be inverted. */
+CW_NODISCARD CW_API cw_status cw_volume_to_index(const cw_volume *volume, const double world[3],
+                                                 double index[3], cw_error *err);
 
 /* The value (scaled) at a world point of an even or rectilinear grid, of the first component
  * and step: trilinear between the voxels around. For probes. NaN outside (an axis of one voxel
@@ -217,8 +220,9 @@ typedef struct cw_statistics {
  * threads  0 means all
  * Returns  CW_ERR_ARGUMENT as cw_volume_resolve(); CW_ERR_NO_MEMORY; free with
  *          cw_statistics_free(). The result is the same for any number of threads. */
-CW_API cw_status cw_volume_statistics(const cw_volume *volume, size_t bin_count, int threads,
-                                      cw_statistics *out, cw_error *err);
+CW_NODISCARD CW_API cw_status cw_volume_statistics(const cw_volume *volume, size_t bin_count,
+                                                   int threads, cw_statistics *out,
+                                                   cw_error *err);
 CW_API void cw_statistics_free(cw_statistics *statistics);
 
 /* Levels that separate the histogram into level_count + 1 classes (1 to 3) with the largest

@@ -1,10 +1,10 @@
 #include "simplify/blocks/block_passes.h"
 
-#include "core/base/parallel.h"
 #include "core/base/memory.h"
-#include "core/mesh/mesh.h"
 #include "core/base/module.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/mesh/mesh.h"
 #include "simplify/blocks/partition.h"
 #include "simplify/quality/mesh_within.h"
 
@@ -198,7 +198,7 @@ cw_status cwi_passes_remember(cwi_passes *p, const cw_mesh *input, cw_error *err
     return st;
 }
 
-cw_status cwi_passes_list(cwi_passes *p, cwi_block *b, cw_error *err)
+cw_status cwi_passes_list(cwi_passes *p, cwi_mesh_block *b, cw_error *err)
 {
     b->lists = cwi_alloc_array(b->triangles, sizeof *b->lists);
     if (!b->lists)
@@ -224,17 +224,17 @@ static const cwi_original *original_of(const cwi_passes *p)
 
 /* A part of the input and what became of it. */
 typedef struct part {
-    const cwi_block *from;
+    const cwi_mesh_block *from;
     cw_mesh input;         /* a view of it */
     const uint32_t *names; /* of its vertices in all of the input; NULL: their numbers */
-    cwi_block *left;
+    cwi_mesh_block *left;
     float cost; /* how far it went */
     size_t target;
     int threads;
 } part;
 
 /* Own triangles of a block as a mesh. */
-static cw_mesh view(const cwi_block *b)
+static cw_mesh view(const cwi_mesh_block *b)
 {
     return (cw_mesh){.vertex_count = b->vertices,
                      .triangle_count = b->own,
@@ -256,7 +256,7 @@ static cw_status run_once(const cwi_passes *p, const part *x, float cost, cw_err
 }
 
 /* Lists of the pass become what they were before. */
-static void put_back(const cwi_passes *p, const cwi_block *left)
+static void put_back(const cwi_passes *p, const cwi_mesh_block *left)
 {
     for (size_t t = 0; t < left->own; t++)
         for (uint32_t v = left->lists[t], next; v != UINT32_MAX; v = next) {
@@ -283,12 +283,12 @@ static size_t mark_input(const cwi_passes *p, const part *x, const uint8_t *beyo
     return broken;
 }
 
-/* Marks the points listed around the triangles of the result that are too far from the input.
- */
+/* Marks the points listed around the triangles of the result that are too far from
+ * the input. */
 static size_t mark_result(const cwi_passes *p, const part *x, const uint8_t *beyond,
                           uint8_t *near)
 {
-    const cwi_block *left = x->left;
+    const cwi_mesh_block *left = x->left;
     size_t broken = 0;
     for (size_t t = 0; t < left->own; t++) {
         broken += beyond[t];
@@ -325,7 +325,7 @@ static bool take_care(const cwi_passes *p, const part *x)
 /* The result, and with it what is in the way: it is part of the surface, too. */
 static cw_status add_obstacles(const part *x, cw_mesh *mesh, cw_error *err)
 {
-    const cwi_block *from = x->from, *left = x->left;
+    const cwi_mesh_block *from = x->from, *left = x->left;
     const size_t more = from->triangles - from->own;
     cw_status st =
         cwi_mesh_alloc(mesh, left->vertices + 3 * more, left->own + more, false, err);
@@ -369,8 +369,8 @@ static cw_status find_beyond(const cwi_passes *p, const cw_mesh *mesh, const cw_
     return st;
 }
 
-/* Whether the result keeps the distance; where it does not, more care is taken the next time.
- */
+/* Whether the result keeps the distance; where it does not, more care is taken the
+ * next time. */
 static cw_status judge(const cwi_passes *p, const part *x, bool *kept, bool *hope,
                        cw_error *err)
 {
@@ -416,12 +416,11 @@ static cw_status keep(const cwi_passes *p, const part *x, size_t *repeats, cw_er
     return st;
 }
 
-/* --- passes over blocks --------------------------------------------------------------------
- */
+/* --- passes over blocks ------------------------------------------------------------------- */
 
 typedef struct crew {
     const cwi_passes *passes;
-    cwi_block *blocks, *left;
+    cwi_mesh_block *blocks, *left;
     cwi_decimater **decimaters;
     cw_status *statuses;
     cw_error *errors;
@@ -564,13 +563,13 @@ static void begin_pass(const cwi_passes *p)
 }
 
 /* Borders that were known before the pass are so still. */
-static void keep_known(const uint8_t *seam, cwi_block *left)
+static void keep_known(const uint8_t *seam, cwi_mesh_block *left)
 {
     for (size_t v = 0; v < left->vertices && seam; v++)
         left->seam[v] &= seam[left->names[v]];
 }
 
-static cw_status run_blocks(cwi_passes *p, cwi_block *whole, size_t target, double share,
+static cw_status run_blocks(cwi_passes *p, cwi_mesh_block *whole, size_t target, double share,
                             cw_error *err)
 {
     const size_t names = whole->vertices;
@@ -597,12 +596,12 @@ static cw_status run_blocks(cwi_passes *p, cwi_block *whole, size_t target, doub
     return st;
 }
 
-cw_status cwi_passes_blocks(cwi_passes *p, cwi_block *whole, size_t target, cw_error *err)
+cw_status cwi_passes_blocks(cwi_passes *p, cwi_mesh_block *whole, size_t target, cw_error *err)
 {
     return run_blocks(p, whole, target, 0.5, err);
 }
 
-cw_status cwi_passes_seams(cwi_passes *p, cwi_block *whole, size_t target, cw_error *err)
+cw_status cwi_passes_seams(cwi_passes *p, cwi_mesh_block *whole, size_t target, cw_error *err)
 {
     if (p->next || whole->triangles <= CWI_BLOCK || whole->triangles <= target + target / 4)
         return CW_OK;
@@ -612,8 +611,9 @@ cw_status cwi_passes_seams(cwi_passes *p, cwi_block *whole, size_t target, cw_er
 
 /* --- the last pass ------------------------------------------------------------------------ */
 
-static cw_status run_levels(const cwi_passes *p, const cwi_block *whole, const size_t *targets,
-                            size_t levels, cwi_block *left, size_t *cut, cw_error *err)
+static cw_status run_levels(const cwi_passes *p, const cwi_mesh_block *whole,
+                            const size_t *targets, size_t levels, cwi_mesh_block *left,
+                            size_t *cut, cw_error *err)
 {
     cwi_decimater *d;
     cw_status st = p->openmesh->open(whole, &p->block_desc, original_of(p), &d, err);
@@ -629,8 +629,8 @@ static cw_status run_levels(const cwi_passes *p, const cwi_block *whole, const s
     return st;
 }
 
-cw_status cwi_passes_whole(cwi_passes *p, const cwi_block *whole, const size_t *targets,
-                           size_t levels, cwi_block *left, size_t *cut, cw_error *err)
+cw_status cwi_passes_whole(cwi_passes *p, const cwi_mesh_block *whole, const size_t *targets,
+                           size_t levels, cwi_mesh_block *left, size_t *cut, cw_error *err)
 {
     begin_pass(p);
     cw_status st = run_levels(p, whole, targets, levels, left, cut, err);

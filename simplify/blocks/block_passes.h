@@ -33,7 +33,8 @@ typedef struct cwi_passes {
 /* Free with cwi_passes_free(), also after an error. They must not move.
  * desc      borrowed; its progress is asked on the thread that calls this
  * Returns   CW_ERR_ARGUMENT for what is out of range; CW_ERR_UNSUPPORTED without OpenMesh */
-cw_status cwi_passes_init(cwi_passes *passes, const cw_simplify_desc *desc, cw_error *err);
+CW_NODISCARD cw_status cwi_passes_init(cwi_passes *passes, const cw_simplify_desc *desc,
+                                       cw_error *err);
 void cwi_passes_free(cwi_passes *passes);
 
 /* All places that follow are those meant by desc, less the origin, times so much. */
@@ -41,28 +42,33 @@ void cwi_passes_place(cwi_passes *passes, const double origin[3], double scale);
 
 /* Remembers the surface that the error is kept from, with no care so far.
  * input     borrowed, with its arrays */
-cw_status cwi_passes_remember(cwi_passes *passes, const cw_mesh *input, cw_error *err);
+CW_NODISCARD cw_status cwi_passes_remember(cwi_passes *passes, const cw_mesh *input,
+                                           cw_error *err);
 
 /* Puts every point of a block that is in no list yet into that of a triangle around it. The
  * block's vertices have the numbers that they have in the input. */
-cw_status cwi_passes_list(cwi_passes *passes, cwi_block *block, cw_error *err);
+CW_NODISCARD cw_status cwi_passes_list(cwi_passes *passes, cwi_mesh_block *block,
+                                       cw_error *err);
 
 /* Simplifies a block in smaller ones, each by itself, and joins them: a seam between them stays
  * as it was. Down to `target` triangles or so; 0: as far as the error allows.
  * whole    vertices have their numbers for names; replaced */
-cw_status cwi_passes_blocks(cwi_passes *passes, cwi_block *whole, size_t target, cw_error *err);
+CW_NODISCARD cw_status cwi_passes_blocks(cwi_passes *passes, cwi_mesh_block *whole,
+                                         size_t target, cw_error *err);
 
 /* Does so once more, without an error to keep and where that pays: where seams have left far
- * more triangles than the target. These blocks are cut elsewhere, and have most seams inside.
- */
-cw_status cwi_passes_seams(cwi_passes *passes, cwi_block *whole, size_t target, cw_error *err);
+ * more triangles than the target. These blocks are cut elsewhere, and have most
+ * seams inside. */
+CW_NODISCARD cw_status cwi_passes_seams(cwi_passes *passes, cwi_mesh_block *whole,
+                                        size_t target, cw_error *err);
 
 /* Simplifies all of a block, seams included, down to each of the targets in turn.
  * targets  levels, falling; 0: as far as the error allows
  * left     levels; with an error to keep, one
  * cut      vertices that are no single fan */
-cw_status cwi_passes_whole(cwi_passes *passes, const cwi_block *whole, const size_t *targets,
-                           size_t levels, cwi_block *left, size_t *cut, cw_error *err);
+CW_NODISCARD cw_status cwi_passes_whole(cwi_passes *passes, const cwi_mesh_block *whole,
+                                        const size_t *targets, size_t levels,
+                                        cwi_mesh_block *left, size_t *cut, cw_error *err);
 
 /* How many triangles are asked for, of so many; 0: nothing is said of it. */
 size_t cwi_simplify_target(const cw_simplify_desc *desc, size_t triangles);
@@ -73,7 +79,7 @@ double cwi_simplify_scale(const cw_mesh *mesh);
 void cwi_scale_points(const float *from, size_t vertices, double scale, float *to);
 
 /* A block's triangles as a mesh in the frame of another one. */
-cw_status cwi_finish_mesh(const cw_mesh *frame, const cwi_block *block, cw_mesh *out,
-                          cw_error *err);
+CW_NODISCARD cw_status cwi_finish_mesh(const cw_mesh *frame, const cwi_mesh_block *block,
+                                       cw_mesh *out, cw_error *err);
 
 #endif

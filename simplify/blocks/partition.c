@@ -22,7 +22,7 @@ typedef struct leaf {
 
 /* All that is needed to share triangles out. */
 typedef struct plan {
-    const cwi_block *whole;
+    const cwi_mesh_block *whole;
     uint32_t *order; /* of the triangles, by leaf */
     uint32_t *spare;
     float *middles; /* of triangles, x 3 */
@@ -34,7 +34,7 @@ typedef struct plan {
     size_t *first;
 } plan;
 
-void cwi_block_free(cwi_block *block)
+void cwi_block_free(cwi_mesh_block *block)
 {
     cwi_free(block->points);
     cwi_free(block->corners);
@@ -46,10 +46,10 @@ void cwi_block_free(cwi_block *block)
     cwi_free(block->areas);
     cwi_free(block->trends);
     cwi_free(block->lists);
-    *block = (cwi_block){0};
+    *block = (cwi_mesh_block){0};
 }
 
-void cwi_block_span(cwi_block *block)
+void cwi_block_span(cwi_mesh_block *block)
 {
     block->own = block->triangles;
     for (int a = 0; a < 3; a++) {
@@ -61,20 +61,20 @@ void cwi_block_span(cwi_block *block)
     block->to = INFINITY;
 }
 
-void cwi_block_number(cwi_block *block)
+void cwi_block_number(cwi_mesh_block *block)
 {
     for (size_t v = 0; v < block->vertices; v++)
         block->names[v] = (uint32_t)v;
 }
 
-static float coordinate(const cwi_block *b, size_t corner, int axis)
+static float coordinate(const cwi_mesh_block *b, size_t corner, int axis)
 {
     return b->points[3 * (size_t)b->corners[corner] + (size_t)axis];
 }
 
 static void find_middles(plan *p)
 {
-    const cwi_block *b = p->whole;
+    const cwi_mesh_block *b = p->whole;
     for (size_t t = 0; t < b->triangles; t++)
         for (int a = 0; a < 3; a++)
             p->middles[3 * t + (size_t)a] =
@@ -218,7 +218,7 @@ static uint32_t triangle_of(const plan *p, size_t n, size_t i)
                                  : p->obstacles[p->first[n] + i - (l->end - l->begin)];
 }
 
-static bool alloc_vertices(cwi_block *b, const cwi_block *whole)
+static bool alloc_vertices(cwi_mesh_block *b, const cwi_mesh_block *whole)
 {
     b->points = cwi_alloc_array(3 * b->vertices, sizeof *b->points);
     b->held = cwi_alloc_array(b->vertices, sizeof *b->held);
@@ -230,9 +230,9 @@ static bool alloc_vertices(cwi_block *b, const cwi_block *whole)
 }
 
 /* What a vertex has gathered goes to one block only, one of which is left what names it. */
-static void copy_vertex(const plan *p, cwi_block *b, size_t v, bool own)
+static void copy_vertex(const plan *p, cwi_mesh_block *b, size_t v, bool own)
 {
-    const cwi_block *w = p->whole;
+    const cwi_mesh_block *w = p->whole;
     const size_t from = b->names[v];
     memcpy(b->points + 3 * v, w->points + 3 * from, 3 * sizeof *b->points);
     b->held[v] = p->held[from] != FREE;
@@ -251,7 +251,7 @@ static void copy_vertex(const plan *p, cwi_block *b, size_t v, bool own)
         p->held[from] = GIVEN;
 }
 
-static bool alloc_trends(const cwi_block *whole, cwi_block *b)
+static bool alloc_trends(const cwi_mesh_block *whole, cwi_mesh_block *b)
 {
     b->areas = cwi_alloc_array(b->vertices, sizeof *b->areas);
     b->trends = cwi_alloc_array(whole->attributes * b->vertices, sizeof *b->trends);
@@ -259,7 +259,7 @@ static bool alloc_trends(const cwi_block *whole, cwi_block *b)
 }
 
 /* For vertices that have names. */
-static bool fill_values(const cwi_block *whole, cwi_block *b)
+static bool fill_values(const cwi_mesh_block *whole, cwi_mesh_block *b)
 {
     const size_t count = b->attributes = whole->attributes;
     if (!count)
@@ -275,10 +275,10 @@ static bool fill_values(const cwi_block *whole, cwi_block *b)
 
 /* Numbers the vertices of leaf n as they come; *place must be NOT_THERE everywhere, and is so
  * again. */
-static cw_status fill_block(const plan *p, size_t n, uint32_t *place, cwi_block *b,
+static cw_status fill_block(const plan *p, size_t n, uint32_t *place, cwi_mesh_block *b,
                             cw_error *err)
 {
-    const cwi_block *w = p->whole;
+    const cwi_mesh_block *w = p->whole;
     b->own = p->leaves[n].end - p->leaves[n].begin;
     b->triangles = b->own + p->first[n + 1] - p->first[n];
     memcpy(b->low, p->leaves[n].low, sizeof b->low);
@@ -318,7 +318,7 @@ static cw_status fill_block(const plan *p, size_t n, uint32_t *place, cwi_block 
                         b->triangles);
 }
 
-static cw_status fill_blocks(const plan *p, cwi_block *blocks, cw_error *err)
+static cw_status fill_blocks(const plan *p, cwi_mesh_block *blocks, cw_error *err)
 {
     uint32_t *place = cwi_alloc_array(p->whole->vertices, sizeof *place);
     if (!place)
@@ -331,8 +331,8 @@ static cw_status fill_blocks(const plan *p, cwi_block *blocks, cw_error *err)
     return st;
 }
 
-cw_status cwi_blocks_cut(const cwi_block *whole, size_t most, double share, cwi_block **out,
-                         size_t *count, cw_error *err)
+cw_status cwi_blocks_cut(const cwi_mesh_block *whole, size_t most, double share,
+                         cwi_mesh_block **out, size_t *count, cw_error *err)
 {
     plan p = {.whole = whole, .count = 1, .share = share};
     while (p.count * most < whole->triangles)
@@ -374,7 +374,8 @@ cw_status cwi_blocks_cut(const cwi_block *whole, size_t most, double share, cwi_
 }
 
 /* Vertex v of a block has become n of the whole, which may know it from another block. */
-static void join_vertex(const cwi_block *b, size_t v, cwi_block *whole, size_t n, bool known)
+static void join_vertex(const cwi_mesh_block *b, size_t v, cwi_mesh_block *whole, size_t n,
+                        bool known)
 {
     const size_t count = whole->attributes;
     if (known) {
@@ -392,7 +393,8 @@ static void join_vertex(const cwi_block *b, size_t v, cwi_block *whole, size_t n
 }
 
 /* Where the vertices of a block go: held ones of one name to one place. */
-static void join_vertices(const cwi_block *b, uint32_t *place, uint32_t *to, cwi_block *whole)
+static void join_vertices(const cwi_mesh_block *b, uint32_t *place, uint32_t *to,
+                          cwi_mesh_block *whole)
 {
     for (size_t v = 0; v < b->vertices; v++) {
         const size_t name = b->names[v];
@@ -408,7 +410,7 @@ static void join_vertices(const cwi_block *b, uint32_t *place, uint32_t *to, cwi
     }
 }
 
-static bool alloc_joined(const cwi_block *blocks, size_t count, cwi_block *whole)
+static bool alloc_joined(const cwi_mesh_block *blocks, size_t count, cwi_mesh_block *whole)
 {
     size_t vertices = 0, triangles = 0;
     for (size_t n = 0; n < count; n++) {
@@ -433,10 +435,10 @@ static bool alloc_joined(const cwi_block *blocks, size_t count, cwi_block *whole
            (!count || !blocks[0].lists || whole->lists);
 }
 
-cw_status cwi_blocks_join(const cwi_block *blocks, size_t count, size_t names, cwi_block *whole,
-                          cw_error *err)
+cw_status cwi_blocks_join(const cwi_mesh_block *blocks, size_t count, size_t names,
+                          cwi_mesh_block *whole, cw_error *err)
 {
-    *whole = (cwi_block){0};
+    *whole = (cwi_mesh_block){0};
     size_t most = 0;
     for (size_t n = 0; n < count; n++)
         most = blocks[n].vertices > most ? blocks[n].vertices : most;
@@ -446,7 +448,7 @@ cw_status cwi_blocks_join(const cwi_block *blocks, size_t count, size_t names, c
     if (ok)
         memset(place, 0xff, names * sizeof *place);
     for (size_t n = 0; n < count && ok; n++) {
-        const cwi_block *b = blocks + n;
+        const cwi_mesh_block *b = blocks + n;
         join_vertices(b, place, to, whole);
         for (size_t c = 0; c < 3 * b->triangles; c++)
             whole->corners[3 * whole->triangles + c] = to[b->corners[c]];

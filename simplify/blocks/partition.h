@@ -4,13 +4,13 @@
 
 #include "simplify/collapse/openmesh_wrap.h"
 
-void cwi_block_free(cwi_block *block);
+void cwi_block_free(cwi_mesh_block *block);
 
 /* All of the block's triangles are its own, and they may be anywhere. */
-void cwi_block_span(cwi_block *block);
+void cwi_block_span(cwi_mesh_block *block);
 
 /* Vertices get their numbers for names. */
-void cwi_block_number(cwi_block *block);
+void cwi_block_number(cwi_mesh_block *block);
 
 /* Shares the triangles of a block out to blocks of about `most` at the most: boxes that fill
  * space, divided where a share of the triangles is below. Triangles that do not lie in
@@ -21,13 +21,13 @@ void cwi_block_number(cwi_block *block);
  * share      of a box's triangles, about a half: with others of it places are others
  * out        *count blocks; free each, and the array with cwi_free()
  * Returns    CW_ERR_NO_MEMORY */
-cw_status cwi_blocks_cut(const cwi_block *whole, size_t most, double share, cwi_block **out,
-                         size_t *count, cw_error *err);
+CW_NODISCARD cw_status cwi_blocks_cut(const cwi_mesh_block *whole, size_t most, double share,
+                                      cwi_mesh_block **out, size_t *count, cw_error *err);
 
 /* The blocks' own triangles as one block; held vertices of the same name become one, whose
  * quadric is the sum. `seam` is what was held.
  * names    are below this */
-cw_status cwi_blocks_join(const cwi_block *blocks, size_t count, size_t names, cwi_block *whole,
-                          cw_error *err);
+CW_NODISCARD cw_status cwi_blocks_join(const cwi_mesh_block *blocks, size_t count, size_t names,
+                                       cwi_mesh_block *whole, cw_error *err);
 
 #endif

@@ -18,7 +18,7 @@ namespace cw
 class Trends
 {
 public:
-    explicit Trends(const cwi_block &block)
+    explicit Trends(const cwi_mesh_block &block)
         : count(block.attributes), areas(count ? block.vertices : 0),
           all(count * block.vertices)
     {

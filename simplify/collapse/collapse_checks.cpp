@@ -103,7 +103,7 @@ bool Shape::is_kept(const Star &star) const
 
 // --- Contact -------------------------------------------------------------------------------
 
-Contact::Contact(const cwi_block &block, const Surface &surface)
+Contact::Contact(const cwi_mesh_block &block, const Surface &surface)
     : own(block.own), live(block.triangles),
       corners(block.corners, block.corners + 3 * block.triangles), marks(block.triangles)
 {

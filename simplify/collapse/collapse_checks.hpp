@@ -37,7 +37,7 @@ struct Star {
 class Shape
 {
 public:
-    explicit Shape(const cwi_block &block)
+    explicit Shape(const cwi_mesh_block &block)
         : low(Vec(block.low)), high(Vec(block.high)), along(Vec(block.along)), from(block.from),
           to(block.to)
     {
@@ -64,7 +64,7 @@ struct Eight {
 class Contact
 {
 public:
-    Contact(const cwi_block &block, const Surface &surface);
+    Contact(const cwi_mesh_block &block, const Surface &surface);
 
     bool arises(Surface &surface, const Star &star);
     void change(const Surface &surface, const Star &star); // it has become so

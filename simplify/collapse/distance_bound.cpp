@@ -59,7 +59,7 @@ uint32_t Numbers::of(uint32_t vertex, bool *fresh)
     return slots[at].number;
 }
 
-Bound::Bound(const cwi_block &block, const cwi_original *original_, double error_)
+Bound::Bound(const cwi_mesh_block &block, const cwi_original *original_, double error_)
     : original(original_), error(float(error_))
 {
     if (!original || !block.lists)

@@ -32,7 +32,7 @@ private:
 class Bound
 {
 public:
-    Bound(const cwi_block &block, const cwi_original *original, double error);
+    Bound(const cwi_mesh_block &block, const cwi_original *original, double error);
 
     bool is_asked() const
     {

@@ -10,7 +10,7 @@ namespace
 class Sides
 {
 public:
-    explicit Sides(const cwi_block &block)
+    explicit Sides(const cwi_mesh_block &block)
         : corners(block.corners), count(3 * block.own), first(block.vertices + 1), order(count)
     {
         for (size_t s = 0; s < count; s++)
@@ -56,7 +56,7 @@ private:
 };
 
 // One edge for a pair of sides, or for a side alone.
-std::vector<HalfedgeHandle> make_edges(const cwi_block &block, const Sides &sides,
+std::vector<HalfedgeHandle> make_edges(const cwi_mesh_block &block, const Sides &sides,
                                        Surface &surface, std::vector<uint8_t> &cut)
 {
     std::vector<HalfedgeHandle> halfedges(3 * block.own);
@@ -108,7 +108,7 @@ void make_borders(Surface &surface)
 
 } // namespace
 
-std::vector<uint8_t> connect(const cwi_block &block, Surface &surface)
+std::vector<uint8_t> connect(const cwi_mesh_block &block, Surface &surface)
 {
     const Sides sides(block);
     std::vector<uint8_t> cut(block.vertices);

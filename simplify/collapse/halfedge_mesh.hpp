@@ -28,7 +28,7 @@ using FaceHandle = OpenMesh::FaceHandle;
 // Connects the block's own triangles; numbers of vertices and faces are those of the arrays.
 // Sides that do not pair off two by two become borders. Returns the vertices whose triangles
 // are then no single fan, or that lie at such sides: they must not be moved.
-std::vector<uint8_t> connect(const cwi_block &block, Surface &surface);
+std::vector<uint8_t> connect(const cwi_mesh_block &block, Surface &surface);
 
 } // namespace cw
 

@@ -5,10 +5,10 @@
 
 #include "core/base/guard.hpp"
 #include "core/base/memory.h"
+#include "simplify/collapse/attribute_quadric.hpp"
 #include "simplify/collapse/distance_bound.hpp"
 #include "simplify/collapse/edge_heap.hpp"
 #include "simplify/collapse/halfedge_mesh.hpp"
-#include "simplify/collapse/attribute_quadric.hpp"
 
 #include <cmath>
 #include <memory>
@@ -32,7 +32,7 @@ struct alignas(64) Node {
 } // namespace
 
 struct cwi_decimater {
-    cwi_decimater(const cwi_block &block, const cwi_block_desc &desc,
+    cwi_decimater(const cwi_mesh_block &block, const cwi_block_desc &desc,
                   const cwi_original *original)
         : taken(TRIANGLE_BYTES * block.triangles),
           names(block.names, block.names + block.vertices), nodes(block.vertices),
@@ -179,7 +179,7 @@ private:
     }
 
     // Between two vertices held for a seam no border is known; it is when one is released.
-    void add_quadrics(const cwi_block &block)
+    void add_quadrics(const cwi_mesh_block &block)
     {
         if (block.quadrics)
             for (size_t v = 0; v < block.vertices; v++)
@@ -299,8 +299,8 @@ private:
 namespace
 {
 
-cw_status open(const cwi_block *block, const cwi_block_desc *desc, const cwi_original *original,
-               cwi_decimater **out, cw_error *err)
+cw_status open(const cwi_mesh_block *block, const cwi_block_desc *desc,
+               const cwi_original *original, cwi_decimater **out, cw_error *err)
 {
     return guard(err, "OpenMesh", [&] {
         *out = new cwi_decimater(*block, *desc, original);
@@ -344,7 +344,8 @@ template <typename T> T *array(size_t count)
     return memory;
 }
 
-void take_trends(const cwi_decimater &d, cwi_block &out, const std::vector<uint32_t> &numbers)
+void take_trends(const cwi_decimater &d, cwi_mesh_block &out,
+                 const std::vector<uint32_t> &numbers)
 {
     out.attributes = d.trends.size();
     out.areas = array<float>(out.vertices);
@@ -358,7 +359,7 @@ void take_trends(const cwi_decimater &d, cwi_block &out, const std::vector<uint3
 }
 
 // Vertices that triangles are left around, in their old order.
-void take_vertices(const cwi_decimater &d, cwi_block &out, std::vector<uint32_t> &numbers)
+void take_vertices(const cwi_decimater &d, cwi_mesh_block &out, std::vector<uint32_t> &numbers)
 {
     numbers.assign(d.surface.n_vertices(), UINT32_MAX);
     for (const auto v : d.surface.vertices())
@@ -382,7 +383,7 @@ void take_vertices(const cwi_decimater &d, cwi_block &out, std::vector<uint32_t>
         take_trends(d, out, numbers);
 }
 
-void take_triangles(const cwi_decimater &d, cwi_block &out,
+void take_triangles(const cwi_decimater &d, cwi_mesh_block &out,
                     const std::vector<uint32_t> &numbers)
 {
     out.corners = array<uint32_t>(3 * d.live);
@@ -401,9 +402,9 @@ void take_triangles(const cwi_decimater &d, cwi_block &out,
     out.own = out.triangles;
 }
 
-cw_status take(const cwi_decimater *decimater, cwi_block *out, cw_error *err)
+cw_status take(const cwi_decimater *decimater, cwi_mesh_block *out, cw_error *err)
 {
-    *out = cwi_block{};
+    *out = cwi_mesh_block{};
     return guard(err, "OpenMesh", [&] {
         std::vector<uint32_t> numbers;
         take_vertices(*decimater, *out, numbers);

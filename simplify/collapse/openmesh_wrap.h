@@ -77,7 +77,7 @@ typedef struct cwi_original {
     float straight;          /* cosine: how far they are from the mean of those joined */
 } cwi_original;
 
-typedef struct cwi_block {
+typedef struct cwi_mesh_block {
     size_t vertices, triangles;
     size_t own;            /* triangles; those behind them are in the way, and stay */
     float *points;         /* vertices x 3 */
@@ -94,7 +94,7 @@ typedef struct cwi_block {
     uint32_t *lists;       /* own: first point of a list; NULL without an original */
     float low[3], high[3]; /* vertices are moved to low <= x < high only */
     float along[3], from, to; /* and to from <= along . x <= to */
-} cwi_block;
+} cwi_mesh_block;
 
 typedef struct cwi_block_desc {
     double error; /* the distance to keep; 0: none */
@@ -106,7 +106,7 @@ typedef struct cwi_decimater cwi_decimater;
 
 typedef struct cwi_openmesh_functions {
     /* Nothing is borrowed but the original. Free with close. */
-    cw_status (*open)(const cwi_block *block, const cwi_block_desc *desc,
+    cw_status (*open)(const cwi_mesh_block *block, const cwi_block_desc *desc,
                       const cwi_original *original, cwi_decimater **out, cw_error *err);
     /* Collapses edges in order of their cost, while it is at most `cost`, and there are more
      * than `least` triangles. */
@@ -118,7 +118,7 @@ typedef struct cwi_openmesh_functions {
     /* Vertices of the block that are no single fan, or at an edge of more than two. */
     size_t (*cut)(const cwi_decimater *decimater);
     /* What is left, in arrays from cwi_alloc_array(): own triangles only. */
-    cw_status (*take)(const cwi_decimater *decimater, cwi_block *out, cw_error *err);
+    cw_status (*take)(const cwi_decimater *decimater, cwi_mesh_block *out, cw_error *err);
     void (*close)(cwi_decimater *decimater);
 } cwi_openmesh_functions;
 

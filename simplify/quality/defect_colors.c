@@ -2,8 +2,8 @@
 #include <cubewright/check.h>
 
 #include "core/base/memory.h"
-#include "core/mesh/mesh.h"
 #include "core/base/status.h"
+#include "core/mesh/mesh.h"
 
 #include <math.h>
 #include <string.h>

@@ -6,12 +6,12 @@
  * closes it without cases of its own. */
 #include <cubewright/distance.h>
 
-#include "core/geometry/affine.h"
 #include "core/base/status.h"
+#include "core/geometry/affine.h"
 #include "core/geometry/vec3.h"
 #include "core/volume/volume.h"
-#include "simplify/quality/trilinear_patch.h"
 #include "simplify/quality/surface_sampling.h"
+#include "simplify/quality/trilinear_patch.h"
 
 #include <math.h>
 #include <stdlib.h>

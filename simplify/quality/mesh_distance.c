@@ -8,15 +8,15 @@
  * is divided into four. */
 #include <cubewright/distance.h>
 
-#include "core/base/parallel.h"
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
-#include "core/geometry/vec3.h"
 #include "core/geometry/bvh.h"
-#include "core/geometry/triangle_cover.h"
 #include "core/geometry/point_triangle.h"
-#include "simplify/quality/surface_sampling.h"
+#include "core/geometry/triangle_cover.h"
+#include "core/geometry/vec3.h"
 #include "simplify/quality/mesh_within.h"
+#include "simplify/quality/surface_sampling.h"
 
 #include <math.h>
 #include <string.h>
@@ -173,8 +173,8 @@ static double bound_by_two(const search *s, const corner c[3], const choice *h, 
     return square <= limit * limit ? sqrt(square) : INFINITY;
 }
 
-/* The least of the bounds by one or two of the chosen facets; what is below the limit will do.
- */
+/* The least of the bounds by one or two of the chosen facets; what is below the limit
+ * will do. */
 static double bound_by(const search *s, const corner c[3], const choice *h, double limit)
 {
     double bound = INFINITY;
@@ -398,8 +398,8 @@ static cw_status check_desc(const cw_mesh_distance_desc *d, cw_error *err)
     return CW_OK;
 }
 
-/* Means first: the largest distance among their points is where the search for bounds begins.
- */
+/* Means first: the largest distance among their points is where the search for
+ * bounds begins. */
 static cw_status measure_mesh(const cw_mesh *mesh, const reference *r,
                               const cw_mesh_distance_desc *d, cw_distance *out,
                               float *per_vertex, cw_error *err)

@@ -10,8 +10,9 @@
  * limits           triangle_count: a limit for each, in place of limit_mm and at most that;
  *                  or NULL
  * mesh, reference  with triangles; every vertex of the mesh is in one */
-CW_API cw_status cwi_mesh_within(const cw_mesh *mesh, const cw_mesh *reference, double limit_mm,
-                                 const double *limits, int threads, const cw_progress *progress,
-                                 uint8_t *beyond, cw_error *err);
+CW_NODISCARD cw_status cwi_mesh_within(const cw_mesh *mesh, const cw_mesh *reference,
+                                       double limit_mm, const double *limits, int threads,
+                                       const cw_progress *progress, uint8_t *beyond,
+                                       cw_error *err);
 
 #endif

@@ -1,8 +1,8 @@
 /* Shells that face the wrong way, turned round. */
 #include <cubewright/quality.h>
 
-#include "core/geometry/union_find.h"
 #include "core/base/status.h"
+#include "core/geometry/union_find.h"
 
 static void turn_triangle(uint32_t *corner)
 {

@@ -2,8 +2,8 @@
  * decide. */
 #include <cubewright/quality.h>
 
-#include "core/base/parallel.h"
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/geometry/bvh.h"
 #include "core/geometry/triangle_intersect.h"

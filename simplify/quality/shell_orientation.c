@@ -3,9 +3,9 @@
 #include "simplify/quality/shell_orientation.h"
 
 #include "core/base/parallel.h"
-#include "core/geometry/union_find.h"
 #include "core/geometry/bvh.h"
 #include "core/geometry/exact_predicates.h"
+#include "core/geometry/union_find.h"
 
 #include <math.h>
 #include <string.h>
@@ -162,13 +162,14 @@ bool cwi_measure_shells(const cwi_welded *welded, const cwi_shells *shells,
     w.closed = cwi_alloc_array(vertices, sizeof *w.closed);
     w.around = cwi_alloc_zeroed(vertices, sizeof *w.around);
     w.depth = cwi_alloc_zeroed(vertices, sizeof *w.depth);
-    const bool ok = w.closed && w.around && w.depth && cwi_welded_sort(welded, &w.tree);
+    bool ok = w.closed && w.around && w.depth && cwi_welded_sort(welded, &w.tree);
     if (ok) {
         list_closed(&w);
-        cwi_each_layer(w.count, 1 << 12, desc->threads, &desc->progress, "checking",
-                       wind_around, &w, NULL);
-        judge(&w, desc, q);
+        ok = cwi_each_layer(w.count, 1 << 12, desc->threads, &desc->progress, "checking",
+                            wind_around, &w, NULL) == CW_OK;
     }
+    if (ok)
+        judge(&w, desc, q);
     cwi_boxes_free(&w.tree);
     cwi_free(w.closed);
     cwi_free(w.around);

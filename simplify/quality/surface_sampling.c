@@ -5,8 +5,8 @@
  * and middles together are the lattice of order 2n. */
 #include "simplify/quality/surface_sampling.h"
 
-#include "core/base/parallel.h"
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
 

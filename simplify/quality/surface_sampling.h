@@ -31,8 +31,8 @@ typedef struct cwi_sampling {
 
 /* Measures; bound_mm is left 0. per_vertex may be NULL.
  * Returns CW_ERR_NO_MEMORY, CW_ERR_CANCELLED. */
-cw_status cwi_sample_mesh(const cwi_sampling *sampling, cw_distance *out, float *per_vertex,
-                          cw_error *err);
+CW_NODISCARD cw_status cwi_sample_mesh(const cwi_sampling *sampling, cw_distance *out,
+                                       float *per_vertex, cw_error *err);
 
 /* The three corners of a triangle, relative to the mesh's origin. */
 static inline void cwi_corners(const cw_mesh *mesh, size_t triangle, double p[3][3])

@@ -1,11 +1,11 @@
 /* The cheap checks: everything that one pass over sorted edges can say of a mesh. */
 #include <cubewright/quality.h>
 
-#include "core/geometry/union_find.h"
 #include "core/base/status.h"
 #include "core/base/stop.h"
-#include "simplify/quality/triangle_shapes.h"
+#include "core/geometry/union_find.h"
 #include "simplify/quality/shell_orientation.h"
+#include "simplify/quality/triangle_shapes.h"
 #include "simplify/quality/welded_mesh.h"
 
 #include <stdlib.h>

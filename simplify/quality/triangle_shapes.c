@@ -1,7 +1,7 @@
 #include "simplify/quality/triangle_shapes.h"
 
-#include "core/base/parallel.h"
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/geometry/vec3.h"
 #include "simplify/quality/surface_sampling.h"
 
@@ -176,11 +176,12 @@ static void add_part(const part *p, cw_quality *q)
     add_bins(s->aspects, p->shapes.aspects, CW_ASPECT_BINS);
 }
 
-static void share_out(work *w, size_t chunks, const cw_quality_desc *desc,
+/* False when the call was cancelled. */
+static bool share_out(work *w, size_t chunks, const cw_quality_desc *desc,
                       void (*run)(void *, size_t))
 {
-    cwi_each_layer(chunks, CHUNK * 64, desc->threads, &desc->progress, "checking", run, w,
-                   NULL);
+    return cwi_each_layer(chunks, CHUNK * 64, desc->threads, &desc->progress, "checking", run,
+                          w, NULL) == CW_OK;
 }
 
 bool cwi_measure_shapes(const cwi_welded *welded, const cw_quality_desc *desc, cw_quality *q)
@@ -190,7 +191,7 @@ bool cwi_measure_shapes(const cwi_welded *welded, const cw_quality_desc *desc, c
     w.parts = cwi_alloc_zeroed(chunks, sizeof *w.parts);
     if (!w.parts)
         return false;
-    share_out(&w, chunks, desc, measure_chunk);
+    bool done = share_out(&w, chunks, desc, measure_chunk);
     cw_shapes *s = &q->shapes;
     s->min_angle_deg = 180;
     s->min_edge_mm = INFINITY;
@@ -200,11 +201,11 @@ bool cwi_measure_shapes(const cwi_welded *welded, const cw_quality_desc *desc, c
     w.bins_per_octave = s->max_edge_mm > s->min_edge_mm
                             ? CW_LENGTH_BINS / log2(s->max_edge_mm / s->min_edge_mm)
                             : 0;
-    share_out(&w, chunks, desc, count_lengths);
+    done = done && share_out(&w, chunks, desc, count_lengths);
     for (size_t k = 0; k < chunks; k++)
         add_bins(s->lengths, w.parts[k].shapes.lengths, CW_LENGTH_BINS);
     if (q->degenerate == count)
         s->min_angle_deg = s->min_edge_mm = 0;
     cwi_free(w.parts);
-    return true;
+    return done;
 }

@@ -248,8 +248,8 @@ static double radius_squared(const cwi_metric *m, const double half[3])
     return square;
 }
 
-/* Whether gram + pull * (second derivatives) is positive definite, the mixed ones being these.
- */
+/* Whether gram + pull * (second derivatives) is positive definite, the mixed ones
+ * being these. */
 static bool is_convex(const cwi_metric *m, double pull, double xy, double xz, double yz)
 {
     const double a = m->gram[0][0], b = m->gram[1][1], c = m->gram[2][2];

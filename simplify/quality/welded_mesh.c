@@ -2,9 +2,9 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
-#include "core/mesh/weld.h"
 #include "core/geometry/bvh.h"
 #include "core/geometry/triangle_intersect.h"
+#include "core/mesh/weld.h"
 
 /* The points by which vertices are told apart. */
 static bool choose_points(cwi_welded *w, cw_weld how)

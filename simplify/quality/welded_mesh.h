@@ -16,7 +16,8 @@ typedef struct cwi_welded {
 
 /* Checks the mesh first. Free with cwi_welded_free(), also after a failure.
  * Returns as cw_mesh_check(); CW_ERR_LIMIT beyond 2^32 / 3 triangles; CW_ERR_NO_MEMORY. */
-cw_status cwi_welded_init(cwi_welded *welded, const cw_mesh *mesh, cw_weld how, cw_error *err);
+CW_NODISCARD cw_status cwi_welded_init(cwi_welded *welded, const cw_mesh *mesh, cw_weld how,
+                                       cw_error *err);
 void cwi_welded_free(cwi_welded *welded);
 
 /* Sorts the triangles by place: the tree's order holds triangles. Those without area stay out.

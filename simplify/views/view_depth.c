@@ -1,7 +1,7 @@
 /* What hides what: the nearest surface behind each pixel of a view. */
 #include "core/base/memory.h"
-#include "core/mesh/mesh.h"
 #include "core/base/status.h"
+#include "core/mesh/mesh.h"
 #include "simplify/views/view_tolerance.h"
 
 #include <math.h>
@@ -69,7 +69,7 @@ static void fill(cw_simplify_view *view, const spot s[3])
 
 cw_status cw_simplify_view_draw(cw_simplify_view *view, const cw_mesh *mesh, cw_error *err)
 {
-    cwi_view v;
+    cwi_view_tolerance v;
     cw_status st = cwi_view_init(&v, view, 1, err);
     if (st == CW_OK)
         st = begin(view, err);

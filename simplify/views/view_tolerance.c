@@ -1,9 +1,9 @@
 #include "simplify/views/view_tolerance.h"
 
 #include "core/base/memory.h"
-#include "core/mesh/mesh.h"
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
+#include "core/mesh/mesh.h"
 
 #include <math.h>
 
@@ -16,7 +16,7 @@ static const double NEAREST = 1e-3;
 /* A way of t from a point in the picture, at a distance D = z / cos from the eye, moves it by
  * no more than t k / ((z - t) cos) pixels, where k pixels are as wide as far away; and cos is
  * least in the corner of the picture. So t = z a / (1 + a) with a = pixels cos / k. */
-static void see_perspective(cwi_view *v, const cw_camera *c, const double size[2],
+static void see_perspective(cwi_view_tolerance *v, const cw_camera *c, const double size[2],
                             double pixels)
 {
     const double open = tan(c->fov_deg * acos(-1) / 360), k = size[1] / (2 * open);
@@ -31,7 +31,8 @@ static void see_perspective(cwi_view *v, const cw_camera *c, const double size[2
     v->nearest = NEAREST * sqrt(cwi_dot(away, away));
 }
 
-static void see_parallel(cwi_view *v, const cw_camera *c, const double size[2], double pixels)
+static void see_parallel(cwi_view_tolerance *v, const cw_camera *c, const double size[2],
+                         double pixels)
 {
     const double pixel = c->height_mm / size[1];
     for (int n = 0; n < 2; n++)
@@ -41,12 +42,13 @@ static void see_parallel(cwi_view *v, const cw_camera *c, const double size[2], 
     v->nearest = -INFINITY;
 }
 
-cw_status cwi_view_init(cwi_view *v, const cw_simplify_view *from, double pixels, cw_error *err)
+cw_status cwi_view_init(cwi_view_tolerance *v, const cw_simplify_view *from, double pixels,
+                        cw_error *err)
 {
     const cw_camera *c = &from->camera;
     const double size[2] = {(double)(from->width ? from->width : CWI_VIEW_WIDTH),
                             (double)(from->height ? from->height : CWI_VIEW_HEIGHT)};
-    *v = (cwi_view){
+    *v = (cwi_view_tolerance){
         .size = {size[0], size[1]}, .depth = from->depth, .unit = 1, .pixels = pixels};
     if (!(pixels > 0) || !isfinite(pixels))
         return cw_fail(err, CW_ERR_ARGUMENT, "pixel_error is %g; it must be above 0", pixels);
@@ -66,19 +68,19 @@ typedef struct place {
     double across[2], depth;
 } place;
 
-static place place_of(const cwi_view *v, const double p[3])
+static place place_of(const cwi_view_tolerance *v, const double p[3])
 {
     const double way[3] = {p[0] - v->eye[0], p[1] - v->eye[1], p[2] - v->eye[2]};
     return (place){{cwi_dot(way, v->axes[0]), cwi_dot(way, v->axes[1])},
                    cwi_dot(way, v->axes[2])};
 }
 
-static double pixel_at(const cwi_view *v, double depth)
+static double pixel_at(const cwi_view_tolerance *v, double depth)
 {
     return v->rate > 0 ? v->pixel * depth : v->pixel;
 }
 
-bool cwi_view_project(const cwi_view *v, const double point[3], double *x, double *y,
+bool cwi_view_project(const cwi_view_tolerance *v, const double point[3], double *x, double *y,
                       double *depth)
 {
     const place p = place_of(v, point);
@@ -90,7 +92,7 @@ bool cwi_view_project(const cwi_view *v, const double point[3], double *x, doubl
 }
 
 /* By how much a place is beyond one of the five planes that a view sees up to. */
-static double beyond(const cwi_view *v, const place *p, int plane)
+static double beyond(const cwi_view_tolerance *v, const place *p, int plane)
 {
     if (plane == 4)
         return v->nearest > 0 ? -p->depth : -INFINITY;
@@ -100,7 +102,7 @@ static double beyond(const cwi_view *v, const place *p, int plane)
 }
 
 /* What has all of its corners beyond one plane is not seen. */
-static bool is_seen(const cwi_view *v, const place *p, int corners, double margin)
+static bool is_seen(const cwi_view_tolerance *v, const place *p, int corners, double margin)
 {
     for (int plane = 0; plane < 5; plane++) {
         double least = INFINITY;
@@ -114,7 +116,7 @@ static bool is_seen(const cwi_view *v, const place *p, int corners, double margi
 
 /* What a surface is in front of at all pixels around it. Each of the two may move by `most`,
  * and as far as that is in the picture the other one's edge may be away. */
-static bool is_hidden(const cwi_view *v, const place *p, int corners, double most,
+static bool is_hidden(const cwi_view_tolerance *v, const place *p, int corners, double most,
                       double margin)
 {
     double nearest = INFINITY, low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};
@@ -140,7 +142,8 @@ static bool is_hidden(const cwi_view *v, const place *p, int corners, double mos
     return true;
 }
 
-static double limit(const cwi_view *v, const place *p, int corners, double most, double margin)
+static double limit(const cwi_view_tolerance *v, const place *p, int corners, double most,
+                    double margin)
 {
     double least = INFINITY;
     if (!is_seen(v, p, corners, margin) || is_hidden(v, p, corners, most, margin))
@@ -186,7 +189,7 @@ void cwi_views_free(cwi_views *views)
 void cwi_views_place(cwi_views *views, const double origin[3], double scale)
 {
     for (size_t i = 0; i < views->count; i++) {
-        cwi_view *v = &views->view[i];
+        cwi_view_tolerance *v = &views->view[i];
         for (int n = 0; n < 3; n++)
             v->eye[n] = scale * (v->eye[n] - origin[n]);
         for (int n = 0; n < 2; n++)
@@ -203,7 +206,7 @@ double cwi_views_limit(const cwi_views *views, const float *const corners[3], do
 {
     double least = INFINITY;
     for (size_t i = 0; i < views->count; i++) {
-        const cwi_view *v = &views->view[i];
+        const cwi_view_tolerance *v = &views->view[i];
         place p[3];
         for (int c = 0; c < 3; c++)
             p[c] = place_of(v, (const double[3]){(double)corners[c][0], (double)corners[c][1],
@@ -216,7 +219,7 @@ double cwi_views_limit(const cwi_views *views, const float *const corners[3], do
 cw_status cw_simplify_view_sees(const cw_simplify_view *view, double pixels,
                                 const double *points, size_t count, bool *seen, cw_error *err)
 {
-    cwi_view v;
+    cwi_view_tolerance v;
     place p[CWI_VIEW_HULL];
     cw_status st = cwi_view_init(&v, view, pixels, err);
     if (st == CW_OK && (count < 1 || count > CWI_VIEW_HULL))
@@ -274,7 +277,7 @@ cw_status cw_simplify_cull(cw_mesh *mesh, const cw_simplify_view *views, size_t 
 cw_status cw_simplify_view_error(const cw_simplify_view *view, double pixels,
                                  const double point[3], double *error_mm, cw_error *err)
 {
-    cwi_view v;
+    cwi_view_tolerance v;
     cw_status st = cwi_view_init(&v, view, pixels, err);
     *error_mm = 0;
     if (st != CW_OK)

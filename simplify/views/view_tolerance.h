@@ -7,7 +7,7 @@
 /* A camera in the frame of the points. At a depth z it sees what is not farther from its axis,
  * along its picture's sides, than half + slope z, and allows a distance of even + rate z:
  * linear in space, so that what it allows on a triangle is least in a corner. */
-typedef struct cwi_view {
+typedef struct cwi_view_tolerance {
     double eye[3], axes[3][3]; /* right, up, forward */
     double half[2], slope[2];
     double even, rate;
@@ -15,27 +15,28 @@ typedef struct cwi_view {
     const float *depth;    /* of the nearest surface, times unit; NULL: nothing is hidden */
     double unit, pixels;
     double nearest; /* less depth counts as this much; -infinity without a perspective */
-} cwi_view;
+} cwi_view_tolerance;
 
 typedef struct cwi_views {
-    cwi_view *view;
+    cwi_view_tolerance *view;
     size_t count;
 } cwi_views;
 
 enum { CWI_VIEW_WIDTH = 1280, CWI_VIEW_HEIGHT = 720, CWI_VIEW_HULL = 8 };
 
 /* In the world's frame. Returns CW_ERR_ARGUMENT for a camera or pixels that are none. */
-cw_status cwi_view_init(cwi_view *view, const cw_simplify_view *from, double pixels,
-                        cw_error *err);
+CW_NODISCARD cw_status cwi_view_init(cwi_view_tolerance *view, const cw_simplify_view *from,
+                                     double pixels, cw_error *err);
 
 /* Where a picture shows a point, in pixels, y down; false for what is not before the eye. */
-bool cwi_view_project(const cwi_view *view, const double point[3], double *x, double *y,
-                      double *depth);
+bool cwi_view_project(const cwi_view_tolerance *view, const double point[3], double *x,
+                      double *y, double *depth);
 
 /* Free with cwi_views_free(), also after an error. In the world's frame.
  * Returns  CW_ERR_ARGUMENT for a camera or a number of pixels that is none, and views without
  *          an error_mm; CW_ERR_NO_MEMORY */
-cw_status cwi_views_init(cwi_views *views, const cw_simplify_desc *desc, cw_error *err);
+CW_NODISCARD cw_status cwi_views_init(cwi_views *views, const cw_simplify_desc *desc,
+                                      cw_error *err);
 void cwi_views_free(cwi_views *views);
 
 /* Into a frame around an origin, with a unit of 1 / scale. */

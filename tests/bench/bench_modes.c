@@ -5,8 +5,8 @@
  * bench_modes [--size 64] [--picture 256] [--frames 3] [SCAN PRESET]...
  *
  * Fields with a gentle and a narrow transfer function, then the scans. Errors are RMSE and
- * maximum in 1/255, and CIEDE2000. Prints a JSON line a picture on stdout, a table on stderr.
- */
+ * maximum in 1/255, and CIEDE2000. Prints a JSON line a picture on stdout, a table
+ * on stderr. */
 #include "bench.h"
 #include "support/pictures.h"
 

@@ -103,8 +103,8 @@ static const struct {
 
 enum { INPUTS = sizeof inputs / sizeof *inputs };
 
-/* ---------------------------------------------------------------- processes and their results
- */
+/* ---------------------------------------------------------------- processes and
+ * their results */
 
 double bench_now_s(void)
 {

@@ -1,6 +1,6 @@
 /* Holds DICOM segmentations of other people's test suites, which are not in the tree, against
- * the NRRD files beside them: segments FOLDER. 77 when there is no such folder, or no reader.
- */
+ * the NRRD files beside them: segments FOLDER. 77 when there is no such folder, or
+ * no reader. */
 #include <cubewright/formats.h>
 
 #include <math.h>

@@ -59,8 +59,8 @@ void test_file_write(const char *path, const void *bytes, size_t size);
 /* How many entries the test's folder holds: for "nothing was left behind". */
 size_t test_folder_entries(void);
 
-/* A unit tetrahedron and a unit cube (12 triangles, shared vertices, normals), outward wound.
- */
+/* A unit tetrahedron and a unit cube (12 triangles, shared vertices, normals),
+ * outward wound. */
 void test_make_tetrahedron(cw_mesh *mesh);
 void test_make_cube(cw_mesh *mesh);
 

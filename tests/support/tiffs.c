@@ -127,8 +127,7 @@ static void put_pixels(test_tiff *t, const test_page *p, blocks *b)
                           column, width, plane);
 }
 
-/* --- directories ---------------------------------------------------------------------------
- */
+/* --- directories -------------------------------------------------------------------------- */
 
 enum { ASCII = 2, SHORT = 3, LONG = 4, LONG8 = 16, MOST_TAGS = 20 + TEST_TIFF_MOST_TAGS };
 

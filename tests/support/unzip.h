@@ -1,5 +1,5 @@
-/* Entries of zip archives, found by a reader that trusts them: for tests of what writes them.
- */
+/* Entries of zip archives, found by a reader that trusts them: for tests of what
+ * writes them. */
 #ifndef TESTS_UNZIP_H
 #define TESTS_UNZIP_H
 

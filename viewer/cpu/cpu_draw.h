@@ -2,8 +2,8 @@
 #ifndef VIEWER_CPU_CPU_DRAW_H
 #define VIEWER_CPU_CPU_DRAW_H
 
-#include "viewer/scene/frame_setup.h"
 #include "viewer/scene/block_ranges.h"
+#include "viewer/scene/frame_setup.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -15,13 +15,13 @@ typedef struct cwi_cpu {
     cwi_ranges ranges; /* of key, when it has blocks */
 } cwi_cpu;
 
-CW_API bool cwi_cpu_draws(cw_mode mode);
+bool cwi_cpu_draws(cw_mode mode);
 
 /* Draws every sample of a frame into a zeroed picture.
  * Returns CW_ERR_UNSUPPORTED for a mode, or a way to draw meshes, that GL alone has */
-CW_API cw_status cwi_cpu_draw(cwi_cpu *cpu, const cwi_frame *frame, cw_picture *picture,
-                              cw_error *err);
-CW_API void cwi_cpu_forget(cwi_cpu *cpu);
+CW_NODISCARD cw_status cwi_cpu_draw(cwi_cpu *cpu, const cwi_frame *frame, cw_picture *picture,
+                                    cw_error *err);
+void cwi_cpu_forget(cwi_cpu *cpu);
 
 #ifdef __cplusplus
 }

@@ -3,7 +3,7 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "viewer/scene/mesh_tint.h"
-#include "viewer/cpu/reference_mesh.h"
+#include <cubewright/render.h>
 
 #include <math.h>
 #include <string.h>
@@ -104,17 +104,17 @@ static cw_status draw(const cwi_frame *f, const cw_mesh *mesh, double *depth_mm,
                       cw_picture *picture, cw_error *err)
 {
     cw_image image;
-    cwi_render_desc d = {.camera = f->scene.camera,
-                         .width = f->scene.width,
-                         .height = f->scene.height,
-                         .samples = 1,
-                         .background = {{255, 255, 255, 0}, {255, 255, 255, 0}},
-                         .depth_mm = depth_mm,
-                         .threads = f->scene.threads,
-                         .progress = f->scene.progress};
+    cw_render_mesh_desc d = {.camera = f->scene.camera,
+                             .width = f->scene.width,
+                             .height = f->scene.height,
+                             .samples = 1,
+                             .background = {{255, 255, 255, 0}, {255, 255, 255, 0}},
+                             .depth_mm = depth_mm,
+                             .threads = f->scene.threads,
+                             .progress = f->scene.progress};
     for (int c = 0; c < 4; c++)
         d.color[c] = (uint8_t)lroundf(255 * f->scene.color[c]);
-    cw_status st = cwi_render_mesh(mesh, &d, &image, err);
+    cw_status st = cw_render_mesh(mesh, &d, &image, err);
     for (size_t p = 0; st == CW_OK && p < image.width * image.height; p++)
         for (int c = 0; c < 4 && image.pixels[4 * p + 3] > 0; c++)
             picture->pixels[4 * p + (size_t)c] = (float)image.pixels[4 * p + (size_t)c] / 255;

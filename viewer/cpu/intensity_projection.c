@@ -81,8 +81,8 @@ static void end_stretch(tally *t)
     t->is_under_way = false;
 }
 
-/* Neighbouring cells agree on the value between them only but for rounding, which is no fall.
- */
+/* Neighbouring cells agree on the value between them only but for rounding, which is
+ * no fall. */
 static void add_local(const cwi_walk *w, const double v[8], tally *t)
 {
     double c[4], values[4], rounding = 0;

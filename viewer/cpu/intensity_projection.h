@@ -2,8 +2,8 @@
 #ifndef VIEWER_CPU_INTENSITY_PROJECTION_H
 #define VIEWER_CPU_INTENSITY_PROJECTION_H
 
-#include "viewer/scene/frame_setup.h"
 #include "viewer/scene/block_ranges.h"
+#include "viewer/scene/frame_setup.h"
 
 #ifdef __cplusplus
 extern "C" {
@@ -12,13 +12,14 @@ extern "C" {
 /* Draws CW_MODE_MIP, CW_MODE_MINIP, CW_MODE_AVERAGE and CW_MODE_LOCAL_MIP, as
  * cwi_reference_draw(). ranges: of the frame's volume, to pass over blocks; NULL: every cell is
  * looked at */
-CW_API cw_status cwi_intensity_draw(const cwi_frame *frame, const cwi_ranges *ranges,
-                                    const double *depths, cw_picture *picture, cw_error *err);
+CW_NODISCARD cw_status cwi_intensity_draw(const cwi_frame *frame, const cwi_ranges *ranges,
+                                          const double *depths, cw_picture *picture,
+                                          cw_error *err);
 
 /* The value of the frame's mode along the ray through a point of the picture; NaN where it
  * meets none. */
-CW_API double cwi_intensity_ray(const cwi_frame *frame, const cwi_ranges *ranges, double x,
-                                double y, double depth);
+double cwi_intensity_ray(const cwi_frame *frame, const cwi_ranges *ranges, double x, double y,
+                         double depth);
 
 #ifdef __cplusplus
 }

@@ -3,9 +3,10 @@
 #ifndef VIEWER_CPU_RAY_TRAVERSAL_H
 #define VIEWER_CPU_RAY_TRAVERSAL_H
 
-#include "viewer/scene/frame_setup.h"
 #include "viewer/scene/block_ranges.h"
+#include "viewer/scene/frame_setup.h"
 
+#include "core/geometry/cubic.h"
 #include "core/geometry/vec3.h"
 
 #include <math.h>
@@ -27,8 +28,7 @@ typedef struct cwi_ray {
 
 /* The ray through a point of the picture, as cwi_frame_ray(); nothing of it is drawn beyond a
  * depth (INFINITY: all is). */
-CW_API void cwi_ray_make(const cwi_frame *frame, double x, double y, double depth,
-                         cwi_ray *ray);
+void cwi_ray_make(const cwi_frame *frame, double x, double y, double depth, cwi_ray *ray);
 
 /* A walk from cell to cell. An axis of one voxel has one cell, from -0.5 to 0.5. */
 typedef struct cwi_walk {
@@ -42,8 +42,7 @@ typedef struct cwi_walk {
     int leave;       /* the axis it is left along */
 } cwi_walk;
 
-CW_API void cwi_walk_start(cwi_walk *walk, const cwi_frame *frame, const cwi_ray *ray,
-                           int part);
+void cwi_walk_start(cwi_walk *walk, const cwi_frame *frame, const cwi_ray *ray, int part);
 
 /* Where the ray leaves the cell along an axis. Planes are found from their number, not from the
  * plane before: nothing adds up. */
@@ -96,31 +95,19 @@ static inline bool cwi_walk_changes_block(const cwi_walk *w)
 
 /* Out of blocks of edge cells a side that are empty: that of the next cell, and those around it
  * less than distance blocks away along every axis. */
-CW_API void cwi_walk_leap(cwi_walk *walk, int edge, int distance);
+void cwi_walk_leap(cwi_walk *walk, int edge, int distance);
 
 /* The values at the cell's corners, bit a of their number along axis a. False when one of them
  * has none: then the cell is empty. */
-CW_API bool cwi_walk_values(const cwi_walk *walk, double v[8]);
+bool cwi_walk_values(const cwi_walk *walk, double v[8]);
 
-/* The field on the walk's part of the ray: c[0] + c[1] x + c[2] x^2 + c[3] x^3, x from 0 to 1.
- */
-CW_API void cwi_walk_cubic(const cwi_walk *walk, const double v[8], double c[4]);
+/* The field on the walk's part of the ray: c[0] + c[1] x + c[2] x^2 + c[3] x^3, x from 0
+ * to 1. */
+void cwi_walk_cubic(const cwi_walk *walk, const double v[8], double c[4]);
 
 /* The gradient at the cell's corners, per voxel: central differences, one-sided at the border;
  * 0 where a neighbour has no value and along an axis of one voxel. */
-CW_API void cwi_walk_gradients(const cwi_walk *walk, double g[3][8]);
-
-static inline double cwi_cubic_at(const double c[4], double x)
-{
-    return ((c[3] * x + c[2]) * x + c[1]) * x + c[0];
-}
-
-/* Where in 0 < x < 1 a cubic turns, rising; how many. */
-CW_API int cwi_cubic_turns(const double c[4], double x[2]);
-
-/* Where a cubic has a value between two places between which it does not turn, and has lower
- * and higher values. */
-CW_API double cwi_cubic_meets(const double c[4], double from, double to, double value);
+void cwi_walk_gradients(const cwi_walk *walk, double g[3][8]);
 
 #ifdef __cplusplus
 }

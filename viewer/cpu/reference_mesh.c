@@ -5,8 +5,8 @@
  * Coordinates are rounded to 1/256 of a sample, as GPUs do. Within a range of 2^17 samples the
  * edge functions of such points are exact in double, and with the top-left rule every sample of
  * a surface belongs to exactly one of its triangles: no cracks, no double hits. */
-#include "viewer/cpu/reference_mesh.h"
 #include "viewer/scene/srgb.h"
+#include <cubewright/render.h>
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
@@ -40,7 +40,7 @@ static const size_t NO_TRIANGLE = SIZE_MAX;
 
 typedef struct scene {
     const cw_mesh *mesh;
-    const cwi_render_desc *d;
+    const cw_render_mesh_desc *d;
     double right[3], up[3], forward[3];
     double fill_light[3]; /* unit, towards the light */
     bool perspective;
@@ -442,7 +442,7 @@ static cw_status draw_bands(const scene *s, hit *hits, size_t band_hits, cw_imag
     return st == CW_OK ? cwi_progress(progress, "drawing", 1, err) : st;
 }
 
-static cw_status check_sizes(const cwi_render_desc *d, cw_error *err)
+static cw_status check_sizes(const cw_render_mesh_desc *d, cw_error *err)
 {
     if (d->width > MAX_SIZE || d->height > MAX_SIZE)
         return cw_fail(err, CW_ERR_ARGUMENT, "a picture of %zu x %zu; the most is %d a side",
@@ -466,12 +466,12 @@ static bool all_zero(const void *bytes, size_t size)
     return true;
 }
 
-static cw_status resolve_desc(const cw_mesh *mesh, const cwi_render_desc *desc,
-                              cwi_render_desc *d, cw_error *err)
+static cw_status resolve_desc(const cw_mesh *mesh, const cw_render_mesh_desc *desc,
+                              cw_render_mesh_desc *d, cw_error *err)
 {
     static const uint8_t bone[4] = {240, 229, 208, 255};
     static const uint8_t light[2][4] = {{248, 250, 252, 255}, {205, 213, 222, 255}};
-    *d = desc ? *desc : (cwi_render_desc){0};
+    *d = desc ? *desc : (cw_render_mesh_desc){0};
     d->width = d->width ? d->width : 1280;
     d->height = d->height ? d->height : 720;
     d->samples = d->samples ? d->samples : 2;
@@ -489,7 +489,7 @@ static cw_status resolve_desc(const cw_mesh *mesh, const cwi_render_desc *desc,
     return cw_camera_fit(&fit, &d->camera, err);
 }
 
-static cw_status set_up_scene(const cw_mesh *mesh, const cwi_render_desc *d, scene *s,
+static cw_status set_up_scene(const cw_mesh *mesh, const cw_render_mesh_desc *d, scene *s,
                               cw_error *err)
 {
     const cw_camera *camera = &d->camera;
@@ -531,10 +531,10 @@ static cw_status draw_scene(scene *s, cw_image *image, cw_error *err)
     return st;
 }
 
-cw_status cwi_render_mesh(const cw_mesh *mesh, const cwi_render_desc *desc, cw_image *image,
-                          cw_error *err)
+cw_status cw_render_mesh(const cw_mesh *mesh, const cw_render_mesh_desc *desc, cw_image *image,
+                         cw_error *err)
 {
-    cwi_render_desc d;
+    cw_render_mesh_desc d;
     scene s = {0};
     *image = (cw_image){0};
     cw_status st = cw_mesh_check(mesh, err);

@@ -6,11 +6,11 @@
  * differs by too much from its halves is replaced by them, and so on. */
 #include "viewer/cpu/reference_volume.h"
 
-#include "viewer/scene/lighting.h"
 #include "viewer/cpu/ray_traversal.h"
+#include "viewer/scene/lighting.h"
 
-#include "core/base/parallel.h"
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
 
 #include <math.h>
@@ -198,7 +198,7 @@ static bool is_visible(const cwi_knots *k, const double v[8])
 static void add_cell(medium *m, const cwi_walk *w, const cwi_ray *ray, sum *s)
 {
     const cwi_knots *knots = &m->reference->knots;
-    cwi_piece pieces[CWI_PIECES];
+    cwi_transfer_segment pieces[CWI_PIECES];
     double v[8];
     bool has_gradients = !m->reference->has_gradients;
     if (!cwi_walk_values(w, v) || !is_visible(knots, v))

@@ -25,19 +25,19 @@ typedef struct cwi_reference {
     bool has_gradients;  /* they are needed */
 } cwi_reference;
 
-CW_API void cwi_reference_make(const cwi_frame *frame, cwi_reference *reference);
+void cwi_reference_make(const cwi_frame *frame, cwi_reference *reference);
 
 /* The ray through a point of the picture up to a depth (INFINITY: all of it): colour,
  * premultiplied, and opacity. Returns the estimate of their largest error. */
-CW_API double cwi_reference_ray(const cwi_reference *reference, double x, double y,
-                                double depth, double out[4]);
+double cwi_reference_ray(const cwi_reference *reference, double x, double y, double depth,
+                         double out[4]);
 
 /* Draws a frame.
  * depths    of the mesh in front of which everything is, a sample each; NULL: there is none
  * estimate  the largest error of a sample, but for rounding to floats; may be NULL
  * Returns   CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
-CW_API cw_status cwi_reference_draw(const cwi_frame *frame, const double *depths,
-                                    cw_picture *picture, double *estimate, cw_error *err);
+CW_NODISCARD cw_status cwi_reference_draw(const cwi_frame *frame, const double *depths,
+                                          cw_picture *picture, double *estimate, cw_error *err);
 
 #ifdef __cplusplus
 }

@@ -2,17 +2,17 @@
  * cell. In a cell it takes Gauss's two points, four values at a time: the trilinear field at
  * both ends of the cell and at both points. Where these tell that the transfer function has a
  * knot between them, or that the cell takes much of the light, the cell is cut, as the
- * reference does it. Blocks of cells that the transfer function leaves empty are passed over.
- */
+ * reference does it. Blocks of cells that the transfer function leaves empty are
+ * passed over. */
 #include "viewer/cpu/vbuffer.h"
 
-#include "viewer/scene/transfer_segments.h"
-#include "viewer/scene/lighting.h"
 #include "viewer/cpu/ray_traversal.h"
+#include "viewer/scene/lighting.h"
+#include "viewer/scene/transfer_segments.h"
 #include "viewer/scene/transfer_table.h"
 
-#include "core/base/parallel.h"
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
 #include "core/volume/volume.h"
@@ -256,7 +256,7 @@ static inline bool is_told(const state *s, lanes first, lanes second, float leng
 }
 
 /* A piece, in parts where two points do not tell of it. */
-static void pass_piece(state *s, const cwi_piece *piece, const double value[4])
+static void pass_piece(state *s, const cwi_transfer_segment *piece, const double value[4])
 {
     const float length = (float)(s->walk.to - s->walk.from);
     double width = piece->to - piece->from;
@@ -295,7 +295,7 @@ static void find_gradients(state *s)
 /* A cell with a knot in it. */
 static void pass_in_pieces(state *s)
 {
-    cwi_piece pieces[CWI_PIECES];
+    cwi_transfer_segment pieces[CWI_PIECES];
     double v[8], value[4];
     if (!cwi_walk_values(&s->walk, v))
         return;

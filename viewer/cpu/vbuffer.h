@@ -3,16 +3,17 @@
 #ifndef VIEWER_CPU_VBUFFER_H
 #define VIEWER_CPU_VBUFFER_H
 
-#include "viewer/scene/frame_setup.h"
 #include "viewer/scene/block_ranges.h"
+#include "viewer/scene/frame_setup.h"
 
 #ifdef __cplusplus
 extern "C" {
 #endif
 
 /* Draws a frame as cwi_reference_draw(). ranges: of the frame's volume */
-CW_API cw_status cwi_vbuffer_draw(const cwi_frame *frame, const cwi_ranges *ranges,
-                                  const double *depths, cw_picture *picture, cw_error *err);
+CW_NODISCARD cw_status cwi_vbuffer_draw(const cwi_frame *frame, const cwi_ranges *ranges,
+                                        const double *depths, cw_picture *picture,
+                                        cw_error *err);
 
 #ifdef __cplusplus
 }

@@ -1,5 +1,5 @@
-/* What the files of the GL module share: the context, what was uploaded to it, and the modes.
- */
+/* What the files of the GL module share: the context, what was uploaded to it, and
+ * the modes. */
 #ifndef VIEWER_GL_GL_INTERNAL_H
 #define VIEWER_GL_GL_INTERNAL_H
 
@@ -98,6 +98,7 @@ struct cwi_gl {
     size_t program_count;
     cwi_gl_program programs[CWI_GL_PROGRAMS];
     void *state[CW_MODE_COUNT]; /* each mode's own */
+    void (*drop_states)(cwi_gl *gl);
 };
 
 /* A mode: draws into gl->target, which is bound, cleared or with the mesh in it. */
@@ -115,22 +116,30 @@ extern const cwi_gl_mode cwi_gl_composite, cwi_gl_mip, cwi_gl_minip, cwi_gl_aver
     cwi_gl_local_mip, cwi_gl_mesh_mode, cwi_gl_projection, cwi_gl_slices, cwi_gl_splat,
     cwi_gl_splat_tree, cwi_gl_texture_mode, cwi_gl_shaded_texture;
 
-/* The mode's row; NULL when GL does not draw it. */
-const cwi_gl_mode *cwi_gl_find_mode(cw_mode mode);
+/* Makes the context this thread's, until cwi_gl_leave() puts back what was there; false when it
+ * was lost. */
+bool cwi_gl_enter(cwi_gl *gl);
+void cwi_gl_leave(cwi_gl *gl);
+
+/* Starts asking the frame's progress again. */
+void cwi_gl_start_watch(cwi_gl *gl);
+
+/* Frees what was made of a volume, a mesh and a transfer function. */
+void cwi_gl_drop_scene(cwi_gl *gl);
 
 /* A program of two of the sources in shaders/ (cwi_glsl_NAME), each after common.glsl; made
  * once. The uniform block Frame and the texture units above are set.
  *
  * defines  "#define A 1\n...", at most 255 characters; "" for none
  * Returns  CW_ERR_BACKEND with GL's words */
-cw_status cwi_gl_use(cwi_gl *gl, const char *vertex, const char *fragment, const char *defines,
-                     GLuint *program, cw_error *err);
+CW_NODISCARD cw_status cwi_gl_use(cwi_gl *gl, const char *vertex, const char *fragment,
+                                  const char *defines, GLuint *program, cw_error *err);
 void cwi_gl_set(GLuint program, const char *name, float value);
 void cwi_gl_set3(GLuint program, const char *name, const double value[3]);
 extern const char cwi_glsl_common[], cwi_glsl_screen[];
 
 /* Draws the scene's mesh, opaque, with its depth. */
-cw_status cwi_gl_draw_mesh(cwi_gl *gl, cw_error *err);
+CW_NODISCARD cw_status cwi_gl_draw_mesh(cwi_gl *gl, cw_error *err);
 
 /* Defines of shaders that go along rays: what is not needed is not compiled, as machines may go
  * through it all the same. */
@@ -141,23 +150,25 @@ void cwi_gl_draw_screen(cwi_gl *gl);
 
 /* Reports progress: waits for what was drawn, gives the caller its context, and takes the own
  * one back. CW_ERR_CANCELLED; state of GL stays, but for the framebuffer's scissor. */
-cw_status cwi_gl_report(cwi_gl *gl, const char *step, double done, cw_error *err);
+CW_NODISCARD cw_status cwi_gl_report(cwi_gl *gl, const char *step, double done, cw_error *err);
 /* The same, when the last report was some milliseconds ago: for loops of the CPU. */
-cw_status cwi_gl_report_soon(cwi_gl *gl, const char *step, double done, cw_error *err);
+CW_NODISCARD cw_status cwi_gl_report_soon(cwi_gl *gl, const char *step, double done,
+                                          cw_error *err);
 /* What is drawn next is the n-th part of count of the picture. */
 void cwi_gl_part(cwi_gl *gl, size_t n, size_t count);
 
 /* Draws what takes long, and reports in between: the whole picture, for fragment shaders that
  * go along rays; anything that keeps to the scissor, in bands; triangles of what is bound, by
  * their indices or one after another. CW_ERR_CANCELLED */
-cw_status cwi_gl_draw_rays(cwi_gl *gl, cw_error *err);
-cw_status cwi_gl_draw_layer(cwi_gl *gl, void (*draw)(void *context), void *context,
-                            cw_error *err);
-cw_status cwi_gl_draw_triangles(cwi_gl *gl, size_t count, bool indexed, cw_error *err);
+CW_NODISCARD cw_status cwi_gl_draw_rays(cwi_gl *gl, cw_error *err);
+CW_NODISCARD cw_status cwi_gl_draw_layer(cwi_gl *gl, void (*draw)(void *context), void *context,
+                                         cw_error *err);
+CW_NODISCARD cw_status cwi_gl_draw_triangles(cwi_gl *gl, size_t count, bool indexed,
+                                             cw_error *err);
 
 /* Has the frame's volume for shaders: where it is, if that is not to be textures and what draws
  * can read it there, or uploaded. What is there already stays. */
-cw_status cwi_gl_take_volume(cwi_gl *gl, bool as_textures, cw_error *err);
+CW_NODISCARD cw_status cwi_gl_take_volume(cwi_gl *gl, bool as_textures, cw_error *err);
 /* Whether shaders can read the only brick's voxels where the caller has them: the processor
  * draws, and they are of a type that it fetches, one after another. Then there is no upload,
  * and no memory for another volume. */
@@ -169,7 +180,7 @@ const char *cwi_gl_volume_defines(const cwi_gl_volume *volume);
 /* What shaders have to be defined with to find gradients. Those of a small volume become a
  * texture; of a large one, which then would be five times as large, they are differences of
  * interpolated values. */
-cw_status cwi_gl_need_gradients(cwi_gl *gl, const char **defines, cw_error *err);
+CW_NODISCARD cw_status cwi_gl_need_gradients(cwi_gl *gl, const char **defines, cw_error *err);
 /* The derivatives of voxels, unscaled, along each axis: what gradients are made of. */
 void cwi_gl_derivatives(const cw_volume *volume, const size_t at[3], double derivatives[3]);
 void cwi_gl_drop_volume(cwi_gl *gl);
@@ -184,14 +195,14 @@ void cwi_gl_set_last_block(GLuint program, const size_t dim[3]);
 size_t *cwi_gl_order_bricks(const cwi_gl *gl);
 
 /* Uploads the frame's transfer function, unless it is there, and binds it. */
-cw_status cwi_gl_take_transfer(cwi_gl *gl, cw_error *err);
+CW_NODISCARD cw_status cwi_gl_take_transfer(cwi_gl *gl, cw_error *err);
 /* And what it leaves empty: the texture skip, and away. */
-cw_status cwi_gl_need_skip(cwi_gl *gl, cw_error *err);
+CW_NODISCARD cw_status cwi_gl_need_skip(cwi_gl *gl, cw_error *err);
 /* And pre-integrated, for segments of a length in units of eye space. */
-cw_status cwi_gl_need_segments(cwi_gl *gl, double length, cw_error *err);
+CW_NODISCARD cw_status cwi_gl_need_segments(cwi_gl *gl, double length, cw_error *err);
 void cwi_gl_drop_transfer(cwi_gl *gl);
 
-cw_status cwi_gl_take_target(cwi_gl *gl, cw_error *err);
+CW_NODISCARD cw_status cwi_gl_take_target(cwi_gl *gl, cw_error *err);
 void cwi_gl_drop_target(cwi_gl *gl);
 
 /* A texture without mipmaps, linear or nearest, clamped to its edge, bound to a unit. */

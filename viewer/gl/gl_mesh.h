@@ -31,18 +31,21 @@ typedef struct cwi_gl_mesh {
     GLuint windings[CWI_WINDINGS], winding_targets[CWI_WINDINGS];
 } cwi_gl_mesh;
 
-/* Uploads the frame's mesh, unless it is there as the scene wants it. Made at the first call.
- */
-cw_status cwi_gl_take_mesh(cwi_gl *gl, void **state, cwi_gl_mesh **mesh, cw_error *err);
+/* Uploads the frame's mesh, unless it is there as the scene wants it. Made at the
+ * first call. */
+CW_NODISCARD cw_status cwi_gl_take_mesh(cwi_gl *gl, void **state, cwi_gl_mesh **mesh,
+                                        cw_error *err);
 void cwi_gl_drop_mesh(void *state);
 
 /* Textures of the target's size. */
-cw_status cwi_gl_need_layers(cwi_gl *gl, cwi_gl_mesh *mesh, cw_error *err);
-cw_status cwi_gl_need_winding(cwi_gl *gl, cwi_gl_mesh *mesh, size_t n, cw_error *err);
+CW_NODISCARD cw_status cwi_gl_need_layers(cwi_gl *gl, cwi_gl_mesh *mesh, cw_error *err);
+CW_NODISCARD cw_status cwi_gl_need_winding(cwi_gl *gl, cwi_gl_mesh *mesh, size_t n,
+                                           cw_error *err);
 
 /* Sets matrix and samplers of a program of mesh.glsl, and draws all triangles.
  * CW_ERR_CANCELLED */
 void cwi_gl_set_mesh(const cwi_gl *gl, GLuint program);
-cw_status cwi_gl_draw_whole_mesh(cwi_gl *gl, const cwi_gl_mesh *mesh, cw_error *err);
+CW_NODISCARD cw_status cwi_gl_draw_whole_mesh(cwi_gl *gl, const cwi_gl_mesh *mesh,
+                                              cw_error *err);
 
 #endif

@@ -1,6 +1,6 @@
 /* Asking whether to go on. Who does not ask pays nothing: all is drawn at once then. Bands and
  * ranges give the same picture, for fragments are the same, and in the same order. */
-#include "viewer/modes/gl_draw.h"
+#include "viewer/gl/gl_internal.h"
 
 #include "core/base/status.h"
 

@@ -1,10 +1,10 @@
 /* A volume as 3D textures: one, or bricks where one would be too large. */
-#include "viewer/modes/gl_draw.h"
+#include "viewer/gl/gl_internal.h"
 #include "viewer/scene/voxel_rows.h"
 
-#include "core/geometry/affine.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/affine.h"
 #include "core/volume/volume.h"
 
 #include <math.h>
@@ -178,8 +178,8 @@ static bool fits(GLenum inner, size_t w, size_t h, size_t d)
     return got != 0;
 }
 
-/* Parts an axis of n samples is cut into, of at most edge samples, one in common with the next.
- */
+/* Parts an axis of n samples is cut into, of at most edge samples, one in common with
+ * the next. */
 static size_t parts_of(size_t n, size_t edge)
 {
     return n <= edge ? 1 : (n - 2) / (edge - 1) + 1;

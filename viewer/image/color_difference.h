@@ -9,10 +9,10 @@ extern "C" {
 #endif
 
 /* CIELAB of an sRGB colour (0 to 1), relative to its own white, D65. */
-CW_API void cwi_lab_of(const double srgb[3], double lab[3]);
+void cwi_lab_of(const double srgb[3], double lab[3]);
 
 /* CIEDE2000 with all factors 1 [Sharma2005]. */
-CW_API double cwi_delta_e(const double a[3], const double b[3]);
+double cwi_delta_e(const double a[3], const double b[3]);
 
 #ifdef __cplusplus
 }

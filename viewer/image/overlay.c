@@ -3,8 +3,8 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
-#include "viewer/scene/mesh_tint.h"
 #include "viewer/image/strokes.h"
+#include "viewer/scene/mesh_tint.h"
 
 #include <math.h>
 #include <stdio.h>

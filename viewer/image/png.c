@@ -1,7 +1,7 @@
 #include <cubewright/picture.h>
 
-#include "core/base/memory.h"
 #include "core/base/atomic_file.h"
+#include "core/base/memory.h"
 #include "core/base/status.h"
 
 #include <png.h>

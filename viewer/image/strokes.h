@@ -22,24 +22,21 @@ typedef struct cwi_stroke {
 } cwi_stroke;
 
 /* Strokes as one figure: where several meet, the pixel is covered once. */
-CW_API void cwi_pen_draw(const cwi_pen *pen, const cwi_stroke *strokes, size_t count);
+void cwi_pen_draw(const cwi_pen *pen, const cwi_stroke *strokes, size_t count);
 
 /* A filled rectangle; parts of pixels count as such. */
-CW_API void cwi_pen_fill(const cwi_pen *pen, double left, double top, double right,
-                         double bottom);
+void cwi_pen_fill(const cwi_pen *pen, double left, double top, double right, double bottom);
 
 /* Text, UTF-8, with capitals of a height, from a point of the baseline on; and its width. What
  * the font does not have is a box. */
-CW_API void cwi_pen_text(const cwi_pen *pen, double x, double y, double height,
-                         const char *text);
-CW_API double cwi_text_width(double height, const char *text);
+void cwi_pen_text(const cwi_pen *pen, double x, double y, double height, const char *text);
+double cwi_text_width(double height, const char *text);
 
 /* The strokes of a character, in sixths of the height of capitals, y down from their top; how
  * many (at most as many as fit), and the character's width. 0 for one that the font does not
  * have. */
 enum { CWI_GLYPH_STROKES = 24 };
-CW_API size_t cwi_glyph(uint32_t character, cwi_stroke strokes[CWI_GLYPH_STROKES],
-                        double *width);
+size_t cwi_glyph(uint32_t character, cwi_stroke strokes[CWI_GLYPH_STROKES], double *width);
 
 #ifdef __cplusplus
 }

@@ -5,7 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-static bool project(const cwi_view *v, const double point[3], double pixel[2], double *depth)
+static bool project(const cwi_handle_view *v, const double point[3], double pixel[2],
+                    double *depth)
 {
     return cw_camera_project(&v->camera, v->width, v->height, point, pixel, depth);
 }
@@ -19,7 +20,7 @@ static void find_middle(const cwi_world_box *box, int handle, double middle[3])
 }
 
 /* Whether the face of a handle is seen from inside of the box. */
-static bool faces_away(const cwi_view *v, const cwi_world_box *box, int handle)
+static bool faces_away(const cwi_handle_view *v, const cwi_world_box *box, int handle)
 {
     const cw_camera *c = &v->camera;
     const int axis = handle / 2;
@@ -28,7 +29,7 @@ static bool faces_away(const cwi_view *v, const cwi_world_box *box, int handle)
     return !(handle % 2 ? to_eye > 0 : to_eye < 0);
 }
 
-void cwi_handles_place(const cwi_view *view, const cwi_world_box *box,
+void cwi_handles_place(const cwi_handle_view *view, const cwi_world_box *box,
                        cwi_handle handles[CWI_HANDLES])
 {
     for (int n = 0; n < CWI_HANDLES; n++) {
@@ -87,8 +88,9 @@ static void move_face(const cwi_world_box *bounds, double thickness_mm, int hand
             between(to, bounds->low[a], fmax(box->high[a] - thickness_mm, bounds->low[a]));
 }
 
-bool cwi_handles_drag(const cwi_view *view, const cwi_world_box *bounds, double thickness_mm,
-                      int handle, const double pixel[2], cwi_world_box *box)
+bool cwi_handles_drag(const cwi_handle_view *view, const cwi_world_box *bounds,
+                      double thickness_mm, int handle, const double pixel[2],
+                      cwi_world_box *box)
 {
     double middle[3], origin[3], direction[3], to, distance;
     if (handle < 0 || handle >= CWI_HANDLES)
@@ -104,7 +106,7 @@ bool cwi_handles_drag(const cwi_view *view, const cwi_world_box *bounds, double 
 }
 
 /* How far a point is before the eye; of an orthographic camera all points are. */
-static double depth_of(const cwi_view *v, const double forward[3], const double p[3])
+static double depth_of(const cwi_handle_view *v, const double forward[3], const double p[3])
 {
     const double *eye = v->camera.eye;
     const double d[3] = {p[0] - eye[0], p[1] - eye[1], p[2] - eye[2]};
@@ -112,7 +114,7 @@ static double depth_of(const cwi_view *v, const double forward[3], const double 
 }
 
 /* Leaves the part of a line that is before the eye by a little of its own length. */
-static bool cut_line(const cwi_view *v, const double forward[3], double ends[2][3])
+static bool cut_line(const cwi_handle_view *v, const double forward[3], double ends[2][3])
 {
     const double depth[2] = {depth_of(v, forward, ends[0]), depth_of(v, forward, ends[1])};
     const double near = 1e-3 * fmax(depth[0], depth[1]);
@@ -137,7 +139,7 @@ static void edge_ends(const cwi_world_box *box, int edge, double ends[2][3])
     }
 }
 
-static cwi_box_edge see_edge(const cwi_view *v, const cwi_world_box *box,
+static cwi_box_edge see_edge(const cwi_handle_view *v, const cwi_world_box *box,
                              const double forward[3], int edge)
 {
     const int b = (edge / 4 + 1) % 3, c = (edge / 4 + 2) % 3;
@@ -150,7 +152,7 @@ static cwi_box_edge see_edge(const cwi_view *v, const cwi_world_box *box,
     return seen;
 }
 
-void cwi_handles_edges(const cwi_view *view, const cwi_world_box *box,
+void cwi_handles_edges(const cwi_handle_view *view, const cwi_world_box *box,
                        cwi_box_edge edges[CWI_BOX_EDGES])
 {
     double axes[3][3];

@@ -9,10 +9,10 @@ extern "C" {
 #endif
 
 /* A picture that is looked at. */
-typedef struct cwi_view {
+typedef struct cwi_handle_view {
     cw_camera camera;
     size_t width, height; /* pixels */
-} cwi_view;
+} cwi_handle_view;
 
 typedef struct cwi_world_box {
     double low[3], high[3];
@@ -35,13 +35,13 @@ typedef struct cwi_box_edge {
     bool is_behind; /* both its faces face away: the box hides it */
 } cwi_box_edge;
 
-CW_API void cwi_handles_place(const cwi_view *view, const cwi_world_box *box,
-                              cwi_handle handles[CWI_HANDLES]);
+void cwi_handles_place(const cwi_handle_view *view, const cwi_world_box *box,
+                       cwi_handle handles[CWI_HANDLES]);
 
 /* The handle at most so many pixels away, of several the one nearest to the eye;
  * CWI_HANDLE_NONE. */
-CW_API int cwi_handles_hit(const cwi_handle handles[CWI_HANDLES], const double pixel[2],
-                           double radius_px);
+int cwi_handles_hit(const cwi_handle handles[CWI_HANDLES], const double pixel[2],
+                    double radius_px);
 
 /* Drags a handle's face along its axis to where that comes closest to the line of sight through
  * a pixel. A mouse that took a handle beside its middle keeps that distance if the caller adds
@@ -50,12 +50,12 @@ CW_API int cwi_handles_hit(const cwi_handle handles[CWI_HANDLES], const double p
  * bounds  where faces stay; the box stays that thick at least, wherever that leaves it room
  * False, and the box is as it was, where the line of sight tells nothing: it is within 3
  * degrees of the axis, or comes closest to it behind the eye. */
-CW_API bool cwi_handles_drag(const cwi_view *view, const cwi_world_box *bounds,
-                             double thickness_mm, int handle, const double pixel[2],
-                             cwi_world_box *box);
+bool cwi_handles_drag(const cwi_handle_view *view, const cwi_world_box *bounds,
+                      double thickness_mm, int handle, const double pixel[2],
+                      cwi_world_box *box);
 
-CW_API void cwi_handles_edges(const cwi_view *view, const cwi_world_box *box,
-                              cwi_box_edge edges[CWI_BOX_EDGES]);
+void cwi_handles_edges(const cwi_handle_view *view, const cwi_world_box *box,
+                       cwi_box_edge edges[CWI_BOX_EDGES]);
 
 #ifdef __cplusplus
 }

@@ -16,10 +16,10 @@ typedef struct cwi_mesh_hit {
 } cwi_mesh_hit;
 
 /* The nearest point of the frame's mesh that is drawn, at all or by so little that its opacity
- * is 0, on a ray in eye space. Rays through edges and corners meet one of the triangles there.
- */
-CW_API cwi_mesh_hit cwi_pick_mesh(const cwi_frame *frame, const double origin[3],
-                                  const double direction[3]);
+ * is 0, on a ray in eye space. Rays through edges and corners meet one of the
+ * triangles there. */
+cwi_mesh_hit cwi_pick_mesh(const cwi_frame *frame, const double origin[3],
+                           const double direction[3]);
 
 #ifdef __cplusplus
 }

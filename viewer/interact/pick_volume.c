@@ -3,8 +3,8 @@
 #include "core/geometry/affine.h"
 #include "core/geometry/vec3.h"
 #include "viewer/cpu/intensity_projection.h"
-#include "viewer/scene/transfer_segments.h"
 #include "viewer/cpu/ray_traversal.h"
+#include "viewer/scene/transfer_segments.h"
 
 #include <math.h>
 #include <string.h>
@@ -56,7 +56,7 @@ static void pass(passage *p, double from, double length, double depth)
     p->light = after;
 }
 
-static void pass_piece(passage *p, const cwi_walk *w, const cwi_piece *piece,
+static void pass_piece(passage *p, const cwi_walk *w, const cwi_transfer_segment *piece,
                        const double value[4], const double gradient[3][4])
 {
     const double whole = w->to - w->from, width = (piece->to - piece->from) / STEPS;
@@ -71,7 +71,7 @@ static void pass_piece(passage *p, const cwi_walk *w, const cwi_piece *piece,
 static void pass_cell(passage *p, const cwi_walk *w)
 {
     double v[8], value[4], gradient[3][4] = {{0}}; /* read for factors of gradients alone */
-    cwi_piece pieces[CWI_PIECES];
+    cwi_transfer_segment pieces[CWI_PIECES];
     const double before = p->light;
     if (!cwi_walk_values(w, v))
         return;

@@ -16,15 +16,13 @@ typedef struct cwi_volume_hit {
 
 /* What the modes that blend, and intensity projections, show through a point of the picture, in
  * samples, up to a depth. */
-CW_API cwi_volume_hit cwi_pick_blended(const cwi_frame *frame, double x, double y,
-                                       double depth);
-CW_API cwi_volume_hit cwi_pick_intensity(const cwi_frame *frame, double x, double y,
-                                         double depth);
+cwi_volume_hit cwi_pick_blended(const cwi_frame *frame, double x, double y, double depth);
+cwi_volume_hit cwi_pick_intensity(const cwi_frame *frame, double x, double y, double depth);
 
 /* The nearest of the slices (normals of unit length) that has a value on a ray in eye space;
  * its number. INFINITY: there is none. */
-CW_API double cwi_pick_slice(const cwi_frame *frame, const cw_slice *slices, size_t count,
-                             const double origin[3], const double direction[3], size_t *number);
+double cwi_pick_slice(const cwi_frame *frame, const cw_slice *slices, size_t count,
+                      const double origin[3], const double direction[3], size_t *number);
 
 #ifdef __cplusplus
 }

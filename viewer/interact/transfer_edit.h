@@ -18,32 +18,30 @@ extern "C" {
 /* The nearest opacity point, colour point, and segment of the opacities' line at most so far
  * away, in value and opacity; of points that lie upon each other the last. Segment n is before
  * point n, that of opacity_count behind the last; there is one at least. */
-CW_API size_t cwi_transfer_near_opacity(const cw_transfer *transfer, double value,
-                                        double opacity, const double tolerance[2]);
-CW_API size_t cwi_transfer_near_color(const cw_transfer *transfer, double value,
-                                      double tolerance);
-CW_API size_t cwi_transfer_near_segment(const cw_transfer *transfer, double value,
-                                        double opacity, const double tolerance[2]);
+size_t cwi_transfer_near_opacity(const cw_transfer *transfer, double value, double opacity,
+                                 const double tolerance[2]);
+size_t cwi_transfer_near_color(const cw_transfer *transfer, double value, double tolerance);
+size_t cwi_transfer_near_segment(const cw_transfer *transfer, double value, double opacity,
+                                 const double tolerance[2]);
 
 /* Takes point n, which is there, as close as it can go: values stay between those of its
  * neighbours, and beyond the ends there are none; opacities from 0 to 1. */
-CW_API void cwi_transfer_move_opacity(cw_transfer *transfer, size_t n, double value,
-                                      double opacity);
-CW_API void cwi_transfer_move_color(cw_transfer *transfer, size_t n, double value);
+void cwi_transfer_move_opacity(cw_transfer *transfer, size_t n, double value, double opacity);
+void cwi_transfer_move_color(cw_transfer *transfer, size_t n, double value);
 
 /* Puts a point in: an opacity, and the colour that is there already. Its number;
  * CWI_TRANSFER_NONE, and nothing is changed, when there are CW_TRANSFER_POINTS or the numbers
  * are not finite. */
-CW_API size_t cwi_transfer_insert_opacity(cw_transfer *transfer, double value, double opacity);
-CW_API size_t cwi_transfer_insert_color(cw_transfer *transfer, double value);
+size_t cwi_transfer_insert_opacity(cw_transfer *transfer, double value, double opacity);
+size_t cwi_transfer_insert_color(cw_transfer *transfer, double value);
 
 /* Takes point n out, which is there. */
-CW_API void cwi_transfer_remove_opacity(cw_transfer *transfer, size_t n);
-CW_API void cwi_transfer_remove_color(cw_transfer *transfer, size_t n);
+void cwi_transfer_remove_opacity(cw_transfer *transfer, size_t n);
+void cwi_transfer_remove_color(cw_transfer *transfer, size_t n);
 
 /* From the first to the last opacity point, without those from the first to the last colour;
  * false: there is neither. */
-CW_API bool cwi_transfer_range(const cw_transfer *transfer, double range[2]);
+bool cwi_transfer_range(const cw_transfer *transfer, double range[2]);
 
 /* A whole one made of another: so that a slider that comes back to where it was gives what was
  * there. out may be the original. False, and out is the original, for numbers that make none:
@@ -55,13 +53,13 @@ CW_API bool cwi_transfer_range(const cw_transfer *transfer, double range[2]);
  *         goes to the middle
  * fade    multiplies opacities, which end at 1
  * mirror  turns colours round in their range */
-CW_API bool cwi_transfer_shift(const cw_transfer *original, double by, cw_transfer *out);
-CW_API bool cwi_transfer_scale(const cw_transfer *original, double middle, double factor,
-                               cw_transfer *out);
-CW_API bool cwi_transfer_window(const cw_transfer *original, double low, double high,
-                                cw_transfer *out);
-CW_API bool cwi_transfer_fade(const cw_transfer *original, double factor, cw_transfer *out);
-CW_API bool cwi_transfer_mirror(const cw_transfer *original, cw_transfer *out);
+bool cwi_transfer_shift(const cw_transfer *original, double by, cw_transfer *out);
+bool cwi_transfer_scale(const cw_transfer *original, double middle, double factor,
+                        cw_transfer *out);
+bool cwi_transfer_window(const cw_transfer *original, double low, double high,
+                         cw_transfer *out);
+bool cwi_transfer_fade(const cw_transfer *original, double factor, cw_transfer *out);
+bool cwi_transfer_mirror(const cw_transfer *original, cw_transfer *out);
 
 #ifdef __cplusplus
 }

@@ -1,5 +1,5 @@
-/* One picture: uploads what is new, draws the mesh, then the mode, and reads the picture back.
- */
+/* One picture: uploads what is new, draws the mesh, then the mode, and reads the
+ * picture back. */
 #include "viewer/modes/gl_draw.h"
 
 #include "core/base/memory.h"

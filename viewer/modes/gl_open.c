@@ -4,14 +4,14 @@
 #include "core/base/memory.h"
 #include "core/base/status.h"
 
-bool cwi_gl_enter(cwi_gl *gl)
+static void drop_states(cwi_gl *gl)
 {
-    return cwi_gl_context_enter(&gl->context);
-}
-
-void cwi_gl_leave(cwi_gl *gl)
-{
-    cwi_gl_context_leave(&gl->context);
+    for (int m = 0; m < CW_MODE_COUNT; m++) {
+        const cwi_gl_mode *mode = cwi_gl_find_mode((cw_mode)m);
+        if (mode && mode->drop && gl->state[m])
+            mode->drop(gl->state[m]);
+        gl->state[m] = NULL;
+    }
 }
 
 /* What Mesa's software OpenGL was seen to take before there is anything to draw. */
@@ -32,26 +32,10 @@ static cw_status gl_open(cwi_gl **out, cw_error *err)
     cwi_gl_describe(gl->name, sizeof gl->name);
     glGenBuffers(1, &gl->frame_block);
     glGenVertexArrays(1, &gl->empty_array);
+    gl->drop_states = drop_states;
     cwi_gl_leave(gl);
     *out = gl;
     return CW_OK;
-}
-
-static void drop_states(cwi_gl *gl)
-{
-    for (int m = 0; m < CW_MODE_COUNT; m++) {
-        const cwi_gl_mode *mode = cwi_gl_find_mode((cw_mode)m);
-        if (mode && mode->drop && gl->state[m])
-            mode->drop(gl->state[m]);
-        gl->state[m] = NULL;
-    }
-}
-
-void cwi_gl_drop_scene(cwi_gl *gl)
-{
-    drop_states(gl);
-    cwi_gl_drop_volume(gl);
-    cwi_gl_drop_transfer(gl);
 }
 
 static void gl_forget(cwi_gl *gl)

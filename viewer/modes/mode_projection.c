@@ -1,12 +1,12 @@
 /* Coherent projection: cells, and nodes of cells that are alike, as polygons from back to
  * front. */
 #include "viewer/gl/gl_internal.h"
-#include "viewer/scene/cell_lattice.h"
 #include "viewer/proxy/projected_cells.h"
+#include "viewer/scene/cell_lattice.h"
 
-#include "core/geometry/affine.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/affine.h"
 #include "core/geometry/vec3.h"
 
 #include <math.h>

@@ -4,9 +4,9 @@
 
 #include "viewer/proxy/quantized_normals.h"
 
-#include "core/geometry/affine.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/affine.h"
 #include "core/geometry/vec3.h"
 #include "core/volume/volume.h"
 

@@ -1,5 +1,5 @@
-/* Slices: what of the volume lies in a few planes, each sample of the picture by its own ray.
- */
+/* Slices: what of the volume lies in a few planes, each sample of the picture by its
+ * own ray. */
 #include "viewer/gl/gl_internal.h"
 
 #include "core/base/status.h"

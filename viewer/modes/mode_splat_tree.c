@@ -1,7 +1,7 @@
 /* Hierarchical splatting: nodes of an octree whose values are near enough to their mean are one
  * splat in each sheet they are in. */
-#include "viewer/proxy/value_octree.h"
 #include "viewer/modes/splat_sheets.h"
+#include "viewer/proxy/value_octree.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"

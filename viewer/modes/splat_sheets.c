@@ -1,8 +1,8 @@
 #include "viewer/modes/splat_sheets.h"
 
-#include "core/geometry/affine.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/affine.h"
 #include "core/geometry/vec3.h"
 #include "core/volume/volume.h"
 

@@ -37,7 +37,8 @@ typedef struct cwi_splats {
 } cwi_splats;
 
 /* has_nodes: there are not only voxels */
-cw_status cwi_splats_open(cwi_splats *s, cwi_gl *gl, bool has_nodes, cw_error *err);
+CW_NODISCARD cw_status cwi_splats_open(cwi_splats *s, cwi_gl *gl, bool has_nodes,
+                                       cw_error *err);
 void cwi_splats_close(cwi_splats *s);
 
 /* Whether clips, and a place in front of the eye, keep a splat at a point of index space. */
@@ -50,13 +51,13 @@ void cwi_splats_add(cwi_splats *s, const cwi_splat *splat, const double eye[3]);
 void cwi_splats_voxel(cwi_splats *s, const size_t at[3]);
 
 /* Splats all voxels, each by itself. */
-cw_status cwi_splats_flat(cwi_splats *s, cw_error *err);
+CW_NODISCARD cw_status cwi_splats_flat(cwi_splats *s, cw_error *err);
 
 /* Sheets, along the axis they are across, from the farthest to the nearest; free with
  * cwi_free(). */
 size_t *cwi_splats_order(const cwi_splats *s, cw_error *err);
 
 /* Ends a sheet, the n-th of all, and asks whether to go on: CW_ERR_CANCELLED. */
-cw_status cwi_splats_end_sheet(cwi_splats *s, size_t n, cw_error *err);
+CW_NODISCARD cw_status cwi_splats_end_sheet(cwi_splats *s, size_t n, cw_error *err);
 
 #endif

@@ -24,12 +24,13 @@ typedef struct cwi_directions {
 } cwi_directions;
 
 /* count: 1 to CWI_MOST_DIRECTIONS. CW_ERR_ARGUMENT, CW_ERR_NO_MEMORY. */
-CW_API cw_status cwi_directions_make(size_t count, cwi_directions *directions, cw_error *err);
-CW_API void cwi_directions_free(cwi_directions *directions);
+CW_NODISCARD cw_status cwi_directions_make(size_t count, cwi_directions *directions,
+                                           cw_error *err);
+void cwi_directions_free(cwi_directions *directions);
 
 /* The direction with the smallest angle to a line through the origin along v, of any length;
  * count when v is 0 or not finite. */
-CW_API size_t cwi_directions_nearest(const cwi_directions *directions, const double v[3]);
+size_t cwi_directions_nearest(const cwi_directions *directions, const double v[3]);
 
 #ifdef __cplusplus
 }

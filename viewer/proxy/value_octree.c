@@ -1,7 +1,7 @@
 #include "viewer/proxy/value_octree.h"
 
-#include "core/base/parallel.h"
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
 

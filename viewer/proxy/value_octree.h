@@ -26,13 +26,13 @@ typedef struct cwi_pyramid {
 
 /* Of a resolved, evenly spaced volume; about 2.3 bytes a voxel. CW_ERR_NO_MEMORY.
  * has_gaps: whether some samples have no value, see cwi_lattice_mass() */
-CW_API cw_status cwi_pyramid_make(const cw_volume *volume, bool has_gaps, int threads,
-                                  const cw_progress *progress, cwi_pyramid *pyramid,
-                                  cw_error *err);
-CW_API void cwi_pyramid_free(cwi_pyramid *pyramid);
+CW_NODISCARD cw_status cwi_pyramid_make(const cw_volume *volume, bool has_gaps, int threads,
+                                        const cw_progress *progress, cwi_pyramid *pyramid,
+                                        cw_error *err);
+void cwi_pyramid_free(cwi_pyramid *pyramid);
 
-CW_API const cwi_pyramid_node *cwi_pyramid_node_at(const cwi_pyramid *pyramid, size_t level,
-                                                   const size_t node[3]);
+const cwi_pyramid_node *cwi_pyramid_node_at(const cwi_pyramid *pyramid, size_t level,
+                                            const size_t node[3]);
 
 /* How values are seen: a transfer function's table, and what of it is visible; sheets are
  * across an axis. */
@@ -50,8 +50,8 @@ typedef struct cwi_pyramid_look {
     bool shows_mean;
 } cwi_pyramid_look;
 
-CW_API cwi_pyramid_look cwi_pyramid_look_at(const cwi_pyramid_view *view,
-                                            const cwi_pyramid_node *node);
+cwi_pyramid_look cwi_pyramid_look_at(const cwi_pyramid_view *view,
+                                     const cwi_pyramid_node *node);
 
 enum { CWI_PYRAMID_STEPS = 4096 };
 
@@ -59,13 +59,13 @@ enum { CWI_PYRAMID_STEPS = 4096 };
  * being one in each of its sheets; with 0
  * every visible voxel is one. Clipping and the edges of the picture are not looked at.
  * counts: CWI_PYRAMID_STEPS + 1 */
-CW_API void cwi_pyramid_counts(const cwi_pyramid *pyramid, const cwi_pyramid_view *view,
-                               size_t *counts);
+void cwi_pyramid_counts(const cwi_pyramid *pyramid, const cwi_pyramid_view *view,
+                        size_t *counts);
 
 /* The least error, of those, with which at most a number of splats are drawn; 1 if none is
  * large enough. CW_ERR_NO_MEMORY */
-CW_API cw_status cwi_pyramid_fit(const cwi_pyramid *pyramid, const cwi_pyramid_view *view,
-                                 size_t budget, double *error, cw_error *err);
+CW_NODISCARD cw_status cwi_pyramid_fit(const cwi_pyramid *pyramid, const cwi_pyramid_view *view,
+                                       size_t budget, double *error, cw_error *err);
 
 #ifdef __cplusplus
 }

@@ -1,8 +1,8 @@
 #include "viewer/proxy/view_slabs.h"
 
-#include "core/geometry/affine.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/affine.h"
 
 #include <math.h>
 #include <string.h>

@@ -2,8 +2,8 @@
 
 #include "viewer/scene/voxel_rows.h"
 
-#include "core/base/parallel.h"
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
 

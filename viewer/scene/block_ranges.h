@@ -18,21 +18,21 @@ typedef struct cwi_ranges {
 } cwi_ranges;
 
 /* Of a resolved, evenly spaced volume. CW_ERR_NO_MEMORY, CW_ERR_CANCELLED. */
-CW_API cw_status cwi_ranges_make(const cw_volume *volume, int threads,
-                                 const cw_progress *progress, cwi_ranges *ranges,
-                                 cw_error *err);
+CW_NODISCARD cw_status cwi_ranges_make(const cw_volume *volume, int threads,
+                                       const cw_progress *progress, cwi_ranges *ranges,
+                                       cw_error *err);
 /* Blocks of twice the edge. CW_ERR_NO_MEMORY. */
-CW_API cw_status cwi_ranges_halve(const cwi_ranges *fine, cwi_ranges *coarse, cw_error *err);
-CW_API void cwi_ranges_free(cwi_ranges *ranges);
+CW_NODISCARD cw_status cwi_ranges_halve(const cwi_ranges *fine, cwi_ranges *coarse,
+                                        cw_error *err);
+void cwi_ranges_free(cwi_ranges *ranges);
 
 /* For each block: how many blocks away, along the longest axis, the next visible one is, up to
  * 255; 0: it is visible itself, as told by is_visible(context, low, high).
  * distances  free it with cwi_free()
  * Returns    CW_ERR_NO_MEMORY */
-CW_API cw_status cwi_ranges_distances(const cwi_ranges *ranges,
-                                      bool (*is_visible)(const void *context, double low,
-                                                         double high),
-                                      const void *context, uint8_t **distances, cw_error *err);
+CW_NODISCARD cw_status cwi_ranges_distances(
+    const cwi_ranges *ranges, bool (*is_visible)(const void *context, double low, double high),
+    const void *context, uint8_t **distances, cw_error *err);
 
 #ifdef __cplusplus
 }

@@ -1,8 +1,8 @@
 #include "viewer/scene/cell_lattice.h"
 
-#include "core/geometry/affine.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/affine.h"
 #include "core/volume/volume.h"
 
 #include <math.h>

@@ -9,13 +9,12 @@ extern "C" {
 #endif
 
 /* The eye in index space; in orthographic views a point far away against the view. */
-CW_API void cwi_lattice_eye(const cwi_frame *frame, double eye[3]);
+void cwi_lattice_eye(const cwi_frame *frame, double eye[3]);
 
 /* The order of count things at first, first + step, ... from the farthest from a place to the
  * nearest. Orders along three axes, nested, make an order from back to front: what hides
  * another is not farther along any axis. */
-CW_API void cwi_lattice_order(size_t count, double first, double step, double place,
-                              size_t *order);
+void cwi_lattice_order(size_t count, double first, double step, double place, size_t *order);
 
 /* Whether a transfer function shows anything of a range, in constant time. */
 typedef struct cwi_visible {
@@ -23,24 +22,25 @@ typedef struct cwi_visible {
     uint32_t *before; /* count + 1: how many rows before one are not fully transparent */
 } cwi_visible;
 
-CW_API cw_status cwi_visible_make(const cwi_table *table, cwi_visible *visible, cw_error *err);
-CW_API void cwi_visible_free(cwi_visible *visible);
+CW_NODISCARD cw_status cwi_visible_make(const cwi_table *table, cwi_visible *visible,
+                                        cw_error *err);
+void cwi_visible_free(cwi_visible *visible);
 
 /* low and high are coordinates in the table: 0 at its first value, 1 at its last. NaN: no. */
-CW_API bool cwi_visible_any(const cwi_visible *visible, float low, float high);
+bool cwi_visible_any(const cwi_visible *visible, float low, float high);
 
 /* The coordinates in the table of the voxels of a box (x fastest); NaN: without a value. */
-CW_API void cwi_lattice_load(const cwi_frame *frame, const cwi_table *table,
-                             const size_t first[3], const size_t count[3], float *out);
+void cwi_lattice_load(const cwi_frame *frame, const cwi_table *table, const size_t first[3],
+                      const size_t count[3], float *out);
 
 /* The cells a voxel stands for: of the eight eighths around it those that belong to cells of
  * the volume with values at all corners. A volume of one layer has cells on both sides of it.
  * has_gaps: whether to look for samples without a value */
-CW_API double cwi_lattice_mass(const cw_volume *v, const size_t at[3], bool has_gaps);
+double cwi_lattice_mass(const cw_volume *v, const size_t at[3], bool has_gaps);
 
 /* The derivatives of the stored values per voxel: central inside, one-sided at the border; 0
  * where a sample has no value. */
-CW_API void cwi_lattice_gradient(const cw_volume *v, const size_t at[3], double gradient[3]);
+void cwi_lattice_gradient(const cw_volume *v, const size_t at[3], double gradient[3]);
 
 #ifdef __cplusplus
 }

@@ -1,7 +1,7 @@
 #include "viewer/scene/frame_setup.h"
 
-#include "core/geometry/affine.h"
 #include "core/base/status.h"
+#include "core/geometry/affine.h"
 #include "core/geometry/vec3.h"
 #include "core/volume/volume.h"
 

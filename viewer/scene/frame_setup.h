@@ -46,36 +46,35 @@ typedef struct cwi_frame {
 
 /* Works a scene out: fills in defaults, checks what every mode relies on.
  * Returns CW_ERR_ARGUMENT, CW_ERR_UNSUPPORTED as cw_render(). */
-CW_API cw_status cwi_frame_init(cwi_frame *frame, const cw_scene *scene, cw_error *err);
+CW_NODISCARD cw_status cwi_frame_init(cwi_frame *frame, const cw_scene *scene, cw_error *err);
 
 /* The ray through a point of the picture, in samples from its upper left corner, in eye space.
  * Distances along it are in units of eye space. */
-CW_API void cwi_frame_ray(const cwi_frame *frame, double x, double y, double origin[3],
-                          double direction[3]);
+void cwi_frame_ray(const cwi_frame *frame, double x, double y, double origin[3],
+                   double direction[3]);
 
 /* The parts of a ray inside of the volume's box that clips leave: up to two intervals, in
  * order; how many. In index space for a ray in eye space. */
-CW_API int cwi_frame_clip(const cwi_frame *frame, const double origin[3],
-                          const double direction[3], double intervals[2][2]);
+int cwi_frame_clip(const cwi_frame *frame, const double origin[3], const double direction[3],
+                   double intervals[2][2]);
 
 /* The parts of an interval of a ray that clips leave: up to two, in order; how many. */
-CW_API int cwi_frame_keep(const cwi_frame *frame, const double origin[3],
-                          const double direction[3], const double interval[2],
-                          double kept[2][2]);
+int cwi_frame_keep(const cwi_frame *frame, const double origin[3], const double direction[3],
+                   const double interval[2], double kept[2][2]);
 
 /* The world point of one in eye space. */
-CW_API void cwi_frame_to_world(const cwi_frame *frame, const double eye[3], double world[3]);
+void cwi_frame_to_world(const cwi_frame *frame, const double eye[3], double world[3]);
 
 /* The extinction coefficient per unit of eye space of an opacity of the transfer function,
  * which is taken as at most that. */
 #define CWI_MOST_OPACITY (1 - 1e-6)
-CW_API double cwi_frame_extinction(const cwi_frame *frame, double opacity);
+double cwi_frame_extinction(const cwi_frame *frame, double opacity);
 
 /* What is left of the light of something at a depth: 1 near, 1 - depth_cue far. */
-CW_API double cwi_frame_cue(const cwi_frame *frame, double depth);
+double cwi_frame_cue(const cwi_frame *frame, double depth);
 
 /* The matrix that takes a gradient in index space (per voxel) to eye space (per unit). */
-CW_API void cwi_frame_gradient_matrix(const cwi_frame *frame, double m[3][3]);
+void cwi_frame_gradient_matrix(const cwi_frame *frame, double m[3][3]);
 
 #ifdef __cplusplus
 }

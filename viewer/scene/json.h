@@ -8,18 +8,19 @@
 
 /* Calls parse with all bytes of a file of up to 1 MiB; errors name the file.
  * Returns CW_ERR_IO, CW_ERR_FORMAT for a larger one, CW_ERR_NO_MEMORY, or what parse does. */
-cw_status cwi_json_read(const char *path,
-                        cw_status (*parse)(const char *bytes, size_t size, void *out,
-                                           cw_error *err),
-                        void *out, cw_error *err);
+CW_NODISCARD cw_status cwi_json_read(const char *path,
+                                     cw_status (*parse)(const char *bytes, size_t size,
+                                                        void *out, cw_error *err),
+                                     void *out, cw_error *err);
 
 /* One object whose 'schema' is that text and which has no key but those, which end with a NULL.
  * Free it with json_decref(). CW_ERR_FORMAT */
-cw_status cwi_json_object(const char *bytes, size_t size, const char *schema,
-                          const char *const *keys, json_t **root, cw_error *err);
+CW_NODISCARD cw_status cwi_json_object(const char *bytes, size_t size, const char *schema,
+                                       const char *const *keys, json_t **root, cw_error *err);
 
 /* A number of an object, when it is there. CW_ERR_FORMAT for what is no number. */
-cw_status cwi_json_number(const json_t *root, const char *key, double *value, cw_error *err);
+CW_NODISCARD cw_status cwi_json_number(const json_t *root, const char *key, double *value,
+                                       cw_error *err);
 
 /* The shortest text that reads back as the same number, and as the same single one. */
 enum { CWI_JSON_NUMBER = 32 };

@@ -17,12 +17,12 @@ typedef struct cwi_lighting {
 } cwi_lighting;
 
 /* direction: the ray's, in eye space, of unit length */
-CW_API void cwi_lighting_make(const cwi_frame *frame, const double direction[3],
-                              cwi_lighting *lighting);
+void cwi_lighting_make(const cwi_frame *frame, const double direction[3],
+                       cwi_lighting *lighting);
 
 /* Lights a colour by a gradient in eye space. */
-CW_API void cwi_lighting_shade(const cwi_lighting *lighting, const double gradient[3],
-                               double color[3]);
+void cwi_lighting_shade(const cwi_lighting *lighting, const double gradient[3],
+                        double color[3]);
 
 #ifdef __cplusplus
 }

@@ -9,8 +9,8 @@ extern "C" {
 #endif
 
 /* As cw_transfer_read(), of the file's bytes; transfer is untouched on failure. */
-CW_API cw_status cwi_transfer_parse(const char *bytes, size_t size, cw_transfer *transfer,
-                                    cw_error *err);
+CW_NODISCARD cw_status cwi_transfer_parse(const char *bytes, size_t size, cw_transfer *transfer,
+                                          cw_error *err);
 
 #ifdef __cplusplus
 }

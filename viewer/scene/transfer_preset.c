@@ -37,8 +37,8 @@ static double quantile(const cw_statistics *s, size_t first, double share)
     return s->max;
 }
 
-/* The middle of the values that a bin counts: those of integer types end a step below the next.
- */
+/* The middle of the values that a bin counts: those of integer types end a step below
+ * the next. */
 static double middle_of(const cw_statistics *s, size_t bin)
 {
     return s->min + s->bin_width * ((double)bin + 0.5) - s->quantum / 2;

@@ -1,6 +1,6 @@
 #include "viewer/scene/transfer_segments.h"
 
-#include "viewer/cpu/ray_traversal.h"
+#include "core/geometry/cubic.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -97,7 +97,7 @@ bool cwi_knots_is_visible(const cwi_knots *k, double low, double high)
 /* A part in which the cubic does not turn: up, or down, from knot to knot. A jump belongs to
  * the side above, so what falls from a knot is below it. */
 static size_t cut_part(const cwi_knots *k, const double c[4], double from, double to,
-                       cwi_piece *pieces)
+                       cwi_transfer_segment *pieces)
 {
     const double first = cwi_cubic_at(c, from), last = cwi_cubic_at(c, to);
     const bool falls = last < first;
@@ -109,7 +109,7 @@ static size_t cut_part(const cwi_knots *k, const double c[4], double from, doubl
             falls ? n > 0 && k->at[n - 1] > last : n < k->count && k->at[n] < last;
         const double x = meets ? cwi_cubic_meets(c, from, to, k->at[falls ? n - 1 : n]) : to;
         if (x > from)
-            pieces[count++] = (cwi_piece){from, x, &k->linear[n]};
+            pieces[count++] = (cwi_transfer_segment){from, x, &k->linear[n]};
         if (!meets)
             return count;
         from = x;
@@ -117,7 +117,7 @@ static size_t cut_part(const cwi_knots *k, const double c[4], double from, doubl
     }
 }
 
-size_t cwi_knots_cut(const cwi_knots *k, const double c[4], cwi_piece *pieces)
+size_t cwi_knots_cut(const cwi_knots *k, const double c[4], cwi_transfer_segment *pieces)
 {
     double turns[2], from = 0;
     const int turn_count = cwi_cubic_turns(c, turns);

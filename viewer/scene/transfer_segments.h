@@ -27,22 +27,22 @@ typedef struct cwi_knots {
     cwi_linear linear[CWI_KNOTS + 1]; /* linear[n] is below at[n] */
 } cwi_knots;
 
-CW_API void cwi_knots_make(const cw_transfer *transfer, cwi_knots *knots);
+void cwi_knots_make(const cw_transfer *transfer, cwi_knots *knots);
 
 /* How many knots are at a value or below. */
-CW_API size_t cwi_knots_below(const cwi_knots *knots, double value);
+size_t cwi_knots_below(const cwi_knots *knots, double value);
 
 /* Whether any value of a range is not fully transparent. */
-CW_API bool cwi_knots_is_visible(const cwi_knots *knots, double low, double high);
+bool cwi_knots_is_visible(const cwi_knots *knots, double low, double high);
 
 /* A part of a cubic, x from 0 to 1, whose values are all between the same knots. */
-typedef struct cwi_piece {
+typedef struct cwi_transfer_segment {
     double from, to;
     const cwi_linear *linear;
-} cwi_piece;
+} cwi_transfer_segment;
 
 /* Cuts a cubic where it meets knots and where it turns; how many pieces, at most CWI_PIECES. */
-CW_API size_t cwi_knots_cut(const cwi_knots *knots, const double c[4], cwi_piece *pieces);
+size_t cwi_knots_cut(const cwi_knots *knots, const double c[4], cwi_transfer_segment *pieces);
 
 #ifdef __cplusplus
 }

@@ -1,7 +1,7 @@
 #include "viewer/scene/transfer_table.h"
 
-#include "core/base/parallel.h"
 #include "core/base/memory.h"
+#include "core/base/parallel.h"
 #include "core/base/status.h"
 
 #include <math.h>

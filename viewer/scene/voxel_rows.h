@@ -9,10 +9,9 @@ extern "C" {
 #endif
 
 /* Reads count numbers of a row, before slope and intercept; NaN: no value. */
-CW_API void cwi_row_load(const cw_volume *volume, const void *from, size_t count, float *to);
+void cwi_row_load(const cw_volume *volume, const void *from, size_t count, float *to);
 /* The same, where the volume has them so already, or else in the buffer. */
-CW_API const float *cwi_row_of(const cw_volume *volume, const void *from, size_t count,
-                               float *buffer);
+const float *cwi_row_of(const cw_volume *volume, const void *from, size_t count, float *buffer);
 
 #ifdef __cplusplus
 }

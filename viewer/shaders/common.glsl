@@ -1,5 +1,6 @@
 // What every shader knows of the picture. See viewer/scene/frame_setup.h for the spaces.
-layout(std140) uniform Frame {
+layout(std140) uniform Frame
+{
     mat4 projection;
     mat4 eye_from_index, index_from_eye;
     mat4 gradient_to_eye; // of a gradient per voxel, to one per unit
@@ -25,11 +26,12 @@ uniform isamplerBuffer volume;
 #else
 uniform samplerBuffer volume;
 #endif
-uniform ivec3 voxel_steps; // IN_PLACE: from a voxel to the next along each axis that has more than one
+uniform ivec3
+    voxel_steps; // IN_PLACE: from a voxel to the next along each axis that has more than one
 uniform vec3 last_cell;
-uniform sampler3D gradients; // and gradients per voxel
-uniform sampler1D table;     // transfer function: colour, extinction per unit
-uniform sampler1D factor;    // of the extinction, by the gradient's length
+uniform sampler3D gradients;          // and gradients per voxel
+uniform sampler1D table;              // transfer function: colour, extinction per unit
+uniform sampler1D factor;             // of the extinction, by the gradient's length
 uniform vec3 brick_first, brick_size; // samples
 const float table_rows = 4096.0, factor_rows = 1024.0;
 
@@ -77,8 +79,10 @@ float texel_at(vec3 index)
     vec3 low = min(floor(at), max(brick_size - 2.0, 0.0)), s = at - low;
     ivec3 i = ivec3(low), j = ivec3(min(low + 1.0, brick_size - 1.0));
     vec4 x0 = vec4(texelFetch(volume, i, 0).r, texelFetch(volume, ivec3(i.x, j.y, i.z), 0).r,
-                   texelFetch(volume, ivec3(i.xy, j.z), 0).r, texelFetch(volume, ivec3(i.x, j.yz), 0).r);
-    vec4 x1 = vec4(texelFetch(volume, ivec3(j.x, i.yz), 0).r, texelFetch(volume, ivec3(j.xy, i.z), 0).r,
+                   texelFetch(volume, ivec3(i.xy, j.z), 0).r,
+                   texelFetch(volume, ivec3(i.x, j.yz), 0).r);
+    vec4 x1 = vec4(texelFetch(volume, ivec3(j.x, i.yz), 0).r,
+                   texelFetch(volume, ivec3(j.xy, i.z), 0).r,
                    texelFetch(volume, ivec3(j.x, i.y, j.z), 0).r, texelFetch(volume, j, 0).r);
     vec4 x = mix(x0, x1, s.x);
     vec2 y = mix(x.xz, x.yw, s.y);
@@ -120,9 +124,10 @@ vec3 gradient_in(vec3 place)
 #ifdef DIFFERENCES
     vec3 voxel = 1.0 / brick_size, first = 0.5 * voxel, last = 1.0 - first;
     vec3 low = max(place - voxel, first), high = min(place + voxel, last);
-    vec3 rise = vec3(texel_in(vec3(high.x, place.yz)) - texel_in(vec3(low.x, place.yz)),
-                     texel_in(vec3(place.x, high.y, place.z)) - texel_in(vec3(place.x, low.y, place.z)),
-                     texel_in(vec3(place.xy, high.z)) - texel_in(vec3(place.xy, low.z)));
+    vec3 rise =
+        vec3(texel_in(vec3(high.x, place.yz)) - texel_in(vec3(low.x, place.yz)),
+             texel_in(vec3(place.x, high.y, place.z)) - texel_in(vec3(place.x, low.y, place.z)),
+             texel_in(vec3(place.xy, high.z)) - texel_in(vec3(place.xy, low.z)));
     vec3 apart = max((high - low) * brick_size, 0.5);
     return mat3(gradient_to_eye) * (rise * texels.z / apart);
 #else
@@ -276,7 +281,8 @@ float mesh_distance(ray r)
     if (z >= 1.0)
         return 1e30;
     float ndc = 2.0 * z - 1.0, n = view.y, f = view.z;
-    float d = view.x > 0.5 ? 2.0 * f * n / (f + n - ndc * (f - n)) : (ndc * (f - n) + f + n) / 2.0;
+    float d =
+        view.x > 0.5 ? 2.0 * f * n / (f + n - ndc * (f - n)) : (ndc * (f - n) + f + n) / 2.0;
     return d / -r.direction.z;
 }
 
@@ -284,21 +290,24 @@ float mesh_distance(ray r)
 void intervals(ray r, out vec2 all, out vec2 kept)
 {
     vec3 box_low = max(low.xyz, mix(brick_first, low.xyz, lessThan(dim.xyz, vec3(1.5))));
-    vec3 box_high = min(high.xyz, mix(brick_first + brick_size - 1.0, high.xyz, lessThan(dim.xyz, vec3(1.5))));
+    vec3 box_high = min(
+        high.xyz, mix(brick_first + brick_size - 1.0, high.xyz, lessThan(dim.xyz, vec3(1.5))));
     all = vec2(view.x > 0.5 ? view.y / -r.direction.z : -1e30, 1e30);
 #ifdef MESH
     all.y = mesh_distance(r);
 #endif
     vec3 enter = (mix(box_high, box_low, r.ahead) - r.index) * r.inverse;
     vec3 leave = (mix(box_low, box_high, r.ahead) - r.index) * r.inverse;
-    bvec3 is_beside = bvec3(vec3(equal(r.slope, vec3(0.0))) *
-                            max(vec3(lessThan(r.index, box_low)), vec3(greaterThan(r.index, box_high))));
+    bvec3 is_beside =
+        bvec3(vec3(equal(r.slope, vec3(0.0))) *
+              max(vec3(lessThan(r.index, box_low)), vec3(greaterThan(r.index, box_high))));
     all.x = max(all.x, max(enter.x, max(enter.y, enter.z)));
     all.y = any(is_beside) ? all.x : min(all.y, min(leave.x, min(leave.y, leave.z)));
     kept = all;
 #ifdef CLIPS
     for (int n = 0; n < counts.y; n++)
-        kept = cut(kept, dot(clips[n].xyz, r.origin) - clips[n].w, dot(clips[n].xyz, r.direction));
+        kept =
+            cut(kept, dot(clips[n].xyz, r.origin) - clips[n].w, dot(clips[n].xyz, r.direction));
 #endif
 }
 #endif

@@ -16,7 +16,8 @@ out vec3 share; // of the triangle's corners
 
 vec3 linear_of(vec3 srgb)
 {
-    return mix(pow((srgb + 0.055) / 1.055, vec3(2.4)), srgb / 12.92, lessThanEqual(srgb, vec3(0.04045)));
+    return mix(pow((srgb + 0.055) / 1.055, vec3(2.4)), srgb / 12.92,
+               lessThanEqual(srgb, vec3(0.04045)));
 }
 
 #if defined(VERTEX) && !defined(CAP)
@@ -38,7 +39,8 @@ out vec4 result;
 
 vec3 srgb_of(vec3 light)
 {
-    return mix(1.055 * pow(light, vec3(1.0 / 2.4)) - 0.055, 12.92 * light, lessThanEqual(light, vec3(0.0031308)));
+    return mix(1.055 * pow(light, vec3(1.0 / 2.4)) - 0.055, 12.92 * light,
+               lessThanEqual(light, vec3(0.0031308)));
 }
 
 // As viewer/cpu/reference_mesh.c: light from the eye, from above its left shoulder, and from everywhere.
@@ -46,7 +48,8 @@ vec3 studio(vec3 surface, vec3 n, vec3 v)
 {
     vec3 fill = normalize(vec3(-0.55, 0.65, 0.52));
     float gloss = pow(max(dot(n, normalize(v + fill)), 0.0), 32.0);
-    float light = 0.09 + 0.05 * n.y + 0.56 * max(dot(n, v), 0.0) + 0.44 * max(dot(n, fill), 0.0);
+    float light =
+        0.09 + 0.05 * n.y + 0.56 * max(dot(n, v), 0.0) + 0.44 * max(dot(n, fill), 0.0);
     return srgb_of(clamp(surface * light + 0.08 * gloss, 0.0, 1.0));
 }
 
@@ -111,7 +114,8 @@ void main()
         if (i != n && dot(clips[i].xyz, p) < clips[i].w)
             discard;
     vec4 there = projection * vec4(p, 1.0);
-    gl_FragDepth = 0.5 * there.z / there.w + 0.5 - 2e-6; // in front of the surface that it ends at
+    gl_FragDepth =
+        0.5 * there.z / there.w + 0.5 - 2e-6; // in front of the surface that it ends at
     if (is_peeled(gl_FragDepth))
         discard;
     result = light_up(p, normalize(clips[n].xyz) * -sign(slope), plain);
@@ -124,10 +128,11 @@ in vec4 own;
 in float tint;
 in vec3 share;
 uniform vec4 plain;
-uniform sampler2D ramp; // colours of what tints
+uniform sampler2D ramp;  // colours of what tints
 uniform vec3 tint_range; // low, 1 / (high - low), rows of the ramp
 uniform float line_width;
-const vec3 inside = vec3(0.75, 0.22, 0.17), line_color = vec3(0.08, 0.10, 0.14), no_value = vec3(0.22);
+const vec3 inside = vec3(0.75, 0.22, 0.17), line_color = vec3(0.08, 0.10, 0.14),
+           no_value = vec3(0.22);
 
 vec4 surface_here()
 {
@@ -136,7 +141,8 @@ vec4 surface_here()
     surface = own;
 #endif
 #ifdef TINTED
-    float row = clamp((tint - tint_range.x) * tint_range.y, 0.0, 1.0) * (tint_range.z - 1.0) + 0.5;
+    float row =
+        clamp((tint - tint_range.x) * tint_range.y, 0.0, 1.0) * (tint_range.z - 1.0) + 0.5;
     vec3 shown = texture(ramp, vec2(row / tint_range.z, 0.5)).rgb;
     surface.rgb = isnan(tint) ? no_value : linear_of(shown);
 #endif
@@ -173,7 +179,8 @@ void main()
         discard;
     result = light_up(at, normal_here(own_normal), surface_here());
 #ifdef EDGES
-    result = mix(result, attenuate(vec4(line_color, 1.0), -at.z, gl_FragCoord.y / picture.y), edge);
+    result =
+        mix(result, attenuate(vec4(line_color, 1.0), -at.z, gl_FragCoord.y / picture.y), edge);
 #endif
 }
 #endif

@@ -87,7 +87,7 @@ vec4 foresee(ray r, inout vec2 part, vec4 found)
 #ifdef FORESEE
     float best = -none, best_from = part.x;
     vec2 useful = part.xx;
-    for (float t = part.x; t < part.y; ) {
+    for (float t = part.x; t < part.y;) {
         vec3 at = r.index + t * r.slope;
         vec2 range = range_of(at);
 #ifdef MIP
@@ -106,7 +106,8 @@ vec4 foresee(ray r, inout vec2 part, vec4 found)
     float until = min(part.y, best_from + block_exit(r, r.index + best_from * r.slope));
     found = take(found, texel_on(r, mix(best_from, until, 0.5)));
     found = take(found, texel_on(r, until));
-    part = vec2(part.x + max(floor((useful.x - part.x) / step_length), 0.0) * step_length, min(part.y, useful.y));
+    part = vec2(part.x + max(floor((useful.x - part.x) / step_length), 0.0) * step_length,
+                min(part.y, useful.y));
 #endif
     return found;
 }
@@ -116,7 +117,7 @@ vec4 foresee(ray r, inout vec2 part, vec4 found)
 vec4 along(ray r, float from, float to, vec4 found)
 {
     float value = texel_on(r, from);
-    for (float t = from; t < to && found.z < 0.5; ) {
+    for (float t = from; t < to && found.z < 0.5;) {
         vec3 at = r.index + t * r.slope;
         float useless = useless_length(r, at, found);
         if (useless > 0.01) {

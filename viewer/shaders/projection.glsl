@@ -1,10 +1,12 @@
 // Coherent projection [Wilhelms1991]: polygons over which the places where rays enter and leave a
 // cell, or in perspective their reciprocal depths, are linear. See viewer/modes/projected_cells.h.
 #ifdef VERTEX
-layout(location = 0) in vec4 place;  // of the picture, -1 to 1; front depth, back minus front; in
-                                     // perspective 1 / front depth, and minus 1 / back depth
-layout(location = 1) in vec3 values; // coordinates in the table, in perspective over the depths;
-                                     // the largest difference of depths in the cell
+layout(
+    location = 0) in vec4 place; // of the picture, -1 to 1; front depth, back minus front; in
+                                 // perspective 1 / front depth, and minus 1 / back depth
+layout(
+    location = 1) in vec3 values; // coordinates in the table, in perspective over the depths;
+                                  // the largest difference of depths in the cell
 out vec2 spans, ends;
 flat out float most;
 out vec4 linear;
@@ -41,7 +43,6 @@ flat in float most;
 in vec4 linear;
 out vec4 result;
 
-
 // A ray's way through the cell: distances along the ray, and the values there.
 struct way {
     float from, extent, front, back;
@@ -66,8 +67,10 @@ vec4 between(float front, float back, float extent)
     float span = back - front;
     vec2 inside = vec2(0.0, 1.0);
     if (min(front, back) < 0.0 || max(front, back) > 1.0)
-        inside = abs(span) < 1e-9 ? vec2(0.0, 0.0)
-                                  : clamp(((span > 0.0 ? vec2(0.0, 1.0) : vec2(1.0, 0.0)) - front) / span, 0.0, 1.0);
+        inside = abs(span) < 1e-9
+                     ? vec2(0.0, 0.0)
+                     : clamp(((span > 0.0 ? vec2(0.0, 1.0) : vec2(1.0, 0.0)) - front) / span,
+                             0.0, 1.0);
     vec4 color = segment_between(front, back, (inside.y - inside.x) * extent);
     if (inside.x > 0.0)
         color = over(segment_between(front, front, inside.x * extent), color);
@@ -91,7 +94,8 @@ vec4 along(ray r, way w, vec2 t, float y)
 #ifdef LINEAR
     vec4 color = linear * (share.y - share.x);
 #else
-    vec4 color = between(mix(w.front, w.back, share.x), mix(w.front, w.back, share.y), t.y - t.x);
+    vec4 color =
+        between(mix(w.front, w.back, share.x), mix(w.front, w.back, share.y), t.y - t.x);
 #endif
 #if defined(LIT) || defined(FACTOR)
     if (color.a > 1e-6)
@@ -121,7 +125,8 @@ void main()
     float y = gl_FragCoord.y / picture.y;
     vec2 all = vec2(w.from, min(w.from + w.extent, mesh_distance(r))), kept = all;
     for (int n = 0; n < counts.y; n++)
-        kept = cut(kept, dot(clips[n].xyz, r.origin) - clips[n].w, dot(clips[n].xyz, r.direction));
+        kept =
+            cut(kept, dot(clips[n].xyz, r.origin) - clips[n].w, dot(clips[n].xyz, r.direction));
     if (counts.z == 0 || counts.y == 0) {
         result = along(r, w, kept, y);
     } else if (kept.x < kept.y) {

@@ -41,7 +41,8 @@ void main()
     float texel = texel_at(index);
     if (isnan(texel) && frame < 0.5)
         discard;
-    vec3 color = mix(classify(coordinate_of(texel)).rgb, frame_color, isnan(texel) ? 1.0 : frame);
+    vec3 color =
+        mix(classify(coordinate_of(texel)).rgb, frame_color, isnan(texel) ? 1.0 : frame);
     vec4 there = projection * vec4(p, 1.0);
     gl_FragDepth = 0.5 * there.z / there.w + 0.5;
     result = attenuate(vec4(color, 1.0), -p.z, gl_FragCoord.y / picture.y);

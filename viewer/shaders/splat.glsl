@@ -18,8 +18,8 @@ uniform float cell;           // volume of a voxel in eye space
 out vec2 offset;              // from the middle, in sigmas; of nodes in voxels
 flat out vec4 node;           // half its sizes, reach of its blur; 0: a voxel
 flat out float far_away;
-out vec3 on_ray;              // the point in eye space
-out vec4 color;               // times the extinction; extinction; both times the height or density
+out vec3 on_ray; // the point in eye space
+out vec4 color;  // times the extinction; extinction; both times the height or density
 
 // The blob's covariance on the picture: of J A A^T J^T.
 mat2 covariance(vec3 at)
@@ -133,7 +133,8 @@ float height()
 {
 #ifdef NODES
     if (node.z > 0.0)
-        return cover(offset.x, node.x, node.z) * cover(offset.y, node.y, node.w) / abs(slope_through(on_ray)[axis]);
+        return cover(offset.x, node.x, node.z) * cover(offset.y, node.y, node.w) /
+               abs(slope_through(on_ray)[axis]);
 #endif
     float at = dot(offset, offset) / (radius * radius);
     return at < 1.0 ? texture(footprint, vec2((at * 255.0 + 0.5) / 256.0, 0.5)).r : 0.0;

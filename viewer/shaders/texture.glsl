@@ -1,7 +1,7 @@
 // What a ray gains in a slab, within one brick's box: slices through 3D textures [Wilson1994],
 // pre-integrated [Engel2001], shaded by gradients or by quantised gradients [VanGelder1996].
 uniform sampler2D segments;
-uniform sampler3D classes; // premultiplied: colour x extinction, extinction per unit
+uniform sampler3D classes;  // premultiplied: colour x extinction, extinction per unit
 uniform usampler3D normals; // each voxel's direction; the highest bit: a boundary's cell
 uniform sampler2D shades;   // shaded colours: a row for each direction, the last for none
 uniform vec3 box_low, box_high;
@@ -9,7 +9,6 @@ uniform float thickness;
 in vec3 front, back;
 in float front_depth;
 out vec4 result;
-
 
 float value_at(vec3 place)
 {
@@ -47,7 +46,9 @@ vec3 shade_of(uint direction, float coordinate)
 {
     vec2 size = vec2(textureSize(shades, 0));
     float row = float(direction & 32767u) + 0.5;
-    return texture(shades, vec2((clamp(coordinate, 0.0, 1.0) * (size.x - 1.0) + 0.5) / size.x, row / size.y)).rgb;
+    return texture(shades, vec2((clamp(coordinate, 0.0, 1.0) * (size.x - 1.0) + 0.5) / size.x,
+                                row / size.y))
+        .rgb;
 }
 
 ivec3 voxel_near(vec3 place)
@@ -68,7 +69,8 @@ vec4 shaded_voxels(vec3 place)
         float coordinate = coordinate_of(texelFetch(volume, voxel, 0).r);
         float extinction = classify(coordinate).a * share.x * share.y * share.z;
         if (extinction > 0.0)
-            sum += extinction * vec4(shade_of(texelFetch(normals, voxel, 0).r, coordinate), 1.0);
+            sum +=
+                extinction * vec4(shade_of(texelFetch(normals, voxel, 0).r, coordinate), 1.0);
     }
     return sum;
 }
@@ -100,7 +102,8 @@ vec4 color_of(vec3 from, vec3 to, float extent)
     vec4 color = segment_between(from, to, extent);
 #ifdef SHADES
     if (color.a > 0.0)
-        color.rgb = shade_of(texelFetch(normals, voxel_near(middle), 0).r, value_at(middle)) * color.a;
+        color.rgb =
+            shade_of(texelFetch(normals, voxel_near(middle), 0).r, value_at(middle)) * color.a;
 #endif
     return color;
 #endif
@@ -117,7 +120,8 @@ vec4 through(float from, float to, vec3 direction, float secant)
     color = by_gradient(color, gradient_in(0.5 * (a + b)), -direction);
 #endif
 #ifdef CUE
-    color = attenuate(color, front_depth + 0.5 * (from + to) * thickness, gl_FragCoord.y / picture.y);
+    color = attenuate(color, front_depth + 0.5 * (from + to) * thickness,
+                      gl_FragCoord.y / picture.y);
 #endif
     return color;
 }
@@ -131,7 +135,8 @@ void main()
     way = mix(way, vec3(1e-20), lessThan(abs(way), vec3(1e-20)));
     vec3 x = (box_low - front) / way, y = (box_high - front) / way;
     vec3 near = min(x, y), far = max(x, y);
-    vec2 all = vec2(max(max(near.x, near.y), max(near.z, 0.0)), min(min(far.x, far.y), min(far.z, 1.0)));
+    vec2 all = vec2(max(max(near.x, near.y), max(near.z, 0.0)),
+                    min(min(far.x, far.y), min(far.z, 1.0)));
 #ifdef MESH
     ray r = ray_of(gl_FragCoord.xy);
     all.y = min(all.y, (mesh_distance(r) * -r.direction.z - front_depth) / thickness);
@@ -141,7 +146,8 @@ void main()
     vec3 place = vec3((2.0 * gl_FragCoord.xy / picture.xy - 1.0) * picture.zw, 0.0);
     place = view.x > 0.5 ? direction * secant * front_depth : place + direction * front_depth;
     for (int n = 0; n < counts.y; n++)
-        kept = cut(kept, dot(clips[n].xyz, place) - clips[n].w, dot(clips[n].xyz, direction) * secant * thickness);
+        kept = cut(kept, dot(clips[n].xyz, place) - clips[n].w,
+                   dot(clips[n].xyz, direction) * secant * thickness);
     if (counts.z == 0) {
         result = through(kept.x, kept.y, direction, secant);
     } else if (kept.x < kept.y) {

@@ -114,8 +114,8 @@ typedef struct cwi_ui_functions {
     /* Waits for input up to wait_s seconds, takes it, and starts a frame. At most one change of
      * each button and one key are taken, the rest by the next frames, so that nothing is lost;
      * moves have frames of their own beside presses and lifts. It returns at once where more
-     * frames are needed to lay out what changed, and in time for tips and a caret that blinks.
-     */
+     * frames are needed to lay out what changed, and in time for tips and a caret
+     * that blinks. */
     const cwi_ui_input *(*begin)(cwi_ui *ui, double wait_s);
     /* Shows the frame. CW_ERR_BACKEND: GL's error, or its context was lost */
     cw_status (*end)(cwi_ui *ui, cw_error *err);

@@ -103,8 +103,8 @@ typedef struct taken {
 
 /* Whether an event belongs into the frame at hand too: each change must be seen, and where and
  * in which order it was. The way to where a button goes down is not dragged, and what is
- * dragged gets where it is let go. A key that is down must come up before it goes down again.
- */
+ * dragged gets where it is let go. A key that is down must come up before it goes
+ * down again. */
 static bool fits(const cwi_ui *ui, const taken *t, const cwi_ui_event *e, int last_key)
 {
     if (t->alone)

@@ -89,7 +89,7 @@ int cwi_ui_key_number(const char *name, unsigned *modifiers);
 void cwi_ui_key_name(char name[CWI_UI_KEY_SIZE], unsigned modifiers, const char *key);
 
 /* The queue (ui_events.c) */
-cw_status cwi_ui_feed(cwi_ui *ui, const cwi_ui_event *event, cw_error *err);
+CW_NODISCARD cw_status cwi_ui_feed(cwi_ui *ui, const cwi_ui_event *event, cw_error *err);
 /* As feed(), of a checked event; what does not fit into memory is lost. A key that repeats is
  * lost when it still waits to be taken: frames may be slower than fingers. */
 bool cwi_ui_queue_put(cwi_ui *ui, const cwi_ui_event *event, bool repeats);
@@ -97,7 +97,7 @@ void cwi_ui_queue_take(cwi_ui *ui); /* a frame's share, into ui->input and Dear 
 void cwi_ui_queue_free(cwi_ui *ui);
 
 /* The window, or what stands for one (ui_glfw_window.c) */
-cw_status cwi_ui_screen_open(cwi_ui *ui, const cwi_ui_desc *desc, cw_error *err);
+CW_NODISCARD cw_status cwi_ui_screen_open(cwi_ui *ui, const cwi_ui_desc *desc, cw_error *err);
 void cwi_ui_screen_close(cwi_ui *ui);
 bool cwi_ui_screen_enter(cwi_ui *ui); /* its context is current until leave() */
 void cwi_ui_screen_leave(cwi_ui *ui);
@@ -116,9 +116,10 @@ void cwi_ui_screen_cursor(cwi_ui *ui, int shape);
 /* GL (ui_framebuffer.c); all within enter() and leave() */
 void cwi_ui_target_begin(cwi_ui *ui); /* of the size that the input says; cleared */
 void cwi_ui_target_free(cwi_ui *ui);  /* and the pictures */
-cw_status cwi_ui_target_check(cw_error *err);
-cw_status cwi_ui_target_grab(cwi_ui *ui, cw_image *image, cw_error *err);
-cw_status cwi_ui_target_keep(cwi_ui *ui, int slot, const cw_image *image, cw_error *err);
+CW_NODISCARD cw_status cwi_ui_target_check(cw_error *err);
+CW_NODISCARD cw_status cwi_ui_target_grab(cwi_ui *ui, cw_image *image, cw_error *err);
+CW_NODISCARD cw_status cwi_ui_target_keep(cwi_ui *ui, int slot, const cw_image *image,
+                                          cw_error *err);
 
 /* Places (ui_widget_rects.c). Labels end before ##. */
 void cwi_ui_label(char out[CWI_UI_NAME_SIZE], const char *label);
@@ -130,9 +131,10 @@ void cwi_ui_panel_leave(cwi_ui *ui);
 int cwi_ui_panel_at(const cwi_ui *ui); /* index of the one at hand; -1: none */
 
 /* Dear ImGui (ui_imgui.cpp) */
-cw_status cwi_ui_imgui_open(cwi_ui *ui, cw_error *err); /* within enter() and leave() */
-void cwi_ui_imgui_close(cwi_ui *ui);                    /* likewise */
-void cwi_ui_imgui_choose(cwi_ui *ui);                   /* of several windows, this one */
+CW_NODISCARD cw_status cwi_ui_imgui_open(cwi_ui *ui,
+                                         cw_error *err); /* within enter() and leave() */
+void cwi_ui_imgui_close(cwi_ui *ui);                     /* likewise */
+void cwi_ui_imgui_choose(cwi_ui *ui);                    /* of several windows, this one */
 void cwi_ui_imgui_write(const char *text);
 void cwi_ui_imgui_begin(cwi_ui *ui);
 void cwi_ui_imgui_layout(cwi_ui *ui); /* ends widgets; what is drawn is known */
@@ -140,13 +142,13 @@ void cwi_ui_imgui_draw(void);         /* into the framebuffer that is bound */
 int cwi_ui_imgui_cursor(const cwi_ui *ui);
 
 /* A frame (ui_frame.c) */
-cw_status cwi_ui_open(const cwi_ui_desc *desc, cwi_ui **ui, cw_error *err);
+CW_NODISCARD cw_status cwi_ui_open(const cwi_ui_desc *desc, cwi_ui **ui, cw_error *err);
 void cwi_ui_close(cwi_ui *ui);
 bool cwi_ui_pending(cwi_ui *ui);
 const cwi_ui_input *cwi_ui_begin(cwi_ui *ui, double wait_s);
-cw_status cwi_ui_end(cwi_ui *ui, cw_error *err);
-cw_status cwi_ui_grab(cwi_ui *ui, cw_image *image, cw_error *err);
-cw_status cwi_ui_keep(cwi_ui *ui, int slot, const cw_image *image, cw_error *err);
+CW_NODISCARD cw_status cwi_ui_end(cwi_ui *ui, cw_error *err);
+CW_NODISCARD cw_status cwi_ui_grab(cwi_ui *ui, cw_image *image, cw_error *err);
+CW_NODISCARD cw_status cwi_ui_keep(cwi_ui *ui, int slot, const cw_image *image, cw_error *err);
 const char *cwi_ui_name(const cwi_ui *ui);
 double cwi_ui_scale(const cwi_ui *ui);
 void cwi_ui_set_cursor(cwi_ui *ui, int shape);

@@ -1,0 +1,88 @@
+/* Records of a mesh on their way into a file: vertices, triangles, lines of text. */
+#include "core/base/status.h"
+#include "core/base/text.h"
+#include "formats/mesh/mesh_writer.h"
+#include "formats/mesh/place_parts.h"
+#include "formats/text/number_format.h"
+
+#include <float.h>
+#include <stdio.h>
+
+enum { PROGRESS_STEP = 65536, BATCH_BYTES = 16 << 10 };
+
+static cw_status drain(const cwi_mesh_output *out, const void *bytes, size_t size,
+                       cw_error *err)
+{
+    return out->drain ? out->drain(out->drain_to, bytes, size, err)
+                      : cwi_outfile_write(out->file, bytes, size, err);
+}
+
+cw_status cwi_write_records(const cwi_part *part, cwi_mesh_output *out,
+                            cwi_record_encoder *encode, size_t count, cw_error *err)
+{
+    unsigned char batch[BATCH_BYTES], *to = batch;
+    cw_status st = CW_OK;
+    for (size_t i = 0; i < count && st == CW_OK; i++) {
+        to = encode(part, i, to);
+        if (to > batch + BATCH_BYTES - CWI_RECORD_BYTES || i + 1 == count) {
+            st = drain(out, batch, (size_t)(to - batch), err);
+            to = batch;
+        }
+        if (st == CW_OK && out->done++ % PROGRESS_STEP == 0)
+            st = cwi_progress(out->progress, "writing", (double)out->done / (double)out->total,
+                              err);
+    }
+    return st;
+}
+
+cw_status cwi_write_part_vertices(const cwi_parts *parts, cwi_mesh_output *out,
+                                  cwi_record_encoder *encode, cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (size_t i = 0; i < parts->count && st == CW_OK; i++)
+        st = cwi_write_records(&parts->items[i], out, encode, parts->items[i].mesh.vertex_count,
+                               err);
+    return st;
+}
+
+cw_status cwi_write_triangles(const cwi_parts *parts, cwi_mesh_output *out,
+                              cwi_record_encoder *encode, cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (size_t i = 0; i < parts->count && st == CW_OK; i++)
+        st = cwi_write_records(&parts->items[i], out, encode,
+                               parts->items[i].mesh.triangle_count, err);
+    return st;
+}
+
+static cw_status check_single(const cwi_part *part, cw_error *err)
+{
+    double low[3], high[3];
+    cwi_part_bounds(part, low, high);
+    for (int a = 0; a < 3; a++)
+        if (low[a] < -(double)FLT_MAX || high[a] > (double)FLT_MAX)
+            return cw_fail(
+                err, CW_ERR_LIMIT,
+                "the mesh stands at %g, which the format's single precision cannot hold",
+                high[a]);
+    return CW_OK;
+}
+
+cw_status cwi_check_single(const cwi_parts *parts, cw_error *err)
+{
+    cw_status st = CW_OK;
+    for (size_t i = 0; i < parts->count && st == CW_OK; i++)
+        st = check_single(&parts->items[i], err);
+    return st;
+}
+
+void cwi_print_origin(const cwi_mesh_output *out, const char *before, const char *after,
+                      char text[CWI_ORIGIN_BYTES])
+{
+    char point[CWI_POINT_BYTES];
+    text[0] = '\0';
+    if (!out->local_origin)
+        return;
+    cwi_print_point(out->local_origin, point);
+    snprintf(text, CWI_ORIGIN_BYTES, "%s%s%s", before, point, after);
+}

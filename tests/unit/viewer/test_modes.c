@@ -1,0 +1,175 @@
+/* What holds for every mode that draws light which is emitted and absorbed. */
+#include "support/meshes.h"
+#include "support/pictures.h"
+
+#include <math.h>
+
+static const double cube[3] = {1, 1, 1};
+
+static const cw_mode modes[] = {CW_MODE_COMPOSITE, CW_MODE_TEXTURE,       CW_MODE_PROJECTION,
+                                CW_MODE_SPLAT,     CW_MODE_SPLAT_TREE,    CW_MODE_VBUFFER,
+                                CW_MODE_REFERENCE, CW_MODE_SHADED_TEXTURE};
+
+enum { MODES = sizeof modes / sizeof *modes, SIDE = 16 };
+
+/* From the front, on the middle of the volume alone: borders are another matter. Light from
+ * everywhere, so that the mode that is always lit draws what the others do. */
+static cw_scene scene_of(cw_mode mode, const cw_volume *volume, const cw_transfer *transfer)
+{
+    return (cw_scene){.mode = mode,
+                      .volume = volume,
+                      .transfer = transfer,
+                      .camera = {.eye = {0, -500, 0}, .up = {0, 0, 1}, .height_mm = 10},
+                      .material = {.ambient = 1},
+                      .step_vox = 0.25,
+                      .width = SIDE,
+                      .height = SIDE};
+}
+
+/* By OpenGL what it draws, by the CPU the rest. */
+static cw_picture draw(cw_scene scene)
+{
+    static cw_renderer *any;
+    cw_error err = {0};
+    test_renderer(); /* or skip */
+    if (!any)
+        assert_ok(cw_renderer_new(CW_BACKEND_AUTO, &any, &err), err);
+    cw_renderer_forget(any);
+    return test_draw(any, &scene);
+}
+
+/* Splats are blurred by a voxel where values end: their rays are as long but not as sharp. */
+static void boxes_are_as_opaque_as_they_are_thick(void **state)
+{
+    (void)state;
+    cw_volume box = {0};
+    const cw_transfer flat = test_flat_transfer();
+    test_field(&box, 24, 33, 20, cube, test_constant);
+    const double alpha = 1 - pow(1 - 0.05, 32);
+    for (int m = 0; m < MODES; m++) {
+        cw_picture p = draw(scene_of(modes[m], &box, &flat));
+        for (size_t n = 0; n < SIDE * SIDE; n++) {
+            assert_near((double)p.pixels[4 * n + 3], alpha, 1.0 / 255);
+            assert_near((double)p.pixels[4 * n], 0.8 * alpha, 1.0 / 255);
+        }
+        cw_picture_free(&p);
+    }
+    cw_volume_free(&box);
+}
+
+static double along_y(const double p[3], const double q[3])
+{
+    (void)p;
+    return q[1];
+}
+
+/* The opacity of a ramp, looked at along and across it. Across, each ray has one value; along,
+ * extinction rises from 0 to that of 0.1: its depth is the integral of -ln(1 - 0.1 v). */
+static void ramps_are_as_opaque_as_they_are(void **state)
+{
+    (void)state;
+    cw_volume along = {0}, across = {0};
+    const cw_transfer rising = {.opacity_count = 2, .opacities = {{0, 0}, {1, 0.1f}}};
+    test_field(&along, 20, 33, 20, cube, along_y);
+    test_field(&across, 33, 20, 20, cube, test_ramp);
+    const double depth = 32 * (0.9 * log(0.9) + 0.1) / 0.1;
+    for (int m = 0; m < MODES; m++) {
+        cw_picture a = draw(scene_of(modes[m], &along, &rising));
+        cw_picture b = draw(scene_of(modes[m], &across, &rising));
+        for (size_t n = 0; n < SIDE * SIDE; n++) {
+            const double x = ((double)(n % SIDE) + 0.5) / SIDE * 10 - 5, v = x / 32 + 0.5;
+            assert_near((double)a.pixels[4 * n + 3], 1 - exp(-depth), 1.0 / 255);
+            assert_near((double)b.pixels[4 * n + 3], 1 - pow(1 - 0.1 * v, 19), 1.0 / 255);
+        }
+        cw_picture_free(&a);
+        cw_picture_free(&b);
+    }
+    cw_volume_free(&along);
+    cw_volume_free(&across);
+}
+
+/* A plate across the volume's middle hides what is behind it. */
+static void make_plate(cw_mesh *plate)
+{
+    double low[3], high[3];
+    test_make_cube(plate);
+    assert_true(cw_mesh_bounds(plate, low, high));
+    for (size_t n = 0; n < 3 * plate->vertex_count; n++) {
+        const double size = n % 3 == 1 ? 1 : 60,
+                     p = plate->origin[n % 3] + (double)plate->positions[n];
+        plate->positions[n] =
+            (float)(size * ((p - low[n % 3]) / (high[n % 3] - low[n % 3]) - 0.5) -
+                    plate->origin[n % 3]);
+    }
+}
+
+static void meshes_hide_what_is_behind(void **state)
+{
+    (void)state;
+    cw_volume box = {0};
+    cw_mesh plate = {0};
+    const cw_transfer flat = test_flat_transfer();
+    test_field(&box, 24, 33, 20, cube, test_constant);
+    make_plate(&plate);
+    const double alpha = 1 - pow(1 - 0.05, 15.5);
+    cw_scene scene = scene_of(CW_MODE_MESH, NULL, NULL);
+    scene.material = (cw_material){0};
+    scene.mesh = &plate;
+    cw_picture alone = draw(scene);
+    for (int m = 0; m < MODES; m++) {
+        scene = scene_of(modes[m], &box, &flat);
+        scene.material = (cw_material){0};
+        scene.mesh = &plate;
+        if (modes[m] == CW_MODE_SHADED_TEXTURE) /* whose light is not the others' */
+            continue;
+        /* a sheet of splats is in front of the plate or behind: half a voxel */
+        const bool is_splatted = modes[m] == CW_MODE_SPLAT || modes[m] == CW_MODE_SPLAT_TREE;
+        cw_picture p = draw(scene);
+        for (size_t n = 0; n < SIDE * SIDE; n++) {
+            const double wanted = 0.8 * alpha + (1 - alpha) * (double)alone.pixels[4 * n];
+            assert_near((double)p.pixels[4 * n + 3], 1, 1e-3);
+            assert_near((double)p.pixels[4 * n], wanted, is_splatted ? 0.02 : 1.0 / 255);
+        }
+        cw_picture_free(&p);
+    }
+    cw_picture_free(&alone);
+    cw_mesh_free(&plate);
+    cw_volume_free(&box);
+}
+
+/* The same scene, larger and smaller by a thousand, with opacities per voxel: the
+ * same picture. */
+static void size_does_not_matter(void **state)
+{
+    (void)state;
+    const cw_transfer soft = test_soft_transfer();
+    for (int m = 0; m < MODES; m++) {
+        cw_picture pictures[3];
+        for (int n = 0; n < 3; n++) {
+            cw_volume v = {0};
+            const double unit = (double[]){1, 1e-3, 1e3}[n],
+                         spacing[3] = {unit, 2 * unit, unit};
+            test_field(&v, 24, 12, 24, spacing, test_blobs);
+            cw_scene s = scene_of(modes[m], &v, &soft);
+            s.camera = (cw_camera){
+                .eye = {20 * unit, -70 * unit, 15 * unit}, .up = {0, 0, 1}, .fov_deg = 25};
+            pictures[n] = draw(s);
+            cw_volume_free(&v);
+        }
+        assert_true(test_compare(&pictures[0], &pictures[1]).max < 0.1);
+        assert_true(test_compare(&pictures[0], &pictures[2]).max < 0.1);
+        for (int n = 0; n < 3; n++)
+            cw_picture_free(&pictures[n]);
+    }
+}
+
+int main(void)
+{
+    const struct CMUnitTest tests[] = {
+        cmocka_unit_test(boxes_are_as_opaque_as_they_are_thick),
+        cmocka_unit_test(ramps_are_as_opaque_as_they_are),
+        cmocka_unit_test(meshes_hide_what_is_behind),
+        cmocka_unit_test(size_does_not_matter),
+    };
+    return cmocka_run_group_tests(tests, NULL, test_renderer_close);
+}
