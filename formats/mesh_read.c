@@ -1,3 +1,4 @@
+/* Reads meshes: finds the reader by name, content or extension. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/bytes/file_pattern.h"
@@ -11,86 +12,62 @@
 #include <stdio.h>
 #include <string.h>
 
-/* One row per reader; content decides, then the extension. */
-typedef struct reader {
-    const char *format;
-    cwi_mesh_sniffer *sniff; /* NULL: content cannot tell */
-    cwi_mesh_reader *read;
-} reader;
-
-static const reader readers[] = {
-    {"ply", cwi_ply_sniff, cwi_ply_read},
-    {"off", cwi_off_sniff, cwi_off_read},
-    {"glb", cwi_glb_sniff, cwi_glb_read},
-    {"stl", cwi_stl_sniff, cwi_stl_read},
-    {"gltf", cwi_gltf_sniff, cwi_gltf_read},
-    {"3mf", cwi_3mf_sniff, cwi_3mf_read},
-    {"vtp", cwi_vtp_sniff, cwi_vtp_read},
-    {"drc", cwi_drc_sniff, cwi_drc_read},
-    {"obj", NULL, cwi_obj_read},
-};
-enum { READER_COUNT = sizeof readers / sizeof *readers };
-
-static const char *reader_names(char names[128])
+static const char *list_readers(char names[128])
 {
     size_t used = 0;
-    for (size_t i = 0; i < READER_COUNT; i++)
-        used += (size_t)snprintf(names + used, 128 - used, "%s%s", i ? ", " : "",
-                                 readers[i].format);
+    for (size_t n = 0; cwi_format_at(n); n++)
+        if (cwi_format_at(n)->mesh.read)
+            used += (size_t)snprintf(names + used, 128 - used, "%s%s", used ? ", " : "",
+                                     cwi_format_at(n)->name);
     return names;
 }
 
-static cw_status find_by_name(const char *name, const reader **found, cw_error *err)
+static cw_status find_by_name(const char *name, const cwi_format_driver **found, cw_error *err)
 {
     char names[128];
-    for (size_t i = 0; i < READER_COUNT; i++)
-        if (strcmp(readers[i].format, name) == 0) {
-            *found = &readers[i];
-            return CW_OK;
-        }
+    *found = cwi_find_format(name);
+    if (*found && (*found)->mesh.read)
+        return CW_OK;
     return cw_fail(err, CW_ERR_ARGUMENT, "there is no mesh reader '%s'; there are %s", name,
-                   reader_names(names));
+                   list_readers(names));
 }
 
-static const char *extensions_of(const char *name)
+static const cwi_format_driver *find_by_content(const unsigned char *head, size_t size,
+                                                uint64_t file_size)
 {
-    size_t count;
-    const cw_format *format = cw_formats(&count);
-    while (strcmp(format->name, name) != 0)
-        format++; /* every reader's format has its row */
-    return format->extensions;
-}
-
-static const reader *find_by_content(const unsigned char *head, size_t size, uint64_t file_size)
-{
-    for (size_t i = 0; i < READER_COUNT; i++)
-        if (readers[i].sniff && readers[i].sniff(head, size, file_size))
-            return &readers[i];
+    for (int last = 0; last < 2; last++)
+        for (size_t n = 0; cwi_format_at(n); n++) {
+            const cwi_mesh_reading *mesh = &cwi_format_at(n)->mesh;
+            if (mesh->sniff && mesh->sniffs_last == last && mesh->sniff(head, size, file_size))
+                return cwi_format_at(n);
+        }
     return NULL;
 }
 
-static const reader *find_by_extension(const char *path)
+static const cwi_format_driver *find_by_extension(const char *path)
 {
-    for (size_t i = 0; i < READER_COUNT; i++)
-        if (cwi_has_extension(path, extensions_of(readers[i].format)))
-            return &readers[i];
+    for (size_t n = 0; cwi_format_at(n); n++)
+        if (cwi_format_at(n)->mesh.read &&
+            cwi_has_extension(path, cwi_format_at(n)->extensions))
+            return cwi_format_at(n);
     return NULL;
 }
 
 const char *cwi_mesh_format_by_content(const unsigned char *head, size_t size,
                                        uint64_t file_size)
 {
-    const reader *found = find_by_content(head, size, file_size);
-    return found ? found->format : NULL;
+    const cwi_format_driver *found = find_by_content(head, size, file_size);
+    return found ? found->name : NULL;
 }
 
 const char *cwi_mesh_format_by_extension(const char *path)
 {
-    const reader *found = find_by_extension(path);
-    return found ? found->format : NULL;
+    const cwi_format_driver *found = find_by_extension(path);
+    return found ? found->name : NULL;
 }
 
-static cw_status find_by_file(const cwi_input *in, const reader **found, cw_error *err)
+static cw_status find_by_file(const cwi_input *in, const cwi_format_driver **found,
+                              cw_error *err)
 {
     unsigned char head[CWI_SNIFF_BYTES];
     char names[128];
@@ -114,7 +91,7 @@ static cw_status find_by_file(const cwi_input *in, const reader **found, cw_erro
                        volume);
     return cw_fail(err, CW_ERR_FORMAT,
                    "neither content nor extension is of a mesh format that is read (%s)",
-                   reader_names(names));
+                   list_readers(names));
 }
 
 static cw_mesh_read_desc resolve_desc(const cw_mesh_read_desc *desc)
@@ -147,13 +124,13 @@ static size_t count_marks(const cwi_marks *marks, const cw_mesh *mesh)
 static cw_status read_open_file(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file *said,
                                 cw_error *err)
 {
-    const reader *found = NULL;
+    const cwi_format_driver *found = NULL;
     cw_status st = in->desc.reader ? find_by_name(in->desc.reader, &found, err)
                                    : find_by_file(&in->file, &found, err);
     if (st != CW_OK)
         return st;
-    *said = (cw_mesh_file){.format = found->format, .parts = 1};
-    st = found->read(in, mesh, said, err);
+    *said = (cw_mesh_file){.format = found->name, .parts = 1};
+    st = found->mesh.read(in, mesh, said, err);
     if (st == CW_OK)
         drop_broken_normals(mesh);
     if (st == CW_OK)

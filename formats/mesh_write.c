@@ -1,3 +1,4 @@
+/* Writes meshes: finds the writer, checks what is asked of it, and says what a file loses. */
 #include <cubewright/formats.h>
 
 #include "core/base/status.h"
@@ -8,43 +9,6 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-
-typedef struct writer {
-    const char *format;
-    cwi_mesh_writer *write;
-    cw_status (*prepare)(cw_error *err); /* loads what it needs; NULL: nothing */
-    bool own_axes;                       /* unit and frame are those of the format */
-    bool text;                           /* it is text, or can be */
-    bool compresses;                     /* it has compressed forms */
-    cw_compression only;                 /* it has this form alone */
-    bool levels;                         /* it has levels of detail */
-    bool animates;                       /* it can show parts one after another */
-} writer;
-
-static const writer writers[] = {
-    {.format = "glb",
-     .write = cwi_glb_write,
-     .prepare = cwi_gltf_prepare,
-     .own_axes = true,
-     .compresses = true,
-     .levels = true,
-     .animates = true},
-    {.format = "gltf",
-     .write = cwi_gltf_write,
-     .prepare = cwi_gltf_prepare,
-     .own_axes = true,
-     .compresses = true,
-     .levels = true,
-     .animates = true,
-     .text = true},
-    {.format = "stl", .write = cwi_stl_write, .text = true},
-    {.format = "ply", .write = cwi_ply_write, .text = true},
-    {.format = "obj", .write = cwi_obj_write, .text = true},
-    {.format = "off", .write = cwi_off_write, .text = true},
-    {.format = "3mf", .write = cwi_3mf_write},
-    {.format = "vtp", .write = cwi_vtp_write},
-    {.format = "drc", .write = cwi_drc_write, .only = CW_COMPRESS_DRACO},
-};
 
 static bool is_wanted(const cw_format *format, const char *path, const char *name)
 {
@@ -80,88 +44,90 @@ static cw_status fail_unknown(const char *name, cw_error *err)
 }
 
 /* glTF may be asked for what it is in any case. */
-static cw_status check_axes(const writer *w, const cw_axes *axes, cw_error *err)
+static cw_status check_axes(const cwi_format_driver *f, const cw_axes *axes, cw_error *err)
 {
     const bool metres = axes->unit == CW_UNIT_MM || axes->unit == CW_UNIT_M;
     if (axes->unit >= CW_UNIT_COUNT)
         return cw_fail(err, CW_ERR_ARGUMENT, "%d is not a unit", (int)axes->unit);
-    if (w->own_axes && (!metres || axes->ras))
+    if (f->write.own_axes && (!metres || axes->ras))
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "%s is in metres, +Y up and facing +Z: it has no other unit or frame",
-                       w->format);
+                       f->name);
     return CW_OK;
 }
 
-static cw_status check_text(const writer *w, const cw_write_desc *d, cw_error *err)
+static cw_status check_text(const cwi_format_driver *f, const cw_write_desc *d, cw_error *err)
 {
     char list[128] = "";
     size_t used = 0;
-    if (!d->text || w->text)
+    if (!d->text || f->write.text)
         return CW_OK;
-    for (size_t i = 0; i < sizeof writers / sizeof *writers; i++)
-        if (writers[i].text && used < sizeof list)
-            used += (size_t)snprintf(list + used, sizeof list - used, " %s", writers[i].format);
+    for (size_t n = 0; cwi_format_at(n); n++)
+        if (cwi_format_at(n)->write.text && used < sizeof list)
+            used += (size_t)snprintf(list + used, sizeof list - used, " %s",
+                                     cwi_format_at(n)->name);
     return cw_fail(err, CW_ERR_ARGUMENT, "%s has no form as text; those that have are%s",
-                   w->format, list);
+                   f->name, list);
 }
 
-static cw_status check_compression(const writer *w, const cw_write_desc *d, cw_error *err)
+static cw_status check_compression(const cwi_format_driver *f, const cw_write_desc *d,
+                                   cw_error *err)
 {
     cw_write_desc as_written = *d;
-    if (w->only && d->compression && d->compression != w->only)
-        return cw_fail(err, CW_ERR_ARGUMENT, "%s has one form only, Draco's", w->format);
-    if (w->only)
-        as_written.compression = w->only;
+    if (f->write.only && d->compression && d->compression != f->write.only)
+        return cw_fail(err, CW_ERR_ARGUMENT, "%s has one form only, Draco's", f->name);
+    if (f->write.only)
+        as_written.compression = f->write.only;
     if (as_written.compression == CW_COMPRESS_NONE)
         return CW_OK;
-    if (w->compresses || w->only)
+    if (f->write.compresses || f->write.only)
         return cwi_gltf_prepare_codec(&as_written, err);
     return cw_fail(err, CW_ERR_ARGUMENT, "%s has no compressed form; glTF (.glb, .gltf) has",
-                   w->format);
+                   f->name);
 }
 
-static cw_status check_animation(const writer *w, const cw_write_desc *d, cw_error *err)
+static cw_status check_animation(const cwi_format_driver *f, const cw_write_desc *d,
+                                 cw_error *err)
 {
-    return !d->animated || w->animates
+    return !d->animated || f->write.animates
                ? CW_OK
                : cw_fail(err, CW_ERR_ARGUMENT, "%s has no animation; glTF (.glb, .gltf) has",
-                         w->format);
+                         f->name);
 }
 
 /* How a file will be written. */
 typedef struct target {
     const cw_format *format;
-    const writer *writer;
+    const cwi_format_driver *driver;
 } target;
 
 /* The format and writer of a path, with what it needs loaded; it can do what is asked for. */
 static cw_status find_writer(const char *path, const cw_write_desc *d, target *t, cw_error *err)
 {
-    *t = (target){cw_mesh_format(path, d->format), writers};
+    *t = (target){.format = cw_mesh_format(path, d->format)};
     if (!t->format)
         return fail_unknown(d->format, err);
-    while (strcmp(t->writer->format, t->format->name) != 0)
-        t->writer++; /* every format that says it writes meshes has its row */
-    cw_status st = check_axes(t->writer, &d->axes, err);
+    t->driver = cwi_find_format(t->format->name);
+    cw_status st = check_axes(t->driver, &d->axes, err);
     if (st == CW_OK)
-        st = check_text(t->writer, d, err);
+        st = check_text(t->driver, d, err);
     if (st == CW_OK)
-        st = check_animation(t->writer, d, err);
+        st = check_animation(t->driver, d, err);
     if (st == CW_OK)
-        st = check_compression(t->writer, d, err);
-    return st == CW_OK && t->writer->prepare ? t->writer->prepare(err) : st;
+        st = check_compression(t->driver, d, err);
+    return st == CW_OK && t->driver->write.prepare ? t->driver->write.prepare(err) : st;
 }
 
-static cw_status check_levels(const writer *w, const cw_part *parts, size_t count,
+static cw_status check_levels(const cwi_format_driver *f, const cw_part *parts, size_t count,
                               cw_error *err)
 {
     for (size_t i = 0; i < count; i++) {
         const size_t level = parts[i].level;
         if (level == 0)
             continue;
-        if (!w->levels)
+        if (!f->write.levels)
             return cw_fail(err, CW_ERR_ARGUMENT,
-                           "%s has no levels of detail; glTF (.glb, .gltf) has", w->format);
+                           "%s has no levels of detail; glTF (.glb, .gltf) has", f->name);
         if (i == 0 || parts[i - 1].level != level - 1)
             return cw_fail(err, CW_ERR_ARGUMENT,
                            "part %zu is of level %zu: one of level %zu must be "
@@ -178,7 +144,7 @@ static cw_status write_parts(const char *path, const cwi_parts *parts, const tar
 {
     cw_status st = cwi_outfile_open(&out->file, path, d->no_clobber, err);
     if (st == CW_OK)
-        st = t->writer->write(parts, out, err);
+        st = t->driver->write.write(parts, out, err);
     if (st == CW_OK)
         st = cwi_outfile_commit(&out->file, err);
     cwi_outfile_abort(&out->file);
@@ -202,11 +168,11 @@ cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
                            .progress = &d.progress};
     cw_status st = find_writer(path, &d, &t, err);
     if (st == CW_OK)
-        st = check_levels(t.writer, parts, count, err);
-    if (st == CW_OK && t.writer->own_axes)
+        st = check_levels(t.driver, parts, count, err);
+    if (st == CW_OK && t.driver->write.own_axes)
         d.axes = (cw_axes){0};
-    if (st == CW_OK && t.writer->only)
-        d.compression = t.writer->only;
+    if (st == CW_OK && t.driver->write.only)
+        d.compression = t.driver->write.only;
     if (st == CW_OK)
         st = cwi_parts_place(parts, count, &d, t.format->keeps, name, &placed, origin, err);
     if (st == CW_OK)

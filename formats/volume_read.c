@@ -1,3 +1,4 @@
+/* Reads volumes: finds the reader by name, content or extension, of a file, a folder or a series. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
@@ -16,70 +17,28 @@
 #include <string.h>
 #include <unistd.h>
 
-/* One row per reader; content decides, then the extension. */
-typedef struct reader {
-    const char *name, *extensions;
-    bool gzipped; /* the whole file may be a gzip file */
-    bool (*sniff)(const unsigned char *head, size_t size);
-    cw_status (*parse)(const cwi_input *in, cwi_source *src, cw_error *err);
-    /* where files may hold irregular grids */
-    cw_status (*read_grid)(const cwi_input *in, const cw_read_desc *desc, bool *is_grid,
-                           cw_volume *volume, cw_error *err);
-    /* or, for slices in files of their own, the whole reading */
-    cw_status (*read)(const cwi_input *in, cwi_names *names, const cw_read_desc *desc,
-                      cw_volume *volume, cw_error *err);
-    /* or that of one file */
-    cw_status (*read_one)(const cwi_input *in, const cw_read_desc *desc, cw_volume *volume,
-                          cw_error *err);
-} reader;
+typedef cwi_format_driver driver;
 
-/* Nothing in such a file tells. */
-static bool never(const unsigned char *head, size_t size)
-{
-    (void)head, (void)size;
-    return false;
-}
-
-static const reader readers[] = {
-    {"nrrd", ".nrrd .nhdr", false, cwi_nrrd_sniff, .parse = cwi_nrrd_parse},
-    {"nifti", ".nii .nii.gz .hdr .hdr.gz .img .img.gz", true, cwi_nifti_sniff,
-     .parse = cwi_nifti_parse},
-    {"metaimage", ".mha .mhd", false, cwi_metaimage_sniff, .parse = cwi_metaimage_parse},
-    {"vtk", ".vtk", false, cwi_vtk_sniff, .parse = cwi_vtk_parse,
-     .read_grid = cwi_vtk_read_grid},
-    {"vtu", ".vtu .vts", false, cwi_vtu_sniff, .read_grid = cwi_vtu_read},
-    {"vti", ".vti .vtr", false, cwi_vti_sniff, .parse = cwi_vti_parse},
-    {"mrc", ".mrc .map .ccp4 .rec .mrc.gz .map.gz", true, cwi_mrc_sniff,
-     .parse = cwi_mrc_parse},
-    {"inr", ".inr .inr.gz", true, cwi_inr_sniff, .parse = cwi_inr_parse},
-    {"dicom", ".dcm .dicom .ima", false, cwi_dicom_sniff, .read = cwi_dicom_read},
-    {"tiff", ".tif .tiff", false, cwi_tiff_sniff, .read = cwi_tiff_read},
-    {"vdb", ".vdb", false, cwi_vdb_sniff, .read_one = cwi_vdb_read},
-    {"plot3d", ".q", false, never, .read_one = cwi_plot3d_read},
-};
-enum { READER_COUNT = sizeof readers / sizeof *readers };
-
-static const char *reader_names(char names[128])
+static const char *list_readers(char names[128])
 {
     size_t used = 0;
-    for (size_t i = 0; i < READER_COUNT; i++)
-        used +=
-            (size_t)snprintf(names + used, 128 - used, "%s%s", i ? ", " : "", readers[i].name);
+    for (size_t n = 0; cwi_format_at(n); n++)
+        if (cwi_reads_volume(cwi_format_at(n)))
+            used += (size_t)snprintf(names + used, 128 - used, "%s%s", used ? ", " : "",
+                                     cwi_format_at(n)->name);
     return names;
 }
 
-static cw_status find_by_name(const char *name, const reader **found, cw_error *err)
+static cw_status find_by_name(const char *name, const driver **found, cw_error *err)
 {
     char names[128];
-    if (strcmp(name, "raw") == 0)
+    *found = cwi_find_format(name);
+    if (*found == &cwi_format_raw)
         return cw_fail(err, CW_ERR_ARGUMENT, "the reader 'raw' needs a layout");
-    for (size_t i = 0; i < READER_COUNT; i++)
-        if (strcmp(readers[i].name, name) == 0) {
-            *found = &readers[i];
-            return CW_OK;
-        }
+    if (*found && cwi_reads_volume(*found))
+        return CW_OK;
     return cw_fail(err, CW_ERR_ARGUMENT, "there is no reader '%s'; there are %s", name,
-                   reader_names(names));
+                   list_readers(names));
 }
 
 /* A gzip file that is damaged from the start has no content to go by. */
@@ -93,22 +52,29 @@ static cw_status read_head(const cwi_input *in, unsigned char *head, size_t *siz
     return CW_OK;
 }
 
+static bool sniffs_volume(const driver *f, const unsigned char *head, size_t size)
+{
+    return f->volume.sniff && f->volume.sniff(head, size);
+}
+
 /* By its content, or NULL. The meshes of VTK's XML are no volumes, nor are lists. */
-static const reader *find_by_content(const unsigned char *head, size_t size, bool gzipped)
+static const driver *find_by_content(const unsigned char *head, size_t size, bool gzipped)
 {
     if (cwi_vtp_sniff(head, size, 0) || cwi_pvd_sniff(head, size))
         return NULL;
-    for (size_t i = 0; i < READER_COUNT; i++)
-        if ((readers[i].gzipped || !gzipped) && readers[i].sniff(head, size))
-            return &readers[i];
+    for (size_t n = 0; cwi_format_at(n); n++)
+        if ((cwi_format_at(n)->volume.gzipped || !gzipped) &&
+            sniffs_volume(cwi_format_at(n), head, size))
+            return cwi_format_at(n);
     return NULL;
 }
 
-static const reader *find_by_extension(const char *path)
+static const driver *find_by_extension(const char *path)
 {
-    for (size_t i = 0; i < READER_COUNT; i++)
-        if (cwi_has_extension(path, readers[i].extensions))
-            return &readers[i];
+    for (size_t n = 0; cwi_format_at(n); n++)
+        if (cwi_reads_volume(cwi_format_at(n)) &&
+            cwi_has_extension(path, cwi_volume_extensions(cwi_format_at(n))))
+            return cwi_format_at(n);
     return NULL;
 }
 
@@ -117,7 +83,7 @@ const char *cwi_volume_format_of(const cwi_input *in)
     unsigned char head[CWI_SNIFF_BYTES];
     size_t size;
     bool gzipped;
-    const reader *found = NULL;
+    const driver *found = NULL;
     if (read_head(in, head, &size, &gzipped, NULL) == CW_OK)
         found = find_by_content(head, size, gzipped);
     if (!found)
@@ -131,7 +97,7 @@ static cw_status fail_mesh(const char *format, cw_error *err)
                    "this is a mesh (%s), not a volume; use check, convert or simplify", format);
 }
 
-static cw_status find_by_file(const cwi_input *in, const reader **found, cw_error *err)
+static cw_status find_by_file(const cwi_input *in, const driver **found, cw_error *err)
 {
     unsigned char head[CWI_SNIFF_BYTES];
     char names[128];
@@ -156,7 +122,7 @@ static cw_status find_by_file(const cwi_input *in, const reader **found, cw_erro
         err, CW_ERR_FORMAT,
         "neither content nor extension is of a format that is read (%s); a headerless "
         "file needs its layout stated (--raw)",
-        reader_names(names));
+        list_readers(names));
 }
 
 /* --- what a path stands for --------------------------------------------------------------- */
@@ -167,7 +133,7 @@ typedef struct opened {
     cwi_names names;
     size_t links; /* left out */
     bool many;
-    const reader *reader; /* NULL: raw */
+    const driver *reader; /* NULL: raw */
 } opened;
 
 static void close_path(opened *o)
@@ -193,7 +159,7 @@ static cw_status open_names(opened *o, const char *path, const cw_read_desc *des
 }
 
 /* Whether a file of the folder is of a format; one that cannot be read is of none. */
-static bool is_of(const cwi_input *in, const char *name, const reader *r)
+static bool is_of(const cwi_input *in, const char *name, const driver *r)
 {
     unsigned char head[CWI_SNIFF_BYTES];
     uint64_t file_size;
@@ -203,7 +169,7 @@ static bool is_of(const cwi_input *in, const char *name, const reader *r)
         return false;
     const bool read = cwi_input_read_at(fd, 0, head, sizeof head, &size, NULL) == CW_OK;
     close(fd);
-    return read && r->sniff(head, size);
+    return read && sniffs_volume(r, head, size);
 }
 
 /* Of a folder without slices: whether it holds volumes, or links. */
@@ -213,11 +179,11 @@ static cw_status fail_no_slice(const opened *o, cw_error *err)
     if (o->links)
         snprintf(links, sizeof links,
                  "; %zu links were left out, --allow-external follows them", o->links);
-    for (size_t r = 0; r < READER_COUNT; r++) {
+    for (size_t r = 0; cwi_format_at(r); r++) {
         size_t count = 0;
         const char *last = NULL;
         for (size_t i = 0; i < o->names.count; i++)
-            if (is_of(&o->in, o->names.items[i], &readers[r])) {
+            if (is_of(&o->in, o->names.items[i], cwi_format_at(r))) {
                 last = o->names.items[i];
                 count++;
             }
@@ -230,7 +196,7 @@ static cw_status fail_no_slice(const opened *o, cw_error *err)
             return cw_fail(err, CW_ERR_FORMAT,
                            "none of its %zu files is a slice; volumes by themselves: %zu (%s), "
                            "name one of them%s%s",
-                           o->names.count, count, readers[r].name, all, links);
+                           o->names.count, count, cwi_format_at(r)->name, all, links);
     }
     return cw_fail(err, CW_ERR_FORMAT,
                    "none of its %zu files is a slice in a format that is read (DICOM, TIFF)%s; "
@@ -240,22 +206,31 @@ static cw_status fail_no_slice(const opened *o, cw_error *err)
 
 static cw_status find_by_files(opened *o, cw_error *err)
 {
-    for (size_t r = 0; r < READER_COUNT; r++)
-        for (size_t i = 0; readers[r].read && i < o->names.count; i++)
-            if (is_of(&o->in, o->names.items[i], &readers[r])) {
-                o->reader = &readers[r];
+    for (size_t r = 0; cwi_format_at(r); r++)
+        for (size_t i = 0; cwi_format_at(r)->volume.read_slices && i < o->names.count; i++)
+            if (is_of(&o->in, o->names.items[i], cwi_format_at(r))) {
+                o->reader = cwi_format_at(r);
                 return CW_OK;
             }
     return fail_no_slice(o, err);
 }
 
+/* The format of a file whose points another file has. */
+static const driver *find_with_points(void)
+{
+    size_t n = 0;
+    while (!cwi_format_at(n)->volume.needs_points)
+        n++;
+    return cwi_format_at(n);
+}
+
 static cw_status find_reader(opened *o, const cw_read_desc *desc, cw_error *err)
 {
-    const char *name = desc->reader || !desc->points ? desc->reader : "plot3d";
+    const char *name = desc->reader || !desc->points ? desc->reader : find_with_points()->name;
     cw_status st = name      ? find_by_name(name, &o->reader, err)
                    : o->many ? find_by_files(o, err)
                              : find_by_file(&o->in, &o->reader, err);
-    if (st == CW_OK && o->many && !o->reader->read)
+    if (st == CW_OK && o->many && !o->reader->volume.read_slices)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "the reader '%s' reads one file, and these are %zu", o->reader->name,
                        o->names.count);
@@ -296,7 +271,7 @@ static cw_status read_source(opened *o, const cw_read_desc *desc, cw_volume *vol
 {
     cwi_source src = {0};
     cw_status st = desc->raw ? cwi_raw_describe(desc->raw, &src, err)
-                             : o->reader->parse(&o->in, &src, err);
+                             : o->reader->volume.parse(&o->in, &src, err);
     if (st == CW_OK && desc->array && !src.has_arrays)
         st = refuse_array(desc->array, err);
     if (st == CW_OK && *src.note)
@@ -322,8 +297,8 @@ static cw_status read_one(opened *o, const cw_read_desc *desc, cw_volume *volume
 {
     bool is_grid = false;
     cw_status st = CW_OK;
-    if (o->reader && o->reader->read_grid)
-        st = o->reader->read_grid(&o->in, desc, &is_grid, volume, err);
+    if (o->reader && o->reader->volume.read_grid)
+        st = o->reader->volume.read_grid(&o->in, desc, &is_grid, volume, err);
     return st == CW_OK && !is_grid ? read_source(o, desc, volume, err) : st;
 }
 
@@ -354,7 +329,7 @@ static cw_status expect_thin(const cw_read_desc *desc, cw_volume *v, cw_error *e
 static void tell_arrays(const opened *o, const cw_read_desc *desc, const cwi_array_list *arrays)
 {
     char text[240];
-    const bool has_grids = o->reader && o->reader->read_one == cwi_vdb_read;
+    const bool has_grids = o->reader && o->reader->volume.tells_arrays;
     if (!has_grids && cwi_array_list_tell(arrays, text, sizeof text))
         cwi_note(desc, "%s", text);
 }
@@ -362,13 +337,13 @@ static void tell_arrays(const opened *o, const cw_read_desc *desc, const cwi_arr
 static cw_status read_opened(opened *o, const cw_read_desc *desc, cw_volume *volume,
                              cw_error *err)
 {
-    const reader *r = o->reader;
-    if (r && r->read && desc->array)
+    const cwi_volume_reading none = {0}, *r = o->reader ? &o->reader->volume : &none;
+    if (r->read_slices && desc->array)
         return refuse_array(desc->array, err);
-    if (r && r->read)
-        return r->read(&o->in, o->many ? &o->names : NULL, desc, volume, err);
-    return r && r->read_one ? r->read_one(&o->in, desc, volume, err)
-                            : read_one(o, desc, volume, err);
+    if (r->read_slices)
+        return r->read_slices(&o->in, o->many ? &o->names : NULL, desc, volume, err);
+    return r->read_file ? r->read_file(&o->in, desc, volume, err)
+                        : read_one(o, desc, volume, err);
 }
 
 cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *volume,
@@ -416,7 +391,7 @@ cw_status cw_arrays_list(const char *path, const cw_read_desc *desc, cw_array **
     d.note = NULL;
     cw_status st = open_path(&o, path, &d, err);
     o.in.arrays = &list;
-    if (st == CW_OK && !(o.reader && o.reader->read))
+    if (st == CW_OK && !(o.reader && o.reader->volume.read_slices))
         st = read_opened(&o, &d, &shape, err);
     if (st == CW_OK && list.starved)
         st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a list of arrays");
@@ -444,8 +419,9 @@ cw_status cw_series_list(const char *path, const cw_read_desc *desc, cw_series *
     if (!desc)
         desc = &defaults;
     cw_status st = open_path(&o, path, desc, err);
-    if (st == CW_OK && o.reader && o.reader->read == cwi_dicom_read)
-        st = cwi_dicom_list(&o.in, o.many ? &o.names : NULL, desc, series, count, err);
+    if (st == CW_OK && o.reader && o.reader->volume.list_series)
+        st = o.reader->volume.list_series(&o.in, o.many ? &o.names : NULL, desc, series, count,
+                                          err);
     close_path(&o);
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
 }
@@ -463,8 +439,8 @@ static kind kind_of(const char *path, const cw_read_desc *desc)
     if (cwi_is_folder(path))
         return VOLUME;
     const bool known = open_path(&o, path, desc, NULL) == CW_OK;
-    const bool slices = known && o.reader->read;
-    const bool pages = slices && o.reader->read == cwi_tiff_read;
+    const bool slices = known && o.reader->volume.read_slices;
+    const bool pages = slices && o.reader->volume.holds_pages;
     close_path(&o);
     d.header_only = true;
     d.note = NULL;
@@ -518,17 +494,18 @@ static cw_status refuse_slices(const cwi_names *names, const cw_read_desc *desc,
 
 /* The reader of one volume a file that all files of a folder have which are of any; NULL: they
  * are of several, or a slice is among them. Those of none are taken off the list. */
-static const reader *find_common(const cwi_input *in, cwi_names *names)
+static const driver *find_common(const cwi_input *in, cwi_names *names)
 {
-    const reader *common = NULL;
+    const driver *common = NULL;
     size_t kept = 0;
     bool mixed = false;
     for (size_t i = 0; i < names->count; i++) {
-        const reader *r = readers;
-        while (r < readers + READER_COUNT && !is_of(in, names->items[i], r))
-            r++;
-        if (r < readers + READER_COUNT) {
-            mixed = mixed || r->read || (common && common != r);
+        size_t n = 0;
+        while (cwi_format_at(n) && !is_of(in, names->items[i], cwi_format_at(n)))
+            n++;
+        const driver *r = cwi_format_at(n);
+        if (r) {
+            mixed = mixed || r->volume.read_slices || (common && common != r);
             common = r;
             names->items[kept++] = names->items[i];
         } else {

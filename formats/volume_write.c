@@ -1,3 +1,4 @@
+/* Writes a volume: finds the writer, and hands it a file that appears when it is whole. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
@@ -5,49 +6,43 @@
 #include "formats/format_registry.h"
 #include "formats/volume/volume_writer.h"
 
+#include <stdio.h>
 #include <string.h>
 
-/* One row per writer. has_scaling: slope and intercept have a place in the header. */
-typedef struct writer {
-    const char *name, *extensions;
-    bool has_scaling;
-    cw_status (*save)(const cwi_save *save, cw_error *err);
-} writer;
+typedef cwi_format_driver driver;
 
-static const writer writers[] = {
-    {"nrrd", ".nrrd", false, cwi_nrrd_save},
-    {"nifti", ".nii .nii.gz", true, cwi_nifti_save},
-    {"metaimage", ".mha", false, cwi_metaimage_save},
-};
-enum { WRITER_COUNT = sizeof writers / sizeof *writers };
-
-/* --- which writer ------------------------------------------------------------------------ */
-
-static cw_status find_writer(const char *path, const char *format, const writer **found,
-                             cw_error *err)
+static bool is_wanted(const driver *f, const char *path, const char *format)
 {
-    *found = NULL;
-    for (size_t i = 0; i < WRITER_COUNT; i++)
-        if (format ? strcmp(writers[i].name, format) == 0
-                   : cwi_has_extension(path, writers[i].extensions))
-            *found = &writers[i];
-    if (*found)
-        return CW_OK;
-    if (format)
-        return cw_fail(err, CW_ERR_ARGUMENT,
-                       "there is no writer '%s' of volumes; there are nrrd, nifti, metaimage",
-                       format);
-    return cw_fail(
-        err, CW_ERR_ARGUMENT,
-        "no writer of volumes has this extension; there are .nrrd, .nii, .nii.gz, .mha");
+    return f->save.save && (format ? strcmp(f->name, format) == 0
+                                   : cwi_has_extension(path, f->save.extensions));
 }
 
-static cw_status check_scaling(const writer *w, const cw_volume *v, cw_error *err)
+static cw_status find_writer(const char *path, const char *format, const driver **found,
+                             cw_error *err)
 {
-    if (w->has_scaling || (v->slope == 1 && v->intercept == 0))
+    char list[128];
+    size_t used = 0;
+    for (size_t n = 0; (*found = cwi_format_at(n)) != NULL; n++)
+        if (is_wanted(*found, path, format))
+            return CW_OK;
+    for (size_t n = 0; cwi_format_at(n) && used < sizeof list; n++) {
+        const driver *f = cwi_format_at(n);
+        if (f->save.save)
+            used += (size_t)snprintf(list + used, sizeof list - used, " %s",
+                                     format ? f->name : f->save.extensions);
+    }
+    return format ? cw_fail(err, CW_ERR_ARGUMENT,
+                            "there is no writer '%s' of volumes; there are%s", format, list)
+                  : cw_fail(err, CW_ERR_ARGUMENT,
+                            "no writer of volumes has this extension; there are%s", list);
+}
+
+static cw_status check_scaling(const driver *f, const cw_volume *v, cw_error *err)
+{
+    if (f->save.has_scaling || (v->slope == 1 && v->intercept == 0))
         return CW_OK;
     return cw_fail(err, CW_ERR_ARGUMENT,
-                   "%s has no place for slope %g and intercept %g; .nii has", w->name, v->slope,
+                   "%s has no place for slope %g and intercept %g; .nii has", f->name, v->slope,
                    v->intercept);
 }
 
@@ -67,7 +62,7 @@ static void make_name(const char *path, const char *name, char out[80])
     out[kept] = '\0';
 }
 
-static cw_status write_file(const char *path, const writer *w, const cw_write_desc *desc,
+static cw_status write_file(const char *path, const driver *f, const cw_write_desc *desc,
                             cwi_save *save, cw_error *err)
 {
     char name[80];
@@ -77,7 +72,7 @@ static cw_status write_file(const char *path, const writer *w, const cw_write_de
     save->progress = &desc->progress;
     cw_status st = cwi_outfile_open(&save->file, path, desc->no_clobber, err);
     if (st == CW_OK)
-        st = w->save(save, err);
+        st = f->save.save(save, err);
     if (st == CW_OK)
         st = cwi_progress(save->progress, "writing", 1, err);
     if (st == CW_OK)
@@ -90,12 +85,12 @@ cw_status cw_volume_write(const char *path, const cw_volume *volume, const cw_wr
                           cw_error *err)
 {
     const cw_write_desc defaults = {0};
-    const writer *w;
+    const driver *f;
     cw_volume v;
     cwi_save save = {.volume = &v};
     if (!desc)
         desc = &defaults;
-    cw_status st = find_writer(path, desc->format, &w, err);
+    cw_status st = find_writer(path, desc->format, &f, err);
     if (st == CW_OK && desc->local)
         st = cw_fail(err, CW_ERR_ARGUMENT, "a volume has no local form: its frame stays");
     if (st == CW_OK && (desc->text || desc->axes.unit || desc->axes.ras || desc->axes.y_up))
@@ -105,8 +100,8 @@ cw_status cw_volume_write(const char *path, const cw_volume *volume, const cw_wr
     if (st == CW_OK)
         st = cwi_volume_expect_even(&v, "writing a volume", err);
     if (st == CW_OK)
-        st = check_scaling(w, &v, err);
+        st = check_scaling(f, &v, err);
     if (st == CW_OK)
-        st = write_file(path, w, desc, &save, err);
+        st = write_file(path, f, desc, &save, err);
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
 }

@@ -228,7 +228,7 @@ static void unknown_writers_are_refused(void **state)
     cw_error err = {0};
     const cw_write_desc jpeg = {.format = "jpeg"}, local = {.local = true};
     assert_fails(cw_volume_write(test_path("a.mhd"), &v, NULL, &err), CW_ERR_ARGUMENT,
-                 ".nrrd, .nii, .nii.gz, .mha", err);
+                 ".nrrd .nii .nii.gz .mha", err);
     assert_fails(cw_volume_write(test_path("a.nrrd"), &v, &jpeg, &err), CW_ERR_ARGUMENT,
                  "no writer 'jpeg'", err);
     assert_fails(cw_volume_write(test_path("a.nrrd"), &v, &local, &err), CW_ERR_ARGUMENT,

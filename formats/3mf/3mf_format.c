@@ -1,0 +1,12 @@
+/* 3MF: what is read and written, and by whom. */
+#include "formats/driver/format_driver.h"
+
+const cwi_format_driver cwi_format_3mf = {
+    .name = "3mf",
+    .extensions = ".3mf",
+    .about = "3MF for printing: objects with colours, LPS millimetres",
+    .lost = "normals, scalars, labels, affine",
+    .keeps = CW_KEEPS_SHARING | CW_KEEPS_PLACES | CW_KEEPS_COLORS | CW_KEEPS_PARTS,
+    .mesh = {.sniff = cwi_3mf_sniff, .read = cwi_3mf_read},
+    .write = {.write = cwi_3mf_write},
+};

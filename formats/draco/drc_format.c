@@ -1,0 +1,13 @@
+/* Draco files: what is read and written, and by whom. */
+#include "formats/driver/format_driver.h"
+
+const cwi_format_driver cwi_format_drc = {
+    .name = "drc",
+    .extensions = ".drc",
+    .about = "Draco: a compressed mesh, LPS millimetres",
+    .feature = "draco",
+    .lost = "scalars, labels, affine; places between those of the grid",
+    .keeps = CW_KEEPS_SHARING | CW_KEEPS_NORMALS | CW_KEEPS_COLORS,
+    .mesh = {.sniff = cwi_drc_sniff, .read = cwi_drc_read},
+    .write = {.write = cwi_drc_write, .only = CW_COMPRESS_DRACO},
+};

@@ -1,0 +1,37 @@
+/* glTF, binary and as text: what is read and written, and by whom. */
+#include "formats/driver/format_driver.h"
+
+const cwi_format_driver cwi_format_glb = {
+    .name = "glb",
+    .extensions = ".glb",
+    .about = "binary glTF 2.0 scene, metres, +Y up, facing +Z",
+    .feature = "gltf",
+    .lost = "scalars, labels",
+    .keeps = CW_KEEPS_SHARING | CW_KEEPS_PLACES | CW_KEEPS_NORMALS | CW_KEEPS_COLORS |
+             CW_KEEPS_PARTS | CW_KEEPS_AFFINE,
+    .mesh = {.sniff = cwi_glb_sniff, .read = cwi_glb_read},
+    .write = {.write = cwi_glb_write,
+              .prepare = cwi_gltf_prepare,
+              .own_axes = true,
+              .compresses = true,
+              .levels = true,
+              .animates = true},
+};
+
+const cwi_format_driver cwi_format_gltf = {
+    .name = "gltf",
+    .extensions = ".gltf",
+    .about = "glTF 2.0 scene as text, metres, +Y up, facing +Z",
+    .feature = "gltf",
+    .lost = "scalars, labels",
+    .keeps = CW_KEEPS_SHARING | CW_KEEPS_PLACES | CW_KEEPS_NORMALS | CW_KEEPS_COLORS |
+             CW_KEEPS_PARTS | CW_KEEPS_AFFINE,
+    .mesh = {.sniff = cwi_gltf_sniff, .read = cwi_gltf_read},
+    .write = {.write = cwi_gltf_write,
+              .prepare = cwi_gltf_prepare,
+              .own_axes = true,
+              .compresses = true,
+              .levels = true,
+              .animates = true,
+              .text = true},
+};

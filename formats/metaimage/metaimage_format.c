@@ -1,0 +1,11 @@
+/* MetaImage: what is read and written, and by whom. */
+#include "formats/driver/format_driver.h"
+
+const cwi_format_driver cwi_format_metaimage = {
+    .name = "metaimage",
+    .extensions = ".mha .mhd",
+    .about = "MetaImage volume",
+    .lost = "slope and intercept",
+    .volume = {.sniff = cwi_metaimage_sniff, .parse = cwi_metaimage_parse},
+    .save = {.extensions = ".mha", .save = cwi_metaimage_save},
+};

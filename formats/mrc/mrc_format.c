@@ -1,0 +1,12 @@
+/* MRC and CCP4: what is read and written, and by whom. */
+#include "formats/driver/format_driver.h"
+
+const cwi_format_driver cwi_format_mrc = {
+    .name = "mrc",
+    .extensions = ".mrc .map .ccp4 .rec",
+    .about = "MRC2014 or CCP4 map, plain or gzipped",
+    .volume = {.extensions = ".mrc .map .ccp4 .rec .mrc.gz .map.gz",
+               .gzipped = true,
+               .sniff = cwi_mrc_sniff,
+               .parse = cwi_mrc_parse},
+};

@@ -1,0 +1,14 @@
+/* NIfTI-1 and NIfTI-2: what is read and written, and by whom. */
+#include "formats/driver/format_driver.h"
+
+const cwi_format_driver cwi_format_nifti = {
+    .name = "nifti",
+    .extensions = ".nii .nii.gz .hdr",
+    .about = "NIfTI volume, plain or gzipped",
+    .lost = "the frame beyond single precision",
+    .volume = {.extensions = ".nii .nii.gz .hdr .hdr.gz .img .img.gz",
+               .gzipped = true,
+               .sniff = cwi_nifti_sniff,
+               .parse = cwi_nifti_parse},
+    .save = {.extensions = ".nii .nii.gz", .has_scaling = true, .save = cwi_nifti_save},
+};

@@ -1,0 +1,10 @@
+/* NRRD: what is read and written, and by whom. */
+#include "formats/driver/format_driver.h"
+
+const cwi_format_driver cwi_format_nrrd = {
+    .name = "nrrd",
+    .extensions = ".nrrd .nhdr",
+    .about = "NRRD volume, in one file or with its data beside it",
+    .volume = {.sniff = cwi_nrrd_sniff, .parse = cwi_nrrd_parse},
+    .save = {.extensions = ".nrrd", .save = cwi_nrrd_save},
+};

@@ -1,0 +1,12 @@
+/* Wavefront OBJ: what is read and written, and by whom. */
+#include "formats/driver/format_driver.h"
+
+const cwi_format_driver cwi_format_obj = {
+    .name = "obj",
+    .extensions = ".obj",
+    .about = "Wavefront OBJ, LPS millimetres",
+    .lost = "colours, scalars, labels, affine",
+    .keeps = CW_KEEPS_SHARING | CW_KEEPS_NORMALS | CW_KEEPS_PARTS,
+    .mesh = {.read = cwi_obj_read},
+    .write = {.write = cwi_obj_write, .text = true},
+};

@@ -1,0 +1,12 @@
+/* OFF: what is read and written, and by whom. */
+#include "formats/driver/format_driver.h"
+
+const cwi_format_driver cwi_format_off = {
+    .name = "off",
+    .extensions = ".off",
+    .about = "Object File Format as text, LPS millimetres",
+    .lost = "scalars, labels, affine",
+    .keeps = CW_KEEPS_SHARING | CW_KEEPS_NORMALS | CW_KEEPS_COLORS,
+    .mesh = {.sniff = cwi_off_sniff, .read = cwi_off_read},
+    .write = {.write = cwi_off_write, .text = true},
+};

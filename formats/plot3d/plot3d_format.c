@@ -1,0 +1,9 @@
+/* PLOT3D: what is read and written, and by whom. */
+#include "formats/driver/format_driver.h"
+
+const cwi_format_driver cwi_format_plot3d = {
+    .name = "plot3d",
+    .extensions = ".q",
+    .about = "PLOT3D solution, with its grid in another file",
+    .volume = {.read_file = cwi_plot3d_read, .needs_points = true},
+};

@@ -1,0 +1,13 @@
+/* PLY: what is read and written, and by whom. */
+#include "formats/driver/format_driver.h"
+
+const cwi_format_driver cwi_format_ply = {
+    .name = "ply",
+    .extensions = ".ply",
+    .about = "PLY, binary or text, LPS millimetres",
+    .lost = "affine; places beyond single precision, unless local",
+    .keeps = CW_KEEPS_SHARING | CW_KEEPS_NORMALS | CW_KEEPS_COLORS | CW_KEEPS_SCALARS |
+             CW_KEEPS_LABELS,
+    .mesh = {.sniff = cwi_ply_sniff, .read = cwi_ply_read},
+    .write = {.write = cwi_ply_write, .text = true},
+};

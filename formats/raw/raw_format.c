@@ -1,0 +1,8 @@
+/* Voxels without a header: what is read and written, and by whom. */
+#include "formats/driver/format_driver.h"
+
+const cwi_format_driver cwi_format_raw = {
+    .name = "raw",
+    .extensions = ".raw",
+    .about = "bytes without a header, laid out as the caller says",
+};

@@ -1,0 +1,12 @@
+/* STL: what is read and written, and by whom. */
+#include "formats/driver/format_driver.h"
+
+const cwi_format_driver cwi_format_stl = {
+    .name = "stl",
+    .extensions = ".stl",
+    .about = "STL, binary or text, LPS millimetres",
+    .lost = "shared vertices, normals, colours, scalars, labels, affine; places beyond single "
+            "precision, unless local",
+    .mesh = {.sniff = cwi_stl_sniff, .sniffs_last = true, .read = cwi_stl_read},
+    .write = {.write = cwi_stl_write, .text = true},
+};

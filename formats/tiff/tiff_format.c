@@ -1,0 +1,10 @@
+/* TIFF: what is read and written, and by whom. */
+#include "formats/driver/format_driver.h"
+
+const cwi_format_driver cwi_format_tiff = {
+    .name = "tiff",
+    .extensions = ".tif .tiff",
+    .about = "TIFF stack: pages of one file, or numbered slices",
+    .feature = "tiff",
+    .volume = {.sniff = cwi_tiff_sniff, .read_slices = cwi_tiff_read, .holds_pages = true},
+};

@@ -1,0 +1,34 @@
+/* VTK's formats: what is read and written, and by whom. */
+#include "formats/driver/format_driver.h"
+
+const cwi_format_driver cwi_format_vtk = {
+    .name = "vtk",
+    .extensions = ".vtk",
+    .about = "legacy VTK image data or grid of any kind",
+    .volume = {.sniff = cwi_vtk_sniff, .parse = cwi_vtk_parse, .read_grid = cwi_vtk_read_grid},
+};
+
+const cwi_format_driver cwi_format_vtu = {
+    .name = "vtu",
+    .extensions = ".vtu .vts",
+    .about = "VTK unstructured or curvilinear grid as XML",
+    .volume = {.sniff = cwi_vtu_sniff, .read_grid = cwi_vtu_read},
+};
+
+const cwi_format_driver cwi_format_vti = {
+    .name = "vti",
+    .extensions = ".vti .vtr",
+    .about = "VTK image data or rectilinear grid as XML",
+    .volume = {.sniff = cwi_vti_sniff, .parse = cwi_vti_parse},
+};
+
+const cwi_format_driver cwi_format_vtp = {
+    .name = "vtp",
+    .extensions = ".vtp",
+    .about = "VTK surface as XML, LPS millimetres",
+    .lost = "affine; places beyond single precision, unless local",
+    .keeps = CW_KEEPS_SHARING | CW_KEEPS_NORMALS | CW_KEEPS_COLORS | CW_KEEPS_SCALARS |
+             CW_KEEPS_LABELS,
+    .mesh = {.sniff = cwi_vtp_sniff, .read = cwi_vtp_read},
+    .write = {.write = cwi_vtp_write},
+};
