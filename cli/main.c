@@ -68,7 +68,7 @@ static void explain_memory(cw_error *err)
             asked_text, left_text);
 }
 
-static cw_status run(const cli_command *command, int count, char **words, cw_error *err)
+static cw_status run_command(const cli_command *command, int count, char **words, cw_error *err)
 {
     cli_common *args = calloc(1, command->size);
     const char **inputs = calloc((size_t)count + 1, sizeof *inputs);
@@ -126,7 +126,7 @@ int main(int argc, char **argv)
         cli_find_command(argc > 1 ? command_name(argv[1]) : "help", &err);
     is_running = command && command != &cli_view && atexit(end_early) == 0;
     if (command)
-        st = run(command, argc > 1 ? argc - 2 : 0, argv + (argc > 1 ? 2 : 1), &err);
+        st = run_command(command, argc > 1 ? argc - 2 : 0, argv + (argc > 1 ? 2 : 1), &err);
     if (st == CW_OK && (fflush(stdout) != 0 || ferror(stdout)))
         st = cw_fail(&err, CW_ERR_OUTPUT, "the standard output cannot be written");
     if (st != CW_OK)

@@ -114,8 +114,8 @@ static cw_status write_mesh(cwi_plan *p, const cw_extract_desc *d, cw_mesh *mesh
     return st;
 }
 
-static cw_status extract(cwi_plan *p, const cw_extract_desc *desc, cw_mesh *mesh,
-                         cw_extract_counts *counts, cw_error *err)
+static cw_status extract_planned(cwi_plan *p, const cw_extract_desc *desc, cw_mesh *mesh,
+                                 cw_extract_counts *counts, cw_error *err)
 {
     const cw_extract_desc d = desc ? *desc : (cw_extract_desc){0};
     memset(mesh, 0, sizeof *mesh);
@@ -130,8 +130,8 @@ static cw_status extract(cwi_plan *p, const cw_extract_desc *desc, cw_mesh *mesh
     return st;
 }
 
-static cw_status predict(cwi_plan *p, const cw_extract_desc *desc, cw_extract_counts *counts,
-                         cw_error *err)
+static cw_status predict_planned(cwi_plan *p, const cw_extract_desc *desc,
+                                 cw_extract_counts *counts, cw_error *err)
 {
     const cw_extract_desc d = desc ? *desc : (cw_extract_desc){0};
     cw_status st = cwi_plan_is_dense(p) ? cwi_plan_make(p, &d, err)
@@ -149,7 +149,7 @@ cw_status cwi_extract_with(const cwi_engine *engine, const cw_volume *volume,
     memset(mesh, 0, sizeof *mesh);
     cw_status st = cwi_plan_init(&p, engine, volume, err);
     if (st == CW_OK)
-        st = extract(&p, desc, mesh, counts, err);
+        st = extract_planned(&p, desc, mesh, counts, err);
     cwi_plan_free(&p);
     return st;
 }
@@ -166,7 +166,7 @@ cw_status cw_extract_predict(const cw_volume *volume, const cw_extract_desc *des
     cwi_plan p;
     cw_status st = cwi_plan_init(&p, cwi_engine_best(), volume, err);
     if (st == CW_OK)
-        st = predict(&p, desc, counts, err);
+        st = predict_planned(&p, desc, counts, err);
     cwi_plan_free(&p);
     return st;
 }
@@ -204,7 +204,7 @@ void cw_extractor_free(cw_extractor *e)
 cw_status cw_extractor_extract(cw_extractor *e, const cw_extract_desc *desc, cw_mesh *mesh,
                                cw_extract_counts *counts, cw_error *err)
 {
-    return extract(e, desc, mesh, counts, err);
+    return extract_planned(e, desc, mesh, counts, err);
 }
 
 void cw_extractor_recycle(cw_extractor *e, cw_mesh *mesh)
@@ -220,5 +220,5 @@ void cw_extractor_recycle(cw_extractor *e, cw_mesh *mesh)
 cw_status cw_extractor_predict(cw_extractor *e, const cw_extract_desc *desc,
                                cw_extract_counts *counts, cw_error *err)
 {
-    return predict(e, desc, counts, err);
+    return predict_planned(e, desc, counts, err);
 }

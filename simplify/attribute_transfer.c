@@ -16,7 +16,8 @@ typedef struct carrier {
     cwi_boxes tree;
 } carrier;
 
-static void blend(const carrier *c, const uint32_t corner[3], const double share[3], size_t v)
+static void blend_attributes(const carrier *c, const uint32_t corner[3], const double share[3],
+                             size_t v)
 {
     const cw_mesh *m = c->from;
     cw_mesh *to = c->to;
@@ -52,7 +53,7 @@ static void carry_chunk(void *context, size_t chunk)
         for (size_t a = 0; a < 3; a++)
             point[a] = (double)c->to->positions[3 * v + a];
         const cwi_closest at = cwi_closest_find(c->from, &c->tree, point);
-        blend(c, c->from->triangles + 3 * at.triangle, at.share, v);
+        blend_attributes(c, c->from->triangles + 3 * at.triangle, at.share, v);
     }
 }
 

@@ -19,7 +19,7 @@ bool cw_simplify_available(void)
     return cwi_module_present("openmesh");
 }
 
-static cw_status check(const cw_mesh *mesh, const cw_simplify_desc *d, cw_error *err)
+static cw_status check_desc(const cw_mesh *mesh, const cw_simplify_desc *d, cw_error *err)
 {
     if (mesh->triangle_count > MOST || mesh->vertex_count > MOST)
         return cw_fail(err, CW_ERR_LIMIT,
@@ -66,8 +66,8 @@ static cw_status scale_mesh(const cw_mesh *mesh, double *scale, cw_mesh *scaled,
     return CW_OK;
 }
 
-static cw_status weigh(const cw_mesh *m, const cw_simplify_desc *d, cwi_mesh_block *w,
-                       cw_error *err)
+static cw_status weigh_attributes(const cw_mesh *m, const cw_simplify_desc *d,
+                                  cwi_mesh_block *w, cw_error *err)
 {
     w->attributes = cwi_attributes_count(d);
     if (!w->attributes)
@@ -81,7 +81,7 @@ static cw_status weigh(const cw_mesh *m, const cw_simplify_desc *d, cwi_mesh_blo
 }
 
 /* Triangles that name a vertex twice are no part of any surface. */
-static cw_status begin(const cw_mesh *m, cwi_mesh_block *w, cw_error *err)
+static cw_status begin_block(const cw_mesh *m, cwi_mesh_block *w, cw_error *err)
 {
     w->vertices = m->vertex_count;
     w->points = cwi_alloc_array(3 * w->vertices, sizeof *w->points);
@@ -120,9 +120,9 @@ static cw_status run_passes(cwi_passes *p, const cw_mesh *mesh, const size_t *ta
                             size_t levels, cwi_mesh_block *left, size_t *cut, cw_error *err)
 {
     cwi_mesh_block whole = {0};
-    cw_status st = begin(mesh, &whole, err);
+    cw_status st = begin_block(mesh, &whole, err);
     if (st == CW_OK)
-        st = weigh(mesh, p->desc, &whole, err);
+        st = weigh_attributes(mesh, p->desc, &whole, err);
     if (st == CW_OK && p->desc->error_mm > 0)
         st = cwi_passes_remember(p, mesh, err);
     if (st == CW_OK && p->next)
@@ -146,7 +146,7 @@ static cw_status simplify_levels(const cw_mesh *mesh, const cw_simplify_desc *de
     double scale = 1;
     cwi_mesh_block *left = cwi_alloc_zeroed(levels, sizeof *left);
     size_t cut = 0;
-    cw_status st = left ? check(mesh, desc, err)
+    cw_status st = left ? check_desc(mesh, desc, err)
                         : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu levels", levels);
     if (st == CW_OK)
         st = cwi_passes_init(&p, desc, err);

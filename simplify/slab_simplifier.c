@@ -242,7 +242,7 @@ cw_status cw_simplifier_take(void *simplifier, const cw_slab *from, cw_error *er
     return st;
 }
 
-static cw_status finish(cw_simplifier *s, cw_mesh *out, size_t *cut, cw_error *err)
+static cw_status finish_mesh(cw_simplifier *s, cw_mesh *out, size_t *cut, cw_error *err)
 {
     cwi_slab_window *w = &s->window;
     cwi_mesh_block left = {.vertices = w->vertices,
@@ -271,7 +271,7 @@ cw_status cw_simplifier_finish(cw_simplifier *s, cw_mesh *out, cw_simplify_facts
     if (s->scale > 0 && !s->ended)
         return cw_fail(err, CW_ERR_ARGUMENT, "slabs are missing: there was no last one");
     if (s->scale > 0)
-        st = finish(s, out, &cut, err);
+        st = finish_mesh(s, out, &cut, err);
     if (st == CW_OK && facts)
         *facts = (cw_simplify_facts){.vertices = out->vertex_count,
                                      .triangles = out->triangle_count,

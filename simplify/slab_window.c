@@ -32,7 +32,7 @@ static double height_along(const float along[3], const float x[3])
     return (double)(x[0] * along[0] + x[1] * along[1] + x[2] * along[2]);
 }
 
-static double height(const cwi_mesh_block *b, size_t vertex)
+static double vertex_height(const cwi_mesh_block *b, size_t vertex)
 {
     return height_along(b->along, b->points + 3 * vertex);
 }
@@ -108,7 +108,7 @@ static cw_status fill_merged(merger *m, cw_error *err)
 }
 
 /* Lists and care of the rest in the new numbers. */
-static void restore(cwi_slab_window *w, cwi_passes *p, const merger *m)
+static void restore_window(cwi_slab_window *w, cwi_passes *p, const merger *m)
 {
     for (size_t v = 0; v < m->old->vertex_count; v++)
         if (m->number[v] != NONE)
@@ -140,7 +140,7 @@ static cw_status merge_input(cwi_slab_window *w, cwi_passes *p, const cwi_slab_b
     if (st == CW_OK)
         st = cwi_passes_remember(p, &m.mesh, err);
     if (st == CW_OK)
-        restore(w, p, &m);
+        restore_window(w, p, &m);
     if (st == CW_OK) {
         cw_mesh_free(&w->input);
         w->input = m.mesh;
@@ -214,7 +214,7 @@ static cw_status add_finished(const cwi_slab_window *w, cwi_mesh_block *b, cw_er
 }
 
 /* Held are now the seam above, and what the finished result begins at. */
-static cw_status hold(const joiner *j, cwi_mesh_block *b, cw_error *err)
+static cw_status hold_vertices(const joiner *j, cwi_mesh_block *b, cw_error *err)
 {
     b->held = cwi_alloc_array(b->vertices, 1);
     if (!b->held)
@@ -244,7 +244,7 @@ static cw_status open_window(cwi_slab_window *w, cwi_slab_block *slab, joiner *j
     }
     cwi_free(both[1].held);
     if (st == CW_OK)
-        st = hold(j, whole, err);
+        st = hold_vertices(j, whole, err);
     if (st == CW_OK)
         st = add_finished(w, whole, err);
     return st;
@@ -290,8 +290,8 @@ static void place_triangle(cwi_slab_window *w, const cwi_mesh_block *left, size_
 static bool is_rest(const cwi_slab_window *w, const cwi_mesh_block *left, size_t t)
 {
     const uint32_t *c = left->corners + 3 * t;
-    return height(left, c[0]) >= w->end && height(left, c[1]) >= w->end &&
-           height(left, c[2]) >= w->end;
+    return vertex_height(left, c[0]) >= w->end && vertex_height(left, c[1]) >= w->end &&
+           vertex_height(left, c[2]) >= w->end;
 }
 
 /* Of finished triangles, those that a later window may come near. */
@@ -415,7 +415,7 @@ static double middle_of(const cwi_slab_block *slab)
     const cwi_mesh_block *b = &slab->block;
     double lowest = (double)b->to;
     for (size_t v = 0; v < b->vertices; v++)
-        lowest = fmin(lowest, height(b, v));
+        lowest = fmin(lowest, vertex_height(b, v));
     return slab->last ? INFINITY : 0.5 * (lowest + (double)b->to);
 }
 

@@ -74,8 +74,8 @@ static bool is_for_cpu(const cw_renderer *r, cw_mode mode)
 }
 
 /* Draws every sample of the picture. */
-static cw_status draw(cw_renderer *r, const cwi_frame *frame, cw_picture *picture,
-                      cw_error *err)
+static cw_status draw_frame(cw_renderer *r, const cwi_frame *frame, cw_picture *picture,
+                            cw_error *err)
 {
     if (is_for_cpu(r, frame->scene.mode))
         return cwi_cpu_draw(&r->cpu, frame, picture, err);
@@ -84,7 +84,8 @@ static cw_status draw(cw_renderer *r, const cwi_frame *frame, cw_picture *pictur
 }
 
 /* Means of n x n samples. */
-static cw_status average(const cw_picture *fine, size_t n, cw_picture *out, cw_error *err)
+static cw_status average_samples(const cw_picture *fine, size_t n, cw_picture *out,
+                                 cw_error *err)
 {
     cw_status st = cw_picture_alloc(out, fine->width / n, fine->height / n, err);
     for (size_t p = 0; st == CW_OK && p < out->width * out->height * 4; p++) {
@@ -108,9 +109,9 @@ cw_status cw_render(cw_renderer *renderer, const cw_scene *scene, cw_picture *pi
     if (st == CW_OK)
         st = cw_picture_alloc(&fine, frame.scene.width, frame.scene.height, err);
     if (st == CW_OK)
-        st = draw(renderer, &frame, &fine, err);
+        st = draw_frame(renderer, &frame, &fine, err);
     if (st == CW_OK && frame.scene.samples > 1)
-        st = average(&fine, (size_t)frame.scene.samples, picture, err);
+        st = average_samples(&fine, (size_t)frame.scene.samples, picture, err);
     else if (st == CW_OK) {
         *picture = fine;
         fine = (cw_picture){0};

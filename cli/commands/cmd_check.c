@@ -376,7 +376,7 @@ static double tolerance_mm(const run_state *s)
 }
 
 /* Without triangles there is nothing to measure from or to: the verdict says so. */
-static cw_status measure(run_state *s, cw_error *err)
+static cw_status measure_all(run_state *s, cw_error *err)
 {
     const check_args *args = s->args;
     const cw_mesh *mesh = &s->mesh.mesh;
@@ -412,7 +412,7 @@ static void name_paints(const run_state *s)
             cli_result("  %-8s%s\n", paints[n].color, paints[n].name);
 }
 
-static cw_status paint(run_state *s, cw_error *err)
+static cw_status paint_defects(run_state *s, cw_error *err)
 {
     const cw_distance *to = s->args->source ? &s->to_field : &s->to_reference;
     const double tolerance = s->findings.tolerance_mm;
@@ -465,7 +465,7 @@ static cw_status hold_to_profile(const run_state *s, cw_error *err)
                    profiles[s->args->profile], names);
 }
 
-static cw_status judge(run_state *s, double start, cw_error *err)
+static cw_status judge_mesh(run_state *s, double start, cw_error *err)
 {
     const check_args *args = s->args;
     s->verdict_count = cw_check_judge(&s->findings, (cw_profile)args->profile, s->verdicts);
@@ -477,7 +477,7 @@ static cw_status judge(run_state *s, double start, cw_error *err)
     cli_print_verdicts(s->verdicts, s->verdict_count);
     if (args->histogram && s->quality.degenerate < s->quality.triangles)
         cli_print_shapes(&s->quality.shapes);
-    cw_status st = args->defects ? paint(s, err) : CW_OK;
+    cw_status st = args->defects ? paint_defects(s, err) : CW_OK;
     if (st == CW_OK)
         st = hold_to_profile(s, err);
     if (st == CW_OK)
@@ -497,7 +497,7 @@ static void free_state(run_state *s)
     cli_report_free(&s->report);
 }
 
-static cw_status run(void *p, cw_error *err)
+static cw_status run_check(void *p, cw_error *err)
 {
     const check_args *args = p;
     const double start = cli_seconds();
@@ -517,9 +517,9 @@ static cw_status run(void *p, cw_error *err)
     if (st == CW_OK)
         st = read_inputs(&s, err);
     if (st == CW_OK)
-        st = measure(&s, err);
+        st = measure_all(&s, err);
     if (st == CW_OK)
-        st = judge(&s, start, err);
+        st = judge_mesh(&s, start, err);
     st = cli_report_write(&s.report, st, err);
     free_state(&s);
     return st;
@@ -535,5 +535,5 @@ const cli_command cli_check = {
     .min_inputs = 1,
     .max_inputs = 1,
     .size = sizeof(check_args),
-    .run = run,
+    .run = run_check,
 };

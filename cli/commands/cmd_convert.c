@@ -130,8 +130,8 @@ static cw_status read_input(run_state *s, cw_error *err)
                : cw_fail(err, CW_ERR_EMPTY, "%s: it has no triangles", path);
 }
 
-static cw_status convert(run_state *s, size_t n, const cw_part *parts, size_t count,
-                         cw_error *err)
+static cw_status convert_file(run_state *s, size_t n, const cw_part *parts, size_t count,
+                              cw_error *err)
 {
     const cli_delivery how = {.input = s->mesh.path,
                               .write = write_desc(s),
@@ -159,11 +159,11 @@ static cw_status convert_parts(run_state *s, cw_error *err)
     if (st == CW_OK)
         st = check_outputs(s, err);
     for (size_t n = 0; n < m->part_count && st == CW_OK; n++)
-        st = convert(s, n, &m->parts[n], 1, err);
+        st = convert_file(s, n, &m->parts[n], 1, err);
     return st;
 }
 
-static cw_status pipeline(run_state *s, cw_error *err)
+static cw_status run_pipeline(run_state *s, cw_error *err)
 {
     cw_status st = check_args(s, err);
     if (st == CW_OK)
@@ -173,11 +173,11 @@ static cw_status pipeline(run_state *s, cw_error *err)
     if (s->args->split)
         return convert_parts(s, err);
     if (s->mesh.parts)
-        return convert(s, 0, s->mesh.parts, s->mesh.part_count, err);
-    return convert(s, 0, &(cw_part){.mesh = &s->mesh.mesh}, 1, err);
+        return convert_file(s, 0, s->mesh.parts, s->mesh.part_count, err);
+    return convert_file(s, 0, &(cw_part){.mesh = &s->mesh.mesh}, 1, err);
 }
 
-static cw_status run(void *p, cw_error *err)
+static cw_status run_convert(void *p, cw_error *err)
 {
     const convert_args *args = p;
     run_state s = {.args = args, .start = cli_seconds()};
@@ -192,7 +192,7 @@ static cw_status run(void *p, cw_error *err)
         cli_results_to_stderr();
     cw_status st = cli_report_reserve(&s.report, 1, err);
     if (st == CW_OK)
-        st = pipeline(&s, err);
+        st = run_pipeline(&s, err);
     st = cli_report_write(&s.report, st, err);
     cli_free_mesh(&s.mesh);
     cli_free_outputs(&s.outputs);
@@ -211,5 +211,5 @@ const cli_command cli_convert = {
     .max_inputs = 1,
     .size = sizeof(convert_args),
     .defaults = &defaults,
-    .run = run,
+    .run = run_convert,
 };

@@ -140,7 +140,7 @@ static double stored_level(const subject *s, cw_type type)
                    : cw_field_stored((cw_field)s->number, type, s->isovalue);
 }
 
-static cw_status make(const make_args *args, const subject *s, cw_error *err)
+static cw_status make_field(const make_args *args, const subject *s, cw_error *err)
 {
     cw_volume volume;
     cw_status st = s->hard ? sample_hard(args, s->number, &volume, err)
@@ -158,7 +158,7 @@ static cw_status make(const make_args *args, const subject *s, cw_error *err)
     return st;
 }
 
-static cw_status run(void *p, cw_error *err)
+static cw_status run_make(void *p, cw_error *err)
 {
     make_args *args = p;
     subject s;
@@ -175,7 +175,7 @@ static cw_status run(void *p, cw_error *err)
         return cw_fail(err, CW_ERR_ARGUMENT, "--dims takes one number or three, not two");
     if (args->dims.count == 1)
         args->dims.n[1] = args->dims.n[2] = args->dims.n[0];
-    return make(args, &s, err);
+    return make_field(args, &s, err);
 }
 
 const cli_command cli_make = {
@@ -188,5 +188,5 @@ const cli_command cli_make = {
     .max_inputs = 1,
     .size = sizeof(make_args),
     .defaults = &defaults,
-    .run = run,
+    .run = run_make,
 };

@@ -281,7 +281,7 @@ static void tell_hollow(run_state *s)
                  "; wall %.4g to %.4g mm thick", f->wall_min_mm, f->wall_max_mm);
 }
 
-static cw_status hollow(run_state *s, cw_error *err)
+static cw_status hollow_mesh(run_state *s, cw_error *err)
 {
     cli_piece *p = s->pieces.piece;
     const cw_hollow_desc desc = {.wall_mm = s->wall_mm,
@@ -328,7 +328,7 @@ static void tell_offset(const run_state *s)
                 s->mesh.path, cli_count(f->more_components), cli_count(f->more_handles));
 }
 
-static cw_status offset(run_state *s, cw_error *err)
+static cw_status offset_mesh(run_state *s, cw_error *err)
 {
     cli_piece *p = s->pieces.piece;
     const cw_offset_desc desc = {.offset_mm = s->by_mm,
@@ -372,7 +372,7 @@ static cw_status measure_offset(run_state *s, cw_error *err)
     return st;
 }
 
-static cw_status measure(run_state *s, cli_made *made, cw_error *err)
+static cw_status measure_result(run_state *s, cli_made *made, cw_error *err)
 {
     if (s->hollow || !s->args->measure)
         return CW_OK;
@@ -387,7 +387,7 @@ static cw_status measure(run_state *s, cli_made *made, cw_error *err)
 }
 
 /* What was not touched may touch itself in a vertex, or have triangles without area. */
-static cw_status hold(const run_state *s, cw_error *err)
+static cw_status hold_bound(const run_state *s, cw_error *err)
 {
     const cw_quality_desc desc = {.threads = (int)s->args->input.threads};
     cw_quality q;
@@ -400,7 +400,7 @@ static cw_status hold(const run_state *s, cw_error *err)
     return st;
 }
 
-static cw_status deliver(run_state *s, cw_error *err)
+static cw_status deliver_mesh(run_state *s, cw_error *err)
 {
     const cli_delivery how = {
         .input = s->mesh.path,
@@ -425,24 +425,24 @@ static cw_status hold_to_input(const run_state *s, cw_error *err)
                    s->mesh.path, s->offset.asked_mm);
 }
 
-static cw_status make(run_state *s, cli_made *made, cw_error *err)
+static cw_status make_mesh(run_state *s, cli_made *made, cw_error *err)
 {
     cli_report_begin(&s->report);
-    cw_status st = s->hollow ? hollow(s, err) : offset(s, err);
+    cw_status st = s->hollow ? hollow_mesh(s, err) : offset_mesh(s, err);
     if (st == CW_OK) {
         cli_report_end(&s->report, s->report.command, s->pieces.triangles,
                        s->pieces.piece->out.triangle_count);
-        st = hold(s, err);
+        st = hold_bound(s, err);
     }
     if (st == CW_OK)
-        st = measure(s, made, err);
+        st = measure_result(s, made, err);
     if (st != CW_OK)
         return cwi_fail_in(err, st, s->mesh.path);
-    st = deliver(s, err);
+    st = deliver_mesh(s, err);
     return st == CW_OK ? hold_to_input(s, err) : st;
 }
 
-static cw_status pipeline(run_state *s, cw_error *err)
+static cw_status run_pipeline(run_state *s, cw_error *err)
 {
     cw_status st = check_args(s, err);
     if (st == CW_OK)
@@ -450,13 +450,13 @@ static cw_status pipeline(run_state *s, cw_error *err)
     if (st != CW_OK)
         return st;
     cli_made *made = cli_report_next(&s->report, s->outputs.path[0], 0);
-    st = make(s, made, err);
+    st = make_mesh(s, made, err);
     if (st != CW_OK)
         made->error = *err;
     return st;
 }
 
-static cw_status run(const cli_solid_args *args, const char *command, cw_error *err)
+static cw_status run_solid(const cli_solid_args *args, const char *command, cw_error *err)
 {
     run_state s = {
         .args = args, .hollow = strcmp(command, "hollow") == 0, .start = cli_seconds()};
@@ -469,7 +469,7 @@ static cw_status run(const cli_solid_args *args, const char *command, cw_error *
         cli_results_to_stderr();
     cw_status st = cli_report_reserve(&s.report, 1, err);
     if (st == CW_OK)
-        st = pipeline(&s, err);
+        st = run_pipeline(&s, err);
     st = cli_report_write(&s.report, st, err);
     cli_free_pieces(&s.pieces);
     cli_free_mesh(&s.mesh);
@@ -480,10 +480,10 @@ static cw_status run(const cli_solid_args *args, const char *command, cw_error *
 
 cw_status cli_run_hollow(void *args, cw_error *err)
 {
-    return run(args, "hollow", err);
+    return run_solid(args, "hollow", err);
 }
 
 cw_status cli_run_offset(void *args, cw_error *err)
 {
-    return run(args, "offset", err);
+    return run_solid(args, "offset", err);
 }

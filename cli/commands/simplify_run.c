@@ -263,7 +263,7 @@ static void warn_of_large_error(run_state *s)
             : "; the file names no unit and was taken as mm (--input-unit)");
 }
 
-static cw_status simplify(run_state *s, cw_error *err)
+static cw_status simplify_parts(run_state *s, cw_error *err)
 {
     size_t triangles = 0;
     cw_status st = CW_OK;
@@ -303,7 +303,7 @@ static cw_status simplify_levels(run_state *s, cw_error *err)
 
 /* How far from the input, and from the source's surface: of all parts the farthest there, as
  * they are on one surface. */
-static cw_status measure(run_state *s, cli_made *made, cw_error *err)
+static cw_status measure_error(run_state *s, cli_made *made, cw_error *err)
 {
     cli_comparison *c = &made->compared;
     if (!s->args->measure)
@@ -321,7 +321,7 @@ static cw_status measure(run_state *s, cli_made *made, cw_error *err)
     return st;
 }
 
-static cw_status shade(run_state *s, cw_error *err)
+static cw_status shade_mesh(run_state *s, cw_error *err)
 {
     const cw_normals_desc desc = {.inside_is_low = s->args->inside, .threads = s->threads};
     cw_status st = CW_OK;
@@ -382,9 +382,9 @@ static cw_status finish(run_state *s, cli_made *made, cw_error *err)
 {
     cw_status st = cli_hold_pieces(&s->pieces, s->threads, err);
     if (st == CW_OK)
-        st = measure(s, made, err);
+        st = measure_error(s, made, err);
     if (st == CW_OK)
-        st = shade(s, err);
+        st = shade_mesh(s, err);
     if (st == CW_OK && s->args->lod.count)
         st = order(s, err);
     if (st == CW_OK)
@@ -457,7 +457,7 @@ static cw_status pipeline(run_state *s, cw_error *err)
     if (s->args->lod.count)
         return make_levels(s, err);
     cli_made *made = cli_report_next(&s->report, s->outputs.path[0], 0);
-    st = simplify(s, err);
+    st = simplify_parts(s, err);
     return st == CW_OK ? finish(s, made, err) : st;
 }
 

@@ -137,7 +137,7 @@ static void name_step(const cli_extract_run *s, const cli_moment *moment, cw_err
         cw_fail(err, why.status, "step %zu: %s", moment->number, why.message);
 }
 
-static cli_delivery delivery(const cli_extract_run *s)
+static cli_delivery describe_delivery(const cli_extract_run *s)
 {
     return (cli_delivery){.input = s->volume.path,
                           .write = cli_extract_write_desc(s->args),
@@ -150,12 +150,12 @@ static cli_delivery delivery(const cli_extract_run *s)
 }
 
 /* Into its file, with the record of how it was made. */
-static cw_status deliver(cli_extract_run *s, size_t level, const cw_part *parts, size_t count,
-                         size_t border_loops, cw_error *err)
+static cw_status deliver_level(cli_extract_run *s, size_t level, const cw_part *parts,
+                               size_t count, size_t border_loops, cw_error *err)
 {
     char text[32], simplify[64];
     cw_provenance provenance[CLI_EXTRACT_PROVENANCE];
-    cli_delivery how = delivery(s);
+    cli_delivery how = describe_delivery(s);
     how.write.provenance = provenance;
     how.write.provenance_count = cli_extract_provenance(s, level, text, simplify, provenance);
     how.unchecked = how.unchecked || how.write.animated; /* each was by itself */
@@ -167,7 +167,7 @@ static cw_status make_surface(cli_extract_run *s, const cli_moment *moment, size
                               cw_error *err)
 {
     cli_made *made = begin_surface(s, moment, n);
-    const cli_delivery how = delivery(s);
+    const cli_delivery how = describe_delivery(s);
     cw_mesh mesh = {0};
     cw_extract_counts counts = {0};
     cw_status st = cli_extract_make(s, made, &mesh, &counts, err);
@@ -182,7 +182,7 @@ static cw_status make_surface(cli_extract_run *s, const cli_moment *moment, size
     if (st == CW_OK)
         st = s->args->animate
                  ? cli_deliver_step(&s->report, &how, &mesh, counts.border_loops, s->start, err)
-                 : deliver(s, n, &(cw_part){.mesh = &mesh}, 1, counts.border_loops, err);
+                 : deliver_level(s, n, &(cw_part){.mesh = &mesh}, 1, counts.border_loops, err);
     if (s->args->animate && (st == CW_OK || st == CW_ERR_EMPTY))
         cli_frames_add(&s->frames, &mesh, moment, s->fps);
     if (s->extractor)
@@ -289,14 +289,14 @@ static cw_status make_steps(cli_extract_run *s, size_t *empty, cw_error *err)
 }
 
 /* An animation has a place for steps that are empty: only nothing but such is no result. */
-static cw_status animate(cli_extract_run *s, cw_error *err)
+static cw_status animate_steps(cli_extract_run *s, cw_error *err)
 {
     const cli_frames *f = &s->frames;
     if (f->empty == f->count)
         return fail_empty(s, f->empty, f->count, err);
     cli_made *made = cli_report_next(&s->report, s->outputs.path[0], 0);
     made->name = "all";
-    cw_status st = deliver(s, 0, f->parts, f->count, 0, err);
+    cw_status st = deliver_level(s, 0, f->parts, f->count, 0, err);
     if (st != CW_OK)
         made->error = *err;
     return st;
@@ -341,7 +341,7 @@ static cw_status plan_steps(cli_extract_run *s, cw_error *err)
     return st == CW_OK ? plan_frames(s, err) : st;
 }
 
-static cw_status pipeline(cli_extract_run *s, cw_error *err)
+static cw_status run_pipeline(cli_extract_run *s, cw_error *err)
 {
     size_t empty = 0;
     cw_status st = cli_extract_check_args(s, err);
@@ -350,7 +350,7 @@ static cw_status pipeline(cli_extract_run *s, cw_error *err)
     if (st == CW_OK)
         st = make_steps(s, &empty, err);
     if (st == CW_OK && s->args->animate)
-        return animate(s, err);
+        return animate_steps(s, err);
     if (st == CW_OK && s->args->pvd)
         st = write_pvd(s, err);
     return st == CW_OK && empty
@@ -358,7 +358,7 @@ static cw_status pipeline(cli_extract_run *s, cw_error *err)
                : st;
 }
 
-static cw_status run(void *p, cw_error *err)
+static cw_status run_extract(void *p, cw_error *err)
 {
     cli_extract_args *args = p;
     cli_extract_run s = {.args = args, .start = cli_seconds()};
@@ -375,7 +375,7 @@ static cw_status run(void *p, cw_error *err)
         cli_results_to_stderr();
     cw_status st = cli_report_reserve(&s.report, 1, err);
     if (st == CW_OK)
-        st = pipeline(&s, err);
+        st = run_pipeline(&s, err);
     st = cli_report_write(&s.report, st, err);
     for (size_t n = 0; n < s.view_count; n++)
         cw_simplify_view_free(s.views + n);
@@ -399,5 +399,5 @@ const cli_command cli_extract = {
     .max_inputs = SIZE_MAX,
     .size = sizeof(cli_extract_args),
     .defaults = &defaults,
-    .run = run,
+    .run = run_extract,
 };

@@ -75,7 +75,7 @@ static cw_status check_animation(const cli_extract_args *args, cw_error *err)
 }
 
 /* What asks for fewer triangles. */
-static const char *reducer(const cli_extract_args *args)
+static const char *name_reducer(const cli_extract_args *args)
 {
     return args->pixel.camera       ? "--camera"
            : args->pixel.most.given ? "--max-error"
@@ -90,7 +90,7 @@ static cw_status check_pixels(cli_extract_run *s, cw_error *err)
         return st;
     if ((args->pixel.camera || args->pixel.most.given) &&
         (args->simplify.error.given || args->simplify.triangles))
-        return cw_fail(err, CW_ERR_ARGUMENT, "%s or --simplify, not both", reducer(args));
+        return cw_fail(err, CW_ERR_ARGUMENT, "%s or --simplify, not both", name_reducer(args));
     return CW_OK;
 }
 
@@ -135,11 +135,12 @@ cw_status cli_extract_check_args(cli_extract_run *s, cw_error *err)
         return cw_fail(err, CW_ERR_ARGUMENT, "--cull cannot be combined with --snap");
     if (cli_extract_is_simplified(args) && args->snap.value > 0)
         return cw_fail(err, CW_ERR_ARGUMENT,
-                       "--snap or %s, not both: each removes thin triangles", reducer(args));
+                       "--snap or %s, not both: each removes thin triangles",
+                       name_reducer(args));
     if (cli_extract_is_simplified(args) && !cw_simplify_available())
         return cw_fail(err, CW_ERR_UNSUPPORTED,
                        "%s needs OpenMesh, which this build lacks: install libopenmesh-dev and "
                        "build again",
-                       reducer(args));
+                       name_reducer(args));
     return check_animation(args, err);
 }

@@ -16,7 +16,7 @@ enum { MOST_SIDE = 16384, MOST_PATH = 4096, SHOWN = 2 }; /* SHOWN: a difference 
 
 /* --- cameras ------------------------------------------------------------------------------ */
 
-static cw_status check(const cli_pixel_args *a, cw_error *err)
+static cw_status check_arguments(const cli_pixel_args *a, cw_error *err)
 {
     const size_t *n = a->size.n;
     if (!a->camera && (a->pixels.given || a->shading.given || a->size.count || a->cull))
@@ -67,7 +67,7 @@ cw_status cli_read_views(const cli_pixel_args *args, cw_simplify_view *views, si
                          cw_error *err)
 {
     *count = 0;
-    cw_status st = check(args, err);
+    cw_status st = check_arguments(args, err);
     if (st != CW_OK || !args->camera)
         return st;
     if (*args->camera == '{') {
@@ -132,7 +132,7 @@ typedef struct drawn {
     size_t count;
 } drawn;
 
-static cw_status draw(void *p, const cw_slab *slab, cw_error *err)
+static cw_status draw_slab(void *p, const cw_slab *slab, cw_error *err)
 {
     const drawn *d = p;
     cw_status st = CW_OK;
@@ -148,7 +148,7 @@ static cw_status draw_whole(const cli_volume *volume, const cli_wanted *wanted, 
     cw_extract_counts counts;
     cw_status st = cli_extract_wanted(volume, NULL, wanted, &mesh, &counts, NULL, err);
     if (st == CW_OK)
-        st = draw(all, &(cw_slab){.mesh = &mesh}, err);
+        st = draw_slab(all, &(cw_slab){.mesh = &mesh}, err);
     cw_mesh_free(&mesh);
     return st;
 }
@@ -164,7 +164,7 @@ cw_status cli_draw_views(const cli_volume *volume, const cli_wanted *wanted,
     if (w.least_mm3 > 0)
         return draw_whole(volume, &w, &all, err);
     cw_status st = cw_extract_slabs(&volume->view, &w.extract, CW_SIMPLIFIER_SLAB,
-                                    (cw_slab_sink){draw, &all}, NULL, err);
+                                    (cw_slab_sink){draw_slab, &all}, NULL, err);
     return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
 }
 
@@ -272,8 +272,9 @@ static cw_status measure_view(const cw_simplify_view *view, const cw_mesh *m,
     return st;
 }
 
-static cw_status measure(const cw_mesh *from, const cw_mesh *to, const cw_simplify_desc *d,
-                         cli_proof *proof, double *most_mm, cw_error *err)
+static cw_status measure_distance(const cw_mesh *from, const cw_mesh *to,
+                                  const cw_simplify_desc *d, cli_proof *proof, double *most_mm,
+                                  cw_error *err)
 {
     cw_distance distance;
     float *worst = cwi_alloc_zeroed(from->vertex_count + 1, sizeof *worst);
@@ -354,9 +355,9 @@ cw_status cli_prove_views(const cli_volume *volume, const cli_wanted *wanted,
     proof->promised_mm = simplify->error_mm;
     if (simplify->pixel_error > 0) {
         double beside = 0, *back = proof->culled ? &beside : &proof->mm;
-        st = measure(mesh, &full, simplify, proof, &proof->mm, err);
+        st = measure_distance(mesh, &full, simplify, proof, &proof->mm, err);
         if (st == CW_OK)
-            st = measure(&full, mesh, simplify, proof, back, err);
+            st = measure_distance(&full, mesh, simplify, proof, back, err);
     }
     for (size_t n = 0; n < simplify->view_count && st == CW_OK; n++)
         st = compare_pictures(simplify->views + n, &full, mesh, simplify->threads,

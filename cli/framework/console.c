@@ -125,7 +125,7 @@ static void draw_bar(double done, double rate, double left)
     console.drawn = true;
 }
 
-static void draw(double done, double now)
+static void draw_progress(double done, double now)
 {
     const double spent = now - console.step_start;
     const double rate = spent > 0 ? done * console.total / spent : 0;
@@ -141,7 +141,7 @@ static void draw(double done, double now)
 }
 
 /* Drawn five times a second at most, and not at all for steps that take less than that. */
-static bool report(void *user, const char *step, double done)
+static bool report_progress(void *user, const char *step, double done)
 {
     (void)user;
     const double now = cli_seconds();
@@ -151,7 +151,7 @@ static bool report(void *user, const char *step, double done)
     }
     if (now - console.last_drawn >= 0.2) {
         console.last_drawn = now;
-        draw(done < 0 ? 0 : done > 1 ? 1 : done, now);
+        draw_progress(done < 0 ? 0 : done > 1 ? 1 : done, now);
     }
     const cli_listener *l = &console.listener;
     return !interrupted && (!l->progress || l->progress(l->user, step, done));
@@ -166,7 +166,7 @@ cw_progress cli_progress(double total, const char *unit)
 {
     console.total = total;
     console.unit = unit;
-    return (cw_progress){.report = report};
+    return (cw_progress){.report = report_progress};
 }
 
 void cli_progress_end(void)

@@ -26,7 +26,7 @@ static void print_text(FILE *out, const char *text)
     fputc('"', out);
 }
 
-static void begin(cli_json *j, const char *key)
+static void begin_value(cli_json *j, const char *key)
 {
     if (!j->first)
         fputc(',', j->out);
@@ -43,7 +43,7 @@ void cli_json_open(cli_json *j, const char *key, char bracket)
 {
     if (j->depth == 0)
         j->first = true;
-    begin(j, key);
+    begin_value(j, key);
     fputc(bracket, j->out);
     j->depth++;
     j->first = true;
@@ -62,7 +62,7 @@ void cli_json_close(cli_json *j, char bracket)
 
 void cli_json_text(cli_json *j, const char *key, const char *value)
 {
-    begin(j, key);
+    begin_value(j, key);
     print_text(j->out, value);
 }
 
@@ -83,31 +83,31 @@ static void print_number(FILE *out, double value)
 
 void cli_json_number(cli_json *j, const char *key, double value)
 {
-    begin(j, key);
+    begin_value(j, key);
     print_number(j->out, value);
 }
 
 void cli_json_count(cli_json *j, const char *key, size_t value)
 {
-    begin(j, key);
+    begin_value(j, key);
     fprintf(j->out, "%zu", value);
 }
 
 void cli_json_int(cli_json *j, const char *key, int64_t value)
 {
-    begin(j, key);
+    begin_value(j, key);
     fprintf(j->out, "%" PRId64, value);
 }
 
 void cli_json_bool(cli_json *j, const char *key, bool value)
 {
-    begin(j, key);
+    begin_value(j, key);
     fputs(value ? "true" : "false", j->out);
 }
 
 void cli_json_numbers(cli_json *j, const char *key, const double *values, size_t count)
 {
-    begin(j, key);
+    begin_value(j, key);
     fputc('[', j->out);
     for (size_t i = 0; i < count; i++) {
         fputs(i ? ", " : "", j->out);

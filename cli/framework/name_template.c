@@ -57,8 +57,8 @@ static cw_status put_part(FILE *out, const char *text, const char *name, size_t 
     return unknown_part(text, name, length, parts, part_count, err);
 }
 
-static cw_status fill(FILE *out, const char *text, cli_part *parts, size_t part_count,
-                      cw_error *err)
+static cw_status fill_template(FILE *out, const char *text, cli_part *parts, size_t part_count,
+                               cw_error *err)
 {
     cw_status st = CW_OK;
     for (const char *c = text; *c && st == CW_OK; c++) {
@@ -83,7 +83,7 @@ cw_status cli_fill_template(const char *text, cli_part *parts, size_t part_count
 {
     size_t size;
     FILE *stream = cwi_text_open(out, &size);
-    cw_status st = stream ? fill(stream, text, parts, part_count, err) : CW_OK;
+    cw_status st = stream ? fill_template(stream, text, parts, part_count, err) : CW_OK;
     if (!cwi_text_close(stream, out) && st == CW_OK)
         st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the name of an output");
     if (st != CW_OK) {

@@ -17,7 +17,7 @@ const cli_option cli_common_options[] = {
 const size_t cli_common_option_count = sizeof cli_common_options / sizeof *cli_common_options;
 
 /* Edits between two words: a letter put in, left out, changed, or two swapped. */
-static size_t distance(const char *a, const char *b)
+static size_t edit_distance(const char *a, const char *b)
 {
     enum { LONGEST = 32 };
     size_t d[LONGEST + 1][LONGEST + 1];
@@ -47,7 +47,7 @@ const char *cli_nearest(const char *word, const char *const *names)
     size_t best = strlen(word) / 3 + 1; /* a third of the letters may be wrong */
     for (; *names; names++) {
         const bool begins = strlen(word) >= 2 && strncmp(word, *names, strlen(word)) == 0;
-        const size_t d = begins ? 0 : distance(word, *names);
+        const size_t d = begins ? 0 : edit_distance(word, *names);
         if (d < best || (d == best && !nearest)) {
             best = d;
             nearest = *names;
@@ -265,7 +265,7 @@ static bool store_component(const char *text, cli_component *out)
 }
 
 /* Stores a value in its field; false when the text is not one of its kind. */
-static bool store(const cli_option *o, const char *text, void *field)
+static bool store_value(const cli_option *o, const char *text, void *field)
 {
     switch (o->kind) {
     case CLI_TEXT:
@@ -306,7 +306,7 @@ static bool store(const cli_option *o, const char *text, void *field)
     }
 }
 
-static const char *expectation(const cli_option *o)
+static const char *describe_expected(const cli_option *o)
 {
     switch (o->kind) {
     case CLI_CHOICE:
@@ -367,11 +367,12 @@ static cw_status take_option(parser *p, const cli_option *o, const char *value, 
     if (!takes_value(o))
         return value ? cw_fail(err, CW_ERR_ARGUMENT, "--%s takes no value", o->name) : CW_OK;
     if (!value && p->next == p->count)
-        return cw_fail(err, CW_ERR_ARGUMENT, "--%s needs a value: %s", o->name, expectation(o));
+        return cw_fail(err, CW_ERR_ARGUMENT, "--%s needs a value: %s", o->name,
+                       describe_expected(o));
     value = value ? value : p->words[p->next++];
-    if (!store(o, value, field))
+    if (!store_value(o, value, field))
         return cw_fail(err, CW_ERR_ARGUMENT, "--%s '%s': expected %s", o->name, value,
-                       expectation(o));
+                       describe_expected(o));
     return CW_OK;
 }
 

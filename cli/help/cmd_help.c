@@ -36,7 +36,7 @@ static void print_exit_codes(void)
 #undef ROW
 }
 
-static cw_status run(void *p, cw_error *err)
+static cw_status run_help(void *p, cw_error *err)
 {
     const help_args *args = p;
     if (args->search)
@@ -68,5 +68,5 @@ const cli_command cli_help = {
     .option_count = sizeof options / sizeof *options,
     .max_inputs = 1,
     .size = sizeof(help_args),
-    .run = run,
+    .run = run_help,
 };

@@ -115,7 +115,7 @@ static bool begins_with(const char *text, const char *term)
     return true;
 }
 
-static bool contains(const char *text, const char *term)
+static bool contains_term(const char *text, const char *term)
 {
     for (; text && *text; text++)
         if (begins_with(text, term))
@@ -134,12 +134,12 @@ static bool has_term(const subject *s, const char *term)
     if (strncmp(term, "--", 2) == 0)
         return s->option && strcmp(s->option, term + 2) == 0;
     for (size_t n = 0; n < 3; n++)
-        if (contains(s->texts[n], term))
+        if (contains_term(s->texts[n], term))
             return true;
-    return contains(s->option, term);
+    return contains_term(s->option, term);
 }
 
-static bool fits(const subject *s, const query *q)
+static bool fits_query(const subject *s, const query *q)
 {
     for (size_t w = 0; w < q->count; w++) {
         bool found = false;
@@ -153,7 +153,7 @@ static bool fits(const subject *s, const query *q)
 
 static bool option_fits(const cli_option *o, const query *q)
 {
-    return o->kind != CLI_HEADING && fits(&(subject){o->name, {o->value, o->about}}, q);
+    return o->kind != CLI_HEADING && fits_query(&(subject){o->name, {o->value, o->about}}, q);
 }
 
 /* --- the results -------------------------------------------------------------------------- */
@@ -220,7 +220,7 @@ static size_t search_commands(const query *q)
     size_t found = 0;
     for (size_t n = 0; cli_commands[n]; n++) {
         const cli_command *c = cli_commands[n];
-        if (fits(&(subject){NULL, {c->name, c->about}}, q)) {
+        if (fits_query(&(subject){NULL, {c->name, c->about}}, q)) {
             printf("%s: %s\n", c->name, c->about);
             found++;
         }
@@ -233,7 +233,8 @@ static size_t search_pages(const query *q)
 {
     size_t found = 0;
     for (size_t n = 0; cli_commands[n]; n++)
-        if (cli_commands[n] != &cli_help && fits(&(subject){NULL, {cli_commands[n]->page}}, q))
+        if (cli_commands[n] != &cli_help &&
+            fits_query(&(subject){NULL, {cli_commands[n]->page}}, q))
             printf("%s%s", found++ ? ", help " : "see also: help ", cli_commands[n]->name);
     if (found)
         putchar('\n');
@@ -258,7 +259,7 @@ static size_t search_verbs(const query *q)
     size_t found = 0;
     const view_verb *verb;
     for (size_t n = 0; (verb = view_verb_at(n)); n++)
-        if (fits(&(subject){NULL, {verb->name, verb->about}}, q)) {
+        if (fits_query(&(subject){NULL, {verb->name, verb->about}}, q)) {
             printf("inside view: %s%s%s: %s\n", verb->name, *verb->takes ? " " : "",
                    verb->takes, verb->about);
             found++;

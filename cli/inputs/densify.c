@@ -6,30 +6,30 @@
 
 #include <string.h>
 
-static size_t place(const cw_volume *v, size_t i, size_t j, size_t k)
+static size_t sample_address(const cw_volume *v, size_t i, size_t j, size_t k)
 {
     return ((k * v->dim[1] + j) * v->dim[0] + i) * cw_type_size(v->type);
 }
 
-static size_t least(size_t a, size_t b)
+static size_t min_size(size_t a, size_t b)
 {
     return a < b ? a : b;
 }
 
 /* Gives a box of voxels one value, as far as it is inside. */
-static void fill(const cw_volume *v, char *voxels, const size_t at[3], const size_t size[3],
-                 double value)
+static void fill_box(const cw_volume *v, char *voxels, const size_t at[3], const size_t size[3],
+                     double value)
 {
     const size_t width = cw_type_size(v->type);
     double voxel = 0; /* room for any type, aligned for all */
     size_t end[3];
     cwi_voxel_put(v->type, &voxel, value);
     for (int a = 0; a < 3; a++)
-        end[a] = least(at[a] + size[a], v->dim[a]);
+        end[a] = min_size(at[a] + size[a], v->dim[a]);
     for (size_t k = at[2]; k < end[2]; k++)
         for (size_t j = at[1]; j < end[1]; j++)
             for (size_t i = at[0]; i < end[0]; i++)
-                memcpy(voxels + place(v, i, j, k), &voxel, width);
+                memcpy(voxels + sample_address(v, i, j, k), &voxel, width);
 }
 
 static void fill_tiles(const cw_volume *v, const cw_sparse *sparse, char *voxels)
@@ -41,7 +41,7 @@ static void fill_tiles(const cw_volume *v, const cw_sparse *sparse, char *voxels
             at[a] = (size_t)CWI_LEAF * tile->at[a];
             size[a] = (size_t)CWI_LEAF * tile->size[a];
         }
-        fill(v, voxels, at, size, tile->value);
+        fill_box(v, voxels, at, size, tile->value);
     }
 }
 
@@ -52,12 +52,12 @@ static void copy_leaf(const cw_volume *sparse, size_t n, const cw_volume *v, cha
     size_t at[3], end[3];
     for (int a = 0; a < 3; a++) {
         at[a] = (size_t)CWI_LEAF * sparse->sparse->leaves[n][a];
-        end[a] = least(at[a] + CWI_LEAF, v->dim[a]);
+        end[a] = min_size(at[a] + CWI_LEAF, v->dim[a]);
     }
     for (size_t k = at[2]; k < end[2]; k++)
         for (size_t j = at[1]; j < end[1]; j++)
             if (at[0] < end[0])
-                memcpy(voxels + place(v, at[0], j, k),
+                memcpy(voxels + sample_address(v, at[0], j, k),
                        from + ((k - at[2]) * CWI_LEAF + j - at[1]) * CWI_LEAF * width,
                        (end[0] - at[0]) * width);
 }
@@ -81,7 +81,7 @@ cw_status cli_make_dense(const cw_volume *sparse, size_t max_voxels, cw_volume *
     dense->known = sparse->known;
     dense->has_nodata = sparse->has_nodata;
     dense->nodata = sparse->nodata;
-    fill(dense, voxels, (size_t[3]){0}, n, sparse->sparse->background);
+    fill_box(dense, voxels, (size_t[3]){0}, n, sparse->sparse->background);
     fill_tiles(dense, sparse->sparse, voxels);
     for (size_t leaf = 0; leaf < sparse->sparse->leaf_count; leaf++)
         copy_leaf(sparse, leaf, dense, voxels);

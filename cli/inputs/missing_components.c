@@ -13,7 +13,7 @@ typedef struct work {
     double *volume;
 } work;
 
-static bool prepare(work *w, const cw_mesh *m)
+static bool prepare_work(work *w, const cw_mesh *m)
 {
     const size_t count = m->vertex_count + 1;
     w->part = cwi_sets_alloc(count);
@@ -36,7 +36,7 @@ static double volume_of(const cw_mesh *m, size_t t)
            x[2] * (y[0] * z[1] - y[1] * z[0]);
 }
 
-static void measure(work *w, const cw_mesh *m, const float *distance)
+static void measure_components(work *w, const cw_mesh *m, const float *distance)
 {
     for (size_t t = 0; t < m->triangle_count; t++) {
         cwi_sets_join(w->part, m->triangles[3 * t], m->triangles[3 * t + 1]);
@@ -83,9 +83,9 @@ cw_status cli_drop_missing(cw_mesh *surface, const float *distance_mm, double ne
 {
     work w = {0};
     *missing = (cli_missing){0};
-    const bool ready = prepare(&w, surface);
+    const bool ready = prepare_work(&w, surface);
     if (ready)
-        measure(&w, surface, distance_mm);
+        measure_components(&w, surface, distance_mm);
     for (uint32_t v = 0; ready && v < surface->vertex_count; v++)
         if (w.part[v] == v && (double)w.least[v] > near_mm) {
             missing->count++;

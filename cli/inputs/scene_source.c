@@ -17,8 +17,8 @@ bool cli_is_folder(const char *path)
     return stat(path, &info) == 0 && S_ISDIR(info.st_mode);
 }
 
-static cw_status look(cli_source *s, const char *path, const cli_input *input, bool may_be_mesh,
-                      cw_error *err)
+static cw_status look_at_file(cli_source *s, const char *path, const cli_input *input,
+                              bool may_be_mesh, cw_error *err)
 {
     cw_volume shape = {0};
     cw_error why = {0};
@@ -41,7 +41,7 @@ cw_status cli_open_source(cli_source *source, const cli_common *common, const cl
                           const cli_steps *steps, bool may_be_mesh, cw_error *err)
 {
     cw_status st = cli_find_series(&source->series, common, input, steps, err);
-    return st == CW_OK ? look(source, common->inputs[0], input, may_be_mesh, err) : st;
+    return st == CW_OK ? look_at_file(source, common->inputs[0], input, may_be_mesh, err) : st;
 }
 
 void cli_close_source(cli_source *source)
@@ -87,7 +87,7 @@ const cw_volume *cli_drawn(const cli_source *source)
     return source->volume.view.sparse ? &source->dense : &source->volume.view;
 }
 
-static void grow(double box[2][3], const double point[3])
+static void grow_box(double box[2][3], const double point[3])
 {
     for (int a = 0; a < 3; a++) {
         box[0][a] = fmin(box[0][a], point[a]);
@@ -103,8 +103,8 @@ bool cli_find_box(const cw_volume *volume, const cw_mesh *mesh, double box[2][3]
         box[1][a] = -INFINITY;
     }
     if (mesh && cw_mesh_bounds(mesh, point[0], point[1])) {
-        grow(box, point[0]);
-        grow(box, point[1]);
+        grow_box(box, point[0]);
+        grow_box(box, point[1]);
     }
     for (int n = 0; n < 8 && volume; n++) {
         double index[3];
@@ -113,7 +113,7 @@ bool cli_find_box(const cw_volume *volume, const cw_mesh *mesh, double box[2][3]
                        : n >> a & 1        ? (double)volume->dim[a] - 1
                                            : 0;
         cw_volume_to_world(volume, index, point[0]);
-        grow(box, point[0]);
+        grow_box(box, point[0]);
     }
     return box[0][0] <= box[1][0];
 }

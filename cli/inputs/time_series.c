@@ -61,7 +61,8 @@ static cw_status check_files(const cli_series *series, const cli_input *input, c
 }
 
 /* Every step that the rows name, of so many. */
-static cw_status choose(cli_series *series, const cli_steps *asked, size_t total, cw_error *err)
+static cw_status choose_steps(cli_series *series, const cli_steps *asked, size_t total,
+                              cw_error *err)
 {
     cli_steps steps = *asked;
     if (steps.all || !steps.given) {
@@ -108,7 +109,7 @@ static cw_status find_in_files(cli_series *series, const char *path, const cli_i
                        input->step);
     cw_status st = check_files(series, input, err);
     if (st == CW_OK)
-        st = choose(series, steps, series->files.count, err);
+        st = choose_steps(series, steps, series->files.count, err);
     for (size_t n = 0; n < series->count; n++)
         series->moments[n].path = series->files.path[series->moments[n].number];
     return st == CW_OK && cw_pvd_is(path) ? take_times(series, path, input, err) : st;
@@ -123,7 +124,7 @@ static cw_status find_in_file(cli_series *series, const char *path, const cli_in
     cw_status st = cli_read_shape(path, input, &shape, err);
     if (st != CW_OK)
         return st;
-    st = choose(series, steps, shape.steps, err);
+    st = choose_steps(series, steps, shape.steps, err);
     const double step_s = shape.step_seconds;
     cw_volume_free(&shape);
     if (st != CW_OK)

@@ -201,7 +201,7 @@ static cw_status find_box(const cli_input *input, const cw_volume *v, cw_box *bo
     return st;
 }
 
-static size_t coarsening(const cli_input *input)
+static size_t pick_coarsening(const cli_input *input)
 {
     return input->coarsen ? input->coarsen : input->preview ? 4 : 1;
 }
@@ -372,7 +372,7 @@ static cw_status read_voxels(const char *path, cw_read_desc *desc, const cli_inp
     if (st != CW_OK)
         return cwi_fail_in(err, st, path);
     desc->region = input->crop.given ? &box : NULL;
-    choose_coarsening(coarsening(input), &part, volume->coarsen);
+    choose_coarsening(pick_coarsening(input), &part, volume->coarsen);
     if (input->sample && !part.cells && !part.sparse && !cwi_is_rectilinear(&part))
         choose_sample(&part, cli_memory_limit(input), volume->coarsen);
     if (!input->coarsen_view)
@@ -382,7 +382,7 @@ static cw_status read_voxels(const char *path, cw_read_desc *desc, const cli_inp
         find_grid(&volume->voxels, volume);
     if (st == CW_OK)
         st = cli_choose_step(input, input->step, volume, err);
-    if (st == CW_OK && coarsening(input) > 1 && !input->sample)
+    if (st == CW_OK && pick_coarsening(input) > 1 && !input->sample)
         tell_preview(volume, part.dim);
     return st;
 }

@@ -45,7 +45,7 @@ const char *cli_camera_title(const cli_scene *args)
     return is_json(args->camera) ? "{...}" : args->camera;
 }
 
-static cw_fit_desc describe(const cli_scene *args)
+static cw_fit_desc describe_camera(const cli_scene *args)
 {
     cw_fit_desc fit = {.view = args->camera, .fov_deg = FOV, .margin = 0.04};
     if (args->fov.given)
@@ -78,7 +78,7 @@ static cw_status check_turns(const cli_turns *turns, cw_error *err)
 cw_status cli_check_camera(const cli_scene *args, const cli_turns *turns, cw_error *err)
 {
     cw_camera camera;
-    cw_fit_desc fit = describe(args);
+    cw_fit_desc fit = describe_camera(args);
     cw_status st = check_turns(turns, err);
     if (st != CW_OK)
         return st;
@@ -131,7 +131,7 @@ cw_status cli_find_camera(const cli_scene *args, const cli_turns *turns, size_t 
                           const double box[2][3], double aspect, cw_camera *camera,
                           cw_error *err)
 {
-    cw_fit_desc fit = describe(args);
+    cw_fit_desc fit = describe_camera(args);
     cw_status st;
     fit.aspect = aspect;
     memcpy(fit.min, box[0], sizeof fit.min);

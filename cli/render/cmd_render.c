@@ -35,7 +35,7 @@ static const cli_option options[] = {
     CLI_INPUT_OPTIONS(render_args),
 };
 
-static cw_status run(void *p, cw_error *err)
+static cw_status run_render(void *p, cw_error *err)
 {
     const render_args *args = p;
     const double start = cli_seconds();
@@ -64,5 +64,5 @@ const cli_command cli_render = {
     .max_inputs = SIZE_MAX,
     .size = sizeof(render_args),
     .defaults = &defaults,
-    .run = run,
+    .run = run_render,
 };

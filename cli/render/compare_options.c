@@ -99,8 +99,8 @@ void cli_free_split(cli_split *split)
 }
 
 /* One beside the other. */
-static cw_status join(const cw_picture *const *parts, size_t count, cw_picture *out,
-                      cw_error *err)
+static cw_status join_pictures(const cw_picture *const *parts, size_t count, cw_picture *out,
+                               cw_error *err)
 {
     const size_t w = parts[0]->width, h = parts[0]->height;
     cw_status st = cw_picture_alloc(out, count * w, h, err);
@@ -128,7 +128,8 @@ cw_status cli_draw_split(const cw_picture sides[2], const render_args *args,
         st = cw_picture_difference(&sides[0], &sides[1], args->difference.value, &difference,
                                    err);
     if (st == CW_OK)
-        st = join((const cw_picture *const[]){&sides[0], &sides[1], &difference}, 3, out, err);
+        st = join_pictures((const cw_picture *const[]){&sides[0], &sides[1], &difference}, 3,
+                           out, err);
     cw_picture_free(&difference);
     return st;
 }

@@ -11,8 +11,8 @@ bool cli_has_marks(const cli_marks *m)
     return m->axes || m->scale_bar || m->letters || m->color_bar || m->histogram || m->caption;
 }
 
-static cw_status draw(const cli_marks *m, const cw_scene *scene,
-                      const cw_statistics *statistics, cw_image *image, cw_error *err)
+static cw_status draw_slices(const cli_marks *m, const cw_scene *scene,
+                             const cw_statistics *statistics, cw_image *image, cw_error *err)
 {
     const cw_overlay overlay = {.axes = m->axes,
                                 .scale_bar = m->scale_bar,
@@ -31,12 +31,12 @@ cw_status cli_mark(const cli_marks *marks, const cw_scene *scene, cw_image *imag
     if (!cli_has_marks(marks))
         return CW_OK;
     if (!marks->histogram)
-        return draw(marks, scene, NULL, image, err);
+        return draw_slices(marks, scene, NULL, image, err);
     if (!scene->volume)
         return cw_fail(err, CW_ERR_ARGUMENT, "--histogram is for volumes");
     cw_status st = cw_volume_statistics(scene->volume, BINS, scene->threads, &statistics, err);
     if (st == CW_OK)
-        st = draw(marks, scene, &statistics, image, err);
+        st = draw_slices(marks, scene, &statistics, image, err);
     cw_statistics_free(&statistics);
     return st;
 }

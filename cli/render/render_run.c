@@ -185,7 +185,7 @@ static cw_status check_names(const cli_pictures *p, cw_error *err)
 }
 
 /* One picture a turn, of each step. */
-static cw_status plan(cli_pictures *p, cw_error *err)
+static cw_status plan_pictures(cli_pictures *p, cw_error *err)
 {
     const size_t turns = p->args->turns.count > 1 ? p->args->turns.count : 1;
     p->shots = calloc(p->source.series.count * turns, sizeof *p->shots);
@@ -208,7 +208,7 @@ static bool draws_volume(const cli_pictures *p)
     return p->mode != CW_MODE_MESH;
 }
 
-static cw_status extract(cli_pictures *p, cw_error *err)
+static cw_status extract_shown(cli_pictures *p, cw_error *err)
 {
     const render_args *args = p->args;
     cw_mesh_free(&p->source.mesh);
@@ -261,7 +261,7 @@ static cw_status open_step(cli_pictures *p, size_t step, cw_error *err)
     if (st == CW_OK && args->mesh)
         st = read_beside(p, err);
     else if (st == CW_OK && has_mesh(p))
-        st = extract(p, err);
+        st = extract_shown(p, err);
     if (st == CW_OK && draws_volume(p) && !p->has_transfer)
         st = make_transfer(p, err);
     return st;
@@ -362,7 +362,7 @@ static cw_status draw_scene(cli_pictures *p, size_t turn, cli_shot *shot,
     return st;
 }
 
-static void tell(const cli_pictures *p, const cli_shot *shot)
+static void tell_picture(const cli_pictures *p, const cli_shot *shot)
 {
     char what[256];
     const size_t triangles = has_mesh(p) ? p->source.mesh.triangle_count : 0;
@@ -420,7 +420,7 @@ static cw_status take_picture(cli_pictures *p, size_t turn, cli_shot *shot, cw_e
     shot->seconds = cli_seconds() - p->start;
     shot->written = true;
     p->start = cli_seconds();
-    tell(p, shot);
+    tell_picture(p, shot);
     return CW_OK;
 }
 
@@ -444,7 +444,7 @@ cw_status cli_make_pictures(cli_pictures *p, cw_error *err)
 {
     cw_status st = look_at_input(p, err);
     if (st == CW_OK)
-        st = plan(p, err);
+        st = plan_pictures(p, err);
     if (st == CW_OK)
         st = check_mode(p, err);
     return st == CW_OK ? take_pictures(p, err) : st;

@@ -75,7 +75,7 @@ static void list_modes(unsigned modes, char *text, size_t size)
                                      cw_mode_name((cw_mode)m));
 }
 
-static cw_status refuse(int row, cw_mode mode, cw_error *err)
+static cw_status refuse_option(int row, cw_mode mode, cw_error *err)
 {
     char list[256];
     list_modes(rows[row].modes, list, sizeof list);
@@ -96,7 +96,7 @@ cw_status cli_check_scene(const cli_command *command, const cli_common *common, 
     for (int n = 0; n < ROWS; n++) {
         const bool is_used = rows[n].modes >> mode & 1 || (rows[n].mesh && has_mesh);
         if (!is_used && cli_is_given(command, common, rows[n].name))
-            return refuse(n, mode, err);
+            return refuse_option(n, mode, err);
     }
     return CW_OK;
 }

@@ -268,7 +268,7 @@ static cw_status open_input(run_state *s, cw_error *err)
     return find_level(s, err);
 }
 
-static void tell(const cli_study *study, const char *path)
+static void tell_result(const cli_study *study, const char *path)
 {
     size_t done = 0;
     for (size_t n = 0; n < study->point_count; n++)
@@ -277,7 +277,7 @@ static void tell(const cli_study *study, const char *path)
                study->point_count - done, study->seconds);
 }
 
-static cw_status pipeline(run_state *s, cw_error *err)
+static cw_status run_pipeline(run_state *s, cw_error *err)
 {
     const report_args *args = s->args;
     cw_status st = check_args(s, err);
@@ -292,7 +292,7 @@ static cw_status pipeline(run_state *s, cw_error *err)
     if (st == CW_OK)
         st = cli_report_make(args->output, cli_put_page, &s->study, err);
     if (st == CW_OK)
-        tell(&s->study, args->output);
+        tell_result(&s->study, args->output);
     return st;
 }
 
@@ -301,7 +301,7 @@ static bool is_stdout(const char *path)
     return path && strcmp(path, "-") == 0;
 }
 
-static cw_status run(void *p, cw_error *err)
+static cw_status run_report_command(void *p, cw_error *err)
 {
     report_args *args = p;
     run_state *s = calloc(1, sizeof *s);
@@ -314,7 +314,7 @@ static cw_status run(void *p, cw_error *err)
     cli_console_start(&args->common, (cli_progress_mode)args->progress);
     if (is_stdout(args->output) || is_stdout(args->json) || is_stdout(args->csv))
         cli_results_to_stderr();
-    cw_status st = pipeline(s, err);
+    cw_status st = run_pipeline(s, err);
     cli_study_free(&s->study);
     cli_free_volume(&s->volume);
     free(s->input_words);
@@ -334,5 +334,5 @@ const cli_command cli_report_command = {
     .max_inputs = 1,
     .size = sizeof(report_args),
     .defaults = &defaults,
-    .run = run,
+    .run = run_report_command,
 };

@@ -198,7 +198,7 @@ static void put_pick(FILE *out, const cli_study *s, const char *what, const cli_
 }
 
 /* How far along a point is between the ends of the front, by the logarithm. */
-static double along(double value, double low, double high)
+static double position_along(double value, double low, double high)
 {
     return high > low && low > 0 ? log(value / low) / log(high / low) : 0;
 }
@@ -219,10 +219,10 @@ static void put_picks(FILE *out, const cli_study *s, cli_family family)
     }
     for (size_t n = 0; n < s->point_count && cheap; n++) {
         const cli_point *p = &s->points[n];
-        const double cost =
-                         along(cli_point_cost(p), cli_point_cost(cheap), cli_point_cost(close)),
-                     error = along(cli_point_error(s, p), cli_point_error(s, close),
-                                   cli_point_error(s, cheap));
+        const double cost = position_along(cli_point_cost(p), cli_point_cost(cheap),
+                                           cli_point_cost(close)),
+                     error = position_along(cli_point_error(s, p), cli_point_error(s, close),
+                                            cli_point_error(s, cheap));
         if (p->family != family || !p->front || p == cheap || p == close ||
             cost + error >= least)
             continue;

@@ -25,13 +25,13 @@ typedef struct dot {
     double x, y;
 } dot;
 
-static double place(const scale *s, double value)
+static double place_value(const scale *s, double value)
 {
     return s->from + (log10(value) - s->low) / (s->high - s->low) * (s->to - s->from);
 }
 
 /* Room for all values, and a third of a decade at least. */
-static scale fit(const double *values, size_t count, double from, double to)
+static scale fit_scale(const double *values, size_t count, double from, double to)
 {
     double low = INFINITY, high = -INFINITY;
     for (size_t n = 0; n < count; n++) {
@@ -68,7 +68,7 @@ static const char *tick_text(double value, const char *unit)
 
 static void put_tick(FILE *out, const scale *s, bool upright, double value, const char *unit)
 {
-    const double at = place(s, value);
+    const double at = place_value(s, value);
     if (upright)
         fprintf(out,
                 "<line class=\"grid\" x1=\"%d\" x2=\"%d\" y1=\"%.1f\" y2=\"%.1f\"/>"
@@ -171,8 +171,8 @@ static void put_dot(FILE *out, const cli_study *s, const dot *d, const cli_axis 
             p->front ? "\non the front: nothing is both cheaper and closer" : "");
 }
 
-static size_t collect(const cli_study *s, cli_family family, dot *dots, double *cost,
-                      double *error)
+static size_t collect_dots(const cli_study *s, cli_family family, dot *dots, double *cost,
+                           double *error)
 {
     size_t count = 0;
     for (size_t n = 0; n < s->point_count; n++) {
@@ -192,7 +192,7 @@ void cli_put_plot(FILE *out, const cli_study *s, cli_family family)
     double cost[CLI_MOST_POINTS], error[CLI_MOST_POINTS];
     const char *groups[MOST_GROUPS];
     const cli_axis axis = cli_study_axis(s, family);
-    const size_t count = collect(s, family, dots, cost, error),
+    const size_t count = collect_dots(s, family, dots, cost, error),
                  group_count = cli_family_groups(s, family, groups, MOST_GROUPS);
     if (!count) {
         fputs("<p class=\"quiet\">Nothing was measured that could be drawn.</p>", out);
@@ -200,8 +200,8 @@ void cli_put_plot(FILE *out, const cli_study *s, cli_family family)
     }
     lift_zeros(cost, count);
     lift_zeros(error, count);
-    const scale x = fit(cost, count, LEFT, WIDTH - RIGHT),
-                y = fit(error, count, HEIGHT - BOTTOM, TOP);
+    const scale x = fit_scale(cost, count, LEFT, WIDTH - RIGHT),
+                y = fit_scale(error, count, HEIGHT - BOTTOM, TOP);
     fprintf(out, "<svg class=\"plot\" viewBox=\"0 0 %d %d\" role=\"img\"><title>", WIDTH,
             HEIGHT);
     fprintf(out, "%s: %s against %s</title>", cli_family_names[family], axis.error, axis.cost);
@@ -209,8 +209,8 @@ void cli_put_plot(FILE *out, const cli_study *s, cli_family family)
     put_ticks(out, &y, true, axis.error_unit);
     put_labels(out, &axis);
     for (size_t n = 0; n < count; n++) {
-        dots[n].x = place(&x, cost[n]);
-        dots[n].y = place(&y, error[n]);
+        dots[n].x = place_value(&x, cost[n]);
+        dots[n].y = place_value(&y, error[n]);
     }
     put_front(out, dots, count);
     for (int best = 0; best < 2; best++) /* those of the front above all others */

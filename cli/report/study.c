@@ -170,7 +170,7 @@ static void mark_front(cli_study *s, cli_family family)
         s->points[n].front = s->points[n].family == family ? front[n] : s->points[n].front;
 }
 
-static void plan(cli_study *s)
+static void plan_points(cli_study *s)
 {
     const cw_format *glb = cw_mesh_format("mesh.glb", NULL);
     const double *mm = s->volume->spacing;
@@ -185,7 +185,7 @@ static void plan(cli_study *s)
 cw_status cli_study_run(cli_study *s, cw_error *err)
 {
     const cli_listener listener = {.user = s, .progress = keep_going};
-    plan(s);
+    plan_points(s);
     s->start = cli_seconds();
     s->deadline = s->start + s->budget_s;
     cw_status st = cli_scratch_make(&s->folder, err);

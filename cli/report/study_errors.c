@@ -31,8 +31,8 @@ static double share_of(double mm, double voxel_mm)
     return 1 + log10(fmax(fabs(mm) / voxel_mm, 1e-9)) / DECADES;
 }
 
-static cw_status draw(cli_study *s, const cw_mesh *around, const cw_mesh *mesh,
-                      cw_picture *picture, cw_error *err)
+static cw_status draw_errors(cli_study *s, const cw_mesh *around, const cw_mesh *mesh,
+                             cw_picture *picture, cw_error *err)
 {
     const cli_scene look = {.camera = "front"};
     const cli_turns turns = {0};
@@ -54,7 +54,7 @@ static cw_status draw(cli_study *s, const cw_mesh *around, const cw_mesh *mesh,
     return st == CW_OK ? cw_render(s->cpu, &scene, picture, err) : st;
 }
 
-static cw_status load(const char *path, char **bytes, size_t *size, cw_error *err)
+static cw_status load_file(const char *path, char **bytes, size_t *size, cw_error *err)
 {
     FILE *f = fopen(path, "rb");
     long length = 0;
@@ -77,7 +77,7 @@ static cw_status save_and_load(cli_study *s, const cw_image *image, char **png, 
     snprintf(path, sizeof path, "%s/errors.png", s->folder);
     cw_status st = cw_image_write(path, image, err);
     if (st == CW_OK)
-        st = load(path, png, size, err);
+        st = load_file(path, png, size, err);
     remove(path);
     return st;
 }
@@ -96,7 +96,7 @@ cw_status cli_draw_errors(cli_study *s, const cw_mesh *around, const cw_mesh *me
         cli_error_color(share_of((double)mm[v], s->voxel_mm), colored.colors + 4 * v);
         colored.colors[4 * v + 3] = 255;
     }
-    cw_status st = draw(s, around, &colored, &picture, err);
+    cw_status st = draw_errors(s, around, &colored, &picture, err);
     if (st == CW_OK)
         st = cw_picture_show(&picture, clear, &image, err);
     if (st == CW_OK)

@@ -82,8 +82,8 @@ cw_status cli_weigh_mesh(cli_study *s, const cw_mesh *mesh, const cw_write_desc 
     return st;
 }
 
-static cw_status show(cli_study *s, cli_point *p, const cw_mesh *mesh, const float *worst,
-                      cw_error *err)
+static cw_status show_errors(cli_study *s, cli_point *p, const cw_mesh *mesh,
+                             const float *worst, cw_error *err)
 {
     const cw_quality_desc desc = {.threads = s->threads};
     cw_quality quality;
@@ -169,7 +169,7 @@ cw_status cli_measure_mesh(cli_study *s, cli_point *p, const cw_mesh *mesh, cw_e
     if (st == CW_OK)
         st = measure_back(s, p, mesh, err);
     if (st == CW_OK && p->shown)
-        st = show(s, p, mesh, worst, err);
+        st = show_errors(s, p, mesh, worst, err);
     cli_free_sample(&sample);
     cwi_free(worst);
     return st;

@@ -101,8 +101,8 @@ static int by_size(const void *a, const void *b)
 
 /* The first picture takes what the volume takes to get there; the median of the next, unless
  * that would take too long. */
-static cw_status draw(cw_renderer *renderer, const cw_scene *scene, cw_picture *picture,
-                      double *seconds, cw_error *err)
+static cw_status draw_scene(cw_renderer *renderer, const cw_scene *scene, cw_picture *picture,
+                            double *seconds, cw_error *err)
 {
     double all[FRAMES];
     int frames = 0;
@@ -151,7 +151,7 @@ cw_status cli_try_rendering(cli_study *s, cli_point *p, cw_error *err)
     if (st == CW_OK)
         st = make_scene(s, &p->tried.scene, p->tried.mode, &scene, err);
     if (st == CW_OK)
-        st = draw(renderer, &scene, &picture, &p->seconds, err);
+        st = draw_scene(renderer, &scene, &picture, &p->seconds, err);
     if (st == CW_OK)
         st = cw_picture_compare(&picture, &s->reference, black, &p->picture, err);
     cw_picture_free(&picture);

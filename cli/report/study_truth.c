@@ -7,7 +7,7 @@
 
 enum { STEPS = 12, BINS = 4096 };
 
-static double gradient(cw_field field, const double p[3], double h, double g[3])
+static double field_gradient(cw_field field, const double p[3], double h, double g[3])
 {
     double square = 0;
     for (int a = 0; a < 3; a++) {
@@ -22,13 +22,13 @@ static double gradient(cw_field field, const double p[3], double h, double g[3])
 
 /* Walks to the surface by Newton's steps, none longer than a voxel, and leaves the last
  * gradient in g; NaN: it is not reached. */
-static double walk(cw_field field, double iso, double voxel_mm, const double from[3],
-                   double g[3])
+static double walk_to_surface(cw_field field, double iso, double voxel_mm, const double from[3],
+                              double g[3])
 {
     double p[3] = {from[0], from[1], from[2]}, length = INFINITY;
     for (int n = 0; n < STEPS && length > 1e-7 * voxel_mm; n++) {
         const double off = iso - cw_field_value(field, p);
-        const double square = gradient(field, p, 1e-4 * voxel_mm, g);
+        const double square = field_gradient(field, p, 1e-4 * voxel_mm, g);
         if (!(square > 0))
             return NAN;
         length = fabs(off) / sqrt(square);
@@ -46,7 +46,7 @@ typedef struct sum {
     double bins[BINS]; /* area by distance, up to 4 voxels */
 } sum;
 
-static void add(sum *s, double mm, double area, double voxel_mm)
+static void add_distance(sum *s, double mm, double area, double voxel_mm)
 {
     if (!isfinite(mm))
         return;
@@ -78,11 +78,11 @@ static void add_triangle(sum *s, cw_field field, double iso, double voxel_mm, co
     const double x = u[1] * v[2] - u[2] * v[1], y = u[2] * v[0] - u[0] * v[2],
                  z = u[0] * v[1] - u[1] * v[0], area = 0.5 * hypot(hypot(x, y), z);
     for (int n = 0; n < 3; n++)
-        add(s, walk(field, iso, voxel_mm, c[n], g), area / 12, voxel_mm);
-    add(s, walk(field, iso, voxel_mm, middle, g), area * 3 / 4, voxel_mm);
+        add_distance(s, walk_to_surface(field, iso, voxel_mm, c[n], g), area / 12, voxel_mm);
+    add_distance(s, walk_to_surface(field, iso, voxel_mm, middle, g), area * 3 / 4, voxel_mm);
 }
 
-static double p99(const sum *s, double voxel_mm)
+static double find_p99(const sum *s, double voxel_mm)
 {
     double below = 0;
     size_t n = 0;
@@ -98,7 +98,7 @@ cli_gap cli_measure_truth(cw_field field, double iso, double voxel_mm, const cw_
     for (size_t t = 0; t < mesh->triangle_count && s; t++)
         add_triangle(s, field, iso, voxel_mm, mesh, t);
     if (s && s->area > 0)
-        gap = (cli_gap){true, s->max, sqrt(s->square / s->area), p99(s, voxel_mm)};
+        gap = (cli_gap){true, s->max, sqrt(s->square / s->area), find_p99(s, voxel_mm)};
     free(s);
     return gap;
 }
@@ -123,7 +123,7 @@ cli_vertex_errors cli_measure_vertices(cw_field field, double iso, double voxel_
     for (size_t v = 0; v < mesh->vertex_count; v += one_of) {
         double p[3], g[3];
         vertex_of(mesh, v, p);
-        const double mm = walk(field, iso, voxel_mm, p, g);
+        const double mm = walk_to_surface(field, iso, voxel_mm, p, g);
         if (isnan(mm)) {
             e.missed++;
             continue;

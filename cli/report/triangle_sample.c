@@ -28,7 +28,7 @@ static uint32_t take_vertex(cli_sample *s, const cw_mesh *mesh, uint32_t *number
     return number[v];
 }
 
-static void take(cli_sample *s, const cw_mesh *mesh, uint32_t *number, size_t room)
+static void take_triangles(cli_sample *s, const cw_mesh *mesh, uint32_t *number, size_t room)
 {
     memset(number, 0xff, mesh->vertex_count * sizeof *number);
     for (size_t t = 0; t < mesh->triangle_count && s->mesh.triangle_count < room; t++) {
@@ -54,7 +54,7 @@ static double area_of(const cw_mesh *m, size_t t)
 }
 
 /* Large triangles are measured at many points, and count as many. */
-static size_t choose(const cw_mesh *mesh, size_t most, double voxel_mm)
+static size_t choose_triangles(const cw_mesh *mesh, size_t most, double voxel_mm)
 {
     double area = 0;
     for (size_t t = 0; t < mesh->triangle_count; t++)
@@ -68,7 +68,7 @@ static size_t choose(const cw_mesh *mesh, size_t most, double voxel_mm)
 cw_status cli_take_sample(const cw_mesh *mesh, size_t most, double voxel_mm, cli_sample *s,
                           cw_error *err)
 {
-    *s = (cli_sample){.one_of = choose(mesh, most, voxel_mm)};
+    *s = (cli_sample){.one_of = choose_triangles(mesh, most, voxel_mm)};
     memcpy(s->mesh.origin, mesh->origin, sizeof s->mesh.origin);
     if (s->one_of == 1)
         return CW_OK;
@@ -78,7 +78,7 @@ cw_status cli_take_sample(const cw_mesh *mesh, size_t most, double voxel_mm, cli
     s->mesh.positions = cwi_alloc_array(9 * room, sizeof(float));
     const bool good = number && s->mesh.triangles && s->mesh.positions;
     if (good)
-        take(s, mesh, number, room);
+        take_triangles(s, mesh, number, room);
     cwi_free(number);
     return good ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a sample");
 }

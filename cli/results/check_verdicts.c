@@ -24,7 +24,7 @@ static void print_bar(const char *label, size_t count, size_t total)
     cli_result("    %-20s%5.1f %%  %.*s\n", label, 100 * share, (int)ceil(WIDTH * share), bar);
 }
 
-static size_t sum(const size_t *bins, size_t count)
+static size_t sum_bins(const size_t *bins, size_t count)
 {
     size_t total = 0;
     for (size_t n = 0; n < count; n++)
@@ -43,18 +43,18 @@ void cli_print_shapes(const cw_shapes *s)
     cli_result("  angles, degrees\n");
     for (size_t n = 0; n < CW_ANGLE_BINS; n++) {
         snprintf(label, sizeof label, "%zu to %zu", 10 * n, 10 * n + 10);
-        print_bar(label, s->angles[n], sum(s->angles, CW_ANGLE_BINS));
+        print_bar(label, s->angles[n], sum_bins(s->angles, CW_ANGLE_BINS));
     }
     cli_result("  aspect ratio\n");
     for (size_t n = 0; n < CW_ASPECT_BINS; n++) {
         snprintf(label, sizeof label, n + 1 < CW_ASPECT_BINS ? "up to %g" : "beyond %g",
                  cw_aspect_ends[n + 1 < CW_ASPECT_BINS ? n : n - 1]);
-        print_bar(label, s->aspects[n], sum(s->aspects, CW_ASPECT_BINS));
+        print_bar(label, s->aspects[n], sum_bins(s->aspects, CW_ASPECT_BINS));
     }
     cli_result("  edges, mm\n");
     for (size_t n = 0; n < CW_LENGTH_BINS; n++) {
         snprintf(label, sizeof label, "%.3g to %.3g", length_at(s, n), length_at(s, n + 1));
-        print_bar(label, s->lengths[n], sum(s->lengths, CW_LENGTH_BINS));
+        print_bar(label, s->lengths[n], sum_bins(s->lengths, CW_LENGTH_BINS));
     }
 }
 

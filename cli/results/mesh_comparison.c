@@ -25,7 +25,7 @@ static double area_of(const cw_mesh *m)
     return sum;
 }
 
-static double blend(double a, double area_a, double b, double area_b)
+static double blend_by_area(double a, double area_a, double b, double area_b)
 {
     return area_a + area_b > 0 ? (a * area_a + b * area_b) / (area_a + area_b) : 0;
 }
@@ -36,10 +36,11 @@ static void add_distance(cw_distance *sum, double area_sum, const cw_distance *d
     const cw_distance was = *sum;
     if (d->max_mm > was.max_mm || was.samples == 0)
         *sum = *d;
-    const double square = blend(was.rms_mm * was.rms_mm, area_sum, d->rms_mm * d->rms_mm, area);
+    const double square =
+        blend_by_area(was.rms_mm * was.rms_mm, area_sum, d->rms_mm * d->rms_mm, area);
     sum->max_mm = fmax(was.max_mm, d->max_mm);
     sum->rms_mm = sqrt(square);
-    sum->mean_mm = blend(was.mean_mm, area_sum, d->mean_mm, area);
+    sum->mean_mm = blend_by_area(was.mean_mm, area_sum, d->mean_mm, area);
     sum->p99_mm = fmax(was.p99_mm, d->p99_mm);
     sum->bound_mm = fmax(was.bound_mm, d->bound_mm);
     sum->triangles = was.triangles + d->triangles;

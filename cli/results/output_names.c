@@ -83,8 +83,8 @@ static cw_status ask_for(const char *what, const char *text, const char *why, cw
                    why, what, (int)(end - text), text, what, width, end);
 }
 
-static cw_status reserve(cli_outputs *outputs, size_t count, char **stem, const char *input,
-                         cw_error *err)
+static cw_status reserve_names(cli_outputs *outputs, size_t count, char **stem,
+                               const char *input, cw_error *err)
 {
     outputs->path = calloc(count ? count : 1, sizeof *outputs->path);
     *stem = cli_stem(input);
@@ -166,7 +166,7 @@ cw_status cli_name_part_outputs(cli_outputs *outputs, const char *text, const ch
                                 const cw_part *parts, size_t count, cw_error *err)
 {
     char *stem = NULL, name[256], number[24], why[64];
-    cw_status st = reserve(outputs, count, &stem, input, err);
+    cw_status st = reserve_names(outputs, count, &stem, input, err);
     cli_part fields[] = {{.name = "stem", .value = stem},
                          {.name = "name", .value = name},
                          {.name = "part", .value = number}};
@@ -197,7 +197,7 @@ cw_status cli_name_lod_outputs(cli_outputs *outputs, const char *text, const cha
                                size_t levels, bool together, cw_error *err)
 {
     char *stem = NULL, *plain = NULL, *made = NULL, number[24] = "0";
-    cw_status st = reserve(outputs, levels + 1, &stem, input, err);
+    cw_status st = reserve_names(outputs, levels + 1, &stem, input, err);
     cli_part parts[] = {{.name = "stem", .value = stem}, {.name = "lod", .value = number}};
     if (st == CW_OK) /* only to see whether there is a {lod} in it */
         st = cli_fill_template(text, parts, 2, &plain, err);
@@ -220,7 +220,7 @@ cw_status cli_name_output(cli_outputs *outputs, const char *text, const char *in
                           cw_error *err)
 {
     char *stem = NULL;
-    cw_status st = reserve(outputs, 1, &stem, input, err);
+    cw_status st = reserve_names(outputs, 1, &stem, input, err);
     if (st == CW_OK)
         st = add_output(outputs, text, &(cli_part){.name = "stem", .value = stem}, 1, err);
     free(stem);

@@ -99,8 +99,8 @@ static cw_status find_facing(const cw_mesh *mesh, int threads, cw_quality *q, cw
     return CW_OK;
 }
 
-static cw_status check(cli_report *report, const cli_delivery *how, const load *l,
-                       cli_made *made, cw_error *err)
+static cw_status check_mesh(cli_report *report, const cli_delivery *how, const load *l,
+                            cli_made *made, cw_error *err)
 {
     const cw_quality_desc desc = {.threads = how->threads,
                                   .shells = how->unpromised,
@@ -377,7 +377,7 @@ cw_status cli_deliver(cli_report *report, const cli_delivery *how, const cw_part
 {
     const load l = count_load(parts, part_count);
     cli_made *made = &report->made[report->made_count - 1];
-    cw_status st = how->unchecked ? CW_OK : check(report, how, &l, made, err);
+    cw_status st = how->unchecked ? CW_OK : check_mesh(report, how, &l, made, err);
     if (st == CW_OK)
         st = write_mesh(report, how, &l, made, err);
     if (st == CW_OK)
@@ -391,7 +391,7 @@ cw_status cli_deliver_step(cli_report *report, const cli_delivery *how, const cw
     const cw_part part = {.mesh = mesh};
     const load l = count_load(&part, 1);
     cli_made *made = &report->made[report->made_count - 1];
-    cw_status st = how->unchecked ? CW_OK : check(report, how, &l, made, err);
+    cw_status st = how->unchecked ? CW_OK : check_mesh(report, how, &l, made, err);
     if (st == CW_OK)
         print_summary(how, made, &l, border_loops, start);
     return st;

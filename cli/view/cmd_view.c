@@ -57,14 +57,14 @@ static bool show_progress(void *user, const char *step, double done)
     return !v->quits;
 }
 
-static void hear(void *user, const char *line)
+static void hear_line(void *user, const char *line)
 {
     view *v = user; /* what a file is stands in the status line as well */
     if (!v->opening || strncmp(line, v->opening, strlen(v->opening)) != 0)
         view_say(v, false, line);
 }
 
-static cw_status check(const render_args *args, cw_error *err)
+static cw_status check_arguments(const render_args *args, cw_error *err)
 {
     const char *dot = args->output ? strrchr(args->output, '.') : NULL;
     if (args->size.count != 2 || args->size.n[0] > 8192 || args->size.n[1] > 8192)
@@ -109,7 +109,7 @@ static cw_status open_first(view *v, const render_args *args, cw_error *err)
 }
 
 /* A file that was named has to be there, the usual one need not. */
-static cw_status configure(view *v, const char *named, cw_error *err)
+static cw_status read_settings(view *v, const char *named, cw_error *err)
 {
     char path[4096];
     const char *home = getenv("HOME"), *folder = getenv("XDG_CONFIG_HOME");
@@ -142,7 +142,7 @@ static cw_status do_asked(view *v, const render_args *args, cw_error *err)
 
 static cw_status run_session(view *v, const render_args *args, cw_error *err)
 {
-    const cli_listener listener = {v, hear, show_progress};
+    const cli_listener listener = {v, hear_line, show_progress};
     const view_shown shown = {.panels = !args->output,
                               .cross = args->marks.layout == CLI_LAYOUT_QUAD};
     v->command = &cli_view;
@@ -157,7 +157,7 @@ static cw_status run_session(view *v, const render_args *args, cw_error *err)
     view_lay_out(v);
     cli_console_listen(&listener);
     v->is_configuring = true;
-    cw_status st = configure(v, args->config, err);
+    cw_status st = read_settings(v, args->config, err);
     v->is_configuring = false;
     if (st == CW_OK)
         st = open_first(v, args, err);
@@ -185,11 +185,11 @@ static void end_session(view *v)
     free(v);
 }
 
-static cw_status run(void *p, cw_error *err)
+static cw_status run_view(void *p, cw_error *err)
 {
     const render_args *args = p;
     const double start = cli_seconds();
-    cw_status st = check(args, err);
+    cw_status st = check_arguments(args, err);
     if (st != CW_OK)
         return st;
     view *v = calloc(1, sizeof *v);
@@ -233,5 +233,5 @@ const cli_command cli_view = {
     .size = sizeof(render_args),
     .defaults = &defaults,
     .print_more = print_more,
-    .run = run,
+    .run = run_view,
 };

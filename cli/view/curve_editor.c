@@ -114,7 +114,7 @@ static bool is_near_iso(const view *v, const cwi_ui_area *a)
 }
 
 /* Where the mouse is, in value and opacity; and how near is near. */
-static void locate(const view *v, const cwi_ui_area *a, double at[2], double near[2])
+static void locate_pointer(const view *v, const cwi_ui_area *a, double at[2], double near[2])
 {
     const double range = v->statistics.max - v->statistics.min;
     at[0] = value_of(v, &a->rect, a->rect.x + fmin(fmax(a->x, 0), a->rect.width));
@@ -123,7 +123,7 @@ static void locate(const view *v, const cwi_ui_area *a, double at[2], double nea
     near[1] = NEAR_PX / a->rect.height;
 }
 
-static void press(view *v, const double at[2], const double near[2], bool on_iso)
+static void press_point(view *v, const double at[2], const double near[2], bool on_iso)
 {
     const size_t point = cwi_transfer_near_opacity(&v->transfer, at[0], at[1], near);
     v->curve_drag = NOTHING;
@@ -139,10 +139,10 @@ static void press(view *v, const double at[2], const double near[2], bool on_iso
 static void use_curve(view *v, const cwi_ui_area *a)
 {
     double at[2], near[2];
-    locate(v, a, at, near);
+    locate_pointer(v, a, at, near);
     const size_t point = cwi_transfer_near_opacity(&v->transfer, at[0], at[1], near);
     if (a->pressed)
-        press(v, at, near, is_near_iso(v, a));
+        press_point(v, at, near, is_near_iso(v, a));
     if (a->twice && point == CWI_TRANSFER_NONE)
         view_ask(v, "add-point %.9g %.6g", at[0], at[1]);
     else if (a->right && point != CWI_TRANSFER_NONE && v->transfer.opacity_count > 1)
@@ -162,7 +162,7 @@ static void use_curve(view *v, const cwi_ui_area *a)
 static void use_colors(view *v, const cwi_ui_area *a)
 {
     double at[2], near[2], rgb[3], opacity;
-    locate(v, a, at, near);
+    locate_pointer(v, a, at, near);
     const size_t n = cwi_transfer_near_color(&v->transfer, at[0], near[0]);
     cw_transfer_at(&v->transfer, at[0], rgb, &opacity);
     if (a->pressed && n != CWI_TRANSFER_NONE)

@@ -27,7 +27,7 @@ static int by_version(const struct dirent **a, const struct dirent **b)
     return strverscmp((*a)->d_name, (*b)->d_name);
 }
 
-static void forget(view_browser *b)
+static void forget_entries(view_browser *b)
 {
     for (size_t n = 0; n < b->count; n++)
         free(b->names[n]);
@@ -38,7 +38,7 @@ static void forget(view_browser *b)
 
 void view_close_browser(view *v)
 {
-    forget(&v->browser);
+    forget_entries(&v->browser);
 }
 
 int view_scan(const char *folder, struct dirent ***entries)
@@ -59,7 +59,7 @@ static void list_folder(view_browser *b)
 {
     struct dirent **entries;
     const int count = view_scan(b->folder, &entries);
-    forget(b);
+    forget_entries(b);
     b->names = count > 0 ? calloc((size_t)count, sizeof *b->names) : NULL;
     for (int folders = 1; folders >= 0; folders--)
         for (int n = 0; n < count && b->names; n++) {
@@ -76,7 +76,7 @@ static void list_folder(view_browser *b)
 }
 
 /* That of the file that is open, else where the program was started. */
-static void begin(view *v)
+static void begin_browsing(view *v)
 {
     view_browser *b = &v->browser;
     const char *slash = v->path ? strrchr(v->path, '/') : NULL;
@@ -87,7 +87,7 @@ static void begin(view *v)
     list_folder(b);
 }
 
-static void enter(view_browser *b, const char *name)
+static void enter_folder(view_browser *b, const char *name)
 {
     char path[VIEW_PATH], whole[VIEW_PATH];
     const int length = snprintf(path, sizeof path, "%s/%s", b->folder, name);
@@ -97,14 +97,14 @@ static void enter(view_browser *b, const char *name)
     list_folder(b);
 }
 
-static void choose(view *v, const char *name)
+static void choose_file(view *v, const char *name)
 {
     view_browser *b = &v->browser;
     char path[VIEW_PATH], line[VIEW_PATH];
     const size_t length = strlen(name);
     if (length && name[length - 1] == '/') {
         snprintf(line, sizeof line, "%.*s", (int)length - 1, name);
-        enter(b, line);
+        enter_folder(b, line);
         return;
     }
     if (snprintf(path, sizeof path, "%s/%s", b->folder, name) < (int)sizeof path)
@@ -118,7 +118,7 @@ void view_browse(view *v)
     const double scale = v->ui->scale(v->window);
     const cwi_ui_rect rect = {40 * scale, 50 * scale, 460 * scale,
                               fmax(120, (double)v->height - 120 * scale)};
-    begin(v);
+    begin_browsing(v);
     size_t chosen = b->count;
     if (v->ui->panel_begin(v->window, "Open", &rect, 0, &v->shown.files)) {
         v->ui->text(v->window, b->folder);
@@ -134,9 +134,9 @@ void view_browse(view *v)
             if (v->ui->item(v->window, b->names[n], NULL, false, true))
                 chosen = n;
         if (up)
-            enter(b, "..");
+            enter_folder(b, "..");
         else if (chosen < b->count)
-            choose(v, b->names[chosen]);
+            choose_file(v, b->names[chosen]);
     }
     v->ui->panel_end(v->window);
     if (!v->shown.files)

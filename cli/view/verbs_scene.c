@@ -10,7 +10,7 @@
 /* how it is drawn */
 
 /* The modes that what is open can be drawn in. */
-static bool fits(const view *v, cw_mode mode)
+static bool fits_mode(const view *v, cw_mode mode)
 {
     return mode == CW_MODE_MESH || v->has_volume;
 }
@@ -22,7 +22,7 @@ static cw_status change_mode(view *v, int by, cw_error *err)
         v->state.iso_is_ours = true; /* the volume comes without the surface */
     do
         m = (m + by + CW_MODE_COUNT) % CW_MODE_COUNT;
-    while (!fits(v, (cw_mode)m));
+    while (!fits_mode(v, (cw_mode)m));
     return view_set(v, "mode", cw_mode_name((cw_mode)m), err);
 }
 

@@ -88,7 +88,7 @@ static int button_of(int count, char **args)
     return CWI_UI_LEFT;
 }
 
-static cw_status feed(view *v, const cwi_ui_event *event, cw_error *err)
+static cw_status feed_event(view *v, const cwi_ui_event *event, cw_error *err)
 {
     cw_status st = v->ui->feed(v->window, event, err);
     return st == CW_OK ? view_take_in(v, err) : st;
@@ -105,7 +105,7 @@ static cw_status feed_words(view *v, cwi_ui_kind kind, int least, int count, cha
         event.modifiers |= modifiers_of(args[i]);
     event.x = kind == CWI_UI_WHEEL ? 0 : n[0];
     event.y = kind == CWI_UI_WHEEL ? n[0] : n[1];
-    return st == CW_OK ? feed(v, &event, err) : st;
+    return st == CW_OK ? feed_event(v, &event, err) : st;
 }
 
 static cw_status run_mouse(view *v, int count, char **args, cw_error *err)
@@ -147,26 +147,27 @@ static cw_status run_resize(view *v, int count, char **args, cw_error *err)
         st = cw_fail(err, CW_ERR_ARGUMENT, "resize %s %s: 1 to 8192 was expected", args[0],
                      args[1]);
     return st == CW_OK
-               ? feed(v, &(cwi_ui_event){.kind = CWI_UI_RESIZE, .x = n[0], .y = n[1]}, err)
+               ? feed_event(v, &(cwi_ui_event){.kind = CWI_UI_RESIZE, .x = n[0], .y = n[1]},
+                            err)
                : st;
 }
 
 static cw_status run_key(view *v, int count, char **args, cw_error *err)
 {
     (void)count;
-    return feed(v, &(cwi_ui_event){.kind = CWI_UI_KEY, .text = args[0]}, err);
+    return feed_event(v, &(cwi_ui_event){.kind = CWI_UI_KEY, .text = args[0]}, err);
 }
 
 static cw_status run_write(view *v, int count, char **args, cw_error *err)
 {
     (void)count;
-    return feed(v, &(cwi_ui_event){.kind = CWI_UI_WRITE, .text = args[0]}, err);
+    return feed_event(v, &(cwi_ui_event){.kind = CWI_UI_WRITE, .text = args[0]}, err);
 }
 
 static cw_status run_drop(view *v, int count, char **args, cw_error *err)
 {
     (void)count;
-    return feed(v, &(cwi_ui_event){.kind = CWI_UI_DROP, .text = args[0]}, err);
+    return feed_event(v, &(cwi_ui_event){.kind = CWI_UI_DROP, .text = args[0]}, err);
 }
 
 /* Where a widget is once it moves no more: what came just now may still be laid out. */
@@ -204,7 +205,7 @@ static cw_status go_to(view *v, const char *label, double x, double y, cw_error 
     cw_status st = find_widget(v, label, &r, err);
     if (st != CW_OK)
         return st;
-    return feed(
+    return feed_event(
         v,
         &(cwi_ui_event){.kind = CWI_UI_MOVE, .x = r.x + x * r.width, .y = r.y + y * r.height},
         err);

@@ -193,7 +193,7 @@ static void size_for(const view *v, const view_part *part, view_level level, cw_
     scene->height = (size_t)fmax(1, round(part->rect.height * scale));
 }
 
-static void suit(view_level level, cw_scene *scene)
+static void suit_level(view_level level, cw_scene *scene)
 {
     if (level == VIEW_ROUGH)
         make_rough(scene);
@@ -220,7 +220,7 @@ static cw_status draw_split(view *v, view_level level, const cw_progress *progre
         size_for(v, &v->parts[VIEW_SPACE], level, scene);
         if (st == CW_OK)
             st = space_scene(v, &side->args, side->mode, &side->transfer, scene, err);
-        suit(level, scene);
+        suit_level(level, scene);
         scene->progress = *progress;
         if (st == CW_OK)
             st = draw_scene(v, scene, &sides[n], err);
@@ -257,7 +257,7 @@ static cw_status draw_space(view *v, view_level level, const cw_progress *progre
         return draw_split(v, level, progress, scene, picture, err);
     size_for(v, &v->parts[VIEW_SPACE], level, scene);
     st = space_scene(v, &v->state.args, v->mode, &v->transfer, scene, err);
-    suit(level, scene);
+    suit_level(level, scene);
     scene->progress = *progress;
     if (st == CW_OK && v->mode == CW_MODE_MESH && !scene->mesh) /* an empty surface */
         return cw_picture_alloc(picture, scene->width, scene->height, err);
@@ -294,7 +294,7 @@ static cw_status show_part(view *v, int part, cw_scene *scene, const cw_picture 
 }
 
 /* Slower or faster than wanted: the next rough picture is smaller or larger. */
-static void adapt(view_part *part, cw_mode mode, double ms)
+static void adapt_level(view_part *part, cw_mode mode, double ms)
 {
     if (mode == CW_MODE_MESH) /* its cost is in its triangles */
         return;
@@ -320,7 +320,7 @@ static cw_status draw_part(view *v, int p, view_level level, bool may_stop, cw_i
     if (st != CW_OK)
         return st;
     if (level == VIEW_ROUGH)
-        adapt(part, scene.mode, ms);
+        adapt_level(part, scene.mode, ms);
     part->scene = scene;
     part->ms = ms;
     part->level = p == VIEW_SPACE ? level : VIEW_FINAL;

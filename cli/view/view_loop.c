@@ -49,7 +49,7 @@ static void press_keys(view *v, const cwi_ui_input *in)
         }
 }
 
-static void play(view *v)
+static void play_steps(view *v)
 {
     const double now = v->ui->seconds(v->window);
     if (!v->shown.playing || v->source.series.count < 2 || now < v->play_next)
@@ -69,7 +69,7 @@ static double wait_for(const view *v, double wait_s)
 
 /* Rough pictures at once, better ones when there is nothing else to do. What cannot be drawn is
  * told in the window; to the monkey GL's errors are failures. */
-static cw_status draw(view *v, cw_error *err)
+static cw_status draw_session(view *v, cw_error *err)
 {
     cw_error why = {0};
     bool is_stale = false;
@@ -114,11 +114,11 @@ cw_status view_frame(view *v, double wait_s, cw_error *err)
     view_lay_out(v);
     view_show_parts(v, in);
     view_mouse(v, in);
-    play(v);
+    play_steps(v);
     cw_status st = ui->end(v->window, err);
     tell_first(v);
     view_run_asked(v);
-    return st == CW_OK ? draw(v, err) : st;
+    return st == CW_OK ? draw_session(v, err) : st;
 }
 
 cw_status view_take_in(view *v, cw_error *err)

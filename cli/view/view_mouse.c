@@ -182,7 +182,7 @@ static void turn_wheel(view *v, const cwi_ui_input *in, int part)
 }
 
 /* The value of the volume that is seen, for slices; of the scene only on a cross-hair. */
-static void probe(view *v, const cwi_ui_input *in, int part)
+static void probe_part(view *v, const cwi_ui_input *in, int part)
 {
     double point[3];
     bool there = false;
@@ -223,7 +223,7 @@ void view_mouse(view *v, const cwi_ui_input *in)
         pressed |= in->pressed[b];
         held |= in->down[b];
     }
-    probe(v, in, part);
+    probe_part(v, in, part);
     if (pressed && part >= 0 && v->path && v->drag == NOTHING) {
         v->drag = begin_drag(v, in, part);
         v->drag_part = part;

@@ -126,7 +126,7 @@ static cw_status parse_setting(view *v, const cli_option *o, const char *value, 
 }
 
 /* What a setting means beyond its own value. */
-static cw_status follow(view *v, const char *name, cw_error *err)
+static cw_status follow_name(view *v, const char *name, cw_error *err)
 {
     view_state *s = &v->state;
     if (strcmp(name, "tf") == 0)
@@ -196,7 +196,7 @@ cw_status view_set(view *v, const char *name, const char *value, cw_error *err)
         return CW_OK; /* the command line outdoes it */
     cw_status st = parse_setting(v, o, value, err);
     if (st == CW_OK)
-        st = follow(v, name, err);
+        st = follow_name(v, name, err);
     if (st == CW_OK)
         st = try_scene(v, err);
     if (st == CW_OK)

@@ -78,8 +78,8 @@ static cw_status fail_system(cw_error *err, const char *what, int number)
 }
 
 /* What stands at the path decides: nothing (exists false), a regular file, or an error. */
-static cw_status inspect(const char *path, bool no_clobber, bool *exists, mode_t *mode,
-                         cw_error *err)
+static cw_status inspect_target(const char *path, bool no_clobber, bool *exists, mode_t *mode,
+                                cw_error *err)
 {
     struct stat link, info;
     *exists = lstat(path, &link) == 0;
@@ -176,7 +176,7 @@ static cw_status open_beside(cwi_outfile *f, const char *path, cw_error *err)
 {
     bool exists;
     mode_t mode = 0;
-    cw_status st = inspect(path, f->no_clobber, &exists, &mode, err);
+    cw_status st = inspect_target(path, f->no_clobber, &exists, &mode, err);
     if (st != CW_OK)
         return st;
     char *real = exists ? realpath(path, NULL) : cwi_strdup(path);
@@ -232,7 +232,7 @@ static cw_status write_through(cwi_outfile *f, const unsigned char *bytes, size_
     return f->failure ? fail_write(f, err) : CW_OK;
 }
 
-static cw_status flush(cwi_outfile *f, cw_error *err)
+static cw_status flush_file(cwi_outfile *f, cw_error *err)
 {
     const size_t size = f->used;
     f->used = 0;
@@ -245,7 +245,7 @@ cw_status cwi_outfile_write(cwi_outfile *f, const void *bytes, size_t size, cw_e
         return fail_write(f, err);
     f->size += size;
     if (size > BUFFER_BYTES - f->used) {
-        cw_status st = flush(f, err);
+        cw_status st = flush_file(f, err);
         if (st != CW_OK || size >= BUFFER_BYTES)
             return st == CW_OK ? write_through(f, bytes, size, -1, err) : st;
     }
@@ -263,7 +263,7 @@ uint64_t cwi_outfile_size(const cwi_outfile *f)
 cw_status cwi_outfile_patch(cwi_outfile *f, uint64_t at, const void *bytes, size_t size,
                             cw_error *err)
 {
-    cw_status st = f->failure ? fail_write(f, err) : flush(f, err);
+    cw_status st = f->failure ? fail_write(f, err) : flush_file(f, err);
     return st == CW_OK ? write_through(f, bytes, size, (off_t)at, err) : st;
 }
 
@@ -314,7 +314,7 @@ static bool cannot_sync(int number)
 
 static cw_status finish_bytes(cwi_outfile *f, cw_error *err)
 {
-    cw_status st = f->failure ? fail_write(f, err) : flush(f, err);
+    cw_status st = f->failure ? fail_write(f, err) : flush_file(f, err);
     if (st != CW_OK)
         return st;
     int synced;

@@ -36,7 +36,7 @@ typedef struct parcel {
     struct msghdr head;
 } parcel;
 
-static void wrap(parcel *p, void *bytes, size_t size)
+static void wrap_parcel(parcel *p, void *bytes, size_t size)
 {
     *p = (parcel){.bytes = {.iov_base = bytes, .iov_len = size}};
     p->head.msg_iov = &p->bytes;
@@ -51,7 +51,7 @@ static bool send_parcel(int socket, const void *bytes, size_t size, int fd)
     parcel p;
     ssize_t sent;
     memcpy(copy, bytes, size);
-    wrap(&p, copy, size);
+    wrap_parcel(&p, copy, size);
     if (fd >= 0) {
         struct cmsghdr *c = CMSG_FIRSTHDR(&p.head);
         c->cmsg_level = SOL_SOCKET;
@@ -74,7 +74,7 @@ static bool receive_parcel(int socket, void *bytes, size_t size, int *fd)
 {
     parcel p;
     ssize_t got;
-    wrap(&p, bytes, size);
+    wrap_parcel(&p, bytes, size);
     if (!fd)
         p.head.msg_controllen = 0;
     do
@@ -90,7 +90,7 @@ static bool receive_parcel(int socket, void *bytes, size_t size, int *fd)
 
 /* --- the child --------------------------------------------------------------------------- */
 
-static void limit(__rlimit_resource_t what, uint64_t most)
+static void limit_resource(__rlimit_resource_t what, uint64_t most)
 {
     struct rlimit now;
     if (getrlimit(what, &now) != 0)
@@ -115,12 +115,13 @@ static uint64_t space_in_use(void)
 
 static void set_limits(const cwi_sandbox_desc *d)
 {
-    limit(RLIMIT_CORE, 0);
-    limit(RLIMIT_FSIZE, 0);
-    limit(RLIMIT_NOFILE, CHILD_FILES);
-    limit(RLIMIT_STACK, (uint64_t)8 << 20);
+    limit_resource(RLIMIT_CORE, 0);
+    limit_resource(RLIMIT_FSIZE, 0);
+    limit_resource(RLIMIT_NOFILE, CHILD_FILES);
+    limit_resource(RLIMIT_STACK, (uint64_t)8 << 20);
     if (!CWI_SANITIZED)
-        limit(RLIMIT_AS, space_in_use() + (d->memory ? d->memory : CWI_SANDBOX_MEMORY));
+        limit_resource(RLIMIT_AS,
+                       space_in_use() + (d->memory ? d->memory : CWI_SANDBOX_MEMORY));
 }
 
 /* Of all files nothing stays open but the socket, which moves behind the standard streams;
@@ -146,7 +147,7 @@ static bool drop_files(int *socket, bool all)
 }
 
 /* Everything else fails with EPERM: a library that asks in vain for its settings goes on. */
-static bool lock(void)
+static bool lock_system_calls(void)
 {
     static const int allowed[] = {
         SCMP_SYS(read),         SCMP_SYS(pread64),        SCMP_SYS(readv),
@@ -178,7 +179,7 @@ static bool send_answer(int socket, answer *a)
     return sendmsg(socket, &head, MSG_NOSIGNAL) == (ssize_t)sizeof *a;
 }
 
-static void serve(const cwi_sandbox *box, int socket)
+static void serve_requests(const cwi_sandbox *box, int socket)
 {
     char request[CWI_SANDBOX_REQUEST];
     int fd;
@@ -199,7 +200,7 @@ static cw_status shut_in(const cwi_sandbox_desc *d, cw_error *err)
         return st;
     set_limits(d);
     if (prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0 || prctl(PR_SET_DUMPABLE, 0) != 0 ||
-        !lock())
+        !lock_system_calls())
         return cw_fail(err, CW_ERR_BACKEND,
                        "the process that is to read with %s cannot be sandboxed (seccomp); "
                        "--no-sandbox reads in this one",
@@ -222,7 +223,7 @@ _Noreturn static void live(const cwi_sandbox *box, int socket, pid_t parent)
         _exit(0);
     ready.status = shut_in(&box->desc, &ready.error);
     if (send_answer(socket, &ready) && ready.status == CW_OK)
-        serve(box, socket);
+        serve_requests(box, socket);
     _exit(0);
 }
 

@@ -14,7 +14,7 @@ static const struct {
 #undef ROW
 };
 
-static cw_status known(cw_status status)
+static cw_status clamp_status(cw_status status)
 {
     return (unsigned)status < CW_STATUS_COUNT ? status : CW_ERR_BACKEND;
 }
@@ -26,17 +26,17 @@ const char *cw_version(void)
 
 int cw_status_exit_code(cw_status status)
 {
-    return table[known(status)].exit_code;
+    return table[clamp_status(status)].exit_code;
 }
 
 const char *cw_status_name(cw_status status)
 {
-    return table[known(status)].name;
+    return table[clamp_status(status)].name;
 }
 
 const char *cw_status_text(cw_status status)
 {
-    return table[known(status)].text;
+    return table[clamp_status(status)].text;
 }
 
 cw_status cw_fail(cw_error *err, cw_status status, const char *format, ...)

@@ -21,7 +21,7 @@ static const struct {
 enum { VIEW_COUNT = sizeof views / sizeof *views };
 
 /* False when there is no length to speak of, or no number. */
-static bool normalize(double a[3])
+static bool normalize_vector(double a[3])
 {
     const double length = sqrt(cwi_dot(a, a));
     for (int i = 0; i < 3; i++)
@@ -39,10 +39,10 @@ cw_status cw_camera_axes(const cw_camera *camera, double right[3], double up[3],
 {
     for (int a = 0; a < 3; a++)
         forward[a] = camera->target[a] - camera->eye[a];
-    if (!normalize(forward))
+    if (!normalize_vector(forward))
         return cw_fail(err, CW_ERR_ARGUMENT, "the camera's eye and target must be apart");
     cwi_cross(forward, camera->up, right);
-    if (!normalize(right))
+    if (!normalize_vector(right))
         return cw_fail(err, CW_ERR_ARGUMENT, "the camera's up is along its line of sight");
     cwi_cross(right, forward, up);
     if (!(camera->fov_deg >= 0 && camera->fov_deg < 180))
@@ -67,7 +67,7 @@ static cw_status find_view(const char *name, int *view, cw_error *err)
 }
 
 /* How far the box reaches from its middle along an axis: a box is symmetric. */
-static double reach(const double half[3], const double axis[3])
+static double project_extent(const double half[3], const double axis[3])
 {
     return fabs(half[0] * axis[0]) + fabs(half[1] * axis[1]) + fabs(half[2] * axis[2]);
 }
@@ -76,7 +76,7 @@ static double reach(const double half[3], const double axis[3])
 static double perspective_distance(const double half[3], const double axes[3][3],
                                    const double slope[2])
 {
-    double distance = 1.01 * reach(half, axes[2]); /* the eye stays outside */
+    double distance = 1.01 * project_extent(half, axes[2]); /* the eye stays outside */
     for (int corner = 0; corner < 8; corner++) {
         double p[3];
         for (int a = 0; a < 3; a++)
@@ -88,7 +88,7 @@ static double perspective_distance(const double half[3], const double axes[3][3]
     return distance;
 }
 
-static void place(const cw_fit_desc *d, const double axes[3][3], cw_camera *camera)
+static void place_camera(const cw_fit_desc *d, const double axes[3][3], cw_camera *camera)
 {
     const double aspect = d->aspect > 0 ? d->aspect : 1, inner = 1 - 2 * d->margin;
     double half[3], distance;
@@ -102,16 +102,17 @@ static void place(const cw_fit_desc *d, const double axes[3][3], cw_camera *came
         const double slope = tan(d->fov_deg * acos(-1) / 360) * inner;
         distance = perspective_distance(half, axes, (const double[2]){slope * aspect, slope});
     } else {
-        const double tall = fmax(reach(half, axes[1]), reach(half, axes[0]) / aspect);
+        const double tall =
+            fmax(project_extent(half, axes[1]), project_extent(half, axes[0]) / aspect);
         camera->height_mm = 2 * tall / inner;
-        distance = 2 * reach(half, axes[2]) + camera->height_mm;
+        distance = 2 * project_extent(half, axes[2]) + camera->height_mm;
     }
     for (int a = 0; a < 3; a++)
         camera->eye[a] = camera->target[a] - distance * axes[2][a];
 }
 
 /* Turns a vector about an axis of unit length (Rodrigues' formula). */
-static void rotate(double v[3], const double axis[3], double degrees)
+static void rotate_vector(double v[3], const double axis[3], double degrees)
 {
     const double angle = degrees * acos(-1) / 180, c = cos(angle), s = sin(angle);
     const double along = cwi_dot(axis, v) * (1 - c);
@@ -132,12 +133,12 @@ static cw_status turn_view(const cw_fit_desc *d, double forward[3], double up[3]
                        d->elevation_deg);
     cwi_cross(forward, up, right); /* some views' up is not across */
     cwi_cross(right, forward, up);
-    normalize(up);
-    rotate(forward, up, d->azimuth_deg);
+    normalize_vector(up);
+    rotate_vector(forward, up, d->azimuth_deg);
     cwi_cross(forward, up, right);
-    normalize(right);
-    rotate(forward, right, -d->elevation_deg);
-    rotate(up, right, -d->elevation_deg);
+    normalize_vector(right);
+    rotate_vector(forward, right, -d->elevation_deg);
+    rotate_vector(up, right, -d->elevation_deg);
     return CW_OK;
 }
 
@@ -145,13 +146,13 @@ cw_status cw_camera_turn(cw_camera *camera, const double axis[3], double degrees
 {
     double unit[3], arm[3];
     memcpy(unit, axis, sizeof unit);
-    if (!normalize(unit) || !isfinite(degrees))
+    if (!normalize_vector(unit) || !isfinite(degrees))
         return cw_fail(err, CW_ERR_ARGUMENT, "a turn of %g degrees about (%g, %g, %g)", degrees,
                        axis[0], axis[1], axis[2]);
     for (int a = 0; a < 3; a++)
         arm[a] = camera->eye[a] - camera->target[a];
-    rotate(arm, unit, degrees);
-    rotate(camera->up, unit, degrees);
+    rotate_vector(arm, unit, degrees);
+    rotate_vector(camera->up, unit, degrees);
     for (int a = 0; a < 3; a++)
         camera->eye[a] = camera->target[a] + arm[a];
     return CW_OK;
@@ -184,7 +185,7 @@ cw_status cw_camera_fit(const cw_fit_desc *desc, cw_camera *camera, cw_error *er
     if (st == CW_OK)
         st = cw_camera_axes(&c, axes[0], axes[1], axes[2], err);
     if (st == CW_OK) {
-        place(desc, (const double(*)[3])axes, &c);
+        place_camera(desc, (const double(*)[3])axes, &c);
         *camera = c;
     }
     return st;

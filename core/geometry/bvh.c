@@ -11,7 +11,7 @@ typedef struct keyed {
 } keyed;
 
 /* Spreads 16 bits so that two zeros follow each. */
-static uint64_t spread(uint64_t x)
+static uint64_t spread_bits(uint64_t x)
 {
     x = (x | x << 16) & UINT64_C(0x0000ff0000ff);
     x = (x | x << 8) & UINT64_C(0x00f00f00f00f);
@@ -34,7 +34,7 @@ static void set_keys(const float (*boxes)[6], size_t count, keyed *keys)
         uint64_t key = 0;
         for (int a = 0; a < 3; a++) {
             const double x = (double)boxes[n][a] + (double)boxes[n][a + 3] - low[a];
-            key |= spread((uint64_t)(x * scale)) << a;
+            key |= spread_bits((uint64_t)(x * scale)) << a;
         }
         keys[n] = (keyed){key, (uint32_t)n};
     }
@@ -96,7 +96,7 @@ static void fill_level(cwi_boxes *t, const float (*boxes)[6], int level, size_t 
         cwi_boxes_put(nodes, c, empty);
 }
 
-static void fill(cwi_boxes *t, const float (*boxes)[6])
+static void fill_boxes(cwi_boxes *t, const float (*boxes)[6])
 {
     size_t children = t->count;
     for (int level = 0; level < t->levels; level++) {
@@ -135,7 +135,7 @@ cw_status cwi_boxes_build(cwi_boxes *tree, const float (*boxes)[6], size_t count
     for (size_t n = 0; n < count && ok; n++)
         tree->order[n] = keys[n].item;
     if (ok)
-        fill(tree, boxes);
+        fill_boxes(tree, boxes);
     cwi_free(keys);
     if (ok)
         return CW_OK;

@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-static void corners(const cw_mesh *m, size_t triangle, const float *p[3])
+static void load_corners(const cw_mesh *m, size_t triangle, const float *p[3])
 {
     for (size_t k = 0; k < 3; k++)
         p[k] = m->positions + 3 * (size_t)m->triangles[3 * triangle + k];
@@ -31,11 +31,11 @@ typedef struct search {
     size_t triangle;
 } search;
 
-static void measure(void *context, size_t slot, double *square)
+static void measure_slot(void *context, size_t slot, double *square)
 {
     search *s = context;
     const float *p[3];
-    corners(s->mesh, s->tree->order[slot], p);
+    load_corners(s->mesh, s->tree->order[slot], p);
     const double here = cwi_facet_square(p[0], p[1], p[2], s->point);
     if (here < *square) {
         *square = here;
@@ -49,9 +49,9 @@ cwi_closest cwi_closest_find(const cw_mesh *mesh, const cwi_boxes *tree, const d
     double square = INFINITY;
     const float *p[3];
     cwi_closest c = {0};
-    cwi_boxes_nearest(tree, point, measure, &s, &square);
+    cwi_boxes_nearest(tree, point, measure_slot, &s, &square);
     c.triangle = s.triangle;
-    corners(mesh, c.triangle, p);
+    load_corners(mesh, c.triangle, p);
     cwi_facet_nearest(p[0], p[1], p[2], point, c.share);
     for (int a = 0; a < 3; a++)
         for (int k = 0; k < 3; k++)

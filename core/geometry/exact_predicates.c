@@ -16,7 +16,7 @@ typedef struct sum {
     double part[MOST_TERMS];
 } sum;
 
-static void add(sum *s, double x)
+static void add_to_sum(sum *s, double x)
 {
     int kept = 0;
     for (int n = 0; n < s->count; n++) {
@@ -44,8 +44,8 @@ static int sign_of_sum(const sum *s)
 static void add_product(sum *s, double xy, double z)
 {
     const double rounded = xy * z;
-    add(s, fma(xy, z, -rounded));
-    add(s, rounded);
+    add_to_sum(s, fma(xy, z, -rounded));
+    add_to_sum(s, rounded);
 }
 
 /* sign times the determinant of the rows a, b, c. */
@@ -179,8 +179,8 @@ static int exact_orient2d(const float *a, const float *b, const float *c, int x,
     const float *point[3] = {a, b, c};
     for (int n = 0; n < 3; n++) {
         const float *p = point[n], *q = point[(n + 1) % 3];
-        add(&s, (double)p[x] * (double)q[y]);
-        add(&s, -((double)p[y] * (double)q[x]));
+        add_to_sum(&s, (double)p[x] * (double)q[y]);
+        add_to_sum(&s, -((double)p[y] * (double)q[x]));
     }
     return sign_of_sum(&s);
 }

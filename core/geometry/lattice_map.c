@@ -26,7 +26,7 @@ uint32_t cwi_places_find(const cwi_places *p, uint64_t key)
     return CWI_NO_PLACE;
 }
 
-static void enter(cwi_places *p, uint32_t n)
+static void enter_slot(cwi_places *p, uint32_t n)
 {
     size_t s = slot_of(p->keys[n], p->slots);
     while (p->table[s])
@@ -34,7 +34,7 @@ static void enter(cwi_places *p, uint32_t n)
     p->table[s] = n + 1;
 }
 
-static bool grow(cwi_places *p)
+static bool grow_table(cwi_places *p)
 {
     const size_t room = p->room ? 2 * p->room : 256;
     uint64_t *keys = cwi_realloc_array(p->keys, room, sizeof *keys);
@@ -48,7 +48,7 @@ static bool grow(cwi_places *p)
     p->slots = 2 * room;
     p->room = room;
     for (uint32_t n = 0; n < p->count; n++)
-        enter(p, n);
+        enter_slot(p, n);
     return true;
 }
 
@@ -57,9 +57,9 @@ uint32_t cwi_places_add(cwi_places *p, uint64_t key)
     const uint32_t known = cwi_places_find(p, key);
     if (known != CWI_NO_PLACE)
         return known;
-    if (p->count == p->room && !grow(p))
+    if (p->count == p->room && !grow_table(p))
         return CWI_NO_PLACE;
     p->keys[p->count] = key;
-    enter(p, (uint32_t)p->count);
+    enter_slot(p, (uint32_t)p->count);
     return (uint32_t)p->count++;
 }

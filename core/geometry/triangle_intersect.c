@@ -29,7 +29,7 @@ static bool segment_meets_flat(const float *p, const float *q, const corners *t,
            cwi_orient2d(p, q, t->p[2], axis) != first;
 }
 
-static int side(const corners *t, const float *p)
+static int find_side(const corners *t, const float *p)
 {
     return cwi_orient3d(t->p[0], t->p[1], t->p[2], p);
 }
@@ -49,13 +49,13 @@ static bool segment_meets(const float *p, const float *q, int sp, int sq, const 
     return s0 * s2 >= 0 && s1 * s2 >= 0;
 }
 
-static void sides(const corners *t, const corners *of, int s[3])
+static void find_sides(const corners *t, const corners *of, int s[3])
 {
     for (int n = 0; n < 3; n++)
-        s[n] = side(t, of->p[n]);
+        s[n] = find_side(t, of->p[n]);
 }
 
-static bool apart(const int s[3])
+static bool are_apart(const int s[3])
 {
     return s[0] * s[1] > 0 && s[0] * s[2] > 0;
 }
@@ -63,11 +63,11 @@ static bool apart(const int s[3])
 static bool strangers_meet(const corners *a, const corners *b)
 {
     int sa[3], sb[3];
-    sides(b, a, sa);
-    if (apart(sa))
+    find_sides(b, a, sa);
+    if (are_apart(sa))
         return false;
-    sides(a, b, sb);
-    if (apart(sb))
+    find_sides(a, b, sb);
+    if (are_apart(sb))
         return false;
     for (int n = 0; n < 3; n++) {
         const int m = (n + 1) % 3;
@@ -81,18 +81,18 @@ static bool strangers_meet(const corners *a, const corners *b)
 /* With corner 0 in common they meet elsewhere only if the side across from it does. */
 static bool around_vertex_meet(const corners *a, const corners *b)
 {
-    const int a1 = side(b, a->p[1]), a2 = side(b, a->p[2]);
+    const int a1 = find_side(b, a->p[1]), a2 = find_side(b, a->p[2]);
     if (a1 * a2 > 0)
         return false;
     if (segment_meets(a->p[1], a->p[2], a1, a2, b))
         return true;
-    return segment_meets(b->p[1], b->p[2], side(a, b->p[1]), side(a, b->p[2]), a);
+    return segment_meets(b->p[1], b->p[2], find_side(a, b->p[1]), find_side(a, b->p[2]), a);
 }
 
 /* With the edge from corner 0 to 1 in common they meet elsewhere only if folded flat. */
 static bool around_edge_meet(const corners *a, const corners *b)
 {
-    if (side(a, b->p[2]) != 0)
+    if (find_side(a, b->p[2]) != 0)
         return false;
     const int axis = cwi_seen_along(a->p[0], a->p[1], a->p[2]);
     return cwi_orient2d(a->p[0], a->p[1], a->p[2], axis) ==
@@ -100,7 +100,8 @@ static bool around_edge_meet(const corners *a, const corners *b)
 }
 
 /* Puts the numbers that both triangles have first, in the same order; returns how many. */
-static int align(const uint32_t a[3], const uint32_t b[3], uint32_t x[3], uint32_t y[3])
+static int align_common_corners(const uint32_t a[3], const uint32_t b[3], uint32_t x[3],
+                                uint32_t y[3])
 {
     int shared = 0, last_a = 3, last_b = 3;
     bool taken[3] = {false};
@@ -126,7 +127,7 @@ bool cwi_triangles_meet(const float *points, const uint32_t a[3], const uint32_t
 {
     uint32_t x[3], y[3];
     corners s, t;
-    const int shared = align(a, b, x, y);
+    const int shared = align_common_corners(a, b, x, y);
     for (int n = 0; n < 3; n++) {
         s.p[n] = points + 3 * (size_t)x[n];
         t.p[n] = points + 3 * (size_t)y[n];

@@ -13,7 +13,7 @@
 
 typedef double vector[3];
 
-static void subtract(const double a[3], const double b[3], vector out)
+static void subtract_vectors(const double a[3], const double b[3], vector out)
 {
     for (int i = 0; i < 3; i++)
         out[i] = a[i] - b[i];
@@ -22,7 +22,7 @@ static void subtract(const double a[3], const double b[3], vector out)
 /* ---- no corner in common ---------------------------------------------------------------- */
 
 /* The triangles' shadows on a line do not meet. */
-static bool parts(const double axis[3], const cwi_triangle *s, const cwi_triangle *t)
+static bool axis_separates(const double axis[3], const cwi_triangle *s, const cwi_triangle *t)
 {
     const double length = sqrt(cwi_dot(axis, axis));
     const double a = cwi_dot(axis, s->p[0]), b = cwi_dot(axis, s->p[1]),
@@ -43,10 +43,10 @@ static bool side_parts(const double normal[3], vector sides[3], const cwi_triang
     for (int i = 0; i < 3; i++) {
         vector axis;
         cwi_cross(normal, sides[i], axis);
-        if (parts(axis, s, t))
+        if (axis_separates(axis, s, t))
             return true;
     }
-    return parts(normal, s, t);
+    return axis_separates(normal, s, t);
 }
 
 static bool are_apart(const cwi_triangle *s, const cwi_triangle *t)
@@ -54,11 +54,11 @@ static bool are_apart(const cwi_triangle *s, const cwi_triangle *t)
     vector s_sides[3], t_sides[3], m, n, axis;
     for (int a = 0; a < 3; a++) /* from middle to middle: most often */
         axis[a] = s->p[0][a] + s->p[1][a] + s->p[2][a] - t->p[0][a] - t->p[1][a] - t->p[2][a];
-    if (parts(axis, s, t))
+    if (axis_separates(axis, s, t))
         return true;
     for (int i = 0; i < 3; i++) {
-        subtract(s->p[(i + 1) % 3], s->p[i], s_sides[i]);
-        subtract(t->p[(i + 1) % 3], t->p[i], t_sides[i]);
+        subtract_vectors(s->p[(i + 1) % 3], s->p[i], s_sides[i]);
+        subtract_vectors(t->p[(i + 1) % 3], t->p[i], t_sides[i]);
     }
     cwi_cross(s_sides[0], s_sides[1], m);
     cwi_cross(t_sides[0], t_sides[1], n);
@@ -66,7 +66,7 @@ static bool are_apart(const cwi_triangle *s, const cwi_triangle *t)
         return true;
     for (int i = 0; i < 9; i++) {
         cwi_cross(s_sides[i / 3], t_sides[i % 3], axis);
-        if (parts(axis, s, t))
+        if (axis_separates(axis, s, t))
             return true;
     }
     return false;
@@ -74,9 +74,9 @@ static bool are_apart(const cwi_triangle *s, const cwi_triangle *t)
 
 /* ---- one corner in common: plane cones, of which only directions matter ----------------- */
 
-static bool direction(const double from[3], const double to[3], vector out)
+static bool unit_direction(const double from[3], const double to[3], vector out)
 {
-    subtract(to, from, out);
+    subtract_vectors(to, from, out);
     const double length = sqrt(cwi_dot(out, out));
     for (int i = 0; i < 3; i++)
         out[i] /= length;
@@ -123,8 +123,8 @@ static bool side_parts_cones(vector s[2], vector t[2])
 static bool cones_apart(const cwi_triangle *s, const cwi_triangle *t)
 {
     vector u[2], v[2], axis;
-    if (!direction(s->p[0], s->p[1], u[0]) || !direction(s->p[0], s->p[2], u[1]) ||
-        !direction(t->p[0], t->p[1], v[0]) || !direction(t->p[0], t->p[2], v[1]))
+    if (!unit_direction(s->p[0], s->p[1], u[0]) || !unit_direction(s->p[0], s->p[2], u[1]) ||
+        !unit_direction(t->p[0], t->p[1], v[0]) || !unit_direction(t->p[0], t->p[2], v[1]))
         return false;
     for (int a = 0; a < 3; a++) /* from the middle of one to that of the other: most often */
         axis[a] = u[0][a] + u[1][a] - v[0][a] - v[1][a];
@@ -143,9 +143,9 @@ static bool cones_apart(const cwi_triangle *s, const cwi_triangle *t)
 static bool hinge_is_open(const cwi_triangle *s, const cwi_triangle *t)
 {
     vector hinge, u, v, m, n, across;
-    subtract(s->p[1], s->p[0], hinge);
-    subtract(s->p[2], s->p[0], u);
-    subtract(t->p[2], t->p[0], v);
+    subtract_vectors(s->p[1], s->p[0], hinge);
+    subtract_vectors(s->p[2], s->p[0], u);
+    subtract_vectors(t->p[2], t->p[0], v);
     cwi_cross(hinge, u, m);
     cwi_cross(hinge, v, n);
     cwi_cross(m, n, across);
@@ -174,7 +174,7 @@ bool cwi_triangles_apart(const cwi_triangle *s, const cwi_triangle *t, int share
 static void try_side(const double p[3], const double q[3], double nearest[3])
 {
     vector d, at;
-    subtract(q, p, d);
+    subtract_vectors(q, p, d);
     const double t = cwi_lesser(cwi_greater(-cwi_dot(p, d) / cwi_dot(d, d), 0), 1);
     for (int a = 0; a < 3; a++)
         at[a] = p[a] + t * d[a];

@@ -53,7 +53,7 @@ bool cwi_weld(const float *points, size_t count, uint32_t *map)
 }
 
 /* Room for twice as many points, in a table that is never more than half full. */
-static bool grow(cwi_welder *w)
+static bool grow_table(cwi_welder *w)
 {
     const size_t room = w->room ? 2 * w->room : 1024, slots = 2 * room;
     float *points = cwi_realloc_array(w->points, room, 3 * sizeof *points);
@@ -110,7 +110,7 @@ bool cwi_welder_add(cwi_welder *w, const float *points, size_t count, uint32_t *
     for (size_t i = 0; ok && i < count; i += BATCH) {
         const size_t batch = count - i < BATCH ? count - i : BATCH;
         while (ok && w->room - w->count < batch)
-            ok = grow(w);
+            ok = grow_table(w);
         ok = ok && add_batch(w, points + 3 * i, batch, indices + i);
     }
     return ok;

@@ -20,24 +20,24 @@ static const struct {
 #undef ROW
 };
 
-static bool known(cw_field field)
+static bool is_known_field(cw_field field)
 {
     return (unsigned)field < CW_FIELD_COUNT;
 }
 
 const char *cw_field_name(cw_field field)
 {
-    return known(field) ? fields[field].name : "unknown";
+    return is_known_field(field) ? fields[field].name : "unknown";
 }
 
 const char *cw_field_about(cw_field field)
 {
-    return known(field) ? fields[field].about : "";
+    return is_known_field(field) ? fields[field].about : "";
 }
 
 double cw_field_isovalue(cw_field field)
 {
-    return known(field) ? fields[field].isovalue : 0;
+    return is_known_field(field) ? fields[field].isovalue : 0;
 }
 
 bool cw_field_find(const char *name, cw_field *field)
@@ -50,12 +50,12 @@ bool cw_field_find(const char *name, cw_field *field)
     return false;
 }
 
-static double length3(double x, double y, double z)
+static double vector_length(double x, double y, double z)
 {
     return sqrt(x * x + y * y + z * z);
 }
 
-static double gyroid(const double p[3])
+static double evaluate_gyroid(const double p[3])
 {
     const double k = 2 * PI * 2.5 / 80;
     return sin(k * p[0]) * cos(k * p[1]) + sin(k * p[1]) * cos(k * p[2]) +
@@ -116,13 +116,13 @@ double cw_field_value(cw_field field, const double p[3])
 {
     switch (field) {
     case CW_FIELD_SPHERE:
-        return 30 - length3(p[0], p[1], p[2]);
+        return 30 - vector_length(p[0], p[1], p[2]);
     case CW_FIELD_TORUS:
-        return 10 - length3(sqrt(p[0] * p[0] + p[1] * p[1]) - 26, p[2], 0);
+        return 10 - vector_length(sqrt(p[0] * p[0] + p[1] * p[1]) - 26, p[2], 0);
     case CW_FIELD_PLANE:
         return (p[0] + 2 * p[1] + 3 * p[2]) / sqrt(14.0);
     case CW_FIELD_GYROID:
-        return gyroid(p);
+        return evaluate_gyroid(p);
     case CW_FIELD_MARSCHNER_LOBB:
         return marschner_lobb(p);
     case CW_FIELD_CT_HEAD:
@@ -135,7 +135,7 @@ double cw_field_value(cw_field field, const double p[3])
 double cw_field_stored(cw_field field, cw_type type, double value)
 {
     double low, high;
-    if (!known(field) || !cwi_fill_range(type, &low, &high))
+    if (!is_known_field(field) || !cwi_fill_range(type, &low, &high))
         return value;
     if (field == CW_FIELD_CT_HEAD && cw_type_size(type) > 1)
         return value + (low == 0 ? 1024 : 0);
@@ -170,7 +170,7 @@ cw_status cw_field_sample(const cw_field_desc *desc, cw_volume *volume, cw_error
 {
     cw_field_desc d = *desc;
     size_t longest = 0;
-    if (!known(d.field))
+    if (!is_known_field(d.field))
         return cw_fail(err, CW_ERR_ARGUMENT, "%d is not a field", (int)d.field);
     if (!(d.noise >= 0) || !isfinite(d.noise))
         return cw_fail(err, CW_ERR_ARGUMENT, "noise %g must be 0 or more", d.noise);

@@ -11,20 +11,20 @@
 
 typedef struct cwi_hard_sample sample;
 
-static uint64_t place(const size_t at[3])
+static uint64_t number_place(const size_t at[3])
 {
     return at[0] + UINT64_C(0x10000) * (at[1] + UINT64_C(0x10000) * at[2]);
 }
 
-static double chance(const sample *s, uint64_t stream)
+static double draw_chance(const sample *s, uint64_t stream)
 {
-    return cwi_chance(s->seed + 977 * stream, place(s->at));
+    return cwi_chance(s->seed + 977 * stream, number_place(s->at));
 }
 
 /* One of -n, ..., n. */
-static double whole(const sample *s, int n)
+static double draw_whole_number(const sample *s, int n)
 {
-    return floor((2 * n + 1) * chance(s, 1)) - n;
+    return floor((2 * n + 1) * draw_chance(s, 1)) - n;
 }
 
 /* From a sample in the middle: along an axis, and along all of them. */
@@ -47,13 +47,13 @@ static void from_middle(const sample *s, double p[3])
         p[a] = (double)s->at[a] - 0.5 * (double)(s->dim[a] - 1) + off[a];
 }
 
-static double length3(double x, double y, double z)
+static double vector_length(double x, double y, double z)
 {
     return sqrt(x * x + y * y + z * z);
 }
 
 /* Half the shortest side, in voxels. */
-static double reach(const sample *s)
+static double half_extent(const sample *s)
 {
     size_t n = s->dim[0] < s->dim[1] ? s->dim[0] : s->dim[1];
     n = n < s->dim[2] ? n : s->dim[2];
@@ -61,11 +61,11 @@ static double reach(const sample *s)
 }
 
 /* The distance to a sphere of 2/3 of that, positive inside. */
-static double ball(const sample *s)
+static double evaluate_ball(const sample *s)
 {
     double p[3];
     from_middle(s, p);
-    return reach(s) / 1.5 - length3(p[0], p[1], p[2]);
+    return half_extent(s) / 1.5 - vector_length(p[0], p[1], p[2]);
 }
 
 /* Samples on the isovalue. */
@@ -99,34 +99,34 @@ static double block_on_samples(const sample *s)
 
 static double mostly_on_samples(const sample *s)
 {
-    const double kind = chance(s, 2);
+    const double kind = draw_chance(s, 2);
     return kind < 0.2 ? -1 : kind < 0.25 ? 1 : 0;
 }
 
 /* Numbers that are often equal. */
 
-static double ties(const sample *s)
+static double evaluate_ties(const sample *s)
 {
-    return whole(s, 2);
+    return draw_whole_number(s, 2);
 }
 
-static double plateaus(const sample *s)
+static double evaluate_plateaus(const sample *s)
 {
     const size_t brick[3] = {s->at[0] / 3, s->at[1] / 3, s->at[2] / 3};
-    return floor(3 * cwi_chance(s->seed, place(brick))) - 1;
+    return floor(3 * cwi_chance(s->seed, number_place(brick))) - 1;
 }
 
-static double terraces(const sample *s)
+static double evaluate_terraces(const sample *s)
 {
-    return floor(2 * ball(s));
+    return floor(2 * evaluate_ball(s));
 }
 
-static double checkerboard(const sample *s)
+static double evaluate_checkerboard(const sample *s)
 {
     return (s->at[0] + s->at[1] + s->at[2]) % 2 ? s->parameter : -1;
 }
 
-static double columns(const sample *s)
+static double evaluate_columns(const sample *s)
 {
     return (s->at[0] + s->at[1]) % 2 ? 1 : -1;
 }
@@ -165,7 +165,7 @@ static double double_cone(const sample *s)
 }
 
 /* So many of the type's next numbers up, or down. */
-static double nudge(const sample *s, double x, int steps)
+static double nudge_number(const sample *s, double x, int steps)
 {
     const double to = steps < 0 ? -DBL_MAX : DBL_MAX;
     for (; steps != 0; steps += steps < 0 ? 1 : -1)
@@ -193,7 +193,7 @@ static double near_saddle_face(const sample *s)
     const double sign = cell / 9 % 2 ? -1 : 1;
     const double a = 1 + floor(2048 * cwi_chance(s->seed, 2 * cell)) / 2048;
     const double b = 1 + floor(2048 * cwi_chance(s->seed, 2 * cell + 1)) / 2048;
-    const double face[4] = {1, -a, -b, nudge(s, a * b, shift_of(cell))};
+    const double face[4] = {1, -a, -b, nudge_number(s, a * b, shift_of(cell))};
     return c > 3 ? -1 : sign * face[c];
 }
 
@@ -207,13 +207,13 @@ static double near_saddle_inside(const sample *s)
     const unsigned first = cell / 3 % 4;
     const double sign = cell / 12 % 2 ? -1 : 1;
     return sign * (corner == first       ? 3
-                   : corner == 7 - first ? nudge(s, 3, shift_of(cell))
+                   : corner == 7 - first ? nudge_number(s, 3, shift_of(cell))
                                          : -1);
 }
 
 /* Thin things. */
 
-static double sheet(const sample *s)
+static double evaluate_sheet(const sample *s)
 {
     return s->at[2] == s->dim[2] / 2 ? 1 : -1;
 }
@@ -223,7 +223,7 @@ static double sheet_askew(const sample *s)
     return from_sample(s, 0) + from_sample(s, 1) + from_sample(s, 2) == 0 ? 1 : -1;
 }
 
-static double wire(const sample *s)
+static double evaluate_wire(const sample *s)
 {
     return from_sample(s, 0) == 0 && from_sample(s, 1) == 0 ? 1 : -1;
 }
@@ -258,21 +258,21 @@ static double tilted_wire(const sample *s)
 
 static double lone_samples(const sample *s)
 {
-    return chance(s, 3) < 0.1 ? 1 : -1;
+    return draw_chance(s, 3) < 0.1 ? 1 : -1;
 }
 
 /* Cusps, corners and tips. */
 
-static double astroid(const sample *s)
+static double evaluate_astroid(const sample *s)
 {
     double p[3];
     from_middle(s, p);
-    return cbrt(reach(s) * reach(s)) - cbrt(p[0] * p[0]) - cbrt(p[1] * p[1]) -
+    return cbrt(half_extent(s) * half_extent(s)) - cbrt(p[0] * p[0]) - cbrt(p[1] * p[1]) -
            cbrt(p[2] * p[2]);
 }
 
 /* A cube on its tip: three directions at right angles. */
-static double corners(const sample *s)
+static double evaluate_corners(const sample *s)
 {
     static const double axis[3][3] = {{1, 1, 1}, {1, -1, 0}, {1, 1, -2}};
     double p[3], largest = 0;
@@ -280,17 +280,17 @@ static double corners(const sample *s)
     for (int n = 0; n < 3; n++) {
         const double *d = axis[n];
         const double along = d[0] * p[0] + d[1] * p[1] + d[2] * p[2];
-        largest = fmax(largest, fabs(along) / length3(d[0], d[1], d[2]));
+        largest = fmax(largest, fabs(along) / vector_length(d[0], d[1], d[2]));
     }
-    return reach(s) / 2 - largest;
+    return half_extent(s) / 2 - largest;
 }
 
 /* A needle that is a quarter as wide as it is long, its tip at the top. */
-static double spike(const sample *s)
+static double evaluate_spike(const sample *s)
 {
     double p[3];
     from_middle(s, p);
-    const double h = 0.8 * reach(s);
+    const double h = 0.8 * half_extent(s);
     return fmin((h - p[2]) / 8 - hypot(p[0], p[1]), h + p[2]);
 }
 
@@ -310,7 +310,7 @@ static double zone_plate(const sample *s)
     double p[3];
     from_middle(s, p);
     const double square = p[0] * p[0] + p[1] * p[1] + p[2] * p[2];
-    return cos(PI / 2 * square / reach(s)) - 0.1;
+    return cos(PI / 2 * square / half_extent(s)) - 0.1;
 }
 
 /* Ends of the number line. */
@@ -320,28 +320,29 @@ static double huge_values(const sample *s)
     double far = 0;
     for (int a = 0; a < 3; a++)
         far += (double)s->dim[a];
-    return ball(s) / far * (s->type == CW_F32 ? (double)FLT_MAX : DBL_MAX);
+    return evaluate_ball(s) / far * (s->type == CW_F32 ? (double)FLT_MAX : DBL_MAX);
 }
 
 static double denormal_values(const sample *s)
 {
-    return rint(4 * ball(s)) * (s->type == CW_F32 ? (double)FLT_TRUE_MIN : DBL_TRUE_MIN);
+    return rint(4 * evaluate_ball(s)) *
+           (s->type == CW_F32 ? (double)FLT_TRUE_MIN : DBL_TRUE_MIN);
 }
 
 static double offset_values(const sample *s)
 {
-    return 1e6 + ball(s);
+    return 1e6 + evaluate_ball(s);
 }
 
 static double last_digits(const sample *s)
 {
-    return nudge(s, 1, (int)whole(s, 2));
+    return nudge_number(s, 1, (int)draw_whole_number(s, 2));
 }
 
-static double decades(const sample *s)
+static double evaluate_decades(const sample *s)
 {
-    const double magnitude = pow(10, 30 * (2 * chance(s, 4) - 1));
-    return chance(s, 5) < 0.5 ? magnitude : -magnitude;
+    const double magnitude = pow(10, 30 * (2 * draw_chance(s, 4) - 1));
+    return draw_chance(s, 5) < 0.5 ? magnitude : -magnitude;
 }
 
 /* Samples without a value, or an infinite one. */
@@ -349,46 +350,49 @@ static double decades(const sample *s)
 static bool on_island(const sample *s, uint64_t stream)
 {
     const size_t block[3] = {s->at[0] / 2, s->at[1] / 2, s->at[2] / 2};
-    return cwi_chance(s->seed + stream, place(block)) < s->parameter;
+    return cwi_chance(s->seed + stream, number_place(block)) < s->parameter;
 }
 
 static double nan_islands(const sample *s)
 {
-    return on_island(s, 6) ? (double)NAN : ball(s);
+    return on_island(s, 6) ? (double)NAN : evaluate_ball(s);
 }
 
 static double nan_checkerboard(const sample *s)
 {
-    return (s->at[0] + s->at[1] + s->at[2]) % 2 ? (double)NAN : whole(s, 2);
+    return (s->at[0] + s->at[1] + s->at[2]) % 2 ? (double)NAN : draw_whole_number(s, 2);
 }
 
 static double nan_blocks(const sample *s)
 {
-    return (s->at[0] / 3 + s->at[1] / 3 + s->at[2] / 3) % 2 ? (double)NAN : whole(s, 2);
+    return (s->at[0] / 3 + s->at[1] / 3 + s->at[2] / 3) % 2 ? (double)NAN
+                                                            : draw_whole_number(s, 2);
 }
 
 static double nan_around(const sample *s)
 {
-    const double d = ball(s);
-    return d < -0.5 ? (double)NAN : d + 0.7 * whole(s, 1);
+    const double d = evaluate_ball(s);
+    return d < -0.5 ? (double)NAN : d + 0.7 * draw_whole_number(s, 1);
 }
 
 static double inf_islands(const sample *s)
 {
-    return on_island(s, 7) ? (double)INFINITY : on_island(s, 8) ? -(double)INFINITY : ball(s);
+    return on_island(s, 7)   ? (double)INFINITY
+           : on_island(s, 8) ? -(double)INFINITY
+                             : evaluate_ball(s);
 }
 
 /* Noise: alone, and on a ball whose values end at -1 and 1, so many decibels below it. */
 
 static double even_noise(const sample *s)
 {
-    return 2 * chance(s, 9) - 1;
+    return 2 * draw_chance(s, 9) - 1;
 }
 
 static double noisy_ball(const sample *s)
 {
-    const double signal = fmin(fmax(ball(s) / 2, -1), 1);
-    return signal + pow(10, -s->parameter / 20) * cwi_gaussian(s->seed, place(s->at));
+    const double signal = fmin(fmax(evaluate_ball(s) / 2, -1), 1);
+    return signal + pow(10, -s->parameter / 20) * cwi_gaussian(s->seed, number_place(s->at));
 }
 
 /* Small spheres, eight voxels apart, each off its block's middle by up to half a voxel. */
@@ -397,8 +401,8 @@ static double small_spheres(const sample *s)
     double p[3];
     const size_t block[3] = {s->at[0] / 8, s->at[1] / 8, s->at[2] / 8};
     for (uint64_t a = 0; a < 3; a++)
-        p[a] = (double)(s->at[a] % 8) - 3 - cwi_chance(s->seed + a, place(block));
-    return s->parameter - length3(p[0], p[1], p[2]);
+        p[a] = (double)(s->at[a] % 8) - 3 - cwi_chance(s->seed + a, number_place(block));
+    return s->parameter - vector_length(p[0], p[1], p[2]);
 }
 
 /* How a row ends: isovalue, scale, spacing, first sample; and the parameter. */
@@ -421,14 +425,16 @@ static const cwi_hard_row rows[] = {
     {{CASE("mostly-on-samples", "three quarters of the samples on the isovalue"), AT(0, 1)},
      0,
      mostly_on_samples},
-    {{CASE("ties", "whole numbers from -2 to 2"), AT(0, 1)}, 0, ties},
-    {{CASE("plateaus", "bricks of 3 voxels, of -1, 0 or 1"), AT(0, 1)}, 0, plateaus},
-    {{CASE("terraces", "a ball in steps of half a voxel"), AT(0, 1)}, 0, terraces},
+    {{CASE("ties", "whole numbers from -2 to 2"), AT(0, 1)}, 0, evaluate_ties},
+    {{CASE("plateaus", "bricks of 3 voxels, of -1, 0 or 1"), AT(0, 1)}, 0, evaluate_plateaus},
+    {{CASE("terraces", "a ball in steps of half a voxel"), AT(0, 1)}, 0, evaluate_terraces},
     {{CASE("checkerboard", "alternating 1 and -1: every face a tie"), AT(0, 1)},
      1,
-     checkerboard},
-    {{CASE("uneven-checkerboard", "alternating 100 and -1"), AT(0, 1)}, 100, checkerboard},
-    {{CASE("columns", "alternating 1 and -1 in x and y"), AT(0, 1)}, 0, columns},
+     evaluate_checkerboard},
+    {{CASE("uneven-checkerboard", "alternating 100 and -1"), AT(0, 1)},
+     100,
+     evaluate_checkerboard},
+    {{CASE("columns", "alternating 1 and -1 in x and y"), AT(0, 1)}, 0, evaluate_columns},
     {{CASE("mc33", "every case of marching cubes, its faces and inside in every way"),
       AT(0, 1)},
      0,
@@ -449,11 +455,11 @@ static const cwi_hard_row rows[] = {
     {{CASE("near-saddle-inside", "tunnels tied, and a last digit above and below"), AT(0, 0)},
      0,
      near_saddle_inside},
-    {{CASE("sheet", "a sheet one sample thin"), AT(0, 1)}, 0, sheet},
+    {{CASE("sheet", "a sheet one sample thin"), AT(0, 1)}, 0, evaluate_sheet},
     {{CASE("sheet-askew", "a sheet one sample thin, along the diagonals of faces"), AT(0, 1)},
      0,
      sheet_askew},
-    {{CASE("wire", "a wire one sample thin"), AT(0, 1)}, 0, wire},
+    {{CASE("wire", "a wire one sample thin"), AT(0, 1)}, 0, evaluate_wire},
     {{CASE("wire-askew", "samples in a row along the cell's diagonal"), AT(0, 1)},
      0,
      wire_askew},
@@ -467,19 +473,19 @@ static const cwi_hard_row rows[] = {
      1,
      tilted_wire},
     {{CASE("lone-samples", "one sample of ten inside"), AT(0, 1)}, 0, lone_samples},
-    {{CASE("astroid", "six cusps"), AT(0, 4)}, 0, astroid},
-    {{CASE("corners", "a cube on its tip: edges and corners"), AT(0, 4)}, 0, corners},
-    {{CASE("spike", "a needle with a tip"), AT(0, 4)}, 0, spike},
+    {{CASE("astroid", "six cusps"), AT(0, 4)}, 0, evaluate_astroid},
+    {{CASE("corners", "a cube on its tip: edges and corners"), AT(0, 4)}, 0, evaluate_corners},
+    {{CASE("spike", "a needle with a tip"), AT(0, 4)}, 0, evaluate_spike},
     {{CASE("near-nyquist", "waves of 2.15 voxels"), AT(0, 40)}, 0, near_nyquist},
     {{CASE("zone-plate", "waves, shorter and shorter, to two voxels"), AT(0, 100)},
      0,
      zone_plate},
-    {{CASE("nanometres", "a ball, voxels of 1e-6 mm"), 0, 4, 1e-6, 0}, 0, ball},
-    {{CASE("kilometres", "a ball, voxels of 1e6 mm"), 0, 4, 1e6, 0}, 0, ball},
+    {{CASE("nanometres", "a ball, voxels of 1e-6 mm"), 0, 4, 1e-6, 0}, 0, evaluate_ball},
+    {{CASE("kilometres", "a ball, voxels of 1e6 mm"), 0, 4, 1e6, 0}, 0, evaluate_ball},
     {{CASE("far-away", "a ball, voxels of a micrometre, a kilometre from zero"), 0, 4, 1e-3,
       1e6},
      0,
-     ball},
+     evaluate_ball},
     {{CASE("huge-values", "a ball, values up to the largest floats"), AT(0, 0)},
      0,
      huge_values},
@@ -492,7 +498,7 @@ static const cwi_hard_row rows[] = {
     {{CASE("last-digits", "1 and the two numbers above and below it"), AT(1, 0)},
      0,
      last_digits},
-    {{CASE("decades", "noise over 60 decades"), AT(0, 0)}, 0, decades},
+    {{CASE("decades", "noise over 60 decades"), AT(0, 0)}, 0, evaluate_decades},
     {{CASE("nan-islands", "a ball, NaN in a tenth of the blocks of 2"), AT(0, 0)},
      0.1,
      nan_islands},

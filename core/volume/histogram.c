@@ -203,8 +203,8 @@ static void bin_shorts(const cw_volume *v, const uint64_t *counts, cw_statistics
 }
 
 /* Range first, then bins: of short types both from the counts of all numbers. */
-static cw_status gather(const cw_volume *v, size_t bin_count, int threads, cw_statistics *s,
-                        cw_error *err)
+static cw_status gather_histogram(const cw_volume *v, size_t bin_count, int threads,
+                                  cw_statistics *s, cw_error *err)
 {
     cw_status st = CW_OK;
     uint64_t *counts = NULL;
@@ -244,7 +244,7 @@ cw_status cw_volume_statistics(const cw_volume *volume, size_t bin_count, int th
     }
     cw_statistics s = {.min = INFINITY, .max = -INFINITY};
     s.quantum = is_integer(v.type) ? fabs(v.slope) : 0;
-    st = gather(&v, bin_count, threads, &s, err);
+    st = gather_histogram(&v, bin_count, threads, &s, err);
     if (st == CW_OK)
         *out = s;
     else
@@ -272,7 +272,8 @@ static double class_variance(const moments *m, size_t from, size_t to)
 
 /* best[c][b]: the largest variance of bins [0, b) in c + 1 classes, none empty; from[c][b]:
  * where the last of them begins. */
-static void divide(const moments *m, size_t bins, int classes, double *best, size_t *from)
+static void divide_classes(const moments *m, size_t bins, int classes, double *best,
+                           size_t *from)
 {
     const size_t row = bins + 1;
     for (size_t b = 0; b <= bins; b++)
@@ -315,7 +316,7 @@ bool cw_statistics_otsu(const cw_statistics *s, int level_count, double *levels)
             m.count[b + 1] = m.count[b] + (double)s->bins[b];
             m.sum[b + 1] = m.sum[b] + (double)s->bins[b] * ((double)b + 0.5);
         }
-        divide(&m, bins, (int)classes, best, from);
+        divide_classes(&m, bins, (int)classes, best, from);
         found = best[(classes - 1) * row + bins] >= 0;
         for (size_t c = classes - 1, b = bins; c > 0 && found; c--) {
             b = from[c * row + b];

@@ -16,7 +16,7 @@ static float magnitude_at(const cw_volume *v, const char *voxel)
     return (float)sqrt(sum);
 }
 
-static cw_status check(const cw_volume *v, size_t step, cw_error *err)
+static cw_status check_components(const cw_volume *v, size_t step, cw_error *err)
 {
     if (step >= v->steps)
         return cw_fail(err, CW_ERR_ARGUMENT, "step %zu: the volume has %zu steps", step,
@@ -33,7 +33,7 @@ cw_status cw_volume_magnitude(const cw_volume *in, size_t step, int threads, cw_
     cw_volume v, m = {0};
     cw_status st = cw_volume_resolve(in, &v, err);
     if (st == CW_OK)
-        st = check(&v, step, err);
+        st = check_components(&v, step, err);
     if (st == CW_OK)
         st = cw_volume_alloc(&m, CW_F32, v.dim, 1, 1, err);
     if (st != CW_OK)

@@ -408,18 +408,18 @@ typedef struct projection {
 } projection;
 
 /* Coordinates from the projection's corner. */
-static void mirror(const projection *p, double x[3])
+static void mirror_point(const projection *p, double x[3])
 {
     for (int a = 0; a < 3; a++)
         if (p->corner >> a & 1)
             x[a] = 1 - x[a];
 }
 
-static void project(const projection *p, const double point[3], double flat[2])
+static void project_point(const projection *p, const double point[3], double flat[2])
 {
     double x[3] = {point[0], point[1], point[2]};
     const int v = (p->along + 1) % 3, w = (p->along + 2) % 3;
-    mirror(p, x);
+    mirror_point(p, x);
     if (p->central) {
         const double sum = x[0] + x[1] + x[2];
         flat[0] = x[0] / sum;
@@ -431,7 +431,7 @@ static void project(const projection *p, const double point[3], double flat[2])
 }
 
 /* The point of the plane that is seen at a place. */
-static void lift(const projection *p, const double flat[2], double point[3])
+static void lift_point(const projection *p, const double flat[2], double point[3])
 {
     const int v = (p->along + 1) % 3, w = (p->along + 2) % 3;
     if (p->central) {
@@ -444,7 +444,7 @@ static void lift(const projection *p, const double flat[2], double point[3])
         point[v] = 0.5 + 0.5 * flat[1];
         point[w] = 0.5 - 0.5 * flat[1];
     }
-    mirror(p, point);
+    mirror_point(p, point);
 }
 
 typedef struct flat_loop {
@@ -454,12 +454,12 @@ typedef struct flat_loop {
     double turn; /* 1 counter-clockwise, -1 clockwise */
 } flat_loop;
 
-static double cross2(const double o[2], const double a[2], const double b[2])
+static double cross_in_plane(const double o[2], const double a[2], const double b[2])
 {
     return (a[0] - o[0]) * (b[1] - o[1]) - (a[1] - o[1]) * (b[0] - o[0]);
 }
 
-static void flatten(const builder *b, const projection *p, int loop, flat_loop *f)
+static void flatten_loop(const builder *b, const projection *p, int loop, flat_loop *f)
 {
     double area = 0;
     f->edges = b->plan->config->loop_edges;
@@ -469,22 +469,22 @@ static void flatten(const builder *b, const projection *p, int loop, flat_loop *
     for (int i = 0; i < f->count; i++) {
         double point[3];
         edge_point(b, f->edges[i], point);
-        project(p, point, f->at[i]);
+        project_point(p, point, f->at[i]);
     }
     for (int i = 2; i < f->count; i++)
-        area += cross2(f->at[0], f->at[i - 1], f->at[i]);
+        area += cross_in_plane(f->at[0], f->at[i - 1], f->at[i]);
     f->turn = area < 0 ? -1 : 1;
 }
 
 /* The smallest distance from a point inside to the lines of a polygon's sides. */
-static double clearance(const flat_loop *f, const double centre[2])
+static double measure_clearance(const flat_loop *f, const double centre[2])
 {
     double least = 1;
     for (int i = 0; i < f->count; i++) {
         const double *p = f->at[i], *q = f->at[(i + 1) % f->count];
         const double length = hypot(q[0] - p[0], q[1] - p[1]);
         if (length > 0)
-            least = fmin(least, f->turn * cross2(p, q, centre) / length);
+            least = fmin(least, f->turn * cross_in_plane(p, q, centre) / length);
     }
     return fmax(least, 1e-6);
 }
@@ -500,7 +500,7 @@ static void ring_direction(int i, double d[2])
 
 /* The loop's point that is farthest out across the ring's side from corner i to j: it
  * sees it. */
-static int farthest(const flat_loop *f, const double centre[2], int i, int j)
+static int find_farthest(const flat_loop *f, const double centre[2], int i, int j)
 {
     double d[2], e[2], most = -INFINITY;
     int found = 0;
@@ -521,10 +521,10 @@ static int farthest(const flat_loop *f, const double centre[2], int i, int j)
 static void build_sheet(builder *b, const flat_loop *f, const double centre[2], int ring)
 {
     const int step = f->turn > 0 ? 1 : 2; /* the ring is walked the way the loop is */
-    int i = farthest(f, centre, 2 * step % 3, 0), walked = 0;
+    int i = find_farthest(f, centre, 2 * step % 3, 0), walked = 0;
     for (int n = 0; n < 3; n++) {
         const int corner = n * step % 3, following = (n + 1) * step % 3;
-        const int last = farthest(f, centre, corner, following);
+        const int last = find_farthest(f, centre, corner, following);
         /* the third stretch takes what is left of the loop, also when that is all or nothing */
         const int steps = n < 2 ? (last - i + f->count) % f->count : f->count - walked;
         for (int k = 0; k < steps; k++) {
@@ -548,7 +548,7 @@ static void patch_centre(const builder *b, const projection *p, int corner, doub
         if (patch[c] == patch[corner]) {
             const double point[3] = {c & 1, c >> 1 & 1, c >> 2 & 1};
             double flat[2];
-            project(p, point, flat);
+            project_point(p, point, flat);
             centre[0] += flat[0];
             centre[1] += flat[1];
             count++;
@@ -593,14 +593,14 @@ static void build_tunnel(builder *b)
         project_from_edge(b, plan->tunnel_corner[0], &p);
     }
     for (int i = 0; i < 2; i++)
-        flatten(b, &p, plan->tunnel[i], &loops[i]);
+        flatten_loop(b, &p, plan->tunnel[i], &loops[i]);
     const double radius =
-        0.5 * fmin(clearance(&loops[0], centre), clearance(&loops[1], centre));
+        0.5 * fmin(measure_clearance(&loops[0], centre), measure_clearance(&loops[1], centre));
     for (int i = 0; i < 3; i++) {
         double d[2];
         ring_direction(i, d);
         const double flat[2] = {centre[0] + radius * d[0], centre[1] + radius * d[1]};
-        lift(&p, flat, b->cell->vertices[b->vertex_count + i]);
+        lift_point(&p, flat, b->cell->vertices[b->vertex_count + i]);
     }
     for (int i = 0; i < 2; i++)
         build_sheet(b, &loops[i], centre, CWI_CELL_INNER + b->vertex_count);

@@ -99,7 +99,7 @@ static int edge_between(shape *s, int a, int b)
     return s->edge_count++;
 }
 
-static void complete(shape *s)
+static void complete_shape(shape *s)
 {
     for (int face = 0; face < s->face_count; face++)
         for (int n = 0; n < s->face_size[face]; n++)
@@ -117,7 +117,7 @@ typedef struct triangles {
     int edge[MAX_LOOP][3];
 } triangles;
 
-static bool inside(int cell_case, int corner)
+static bool is_inside(int cell_case, int corner)
 {
     return cell_case >> corner & 1;
 }
@@ -127,12 +127,12 @@ static bool is_ambiguous_face(const shape *s, int cell_case, int face)
 {
     bool turns = s->face_size[face] == 4;
     for (int n = 0; n < s->face_size[face]; n++)
-        turns = turns && inside(cell_case, s->face[face][n]) !=
-                             inside(cell_case, s->face[face][(n + 1) % s->face_size[face]]);
+        turns = turns && is_inside(cell_case, s->face[face][n]) !=
+                             is_inside(cell_case, s->face[face][(n + 1) % s->face_size[face]]);
     return turns;
 }
 
-static bool joins(const shape *s, int cell_case, int joined, int face)
+static bool joins_on_face(const shape *s, int cell_case, int joined, int face)
 {
     return is_ambiguous_face(s, cell_case, face) && (joined >> face & 1);
 }
@@ -147,28 +147,28 @@ static void trace_faces(const shape *s, int cell_case, int joined, int next[12])
         const int size = s->face_size[face], *corner = s->face[face];
         for (int n = 0; n < size; n++) {
             int m = (n + 1) % size; /* the last corner of the run that begins after n */
-            if (inside(cell_case, corner[n]) || !inside(cell_case, corner[m]))
+            if (is_inside(cell_case, corner[n]) || !is_inside(cell_case, corner[m]))
                 continue;
-            while (inside(cell_case, corner[(m + 1) % size]))
+            while (is_inside(cell_case, corner[(m + 1) % size]))
                 m = (m + 1) % size;
-            if (joins(s, cell_case, joined, face))
+            if (joins_on_face(s, cell_case, joined, face))
                 m = (m + 2) % size; /* it goes on through the face, to the other corner */
             next[s->face_edge[face][n]] = s->face_edge[face][m];
         }
     }
 }
 
-static int find(const uint8_t *parent, int x)
+static int find_root(const uint8_t *parent, int x)
 {
     while (parent[x] != x)
         x = parent[x];
     return x;
 }
 
-static void unite(uint8_t *parent, int x, int y)
+static void unite_sets(uint8_t *parent, int x, int y)
 {
-    x = find(parent, x);
-    y = find(parent, y);
+    x = find_root(parent, x);
+    y = find_root(parent, y);
     parent[x > y ? x : y] = (uint8_t)(x > y ? y : x);
 }
 
@@ -178,19 +178,19 @@ static void trace_patches(const shape *s, int cell_case, int joined, uint8_t pat
     for (int c = 0; c < 8; c++)
         patch[c] = (uint8_t)c;
     for (int e = 0; e < s->edge_count; e++)
-        if (inside(cell_case, s->edge[e][0]) == inside(cell_case, s->edge[e][1]))
-            unite(patch, s->edge[e][0], s->edge[e][1]);
+        if (is_inside(cell_case, s->edge[e][0]) == is_inside(cell_case, s->edge[e][1]))
+            unite_sets(patch, s->edge[e][0], s->edge[e][1]);
     for (int face = 0; face < s->face_count; face++)
         if (is_ambiguous_face(s, cell_case, face)) {
-            const bool first_inside = inside(cell_case, s->face[face][0]);
-            const int n = first_inside == joins(s, cell_case, joined, face) ? 0 : 1;
-            unite(patch, s->face[face][n], s->face[face][n + 2]);
+            const bool first_inside = is_inside(cell_case, s->face[face][0]);
+            const int n = first_inside == joins_on_face(s, cell_case, joined, face) ? 0 : 1;
+            unite_sets(patch, s->face[face][n], s->face[face][n + 2]);
         }
     for (int c = 0; c < 8; c++)
-        patch[c] = (uint8_t)find(patch, c);
+        patch[c] = (uint8_t)find_root(patch, c);
 }
 
-static void midpoint(const shape *s, int edge, double p[3])
+static void edge_midpoint(const shape *s, int edge, double p[3])
 {
     for (int a = 0; a < 3; a++)
         p[a] = 0.5 * (s->at[s->edge[edge][0]][a] + s->at[s->edge[edge][1]][a]);
@@ -216,7 +216,7 @@ static double smallest_angle(const shape *s, const int edge[3])
 {
     double p[3][3], smallest = 4;
     for (int i = 0; i < 3; i++)
-        midpoint(s, edge[i], p[i]);
+        edge_midpoint(s, edge[i], p[i]);
     for (int i = 0; i < 3; i++) {
         double uv = 0, uu = 0, vv = 0;
         for (int a = 0; a < 3; a++) {
@@ -238,7 +238,8 @@ static bool may_join(const shape *s, const polygon *p, int i, int j)
 
 /* The best triangulation of the corners i..j of a polygon, whose side i-j is settled; returns
  * its smallest angle, below 0 when there is none. Exhaustive: loops are short. */
-static double triangulate(const shape *s, const polygon *p, int i, int j, triangles *best)
+static double triangulate_polygon(const shape *s, const polygon *p, int i, int j,
+                                  triangles *best)
 {
     double best_angle = -1;
     best->count = 0;
@@ -249,7 +250,8 @@ static double triangulate(const shape *s, const polygon *p, int i, int j, triang
             continue;
         const int corner[3] = {p->edge[i], p->edge[k], p->edge[j]};
         triangles left, right;
-        double angle = fmin(triangulate(s, p, i, k, &left), triangulate(s, p, k, j, &right));
+        double angle = fmin(triangulate_polygon(s, p, i, k, &left),
+                            triangulate_polygon(s, p, k, j, &right));
         angle = fmin(angle, smallest_angle(s, corner));
         if (angle <= best_angle + 1e-9)
             continue;
@@ -279,10 +281,10 @@ static polygon take_loop(int next[12], int edge)
 static bool needs_cone(const shape *s, const polygon *loop, triangles *t)
 {
     t->count = 0;
-    return loop->count >= 8 || triangulate(s, loop, 0, loop->count - 1, t) < 0;
+    return loop->count >= 8 || triangulate_polygon(s, loop, 0, loop->count - 1, t) < 0;
 }
 
-static cwi_config resolve(const shape *s, int cell_case, int joined)
+static cwi_config resolve_case(const shape *s, int cell_case, int joined)
 {
     int next[12];
     cwi_config config = {0};
@@ -317,7 +319,7 @@ static int ambiguous_faces(const shape *s, int cell_case)
 }
 
 /* Spreads the bits of a count over the set bits of a mask, lowest first. */
-static int spread(int count, int mask)
+static int spread_mask(int count, int mask)
 {
     int spread_bits = 0;
     for (int face = 0; face < 6; face++)
@@ -368,7 +370,7 @@ static const shape *const cube = &shapes[CW_HEXAHEDRON];
 
 static int simple_count(int cube_case)
 {
-    const cwi_config c = resolve(cube, cube_case, 0);
+    const cwi_config c = resolve_case(cube, cube_case, 0);
     if (triangle_count(&c) > CWI_CASE_MAX_TRIANGLES || c.cone[0]) {
         fprintf(stderr, "make_cases: case %d has no simple triangulation\n", cube_case);
         exit(1);
@@ -383,7 +385,7 @@ static int cube_ambiguous_faces(int cube_case)
 
 static int is_ambiguous(int cube_case)
 {
-    return cube_ambiguous_faces(cube_case) || resolve(cube, cube_case, 0).loop_count > 1;
+    return cube_ambiguous_faces(cube_case) || resolve_case(cube, cube_case, 0).loop_count > 1;
 }
 
 static int config_count(const shape *s, int cell_case)
@@ -409,7 +411,7 @@ static void print_configs(const shape *s)
 {
     for (int c = 0; c < 1 << s->corner_count; c++)
         for (int n = 0; n < config_count(s, c); n++) {
-            const cwi_config config = resolve(s, c, spread(n, ambiguous_faces(s, c)));
+            const cwi_config config = resolve_case(s, c, spread_mask(n, ambiguous_faces(s, c)));
             print_config(&config);
         }
 }
@@ -465,7 +467,7 @@ int main(void)
     int first[CW_SHAPE_COUNT], count = 0;
     define_cube(&shapes[CW_HEXAHEDRON]);
     for (int n = 0; n < CW_SHAPE_COUNT; n++)
-        complete(&shapes[n]);
+        complete_shape(&shapes[n]);
     puts(
         "/* Made by generate_tables.c: do not edit. */\n#include \"extract/cases/case_tables.h\"");
     print_table("uint8_t cwi_case_count", simple_count);
@@ -474,7 +476,7 @@ int main(void)
     print_table("uint16_t cwi_case_first_config", first_config);
     puts("\nconst uint8_t cwi_case_triangles[256][3 * CWI_CASE_MAX_TRIANGLES] = {");
     for (int c = 0; c < 256; c++) {
-        const cwi_config config = resolve(cube, c, 0);
+        const cwi_config config = resolve_case(cube, c, 0);
         print_bytes(config.triangles, 3 * triangle_count(&config));
         puts(",");
     }

@@ -40,7 +40,7 @@ static void add_triangle_normal(const cw_mesh *mesh, double scale, const uint32_
         normal[a] += (float)across[a];
 }
 
-static void normalise(float *n)
+static void normalise_float(float *n)
 {
     const double length = sqrt((double)n[0] * n[0] + (double)n[1] * n[1] + (double)n[2] * n[2]);
     for (int a = 0; a < 3; a++)
@@ -84,7 +84,7 @@ cw_status cwi_mend_normals(cw_mesh *mesh, double scale, cw_error *err)
     }
     for (size_t v = 0; v < mesh->vertex_count; v++)
         if (missing[v])
-            normalise(mesh->normals + 3 * v);
+            normalise_float(mesh->normals + 3 * v);
     cwi_free(missing);
     return CW_OK;
 }
@@ -105,7 +105,8 @@ typedef struct shading {
     double outward[3][3];
 } shading;
 
-static bool fetch(const cw_volume *v, const size_t at[3], int axis, int step, double *value)
+static bool fetch_sample(const cw_volume *v, const size_t at[3], int axis, int step,
+                         double *value)
 {
     size_t i[3] = {at[0], at[1], at[2]};
     i[axis] += (size_t)step; /* -1 from 0 is beyond any dim, too */
@@ -117,8 +118,8 @@ static bool fetch(const cw_volume *v, const size_t at[3], int axis, int step, do
 
 /* The derivative along an axis where distances differ: the slopes on both sides, each by the
  * distance on the other one, which is exact for parabolas. Values are halves; NaN: none. */
-static double uneven(const cw_volume *v, int axis, size_t i, double before, double centre,
-                     double after)
+static double difference_unevenly(const cw_volume *v, int axis, size_t i, double before,
+                                  double centre, double after)
 {
     const double *x = v->coordinates[axis];
     const double low = i > 0 ? x[i] - x[i - 1] : 1,
@@ -133,20 +134,20 @@ static double uneven(const cw_volume *v, int axis, size_t i, double before, doub
 
 /* As extraction does at a sample: central differences of the stored numbers, one-sided where a
  * neighbour is missing or infinite. False at a sample without value. */
-static bool gradient(const cw_volume *v, const size_t at[3], double g[3])
+static bool sample_gradient(const cw_volume *v, const size_t at[3], double g[3])
 {
     double centre;
-    if (!fetch(v, at, 0, 0, &centre))
+    if (!fetch_sample(v, at, 0, 0, &centre))
         return false;
     for (int a = 0; a < 3; a++) {
         double before = 0, after = 0;
-        const bool has_before = fetch(v, at, a, -1, &before) && isfinite(before);
-        const bool has_after = fetch(v, at, a, 1, &after) && isfinite(after);
+        const bool has_before = fetch_sample(v, at, a, -1, &before) && isfinite(before);
+        const bool has_after = fetch_sample(v, at, a, 1, &after) && isfinite(after);
         before *= 0.5; /* halves first, so that differences of huge doubles stay finite */
         after *= 0.5;
         if (cwi_is_rectilinear(v))
-            g[a] = uneven(v, a, at[a], has_before ? before : NAN, centre * 0.5,
-                          has_after ? after : NAN);
+            g[a] = difference_unevenly(v, a, at[a], has_before ? before : NAN, centre * 0.5,
+                                       has_after ? after : NAN);
         else if (has_before && has_after)
             g[a] = after - before;
         else if (isfinite(centre) && (has_before || has_after))
@@ -179,7 +180,7 @@ static bool find_cell(const shading *s, size_t vertex, size_t cell[3], double sh
 
 /* The gradient at a vertex, in index space. False outside the domain: where a sample without
  * value has more weight than rounding gives it. */
-static bool interpolate(const shading *s, size_t vertex, double sum[3])
+static bool interpolate_gradient(const shading *s, size_t vertex, double sum[3])
 {
     size_t cell[3];
     double share[3], total = 0;
@@ -193,7 +194,7 @@ static bool interpolate(const shading *s, size_t vertex, double sum[3])
             at[a] = cell[a] + high;
             weight *= high ? share[a] : 1 - share[a];
         }
-        if (!(weight > 0) || !gradient(&s->volume, at, g))
+        if (!(weight > 0) || !sample_gradient(&s->volume, at, g))
             continue;
         total += weight;
         for (int a = 0; a < 3; a++)
@@ -208,7 +209,7 @@ static void shade_chunk(void *context, size_t chunk)
     const size_t last = s->mesh->vertex_count, end = (chunk + 1) * CHUNK;
     for (size_t v = chunk * CHUNK; v < (end < last ? end : last); v++) {
         double g[3] = {0, 0, 0}, n[3] = {0, 0, 0};
-        if (!interpolate(s, v, g) || !cwi_normalise(g))
+        if (!interpolate_gradient(s, v, g) || !cwi_normalise(g))
             continue;
         for (int r = 0; r < 3; r++)
             n[r] = cwi_dot(s->outward[r], g);
@@ -217,8 +218,8 @@ static void shade_chunk(void *context, size_t chunk)
     }
 }
 
-static cw_status begin(shading *s, const cw_volume *volume, const cw_normals_desc *d,
-                       cw_mesh *mesh, cw_error *err)
+static cw_status begin_shading(shading *s, const cw_volume *volume, const cw_normals_desc *d,
+                               cw_mesh *mesh, cw_error *err)
 {
     double cofactor[3][3];
     cw_status st = cw_volume_select(volume, 0, 0, &s->volume, err);
@@ -254,7 +255,7 @@ cw_status cw_extract_normals(const cw_volume *volume, const cw_normals_desc *des
 {
     const cw_normals_desc d = desc ? *desc : (cw_normals_desc){0};
     shading s = {0};
-    cw_status st = begin(&s, volume, &d, mesh, err);
+    cw_status st = begin_shading(&s, volume, &d, mesh, err);
     if (st == CW_OK)
         st = cwi_each_layer((mesh->vertex_count + CHUNK - 1) / CHUNK, CHUNK, d.threads,
                             &d.progress, "shading", shade_chunk, &s, err);

@@ -177,8 +177,8 @@ __attribute__((noinline)) static void put_few(const cell_numbers *numbers, const
 
 /* Writes the vertices at up to 16 edges; what is too much, before end, the next cells write
  * over. */
-static inline uint32_t *put(const cell_numbers *numbers, const uint8_t *edge, unsigned count,
-                            uint32_t *out, const uint32_t *end)
+static inline uint32_t *put_triangles(const cell_numbers *numbers, const uint8_t *edge,
+                                      unsigned count, uint32_t *out, const uint32_t *end)
 {
 #ifdef __AVX2__
     /* an edge's row; and 8, and the sign, where it stands at i + 1 */

@@ -67,7 +67,7 @@ void cwi_corner_values(const cwi_bit_grid *grid, const size_t at[3], double valu
 
 /* Doubles the room of a layer's list when it is full. Without memory for it there is no list:
  * its cells are planned twice. */
-static void note(cwi_layer *layer, uint32_t code)
+static void note_cell(cwi_layer *layer, uint32_t code)
 {
     if (layer->plan_count == layer->plan_room && !layer->plans_lost) {
         const size_t room = layer->plan_room ? 2 * layer->plan_room : 64;
@@ -94,7 +94,7 @@ void cwi_ambiguous_plan(const cwi_bit_grid *grid, const size_t at[3], unsigned c
                         cwi_cell_plan *plan)
 {
     make_plan(grid, at, cube, plan);
-    note(&grid->layers[at[2]], cwi_cell_plan_pack(plan));
+    note_cell(&grid->layers[at[2]], cwi_cell_plan_pack(plan));
 }
 
 /* Central differences at a corner, in halves; NaN where a neighbour is missing. */

@@ -31,7 +31,7 @@ static cw_status no_memory(const cwi_bit_grid *g, cw_error *err)
                    dim[2]);
 }
 
-static cw_status allocate(cwi_bit_grid *g, cw_error *err)
+static cw_status allocate_planes(cwi_bit_grid *g, cw_error *err)
 {
     const size_t *dim = g->volume.dim;
     size_t samples = 0;
@@ -79,7 +79,7 @@ cw_status cwi_grid_init(cwi_bit_grid *g, const cw_volume *volume, cw_error *err)
                          g->volume.dim[a], "xyz"[a]);
     if (st == CW_OK)
         st = cwi_extract_check_range(&g->volume, err);
-    return st == CW_OK ? allocate(g, err) : st;
+    return st == CW_OK ? allocate_planes(g, err) : st;
 }
 
 /* The cells all of whose samples have values: each needs its own row of these and the next. */
@@ -269,8 +269,8 @@ static bool any_gap(const cwi_bit_grid *g)
 
 /* Compares what is wanted. Once that was everything it is known whether there are gaps; without
  * them nothing is to be looked for later. */
-static cw_status compare(classification *c, cwi_bit_grid *g, const cw_extract_desc *desc,
-                         cw_error *err)
+static cw_status compare_samples(classification *c, cwi_bit_grid *g,
+                                 const cw_extract_desc *desc, cw_error *err)
 {
     const cw_status st =
         cwi_each_layer(g->bricks_z, CWI_BRICK * g->volume.dim[0] * g->volume.dim[1],
@@ -293,7 +293,7 @@ static cw_status compare_all(classification *c, cwi_bit_grid *g, const cw_extrac
     if (!g->has)
         return no_memory(g, err);
     g->find_values = g->everything = true;
-    const cw_status st = compare(c, g, desc, err);
+    const cw_status st = compare_samples(c, g, desc, err);
     g->find_values = false;
     if (st != CW_OK || !g->gaps) {
         cwi_free(g->has);
@@ -311,7 +311,7 @@ cw_status cwi_grid_classify(cwi_bit_grid *g, const cwi_engine *engine, cwi_octre
         st = plan_classification(&c, g, tree, err);
     const bool at_once = g->volume.has_nodata && !g->has;
     if (st == CW_OK && !at_once)
-        st = compare(&c, g, desc, err);
+        st = compare_samples(&c, g, desc, err);
     /* few volumes of floats have NaN, and for few of these it matters */
     if (st == CW_OK && (at_once || (desc->leave_open && g->gaps && !g->has)))
         st = compare_all(&c, g, desc, err);

@@ -61,7 +61,7 @@ static bool is_inside(const box *b, const size_t p[3])
     return word_at(b->grid, p[1] + 1, p[2] + 1, (p[0] + 1) / 64) >> (p[0] + 1) % 64 & 1;
 }
 
-static uint32_t find(uint32_t *parent, uint32_t x)
+static uint32_t find_root(uint32_t *parent, uint32_t x)
 {
     while (parent[x] != x + 1)
         x = (parent[x] = parent[parent[x] - 1]) - 1;
@@ -69,7 +69,7 @@ static uint32_t find(uint32_t *parent, uint32_t x)
 }
 
 /* Sample x of line n of a side, a patch of its own when it is seen first. */
-static uint32_t sample(box *b, const side *s, size_t n, size_t x)
+static uint32_t number_sample(box *b, const side *s, size_t n, size_t x)
 {
     size_t p[3];
     p[s->axis] = s->at;
@@ -83,10 +83,10 @@ static uint32_t sample(box *b, const side *s, size_t n, size_t x)
     return index;
 }
 
-static void join(box *b, uint32_t x, uint32_t y)
+static void join_samples(box *b, uint32_t x, uint32_t y)
 {
-    x = find(b->parent, x);
-    y = find(b->parent, y);
+    x = find_root(b->parent, x);
+    y = find_root(b->parent, y);
     if (x != y) {
         b->parent[x > y ? x : y] = (x > y ? y : x) + 1;
         b->patches--;
@@ -131,17 +131,20 @@ static void join_line(box *b, const side *s, size_t n, const uint64_t *line)
     for (size_t w = 0; w < b->words; w++) {
         const uint64_t starts = line[w] & ~(line[w] << 1);
         for (uint64_t left = starts; left; left &= left - 1)
-            sample(b, s, n, 64 * w + (size_t)__builtin_ctzll(left));
+            number_sample(b, s, n, 64 * w + (size_t)__builtin_ctzll(left));
         if (w && line[w] & 1 && line[w - 1] >> 63)
-            join(b, sample(b, s, n, 64 * w), sample(b, s, n, run_start(line, 64 * w - 1)));
+            join_samples(b, number_sample(b, s, n, 64 * w),
+                         number_sample(b, s, n, run_start(line, 64 * w - 1)));
         for (uint64_t left = seam ? line[w] : 0; left; left &= left - 1) {
             const size_t x = 64 * w + (size_t)__builtin_ctzll(left);
-            join(b, sample(b, s, n, x), sample(b, s, n, run_start(line, x)));
+            join_samples(b, number_sample(b, s, n, x),
+                         number_sample(b, s, n, run_start(line, x)));
         }
     }
     for (size_t x = 0; x < length; x += length - 1)
         if (line[x / 64] >> x % 64 & 1)
-            join(b, sample(b, s, n, x), sample(b, s, n, run_start(line, x)));
+            join_samples(b, number_sample(b, s, n, x),
+                         number_sample(b, s, n, run_start(line, x)));
 }
 
 /* Joins the inside corners of square (x, n - 1), which alternate, where the surface does. */
@@ -159,12 +162,12 @@ static void join_diagonal(box *b, const side *s, size_t n, size_t x, const uint6
     const size_t first = before[x / 64] >> x % 64 & 1 ? 0 : 1; /* the inside diagonal */
     if (!cwi_face_joins(v[first], v[1 - first], cwi_zero_is_inside(b->grid)))
         return;
-    join(b, sample(b, s, n - 1, run_start(before, x + first)),
-         sample(b, s, n, run_start(line, x + 1 - first)));
+    join_samples(b, number_sample(b, s, n - 1, run_start(before, x + first)),
+                 number_sample(b, s, n, run_start(line, x + 1 - first)));
     b->euler--;
 }
 
-static ptrdiff_t count(uint64_t bits)
+static ptrdiff_t count_bits(uint64_t bits)
 {
     return __builtin_popcountll(bits);
 }
@@ -179,8 +182,8 @@ static void join_side(box *b, const side *s)
         for (size_t w = 0; w < b->words; w++) {
             const uint64_t both = line[w] & before[w];
             const uint64_t next = line[w + 1] & before[w + 1];
-            b->euler += count(line[w]) - count(line[w] & cwi_next_samples(line, w)) -
-                        count(both) + count(both & (both >> 1 | next << 63));
+            b->euler += count_bits(line[w]) - count_bits(line[w] & cwi_next_samples(line, w)) -
+                        count_bits(both) + count_bits(both & (both >> 1 | next << 63));
             const uint64_t here = line[w] ^ before[w];
             const uint64_t turns = line[w] ^ cwi_next_samples(line, w);
             const uint64_t there = here & turns & (before[w] ^ cwi_next_samples(before, w));
@@ -191,8 +194,8 @@ static void join_side(box *b, const side *s)
             }
             for (uint64_t left = both & ~(both << 1); left; left &= left - 1) {
                 const size_t x = 64 * w + (size_t)__builtin_ctzll(left);
-                join(b, sample(b, s, n, run_start(line, x)),
-                     sample(b, s, n - 1, run_start(before, x)));
+                join_samples(b, number_sample(b, s, n, run_start(line, x)),
+                             number_sample(b, s, n - 1, run_start(before, x)));
             }
         }
         uint64_t *swap = line;

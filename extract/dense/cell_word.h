@@ -49,7 +49,7 @@ static inline __m512i four_words(const cell_rows *r, size_t w)
 
 /* The cases of 64 cells, whose corners n are the bits of lane n: an 8 x 64 matrix of bits,
  * turned. */
-static inline __m512i turned(__m512i corner)
+static inline __m512i turn_corner(__m512i corner)
 {
     /* byte 8 b + 7 - n: bits of cells 8 b to 8 b + 7 for corner n */
     const __m512i gather = _mm512_set_epi64(
@@ -65,7 +65,7 @@ static inline cell_word load_cells(const cell_rows *r, size_t w)
     const __m512i here = four_words(r, w), one = _mm512_set1_epi8(1);
     const __m512i moved = _mm512_shrdi_epi64(here, four_words(r, w + 1), 1);
     const __m512i by_turns = _mm512_set_epi64(11, 3, 10, 2, 9, 1, 8, 0);
-    cell_word c = {.cases = turned(_mm512_permutex2var_epi64(here, by_turns, moved))};
+    cell_word c = {.cases = turn_corner(_mm512_permutex2var_epi64(here, by_turns, moved))};
     c.mixed = _mm512_cmpgt_epu8_mask(_mm512_add_epi8(c.cases, one), one);
     return c;
 }

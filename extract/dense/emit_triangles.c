@@ -46,8 +46,8 @@ __attribute__((noinline)) static void emit_ambiguous(const cwi_bit_grid *g, cons
     if (edges) {
         const uint8_t *edge = emission->config_edge[plan];
         const unsigned now = edges < 16 ? edges : 16;
-        to->out = put(numbers, edge, now, to->out, to->end);
-        to->out = put(numbers, edge + now, edges - now, to->out, to->end);
+        to->out = put_triangles(numbers, edge, now, to->out, to->end);
+        to->out = put_triangles(numbers, edge + now, edges - now, to->out, to->end);
     } else {
         emit_inner(g, at, numbers, cube, emission->flip, sink, to);
     }
@@ -72,7 +72,7 @@ __attribute__((noinline)) static void emit_cells(const cwi_bit_grid *g, size_t j
         __builtin_prefetch(out + AHEAD, 1);
         number_cell(l, count_on, place, of->crossed, &numbers);
         if (of->edges) {
-            out = put(&numbers, of->edge, of->edges, out, end);
+            out = put_triangles(&numbers, of->edge, of->edges, out, end);
         } else {
             const cell_numbers copy = numbers; /* so that they may stay in registers */
             to->out = out;

@@ -1,6 +1,6 @@
 #include "extract/dense/isa_dispatch.h"
 
-static bool always(void)
+static bool is_always(void)
 {
     return true;
 }
@@ -23,12 +23,12 @@ static bool has_avx512(void)
 /* Name, test, what compares samples, and what marches: baseline x86-64 has an instruction that
  * gathers comparisons in bits, but none that would make marching faster. */
 #define ENGINES(X)                                                                             \
-    X(plain, always, plain, plain)                                                             \
-    X(sse2, always, sse2, plain)                                                               \
+    X(plain, is_always, plain, plain)                                                          \
+    X(sse2, is_always, sse2, plain)                                                            \
     X(avx2, has_avx2, avx2, avx2)                                                              \
     X(avx512, has_avx512, avx512, avx512)
 #else
-#define ENGINES(X) X(plain, always, plain, plain)
+#define ENGINES(X) X(plain, is_always, plain, plain)
 #endif
 
 #define DECLARE(engine, test, compare, march)                                                  \

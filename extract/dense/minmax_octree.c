@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-static size_t halves(size_t n)
+static size_t halve_count(size_t n)
 {
     return (n + 1) / 2;
 }
@@ -30,7 +30,7 @@ cw_status cwi_octree_init(cwi_octree *t, const cwi_bit_grid *g, cw_error *err)
         if (bricks_at(t, l) == 1)
             return CW_OK;
         for (int a = 0; a < 3; a++)
-            t->dim[l + 1][a] = halves(t->dim[l][a]);
+            t->dim[l + 1][a] = halve_count(t->dim[l][a]);
     }
 }
 
@@ -49,7 +49,7 @@ size_t cwi_octree_bytes(const cwi_octree *t)
     return bricks * sizeof(cwi_range);
 }
 
-static const cwi_range *node(const cwi_octree *t, int level, size_t x, size_t y, size_t z)
+static const cwi_range *node_at(const cwi_octree *t, int level, size_t x, size_t y, size_t z)
 {
     return t->level[level] + (z * t->dim[level][1] + y) * t->dim[level][0] + x;
 }
@@ -65,7 +65,7 @@ static cwi_range join_children(const cwi_octree *t, int l, const size_t at[3])
     cwi_range r = {INFINITY, -INFINITY, false};
     EACH_CHILD(t, l, at, x, y, z)
     {
-        const cwi_range *child = node(t, l - 1, x, y, z);
+        const cwi_range *child = node_at(t, l - 1, x, y, z);
         r.low = fmin(r.low, child->low);
         r.high = fmax(r.high, child->high);
         r.gap = r.gap || child->gap;
@@ -87,7 +87,7 @@ void cwi_octree_grow(cwi_octree *t)
 }
 
 /* Which sides of the grid's level the numbers of a brick are on. */
-static void sides(const cwi_range *r, const cwi_bit_grid *g, bool *in, bool *out)
+static void find_sides(const cwi_range *r, const cwi_bit_grid *g, bool *in, bool *out)
 {
     const bool any_above = g->strict ? r->high > g->level : r->high >= g->level;
     const bool any_below = g->strict ? r->low <= g->level : r->low < g->level;
@@ -98,22 +98,22 @@ static void sides(const cwi_range *r, const cwi_bit_grid *g, bool *in, bool *out
 bool cwi_octree_crossed(const cwi_octree *t, const cwi_bit_grid *g)
 {
     bool in, out;
-    sides(t->level[t->levels - 1], g, &in, &out);
+    find_sides(t->level[t->levels - 1], g, &in, &out);
     return in && out;
 }
 
 /* Some cell of the brick may have corners on both sides; what has no value is outside. */
-static bool straddles(const cwi_range *r, const cwi_bit_grid *g)
+static bool straddles_level(const cwi_range *r, const cwi_bit_grid *g)
 {
     bool in, out;
-    sides(r, g, &in, &out);
+    find_sides(r, g, &in, &out);
     return in && (out || r->gap);
 }
 
 static size_t mark_below(const cwi_octree *t, int l, const size_t at[3], cwi_bit_grid *g)
 {
     size_t leaves = 0;
-    if (!straddles(node(t, l, at[0], at[1], at[2]), g))
+    if (!straddles_level(node_at(t, l, at[0], at[1], at[2]), g))
         return 0;
     if (l == 0) {
         const size_t word = at[0] * CWI_BRICK / 64;
@@ -133,8 +133,8 @@ static cwi_leaf_bits leaf_bits(const cwi_octree *t, const cwi_bit_grid *g, size_
     cwi_leaf_bits bits = {0, 0};
     for (size_t b = 0; b < 8 && 8 * w + b < t->dim[0][0]; b++) {
         bool in, out;
-        sides(leaves + 8 * w + b, g, &in, &out);
-        const bool wanted = straddles(leaves + 8 * w + b, g);
+        find_sides(leaves + 8 * w + b, g, &in, &out);
+        const bool wanted = straddles_level(leaves + 8 * w + b, g);
         bits.wanted |= (uint8_t)(wanted << b);
         bits.solid |= (uint8_t)((in && !wanted) << b);
     }

@@ -9,7 +9,7 @@
 
 #include <string.h>
 
-static void put(uint32_t *triangle, uint32_t a, uint32_t b, uint32_t c, bool flip)
+static void put_triangle(uint32_t *triangle, uint32_t a, uint32_t b, uint32_t c, bool flip)
 {
     triangle[0] = a;
     triangle[flip ? 2 : 1] = b;
@@ -130,10 +130,10 @@ static void write_cap(const cwi_cells *g, const cwi_border_face *face, cw_mesh *
         const int first = cwi_cap_fan(g, face->face, &c, polygon);
         const uint32_t centre = face->centres[polygon];
         for (int n = 0; n < count && centre != CWI_NO_VERTEX; n++, triangle += 3)
-            put(triangle, centre, vertices[n], vertices[(n + 1) % count], flip);
+            put_triangle(triangle, centre, vertices[n], vertices[(n + 1) % count], flip);
         for (int n = 1; n + 1 < count && centre == CWI_NO_VERTEX; n++, triangle += 3)
-            put(triangle, vertices[first], vertices[(first + n) % count],
-                vertices[(first + n + 1) % count], flip);
+            put_triangle(triangle, vertices[first], vertices[(first + n) % count],
+                         vertices[(first + n + 1) % count], flip);
     }
 }
 
@@ -177,7 +177,7 @@ static void each_vertex(parting *p, void (*work)(parting *p, const cwi_element *
     }
 }
 
-static void meet(parting *p, const cwi_element *e, size_t v)
+static void meet_element(parting *p, const cwi_element *e, size_t v)
 {
     (void)e;
     p->met[v] = 1;
@@ -244,7 +244,7 @@ cw_status cwi_cells_part(const cwi_cells *g, cw_mesh *mesh, cw_error *err)
         return CW_OK;
     }
     if (enough)
-        each_vertex(&p, meet);
+        each_vertex(&p, meet_element);
     if (enough && find_crowded(&p, &enough)) {
         p.sum = cwi_alloc_zeroed(mesh->vertex_count, sizeof *p.sum);
         enough = p.sum != NULL;

@@ -68,7 +68,7 @@ static uint32_t sample_beyond(const faces *f, int n)
 }
 
 /* The neighbour of a sample, in some quadrangle, that is not one of triangle n's. */
-static uint32_t opposite(const faces *f, int n, uint32_t sample)
+static uint32_t opposite_corner(const faces *f, int n, uint32_t sample)
 {
     for (int m = 0; m < f->count; m++)
         for (int i = 0; i < 4 && f->size[m] == 4; i++)
@@ -81,7 +81,7 @@ static uint32_t opposite(const faces *f, int n, uint32_t sample)
 }
 
 /* A face of the cell, seen from outside, is the new one's base seen from below. */
-static void rebuild(const faces *f, cwi_element *e)
+static void rebuild_element(const faces *f, cwi_element *e)
 {
     const int size = f->triangles == 4 && f->count == 5 ? 4 : 3, base = face_of_size(f, size);
     for (int i = 0; i < size; i++)
@@ -89,7 +89,7 @@ static void rebuild(const faces *f, cwi_element *e)
     if (f->count == 5 && f->triangles == 2) {
         e->shape = CW_WEDGE;
         for (int i = 0; i < 3; i++)
-            e->corners[3 + i] = opposite(f, base, e->corners[i]);
+            e->corners[3 + i] = opposite_corner(f, base, e->corners[i]);
     } else {
         e->shape = size == 4 ? CW_PYRAMID : CW_TETRAHEDRON;
         e->corners[size] = sample_beyond(f, base);
@@ -126,6 +126,6 @@ bool cwi_element_collapse(cwi_element *e)
     const bool known = (f.count == 4 && f.triangles == 4) ||
                        (f.count == 5 && (f.triangles == 4 || f.triangles == 2));
     if (known)
-        rebuild(&f, e);
+        rebuild_element(&f, e);
     return known && has_faces(e, &f);
 }

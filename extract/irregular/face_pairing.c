@@ -274,7 +274,7 @@ typedef struct orientation {
 } orientation;
 
 /* The set, and whether the element is turned against it. */
-static uint32_t find(orientation *o, uint32_t n, bool *turned)
+static uint32_t find_root(orientation *o, uint32_t n, bool *turned)
 {
     uint32_t root = n;
     bool odd = false;
@@ -301,8 +301,8 @@ static void join_across(orientation *o, uint32_t face)
     if (code == CWI_NO_FACE || other < face)
         return;
     const bool twisted = code != other;
-    uint32_t a = find(o, face / CWI_CELL_FACES, &a_turned),
-             b = find(o, other / CWI_CELL_FACES, &b_turned);
+    uint32_t a = find_root(o, face / CWI_CELL_FACES, &a_turned),
+             b = find_root(o, other / CWI_CELL_FACES, &b_turned);
     const bool turned = (a_turned != b_turned) != twisted;
     o->g->across[face] = other;
     o->g->across[other] = face;
@@ -363,19 +363,19 @@ static void turn_sets(orientation *o)
     const bool mirrored = cwi_affine_determinant(g->volume.affine[0]) < 0;
     for (uint32_t n = 0; n < g->count; n++) {
         bool turned;
-        const uint32_t set = find(o, n, &turned);
+        const uint32_t set = find_root(o, n, &turned);
         g->elements[n].flip = turned;
         if (set != n) /* the least of a set comes first */
             o->volume[set] += turned ? -o->volume[n] : o->volume[n];
     }
     for (uint32_t n = 0; n < g->count; n++) {
         bool turned;
-        const double volume = o->volume[find(o, n, &turned)];
+        const double volume = o->volume[find_root(o, n, &turned)];
         g->elements[n].flip ^= mirrored ? volume > 0 : volume < 0;
     }
 }
 
-static cw_status orient(orientation *o, cw_error *err)
+static cw_status orient_elements(orientation *o, cw_error *err)
 {
     cwi_cells *g = o->g;
     cw_status st = cwi_each_layer((g->count + CWI_CELL_CHUNK - 1) / CWI_CELL_CHUNK,
@@ -401,7 +401,7 @@ cw_status cwi_cells_orient(cwi_cells *g, cw_error *err)
                      .volume = cwi_alloc_array(g->count, sizeof *o.volume)};
     cw_status st =
         o.parent && o.turned && o.volume
-            ? orient(&o, err)
+            ? orient_elements(&o, err)
             : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to orient %zu cells", g->count);
     cwi_free(o.parent);
     cwi_free(o.turned);

@@ -45,7 +45,7 @@ static void add_edge(fitting *f, uint32_t sample, uint32_t other)
 }
 
 /* By cofactors. Zero where the edges lie in a plane. */
-static void solve(const normal_equations *n, double g[3])
+static void solve_equations(const normal_equations *n, double g[3])
 {
     const double *a = n->a;
     const double c[6] = {a[3] * a[5] - a[4] * a[4], a[2] * a[4] - a[1] * a[5],
@@ -103,7 +103,7 @@ static double power_of_two(double x)
     return ldexp(1, exponent < -1000 ? 1000 : -exponent);
 }
 
-static void fit(fitting *f)
+static void fit_gradients(fitting *f)
 {
     const cw_cells *cells = f->g->volume.cells;
     const uint32_t *corners = cells->corners;
@@ -127,9 +127,9 @@ cw_status cwi_cells_gradients(const cwi_cells *g, cwi_gradients *out, cw_error *
     f.value_scale = power_of_two(g->largest);
     f.length_scale = power_of_two(far);
     if (enough)
-        fit(&f);
+        fit_gradients(&f);
     for (size_t n = 0; n < count && enough; n++)
-        solve(&f.equations[n], out->at[n]);
+        solve_equations(&f.equations[n], out->at[n]);
     cwi_free(f.equations);
     return enough ? CW_OK
                   : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu gradients", count);

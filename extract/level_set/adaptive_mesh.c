@@ -36,7 +36,7 @@ static const int steps[3] = {1, 3, 9}; /* from point to point along the axes */
 
 /* ---- leaves ------------------------------------------------------------------------------ */
 
-static int coordinate(int n, int axis)
+static int lattice_coordinate(int n, int axis)
 {
     return n / steps[axis] % 3;
 }
@@ -76,11 +76,12 @@ static int around_face(int face, int n)
            w[1] * steps[(face / 2 + 2) % 3];
 }
 
-static void look(const build *b, leaf *l)
+static void look_around_leaf(const build *b, leaf *l)
 {
     l->matters = cwi_adaptive_is_divided(b->a, l->size, l->at);
     for (int n = 0; n < 27; n++) {
-        const int way[3] = {coordinate(n, 0) - 1, coordinate(n, 1) - 1, coordinate(n, 2) - 1};
+        const int way[3] = {lattice_coordinate(n, 0) - 1, lattice_coordinate(n, 1) - 1,
+                            lattice_coordinate(n, 2) - 1};
         const int along = !way[0] + !way[1] + !way[2];
         l->has[n] = along == 0 || l->matters || (along == 1 && is_edge_cut(b, l, way));
     }
@@ -94,11 +95,12 @@ static void look(const build *b, leaf *l)
     }
 }
 
-static uint32_t point(build *b, const leaf *l, int n)
+static uint32_t find_point(build *b, const leaf *l, int n)
 {
     uint32_t at[3];
     for (int a = 0; a < 3; a++)
-        at[a] = ((2 * l->at[a] + (uint32_t)coordinate(n, a)) << (CWI_DIVISIONS - l->size));
+        at[a] =
+            ((2 * l->at[a] + (uint32_t)lattice_coordinate(n, a)) << (CWI_DIVISIONS - l->size));
     const uint32_t p = cwi_places_add(&b->a->points, cwi_place_key(at));
     b->out_of_memory |= p == CWI_NO_PLACE;
     return p;
@@ -109,7 +111,7 @@ static void visit_leaf(build *b, leaf *l, void (*work)(build *b, const leaf *l))
 {
     if (l->size < CWI_DIVISIONS && cwi_adaptive_is_divided(b->a, l->size, l->at))
         return;
-    look(b, l);
+    look_around_leaf(b, l);
     work(b, l);
 }
 
@@ -172,7 +174,7 @@ static void find_whole(build *b)
     for (size_t n = 0; n < 27 * divided->count; n++) {
         cwi_place_of_key(divided->keys[n / 27], at);
         for (int a = 0; a < 3; a++)
-            beside[a] = at[a] + (uint32_t)coordinate((int)(n % 27), a) - 1;
+            beside[a] = at[a] + (uint32_t)lattice_coordinate((int)(n % 27), a) - 1;
         add_whole(b, beside);
     }
 }
@@ -205,7 +207,7 @@ static void add_cell(build *b, const leaf *l, cw_shape shape, const int *points,
     }
     b->shapes[b->count++] = (uint8_t)shape;
     for (int n = 0; n < count; n++)
-        b->corners[b->corner_count++] = point(b, l, points[n]);
+        b->corners[b->corner_count++] = find_point(b, l, points[n]);
 }
 
 /* Between a face and the cell's middle. */
@@ -232,7 +234,7 @@ static void add_points(build *b, const leaf *l)
 {
     for (int n = 0; n < 27; n++)
         if (l->has[n] && (n != CENTRE || l->matters))
-            point(b, l, n);
+            find_point(b, l, n);
 }
 
 static bool is_crossed(build *b, const leaf *l)
@@ -241,7 +243,7 @@ static bool is_crossed(build *b, const leaf *l)
     for (int n = 0; n < 27; n++) {
         if (!l->has[n] || (n == CENTRE && !l->matters))
             continue;
-        const float value = b->a->values[point(b, l, n)];
+        const float value = b->a->values[find_point(b, l, n)];
         low |= value <= 0;
         high |= value >= 0;
     }

@@ -99,7 +99,7 @@ static void try_triangle(room *r, uint32_t t)
         step_in(r, x, a->normals[t]);
 }
 
-static bool visit(void *context, size_t node)
+static bool visit_node(void *context, size_t node)
 {
     room *r = context;
     const cwi_boxes *tree = &r->a->tree;
@@ -123,7 +123,7 @@ static void try_triangles(room *r)
         box[k] = nextafterf((float)low[k], -INFINITY);
         box[k + 3] = nextafterf((float)high[k], INFINITY);
     }
-    cwi_boxes_visit(&r->a->tree, box, 0, visit, r);
+    cwi_boxes_visit(&r->a->tree, box, 0, visit_node, r);
 }
 
 bool cwi_adaptive_place(const cwi_adaptive *a, const uint32_t at[3], double place[3],

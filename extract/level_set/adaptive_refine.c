@@ -57,7 +57,7 @@ static void add_triangle(pieces *p, const cwi_polygon *g, int n, const struct ce
 
 /* Cuts what is in a cell by those that it is divided into. For what is in the smallest that are
  * divided once more there is nothing left to do. */
-static void cut(pieces *p, const cwi_polygon *g, const struct cell *cell)
+static void cut_by_cell(pieces *p, const cwi_polygon *g, const struct cell *cell)
 {
     if (g->count < 3)
         return;
@@ -78,7 +78,7 @@ static void cut(pieces *p, const cwi_polygon *g, const struct cell *cell)
             cwi_polygon_clip(&parts[a], a, (2 * cell->at[a] + 1) * side, n >> a & 1 ? -1 : 1,
                              &parts[a + 1]);
         }
-        cut(p, &parts[3], &part);
+        cut_by_cell(p, &parts[3], &part);
     }
 }
 
@@ -98,7 +98,7 @@ static void cut_along(pieces *p, const cwi_polygon *g, int a, struct cell *cell)
         if (slice.count >= 3 && a > 0)
             cut_along(p, &slice, a - 1, cell);
         else
-            cut(p, &slice, cell);
+            cut_by_cell(p, &slice, cell);
     }
 }
 
@@ -161,8 +161,8 @@ static cw_status divide_cells(const pieces *p, const uint8_t *beyond, cwi_beyond
     return CW_OK;
 }
 
-static cw_status divide(pieces *p, const cw_mesh *to, double limit_mm, cwi_beyond *found,
-                        cw_error *err)
+static cw_status divide_far_cells(pieces *p, const cw_mesh *to, double limit_mm,
+                                  cwi_beyond *found, cw_error *err)
 {
     uint8_t *beyond = NULL;
     uint32_t *triangles = cwi_alloc_array(3 * p->count, sizeof *triangles);
@@ -202,9 +202,9 @@ cw_status cwi_adaptive_divide(cwi_adaptive *a, const cw_mesh *surface, double li
     if (st == CW_OK)
         st = find_pieces(&astray, surface, a->mesh, limit_mm, beyond, err);
     if (st == CW_OK)
-        st = divide(&lost, surface, limit_mm, beyond, err);
+        st = divide_far_cells(&lost, surface, limit_mm, beyond, err);
     if (st == CW_OK)
-        st = divide(&astray, a->mesh, limit_mm, beyond, err);
+        st = divide_far_cells(&astray, a->mesh, limit_mm, beyond, err);
     free_pieces(&lost);
     free_pieces(&astray);
     return st;

@@ -36,24 +36,24 @@ typedef struct motion {
     bool by_means;      /* to the mesh from where neighbours are on average */
 } motion;
 
-static float *position(const cw_mesh *m, uint32_t v)
+static float *vertex_position(const cw_mesh *m, uint32_t v)
 {
     return m->positions + 3 * (size_t)v;
 }
 
-static void place(const motion *m, const mover *k)
+static void place_vertex(const motion *m, const mover *k)
 {
     for (int a = 0; a < 3; a++)
-        position(m->surface, k->vertex)[a] = k->from[a] + k->share * k->way[a];
+        vertex_position(m->surface, k->vertex)[a] = k->from[a] + k->share * k->way[a];
 }
 
 static void add_mover(motion *m, uint32_t v, const float way[3])
 {
     mover *k = m->movers + m->count;
     *k = (mover){.vertex = v, .share = 1, .moved = true, .way = {way[0], way[1], way[2]}};
-    memcpy(k->from, position(m->surface, v), sizeof k->from);
+    memcpy(k->from, vertex_position(m->surface, v), sizeof k->from);
     m->mover_of[v] = (uint32_t)m->count++;
-    place(m, k);
+    place_vertex(m, k);
 }
 
 static void forget_movers(motion *m)
@@ -81,7 +81,7 @@ typedef struct look {
     float box[6];
 } look;
 
-static const uint32_t *corners(const motion *m, size_t triangle)
+static const uint32_t *triangle_corners(const motion *m, size_t triangle)
 {
     return m->surface->triangles + 3 * triangle;
 }
@@ -95,9 +95,9 @@ static mover *mover_at(const motion *m, uint32_t vertex)
 /* Rounding keeps what is between the ends between them. */
 static void box_of_ways(const motion *m, size_t triangle, float box[6])
 {
-    cwi_boxes_triangle(m->surface->positions, corners(m, triangle), box);
+    cwi_boxes_triangle(m->surface->positions, triangle_corners(m, triangle), box);
     for (int n = 0; n < 3; n++) {
-        const mover *k = mover_at(m, corners(m, triangle)[n]);
+        const mover *k = mover_at(m, triangle_corners(m, triangle)[n]);
         for (int a = 0; a < 3 && k; a++) {
             const float ends[2] = {k->from[a], k->from[a] + k->way[a]};
             box[a] = fminf(box[a], fminf(ends[0], ends[1]));
@@ -120,8 +120,9 @@ static void test_pair(const look *l, uint32_t other)
     const float *points = m->surface->positions;
     if (other == l->triangle || (s->is_asked[other] && other < l->triangle))
         return;
-    if (cwi_has_area(points, corners(m, other)) &&
-        cwi_triangles_meet(points, corners(m, l->triangle), corners(m, other))) {
+    if (cwi_has_area(points, triangle_corners(m, other)) &&
+        cwi_triangles_meet(points, triangle_corners(m, l->triangle),
+                           triangle_corners(m, other))) {
         note_crossing(s, l->triangle);
         note_crossing(s, other);
     }
@@ -144,7 +145,7 @@ static void look_at_chunk(void *context, size_t chunk)
     const float *points = s->motion->surface->positions;
     for (size_t n = chunk * CHUNK; n < (chunk + 1) * CHUNK && n < s->asked_count; n++) {
         look l = {.s = s, .triangle = s->asked[n]};
-        const uint32_t *v = corners(s->motion, l.triangle);
+        const uint32_t *v = triangle_corners(s->motion, l.triangle);
         if (!cwi_has_area(points, v))
             continue;
         cwi_boxes_triangle(points, v, l.box);
@@ -156,23 +157,23 @@ static void look_at_chunk(void *context, size_t chunk)
 static void hold_back(motion *m, size_t triangle)
 {
     for (size_t n = 0; n < 3; n++) {
-        mover *k = mover_at(m, corners(m, triangle)[n]);
+        mover *k = mover_at(m, triangle_corners(m, triangle)[n]);
         if (!k || k->share == 0)
             continue;
         k->share = k->share > 0.1f ? k->share / 2 : 0;
         k->moved = true;
-        place(m, k);
+        place_vertex(m, k);
     }
 }
 
 static bool is_flat(const motion *m, size_t triangle)
 {
-    const uint32_t *v = corners(m, triangle);
+    const uint32_t *v = triangle_corners(m, triangle);
     double way[3][3], n[3], longest = 0;
     for (int k = 0; k < 3; k++) {
         for (int a = 0; a < 3; a++)
-            way[k][a] = (double)position(m->surface, v[(k + 1) % 3])[a] -
-                        (double)position(m->surface, v[k])[a];
+            way[k][a] = (double)vertex_position(m->surface, v[(k + 1) % 3])[a] -
+                        (double)vertex_position(m->surface, v[k])[a];
         longest = fmax(longest, cwi_dot(way[k], way[k]));
     }
     cwi_cross(way[0], way[1], n);
@@ -197,7 +198,7 @@ static void ask_moved(settling *s)
     for (size_t t = 0; t < count; t++) {
         s->is_asked[t] = 0;
         for (int n = 0; n < 3; n++) {
-            const mover *k = mover_at(m, corners(m, t)[n]);
+            const mover *k = mover_at(m, triangle_corners(m, t)[n]);
             s->is_asked[t] |= k && k->moved;
         }
         if (s->is_asked[t])
@@ -225,7 +226,8 @@ static cw_status find_places(settling *s, cw_error *err)
 }
 
 /* With every vertex back at its start nothing crosses: so there is an end. */
-static cw_status settle(motion *m, int threads, const cw_progress *progress, cw_error *err)
+static cw_status settle_vertices(motion *m, int threads, const cw_progress *progress,
+                                 cw_error *err)
 {
     settling s = {.motion = m};
     if (!m->count)
@@ -270,7 +272,7 @@ static void follow_samples(const cwi_warp *w, motion *m)
 {
     forget_movers(m);
     for (uint32_t v = 0; v < m->surface->vertex_count; v++) {
-        const float *p = position(m->surface, v);
+        const float *p = vertex_position(m->surface, v);
         double at[3];
         float way[3];
         for (int a = 0; a < 3; a++)
@@ -287,7 +289,7 @@ static void find_means(motion *m)
     const cw_mesh *s = m->surface;
     memset(m->means, 0, s->vertex_count * sizeof *m->means);
     for (size_t c = 0; c < 3 * s->triangle_count; c++) {
-        const float *next = position(s, s->triangles[c % 3 < 2 ? c + 1 : c - 2]);
+        const float *next = vertex_position(s, s->triangles[c % 3 < 2 ? c + 1 : c - 2]);
         float *mean = m->means[s->triangles[c]];
         for (int a = 0; a < 3; a++)
             mean[a] += next[a];
@@ -311,7 +313,7 @@ static void find_ways(void *context, size_t chunk)
     motion *m = context;
     for (size_t v = chunk * CHUNK; v < (chunk + 1) * CHUNK && v < m->surface->vertex_count;
          v++) {
-        const float *p = position(m->surface, (uint32_t)v), *mean = m->means[v];
+        const float *p = vertex_position(m->surface, (uint32_t)v), *mean = m->means[v];
         double x[3], y[3];
         for (int a = 0; a < 3; a++) {
             x[a] = m->surface->origin[a] + (double)p[a] - m->mesh->origin[a];
@@ -326,8 +328,8 @@ static void find_ways(void *context, size_t chunk)
 
 /* To the closest points of the mesh; every other time only what is tangled, from where its
  * neighbours are on average: that frees it. */
-static cw_status pull(motion *m, bool by_means, int threads, const cw_progress *progress,
-                      cw_error *err)
+static cw_status pull_vertices(motion *m, bool by_means, int threads,
+                               const cw_progress *progress, cw_error *err)
 {
     const size_t count = m->surface->vertex_count;
     m->by_means = by_means;
@@ -364,12 +366,12 @@ cw_status cwi_unwarp(const cwi_warp *w, const cw_mesh *mesh, int threads,
                                  surface->vertex_count);
     if (st == CW_OK) {
         follow_samples(w, &m);
-        st = settle(&m, threads, progress, err);
+        st = settle_vertices(&m, threads, progress, err);
     }
     for (int round = 0; round < ROUNDS && st == CW_OK; round++) {
-        st = pull(&m, round % 2, threads, progress, err);
+        st = pull_vertices(&m, round % 2, threads, progress, err);
         if (st == CW_OK)
-            st = settle(&m, threads, progress, err);
+            st = settle_vertices(&m, threads, progress, err);
     }
     cwi_boxes_free(&m.tree);
     cwi_free(m.movers);

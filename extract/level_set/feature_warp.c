@@ -76,7 +76,7 @@ static void nearest_sample(const double x[3], uint32_t at[3])
         at[a] = (uint32_t)floor(x[a] + 0.5);
 }
 
-static const float *position(const warping *g, uint32_t v)
+static const float *vertex_position(const warping *g, uint32_t v)
 {
     return g->mesh->positions + 3 * (size_t)v;
 }
@@ -84,8 +84,9 @@ static const float *position(const warping *g, uint32_t v)
 static void to_grid(const warping *g, uint32_t vertex, double at[3])
 {
     for (int a = 0; a < 3; a++)
-        at[a] = (g->mesh->origin[a] + (double)position(g, vertex)[a] - g->warp->corner[a]) /
-                g->warp->voxel;
+        at[a] =
+            (g->mesh->origin[a] + (double)vertex_position(g, vertex)[a] - g->warp->corner[a]) /
+            g->warp->voxel;
 }
 
 static void to_mesh(const warping *g, const double at[3], double p[3])
@@ -137,8 +138,8 @@ static bool step_in(const warping *g, const double x[3], const double in[3], boo
 
 /* Considers to move a sample to x, on the surface. For a face only those on the wrong side go,
  * for an edge or a corner all: they may be on the right side, but far from it. */
-static void consider(warping *g, const uint32_t at[3], const double x[3], const double in[3],
-                     bool inside, int rank)
+static void consider_move(warping *g, const uint32_t at[3], const double x[3],
+                          const double in[3], bool inside, int rank)
 {
     const float *voxel = voxel_at(g, at);
     const cwi_move *old = cwi_warp_find(g->warp, at);
@@ -171,7 +172,7 @@ static void consider_part(warping *g, const double from[3], const double way[3],
     for (int a = 0; a < 3; a++)
         x[a] = from[a] + along * way[a];
     if (always || is_thin(g, x, in, inside))
-        consider(g, at, x, in, inside, EDGE);
+        consider_move(g, at, x, in, inside, EDGE);
 }
 
 /* Goes along an edge from cube to cube. */
@@ -215,7 +216,7 @@ static void consider_corner(warping *g, uint32_t v, const double edge_in[3], boo
         x[a] += beside * in[a];
     nearest_sample(x, at);
     if (always || is_pointed || is_thin(g, x, in, inside))
-        consider(g, at, x, in, inside, CORNER);
+        consider_move(g, at, x, in, inside, CORNER);
 }
 
 /* A triangle's side. */
@@ -240,8 +241,8 @@ static bool is_convex(const warping *g, const side *s, const side *t)
     double height = 0;
     for (int k = 0; k < 3; k++)
         for (int a = 0; a < 3; a++)
-            height +=
-                n[a] * ((double)position(g, v[k])[a] - (double)position(g, s->ends[0])[a]);
+            height += n[a] * ((double)vertex_position(g, v[k])[a] -
+                              (double)vertex_position(g, s->ends[0])[a]);
     return height < 0;
 }
 
@@ -318,7 +319,7 @@ static void add_wish(warping *g, const uint32_t at[3], bool inside)
     g->wishes[g->wish_count++] = (wish){{at[0], at[1], at[2]}, inside};
 }
 
-static void step(const uint32_t at[3], int a, int by, uint32_t to[3])
+static void step_along(const uint32_t at[3], int a, int by, uint32_t to[3])
 {
     memcpy(to, at, 3 * sizeof *to);
     to[a] += (uint32_t)by;
@@ -331,9 +332,9 @@ static void wish_across(warping *g, const cwi_move *m, int a, int by, int other_
     const int b = (a + 1) % 3;
     const bool inside = m->value < 0;
     uint32_t first[3], second[3], across[3];
-    step(m->at, a, by, first);
-    step(m->at, b, other_by, second);
-    step(first, b, other_by, across);
+    step_along(m->at, a, by, first);
+    step_along(m->at, b, other_by, second);
+    step_along(first, b, other_by, across);
     if (!is_on_side(g, across, inside) || is_on_side(g, first, inside) ||
         is_on_side(g, second, inside))
         return;
@@ -346,8 +347,8 @@ static void wish_between(warping *g, const cwi_move *m, int a, int by)
 {
     const bool inside = m->value < 0;
     uint32_t next[3], far[3];
-    step(m->at, a, by, next);
-    step(next, a, by, far);
+    step_along(m->at, a, by, next);
+    step_along(next, a, by, far);
     if (!is_on_side(g, next, inside) && is_on_side(g, far, inside))
         add_wish(g, next, inside);
 }
@@ -357,7 +358,7 @@ static bool is_alone(const warping *g, const cwi_move *m)
     bool alone = true;
     for (int n = 0; n < 6 && alone; n++) {
         uint32_t next[3];
-        step(m->at, n / 2, n % 2 ? 1 : -1, next);
+        step_along(m->at, n / 2, n % 2 ? 1 : -1, next);
         alone = !is_on_side(g, next, m->value < 0);
     }
     return alone;
@@ -368,7 +369,7 @@ static void wish_around(warping *g, const cwi_move *m)
     const bool alone = is_alone(g, m);
     for (int n = 0; n < 6; n++) {
         uint32_t next[3];
-        step(m->at, n / 2, n % 2 ? 1 : -1, next);
+        step_along(m->at, n / 2, n % 2 ? 1 : -1, next);
         if (alone)
             add_wish(g, next, m->value < 0);
         wish_between(g, m, n / 2, n % 2 ? 1 : -1);
@@ -387,7 +388,7 @@ static void clip_to_cubes(const cwi_polygon *in, int a, double middle, cwi_polyg
 }
 
 /* The samples whose cubes a polygon is in, along an axis. */
-static void range(const cwi_polygon *p, int a, double *low, double *high)
+static void polygon_range(const cwi_polygon *p, int a, double *low, double *high)
 {
     *low = INFINITY;
     *high = -INFINITY;
@@ -431,7 +432,7 @@ static void consider_piece(warping *g, const cwi_polygon *p, const double cube[3
         in[a] = inside ? -n[a] : n[a];
     }
     if (g->wishes ? is_wished(g, at, inside) : is_thin(g, x, in, inside))
-        consider(g, at, x, in, inside, FACE);
+        consider_move(g, at, x, in, inside, FACE);
 }
 
 /* Goes from cube to cube: last along the axis that the triangle faces most, where it is in few
@@ -447,13 +448,13 @@ static void consider_face(warping *g, size_t t)
     const int b = (a + 1) % 3, c = (a + 2) % 3;
     for (size_t k = 0; k < 3; k++)
         to_grid(g, g->mesh->triangles[3 * t + k], all.p[k]);
-    range(&all, b, &low[b], &high[b]);
+    polygon_range(&all, b, &low[b], &high[b]);
     for (i[b] = low[b]; i[b] <= high[b]; i[b]++) {
         clip_to_cubes(&all, b, i[b], &slice);
-        range(&slice, c, &low[c], &high[c]);
+        polygon_range(&slice, c, &low[c], &high[c]);
         for (i[c] = low[c]; i[c] <= high[c]; i[c]++) {
             clip_to_cubes(&slice, c, i[c], &column);
-            range(&column, a, &low[a], &high[a]);
+            polygon_range(&column, a, &low[a], &high[a]);
             for (i[a] = low[a]; i[a] <= high[a]; i[a]++) {
                 clip_to_cubes(&column, a, i[a], &piece);
                 consider_piece(g, &piece, i, n);
@@ -468,7 +469,7 @@ static void consider_faces(warping *g)
         consider_face(g, t);
 }
 
-static void join(warping *g)
+static void join_samples(warping *g)
 {
     for (int round = 0; round < JOINS; round++) {
         const size_t before = g->warp->count;
@@ -486,7 +487,7 @@ static void join(warping *g)
 
 /* ---- all of it --------------------------------------------------------------------------- */
 
-static double angle(const double u[3], const double v[3])
+static double angle_between(const double u[3], const double v[3])
 {
     double n[3];
     cwi_cross(u, v, n);
@@ -499,14 +500,15 @@ static void find_normal(warping *g, size_t t)
     double way[3][3], *n = g->normals[t];
     for (int k = 0; k < 3; k++)
         for (int a = 0; a < 3; a++)
-            way[k][a] = (double)position(g, v[(k + 1) % 3])[a] - (double)position(g, v[k])[a];
+            way[k][a] = (double)vertex_position(g, v[(k + 1) % 3])[a] -
+                        (double)vertex_position(g, v[k])[a];
     cwi_cross(way[0], way[1], n);
     const double length = sqrt(cwi_dot(n, n));
     for (int a = 0; a < 3; a++)
         n[a] = length > 0 ? n[a] / length : 0;
     for (int k = 0; k < 3; k++) {
         const double *last = way[(k + 2) % 3], back[3] = {-last[0], -last[1], -last[2]};
-        const double weight = angle(way[k], back);
+        const double weight = angle_between(way[k], back);
         for (int a = 0; a < 3; a++)
             g->corners[v[k]][a] += weight * n[a];
         g->corners[v[k]][3] += weight;
@@ -521,7 +523,7 @@ static bool make_room(warping *g)
 }
 
 /* Into the volume. What is joined with nothing stays. */
-static void apply(const warping *g)
+static void apply_moves(const warping *g)
 {
     for (size_t n = 0; n < g->warp->count; n++) {
         cwi_move *m = g->warp->moves + n;
@@ -545,8 +547,8 @@ cw_status cwi_warp_init(cwi_warp *warp, const cw_mesh *mesh, cw_volume *volume, 
             find_normal(&g, t);
         consider_faces(&g);
         consider_edges(&g);
-        join(&g);
-        apply(&g);
+        join_samples(&g);
+        apply_moves(&g);
     }
     if (g.out_of_memory)
         st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory for samples at edges");

@@ -34,7 +34,7 @@ typedef struct hollowing {
 
 /* --- what is asked for -------------------------------------------------------------------- */
 
-static double narrowest(const cw_hollow_desc *d)
+static double find_narrowest(const cw_hollow_desc *d)
 {
     double least = d->wall_mm;
     for (size_t n = 0; n < d->drain_count; n++)
@@ -58,17 +58,17 @@ static cw_status check_desc(const cw_hollow_desc *d, cw_error *err)
                            "both above 0 were expected",
                            n + 1, width, length);
     }
-    if (d->voxel_mm > 0 && narrowest(d) < 2 * d->voxel_mm)
+    if (d->voxel_mm > 0 && find_narrowest(d) < 2 * d->voxel_mm)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "voxels of %g mm are too large for %s of %g mm: at most half of that",
-                       d->voxel_mm, narrowest(d) < d->wall_mm ? "a drain" : "a wall",
-                       narrowest(d));
+                       d->voxel_mm, find_narrowest(d) < d->wall_mm ? "a drain" : "a wall",
+                       find_narrowest(d));
     return CW_OK;
 }
 
 static double choose_voxel(const cw_hollow_desc *d, const cw_quality *q)
 {
-    const double finest = narrowest(d) / 4;
+    const double finest = find_narrowest(d) / 4;
     double voxel = finest;
     while (!cwi_level_set_fits(q, voxel, d->wall_mm, d->max_bytes) && voxel < 2 * finest)
         voxel = fmin(1.05 * voxel, 2 * finest);
@@ -142,7 +142,7 @@ static double distance_to_ray(const ray *r, const double p[3])
 }
 
 /* How far a vertex of the largest cavity's surface is along a ray; others are nowhere. */
-static double depth(const hollowing *h, const ray *r, size_t vertex, double p[3])
+static double measure_depth(const hollowing *h, const ray *r, size_t vertex, double p[3])
 {
     point_of(&h->inner, vertex, p);
     return h->set[vertex] == h->largest ? cwi_dot(p, r->along) : -INFINITY;
@@ -158,16 +158,16 @@ static void place_ray(const hollowing *h, const cw_drain *drain, ray *r)
     for (int a = 0; a < 3; a++)
         r->along[a] = drain->direction[a] / length;
     for (size_t v = 0; v < h->inner.vertex_count; v++)
-        farthest = fmax(farthest, depth(h, r, v, p));
+        farthest = fmax(farthest, measure_depth(h, r, v, p));
     farthest -= h->voxel_mm;
     for (size_t v = 0; v < h->inner.vertex_count; v++)
-        if (depth(h, r, v, p) >= farthest) {
+        if (measure_depth(h, r, v, p) >= farthest) {
             count++;
             for (int a = 0; a < 3; a++)
                 middle[a] += (p[a] - middle[a]) / count;
         }
     for (size_t v = 0; v < h->inner.vertex_count; v++)
-        if (depth(h, r, v, p) >= farthest) {
+        if (measure_depth(h, r, v, p) >= farthest) {
             const double to[3] = {p[0] - middle[0], p[1] - middle[1], p[2] - middle[2]};
             if (cwi_dot(to, to) < nearest) {
                 nearest = cwi_dot(to, to);
@@ -193,7 +193,7 @@ static void count_sealed(hollowing *h)
     }
 }
 
-static float carve(const hollowing *h, double distance, const double p[3])
+static float carve_sample(const hollowing *h, double distance, const double p[3])
 {
     const double limit = h->volume.sparse->background;
     double solid = fmax(distance, -h->desc->wall_mm - distance);
@@ -220,7 +220,7 @@ static void carve_all(hollowing *h)
             for (int a = 0; a < 3; a++)
                 p[a] = v->affine[a][3] +
                        v->affine[a][a] * (double)(CWI_LEAF * sparse->leaves[leaf][a] + in[a]);
-            *voxel = carve(h, (double)*voxel, p);
+            *voxel = carve_sample(h, (double)*voxel, p);
         }
 }
 
@@ -238,7 +238,7 @@ static cw_status place_rays(hollowing *h, cw_error *err)
 /* --- the result --------------------------------------------------------------------------- */
 
 /* Puts the cavities' surfaces, turned inside out, behind the mesh. */
-static cw_status join(const hollowing *h, cw_mesh *out, cw_error *err)
+static cw_status join_surfaces(const hollowing *h, cw_mesh *out, cw_error *err)
 {
     const cw_mesh *m = h->mesh, *in = &h->inner;
     const size_t v = m->vertex_count, t = m->triangle_count;
@@ -287,7 +287,7 @@ static cw_status measure_wall(hollowing *h, const cw_mesh *outer, cw_error *err)
 }
 
 /* With drains the outer surface is that of the level set, too. */
-static cw_status drain(hollowing *h, cw_mesh *out, cw_error *err)
+static cw_status drain_cavity(hollowing *h, cw_mesh *out, cw_error *err)
 {
     cw_mesh outer = {0};
     cw_status st = CW_OK;
@@ -308,10 +308,11 @@ static cw_status drain(hollowing *h, cw_mesh *out, cw_error *err)
     return st;
 }
 
-static cw_status finish(hollowing *h, cw_mesh *out, cw_error *err)
+static cw_status finish_hollow(hollowing *h, cw_mesh *out, cw_error *err)
 {
     cw_quality after;
-    cw_status st = h->desc->drain_count ? drain(h, out, err) : join(h, out, err);
+    cw_status st =
+        h->desc->drain_count ? drain_cavity(h, out, err) : join_surfaces(h, out, err);
     if (st == CW_OK && !h->desc->drain_count && !h->desc->no_measure)
         st = measure_wall(h, h->mesh, err);
     if (st == CW_OK)
@@ -355,7 +356,7 @@ cw_status cw_mesh_hollow(const cw_mesh *mesh, const cw_hollow_desc *desc, cw_mes
     if (st == CW_OK)
         st = find_cavities(&h, err);
     if (st == CW_OK)
-        st = finish(&h, out, err);
+        st = finish_hollow(&h, out, err);
     if (facts)
         *facts = h.facts;
     cw_volume_free(&h.volume);

@@ -43,7 +43,7 @@ cw_status cwi_level_set_check(const cw_mesh *mesh, int threads, cw_quality *q, c
 }
 
 /* Voxels along an axis, with what is kept around the mesh, in whole leaves. */
-static double samples(const cw_quality *q, int a, double voxel_mm, double reach_mm)
+static double count_samples(const cw_quality *q, int a, double voxel_mm, double reach_mm)
 {
     const double around = 2 * (reach_mm / voxel_mm + CWI_BAND + 2 * CWI_LEAF);
     return (q->max[a] - q->min[a]) / voxel_mm + around;
@@ -56,10 +56,11 @@ double cwi_level_set_bytes(const cw_quality *q, double voxel_mm, double reach_mm
 {
     double box = 1;
     for (int a = 0; a < 3; a++)
-        box *= samples(q, a, voxel_mm, reach_mm);
+        box *= count_samples(q, a, voxel_mm, reach_mm);
     const double side = q->area_mm2 / (voxel_mm * voxel_mm);
     const double voxels = fmin(side * (2 * (reach_mm / voxel_mm + CWI_BAND + 1) + 12), box);
-    const double rows = samples(q, 1, voxel_mm, reach_mm) * samples(q, 2, voxel_mm, reach_mm);
+    const double rows =
+        count_samples(q, 1, voxel_mm, reach_mm) * count_samples(q, 2, voxel_mm, reach_mm);
     return 9 * voxels + sizeof(size_t) * rows + sizeof(cwi_row_crossing) * side +
            fmin(voxels, BATCH) * BATCH_BYTES + 76 * (double)q->triangles;
 }
@@ -67,7 +68,7 @@ double cwi_level_set_bytes(const cw_quality *q, double voxel_mm, double reach_mm
 bool cwi_level_set_fits(const cw_quality *q, double voxel_mm, double reach_mm, size_t max_bytes)
 {
     for (int a = 0; a < 3; a++)
-        if (samples(q, a, voxel_mm, reach_mm) > CWI_WINDING_MOST)
+        if (count_samples(q, a, voxel_mm, reach_mm) > CWI_WINDING_MOST)
             return false;
     return !max_bytes || cwi_level_set_bytes(q, voxel_mm, reach_mm) <= (double)max_bytes;
 }
@@ -167,7 +168,7 @@ static bool is_rough(const build *b, float value)
     return !b->level || fabs((double)value - *b->level) <= CWI_BAND * b->desc->voxel_mm;
 }
 
-static cw_status ask(const build *b, batch *list, cw_error *err)
+static cw_status ask_openvdb(const build *b, batch *list, cw_error *err)
 {
     cw_distance d;
     cw_mesh points = {.vertex_count = list->count, .positions = list->points[0]};
@@ -209,7 +210,7 @@ static cw_status make_exact(build *b, cw_error *err)
     for (size_t n = 0; n < b->leaf_count && st == CW_OK; n++) {
         add_leaf(b, n, &list);
         if (n + 1 == b->leaf_count || list.count + CWI_LEAF_VOXELS > room)
-            st = ask(b, &list, err);
+            st = ask_openvdb(b, &list, err);
     }
     cwi_free(list.points);
     cwi_free(list.distances);
@@ -339,7 +340,7 @@ static void free_build(build *b)
 
 /* The mesh's box begins in the middle between two samples, so that faces of boxes, which often
  * are a whole number of voxels apart, do not coincide with samples. */
-static cw_status make(build *b, const cw_quality *q, cw_volume *volume, cw_error *err)
+static cw_status make_level_set(build *b, const cw_quality *q, cw_volume *volume, cw_error *err)
 {
     const double voxel = b->desc->voxel_mm;
     const double margin = CWI_LEAF * ceil((b->reach + CWI_BAND) / CWI_LEAF);
@@ -387,7 +388,7 @@ cw_status cwi_level_set_make(const cw_mesh *mesh, const cw_quality *q,
     cw_status st = check_fits(q, &d, reach_mm, err);
     b.reach = reach_mm / d.voxel_mm + CWI_BAND + 1;
     if (st == CW_OK)
-        st = make(&b, q, volume, err);
+        st = make_level_set(&b, q, volume, err);
     free_build(&b);
     return st;
 }

@@ -78,7 +78,7 @@ static cw_status make_plain(making *m, cw_mesh *out, cw_error *err)
 
 /* ---- what is promised of the mesh's own surface ------------------------------------------ */
 
-static int64_t handles(const cw_quality *q)
+static int64_t count_handles(const cw_quality *q)
 {
     return (int64_t)q->components - q->euler / 2;
 }
@@ -91,7 +91,7 @@ static cw_status compare_topology(const making *m, const cw_mesh *out, bool *hol
     const cw_status st =
         cw_quality_measure(out, &(cw_quality_desc){.threads = m->desc->threads}, &q, err);
     *holds = st == CW_OK && out->triangle_count && q.components <= m->before.components &&
-             handles(&q) <= handles(&m->before);
+             count_handles(&q) <= count_handles(&m->before);
     return st;
 }
 
@@ -144,7 +144,8 @@ static cw_status compare_places(const making *m, const cw_mesh *out, double limi
 
 /* Whether the promise is kept; if not, whether the surface is so near that smaller voxels may
  * keep it. */
-static cw_status judge(making *m, const cw_mesh *out, bool *holds, bool *is_near, cw_error *err)
+static cw_status judge_remesh(making *m, const cw_mesh *out, bool *holds, bool *is_near,
+                              cw_error *err)
 {
     const double limit_mm = m->asked / 2;
     cw_status st = compare_topology(m, out, holds, err);
@@ -175,7 +176,7 @@ static cw_status make_warped(making *m, cw_mesh *out, bool *holds, bool *is_near
     if (*holds && st == CW_OK)
         st = cwi_sharpen(m->mesh, d, m->voxel, out, err);
     if (*holds && st == CW_OK)
-        st = judge(m, out, holds, is_near, err);
+        st = judge_remesh(m, out, holds, is_near, err);
     cwi_warp_free(&warp);
     return st;
 }
@@ -185,7 +186,7 @@ static cw_status make_either(making *m, cw_mesh *out, bool *holds, bool *is_near
 {
     cw_status st = make_plain(m, out, err);
     if (st == CW_OK)
-        st = judge(m, out, holds, is_near, err);
+        st = judge_remesh(m, out, holds, is_near, err);
     if (st != CW_OK || *holds)
         return st;
     cw_mesh_free(out);
@@ -295,8 +296,8 @@ static cw_status count_more(const making *m, const cw_mesh *out, cw_offset_facts
         cw_quality_measure(out, &(cw_quality_desc){.threads = m->desc->threads}, &q, err);
     if (st == CW_OK && q.components > m->before.components)
         facts->more_components = q.components - m->before.components;
-    if (st == CW_OK && handles(&q) > handles(&m->before))
-        facts->more_handles = (size_t)(handles(&q) - handles(&m->before));
+    if (st == CW_OK && count_handles(&q) > count_handles(&m->before))
+        facts->more_handles = (size_t)(count_handles(&q) - count_handles(&m->before));
     return st;
 }
 
@@ -307,7 +308,7 @@ static cw_status make_true(making *m, cw_mesh *out, cw_offset_facts *facts, cw_e
     bool holds = false, is_near = false;
     cw_status st = make_plain(m, out, err);
     if (st == CW_OK)
-        st = judge(m, out, &holds, &is_near, err);
+        st = judge_remesh(m, out, &holds, &is_near, err);
     if (st == CW_OK && !holds)
         st = make_whole(m, out->triangle_count, is_near, &whole, &holds, err);
     if (st == CW_OK && holds && whole.triangle_count) {

@@ -268,7 +268,7 @@ static void cut_triangles(void *context, size_t chunk)
 }
 
 /* Samples on both sides of an edge put vertices off the surface: to its plane with one. */
-static void settle(const sharpener *s, uint32_t v)
+static void settle_vertex(const sharpener *s, uint32_t v)
 {
     const plane *p = s->planes + v;
     double x[3];
@@ -286,8 +286,8 @@ static void settle_ends(const sharpener *s)
     for (size_t v = 0; v < s->mesh->vertex_count; v++)
         for (uint32_t n = s->first[v]; n < s->first[v + 1]; n++)
             if (s->sides[n].is_on) {
-                settle(s, (uint32_t)v);
-                settle(s, s->upper[n]);
+                settle_vertex(s, (uint32_t)v);
+                settle_vertex(s, s->upper[n]);
             }
 }
 
@@ -337,7 +337,7 @@ static int divide_around(const point *c, const point v[3], const point *const m[
 }
 
 /* The parts of a triangle between its corners v and the cuts m of its sides (NULL: none). */
-static int divide(const point v[3], const point *const m[3], part parts[MOST_PARTS])
+static int divide_by_cuts(const point v[3], const point *const m[3], part parts[MOST_PARTS])
 {
     const int cuts = !!m[0] + !!m[1] + !!m[2];
     int k = 0; /* one cut: it; two: the first of them */
@@ -385,7 +385,7 @@ static void divide_triangle(const sharpener *s, size_t t, division *d)
     }
     d->c = cut_point(s->middles + t);
     d->count = cuts >= 2 && s->middles[t].is_on ? divide_around(&d->c, d->v, m, d->parts)
-                                                : divide(d->v, m, d->parts);
+                                                : divide_by_cuts(d->v, m, d->parts);
 }
 
 /* ---- what stays as it is ----------------------------------------------------------------- */
@@ -420,7 +420,7 @@ static bool has_moved(const sharpener *s, size_t t)
 }
 
 /* Leaves its corners and sides as they were. */
-static void restore(const sharpener *s, size_t t)
+static void restore_triangle(const sharpener *s, size_t t)
 {
     for (size_t k = 0; k < 3; k++) {
         const size_t at = 3 * (size_t)s->mesh->triangles[3 * t + k];
@@ -446,7 +446,7 @@ static void restore_some(const sharpener *s, size_t t, const division *d)
     if (shortest)
         shortest->is_on = false;
     else
-        restore(s, t);
+        restore_triangle(s, t);
 }
 
 /* Whether something had to be restored. */
@@ -489,7 +489,7 @@ static void restore_all_unsound(const sharpener *s)
 
 /* ---- what is made ------------------------------------------------------------------------ */
 
-static void number(cut *cuts, size_t count, size_t *vertices)
+static void number_cuts(cut *cuts, size_t count, size_t *vertices)
 {
     for (size_t n = 0; n < count; n++)
         if (cuts[n].is_on)
@@ -531,13 +531,13 @@ static bool make_room_for(sharpener *s, size_t vertices, size_t triangles)
     return m->positions && m->normals && m->triangles && s->parent;
 }
 
-static cw_status make(sharpener *s, cw_error *err)
+static cw_status make_sharp(sharpener *s, cw_error *err)
 {
     const cw_mesh *m = s->mesh;
     const size_t triangles = count_parts(s);
     size_t vertices = m->vertex_count, n = 0;
-    number(s->sides, s->side_count, &vertices);
-    number(s->middles, m->triangle_count, &vertices);
+    number_cuts(s->sides, s->side_count, &vertices);
+    number_cuts(s->middles, m->triangle_count, &vertices);
     if (vertices > UINT32_MAX || !make_room_for(s, vertices, triangles))
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu triangles with edges",
                        triangles);
@@ -567,12 +567,12 @@ static cw_status make_clear(sharpener *s, const cw_offset_desc *desc, bool *is_c
     for (int round = 0; round < ROUNDS && st == CW_OK && !*is_clear; round++) {
         cw_crossings found = {0};
         restore_all_unsound(s);
-        st = make(s, err);
+        st = make_sharp(s, err);
         if (st == CW_OK)
             st = cw_self_intersections(&s->made, &how, &found, err);
         *is_clear = st == CW_OK && !found.count;
         for (size_t n = 0; n < 2 * found.count; n++)
-            restore(s, s->parent[found.pairs[n]]);
+            restore_triangle(s, s->parent[found.pairs[n]]);
         cw_crossings_free(&found);
     }
     return st;

@@ -34,7 +34,7 @@ static corner corner_of(const mapping *m, uint32_t vertex)
 
 /* Twice the area of a, b and the row, seen along it: positive when they
  * run counter-clockwise. */
-static int64_t area(const corner *a, const corner *b, int64_t y, int64_t z)
+static int64_t edge_area(const corner *a, const corner *b, int64_t y, int64_t z)
 {
     return (b->y - a->y) * (z - a->z) - (b->z - a->z) * (y - a->y);
 }
@@ -53,7 +53,7 @@ static int64_t ceil_div(int64_t a)
     return a > 0 ? (a + FINE - 1) / FINE : a / FINE;
 }
 
-static int64_t least(int64_t a, int64_t b, int64_t c)
+static int64_t min_of_three(int64_t a, int64_t b, int64_t c)
 {
     const int64_t low = a < b ? a : b;
     return low < c ? low : c;
@@ -62,17 +62,17 @@ static int64_t least(int64_t a, int64_t b, int64_t c)
 /* Rows that a triangle crosses: they are counted, or kept where there is a place for them. */
 static void cross_rows(cwi_winding *w, const corner c[3], int turn, bool keep)
 {
-    const int64_t low_y = ceil_div(least(c[0].y, c[1].y, c[2].y)),
-                  low_z = ceil_div(least(c[0].z, c[1].z, c[2].z)),
-                  high_y = -ceil_div(least(-c[0].y, -c[1].y, -c[2].y)),
-                  high_z = -ceil_div(least(-c[0].z, -c[1].z, -c[2].z));
+    const int64_t low_y = ceil_div(min_of_three(c[0].y, c[1].y, c[2].y)),
+                  low_z = ceil_div(min_of_three(c[0].z, c[1].z, c[2].z)),
+                  high_y = -ceil_div(min_of_three(-c[0].y, -c[1].y, -c[2].y)),
+                  high_z = -ceil_div(min_of_three(-c[0].z, -c[1].z, -c[2].z));
     for (int64_t k = low_z; k <= high_z; k++)
         for (int64_t j = low_y; j <= high_y; j++) {
             int64_t side[3];
             bool in = true;
             for (int n = 0; n < 3 && in; n++) {
                 const corner *from = &c[(n + 1) % 3], *to = &c[(n + 2) % 3];
-                side[n] = area(from, to, j * FINE, k * FINE);
+                side[n] = edge_area(from, to, j * FINE, k * FINE);
                 in = is_left(side[n], from, to);
             }
             if (!in)
@@ -97,7 +97,7 @@ static void each_triangle(cwi_winding *w, const mapping *m, bool keep)
         corner c[3];
         for (int n = 0; n < 3; n++)
             c[n] = corner_of(m, m->mesh->triangles[3 * t + (size_t)n]);
-        const int64_t twice = area(&c[0], &c[1], c[2].y, c[2].z);
+        const int64_t twice = edge_area(&c[0], &c[1], c[2].y, c[2].z);
         if (twice < 0) {
             const corner swap = c[1];
             c[1] = c[2];
@@ -120,7 +120,7 @@ static size_t sum_rows(cwi_winding *w, size_t rows)
     return sum;
 }
 
-static int compare(const void *a, const void *b)
+static int compare_crossings(const void *a, const void *b)
 {
     const double x = ((const cwi_row_crossing *)a)->x, y = ((const cwi_row_crossing *)b)->x;
     return (x > y) - (x < y);
@@ -146,7 +146,7 @@ cw_status cwi_winding_init(cwi_winding *w, const cw_mesh *mesh, const double fir
     for (size_t n = 0; n < rows; n++)
         if (w->first[n + 1] - w->first[n] > 1)
             qsort(w->cross + w->first[n], w->first[n + 1] - w->first[n], sizeof *w->cross,
-                  compare);
+                  compare_crossings);
     return CW_OK;
 }
 

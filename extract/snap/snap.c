@@ -177,8 +177,8 @@ static void merge_normals(const cwi_snapping *s, const cwi_cluster *c)
 }
 
 /* Triangles with two corners in the cluster are left with two equal ones: they are gone. */
-static void merge(const cwi_snapping *s, const cwi_cluster *c, const double x[3],
-                  const float p[3])
+static void merge_cluster(const cwi_snapping *s, const cwi_cluster *c, const double x[3],
+                          const float p[3])
 {
     if (s->mesh->normals)
         merge_normals(s, c);
@@ -212,7 +212,7 @@ static void snap_layer(void *context, size_t n)
             continue;
         cwi_cluster_find(s, v, &c);
         if (c.count > 1 && cwi_cluster_is_disc(s, &c) && cwi_cluster_place(s, &c, x, p))
-            merge(s, &c, x, p);
+            merge_cluster(s, &c, x, p);
         for (int m = 0; m < c.count; m++)
             s->places[c.member[m]].near |= SEEN;
     }
@@ -277,7 +277,7 @@ static void try_triangle(const cwi_snapping *s, const uint32_t corner[3], distan
     cwi_nearest_of_triangle(&world, d->nearest[0]);
 }
 
-static void measure(const cwi_snapping *s, const distances *d, double distance[2])
+static void measure_distances(const cwi_snapping *s, const distances *d, double distance[2])
 {
     distance[1] = sqrt(cwi_dot(d->nearest[1], d->nearest[1]));
     distance[0] =
@@ -293,7 +293,7 @@ static void measure_vertex(const cwi_snapping *s, uint32_t v, layer_sums *sums)
     double moved[2], error[2];
     distances d;
     start_from(s, v, &d);
-    measure(s, &d, moved);
+    measure_distances(s, &d, moved);
     cwi_sample_place(s->grid, s->places[v].near & SAMPLE, at);
     const int count = cwi_find_triangles(s, at, 1, triangles);
     for (int own = 1; own >= 0; own--)
@@ -302,7 +302,7 @@ static void measure_vertex(const cwi_snapping *s, uint32_t v, layer_sums *sums)
             if ((t[0] == to || t[1] == to || t[2] == to) == own)
                 try_triangle(s, t, &d);
         }
-    measure(s, &d, error);
+    measure_distances(s, &d, error);
     sums->count++;
     for (int u = 0; u < 2; u++)
         add_to_sums(sums, u, moved[u], error[u]);

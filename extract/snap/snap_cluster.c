@@ -83,7 +83,7 @@ static int members_of(const cwi_cluster *c, const uint32_t *triangle)
 }
 
 /* Adds the vertices close to the sample that a triangle joins to the cluster. */
-static bool join(const cwi_snapping *s, cwi_cluster *c, const uint32_t *triangle)
+static bool join_triangle(const cwi_snapping *s, cwi_cluster *c, const uint32_t *triangle)
 {
     bool grown = false;
     for (int n = 0; n < 3 && members_of(c, triangle) > 0; n++)
@@ -124,7 +124,7 @@ void cwi_cluster_find(const cwi_snapping *s, uint32_t v, cwi_cluster *c)
     for (bool grown = true; grown;) {
         grown = false;
         for (int n = 0; n < c->star_count; n++)
-            grown = join(s, c, s->mesh->triangles + 3 * c->star[n]) || grown;
+            grown = join_triangle(s, c, s->mesh->triangles + 3 * c->star[n]) || grown;
     }
     const int candidates = c->star_count;
     c->star_count = 0;

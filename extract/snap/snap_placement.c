@@ -18,7 +18,7 @@
 /* ---- where a cluster goes --------------------------------------------------------------- */
 
 /* The trilinear field and its gradient; NaN where it has none. */
-static double field(const cwi_bit_grid *g, const double x[3], double gradient[3])
+static double evaluate_field(const cwi_bit_grid *g, const double x[3], double gradient[3])
 {
     size_t at[3];
     double t[3], corner[8], value = 0;
@@ -41,10 +41,11 @@ static double field(const cwi_bit_grid *g, const double x[3], double gradient[3]
 }
 
 /* One step of Newton's along the gradient, the locked axes kept, towards a value. */
-static bool approach(const cwi_bit_grid *g, double target, const bool locked[3], double x[3])
+static bool approach_level(const cwi_bit_grid *g, double target, const bool locked[3],
+                           double x[3])
 {
     double gradient[3], largest = 0, square = 0;
-    const double miss = field(g, x, gradient) - target;
+    const double miss = evaluate_field(g, x, gradient) - target;
     for (int a = 0; a < 3; a++) {
         gradient[a] = locked[a] ? 0 : gradient[a];
         largest = fmax(largest, fabs(gradient[a]));
@@ -66,7 +67,7 @@ static double find_middle(const cwi_snapping *s, const uint32_t *vertex, int cou
     middle[0] = middle[1] = middle[2] = 0;
     for (int n = 0; n < count; n++) {
         const double *x = cwi_index(s, vertex[n]);
-        value += field(s->grid, x, unused) / count;
+        value += evaluate_field(s->grid, x, unused) / count;
         for (int a = 0; a < 3; a++)
             middle[a] += x[a] / count;
     }
@@ -80,7 +81,7 @@ static bool find_place(const cwi_snapping *s, double target, const double middle
 {
     memcpy(place, middle, 3 * sizeof *place);
     for (int step = 0; step < 3; step++) {
-        if (!approach(s->grid, target, locked, place))
+        if (!approach_level(s->grid, target, locked, place))
             return false;
         for (int a = 0; a < 3; a++)
             if (fabs(place[a] - middle[a]) > 0.5 * s->share)

@@ -51,7 +51,7 @@ static cw_status check_region(const cw_volume *v, size_t n, cw_error *err)
     return CW_OK;
 }
 
-static bool holds(cw_type type, double value)
+static bool type_holds(cw_type type, double value)
 {
     static const double lowest[CW_TYPE_COUNT] = {0, INT8_MIN,  0,         INT16_MIN,
                                                  0, INT32_MIN, -INFINITY, -INFINITY};
@@ -64,16 +64,16 @@ static bool holds(cw_type type, double value)
 static cw_status check_values(const cw_volume *v, cw_error *err)
 {
     const cw_sparse *s = v->sparse;
-    bool fits = holds(v->type, s->background);
+    bool fits = type_holds(v->type, s->background);
     for (size_t n = 0; n < s->tile_count; n++)
-        fits = fits && holds(v->type, s->tiles[n].value);
+        fits = fits && type_holds(v->type, s->tiles[n].value);
     return fits ? CW_OK
                 : cw_fail(err, CW_ERR_ARGUMENT,
                           "the background or a tile has a value that %s cannot hold",
                           cw_type_name(v->type));
 }
 
-static cw_status check(const cw_volume *v, cw_error *err)
+static cw_status check_volume(const cw_volume *v, cw_error *err)
 {
     cw_status st = check_values(v, err);
     for (int a = 0; a < 3 && st == CW_OK; a++)
@@ -174,7 +174,7 @@ static bool make_table(cwi_leaf_blocks *b, size_t slots)
     return b->table != NULL;
 }
 
-static cw_status grow(cwi_leaf_blocks *b, size_t max_bytes, cw_error *err)
+static cw_status grow_blocks(cwi_leaf_blocks *b, size_t max_bytes, cw_error *err)
 {
     const size_t room = b->room ? 2 * b->room : 1024, bytes = room * sizeof *b->block;
     if (room > UINT32_MAX / 2 || (max_bytes && bytes > max_bytes)) {
@@ -199,7 +199,7 @@ static cw_status grow(cwi_leaf_blocks *b, size_t max_bytes, cw_error *err)
 static cw_status find_or_add(cwi_leaf_blocks *b, const uint32_t at[3], size_t max_bytes,
                              cwi_leaf_block **found, cw_error *err)
 {
-    cw_status st = b->count == b->room ? grow(b, max_bytes, err) : CW_OK;
+    cw_status st = b->count == b->room ? grow_blocks(b, max_bytes, err) : CW_OK;
     if (st != CW_OK)
         return st;
     uint32_t *number = &b->table[slot_of(b, at)];
@@ -234,7 +234,7 @@ static reach reach_along(const cwi_region *r, int a, uint32_t around)
 }
 
 /* Leaves of a region that block b's cells touch. */
-static uint32_t overlap(const reach *r, uint32_t b, uint32_t side)
+static uint32_t measure_overlap(const reach *r, uint32_t b, uint32_t side)
 {
     const uint64_t first = (uint64_t)b * side, last = first + side;
     return (uint32_t)((r->high < last ? r->high : last) - (r->low > first ? r->low : first) +
@@ -287,8 +287,9 @@ static cw_status note_sides(sorting *s, size_t n, const reach along[3], const ui
     if (st != CW_OK)
         return st;
     b->sides |= s->blocks->sides[n];
-    b->covered += overlap(&along[0], at[0], shape[0]) * overlap(&along[1], at[1], shape[1]) *
-                  overlap(&along[2], at[2], shape[2]);
+    b->covered += measure_overlap(&along[0], at[0], shape[0]) *
+                  measure_overlap(&along[1], at[1], shape[1]) *
+                  measure_overlap(&along[2], at[2], shape[2]);
     return CW_OK;
 }
 
@@ -370,7 +371,7 @@ cw_status cwi_blocks_init(cwi_leaf_blocks *b, const cwi_engine *engine,
     const size_t count = region_count(grid->volume.sparse);
     sorting s = {.blocks = b, .engine = engine, .grid = grid, .max_bytes = desc->max_bytes};
     *b = (cwi_leaf_blocks){.volume = &grid->volume};
-    cw_status st = check(&grid->volume, err);
+    cw_status st = check_volume(&grid->volume, err);
     if (st != CW_OK)
         return st;
     b->sides = cwi_alloc_array(count, 1);

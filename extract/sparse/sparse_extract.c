@@ -117,7 +117,7 @@ static cw_status look_at(const cwi_leaf_block *b, worker *w, cw_error *err)
 
 /* --- marching: each block by itself ------------------------------------------------------- */
 
-static void *take(char **memory, size_t count, size_t size)
+static void *take_memory(char **memory, size_t count, size_t size)
 {
     void *here = *memory;
     *memory += count * size;
@@ -136,10 +136,10 @@ static cw_status alloc_piece(const worker *w, bool normals, cwi_block_mesh *piec
         .memory = memory, .vertex_count = v, .triangle_count = t, .stranger_count = strangers};
     if (!memory)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %zu triangles", t);
-    piece->positions = take(&memory, v, 3 * sizeof *piece->positions);
-    piece->normals = normals ? take(&memory, v, 3 * sizeof *piece->normals) : NULL;
-    piece->triangles = take(&memory, t, 3 * sizeof *piece->triangles);
-    piece->strangers = take(&memory, strangers, sizeof *piece->strangers);
+    piece->positions = take_memory(&memory, v, 3 * sizeof *piece->positions);
+    piece->normals = normals ? take_memory(&memory, v, 3 * sizeof *piece->normals) : NULL;
+    piece->triangles = take_memory(&memory, t, 3 * sizeof *piece->triangles);
+    piece->strangers = take_memory(&memory, strangers, sizeof *piece->strangers);
     memcpy(piece->strangers, w->strangers, strangers * sizeof *w->strangers);
     return CW_OK;
 }
@@ -449,7 +449,8 @@ static cw_status number_blocks(sparse_plan *p, cw_extract_counts *c, cw_error *e
     return cwi_extract_check_limits(p->desc, c, err);
 }
 
-static cw_status join(sparse_plan *p, const cw_extract_counts *c, cw_mesh *mesh, cw_error *err)
+static cw_status join_blocks(sparse_plan *p, const cw_extract_counts *c, cw_mesh *mesh,
+                             cw_error *err)
 {
     const cw_volume *v = &p->whole.volume;
     bool missing = false;
@@ -468,7 +469,7 @@ static cw_status join(sparse_plan *p, const cw_extract_counts *c, cw_mesh *mesh,
 }
 
 /* Everything but the joining of pieces. */
-static cw_status march(sparse_plan *p, cw_mesh *mesh, cw_error *err)
+static cw_status march_blocks(sparse_plan *p, cw_mesh *mesh, cw_error *err)
 {
     const cw_volume *v = &p->whole.volume;
     cw_status st = p->desc->snap == 0 ? cwi_extract_check_range(v, err)
@@ -492,11 +493,11 @@ cw_status cwi_extract_sparse(const cwi_engine *engine, const cw_volume *volume,
                              cw_extract_counts *counts, cw_error *err)
 {
     sparse_plan p = {.engine = engine, .desc = desc, .whole = {.volume = *volume}};
-    cw_status st = march(&p, mesh, err);
+    cw_status st = march_blocks(&p, mesh, err);
     if (st == CW_OK)
         st = number_blocks(&p, counts, err);
     if (st == CW_OK && mesh && counts->triangles)
-        st = join(&p, counts, mesh, err);
+        st = join_blocks(&p, counts, mesh, err);
     free_sparse(&p);
     return st;
 }

@@ -29,7 +29,7 @@ typedef struct placing {
 
 /* --- which objects stand where ----------------------------------------------------------- */
 
-static void multiply(const double *a, const double *b, double *out)
+static void multiply_transforms(const double *a, const double *b, double *out)
 {
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 4; c++)
@@ -70,8 +70,8 @@ static void count_left_out(const placing *p, cwi_3mf_type type, const cwi_3mf_ob
 
 /* Components nest no deeper than DEEPEST, so this goes no deeper, either. An object that is
  * left out leaves out what it is made of: `type` is that of the outermost such object. */
-static cw_status visit(placing *p, const cwi_3mf_component *c, const double *parent, int depth,
-                       cwi_3mf_type type, cw_error *err)
+static cw_status visit_component(placing *p, const cwi_3mf_component *c, const double *parent,
+                                 int depth, cwi_3mf_type type, cw_error *err)
 {
     double place[12];
     const cwi_3mf_resource *r = cwi_3mf_find(p->m, c->model, c->id);
@@ -84,7 +84,7 @@ static cw_status visit(placing *p, const cwi_3mf_component *c, const double *par
     if (p->visits++ == MOST_PLACINGS)
         return cw_fail(err, CW_ERR_LIMIT, "objects are placed more than %d times",
                        MOST_PLACINGS);
-    multiply(parent, c->place, place);
+    multiply_transforms(parent, c->place, place);
     for (int i = 0; i < 12; i++)
         if (!isfinite(place[i]))
             return cw_fail(err, CW_ERR_FORMAT, "a transform is not finite");
@@ -100,7 +100,7 @@ static cw_status visit(placing *p, const cwi_3mf_component *c, const double *par
     else if (o->end_triangle > o->first_triangle)
         st = add_instance(p, r->object, place, err);
     for (size_t i = o->first_component; i < o->end_component && st == CW_OK; i++)
-        st = visit(p, &p->m->components[i], place, depth + 1, type, err);
+        st = visit_component(p, &p->m->components[i], place, depth + 1, type, err);
     return st;
 }
 
@@ -124,7 +124,7 @@ static cw_status find_instances(placing *p, cw_error *err)
     for (size_t i = 0; i < p->m->item_count && st == CW_OK; i++) {
         const cwi_3mf_component *item = &p->m->items[i];
         const size_t first = p->count;
-        st = visit(p, item, unit, 0, CWI_3MF_SHAPE, err);
+        st = visit_component(p, item, unit, 0, CWI_3MF_SHAPE, err);
         if (st != CW_OK || p->count == first)
             continue;
         const cwi_3mf_resource *r = cwi_3mf_find(p->m, item->model, item->id);

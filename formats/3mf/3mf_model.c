@@ -33,7 +33,8 @@ typedef struct parsing {
 
 /* --- attributes -------------------------------------------------------------------------- */
 
-static cw_status fail(const parsing *p, cw_error *err, const char *what, const char *value)
+static cw_status fail_attribute(const parsing *p, cw_error *err, const char *what,
+                                const char *value)
 {
     return cw_fail(err, CW_ERR_FORMAT, "'%s', line %lu: %s is '%.40s'", p->m->models[p->model],
                    cwi_xml_line(p->xml), what, value ? value : "");
@@ -45,7 +46,7 @@ static cw_status read_number(const parsing *p, const char *what, const char *val
     const char *at = value;
     if (value && cwi_parse_double(&at, to) && !at[strspn(at, " \t\r\n")])
         return CW_OK;
-    return fail(p, err, what, value);
+    return fail_attribute(p, err, what, value);
 }
 
 /* A whole number up to 2^31 - 1. */
@@ -56,7 +57,7 @@ static cw_status read_whole(const parsing *p, const char *what, const char *valu
     int64_t number;
     if (!value || !cwi_parse_int(&at, &number) || at[strspn(at, " \t\r\n")] || number < 0 ||
         number > INT32_MAX)
-        return fail(p, err, what, value);
+        return fail_attribute(p, err, what, value);
     *to = (uint32_t)number;
     return CW_OK;
 }
@@ -71,10 +72,10 @@ static cw_status read_place(const parsing *p, const char *value, double place[12
     for (int i = 0; i < 12 && value; i++) {
         double *to = &place[4 * (i % 3) + i / 3];
         if (!cwi_parse_double(&at, to) || !isfinite(*to))
-            return fail(p, err, "'transform'", value);
+            return fail_attribute(p, err, "'transform'", value);
     }
     if (value && at[strspn(at, " \t\r\n")])
-        return fail(p, err, "'transform'", value);
+        return fail_attribute(p, err, "'transform'", value);
     return CW_OK;
 }
 
@@ -200,7 +201,7 @@ static cw_status add_color(parsing *p, const char *value, cw_error *err)
     cwi_3mf *m = p->m;
     uint32_t color;
     if (!parse_color(value, &color))
-        return fail(p, err, "a colour", value);
+        return fail_attribute(p, err, "a colour", value);
     cw_status st = cwi_mesh_grow(m->in, &m->colors, &m->color_room, m->color_count + 1,
                                  sizeof *m->colors, err);
     if (st == CW_OK) {
@@ -257,7 +258,7 @@ static cw_status read_type(const parsing *p, const char *name, cwi_3mf_type *typ
             *type = types[i].type;
             return CW_OK;
         }
-    return name ? fail(p, err, "'type' of an object", name) : CW_OK;
+    return name ? fail_attribute(p, err, "'type' of an object", name) : CW_OK;
 }
 
 static cw_status start_object(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
@@ -305,7 +306,8 @@ static cw_status end_object(void *user, cwi_xml *x, cw_error *err)
 }
 
 /* The values of some attributes, in one pass; NULL where there is none. */
-static void pick(cwi_attributes a, const char *const *names, const char **values, int count)
+static void pick_attributes(cwi_attributes a, const char *const *names, const char **values,
+                            int count)
 {
     for (int i = 0; i < count; i++)
         values[i] = NULL;
@@ -324,7 +326,7 @@ static cw_status start_vertex(void *user, cwi_xml *x, cwi_attributes a, cw_error
     double point[3] = {0};
     cw_status st = CW_OK;
     (void)x;
-    pick(a, names, values, 3);
+    pick_attributes(a, names, values, 3);
     for (int i = 0; i < 3 && st == CW_OK; i++)
         st = read_number(p, what[i], values[i], &point[i], err);
     return st == CW_OK ? cwi_build_point(&p->m->build, point, err) : st;
@@ -377,7 +379,7 @@ static cw_status start_triangle(void *user, cwi_xml *x, cwi_attributes a, cw_err
     size_t corners[3];
     cw_status st = CW_OK;
     (void)x;
-    pick(a, names, values, 7);
+    pick_attributes(a, names, values, 7);
     for (int c = 0; c < 3 && st == CW_OK; c++) {
         uint32_t vertex = 0;
         st = read_whole(p, what[c], values[c], &vertex, err);
@@ -505,7 +507,7 @@ static cw_status start_model(void *user, cwi_xml *x, cwi_attributes a, cw_error 
         p->m->said->axes.unit = units[i].unit;
     }
     p->m->said->known |= CW_KNOWN_UNIT;
-    return known ? check_extensions(a, err) : fail(p, err, "'unit'", unit);
+    return known ? check_extensions(a, err) : fail_attribute(p, err, "'unit'", unit);
 }
 
 static cw_status start_metadata(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)

@@ -38,7 +38,7 @@ typedef struct model {
 } model;
 
 CW_PRINTF(3, 4)
-static cw_status print(model *m, cw_error *err, const char *format, ...)
+static cw_status print_model(model *m, cw_error *err, const char *format, ...)
 {
     char text[CWI_XML_BYTES(CWI_NAME_BYTES) + 1024];
     va_list args;
@@ -78,10 +78,10 @@ static size_t list_colors(const cw_mesh *mesh, uint32_t *colors)
 static cw_status write_group(model *m, size_t id, const uint32_t *colors, size_t count,
                              cw_error *err)
 {
-    cw_status st = print(m, err, "<m:colorgroup id=\"%zu\">\n", id);
+    cw_status st = print_model(m, err, "<m:colorgroup id=\"%zu\">\n", id);
     for (size_t i = 0; i < count && st == CW_OK; i++)
-        st = print(m, err, "<m:color color=\"#%08X\"/>\n", colors[i]);
-    return st == CW_OK ? print(m, err, "</m:colorgroup>\n") : st;
+        st = print_model(m, err, "<m:color color=\"#%08X\"/>\n", colors[i]);
+    return st == CW_OK ? print_model(m, err, "</m:colorgroup>\n") : st;
 }
 
 /* Writes the group of a part's colours, and numbers its vertices by them. */
@@ -132,14 +132,14 @@ static unsigned char *encode_triangle(const cwi_part *part, size_t t, unsigned c
 
 static cw_status write_mesh(model *m, const cwi_part *part, cw_error *err)
 {
-    cw_status st = print(m, err, "<mesh>\n<vertices>\n");
+    cw_status st = print_model(m, err, "<mesh>\n<vertices>\n");
     if (st == CW_OK)
         st = cwi_write_records(part, m->out, encode_vertex, part->mesh.vertex_count, err);
     if (st == CW_OK)
-        st = print(m, err, "</vertices>\n<triangles>\n");
+        st = print_model(m, err, "</vertices>\n<triangles>\n");
     if (st == CW_OK)
         st = cwi_write_records(part, m->out, encode_triangle, part->mesh.triangle_count, err);
-    return st == CW_OK ? print(m, err, "</triangles>\n</mesh>\n</object>\n") : st;
+    return st == CW_OK ? print_model(m, err, "</triangles>\n</mesh>\n</object>\n") : st;
 }
 
 /* Every part has two numbers of its own, for its colours and for itself. */
@@ -166,8 +166,8 @@ static cw_status write_object(model *m, const cwi_part *given, size_t id, cw_err
     }
     cwi_xml_escape(part.name, name, sizeof name);
     if (st == CW_OK)
-        st = print(m, err, "<object id=\"%zu\" type=\"model\" name=\"%s\"%s>\n", id, name,
-                   group);
+        st = print_model(m, err, "<object id=\"%zu\" type=\"model\" name=\"%s\"%s>\n", id, name,
+                         group);
     if (st == CW_OK)
         st = write_mesh(m, &part, err);
     cwi_free(numbers);
@@ -187,7 +187,7 @@ static cw_status write_item(model *m, const cwi_part *part, size_t id, cw_error 
         cwi_print_point(origin, place);
         snprintf(transform, sizeof transform, " transform=\"1 0 0 0 1 0 0 0 1 %s\"", place);
     }
-    return print(m, err, "<item objectid=\"%zu\"%s/>\n", id, transform);
+    return print_model(m, err, "<item objectid=\"%zu\"%s/>\n", id, transform);
 }
 
 /* What cubewright reads back has a prefix, as names of others must. */
@@ -196,7 +196,7 @@ static cw_status write_head(model *m, cw_error *err)
     const cw_axes *axes = m->out->axes;
     char title[CWI_XML_BYTES(CWI_NAME_BYTES)], origin[CWI_ORIGIN_BYTES];
     cwi_xml_escape(m->out->name, title, sizeof title);
-    cw_status st = print(
+    cw_status st = print_model(
         m, err,
         "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<model unit=\"%s\" xml:lang=\"en-US\" "
         "xmlns=\"http://schemas.microsoft.com/3dmanufacturing/core/2015/02\" "
@@ -207,10 +207,10 @@ static cw_status write_head(model *m, cw_error *err)
         "<metadata name=\"cw:frame\">%s</metadata>\n",
         units[axes->unit], title, CW_VERSION, axes->ras ? "RAS" : "LPS");
     if (st == CW_OK && axes->y_up)
-        st = print(m, err, "<metadata name=\"cw:up\">Y</metadata>\n");
+        st = print_model(m, err, "<metadata name=\"cw:up\">Y</metadata>\n");
     cwi_print_origin(m->out, "<metadata name=\"cw:origin\">", "</metadata>\n", origin);
     if (st == CW_OK)
-        st = print(m, err, "%s<resources>\n", origin);
+        st = print_model(m, err, "%s<resources>\n", origin);
     return st;
 }
 
@@ -220,10 +220,10 @@ static cw_status write_model(model *m, const cwi_parts *parts, cw_error *err)
     for (size_t i = 0; i < parts->count && st == CW_OK; i++)
         st = write_object(m, &parts->items[i], object_id(i), err);
     if (st == CW_OK)
-        st = print(m, err, "</resources>\n<build>\n");
+        st = print_model(m, err, "</resources>\n<build>\n");
     for (size_t i = 0; i < parts->count && st == CW_OK; i++)
         st = write_item(m, &parts->items[i], object_id(i), err);
-    return st == CW_OK ? print(m, err, "</build>\n</model>\n") : st;
+    return st == CW_OK ? print_model(m, err, "</build>\n</model>\n") : st;
 }
 
 /* More than any vertex, colour and triangle take: whether the model may have 4 GiB must be

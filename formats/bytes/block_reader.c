@@ -135,7 +135,7 @@ static cw_status inflate_block(const cwi_packed_blocks *b, size_t packed, unsign
 }
 
 /* Decodes the next block to where there is room for it. */
-static cw_status decode(cwi_packed_blocks *b, unsigned char *to, cw_error *err)
+static cw_status decode_block(cwi_packed_blocks *b, unsigned char *to, cw_error *err)
 {
     const size_t index = b->next++, size = block_bytes(b, index);
     const size_t packed = (size_t)word_at(b, b->table, index);
@@ -155,14 +155,14 @@ static cw_status decode(cwi_packed_blocks *b, unsigned char *to, cw_error *err)
 }
 
 /* Decodes the next block to be taken in parts. */
-static cw_status hold(cwi_packed_blocks *b, cw_error *err)
+static cw_status hold_block(cwi_packed_blocks *b, cw_error *err)
 {
     if (!b->held && !(b->held = cwi_alloc_array(block_bytes(b, 0), 1)))
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a block of %zu bytes",
                        block_bytes(b, 0));
     b->held_next = 0;
     b->held_bytes = block_bytes(b, b->next);
-    return decode(b, b->held, err);
+    return decode_block(b, b->held, err);
 }
 
 static void skip_held(cwi_packed_blocks *b)
@@ -179,7 +179,7 @@ void cwi_blocks_skip(cwi_packed_blocks *b, uint64_t bytes)
 }
 
 /* Goes to the bytes behind those to leave out. */
-static cw_status settle(cwi_packed_blocks *b, cw_error *err)
+static cw_status settle_block(cwi_packed_blocks *b, cw_error *err)
 {
     cw_status st = CW_OK;
     skip_held(b);
@@ -189,7 +189,7 @@ static cw_status settle(cwi_packed_blocks *b, cw_error *err)
         st = cwi_stream_skip(b->stream, word_at(b, b->table, b->next), err);
     }
     if (st == CW_OK && b->skipped > 0)
-        st = hold(b, err);
+        st = hold_block(b, err);
     skip_held(b);
     return st;
 }
@@ -197,13 +197,13 @@ static cw_status settle(cwi_packed_blocks *b, cw_error *err)
 cw_status cwi_blocks_some(cwi_packed_blocks *b, unsigned char *to, size_t room, size_t *got,
                           cw_error *err)
 {
-    cw_status st = settle(b, err);
+    cw_status st = settle_block(b, err);
     if (st == CW_OK && b->held_next == b->held_bytes && room >= block_bytes(b, b->next)) {
         *got = block_bytes(b, b->next);
-        return decode(b, to, err);
+        return decode_block(b, to, err);
     }
     if (st == CW_OK && b->held_next == b->held_bytes)
-        st = hold(b, err);
+        st = hold_block(b, err);
     const size_t rest = b->held_bytes - b->held_next;
     *got = room < rest ? room : rest;
     if (st == CW_OK)

@@ -49,7 +49,7 @@ cw_status cwi_block_sink_begin(cwi_block_sink *b, uint64_t bytes, cw_error *err)
     return cwi_outfile_write(b->file, b->table, b->table_bytes, err);
 }
 
-static cw_status flush(cwi_block_sink *b, cw_error *err)
+static cw_status flush_block(cwi_block_sink *b, cw_error *err)
 {
     deflateReset(&b->z);
     b->z.next_in = b->block;
@@ -75,14 +75,14 @@ cw_status cwi_block_sink_put(void *sink, const void *bytes, size_t size, cw_erro
         from += n;
         size -= n;
         if (b->held == BLOCK_BYTES)
-            st = flush(b, err);
+            st = flush_block(b, err);
     }
     return st;
 }
 
 cw_status cwi_block_sink_end(cwi_block_sink *b, cw_error *err)
 {
-    cw_status st = b->held ? flush(b, err) : CW_OK;
+    cw_status st = b->held ? flush_block(b, err) : CW_OK;
     assert(st != CW_OK || b->next == b->count);
     return st == CW_OK ? cwi_outfile_patch(b->file, b->table_at, b->table, b->table_bytes, err)
                        : st;

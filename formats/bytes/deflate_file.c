@@ -32,7 +32,7 @@ void cwi_sink_close(cwi_sink *s)
     *s = (cwi_sink){0};
 }
 
-static cw_status put(cwi_sink *s, const void *bytes, size_t size, cw_error *err)
+static cw_status put_bytes(cwi_sink *s, const void *bytes, size_t size, cw_error *err)
 {
     s->written += size;
     return s->file ? cwi_outfile_write(s->file, bytes, size, err) : CW_OK;
@@ -40,14 +40,14 @@ static cw_status put(cwi_sink *s, const void *bytes, size_t size, cw_error *err)
 
 /* Runs deflate until it has taken all its input, and given all its output when that
  * is asked. */
-static cw_status pump(cwi_sink *s, int flush, cw_error *err)
+static cw_status pump_deflate(cwi_sink *s, int flush, cw_error *err)
 {
     cw_status st = CW_OK;
     do {
         s->z.next_out = s->buffer;
         s->z.avail_out = BUFFER_BYTES;
         deflate(&s->z, flush);
-        st = put(s, s->buffer, BUFFER_BYTES - s->z.avail_out, err);
+        st = put_bytes(s, s->buffer, BUFFER_BYTES - s->z.avail_out, err);
     } while (st == CW_OK && s->z.avail_out == 0);
     return st;
 }
@@ -56,13 +56,13 @@ cw_status cwi_sink_write(cwi_sink *s, const void *bytes, size_t size, cw_error *
 {
     const size_t most = 1 << 30;
     if (!s->deflates)
-        return put(s, bytes, size, err);
+        return put_bytes(s, bytes, size, err);
     cw_status st = CW_OK;
     for (const unsigned char *p = bytes; st == CW_OK && size > 0;) {
         const size_t n = size < most ? size : most;
         s->z.next_in = p;
         s->z.avail_in = (uInt)n;
-        st = pump(s, Z_NO_FLUSH, err);
+        st = pump_deflate(s, Z_NO_FLUSH, err);
         p += n;
         size -= n;
     }
@@ -74,5 +74,5 @@ cw_status cwi_sink_finish(cwi_sink *s, cw_error *err)
     if (!s->deflates)
         return CW_OK;
     s->z.avail_in = 0;
-    return pump(s, Z_FINISH, err);
+    return pump_deflate(s, Z_FINISH, err);
 }

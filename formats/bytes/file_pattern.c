@@ -136,7 +136,7 @@ typedef struct listing {
     size_t links;
 } listing;
 
-static cw_status list(listing *l, const char *folder, int depth, cw_error *err);
+static cw_status list_folder(listing *l, const char *folder, int depth, cw_error *err);
 
 /* What stands under one name: left out, listed, or gone into. */
 static cw_status take_entry(listing *l, int folder, const char *prefix, const char *name,
@@ -159,11 +159,11 @@ static cw_status take_entry(listing *l, int folder, const char *prefix, const ch
         return CW_OK;
     path[length] = '/';
     path[length + 1] = '\0';
-    return list(l, path, depth + 1, err);
+    return list_folder(l, path, depth + 1, err);
 }
 
 /* prefix: empty, or a folder with its slash. */
-static cw_status list(listing *l, const char *prefix, int depth, cw_error *err)
+static cw_status list_folder(listing *l, const char *prefix, int depth, cw_error *err)
 {
     const int flags = O_RDONLY | O_DIRECTORY | O_CLOEXEC;
     if (depth > DEEPEST)
@@ -186,7 +186,7 @@ static cw_status list(listing *l, const char *prefix, int depth, cw_error *err)
 
 static cw_status list_all(listing *l, cw_error *err)
 {
-    cw_status st = list(l, "", 0, err);
+    cw_status st = list_folder(l, "", 0, err);
     cwi_files_sort(l->names);
     return st;
 }
@@ -201,7 +201,7 @@ cw_status cwi_files_beside(const cwi_input *in, cwi_names *names, size_t *links,
 
 /* --- a pattern --------------------------------------------------------------------------- */
 
-static cw_status match(const char *pattern, cwi_names *names, cw_error *err)
+static cw_status match_names(const char *pattern, cwi_names *names, cw_error *err)
 {
     glob_t found = {0};
     struct stat info;
@@ -228,7 +228,7 @@ cw_status cwi_files_find(cwi_input *in, const char *path, bool deep, cwi_names *
     in->path = path;
     in->allow_external = external || pattern; /* the user's own words */
     if (st != CW_OK || pattern)
-        return st == CW_OK ? match(path, names, err) : st;
+        return st == CW_OK ? match_names(path, names, err) : st;
     listing l = {.in = in, .deep = deep, .names = names};
     st = list_all(&l, err);
     *links = l.links;

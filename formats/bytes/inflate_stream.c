@@ -162,7 +162,7 @@ static cw_status fetch_hex(cwi_stream *s, unsigned char *to, size_t size, size_t
     return st;
 }
 
-static cw_status fetch(cwi_stream *s, void *to, size_t size, size_t *got, cw_error *err)
+static cw_status fetch_bytes(cwi_stream *s, void *to, size_t size, size_t *got, cw_error *err)
 {
     return !s->text    ? fetch_plain(s, to, size, got, err)
            : s->is_hex ? fetch_hex(s, to, size, got, err)
@@ -171,13 +171,13 @@ static cw_status fetch(cwi_stream *s, void *to, size_t size, size_t *got, cw_err
 
 /* Puts more of the file behind what is still to be inflated, and behind the bytes before it
  * that may be given back. */
-static cw_status refill(cwi_stream *s, size_t *got, cw_error *err)
+static cw_status refill_input(cwi_stream *s, size_t *got, cw_error *err)
 {
     const size_t used = (size_t)(s->z.next_in - s->buffer);
     const size_t kept = used < AHEAD_BYTES ? used : AHEAD_BYTES, held = kept + s->z.avail_in;
     memmove(s->buffer, s->z.next_in - kept, held);
     s->z.next_in = s->buffer + kept;
-    cw_status st = fetch(s, s->buffer + held, BUFFER_BYTES - held, got, err);
+    cw_status st = fetch_bytes(s, s->buffer + held, BUFFER_BYTES - held, got, err);
     s->z.avail_in += (uInt)*got;
     return st;
 }
@@ -195,7 +195,7 @@ static cw_status check_padding(cwi_stream *s, cw_error *err)
                                "byte %llu of the file is behind the end of the compressed data "
                                "and not zero",
                                (unsigned long long)(s->offset - s->z.avail_in));
-        st = refill(s, &got, err);
+        st = refill_input(s, &got, err);
     }
     return st;
 }
@@ -207,7 +207,7 @@ static cw_status start_next_member(cwi_stream *s, cw_error *err)
     const char *magic = s->bzip2 ? "BZh" : "\x1f\x8b";
     const size_t size = strlen(magic);
     size_t got;
-    cw_status st = s->z.avail_in < size ? refill(s, &got, err) : CW_OK;
+    cw_status st = s->z.avail_in < size ? refill_input(s, &got, err) : CW_OK;
     s->ended = s->z.avail_in < size || memcmp(s->z.next_in, magic, size) != 0;
     s->packed_end = s->offset - s->z.avail_in;
     if (st == CW_OK && !s->ended && !s->isal && !s->bzip2)
@@ -234,7 +234,7 @@ static cw_status inflate_some(cwi_stream *s, unsigned char *to, size_t size, siz
     size_t fetched = 0;
     *got = 0;
     if (s->z.avail_in == 0) {
-        cw_status st = refill(s, &fetched, err);
+        cw_status st = refill_input(s, &fetched, err);
         if (st != CW_OK)
             return st;
     }
@@ -259,7 +259,7 @@ static cw_status inflate_some(cwi_stream *s, unsigned char *to, size_t size, siz
 
 static cw_status read_plain(cwi_stream *s, void *to, size_t size, size_t *got, cw_error *err)
 {
-    cw_status st = fetch(s, to, size, got, err);
+    cw_status st = fetch_bytes(s, to, size, got, err);
     s->given += *got;
     return st;
 }

@@ -14,7 +14,7 @@ enum { STORED = 0, DEFLATED = 8, ENCRYPTED = 1, MOST_RATIO = 1032 };
 
 static const uint32_t FULL = UINT32_MAX; /* the true number stands in a field of 64 bits */
 
-static uint64_t number(const unsigned char *at, size_t size)
+static uint64_t read_number(const unsigned char *at, size_t size)
 {
     uint64_t value = 0;
     while (size > 0)
@@ -52,8 +52,8 @@ static cw_status find_end(const cwi_input *in, uint64_t *end, unsigned char reco
     bool found = false;
     while (st == CW_OK && at > 0 && !found) {
         at--;
-        found =
-            number(tail + at, 4) == 0x06054b50 && number(tail + at + 20, 2) == size - at - END;
+        found = read_number(tail + at, 4) == 0x06054b50 &&
+                read_number(tail + at + 20, 2) == size - at - END;
     }
     if (found)
         memcpy(record, tail + at, END);
@@ -71,19 +71,19 @@ static cw_status read_end64(const cwi_input *in, uint64_t *end, uint64_t *count,
     if (*end < LOCATOR)
         return fail_damaged("sizes of 64 bits are missing", err);
     cw_status st = read_at(in, *end - LOCATOR, locator, LOCATOR, "its end", err);
-    if (st == CW_OK && number(locator, 4) != 0x07064b50)
+    if (st == CW_OK && read_number(locator, 4) != 0x07064b50)
         return fail_damaged("sizes of 64 bits are missing", err);
-    const uint64_t at = number(locator + 8, 8);
+    const uint64_t at = read_number(locator + 8, 8);
     if (st == CW_OK && (*end < LOCATOR + END64 || at > *end - LOCATOR - END64))
         return fail_damaged("sizes of 64 bits are missing", err);
     if (st == CW_OK)
         st = read_at(in, at, record, END64, "its end", err);
-    if (st == CW_OK && number(record, 4) != 0x06064b50)
+    if (st == CW_OK && read_number(record, 4) != 0x06064b50)
         return fail_damaged("sizes of 64 bits are missing", err);
     *end = at;
-    *count = number(record + 32, 8);
-    *bytes = number(record + 40, 8);
-    *start = number(record + 48, 8);
+    *count = read_number(record + 32, 8);
+    *bytes = read_number(record + 40, 8);
+    *start = read_number(record + 48, 8);
     return st;
 }
 
@@ -95,8 +95,8 @@ cw_status cwi_unzip_open(cwi_unzip *z, const cwi_input *in, cw_error *err)
     cw_status st = find_end(in, &end, record, err);
     if (st != CW_OK)
         return st;
-    uint64_t count = number(record + 10, 2), bytes = number(record + 12, 4);
-    uint64_t start = number(record + 16, 4);
+    uint64_t count = read_number(record + 10, 2), bytes = read_number(record + 12, 4);
+    uint64_t start = read_number(record + 16, 4);
     if (count == UINT16_MAX || bytes == FULL || start == FULL)
         st = read_end64(in, &end, &count, &bytes, &start, err);
     if (st == CW_OK && (start > end || bytes > end - start))
@@ -128,10 +128,10 @@ static bool read_extra(const unsigned char *extra, size_t size, cwi_unzip_entry 
     uint64_t *const wide[3] = {&e->size, &e->packed, &e->start};
     size_t length = 0;
     for (; size >= 4; size -= 4 + length, extra += 4 + length) {
-        length = (size_t)number(extra + 2, 2);
+        length = (size_t)read_number(extra + 2, 2);
         if (length > size - 4)
             return false;
-        if (number(extra, 2) == 1)
+        if (read_number(extra, 2) == 1)
             break;
     }
     const unsigned char *at = extra + 4, *end = size >= 4 ? at + length : at;
@@ -139,7 +139,7 @@ static bool read_extra(const unsigned char *extra, size_t size, cwi_unzip_entry 
         if (*wide[i] == FULL) {
             if (end - at < 8)
                 return false;
-            *wide[i] = number(at, 8);
+            *wide[i] = read_number(at, 8);
             at += 8;
         }
     return true;
@@ -156,10 +156,11 @@ static const unsigned char *find_record(const cwi_unzip *z, const char *name, bo
     const unsigned char *at = z->directory, *end = at + z->bytes;
     *whole = true;
     for (size_t i = 0; i < z->count; i++) {
-        *whole = end - at >= CENTRAL && number(at, 4) == 0x02014b50;
-        const size_t length = *whole ? (size_t)number(at + 28, 2) : 0;
+        *whole = end - at >= CENTRAL && read_number(at, 4) == 0x02014b50;
+        const size_t length = *whole ? (size_t)read_number(at + 28, 2) : 0;
         const size_t rest =
-            *whole ? length + (size_t)number(at + 30, 2) + (size_t)number(at + 32, 2) : 0;
+            *whole ? length + (size_t)read_number(at + 30, 2) + (size_t)read_number(at + 32, 2)
+                   : 0;
         *whole = *whole && (size_t)(end - at) - CENTRAL >= rest;
         if (!*whole)
             return NULL;
@@ -189,11 +190,11 @@ static cw_status check_local(const cwi_unzip *z, cwi_unzip_entry *e, cw_error *e
         st = read_at(z->in, e->start + LOCAL, name, length, "an entry's header", err);
     if (st != CW_OK)
         return st;
-    if (number(head, 4) != 0x04034b50 || number(head + 26, 2) != length ||
+    if (read_number(head, 4) != 0x04034b50 || read_number(head + 26, 2) != length ||
         memcmp(name, e->name, length) != 0 ||
-        number(head + 8, 2) != (e->deflated ? DEFLATED : STORED))
+        read_number(head + 8, 2) != (e->deflated ? DEFLATED : STORED))
         return fail_damaged("an entry is not where the directory says", err);
-    e->start += LOCAL + length + number(head + 28, 2);
+    e->start += LOCAL + length + read_number(head + 28, 2);
     if (e->start > z->start || e->packed > z->start - e->start)
         return fail_damaged("an entry is larger than the file", err);
     return CW_OK;
@@ -210,19 +211,19 @@ cw_status cwi_unzip_find(const cwi_unzip *z, const char *name, cwi_unzip_entry *
         return fail_damaged("its directory breaks off", err);
     if (!at)
         return cw_fail(err, CW_ERR_FORMAT, "the zip archive has no '%.200s'", name);
-    const uint64_t method = number(at + 10, 2);
+    const uint64_t method = read_number(at + 10, 2);
     *entry = (cwi_unzip_entry){.deflated = method == DEFLATED,
-                               .crc = (uint32_t)number(at + 16, 4),
-                               .packed = number(at + 20, 4),
-                               .size = number(at + 24, 4),
-                               .start = number(at + 42, 4)};
+                               .crc = (uint32_t)read_number(at + 16, 4),
+                               .packed = read_number(at + 20, 4),
+                               .size = read_number(at + 24, 4),
+                               .start = read_number(at + 42, 4)};
     memcpy(entry->name, at + CENTRAL, length);
-    if (number(at + 8, 2) & ENCRYPTED)
+    if (read_number(at + 8, 2) & ENCRYPTED)
         return cw_fail(err, CW_ERR_FORMAT, "'%s' in the zip archive is encrypted", entry->name);
     if (method != STORED && method != DEFLATED)
         return cw_fail(err, CW_ERR_FORMAT, "'%s' is packed by method %u; deflate is read",
                        entry->name, (unsigned)method);
-    if (!read_extra(at + CENTRAL + length, (size_t)number(at + 30, 2), entry))
+    if (!read_extra(at + CENTRAL + length, (size_t)read_number(at + 30, 2), entry))
         return fail_damaged("sizes of 64 bits are missing", err);
     if (entry->deflated ? entry->size / MOST_RATIO > entry->packed
                         : entry->size != entry->packed)
@@ -258,7 +259,8 @@ void cwi_unzip_end(cwi_unzip_stream *s)
 }
 
 /* The next bytes of the entry as they are in the file; none behind its end. */
-static cw_status fetch(cwi_unzip_stream *s, void *to, size_t size, size_t *got, cw_error *err)
+static cw_status fetch_bytes(cwi_unzip_stream *s, void *to, size_t size, size_t *got,
+                             cw_error *err)
 {
     const uint64_t left = s->entry.packed - s->taken;
     size = size < left ? size : (size_t)left;
@@ -284,7 +286,7 @@ static cw_status inflate_some(cwi_unzip_stream *s, void *to, size_t size, size_t
     while (st == CW_OK && s->z.avail_out > 0 && !s->ended) {
         size_t more = 0;
         if (s->z.avail_in == 0) {
-            st = fetch(s, s->buffer, BUFFER_BYTES, &more, err);
+            st = fetch_bytes(s, s->buffer, BUFFER_BYTES, &more, err);
             s->z.next_in = s->buffer;
             s->z.avail_in = (uInt)more;
         }
@@ -317,8 +319,8 @@ static cw_status check_whole(const cwi_unzip_stream *s, cw_error *err)
 cw_status cwi_unzip_some(void *stream, void *to, size_t size, size_t *got, cw_error *err)
 {
     cwi_unzip_stream *s = stream;
-    cw_status st =
-        s->entry.deflated ? inflate_some(s, to, size, got, err) : fetch(s, to, size, got, err);
+    cw_status st = s->entry.deflated ? inflate_some(s, to, size, got, err)
+                                     : fetch_bytes(s, to, size, got, err);
     if (st != CW_OK)
         return st;
     s->given += *got;

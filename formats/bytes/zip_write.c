@@ -15,7 +15,7 @@ enum { VERSION = 20, VERSION64 = 45, DEFLATED = 8, TIME = 0, DAY = 1 << 5 | 1 };
 
 static const uint32_t FULL = UINT32_MAX; /* the true number stands in a field of 64 bits */
 
-static uint32_t clip(uint64_t number)
+static uint32_t clip_to_32_bits(uint64_t number)
 {
     return number < FULL ? (uint32_t)number : FULL;
 }
@@ -100,7 +100,7 @@ static unsigned char *put_end(unsigned char *to, size_t count, uint64_t start, u
     to = cwi_put_u16(to, (uint16_t)count);
     to = cwi_put_u16(to, (uint16_t)count);
     to = cwi_put_u32(to, (uint32_t)size);
-    to = cwi_put_u32(to, clip(start));
+    to = cwi_put_u32(to, clip_to_32_bits(start));
     return cwi_put_u16(to, 0);
 }
 

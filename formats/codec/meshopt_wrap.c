@@ -13,8 +13,8 @@ static cw_status fail_memory(cw_error *err)
     return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to compress with");
 }
 
-static cw_status reorder(uint32_t *triangles, size_t triangle_count, size_t vertex_count,
-                         bool draw, uint32_t *remap, cw_error *err)
+static cw_status reorder_mesh(uint32_t *triangles, size_t triangle_count, size_t vertex_count,
+                              bool draw, uint32_t *remap, cw_error *err)
 {
     const size_t count = 3 * triangle_count;
     uint32_t *ordered = cwi_alloc_array(count, sizeof *ordered);
@@ -35,7 +35,7 @@ static cw_status reorder(uint32_t *triangles, size_t triangle_count, size_t vert
 }
 
 /* Gives back what a bound on the size was too large for. */
-static cw_status shrink(unsigned char **bytes, size_t size, cw_error *err)
+static cw_status shrink_bytes(unsigned char **bytes, size_t size, cw_error *err)
 {
     unsigned char *fit = cwi_realloc_array(*bytes, size, 1);
     if (!fit)
@@ -53,7 +53,7 @@ static cw_status encode_vertices(const void *vertices, size_t count, size_t stri
         return fail_memory(err);
     meshopt_encodeVertexVersion(0);
     *size = meshopt_encodeVertexBuffer(*bytes, bound, vertices, count, stride);
-    return shrink(bytes, *size, err);
+    return shrink_bytes(bytes, *size, err);
 }
 
 static cw_status encode_triangles(const uint32_t *triangles, size_t triangle_count,
@@ -66,7 +66,7 @@ static cw_status encode_triangles(const uint32_t *triangles, size_t triangle_cou
         return fail_memory(err);
     meshopt_encodeIndexVersion(1);
     *size = meshopt_encodeIndexBuffer(*bytes, bound, triangles, 3 * triangle_count);
-    return shrink(bytes, *size, err);
+    return shrink_bytes(bytes, *size, err);
 }
 
 static cw_status fail_unless_zero(int code, const char *what, cw_error *err)
@@ -97,7 +97,7 @@ static cw_status decode_indices(void *to, size_t index_count, size_t index_size,
         meshopt_decodeIndexSequence(to, index_count, index_size, bytes, size), "indices", err);
 }
 
-static void filter(void *vertices, size_t count, size_t stride, int kind)
+static void undo_filter(void *vertices, size_t count, size_t stride, int kind)
 {
     if (kind == CWI_MESHOPT_OCTAHEDRAL && (stride == 4 || stride == 8))
         meshopt_decodeFilterOct(vertices, count, stride);
@@ -107,7 +107,7 @@ static void filter(void *vertices, size_t count, size_t stride, int kind)
         meshopt_decodeFilterExp(vertices, count, stride);
 }
 
-static size_t simplify(const cw_mesh *mesh, size_t triangles, uint32_t *left)
+static size_t simplify_mesh(const cw_mesh *mesh, size_t triangles, uint32_t *left)
 {
     const float no_limit = 1e10f; /* of its error */
     return meshopt_simplify(left, mesh->triangles, 3 * mesh->triangle_count, mesh->positions,
@@ -117,13 +117,13 @@ static size_t simplify(const cw_mesh *mesh, size_t triangles, uint32_t *left)
 }
 
 const cwi_meshopt_functions cwi_module_meshopt = {
-    .reorder = reorder,
+    .reorder = reorder_mesh,
     .encode_vertices = encode_vertices,
     .encode_triangles = encode_triangles,
     .decode_vertices = decode_vertices,
     .decode_triangles = decode_triangles,
     .decode_indices = decode_indices,
-    .filter = filter,
-    .simplify = simplify,
+    .filter = undo_filter,
+    .simplify = simplify_mesh,
     .version = MESHOPTIMIZER_VERSION,
 };

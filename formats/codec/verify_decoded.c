@@ -16,7 +16,7 @@ typedef struct sums {
 } sums;
 
 /* [Steele2014] A hash of one number. */
-static uint64_t mix(uint64_t x)
+static uint64_t mix_bits(uint64_t x)
 {
     x += 0x9e3779b97f4a7c15u;
     x = (x ^ x >> 30) * 0xbf58476d1ce4e5b9u;
@@ -32,9 +32,9 @@ static uint64_t hash_triangle(const uint32_t *triangle, const uint32_t *map)
     for (int k = 0; k < 3; k++)
         c[k] = map[triangle[k]];
     if (c[0] == c[1] || c[1] == c[2] || c[2] == c[0])
-        return mix(mix(c[0]) + mix(c[1]) + mix(c[2]));
+        return mix_bits(mix_bits(c[0]) + mix_bits(c[1]) + mix_bits(c[2]));
     const int k = c[0] < c[1] && c[0] < c[2] ? 0 : c[1] < c[2] ? 1 : 2;
-    return mix(c[k] ^ mix(c[(k + 1) % 3] ^ mix(c[(k + 2) % 3])));
+    return mix_bits(c[k] ^ mix_bits(c[(k + 1) % 3] ^ mix_bits(c[(k + 2) % 3])));
 }
 
 static sums sum_triangles(const uint32_t *triangles, size_t count, const uint32_t *map)
@@ -43,7 +43,7 @@ static sums sum_triangles(const uint32_t *triangles, size_t count, const uint32_
     for (size_t t = 0; t < count; t++) {
         const uint64_t h = hash_triangle(triangles + 3 * t, map);
         s.a += h;
-        s.b += mix(h);
+        s.b += mix_bits(h);
     }
     return s;
 }
@@ -79,8 +79,8 @@ static void mark_shared(const uint32_t *map, size_t count, bool *shared)
             shared[map[v]] = true;
 }
 
-static cw_status compare(const cw_mesh *mesh, const cwi_decoded *d, const uint32_t *map,
-                         const bool *shared, double *normal_degrees, cw_error *err)
+static cw_status compare_arrays(const cw_mesh *mesh, const cwi_decoded *d, const uint32_t *map,
+                                const bool *shared, double *normal_degrees, cw_error *err)
 {
     const size_t count = mesh->vertex_count;
     for (size_t v = 0; v < d->vertex_count; v++) {
@@ -114,7 +114,7 @@ cw_status cwi_verify(const cw_mesh *mesh, const cwi_quantization_grid *grid,
     cw_status st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory to compare %zu vertices", count);
     if (places && map && shared && cwi_weld(places, count, map)) {
         mark_shared(map, mesh->vertex_count, shared);
-        st = compare(mesh, decoded, map, shared, normal_degrees, err);
+        st = compare_arrays(mesh, decoded, map, shared, normal_degrees, err);
     }
     cwi_free(shared);
     cwi_free(places);

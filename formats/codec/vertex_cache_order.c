@@ -7,7 +7,8 @@
 
 #include <string.h>
 
-static void permute(void *array, void *copy, const uint32_t *remap, size_t count, size_t size)
+static void permute_array(void *array, void *copy, const uint32_t *remap, size_t count,
+                          size_t size)
 {
     if (!array)
         return;
@@ -28,11 +29,11 @@ cw_status cwi_mesh_reorder(cw_mesh *mesh, const cwi_meshopt_functions *meshopt, 
     if (st == CW_OK)
         st = meshopt->reorder(mesh->triangles, mesh->triangle_count, count, draw, remap, err);
     if (st == CW_OK) {
-        permute(mesh->positions, copy, remap, count, 3 * sizeof *mesh->positions);
-        permute(mesh->normals, copy, remap, count, 3 * sizeof *mesh->normals);
-        permute(mesh->colors, copy, remap, count, 4 * sizeof *mesh->colors);
-        permute(mesh->scalars, copy, remap, count, sizeof *mesh->scalars);
-        permute(mesh->labels, copy, remap, count, sizeof *mesh->labels);
+        permute_array(mesh->positions, copy, remap, count, 3 * sizeof *mesh->positions);
+        permute_array(mesh->normals, copy, remap, count, 3 * sizeof *mesh->normals);
+        permute_array(mesh->colors, copy, remap, count, 4 * sizeof *mesh->colors);
+        permute_array(mesh->scalars, copy, remap, count, sizeof *mesh->scalars);
+        permute_array(mesh->labels, copy, remap, count, sizeof *mesh->labels);
     }
     cwi_free(remap);
     cwi_free(copy);

@@ -22,7 +22,7 @@ static uint32_t number_at(const reader *r, size_t at)
     return (uint32_t)b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
 }
 
-static bool has(const reader *r, size_t count)
+static bool has_bytes(const reader *r, size_t count)
 {
     return r->at <= r->size && count <= r->size - r->at;
 }
@@ -30,13 +30,13 @@ static bool has(const reader *r, size_t count)
 /* Goes to the text of the next item and sets its length; false where the header is damaged. */
 static bool next_item(reader *r, size_t *length)
 {
-    if (!has(r, ITEM_BYTES))
+    if (!has_bytes(r, ITEM_BYTES))
         return false;
     const uint32_t stated = number_at(r, r->at + (r->first_version ? 0 : 4));
     const uint32_t more = r->first_version ? r->first_items : 0;
     *length = stated - more;
     r->at += ITEM_BYTES;
-    return stated >= more && has(r, *length);
+    return stated >= more && has_bytes(r, *length);
 }
 
 static bool parse_item(const reader *r, size_t length, double *number)
@@ -69,11 +69,11 @@ bool cwi_csa_numbers(const unsigned char *header, size_t size, const char *tag, 
 {
     const bool newer = size >= 8 && memcmp(header, "SV10", 4) == 0;
     reader r = {.bytes = header, .size = size, .at = newer ? 8 : 0, .first_version = !newer};
-    if (!has(&r, 8))
+    if (!has_bytes(&r, 8))
         return false;
     const uint32_t tags = number_at(&r, r.at);
     r.at += 8;
-    for (uint32_t t = 0; t < tags && t < MOST_TAGS && has(&r, TAG_BYTES); t++) {
+    for (uint32_t t = 0; t < tags && t < MOST_TAGS && has_bytes(&r, TAG_BYTES); t++) {
         const char *name = (const char *)r.bytes + r.at;
         const bool is_it = strncmp(name, tag, NAME_BYTES) == 0;
         const uint32_t items = number_at(&r, r.at + TAG_ITEMS);

@@ -101,8 +101,9 @@ static void copy_pixels(const opj_image_t *image, const cwi_dicom_image *m, void
                        image->comps[c].data[i], size);
 }
 
-static cw_status decode(opj_codec_t *codec, opj_stream_t *stream, const cwi_dicom_image *m,
-                        char why[100], void *pixels, cw_error *err)
+static cw_status decode_codestream(opj_codec_t *codec, opj_stream_t *stream,
+                                   const cwi_dicom_image *m, char why[100], void *pixels,
+                                   cw_error *err)
 {
     opj_dparameters_t parameters;
     opj_image_t *image = NULL;
@@ -129,7 +130,7 @@ cw_status cwi_dicom_jpeg2000(const void *data, size_t size, const cwi_dicom_imag
     const bool jp2 = size > sizeof boxed && memcmp(data, boxed, sizeof boxed) == 0;
     opj_codec_t *codec = opj_create_decompress(jp2 ? OPJ_CODEC_JP2 : OPJ_CODEC_J2K);
     opj_stream_t *stream = open_stream(&b);
-    cw_status st = codec && stream ? decode(codec, stream, m, why, pixels, err)
+    cw_status st = codec && stream ? decode_codestream(codec, stream, m, why, pixels, err)
                                    : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for OpenJPEG");
     opj_stream_destroy(stream);
     opj_destroy_codec(codec);

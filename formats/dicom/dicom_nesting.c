@@ -75,7 +75,7 @@ static const unsigned char *peek_inflated(walk *w, uint64_t at, size_t count, cw
 }
 
 /* The next bytes; NULL where the file ends first. */
-static const unsigned char *peek(walk *w, uint64_t at, size_t count, cw_error *err)
+static const unsigned char *peek_bytes(walk *w, uint64_t at, size_t count, cw_error *err)
 {
     if (w->deflated)
         return peek_inflated(w, at, count, err);
@@ -89,7 +89,7 @@ static const unsigned char *peek(walk *w, uint64_t at, size_t count, cw_error *e
     return w->held >= at - w->start + count ? w->bytes + (at - w->start) : NULL;
 }
 
-static uint32_t number(const walk *w, const unsigned char *b, int count)
+static uint32_t read_number(const walk *w, const unsigned char *b, int count)
 {
     uint32_t n = 0;
     for (int i = 0; i < count; i++)
@@ -105,33 +105,33 @@ static bool is_wide(const char *vr)
 
 static bool read_element(walk *w, bool implicit, element *e, cw_error *err)
 {
-    const unsigned char *b = peek(w, w->at, 8, err);
+    const unsigned char *b = peek_bytes(w, w->at, 8, err);
     if (!b)
         return false;
-    e->tag = number(w, b, 2) << 16 | number(w, b + 2, 2);
+    e->tag = read_number(w, b, 2) << 16 | read_number(w, b + 2, 2);
     memcpy(e->vr, b + 4, 2);
     e->vr[2] = '\0';
     if (implicit || e->tag >> 16 == 0xfffe) {
         e->vr[0] = '\0';
-        e->length = number(w, b + 4, 4);
+        e->length = read_number(w, b + 4, 4);
         e->value = w->at + 8;
         return true;
     }
     if (!is_wide(e->vr)) {
-        e->length = number(w, b + 6, 2);
+        e->length = read_number(w, b + 6, 2);
         e->value = w->at + 8;
         return true;
     }
-    b = peek(w, w->at, 12, err);
-    e->length = b ? number(w, b + 8, 4) : 0;
+    b = peek_bytes(w, w->at, 12, err);
+    e->length = b ? read_number(w, b + 8, 4) : 0;
     e->value = w->at + 12;
     return b != NULL;
 }
 
 static bool starts_with_item(walk *w, uint64_t at, cw_error *err)
 {
-    const unsigned char *b = peek(w, at, 4, err);
-    return b && number(w, b, 2) == 0xfffe && number(w, b + 2, 2) == 0xe000;
+    const unsigned char *b = peek_bytes(w, at, 4, err);
+    return b && read_number(w, b, 2) == 0xfffe && read_number(w, b + 2, 2) == 0xe000;
 }
 
 /* Whether there are elements in it: sequences, items but not those of pixels, and what without
@@ -198,17 +198,17 @@ static bool read_meta(walk *w, cw_error *err)
 {
     static const char implicit[] = "1.2.840.10008.1.2", big[] = "1.2.840.10008.1.2.2",
                       deflated[] = "1.2.840.10008.1.2.1.99";
-    const unsigned char *b = peek(w, PREAMBLE, 4, err);
+    const unsigned char *b = peek_bytes(w, PREAMBLE, 4, err);
     char syntax[32] = "";
     element e;
     w->at = b && memcmp(b, "DICM", 4) == 0 ? PREAMBLE + 4 : 0;
-    b = peek(w, w->at, 6, err);
+    b = peek_bytes(w, w->at, 6, err);
     if (w->at == 0 && b && b[0] != 2) { /* the bare elements, as a rule implicit */
         w->levels[0].implicit = !(b[4] >= 'A' && b[5] >= 'A');
         return true;
     }
     while (read_element(w, false, &e, err) && e.tag >> 16 == 2) {
-        const unsigned char *value = peek(w, e.value, e.length < 31 ? e.length : 0, err);
+        const unsigned char *value = peek_bytes(w, e.value, e.length < 31 ? e.length : 0, err);
         if (e.tag == 0x00020010 && value && e.length < 31)
             memcpy(syntax, value, e.length);
         w->at = e.value + e.length;

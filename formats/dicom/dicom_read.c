@@ -32,8 +32,8 @@ static cw_status facts_of_file(const cwi_input *in, cwi_planes *planes, cwi_dico
 }
 
 /* All files of a folder, or those beside one file that are of its series. */
-static cw_status scan(const cwi_input *in, cwi_names *names, cwi_planes *planes,
-                      cwi_dicom_scan *found, cw_error *err)
+static cw_status scan_files(const cwi_input *in, cwi_names *names, cwi_planes *planes,
+                            cwi_dicom_scan *found, cw_error *err)
 {
     cwi_dicom_facts facts;
     cwi_names beside = {0};
@@ -74,7 +74,7 @@ cw_status cwi_dicom_read(const cwi_input *in, cwi_names *names, const cw_read_de
     size_t series = 0;
     cw_status st = open_library(&planes, desc, err);
     if (st == CW_OK)
-        st = scan(in, names, &planes, &found, err);
+        st = scan_files(in, names, &planes, &found, err);
     if (st == CW_OK)
         st = cwi_dicom_choose(&found, desc->series, &series, err);
     if (st == CW_OK)
@@ -97,7 +97,8 @@ cw_status cwi_dicom_read(const cwi_input *in, cwi_names *names, const cw_read_de
 
 /* --- the list ----------------------------------------------------------------------------- */
 
-static void describe(cwi_dicom_scan *found, size_t n, const cw_read_desc *desc, cw_series *s)
+static void describe_series(cwi_dicom_scan *found, size_t n, const cw_read_desc *desc,
+                            cw_series *s)
 {
     cwi_stack stack = {0};
     cwi_dicom_findings findings;
@@ -121,14 +122,14 @@ static void describe(cwi_dicom_scan *found, size_t n, const cw_read_desc *desc, 
     cwi_stack_free(&stack);
 }
 
-static cw_status list(cwi_dicom_scan *found, const cw_read_desc *desc, cw_series **series,
-                      size_t *count, cw_error *err)
+static cw_status list_found(cwi_dicom_scan *found, const cw_read_desc *desc, cw_series **series,
+                            size_t *count, cw_error *err)
 {
     cw_series *all = cwi_alloc_zeroed(found->series_count, sizeof *all);
     if (!all)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu series", found->series_count);
     for (size_t n = 0; n < found->series_count; n++)
-        describe(found, n, desc, &all[n]);
+        describe_series(found, n, desc, &all[n]);
     *series = all;
     *count = found->series_count;
     return CW_OK;
@@ -141,9 +142,9 @@ cw_status cwi_dicom_list(const cwi_input *in, cwi_names *names, const cw_read_de
     cwi_dicom_scan found = {0};
     cw_status st = open_library(&planes, desc, err);
     if (st == CW_OK)
-        st = scan(in, names, &planes, &found, err);
+        st = scan_files(in, names, &planes, &found, err);
     if (st == CW_OK)
-        st = list(&found, desc, series, count, err);
+        st = list_found(&found, desc, series, count, err);
     cwi_dicom_scan_free(&found);
     cwi_planes_close(&planes);
     return st;

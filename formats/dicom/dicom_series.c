@@ -125,8 +125,8 @@ static bool grow_planes(cwi_dicom_scan *scan, size_t more)
     return planes != NULL;
 }
 
-static cw_status keep(cwi_dicom_scan *scan, const char *name, const cwi_dicom_facts *facts,
-                      const void *frames, cw_error *err)
+static cw_status keep_file(cwi_dicom_scan *scan, const char *name, const cwi_dicom_facts *facts,
+                           const void *frames, cw_error *err)
 {
     const size_t n = scan->files.count;
     cwi_dicom_facts *copy = cwi_alloc_array(1, sizeof *copy);
@@ -201,13 +201,13 @@ static cw_status take_file(cwi_dicom_scan *scan, const cwi_input *in, const char
         return CW_OK; /* whatever is wrong with it */
     clean_modality(&f);
     if (st == CW_OK)
-        st = keep(scan, name, &f, (const char *)shared + sizeof f, err);
+        st = keep_file(scan, name, &f, (const char *)shared + sizeof f, err);
     return st;
 }
 
 /* --- series ------------------------------------------------------------------------------- */
 
-static bool alike(const cwi_dicom_plane *a, const cwi_dicom_plane *b)
+static bool are_alike(const cwi_dicom_plane *a, const cwi_dicom_plane *b)
 {
     if (!same_images(a->file, b->file) ||
         (a->frame.has & CWI_DICOM_ORIENTATION) != (b->frame.has & CWI_DICOM_ORIENTATION))
@@ -224,7 +224,7 @@ static bool alike(const cwi_dicom_plane *a, const cwi_dicom_plane *b)
 static size_t find_series(const cwi_dicom_scan *scan, const cwi_dicom_plane *p)
 {
     size_t s = 0;
-    while (s < scan->series_count && !alike(p, scan->series[s].sample))
+    while (s < scan->series_count && !are_alike(p, scan->series[s].sample))
         s++;
     return s;
 }

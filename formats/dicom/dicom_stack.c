@@ -88,7 +88,7 @@ static int by_place_and_step(const void *x, const void *y)
     return (a->step > b->step) - (a->step < b->step);
 }
 
-static void sort(sorting *s, int (*compare)(const void *, const void *))
+static void sort_planes(sorting *s, int (*compare)(const void *, const void *))
 {
     qsort(s->planes, s->count, sizeof *s->planes, compare);
 }
@@ -110,14 +110,14 @@ static void find_places(sorting *s)
     cwi_cross(x, y, s->normal);
     for (size_t i = 0; i < s->count; i++)
         s->planes[i].distance = cwi_dot(s->planes[i].frame.position, s->normal);
-    sort(s, by_distance);
+    sort_planes(s, by_distance);
     s->places = 0;
     for (size_t i = 0; i < s->count; i++) {
         const bool next = i > 0 && s->planes[i].distance - s->planes[i - 1].distance > same;
         s->places += i == 0 || next;
         s->planes[i].place = s->places - 1;
     }
-    sort(s, by_place_and_number);
+    sort_planes(s, by_place_and_number);
 }
 
 /* Planes at one place, from *first on. */
@@ -204,7 +204,7 @@ static cw_status find_steps(sorting *s, cw_error *err)
         s->planes[i].step = i % s->steps;
     cwi_note(s->desc, "%zu images at each of %zu places: taken as steps, in the order of %s",
              s->steps, s->places, key < CWI_DICOM_KEYS ? names[key] : "InstanceNumber");
-    sort(s, by_place_and_step);
+    sort_planes(s, by_place_and_step);
     return CW_OK;
 }
 
@@ -564,7 +564,7 @@ static cw_status stack_numbered(sorting *s, cwi_stack *stack, cw_error *err)
     return st;
 }
 
-static cw_status gather(cwi_dicom_scan *scan, size_t series, sorting *s, cw_error *err)
+static cw_status gather_planes(cwi_dicom_scan *scan, size_t series, sorting *s, cw_error *err)
 {
     s->planes = cwi_alloc_array(scan->series[series].count, sizeof *s->planes);
     if (!s->planes)
@@ -584,7 +584,7 @@ cw_status cwi_dicom_stack(cwi_dicom_scan *scan, size_t series, const cw_read_des
 {
     sorting s = {.desc = desc, .findings = findings};
     *findings = (cwi_dicom_findings){0};
-    cw_status st = gather(scan, series, &s, err);
+    cw_status st = gather_planes(scan, series, &s, err);
     if (st == CW_OK)
         st = check_scaling(&s, err);
     if (st == CW_OK && s.planes[0].file->kind != CWI_DICOM_IMAGE)

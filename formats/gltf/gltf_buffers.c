@@ -24,7 +24,7 @@ static bool is_data(const char *uri)
     return strncasecmp(uri, "data:", 5) == 0;
 }
 
-static int sextet(char c)
+static int decode_sextet(char c)
 {
     if (c >= 'A' && c <= 'Z')
         return c - 'A';
@@ -41,7 +41,7 @@ static cw_status decode_base64(const char *digits, uint64_t offset, uint64_t siz
 {
     for (uint64_t i = offset; i < offset + size; i++) {
         const char *at = digits + i / 3 * 4 + i % 3;
-        const int high = sextet(at[0]), low = sextet(at[1]);
+        const int high = decode_sextet(at[0]), low = decode_sextet(at[1]);
         const int shift = 2 * (int)(i % 3);
         if (high < 0 || low < 0)
             return cw_fail(err, CW_ERR_FORMAT, "byte %llu of a data: URI is not base64",
@@ -117,7 +117,7 @@ static cw_status open_file(const cwi_input *in, const char *uri, place *p, cw_er
 
 /* --- ranges ------------------------------------------------------------------------------ */
 
-static bool fits(uint64_t offset, uint64_t size, uint64_t held)
+static bool range_fits(uint64_t offset, uint64_t size, uint64_t held)
 {
     return offset <= held && size <= held - offset;
 }
@@ -179,7 +179,7 @@ cw_status cwi_gltf_load(const cwi_gltf_bytes *from, const cwi_gltf_scene *scene,
                      "buffers[%llu].byteLength: %llu bytes are more than the %llu there are",
                      (unsigned long long)buffer, (unsigned long long)b->bytes,
                      (unsigned long long)p.held);
-    if (st == CW_OK && !fits(offset, size, p.held))
+    if (st == CW_OK && !range_fits(offset, size, p.held))
         st = cw_fail(err, CW_ERR_FORMAT,
                      "buffer %llu has %llu bytes; %llu from byte %llu on were expected",
                      (unsigned long long)buffer, (unsigned long long)p.held,
@@ -272,7 +272,7 @@ static cw_status load_view(const cwi_gltf_bytes *from, const cwi_gltf_scene *sce
     if (st == CW_OK)
         st = cwi_gltf_unpack_view(from->unpacker, v, packed, bytes, err);
     cwi_free(packed);
-    if (st == CW_OK && !fits(offset, size, v->packed_count * v->packed_stride)) {
+    if (st == CW_OK && !range_fits(offset, size, v->packed_count * v->packed_stride)) {
         cwi_free(*bytes);
         *bytes = NULL;
         return cw_fail(err, CW_ERR_FORMAT, "an accessor needs %llu bytes of a compressed view",
@@ -300,7 +300,7 @@ static cw_status load_elements(const cwi_gltf_bytes *from, const cwi_gltf_scene 
     const bool overflow = (count && __builtin_mul_overflow(count - 1, step, &size)) ||
                           __builtin_add_overflow(size, count ? element : 0, &size) ||
                           __builtin_add_overflow(v->offset, offset, &unused);
-    if (overflow || step < element || !fits(offset, size, v->bytes))
+    if (overflow || step < element || !range_fits(offset, size, v->bytes))
         return cw_fail(err, CW_ERR_FORMAT,
                        "accessors[%d] (%s): %llu elements do not fit into bufferViews[%lld], "
                        "which has %llu "

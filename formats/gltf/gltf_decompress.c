@@ -20,7 +20,7 @@ typedef struct job {
     uint64_t packed, count, corners;
 } job;
 
-static size_t align(size_t size)
+static size_t align_size(size_t size)
 {
     return (size + 15) / 16 * 16;
 }
@@ -30,7 +30,7 @@ static size_t align(size_t size)
 static cw_status unpack_view(const cwi_gltf_unpacker *u, const job *j, char *shared,
                              cw_error *err)
 {
-    char *to = shared + align(j->packed);
+    char *to = shared + align_size(j->packed);
     if (j->kind == JOB_TRIANGLES)
         return u->meshopt->decode_triangles(to, j->count, j->stride, shared, j->packed, err);
     if (j->kind == JOB_INDICES)
@@ -41,18 +41,18 @@ static cw_status unpack_view(const cwi_gltf_unpacker *u, const job *j, char *sha
     return st;
 }
 
-static char *put(char *to, const void *array, size_t size)
+static char *put_array(char *to, const void *array, size_t size)
 {
     if (array)
         memcpy(to, array, size);
-    return to + align(size);
+    return to + align_size(size);
 }
 
 static cw_status unpack_draco(const cwi_gltf_unpacker *u, const job *j, char *shared,
                               cw_error *err)
 {
     cwi_arrays a = {0};
-    char *to = shared + align(j->packed);
+    char *to = shared + align_size(j->packed);
     const size_t most = j->count > j->corners ? j->count : j->corners;
     cw_status st = u->draco->decode(shared, j->packed, &j->ids, most, NULL, &a, err);
     if (st == CW_OK && (a.vertex_count != j->count || 3 * a.triangle_count != j->corners))
@@ -63,16 +63,17 @@ static cw_status unpack_draco(const cwi_gltf_unpacker *u, const job *j, char *sh
             a.vertex_count, 3 * a.triangle_count, (unsigned long long)j->count,
             (unsigned long long)j->corners);
     if (st == CW_OK) {
-        to = put(to, a.positions, 12 * a.vertex_count);
-        to = put(to, a.triangles, 12 * a.triangle_count);
-        to = put(to, a.normals, 12 * a.vertex_count);
-        put(to, a.colors, 4 * a.vertex_count);
+        to = put_array(to, a.positions, 12 * a.vertex_count);
+        to = put_array(to, a.triangles, 12 * a.triangle_count);
+        to = put_array(to, a.normals, 12 * a.vertex_count);
+        put_array(to, a.colors, 4 * a.vertex_count);
     }
     cwi_arrays_free(&a);
     return st;
 }
 
-static cw_status work(void *state, int fd, const void *request, void *shared, cw_error *err)
+static cw_status work_on_job(void *state, int fd, const void *request, void *shared,
+                             cw_error *err)
 {
     job j;
     (void)fd;
@@ -89,13 +90,13 @@ void cwi_gltf_unpacker_close(cwi_gltf_unpacker *u)
 }
 
 /* A process that shares at least so many bytes, with the libraries that are loaded by now. */
-static cw_status start(cwi_gltf_unpacker *u, size_t bytes, bool anew, cw_error *err)
+static cw_status start_sandbox(cwi_gltf_unpacker *u, size_t bytes, bool anew, cw_error *err)
 {
     if (u->box.open && u->box.desc.shared_bytes >= bytes && !anew)
         return CW_OK;
     cwi_sandbox_close(&u->box);
     const cwi_sandbox_desc desc = {.library = "the decoder of compressed glTF",
-                                   .work = work,
+                                   .work = work_on_job,
                                    .state = u,
                                    .shared_bytes = bytes > LEAST_SHARED ? bytes : LEAST_SHARED,
                                    .memory = u->desc->max_bytes,
@@ -106,11 +107,11 @@ static cw_status start(cwi_gltf_unpacker *u, size_t bytes, bool anew, cw_error *
     return st;
 }
 
-static cw_status run(cwi_gltf_unpacker *u, const job *j, const void *packed, size_t out,
-                     bool anew, cw_error *err)
+static cw_status run_job(cwi_gltf_unpacker *u, const job *j, const void *packed, size_t out,
+                         bool anew, cw_error *err)
 {
     _Static_assert(sizeof(job) <= CWI_SANDBOX_REQUEST, "a request holds a job");
-    cw_status st = start(u, align(j->packed) + out, anew, err);
+    cw_status st = start_sandbox(u, align_size(j->packed) + out, anew, err);
     if (st != CW_OK)
         return st;
     memcpy(u->box.shared, packed, j->packed);
@@ -155,24 +156,24 @@ cw_status cwi_gltf_unpack_view(cwi_gltf_unpacker *u, const cwi_gltf_view *v,
     const size_t size = (size_t)(v->packed_count * v->packed_stride);
     cw_status st = anew ? cwi_meshopt_functions_load(&u->meshopt, err) : CW_OK;
     if (st == CW_OK)
-        st = run(u, &j, packed, size, anew, err);
+        st = run_job(u, &j, packed, size, anew, err);
     if (st != CW_OK)
         return st;
     *bytes = cwi_alloc_array(size, 1);
     if (!*bytes)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of a buffer", size);
-    memcpy(*bytes, (char *)u->box.shared + align(j.packed), size);
+    memcpy(*bytes, (char *)u->box.shared + align_size(j.packed), size);
     return CW_OK;
 }
 
 /* Copies an array out of the shared memory and moves on; false when memory is out. */
-static bool take(const char **from, void *array, size_t size)
+static bool take_array(const char **from, void *array, size_t size)
 {
     void *copy = cwi_alloc_array(size, 1);
     if (copy)
         memcpy(copy, *from, size);
     memcpy(array, &copy, sizeof copy);
-    *from += align(size);
+    *from += align_size(size);
     return copy != NULL;
 }
 
@@ -188,19 +189,20 @@ cw_status cwi_gltf_unpack_draco(cwi_gltf_unpacker *u, const cwi_draco_ids *ids,
     const size_t points = (size_t)vertices;
     cw_status st = anew ? cwi_draco_functions_load(&u->draco, err) : CW_OK;
     if (st == CW_OK)
-        st = run(u, &j, packed, 4 * align(12 * points) + align(4 * (size_t)corners), anew, err);
+        st = run_job(u, &j, packed,
+                     4 * align_size(12 * points) + align_size(4 * (size_t)corners), anew, err);
     if (st != CW_OK)
         return st;
-    const char *from = (const char *)u->box.shared + align(size);
+    const char *from = (const char *)u->box.shared + align_size(size);
     arrays->vertex_count = points;
     arrays->triangle_count = (size_t)corners / 3;
-    bool good = take(&from, &arrays->positions, 12 * points) &&
-                take(&from, &arrays->triangles, 4 * (size_t)corners);
+    bool good = take_array(&from, &arrays->positions, 12 * points) &&
+                take_array(&from, &arrays->triangles, 4 * (size_t)corners);
     if (good && ids->normal >= 0)
-        good = take(&from, &arrays->normals, 12 * points);
+        good = take_array(&from, &arrays->normals, 12 * points);
     else
-        from += align(12 * points);
+        from += align_size(12 * points);
     if (good && ids->color >= 0)
-        good = take(&from, &arrays->colors, 4 * points);
+        good = take_array(&from, &arrays->colors, 4 * points);
     return good ? CW_OK : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu vertices", points);
 }

@@ -107,7 +107,7 @@ static void find_bounds(const cwi_gltf_plan *plan, cwi_gltf_piece *piece)
 }
 
 /* Where the stored positions stand: the node says so. */
-static void place(const cwi_gltf_plan *plan, cwi_gltf_piece *piece)
+static void place_piece(const cwi_gltf_plan *plan, cwi_gltf_piece *piece)
 {
     const cwi_quantization_grid *g = &plan->grid;
     piece->step = on_grid(plan) && !g->dyadic ? g->step : 1;
@@ -277,7 +277,7 @@ cw_status cwi_gltf_plan_make(cwi_gltf_plan *plan, const cwi_parts *parts,
         cwi_gltf_piece *piece = &plan->pieces[p];
         if (!piece->draco)
             find_bounds(plan, piece);
-        place(plan, piece);
+        place_piece(plan, piece);
         d->quantized = d->quantized || is_quantized(piece);
         piece->translucent = is_translucent(&piece->part->mesh);
     }

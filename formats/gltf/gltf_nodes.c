@@ -10,7 +10,7 @@
 
 enum { DEEPEST_NODE = 1024 };
 
-static void multiply(const double *a, const double *b, double *out)
+static void multiply_matrices(const double *a, const double *b, double *out)
 {
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 4; c++)
@@ -57,7 +57,7 @@ static cw_status set_place(cwi_gltf_instance *at, const double *world, cw_mesh_f
                            cw_error *err)
 {
     double *place = at->place[0];
-    multiply(to_lps, world, place);
+    multiply_matrices(to_lps, world, place);
     for (int i = 0; i < 12; i++)
         if (!isfinite(place[i]))
             return cw_fail(err, CW_ERR_FORMAT, "a node's matrix is not finite");
@@ -104,7 +104,7 @@ static cw_status enter_node(cwi_gltf_reader *r, visit v, bool *visited, cw_mesh_
     visited[v.node] = true;
     const cwi_gltf_node *n = &scene->nodes[v.node];
     said->levels = n->levels > said->levels ? n->levels : said->levels;
-    multiply(v.parent < 0 ? unit : r->world[v.parent], n->local[0], r->world[v.node]);
+    multiply_matrices(v.parent < 0 ? unit : r->world[v.parent], n->local[0], r->world[v.node]);
     if (n->mesh < 0)
         return CW_OK;
     if ((size_t)n->mesh >= scene->mesh_count)
@@ -121,8 +121,8 @@ static cw_status enter_node(cwi_gltf_reader *r, visit v, bool *visited, cw_mesh_
 
 /* Depth first, in the order of the file. The stack cannot overflow: every node is pushed by its
  * one parent or is a root, else there is one that is reached in two ways. */
-static cw_status walk(cwi_gltf_reader *r, visit *stack, size_t room, bool *visited,
-                      cw_mesh_file *said, cw_error *err)
+static cw_status walk_nodes(cwi_gltf_reader *r, visit *stack, size_t room, bool *visited,
+                            cw_mesh_file *said, cw_error *err)
 {
     const cwi_gltf_scene *scene = &r->scene;
     size_t count = 0;
@@ -151,7 +151,7 @@ cw_status cwi_gltf_find_instances(cwi_gltf_reader *r, cw_mesh_file *said, cw_err
     r->world = cwi_alloc_array(count, sizeof *r->world);
     r->instances = cwi_alloc_array(count, sizeof *r->instances);
     cw_status st = stack && visited && r->world && r->instances
-                       ? walk(r, stack, room, visited, said, err)
+                       ? walk_nodes(r, stack, room, visited, said, err)
                        : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu nodes", count);
     cwi_free(stack);
     cwi_free(visited);

@@ -280,7 +280,8 @@ static uint64_t count_of(const cwi_gltf_scene *scene, int accessor)
 }
 
 /* Decodes what Draco compressed, unless the file has it in plain, too. */
-static cw_status unpack(cwi_gltf_reader *r, const cwi_gltf_primitive *p, cw_error *err)
+static cw_status unpack_primitive(cwi_gltf_reader *r, const cwi_gltf_primitive *p,
+                                  cw_error *err)
 {
     const cwi_gltf_scene *scene = &r->scene;
     const cwi_draco_ids ids = {p->draco_position, p->draco_normal, p->draco_color};
@@ -325,7 +326,7 @@ cw_status cwi_gltf_add_instance(cwi_gltf_reader *r, const cwi_gltf_instance *at,
         }
         if (p->position < 0)
             return cw_fail(err, CW_ERR_FORMAT, "a primitive has no POSITION");
-        st = unpack(r, p, err);
+        st = unpack_primitive(r, p, err);
         if (st == CW_OK && (!before || p->draco >= 0 || !same_vertices(before, p))) {
             first = r->build.point_count;
             st = add_vertices(r, at, p, err);

@@ -156,7 +156,7 @@ static bool is_shifted(const cwi_gltf_reader *r)
 }
 
 /* The frame is known where each node says so and none has been turned since. */
-static void describe(const cwi_gltf_reader *r, cw_mesh *mesh, cw_mesh_file *said)
+static void describe_mesh(const cwi_gltf_reader *r, cw_mesh *mesh, cw_mesh_file *said)
 {
     const cwi_gltf_instance *one = r->instances;
     bool lps = r->instance_count > 0;
@@ -270,7 +270,7 @@ static cw_status build_scene(cwi_gltf_reader *r, cw_mesh *mesh, cw_mesh_file *sa
     }
     if (st != CW_OK)
         return st;
-    describe(r, mesh, said);
+    describe_mesh(r, mesh, said);
     mesh->colors = r->colors;
     r->colors = NULL;
     if (!r->no_normals) {

@@ -49,7 +49,7 @@ typedef struct tape {
     char *at, *end;
 } tape;
 
-static bool put(tape *t, const void *bytes, size_t size)
+static bool put_bytes(tape *t, const void *bytes, size_t size)
 {
     if ((size_t)(t->end - t->at) < size)
         return false;
@@ -59,7 +59,7 @@ static bool put(tape *t, const void *bytes, size_t size)
     return true;
 }
 
-static bool take(tape *t, void *bytes, size_t size)
+static bool take_bytes(tape *t, void *bytes, size_t size)
 {
     if ((size_t)(t->end - t->at) < size)
         return false;
@@ -74,7 +74,7 @@ static bool take(tape *t, void *bytes, size_t size)
 static bool put_uri(tape *t, const char *uri)
 {
     const uint64_t size = uri ? strlen(uri) : NO_URI;
-    return put(t, &size, sizeof size) && (!uri || put(t, uri, strlen(uri)));
+    return put_bytes(t, &size, sizeof size) && (!uri || put_bytes(t, uri, strlen(uri)));
 }
 
 /* Every array, its length in front; behind them the places of buffers. */
@@ -84,8 +84,8 @@ bool cwi_gltf_put_scene(const cwi_gltf_scene *s, void *to, size_t room)
     bool good = true;
     for (size_t n = 0; good && n < COLUMNS; n++) {
         const uint64_t count = count_of(s, &columns[n]);
-        good = put(t, &count, sizeof count) &&
-               put(t, array_of(s, &columns[n]), (size_t)count * columns[n].size);
+        good = put_bytes(t, &count, sizeof count) &&
+               put_bytes(t, array_of(s, &columns[n]), (size_t)count * columns[n].size);
     }
     for (size_t i = 0; good && i < s->buffer_count; i++)
         good = put_uri(t, s->buffers[i].uri);
@@ -97,13 +97,14 @@ typedef struct job {
     size_t json, shared;                 /* bytes */
 } job;
 
-static cw_status load(void *state, cw_error *err)
+static cw_status load_tinygltf(void *state, cw_error *err)
 {
     job *j = state;
     return cwi_gltf_functions_load(&j->functions, err);
 }
 
-static cw_status work(void *state, int fd, const void *request, void *shared, cw_error *err)
+static cw_status work_on_request(void *state, int fd, const void *request, void *shared,
+                                 cw_error *err)
 {
     const job *j = state;
     cwi_gltf_scene scene = {0};
@@ -122,14 +123,15 @@ static cw_status take_uri(tape *t, char **uri, cw_error *err)
 {
     uint64_t size;
     *uri = NULL;
-    if (!take(t, &size, sizeof size) || (size != NO_URI && size > (size_t)(t->end - t->at)))
+    if (!take_bytes(t, &size, sizeof size) ||
+        (size != NO_URI && size > (size_t)(t->end - t->at)))
         return cw_fail(err, CW_ERR_BACKEND, "tinygltf's answer is not valid");
     if (size == NO_URI)
         return CW_OK;
     *uri = cwi_alloc_array((size_t)size + 1, 1);
     if (!*uri)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the scene");
-    take(t, *uri, (size_t)size);
+    take_bytes(t, *uri, (size_t)size);
     (*uri)[size] = '\0';
     return CW_OK;
 }
@@ -137,12 +139,12 @@ static cw_status take_uri(tape *t, char **uri, cw_error *err)
 static cw_status take_column(tape *t, const column *c, cwi_gltf_scene *s, cw_error *err)
 {
     uint64_t count;
-    if (!take(t, &count, sizeof count) || count > (size_t)(t->end - t->at) / c->size)
+    if (!take_bytes(t, &count, sizeof count) || count > (size_t)(t->end - t->at) / c->size)
         return cw_fail(err, CW_ERR_BACKEND, "tinygltf's answer is not valid");
     void *array = cwi_alloc_array((size_t)count, c->size);
     if (!array)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the scene");
-    take(t, array, (size_t)count * c->size);
+    take_bytes(t, array, (size_t)count * c->size);
     memcpy((char *)s + c->array, &array, sizeof array);
     *(size_t *)(void *)((char *)s + c->count) = (size_t)count;
     return CW_OK;
@@ -202,8 +204,8 @@ cw_status cwi_gltf_parse(const char *json, size_t size, const cw_mesh_read_desc 
     job j = {.json = size, .shared = 2 * size + LARGEST_ELEMENT * dense + HEAD};
     cwi_sandbox box = {0};
     const cwi_sandbox_desc shut = {.library = "tinygltf",
-                                   .prepare = load,
-                                   .work = work,
+                                   .prepare = load_tinygltf,
+                                   .work = work_on_request,
                                    .state = &j,
                                    .shared_bytes = j.shared,
                                    .memory = desc->max_bytes,
@@ -245,7 +247,7 @@ static cw_status make_json(void *state, int fd, const void *request, void *share
     (void)fd, (void)request;
     cw_status st = w->functions->document(w->document, &json, &size, err);
     tape t = {.at = shared, .end = (char *)shared + w->room};
-    if (st == CW_OK && (!put(&t, &size, sizeof size) || !put(&t, json, size)))
+    if (st == CW_OK && (!put_bytes(&t, &size, sizeof size) || !put_bytes(&t, json, size)))
         st = cw_fail(err, CW_ERR_LIMIT, "the JSON takes more than %zu bytes", w->room);
     cwi_free(json);
     return st;

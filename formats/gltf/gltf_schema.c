@@ -437,7 +437,7 @@ static cw_status check_list(walker *w, const rule *r, value_kind one, const plac
 }
 
 /* Whether a key as it is written, maybe with escapes, spells a name. */
-static bool spells(const char *key, size_t length, const char *name)
+static bool key_spells(const char *key, size_t length, const char *name)
 {
     size_t i = 0;
     while (i < length && *name) {
@@ -461,7 +461,7 @@ static bool spells(const char *key, size_t length, const char *name)
 static size_t find_rule(const rule *rules, const char *key, size_t length)
 {
     size_t i = 0;
-    while (rules && rules[i].key && !spells(key, length, rules[i].key))
+    while (rules && rules[i].key && !key_spells(key, length, rules[i].key))
         i++;
     return i;
 }

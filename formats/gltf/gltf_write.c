@@ -35,7 +35,7 @@ typedef struct pipe {
     unsigned char bytes[CHUNK_BYTES];
 } pipe;
 
-static cw_status flush(pipe *p, cw_error *err)
+static cw_status flush_pipe(pipe *p, cw_error *err)
 {
     char text[CHUNK_BYTES / 3 * 4 + 4];
     const size_t size = p->text ? cwi_base64_encode(p->bytes, p->held, text) : p->held;
@@ -48,7 +48,7 @@ static cw_status flush(pipe *p, cw_error *err)
                        : st;
 }
 
-static cw_status push(pipe *p, const unsigned char *bytes, size_t size, cw_error *err)
+static cw_status push_bytes(pipe *p, const unsigned char *bytes, size_t size, cw_error *err)
 {
     cw_status st = CW_OK;
     while (st == CW_OK && size > 0) {
@@ -58,7 +58,7 @@ static cw_status push(pipe *p, const unsigned char *bytes, size_t size, cw_error
         bytes += step;
         size -= step;
         if (p->held == CHUNK_BYTES)
-            st = flush(p, err);
+            st = flush_pipe(p, err);
     }
     return st;
 }
@@ -66,7 +66,7 @@ static cw_status push(pipe *p, const unsigned char *bytes, size_t size, cw_error
 static cw_status push_zeros(pipe *p, size_t size, cw_error *err)
 {
     static const unsigned char zeros[8];
-    return push(p, zeros, size, err);
+    return push_bytes(p, zeros, size, err);
 }
 
 static cw_status push_array(pipe *p, const cwi_gltf_plan *plan, const cwi_gltf_piece *piece,
@@ -76,7 +76,7 @@ static cw_status push_array(pipe *p, const cwi_gltf_plan *plan, const cwi_gltf_p
     cw_status st = CW_OK;
     for (size_t i = 0; st == CW_OK && i < a->count; i++) {
         cwi_gltf_put(plan, piece, a, i, element);
-        st = push(p, element, (size_t)a->stride, err);
+        st = push_bytes(p, element, (size_t)a->stride, err);
     }
     return st == CW_OK ? push_zeros(p, (size_t)(-(a->count * a->stride) % 4), err) : st;
 }
@@ -85,7 +85,7 @@ static cw_status push_buffer(pipe *p, const cwi_gltf_plan *plan, cw_error *err)
 {
     cw_status st = CW_OK;
     for (size_t b = 0; st == CW_OK && b < plan->block_count; b++) {
-        st = push(p, plan->blocks[b].bytes, plan->blocks[b].size, err);
+        st = push_bytes(p, plan->blocks[b].bytes, plan->blocks[b].size, err);
         if (st == CW_OK)
             st = push_zeros(p, -plan->blocks[b].size % 8, err);
     }
@@ -93,8 +93,8 @@ static cw_status push_buffer(pipe *p, const cwi_gltf_plan *plan, cw_error *err)
         for (size_t a = 0; st == CW_OK && a < plan->pieces[n].array_count; a++)
             st = push_array(p, plan, &plan->pieces[n], &plan->pieces[n].arrays[a], err);
     if (st == CW_OK)
-        st = push(p, plan->keys, plan->keys_size, err);
-    return st == CW_OK ? flush(p, err) : st;
+        st = push_bytes(p, plan->keys, plan->keys_size, err);
+    return st == CW_OK ? flush_pipe(p, err) : st;
 }
 
 static cw_status write_buffer(const cwi_gltf_plan *plan, cwi_mesh_output *out, bool text,

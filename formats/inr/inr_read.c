@@ -130,7 +130,7 @@ static cw_status read_keys(inr *n, cw_error *err)
     return st;
 }
 
-static cw_status require(const inr *n, key k, cw_error *err)
+static cw_status require_key(const inr *n, key k, cw_error *err)
 {
     return n->value[k] ? CW_OK : cw_fail(err, CW_ERR_FORMAT, "'%s' is missing", key_names[k]);
 }
@@ -141,9 +141,9 @@ static cw_status read_type(const inr *n, cwi_source *src, cw_error *err)
 {
     char name[CWI_WORD_BYTES], unit[CWI_WORD_BYTES];
     int64_t bits;
-    cw_status st = require(n, K_TYPE, err);
+    cw_status st = require_key(n, K_TYPE, err);
     if (st == CW_OK)
-        st = require(n, K_PIXSIZE, err);
+        st = require_key(n, K_PIXSIZE, err);
     if (st != CW_OK)
         return st;
     const char *said = n->value[K_PIXSIZE];
@@ -177,7 +177,7 @@ static cw_status read_sizes(const inr *n, cwi_source *src, cw_error *err)
     for (int a = 0; a < 4; a++) {
         int64_t size = 1;
         const char *value = n->value[order[a].key];
-        cw_status st = value || a == 0 ? CW_OK : require(n, order[a].key, err);
+        cw_status st = value || a == 0 ? CW_OK : require_key(n, order[a].key, err);
         if (st == CW_OK && value)
             st = cwi_field_integer(key_names[order[a].key], value, 1, INT32_MAX, &size, err);
         if (st != CW_OK)

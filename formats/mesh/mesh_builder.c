@@ -229,7 +229,7 @@ static cw_status round_points(cwi_mesh_build *b, const double origin[3], cw_erro
     return CW_OK;
 }
 
-static cw_status shrink(void *array, size_t count, size_t size, cw_error *err)
+static cw_status shrink_array(void *array, size_t count, size_t size, cw_error *err)
 {
     void *memory;
     memcpy(&memory, array, sizeof memory);
@@ -243,9 +243,10 @@ static cw_status shrink(void *array, size_t count, size_t size, cw_error *err)
 cw_status cwi_mesh_shrink(cw_mesh *mesh, cw_error *err)
 {
     cw_status st =
-        shrink(&mesh->positions, mesh->vertex_count, 3 * sizeof *mesh->positions, err);
+        shrink_array(&mesh->positions, mesh->vertex_count, 3 * sizeof *mesh->positions, err);
     if (st == CW_OK)
-        st = shrink(&mesh->triangles, mesh->triangle_count, 3 * sizeof *mesh->triangles, err);
+        st = shrink_array(&mesh->triangles, mesh->triangle_count, 3 * sizeof *mesh->triangles,
+                          err);
     return st;
 }
 

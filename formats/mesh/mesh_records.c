@@ -10,8 +10,8 @@
 
 enum { PROGRESS_STEP = 65536, BATCH_BYTES = 16 << 10 };
 
-static cw_status drain(const cwi_mesh_output *out, const void *bytes, size_t size,
-                       cw_error *err)
+static cw_status drain_bytes(const cwi_mesh_output *out, const void *bytes, size_t size,
+                             cw_error *err)
 {
     return out->drain ? out->drain(out->drain_to, bytes, size, err)
                       : cwi_outfile_write(out->file, bytes, size, err);
@@ -25,7 +25,7 @@ cw_status cwi_write_records(const cwi_part *part, cwi_mesh_output *out,
     for (size_t i = 0; i < count && st == CW_OK; i++) {
         to = encode(part, i, to);
         if (to > batch + BATCH_BYTES - CWI_RECORD_BYTES || i + 1 == count) {
-            st = drain(out, batch, (size_t)(to - batch), err);
+            st = drain_bytes(out, batch, (size_t)(to - batch), err);
             to = batch;
         }
         if (st == CW_OK && out->done++ % PROGRESS_STEP == 0)

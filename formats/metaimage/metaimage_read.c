@@ -111,7 +111,7 @@ static cw_status read_keys(metaimage *m, cw_error *err)
     return st;
 }
 
-static cw_status require(const metaimage *m, key k, const char *name, cw_error *err)
+static cw_status require_key(const metaimage *m, key k, const char *name, cw_error *err)
 {
     return m->value[k] ? CW_OK : cw_fail(err, CW_ERR_FORMAT, "'%s' is missing", name);
 }
@@ -133,7 +133,7 @@ static cw_status read_bool(const metaimage *m, key k, const char *name, bool *ou
 
 static cw_status read_type(const metaimage *m, cwi_source *src, cw_error *err)
 {
-    cw_status st = require(m, K_ELEMENT_TYPE, "ElementType", err);
+    cw_status st = require_key(m, K_ELEMENT_TYPE, "ElementType", err);
     if (st != CW_OK)
         return st;
     const char *name = m->value[K_ELEMENT_TYPE];
@@ -151,12 +151,12 @@ static cw_status read_type(const metaimage *m, cwi_source *src, cw_error *err)
 static cw_status read_sizes(metaimage *m, cwi_source *src, cw_error *err)
 {
     int64_t dimensions = 0, channels = 1;
-    cw_status st = require(m, K_NDIMS, "NDims", err);
+    cw_status st = require_key(m, K_NDIMS, "NDims", err);
     if (st == CW_OK)
         st = cwi_field_integer("NDims", m->value[K_NDIMS], 2, MOST_AXES, &dimensions, err);
     m->dimensions = (size_t)dimensions;
     if (st == CW_OK)
-        st = require(m, K_DIM_SIZE, "DimSize", err);
+        st = require_key(m, K_DIM_SIZE, "DimSize", err);
     if (st == CW_OK)
         st = cwi_field_sizes("DimSize", m->value[K_DIM_SIZE], m->dimensions, "NDims", m->size,
                              err);

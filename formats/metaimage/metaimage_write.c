@@ -10,7 +10,7 @@ static const char *const types[CW_TYPE_COUNT] = {
 
 /* The header states the compressed size in front of the data, and files are written front to
  * back: the voxels are compressed twice, the first time only to be counted. */
-static cw_status measure(const cwi_save *save, uint64_t *bytes, cw_error *err)
+static cw_status measure_deflated(const cwi_save *save, uint64_t *bytes, cw_error *err)
 {
     cwi_sink sink = {0};
     cw_status st = cwi_sink_open(&sink, NULL, CWI_ZLIB, err);
@@ -90,7 +90,7 @@ cw_status cwi_metaimage_save(const cwi_save *save, cw_error *err)
 {
     cwi_sink sink = {0};
     uint64_t compressed = 0;
-    cw_status st = measure(save, &compressed, err);
+    cw_status st = measure_deflated(save, &compressed, err);
     if (st == CW_OK)
         st = write_header(save, compressed, err);
     if (st == CW_OK)

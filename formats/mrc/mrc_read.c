@@ -58,7 +58,7 @@ typedef struct mrc {
     size_t steps;
 } mrc;
 
-static int32_t word(const mrc *m, field at, int index)
+static int32_t read_word(const mrc *m, field at, int index)
 {
     const unsigned char *b = m->bytes + (size_t)at + 4 * (size_t)index;
     const uint32_t little =
@@ -66,9 +66,9 @@ static int32_t word(const mrc *m, field at, int index)
     return (int32_t)(m->big ? __builtin_bswap32(little) : little);
 }
 
-static double number(const mrc *m, field at, int index)
+static double read_number(const mrc *m, field at, int index)
 {
-    const int32_t bits = word(m, at, index);
+    const int32_t bits = read_word(m, at, index);
     float value;
     memcpy(&value, &bits, sizeof value);
     return (double)value;
@@ -82,13 +82,14 @@ static bool is_plausible(const mrc *m)
 {
     unsigned axes = 0, zeros = 0;
     for (int a = 0; a < 3; a++) {
-        const int32_t axis = word(m, MAPC, a);
+        const int32_t axis = read_word(m, MAPC, a);
         axes |= axis >= 1 && axis <= 3 ? 1u << axis : 0;
         zeros += axis == 0;
-        if (word(m, NX, a) < 1)
+        if (read_word(m, NX, a) < 1)
             return false;
     }
-    return (axes == 14 || zeros == 3) && word(m, MODE, 0) >= 0 && word(m, MODE, 0) <= 101;
+    return (axes == 14 || zeros == 3) && read_word(m, MODE, 0) >= 0 &&
+           read_word(m, MODE, 0) <= 101;
 }
 
 /* The machine stamp decides where there is one, else what is plausible. */
@@ -125,8 +126,8 @@ static cw_status read_header(const cwi_input *in, mrc *m, cw_error *err)
             "'NX', 'NY', 'NZ', 'MODE' and 'MAPC', 'MAPR', 'MAPS' are those of no MRC "
             "file in either byte order");
     m->imod_flags = IMOD_SIGNED | IMOD_ORIGIN;
-    if (word(m, STAMP, 0) == IMOD_STAMP)
-        m->imod_flags = word(m, FLAGS, 0);
+    if (read_word(m, STAMP, 0) == IMOD_STAMP)
+        m->imod_flags = read_word(m, FLAGS, 0);
     return st;
 }
 
@@ -134,7 +135,7 @@ static cw_status read_header(const cwi_input *in, mrc *m, cw_error *err)
 
 static cw_status read_type(const mrc *m, cwi_source *src, cw_error *err)
 {
-    const int mode = word(m, MODE, 0);
+    const int mode = read_word(m, MODE, 0);
     char name[40];
     snprintf(name, sizeof name, "%d", mode);
     if (mode == 0 && m->imod_flags & IMOD_NIBBLES)
@@ -156,7 +157,7 @@ static cw_status read_type(const mrc *m, cwi_source *src, cw_error *err)
 /* A stack of volumes holds them one after another along its sections, MZ of them each. */
 static cw_status read_steps(mrc *m, cw_error *err)
 {
-    const int32_t group = word(m, ISPG, 0), each = word(m, MX, 2);
+    const int32_t group = read_word(m, ISPG, 0), each = read_word(m, MX, 2);
     m->steps = 1;
     if (group < STACK_GROUP || group > LAST_STACK_GROUP)
         return CW_OK;
@@ -174,9 +175,9 @@ static cw_status read_axes(mrc *m, cwi_source *src, cw_error *err)
 {
     static const cwi_role roles[3] = {CWI_AXIS_X, CWI_AXIS_Y, CWI_AXIS_Z};
     for (int a = 0; a < 3; a++) {
-        const int32_t axis = word(m, MAPC, a);
+        const int32_t axis = read_word(m, MAPC, a);
         m->axis[a] = axis ? axis - 1 : a;
-        m->size[a] = (size_t)word(m, NX, a);
+        m->size[a] = (size_t)read_word(m, NX, a);
     }
     cw_status st = read_steps(m, err);
     cwi_axis axes[4] = {[3] = {CWI_AXIS_STEP, m->steps}};
@@ -187,7 +188,7 @@ static cw_status read_axes(mrc *m, cwi_source *src, cw_error *err)
 
 static cw_status read_place(const mrc *m, cwi_source *src, cw_error *err)
 {
-    const int32_t extra = word(m, NSYMBT, 0);
+    const int32_t extra = read_word(m, NSYMBT, 0);
     if (extra < 0)
         return cw_fail(err, CW_ERR_FORMAT, "'NSYMBT' is %d; it must be 0 or more", (int)extra);
     src->skip = HEADER + (uint64_t)extra;
@@ -221,7 +222,7 @@ static cw_status cell_edges(const double angle[3], double edges[3][3], cw_error 
 static bool has_cell(const mrc *m)
 {
     for (int a = 0; a < 3; a++)
-        if (number(m, CELL, a) != 0)
+        if (read_number(m, CELL, a) != 0)
             return true;
     return false;
 }
@@ -229,8 +230,8 @@ static bool has_cell(const mrc *m)
 static cw_status read_spacing(const mrc *m, double spacing[3], cw_error *err)
 {
     for (int a = 0; a < 3; a++) {
-        const double length = number(m, CELL, a);
-        const int32_t intervals = word(m, MX, a);
+        const double length = read_number(m, CELL, a);
+        const int32_t intervals = read_word(m, MX, a);
         if (!(length > 0 && length < 1e30) || intervals < 1)
             return cw_fail(
                 err, CW_ERR_FORMAT,
@@ -249,13 +250,13 @@ static void set_origin(const mrc *m, double mm, cw_volume *shape)
     const double sign = m->imod_flags & IMOD_ORIGIN ? mm : -mm;
     bool said = false;
     for (int r = 0; r < 3; r++) {
-        const double place = number(m, ORIGIN, r);
+        const double place = read_number(m, ORIGIN, r);
         said |= place != 0;
         shape->affine[r][3] = place == 0 ? 0 : sign * place;
     }
     for (int a = 0; !said && a < 3; a++)
         for (int r = 0; r < 3; r++)
-            shape->affine[r][3] += shape->affine[r][m->axis[a]] * word(m, NXSTART, a);
+            shape->affine[r][3] += shape->affine[r][m->axis[a]] * read_word(m, NXSTART, a);
 }
 
 static cw_status read_frame(const mrc *m, cwi_source *src, cw_error *err)
@@ -263,7 +264,7 @@ static cw_status read_frame(const mrc *m, cwi_source *src, cw_error *err)
     double spacing[3] = {1, 1, 1}, angle[3], edges[3][3];
     const bool known = has_cell(m);
     for (int a = 0; a < 3; a++)
-        angle[a] = number(m, ANGLES, a);
+        angle[a] = read_number(m, ANGLES, a);
     cw_status st = cell_edges(angle, edges, err);
     if (st == CW_OK && known)
         st = read_spacing(m, spacing, err);

@@ -156,7 +156,7 @@ typedef struct nifti {
     int used; /* dimensions: dim[0] */
 } nifti;
 
-static double get(const nifti *n, cwi_nifti_field field, int index)
+static double get_field(const nifti *n, cwi_nifti_field field, int index)
 {
     return cwi_nifti_get(n->layout, n->bytes, n->swapped, field, index);
 }
@@ -167,7 +167,7 @@ static bool find_layout(nifti *n)
     for (int i = 0; i < 4; i++) {
         n->layout = &cwi_nifti_layouts[i / 2];
         n->swapped = i % 2;
-        if (get(n, CWI_NIFTI_SIZEOF_HDR, 0) == (double)n->layout->bytes)
+        if (get_field(n, CWI_NIFTI_SIZEOF_HDR, 0) == (double)n->layout->bytes)
             return true;
     }
     return false;
@@ -198,7 +198,7 @@ static cw_status read_header(const cwi_input *in, nifti *n, cw_error *err)
         n->swapped = false;
         return cw_fail(err, CW_ERR_FORMAT,
                        "%s'sizeof_hdr' is %.0f; a NIfTI header starts with 348 or 540", inside,
-                       got < 4 ? 0.0 : get(n, CWI_NIFTI_SIZEOF_HDR, 0));
+                       got < 4 ? 0.0 : get_field(n, CWI_NIFTI_SIZEOF_HDR, 0));
     }
     if (got < n->layout->bytes)
         return cw_fail(err, CW_ERR_FORMAT, "%sthe header ends after %zu of %zu bytes", inside,
@@ -217,8 +217,8 @@ static cw_status read_header(const cwi_input *in, nifti *n, cw_error *err)
 
 static cw_status read_type(const nifti *n, cwi_source *src, size_t *components, cw_error *err)
 {
-    const int code = (int)get(n, CWI_NIFTI_DATATYPE, 0);
-    const int bits = (int)get(n, CWI_NIFTI_BITPIX, 0);
+    const int code = (int)get_field(n, CWI_NIFTI_DATATYPE, 0);
+    const int bits = (int)get_field(n, CWI_NIFTI_BITPIX, 0);
     char name[40];
     snprintf(name, sizeof name, "%d", code);
     for (size_t i = 0; i < sizeof datatypes / sizeof *datatypes; i++) {
@@ -248,12 +248,12 @@ static cw_status read_dims(nifti *n, cwi_source *src, size_t colours, cw_error *
                                       [5] = CWI_AXIS_COMPONENT};
     cwi_axis axes[6] = {{CWI_AXIS_COMPONENT, colours}};
     size_t count = colours > 1 ? 1 : 0;
-    const double used = get(n, CWI_NIFTI_DIM, 0);
+    const double used = get_field(n, CWI_NIFTI_DIM, 0);
     if (!(used >= 1 && used <= 7))
         return cw_fail(err, CW_ERR_FORMAT, "'dim[0]' is %.0f; it must be 1 to 7", used);
     n->used = (int)used;
     for (int d = 1; d <= n->used; d++) {
-        const double size = get(n, CWI_NIFTI_DIM, d);
+        const double size = get_field(n, CWI_NIFTI_DIM, d);
         if (!(size >= 1 && size <= INT32_MAX))
             return cw_fail(err, CW_ERR_FORMAT, "'dim[%d]' is %.0f; sizes are 1 to 2147483647",
                            d, size);
@@ -293,7 +293,7 @@ static cw_status name_image(const cwi_input *in, cwi_source *src, cw_error *err)
 
 static cw_status read_place(const cwi_input *in, const nifti *n, cwi_source *src, cw_error *err)
 {
-    double offset = get(n, CWI_NIFTI_VOX_OFFSET, 0);
+    double offset = get_field(n, CWI_NIFTI_VOX_OFFSET, 0);
     const double least = n->is_pair ? 0 : (double)n->layout->voxels;
     if (offset == 0)
         offset = least;
@@ -310,8 +310,8 @@ static cw_status read_place(const cwi_input *in, const nifti *n, cwi_source *src
 /* A slope that is 0 or not finite means: no scaling. Colours are never scaled. */
 static void read_scaling(const nifti *n, size_t colours, cw_volume *shape)
 {
-    const double slope = get(n, CWI_NIFTI_SCL_SLOPE, 0);
-    const double intercept = get(n, CWI_NIFTI_SCL_INTER, 0);
+    const double slope = get_field(n, CWI_NIFTI_SCL_SLOPE, 0);
+    const double intercept = get_field(n, CWI_NIFTI_SCL_INTER, 0);
     shape->slope = 1;
     if (colours > 1 || slope == 0 || !isfinite(slope) || !isfinite(intercept))
         return;
@@ -325,14 +325,14 @@ static void read_scaling(const nifti *n, size_t colours, cw_volume *shape)
 static cw_status read_spacing(const nifti *n, double spacing[3], cw_error *err)
 {
     for (int a = 0; a < 3; a++) {
-        const double size = a < n->used ? get(n, CWI_NIFTI_DIM, a + 1) : 1;
-        spacing[a] = fabs(get(n, CWI_NIFTI_PIXDIM, a + 1));
+        const double size = a < n->used ? get_field(n, CWI_NIFTI_DIM, a + 1) : 1;
+        spacing[a] = fabs(get_field(n, CWI_NIFTI_PIXDIM, a + 1));
         if (spacing[a] > 0 && isfinite(spacing[a]))
             continue;
         if (size > 1)
             return cw_fail(err, CW_ERR_FORMAT,
                            "'pixdim[%d]' is %g; it must be finite and not 0", a + 1,
-                           get(n, CWI_NIFTI_PIXDIM, a + 1));
+                           get_field(n, CWI_NIFTI_PIXDIM, a + 1));
         spacing[a] = 1;
     }
     return CW_OK;
@@ -352,7 +352,7 @@ static cw_status read_qform(const nifti *n, cw_volume *shape, cw_error *err)
 {
     double spacing[3], q[4] = {0};
     for (int i = 0; i < 3; i++)
-        q[i + 1] = get(n, CWI_NIFTI_QUATERN, i);
+        q[i + 1] = get_field(n, CWI_NIFTI_QUATERN, i);
     cw_status st = check_quaternion(q, err);
     if (st == CW_OK)
         st = read_spacing(n, spacing, err);
@@ -366,12 +366,12 @@ static cw_status read_qform(const nifti *n, cw_volume *shape, cw_error *err)
         {a * a + b * b - c * c - d * d, 2 * (b * c - a * d), 2 * (b * d + a * c)},
         {2 * (b * c + a * d), a * a + c * c - b * b - d * d, 2 * (c * d - a * b)},
         {2 * (b * d - a * c), 2 * (c * d + a * b), a * a + d * d - b * b - c * c}};
-    if (get(n, CWI_NIFTI_PIXDIM, 0) < 0)
+    if (get_field(n, CWI_NIFTI_PIXDIM, 0) < 0)
         spacing[2] = -spacing[2]; /* qfac: the third axis is mirrored */
     for (int r = 0; r < 3; r++) {
         for (int k = 0; k < 3; k++)
             shape->affine[r][k] = rotation[r][k] * spacing[k];
-        shape->affine[r][3] = get(n, CWI_NIFTI_QOFFSET, r);
+        shape->affine[r][3] = get_field(n, CWI_NIFTI_QOFFSET, r);
     }
     return CW_OK;
 }
@@ -380,7 +380,7 @@ static void read_sform(const nifti *n, cw_volume *shape)
 {
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 4; c++)
-            shape->affine[r][c] = get(n, CWI_NIFTI_SROW, 4 * r + c);
+            shape->affine[r][c] = get_field(n, CWI_NIFTI_SROW, 4 * r + c);
 }
 
 static cw_status read_pixdim(const nifti *n, cw_volume *shape, cw_error *err)
@@ -396,9 +396,9 @@ static void read_units(const nifti *n, cw_volume *shape)
 {
     static const double mm[8] = {[1] = 1000, [2] = 1, [3] = 1e-3};
     static const double seconds[8] = {[1] = 1, [2] = 1e-3, [3] = 1e-6};
-    const unsigned units = (unsigned)(int32_t)get(n, CWI_NIFTI_XYZT_UNITS, 0);
+    const unsigned units = (unsigned)(int32_t)get_field(n, CWI_NIFTI_XYZT_UNITS, 0);
     const double scale = mm[units & 7];
-    const double step = get(n, CWI_NIFTI_PIXDIM, 4) * seconds[units >> 3 & 7];
+    const double step = get_field(n, CWI_NIFTI_PIXDIM, 4) * seconds[units >> 3 & 7];
     if (n->used > 3 && step > 0 && isfinite(step))
         shape->step_seconds = step;
     if (scale == 0)
@@ -413,15 +413,15 @@ static void read_units(const nifti *n, cw_volume *shape)
 /* NIFTI_INTENT_LABEL, NIFTI_INTENT_NEURONAME */
 static void read_intent(const nifti *n, cw_volume *shape)
 {
-    const double code = get(n, CWI_NIFTI_INTENT_CODE, 0);
+    const double code = get_field(n, CWI_NIFTI_INTENT_CODE, 0);
     if (code == 1002 || code == 1005)
         shape->known |= CW_KNOWN_LABELS;
 }
 
 static cw_status read_frame(const nifti *n, cwi_source *src, cw_error *err)
 {
-    const bool sform = get(n, CWI_NIFTI_SFORM_CODE, 0) > 0;
-    const bool qform = get(n, CWI_NIFTI_QFORM_CODE, 0) > 0;
+    const bool sform = get_field(n, CWI_NIFTI_SFORM_CODE, 0) > 0;
+    const bool qform = get_field(n, CWI_NIFTI_QFORM_CODE, 0) > 0;
     cw_status st = CW_OK;
     src->frame_field = sform ? "srow" : qform ? "qoffset" : "pixdim";
     if (sform)

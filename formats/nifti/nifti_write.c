@@ -13,7 +13,7 @@ typedef struct header {
     const cwi_nifti_layout *layout;
 } header;
 
-static void put(header *h, cwi_nifti_field field, int index, double value)
+static void put_field(header *h, cwi_nifti_field field, int index, double value)
 {
     cwi_nifti_put(h->layout, h->bytes, field, index, value);
 }
@@ -38,14 +38,14 @@ static void put_shape(header *h, const cw_volume *v)
                            (double)v->components,
                            1,
                            1};
-    put(h, CWI_NIFTI_DATATYPE, 0, cwi_nifti_datatype(v->type));
-    put(h, CWI_NIFTI_BITPIX, 0, 8.0 * (double)cw_type_size(v->type));
+    put_field(h, CWI_NIFTI_DATATYPE, 0, cwi_nifti_datatype(v->type));
+    put_field(h, CWI_NIFTI_BITPIX, 0, 8.0 * (double)cw_type_size(v->type));
     for (int d = 0; d < 8; d++)
-        put(h, CWI_NIFTI_DIM, d, dim[d]);
+        put_field(h, CWI_NIFTI_DIM, d, dim[d]);
     if (v->components > 1)
-        put(h, CWI_NIFTI_INTENT_CODE, 0, INTENT_VECTOR);
-    put(h, CWI_NIFTI_SCL_SLOPE, 0, v->slope);
-    put(h, CWI_NIFTI_SCL_INTER, 0, v->intercept);
+        put_field(h, CWI_NIFTI_INTENT_CODE, 0, INTENT_VECTOR);
+    put_field(h, CWI_NIFTI_SCL_SLOPE, 0, v->slope);
+    put_field(h, CWI_NIFTI_SCL_INTER, 0, v->intercept);
 }
 
 /* Code 1 is the scanner's frame, 2 one that was aligned to something: what we say of a frame
@@ -56,24 +56,25 @@ static void put_frame(header *h, const cw_volume *v)
     memcpy(ras, v->affine, sizeof ras);
     cwi_flip_ras(ras);
     cw_volume_spacing(v, spacing);
-    put(h, CWI_NIFTI_SFORM_CODE, 0, v->known & CW_KNOWN_FRAME ? 1 : 2);
+    put_field(h, CWI_NIFTI_SFORM_CODE, 0, v->known & CW_KNOWN_FRAME ? 1 : 2);
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 4; c++)
-            put(h, CWI_NIFTI_SROW, 4 * r + c, ras[r][c]);
-    put(h, CWI_NIFTI_PIXDIM, 0, 1);
+            put_field(h, CWI_NIFTI_SROW, 4 * r + c, ras[r][c]);
+    put_field(h, CWI_NIFTI_PIXDIM, 0, 1);
     for (int a = 0; a < 3; a++)
-        put(h, CWI_NIFTI_PIXDIM, a + 1, spacing[a]);
-    put(h, CWI_NIFTI_PIXDIM, 4, v->step_seconds);
-    put(h, CWI_NIFTI_XYZT_UNITS, 0,
-        (v->known & CW_KNOWN_UNIT ? SPACE_MM : 0) + (v->step_seconds > 0 ? TIME_SECONDS : 0));
+        put_field(h, CWI_NIFTI_PIXDIM, a + 1, spacing[a]);
+    put_field(h, CWI_NIFTI_PIXDIM, 4, v->step_seconds);
+    put_field(h, CWI_NIFTI_XYZT_UNITS, 0,
+              (v->known & CW_KNOWN_UNIT ? SPACE_MM : 0) +
+                  (v->step_seconds > 0 ? TIME_SECONDS : 0));
 }
 
 /* The four bytes between header and voxels are zero: no extensions. */
 static void fill_header(header *h, const cwi_save *save)
 {
     *h = (header){.layout = choose_layout(save->volume)};
-    put(h, CWI_NIFTI_SIZEOF_HDR, 0, (double)h->layout->bytes);
-    put(h, CWI_NIFTI_VOX_OFFSET, 0, (double)h->layout->voxels);
+    put_field(h, CWI_NIFTI_SIZEOF_HDR, 0, (double)h->layout->bytes);
+    put_field(h, CWI_NIFTI_VOX_OFFSET, 0, (double)h->layout->voxels);
     memcpy(h->bytes + h->layout->magic, h->layout->one_file, h->layout->magic_bytes);
     memcpy(h->bytes + h->layout->descrip, save->name, strlen(save->name));
     put_shape(h, save->volume);

@@ -113,7 +113,7 @@ static cw_status read_fields(cwi_nrrd *n, cw_error *err)
     return st;
 }
 
-static cw_status require(const cwi_nrrd *n, cwi_nrrd_field f, cw_error *err)
+static cw_status require_field(const cwi_nrrd *n, cwi_nrrd_field f, cw_error *err)
 {
     return n->value[f]
                ? CW_OK
@@ -126,13 +126,13 @@ static cw_status read_sizes(cwi_nrrd *n, cw_error *err)
 {
     size_t sizes[CWI_NRRD_MOST_AXES];
     int64_t dimension = 0;
-    cw_status st = require(n, CWI_NRRD_DIMENSION, err);
+    cw_status st = require_field(n, CWI_NRRD_DIMENSION, err);
     if (st == CW_OK)
         st = cwi_field_integer("dimension", n->value[CWI_NRRD_DIMENSION], 1, CWI_NRRD_MOST_AXES,
                                &dimension, err);
     n->dimension = (size_t)dimension;
     if (st == CW_OK)
-        st = require(n, CWI_NRRD_SIZES, err);
+        st = require_field(n, CWI_NRRD_SIZES, err);
     if (st == CW_OK)
         st = cwi_field_sizes("sizes", n->value[CWI_NRRD_SIZES], n->dimension, "dimension",
                              sizes, err);
@@ -145,7 +145,7 @@ static cw_status read_sizes(cwi_nrrd *n, cw_error *err)
 
 static cw_status read_type(const cwi_nrrd *n, cwi_source *src, cw_error *err)
 {
-    cw_status st = require(n, CWI_NRRD_TYPE, err);
+    cw_status st = require_field(n, CWI_NRRD_TYPE, err);
     if (st != CW_OK)
         return st;
     const char *name = n->value[CWI_NRRD_TYPE];
@@ -165,7 +165,7 @@ static cw_status read_encoding(const cwi_nrrd *n, cwi_source *src, cw_error *err
                                         [CWI_ASCII] = "ascii|text|txt",
                                         [CWI_HEX] = "hex"};
     const int count = sizeof names / sizeof *names;
-    cw_status st = require(n, CWI_NRRD_ENCODING, err);
+    cw_status st = require_field(n, CWI_NRRD_ENCODING, err);
     if (st != CW_OK)
         return st;
     const char *name = n->value[CWI_NRRD_ENCODING];

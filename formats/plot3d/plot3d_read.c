@@ -82,8 +82,8 @@ static cw_status find_form(int fd, uint64_t size, const char *what, size_t condi
                    (unsigned long long)size, what);
 }
 
-static cw_status describe(const void *file, size_t piece, cwi_grid_role role, size_t count,
-                          cwi_source *src, bool *wide, cw_error *err)
+static cw_status describe_array(const void *file, size_t piece, cwi_grid_role role,
+                                size_t count, cwi_source *src, bool *wide, cw_error *err)
 {
     const plot3d *p = file;
     const bool points = role == CWI_GRID_POINTS;
@@ -102,7 +102,7 @@ static cw_status describe(const void *file, size_t piece, cwi_grid_role role, si
     return st == CW_OK && points ? cwi_names_add(&src->files, p->path, err) : st;
 }
 
-static cw_status choose(const char *wanted, size_t *quantity, cw_error *err)
+static cw_status choose_quantity(const char *wanted, size_t *quantity, cw_error *err)
 {
     *quantity = 0;
     for (size_t n = 0; n < QUANTITIES && wanted; n++)
@@ -147,7 +147,7 @@ static cw_status read_grid(const cwi_input *in, const cwi_input *points, plot3d 
                                 .array = names[p->quantity],
                                 .type = p->solution.width == 8 ? CW_F64 : CW_F32,
                                 .components = 1,
-                                .describe = describe,
+                                .describe = describe_array,
                                 .file = p};
     cw_status st = cwi_grid_along(&piece, "dimensions", err);
     return st == CW_OK ? cwi_irregular_read(&grid, &both, desc, volume, err) : st;
@@ -161,7 +161,7 @@ cw_status cwi_plot3d_read(const cwi_input *in, const cw_read_desc *desc, cw_volu
     if (!desc->points)
         return cw_fail(err, CW_ERR_ARGUMENT,
                        "a PLOT3D solution needs the file of its grid's points (--points)");
-    cw_status st = choose(desc->array, &p.quantity, err);
+    cw_status st = choose_quantity(desc->array, &p.quantity, err);
     if (st != CW_OK)
         return st;
     for (size_t n = 0; n < QUANTITIES; n++)

@@ -22,7 +22,7 @@ bool cwi_ply_sniff(const unsigned char *head, size_t size, uint64_t file_size)
 
 /* --- numbers ----------------------------------------------------------------------------- */
 
-static double decode(const unsigned char *b, cwi_ply_type type, bool big_endian)
+static double decode_number(const unsigned char *b, cwi_ply_type type, bool big_endian)
 {
     const size_t size = cwi_ply_type_size(type);
     uint64_t bits = 0;
@@ -57,7 +57,7 @@ static cw_status read_number(const ply *p, cwi_scan *s, const cwi_ply_element *e
         return cwi_scan_double(s, e->what, number, err);
     cw_status st = cwi_scan_take(s, cwi_ply_type_size(type), e->what, &bytes, err);
     if (st == CW_OK)
-        *number = decode(bytes, type, p->header.big_endian);
+        *number = decode_number(bytes, type, p->header.big_endian);
     return st;
 }
 
@@ -118,8 +118,8 @@ static float to_single(double number)
 }
 
 /* One property of vertex v; what was asked for has its array. */
-static void store(cw_mesh *mesh, size_t v, double point[3], const cwi_ply_property *property,
-                  double number)
+static void store_property(cw_mesh *mesh, size_t v, double point[3],
+                           const cwi_ply_property *property, double number)
 {
     const int role = (int)property->role;
     if (role <= CWI_PLY_Z)
@@ -148,7 +148,7 @@ static cw_status read_element(ply *p, cwi_scan *s, const cwi_ply_element *e, boo
         }
         st = read_number(p, s, e, property->type, &number, err);
         if (st == CW_OK && is_vertex)
-            store(mesh, v, point, property, number);
+            store_property(mesh, v, point, property, number);
     }
     return st == CW_OK && is_vertex ? cwi_build_point(&p->build, point, err) : st;
 }

@@ -158,7 +158,7 @@ static bool is_keyword(const cwi_word *word, const char *keyword)
     return i == word->size && !keyword[i];
 }
 
-static cw_status expect(cwi_scan *s, const char *keyword, cw_error *err)
+static cw_status expect_keyword(cwi_scan *s, const char *keyword, cw_error *err)
 {
     cwi_word word;
     cw_status st = cwi_scan_word(s, &word, err);
@@ -169,7 +169,7 @@ static cw_status expect(cwi_scan *s, const char *keyword, cw_error *err)
 
 static cw_status read_text_corner(cwi_scan *s, float point[3], cw_error *err)
 {
-    cw_status st = expect(s, "vertex", err);
+    cw_status st = expect_keyword(s, "vertex", err);
     for (int a = 0; a < 3 && st == CW_OK; a++) {
         double number = 0;
         st = cwi_scan_double(s, "a coordinate", &number, err);
@@ -187,19 +187,19 @@ static cw_status read_text_facet(facets *f, cwi_scan *s, cw_error *err)
     float corners[9];
     cw_status st = make_room(f, (uint64_t)f->count + 1, err);
     if (st == CW_OK)
-        st = expect(s, "normal", err);
+        st = expect_keyword(s, "normal", err);
     for (int a = 0; a < 3 && st == CW_OK; a++)
         st = cwi_scan_word(s, &word, err);
     if (st == CW_OK)
-        st = expect(s, "outer", err);
+        st = expect_keyword(s, "outer", err);
     if (st == CW_OK)
-        st = expect(s, "loop", err);
+        st = expect_keyword(s, "loop", err);
     for (int c = 0; c < 3 && st == CW_OK; c++)
         st = read_text_corner(s, corners + 3 * c, err);
     if (st == CW_OK)
-        st = expect(s, "endloop", err);
+        st = expect_keyword(s, "endloop", err);
     if (st == CW_OK)
-        st = expect(s, "endfacet", err);
+        st = expect_keyword(s, "endfacet", err);
     return st == CW_OK ? add_facets(f, corners, 1, err) : st;
 }
 

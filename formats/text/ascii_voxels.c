@@ -54,14 +54,14 @@ static const struct {
     [CW_F32] = {-INFINITY, INFINITY}, [CW_F64] = {-INFINITY, INFINITY},
 };
 
-static bool holds(cw_type type, double value)
+static bool type_holds(cw_type type, double value)
 {
     if (type == CW_F32 || type == CW_F64)
         return true;
     return value >= ranges[type].low && value <= ranges[type].high && value == floor(value);
 }
 
-static void store(cw_type type, void *to, size_t index, double value)
+static void store_value(cw_type type, void *to, size_t index, double value)
 {
     switch (type) {
 #define CASE(name, ctype, text)                                                                \
@@ -86,12 +86,12 @@ cw_status cwi_numbers_read(cwi_numbers *numbers, cw_type type, void *to, size_t 
         if (st != CW_OK)
             return st;
         numbers->count++;
-        if (!cwi_parse_double(&s, &value) || *s || !holds(type, value))
+        if (!cwi_parse_double(&s, &value) || *s || !type_holds(type, value))
             return cw_fail(
                 err, CW_ERR_FORMAT, "number %llu of the %s is '%s'; %s cannot hold it",
                 (unsigned long long)numbers->count, numbers->noun, token, cw_type_name(type));
         if (to)
-            store(type, to, i, value);
+            store_value(type, to, i, value);
     }
     return CW_OK;
 }

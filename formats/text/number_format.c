@@ -12,7 +12,7 @@ enum { LONGEST = 25, MOST_DIGITS = 15 };
 static const double tens[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,
                               1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19};
 
-static unsigned char *print(unsigned char *to, double value, int digits)
+static unsigned char *print_number(unsigned char *to, double value, int digits)
 {
     void *before = cwi_locale_c();
     to += snprintf((char *)to, LONGEST, "%.*g", digits, value);
@@ -53,7 +53,7 @@ unsigned char *cwi_put_decimal(unsigned char *to, double value, int digits)
         return to + 1;
     }
     if (digits > MOST_DIGITS || !(size >= 1e-4 && size < tens[digits]))
-        return print(to, value, digits);
+        return print_number(to, value, digits);
     int places = digits + 3;
     while (size * 1e4 >= tens[digits + 4 - places])
         places--;

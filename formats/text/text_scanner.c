@@ -69,7 +69,7 @@ static void turn_line_ends(cwi_scan *s, size_t from)
     }
 }
 
-static cw_status refill(cwi_scan *s, cw_error *err)
+static cw_status refill_buffer(cwi_scan *s, cw_error *err)
 {
     size_t got;
     s->end -= s->next;
@@ -90,16 +90,16 @@ static cw_status refill(cwi_scan *s, cw_error *err)
 }
 
 /* At least so many bytes are held behind next, unless the file has no more. */
-static inline cw_status hold(cwi_scan *s, size_t size, cw_error *err)
+static inline cw_status hold_bytes(cwi_scan *s, size_t size, cw_error *err)
 {
     const bool enough = s->end - s->next >= size || s->offset >= s->in->size;
-    return enough ? CW_OK : refill(s, err);
+    return enough ? CW_OK : refill_buffer(s, err);
 }
 
 cw_status cwi_scan_take(cwi_scan *s, size_t size, const char *what, const unsigned char **bytes,
                         cw_error *err)
 {
-    cw_status st = hold(s, size, err);
+    cw_status st = hold_bytes(s, size, err);
     if (st == CW_OK && s->end - s->next < size)
         return cw_fail(err, CW_ERR_FORMAT, "the file ends within %s, after %llu bytes", what,
                        (unsigned long long)s->offset);
@@ -131,20 +131,20 @@ static inline size_t blank_size(const cwi_scan *s, const char *at)
 
 static cw_status skip_to_line_end(cwi_scan *s, cw_error *err)
 {
-    cw_status st = hold(s, 1, err);
+    cw_status st = hold_bytes(s, 1, err);
     while (st == CW_OK && s->next < s->end) {
         const char *from = s->text + s->next, *end = memchr(from, '\n', s->end - s->next);
         s->next = end ? (size_t)(end - s->text) : s->end;
         if (end)
             break;
-        st = hold(s, 1, err);
+        st = hold_bytes(s, 1, err);
     }
     return st;
 }
 
 static cw_status skip_blanks(cwi_scan *s, cw_error *err)
 {
-    cw_status st = hold(s, CWI_SCAN_AHEAD, err);
+    cw_status st = hold_bytes(s, CWI_SCAN_AHEAD, err);
     while (st == CW_OK && s->next < s->end) {
         const char *at = s->text + s->next;
         const size_t size = blank_size(s, at);
@@ -155,7 +155,7 @@ static cw_status skip_blanks(cwi_scan *s, cw_error *err)
         if (!size)
             st = skip_to_line_end(s, err);
         if (st == CW_OK)
-            st = hold(s, CWI_SCAN_AHEAD, err);
+            st = hold_bytes(s, CWI_SCAN_AHEAD, err);
     }
     return st;
 }
@@ -187,12 +187,12 @@ bool cwi_word_is(const cwi_word *word, const char *text)
 cw_status cwi_scan_rest(cwi_scan *s, char text[CWI_REST_BYTES], cw_error *err)
 {
     size_t used = 0;
-    cw_status st = hold(s, 1, err);
+    cw_status st = hold_bytes(s, 1, err);
     while (st == CW_OK && s->next < s->end && s->text[s->next] != '\n') {
         const char c = s->text[s->next++];
         if (used + 1 < CWI_REST_BYTES && (used || !is_blank(c)))
             text[used++] = c;
-        st = hold(s, 1, err);
+        st = hold_bytes(s, 1, err);
     }
     while (used && is_blank(text[used - 1]))
         used--;

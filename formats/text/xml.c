@@ -63,7 +63,7 @@ size_t cwi_xml_depth(const cwi_xml *x)
 /* --- events ------------------------------------------------------------------------------ */
 
 /* Ends the parsing after the event at hand, with a status or because it is enough. */
-static void settle(cwi_xml *x, cw_status status)
+static void settle_status(cwi_xml *x, cw_status status)
 {
     x->status = status;
     if (status != CW_OK || x->stopped)
@@ -118,7 +118,7 @@ static void XMLCALL on_start(void *user, const XML_Char *name, const XML_Char **
     cwi_xml *x = user;
     if (is_over(x))
         return;
-    settle(x, start_element(x, name, (cwi_attributes)attributes));
+    settle_status(x, start_element(x, name, (cwi_attributes)attributes));
 }
 
 static void XMLCALL on_end(void *user, const XML_Char *name)
@@ -132,7 +132,7 @@ static void XMLCALL on_end(void *user, const XML_Char *name)
     x->depth--;
     if (st == CW_OK && row >= 0 && x->rules->elements[row].end)
         st = x->rules->elements[row].end(x->user, x, x->err);
-    settle(x, st);
+    settle_status(x, st);
 }
 
 static void XMLCALL on_text(void *user, const XML_Char *text, int size)
@@ -141,14 +141,14 @@ static void XMLCALL on_text(void *user, const XML_Char *text, int size)
     if (is_over(x))
         return;
     const int row = row_at(x) == OTHER ? CWI_XML_ROOT : row_at(x);
-    settle(x, x->rules->text(x->user, row, text, (size_t)size, x->err));
+    settle_status(x, x->rules->text(x->user, row, text, (size_t)size, x->err));
 }
 
 static void XMLCALL on_comment(void *user, const XML_Char *text)
 {
     cwi_xml *x = user;
     if (!is_over(x))
-        settle(x, x->rules->comment(x->user, text, x->err));
+        settle_status(x, x->rules->comment(x->user, text, x->err));
 }
 
 static void XMLCALL on_doctype(void *user, const XML_Char *name, const XML_Char *system,
@@ -157,8 +157,8 @@ static void XMLCALL on_doctype(void *user, const XML_Char *name, const XML_Char 
     cwi_xml *x = user;
     (void)name, (void)system, (void)public_id, (void)internal;
     if (!is_over(x))
-        settle(x,
-               cw_fail(x->err, CW_ERR_UNSAFE,
+        settle_status(
+            x, cw_fail(x->err, CW_ERR_UNSAFE,
                        "the file has a document type (<!DOCTYPE>); it needs none, and none is "
                        "read"));
 }
@@ -196,7 +196,7 @@ static cw_status check_tag(const cwi_xml *x)
                    (unsigned long)XML_GetCurrentLineNumber(x->expat));
 }
 
-static cw_status feed(cwi_xml *x, cwi_xml_source *source, void *from)
+static cw_status feed_parser(cwi_xml *x, cwi_xml_source *source, void *from)
 {
     cw_status st = CW_OK;
     for (bool last = false; st == CW_OK && !last && !x->stopped;) {
@@ -233,7 +233,7 @@ cw_status cwi_xml_read(const cwi_xml_rules *rules, void *user, cwi_xml_source *s
         XML_SetCharacterDataHandler(x.expat, on_text);
     if (rules->comment)
         XML_SetCommentHandler(x.expat, on_comment);
-    cw_status st = feed(&x, source, from);
+    cw_status st = feed_parser(&x, source, from);
     XML_ParserFree(x.expat);
     return st;
 }

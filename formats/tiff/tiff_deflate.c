@@ -40,7 +40,8 @@ static void join_floats(unsigned char *row, unsigned char *copy, size_t count, s
 }
 
 /* From what was deflated to numbers of this machine. */
-static void undo(const cwi_tiff_file *f, unsigned char *row, size_t bytes, unsigned char *copy)
+static void undo_predictor(const cwi_tiff_file *f, unsigned char *row, size_t bytes,
+                           unsigned char *copy)
 {
     const cwi_tiff_layout *l = &f->layout;
     const size_t size = l->bits < 8 ? 1 : l->bits / 8;
@@ -68,7 +69,7 @@ static cw_status check_predictor(const cwi_tiff_layout *l, cw_error *err)
 
 /* On to the checksum, past rows that some writers put behind a short strip's. What follows in
  * the strip's bytes is nobody's. */
-static cw_status finish(cwi_stream *s, size_t bytes, cw_error *err)
+static cw_status finish_stream(cwi_stream *s, size_t bytes, cw_error *err)
 {
     unsigned char waste[4096];
     cw_status st = CW_OK;
@@ -92,12 +93,12 @@ cw_status cwi_tiff_inflate(cwi_tiff_file *f, uint32_t strile, unsigned char *to,
         cwi_stream_end_at(&stream, at + TIFFGetStrileByteCount(f->tiff, strile));
         st = cwi_stream_read(&stream, to, bytes, err);
         if (st == CW_OK)
-            st = finish(&stream, bytes, err);
+            st = finish_stream(&stream, bytes, err);
         cwi_stream_close(&stream);
     }
     if (st == CW_OK && f->layout.predictor == FLOATS)
         st = cwi_tiff_make_room(&f->line, &f->line_room, row_bytes, err);
     for (size_t r = 0; st == CW_OK && r < bytes; r += row_bytes)
-        undo(f, to + r, row_bytes, f->line);
+        undo_predictor(f, to + r, row_bytes, f->line);
     return st;
 }

@@ -42,7 +42,7 @@ static bool read_at(const cwi_tiff_file *f, uint64_t offset, void *to, size_t si
     return true;
 }
 
-static uint64_t number(const cwi_tiff_file *f, const unsigned char *p, size_t size)
+static uint64_t read_number(const cwi_tiff_file *f, const unsigned char *p, size_t size)
 {
     uint64_t n = 0;
     for (size_t i = 0; i < size; i++)
@@ -62,8 +62,8 @@ static cw_status check_entry(const cwi_tiff_file *f, const unsigned char *entry,
                              uint32_t directory, cw_error *err)
 {
     const size_t word = f->big ? 8 : 4;
-    const uint64_t tag = number(f, entry, 2), type = number(f, entry + 2, 2);
-    const uint64_t count = number(f, entry + 4, word);
+    const uint64_t tag = read_number(f, entry, 2), type = read_number(f, entry + 2, 2);
+    const uint64_t count = read_number(f, entry + 4, word);
     uint64_t bytes, end;
     if (tag == UIC2_TAG && count > 1)
         return cw_fail(err, CW_ERR_FORMAT,
@@ -74,13 +74,13 @@ static cw_status check_entry(const cwi_tiff_file *f, const unsigned char *entry,
         return CW_OK;
     if (!__builtin_mul_overflow(count, bytes_of_type(type), &bytes) &&
         (bytes <= word ||
-         (!__builtin_add_overflow(bytes, number(f, entry + 4 + word, word), &end) &&
+         (!__builtin_add_overflow(bytes, read_number(f, entry + 4 + word, word), &end) &&
           end <= f->size)))
         return CW_OK;
     return cw_fail(err, CW_ERR_FORMAT,
                    "tag %llu of directory %u has %llu values at %llu; the file has %llu bytes",
                    (unsigned long long)tag, directory, (unsigned long long)count,
-                   (unsigned long long)number(f, entry + 4 + word, word),
+                   (unsigned long long)read_number(f, entry + 4 + word, word),
                    (unsigned long long)f->size);
 }
 
@@ -114,8 +114,8 @@ static cw_status check_entries(const cwi_tiff_file *f, uint64_t at, uint64_t cou
 }
 
 /* Checks the directory at an offset, and moves that to the next one. */
-static cw_status pass(const cwi_tiff_file *f, uint64_t *offset, uint32_t directory,
-                      cw_error *err)
+static cw_status pass_directory(const cwi_tiff_file *f, uint64_t *offset, uint32_t directory,
+                                cw_error *err)
 {
     unsigned char bytes[8];
     const size_t head = f->big ? 8 : 2, word = f->big ? 8 : 4;
@@ -123,14 +123,14 @@ static cw_status pass(const cwi_tiff_file *f, uint64_t *offset, uint32_t directo
         return cw_fail(err, CW_ERR_FORMAT,
                        "directory %u should be at %llu; the file has %llu bytes", directory,
                        (unsigned long long)*offset, (unsigned long long)f->size);
-    const uint64_t count = number(f, bytes, head), at = *offset + head;
+    const uint64_t count = read_number(f, bytes, head), at = *offset + head;
     if (count == 0 || count > MOST_ENTRIES)
         return cw_fail(err, CW_ERR_FORMAT, "directory %u has %llu tags; it must be 1 to %d",
                        directory, (unsigned long long)count, MOST_ENTRIES);
     cw_status st = check_entries(f, at, count, directory, err);
     if (st == CW_OK && !read_at(f, at + count * (f->big ? BIG_ENTRY : ENTRY), bytes, word))
         st = fail_cut("the end", directory, err);
-    *offset = number(f, bytes, word);
+    *offset = read_number(f, bytes, word);
     return st;
 }
 
@@ -140,15 +140,16 @@ static cw_status read_header(cwi_tiff_file *f, uint64_t *first, cw_error *err)
     if (!read_at(f, 0, h, 8))
         return cw_fail(err, CW_ERR_FORMAT, "the file ends within its header");
     f->high_first = h[0] == 'M';
-    const uint64_t version = number(f, h + 2, 2);
+    const uint64_t version = read_number(f, h + 2, 2);
     if (h[0] != h[1] || (h[0] != 'I' && h[0] != 'M') || (version != CLASSIC && version != BIG))
         return cw_fail(err, CW_ERR_FORMAT, "it does not start as a TIFF file does");
     f->big = version == BIG;
-    *first = number(f, h + 4, 4);
-    if (f->big && (!read_at(f, 0, h, 16) || number(f, h + 4, 2) != 8 || number(f, h + 6, 2)))
+    *first = read_number(f, h + 4, 4);
+    if (f->big &&
+        (!read_at(f, 0, h, 16) || read_number(f, h + 4, 2) != 8 || read_number(f, h + 6, 2)))
         return cw_fail(err, CW_ERR_FORMAT, "the header of this BigTIFF file is damaged");
     if (f->big)
-        *first = number(f, h + 8, 8);
+        *first = read_number(f, h + 8, 8);
     return *first ? CW_OK : cw_fail(err, CW_ERR_FORMAT, "the file has no directory");
 }
 
@@ -176,10 +177,10 @@ static const unsigned char *find_tag(const cwi_tiff_file *f, uint32_t directory,
     *t = (tags){.at = at + head};
     if (!read_at(f, at, bytes, head))
         return NULL;
-    t->count = number(f, bytes, head);
+    t->count = read_number(f, bytes, head);
     for (const unsigned char *entry; (entry = next_tag(f, t));)
-        if (number(f, entry, 2) == tag && number(f, entry + 2, 2) == type &&
-            number(f, entry + 4, word) == 1)
+        if (read_number(f, entry, 2) == tag && read_number(f, entry + 2, 2) == type &&
+            read_number(f, entry + 4, word) == 1)
             return entry + 4 + word;
     return NULL;
 }
@@ -188,7 +189,7 @@ uint16_t cwi_tiff_short(const cwi_tiff_file *f, uint32_t directory, uint16_t tag
 {
     tags t;
     const unsigned char *value = find_tag(f, directory, tag, SHORT, &t);
-    return value ? (uint16_t)number(f, value, 2) : 0;
+    return value ? (uint16_t)read_number(f, value, 2) : 0;
 }
 
 bool cwi_tiff_rational(const cwi_tiff_file *f, uint16_t tag, double *value)
@@ -197,9 +198,9 @@ bool cwi_tiff_rational(const cwi_tiff_file *f, uint16_t tag, double *value)
     unsigned char bytes[8];
     const unsigned char *at = find_tag(f, 0, tag, RATIONAL, &t);
     if (at && !f->big)
-        at = read_at(f, number(f, at, 4), bytes, 8) ? bytes : NULL;
+        at = read_at(f, read_number(f, at, 4), bytes, 8) ? bytes : NULL;
     if (at)
-        *value = (double)number(f, at, 4) / (double)number(f, at + 4, 4);
+        *value = (double)read_number(f, at, 4) / (double)read_number(f, at + 4, 4);
     return at != NULL;
 }
 
@@ -220,7 +221,7 @@ cw_status cwi_tiff_walk(cwi_tiff_file *f, cw_error *err)
             return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the places of pages");
         if ((f->offset_count & (f->offset_count - 1)) == 0)
             mark = at;
-        st = pass(f, &at, f->offset_count, err);
+        st = pass_directory(f, &at, f->offset_count, err);
     }
     return st;
 }

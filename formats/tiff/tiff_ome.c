@@ -31,7 +31,7 @@ typedef struct parsing {
 
 typedef const XML_Char *const *attributes;
 
-static const char *find(attributes a, const char *name)
+static const char *find_attribute(attributes a, const char *name)
 {
     for (; a[0]; a += 2)
         if (strcmp(a[0], name) == 0)
@@ -40,9 +40,9 @@ static const char *find(attributes a, const char *name)
 }
 
 /* A whole number from 0 on; false where there is another thing. */
-static bool whole(attributes a, const char *name, uint32_t otherwise, uint32_t *value)
+static bool parse_whole(attributes a, const char *name, uint32_t otherwise, uint32_t *value)
 {
-    const char *text = find(a, name);
+    const char *text = find_attribute(a, name);
     int64_t n;
     *value = otherwise;
     if (!text)
@@ -74,8 +74,9 @@ static cw_status read_sizes(parsing *p, attributes a)
 {
     const cwi_tiff_facts *f = p->facts;
     uint32_t x, y, z, c, t;
-    if (!whole(a, "SizeX", 0, &x) || !whole(a, "SizeY", 0, &y) || !whole(a, "SizeZ", 0, &z) ||
-        !whole(a, "SizeC", 0, &c) || !whole(a, "SizeT", 0, &t))
+    if (!parse_whole(a, "SizeX", 0, &x) || !parse_whole(a, "SizeY", 0, &y) ||
+        !parse_whole(a, "SizeZ", 0, &z) || !parse_whole(a, "SizeC", 0, &c) ||
+        !parse_whole(a, "SizeT", 0, &t))
         return cw_fail(p->err, CW_ERR_FORMAT, "the OME-XML has a size that is not a number");
     if (x != f->columns || y != f->rows)
         return cw_fail(p->err, CW_ERR_FORMAT,
@@ -101,7 +102,7 @@ static cw_status read_length(parsing *p, attributes a, int n)
     static const char *const names[3][2] = {{"PhysicalSizeX", "PhysicalSizeXUnit"},
                                             {"PhysicalSizeY", "PhysicalSizeYUnit"},
                                             {"PhysicalSizeZ", "PhysicalSizeZUnit"}};
-    const char *text = find(a, names[n][0]), *unit = find(a, names[n][1]);
+    const char *text = find_attribute(a, names[n][0]), *unit = find_attribute(a, names[n][1]);
     double value;
     if (!text)
         return CW_OK;
@@ -116,9 +117,10 @@ static cw_status read_length(parsing *p, attributes a, int n)
 
 static cw_status read_pixels(parsing *p, attributes a)
 {
-    const char *step = find(a, "TimeIncrement"), *unit = find(a, "TimeIncrementUnit");
+    const char *step = find_attribute(a, "TimeIncrement"),
+               *unit = find_attribute(a, "TimeIncrementUnit");
     double value;
-    cw_status st = read_order(p, find(a, "DimensionOrder"));
+    cw_status st = read_order(p, find_attribute(a, "DimensionOrder"));
     if (st == CW_OK)
         st = read_sizes(p, a);
     for (int n = 0; st == CW_OK && n < 3; n++)
@@ -137,17 +139,17 @@ static uint32_t plane_count(const parsing *p)
     return p->size[AXIS_Z] * p->size[AXIS_C] * p->size[AXIS_T];
 }
 
-static int compare(const void *a, const void *b)
+static int compare_places(const void *a, const void *b)
 {
     const uint32_t x = *(const uint32_t *)a, y = *(const uint32_t *)b;
     return (x > y) - (x < y);
 }
 
-static cw_status place(parsing *p, uint32_t directory, const uint32_t at[AXIS_COUNT])
+static cw_status place_page(parsing *p, uint32_t directory, const uint32_t at[AXIS_COUNT])
 {
     const cwi_tiff_file *f = p->file;
     const uint32_t *page =
-        bsearch(&directory, f->pages, f->page_count, sizeof *f->pages, compare);
+        bsearch(&directory, f->pages, f->page_count, sizeof *f->pages, compare_places);
     if (!page)
         return cw_fail(
             p->err, CW_ERR_FORMAT,
@@ -178,7 +180,7 @@ static cw_status place_all(parsing *p, uint32_t directory, uint32_t at[AXIS_COUN
                            "sizes of %u, %u, %u",
                            at[AXIS_Z], at[AXIS_C], at[AXIS_T], p->size[AXIS_Z], p->size[AXIS_C],
                            p->size[AXIS_T]);
-        st = place(p, directory + i, at);
+        st = place_page(p, directory + i, at);
         for (int n = 0; n < AXIS_COUNT && ++at[p->axes[n]] == p->size[p->axes[n]]; n++)
             if (n < AXIS_COUNT - 1)
                 at[p->axes[n]] = 0;
@@ -189,10 +191,10 @@ static cw_status place_all(parsing *p, uint32_t directory, uint32_t at[AXIS_COUN
 static cw_status read_data(parsing *p, attributes a)
 {
     uint32_t directory, count, at[AXIS_COUNT];
-    const uint32_t usual = find(a, "IFD") ? 1 : plane_count(p);
-    if (!whole(a, "IFD", 0, &directory) || !whole(a, "PlaneCount", usual, &count) ||
-        !whole(a, "FirstZ", 0, &at[AXIS_Z]) || !whole(a, "FirstC", 0, &at[AXIS_C]) ||
-        !whole(a, "FirstT", 0, &at[AXIS_T]))
+    const uint32_t usual = find_attribute(a, "IFD") ? 1 : plane_count(p);
+    if (!parse_whole(a, "IFD", 0, &directory) || !parse_whole(a, "PlaneCount", usual, &count) ||
+        !parse_whole(a, "FirstZ", 0, &at[AXIS_Z]) ||
+        !parse_whole(a, "FirstC", 0, &at[AXIS_C]) || !parse_whole(a, "FirstT", 0, &at[AXIS_T]))
         return cw_fail(p->err, CW_ERR_FORMAT, "a 'TiffData' of the OME-XML has no numbers");
     at[AXIS_C] /= p->facts->samples;
     return place_all(p, directory, at, count);
@@ -200,7 +202,7 @@ static cw_status read_data(parsing *p, attributes a)
 
 static cw_status read_name(parsing *p, attributes a)
 {
-    const char *name = find(a, "FileName");
+    const char *name = find_attribute(a, "FileName");
     if (!name)
         return CW_OK;
     if (!p->name[0])
@@ -235,7 +237,7 @@ static cw_status open_element(parsing *p, const char *name, attributes a)
     return strcmp(name, "UUID") == 0 && inside ? read_name(p, a) : CW_OK;
 }
 
-static void stop(parsing *p, cw_status status)
+static void stop_parsing(parsing *p, cw_status status)
 {
     p->status = status;
     XML_StopParser(p->expat, XML_FALSE);
@@ -253,7 +255,7 @@ static void XMLCALL on_start(void *user, const XML_Char *name, const XML_Char **
     else
         st = open_element(p, colon ? colon + 1 : name, (attributes)a);
     if (st != CW_OK)
-        stop(p, st);
+        stop_parsing(p, st);
 }
 
 static void XMLCALL on_end(void *user, const XML_Char *name)
@@ -268,8 +270,8 @@ static void XMLCALL on_doctype(void *user, const XML_Char *name, const XML_Char 
 {
     parsing *p = user;
     (void)name, (void)system, (void)public_id, (void)internal;
-    stop(p, cw_fail(p->err, CW_ERR_UNSAFE,
-                    "the OME-XML has a document type (<!DOCTYPE>); none is read"));
+    stop_parsing(p, cw_fail(p->err, CW_ERR_UNSAFE,
+                            "the OME-XML has a document type (<!DOCTYPE>); none is read"));
 }
 
 /* --- the document ------------------------------------------------------------------------- */
@@ -296,7 +298,7 @@ static cw_status fail_xml(const parsing *p)
 }
 
 /* Everything must have its page. */
-static cw_status finish(parsing *p)
+static cw_status finish_parsing(parsing *p)
 {
     uint32_t first[AXIS_COUNT] = {0, 0, 0};
     cw_status st = CW_OK;
@@ -339,5 +341,5 @@ cw_status cwi_tiff_ome(const cwi_tiff_file *f, const char *xml, cwi_tiff_facts *
             st = fail_xml(&p);
     }
     XML_ParserFree(p.expat);
-    return st == CW_OK ? finish(&p) : st;
+    return st == CW_OK ? finish_parsing(&p) : st;
 }

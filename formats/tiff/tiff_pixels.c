@@ -118,8 +118,8 @@ static cw_status check_decoded(const cwi_tiff_file *f, tmsize_t got, size_t want
 }
 
 /* A strip or tile. */
-static cw_status decode(cwi_tiff_file *f, uint32_t n, unsigned char *to, size_t bytes,
-                        size_t row_bytes, cw_error *err)
+static cw_status decode_strip(cwi_tiff_file *f, uint32_t n, unsigned char *to, size_t bytes,
+                              size_t row_bytes, cw_error *err)
 {
     cw_error why = {0};
     cwi_tiff_listen(f);
@@ -177,8 +177,9 @@ static cw_status decode_band(cwi_tiff_file *f, uint32_t band, cw_error *err)
     cw_status st = cwi_tiff_make_room(&f->pixels, &f->pixel_room, plane * l->planes, err);
     for (uint16_t p = 0; st == CW_OK && p < l->planes; p++) {
         const uint32_t first = (p * l->bands + band) * across;
-        st = l->tiled ? decode_tiles(f, first, rows, f->pixels + p * plane, err)
-                      : decode(f, first, f->pixels + p * plane, plane, l->stored_row, err);
+        st = l->tiled
+                 ? decode_tiles(f, first, rows, f->pixels + p * plane, err)
+                 : decode_strip(f, first, f->pixels + p * plane, plane, l->stored_row, err);
     }
     if (st == CW_OK)
         f->band = band;
@@ -209,8 +210,8 @@ static void unpack_bits(const unsigned char *bits, size_t count, unsigned char *
         to[i * step] = bits[i / 8] >> (7 - i % 8) & 1;
 }
 
-static void spread(const unsigned char *from, size_t count, size_t size, unsigned char *to,
-                   size_t step)
+static void spread_samples(const unsigned char *from, size_t count, size_t size,
+                           unsigned char *to, size_t step)
 {
     for (size_t i = 0; i < count; i++)
         memcpy(to + i * step * size, from + i * size, size);
@@ -226,7 +227,7 @@ static void turn_round(const cwi_tiff_layout *l, unsigned char *row)
             row[b] ^= mask;
 }
 
-static void mirror(const cwi_tiff_layout *l, unsigned char *row)
+static void mirror_row(const cwi_tiff_layout *l, unsigned char *row)
 {
     const size_t size = l->samples * cw_type_size(l->type);
     unsigned char kept[MOST_PIXEL];
@@ -247,14 +248,14 @@ static void put_row(const cwi_tiff_layout *l, const unsigned char *stored, size_
         if (l->bits == 1)
             unpack_bits(stored, count, to + p, l->planes);
         else if (l->planes > 1)
-            spread(stored, count, size, to + p * size, l->planes);
+            spread_samples(stored, count, size, to + p * size, l->planes);
         else
             memcpy(to, stored, l->stored_row);
     }
     if (l->turned)
         turn_round(l, to);
     if (is_mirrored(l))
-        mirror(l, to);
+        mirror_row(l, to);
 }
 
 /* The stored rows from one on into memory, as many as come in one go. */
@@ -284,7 +285,7 @@ static cw_status read_piece(cwi_tiff_file *f, uint32_t row, uint32_t most,
 }
 
 /* A whole strip that needs nothing done to it goes straight to its place. */
-static bool fits(const cwi_tiff_layout *l, uint32_t row, uint32_t end)
+static bool rows_fit(const cwi_tiff_layout *l, uint32_t row, uint32_t end)
 {
     return is_plain(l) && !l->tiled && row % l->band_rows == 0 &&
            rows_of_band(l, row / l->band_rows) <= end - row;
@@ -301,10 +302,10 @@ cw_status cwi_tiff_rows(cwi_tiff_file *f, uint32_t first, uint32_t count, unsign
     for (uint32_t row = from, n; st == CW_OK && row < end; row += n) {
         const unsigned char *stored;
         size_t plane;
-        if (fits(l, row, end)) {
+        if (rows_fit(l, row, end)) {
             n = rows_of_band(l, row / l->band_rows);
-            st = decode(f, row / l->band_rows, to + (row - from) * l->row, n * l->row, l->row,
-                        err);
+            st = decode_strip(f, row / l->band_rows, to + (row - from) * l->row, n * l->row,
+                              l->row, err);
             continue;
         }
         st = read_piece(f, row, end - row, &stored, &plane, &n, err);

@@ -324,7 +324,7 @@ static cw_status find_places(const slices *s, double *places, cw_error *err)
     return CW_OK;
 }
 
-static cw_status lay(const slices *s, cwi_slices *laid, cw_error *err)
+static cw_status lay_slices(const slices *s, cwi_slices *laid, cw_error *err)
 {
     double *places = cwi_alloc_array(s->files.count, sizeof *places);
     if (!places)
@@ -344,7 +344,7 @@ static cw_status lay(const slices *s, cwi_slices *laid, cw_error *err)
 static cw_status stack_files(slices *s, cwi_stack *stack, cw_error *err)
 {
     cwi_slices laid = {0};
-    cw_status st = lay(s, &laid, err);
+    cw_status st = lay_slices(s, &laid, err);
     if (st == CW_OK)
         st = make_room(stack, s->files.count, laid.count, err);
     for (size_t i = 0; st == CW_OK && i < s->files.count; i++)

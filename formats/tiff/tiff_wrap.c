@@ -52,7 +52,7 @@ static toff_t on_size(thandle_t handle)
 
 /* The first error counts, else the first warning. */
 CW_PRINTF(3, 0)
-static int complain(cwi_tiff_file *f, int how, const char *format, va_list arguments)
+static int keep_complaint(cwi_tiff_file *f, int how, const char *format, va_list arguments)
 {
     if (how > f->complained)
         vsnprintf(f->complaint, sizeof f->complaint, format, arguments);
@@ -66,7 +66,7 @@ static int on_error(TIFF *tiff, void *user, const char *module, const char *form
                     va_list arguments)
 {
     (void)tiff, (void)module;
-    return complain(user, 2, format, arguments);
+    return keep_complaint(user, 2, format, arguments);
 }
 
 /* A form of LZW from before TIFF 6 is read as well as today's. Where 'StripByteCounts' are
@@ -78,8 +78,8 @@ static int on_warning(TIFF *tiff, void *user, const char *module, const char *fo
     (void)tiff, (void)module;
     if (strstr(format, "Old-style LZW"))
         return 1;
-    return complain(user, strstr(format, "field, ignoring and calculating") ? 2 : 1, format,
-                    arguments);
+    return keep_complaint(user, strstr(format, "field, ignoring and calculating") ? 2 : 1,
+                          format, arguments);
 }
 
 void cwi_tiff_listen(cwi_tiff_file *f)
@@ -458,7 +458,8 @@ static cw_status copy_rows(cwi_tiff_file *f, const cwi_plane_request *q, void *s
     return cwi_tiff_rows(f, q->first_row, q->row_count, shared, err);
 }
 
-static cw_status work(void *state, int fd, const void *request, void *shared, cw_error *err)
+static cw_status work_on_request(void *state, int fd, const void *request, void *shared,
+                                 cw_error *err)
 {
     cwi_tiff_file *f = state;
     cwi_plane_request q;
@@ -483,4 +484,4 @@ static void state_free(void *state)
     cwi_free(state);
 }
 
-const cwi_plane_functions cwi_module_tiff = {state_new, state_free, NULL, work};
+const cwi_plane_functions cwi_module_tiff = {state_new, state_free, NULL, work_on_request};

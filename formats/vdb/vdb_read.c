@@ -21,7 +21,7 @@ bool cwi_vdb_sniff(const unsigned char *head, size_t size)
 /* --- which grid --------------------------------------------------------------------------- */
 
 /* What is printed of a stranger's text. */
-static void clean(char *text, size_t room)
+static void clean_text(char *text, size_t room)
 {
     text[room - 1] = '\0';
     for (char *c = text; *c; c++)
@@ -41,9 +41,9 @@ static cw_status take_facts(cwi_planes *planes, const cwi_input *in, cwi_vdb_fac
         return cw_fail(err, CW_ERR_LIMIT, "it has %u grids; at most %d were expected",
                        facts->grid_count, CWI_VDB_MOST_GRIDS);
     for (cwi_vdb_grid *g = facts->grid; g < facts->grid + facts->grid_count; g++) {
-        clean(g->name, sizeof g->name);
-        clean(g->kind, sizeof g->kind);
-        clean(g->refusal, sizeof g->refusal);
+        clean_text(g->name, sizeof g->name);
+        clean_text(g->kind, sizeof g->kind);
+        clean_text(g->refusal, sizeof g->refusal);
     }
     return CW_OK;
 }
@@ -60,7 +60,8 @@ static const char *list_names(const cwi_vdb_facts *f, char text[256])
 }
 
 /* The grid of a name, or the first level set, else the first that can be read. */
-static cw_status choose(const cwi_vdb_facts *f, const char *name, size_t *chosen, cw_error *err)
+static cw_status choose_grid(const cwi_vdb_facts *f, const char *name, size_t *chosen,
+                             cw_error *err)
 {
     char names[256];
     size_t best = f->grid_count;
@@ -99,7 +100,7 @@ static void list_grids(const cwi_vdb_facts *f, size_t chosen, cwi_array_list *li
     cwi_array_list_choose(list, f->grid[chosen].name, false);
 }
 
-static void tell(const cw_read_desc *desc, const cwi_vdb_facts *f, const cwi_vdb_grid *g)
+static void tell_choice(const cw_read_desc *desc, const cwi_vdb_facts *f, const cwi_vdb_grid *g)
 {
     char names[256];
     cwi_note(desc,
@@ -208,7 +209,7 @@ static cw_status read_chosen(cwi_planes *planes, const cwi_input *in, const cwi_
 {
     size_t number = 0;
     cw_volume v = {0};
-    cw_status st = choose(f, desc->array, &number, err);
+    cw_status st = choose_grid(f, desc->array, &number, err);
     const cwi_vdb_grid *g = &f->grid[number];
     const uint32_t plane = (uint32_t)number * CWI_VDB_PLANES;
     if (st == CW_OK)
@@ -218,7 +219,7 @@ static cw_status read_chosen(cwi_planes *planes, const cwi_input *in, const cwi_
     if (st == CW_OK && in->arrays)
         list_grids(f, number, in->arrays);
     if (st == CW_OK)
-        tell(desc, f, g);
+        tell_choice(desc, f, g);
     if (st == CW_OK)
         st = make_grid(g, desc->header_only, &v, err);
     if (st == CW_OK && desc->region)

@@ -30,8 +30,8 @@ static cw_status find_end(cwi_corner_list *list, size_t *out, cw_error *err)
 }
 
 /* Takes the corners of a cell that has so many. */
-static cw_status take(const cwi_corner_list *list, const cwi_cell_kind *kind, size_t there,
-                      size_t base, uint32_t *to, cw_error *err)
+static cw_status take_corners(const cwi_corner_list *list, const cwi_cell_kind *kind,
+                              size_t there, size_t base, uint32_t *to, cw_error *err)
 {
     static const uint8_t in_rows[8] = {0, 1, 3, 2, 4, 5, 7, 6};
     const size_t wanted = cwi_shape_corners(kind->shape);
@@ -59,7 +59,7 @@ cw_status cwi_corner_list_next(cwi_corner_list *list, uint8_t type, size_t base,
     *count = 0;
     cw_status st = find_end(list, &end, err);
     if (st == CW_OK && type != CWI_VTK_EMPTY) {
-        st = take(list, kind, end - list->at, base, to, err);
+        st = take_corners(list, kind, end - list->at, base, to, err);
         *count = cwi_shape_corners(kind->shape);
     }
     list->at = end;

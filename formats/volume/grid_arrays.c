@@ -46,7 +46,7 @@ void cwi_tuples_free(cwi_tuples *t)
     *t = (cwi_tuples){.count = 0};
 }
 
-static int64_t joined(const cwi_tuples *t, size_t n)
+static int64_t join_words(const cwi_tuples *t, size_t n)
 {
     int64_t number;
     memcpy(&number, (const char *)t->data.data + n * sizeof number, sizeof number);
@@ -58,14 +58,14 @@ double cwi_tuples_real(const cwi_tuples *t, size_t i, size_t component)
     const cw_volume *v = &t->data;
     const ptrdiff_t at =
         (ptrdiff_t)i * v->stride[0] + (ptrdiff_t)component * v->component_stride;
-    return t->wide ? (double)joined(t, i * t->components + component)
+    return t->wide ? (double)join_words(t, i * t->components + component)
                    : cwi_voxel_at(v->type, (const char *)v->data + at);
 }
 
 int64_t cwi_tuples_whole(const cwi_tuples *t, size_t i)
 {
     if (t->wide)
-        return joined(t, i * t->components);
+        return join_words(t, i * t->components);
     const double value = cwi_tuples_real(t, i, 0);
     return fabs(value) < 0x1p53 ? (int64_t)value : -1;
 }

@@ -57,31 +57,31 @@ static cw_status take_bytes(building *b, uint64_t bytes, cw_error *err)
                    asked, limit);
 }
 
-static cw_status describe(const building *b, size_t piece, cwi_grid_role role, size_t count,
-                          cwi_source *src, bool *wide, cw_error *err)
+static cw_status describe_array(const building *b, size_t piece, cwi_grid_role role,
+                                size_t count, cwi_source *src, bool *wide, cw_error *err)
 {
     return b->g->describe(b->g->file, piece, role, count, src, wide, err);
 }
 
 /* Of one array as part of all. Corners are counted only when they are read. */
-static bool report(void *user, const char *step, double done)
+static bool report_progress(void *user, const char *step, double done)
 {
     const building *b = user;
     const cw_progress *p = &b->desc->progress;
     return p->report(p->user, step, fmin((b->done + done * b->now) / b->total, 1));
 }
 
-static cw_status load(building *b, size_t piece, cwi_grid_role role, size_t count,
-                      cwi_tuples *t, cw_error *err)
+static cw_status load_array(building *b, size_t piece, cwi_grid_role role, size_t count,
+                            cwi_tuples *t, cw_error *err)
 {
     const bool reports = b->desc->progress.report;
-    const cw_read_desc desc = {.progress = {reports ? report : NULL, b}};
+    const cw_read_desc desc = {.progress = {reports ? report_progress : NULL, b}};
     cwi_source src = {0};
     bool wide;
     *t = (cwi_tuples){.count = 0};
     if (count == 0)
         return CW_OK;
-    cw_status st = describe(b, piece, role, count, &src, &wide, err);
+    cw_status st = describe_array(b, piece, role, count, &src, &wide, err);
     if (st == CW_OK)
         st = take_bytes(b, src.bytes, err);
     b->now = (double)src.bytes;
@@ -92,7 +92,7 @@ static cw_status load(building *b, size_t piece, cwi_grid_role role, size_t coun
     return st;
 }
 
-static void drop(building *b, cwi_tuples *t)
+static void drop_array(building *b, cwi_tuples *t)
 {
     b->bytes -= t->bytes;
     cwi_tuples_free(t);
@@ -107,7 +107,7 @@ static cw_status check_array(building *b, size_t piece, cwi_grid_role role, size
     bool wide;
     if (count == 0)
         return CW_OK;
-    cw_status st = describe(b, piece, role, count, &src, &wide, err);
+    cw_status st = describe_array(b, piece, role, count, &src, &wide, err);
     if (st == CW_OK)
         st = cwi_source_load(&src, b->in, &(cw_read_desc){.header_only = true}, &shape, err);
     b->total += (double)src.bytes;
@@ -204,7 +204,7 @@ static cw_status read_types(building *b, size_t piece, uint8_t *types, cw_error 
         memset(types, CWI_VTK_HEXAHEDRON, p->cells);
         return CW_OK;
     }
-    cw_status st = load(b, piece, CWI_GRID_TYPES, p->cells, &t, err);
+    cw_status st = load_array(b, piece, CWI_GRID_TYPES, p->cells, &t, err);
     for (size_t n = 0; n < p->cells && st == CW_OK; n++) {
         const int64_t type = cwi_tuples_whole(&t, n);
         st = count_shape(b, n, type, err);
@@ -212,7 +212,7 @@ static cw_status read_types(building *b, size_t piece, uint8_t *types, cw_error 
                        ? (uint8_t)type
                        : CWI_VTK_EMPTY;
     }
-    drop(b, &t);
+    drop_array(b, &t);
     return st;
 }
 
@@ -230,13 +230,13 @@ static cw_status apply_marks(building *b, size_t piece, uint8_t *types, cw_error
     const bool points = p->has_point_marks && is_curvilinear(p);
     cwi_tuples t[2] = {0};
     cw_status st =
-        load(b, piece, CWI_GRID_CELL_MARKS, p->has_cell_marks ? p->cells : 0, &t[0], err);
+        load_array(b, piece, CWI_GRID_CELL_MARKS, p->has_cell_marks ? p->cells : 0, &t[0], err);
     for (size_t n = 0; n < t[0].count && st == CW_OK; n++)
         if (cwi_tuples_whole(&t[0], n) & LEFT_OUT_CELL)
             leave_out(b, &types[n]);
-    drop(b, &t[0]);
+    drop_array(b, &t[0]);
     if (st == CW_OK)
-        st = load(b, piece, CWI_GRID_POINT_MARKS, points ? p->points : 0, &t[1], err);
+        st = load_array(b, piece, CWI_GRID_POINT_MARKS, points ? p->points : 0, &t[1], err);
     for (size_t n = 0; points && n < p->cells && st == CW_OK; n++) {
         size_t corners[8];
         find_corners(p, n, corners);
@@ -244,7 +244,7 @@ static cw_status apply_marks(building *b, size_t piece, uint8_t *types, cw_error
             if (cwi_tuples_whole(&t[1], corners[c]) & HIDDEN_POINT)
                 leave_out(b, &types[n]);
     }
-    drop(b, &t[1]);
+    drop_array(b, &t[1]);
     return st;
 }
 
@@ -350,7 +350,7 @@ static bool is_moderate(double x)
 static cw_status read_points(building *b, size_t piece, size_t first, cw_error *err)
 {
     cwi_tuples t;
-    cw_status st = load(b, piece, CWI_GRID_POINTS, b->g->pieces[piece].points, &t, err);
+    cw_status st = load_array(b, piece, CWI_GRID_POINTS, b->g->pieces[piece].points, &t, err);
     double *to = b->at + 3 * first;
     for (size_t n = 0; n < t.count && st == CW_OK; n++)
         for (size_t a = 0; a < 3; a++) {
@@ -362,7 +362,7 @@ static cw_status read_points(building *b, size_t piece, size_t first, cw_error *
                              n, x);
             *to++ = x + 0.0; /* no negative zeros, so that equal places are equal bits */
         }
-    drop(b, &t);
+    drop_array(b, &t);
     return st;
 }
 
@@ -373,12 +373,13 @@ static cw_status load_corners(building *b, size_t piece, cwi_corner_list *list, 
     *list = (cwi_corner_list){
         .counted = p->listed, .points = p->points, .point_field = b->g->point_field};
     cw_status st =
-        load(b, piece, CWI_GRID_ENDS, list->counted ? 0 : p->cells, &list->ends, err);
+        load_array(b, piece, CWI_GRID_ENDS, list->counted ? 0 : p->cells, &list->ends, err);
     if (st == CW_OK && list->ends.count) {
         const int64_t last = cwi_tuples_whole(&list->ends, list->ends.count - 1);
         count = last > 0 ? (size_t)last : 0;
     }
-    return st == CW_OK ? load(b, piece, CWI_GRID_CORNERS, count, &list->numbers, err) : st;
+    return st == CW_OK ? load_array(b, piece, CWI_GRID_CORNERS, count, &list->numbers, err)
+                       : st;
 }
 
 /* Corners of one piece's cells that stay, to be put at *to, which is moved on. base is the
@@ -394,8 +395,8 @@ static cw_status read_corners(building *b, size_t piece, const uint8_t *types, s
         st = cwi_corner_list_next(&list, types[n], base, *to, &count, err);
         *to += count;
     }
-    drop(b, &list.ends);
-    drop(b, &list.numbers);
+    drop_array(b, &list.ends);
+    drop_array(b, &list.numbers);
     return st;
 }
 
@@ -456,11 +457,11 @@ static cw_status read_values(building *b, cw_error *err)
     for (size_t n = 0; n < b->g->piece_count && st == CW_OK; n++) {
         cwi_tuples t;
         const size_t bytes = value_bytes(b) * b->g->pieces[n].points;
-        st = load(b, n, CWI_GRID_VALUES, b->g->pieces[n].points, &t, err);
+        st = load_array(b, n, CWI_GRID_VALUES, b->g->pieces[n].points, &t, err);
         if (st == CW_OK && bytes)
             memcpy(to, t.data.data, bytes);
         to += bytes;
-        drop(b, &t);
+        drop_array(b, &t);
     }
     return st;
 }
@@ -490,7 +491,7 @@ static cw_status add_values(building *b, uint32_t *around, cw_error *err)
     cw_status st = CW_OK;
     for (size_t n = 0; n < g->piece_count && st == CW_OK; types += g->pieces[n++].cells) {
         cwi_tuples t;
-        st = load(b, n, CWI_GRID_VALUES, g->pieces[n].cells, &t, err);
+        st = load_array(b, n, CWI_GRID_VALUES, g->pieces[n].cells, &t, err);
         for (size_t c = 0; c < t.count && st == CW_OK; c++) {
             if (types[c] == CWI_VTK_EMPTY)
                 continue;
@@ -498,7 +499,7 @@ static cw_status add_values(building *b, uint32_t *around, cw_error *err)
             add_value(b, &t, c, corners, count, around);
             corners += count;
         }
-        drop(b, &t);
+        drop_array(b, &t);
     }
     return st;
 }

@@ -4,7 +4,7 @@
 
 #include <string.h>
 
-static uint64_t mix(uint64_t hash, const void *bytes, size_t size)
+static uint64_t mix_hash(uint64_t hash, const void *bytes, size_t size)
 {
     const unsigned char *at = bytes;
     for (size_t i = 0; i < size; i += sizeof hash) {
@@ -29,12 +29,12 @@ bool cwi_samples_map(const double *points, const void *values, size_t value_byte
         return false;
     /* Hashes start from that of all points, so that no file can be made of samples that share
      * one. */
-    const uint64_t seed = mix(0, points, count * point_bytes);
+    const uint64_t seed = mix_hash(0, points, count * point_bytes);
     *same = 0;
     for (size_t n = 0; n < count; n++) {
         const double *point = points + 3 * n;
         const uint64_t hash =
-            mix(mix(seed, point, point_bytes), value + n * value_bytes, value_bytes);
+            mix_hash(mix_hash(seed, point, point_bytes), value + n * value_bytes, value_bytes);
         size_t slot = hash & (slots - 1), there = n;
         for (; table[slot]; slot = (slot + 1) & (slots - 1)) {
             const size_t other = table[slot] - 1;

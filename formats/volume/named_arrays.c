@@ -5,7 +5,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static cw_array *find(cwi_array_list *list, const char *name, bool of_cells)
+static cw_array *find_array(cwi_array_list *list, const char *name, bool of_cells)
 {
     for (size_t n = 0; n < list->count; n++)
         if (list->items[n].of_cells == of_cells && strcmp(list->items[n].name, name) == 0)
@@ -13,7 +13,7 @@ static cw_array *find(cwi_array_list *list, const char *name, bool of_cells)
     return NULL;
 }
 
-static cw_array *grow(cwi_array_list *list)
+static cw_array *grow_list(cwi_array_list *list)
 {
     if (list->count == list->capacity) {
         const size_t capacity = list->capacity ? 2 * list->capacity : 8;
@@ -30,9 +30,9 @@ static cw_array *grow(cwi_array_list *list)
 void cwi_array_list_add(cwi_array_list *list, const char *name, const char *type,
                         size_t components, bool of_cells, bool is_read)
 {
-    if (!list || find(list, name, of_cells))
+    if (!list || find_array(list, name, of_cells))
         return;
-    cw_array *array = grow(list);
+    cw_array *array = grow_list(list);
     if (!array)
         return;
     *array = (cw_array){.components = components, .of_cells = of_cells, .is_read = is_read};
@@ -42,7 +42,7 @@ void cwi_array_list_add(cwi_array_list *list, const char *name, const char *type
 
 void cwi_array_list_choose(cwi_array_list *list, const char *name, bool of_cells)
 {
-    cw_array *array = list ? find(list, name, of_cells) : NULL;
+    cw_array *array = list ? find_array(list, name, of_cells) : NULL;
     if (array)
         array->is_default = true;
 }

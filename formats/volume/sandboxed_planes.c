@@ -20,7 +20,7 @@ static atomic_bool *survived_of(const char *module)
     return &survived[n];
 }
 
-static cw_status load(cwi_planes *planes, cw_error *err)
+static cw_status load_module(cwi_planes *planes, cw_error *err)
 {
     const void *functions;
     cw_status st = cwi_module_load(planes->module, &functions, err);
@@ -30,10 +30,10 @@ static cw_status load(cwi_planes *planes, cw_error *err)
     return planes->functions->prepare ? planes->functions->prepare(err) : CW_OK;
 }
 
-static cw_status prepare(void *state, cw_error *err)
+static cw_status prepare_module(void *state, cw_error *err)
 {
     cwi_planes *planes = state;
-    cw_status st = load(planes, err);
+    cw_status st = load_module(planes, err);
     if (st != CW_OK)
         return st;
     planes->state = planes->functions->state_new();
@@ -42,7 +42,8 @@ static cw_status prepare(void *state, cw_error *err)
                : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the module %s", planes->module);
 }
 
-static cw_status work(void *state, int fd, const void *request, void *shared, cw_error *err)
+static cw_status work_on_request(void *state, int fd, const void *request, void *shared,
+                                 cw_error *err)
 {
     const cwi_planes *planes = state;
     return planes->functions->work(planes->state, fd, request, shared, err);
@@ -53,8 +54,8 @@ cw_status cwi_planes_open(cwi_planes *planes, const char *module, const char *li
 {
     *planes = (cwi_planes){.module = module};
     const cwi_sandbox_desc box = {.library = library,
-                                  .prepare = prepare,
-                                  .work = work,
+                                  .prepare = prepare_module,
+                                  .work = work_on_request,
                                   .state = planes,
                                   .shared_bytes = CWI_PLANES_SHARED,
                                   .memory = desc->max_bytes,
@@ -64,7 +65,7 @@ cw_status cwi_planes_open(cwi_planes *planes, const char *module, const char *li
      * second less */
     cw_status st = CW_OK;
     if (atomic_load(survived_of(module)) && !cwi_memory_is_limited())
-        st = load(planes, err);
+        st = load_module(planes, err);
     if (st == CW_OK)
         st = cwi_sandbox_open(&planes->box, &box, err);
     planes->box.progress = &desc->progress;

@@ -19,20 +19,20 @@ void cwi_slices_free(cwi_slices *slices)
     *slices = (cwi_slices){0};
 }
 
-static int compare(const void *a, const void *b)
+static int compare_places(const void *a, const void *b)
 {
     const double x = *(const double *)a, y = *(const double *)b;
     return (x > y) - (x < y);
 }
 
 /* The distances between neighbours, ascending; NULL: no memory. */
-static double *distances(const double *places, size_t count)
+static double *measure_distances(const double *places, size_t count)
 {
     double *d = cwi_alloc_array(count, sizeof *d);
     for (size_t i = 0; d && i + 1 < count; i++)
         d[i] = places[i + 1] - places[i];
     if (d)
-        qsort(d, count - 1, sizeof *d, compare);
+        qsort(d, count - 1, sizeof *d, compare_places);
     return d;
 }
 
@@ -133,7 +133,7 @@ cw_status cwi_slices_lay(const double *places, size_t count, const char *unit, c
     *slices = (cwi_slices){0};
     if (count < 3 || on_row(places, count, (double)(count - 1)))
         return lay_as_even(places, count, slices, err);
-    double *sorted = distances(places, count);
+    double *sorted = measure_distances(places, count);
     if (!sorted)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu slices", count);
     const double steps = find_row(places, count, sorted, unit, slices);

@@ -229,8 +229,8 @@ static void pack_strides(cw_volume *v, size_t slices, const size_t count[3])
 
 /* The shape of every n-th voxel of a box. In memory are `held` voxels: columns and rows are all
  * there, and every n-th slice. */
-static cw_status narrow(const cw_read_desc *desc, reading *r, size_t held[3], cw_volume *v,
-                        cw_error *err)
+static cw_status narrow_to_region(const cw_read_desc *desc, reading *r, size_t held[3],
+                                  cw_volume *v, cw_error *err)
 {
     const size_t slices = v->dim[2];
     size_t every[3];
@@ -258,7 +258,7 @@ cw_status cwi_stack_load(const cwi_stack *stack, const cwi_input *in, cwi_planes
     reading r = {.stack = stack, .in = in, .planes = planes, .file = SIZE_MAX};
     if (desc->region)
         r.box = *desc->region;
-    cw_status st = narrow(desc, &r, held, &v, err);
+    cw_status st = narrow_to_region(desc, &r, held, &v, err);
     if (st != CW_OK)
         return st;
     if (!count_bytes(&v, held, &bytes))

@@ -18,7 +18,7 @@
 
 enum { SLAB_BYTES = 1 << 20, MOST_COMPONENTS = 16 };
 
-static const char *noun(const cwi_source *src)
+static const char *name_source(const cwi_source *src)
 {
     return src->noun ? src->noun : "voxels";
 }
@@ -101,7 +101,7 @@ cw_status cwi_source_set_axes(cwi_source *src, const cwi_axis *axes, size_t coun
         if (!cwi_size_mul(bytes, axes[i].size, &bytes) || bytes > PTRDIFF_MAX)
             return cw_fail(err, CW_ERR_LIMIT,
                            "'%s' asks for more %s than an address space holds", src->size_field,
-                           noun(src));
+                           name_source(src));
     }
     if (sizes[CWI_AXIS_COMPONENT] > MOST_COMPONENTS)
         return cw_fail(err, CW_ERR_FORMAT,
@@ -228,7 +228,7 @@ static cw_status check_share(const cwi_source *src, part *p, cw_error *err)
     return cw_fail(err, CW_ERR_FORMAT,
                    "'%s' asks for %zu bytes of %s%s%s; the file holds %llu bytes behind the "
                    "first %llu",
-                   src->size_field, share, noun(src),
+                   src->size_field, share, name_source(src),
                    src->encoding == CWI_RAW ? "" : ", encoded",
                    src->files.count > 1 ? " in each file" : "", (unsigned long long)encoded,
                    (unsigned long long)p->start);
@@ -334,7 +334,7 @@ static cw_status take_blocks(reading *r, size_t most, size_t *got, cw_error *err
 }
 
 /* Puts the next voxels to their place: a portion, of at most so many bytes. */
-static cw_status take(reading *r, size_t most, size_t *got, cw_error *err)
+static cw_status take_bytes(reading *r, size_t most, size_t *got, cw_error *err)
 {
     const cwi_source *src = r->src;
     const size_t voxel = cw_type_size(src->shape.type);
@@ -352,7 +352,7 @@ static cw_status take(reading *r, size_t most, size_t *got, cw_error *err)
 }
 
 /* Leaves out the next voxels: a portion, of at most so many bytes. */
-static cw_status drop(reading *r, uint64_t most, size_t *got, cw_error *err)
+static cw_status drop_bytes(reading *r, uint64_t most, size_t *got, cw_error *err)
 {
     const cw_type type = r->src->shape.type;
     *got = most < SLAB_BYTES ? (size_t)most : SLAB_BYTES;
@@ -365,14 +365,14 @@ static cw_status drop(reading *r, uint64_t most, size_t *got, cw_error *err)
 }
 
 /* Takes or leaves out the next bytes of the part, portion by portion. */
-static cw_status pass(reading *r, uint64_t bytes, bool wanted, cw_error *err)
+static cw_status pass_bytes(reading *r, uint64_t bytes, bool wanted, cw_error *err)
 {
     cw_status st = CW_OK;
     while (st == CW_OK && bytes > 0) {
         size_t n = 0;
         st = cwi_progress(r->progress, "reading", (double)r->at / (double)r->runs.end, err);
         if (st == CW_OK)
-            st = wanted ? take(r, (size_t)bytes, &n, err) : drop(r, bytes, &n, err);
+            st = wanted ? take_bytes(r, (size_t)bytes, &n, err) : drop_bytes(r, bytes, &n, err);
         r->at += n;
         bytes -= n;
         if (wanted)
@@ -403,9 +403,9 @@ static cw_status read_runs(reading *r, uint64_t end, cw_error *err)
     while (st == CW_OK && r->runs.left > 0 && r->runs.next < end) {
         const uint64_t rest = end - r->runs.next;
         const uint64_t bytes = r->runs.left < rest ? r->runs.left : rest;
-        st = pass(r, r->runs.next - r->at, false, err);
+        st = pass_bytes(r, r->runs.next - r->at, false, err);
         if (st == CW_OK)
-            st = pass(r, bytes, true, err);
+            st = pass_bytes(r, bytes, true, err);
         cwi_runs_take(&r->runs, bytes);
     }
     return st == CW_OK && r->at == end ? cwi_stream_finish(&r->stream, err) : st;
@@ -415,7 +415,7 @@ static cw_status read_part(reading *r, const part *p, size_t index, cw_error *er
 {
     const uint64_t share = share_bytes(r->src);
     r->at = index * share;
-    r->numbers = (cwi_numbers){.stream = &r->stream, .noun = noun(r->src)};
+    r->numbers = (cwi_numbers){.stream = &r->stream, .noun = name_source(r->src)};
     cw_status st = open_stream(r->src, p, &r->stream, &r->blocks, err);
     if (st == CW_OK)
         st = read_runs(r, r->at + share, err);
@@ -484,8 +484,8 @@ cw_status cwi_check_limits(const cw_volume *v, size_t bytes, const char *field,
 }
 
 /* Sizes, place, strides and bytes of a region in place of those of the whole. */
-static cw_status narrow(const cwi_source *src, const cw_box *region, cwi_source *out,
-                        cw_error *err)
+static cw_status narrow_to_region(const cwi_source *src, const cw_box *region, cwi_source *out,
+                                  cw_error *err)
 {
     cwi_axis axes[CWI_ROLE_COUNT];
     cw_status st = cwi_volume_shrink(&out->shape, region, err);
@@ -548,7 +548,7 @@ static cw_status load_voxels(const cwi_source *src, const cwi_source *wanted,
     v.owned = cwi_alloc_large(wanted->bytes, 1);
     if (!v.owned)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu bytes of %s", wanted->bytes,
-                       noun(wanted));
+                       name_source(wanted));
     v.data = v.owned;
     reading r = {.src = src, .progress = &desc->progress, .to = v.owned};
     choose_steps(src, desc, step, &fastest);
@@ -571,7 +571,7 @@ cw_status cwi_source_load(const cwi_source *src, const cwi_input *in, const cw_r
     cwi_source wanted = *src; /* its files are borrowed */
     cw_status st = check_files(src, in, err);
     if (st == CW_OK && desc->region)
-        st = narrow(src, desc->region, &wanted, err);
+        st = narrow_to_region(src, desc->region, &wanted, err);
     if (st == CW_OK)
         st = thin_source(desc, &wanted, err);
     if (st == CW_OK)

@@ -49,7 +49,7 @@ static char *path_of(const cwi_input *in, const char *name)
     return path;
 }
 
-static cw_status add(parsing *p, const char *name, double time, cw_error *err)
+static cw_status add_entry(parsing *p, const char *name, double time, cw_error *err)
 {
     if (p->count == MOST_FILES)
         return cw_fail(err, CW_ERR_LIMIT, "more than %d files are listed", MOST_FILES);
@@ -87,7 +87,7 @@ static cw_status start_entry(void *user, cwi_xml *x, cwi_attributes a, cw_error 
     if (st != CW_OK)
         return cwi_fail_in(err, st, name);
     close(fd);
-    return add(p, name, time, err);
+    return add_entry(p, name, time, err);
 }
 
 enum { FILE_ROW, COLLECTION, DATA_SET, ELEMENT_COUNT };

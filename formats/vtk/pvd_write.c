@@ -12,7 +12,7 @@
 #include <stdlib.h>
 
 /* A path from the root on; its folder must be there. */
-static cw_status resolve(const char *path, char full[PATH_MAX], cw_error *err)
+static cw_status resolve_path(const char *path, char full[PATH_MAX], cw_error *err)
 {
     char folder[PATH_MAX];
     const char *slash = strrchr(path, '/'), *name = slash ? slash + 1 : path;
@@ -31,8 +31,8 @@ static cw_status resolve(const char *path, char full[PATH_MAX], cw_error *err)
 }
 
 /* The path of a file as seen from the folder that another one is in; both from the root on. */
-static cw_status relate(const char *from, const char *file, char related[PATH_MAX],
-                        cw_error *err)
+static cw_status relate_path(const char *from, const char *file, char related[PATH_MAX],
+                             cw_error *err)
 {
     size_t shared = 0, used = 0;
     for (size_t i = 0; from[i] && from[i] == file[i]; i++)
@@ -57,9 +57,9 @@ static cw_status write_entry(cwi_outfile *file, const char *path, const cw_pvd_e
     char time[CWI_NUMBER_BYTES];
     if (!isfinite(e->time))
         return cw_fail(err, CW_ERR_ARGUMENT, "the time of '%.200s' is not finite", e->path);
-    cw_status st = resolve(e->path, full, err);
+    cw_status st = resolve_path(e->path, full, err);
     if (st == CW_OK)
-        st = relate(path, full, related, err);
+        st = relate_path(path, full, related, err);
     if (st != CW_OK)
         return st;
     cwi_xml_escape(related, escaped, sizeof escaped);
@@ -74,7 +74,7 @@ static cw_status write_entries(cwi_outfile *file, const char *path, const cw_pvd
 {
     char full[PATH_MAX];
     size_t part = 0;
-    cw_status st = resolve(path, full, err);
+    cw_status st = resolve_path(path, full, err);
     if (st == CW_OK)
         st = cwi_outfile_printf(file, err,
                                 "<?xml version=\"1.0\"?>\n<!-- cubewright %s -->\n"

@@ -6,8 +6,8 @@
 #include <stdio.h>
 #include <string.h>
 
-static cw_status numbers(cwi_attributes a, const char *name, size_t count, double *out,
-                         cw_error *err)
+static cw_status parse_numbers(cwi_attributes a, const char *name, size_t count, double *out,
+                               cw_error *err)
 {
     const char *value = cwi_attribute(a, name);
     return value ? cwi_field_doubles(name, value, count, "ImageData", out, err) : CW_OK;
@@ -31,10 +31,10 @@ cw_status cwi_vti_image(cwi_vti *v, cwi_attributes a, cw_error *err)
     memcpy(v->direction, identity, sizeof identity);
     cw_status st = cwi_vti_check_times(a, err);
     if (st == CW_OK)
-        st = numbers(a, "Origin", 3, v->origin, err);
+        st = parse_numbers(a, "Origin", 3, v->origin, err);
     if (st == CW_OK)
-        st = numbers(a, "Spacing", 3, v->spacing, err);
-    return st == CW_OK ? numbers(a, "Direction", 9, v->direction, err) : st;
+        st = parse_numbers(a, "Spacing", 3, v->spacing, err);
+    return st == CW_OK ? parse_numbers(a, "Direction", 9, v->direction, err) : st;
 }
 
 cw_status cwi_vti_extent(cwi_attributes a, int64_t extent[6], cw_error *err)

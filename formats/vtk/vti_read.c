@@ -169,14 +169,14 @@ static const cwi_xml_rules rules = {.elements = elements,
 /* --- the array ---------------------------------------------------------------------------- */
 
 /* The array that is the volume: at points, unless only cells have one. */
-static const cwi_vti_array *choose(const cwi_vti *v)
+static const cwi_vti_array *choose_array(const cwi_vti *v)
 {
     return v->points.best.rank != CWI_VTI_NONE ? &v->points.best : &v->cells.best;
 }
 
 static bool is_of_cells(const cwi_vti *v)
 {
-    return choose(v) == &v->cells.best;
+    return choose_array(v) == &v->cells.best;
 }
 
 static cw_status check_found(const cwi_vti *v, cw_error *err)
@@ -185,7 +185,7 @@ static cw_status check_found(const cwi_vti *v, cw_error *err)
         return cw_fail(err, CW_ERR_FORMAT,
                        "Coordinates has %zu arrays; one for x, y and z each was expected",
                        v->coordinate_arrays);
-    return choose(v)->rank != CWI_VTI_NONE ? CW_OK : cwi_vti_fail_choice(&v->choice, err);
+    return choose_array(v)->rank != CWI_VTI_NONE ? CW_OK : cwi_vti_fail_choice(&v->choice, err);
 }
 
 /* --- coordinates -------------------------------------------------------------------------- */
@@ -213,7 +213,7 @@ static cw_status set_coordinates(const cwi_vti *v, const cwi_input *in, cw_volum
 
 static cw_status set_sizes(const cwi_vti *v, cwi_source *src, cw_error *err)
 {
-    const cwi_vtk_array *array = &choose(v)->data;
+    const cwi_vtk_array *array = &choose_array(v)->data;
     size_t dim[3] = {points_along(v, 0), points_along(v, 1), points_along(v, 2)};
     cw_status st = is_of_cells(v) ? cwi_vtk_grid_to_cells(src, array->name, dim, err) : CW_OK;
     const cwi_axis axes[] = {{CWI_AXIS_COMPONENT, array->components},
@@ -257,10 +257,10 @@ cw_status cwi_vti_parse(const cwi_input *in, cwi_source *src, cw_error *err)
         st = set_sizes(v, src, err);
     if (st != CW_OK)
         return st;
-    cwi_array_list_choose(in->arrays, choose(v)->data.name, is_of_cells(v));
+    cwi_array_list_choose(in->arrays, choose_array(v)->data.name, is_of_cells(v));
     if (v->rectilinear)
         st = set_coordinates(v, in, &src->shape, err);
     else
         set_frame(v, &src->shape);
-    return st == CW_OK ? cwi_vtk_xml_place(&v->file, &choose(v)->data, in, src, err) : st;
+    return st == CW_OK ? cwi_vtk_xml_place(&v->file, &choose_array(v)->data, in, src, err) : st;
 }

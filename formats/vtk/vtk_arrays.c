@@ -182,8 +182,8 @@ static cwi_vtk_rank rank_of(const cwi_vtk *v, const cwi_legacy_array *said,
 }
 
 /* Keeps an array that starts here when it is better than those before. */
-static void consider(cwi_vtk *v, const cwi_legacy_array *said, const vtk_type *type,
-                     const char *type_name)
+static void consider_array(cwi_vtk *v, const cwi_legacy_array *said, const vtk_type *type,
+                           const char *type_name)
 {
     const cwi_vtk_rank rank = rank_of(v, said, type);
     if (strcmp(said->name, "vtkGhostType") != 0)
@@ -225,7 +225,7 @@ static cw_status pass_array(cwi_vtk *v, const cwi_legacy_array *said, const char
                        said->name, type_name);
     if (v->best && tuples == v->count) {
         keep_marks(v, said, type);
-        consider(v, said, type, type_name);
+        consider_array(v, said, type, type_name);
     }
     if (cwi_vtk_is_settled(v))
         return CW_OK;
@@ -277,7 +277,7 @@ cw_status cwi_vtk_coordinates(cwi_vtk *v, int axis, cw_error *err)
 }
 
 /* The byte that "%20" or the like stands for; 0: none. */
-static char decode(const char *s)
+static char decode_name(const char *s)
 {
     if (s[0] != '%' || !isxdigit((unsigned char)s[1]) || !isxdigit((unsigned char)s[2]))
         return 0;
@@ -290,8 +290,8 @@ static bool next_name(const char **text, char name[CWI_WORD_BYTES])
     char word[CWI_WORD_BYTES];
     if (!cwi_next_text_word(text, word))
         return false;
-    for (const char *s = word; *s; s += decode(s) ? 3 : 1)
-        *name++ = decode(s) ? decode(s) : *s;
+    for (const char *s = word; *s; s += decode_name(s) ? 3 : 1)
+        *name++ = decode_name(s) ? decode_name(s) : *s;
     *name = '\0';
     return true;
 }

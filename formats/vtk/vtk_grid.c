@@ -18,7 +18,7 @@ cw_status cwi_vtk_grid_row(cwi_source *row, const char *size_field, cw_type type
 
 /* Grids may be written from their far end: then the axis points the other way, and numbers
  * rise. */
-static cw_status raise(double *at, size_t count, int axis, cw_volume *shape, cw_error *err)
+static cw_status raise_axis(double *at, size_t count, int axis, cw_volume *shape, cw_error *err)
 {
     const double sign = count > 1 && at[1] < at[0] ? -1 : 1;
     for (size_t i = 0; i < count; i++) {
@@ -40,8 +40,8 @@ static void to_middles(double *at, size_t count)
         at[i] = 0.5 * at[i] + 0.5 * at[i + 1];
 }
 
-static cw_status take(const cw_volume numbers[3], bool of_cells, cw_volume *shape,
-                      cw_error *err)
+static cw_status take_coordinates(const cw_volume numbers[3], bool of_cells, cw_volume *shape,
+                                  cw_error *err)
 {
     double *to =
         cwi_alloc_array(numbers[0].dim[0] + numbers[1].dim[0] + numbers[2].dim[0], sizeof *to);
@@ -53,7 +53,7 @@ static cw_status take(const cw_volume numbers[3], bool of_cells, cw_volume *shap
         const size_t count = numbers[a].dim[0];
         for (size_t i = 0; i < count; i++)
             to[i] = cwi_voxel_at(numbers[a].type, cwi_voxel_address(&numbers[a], i, 0, 0));
-        st = raise(to, count, a, shape, err);
+        st = raise_axis(to, count, a, shape, err);
         if (st == CW_OK && of_cells)
             to_middles(to, count);
         shape->coordinates[a] = to;
@@ -69,7 +69,7 @@ cw_status cwi_vtk_grid_place(const cwi_source rows[3], const cwi_input *in, bool
     for (int a = 0; a < 3 && st == CW_OK; a++)
         st = cwi_source_load(&rows[a], in, &(cw_read_desc){0}, &numbers[a], err);
     if (st == CW_OK)
-        st = take(numbers, of_cells, shape, err);
+        st = take_coordinates(numbers, of_cells, shape, err);
     for (int a = 0; a < 3; a++)
         cw_volume_free(&numbers[a]);
     return st;

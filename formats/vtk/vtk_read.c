@@ -247,14 +247,14 @@ static cw_status read_lines(cwi_vtk *v, grid *g, cw_error *err)
 }
 
 /* The array that is the volume: at points, unless only cells have one. */
-static const cwi_legacy_array *choose(const cwi_vtk *v)
+static const cwi_legacy_array *choose_array(const cwi_vtk *v)
 {
     return v->points.rank != CWI_VTK_NONE ? &v->points : &v->cells;
 }
 
 static cw_status check_found(const cwi_vtk *v, cw_error *err)
 {
-    if (choose(v)->rank != CWI_VTK_NONE)
+    if (choose_array(v)->rank != CWI_VTK_NONE)
         return CW_OK;
     if (!v->best)
         return cw_fail(err, CW_ERR_FORMAT, "'POINT_DATA' is missing, and 'CELL_DATA' too");
@@ -268,9 +268,9 @@ static cw_status check_found(const cwi_vtk *v, cw_error *err)
 
 /* --- to a source ------------------------------------------------------------------------- */
 
-static cw_status describe(const cwi_vtk *v, const grid *g, cwi_source *src, cw_error *err)
+static cw_status describe_grid(const cwi_vtk *v, const grid *g, cwi_source *src, cw_error *err)
 {
-    const cwi_legacy_array *array = choose(v);
+    const cwi_legacy_array *array = choose_array(v);
     size_t dim[3] = {g->dim[0], g->dim[1], g->dim[2]};
     cw_status st =
         array == &v->cells ? cwi_vtk_grid_to_cells(src, array->name, dim, err) : CW_OK;
@@ -304,7 +304,7 @@ static cw_status set_coordinates(const cwi_vtk *v, const grid *g, cwi_source *sr
         rows[a].big_endian = true;
         rows[a].offset = row->offset;
     }
-    return cwi_vtk_grid_place(rows, v->in, choose(v) == &v->cells, &src->shape, err);
+    return cwi_vtk_grid_place(rows, v->in, choose_array(v) == &v->cells, &src->shape, err);
 }
 
 /* Flat data may have no thickness. Cells are half a step on. */
@@ -313,7 +313,7 @@ static void set_frame(const cwi_vtk *v, const grid *g, cw_volume *shape)
     for (int a = 0; a < 3; a++) {
         const double step = g->dim[a] == 1 && g->spacing[a] == 0 ? 1 : g->spacing[a];
         shape->affine[a][a] = step;
-        shape->affine[a][3] = g->origin[a] + (choose(v) == &v->cells ? 0.5 * step : 0);
+        shape->affine[a][3] = g->origin[a] + (choose_array(v) == &v->cells ? 0.5 * step : 0);
     }
 }
 
@@ -323,7 +323,7 @@ static cw_status describe_array(const void *file, size_t piece, cwi_grid_role ro
                                 size_t count, cwi_source *src, bool *wide, cw_error *err)
 {
     const cwi_vtk *v = file;
-    const cwi_legacy_array *array = choose(v);
+    const cwi_legacy_array *array = choose_array(v);
     const cwi_vtk_row values = {.type = array->type, .count = count, .offset = array->offset};
     (void)piece;
     switch (role) {
@@ -386,7 +386,7 @@ cw_status cwi_vtk_read_grid(const cwi_input *in, const cw_read_desc *desc, bool 
         st = set_piece(&v, &g, &piece, err);
     if (st != CW_OK)
         return st;
-    const cwi_legacy_array *array = choose(&v);
+    const cwi_legacy_array *array = choose_array(&v);
     cwi_array_list_choose(in->arrays, array->name, array == &v.cells);
     const cwi_irregular all = {.pieces = &piece,
                                .piece_count = 1,
@@ -414,9 +414,9 @@ cw_status cwi_vtk_parse(const cwi_input *in, cwi_source *src, cw_error *err)
     if (st == CW_OK)
         st = check_found(&v, err);
     if (st == CW_OK)
-        st = describe(&v, &g, src, err);
+        st = describe_grid(&v, &g, src, err);
     if (st == CW_OK)
-        cwi_array_list_choose(in->arrays, choose(&v)->name, choose(&v) == &v.cells);
+        cwi_array_list_choose(in->arrays, choose_array(&v)->name, choose_array(&v) == &v.cells);
     if (st == CW_OK && g.kind == RECTILINEAR)
         return set_coordinates(&v, &g, src, err);
     set_frame(&v, &g, &src->shape);

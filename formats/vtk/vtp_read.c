@@ -91,7 +91,7 @@ static cw_status start_point_data(void *user, cwi_xml *x, cwi_attributes a, cw_e
 }
 
 /* The first array of a role stays; of arrays in PointData the one that is named. */
-static cw_status keep(vtp *v, cwi_xml *x, role r, const cwi_vtk_array *array, bool named)
+static cw_status keep_array(vtp *v, cwi_xml *x, role r, const cwi_vtk_array *array, bool named)
 {
     if (v->has[r] && !named)
         return CW_OK;
@@ -118,7 +118,7 @@ static cw_status keep_structure(vtp *v, cwi_xml *x, cwi_attributes a, role first
                        "the array '%s' has %zu numbers of type '%s'; %zu %s expected",
                        array.name, array.components, array.type_name, wanted,
                        first == POINTS ? "were" : "whole one was");
-    return keep(v, x, is_end ? ends : first, &array, false);
+    return keep_array(v, x, is_end ? ends : first, &array, false);
 }
 
 static cw_status start_points(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
@@ -163,7 +163,7 @@ static cw_status start_point_array(void *user, cwi_xml *x, cwi_attributes a, cw_
     const bool named = *wanted && strcmp(array.name, wanted) == 0;
     if (r == ROLE_COUNT || (r == NORMALS && !named && strcmp(array.name, "Normals") != 0))
         return CW_OK;
-    return keep(v, x, r, &array, named);
+    return keep_array(v, x, r, &array, named);
 }
 
 static cw_status start_appended(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
@@ -231,15 +231,15 @@ static const cwi_xml_rules rules = {.elements = elements,
 
 /* --- numbers ----------------------------------------------------------------------------- */
 
-static void drop(vtp *v, cwi_tuples *t)
+static void drop_tuples(vtp *v, cwi_tuples *t)
 {
     v->in->bytes -= t->bytes;
     cwi_tuples_free(t);
 }
 
 /* Reads an array of so many tuples; field is where the file counts them. */
-static cw_status load(vtp *v, role r, const char *field, uint64_t count, cwi_tuples *t,
-                      cw_error *err)
+static cw_status load_tuples(vtp *v, role r, const char *field, uint64_t count, cwi_tuples *t,
+                             cw_error *err)
 {
     const cwi_input *file = &v->in->file;
     const cw_read_desc desc = {.progress = v->in->desc.progress};
@@ -260,7 +260,7 @@ static cw_status load(vtp *v, role r, const char *field, uint64_t count, cwi_tup
 static cw_status read_points(vtp *v, cw_error *err)
 {
     cwi_tuples n;
-    cw_status st = load(v, POINTS, "NumberOfPoints", (uint64_t)v->points, &n, err);
+    cw_status st = load_tuples(v, POINTS, "NumberOfPoints", (uint64_t)v->points, &n, err);
     if (st == CW_OK)
         st = cwi_build_reserve(&v->build, n.count, 0, err);
     for (size_t i = 0; i < n.count && st == CW_OK; i++) {
@@ -269,7 +269,7 @@ static cw_status read_points(vtp *v, cw_error *err)
             point[a] = cwi_tuples_real(&n, i, a);
         st = cwi_build_point(&v->build, point, err);
     }
-    drop(v, &n);
+    drop_tuples(v, &n);
     return st;
 }
 
@@ -287,7 +287,7 @@ static cw_status read_attribute(vtp *v, role r, void *array, size_t size, cw_err
     void *to;
     if (!v->has[r] || v->points == 0)
         return CW_OK;
-    cw_status st = load(v, r, "NumberOfPoints", (uint64_t)v->points, &n, err);
+    cw_status st = load_tuples(v, r, "NumberOfPoints", (uint64_t)v->points, &n, err);
     if (st == CW_OK)
         st = cwi_mesh_grow(v->in, array, &room, n.count, size, err);
     memcpy(&to, array, sizeof to);
@@ -302,7 +302,7 @@ static cw_status read_attribute(vtp *v, role r, void *array, size_t size, cw_err
             else
                 ((float *)to)[(r == NORMALS ? 3 * i : i) + c] = to_single(number);
         }
-    drop(v, &n);
+    drop_tuples(v, &n);
     return st;
 }
 
@@ -346,12 +346,12 @@ static cw_status read_faces(vtp *v, role first, const char *field, int64_t count
 {
     const bool strip = first == STRIPS;
     cwi_tuples ends = {0}, corners = {0};
-    cw_status st = load(v, first + 1, field, (uint64_t)count, &ends, err);
+    cw_status st = load_tuples(v, first + 1, field, (uint64_t)count, &ends, err);
     if (st == CW_OK)
         st = check_ends(&ends, field, err);
     if (st == CW_OK && ends.count)
-        st = load(v, first, "offsets", (uint64_t)cwi_tuples_whole(&ends, ends.count - 1),
-                  &corners, err);
+        st = load_tuples(v, first, "offsets", (uint64_t)cwi_tuples_whole(&ends, ends.count - 1),
+                         &corners, err);
     if (st == CW_OK && corners.count > 2 * ends.count)
         st = cwi_build_reserve(&v->build, 0,
                                v->build.triangle_count + corners.count - 2 * ends.count, err);
@@ -360,8 +360,8 @@ static cw_status read_faces(vtp *v, role first, const char *field, int64_t count
         st = add_corners(v, &corners, from, to, strip, err);
         from = to;
     }
-    drop(v, &ends);
-    drop(v, &corners);
+    drop_tuples(v, &ends);
+    drop_tuples(v, &corners);
     return st;
 }
 

@@ -75,7 +75,7 @@ static cw_status start_grid(void *user, cwi_xml *x, cwi_attributes a, cw_error *
     return cwi_vti_check_times(a, err);
 }
 
-static cw_status grow(parsing *p, cw_error *err)
+static cw_status grow_pieces(parsing *p, cw_error *err)
 {
     const size_t room = p->room ? 2 * p->room : 1;
     if (p->count < p->room)
@@ -113,7 +113,7 @@ static cw_status set_counts(cwi_grid_piece *g, cwi_attributes a, cw_error *err)
 static cw_status start_piece(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
     parsing *p = user;
-    cw_status st = grow(p, err);
+    cw_status st = grow_pieces(p, err);
     (void)x;
     if (st != CW_OK)
         return st;
@@ -149,8 +149,8 @@ static void open_text(parsing *p, cwi_xml *x, cwi_vtk_array *array)
 }
 
 /* An array that the grid needs. */
-static cw_status keep(parsing *p, cwi_xml *x, cwi_attributes a, cwi_grid_role role,
-                      size_t components, cw_error *err)
+static cw_status keep_array(parsing *p, cwi_xml *x, cwi_attributes a, cwi_grid_role role,
+                            size_t components, cw_error *err)
 {
     piece *to = at_hand(p);
     cwi_vtk_array array;
@@ -182,7 +182,7 @@ static cw_status start_data_array(parsing *p, cwi_xml *x, cwi_attributes a, cwi_
 {
     bool kept;
     if (is_named(a, "vtkGhostType"))
-        return keep(p, x, a, marks, 1, err);
+        return keep_array(p, x, a, marks, 1, err);
     cw_status st = cwi_vti_data_array(&p->choice, data, a, &kept, err);
     if (kept)
         open_text(p, x, &data->best.data);
@@ -201,7 +201,7 @@ static cw_status start_cell_array(void *user, cwi_xml *x, cwi_attributes a, cw_e
 
 static cw_status start_points(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
-    return keep(user, x, a, CWI_GRID_POINTS, 3, err);
+    return keep_array(user, x, a, CWI_GRID_POINTS, 3, err);
 }
 
 static cw_status start_cells(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
@@ -214,7 +214,7 @@ static cw_status start_cells(void *user, cwi_xml *x, cwi_attributes a, cw_error 
                 {"types", CWI_GRID_TYPES}};
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         if (is_named(a, rows[i].name))
-            return keep(user, x, a, rows[i].role, 1, err);
+            return keep_array(user, x, a, rows[i].role, 1, err);
     return CW_OK;
 }
 
@@ -303,7 +303,7 @@ static void drop_empty(parsing *p)
 }
 
 /* All pieces have the array that the first one chooses. */
-static cw_status choose(parsing *p, cw_error *err)
+static cw_status choose_array(parsing *p, cw_error *err)
 {
     if (p->count == 0)
         return cw_fail(err, CW_ERR_FORMAT, "the grid has no Piece");
@@ -324,8 +324,8 @@ static cw_status choose(parsing *p, cw_error *err)
     return CW_OK;
 }
 
-static cw_status describe(const void *file, size_t n, cwi_grid_role role, size_t count,
-                          cwi_source *src, bool *wide, cw_error *err)
+static cw_status describe_array(const void *file, size_t n, cwi_grid_role role, size_t count,
+                                cwi_source *src, bool *wide, cw_error *err)
 {
     const parsing *p = file;
     const piece *from = &p->pieces[n];
@@ -356,7 +356,7 @@ static cw_status read_grid(parsing *p, const cw_read_desc *desc, cw_volume *volu
                                 .type = values->type,
                                 .components = values->components,
                                 .of_cells = p->of_cells,
-                                .describe = describe,
+                                .describe = describe_array,
                                 .file = p};
     return cwi_irregular_read(&grid, p->in, desc, volume, err);
 }
@@ -371,7 +371,7 @@ cw_status cwi_vtu_read(const cwi_input *in, const cw_read_desc *desc, bool *is_g
         st = cwi_vtk_xml_find_appended(in, &p.file, err);
     drop_empty(&p);
     if (st == CW_OK)
-        st = choose(&p, err);
+        st = choose_array(&p, err);
     if (st == CW_OK) {
         cwi_array_list_choose(in->arrays, values_of(&p, 0)->data.name, p.of_cells);
         st = read_grid(&p, desc, volume, err);

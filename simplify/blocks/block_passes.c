@@ -16,7 +16,7 @@ static const double TIGHTER = 0.95;
 
 /* --- what passes share ------------------------------------------------------------------- */
 
-static cw_status check(const cw_simplify_desc *d, cw_error *err)
+static cw_status check_limits(const cw_simplify_desc *d, cw_error *err)
 {
     if (!(d->error_mm >= 0) || !isfinite(d->error_mm))
         return cw_fail(err, CW_ERR_ARGUMENT, "error_mm is %g; it must be 0 or more",
@@ -41,7 +41,7 @@ cw_status cwi_passes_init(cwi_passes *p, const cw_simplify_desc *desc, cw_error 
                                      .progress = &p->poll}};
     cwi_stop_init(&p->stop, &desc->progress);
     p->poll = cwi_stop_progress(&p->stop);
-    cw_status st = check(desc, err);
+    cw_status st = check_limits(desc, err);
     if (st == CW_OK)
         st = cwi_module_load("openmesh", &module, err);
     if (st == CW_OK)
@@ -56,7 +56,7 @@ void cwi_passes_place(cwi_passes *p, const double origin[3], double scale)
     p->block_desc.error *= scale;
 }
 
-static void forget(cwi_passes *p)
+static void forget_passes(cwi_passes *p)
 {
     cwi_free(p->first);
     cwi_free(p->around);
@@ -74,7 +74,7 @@ static void forget(cwi_passes *p)
 
 void cwi_passes_free(cwi_passes *p)
 {
-    forget(p);
+    forget_passes(p);
     cwi_views_free(&p->views);
 }
 
@@ -134,7 +134,7 @@ static cw_status find_normals(cwi_passes *p, cw_error *err)
 
 /* At a point, what is allowed on all triangles around it. What is simplified may come into view
  * on its way: so views are wider here by as much as that is. */
-static cw_status allow(cwi_passes *p, cw_error *err)
+static cw_status allow_distances(cwi_passes *p, cw_error *err)
 {
     const cw_mesh *m = &p->input;
     if (!p->views.count)
@@ -170,7 +170,7 @@ static void sort_around(cwi_passes *p)
 cw_status cwi_passes_remember(cwi_passes *p, const cw_mesh *input, cw_error *err)
 {
     const size_t vertices = input->vertex_count;
-    forget(p);
+    forget_passes(p);
     p->input = *input;
     p->first = cwi_alloc_array(vertices + 2, sizeof *p->first);
     p->around = cwi_alloc_array(3 * input->triangle_count, sizeof *p->around);
@@ -189,7 +189,7 @@ cw_status cwi_passes_remember(cwi_passes *p, const cw_mesh *input, cw_error *err
                                  .around = p->around,
                                  .next = p->next,
                                  .care = p->care};
-    cw_status st = allow(p, err);
+    cw_status st = allow_distances(p, err);
     if (st == CW_OK)
         st = find_normals(p, err);
     p->original.allowed = p->allowed;
@@ -234,7 +234,7 @@ typedef struct part {
 } part;
 
 /* Own triangles of a block as a mesh. */
-static cw_mesh view(const cwi_mesh_block *b)
+static cw_mesh view_block(const cwi_mesh_block *b)
 {
     return (cw_mesh){.vertex_count = b->vertices,
                      .triangle_count = b->own,
@@ -371,10 +371,10 @@ static cw_status find_beyond(const cwi_passes *p, const cw_mesh *mesh, const cw_
 
 /* Whether the result keeps the distance; where it does not, more care is taken the
  * next time. */
-static cw_status judge(const cwi_passes *p, const part *x, bool *kept, bool *hope,
-                       cw_error *err)
+static cw_status judge_part(const cwi_passes *p, const part *x, bool *kept, bool *hope,
+                            cw_error *err)
 {
-    const cw_mesh result = view(x->left);
+    const cw_mesh result = view_block(x->left);
     cw_mesh all = {0};
     uint8_t *input_beyond = cwi_alloc_array(x->input.triangle_count, 1);
     uint8_t *beyond = cwi_alloc_array(result.triangle_count, 1);
@@ -400,11 +400,11 @@ static cw_status judge(const cwi_passes *p, const part *x, bool *kept, bool *hop
 
 /* Collapses look at what is near them only. Where that was not enough the part is done again
  * with more care; when that does not help, it stays as it was. */
-static cw_status keep(const cwi_passes *p, const part *x, size_t *repeats, cw_error *err)
+static cw_status keep_part(const cwi_passes *p, const part *x, size_t *repeats, cw_error *err)
 {
     cw_status st = CW_OK;
     for (bool kept = x->left->own == 0, hope = true; st == CW_OK && !kept;) {
-        st = judge(p, x, &kept, &hope, err);
+        st = judge_part(p, x, &kept, &hope, err);
         if (st != CW_OK || kept)
             break;
         put_back(p, x->left);
@@ -461,14 +461,14 @@ static void keep_block(void *context, size_t n)
     const cwi_passes *p = c->passes;
     cw_error *err = c->errors + n;
     const part x = {.from = c->blocks + n,
-                    .input = view(c->blocks + n),
+                    .input = view_block(c->blocks + n),
                     .names = c->blocks[n].names,
                     .left = c->left + n,
                     .cost = c->cost,
                     .threads = 1};
     cw_status st = c->target ? CW_OK : run_once(p, &x, c->cost, err);
     if (st == CW_OK)
-        st = keep(p, &x, c->repeats + n, err);
+        st = keep_part(p, &x, c->repeats + n, err);
     c->statuses[n] = st;
     cwi_block_free(c->blocks + n);
 }
@@ -640,5 +640,5 @@ cw_status cwi_passes_whole(cwi_passes *p, const cwi_mesh_block *whole, const siz
                     .cost = INFINITY,
                     .target = targets[0],
                     .threads = p->desc->threads};
-    return st == CW_OK && p->next ? keep(p, &x, &p->repeats, err) : st;
+    return st == CW_OK && p->next ? keep_part(p, &x, &p->repeats, err) : st;
 }

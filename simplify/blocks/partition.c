@@ -67,7 +67,7 @@ void cwi_block_number(cwi_mesh_block *block)
         block->names[v] = (uint32_t)v;
 }
 
-static float coordinate(const cwi_mesh_block *b, size_t corner, int axis)
+static float corner_coordinate(const cwi_mesh_block *b, size_t corner, int axis)
 {
     return b->points[3 * (size_t)b->corners[corner] + (size_t)axis];
 }
@@ -78,12 +78,12 @@ static void find_middles(plan *p)
     for (size_t t = 0; t < b->triangles; t++)
         for (int a = 0; a < 3; a++)
             p->middles[3 * t + (size_t)a] =
-                (coordinate(b, 3 * t, a) + coordinate(b, 3 * t + 1, a) +
-                 coordinate(b, 3 * t + 2, a)) /
+                (corner_coordinate(b, 3 * t, a) + corner_coordinate(b, 3 * t + 1, a) +
+                 corner_coordinate(b, 3 * t + 2, a)) /
                 3;
 }
 
-static float middle(const plan *p, size_t triangle, int axis)
+static float triangle_middle(const plan *p, size_t triangle, int axis)
 {
     return p->middles[3 * triangle + (size_t)axis];
 }
@@ -95,7 +95,7 @@ static int longest_axis(const plan *p, const leaf *l, float low[3], float high[3
         low[a] = INFINITY;
         high[a] = -INFINITY;
         for (size_t i = l->begin; i < l->end; i++) {
-            const float x = middle(p, p->order[i], a);
+            const float x = triangle_middle(p, p->order[i], a);
             low[a] = x < low[a] ? x : low[a];
             high[a] = x > high[a] ? x : high[a];
         }
@@ -111,7 +111,7 @@ static float find_place(const plan *p, const leaf *l, int axis, float low, float
     size_t bins[BINS] = {0}, below = 0;
     const float scale = high > low ? BINS / (high - low) : 0;
     for (size_t i = l->begin; i < l->end; i++) {
-        const float place = (middle(p, p->order[i], axis) - low) * scale;
+        const float place = (triangle_middle(p, p->order[i], axis) - low) * scale;
         bins[place < BINS - 1 ? (size_t)place : BINS - 1]++;
     }
     const size_t enough = (size_t)(p->share * (double)(l->end - l->begin));
@@ -122,7 +122,7 @@ static float find_place(const plan *p, const leaf *l, int axis, float low, float
 }
 
 /* Divides a leaf; the second part becomes *other. */
-static void divide(plan *p, leaf *l, leaf *other)
+static void divide_leaf(plan *p, leaf *l, leaf *other)
 {
     float low[3], high[3];
     const int axis = longest_axis(p, l, low, high);
@@ -130,7 +130,7 @@ static void divide(plan *p, leaf *l, leaf *other)
     size_t kept = l->begin, gone = 0;
     for (size_t i = l->begin; i < l->end; i++) {
         const uint32_t t = p->order[i];
-        if (middle(p, t, axis) < at)
+        if (triangle_middle(p, t, axis) < at)
             p->order[kept++] = t;
         else
             p->spare[gone++] = t;
@@ -151,7 +151,7 @@ static void make_leaves(plan *p)
     }
     for (; step > 1; step /= 2)
         for (size_t n = 0; n < p->count; n += step)
-            divide(p, p->leaves + n, p->leaves + n + step / 2);
+            divide_leaf(p, p->leaves + n, p->leaves + n + step / 2);
 }
 
 static bool lies_in(const leaf *l, const float box[6])
@@ -162,7 +162,7 @@ static bool lies_in(const leaf *l, const float box[6])
     return true;
 }
 
-static bool reaches(const leaf *l, const float box[6])
+static bool reaches_box(const leaf *l, const float box[6])
 {
     for (int a = 0; a < 3; a++)
         if (box[a + 3] < l->low[a] || box[a] > l->high[a])
@@ -183,7 +183,7 @@ static void each_obstacle(plan *p, void (*put)(plan *p, size_t to, uint32_t tria
             for (int k = 0; k < 3; k++)
                 p->held[p->whole->corners[3 * (size_t)p->order[i] + (size_t)k]] = HELD;
             for (size_t m = 0; m < p->count; m++)
-                if (m != n && reaches(p->leaves + m, box))
+                if (m != n && reaches_box(p->leaves + m, box))
                     put(p, m, p->order[i]);
         }
 }

@@ -3,7 +3,7 @@
 
 #include "core/base/module.h"
 
-static cw_status load(const cwi_cgal_functions **functions, cw_error *err)
+static cw_status load_cgal(const cwi_cgal_functions **functions, cw_error *err)
 {
     const void *module;
     cw_status st = cwi_module_load("cgal", &module, err);
@@ -23,7 +23,7 @@ cw_status cw_quality_ask_cgal(const cw_mesh *mesh, cw_weld weld, cw_cgal_facts *
     const cwi_cgal_functions *functions;
     cwi_welded welded = {0};
     *out = (cw_cgal_facts){0};
-    cw_status st = load(&functions, err);
+    cw_status st = load_cgal(&functions, err);
     if (st == CW_OK)
         st = cwi_welded_init(&welded, mesh, weld, err);
     if (st == CW_OK)
@@ -44,6 +44,6 @@ cw_status cw_distance_by_cgal(const cw_mesh *mesh, const cw_mesh *reference,
         st = cw_fail(err, CW_ERR_ARGUMENT, "the tolerance is %g mm; it must be above 0",
                      tolerance_mm);
     if (st == CW_OK)
-        st = load(&functions, err);
+        st = load_cgal(&functions, err);
     return st == CW_OK ? functions->hausdorff(mesh, reference, tolerance_mm, out_mm, err) : st;
 }

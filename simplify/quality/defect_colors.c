@@ -128,8 +128,8 @@ static void fill_vertices(const copies *c, const cw_mesh *mesh, const float *dis
     }
 }
 
-static cw_status fill(const copies *c, const cw_mesh *mesh, const float *distances,
-                      double full_mm, cw_mesh *out, cw_error *err)
+static cw_status fill_copies(const copies *c, const cw_mesh *mesh, const float *distances,
+                             double full_mm, cw_mesh *out, cw_error *err)
 {
     cw_status st =
         cwi_mesh_alloc(out, c->count, mesh->triangle_count, mesh->normals != NULL, err);
@@ -159,7 +159,7 @@ cw_status cw_check_paint(const cw_mesh *mesh, const uint8_t *defects, const floa
         st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory to paint %zu triangles",
                      mesh->triangle_count);
     if (st == CW_OK)
-        st = fill(&c, mesh, distances, full_mm, out, err);
+        st = fill_copies(&c, mesh, distances, full_mm, out, err);
     free_copies(&c);
     if (st != CW_OK)
         cw_mesh_free(out);

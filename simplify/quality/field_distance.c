@@ -37,7 +37,7 @@ typedef struct range {
 } range;
 
 /* A sample less the level; NaN where there is none. */
-static double sample(const field *f, const void *voxel)
+static double sample_voxel(const field *f, const void *voxel)
 {
     const cw_volume *v = &f->volume;
     const double x = cwi_voxel_at(v->type, voxel);
@@ -51,7 +51,7 @@ static void read_corners(const field *f, const long at[3], double d[8])
         const size_t i = (size_t)(at[0] + (n & 1)), j = (size_t)(at[1] + (n >> 1 & 1)),
                      k = (size_t)(at[2] + (n >> 2)); /* before the first: very large */
         const bool there = i < v->dim[0] && j < v->dim[1] && k < v->dim[2];
-        d[n] = there ? sample(f, cwi_voxel_address(v, i, j, k)) : NAN;
+        d[n] = there ? sample_voxel(f, cwi_voxel_address(v, i, j, k)) : NAN;
     }
 }
 
@@ -85,7 +85,7 @@ static void make_patch(const field *f, double d[8], cwi_patch *patch)
 }
 
 /* Looks for something nearer in a cell, unless all of the cell is farther. */
-static void visit(const field *f, const double u[3], const long at[3], double *distance)
+static void visit_cell(const field *f, const double u[3], const long at[3], double *distance)
 {
     double d[8], local[3];
     for (int a = 0; a < 3; a++) {
@@ -102,7 +102,7 @@ static void visit(const field *f, const double u[3], const long at[3], double *d
     cwi_patch_nearest(&patch, &f->metric, local, distance);
 }
 
-static long clamp(double x, long low, long high)
+static long clamp_long(double x, long low, long high)
 {
     return x < (double)low ? low : x > (double)high ? high : (long)floor(x);
 }
@@ -116,13 +116,13 @@ static bool find_range(const field *f, const double u[3], double distance, range
                      high = u[a] + distance * f->metric.width[a];
         if (!(high > low) || low > (double)f->last[a] + 1 || high < (double)f->first)
             return false;
-        r->low[a] = clamp(low, f->first, f->last[a]);
-        r->high[a] = clamp(high, f->first, f->last[a]);
+        r->low[a] = clamp_long(low, f->first, f->last[a]);
+        r->high[a] = clamp_long(high, f->first, f->last[a]);
     }
     return true;
 }
 
-static long farthest(const range *r, const long home[3])
+static long farthest_shell(const range *r, const long home[3])
 {
     long most = 0;
     for (int a = 0; a < 3; a++) {
@@ -149,7 +149,7 @@ static void visit_shell(const field *f, const double u[3], const long home[3], l
             for (long i = -n; i <= n; i += whole ? 1 : 2 * n) {
                 at[0] = home[0] + i;
                 if (at[0] >= r->low[0] && at[0] <= r->high[0])
-                    visit(f, u, at, distance);
+                    visit_cell(f, u, at, distance);
             }
         }
     }
@@ -177,7 +177,8 @@ static bool visit_home(const field *f, const double u[3], const long home[3], do
     return beyond || (missing && f->open) || (f->missing < 0 ? value < 0 : value >= 0);
 }
 
-static double measure(const void *context, const double point[3], uint32_t *hint, bool *missed)
+static double measure_point(const void *context, const double point[3], uint32_t *hint,
+                            bool *missed)
 {
     (void)hint;
     const field *f = context;
@@ -186,9 +187,9 @@ static double measure(const void *context, const double point[3], uint32_t *hint
     range r;
     cwi_affine_apply(f->to_index, point, u);
     for (int a = 0; a < 3; a++)
-        home[a] = clamp(u[a], f->first, f->last[a]);
+        home[a] = clamp_long(u[a], f->first, f->last[a]);
     const bool outside = visit_home(f, u, home, &distance);
-    for (long n = 1; find_range(f, u, distance, &r) && n <= farthest(&r, home); n++)
+    for (long n = 1; find_range(f, u, distance, &r) && n <= farthest_shell(&r, home); n++)
         visit_shell(f, u, home, n, &r, &distance);
     *missed = distance == f->reach;
     return outside ? distance : -distance;
@@ -259,7 +260,7 @@ cw_status cw_distance_to_field(const cw_mesh *mesh, const cw_volume *volume,
     const cw_field_distance_desc none = {0}, *d = desc ? desc : &none;
     field f = {0};
     cwi_sampling sampling = {.mesh = mesh,
-                             .measure = measure,
+                             .measure = measure_point,
                              .context = &f,
                              .is_signed = true,
                              .worst = d->worst,

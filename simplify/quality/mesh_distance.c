@@ -59,7 +59,7 @@ static void measure_facet(void *context, size_t slot, double *square)
 
 /* The square of a distance from the whole reference, in its own frame; *hint is the slot of a
  * facet to begin with, then of the nearest. */
-static double seek(const reference *r, const double p[3], uint32_t *hint)
+static double seek_nearest(const reference *r, const double p[3], uint32_t *hint)
 {
     query q = {.r = r, .slot = *hint == UINT32_MAX ? r->tree.count / 2 : *hint};
     memcpy(q.point, p, sizeof q.point);
@@ -70,12 +70,13 @@ static double seek(const reference *r, const double p[3], uint32_t *hint)
 }
 
 /* From the whole reference; *hint as in seek(). */
-static double measure(const void *context, const double p[3], uint32_t *hint, bool *missed)
+static double measure_point(const void *context, const double p[3], uint32_t *hint,
+                            bool *missed)
 {
     const reference *r = context;
     const double x[3] = {p[0] - r->shift[0], p[1] - r->shift[1], p[2] - r->shift[2]};
     *missed = false;
-    return sqrt(seek(r, x, hint));
+    return sqrt(seek_nearest(r, x, hint));
 }
 
 /* A point of the mesh, its distance, and the nearest facet. */
@@ -117,7 +118,7 @@ static double square_from(const search *s, const double p[3], uint32_t slot)
     return facet_square(s->r->facets + slot, x);
 }
 
-static void choose(const search *s, const corner c[3], uint32_t slot, choice *choices)
+static void choose_triangles(const search *s, const corner c[3], uint32_t slot, choice *choices)
 {
     const int n = choices->count;
     for (int k = 0; k < n; k++)
@@ -205,7 +206,7 @@ static corner measure_at(const search *s, const double p[3], uint32_t hint, size
 {
     corner m = {.p = {p[0], p[1], p[2]}, .slot = hint};
     bool missed;
-    m.distance = measure(s->r, m.p, &m.slot, &missed);
+    m.distance = measure_point(s->r, m.p, &m.slot, &missed);
     if (m.distance > e->max) {
         e->max = m.distance;
         e->triangle = t;
@@ -214,7 +215,8 @@ static corner measure_at(const search *s, const double p[3], uint32_t hint, size
     return m;
 }
 
-static corner middle(const search *s, const corner *a, const corner *b, size_t t, extreme *e)
+static corner middle_corner(const search *s, const corner *a, const corner *b, size_t t,
+                            extreme *e)
 {
     const double p[3] = {(a->p[0] + b->p[0]) / 2, (a->p[1] + b->p[1]) / 2,
                          (a->p[2] + b->p[2]) / 2};
@@ -234,13 +236,13 @@ static double bound_of(const search *s, const corner c[3], size_t t, extreme *e)
     if (bound <= limit_of(s, e))
         return bound;
     for (int n = 0; n < 3; n++)
-        choose(s, c, c[n].slot, &choices);
+        choose_triangles(s, c, c[n].slot, &choices);
     bound = cwi_lesser(bound, bound_by(s, c, &choices, limit_of(s, e)));
     if (bound <= limit_of(s, e))
         return bound;
     for (int k = 0; k < 3; k++)
         p[k] = (c[0].p[k] + c[1].p[k] + c[2].p[k]) / 3;
-    choose(s, c, measure_at(s, p, c[0].slot, t, e).slot, &choices);
+    choose_triangles(s, c, measure_at(s, p, c[0].slot, t, e).slot, &choices);
     return cwi_lesser(bound, bound_by(s, c, &choices, limit_of(s, e)));
 }
 
@@ -251,8 +253,9 @@ static void search_triangle(const search *s, const corner c[3], size_t t, int de
         e->bound = cwi_greater(e->bound, bound);
         return;
     }
-    const corner ab = middle(s, c, c + 1, t, e), bc = middle(s, c + 1, c + 2, t, e),
-                 ca = middle(s, c + 2, c, t, e);
+    const corner ab = middle_corner(s, c, c + 1, t, e),
+                 bc = middle_corner(s, c + 1, c + 2, t, e),
+                 ca = middle_corner(s, c + 2, c, t, e);
     search_triangle(s, (corner[]){ab, bc, ca}, t, depth + 1, e);
     search_triangle(s, (corner[]){c[0], ab, ca}, t, depth + 1, e);
     search_triangle(s, (corner[]){ab, c[1], bc}, t, depth + 1, e);
@@ -286,7 +289,7 @@ static void search_chunk(void *context, size_t chunk)
     }
 }
 
-static void join(const search *s, size_t chunks, cw_distance *out)
+static void join_results(const search *s, size_t chunks, cw_distance *out)
 {
     out->bound_mm = out->max_mm;
     for (size_t n = 0; n < chunks; n++) {
@@ -315,7 +318,7 @@ static cw_status find_bound(search *s, const cw_mesh_distance_desc *d, cw_distan
         st = cwi_each_layer(chunks, CHUNK * CHUNK, d->threads, &d->progress, "largest distance",
                             search_chunk, s, err);
     if (st == CW_OK)
-        join(s, chunks, out);
+        join_results(s, chunks, out);
     cwi_free(s->extremes);
     return st;
 }
@@ -409,7 +412,7 @@ static cw_status measure_mesh(const cw_mesh *mesh, const reference *r,
     const cwi_sampling sampling = {
         .mesh = mesh,
         .step = {{1 / step, 0, 0}, {0, 1 / step, 0}, {0, 0, 1 / step}},
-        .measure = measure,
+        .measure = measure_point,
         .context = r,
         .hints = slots,
         .vertices_only = d->vertices_only,
@@ -466,7 +469,7 @@ typedef struct covering {
 static double nearest_facet(void *context, const double p[3], const float *corners[3])
 {
     covering *c = context;
-    const double square = seek(c->r, p, &c->slot);
+    const double square = seek_nearest(c->r, p, &c->slot);
     const facet *f = c->r->facets + c->slot;
     corners[0] = f->a;
     corners[1] = f->b;
@@ -490,7 +493,7 @@ static void find_chunk(void *context, size_t chunk)
     for (size_t v = CHUNK * chunk; v < CHUNK * (chunk + 1) && v < m->vertex_count; v++) {
         const float *x = m->positions + 3 * v;
         const double p[3] = {(double)x[0], (double)x[1], (double)x[2]};
-        measure(j->search.r, p, &hint, &missed);
+        measure_point(j->search.r, p, &hint, &missed);
         j->slots[v] = hint;
     }
 }

@@ -42,7 +42,7 @@ typedef struct visit {
     size_t node;
 } visit;
 
-static void keep(chunk *to, uint32_t a, uint32_t b)
+static void keep_pair(chunk *to, uint32_t a, uint32_t b)
 {
     if (to->count == to->room) {
         const size_t room = to->room ? 2 * to->room : 16;
@@ -70,7 +70,7 @@ static void test_pair(const visit *v, uint32_t a, uint32_t b)
     const uint32_t *vertex = v->s->welded.vertex;
     v->to->work++;
     if (cwi_triangles_meet(v->s->welded.points, vertex + 3 * (size_t)a, vertex + 3 * (size_t)b))
-        keep(v->to, a, b);
+        keep_pair(v->to, a, b);
 }
 
 static bool meet_node(void *context, size_t other)
@@ -118,7 +118,7 @@ static size_t first_allowance(const search *s)
     return CHUNK_NODES * CWI_WIDTH * a_triangle;
 }
 
-static bool prepare(search *s)
+static bool prepare_search(search *s)
 {
     if (!cwi_welded_sort(&s->welded, &s->tree))
         return false;
@@ -152,7 +152,7 @@ static int compare_pairs(const void *x, const void *y)
     return p->b < q->b ? -1 : p->b > q->b;
 }
 
-static cw_status collect(const search *s, cw_crossings *out, cw_error *err)
+static cw_status collect_pairs(const search *s, cw_crossings *out, cw_error *err)
 {
     size_t count = 0;
     bool failed = false;
@@ -178,9 +178,9 @@ static cw_status search_chunks(search *s, const cw_crossings_desc *d, cw_error *
                           &d->progress, "self-intersections", search_chunk, s, err);
 }
 
-static cw_status run(search *s, const cw_crossings_desc *d, cw_error *err)
+static cw_status run_search(search *s, const cw_crossings_desc *d, cw_error *err)
 {
-    if (!prepare(s))
+    if (!prepare_search(s))
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to check %zu triangles",
                        s->welded.mesh->triangle_count);
     cw_status st = search_chunks(s, d, err);
@@ -195,9 +195,9 @@ cw_status cw_self_intersections(const cw_mesh *mesh, const cw_crossings_desc *de
     *out = (cw_crossings){0};
     cw_status st = cwi_welded_init(&s.welded, mesh, d.weld, err);
     if (st == CW_OK)
-        st = run(&s, &d, err);
+        st = run_search(&s, &d, err);
     if (st == CW_OK)
-        st = collect(&s, out, err);
+        st = collect_pairs(&s, out, err);
     for (size_t n = 0; n < 2 * out->count && d.defects; n++)
         d.defects[out->pairs[n]] |= CW_DEFECT_INTERSECTING;
     for (size_t k = 0; k < s.chunk_count && s.chunks; k++)

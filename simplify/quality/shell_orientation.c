@@ -57,7 +57,7 @@ static int winding_of(const float *const corner[3], const float *start)
     return winding;
 }
 
-static void meet(ray *r, uint32_t triangle)
+static void meet_triangle(ray *r, uint32_t triangle)
 {
     const cwi_welded *w = r->w->welded;
     const uint32_t *v = w->vertex + 3 * (size_t)triangle;
@@ -89,7 +89,7 @@ static bool meet_node(void *context, size_t node)
     const unsigned meeting = cwi_boxes_meeting(&tree->nodes[node], box);
     for (size_t c = 0; meeting >> c; c++)
         if (meeting >> c & 1)
-            meet(r, tree->order[node * CWI_WIDTH + c]);
+            meet_triangle(r, tree->order[node * CWI_WIDTH + c]);
     return true;
 }
 
@@ -121,7 +121,7 @@ enum { WRONG = 1, TURN = 2 };
 /* Which way a shell should face is told by where it is, whichever way others do: in a solid it
  * is where it is inside an odd number of them. An open shell is never turned: a bowl may face
  * either way. */
-static void judge(const work *w, const cw_quality_desc *d, cw_quality *q)
+static void judge_shells(const work *w, const cw_quality_desc *d, cw_quality *q)
 {
     uint8_t *found = w->shells->unbounded; /* has served its purpose */
     find_open_inward(w, found, q);
@@ -169,7 +169,7 @@ bool cwi_measure_shells(const cwi_welded *welded, const cwi_shells *shells,
                             wind_around, &w, NULL) == CW_OK;
     }
     if (ok)
-        judge(&w, desc, q);
+        judge_shells(&w, desc, q);
     cwi_boxes_free(&w.tree);
     cwi_free(w.closed);
     cwi_free(w.around);

@@ -152,8 +152,8 @@ static double value_of(size_t bin)
 }
 
 /* Takes a distance that stands for a share of the mesh's area. */
-static void take(const work *w, tally *y, double distance, double share, const double p[3],
-                 size_t t)
+static void take_distance(const work *w, tally *y, double distance, double share,
+                          const double p[3], size_t t)
 {
     const double d = fabs(distance);
     y->sum += share * d;
@@ -173,12 +173,12 @@ static void measure_point(const work *w, tally *y, const double p[3], double sha
 {
     bool missed = false;
     const double d = w->s->measure(w->s->context, p, hint, &missed);
-    take(w, y, d, share, p, t);
+    take_distance(w, y, d, share, p, t);
     y->samples++;
     y->missed += missed;
 }
 
-static void between(const double p[3][3], double a, double b, double c, double x[3])
+static void interpolate_point(const double p[3][3], double a, double b, double c, double x[3])
 {
     for (int k = 0; k < 3; k++)
         x[k] = a * p[0][k] + b * p[1][k] + c * p[2][k];
@@ -210,7 +210,7 @@ static void measure_side(const work *w, tally *y, const double p[3][3], size_t t
         y->samples++;
         y->missed += s->missed;
     }
-    take(w, y, s->distance, share * 2 / 15, x, t);
+    take_distance(w, y, s->distance, share * 2 / 15, x, t);
 }
 
 /* Most triangles of a mesh that was extracted: corners, middles of sides, centroid. */
@@ -220,7 +220,7 @@ static void measure_small(const work *w, tally *y, const double p[3][3], size_t 
     double x[3];
     for (int c = 0; c < 3; c++)
         measure_side(w, y, p, t, c, share, sides, hint);
-    between(p, 1 / 3.0, 1 / 3.0, 1 / 3.0, x);
+    interpolate_point(p, 1 / 3.0, 1 / 3.0, 1 / 3.0, x);
     measure_point(w, y, x, share * 9 / 20, t, hint);
 }
 
@@ -234,14 +234,14 @@ static void measure_divided(const work *w, tally *y, const double q[3][3], size_
             const uint32_t k = m - i - j;
             if (i == m || j == m || k == m)
                 continue;
-            between(q, (double)i / m, (double)j / m, (double)k / m, x);
+            interpolate_point(q, (double)i / m, (double)j / m, (double)k / m, x);
             measure_point(w, y, x, share * weight_of(i, j, k), t, hint);
         }
     for (uint32_t i = 0; i < n; i++)
         for (uint32_t j = 0; i + j < n; j++)
             for (int down = 0; down <= (i + j + 1 < n); down++) {
                 const double a = (i + (1 + down) / 3.0) / n, b = (j + (1 + down) / 3.0) / n;
-                between(q, a, b, 1 - a - b, x);
+                interpolate_point(q, a, b, 1 - a - b, x);
                 measure_point(w, y, x, share * 9 / 20, t, hint);
             }
 }
@@ -254,8 +254,8 @@ static void measure_triangle(const work *w, tally *y, size_t t, side *sides, uin
     const uint32_t n = parts_of(w, q);
     const double share = w->area > 0 ? area_of(q) / w->area / ((double)n * n) : 0;
     for (int c = 0; c < 3; c++)
-        take(w, y, (double)w->vertex[w->s->mesh->triangles[3 * t + (size_t)c]], share / 20,
-             p[c], t);
+        take_distance(w, y, (double)w->vertex[w->s->mesh->triangles[3 * t + (size_t)c]],
+                      share / 20, p[c], t);
     if (n == 1)
         measure_small(w, y, q, t, share, sides, hint);
     else
@@ -286,7 +286,7 @@ static void tally_vertices(const work *w)
     for (size_t v = 0; v < mesh->vertex_count; v++) {
         const float *x = mesh->positions + 3 * v;
         const double p[3] = {(double)x[0], (double)x[1], (double)x[2]};
-        take(w, y, (double)w->vertex[v], 1 / (double)mesh->vertex_count, p, 0);
+        take_distance(w, y, (double)w->vertex[v], 1 / (double)mesh->vertex_count, p, 0);
     }
 }
 
@@ -304,7 +304,7 @@ static void spread_worst(const work *w)
 }
 
 /* The distance below which 99 % of the area lies. */
-static double percentile(const work *w, int threads)
+static double find_percentile(const work *w, int threads)
 {
     uint64_t all = 0, below = 0;
     for (size_t b = 0; b < BINS; b++) {
@@ -320,7 +320,7 @@ static double percentile(const work *w, int threads)
     return 0;
 }
 
-static void join(const work *w, int threads, cw_distance *out)
+static void join_tallies(const work *w, int threads, cw_distance *out)
 {
     const cw_mesh *mesh = w->s->mesh;
     double sum = 0, squares = 0, balance = 0;
@@ -345,14 +345,14 @@ static void join(const work *w, int threads, cw_distance *out)
     out->mean_mm = sum;
     out->rms_mm = sqrt(squares);
     out->bias_mm = w->s->is_signed ? balance : 0;
-    out->p99_mm = cwi_lesser(percentile(w, threads), out->max_mm);
+    out->p99_mm = cwi_lesser(find_percentile(w, threads), out->max_mm);
     out->triangles = mesh->triangle_count;
     out->samples = samples;
     out->missed = missed;
 }
 
 /* Into chunks of triangles, or one for the vertices. */
-static void plan(work *w)
+static void plan_chunks(work *w)
 {
     w->scale = w->chunks = 1;
     if (w->s->vertices_only)
@@ -362,11 +362,11 @@ static void plan(work *w)
     w->chunks = cut_chunks(w);
 }
 
-static bool prepare(work *w, int threads, float *per_vertex)
+static bool prepare_tallies(work *w, int threads, float *per_vertex)
 {
     const size_t vertices = w->s->mesh->vertex_count;
     const bool triangles = w->s->worst && !w->s->vertices_only;
-    plan(w);
+    plan_chunks(w);
     w->tallies = cwi_alloc_zeroed(w->chunks + 1, sizeof *w->tallies);
     w->missed = cwi_alloc_zeroed(vertices, sizeof *w->missed);
     w->histogram = cwi_alloc_zeroed((size_t)threads * BINS, sizeof *w->histogram);
@@ -387,7 +387,7 @@ cw_status cwi_sample_mesh(const cwi_sampling *sampling, cw_distance *out, float 
     const int threads = cwi_threads(sampling->threads);
     const size_t vertices = sampling->mesh->vertex_count;
     cw_status st = CW_OK;
-    if (!prepare(&w, threads, per_vertex))
+    if (!prepare_tallies(&w, threads, per_vertex))
         st = cw_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu triangles",
                      sampling->mesh->triangle_count);
     if (st == CW_OK)
@@ -399,7 +399,7 @@ cw_status cwi_sample_mesh(const cwi_sampling *sampling, cw_distance *out, float 
         st = cwi_each_layer(w.chunks, WORTH, sampling->threads, sampling->progress,
                             sampling->name, measure_chunk, &w, err);
     if (st == CW_OK)
-        join(&w, threads, out);
+        join_tallies(&w, threads, out);
     if (st == CW_OK && sampling->worst)
         spread_worst(&w);
     if (!per_vertex)

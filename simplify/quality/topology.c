@@ -48,7 +48,7 @@ static bool goes_on(const work *w, size_t turn)
     return turn % 65536 || cwi_progress(&w->progress, "checking", -1, NULL) == CW_OK;
 }
 
-static void mark(const work *w, size_t triangle, cw_defect defect)
+static void mark_defect(const work *w, size_t triangle, cw_defect defect)
 {
     if (w->defects)
         w->defects[triangle] |= (uint8_t)defect;
@@ -138,7 +138,7 @@ static bool runs_up(const work *w, const edge *e, const side *s)
 static void mark_edge(const work *w, const edge *e, cw_defect defect)
 {
     for (uint32_t i = 0; i < e->count && w->defects; i++)
-        mark(w, w->sides[e->begin + i].corner / 3, defect);
+        mark_defect(w, w->sides[e->begin + i].corner / 3, defect);
 }
 
 /* A triangle is met at three edges: it counts at that of its two lower vertices. */
@@ -148,8 +148,8 @@ static void count_duplicates(const work *w, const edge *e, cw_quality *q)
     for (uint32_t i = 1; i < e->count; i++)
         if (s[i].third == s[i - 1].third && s[i].third > s[i].higher) {
             q->duplicates++;
-            mark(w, s[i].corner / 3, CW_DEFECT_DUPLICATE);
-            mark(w, s[i - 1].corner / 3, CW_DEFECT_DUPLICATE);
+            mark_defect(w, s[i].corner / 3, CW_DEFECT_DUPLICATE);
+            mark_defect(w, s[i - 1].corner / 3, CW_DEFECT_DUPLICATE);
         }
 }
 
@@ -233,7 +233,7 @@ static void count_fans(work *w)
             w->fans[w->vertex[c]]++;
     for (uint32_t c = 0; c < w->corners && w->defects; c++)
         if (w->fans[w->vertex[c]] > 1)
-            mark(w, c / 3, CW_DEFECT_NONMANIFOLD);
+            mark_defect(w, c / 3, CW_DEFECT_NONMANIFOLD);
 }
 
 /* Of the vertices as indexed: in no triangle, or at the place of another one. */
@@ -275,7 +275,7 @@ static void measure_components(work *w, cw_quality *q)
         }
 }
 
-static bool prepare(work *w)
+static bool prepare_arrays(work *w)
 {
     w->vertex = w->welded.vertex;
     w->vertices = w->welded.mesh->vertex_count;
@@ -294,7 +294,7 @@ static bool prepare(work *w)
 
 static bool measure_topology(work *w, const cw_quality_desc *d, cw_quality *q)
 {
-    if (!prepare(w) || !sort_sides(w))
+    if (!prepare_arrays(w) || !sort_sides(w))
         return false;
     measure_edges(w, q);
     if (w->stop.stopped || !count_loops(w, q))

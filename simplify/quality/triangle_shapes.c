@@ -35,7 +35,7 @@ typedef struct work {
     double bins_per_octave, shortest; /* of the histogram of lengths */
 } work;
 
-static void load(const cw_mesh *mesh, size_t triangle, sides *s)
+static void load_sides(const cw_mesh *mesh, size_t triangle, sides *s)
 {
     cwi_corners(mesh, triangle, s->from);
     for (int n = 0; n < 3; n++)
@@ -48,7 +48,7 @@ void cwi_add_triangle(const cw_mesh *mesh, size_t triangle, uint32_t vertex, dou
                       double *area)
 {
     sides s;
-    load(mesh, triangle, &s);
+    load_sides(mesh, triangle, &s);
     for (size_t a = 0; a < 3; a++)
         s.from[0][a] -= (double)mesh->positions[3 * (size_t)vertex + a];
     *volume += cwi_dot(s.normal, s.from[0]) / 6;
@@ -94,7 +94,7 @@ static void measure_triangle(const work *w, size_t t, part *p)
 {
     sides s;
     double largest, low, high;
-    load(w->welded->mesh, t, &s);
+    load_sides(w->welded->mesh, t, &s);
     s.twice_area = sqrt(cwi_dot(s.normal, s.normal));
     for (int n = 0; n < 3; n++)
         s.length[n] = sqrt(cwi_dot(s.side[n], s.side[n]));
@@ -140,7 +140,7 @@ static void count_lengths(void *context, size_t k)
     const work *w = context;
     for (size_t t = k * CHUNK; t < end_of(w, k); t++) {
         sides s;
-        load(w->welded->mesh, t, &s);
+        load_sides(w->welded->mesh, t, &s);
         if (!(cwi_dot(s.normal, s.normal) > 0) || cwi_is_collapsed(w->welded, t))
             continue;
         for (int n = 0; n < 3; n++) {

@@ -30,26 +30,26 @@ typedef struct search {
     double limit; /* best less the slack: what is not nearer than this does not matter */
 } search;
 
-static double between(double x, double low, double high)
+static double clamp_between(double x, double low, double high)
 {
     return cwi_lesser(cwi_greater(x, low), high);
 }
 
-static void times(const double m[3][3], const double x[3], double y[3])
+static void multiply_vector(const double m[3][3], const double x[3], double y[3])
 {
     for (int r = 0; r < 3; r++)
         y[r] = m[r][0] * x[0] + m[r][1] * x[1] + m[r][2] * x[2];
 }
 
-static double length(const cwi_metric *m, const double x[3])
+static double metric_length(const cwi_metric *m, const double x[3])
 {
     double y[3];
-    times(m->gram, x, y);
+    multiply_vector(m->gram, x, y);
     return sqrt(cwi_greater(cwi_dot(x, y), 0));
 }
 
 /* The inverse of a symmetric matrix without some of its axes: those become the identity's. */
-static void invert(const double gram[3][3], unsigned without, double inverse[3][3])
+static void invert_gram(const double gram[3][3], unsigned without, double inverse[3][3])
 {
     double a[12] = {0}, c[3][3];
     for (int r = 0; r < 3; r++)
@@ -73,7 +73,7 @@ void cwi_metric_init(cwi_metric *m, const double *affine)
                 m->gram[r][s] += affine[4 * k + r] * affine[4 * k + s];
         }
     for (unsigned without = 0; without < 8; without++)
-        invert((const double(*)[3])m->gram, without, m->inverse[without]);
+        invert_gram((const double(*)[3])m->gram, without, m->inverse[without]);
     for (int r = 0; r < 3; r++)
         m->width[r] = sqrt(m->inverse[0][r][r]);
     m->voxel = cbrt(fabs(cwi_affine_determinant(affine)));
@@ -90,7 +90,7 @@ void cwi_patch_init(cwi_patch *patch, const double corners[8])
 }
 
 /* The same polynomial around x: value, gradient and higher terms, in the order of c. */
-static void expand(const cwi_patch *patch, const double x[3], double t[8])
+static void expand_field(const cwi_patch *patch, const double x[3], double t[8])
 {
     const double *c = patch->c;
     t[7] = c[7];
@@ -107,15 +107,15 @@ static void expand(const cwi_patch *patch, const double x[3], double t[8])
 double cwi_patch_value(const cwi_patch *patch, const double x[3])
 {
     double t[8];
-    expand(patch, x, t);
+    expand_field(patch, x, t);
     return t[0];
 }
 
 /* The point y of a box nearest to u where the plane f + g . (y - x) vanishes: axes along which
  * the nearest point lies outside the box are fixed to its wall, the worst first. *pull is such
  * that y = u - pull * g / gram, but for the walls. */
-static bool project(const search *s, const box *b, const double x[3], double f,
-                    const double g[3], double y[3], double *pull)
+static bool project_on_patch(const search *s, const box *b, const double x[3], double f,
+                             const double g[3], double y[3], double *pull)
 {
     double away[3] = {0, 0, 0}; /* of y from u, along fixed axes */
     for (unsigned fixed = 0; fixed < 7;) {
@@ -124,14 +124,14 @@ static bool project(const search *s, const box *b, const double x[3], double f,
         int axis = -1;
         if (fixed) {
             double force[3];
-            times((const double(*)[3])s->metric->gram, away, force);
-            times(inverse, force, back);
+            multiply_vector((const double(*)[3])s->metric->gram, away, force);
+            multiply_vector(inverse, force, back);
         }
         for (int a = 0; a < 3; a++) {
             y[a] = fixed >> a & 1 ? s->u[a] + away[a] : s->u[a] - back[a];
             rest += g[a] * (y[a] - x[a]);
         }
-        times(inverse, g, down);
+        multiply_vector(inverse, g, down);
         const double square = cwi_dot(g, down);
         if (!(square > 0))
             return false;
@@ -155,12 +155,12 @@ static bool project(const search *s, const box *b, const double x[3], double f,
 /* What to do where that fails: pulls the point of the box nearest to u towards the plane until
  * it comes there or can go no farther, axes taken as orthogonal. Each begins to move when it
  * comes off a wall of the box, and stops at the other. */
-static double press(const search *s, const box *b, const double x[3], double f,
-                    const double g[3], double y[3])
+static double press_bound(const search *s, const box *b, const double x[3], double f,
+                          const double g[3], double y[3])
 {
     double rest = f, speed[3], start[3], stop[3], pull = 0;
     for (int a = 0; a < 3; a++)
-        rest += g[a] * (between(s->u[a], b->low[a], b->high[a]) - x[a]);
+        rest += g[a] * (clamp_between(s->u[a], b->low[a], b->high[a]) - x[a]);
     const double side = rest < 0 ? -1 : 1;
     for (int a = 0; a < 3; a++) {
         speed[a] = side * g[a] / s->metric->gram[a][a];
@@ -186,14 +186,14 @@ static double press(const search *s, const box *b, const double x[3], double f,
         pull = next;
     }
     for (int a = 0; a < 3; a++)
-        y[a] = between(s->u[a] - pull * speed[a], b->low[a], b->high[a]);
+        y[a] = clamp_between(s->u[a] - pull * speed[a], b->low[a], b->high[a]);
     return side * pull;
 }
 
-static void offer(search *s, const double x[3], double margin)
+static void offer_point(search *s, const double x[3], double margin)
 {
     const double way[3] = {x[0] - s->u[0], x[1] - s->u[1], x[2] - s->u[2]};
-    const double d = length(s->metric, way) + margin;
+    const double d = metric_length(s->metric, way) + margin;
     if (d < s->best) {
         s->best = d;
         s->limit = d - cwi_slack(s->metric, d);
@@ -205,36 +205,36 @@ static void offer(search *s, const double x[3], double margin)
 static bool on_surface(const search *s, const box *b, const double x[3])
 {
     double t[8], down[3], y[3];
-    expand(s->patch, x, t);
+    expand_field(s->patch, x, t);
     const double g[3] = {t[1], t[2], t[4]}, close = 1e-6 * s->metric->voxel;
-    times((const double(*)[3])s->metric->inverse[0], g, down);
+    multiply_vector((const double(*)[3])s->metric->inverse[0], g, down);
     const double step = copysign(close / sqrt(cwi_dot(g, down)), t[0]);
     for (int a = 0; a < 3; a++)
-        y[a] = between(x[a] - step * down[a], b->low[a], b->high[a]);
+        y[a] = clamp_between(x[a] - step * down[a], b->low[a], b->high[a]);
     return t[0] * cwi_patch_value(s->patch, y) <= 0;
 }
 
 /* Newton's method in a box: the nearest point on the tangent plane at the nearest point on the
  * tangent plane ... What it finds on the surface is offered. Returns the last pull. */
-static double descend(search *s, const box *b, double x[3])
+static double descend_to_patch(search *s, const box *b, double x[3])
 {
     const double close = 1e-7 * s->metric->voxel;
     double pull = 0, moved = INFINITY;
     for (int n = 0; n < 16 && moved >= close; n++) {
         double t[8], y[3];
-        expand(s->patch, x, t);
+        expand_field(s->patch, x, t);
         const double g[3] = {t[1], t[2], t[4]};
-        const bool reached = project(s, b, x, t[0], g, y, &pull);
+        const bool reached = project_on_patch(s, b, x, t[0], g, y, &pull);
         if (!reached)
-            pull = press(s, b, x, t[0], g, y);
+            pull = press_bound(s, b, x, t[0], g, y);
         const double move[3] = {y[0] - x[0], y[1] - x[1], y[2] - x[2]};
-        moved = length(s->metric, move);
+        moved = metric_length(s->metric, move);
         memcpy(x, y, 3 * sizeof *x);
         if (!reached)
             return pull;
     }
     if (moved < close || on_surface(s, b, x))
-        offer(s, x, 0);
+        offer_point(s, x, 0);
     return pull;
 }
 
@@ -280,8 +280,8 @@ static bool is_cleared(const search *s, const box *b, const double x[3], double 
 {
     double t[8], slope[3], far[3];
     const double way[3] = {x[0] - s->u[0], x[1] - s->u[1], x[2] - s->u[2]};
-    expand(s->patch, x, t);
-    times((const double(*)[3])s->metric->gram, way, slope);
+    expand_field(s->patch, x, t);
+    multiply_vector((const double(*)[3])s->metric->gram, way, slope);
     double room = (cwi_dot(way, slope) - s->limit * s->limit) / 2 + pull * t[0];
     room -= fabs(pull) * NOTHING;
     for (int a = 0; a < 3; a++) {
@@ -307,7 +307,7 @@ static bool is_cleared(const search *s, const box *b, const double x[3], double 
 }
 
 /* Leaves of a box what is nearer than the limit along each axis; false when nothing is. */
-static bool clip(const search *s, box *b)
+static bool clip_box(const search *s, box *b)
 {
     for (int a = 0; a < 3; a++) {
         const double width = s->limit * s->metric->width[a];
@@ -324,7 +324,7 @@ static bool clip(const search *s, box *b)
 static bool may_be_near(const search *s, const double middle[3], const double half[3])
 {
     double t[8], down[3], linear = 0;
-    expand(s->patch, middle, t);
+    expand_field(s->patch, middle, t);
     const double g[3] = {t[1], t[2], t[4]};
     const double bent = fabs(t[3]) * half[0] * half[1] + fabs(t[5]) * half[0] * half[2] +
                         fabs(t[6]) * half[1] * half[2] +
@@ -336,7 +336,7 @@ static bool may_be_near(const search *s, const double middle[3], const double ha
     const double way[3] = {s->u[0] - middle[0], s->u[1] - middle[1], s->u[2] - middle[2]};
     const double plane = fabs(t[0] + cwi_dot(g, way)) - bent;
     if (plane > 0) {
-        times((const double(*)[3])s->metric->inverse[0], g, down);
+        multiply_vector((const double(*)[3])s->metric->inverse[0], g, down);
         if (plane * plane >= s->limit * s->limit * cwi_dot(g, down))
             return false;
     }
@@ -366,26 +366,26 @@ static void search_box(search *s, box b, double *start)
 {
     double middle[3], half[3], x[3], before;
     do {
-        if (!(s->limit > 0) || !clip(s, &b))
+        if (!(s->limit > 0) || !clip_box(s, &b))
             return;
         for (int a = 0; a < 3; a++) {
             middle[a] = (b.low[a] + b.high[a]) / 2;
             half[a] = (b.high[a] - b.low[a]) / 2;
-            x[a] = start ? between(start[a], b.low[a], b.high[a]) : middle[a];
+            x[a] = start ? clamp_between(start[a], b.low[a], b.high[a]) : middle[a];
         }
         if (!may_be_near(s, middle, half))
             return;
         const double way[3] = {middle[0] - s->u[0], middle[1] - s->u[1], middle[2] - s->u[2]};
         const double r = sqrt(radius_squared(s->metric, half));
-        const double d = length(s->metric, way);
+        const double d = metric_length(s->metric, way);
         if (d - r >= s->limit)
             return;
         if (2 * r < cwi_slack(s->metric, d)) { /* a point is here, no nearer one matters */
-            offer(s, middle, r);
+            offer_point(s, middle, r);
             return;
         }
         before = s->limit;
-        const double pull = descend(s, &b, x);
+        const double pull = descend_to_patch(s, &b, x);
         if (is_cleared(s, &b, x, pull))
             return;
         start = x;

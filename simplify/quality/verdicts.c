@@ -30,20 +30,20 @@ static const severity for_web = {{CW_GRADE_NOTE, CW_GRADE_NOTE, CW_GRADE_WARN, C
 static const severity look = {{CW_GRADE_WARN, CW_GRADE_WARN, CW_GRADE_WARN, CW_GRADE_WARN}};
 static const severity overlap = {{CW_GRADE_WARN, CW_GRADE_WARN, CW_GRADE_NOTE, CW_GRADE_FAIL}};
 
-static const char *plural(size_t count)
+static const char *plural_ending(size_t count)
 {
     return count == 1 ? "" : "s";
 }
 
-static cw_verdict *add(bench *b, const char *name, cw_grade grade, double number)
+static cw_verdict *add_verdict(bench *b, const char *name, cw_grade grade, double number)
 {
     cw_verdict *v = &b->verdicts[b->count++];
     *v = (cw_verdict){.name = name, .grade = grade, .number = number};
     return v;
 }
 
-static void say(cw_verdict *v, const char *format, ...) CW_PRINTF(2, 3);
-static void say(cw_verdict *v, const char *format, ...)
+static void say_finding(cw_verdict *v, const char *format, ...) CW_PRINTF(2, 3);
+static void say_finding(cw_verdict *v, const char *format, ...)
 {
     va_list args;
     va_start(args, format);
@@ -55,8 +55,9 @@ static void say(cw_verdict *v, const char *format, ...)
 static cw_verdict *add_count(bench *b, const char *name, const severity *s, size_t count,
                              const char *none, const char *advice)
 {
-    cw_verdict *v = add(b, name, count ? s->grade[b->profile] : CW_GRADE_OK, (double)count);
-    say(v, "%s", none);
+    cw_verdict *v =
+        add_verdict(b, name, count ? s->grade[b->profile] : CW_GRADE_OK, (double)count);
+    say_finding(v, "%s", none);
     v->advice = count ? advice : NULL;
     return v;
 }
@@ -65,8 +66,8 @@ static void judge_size(bench *b)
 {
     const cw_quality *q = b->f->quality;
     if (q->triangles == 0) {
-        cw_verdict *v = add(b, "triangles", CW_GRADE_FAIL, 0);
-        say(v, "the mesh has none");
+        cw_verdict *v = add_verdict(b, "triangles", CW_GRADE_FAIL, 0);
+        say_finding(v, "the mesh has none");
         v->advice = "the file holds no surface: look at what wrote it";
         return;
     }
@@ -76,9 +77,10 @@ static void judge_size(bench *b)
     for (int a = 0; a < 3; a++)
         high = fmax(high, q->max[a] - q->min[a]);
     const bool fits = high >= CW_PRINT_MIN_MM && high <= CW_PRINT_MAX_MM;
-    cw_verdict *v = add(b, "size", fits ? CW_GRADE_OK : for_print.grade[b->profile], high);
-    say(v, "the box is %.6g x %.6g x %.6g mm", q->max[0] - q->min[0], q->max[1] - q->min[1],
-        q->max[2] - q->min[2]);
+    cw_verdict *v =
+        add_verdict(b, "size", fits ? CW_GRADE_OK : for_print.grade[b->profile], high);
+    say_finding(v, "the box is %.6g x %.6g x %.6g mm", q->max[0] - q->min[0],
+                q->max[1] - q->min[1], q->max[2] - q->min[2]);
     if (!fits)
         v->advice = "printers make 5 to 400 mm: is the file's unit the millimetre?";
 }
@@ -91,19 +93,21 @@ static void judge_surface(bench *b)
                               "every edge has one or two triangles, every vertex one fan",
                               "split the mesh where more than one surface meets");
     if (bad)
-        say(v, "%zu edge%s with more than two triangles, %zu vert%s with more than one fan",
-            q->nonmanifold_edges, plural(q->nonmanifold_edges), q->nonmanifold_vertices,
+        say_finding(
+            v, "%zu edge%s with more than two triangles, %zu vert%s with more than one fan",
+            q->nonmanifold_edges, plural_ending(q->nonmanifold_edges), q->nonmanifold_vertices,
             q->nonmanifold_vertices == 1 ? "ex" : "ices");
     v = add_count(b, "closed", &for_solids, q->open_edges, "no edge is open",
                   "fill the holes; a T-junction or a crack is closed by merging near vertices");
     if (q->open_edges)
-        say(v, "%zu open edge%s in %zu loop%s", q->open_edges, plural(q->open_edges),
-            q->border_loops, plural(q->border_loops));
+        say_finding(v, "%zu open edge%s in %zu loop%s", q->open_edges,
+                    plural_ending(q->open_edges), q->border_loops,
+                    plural_ending(q->border_loops));
     v = add_count(b, "oriented", &always, q->misoriented_edges,
                   "neighbours agree on what is outside", "flip the triangles that disagree");
     if (q->misoriented_edges)
-        say(v, "%zu edge%s between triangles that disagree on what is outside",
-            q->misoriented_edges, plural(q->misoriented_edges));
+        say_finding(v, "%zu edge%s between triangles that disagree on what is outside",
+                    q->misoriented_edges, plural_ending(q->misoriented_edges));
 }
 
 static void judge_shells(bench *b)
@@ -112,19 +116,19 @@ static void judge_shells(bench *b)
     cw_verdict *v = add_count(b, "outward", &always, q->inside_out,
                               "every closed shell faces the right way", "flip these shells");
     if (q->inside_out)
-        say(v, "%zu closed shell%s inside out", q->inside_out,
-            q->inside_out == 1 ? " is" : "s are");
+        say_finding(v, "%zu closed shell%s inside out", q->inside_out,
+                    q->inside_out == 1 ? " is" : "s are");
     if (q->open_inward) {
         v = add_count(b, "facing", &look, q->open_inward, "", "if so, flip them");
-        say(v, "%zu open shell%s to be inside out", q->open_inward,
-            q->open_inward == 1 ? " seems" : "s seem");
+        say_finding(v, "%zu open shell%s to be inside out", q->open_inward,
+                    q->open_inward == 1 ? " seems" : "s seem");
     }
     if (!q->nested)
         return;
     v = add_count(b, "nested", &overlap, q->nested, "",
                   "drop the inner shells, or flip them where cavities are meant");
-    say(v, "%zu shell%s inside another solid, not as a cavity", q->nested,
-        q->nested == 1 ? " lies" : "s lie");
+    say_finding(v, "%zu shell%s inside another solid, not as a cavity", q->nested,
+                q->nested == 1 ? " lies" : "s lie");
 }
 
 static void judge_triangles(bench *b)
@@ -134,17 +138,18 @@ static void judge_triangles(bench *b)
         add_count(b, "degenerate", &not_for_web, q->degenerate, "every triangle has an area",
                   "collapse or flip their short edges");
     if (q->degenerate)
-        say(v, "%zu triangle%s without area", q->degenerate, plural(q->degenerate));
+        say_finding(v, "%zu triangle%s without area", q->degenerate,
+                    plural_ending(q->degenerate));
     if (q->duplicates) {
         v = add_count(b, "duplicates", &not_for_web, q->duplicates, "",
                       "keep one of each, or none where two walls meet");
-        say(v, "%zu triangle%s with the vertices of another one", q->duplicates,
-            plural(q->duplicates));
+        say_finding(v, "%zu triangle%s with the vertices of another one", q->duplicates,
+                    plural_ending(q->duplicates));
     }
     if (q->unused_vertices) {
         v = add_count(b, "unused", &for_web, q->unused_vertices, "", "drop them");
-        say(v, "%zu vert%s in no triangle", q->unused_vertices,
-            q->unused_vertices == 1 ? "ex" : "ices");
+        say_finding(v, "%zu vert%s in no triangle", q->unused_vertices,
+                    q->unused_vertices == 1 ? "ex" : "ices");
     }
 }
 
@@ -156,14 +161,15 @@ static void judge_shapes(bench *b)
         return;
     const bool good =
         s->min_angle_deg >= CW_FEM_MIN_ANGLE_DEG && s->max_aspect <= CW_FEM_MAX_ASPECT;
-    cw_verdict *v =
-        add(b, "shapes", good ? CW_GRADE_OK : for_fem.grade[b->profile], s->min_angle_deg);
-    say(v,
+    cw_verdict *v = add_verdict(b, "shapes", good ? CW_GRADE_OK : for_fem.grade[b->profile],
+                                s->min_angle_deg);
+    say_finding(
+        v,
         "smallest angle %.3g degrees, largest aspect ratio %.3g; %zu needle%s, %zu cap%s, "
         "edges "
         "%.3g to %.3g mm",
-        s->min_angle_deg, s->max_aspect, q->needles, plural(q->needles), q->caps,
-        plural(q->caps), s->min_edge_mm, s->max_edge_mm);
+        s->min_angle_deg, s->max_aspect, q->needles, plural_ending(q->needles), q->caps,
+        plural_ending(q->caps), s->min_edge_mm, s->max_edge_mm);
     if (v->grade == CW_GRADE_FAIL)
         v->advice =
             "remesh, or extract with --snap 0.5: FEM wants 10 degrees and a ratio of 10";
@@ -180,9 +186,10 @@ static void judge_crossings(bench *b)
     const bool asked = cw_check_wants_crossings(b->profile);
     if (!x || (x->undecided && !x->count)) {
         const cw_grade grade = asked || x ? CW_GRADE_UNKNOWN : CW_GRADE_NOTE;
-        cw_verdict *v = add(b, "self-intersections", grade, 0);
-        say(v, x ? "undecided: too many triangles are in one place to look at every pair"
-                 : "not looked for");
+        cw_verdict *v = add_verdict(b, "self-intersections", grade, 0);
+        say_finding(v,
+                    x ? "undecided: too many triangles are in one place to look at every pair"
+                      : "not looked for");
         v->advice = x ? "drop the heap of slivers first" : "--deep looks for them";
         return;
     }
@@ -190,9 +197,9 @@ static void judge_crossings(bench *b)
                               "no two triangles meet but where they are neighbours",
                               "separate or unite the parts that cross");
     if (x->count)
-        say(v, "%s%zu pair%s of triangles meet%s that should not",
-            x->undecided ? "at least " : "", x->count, plural(x->count),
-            x->count == 1 ? "s" : "");
+        say_finding(v, "%s%zu pair%s of triangles meet%s that should not",
+                    x->undecided ? "at least " : "", x->count, plural_ending(x->count),
+                    x->count == 1 ? "s" : "");
 }
 
 static void judge_look(bench *b)
@@ -201,12 +208,14 @@ static void judge_look(bench *b)
     if (b->profile != CW_PROFILE_WEB)
         return;
     const bool many = q->triangles > CW_WEB_MAX_TRIANGLES;
-    cw_verdict *v = add(b, "weight", many ? CW_GRADE_WARN : CW_GRADE_OK, (double)q->triangles);
-    say(v, "%zu triangles", q->triangles);
+    cw_verdict *v =
+        add_verdict(b, "weight", many ? CW_GRADE_WARN : CW_GRADE_OK, (double)q->triangles);
+    say_finding(v, "%zu triangles", q->triangles);
     if (many)
         v->advice = "more than a million is slow to load: reduce the mesh";
-    v = add(b, "normals", b->f->has_normals ? CW_GRADE_OK : CW_GRADE_WARN, 0);
-    say(v, b->f->has_normals ? "one at every vertex" : "none: viewers will shade it flat");
+    v = add_verdict(b, "normals", b->f->has_normals ? CW_GRADE_OK : CW_GRADE_WARN, 0);
+    say_finding(v,
+                b->f->has_normals ? "one at every vertex" : "none: viewers will shade it flat");
 }
 
 /* There, and back: the mesh may be near all of it and yet leave parts of it out. */
@@ -218,21 +227,23 @@ static void judge_distance(bench *b, const char *name, const char *other, const 
     const double tolerance = b->f->tolerance_mm;
     const double far = fmax(to->max_mm, to->bound_mm);
     const bool holds = far <= tolerance;
-    cw_verdict *v = add(
+    cw_verdict *v = add_verdict(
         b, name, tolerance > 0 ? (holds ? CW_GRADE_OK : CW_GRADE_FAIL) : CW_GRADE_NOTE, far);
-    say(v, "at most %.4g mm from %s, rms %.3g, 99 %% within %.3g; farthest at %.8g, %.8g, %.8g",
+    say_finding(
+        v, "at most %.4g mm from %s, rms %.3g, 99 %% within %.3g; farthest at %.8g, %.8g, %.8g",
         to->max_mm, other, to->rms_mm, to->p99_mm, to->where[0], to->where[1], to->where[2]);
     if (v->grade == CW_GRADE_FAIL)
         v->advice = "beyond the tolerance: --defects shows where";
     if (!back)
         return;
     const bool covers = fmax(back->max_mm, back->bound_mm) <= tolerance;
-    v = add(b, "covered",
-            !(tolerance > 0) ? CW_GRADE_NOTE
-            : covers         ? CW_GRADE_OK
-                             : CW_GRADE_FAIL,
-            back->max_mm);
-    say(v, "%s is at most %.4g mm from the mesh, rms %.3g; farthest at %.8g, %.8g, %.8g", rest,
+    v = add_verdict(b, "covered",
+                    !(tolerance > 0) ? CW_GRADE_NOTE
+                    : covers         ? CW_GRADE_OK
+                                     : CW_GRADE_FAIL,
+                    back->max_mm);
+    say_finding(
+        v, "%s is at most %.4g mm from the mesh, rms %.3g; farthest at %.8g, %.8g, %.8g", rest,
         back->max_mm, back->rms_mm, back->where[0], back->where[1], back->where[2]);
 }
 
@@ -242,12 +253,13 @@ static void judge_missing(bench *b)
     const cw_findings *f = b->f;
     if (!f->missing)
         return;
-    cw_verdict *v = add(b, "missing", f->tolerance_mm > 0 ? CW_GRADE_FAIL : CW_GRADE_WARN,
-                        (double)f->missing);
-    say(v,
+    cw_verdict *v = add_verdict(
+        b, "missing", f->tolerance_mm > 0 ? CW_GRADE_FAIL : CW_GRADE_WARN, (double)f->missing);
+    say_finding(
+        v,
         "%zu component%s of the field's surface %s no counterpart; the largest encloses %.4g "
         "mm3, and %s up to %.4g mm from the mesh",
-        f->missing, plural(f->missing), f->missing == 1 ? "has" : "have", f->missing_mm3,
+        f->missing, plural_ending(f->missing), f->missing == 1 ? "has" : "have", f->missing_mm3,
         f->missing == 1 ? "it is" : "they are", f->missing_mm);
     v->advice = "--min-volume leaves small ones out of the comparison";
 }
@@ -259,18 +271,19 @@ static void judge_topology(bench *b)
         return;
     const bool same = q->components == t->components && q->euler == t->euler &&
                       q->border_loops == t->border_loops;
-    cw_verdict *v = add(b, "topology", same ? CW_GRADE_OK : look.grade[b->profile],
-                        fabs((double)q->components - (double)t->components));
+    cw_verdict *v = add_verdict(b, "topology", same ? CW_GRADE_OK : look.grade[b->profile],
+                                fabs((double)q->components - (double)t->components));
     if (same)
-        say(v, "as the field's: %zu component%s, Euler number %lld, %zu border loop%s",
-            q->components, plural(q->components), (long long)q->euler, q->border_loops,
-            plural(q->border_loops));
+        say_finding(v, "as the field's: %zu component%s, Euler number %lld, %zu border loop%s",
+                    q->components, plural_ending(q->components), (long long)q->euler,
+                    q->border_loops, plural_ending(q->border_loops));
     else
-        say(v,
+        say_finding(
+            v,
             "not the field's: %zu component%s where it has %zu, Euler number %lld not %lld, "
             "%zu "
             "border loops not %zu",
-            q->components, plural(q->components), t->components, (long long)q->euler,
+            q->components, plural_ending(q->components), t->components, (long long)q->euler,
             (long long)t->euler, q->border_loops, t->border_loops);
 }
 
@@ -297,16 +310,16 @@ static void judge_agreement(bench *b)
         differs = "the self-intersections";
     else if (manifold && c->bounds_volume && (q->inside_out || q->nested) && c->outward)
         differs = "which way shells face";
-    cw_verdict *v = add(b, "cgal", differs ? CW_GRADE_FAIL : CW_GRADE_OK, 0);
+    cw_verdict *v = add_verdict(b, "cgal", differs ? CW_GRADE_FAIL : CW_GRADE_OK, 0);
     if (differs)
-        say(v, "CGAL and these checks differ on %s", differs);
+        say_finding(v, "CGAL and these checks differ on %s", differs);
     else
-        say(v, manifold ? "CGAL says the same" : "CGAL takes no such mesh either");
+        say_finding(v, manifold ? "CGAL says the same" : "CGAL takes no such mesh either");
     v->advice = differs ? "one of the two is wrong: please report it" : NULL;
 }
 
 /* Worst first, and as judged among equals: an insertion sort keeps their order. */
-static void sort(cw_verdict *v, size_t count)
+static void sort_verdicts(cw_verdict *v, size_t count)
 {
     for (size_t i = 1; i < count; i++) {
         const cw_verdict x = v[i];
@@ -337,7 +350,7 @@ size_t cw_check_judge(const cw_findings *findings, cw_profile profile,
     judge_distance(&b, "to reference", "the reference", findings->to_reference, "the reference",
                    findings->from_reference);
     judge_agreement(&b);
-    sort(verdicts, b.count);
+    sort_verdicts(verdicts, b.count);
     return b.count;
 }
 

@@ -13,7 +13,7 @@ void cw_simplify_view_free(cw_simplify_view *view)
     view->depth = NULL;
 }
 
-static cw_status begin(cw_simplify_view *view, cw_error *err)
+static cw_status begin_depths(cw_simplify_view *view, cw_error *err)
 {
     size_t pixels;
     if (view->depth)
@@ -44,7 +44,7 @@ static double twice_area(const spot *a, const spot *b, double x, double y)
 }
 
 /* The pixels whose middles are in a triangle, whichever way it faces. */
-static void fill(cw_simplify_view *view, const spot s[3])
+static void fill_triangle(cw_simplify_view *view, const spot s[3])
 {
     const bool perspective = view->camera.fov_deg > 0;
     const double area = twice_area(s, s + 1, s[2].x, s[2].y);
@@ -72,7 +72,7 @@ cw_status cw_simplify_view_draw(cw_simplify_view *view, const cw_mesh *mesh, cw_
     cwi_view_tolerance v;
     cw_status st = cwi_view_init(&v, view, 1, err);
     if (st == CW_OK)
-        st = begin(view, err);
+        st = begin_depths(view, err);
     for (size_t t = 0; t < mesh->triangle_count && st == CW_OK; t++) {
         spot s[3];
         bool whole = true;
@@ -86,7 +86,7 @@ cw_status cw_simplify_view_draw(cw_simplify_view *view, const cw_mesh *mesh, cw_
             s[k].linear = view->camera.fov_deg > 0 ? 1 / depth : depth;
         }
         if (whole) /* what reaches behind the eye hides nothing */
-            fill(view, s);
+            fill_triangle(view, s);
     }
     return st;
 }

@@ -92,7 +92,7 @@ bool cwi_view_project(const cwi_view_tolerance *v, const double point[3], double
 }
 
 /* By how much a place is beyond one of the five planes that a view sees up to. */
-static double beyond(const cwi_view_tolerance *v, const place *p, int plane)
+static double distance_beyond(const cwi_view_tolerance *v, const place *p, int plane)
 {
     if (plane == 4)
         return v->nearest > 0 ? -p->depth : -INFINITY;
@@ -107,7 +107,7 @@ static bool is_seen(const cwi_view_tolerance *v, const place *p, int corners, do
     for (int plane = 0; plane < 5; plane++) {
         double least = INFINITY;
         for (int c = 0; c < corners; c++)
-            least = fmin(least, beyond(v, p + c, plane));
+            least = fmin(least, distance_beyond(v, p + c, plane));
         if (least > margin)
             return false;
     }
@@ -142,8 +142,8 @@ static bool is_hidden(const cwi_view_tolerance *v, const place *p, int corners, 
     return true;
 }
 
-static double limit(const cwi_view_tolerance *v, const place *p, int corners, double most,
-                    double margin)
+static double limit_error(const cwi_view_tolerance *v, const place *p, int corners, double most,
+                          double margin)
 {
     double least = INFINITY;
     if (!is_seen(v, p, corners, margin) || is_hidden(v, p, corners, most, margin))
@@ -211,7 +211,7 @@ double cwi_views_limit(const cwi_views *views, const float *const corners[3], do
         for (int c = 0; c < 3; c++)
             p[c] = place_of(v, (const double[3]){(double)corners[c][0], (double)corners[c][1],
                                                  (double)corners[c][2]});
-        least = fmin(least, limit(v, p, 3, most, margin));
+        least = fmin(least, limit_error(v, p, 3, most, margin));
     }
     return least;
 }
@@ -229,7 +229,7 @@ cw_status cw_simplify_view_sees(const cw_simplify_view *view, double pixels,
         return st;
     for (size_t n = 0; n < count; n++)
         p[n] = place_of(&v, points + 3 * n);
-    *seen = isfinite(limit(&v, p, (int)count, 0, 0));
+    *seen = isfinite(limit_error(&v, p, (int)count, 0, 0));
     return CW_OK;
 }
 
@@ -283,6 +283,6 @@ cw_status cw_simplify_view_error(const cw_simplify_view *view, double pixels,
     if (st != CW_OK)
         return st;
     const place p = place_of(&v, point);
-    *error_mm = limit(&v, &p, 1, 0, 0);
+    *error_mm = limit_error(&v, &p, 1, 0, 0);
     return CW_OK;
 }

@@ -19,7 +19,7 @@ static bool is_clear(const cw_scene *s)
 }
 
 /* Nothing that is asked for is left out silently. */
-static cw_status check(const cwi_frame *f, cw_error *err)
+static cw_status check_frame(const cwi_frame *f, cw_error *err)
 {
     const cw_scene *s = &f->scene;
     const char *more = is_clear(s)         ? "translucent"
@@ -100,8 +100,8 @@ static void drop_tinted(const cw_scene *s, cw_mesh *m)
         cwi_free(m->colors);
 }
 
-static cw_status draw(const cwi_frame *f, const cw_mesh *mesh, double *depth_mm,
-                      cw_picture *picture, cw_error *err)
+static cw_status draw_tinted(const cwi_frame *f, const cw_mesh *mesh, double *depth_mm,
+                             cw_picture *picture, cw_error *err)
 {
     cw_image image;
     cw_render_mesh_desc d = {.camera = f->scene.camera,
@@ -130,12 +130,12 @@ cw_status cwi_cpu_draw_mesh(const cwi_frame *frame, double *depth_mm, cw_picture
     cw_mesh tinted;
     cw_status st = cwi_tint_range(s, range, err);
     if (st == CW_OK)
-        st = check(frame, err);
+        st = check_frame(frame, err);
     if (st != CW_OK)
         return st;
     st = make_tinted(s, range, &tinted, err);
     if (st == CW_OK)
-        st = draw(frame, &tinted, depth_mm, picture, err);
+        st = draw_tinted(frame, &tinted, depth_mm, picture, err);
     drop_tinted(s, &tinted);
     return st;
 }

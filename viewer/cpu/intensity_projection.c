@@ -31,7 +31,7 @@ static int turning_values(const double c[4], double values[4])
     return count;
 }
 
-static bool within(const double v[8], double low, double high)
+static bool lies_within(const double v[8], double low, double high)
 {
     for (int n = 0; n < 8; n++)
         if (!(v[n] >= low && v[n] <= high))
@@ -42,7 +42,7 @@ static bool within(const double v[8], double low, double high)
 static void add_highest(const cwi_walk *w, const double v[8], tally *t)
 {
     double c[4], values[4];
-    if (t->has_value && within(v, -INFINITY, t->extreme))
+    if (t->has_value && lies_within(v, -INFINITY, t->extreme))
         return;
     cwi_walk_cubic(w, v, c);
     for (int n = turning_values(c, values) - 1; n >= 0; n--) {
@@ -54,7 +54,7 @@ static void add_highest(const cwi_walk *w, const double v[8], tally *t)
 static void add_lowest(const cwi_walk *w, const double v[8], tally *t)
 {
     double c[4], values[4];
-    if (t->has_value && within(v, t->extreme, INFINITY))
+    if (t->has_value && lies_within(v, t->extreme, INFINITY))
         return;
     cwi_walk_cubic(w, v, c);
     for (int n = turning_values(c, values) - 1; n >= 0; n--) {

@@ -146,7 +146,7 @@ void cwi_walk_cubic(const cwi_walk *w, const double v[8], double c[4])
     c[3] = rise[2] * d[2];
 }
 
-static double derivative(const cw_volume *v, const char *p, int axis, size_t n)
+static double row_derivative(const cw_volume *v, const char *p, int axis, size_t n)
 {
     const size_t dim = v->dim[axis];
     if (dim == 1)
@@ -167,7 +167,7 @@ void cwi_walk_gradients(const cwi_walk *w, double g[3][8])
             at[a] = (size_t)w->at[a] + (v->dim[a] > 1 && (n >> a & 1));
         const char *p = cwi_voxel_address(v, at[0], at[1], at[2]);
         for (int a = 0; a < 3; a++)
-            g[a][n] = derivative(v, p, a, at[a]);
+            g[a][n] = row_derivative(v, p, a, at[a]);
     }
 }
 

@@ -64,14 +64,14 @@ typedef struct facet {
 } facet;
 
 /* A vector without length stays as it is. */
-static void normalize(double a[3])
+static void normalize_vector(double a[3])
 {
     const double length = sqrt(cwi_dot(a, a));
     for (int i = 0; i < 3 && length > 0; i++)
         a[i] /= length;
 }
 
-static double snap(double x)
+static double snap_to_grid(double x)
 {
     return nearbyint(x * 256) / 256;
 }
@@ -91,7 +91,7 @@ static bool is_behind(const scene *s, const point *p)
     return s->perspective && p->z < s->near_mm;
 }
 
-static point project(const scene *s, size_t v)
+static point project_vertex(const scene *s, size_t v)
 {
     double d[3];
     for (size_t a = 0; a < 3; a++)
@@ -101,8 +101,8 @@ static point project(const scene *s, size_t v)
     p.x = s->width / 2.0 * w + s->scale * cwi_dot(d, s->right);
     p.y = s->height / 2.0 * w - s->scale * cwi_dot(d, s->up);
     if (!is_behind(s, &p)) {
-        p.x = snap(p.x / w);
-        p.y = snap(p.y / w);
+        p.x = snap_to_grid(p.x / w);
+        p.y = snap_to_grid(p.y / w);
     }
     return p;
 }
@@ -125,12 +125,12 @@ static span sample_span(double low, double high, int size)
                   (int32_t)fmax(fmin(floor(high - 0.5), size - 1), -1)};
 }
 
-static double min3(double a, double b, double c)
+static double min_of_three(double a, double b, double c)
 {
     return fmin(fmin(a, b), c);
 }
 
-static double max3(double a, double b, double c)
+static double max_of_three(double a, double b, double c)
 {
     return fmax(fmax(a, b), c);
 }
@@ -145,20 +145,22 @@ static span rows_of(const scene *s, size_t t)
         return (span){0, -1};
     if (behind > 0)
         return (span){0, s->height - 1};
-    return sample_span(min3(p[0].y, p[1].y, p[2].y), max3(p[0].y, p[1].y, p[2].y), s->height);
+    return sample_span(min_of_three(p[0].y, p[1].y, p[2].y),
+                       max_of_three(p[0].y, p[1].y, p[2].y), s->height);
 }
 
 static span columns_of(const scene *s, const point p[3])
 {
     if (behind_count(s, p) > 0)
         return (span){0, s->width - 1};
-    return sample_span(min3(p[0].x, p[1].x, p[2].x), max3(p[0].x, p[1].x, p[2].x), s->width);
+    return sample_span(min_of_three(p[0].x, p[1].x, p[2].x),
+                       max_of_three(p[0].x, p[1].x, p[2].x), s->width);
 }
 
 /* Corners as homogeneous vectors (x, y, w). In front of the near plane w is 1 and depth comes
  * in by the weights, which keeps the edges exact; across it w is the depth, and the
  * determinants below still hold without cutting the triangle [Olano1997]. */
-static void homogeneous(const scene *s, const point p[3], facet *f, double v[3][3])
+static void make_homogeneous(const scene *s, const point p[3], facet *f, double v[3][3])
 {
     const bool crosses = behind_count(s, p) > 0;
     for (int c = 0; c < 3; c++) {
@@ -177,7 +179,7 @@ static bool set_up_facet(const scene *s, size_t t, const point p[3], facet *f)
 {
     double v[3][3];
     f->triangle = t;
-    homogeneous(s, p, f, v);
+    make_homogeneous(s, p, f, v);
     for (int c = 0; c < 3; c++)
         cwi_cross(v[(c + 1) % 3], v[(c + 2) % 3], f->edge[c]);
     const double twice_area = cwi_dot(v[0], f->edge[0]);
@@ -205,7 +207,7 @@ static bool is_inside(const facet *f, const double e[3])
 }
 
 /* Edge functions at a sample to shares of the corners, which sum to 1. */
-static void shares(const facet *f, const double e[3], double share[3])
+static void find_weights(const facet *f, const double e[3], double share[3])
 {
     const double b[3] = {e[0] * f->weight[0], e[1] * f->weight[1], e[2] * f->weight[2]};
     for (int c = 0; c < 3; c++)
@@ -219,7 +221,7 @@ static void draw_row(const scene *s, const facet *f, span columns, int y, hit *r
         edge_values(f, x + 0.5, y + 0.5, e);
         if (!is_inside(f, e))
             continue;
-        shares(f, e, share);
+        find_weights(f, e, share);
         const double z = cwi_dot(share, f->z);
         if (z >= s->near_mm && z < row[x].z)
             row[x] = (hit){z, f->triangle};
@@ -258,7 +260,7 @@ static void facet_normal(const cw_mesh *mesh, facet *f)
             side[e][a] = (double)mesh->positions[3 * (size_t)corner[e + 1] + a] -
                          (double)mesh->positions[3 * (size_t)corner[0] + a];
     cwi_cross(side[f->is_back], side[!f->is_back], f->normal);
-    normalize(f->normal);
+    normalize_vector(f->normal);
 }
 
 /* The vertices' normals, turned to the side that is seen: both sides are lit, and neither a
@@ -276,7 +278,7 @@ static void surface_normal(const cw_mesh *mesh, const facet *f, const double sha
         memcpy(n, f->normal, 3 * sizeof *n);
     for (int a = 0; a < 3 && side < 0; a++)
         n[a] = -n[a];
-    normalize(n);
+    normalize_vector(n);
 }
 
 /* Linear colour of the surface itself; its inside is redder and darker. */
@@ -300,22 +302,22 @@ static void to_eye(const scene *s, double x, double y, double v[3])
     const double u = (x - s->width / 2.0) / s->scale, w = (s->height / 2.0 - y) / s->scale;
     for (int a = 0; a < 3; a++)
         v[a] = -s->forward[a] - (s->perspective ? u * s->right[a] + w * s->up[a] : 0);
-    normalize(v);
+    normalize_vector(v);
 }
 
 /* Diffuse light from the eye and, softer, from above its left shoulder; a little from
  * everywhere, more from above; a faint highlight [Blinn1977]. The README gives the formula. */
-static void shade(const scene *s, const facet *f, double x, double y, double rgb[3])
+static void shade_sample(const scene *s, const facet *f, double x, double y, double rgb[3])
 {
     double e[3], share[3], n[3], v[3], h[3];
     edge_values(f, x, y, e);
-    shares(f, e, share);
+    find_weights(f, e, share);
     surface_normal(s->mesh, f, share, n);
     surface_color(s, f, share, rgb);
     to_eye(s, x, y, v);
     for (int a = 0; a < 3; a++)
         h[a] = v[a] + s->fill_light[a];
-    normalize(h);
+    normalize_vector(h);
     const double head = fmax(cwi_dot(n, v), 0), fill = fmax(cwi_dot(n, s->fill_light), 0);
     double gloss = fmax(cwi_dot(n, h), 0);
     for (int i = 0; i < 5; i++)
@@ -351,7 +353,7 @@ static int sum_samples(const scene *s, const hit *hits, int x0, int y0, facet *f
             facet_normal(s->mesh, f);
         }
         double rgb[3];
-        shade(s, f, x + 0.5, y0 + row + 0.5, rgb);
+        shade_sample(s, f, x + 0.5, y0 + row + 0.5, rgb);
         for (int a = 0; a < 3; a++)
             sum[a] += rgb[a];
         covered++;
@@ -399,7 +401,7 @@ static void project_all(scene *s)
     {
 #pragma omp for
         for (size_t v = 0; v < vertices; v++)
-            s->points[v] = project(s, v);
+            s->points[v] = project_vertex(s, v);
 #pragma omp for
         for (size_t t = 0; t < triangles; t++)
             s->spans[t] = rows_of(s, t);
@@ -506,7 +508,7 @@ static cw_status set_up_scene(const cw_mesh *mesh, const cw_render_mesh_desc *d,
         s->color[a] = to_linear(d->color[a]);
         distance += (camera->target[a] - camera->eye[a]) * s->forward[a];
     }
-    normalize(s->fill_light);
+    normalize_vector(s->fill_light);
     s->near_mm = s->perspective ? 1e-6 * distance : 0;
     s->scale = s->perspective ? s->height / 2.0 / tan(camera->fov_deg * acos(-1) / 360)
                               : s->height / camera->height_mm;

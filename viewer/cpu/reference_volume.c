@@ -85,18 +85,18 @@ typedef struct sum {
     double tolerance; /* per length */
 } sum;
 
-static double clamp(double x, double low, double high)
+static double clamp_number(double x, double low, double high)
 {
     return x < low ? low : x > high ? high : x;
 }
 
 /* Extinction and colour at a point. */
-static double glow(const medium *m, double x, double color[3])
+static double emitted_color(const medium *m, double x, double color[3])
 {
     const cwi_frame *f = m->reference->frame;
     const cwi_linear *l = m->linear;
-    const double value = clamp(cwi_cubic_at(m->value, x), l->low, l->high) - l->origin;
-    const double opacity = clamp(l->opacity + value * l->opacity_slope, 0, 1);
+    const double value = clamp_number(cwi_cubic_at(m->value, x), l->low, l->high) - l->origin;
+    const double opacity = clamp_number(l->opacity + value * l->opacity_slope, 0, 1);
     double extinction = cwi_frame_extinction(f, opacity), gradient[3];
     for (int c = 0; c < 3; c++)
         color[c] = l->color[c] + value * l->color_slope[c];
@@ -113,14 +113,14 @@ static double glow(const medium *m, double x, double color[3])
     return extinction;
 }
 
-static passage pass(const medium *m, double from, double to)
+static passage pass_medium(const medium *m, double from, double to)
 {
     const cwi_rule *r = &m->reference->rule;
     const double length = (to - from) * m->length;
     double extinction[CWI_NODES], color[CWI_NODES][3];
     passage p = {0};
     for (int n = 0; n < CWI_NODES; n++) {
-        extinction[n] = length * glow(m, from + r->at[n] * (to - from), color[n]);
+        extinction[n] = length * emitted_color(m, from + r->at[n] * (to - from), color[n]);
         p.depth += r->weight[n] * extinction[n];
     }
     for (int n = 0; n < CWI_NODES && p.depth > 0; n++) {
@@ -134,7 +134,7 @@ static passage pass(const medium *m, double from, double to)
     return p;
 }
 
-static passage join(const passage *front, const passage *back)
+static passage join_passages(const passage *front, const passage *back)
 {
     const double light = exp(-front->depth);
     passage p = {.depth = front->depth + back->depth};
@@ -143,7 +143,7 @@ static passage join(const passage *front, const passage *back)
     return p;
 }
 
-static double difference(const passage *a, const passage *b)
+static double passage_difference(const passage *a, const passage *b)
 {
     double most = fabs(exp(-a->depth) - exp(-b->depth));
     for (int c = 0; c < 3; c++)
@@ -151,17 +151,17 @@ static double difference(const passage *a, const passage *b)
     return most;
 }
 
-static void add(const medium *m, double from, double to, const passage *whole, int halvings,
-                sum *s)
+static void add_passage(const medium *m, double from, double to, const passage *whole,
+                        int halvings, sum *s)
 {
     const double middle = (from + to) / 2;
-    const passage front = pass(m, from, middle), back = pass(m, middle, to);
-    const passage both = join(&front, &back);
-    const double error = s->light * difference(whole, &both);
+    const passage front = pass_medium(m, from, middle), back = pass_medium(m, middle, to);
+    const passage both = join_passages(&front, &back);
+    const double error = s->light * passage_difference(whole, &both);
     if (error > fmax(s->tolerance * (to - from) * m->length, piece_tolerance) &&
         halvings < MOST_HALVINGS) {
-        add(m, from, middle, &front, halvings + 1, s);
-        add(m, middle, to, &back, halvings + 1, s);
+        add_passage(m, from, middle, &front, halvings + 1, s);
+        add_passage(m, middle, to, &back, halvings + 1, s);
         return;
     }
     for (int c = 0; c < 3; c++)
@@ -215,8 +215,8 @@ static void add_cell(medium *m, const cwi_walk *w, const cwi_ray *ray, sum *s)
             find_gradients(m, w);
         has_gradients = true;
         m->linear = pieces[n].linear;
-        const passage whole = pass(m, pieces[n].from, pieces[n].to);
-        add(m, pieces[n].from, pieces[n].to, &whole, 0, s);
+        const passage whole = pass_medium(m, pieces[n].from, pieces[n].to);
+        add_passage(m, pieces[n].from, pieces[n].to, &whole, 0, s);
     }
 }
 

@@ -128,24 +128,24 @@ static fetch_function *choose_fetch(const cw_volume *v)
     return functions[v->type];
 }
 
-static inline lanes load(const float *p)
+static inline lanes load_lanes(const float *p)
 {
     lanes v;
     memcpy(&v, p, sizeof v);
     return v;
 }
 
-static inline lanes spread(float x)
+static inline lanes spread_lanes(float x)
 {
     return (lanes){x, x, x, x};
 }
 
 /* exp(-x), to 2e-7 of itself: 2^n times a polynomial for 2^f, f from -1/2 to 1/2. */
-static inline lanes fade(lanes x)
+static inline lanes fade_lanes(lanes x)
 {
     const int_lanes few = x < 80.0f;
     const lanes y =
-        (lanes)(((int_lanes)x & few) | ((int_lanes)spread(80) & ~few)) * -1.44269504f;
+        (lanes)(((int_lanes)x & few) | ((int_lanes)spread_lanes(80) & ~few)) * -1.44269504f;
     const int_lanes n = __builtin_convertvector(y - 0.5f, int_lanes); /* y is hardly above 0 */
     const lanes f = (y - __builtin_convertvector(n, lanes)) * 0.69314718f;
     const lanes p =
@@ -171,7 +171,8 @@ static inline lanes glow_of_row(const vbuffer *b, float row)
     const float at = row > 0 ? row < most ? row : most : 0;
     int32_t n = (int32_t)at;
     n = n > CWI_TABLE_ROWS - 2 ? CWI_TABLE_ROWS - 2 : n;
-    const lanes low = load(b->table.rows + 4 * n), high = load(b->table.rows + 4 * n + 4);
+    const lanes low = load_lanes(b->table.rows + 4 * n),
+                high = load_lanes(b->table.rows + 4 * n + 4);
     return low + (at - (float)n) * (high - low);
 }
 
@@ -200,7 +201,7 @@ static void change_by_depth(const state *s, double x, lanes *glow)
 
 /* What a point glows with, of which the transfer function told. x: its place in the cell, 0 to
  * 1; gradient: in eye space, if there is need of it */
-static inline lanes finish(const state *s, double x, const double gradient[3], lanes glow)
+static inline lanes finish_cell(const state *s, double x, const double gradient[3], lanes glow)
 {
     if (s->b->has_gradients)
         change_by_gradient(s, gradient, &glow);
@@ -212,12 +213,12 @@ static inline lanes finish(const state *s, double x, const double gradient[3], l
 /* A stretch of a length by what is at its two points. What it adds is as opaque as its depth
  * says, which is exact for more than what the points alone would add up to; they tell the
  * colour. */
-static inline void pass(state *s, lanes first, lanes second, float length)
+static inline void pass_segment(state *s, lanes first, lanes second, float length)
 {
     const float a = first[3] * length, b = second[3] * length;
     const lanes depths = {0.25f * a + to_first * b, to_second * a + 0.25f * b, 0.5f * (a + b),
                           0};
-    const lanes left = fade(depths);
+    const lanes left = fade_lanes(depths);
     const float p = a * left[0], q = b * left[1];
     if (!(p + q > 0))
         return;
@@ -238,7 +239,7 @@ static lanes glow_of_piece(const state *s, const cwi_linear *l, const double val
     double gradient[3] = {0};
     for (int a = 0; a < 3 && s->has_gradient; a++)
         gradient[a] = cwi_cubic_at(s->gradient[a], x);
-    return finish(s, x, gradient, glow);
+    return finish_cell(s, x, gradient, glow);
 }
 
 /* Whether two points tell of a stretch well enough. Light may turn within a cell. */
@@ -274,7 +275,7 @@ static void pass_piece(state *s, const cwi_transfer_segment *piece, const double
             n = -1;
             continue;
         }
-        pass(s, first, second, (float)width * length);
+        pass_segment(s, first, second, (float)width * length);
     }
 }
 
@@ -408,10 +409,10 @@ static inline void pass_cell(state *s)
     double gradients[2][3] = {0};
     if (b->has_gradients)
         gradients_at_points(s, p, even, odd, at, gradients);
-    const lanes front = finish(s, FIRST_POINT, gradients[0], glow_of_row(b, rows[1]));
-    const lanes back = finish(s, SECOND_POINT, gradients[1], glow_of_row(b, rows[2]));
+    const lanes front = finish_cell(s, FIRST_POINT, gradients[0], glow_of_row(b, rows[1]));
+    const lanes back = finish_cell(s, SECOND_POINT, gradients[1], glow_of_row(b, rows[2]));
     if (is_told(s, front, back, (float)length))
-        pass(s, front, back, (float)length);
+        pass_segment(s, front, back, (float)length);
     else
         pass_in_pieces(s);
 }

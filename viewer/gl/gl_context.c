@@ -7,7 +7,7 @@
 #include <stdio.h>
 #include <string.h>
 
-static EGLDisplay surfaceless(void)
+static EGLDisplay open_surfaceless(void)
 {
     const char *extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
     if (!extensions || !strstr(extensions, "EGL_MESA_platform_surfaceless"))
@@ -43,7 +43,7 @@ static EGLContext make_context(EGLDisplay display)
                : eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, plain);
 }
 
-static bool start(cwi_gl_context *c, EGLDisplay display)
+static bool start_context(cwi_gl_context *c, EGLDisplay display)
 {
     if (display == EGL_NO_DISPLAY || !eglInitialize(display, NULL, NULL))
         return false;
@@ -54,7 +54,7 @@ static bool start(cwi_gl_context *c, EGLDisplay display)
            eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, c->context);
 }
 
-static void remember(cwi_gl_context *c)
+static void remember_current(cwi_gl_context *c)
 {
     c->before.display = eglGetCurrentDisplay();
     c->before.draw = eglGetCurrentSurface(EGL_DRAW);
@@ -64,7 +64,7 @@ static void remember(cwi_gl_context *c)
 
 bool cwi_gl_context_enter(cwi_gl_context *c)
 {
-    remember(c);
+    remember_current(c);
     return eglMakeCurrent(c->display, EGL_NO_SURFACE, EGL_NO_SURFACE, c->context);
 }
 
@@ -109,11 +109,11 @@ cw_status cwi_gl_context_open(cwi_gl_context *c, cw_error *err)
     cw_status st = cwi_gl_is_there(err);
     if (st != CW_OK)
         return st;
-    remember(c);
-    if (start(c, surfaceless()))
+    remember_current(c);
+    if (start_context(c, open_surfaceless()))
         return CW_OK;
     cwi_gl_context_close(c);
-    if (start(c, first_device()))
+    if (start_context(c, first_device()))
         return CW_OK;
     cwi_gl_context_close(c);
     return cw_fail(err, CW_ERR_UNSUPPORTED,

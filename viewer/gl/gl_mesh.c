@@ -113,7 +113,7 @@ static void name_attributes(void)
     }
 }
 
-static cw_status upload(cwi_gl *gl, cwi_gl_mesh *m, cw_error *err)
+static cw_status upload_mesh(cwi_gl *gl, cwi_gl_mesh *m, cw_error *err)
 {
     drop_buffers(m);
     glGenVertexArrays(1, &m->array);
@@ -179,7 +179,7 @@ cw_status cwi_gl_take_mesh(cwi_gl *gl, void **state, cwi_gl_mesh **mesh, cw_erro
         m->key = *s->mesh;
         m->is_expanded = expanded;
         m->tint = s->tint;
-        st = upload(gl, m, err);
+        st = upload_mesh(gl, m, err);
     }
     glActiveTexture(GL_TEXTURE0 + CWI_UNIT_RAMP);
     glBindTexture(GL_TEXTURE_2D, m->ramp);
@@ -207,7 +207,7 @@ static cw_status make_target(GLuint *name, GLuint color, GLuint depth, cw_error 
     return CW_OK;
 }
 
-static void fit(const cwi_gl *gl, cwi_gl_mesh *m)
+static void fit_mesh(const cwi_gl *gl, cwi_gl_mesh *m)
 {
     if (m->width == gl->target.width && m->height == gl->target.height)
         return;
@@ -219,7 +219,7 @@ static void fit(const cwi_gl *gl, cwi_gl_mesh *m)
 cw_status cwi_gl_need_layers(cwi_gl *gl, cwi_gl_mesh *m, cw_error *err)
 {
     cw_status st = CW_OK;
-    fit(gl, m);
+    fit_mesh(gl, m);
     if (m->layer_color)
         return CW_OK;
     m->layer_color = sized_texture(gl, CWI_UNIT_LAYER, GL_RGBA32F, GL_RGBA);
@@ -233,7 +233,7 @@ cw_status cwi_gl_need_layers(cwi_gl *gl, cwi_gl_mesh *m, cw_error *err)
 
 cw_status cwi_gl_need_winding(cwi_gl *gl, cwi_gl_mesh *m, size_t n, cw_error *err)
 {
-    fit(gl, m);
+    fit_mesh(gl, m);
     if (m->windings[n])
         return CW_OK;
     m->windings[n] = sized_texture(gl, CWI_UNIT_WINDING, GL_RGBA32F, GL_RGBA);

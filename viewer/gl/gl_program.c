@@ -5,7 +5,8 @@
 #include <stdio.h>
 #include <string.h>
 
-static GLuint compile(GLenum stage, const char *defines, const char *source, cw_error *err)
+static GLuint compile_shader(GLenum stage, const char *defines, const char *source,
+                             cw_error *err)
 {
     const char *parts[] = {"#version 330 core\n",
                            stage == GL_VERTEX_SHADER ? "#define VERTEX\n"
@@ -47,7 +48,7 @@ static void set_units(GLuint program)
         glUniformBlockBinding(program, block, 0);
 }
 
-static cw_status link(GLuint vertex, GLuint fragment, GLuint *program, cw_error *err)
+static cw_status link_program(GLuint vertex, GLuint fragment, GLuint *program, cw_error *err)
 {
     GLint is_linked = 0;
     char log[300] = "";
@@ -65,12 +66,12 @@ static cw_status link(GLuint vertex, GLuint fragment, GLuint *program, cw_error 
     return cw_fail(err, CW_ERR_BACKEND, "OpenGL refuses a program: %s", log);
 }
 
-static cw_status build(const char *vertex, const char *fragment, const char *defines,
-                       GLuint *program, cw_error *err)
+static cw_status build_program(const char *vertex, const char *fragment, const char *defines,
+                               GLuint *program, cw_error *err)
 {
-    const GLuint v = compile(GL_VERTEX_SHADER, defines, vertex, err);
-    const GLuint f = v ? compile(GL_FRAGMENT_SHADER, defines, fragment, err) : 0;
-    cw_status st = f ? link(v, f, program, err) : CW_ERR_BACKEND;
+    const GLuint v = compile_shader(GL_VERTEX_SHADER, defines, vertex, err);
+    const GLuint f = v ? compile_shader(GL_FRAGMENT_SHADER, defines, fragment, err) : 0;
+    cw_status st = f ? link_program(v, f, program, err) : CW_ERR_BACKEND;
     glDeleteShader(v); /* 0 is ignored */
     glDeleteShader(f);
     return st;
@@ -94,7 +95,7 @@ cw_status cwi_gl_use(cwi_gl *gl, const char *vertex, const char *fragment, const
     cwi_gl_program *p = &gl->programs[gl->program_count];
     *p = (cwi_gl_program){.vertex = vertex, .fragment = fragment};
     memcpy(p->defines, all, sizeof all);
-    cw_status st = build(vertex, fragment, p->defines, &p->name, err);
+    cw_status st = build_program(vertex, fragment, p->defines, &p->name, err);
     if (st == CW_OK) {
         gl->program_count++;
         *program = p->name;

@@ -12,7 +12,7 @@ static const double soon = 0.005, late = 0.012;
 enum { FIRST_ROWS = 8, MOST_ROWS = 16, LEAST_ROWS = 4, FIRST_TRIANGLES = 4096 };
 
 /* The caller finds its own context, and may make another current. */
-static bool ask(void *user, const char *step, double done)
+static bool ask_caller(void *user, const char *step, double done)
 {
     cwi_gl *gl = user;
     const cw_progress *p = &gl->frame->scene.progress;
@@ -32,7 +32,7 @@ void cwi_gl_start_watch(cwi_gl *gl)
                                .last = omp_get_wtime(),
                                .to = 1};
     if (gl->frame->scene.progress.report)
-        gl->watch.progress = (cw_progress){ask, gl};
+        gl->watch.progress = (cw_progress){ask_caller, gl};
 }
 
 static bool is_watched(const cwi_gl *gl)
@@ -67,7 +67,7 @@ static cw_status report_share(cwi_gl *gl, size_t n, size_t count, cw_error *err)
 }
 
 /* More of what was quick, less of what was slow. */
-static size_t adapt(size_t drawn, double since, size_t least, size_t most)
+static size_t adapt_size(size_t drawn, double since, size_t least, size_t most)
 {
     glFinish();
     const double seconds = omp_get_wtime() - since;
@@ -87,7 +87,7 @@ static cw_status draw_bands(cwi_gl *gl, void (*draw)(void *), void *context, siz
         glScissor(0, (GLint)y, gl->target.width, (GLsizei)*rows);
         draw(context);
         y += *rows;
-        *rows = adapt(*rows, start, LEAST_ROWS, most);
+        *rows = adapt_size(*rows, start, LEAST_ROWS, most);
         st = report_share(gl, y, height, err);
     }
     glDisable(GL_SCISSOR_TEST);
@@ -136,7 +136,7 @@ cw_status cwi_gl_draw_triangles(cwi_gl *gl, size_t count, bool indexed, cw_error
         const double start = omp_get_wtime();
         draw_range(n, wanted < left ? wanted : left, indexed);
         n += wanted;
-        gl->watch.triangles = adapt(wanted, start, 64, (size_t)1 << 20);
+        gl->watch.triangles = adapt_size(wanted, start, 64, (size_t)1 << 20);
         st = report_share(gl, n, count, err);
     }
     return st;

@@ -36,7 +36,7 @@ static GLuint framebuffer_of(GLuint color)
     return name;
 }
 
-static void make(cwi_gl_target *t, GLsizei width, GLsizei height)
+static void make_target(cwi_gl_target *t, GLsizei width, GLsizei height)
 {
     t->width = width;
     t->height = height;
@@ -62,7 +62,7 @@ cw_status cwi_gl_take_target(cwi_gl *gl, cw_error *err)
                        height, most);
     if (gl->target.width != width || gl->target.height != height) {
         cwi_gl_drop_target(gl);
-        make(&gl->target, width, height);
+        make_target(&gl->target, width, height);
     }
     glBindFramebuffer(GL_FRAMEBUFFER, gl->target.framebuffer);
     if (glCheckFramebufferStatus(GL_FRAMEBUFFER) != GL_FRAMEBUFFER_COMPLETE)

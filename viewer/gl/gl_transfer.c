@@ -34,7 +34,7 @@ static void make_factor(cwi_gl *gl)
     glTexImage1D(GL_TEXTURE_1D, 0, GL_R32F, CWI_FACTOR_ROWS, 0, GL_RED, GL_FLOAT, rows);
 }
 
-static void bind(const cwi_gl_transfer *t)
+static void bind_textures(const cwi_gl_transfer *t)
 {
     glActiveTexture(GL_TEXTURE0 + CWI_UNIT_TABLE);
     glBindTexture(GL_TEXTURE_1D, t->rows);
@@ -46,7 +46,7 @@ static void bind(const cwi_gl_transfer *t)
     glBindTexture(GL_TEXTURE_2D, t->segments);
 }
 
-static cw_status make(cwi_gl *gl, cw_error *err)
+static cw_status make_textures(cwi_gl *gl, cw_error *err)
 {
     cwi_gl_transfer *t = &gl->transfer;
     t->key = gl->frame->transfer;
@@ -70,10 +70,10 @@ cw_status cwi_gl_take_transfer(cwi_gl *gl, cw_error *err)
     if (!t->is_made || memcmp(&t->key, &gl->frame->transfer, sizeof t->key) != 0 ||
         t->opacity_units != gl->frame->opacity_units) {
         cwi_gl_drop_transfer(gl);
-        st = make(gl, err);
+        st = make_textures(gl, err);
     }
     if (st == CW_OK)
-        bind(t);
+        bind_textures(t);
     return st;
 }
 

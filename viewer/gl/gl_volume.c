@@ -134,8 +134,8 @@ static cw_status take_memory(cwi_gl_volume *g, size_t bytes, cw_error *err)
 }
 
 /* By chunks, which are voxels as they are where they can be. */
-static cw_status upload(cwi_gl *gl, const cwi_gl_texels *kind, const cwi_gl_brick *b,
-                        cw_error *err)
+static cw_status upload_brick(cwi_gl *gl, const cwi_gl_texels *kind, const cwi_gl_brick *b,
+                              cw_error *err)
 {
     const cw_volume *v = &gl->volume.key;
     const GLsizei w = (GLsizei)b->count[0], h = (GLsizei)b->count[1], d = (GLsizei)b->count[2];
@@ -166,7 +166,7 @@ static cw_status upload(cwi_gl *gl, const cwi_gl_texels *kind, const cwi_gl_bric
 }
 
 /* Whether this OpenGL makes such a texture: only the proxy says so. */
-static bool fits(GLenum inner, size_t w, size_t h, size_t d)
+static bool texture_fits(GLenum inner, size_t w, size_t h, size_t d)
 {
     GLint got = 0, most = 0;
     glGetIntegerv(GL_MAX_3D_TEXTURE_SIZE, &most);
@@ -191,8 +191,8 @@ static void choose_edges(const cw_volume *v, const cwi_gl_texels *kind, size_t a
 {
     for (int a = 0; a < 3; a++)
         edge[a] = asked >= 2 && asked < v->dim[a] ? asked : v->dim[a];
-    while (!(fits(kind->inner, edge[0], edge[1], edge[2]) &&
-             fits(GL_RGBA16F, edge[0], edge[1], edge[2]))) {
+    while (!(texture_fits(kind->inner, edge[0], edge[1], edge[2]) &&
+             texture_fits(GL_RGBA16F, edge[0], edge[1], edge[2]))) {
         int longest = 0;
         for (int a = 1; a < 3; a++)
             if (edge[a] > edge[longest])
@@ -279,7 +279,7 @@ static cw_status upload_bricks(cwi_gl *gl, cw_error *err)
     for (size_t n = 0; n < g->brick_count && st == CW_OK; n++)
         if (!g->bricks[n].values) {
             g->bricks[n].values = values_texture(&g->kind);
-            st = upload(gl, &g->kind, &g->bricks[n], err);
+            st = upload_brick(gl, &g->kind, &g->bricks[n], err);
         }
     return st;
 }
@@ -320,13 +320,14 @@ static const char *row_at(const cw_volume *v, const char *row, int axis, size_t 
     return is_there ? row + n * v->stride[axis] : row;
 }
 
-static float reach(const cw_volume *v, int axis, size_t at)
+static float step_length(const cw_volume *v, int axis, size_t at)
 {
     return at > 0 && at + 1 < v->dim[axis] ? 0.5f : 1;
 }
 
 /* From the row below to the one above; may be no number, which to_half() makes 0. */
-static void subtract(const float *low, const float *high, size_t n, float scale, float *out)
+static void subtract_rows(const float *low, const float *high, size_t n, float scale,
+                          float *out)
 {
     for (size_t i = 0; i < n; i++)
         out[i] = (high[i] - low[i]) * scale;
@@ -337,9 +338,9 @@ static void along_row(const float *row, size_t n, float scale, float *out)
     out[0] = out[n - 1] = 0;
     if (n < 2)
         return;
-    subtract(row, row + 2, n - 2, scale / 2, out + 1);
-    subtract(row, row + 1, 1, scale, out);
-    subtract(row + n - 2, row + n - 1, 1, scale, out + n - 1);
+    subtract_rows(row, row + 2, n - 2, scale / 2, out + 1);
+    subtract_rows(row, row + 1, 1, scale, out);
+    subtract_rows(row + n - 2, row + n - 1, 1, scale, out + n - 1);
 }
 
 /* Derivatives along a row: central inside, one-sided at the border; 0 where a neighbour has no
@@ -351,10 +352,12 @@ static void put_gradient_row(const cw_volume *v, const cwi_gl_brick *b, size_t j
     const char *row = cwi_voxel_address(v, 0, j, k);
     float *x = rows, *y = rows + n, *z = rows + 2 * n, *low = rows + 3 * n, *high = low + n;
     along_row(cwi_row_of(v, row, n, low), n, scale, x);
-    subtract(cwi_row_of(v, row_at(v, row, 1, j, -1), n, low),
-             cwi_row_of(v, row_at(v, row, 1, j, 1), n, high), n, scale * reach(v, 1, j), y);
-    subtract(cwi_row_of(v, row_at(v, row, 2, k, -1), n, low),
-             cwi_row_of(v, row_at(v, row, 2, k, 1), n, high), n, scale * reach(v, 2, k), z);
+    subtract_rows(cwi_row_of(v, row_at(v, row, 1, j, -1), n, low),
+                  cwi_row_of(v, row_at(v, row, 1, j, 1), n, high), n,
+                  scale * step_length(v, 1, j), y);
+    subtract_rows(cwi_row_of(v, row_at(v, row, 2, k, -1), n, low),
+                  cwi_row_of(v, row_at(v, row, 2, k, 1), n, high), n,
+                  scale * step_length(v, 2, k), z);
     for (size_t i = 0, at = b->first[0]; i < b->count[0]; i++, at++) {
         out[i][0] = to_half(x[at]);
         out[i][1] = to_half(y[at]);
@@ -364,18 +367,18 @@ static void put_gradient_row(const cw_volume *v, const cwi_gl_brick *b, size_t j
 }
 
 /* As rows of gradients are, of one voxel. */
-static double derivative(const cw_volume *v, const char *at, int axis, size_t n)
+static double row_derivative(const cw_volume *v, const char *at, int axis, size_t n)
 {
     const char *low = row_at(v, at, axis, n, -1), *high = row_at(v, at, axis, n, 1);
     const double a = cwi_voxel_at(v->type, low), b = cwi_voxel_at(v->type, high);
-    const double d = (b - a) * (double)reach(v, axis, n);
+    const double d = (b - a) * (double)step_length(v, axis, n);
     return isfinite(d) && !(v->has_nodata && (a == v->nodata || b == v->nodata)) ? d : 0;
 }
 
 void cwi_gl_derivatives(const cw_volume *v, const size_t at[3], double out[3])
 {
     for (int a = 0; a < 3; a++)
-        out[a] = derivative(v, cwi_voxel_address(v, at[0], at[1], at[2]), a, at[a]);
+        out[a] = row_derivative(v, cwi_voxel_address(v, at[0], at[1], at[2]), a, at[a]);
 }
 
 /* Layers of a brick; false when there is no memory for a thread's rows. */

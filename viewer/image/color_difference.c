@@ -54,7 +54,7 @@ static double cos_deg(double degrees)
     return cos(degrees * PI / 180);
 }
 
-static double seventh(double x)
+static double seventh_power(double x)
 {
     const double cube = x * x * x;
     return cube * cube * x;
@@ -63,7 +63,7 @@ static double seventh(double x)
 /* What chroma that high, to the seventh, is of that and 25 to the seventh; its root. */
 static double chroma_share(double chroma)
 {
-    return sqrt(seventh(chroma) / (seventh(chroma) + seventh(25)));
+    return sqrt(seventh_power(chroma) / (seventh_power(chroma) + seventh_power(25)));
 }
 
 /* Chroma and hue, a being stretched where colours are close to grey. */
@@ -118,7 +118,8 @@ static cw_status expect_same_size(const cw_picture *a, const cw_picture *b, cw_e
 }
 
 /* A pixel over the background. */
-static void show(const cw_picture *p, size_t n, const float background[2][3], double rgb[3])
+static void show_pixel(const cw_picture *p, size_t n, const float background[2][3],
+                       double rgb[3])
 {
     const double share = ((double)(n / p->width) + 0.5) / (double)p->height;
     const double through = 1 - (double)p->pixels[4 * n + 3];
@@ -128,7 +129,7 @@ static void show(const cw_picture *p, size_t n, const float background[2][3], do
                                                       share * (double)background[1][c]);
 }
 
-static void limit(double rgb[3])
+static void limit_color(double rgb[3])
 {
     for (int c = 0; c < 3; c++)
         rgb[c] = fmin(fmax(rgb[c], 0), 1);
@@ -142,16 +143,16 @@ static void measure_colors(const cw_picture *picture, const cw_picture *referenc
         double a[3], b[3], lab[2][3];
         if (!(reference->pixels[4 * n + 3] > covered))
             continue;
-        show(picture, n, background, a);
-        show(reference, n, background, b);
+        show_pixel(picture, n, background, a);
+        show_pixel(reference, n, background, b);
         for (int c = 0; c < 3; c++) {
             const double d = 255 * (a[c] - b[c]);
             out->rmse += d * d;
             out->bias += d;
             out->max = fmax(out->max, fabs(d));
         }
-        limit(a);
-        limit(b);
+        limit_color(a);
+        limit_color(b);
         cwi_lab_of(a, lab[0]);
         cwi_lab_of(b, lab[1]);
         delta[out->pixels] = (float)cwi_delta_e(lab[0], lab[1]);
@@ -184,10 +185,10 @@ static void moments_of(const cw_picture *picture, const cw_picture *reference, s
 {
     static const double luma[3] = {0.2126, 0.7152, 0.0722}; /* ITU-R BT.709 */
     double a[3], b[3], x = 0, y = 0;
-    show(picture, n, background, a);
-    show(reference, n, background, b);
-    limit(a);
-    limit(b);
+    show_pixel(picture, n, background, a);
+    show_pixel(reference, n, background, b);
+    limit_color(a);
+    limit_color(b);
     for (int c = 0; c < 3; c++) {
         x += luma[c] * a[c];
         y += luma[c] * b[c];
@@ -198,7 +199,8 @@ static void moments_of(const cw_picture *picture, const cw_picture *reference, s
 
 /* Weighted means of neighbours along one axis, to count places a step apart; at the ends of
  * those that are there. */
-static void blur(const double (*in)[MOMENTS], size_t count, size_t step, double (*out)[MOMENTS])
+static void blur_moments(const double (*in)[MOMENTS], size_t count, size_t step,
+                         double (*out)[MOMENTS])
 {
     for (size_t n = 0; n < count; n++) {
         double sum[MOMENTS] = {0}, total = 0;
@@ -217,7 +219,7 @@ static void blur(const double (*in)[MOMENTS], size_t count, size_t step, double 
 }
 
 /* Of values from 0 to 1 [Wang2004]. */
-static double similarity(const double m[MOMENTS])
+static double structural_similarity(const double m[MOMENTS])
 {
     const double c1 = 0.01 * 0.01, c2 = 0.03 * 0.03;
     const double xx = m[2] - m[0] * m[0], yy = m[3] - m[1] * m[1], xy = m[4] - m[0] * m[1];
@@ -234,12 +236,12 @@ static double mean_similarity(const cw_picture *picture, const cw_picture *refer
     for (size_t n = 0; n < w * h; n++)
         moments_of(picture, reference, n, background, m[n]);
     for (size_t y = 0; y < h; y++)
-        blur((const double(*)[MOMENTS])m + y * w, w, 1, blurred + y * w);
+        blur_moments((const double(*)[MOMENTS])m + y * w, w, 1, blurred + y * w);
     for (size_t x = 0; x < w; x++)
-        blur((const double(*)[MOMENTS])blurred + x, h, w, m + x);
+        blur_moments((const double(*)[MOMENTS])blurred + x, h, w, m + x);
     for (size_t n = 0; n < w * h; n++)
         if (reference->pixels[4 * n + 3] > covered) {
-            sum += similarity(m[n]);
+            sum += structural_similarity(m[n]);
             count++;
         }
     return sum / count;

@@ -33,7 +33,7 @@ static cw_status find_cell(const cw_image *images, size_t count, size_t cell[2],
 }
 
 /* The fewest columns that make the sheet at least as wide as high. */
-static size_t square(size_t count, const size_t cell[2])
+static size_t square_columns(size_t count, const size_t cell[2])
 {
     size_t columns = 1;
     while (columns * cell[0] < (count + columns - 1) / columns * cell[1])
@@ -42,7 +42,7 @@ static size_t square(size_t count, const size_t cell[2])
 }
 
 /* cells of a size with gaps between; 0 when that is too much. */
-static size_t extent(size_t cells, size_t size, size_t gap)
+static size_t sheet_extent(size_t cells, size_t size, size_t gap)
 {
     const double all = (double)cells * (double)size + ((double)cells - 1) * (double)gap;
     return all <= MAX_SIZE ? (size_t)all : 0;
@@ -57,10 +57,10 @@ cw_status cw_image_tile(const cw_image *images, size_t count, size_t columns, si
     if (st != CW_OK)
         return st;
     if (columns == 0)
-        columns = square(count, cell);
+        columns = square_columns(count, cell);
     const size_t rows = (count - 1) / columns + 1;
-    const size_t width = extent(columns, cell[0], gap_px),
-                 height = extent(rows, cell[1], gap_px);
+    const size_t width = sheet_extent(columns, cell[0], gap_px),
+                 height = sheet_extent(rows, cell[1], gap_px);
     if (!width || !height)
         return cw_fail(err, CW_ERR_LIMIT, "a sheet of %zu x %zu images is above %d pixels",
                        columns, rows, MAX_SIZE);

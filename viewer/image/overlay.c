@@ -56,7 +56,7 @@ static void print_value(double value, char text[TEXT])
     snprintf(text, TEXT, "%s%.6g", shown < 0 ? "\xe2\x88\x92" : "", fabs(shown));
 }
 
-static void tint(double color[4], const double rgb[3], double alpha)
+static void tint_color(double color[4], const double rgb[3], double alpha)
 {
     memcpy(color, rgb, 3 * sizeof *color);
     color[3] = alpha;
@@ -90,7 +90,7 @@ static void write_text(const board *b, double x, double y, double anchor, const 
 }
 
 /* A point of the world in the picture; false behind the eye. */
-static bool project(const board *b, const double world[3], double at[2])
+static bool project_point(const board *b, const double world[3], double at[2])
 {
     const cwi_frame *f = b->frame;
     double d[3], eye[3];
@@ -149,8 +149,9 @@ static void draw_box(const board *b)
         const bool seen = is_seen(b, next, edge & 1) || is_seen(b, last, edge >> 1 & 1);
         double color[4];
         cwi_stroke s;
-        tint(color, b->ink, b->ink[3] * (seen ? 0.7 : 0.25));
-        if (project(b, b->corners[at], s.from) && project(b, b->corners[at | 1 << axis], s.to))
+        tint_color(color, b->ink, b->ink[3] * (seen ? 0.7 : 0.25));
+        if (project_point(b, b->corners[at], s.from) &&
+            project_point(b, b->corners[at | 1 << axis], s.to))
             draw_lines(b, &s, 1, fmax(b->text / 9, 1), color);
     }
 }
@@ -175,7 +176,7 @@ static void draw_triad(const board *b)
         const cwi_stroke s = {{middle[0], middle[1]},
                               {middle[0] + size * right, middle[1] - size * up}};
         double color[4];
-        tint(color, axis_colors[a], 1);
+        tint_color(color, axis_colors[a], 1);
         for (int c = 0; c < 3 && b->halo[0] > 0; c++)
             color[c] *= 0.7; /* on a bright picture */
         draw_lines(b, &s, 1, fmax(b->text / 5, 1.5), color);
@@ -373,7 +374,7 @@ static void draw_curve(const board *b, const double range[2], const double box[4
         if (n + 1 < count)
             memcpy(s[n].from, at, sizeof at);
     }
-    tint(color, (const double[3]){1, 0.75, 0.2}, 1);
+    tint_color(color, (const double[3]){1, 0.75, 0.2}, 1);
     draw_lines(b, s, count - 1, fmax(b->text / 6, 1.2), color);
     print_value(most, text);
     write_text(b, box[0] - b->text / 2, box[1] + b->text, 1, color, text);
@@ -391,10 +392,10 @@ static void draw_histogram(const board *b)
     const double wide = (box[2] - box[0]) / (double)count;
     char text[TEXT];
     cwi_pen pen = {.image = b->image};
-    tint(pen.color, b->halo, 0.45);
+    tint_color(pen.color, b->halo, 0.45);
     cwi_pen_fill(&pen, box[0], box[1], box[2], box[3]);
     find_bars(s, bars, count);
-    tint(pen.color, b->ink, 0.55);
+    tint_color(pen.color, b->ink, 0.55);
     for (size_t n = 0; n < count; n++)
         cwi_pen_fill(&pen, box[0] + (double)n * wide, box[3] - bars[n] * (box[3] - box[1]),
                      box[0] + (double)(n + 1) * wide, box[3]);
@@ -449,10 +450,10 @@ static void choose_ink(board *b)
     for (int a = 0; a < 4; a++)
         b->ink[a] = given ? c[a] / 255.0 : a < 3 ? plain : 1;
     const double bright = 0.2126 * b->ink[0] + 0.7152 * b->ink[1] + 0.0722 * b->ink[2];
-    tint(b->halo, bright > 0.5 ? (const double[3]){0} : (const double[3]){1, 1, 1}, 0.5);
+    tint_color(b->halo, bright > 0.5 ? (const double[3]){0} : (const double[3]){1, 1, 1}, 0.5);
 }
 
-static cw_status check(const cw_overlay *o, const cwi_frame *f, cw_error *err)
+static cw_status check_overlay(const cw_overlay *o, const cwi_frame *f, cw_error *err)
 {
     const cw_statistics *s = o->statistics;
     if (o->histogram && !(s && s->bin_count > 0 && s->bins))
@@ -500,7 +501,7 @@ cw_status cw_overlay_draw(const cw_overlay *overlay, const cw_scene *scene, cw_i
     cwi_frame frame;
     cw_status st = take_frame(scene, image, &frame, err);
     if (st == CW_OK)
-        st = check(overlay, &frame, err);
+        st = check_overlay(overlay, &frame, err);
     if (st != CW_OK)
         return st;
     const double h = (double)image->height;

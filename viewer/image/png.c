@@ -100,7 +100,7 @@ static void put_image(png_structp png, png_infop info, const cw_image *image)
     png_write_end(png, info);
 }
 
-static cw_status encode(writer *w, const cw_image *image)
+static cw_status encode_image(writer *w, const cw_image *image)
 {
     png_structp png = png_create_write_struct_2(PNG_LIBPNG_VER_STRING, w, on_error, on_warning,
                                                 w, on_malloc, on_free);
@@ -126,7 +126,7 @@ cw_status cw_image_write(const char *path, const cw_image *image, cw_error *err)
                        ? cwi_outfile_open(&w.file, path, false, err)
                        : cw_fail(err, CW_ERR_ARGUMENT, "there is no picture to write");
     if (st == CW_OK)
-        st = encode(&w, image);
+        st = encode_image(&w, image);
     if (st == CW_OK)
         st = cwi_outfile_commit(&w.file, err);
     cwi_outfile_abort(&w.file);

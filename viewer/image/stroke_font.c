@@ -109,7 +109,7 @@ static const glyph glyphs[] = {
 static const double SPACE = 3, GAP = 2;
 static const char missing[] = "0040460600";
 
-static const char *find(uint32_t character)
+static const char *find_glyph(uint32_t character)
 {
     for (size_t n = 0; n < sizeof glyphs / sizeof *glyphs; n++)
         if (glyphs[n].character == character)
@@ -144,7 +144,7 @@ static size_t read_lines(const char *lines, cwi_stroke *strokes, double *width)
 
 size_t cwi_glyph(uint32_t character, cwi_stroke strokes[CWI_GLYPH_STROKES], double *width)
 {
-    const char *lines = find(character);
+    const char *lines = find_glyph(character);
     *width = 0;
     return lines ? read_lines(lines, strokes, width) : 0;
 }
@@ -166,8 +166,8 @@ static uint32_t next_character(const char **text)
 }
 
 /* Places a character's strokes and returns how far the next one is. */
-static double set(uint32_t character, double x, double y, double unit, cwi_stroke *strokes,
-                  size_t *count)
+static double set_glyph(uint32_t character, double x, double y, double unit,
+                        cwi_stroke *strokes, size_t *count)
 {
     double width;
     *count = 0;
@@ -191,7 +191,7 @@ void cwi_pen_text(const cwi_pen *pen, double x, double y, double height, const c
     cwi_stroke strokes[CWI_GLYPH_STROKES];
     while (*text) {
         size_t count;
-        x += set(next_character(&text), x, y, height / 6, strokes, &count);
+        x += set_glyph(next_character(&text), x, y, height / 6, strokes, &count);
         if (count > 0)
             cwi_pen_draw(pen, strokes, count);
     }
@@ -203,6 +203,6 @@ double cwi_text_width(double height, const char *text)
     double width = 0;
     size_t count;
     while (*text)
-        width += set(next_character(&text), 0, 0, height / 6, strokes, &count);
+        width += set_glyph(next_character(&text), 0, 0, height / 6, strokes, &count);
     return width > 0 ? width - GAP * height / 6 : 0;
 }

@@ -2,13 +2,13 @@
 
 #include <math.h>
 
-static double clamp(double x, double low, double high)
+static double clamp_number(double x, double low, double high)
 {
     return fmin(fmax(x, low), high);
 }
 
 /* Over what is there; neither is premultiplied. */
-static void blend(uint8_t *pixel, const double color[4], double share)
+static void blend_pixel(uint8_t *pixel, const double color[4], double share)
 {
     const double alpha = color[3] * share, below = pixel[3] / 255.0 * (1 - alpha);
     if (alpha <= 0)
@@ -24,7 +24,7 @@ static double square_of_distance(const cwi_stroke *s, double x, double y)
     const double d[2] = {s->to[0] - s->from[0], s->to[1] - s->from[1]};
     const double p[2] = {x - s->from[0], y - s->from[1]};
     const double square = d[0] * d[0] + d[1] * d[1];
-    const double t = square > 0 ? clamp((p[0] * d[0] + p[1] * d[1]) / square, 0, 1) : 0;
+    const double t = square > 0 ? clamp_number((p[0] * d[0] + p[1] * d[1]) / square, 0, 1) : 0;
     const double off[2] = {p[0] - t * d[0], p[1] - t * d[1]};
     return off[0] * off[0] + off[1] * off[1];
 }
@@ -32,8 +32,8 @@ static double square_of_distance(const cwi_stroke *s, double x, double y)
 /* Pixels from low to high, cut to a picture of that size. */
 static void cut_span(double low, double high, size_t size, size_t span[2])
 {
-    span[0] = (size_t)clamp(floor(low), 0, (double)size);
-    span[1] = (size_t)clamp(ceil(high), 0, (double)size);
+    span[0] = (size_t)clamp_number(floor(low), 0, (double)size);
+    span[1] = (size_t)clamp_number(ceil(high), 0, (double)size);
 }
 
 static void find_rows(const cwi_stroke *strokes, size_t count, double reach, size_t size,
@@ -58,8 +58,8 @@ static void find_columns(const cwi_stroke *strokes, size_t count, double y, doub
         double t[2] = {0, 1};
         if (fabs(rise) > 1e-9) {
             const double a = (away - reach) / rise, b = (away + reach) / rise;
-            t[0] = clamp(fmin(a, b), 0, 1);
-            t[1] = clamp(fmax(a, b), 0, 1);
+            t[0] = clamp_number(fmin(a, b), 0, 1);
+            t[1] = clamp_number(fmax(a, b), 0, 1);
         }
         for (int e = 0; e < 2 && t[0] <= t[1]; e++) {
             const double x = s->from[0] + t[e] * (s->to[0] - s->from[0]);
@@ -82,14 +82,14 @@ void cwi_pen_draw(const cwi_pen *pen, const cwi_stroke *strokes, size_t count)
             double near = INFINITY;
             for (size_t n = 0; n < count; n++)
                 near = fmin(near, square_of_distance(&strokes[n], (double)x + 0.5, y));
-            blend(pen->image->pixels + 4 * (row * pen->image->width + x), pen->color,
-                  clamp(reach - sqrt(near), 0, 1) * fmin(pen->width, 1));
+            blend_pixel(pen->image->pixels + 4 * (row * pen->image->width + x), pen->color,
+                        clamp_number(reach - sqrt(near), 0, 1) * fmin(pen->width, 1));
         }
     }
 }
 
 /* How much of pixel n is between two coordinates. */
-static double overlap(size_t n, double low, double high)
+static double overlap_pixel(size_t n, double low, double high)
 {
     return fmax(fmin(high, (double)n + 1) - fmax(low, (double)n), 0);
 }
@@ -101,6 +101,6 @@ void cwi_pen_fill(const cwi_pen *pen, double left, double top, double right, dou
     cut_span(top, bottom, pen->image->height, rows);
     for (size_t y = rows[0]; y < rows[1]; y++)
         for (size_t x = columns[0]; x < columns[1]; x++)
-            blend(pen->image->pixels + 4 * (y * pen->image->width + x), pen->color,
-                  overlap(x, left, right) * overlap(y, top, bottom));
+            blend_pixel(pen->image->pixels + 4 * (y * pen->image->width + x), pen->color,
+                        overlap_pixel(x, left, right) * overlap_pixel(y, top, bottom));
 }

@@ -5,8 +5,8 @@
 #include <math.h>
 #include <string.h>
 
-static bool project(const cwi_handle_view *v, const double point[3], double pixel[2],
-                    double *depth)
+static bool project_point(const cwi_handle_view *v, const double point[3], double pixel[2],
+                          double *depth)
 {
     return cw_camera_project(&v->camera, v->width, v->height, point, pixel, depth);
 }
@@ -36,7 +36,7 @@ void cwi_handles_place(const cwi_handle_view *view, const cwi_world_box *box,
         cwi_handle h = {.faces_away = faces_away(view, box, n)};
         double middle[3];
         find_middle(box, n, middle);
-        h.shown = project(view, middle, h.pixel, &h.depth_mm);
+        h.shown = project_point(view, middle, h.pixel, &h.depth_mm);
         handles[n] = h.shown ? h : (cwi_handle){0};
     }
 }
@@ -71,7 +71,7 @@ static bool meet_axis(const double point[3], int axis, const double origin[3],
     return isfinite(*coordinate);
 }
 
-static double between(double x, double low, double high)
+static double clamp_between(double x, double low, double high)
 {
     return fmax(low, fmin(x, high));
 }
@@ -81,11 +81,11 @@ static void move_face(const cwi_world_box *bounds, double thickness_mm, int hand
 {
     const int a = handle / 2;
     if (handle % 2)
-        box->high[a] =
-            between(to, fmin(box->low[a] + thickness_mm, bounds->high[a]), bounds->high[a]);
+        box->high[a] = clamp_between(to, fmin(box->low[a] + thickness_mm, bounds->high[a]),
+                                     bounds->high[a]);
     else
-        box->low[a] =
-            between(to, bounds->low[a], fmax(box->high[a] - thickness_mm, bounds->low[a]));
+        box->low[a] = clamp_between(to, bounds->low[a],
+                                    fmax(box->high[a] - thickness_mm, bounds->low[a]));
 }
 
 bool cwi_handles_drag(const cwi_handle_view *view, const cwi_world_box *bounds,
@@ -147,8 +147,9 @@ static cwi_box_edge see_edge(const cwi_handle_view *v, const cwi_world_box *box,
                                       faces_away(v, box, 2 * c + (edge >> 1 & 1))};
     double ends[2][3];
     edge_ends(box, edge, ends);
-    seen.shown = cut_line(v, forward, ends) && project(v, ends[0], seen.pixels[0], NULL) &&
-                 project(v, ends[1], seen.pixels[1], NULL);
+    seen.shown = cut_line(v, forward, ends) &&
+                 project_point(v, ends[0], seen.pixels[0], NULL) &&
+                 project_point(v, ends[1], seen.pixels[1], NULL);
     return seen;
 }
 

@@ -85,7 +85,7 @@ static void take_volume(const place *at, double mesh_t, cw_picked *out)
     out->value = value_of(f, out->point);
 }
 
-static cw_status pick(const place *at, cw_picked *out, cw_error *err)
+static cw_status pick_nearest(const place *at, cw_picked *out, cw_error *err)
 {
     const cwi_frame *f = at->frame;
     cwi_mesh_hit hit = {.t = INFINITY};
@@ -115,5 +115,5 @@ cw_status cw_pick(const cw_scene *scene, const double pixel[2], cw_picked *picke
           at.y <= (double)f.scene.height))
         return CW_OK;
     cwi_frame_ray(&f, at.x, at.y, at.origin, at.direction);
-    return pick(&at, picked, err);
+    return pick_nearest(&at, picked, err);
 }

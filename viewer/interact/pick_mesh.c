@@ -30,7 +30,7 @@ static void find_across(double axes[3][3])
     cwi_cross(d, axes[0], axes[1]);
 }
 
-static sight look(const cwi_frame *f, const double origin[3], const double direction[3])
+static sight look_along(const cwi_frame *f, const double origin[3], const double direction[3])
 {
     const double all[2] = {f->perspective ? f->near / -direction[2] : -INFINITY, INFINITY};
     sight s = {.mesh = f->scene.mesh, .start = all[0] * f->unit_mm};
@@ -52,7 +52,7 @@ static sight look(const cwi_frame *f, const double origin[3], const double direc
     return s;
 }
 
-static double along(const sight *s, const float *p, int axis)
+static double position_along(const sight *s, const float *p, int axis)
 {
     const double *a = s->axes[axis];
     return s->from[axis] + (double)p[0] * a[0] + (double)p[1] * a[1] + (double)p[2] * a[2];
@@ -74,8 +74,8 @@ static bool meet_triangle(const sight *s, size_t triangle, double *z, double sha
     double at[3][2], area[3];
     for (int n = 0; n < 3; n++) {
         p[n] = s->mesh->positions + 3 * (size_t)corner[n];
-        at[n][0] = along(s, p[n], 0);
-        at[n][1] = along(s, p[n], 1);
+        at[n][0] = position_along(s, p[n], 0);
+        at[n][1] = position_along(s, p[n], 1);
     }
     const bool side = side_of(at[1], at[2], &area[0]);
     if (side_of(at[2], at[0], &area[1]) != side || side_of(at[0], at[1], &area[2]) != side)
@@ -84,7 +84,7 @@ static bool meet_triangle(const sight *s, size_t triangle, double *z, double sha
     *z = 0;
     for (int n = 0; n < 3 && sum != 0; n++) {
         share[n] = area[n] / sum;
-        *z += share[n] * along(s, p[n], 2);
+        *z += share[n] * position_along(s, p[n], 2);
     }
     return sum != 0;
 }
@@ -119,7 +119,7 @@ static void add_caps(const sight *s, cwi_mesh_hit *hit)
 cwi_mesh_hit cwi_pick_mesh(const cwi_frame *f, const double origin[3],
                            const double direction[3])
 {
-    sight s = look(f, origin, direction);
+    sight s = look_along(f, origin, direction);
     cwi_mesh_hit hit = {.t = INFINITY};
     double z, share[3];
     for (size_t n = 0; n < s.mesh->triangle_count; n++) {

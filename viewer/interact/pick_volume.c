@@ -48,7 +48,7 @@ static double extinction_at(const passage *p, const cwi_linear *l, const double 
 }
 
 /* A step of the ray, in eye space: light falls by the optical depth. */
-static void pass(passage *p, double from, double length, double depth)
+static void pass_segment(passage *p, double from, double length, double depth)
 {
     const double after = p->light * exp(-depth);
     if (p->half == INFINITY && after <= 0.5)
@@ -64,7 +64,7 @@ static void pass_piece(passage *p, const cwi_walk *w, const cwi_transfer_segment
         const double x = piece->from + n * width;
         const double extinction =
             extinction_at(p, piece->linear, value, gradient, x + width / 2);
-        pass(p, w->from + x * whole, width * whole, extinction * width * whole);
+        pass_segment(p, w->from + x * whole, width * whole, extinction * width * whole);
     }
 }
 

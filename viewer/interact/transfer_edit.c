@@ -5,14 +5,14 @@
 #include <math.h>
 #include <string.h>
 
-static double between(double x, double low, double high)
+static double clamp_between(double x, double low, double high)
 {
     return x < low ? low : x > high ? high : x;
 }
 
 /* How far apart two values are in tolerances; in halves, as differences may be beyond what
  * doubles hold. */
-static double apart(double a, double b, double tolerance)
+static double are_apart(double a, double b, double tolerance)
 {
     return (a / 2 - b / 2) / (tolerance / 2);
 }
@@ -24,8 +24,8 @@ size_t cwi_transfer_near_opacity(const cw_transfer *t, double value, double opac
     double nearest = 1;
     for (size_t n = 0; n < t->opacity_count; n++) {
         const cw_opacity_point *p = &t->opacities[n];
-        const double distance = hypot(apart(p->value, value, tolerance[0]),
-                                      apart((double)p->opacity, opacity, tolerance[1]));
+        const double distance = hypot(are_apart(p->value, value, tolerance[0]),
+                                      are_apart((double)p->opacity, opacity, tolerance[1]));
         if (distance <= nearest) {
             nearest = distance;
             found = n;
@@ -39,7 +39,7 @@ size_t cwi_transfer_near_color(const cw_transfer *t, double value, double tolera
     size_t found = CWI_TRANSFER_NONE;
     double nearest = 1;
     for (size_t n = 0; n < t->color_count; n++) {
-        const double distance = fabs(apart(t->colors[n].value, value, tolerance));
+        const double distance = fabs(are_apart(t->colors[n].value, value, tolerance));
         if (distance <= nearest) {
             nearest = distance;
             found = n;
@@ -53,7 +53,8 @@ static double distance_to_line(const double a[2], const double b[2])
 {
     const double d[2] = {b[0] - a[0], b[1] - a[1]};
     const double square = d[0] * d[0] + d[1] * d[1];
-    const double share = square > 0 ? between(-(a[0] * d[0] + a[1] * d[1]) / square, 0, 1) : 0;
+    const double share =
+        square > 0 ? clamp_between(-(a[0] * d[0] + a[1] * d[1]) / square, 0, 1) : 0;
     return hypot(a[0] + share * d[0], a[1] + share * d[1]);
 }
 
@@ -69,9 +70,10 @@ size_t cwi_transfer_near_segment(const cw_transfer *t, double value, double opac
         const double end = n < count ? (double)p[n].opacity
                            : count   ? (double)p[n - 1].opacity
                                      : 0;
-        ends[1][0] =
-            n < count ? between(apart(p[n].value, value, tolerance[0]), -far, far) : far;
-        ends[1][1] = apart(end, opacity, tolerance[1]);
+        ends[1][0] = n < count
+                         ? clamp_between(are_apart(p[n].value, value, tolerance[0]), -far, far)
+                         : far;
+        ends[1][1] = are_apart(end, opacity, tolerance[1]);
         if (n == 0)
             ends[0][1] = ends[1][1];
         const double distance = distance_to_line(ends[0], ends[1]);
@@ -92,8 +94,8 @@ void cwi_transfer_move_opacity(cw_transfer *t, size_t n, double value, double op
     const double high = n + 1 < t->opacity_count ? p[1].value : DBL_MAX;
     if (!isfinite(value) || !isfinite(opacity))
         return;
-    p->value = between(value, low, high);
-    p->opacity = (float)between(opacity, 0, 1);
+    p->value = clamp_between(value, low, high);
+    p->opacity = (float)clamp_between(opacity, 0, 1);
 }
 
 void cwi_transfer_move_color(cw_transfer *t, size_t n, double value)
@@ -103,7 +105,7 @@ void cwi_transfer_move_color(cw_transfer *t, size_t n, double value)
     const double low = n > 0 ? p[-1].value : -DBL_MAX;
     const double high = n + 1 < t->color_count ? p[1].value : DBL_MAX;
     if (isfinite(value))
-        p->value = between(value, low, high);
+        p->value = clamp_between(value, low, high);
 }
 
 size_t cwi_transfer_insert_opacity(cw_transfer *t, double value, double opacity)
@@ -113,7 +115,7 @@ size_t cwi_transfer_insert_opacity(cw_transfer *t, double value, double opacity)
         return CWI_TRANSFER_NONE;
     for (; n > 0 && t->opacities[n - 1].value > value; n--)
         t->opacities[n] = t->opacities[n - 1];
-    t->opacities[n] = (cw_opacity_point){value, (float)between(opacity, 0, 1)};
+    t->opacities[n] = (cw_opacity_point){value, (float)clamp_between(opacity, 0, 1)};
     t->opacity_count++;
     return n;
 }
@@ -129,7 +131,7 @@ size_t cwi_transfer_insert_color(cw_transfer *t, double value)
         t->colors[n] = t->colors[n - 1];
     t->colors[n].value = value;
     for (int c = 0; c < 3; c++)
-        t->colors[n].color[c] = (float)between(color[c], 0, 1);
+        t->colors[n].color[c] = (float)clamp_between(color[c], 0, 1);
     t->color_count++;
     return n;
 }
@@ -168,20 +170,20 @@ typedef struct line {
 } line;
 
 /* Rounding may let values fall, and large ones leave what doubles hold. */
-static double map(const line *l, double value, double before)
+static double map_value(const line *l, double value, double before)
 {
     const double mapped = (value - l->from) * l->factor + l->to;
-    return isnan(mapped) ? before : between(mapped, before, DBL_MAX);
+    return isnan(mapped) ? before : clamp_between(mapped, before, DBL_MAX);
 }
 
 static void map_values(const line *l, cw_transfer *t)
 {
     double before = -DBL_MAX;
     for (size_t n = 0; n < t->color_count; n++)
-        before = t->colors[n].value = map(l, t->colors[n].value, before);
+        before = t->colors[n].value = map_value(l, t->colors[n].value, before);
     before = -DBL_MAX;
     for (size_t n = 0; n < t->opacity_count; n++)
-        before = t->opacities[n].value = map(l, t->opacities[n].value, before);
+        before = t->opacities[n].value = map_value(l, t->opacities[n].value, before);
 }
 
 bool cwi_transfer_shift(const cw_transfer *original, double by, cw_transfer *out)
@@ -223,7 +225,7 @@ bool cwi_transfer_fade(const cw_transfer *original, double factor, cw_transfer *
         return false;
     for (size_t n = 0; n < out->opacity_count; n++)
         out->opacities[n].opacity =
-            (float)between(factor * (double)out->opacities[n].opacity, 0, 1);
+            (float)clamp_between(factor * (double)out->opacities[n].opacity, 0, 1);
     return true;
 }
 
@@ -239,7 +241,7 @@ bool cwi_transfer_mirror(const cw_transfer *original, cw_transfer *out)
         const double mirrored =
             from.colors[0].value + (from.colors[count - 1].value - p->value);
         out->colors[n] = *p;
-        out->colors[n].value = between(mirrored, before, from.colors[count - 1].value);
+        out->colors[n].value = clamp_between(mirrored, before, from.colors[count - 1].value);
     }
     return count > 0;
 }

@@ -38,7 +38,7 @@ static void put_affine(const double m[12], float out[16])
             out[4 * c + r] = r < 3 ? (float)m[4 * r + c] : c == 3;
 }
 
-static void put3(const double v[3], float out[4])
+static void put_vec3(const double v[3], float out[4])
 {
     for (int a = 0; a < 3; a++)
         out[a] = (float)v[a];
@@ -82,8 +82,8 @@ static void put_volume(const cwi_gl *gl, frame_block *b)
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++)
             b->gradient_to_eye[4 * c + r] = (float)m[r][c];
-    put3(f->low, b->low);
-    put3(f->high, b->high);
+    put_vec3(f->low, b->low);
+    put_vec3(f->high, b->high);
     for (int a = 0; a < 3; a++)
         b->dim[a] = (float)f->volume.dim[a];
     b->dim[3] = (float)gl->transfer.segment_rows;

@@ -8,8 +8,8 @@
 
 extern const char cwi_glsl_composite[];
 
-static void describe(const cw_scene *s, const cw_transfer *t, const char *gradients,
-                     char *defines, size_t size)
+static void describe_shader(const cw_scene *s, const cw_transfer *t, const char *gradients,
+                            char *defines, size_t size)
 {
     snprintf(defines, size, "%s%s%s%s%s%s%s%s%s%s", gradients,
              s->no_preintegration ? "" : "#define SEGMENTS\n",
@@ -20,7 +20,7 @@ static void describe(const cw_scene *s, const cw_transfer *t, const char *gradie
              s->exact_filter ? "#define EXACT_FILTER\n" : "");
 }
 
-static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
+static cw_status draw_composite_mode(cwi_gl *gl, void **state, cw_error *err)
 {
     (void)state;
     char defines[256];
@@ -34,7 +34,7 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
         st = cwi_gl_need_segments(gl, length, err);
     if (st == CW_OK && (s->lit || gl->frame->transfer.gradient_count > 0))
         st = cwi_gl_need_gradients(gl, &gradients, err);
-    describe(s, &gl->frame->transfer, gradients, defines, sizeof defines);
+    describe_shader(s, &gl->frame->transfer, gradients, defines, sizeof defines);
     if (st == CW_OK)
         st = cwi_gl_use(gl, cwi_glsl_screen, cwi_glsl_composite, defines, &program, err);
     if (st != CW_OK)
@@ -57,4 +57,5 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     return st;
 }
 
-const cwi_gl_mode cwi_gl_composite = {CW_MODE_COMPOSITE, true, draw, NULL, false};
+const cwi_gl_mode cwi_gl_composite = {CW_MODE_COMPOSITE, true, draw_composite_mode, NULL,
+                                      false};

@@ -54,8 +54,8 @@ typedef struct manner {
     bool opaque, peels;
 } manner;
 
-static cw_status use(cwi_gl *gl, const char *vertex, const char *kind, manner how,
-                     GLuint *program, cw_error *err)
+static cw_status use_program(cwi_gl *gl, const char *vertex, const char *kind, manner how,
+                             GLuint *program, cw_error *err)
 {
     const cw_scene *s = &gl->frame->scene;
     char defines[256];
@@ -82,7 +82,7 @@ static cw_status count_windings(cwi_gl *gl, cwi_gl_mesh *m, size_t n, cw_error *
     GLuint program;
     cw_status st = cwi_gl_need_winding(gl, m, n, err);
     if (st == CW_OK)
-        st = use(gl, cwi_glsl_mesh, "#define COUNT\n", (manner){0}, &program, err);
+        st = use_program(gl, cwi_glsl_mesh, "#define COUNT\n", (manner){0}, &program, err);
     if (st != CW_OK)
         return st;
     glBindFramebuffer(GL_FRAMEBUFFER, m->winding_targets[n]);
@@ -101,7 +101,7 @@ static cw_status draw_caps(cwi_gl *gl, const cwi_gl_mesh *m, manner how, cw_erro
 {
     const cw_scene *s = &gl->frame->scene;
     GLuint program;
-    cw_status st = use(gl, cwi_glsl_screen, "#define CAP\n", how, &program, err);
+    cw_status st = use_program(gl, cwi_glsl_screen, "#define CAP\n", how, &program, err);
     if (st != CW_OK)
         return st;
     set_plain(s, program, true, how.opaque);
@@ -121,7 +121,7 @@ static cw_status draw_surface(cwi_gl *gl, cwi_gl_mesh *m, manner how, cw_error *
     glDisable(GL_BLEND);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_LESS);
-    cw_status st = use(gl, cwi_glsl_mesh, "", how, &program, err);
+    cw_status st = use_program(gl, cwi_glsl_mesh, "", how, &program, err);
     if (st != CW_OK)
         return st;
     set_plain(&gl->frame->scene, program, false, how.opaque);
@@ -166,7 +166,7 @@ static void start_layer(const cwi_gl *gl, const cwi_gl_mesh *m, int n)
 }
 
 /* Layers from the nearest on, until one is empty. */
-static cw_status peel(cwi_gl *gl, cwi_gl_mesh *m, cw_error *err)
+static cw_status peel_layers(cwi_gl *gl, cwi_gl_mesh *m, cw_error *err)
 {
     GLuint drawn = 1;
     cw_status st = cwi_gl_need_layers(gl, m, err);
@@ -196,7 +196,7 @@ static bool is_translucent(const cw_scene *s, const cwi_gl_mesh *m)
 }
 
 /* The mesh, and what is inside of it where it is cut. */
-static cw_status take(cwi_gl *gl, void **state, cwi_gl_mesh **m, cw_error *err)
+static cw_status take_mesh(cwi_gl *gl, void **state, cwi_gl_mesh **m, cw_error *err)
 {
     const cw_scene *s = &gl->frame->scene;
     cw_status st = cwi_gl_take_mesh(gl, state, m, err);
@@ -206,12 +206,12 @@ static cw_status take(cwi_gl *gl, void **state, cwi_gl_mesh **m, cw_error *err)
     return st;
 }
 
-static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
+static cw_status draw_mesh_mode(cwi_gl *gl, void **state, cw_error *err)
 {
     cwi_gl_mesh *m;
-    cw_status st = take(gl, state, &m, err);
+    cw_status st = take_mesh(gl, state, &m, err);
     if (st == CW_OK && is_translucent(&gl->frame->scene, m))
-        st = peel(gl, m, err);
+        st = peel_layers(gl, m, err);
     else if (st == CW_OK)
         st = draw_opaque(gl, m, err);
     glDisable(GL_DEPTH_TEST);
@@ -222,7 +222,7 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
 cw_status cwi_gl_draw_mesh(cwi_gl *gl, cw_error *err)
 {
     cwi_gl_mesh *m;
-    cw_status st = take(gl, &gl->state[CW_MODE_MESH], &m, err);
+    cw_status st = take_mesh(gl, &gl->state[CW_MODE_MESH], &m, err);
     if (st == CW_OK)
         st = draw_opaque(gl, m, err);
     glDisable(GL_DEPTH_TEST);
@@ -230,4 +230,5 @@ cw_status cwi_gl_draw_mesh(cwi_gl *gl, cw_error *err)
     return st;
 }
 
-const cwi_gl_mode cwi_gl_mesh_mode = {CW_MODE_MESH, false, draw, cwi_gl_drop_mesh, false};
+const cwi_gl_mode cwi_gl_mesh_mode = {CW_MODE_MESH, false, draw_mesh_mode, cwi_gl_drop_mesh,
+                                      false};

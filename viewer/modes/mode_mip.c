@@ -27,7 +27,7 @@ static void drop_found(projector *p)
     p->width = p->height = 0;
 }
 
-static void drop(void *state)
+static void drop_mip_mode(void *state)
 {
     projector *p = state;
     glDeleteTextures(1, &p->ranges);
@@ -144,7 +144,7 @@ static cw_status draw_brick(cwi_gl *gl, const projector *p, const cwi_gl_brick *
     return st;
 }
 
-static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
+static cw_status draw_mip_mode(cwi_gl *gl, void **state, cw_error *err)
 {
     const size_t count = gl->volume.brick_count;
     cw_status st = take_state(gl, state, err);
@@ -160,7 +160,8 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     return st;
 }
 
-const cwi_gl_mode cwi_gl_mip = {CW_MODE_MIP, true, draw, drop, false};
-const cwi_gl_mode cwi_gl_minip = {CW_MODE_MINIP, true, draw, drop, false};
-const cwi_gl_mode cwi_gl_average = {CW_MODE_AVERAGE, true, draw, drop, false};
-const cwi_gl_mode cwi_gl_local_mip = {CW_MODE_LOCAL_MIP, true, draw, drop, false};
+const cwi_gl_mode cwi_gl_mip = {CW_MODE_MIP, true, draw_mip_mode, drop_mip_mode, false};
+const cwi_gl_mode cwi_gl_minip = {CW_MODE_MINIP, true, draw_mip_mode, drop_mip_mode, false};
+const cwi_gl_mode cwi_gl_average = {CW_MODE_AVERAGE, true, draw_mip_mode, drop_mip_mode, false};
+const cwi_gl_mode cwi_gl_local_mip = {CW_MODE_LOCAL_MIP, true, draw_mip_mode, drop_mip_mode,
+                                      false};

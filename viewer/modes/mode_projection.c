@@ -58,7 +58,7 @@ typedef struct node {
     size_t first[3], count[3], edge;
 } node;
 
-static void flush(job *j)
+static void flush_triangles(job *j)
 {
     if (j->index_count > 0 && j->status == CW_OK) {
         glBufferData(GL_ARRAY_BUFFER, (GLsizeiptr)(j->vertex_count * sizeof *j->vertices),
@@ -94,8 +94,8 @@ static void place_in_box(const cwi_frame *f, const double at[2], double depth,
         share[a] = (share[a] - low[a]) / size[a];
 }
 
-static void weigh(const cwi_frame *f, const cwi_piece_vertex *v, const double low[3],
-                  const double size[3], float front[8], float back[8])
+static void weigh_vertex(const cwi_frame *f, const cwi_piece_vertex *v, const double low[3],
+                         const double size[3], float front[8], float back[8])
 {
     double share[3];
     place_in_box(f, v->at, v->front, low, size, share);
@@ -104,7 +104,7 @@ static void weigh(const cwi_frame *f, const cwi_piece_vertex *v, const double lo
     corner_weights(share, back);
 }
 
-static double sum8(const float w[8], const float values[8])
+static double sum_eight(const float w[8], const float values[8])
 {
     float sum = 0;
     for (int n = 0; n < 8; n++)
@@ -136,7 +136,7 @@ static void make_pattern(job *j, const double size[3])
     memcpy(p->size, size, sizeof p->size);
     cwi_pieces_make(j->frame, low, size, &p->pieces);
     for (size_t n = 0; n < p->pieces.vertex_count; n++)
-        weigh(j->frame, &p->pieces.vertices[n], low, size, p->front[n], p->back[n]);
+        weigh_vertex(j->frame, &p->pieces.vertices[n], low, size, p->front[n], p->back[n]);
 }
 
 /* Whether a side of the picture has all of the vertices from a number on behind it. */
@@ -177,8 +177,9 @@ static void draw_shifted(job *j, const double low[3], const double size[3], cons
     for (size_t n = 0; n < p->vertex_count; n++) {
         const cwi_piece_vertex *u = &p->vertices[n];
         const double at[2] = {u->at[0] + shift[0], u->at[1] + shift[1]};
-        put_vertex(j, at, u->front - shift[2], u->back - shift[2], sum8(j->pattern.front[n], v),
-                   sum8(j->pattern.back[n], v), &j->vertices[from + n]);
+        put_vertex(j, at, u->front - shift[2], u->back - shift[2],
+                   sum_eight(j->pattern.front[n], v), sum_eight(j->pattern.back[n], v),
+                   &j->vertices[from + n]);
     }
     put_pieces(j, p, from);
 }
@@ -192,8 +193,8 @@ static void draw_single(job *j, const double low[3], const double size[3], const
     cwi_pieces_make(j->frame, low, high, &pieces);
     for (size_t n = 0; n < pieces.vertex_count; n++) {
         const cwi_piece_vertex *u = &pieces.vertices[n];
-        weigh(j->frame, u, low, size, front, back);
-        put_vertex(j, u->at, u->front, u->back, sum8(front, v), sum8(back, v),
+        weigh_vertex(j->frame, u, low, size, front, back);
+        put_vertex(j, u->at, u->front, u->back, sum_eight(front, v), sum_eight(back, v),
                    &j->vertices[from + n]);
     }
     put_pieces(j, &pieces, from);
@@ -216,7 +217,7 @@ static void draw_node(job *j, const node *n)
     float v[8];
     if (j->vertex_count + CWI_PIECE_VERTICES > CHUNK_VERTICES ||
         j->index_count + CWI_PIECE_INDICES > CHUNK_INDICES)
-        flush(j);
+        flush_triangles(j);
     for (int a = 0; a < 3; a++) {
         low[a] = j->frame->low[a] + (double)(j->first[a] + n->first[a]);
         size[a] = (double)n->count[a];
@@ -253,15 +254,15 @@ static bool find_range(const job *j, const node *n, float range[2])
     return is_whole;
 }
 
-static float within(float x)
+static float clamp_unit(float x)
 {
     return x < 0 ? 0 : x > 1 ? 1 : x;
 }
 
-static void visit(job *j, const node *n);
+static void visit_node(job *j, const node *n);
 
 /* The two halves along an axis that both are there, the farther first. */
-static int split(const job *j, const node *n, int axis, size_t order[2])
+static int split_node(const job *j, const node *n, int axis, size_t order[2])
 {
     const size_t half = n->edge / 2;
     const double middle =
@@ -281,7 +282,7 @@ static void visit_parts(job *j, const node *n)
     size_t order[3][2];
     int parts[3];
     for (int a = 0; a < 3; a++)
-        parts[a] = split(j, n, a, order[a]);
+        parts[a] = split_node(j, n, a, order[a]);
     for (int p = 0; p < parts[0] * parts[1] * parts[2]; p++) {
         const int at[3] = {p % parts[0], p / parts[0] % parts[1], p / parts[0] / parts[1]};
         node part = {.edge = half};
@@ -290,18 +291,19 @@ static void visit_parts(job *j, const node *n)
             part.first[a] = n->first[a] + skip;
             part.count[a] = left < half ? left : half;
         }
-        visit(j, &part);
+        visit_node(j, &part);
     }
 }
 
 /* Nodes that show nothing are passed over; those whose values are alike are drawn as one. */
-static void visit(job *j, const node *n)
+static void visit_node(job *j, const node *n)
 {
     float range[2];
     const bool is_whole = find_range(j, n, range);
     if (!cwi_visible_any(&j->visible, range[0], range[1]))
         return;
-    const bool is_alike = is_whole && within(range[1]) - within(range[0]) <= 2 * j->tolerance;
+    const bool is_alike =
+        is_whole && clamp_unit(range[1]) - clamp_unit(range[0]) <= 2 * j->tolerance;
     if (n->edge > 1 && !is_alike)
         visit_parts(j, n);
     else if (is_whole)
@@ -333,7 +335,7 @@ static void draw_block(job *j, const cwi_gl_brick *brick, const size_t block[3])
     for (size_t n = 0, z = 0; z < samples[2]; z++)
         for (size_t y = 0; y < samples[1]; y++, n += samples[0])
             memcpy(j->samples + (z * SIDE + y) * SIDE, rows + n, samples[0] * sizeof *rows);
-    visit(j, &whole);
+    visit_node(j, &whole);
 }
 
 /* The blocks a brick has cells of, along an axis: from the farthest to the nearest. */
@@ -378,7 +380,7 @@ static cw_status draw_brick(job *j, const cwi_gl_brick *brick, cw_error *err)
             j->status = cwi_gl_report(j->gl, "cells", j->gl->watch.to, err);
         st = j->status;
     }
-    flush(j);
+    flush_triangles(j);
     for (int a = 0; a < 3; a++)
         cwi_free(order[a]);
     return st == CW_OK ? j->status : st;
@@ -433,8 +435,8 @@ static cw_status open_job(cwi_gl *gl, job *j, const char **gradients, cw_error *
     return st;
 }
 
-static void describe(const cw_scene *s, const cw_transfer *t, const char *gradients,
-                     char *defines, size_t size)
+static void describe_shader(const cw_scene *s, const cw_transfer *t, const char *gradients,
+                            char *defines, size_t size)
 {
     snprintf(defines, size, "#define RAYS\n%s%s%s%s%s", gradients,
              s->no_preintegration ? "" : "#define SEGMENTS\n",
@@ -457,7 +459,7 @@ static cw_status draw_bricks(job *j, GLuint program, cw_error *err)
     return st;
 }
 
-static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
+static cw_status draw_projection_mode(cwi_gl *gl, void **state, cw_error *err)
 {
     char defines[256];
     const char *gradients = "";
@@ -467,7 +469,8 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     if (!j)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the projection of cells");
     cw_status st = open_job(gl, j, &gradients, err);
-    describe(&gl->frame->scene, &gl->frame->transfer, gradients, defines, sizeof defines);
+    describe_shader(&gl->frame->scene, &gl->frame->transfer, gradients, defines,
+                    sizeof defines);
     if (st == CW_OK)
         st = cwi_gl_use(gl, cwi_glsl_projection, cwi_glsl_projection, defines, &program, err);
     open_stream(j);
@@ -480,4 +483,5 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     return st;
 }
 
-const cwi_gl_mode cwi_gl_projection = {CW_MODE_PROJECTION, true, draw, NULL, false};
+const cwi_gl_mode cwi_gl_projection = {CW_MODE_PROJECTION, true, draw_projection_mode, NULL,
+                                       false};

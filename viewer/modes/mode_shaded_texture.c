@@ -52,7 +52,7 @@ static void drop_normals(shaded_state *t)
     t->brick_count = 0;
 }
 
-static void drop(void *state)
+static void drop_shaded_texture(void *state)
 {
     shaded_state *t = state;
     cwi_gl_drop_slices(&t->slices);
@@ -217,7 +217,7 @@ static void add_light(const shades_key *key, const cw_light *light, const double
 }
 
 /* direction: in the world; NULL where there is none */
-static reflection reflect(const shades_key *key, const double *direction)
+static reflection reflect_light(const shades_key *key, const double *direction)
 {
     const double ambient = (double)key->material.ambient;
     reflection r = {{ambient, ambient, ambient}, {0}};
@@ -238,7 +238,7 @@ static void put_shades(const shades_key *key, const cwi_directions *d,
                        key->low + (key->high - key->low) * m / (SHADE_COLUMNS - 1), colors[m],
                        &opacity);
     for (size_t n = 0; n <= d->count; n++) {
-        const reflection r = reflect(key, n < d->count ? d->all[n] : NULL);
+        const reflection r = reflect_light(key, n < d->count ? d->all[n] : NULL);
         for (int m = 0; m < SHADE_COLUMNS; m++)
             for (int c = 0; c < 4; c++)
                 out[n][m][c] = c < 3 ? (float)(r.gain[c] * colors[m][c] + r.shine[c]) : 1;
@@ -264,7 +264,7 @@ static cw_status need_shades(const cwi_gl *gl, shaded_state *t, cw_error *err)
     return CW_OK;
 }
 
-static void bind(const void *state, size_t brick)
+static void bind_brick(const void *state, size_t brick)
 {
     const shaded_state *t = state;
     glActiveTexture(GL_TEXTURE0 + CWI_UNIT_NORMALS);
@@ -273,7 +273,7 @@ static void bind(const void *state, size_t brick)
     glBindTexture(GL_TEXTURE_2D, t->shades);
 }
 
-static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
+static cw_status draw_shaded_texture(cwi_gl *gl, void **state, cw_error *err)
 {
     char defines[80];
     const char *gradients = "";
@@ -295,7 +295,8 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     snprintf(defines, sizeof defines, "%s#define SHADES\n%s%s", gradients,
              s->colors_first ? "#define COLORS\n" : "",
              s->mark_boundary ? "#define BOUNDARY\n" : "");
-    return cwi_gl_draw_slices(gl, &t->slices, defines, bind, t, err);
+    return cwi_gl_draw_slices(gl, &t->slices, defines, bind_brick, t, err);
 }
 
-const cwi_gl_mode cwi_gl_shaded_texture = {CW_MODE_SHADED_TEXTURE, true, draw, drop, true};
+const cwi_gl_mode cwi_gl_shaded_texture = {CW_MODE_SHADED_TEXTURE, true, draw_shaded_texture,
+                                           drop_shaded_texture, true};

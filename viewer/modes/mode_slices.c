@@ -25,7 +25,7 @@ static void set_slice(const cwi_frame *f, GLuint program, const cw_slice *s)
     cwi_gl_set3(program, "frame_color", color);
 }
 
-static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
+static cw_status draw_slices_mode(cwi_gl *gl, void **state, cw_error *err)
 {
     (void)state;
     const cwi_frame *f = gl->frame;
@@ -57,4 +57,4 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     return st;
 }
 
-const cwi_gl_mode cwi_gl_slices = {CW_MODE_SLICES, false, draw, NULL, false};
+const cwi_gl_mode cwi_gl_slices = {CW_MODE_SLICES, false, draw_slices_mode, NULL, false};

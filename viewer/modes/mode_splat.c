@@ -1,7 +1,7 @@
 /* Splatting: every voxel's footprint, sheet by sheet. */
 #include "viewer/modes/splat_sheets.h"
 
-static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
+static cw_status draw_splat_mode(cwi_gl *gl, void **state, cw_error *err)
 {
     cwi_splats s = {0};
     (void)state;
@@ -12,4 +12,4 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     return st;
 }
 
-const cwi_gl_mode cwi_gl_splat = {CW_MODE_SPLAT, false, draw, NULL, false};
+const cwi_gl_mode cwi_gl_splat = {CW_MODE_SPLAT, false, draw_splat_mode, NULL, false};

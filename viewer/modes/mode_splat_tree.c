@@ -108,7 +108,7 @@ static void splat_node(walk *w, size_t level, const size_t node[3], const double
     cwi_splats_add(&w->splats, &splat, eye);
 }
 
-static void visit(walk *w, size_t level, const size_t node[3]);
+static void visit_node(walk *w, size_t level, const size_t node[3]);
 
 static void visit_parts(walk *w, size_t level, const size_t node[3])
 {
@@ -121,14 +121,14 @@ static void visit_parts(walk *w, size_t level, const size_t node[3])
         if (at[0] >= dim[0] || at[1] >= dim[1] || at[2] >= dim[2])
             continue;
         if (level > 0)
-            visit(w, level - 1, at);
+            visit_node(w, level - 1, at);
         else if (at[axis] == w->sheet)
             cwi_splats_voxel(&w->splats, at);
     }
 }
 
 /* Goes down to what is drawn in the sheet. */
-static void visit(walk *w, size_t level, const size_t node[3])
+static void visit_node(walk *w, size_t level, const size_t node[3])
 {
     size_t at[3][2];
     double low[3], high[3], middle[3], eye[3];
@@ -168,14 +168,14 @@ static cw_status draw_sheets(walk *w, cw_error *err)
     for (size_t n = 0; n < s->frame->volume.dim[s->axis] && st == CW_OK; n++) {
         w->sheet = order[n];
         cwi_gl_part(s->gl, n, s->frame->volume.dim[s->axis]);
-        visit(w, w->pyramid->level_count - 1, root);
+        visit_node(w, w->pyramid->level_count - 1, root);
         st = cwi_splats_end_sheet(s, n, err);
     }
     cwi_free(order);
     return st;
 }
 
-static void drop(void *state)
+static void drop_splat_tree(void *state)
 {
     tree *t = state;
     cwi_pyramid_free(&t->pyramid);
@@ -193,7 +193,7 @@ static cw_status make_tree(const cwi_gl *gl, void **out, cw_error *err)
     if (st == CW_OK)
         *out = t;
     else
-        drop(t);
+        drop_splat_tree(t);
     return st;
 }
 
@@ -204,7 +204,7 @@ static bool is_fitted(const tree *t, const walk *w)
            memcmp(&t->transfer, &f->transfer, sizeof t->transfer) == 0;
 }
 
-static cw_status fit(tree *t, const walk *w, cw_error *err)
+static cw_status fit_error(tree *t, const walk *w, cw_error *err)
 {
     const cwi_frame *f = w->splats.frame;
     cw_status st =
@@ -219,12 +219,12 @@ static cw_status choose_error(tree *t, walk *w, cw_error *err)
 {
     const cw_scene *s = &w->splats.frame->scene;
     const bool has_budget = s->splat_budget > 0;
-    cw_status st = has_budget && !is_fitted(t, w) ? fit(t, w, err) : CW_OK;
+    cw_status st = has_budget && !is_fitted(t, w) ? fit_error(t, w, err) : CW_OK;
     w->error = (float)fmax(has_budget ? t->error : 0, s->tree_error);
     return st;
 }
 
-static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
+static cw_status draw_splat_tree(cwi_gl *gl, void **state, cw_error *err)
 {
     walk w = {0};
     cw_status st = *state ? CW_OK : make_tree(gl, state, err);
@@ -245,4 +245,5 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
     return st;
 }
 
-const cwi_gl_mode cwi_gl_splat_tree = {CW_MODE_SPLAT_TREE, false, draw, drop, false};
+const cwi_gl_mode cwi_gl_splat_tree = {CW_MODE_SPLAT_TREE, false, draw_splat_tree,
+                                       drop_splat_tree, false};

@@ -27,7 +27,7 @@ static void drop_classes(texture_state *t)
     t->class_count = 0;
 }
 
-static void drop(void *state)
+static void drop_texture_mode(void *state)
 {
     texture_state *t = state;
     cwi_gl_drop_slices(&t->slices);
@@ -37,7 +37,7 @@ static void drop(void *state)
 
 /* Emission and extinction per unit: what is linear in how much there is of a thing, and so may
  * be interpolated. No value, nothing. */
-static void classify(const cwi_table *t, double value, float out[4])
+static void classify_value(const cwi_table *t, double value, float out[4])
 {
     memset(out, 0, 4 * sizeof *out);
     if (isnan(value))
@@ -66,7 +66,8 @@ static void put_layer(const cwi_gl *gl, const cwi_gl_brick *b, size_t k, float (
 #pragma omp parallel for num_threads(cwi_threads(gl->frame->scene.threads))
     for (size_t j = 0; j < b->count[1]; j++)
         for (size_t i = 0; i < b->count[0]; i++)
-            classify(&gl->transfer.table, value_of(v, b, i, j, k), out[j * b->count[0] + i]);
+            classify_value(&gl->transfer.table, value_of(v, b, i, j, k),
+                           out[j * b->count[0] + i]);
 }
 
 /* Half precision is relative: enough for colours that add up, whatever the opacity. */
@@ -116,7 +117,7 @@ static void bind_classes(const void *state, size_t brick)
     glBindTexture(GL_TEXTURE_3D, t->classes[brick]);
 }
 
-static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
+static cw_status draw_texture_mode(cwi_gl *gl, void **state, cw_error *err)
 {
     const cw_scene *s = &gl->frame->scene;
     char defines[64];
@@ -139,4 +140,5 @@ static cw_status draw(cwi_gl *gl, void **state, cw_error *err)
                               err);
 }
 
-const cwi_gl_mode cwi_gl_texture_mode = {CW_MODE_TEXTURE, true, draw, drop, true};
+const cwi_gl_mode cwi_gl_texture_mode = {CW_MODE_TEXTURE, true, draw_texture_mode,
+                                         drop_texture_mode, true};

@@ -112,7 +112,7 @@ static bool make_room(drawing *d, size_t count)
     return true;
 }
 
-static cw_status gather(const cwi_frame *f, drawing *d, cw_error *err)
+static cw_status gather_slabs(const cwi_frame *f, drawing *d, cw_error *err)
 {
     d->count = 0;
     for (size_t n = 0; n < d->slabs.layer_count; n++) {
@@ -210,7 +210,7 @@ static cw_status draw_brick(cwi_gl *gl, cwi_gl_slabs *slices, GLuint program, dr
 {
     double matrix[12];
     mark_brick(gl, b, &d->slabs);
-    cw_status st = gather(gl->frame, d, err);
+    cw_status st = gather_slabs(gl->frame, d, err);
     if (st != CW_OK || d->count == 0)
         return st;
     glBindVertexArray(slices->array);
@@ -256,7 +256,7 @@ static void make_color(cwi_gl_slabs *s, const cwi_gl_target *like, cw_target tar
 }
 
 /* The module's own target has single precision; others are drawn over it in the end. */
-static cw_status begin(cwi_gl *gl, cwi_gl_slabs *s, cw_error *err)
+static cw_status begin_slabs(cwi_gl *gl, cwi_gl_slabs *s, cw_error *err)
 {
     const cwi_gl_target *t = &gl->target;
     const cw_target target = gl->frame->scene.target;
@@ -273,7 +273,7 @@ static cw_status begin(cwi_gl *gl, cwi_gl_slabs *s, cw_error *err)
     return CW_OK;
 }
 
-static cw_status end(cwi_gl *gl, const cwi_gl_slabs *s, cw_error *err)
+static cw_status end_slabs(cwi_gl *gl, const cwi_gl_slabs *s, cw_error *err)
 {
     GLuint program;
     if (gl->frame->scene.target == CW_TARGET_32F)
@@ -289,7 +289,7 @@ static cw_status end(cwi_gl *gl, const cwi_gl_slabs *s, cw_error *err)
     return CW_OK;
 }
 
-static void describe(const cwi_frame *f, const char *own, char *defines, size_t size)
+static void describe_slabs(const cwi_frame *f, const char *own, char *defines, size_t size)
 {
     const cw_scene *s = &f->scene;
     snprintf(defines, size, "#define RAYS\n%s%s%s%s%s%s%s%s", own,
@@ -337,11 +337,11 @@ cw_status cwi_gl_draw_slices(cwi_gl *gl, cwi_gl_slabs *slices, const char *own,
     GLuint program;
     const cw_scene *s = &gl->frame->scene;
     cw_status st = cwi_gl_need_skip(gl, err);
-    describe(gl->frame, own, defines, sizeof defines);
+    describe_slabs(gl->frame, own, defines, sizeof defines);
     if (st == CW_OK && !s->no_preintegration && !s->colors_first)
         st = cwi_gl_need_segments(gl, s->step_vox, err);
     if (st == CW_OK)
-        st = begin(gl, slices, err);
+        st = begin_slabs(gl, slices, err);
     if (st == CW_OK)
         st = cwi_gl_use(gl, cwi_glsl_slab, cwi_glsl_texture, defines, &program, err);
     if (st != CW_OK)
@@ -353,7 +353,7 @@ cw_status cwi_gl_draw_slices(cwi_gl *gl, cwi_gl_slabs *slices, const char *own,
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     st = draw_bricks(gl, slices, program, bind, state, err);
     if (st == CW_OK)
-        st = end(gl, slices, err);
+        st = end_slabs(gl, slices, err);
     glDisable(GL_BLEND);
     return st;
 }

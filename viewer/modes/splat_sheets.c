@@ -129,7 +129,7 @@ static void start_bounds(cwi_splats *s)
     s->bounds[1] = s->bounds[3] = -INFINITY;
 }
 
-static void measure(cwi_splats *s)
+static void measure_splats(cwi_splats *s)
 {
     const double *m = s->frame->eye_from_index;
     double sum = 0;
@@ -148,7 +148,7 @@ cw_status cwi_splats_open(cwi_splats *s, cwi_gl *gl, bool has_nodes, cw_error *e
     s->frame = gl->frame;
     s->err = err;
     s->has_gaps = gl->volume.ranges.has_gaps;
-    measure(s);
+    measure_splats(s);
     s->chunk = cwi_alloc_array(CHUNK, sizeof *s->chunk);
     cw_status st = cwi_visible_make(&gl->transfer.table, &s->visible, err);
     if (st == CW_OK && !s->chunk)
@@ -188,7 +188,7 @@ void cwi_splats_close(cwi_splats *s)
 }
 
 /* Adds what is in the chunk to the sheet. */
-static void flush(cwi_splats *s)
+static void flush_splats(cwi_splats *s)
 {
     if (s->count == 0 || s->status != CW_OK)
         return;
@@ -245,7 +245,7 @@ void cwi_splats_add(cwi_splats *s, const cwi_splat *splat, const double eye[3])
         s->bounds[2 * a + 1] = cwi_greater(s->bounds[2 * a + 1], bounds[2 * a + 1]);
     }
     if (s->count == CHUNK)
-        flush(s);
+        flush_splats(s);
     s->chunk[s->count++] = *splat;
 }
 
@@ -265,7 +265,7 @@ static void cut_to_bounds(const cwi_splats *s)
 cw_status cwi_splats_end_sheet(cwi_splats *s, size_t n, cw_error *err)
 {
     const double done = (double)(n + 1) / (double)s->frame->volume.dim[s->axis];
-    flush(s);
+    flush_splats(s);
     if (s->status != CW_OK)
         return s->status;
     if (s->bounds[0] < s->bounds[1]) {

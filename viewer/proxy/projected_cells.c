@@ -37,7 +37,7 @@ typedef struct solid {
     polygon cap; /* where the near plane cuts it; corners in no order */
 } solid;
 
-static void project(const cwi_frame *f, const double p[3], double at[2])
+static void project_point(const cwi_frame *f, const double p[3], double at[2])
 {
     const double scale = f->perspective ? -1 / p[2] : 1;
     at[0] = p[0] * scale;
@@ -71,7 +71,7 @@ static void draw_outline(solid *s, int axis, int side, polygon *out)
         const double *p = s->corners[corner[n]], *q = s->corners[corner[(n + 1) % 4]];
         const double a = -p[2] - f->near, b = -q[2] - f->near;
         if (!s->is_cut || a >= 0) {
-            project(f, p, at);
+            project_point(f, p, at);
             add_corner(out, at);
         }
         if (!s->is_cut || (a >= 0) == (b >= 0))
@@ -79,7 +79,7 @@ static void draw_outline(solid *s, int axis, int side, polygon *out)
         double cut[3];
         for (int c = 0; c < 3; c++)
             cut[c] = p[c] + a / (a - b) * (q[c] - p[c]);
-        project(f, cut, at);
+        project_point(f, cut, at);
         add_corner(out, at);
         if (axis == 2 || (axis == 1 && (corner[n] ^ corner[(n + 1) % 4]) == 4))
             add_corner(&s->cap, at); /* each edge once */
@@ -88,8 +88,8 @@ static void draw_outline(solid *s, int axis, int side, polygon *out)
 
 /* Above 0: the face looks at the eye. In perspective how many voxels the eye is in front of it,
  * else the slope of index space along the view. */
-static double facing(const solid *s, const double low[3], const double high[3], int axis,
-                     int side)
+static double find_facing(const solid *s, const double low[3], const double high[3], int axis,
+                          int side)
 {
     const double *row = s->frame->index_from_eye + (ptrdiff_t)4 * axis;
     if (s->frame->perspective)
@@ -145,7 +145,7 @@ static void find_faces(solid *s, const double low[3], const double high[3])
 {
     for (int axis = 0; axis < 3; axis++)
         for (int side = 0; side < 2; side++) {
-            const double to_eye = facing(s, low, high, axis, side);
+            const double to_eye = find_facing(s, low, high, axis, side);
             faces *to = to_eye > 0 ? &s->front : &s->back;
             face *f = &to->all[to->count];
             draw_outline(s, axis, side, &f->outline);
@@ -161,7 +161,7 @@ static void find_faces(solid *s, const double low[3], const double high[3])
     }
 }
 
-static double cross(const double a[2], const double b[2], const double c[2])
+static double cross_in_plane(const double a[2], const double b[2], const double c[2])
 {
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
 }
@@ -170,7 +170,7 @@ static double twice_area(const polygon *p)
 {
     double sum = 0;
     for (int n = 2; n < p->count; n++)
-        sum += cross(p->at[0], p->at[n - 1], p->at[n]);
+        sum += cross_in_plane(p->at[0], p->at[n - 1], p->at[n]);
     return sum;
 }
 
@@ -182,7 +182,7 @@ static void cut_polygon(polygon *p, const double a[2], const double b[2], double
     double at[2], d[MOST_SIDES];
     bool any_left = false, any_right = false;
     for (int n = 0; n < p->count; n++) {
-        d[n] = cross(a, b, p->at[n]);
+        d[n] = cross_in_plane(a, b, p->at[n]);
         if (fabs(d[n]) <= rounding)
             d[n] = 0;
         any_left = any_left || d[n] > 0;
@@ -270,8 +270,8 @@ static void add_polygon(const solid *s, const polygon *p, const face *front, con
     out->polygon_count++;
 }
 
-static void overlay(const solid *s, const face *front, const face *back, double size,
-                    cwi_pieces *out)
+static void overlay_faces(const solid *s, const face *front, const face *back, double size,
+                          cwi_pieces *out)
 {
     polygon p = front->outline;
     const polygon *b = &back->outline;
@@ -311,5 +311,5 @@ void cwi_pieces_make(const cwi_frame *frame, const double low[3], const double h
     const double size = size_of(&s.front);
     for (int f = 0; f < s.front.count; f++)
         for (int b = 0; b < s.back.count; b++)
-            overlay(&s, &s.front.all[f], &s.back.all[b], size, pieces);
+            overlay_faces(&s, &s.front.all[f], &s.back.all[b], size, pieces);
 }

@@ -14,7 +14,7 @@ void cwi_directions_free(cwi_directions *d)
     *d = (cwi_directions){0};
 }
 
-static void place(cwi_directions *d)
+static void place_directions(cwi_directions *d)
 {
     const double pi = acos(-1), golden = pi * (3 - sqrt(5));
     for (size_t n = 0; n < d->count; n++) {
@@ -27,7 +27,7 @@ static void place(cwi_directions *d)
 
 /* A point of the map, 0 to 1 along each side: the upper half of an octahedron, seen from above
  * and turned by 45 degrees. */
-static void unfold(double u, double v, double out[3])
+static void unfold_octahedron(double u, double v, double out[3])
 {
     const double x = u + v - 1, y = u - v;
     out[0] = x;
@@ -57,7 +57,7 @@ static bool cell_of(const cwi_directions *d, const double v[3], size_t *cell)
 }
 
 /* The angle between lines. */
-static double angle(const double a[3], const double b[3])
+static double angle_between(const double a[3], const double b[3])
 {
     return acos(fmin(fabs(cwi_dot(a, b)), 1));
 }
@@ -69,11 +69,11 @@ static void circle_of(const cwi_directions *d, size_t cell, double middle[3], do
     const double edge = (double)d->edge;
     const double u = (double)(cell % d->edge), v = (double)(cell / d->edge);
     double corner[3];
-    unfold((u + 0.5) / edge, (v + 0.5) / edge, middle);
+    unfold_octahedron((u + 0.5) / edge, (v + 0.5) / edge, middle);
     *radius = 0;
     for (int n = 0; n < 4; n++) {
-        unfold((u + (n & 1)) / edge, (v + (n >> 1)) / edge, corner);
-        *radius = fmax(*radius, angle(middle, corner));
+        unfold_octahedron((u + (n & 1)) / edge, (v + (n >> 1)) / edge, corner);
+        *radius = fmax(*radius, angle_between(middle, corner));
     }
 }
 
@@ -134,7 +134,7 @@ cw_status cwi_directions_make(size_t count, cwi_directions *directions, cw_error
     d->edge = (size_t)ceil(sqrt((double)count));
     d->all = cwi_alloc_array(count, sizeof *d->all);
     if (d->all)
-        place(d);
+        place_directions(d);
     cw_status st =
         d->all ? make_map(d, err) : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for directions");
     if (st != CW_OK)

@@ -15,7 +15,7 @@ typedef struct sum {
     float low, high;
 } sum;
 
-static void add(sum *s, double mean, double mass, float low, float high)
+static void add_to_sum(sum *s, double mean, double mass, float low, float high)
 {
     s->mass += mass;
     s->value += mass * mean;
@@ -43,7 +43,7 @@ static cwi_pyramid_node sum_voxels(const cw_volume *v, bool has_gaps, const size
             v->slope * cwi_voxel_at(v->type, cwi_voxel_address(v, at[0], at[1], at[2])) +
             v->intercept;
         if (mass > 0) /* whose value then is one */
-            add(&s, value, mass, (float)value, (float)value);
+            add_to_sum(&s, value, mass, (float)value, (float)value);
     }
     return node_of(&s);
 }
@@ -66,7 +66,7 @@ static cwi_pyramid_node sum_nodes(const cwi_pyramid *p, size_t level, const size
             continue;
         const cwi_pyramid_node *c = cwi_pyramid_node_at(p, level, at);
         if (c->mass > 0)
-            add(&s, (double)c->mean, (double)c->mass, c->low, c->high);
+            add_to_sum(&s, (double)c->mean, (double)c->mass, c->low, c->high);
     }
     return node_of(&s);
 }

@@ -66,7 +66,7 @@ typedef struct bounds {
 } bounds;
 
 /* Of a corner in eye space. What is beside the eye is seen anywhere. */
-static void widen(const cwi_frame *f, const double eye[3], bounds *b)
+static void widen_bounds(const cwi_frame *f, const double eye[3], bounds *b)
 {
     const double depth = -eye[2], w = f->perspective ? depth : 1;
     const double size[2] = {(double)f->scene.width, (double)f->scene.height};
@@ -91,7 +91,7 @@ static bounds bounds_of(const cwi_frame *f, const double low[3], const double hi
         for (int c = 0; c < 3; c++)
             for (int r = 0; r < 3 && (n >> c & 1); r++)
                 eye[r] += m[4 * r + c] * (high[c] - low[c]);
-        widen(f, eye, &b);
+        widen_bounds(f, eye, &b);
     }
     return b;
 }

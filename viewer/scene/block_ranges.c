@@ -49,7 +49,7 @@ static bool are_values(const float *row, size_t count)
 }
 
 /* By the numbers of a row; false when one of them is no value. */
-static bool widen(const float *row, size_t count, columns c)
+static bool widen_columns(const float *row, size_t count, columns c)
 {
     const bool is_whole = are_values(row, count);
     for (size_t i = 0; i < count && is_whole; i++) {
@@ -64,7 +64,7 @@ static bool widen(const float *row, size_t count, columns c)
     return is_whole;
 }
 
-static void join(columns from, size_t count, columns c)
+static void join_columns(columns from, size_t count, columns c)
 {
     for (size_t i = 0; i < count; i++) {
         c.low[i] = from.low[i] < c.low[i] ? from.low[i] : c.low[i];
@@ -78,13 +78,13 @@ static bool scan_rows(const cw_volume *v, size_t j, size_t k, float *buffer, col
     bool is_whole = true;
     for (size_t z = 0; z < samples_of(v, 2, k); z++) {
         const void *from = cwi_voxel_address(v, 0, j, CWI_RANGE_EDGE * k + z);
-        is_whole &= widen(cwi_row_of(v, from, v->dim[0], buffer), v->dim[0], c);
+        is_whole &= widen_columns(cwi_row_of(v, from, v->dim[0], buffer), v->dim[0], c);
     }
     return is_whole;
 }
 
 /* A little outward: more than the rounding to a float. */
-static float outward(double x, double sign)
+static float round_outward(double x, double sign)
 {
     return (float)(x + sign * (fabs(x) * 0x1p-22 + (double)FLT_MIN));
 }
@@ -100,10 +100,10 @@ static void gather_columns(const cw_volume *v, size_t i, columns c, float out[2]
         r[1] = c.high[x] > r[1] ? c.high[x] : r[1];
     }
     const bool is_empty = r[0] > r[1];
-    const double a = v->slope * (double)outward((double)r[0], -1) + v->intercept;
-    const double b = v->slope * (double)outward((double)r[1], 1) + v->intercept;
-    out[0] = is_empty ? 1 : outward(a < b ? a : b, -1);
-    out[1] = is_empty ? 0 : outward(a < b ? b : a, 1);
+    const double a = v->slope * (double)round_outward((double)r[0], -1) + v->intercept;
+    const double b = v->slope * (double)round_outward((double)r[1], 1) + v->intercept;
+    out[0] = is_empty ? 1 : round_outward(a < b ? a : b, -1);
+    out[1] = is_empty ? 0 : round_outward(a < b ? b : a, 1);
 }
 
 /* Rows of blocks share their outer rows of samples: these are read once.
@@ -117,12 +117,12 @@ static bool scan_blocks(const cw_volume *v, const size_t dim[3], size_t k, float
     for (size_t j = 0; j < dim[1]; j++) {
         const size_t first = CWI_RANGE_EDGE * j, last = first + samples_of(v, 1, j) - 1;
         const columns all = clear_columns(buffer + 3 * n, n);
-        join(shared, n, all);
+        join_columns(shared, n, all);
         for (size_t y = first + 1; y < last; y++)
             is_whole &= scan_rows(v, y, k, buffer, all);
         shared = clear_columns(buffer + n, n);
         is_whole &= scan_rows(v, last, k, buffer, shared);
-        join(shared, n, all);
+        join_columns(shared, n, all);
         for (size_t i = 0; i < dim[0]; i++)
             gather_columns(v, i, all, blocks[j * dim[0] + i]);
     }
@@ -170,7 +170,7 @@ cw_status cwi_ranges_make(const cw_volume *volume, int threads, const cw_progres
 }
 
 /* Block (i, j, k) of the coarse ones: around its eight fine ones. */
-static void gather(const cwi_ranges *fine, size_t i, size_t j, size_t k, float out[2])
+static void gather_children(const cwi_ranges *fine, size_t i, size_t j, size_t k, float out[2])
 {
     out[0] = INFINITY;
     out[1] = -INFINITY;
@@ -195,7 +195,8 @@ cw_status cwi_ranges_halve(const cwi_ranges *fine, cwi_ranges *coarse, cw_error 
     if (!coarse->blocks)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the ranges of %zu blocks", count);
     for (size_t n = 0; n < count; n++)
-        gather(fine, n % dim[0], n / dim[0] % dim[1], n / dim[0] / dim[1], coarse->blocks[n]);
+        gather_children(fine, n % dim[0], n / dim[0] % dim[1], n / dim[0] / dim[1],
+                        coarse->blocks[n]);
     return CW_OK;
 }
 
@@ -208,7 +209,7 @@ void cwi_ranges_free(cwi_ranges *ranges)
 /* One pass over a lattice that has a margin of one block on every side: each byte becomes at
  * most one more than the least of its 13 neighbours in front (behind, backward). A pass each
  * way, and every byte is the distance along the longest axis to the next 0, up to 255. */
-static void relax(uint8_t *d, const ptrdiff_t dim[3], bool backward)
+static void relax_distances(uint8_t *d, const ptrdiff_t dim[3], bool backward)
 {
     const ptrdiff_t row = dim[0], layer = dim[0] * dim[1], margin = layer + row + 1;
     const ptrdiff_t count = layer * dim[2] - 2 * margin, s = backward ? -1 : 1;
@@ -241,8 +242,8 @@ cw_status cwi_ranges_distances(const cwi_ranges *r,
             ROW(n / nx % ny, n / nx / ny)[n % nx] = 0;
     }
     const ptrdiff_t dim[3] = {(ptrdiff_t)nx + 2, (ptrdiff_t)ny + 2, (ptrdiff_t)nz + 2};
-    relax(d, dim, false);
-    relax(d, dim, true);
+    relax_distances(d, dim, false);
+    relax_distances(d, dim, true);
     for (size_t n = 0; n < ny * nz; n++)
         memmove(d + n * nx, ROW(n % ny, n / ny), nx);
 #undef ROW

@@ -38,7 +38,7 @@ static cw_status take_angle(const json_t *root, cw_camera *c, cw_error *err)
     return st;
 }
 
-static cw_status parse(const char *bytes, size_t size, void *out, cw_error *err)
+static cw_status parse_camera(const char *bytes, size_t size, void *out, cw_error *err)
 {
     static const char *const keys[] = {"eye", "target", "up", "fov_deg", "height_mm", NULL};
     cw_camera c = {0};
@@ -66,12 +66,12 @@ static cw_status parse(const char *bytes, size_t size, void *out, cw_error *err)
 
 cw_status cw_camera_read(const char *path, cw_camera *camera, cw_error *err)
 {
-    return cwi_json_read(path, parse, camera, err);
+    return cwi_json_read(path, parse_camera, camera, err);
 }
 
 cw_status cw_camera_parse(const char *text, cw_camera *camera, cw_error *err)
 {
-    return parse(text, strlen(text), camera, err);
+    return parse_camera(text, strlen(text), camera, err);
 }
 
 cw_status cw_camera_format(const cw_camera *camera, char text[CW_CAMERA_TEXT], cw_error *err)

@@ -108,7 +108,7 @@ double cwi_lattice_mass(const cw_volume *v, const size_t at[3], bool has_gaps)
     return cells / 8.0;
 }
 
-static double derivative(const cw_volume *v, const char *at, int axis, size_t n)
+static double row_derivative(const cw_volume *v, const char *at, int axis, size_t n)
 {
     const bool below = n > 0, above = n + 1 < v->dim[axis];
     if (!below && !above)
@@ -122,5 +122,5 @@ static double derivative(const cw_volume *v, const char *at, int axis, size_t n)
 void cwi_lattice_gradient(const cw_volume *v, const size_t at[3], double gradient[3])
 {
     for (int a = 0; a < 3; a++)
-        gradient[a] = derivative(v, cwi_voxel_address(v, at[0], at[1], at[2]), a, at[a]);
+        gradient[a] = row_derivative(v, cwi_voxel_address(v, at[0], at[1], at[2]), a, at[a]);
 }

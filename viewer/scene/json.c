@@ -116,7 +116,7 @@ cw_status cwi_json_number(const json_t *root, const char *key, double *value, cw
 }
 
 /* Digits until it reads back; with a point, as JSON knows no -0 without one. */
-static const char *shortest(char text[CWI_JSON_NUMBER], double value, bool single)
+static const char *print_shortest(char text[CWI_JSON_NUMBER], double value, bool single)
 {
     if (value == floor(value) && fabs(value) < 1e15) {
         snprintf(text, CWI_JSON_NUMBER, "%.1f", value);
@@ -137,10 +137,10 @@ static const char *shortest(char text[CWI_JSON_NUMBER], double value, bool singl
 
 const char *cwi_json_double(char text[CWI_JSON_NUMBER], double value)
 {
-    return shortest(text, value, false);
+    return print_shortest(text, value, false);
 }
 
 const char *cwi_json_float(char text[CWI_JSON_NUMBER], float value)
 {
-    return shortest(text, (double)value, true);
+    return print_shortest(text, (double)value, true);
 }

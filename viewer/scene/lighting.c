@@ -5,7 +5,7 @@
 #include <math.h>
 #include <string.h>
 
-static void normalize(double v[3])
+static void normalize_vector(double v[3])
 {
     const double length = sqrt(cwi_dot(v, v));
     for (int a = 0; a < 3 && length > 0; a++)
@@ -13,7 +13,7 @@ static void normalize(double v[3])
 }
 
 /* x^power for whole powers, as most are, and others; quicker than pow(). */
-static double raise(double x, double power)
+static double raise_power(double x, double power)
 {
     double result = 1;
     if (power != floor(power) || power > 1024 || power < 0)
@@ -30,12 +30,12 @@ void cwi_lighting_make(const cwi_frame *f, const double direction[3], cwi_lighti
     for (size_t n = 0; n < l->count; n++) {
         const cw_light *light = &f->scene.lights[n];
         memcpy(l->direction[n], light->direction, sizeof l->direction[n]);
-        normalize(l->direction[n]);
+        normalize_vector(l->direction[n]);
         for (int a = 0; a < 3; a++) {
             l->halfway[n][a] = l->direction[n][a] - direction[a];
             l->color[n][a] = (double)light->color[a];
         }
-        normalize(l->halfway[n]);
+        normalize_vector(l->halfway[n]);
     }
 }
 
@@ -44,14 +44,14 @@ void cwi_lighting_shade(const cwi_lighting *l, const double gradient[3], double 
     double n[3] = {gradient[0], gradient[1], gradient[2]};
     double light[3];
     const bool has_side = n[0] != 0 || n[1] != 0 || n[2] != 0;
-    normalize(n);
+    normalize_vector(n);
     for (int c = 0; c < 3; c++)
         light[c] = (double)l->material.ambient * color[c];
     for (size_t i = 0; i < l->count && has_side; i++) {
         const double diffuse = (double)l->material.diffuse * fabs(cwi_dot(n, l->direction[i]));
         const double gloss = fabs(cwi_dot(n, l->halfway[i]));
         const double specular =
-            (double)l->material.specular * raise(gloss, (double)l->material.shininess);
+            (double)l->material.specular * raise_power(gloss, (double)l->material.shininess);
         for (int c = 0; c < 3; c++)
             light[c] += l->color[i][c] * (diffuse * color[c] + specular);
     }

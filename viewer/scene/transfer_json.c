@@ -125,14 +125,14 @@ cw_status cwi_transfer_parse(const char *bytes, size_t size, cw_transfer *transf
     return st;
 }
 
-static cw_status parse(const char *bytes, size_t size, void *out, cw_error *err)
+static cw_status parse_transfer(const char *bytes, size_t size, void *out, cw_error *err)
 {
     return cwi_transfer_parse(bytes, size, out, err);
 }
 
 cw_status cw_transfer_read(const char *path, cw_transfer *transfer, cw_error *err)
 {
-    return cwi_json_read(path, parse, transfer, err);
+    return cwi_json_read(path, parse_transfer, transfer, err);
 }
 
 cw_status cw_transfer_parse(const char *text, cw_transfer *transfer, cw_error *err)

@@ -22,7 +22,7 @@ static void put_opacity(cw_transfer *t, double value, double opacity)
 }
 
 /* The value below which a share of those lie that are counted from a bin on. */
-static double quantile(const cw_statistics *s, size_t first, double share)
+static double find_quantile(const cw_statistics *s, size_t first, double share)
 {
     double total = 0, sum = 0;
     for (size_t b = first; b < s->bin_count; b++)
@@ -45,7 +45,7 @@ static double middle_of(const cw_statistics *s, size_t bin)
 }
 
 /* How much of all lies between two values. */
-static double mass(const cw_statistics *s, double low, double high)
+static double count_between(const cw_statistics *s, double low, double high)
 {
     double sum = 0;
     for (size_t b = 0; b < s->bin_count; b++) {
@@ -62,7 +62,7 @@ static double find_peak(const cw_statistics *s, double low, double high)
     double best = -1, peak = low;
     for (size_t b = 0; b < s->bin_count; b++) {
         const double middle = middle_of(s, b);
-        const double here = s->bins[b] ? mass(s, middle - reach, middle + reach) : 0;
+        const double here = s->bins[b] ? count_between(s, middle - reach, middle + reach) : 0;
         if (here > best) {
             best = here;
             peak = middle;
@@ -87,7 +87,7 @@ static size_t bin_of(const cw_statistics *s, double value)
  * as the noise of a scan, or what fills it. */
 static bool is_around(const cw_statistics *s, double first, double second)
 {
-    return mass(s, first, second) > 0.6 && mass(s, second, s->max) < 0.15;
+    return count_between(s, first, second) > 0.6 && count_between(s, second, s->max) < 0.15;
 }
 
 static classes find_classes(const cw_statistics *s)
@@ -107,7 +107,7 @@ static classes find_classes(const cw_statistics *s)
         c.first = c.second;
         c.second = (c.first + s->max) / 2;
     }
-    c.high = quantile(s, bin_of(s, c.first), 0.995);
+    c.high = find_quantile(s, bin_of(s, c.first), 0.995);
     c.second = fmin(c.second, c.first + 0.9 * (c.high - c.first));
     if (!(c.high > c.first && c.second > c.first)) {
         c.high = s->max;
@@ -117,7 +117,7 @@ static classes find_classes(const cw_statistics *s)
 }
 
 /* The opacity a voxel has that covers so much along a share of the volume's width. */
-static double spread(const cw_statistics *s, double opacity, double share)
+static double spread_opacity(const cw_statistics *s, double opacity, double share)
 {
     const double across = fmax(cbrt((double)s->finite) * share, 1);
     return -expm1(log1p(-opacity) / across);
@@ -176,9 +176,9 @@ static void make_mr(const cw_statistics *s, cw_transfer *t)
     put_color(t, c.second, 0xdcb896);
     put_color(t, c.high, 0xfff8ea);
     put_opacity(t, c.first, 0);
-    put_opacity(t, middle, spread(s, 0.6, 0.1));
-    put_opacity(t, c.second, spread(s, 0.95, 0.1));
-    put_opacity(t, c.high, spread(s, 0.99, 0.05));
+    put_opacity(t, middle, spread_opacity(s, 0.6, 0.1));
+    put_opacity(t, c.second, spread_opacity(s, 0.95, 0.1));
+    put_opacity(t, c.high, spread_opacity(s, 0.99, 0.05));
 }
 
 static void make_grey_between(double low, double high, cw_transfer *t)
@@ -190,7 +190,7 @@ static void make_grey_between(double low, double high, cw_transfer *t)
 /* Black where most is, white at what few reach: vessels. */
 static void make_mip(const cw_statistics *s, cw_transfer *t)
 {
-    make_grey_between(quantile(s, 0, 0.5), quantile(s, 0, 0.9995), t);
+    make_grey_between(find_quantile(s, 0, 0.5), find_quantile(s, 0, 0.9995), t);
     put_opacity(t, t->colors[0].value, 1);
 }
 
@@ -213,8 +213,8 @@ static void make_fog(const cw_statistics *s, cw_transfer *t)
     put_color(t, c.first, 0xb8c8dc);
     put_color(t, c.high, 0xffffff);
     put_opacity(t, c.first, 0);
-    put_opacity(t, c.second, spread(s, 0.5, 0.4));
-    put_opacity(t, c.high, spread(s, 0.9, 0.3));
+    put_opacity(t, c.second, spread_opacity(s, 0.5, 0.4));
+    put_opacity(t, c.high, spread_opacity(s, 0.9, 0.3));
 }
 
 /* Distances from a surface at 0, negative inside: solid, but for half a bin. */
@@ -231,14 +231,14 @@ static bool is_signed(const cw_statistics *s, double low, double high)
 {
     const double range = high - low;
     return low < 0 && high > 0 && fmin(-low, high) > 0.2 * range &&
-           mass(s, -0.05 * range, 0.05 * range) > 0.2 &&
-           mass(s, s->min, low + 0.15 * range) < 0.05 &&
+           count_between(s, -0.05 * range, 0.05 * range) > 0.2 &&
+           count_between(s, s->min, low + 0.15 * range) < 0.05 &&
            fabs(find_peak(s, low, high)) < 0.03 * range;
 }
 
 static void make_signed(const cw_statistics *s, double low, double high, cw_transfer *t)
 {
-    const double dense = spread(s, 0.98, 0.1), thin = spread(s, 0.4, 0.15);
+    const double dense = spread_opacity(s, 0.98, 0.1), thin = spread_opacity(s, 0.4, 0.15);
     put_color(t, low, 0x9fd8ff);
     put_color(t, low / 4, 0x2866d8);
     put_color(t, high / 4, 0xd8502a);
@@ -255,17 +255,17 @@ static void make_signed(const cw_statistics *s, double low, double high, cw_tran
 static bool is_inverted(const cw_statistics *s)
 {
     const double range = s->max - s->min;
-    return mass(s, s->max - 0.02 * range, s->max) > 0.5;
+    return count_between(s, s->max - 0.02 * range, s->max) > 0.5;
 }
 
 static void make_inverted(const cw_statistics *s, cw_transfer *t)
 {
-    const double low = quantile(s, 0, 0.005), range = s->max - low;
+    const double low = find_quantile(s, 0, 0.005), range = s->max - low;
     put_color(t, low, 0xfff4dc);
     put_color(t, low + 0.5 * range, 0xd9a877);
     put_color(t, low + 0.9 * range, 0x7a3f2c);
-    put_opacity(t, low, spread(s, 0.99, 0.05));
-    put_opacity(t, low + 0.6 * range, spread(s, 0.9, 0.1));
+    put_opacity(t, low, spread_opacity(s, 0.99, 0.05));
+    put_opacity(t, low + 0.6 * range, spread_opacity(s, 0.9, 0.1));
     put_opacity(t, low + 0.93 * range, 0);
 }
 
@@ -279,14 +279,14 @@ static void make_above(const cw_statistics *s, cw_transfer *t)
     put_color(t, c.second, 0xe3bd92);
     put_color(t, c.high, 0xfff6e4);
     put_opacity(t, c.first, 0);
-    put_opacity(t, c.first + fade, spread(s, 0.8, 0.1));
-    put_opacity(t, c.second, spread(s, 0.95, 0.1));
-    put_opacity(t, c.high, spread(s, 0.999, 0.04));
+    put_opacity(t, c.first + fade, spread_opacity(s, 0.8, 0.1));
+    put_opacity(t, c.second, spread_opacity(s, 0.95, 0.1));
+    put_opacity(t, c.high, spread_opacity(s, 0.999, 0.04));
 }
 
 static void make_auto(const cw_statistics *s, cw_transfer *t)
 {
-    const double low = quantile(s, 0, 0.0005), high = quantile(s, 0, 0.9995);
+    const double low = find_quantile(s, 0, 0.0005), high = find_quantile(s, 0, 0.9995);
     if (is_signed(s, low, high))
         make_signed(s, low, high, t);
     else if (is_inverted(s))
@@ -324,7 +324,7 @@ const char *cw_transfer_preset_about(size_t n)
     return n < PRESETS ? presets[n].about : NULL;
 }
 
-static cw_status unknown(const char *name, cw_error *err)
+static cw_status fail_unknown(const char *name, cw_error *err)
 {
     char list[256] = "";
     size_t used = 0;
@@ -349,7 +349,7 @@ cw_status cw_transfer_preset(const char *name, const cw_statistics *statistics,
     while (n < PRESETS && strcmp(presets[n].name, name) != 0)
         n++;
     if (n == PRESETS)
-        return unknown(name, err);
+        return fail_unknown(name, err);
     if (presets[n].fitted && !statistics)
         return cw_fail(err, CW_ERR_ARGUMENT, "'%s' is fitted to a volume's values", name);
     if (presets[n].fitted && !(statistics->max > statistics->min && statistics->bin_count))

@@ -39,7 +39,7 @@ static void find_knots(const cw_transfer *t, cwi_knots *k)
 }
 
 /* Through two values inside, so that jumps at the knots do not matter. */
-static void fit(const cw_transfer *t, cwi_linear *l)
+static void fit_line(const cw_transfer *t, cwi_linear *l)
 {
     double a = l->low + (l->high - l->low) / 4, b = l->low + (l->high - l->low) * 3 / 4;
     double color[2][3], opacity[2];
@@ -66,7 +66,7 @@ void cwi_knots_make(const cw_transfer *t, cwi_knots *k)
         k->linear[n].high = n < k->count ? k->at[n] : INFINITY;
         if (k->count == 0)
             k->linear[n].low = 0;
-        fit(t, &k->linear[n]);
+        fit_line(t, &k->linear[n]);
         if (k->count == 0)
             k->linear[n].low = -INFINITY;
     }

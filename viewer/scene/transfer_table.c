@@ -10,7 +10,7 @@
 enum { FINE = 8 };
 static const double PIECES_PER_DEPTH = 40, MOST_PIECES = 32;
 
-static void widen(double value, double range[2])
+static void widen_range(double value, double range[2])
 {
     range[0] = fmin(range[0], value);
     range[1] = fmax(range[1], value);
@@ -22,12 +22,12 @@ static void find_range(const cw_transfer *t, double range[2])
     range[0] = INFINITY;
     range[1] = -INFINITY;
     if (t->color_count > 0) {
-        widen(t->colors[0].value, range);
-        widen(t->colors[t->color_count - 1].value, range);
+        widen_range(t->colors[0].value, range);
+        widen_range(t->colors[t->color_count - 1].value, range);
     }
     if (t->opacity_count > 0) {
-        widen(t->opacities[0].value, range);
-        widen(t->opacities[t->opacity_count - 1].value, range);
+        widen_range(t->opacities[0].value, range);
+        widen_range(t->opacities[t->opacity_count - 1].value, range);
     }
     if (!(range[0] <= range[1]))
         range[0] = range[1] = 0;
@@ -86,7 +86,7 @@ bool cwi_table_is_visible(const cwi_table *table, double low, double high)
 }
 
 /* The shortest way between two points that differ, at most so much. */
-static double narrowest(const void *points, size_t row, size_t count, double most)
+static double find_narrowest(const void *points, size_t row, size_t count, double most)
 {
     for (size_t n = 1; n < count; n++) {
         const double a = *(const double *)((const char *)points + (n - 1) * row);
@@ -100,8 +100,8 @@ static double narrowest(const void *points, size_t row, size_t count, double mos
 size_t cwi_table_segment_rows(const cwi_table *table, const cw_transfer *t)
 {
     const double range = table->high - table->low;
-    double gap = narrowest(t->opacities, sizeof *t->opacities, t->opacity_count, range);
-    gap = narrowest(t->colors, sizeof *t->colors, t->color_count, gap);
+    double gap = find_narrowest(t->opacities, sizeof *t->opacities, t->opacity_count, range);
+    gap = find_narrowest(t->colors, sizeof *t->colors, t->color_count, gap);
     size_t rows = 256;
     while (rows < 1024 && (double)rows * gap < 64 * range)
         rows *= 2;
@@ -142,7 +142,8 @@ static size_t piece_count(double depth, size_t span)
 
 /* From row x to row y, which differ: pieces from front to back. scale: length per step of the
  * running integrals. */
-static void integrate(const double (*sum)[4], size_t x, size_t y, double scale, float out[4])
+static void integrate_segment(const double (*sum)[4], size_t x, size_t y, double scale,
+                              float out[4])
 {
     const size_t span = (x < y ? y - x : x - y) * FINE;
     const double all = scale * fabs(sum[y * FINE][3] - sum[x * FINE][3]);
@@ -199,7 +200,7 @@ static void integrate_row(void *context, size_t y)
         if (x == y)
             integrate_flat(w->table, at, w->length, to);
         else
-            integrate(w->sum, x, y, w->length / span, to);
+            integrate_segment(w->sum, x, y, w->length / span, to);
     }
 }
 

@@ -30,7 +30,7 @@ static void rewind_when_empty(cwi_ui_queue *q)
         q->first = q->count = 0;
 }
 
-static bool waits(const cwi_ui_queue *q, const cwi_ui_event *event)
+static bool has_to_wait(const cwi_ui_queue *q, const cwi_ui_event *event)
 {
     for (size_t n = q->first; n < q->count; n++)
         if (q->items[n].kind == event->kind && strcmp(q->items[n].text, event->text) == 0)
@@ -41,7 +41,7 @@ static bool waits(const cwi_ui_queue *q, const cwi_ui_event *event)
 bool cwi_ui_queue_put(cwi_ui *ui, const cwi_ui_event *event, bool repeats)
 {
     cwi_ui_queue *q = &ui->queue;
-    if (repeats && event->kind == CWI_UI_KEY && waits(q, event))
+    if (repeats && event->kind == CWI_UI_KEY && has_to_wait(q, event))
         return true;
     cwi_ui_event copy = *event;
     copy.text = event->text ? cwi_strdup(event->text) : NULL;
@@ -105,7 +105,7 @@ typedef struct taken {
  * in which order it was. The way to where a button goes down is not dragged, and what is
  * dragged gets where it is let go. A key that is down must come up before it goes
  * down again. */
-static bool fits(const cwi_ui *ui, const taken *t, const cwi_ui_event *e, int last_key)
+static bool fits_frame(const cwi_ui *ui, const taken *t, const cwi_ui_event *e, int last_key)
 {
     if (t->alone)
         return false;
@@ -129,7 +129,7 @@ static bool fits(const cwi_ui *ui, const taken *t, const cwi_ui_event *e, int la
     }
 }
 
-static void press(cwi_ui *ui, int button, double time)
+static void press_button(cwi_ui *ui, int button, double time)
 {
     cwi_ui_input *in = &ui->input;
     const double dx = in->x - ui->press[button].x, dy = in->y - ui->press[button].y;
@@ -142,7 +142,7 @@ static void press(cwi_ui *ui, int button, double time)
     ui->press[button].y = in->y;
 }
 
-static void move(cwi_ui *ui, const cwi_ui_event *e)
+static void move_pointer(cwi_ui *ui, const cwi_ui_event *e)
 {
     cwi_ui_input *in = &ui->input;
     if (ui->has_mouse) {
@@ -178,17 +178,17 @@ static void take_drop(cwi_ui *ui, cwi_ui_event *e)
     e->text = NULL;
 }
 
-static void take(cwi_ui *ui, cwi_ui_event *e, double time)
+static void take_event(cwi_ui *ui, cwi_ui_event *e, double time)
 {
     cwi_ui_input *in = &ui->input;
     if (e->kind <= CWI_UI_WHEEL)
         ui->held = e->modifiers;
     switch (e->kind) {
     case CWI_UI_MOVE:
-        move(ui, e);
+        move_pointer(ui, e);
         break;
     case CWI_UI_PRESS:
-        press(ui, e->button, time);
+        press_button(ui, e->button, time);
         break;
     case CWI_UI_LIFT:
         in->down[e->button] = false;
@@ -216,14 +216,14 @@ static void take(cwi_ui *ui, cwi_ui_event *e, double time)
 }
 
 /* A key that edits text comes before what is written after it; one that writes does not. */
-static bool edits(const cwi_ui_event *e)
+static bool edits_text(const cwi_ui_event *e)
 {
     unsigned modifiers;
     const int number = cwi_ui_key_number(e->text, &modifiers);
     return number >= 256 || (modifiers & (CWI_UI_CTRL | CWI_UI_ALT)) != 0;
 }
 
-static void note(taken *t, const cwi_ui_event *e)
+static void note_event(taken *t, const cwi_ui_event *e)
 {
     const bool change = e->kind == CWI_UI_PRESS || e->kind == CWI_UI_LIFT;
     t->any = true;
@@ -232,7 +232,7 @@ static void note(taken *t, const cwi_ui_event *e)
         t->button[e->button] = true;
     t->at_place |= change || e->kind == CWI_UI_WHEEL;
     t->key |= e->kind == CWI_UI_KEY;
-    t->edit |= e->kind == CWI_UI_KEY && edits(e);
+    t->edit |= e->kind == CWI_UI_KEY && edits_text(e);
     t->wrote |= e->kind == CWI_UI_WRITE;
     t->alone |= e->kind == CWI_UI_RESIZE;
 }
@@ -258,10 +258,10 @@ void cwi_ui_queue_take(cwi_ui *ui)
     const int last_key = ui->key ? ui->key : -1;
     taken t = {0};
     forget_frame(ui);
-    while (q->first < q->count && fits(ui, &t, &q->items[q->first], last_key)) {
+    while (q->first < q->count && fits_frame(ui, &t, &q->items[q->first], last_key)) {
         cwi_ui_event *e = &q->items[q->first];
-        note(&t, e);
-        take(ui, e, q->times[q->first++]);
+        note_event(&t, e);
+        take_event(ui, e, q->times[q->first++]);
         cwi_free((char *)e->text);
     }
     rewind_when_empty(q);

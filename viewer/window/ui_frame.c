@@ -79,7 +79,7 @@ static double time_to_wait(const cwi_ui *ui, double wait_s)
 }
 
 /* What was woken for, such as a tip, takes a frame to be laid out too. */
-static void wait(cwi_ui *ui, double wait_s)
+static void wait_for_input(cwi_ui *ui, double wait_s)
 {
     const double seconds = time_to_wait(ui, wait_s);
     const bool by_clock = seconds > 0 && seconds == ui->wake;
@@ -101,7 +101,7 @@ static void take_size(cwi_ui *ui)
 const cwi_ui_input *cwi_ui_begin(cwi_ui *ui, double wait_s)
 {
     cwi_ui_imgui_choose(ui);
-    wait(ui, wait_s);
+    wait_for_input(ui, wait_s);
     cwi_ui_queue_take(ui);
     take_size(ui);
     ui->before = ui->time;

@@ -6,7 +6,7 @@
 
 static const float empty[4] = {0.075f, 0.08f, 0.09f, 1};
 
-static void make(cwi_ui_target *t, size_t width, size_t height)
+static void make_target(cwi_ui_target *t, size_t width, size_t height)
 {
     glGenFramebuffers(1, &t->framebuffer);
     glGenRenderbuffers(1, &t->color);
@@ -18,7 +18,7 @@ static void make(cwi_ui_target *t, size_t width, size_t height)
     t->height = height;
 }
 
-static void drop(cwi_ui_target *t)
+static void drop_target(cwi_ui_target *t)
 {
     glDeleteFramebuffers(1, &t->framebuffer);
     glDeleteRenderbuffers(1, &t->color);
@@ -29,8 +29,8 @@ void cwi_ui_target_begin(cwi_ui *ui)
 {
     cwi_ui_target *t = &ui->target;
     if (t->width != ui->input.width || t->height != ui->input.height) {
-        drop(t);
-        make(t, ui->input.width, ui->input.height);
+        drop_target(t);
+        make_target(t, ui->input.width, ui->input.height);
     }
     glBindFramebuffer(GL_FRAMEBUFFER, t->framebuffer);
     glViewport(0, 0, (GLsizei)t->width, (GLsizei)t->height);
@@ -40,7 +40,7 @@ void cwi_ui_target_begin(cwi_ui *ui)
 
 void cwi_ui_target_free(cwi_ui *ui)
 {
-    drop(&ui->target);
+    drop_target(&ui->target);
     for (int n = 0; n < CWI_UI_SLOTS; n++)
         glDeleteTextures(1, &ui->pictures[n].texture);
 }
@@ -94,7 +94,7 @@ static void set_up(GLuint texture)
     glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
 }
 
-static void upload(cwi_ui_picture *p, const cw_image *image)
+static void upload_picture(cwi_ui_picture *p, const cw_image *image)
 {
     const GLsizei width = (GLsizei)image->width, height = (GLsizei)image->height;
     const bool fits = p->texture && p->width == image->width && p->height == image->height;
@@ -130,7 +130,7 @@ cw_status cwi_ui_target_keep(cwi_ui *ui, int slot, const cw_image *image, cw_err
         st = check_size(image, err);
         if (st != CW_OK)
             return st;
-        upload(p, image);
+        upload_picture(p, image);
         st = cwi_gl_check(err);
         if (st == CW_OK)
             return st;

@@ -52,7 +52,7 @@ static unsigned held_modifiers(GLFWwindow *w)
     return flags;
 }
 
-static void put(GLFWwindow *w, cwi_ui_event event)
+static void put_event(GLFWwindow *w, cwi_ui_event event)
 {
     cwi_ui *ui = glfwGetWindowUserPointer(w);
     event.modifiers = held_modifiers(w);
@@ -65,29 +65,29 @@ static void on_move(GLFWwindow *w, double x, double y)
     int window[2], pixels[2];
     glfwGetWindowSize(w, &window[0], &window[1]);
     glfwGetFramebufferSize(w, &pixels[0], &pixels[1]);
-    put(w, (cwi_ui_event){.kind = CWI_UI_MOVE,
-                          .x = window[0] > 0 ? x * pixels[0] / window[0] : x,
-                          .y = window[1] > 0 ? y * pixels[1] / window[1] : y});
+    put_event(w, (cwi_ui_event){.kind = CWI_UI_MOVE,
+                                .x = window[0] > 0 ? x * pixels[0] / window[0] : x,
+                                .y = window[1] > 0 ? y * pixels[1] / window[1] : y});
 }
 
 static void on_enter(GLFWwindow *w, int entered)
 {
     if (!entered)
-        put(w, (cwi_ui_event){.kind = CWI_UI_MOVE, .x = -1, .y = -1});
+        put_event(w, (cwi_ui_event){.kind = CWI_UI_MOVE, .x = -1, .y = -1});
 }
 
 static void on_button(GLFWwindow *w, int button, int action, int modifiers)
 {
     (void)modifiers;
     if (button >= 0 && button < CWI_UI_BUTTONS) /* GLFW counts as we do */
-        put(w, (cwi_ui_event){.kind = action == GLFW_PRESS ? CWI_UI_PRESS : CWI_UI_LIFT,
-                              .button = button});
+        put_event(w, (cwi_ui_event){.kind = action == GLFW_PRESS ? CWI_UI_PRESS : CWI_UI_LIFT,
+                                    .button = button});
 }
 
 static void on_wheel(GLFWwindow *w, double x, double y)
 {
     (void)x;
-    put(w, (cwi_ui_event){.kind = CWI_UI_WHEEL, .y = y});
+    put_event(w, (cwi_ui_event){.kind = CWI_UI_WHEEL, .y = y});
 }
 
 static const struct {
@@ -112,7 +112,7 @@ static void put_key(GLFWwindow *w, unsigned modifiers, const char *key)
 {
     char name[CWI_UI_KEY_SIZE];
     cwi_ui_key_name(name, modifiers, key);
-    put(w, (cwi_ui_event){.kind = CWI_UI_KEY, .text = name});
+    put_event(w, (cwi_ui_event){.kind = CWI_UI_KEY, .text = name});
 }
 
 static const char *name_of(int key)
@@ -123,7 +123,7 @@ static const char *name_of(int key)
     return NULL;
 }
 
-static void capitalize(char text[8])
+static void capitalize_name(char text[8])
 {
     if (text[0] >= 'a' && text[0] <= 'z')
         text[0] = (char)(text[0] - 'a' + 'A');
@@ -139,7 +139,7 @@ static void put_shortcut(GLFWwindow *w, unsigned modifiers, int key, int code)
     if (!name || (!ascii && (key <= ' ' || key > '`')))
         return;
     text[0] = ascii ? name[0] : (char)key;
-    capitalize(text);
+    capitalize_name(text);
     if (cwi_ui_key_number(text, NULL) > 0)
         put_key(w, modifiers, text);
 }
@@ -166,7 +166,7 @@ static void on_key(GLFWwindow *w, int key, int code, int action, int modifiers)
         put_shortcut(w, held, key, code);
 }
 
-static size_t encode(unsigned c, char out[8])
+static size_t encode_utf8(unsigned c, char out[8])
 {
     static const struct {
         unsigned below, first;
@@ -190,27 +190,27 @@ static bool is_letter_or_digit(unsigned c)
 static void on_character(GLFWwindow *w, unsigned character)
 {
     char text[8], key[8];
-    encode(character, text);
+    encode_utf8(character, text);
     memcpy(key, text, sizeof key);
-    capitalize(key);
+    capitalize_name(key);
     if (cwi_ui_key_number(key, NULL) > 0)
         put_key(w, is_letter_or_digit(character) ? held_modifiers(w) & CWI_UI_SHIFT : 0, key);
-    put(w, (cwi_ui_event){.kind = CWI_UI_WRITE, .text = text});
+    put_event(w, (cwi_ui_event){.kind = CWI_UI_WRITE, .text = text});
 }
 
 static void on_drop(GLFWwindow *w, int count, const char **paths)
 {
     for (int n = 0; n < count; n++)
-        put(w, (cwi_ui_event){.kind = CWI_UI_DROP, .text = paths[n]});
+        put_event(w, (cwi_ui_event){.kind = CWI_UI_DROP, .text = paths[n]});
 }
 
 static void on_close(GLFWwindow *w)
 {
     glfwSetWindowShouldClose(w, GLFW_FALSE); /* whoever draws decides */
-    put(w, (cwi_ui_event){.kind = CWI_UI_CLOSE});
+    put_event(w, (cwi_ui_event){.kind = CWI_UI_CLOSE});
 }
 
-static void listen(cwi_ui *ui, GLFWwindow *w)
+static void listen_to_window(cwi_ui *ui, GLFWwindow *w)
 {
     glfwSetWindowUserPointer(w, ui);
     glfwSetCursorPosCallback(w, on_move);
@@ -297,7 +297,7 @@ static cw_status open_window(cwi_ui *ui, const cwi_ui_desc *desc, cw_error *err)
     }
     ui->screen->window = w;
     set_scale(ui, desc, w);
-    listen(ui, w);
+    listen_to_window(ui, w);
     glfwMakeContextCurrent(w);
     glfwSwapInterval(1);
     cwi_gl_describe(ui->name, sizeof ui->name);
