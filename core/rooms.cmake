@@ -83,7 +83,9 @@ function(add_cubewright_module name folder sources)
   add_library(module_${name} MODULE ${sources} ${PROJECT_SOURCE_DIR}/core/base/module_entry.c)
   set_target_properties(module_${name} PROPERTIES PREFIX "" OUTPUT_NAME cubewright-${name}
     LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib/cubewright)
-  target_link_options(module_${name} PRIVATE LINKER:-z,defs)
+  if(NOT CUBEWRIGHT_SANITIZE) # whose runtime is in the program
+    target_link_options(module_${name} PRIVATE LINKER:-z,defs)
+  endif()
   if(CUBEWRIGHT_ROOMS)
     find_used_rooms(used ${folder})
     target_link_libraries(module_${name} PRIVATE $<TARGET_NAME_IF_EXISTS:${room}> ${used} cw_settings ${ARGN})
