@@ -1,6 +1,6 @@
 #!/bin/sh
 # Draws the pictures of the documents again: sh draw.sh BIN_FOLDER [NAME...]. Names are hero,
-# modes, extraction, window and report; default: all, in about eight minutes on two cores.
+# modes, extraction, window and report; default: all, in four to eight minutes on two cores.
 #
 # Scans come from the Debian package mricron-data, all other data from `cubewright make`.
 # Composing needs python3-pil, python3-vtk9, fonts-dejavu-core and chromium. Nobody but the
@@ -16,7 +16,7 @@ scans=/usr/share/mricron/templates
 for python in python3 /usr/bin/python3 none; do
     $python -c 'import PIL, vtk' 2>/dev/null && break
 done
-[ $python != none ] || { echo "draw.sh: install python3-pil and python3-vtk9" >&2; exit 1; }
+[ "$python" != none ] || { echo "draw.sh: install python3-pil and python3-vtk9" >&2; exit 1; }
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 cd "$folder"
@@ -43,6 +43,7 @@ draw_hero() {
     make_cortex
     cubewright extract $scans/ch2better.nii.gz --iso 66 --min-volume 1000mm3 --max-error 0.5mm \
         -o small.ply --json small.json -q
+    cubewright check small.ply 2>/dev/null | grep -q '^ *ok *closed' || exit 1
     look="--size 640x600 --samples 3 --background #161b22 --ambient 0.36 --diffuse 0.64"
     look="$look --specular 0.22 --shininess 24 --light $light -q"
     # shellcheck disable=SC2086
@@ -54,9 +55,9 @@ draw_hero() {
         -o mesh.png
     compose sheet "$here/hero.jpg" 2 "" \
         volume.png "$(get '{0[0]} x {0[1]} x {0[2]} voxels' small.json input.dims)" \
-        "volume rendering with an octant cut away" \
+        "the surface with an octant cut away, and the volume inside" \
         mesh.png "$(get '{:,} triangles' small.json mesh.triangles)" \
-        "$(get 'closed manifold, at most {:.2f} mm from the full surface of {:,}' small.json \
+        "$(get 'closed manifold, at most {:.3f} mm from the full surface of {:,}' small.json \
             proof.max_mm small.json proof.full_triangles)"
 }
 
@@ -69,11 +70,16 @@ draw_modes() {
             [0.8, "#f07f2e"], [1, "#d42a4b"]],
  "opacities": [[0, 0], [0.44, 0], [0.5, 0.7], [0.56, 0], [0.8, 0], [0.9, 0.25], [1, 0.3]]}
 END
-    look="--size 204x176 --camera 30,32 --zoom 1.22 --background #161b22 -q"
+    cat >camera.json <<'END'
+{"schema": "cubewright-camera-1", "eye": [3.0, -5.2, 3.4], "target": [0, 0, -0.42],
+ "up": [0, 0, 1], "fov_deg": 22.5}
+END
     set --
     for mode in reference vbuffer composite texture shaded-texture projection splat splat-tree \
         error mesh mip local-mip average minip slices; do
-        volume="signal.nrrd --tf signal.json --mode $mode" against=reference note= again="--turntable 5 --orbit 0"
+        look="--size 192x166 --camera camera.json --background #161b22 -q"
+        volume="signal.nrrd --tf signal.json --mode $mode" against=reference note=
+        again="--turntable 5 --orbit 0"
         case $mode in
         error) # from the comparison of composite, drawn before
             set -- "$@" error.png "composite - reference" "20 times as strong"
@@ -85,8 +91,13 @@ END
         splat-tree) volume="$volume --tree-error 0.05" ;;
         local-mip) volume="$volume --threshold 0.5" ;;
         esac
+        case $mode in # what shows the whole cube, and what has a finest sampling of its own
+        mip | minip | local-mip | average | slices)
+            look="--size 192x166 --camera 30,32 --zoom 1.08 --background #161b22 -q"
+            ;;
+        esac
         case $mode in
-        *mip | minip | average) against="$mode,cell-steps,exact-filter" note='*' ;;
+        mip | minip | local-mip | average) against="$mode,cell-steps,exact-filter" note='*' ;;
         esac
         # shellcheck disable=SC2086
         cubewright render $volume $look $again -o "$mode{turn}.png" \
@@ -107,14 +118,13 @@ END
     done
     compose sheet "$here/modes.png" 5 "rmse of 255 over what the reference covers, against reference; \
 * against the same mode with --cell-steps --exact-filter.
-ms: a picture with its PNG, median of 4 after the first; $(get '{}' composite.json backend); \
+ms: a picture with its PNG, median of 4 after the first (of reference, the first); $(get '{}' composite.json backend); \
 $(nproc) cores." "$@"
 }
 
 # Our surfaces beside VTK's, of the same padded volumes.
 draw_extraction() {
     look="--size 596x400 --samples 3 --background #ffffff --wireframe -q"
-    n=0
     set --
     cubewright make hard/tilted-sheet -o sheet.mha --dims 20 --type f32 -q
     compose pad sheet.mha -1000 padded.mha
@@ -169,11 +179,11 @@ $ours_counts"
 draw_window() {
     make_cortex
     ln -sf $scans/ch2better.nii.gz brain.nii.gz
-    cubewright view brain.nii.gz --hidden --size 1240x812 --mode composite --no-lit --samples 2 \
+    cubewright view brain.nii.gz --hidden --size 1280x812 --mode composite --no-lit --samples 2 \
         --mesh cortex.ply --color '#e09a8c' --tf brain.json --camera 48,28 --layout quad \
         --clip '1,0,0,4;0,-1,0,-12;0,0,1,26' --cut-away -q \
         --exec 'cross 4 12 26; window 30 130; dolly 1.5; pan 0 -12; wait; capture window.png'
-    compose pages "$here/window.png" 1240 window.png
+    compose pages "$here/window.png" 1280 window.png
 }
 
 # Two parts of the report: its head, and a section with a plot.
@@ -181,10 +191,10 @@ draw_report() {
     ln -sf $scans/ch2bet.nii.gz brain.nii.gz
     cubewright report brain.nii.gz --iso 60 --budget 120s -o report.html -q
     shot() { # shot NAME STYLE
-        sed "s|</style>|$2</style>|" report.html >$1.html
+        sed "s|</style>|$2</style>|" report.html >"$1.html"
         chromium --headless --no-sandbox --disable-gpu --hide-scrollbars --window-size=960,2400 \
             --screenshot="$folder/$1.png" "file://$folder/$1.html" >/dev/null 2>&1
-        compose trim $1.png $1-trimmed.png
+        compose trim "$1.png" "$1-trimmed.png"
     }
     shot head 'section,section~*{display:none!important}'
     shot plot 'main>:not(#simplification){display:none!important}#simplification tbody:nth-of-type(n+6){display:none}'
