@@ -18,7 +18,7 @@ install_packages "a real scan" data || echo "== mricron-data could not be instal
 
 echo "== configuring (release): each optional library is tried"
 configure_preset release build/configure.log -DCUBEWRIGHT_TESTS=OFF
-echo "== building in $root/build/release, about two minutes on two cores"
+echo "== building in $root/build/release, one to two minutes on two cores"
 started=$(date +%s)
 build_preset release build/build.log
 echo "== built in $(($(date +%s) - started)) s"

@@ -2,21 +2,16 @@
 #include <cubewright/extract.h>
 
 #include "core/base/memory.h"
-#include "core/base/parallel.h"
 #include "core/base/status.h"
-#include "core/geometry/affine.h"
 #include "core/mesh/mesh.h"
 #include "core/volume/volume.h"
-#include "extract/cases/case_tables.h"
 #include "extract/common/extract_limits.h"
 #include "extract/common/field_normals.h"
-#include "extract/dense/edge_crossing.h"
 #include "extract/extract_internal.h"
 #include "extract/irregular/cell_surface.h"
 #include "extract/snap/snap.h"
 #include "extract/sparse/sparse_extract.h"
 
-#include <math.h>
 #include <string.h>
 
 static cw_status check_snap(const cw_extract_desc *d, cw_error *err)

@@ -4,6 +4,7 @@
 #include "core/base/features.h"
 
 #include <pthread.h>
+#include <stdio.h>
 #include <string.h>
 
 static const cwi_format_driver *const drivers[] = {
@@ -41,6 +42,20 @@ bool cwi_reads_volume(const cwi_format_driver *f)
 const char *cwi_volume_extensions(const cwi_format_driver *f)
 {
     return f->volume.extensions ? f->volume.extensions : f->extensions;
+}
+
+const char *cwi_list_formats(const char *(*text_of)(const cwi_format_driver *),
+                             const char *separator, char list[CWI_FORMAT_LIST])
+{
+    size_t used = 0;
+    list[0] = '\0';
+    for (size_t n = 0; n < DRIVER_COUNT && used < CWI_FORMAT_LIST; n++) {
+        const char *text = text_of(drivers[n]);
+        if (text)
+            used += (size_t)snprintf(list + used, CWI_FORMAT_LIST - used, "%s%s",
+                                     used ? separator : "", text);
+    }
+    return list;
 }
 
 /* Once, at run time: a module may have been left out of a package. */

@@ -12,19 +12,19 @@
 #include <stdio.h>
 #include <string.h>
 
-static const char *list_readers(char names[128])
+static const char *reader_name(const cwi_format_driver *f)
 {
-    size_t used = 0;
-    for (size_t n = 0; cwi_format_at(n); n++)
-        if (cwi_format_at(n)->mesh.read)
-            used += (size_t)snprintf(names + used, 128 - used, "%s%s", used ? ", " : "",
-                                     cwi_format_at(n)->name);
-    return names;
+    return f->mesh.read ? f->name : NULL;
+}
+
+static const char *list_readers(char list[CWI_FORMAT_LIST])
+{
+    return cwi_list_formats(reader_name, ", ", list);
 }
 
 static cw_status find_by_name(const char *name, const cwi_format_driver **found, cw_error *err)
 {
-    char names[128];
+    char names[CWI_FORMAT_LIST];
     *found = cwi_find_format(name);
     if (*found && (*found)->mesh.read)
         return CW_OK;
@@ -70,7 +70,7 @@ static cw_status find_by_file(const cwi_input *in, const cwi_format_driver **fou
                               cw_error *err)
 {
     unsigned char head[CWI_SNIFF_BYTES];
-    char names[128];
+    char names[CWI_FORMAT_LIST];
     size_t size;
     cw_status st = cwi_input_read_at(in->fd, 0, head, sizeof head, &size, err);
     if (st != CW_OK)

@@ -2,7 +2,6 @@
 #include <cubewright/formats.h>
 
 #include "core/base/status.h"
-#include "core/base/text.h"
 #include "formats/bytes/file_pattern.h"
 #include "formats/format_registry.h"
 #include "formats/mesh/place_parts.h"
@@ -10,37 +9,49 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-static bool is_wanted(const cw_format *format, const char *path, const char *name)
+/* The writer's place among the formats; that behind the last when there is none. */
+static size_t find_writer(const char *path, const char *name)
 {
-    if (!format->writes_mesh)
-        return false;
-    return name ? strcmp(format->name, name) == 0 : cwi_has_extension(path, format->extensions);
+    const cwi_format_driver *f;
+    size_t n = 0;
+    for (; (f = cwi_format_at(n)) != NULL; n++)
+        if (f->write.write &&
+            (name ? strcmp(f->name, name) == 0 : cwi_has_extension(path, f->extensions)))
+            break;
+    return n;
 }
 
 const cw_format *cw_mesh_format(const char *path, const char *name)
 {
     size_t count;
     const cw_format *all = cw_formats(&count);
-    for (size_t i = 0; i < count; i++)
-        if (is_wanted(&all[i], path, name))
-            return &all[i];
-    return NULL;
+    const size_t n = find_writer(path, name);
+    return n < count ? &all[n] : NULL;
+}
+
+static const char *writer_name(const cwi_format_driver *f)
+{
+    return f->write.write ? f->name : NULL;
+}
+
+static const char *writer_extensions(const cwi_format_driver *f)
+{
+    return f->write.write ? f->extensions : NULL;
+}
+
+static const char *text_writer_name(const cwi_format_driver *f)
+{
+    return f->write.text ? f->name : NULL;
 }
 
 static cw_status fail_unknown(const char *name, cw_error *err)
 {
-    char list[256] = "";
-    size_t count, used = 0;
-    const cw_format *all = cw_formats(&count);
-    for (size_t i = 0; i < count; i++)
-        if (all[i].writes_mesh && used < sizeof list)
-            used += (size_t)snprintf(list + used, sizeof list - used, " %s",
-                                     name ? all[i].name : all[i].extensions);
+    char list[CWI_FORMAT_LIST];
     if (name)
-        return cw_fail(err, CW_ERR_ARGUMENT, "no mesh format is named '%s'; there are%s", name,
-                       list);
-    return cw_fail(err, CW_ERR_ARGUMENT, "its extension is of no mesh format; there are%s",
-                   list);
+        return cw_fail(err, CW_ERR_ARGUMENT, "no mesh format is named '%s'; there are %s", name,
+                       cwi_list_formats(writer_name, " ", list));
+    return cw_fail(err, CW_ERR_ARGUMENT, "its extension is of no mesh format; there are %s",
+                   cwi_list_formats(writer_extensions, " ", list));
 }
 
 /* glTF may be asked for what it is in any case. */
@@ -58,16 +69,11 @@ static cw_status check_axes(const cwi_format_driver *f, const cw_axes *axes, cw_
 
 static cw_status check_text(const cwi_format_driver *f, const cw_write_desc *d, cw_error *err)
 {
-    char list[128] = "";
-    size_t used = 0;
-    if (!d->text || f->write.text)
-        return CW_OK;
-    for (size_t n = 0; cwi_format_at(n); n++)
-        if (cwi_format_at(n)->write.text && used < sizeof list)
-            used += (size_t)snprintf(list + used, sizeof list - used, " %s",
-                                     cwi_format_at(n)->name);
-    return cw_fail(err, CW_ERR_ARGUMENT, "%s has no form as text; those that have are%s",
-                   f->name, list);
+    char list[CWI_FORMAT_LIST];
+    return !d->text || f->write.text
+               ? CW_OK
+               : cw_fail(err, CW_ERR_ARGUMENT, "%s has no form as text; those that have are %s",
+                         f->name, cwi_list_formats(text_writer_name, " ", list));
 }
 
 static cw_status check_compression(const cwi_format_driver *f, const cw_write_desc *d,
@@ -95,27 +101,21 @@ static cw_status check_animation(const cwi_format_driver *f, const cw_write_desc
                          f->name);
 }
 
-/* How a file will be written. */
-typedef struct target {
-    const cw_format *format;
-    const cwi_format_driver *driver;
-} target;
-
 /* The format and writer of a path, with what it needs loaded; it can do what is asked for. */
-static cw_status find_writer(const char *path, const cw_write_desc *d, target *t, cw_error *err)
+static cw_status prepare_writer(const char *path, const cw_write_desc *d,
+                                const cwi_format_driver **out, cw_error *err)
 {
-    *t = (target){.format = cw_mesh_format(path, d->format)};
-    if (!t->format)
+    const cwi_format_driver *f = *out = cwi_format_at(find_writer(path, d->format));
+    if (!f)
         return fail_unknown(d->format, err);
-    t->driver = cwi_find_format(t->format->name);
-    cw_status st = check_axes(t->driver, &d->axes, err);
+    cw_status st = check_axes(f, &d->axes, err);
     if (st == CW_OK)
-        st = check_text(t->driver, d, err);
+        st = check_text(f, d, err);
     if (st == CW_OK)
-        st = check_animation(t->driver, d, err);
+        st = check_animation(f, d, err);
     if (st == CW_OK)
-        st = check_compression(t->driver, d, err);
-    return st == CW_OK && t->driver->write.prepare ? t->driver->write.prepare(err) : st;
+        st = check_compression(f, d, err);
+    return st == CW_OK && f->write.prepare ? f->write.prepare(err) : st;
 }
 
 static cw_status check_levels(const cwi_format_driver *f, const cw_part *parts, size_t count,
@@ -139,12 +139,13 @@ static cw_status check_levels(const cwi_format_driver *f, const cw_part *parts, 
     return CW_OK;
 }
 
-static cw_status write_parts(const char *path, const cwi_parts *parts, const target *t,
-                             const cw_write_desc *d, cwi_mesh_output *out, cw_error *err)
+static cw_status write_parts(const char *path, const cwi_parts *parts,
+                             const cwi_format_driver *f, const cw_write_desc *d,
+                             cwi_mesh_output *out, cw_error *err)
 {
     cw_status st = cwi_outfile_open(&out->file, path, d->no_clobber, err);
     if (st == CW_OK)
-        st = t->driver->write.write(parts, out, err);
+        st = f->write.write(parts, out, err);
     if (st == CW_OK)
         st = cwi_outfile_commit(&out->file, err);
     cwi_outfile_abort(&out->file);
@@ -155,7 +156,7 @@ cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
                          const cw_write_desc *desc, cw_error *err)
 {
     cw_write_desc d = desc ? *desc : (cw_write_desc){0};
-    target t;
+    const cwi_format_driver *f;
     char name[CWI_NAME_BYTES];
     double origin[3];
     cwi_parts placed = {0};
@@ -166,17 +167,17 @@ cw_status cw_parts_write(const char *path, const cw_part *parts, size_t count,
                            .axes = &d.axes,
                            .text = d.text,
                            .progress = &d.progress};
-    cw_status st = find_writer(path, &d, &t, err);
+    cw_status st = prepare_writer(path, &d, &f, err);
     if (st == CW_OK)
-        st = check_levels(t.driver, parts, count, err);
-    if (st == CW_OK && t.driver->write.own_axes)
+        st = check_levels(f, parts, count, err);
+    if (st == CW_OK && f->write.own_axes)
         d.axes = (cw_axes){0};
-    if (st == CW_OK && t.driver->write.only)
-        d.compression = t.driver->write.only;
+    if (st == CW_OK && f->write.only)
+        d.compression = f->write.only;
     if (st == CW_OK)
-        st = cwi_parts_place(parts, count, &d, t.format->keeps, name, &placed, origin, err);
+        st = cwi_parts_place(parts, count, &d, f->keeps, name, &placed, origin, err);
     if (st == CW_OK)
-        st = write_parts(path, &placed, &t, &d, &out, err);
+        st = write_parts(path, &placed, f, &d, &out, err);
     cwi_parts_free(&placed);
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
 }
@@ -212,18 +213,18 @@ cw_status cw_parts_write_loss(const char *path, const cw_part *parts, size_t cou
                               const cw_write_desc *desc, cw_write_loss *loss, cw_error *err)
 {
     const cw_write_desc d = desc ? *desc : (cw_write_desc){0};
-    target t;
+    const cwi_format_driver *f;
     double origin[3];
     cwi_parts placed = {0};
     memset(loss, 0, sizeof *loss);
-    cw_status st = find_writer(path, &d, &t, err);
+    cw_status st = prepare_writer(path, &d, &f, err);
     if (st == CW_OK)
-        st = cwi_parts_place(parts, count, &d, t.format->keeps, "", &placed, origin, err);
+        st = cwi_parts_place(parts, count, &d, f->keeps, "", &placed, origin, err);
     for (size_t i = 0; i < placed.count && st == CW_OK; i++)
-        if (!(t.format->keeps & CW_KEEPS_PLACES) && !is_exact(&placed.items[i], &d))
+        if (!(f->keeps & CW_KEEPS_PLACES) && !is_exact(&placed.items[i], &d))
             st = cwi_measure_loss(&placed.items[i], loss, err);
     if (st == CW_OK)
-        loss->dropped = find_dropped(parts, count, &placed, t.format->keeps, loss);
+        loss->dropped = find_dropped(parts, count, &placed, f->keeps, loss);
     cwi_parts_free(&placed);
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
 }
@@ -238,8 +239,8 @@ cw_status cw_mesh_write_check(const char *path, const cw_write_desc *desc, cw_er
 {
     const cw_write_desc d = desc ? *desc : (cw_write_desc){0};
     cwi_outfile *file = NULL;
-    target t;
-    cw_status st = find_writer(path, &d, &t, err);
+    const cwi_format_driver *f;
+    cw_status st = prepare_writer(path, &d, &f, err);
     if (st == CW_OK) /* to make a file and drop it is the only sure way to know */
         st = cwi_outfile_open(&file, path, d.no_clobber, err);
     cwi_outfile_abort(&file);

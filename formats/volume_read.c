@@ -12,26 +12,25 @@
 #include "formats/vtk/pvd.h"
 
 #include <math.h>
-#include <stdarg.h>
 #include <stdio.h>
 #include <string.h>
 #include <unistd.h>
 
 typedef cwi_format_driver driver;
 
-static const char *list_readers(char names[128])
+static const char *reader_name(const driver *f)
 {
-    size_t used = 0;
-    for (size_t n = 0; cwi_format_at(n); n++)
-        if (cwi_reads_volume(cwi_format_at(n)))
-            used += (size_t)snprintf(names + used, 128 - used, "%s%s", used ? ", " : "",
-                                     cwi_format_at(n)->name);
-    return names;
+    return cwi_reads_volume(f) ? f->name : NULL;
+}
+
+static const char *list_readers(char list[CWI_FORMAT_LIST])
+{
+    return cwi_list_formats(reader_name, ", ", list);
 }
 
 static cw_status find_by_name(const char *name, const driver **found, cw_error *err)
 {
-    char names[128];
+    char names[CWI_FORMAT_LIST];
     *found = cwi_find_format(name);
     if (*found == &cwi_format_raw)
         return cw_fail(err, CW_ERR_ARGUMENT, "the reader 'raw' needs a layout");
@@ -100,7 +99,7 @@ static cw_status fail_mesh(const char *format, cw_error *err)
 static cw_status find_by_file(const cwi_input *in, const driver **found, cw_error *err)
 {
     unsigned char head[CWI_SNIFF_BYTES];
-    char names[128];
+    char names[CWI_FORMAT_LIST];
     size_t size;
     bool gzipped;
     cw_status st = read_head(in, head, &size, &gzipped, err);

@@ -1,12 +1,10 @@
 /* Writes a volume: finds the writer, and hands it a file that appears when it is whole. */
-#include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
 #include "formats/bytes/file_pattern.h"
 #include "formats/format_registry.h"
 #include "formats/volume/volume_writer.h"
 
-#include <stdio.h>
 #include <string.h>
 
 typedef cwi_format_driver driver;
@@ -17,24 +15,29 @@ static bool is_wanted(const driver *f, const char *path, const char *format)
                                    : cwi_has_extension(path, f->save.extensions));
 }
 
+static const char *writer_name(const driver *f)
+{
+    return f->save.save ? f->name : NULL;
+}
+
+static const char *writer_extensions(const driver *f)
+{
+    return f->save.save ? f->save.extensions : NULL;
+}
+
 static cw_status find_writer(const char *path, const char *format, const driver **found,
                              cw_error *err)
 {
-    char list[128];
-    size_t used = 0;
+    char list[CWI_FORMAT_LIST];
     for (size_t n = 0; (*found = cwi_format_at(n)) != NULL; n++)
         if (is_wanted(*found, path, format))
             return CW_OK;
-    for (size_t n = 0; cwi_format_at(n) && used < sizeof list; n++) {
-        const driver *f = cwi_format_at(n);
-        if (f->save.save)
-            used += (size_t)snprintf(list + used, sizeof list - used, " %s",
-                                     format ? f->name : f->save.extensions);
-    }
     return format ? cw_fail(err, CW_ERR_ARGUMENT,
-                            "there is no writer '%s' of volumes; there are%s", format, list)
+                            "there is no writer '%s' of volumes; there are %s", format,
+                            cwi_list_formats(writer_name, " ", list))
                   : cw_fail(err, CW_ERR_ARGUMENT,
-                            "no writer of volumes has this extension; there are%s", list);
+                            "no writer of volumes has this extension; there are %s",
+                            cwi_list_formats(writer_extensions, " ", list));
 }
 
 static cw_status check_scaling(const driver *f, const cw_volume *v, cw_error *err)

@@ -54,8 +54,7 @@ static const cli_option options[] = {
      "Write a table with a row for each result; - is the standard output",
      offsetof(bench_args, csv)},
     CLI_INPUT_OPTIONS(bench_args),
-    {"progress", 0, CLI_CHOICE, "auto/plain/json/none", "Progress display on stderr (auto)",
-     offsetof(bench_args, progress)},
+    CLI_PROGRESS_OPTION(bench_args),
 };
 
 /* --- what is asked for -------------------------------------------------------------------- */

@@ -1,4 +1,4 @@
-# What the peers have in common: told by lines what to do, they answer by lines, as peers.h says.
+# What the peers have in common: told by lines what to do, they answer by lines, as bench_peers.h says.
 # Their own part, which follows this text, ends with a call of serve().
 import gc, os, sys, time
 

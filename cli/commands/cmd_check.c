@@ -39,8 +39,7 @@ static const cli_option options[] = {
     {"defects", 0, CLI_TEXT, "FILE",
      "File to write the mesh to, with defects and distances painted: .ply, .glb or .gltf",
      offsetof(check_args, defects)},
-    {"json", 0, CLI_TEXT, "FILE", "Write a report as JSON; - is the standard output",
-     offsetof(check_args, json)},
+    CLI_JSON_OPTION(check_args),
     CLI_HEADED("Distance to a source or a reference"),
     {"source", 's', CLI_TEXT, "VOLUME",
      "Volume to measure the distance to, and to compare the topology with; needs --iso",
@@ -66,8 +65,7 @@ static const cli_option options[] = {
     {"mesh-reader", 0, CLI_TEXT, "NAME",
      "Read meshes as this format; names as in 'formats' (by content)",
      offsetof(check_args, mesh_reader)},
-    {"progress", 0, CLI_CHOICE, "auto/plain/json/none", "Progress display on stderr (auto)",
-     offsetof(check_args, progress)},
+    CLI_PROGRESS_OPTION(check_args),
 };
 
 /* What was measured; findings point into it. */

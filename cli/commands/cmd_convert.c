@@ -35,13 +35,11 @@ static const cli_option options[] = {
      offsetof(convert_args, orient)},
     {"check", 0, CLI_FLAG, NULL, "Measure the mesh: closed, manifold, size (on; --no-check)",
      offsetof(convert_args, check)},
-    {"json", 0, CLI_TEXT, "FILE", "Write a report as JSON; - is the standard output",
-     offsetof(convert_args, json)},
+    CLI_JSON_OPTION(convert_args),
     CLI_WRITTEN_OPTIONS(convert_args),
     CLI_COMPRESS_OPTIONS(convert_args),
     CLI_MESH_INPUT_OPTIONS(convert_args),
-    {"progress", 0, CLI_CHOICE, "auto/plain/json/none", "Progress display on stderr (auto)",
-     offsetof(convert_args, progress)},
+    CLI_PROGRESS_OPTION(convert_args),
 };
 
 typedef struct run_state {

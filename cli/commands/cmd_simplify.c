@@ -50,8 +50,7 @@ static const cli_option options[] = {
     {"measure", 0, CLI_FLAG, NULL,
      "Measure the error, which takes longer than simplifying (on; --no-measure)",
      offsetof(cli_simplify_args, measure)},
-    {"json", 0, CLI_TEXT, "FILE", "Write a report as JSON; - is the standard output",
-     offsetof(cli_simplify_args, json)},
+    CLI_JSON_OPTION(cli_simplify_args),
     CLI_WRITTEN_OPTIONS(cli_simplify_args),
     CLI_COMPRESS_OPTIONS(cli_simplify_args),
     CLI_HEADED("Reading the source"),
@@ -63,8 +62,7 @@ static const cli_option options[] = {
     {"mesh-reader", 0, CLI_TEXT, "NAME",
      "Read the mesh as this format; names as in 'formats' (by content)",
      offsetof(cli_simplify_args, mesh_reader)},
-    {"progress", 0, CLI_CHOICE, "auto/plain/json/none", "Progress display on stderr (auto)",
-     offsetof(cli_simplify_args, progress)},
+    CLI_PROGRESS_OPTION(cli_simplify_args),
 };
 
 static cw_status check_lod(const cli_simplify_args *args, cw_error *err)

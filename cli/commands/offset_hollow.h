@@ -31,18 +31,9 @@ typedef struct cli_solid_args {
          "FILE",                                                                               \
          "Mesh to write, in the format of its extension; may hold {stem}",                     \
          offsetof(cli_solid_args, output)},                                                    \
-        {"json",                                                                               \
-         0,                                                                                    \
-         CLI_TEXT,                                                                             \
-         "FILE",                                                                               \
-         "Write a report as JSON; - is the standard output",                                   \
-         offsetof(cli_solid_args, json)},                                                      \
-        CLI_WRITTEN_OPTIONS(cli_solid_args), CLI_COMPRESS_OPTIONS(cli_solid_args),             \
-        CLI_MESH_INPUT_OPTIONS(cli_solid_args),                                                \
-    {                                                                                          \
-        "progress", 0, CLI_CHOICE, "auto/plain/json/none",                                     \
-            "Progress display on stderr (auto)", offsetof(cli_solid_args, progress)            \
-    }
+        CLI_JSON_OPTION(cli_solid_args), CLI_WRITTEN_OPTIONS(cli_solid_args),                  \
+        CLI_COMPRESS_OPTIONS(cli_solid_args), CLI_MESH_INPUT_OPTIONS(cli_solid_args),          \
+        CLI_PROGRESS_OPTION(cli_solid_args)
 
 extern const cli_solid_args cli_solid_defaults;
 

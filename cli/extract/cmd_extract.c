@@ -102,8 +102,7 @@ static const cli_option options[] = {
      offsetof(cli_extract_args, local)},
     {"no-clobber", 0, CLI_FLAG, NULL, "Fail if the output exists (off: replace it)",
      offsetof(cli_extract_args, no_clobber)},
-    {"json", 0, CLI_TEXT, "FILE", "Write a report as JSON; - is the standard output",
-     offsetof(cli_extract_args, json)},
+    CLI_JSON_OPTION(cli_extract_args),
     {"check", 0, CLI_FLAG, NULL, "Measure the mesh: closed, manifold, size (on; --no-check)",
      offsetof(cli_extract_args, check)},
     {"prove-crop", 0, CLI_FLAG, NULL,
@@ -114,8 +113,7 @@ static const cli_option options[] = {
     {"max-triangles", 0, CLI_COUNT, "N",
      "Stop before making more triangles than this, such as 100M (no limit)",
      offsetof(cli_extract_args, max_triangles)},
-    {"progress", 0, CLI_CHOICE, "auto/plain/json/none", "Progress display on stderr (auto)",
-     offsetof(cli_extract_args, progress)},
+    CLI_PROGRESS_OPTION(cli_extract_args),
 };
 
 /* The next surface of the report; frames have no file of their own. */

@@ -18,8 +18,8 @@ typedef struct cli_pixel_args {
 CW_NODISCARD cw_status cli_read_views(const cli_pixel_args *args, cw_simplify_view *views,
                                       size_t *count, cw_error *err);
 
-/* The distance that so many pixels are where they are widest in the volume: what is out of
- * sight keeps it. */
+/* The length of some pixels where they are widest in the volume: the error bound of what is
+ * out of sight. */
 CW_NODISCARD cw_status cli_widest_error(const cli_volume *volume, const cw_simplify_view *views,
                                         size_t count, double pixels, double *error_mm,
                                         cw_error *err);

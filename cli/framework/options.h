@@ -122,6 +122,18 @@ typedef struct cli_option {
         name, 0, CLI_HEADING, NULL, "", 0                                                      \
     }
 
+/* Rows of commands whose struct has the field `json`, or `progress`. */
+#define CLI_JSON_OPTION(args)                                                                  \
+    {                                                                                          \
+        "json", 0, CLI_TEXT, "FILE", "Write a report as JSON; - is the standard output",       \
+            offsetof(args, json)                                                               \
+    }
+#define CLI_PROGRESS_OPTION(args)                                                              \
+    {                                                                                          \
+        "progress", 0, CLI_CHOICE, "auto/plain/json/none",                                     \
+            "Progress display on stderr (auto)", offsetof(args, progress)                      \
+    }
+
 /* Headings of options that a command must know before it opens a file. */
 #define CLI_READING "Reading"
 #define CLI_LIMITS  "Limits and messages"

@@ -22,37 +22,14 @@
          NULL,                                                                                 \
          "Follow a .gltf file to buffers outside its folder (off)",                            \
          CLI_INPUT_ROW(args, allow_external)},                                                 \
-        {"no-sandbox",                                                                         \
-         0,                                                                                    \
-         CLI_FLAG,                                                                             \
-         NULL,                                                                                 \
-         "Let libraries read in this process, not in a sandboxed one (off)",                   \
-         CLI_INPUT_ROW(args, no_sandbox)},                                                     \
-        CLI_HEADED(CLI_LIMITS),                                                                \
-        {"timeout",                                                                            \
-         0,                                                                                    \
-         CLI_COUNT,                                                                            \
-         "SECONDS",                                                                            \
-         "Time limit of a library for one file (60)",                                          \
-         CLI_INPUT_ROW(args, timeout_s)},                                                      \
-        {"threads",                                                                            \
-         't',                                                                                  \
-         CLI_COUNT,                                                                            \
-         "N",                                                                                  \
-         "Number of threads; results do not depend on it (0: all)",                            \
-         CLI_INPUT_ROW(args, threads)},                                                        \
+        CLI_SANDBOX_OPTION(args), CLI_HEADED(CLI_LIMITS), CLI_TIME_OPTIONS(args),              \
         {"max-triangles",                                                                      \
          0,                                                                                    \
          CLI_COUNT,                                                                            \
          "N",                                                                                  \
          "Stop before reading more triangles than this, such as 100M (no limit)",              \
          CLI_INPUT_ROW(args, max_triangles)},                                                  \
-    {                                                                                          \
-        "memory", 0, CLI_BYTES, "SIZE",                                                        \
-            "Memory limit of the program, checks included, such as 8G (75 % of the "           \
-            "machine's)",                                                                      \
-            CLI_INPUT_ROW(args, memory)                                                        \
-    }
+        CLI_MEMORY_OPTION(args)
 
 /* A mesh file: merged, or its parts. */
 typedef struct cli_mesh {

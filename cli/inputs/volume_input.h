@@ -61,6 +61,33 @@ typedef struct cli_input {
 
 /* Rows for a command whose struct has the field `input`. */
 #define CLI_INPUT_ROW(args, field) offsetof(args, input) + offsetof(cli_input, field)
+/* Rows that readers of volumes and of meshes share. */
+#define CLI_SANDBOX_OPTION(args)                                                               \
+    {                                                                                          \
+        "no-sandbox", 0, CLI_FLAG, NULL,                                                       \
+            "Let libraries read in this process, not in a sandboxed one (off)",                \
+            CLI_INPUT_ROW(args, no_sandbox)                                                    \
+    }
+#define CLI_TIME_OPTIONS(args)                                                                 \
+    {"timeout",                                                                                \
+     0,                                                                                        \
+     CLI_COUNT,                                                                                \
+     "SECONDS",                                                                                \
+     "Time limit of a library for one file (60)",                                              \
+     CLI_INPUT_ROW(args, timeout_s)},                                                          \
+    {                                                                                          \
+        "threads", 't', CLI_COUNT, "N",                                                        \
+            "Number of threads; results do not depend on it (0: all)",                         \
+            CLI_INPUT_ROW(args, threads)                                                       \
+    }
+#define CLI_MEMORY_OPTION(args)                                                                \
+    {                                                                                          \
+        "memory", 0, CLI_BYTES, "SIZE",                                                        \
+            "Memory limit of the program, checks included, such as 8G (75 % of the "           \
+            "machine's)",                                                                      \
+            CLI_INPUT_ROW(args, memory)                                                        \
+    }
+
 #define CLI_INPUT_OPTIONS(args)                                                                \
     CLI_HEADED(CLI_READING),                                                                   \
         {"reader",                                                                             \
@@ -144,37 +171,14 @@ typedef struct cli_input {
          NULL,                                                                                 \
          "Follow headers to files outside their folder, and links in a folder (off)",          \
          CLI_INPUT_ROW(args, allow_external)},                                                 \
-        {"no-sandbox",                                                                         \
-         0,                                                                                    \
-         CLI_FLAG,                                                                             \
-         NULL,                                                                                 \
-         "Let libraries read in this process, not in a sandboxed one (off)",                   \
-         CLI_INPUT_ROW(args, no_sandbox)},                                                     \
-        CLI_HEADED(CLI_LIMITS),                                                                \
-        {"timeout",                                                                            \
-         0,                                                                                    \
-         CLI_COUNT,                                                                            \
-         "SECONDS",                                                                            \
-         "Time limit of a library for one file (60)",                                          \
-         CLI_INPUT_ROW(args, timeout_s)},                                                      \
-        {"threads",                                                                            \
-         't',                                                                                  \
-         CLI_COUNT,                                                                            \
-         "N",                                                                                  \
-         "Number of threads; results do not depend on it (0: all)",                            \
-         CLI_INPUT_ROW(args, threads)},                                                        \
+        CLI_SANDBOX_OPTION(args), CLI_HEADED(CLI_LIMITS), CLI_TIME_OPTIONS(args),              \
         {"max-voxels",                                                                         \
          0,                                                                                    \
          CLI_COUNT,                                                                            \
          "N",                                                                                  \
          "Stop before reading more voxels than this, such as 500M (2^40)",                     \
          CLI_INPUT_ROW(args, max_voxels)},                                                     \
-    {                                                                                          \
-        "memory", 0, CLI_BYTES, "SIZE",                                                        \
-            "Memory limit of the program, checks included, such as 8G (75 % of the "           \
-            "machine's)",                                                                      \
-            CLI_INPUT_ROW(args, memory)                                                        \
-    }
+        CLI_MEMORY_OPTION(args)
 
 enum { CLI_MOST_NOTES = 8 };
 

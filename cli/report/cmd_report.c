@@ -56,8 +56,7 @@ static const cli_option options[] = {
      "Write a table with a row for each setting; - is the standard output",
      offsetof(report_args, csv)},
     CLI_INPUT_OPTIONS(report_args),
-    {"progress", 0, CLI_CHOICE, "auto/plain/json/none", "Progress display on stderr (auto)",
-     offsetof(report_args, progress)},
+    CLI_PROGRESS_OPTION(report_args),
 };
 
 typedef struct run_state {

@@ -31,8 +31,8 @@ CW_NODISCARD cw_status cli_name_outputs(cli_outputs *outputs, const char *text,
                                         cw_error *err);
 
 /* Names one output a part: {name} (that of the part, with what no file name may hold as '_'),
- * {part} (its number, from 1) and {stem} of the text are filled in. Free it likewise.
- * Returns CW_ERR_ARGUMENT for an unknown {part}, and when several parts come without {name} or
+ * {part} (its number, from 1) and {stem} of the text are filled in. Free it with
+ * cli_free_outputs(). Returns CW_ERR_ARGUMENT for an unknown {part}, and when several parts come without {name} or
  * {part}; CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cli_name_part_outputs(cli_outputs *outputs, const char *text,
                                              const char *input, const cw_part *parts,
@@ -40,12 +40,12 @@ CW_NODISCARD cw_status cli_name_part_outputs(cli_outputs *outputs, const char *t
 
 /* Names one output a level of detail: {lod} (its number, from 0) and {stem} are filled in. A
  * text without {lod} gets "-lod0" and so on in front of its extension, and, with together, is
- * itself the name of one more output, the last. Free it likewise. */
+ * itself the name of one more output, the last. Free it with cli_free_outputs(). */
 CW_NODISCARD cw_status cli_name_lod_outputs(cli_outputs *outputs, const char *text,
                                             const char *input, size_t levels, bool together,
                                             cw_error *err);
 
-/* Names the only output of a run: {stem} is filled in. Free it likewise. */
+/* Names the only output of a run: {stem} is filled in. Free it with cli_free_outputs(). */
 CW_NODISCARD cw_status cli_name_output(cli_outputs *outputs, const char *text,
                                        const char *input, cw_error *err);
 void cli_free_outputs(cli_outputs *outputs);

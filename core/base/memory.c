@@ -27,15 +27,17 @@ static bool fail_by_request(void)
 }
 
 struct cwi_memory_account {
-    atomic_size_t used;  /* by all arrays that are allocated now */
-    atomic_size_t limit; /* 0: none */
-    atomic_size_t refused,
-        refused_left;         /* the last request beyond it, and what was left then */
-    bool (*next_fails)(void); /* of cwi_alloc_fail_after() */
+    atomic_size_t used;         /* by all arrays that are allocated now */
+    atomic_size_t limit;        /* 0: none */
+    atomic_size_t refused;      /* the last request beyond it */
+    atomic_size_t refused_left; /* and what was left then */
+    bool (*next_fails)(void);   /* of cwi_alloc_fail_after() */
 };
 
 static cwi_memory_account own_account = {.next_fails = fail_by_request};
-static cwi_memory_account *account = &own_account;
+
+/* Threads may load a module at the same time: each shares the same account with it. */
+static _Atomic(cwi_memory_account *) account = &own_account;
 
 cwi_memory_account *cwi_memory_account_get(void)
 {

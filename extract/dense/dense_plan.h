@@ -27,7 +27,8 @@ cwi_emission cwi_make_emission(const cw_volume *volume, bool simple);
 /* Layers of cells from begin to end, and the layer of samples that ends them. */
 typedef struct cwi_writing {
     const cwi_plan *plan;
-    size_t begin, end, large; /* large: so many shares are */
+    size_t begin, end;
+    size_t large; /* the number of large chunks, which come first */
     cwi_emission emission;
     cwi_vertex_sink sink;
     uint32_t *triangles;

@@ -3,7 +3,6 @@
 #include "core/base/module.h"
 #include "core/base/status.h"
 #include "formats/bytes/base64.h"
-#include "formats/codec/meshopt_wrap.h"
 #include "formats/gltf/gltf_pack.h"
 #include "formats/gltf/gltf_wrap.h"
 

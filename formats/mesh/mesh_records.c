@@ -1,6 +1,5 @@
 /* Records of a mesh on their way into a file: vertices, triangles, lines of text. */
 #include "core/base/status.h"
-#include "core/base/text.h"
 #include "formats/mesh/mesh_writer.h"
 #include "formats/mesh/place_parts.h"
 #include "formats/text/number_format.h"

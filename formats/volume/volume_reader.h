@@ -48,7 +48,7 @@ CW_NODISCARD cw_status cwi_vtk_read_grid(const cwi_input *in, const cw_read_desc
 CW_NODISCARD cw_status cwi_vtu_read(const cwi_input *in, const cw_read_desc *desc,
                                     bool *is_grid, cw_volume *volume, cw_error *err);
 
-/* Reads slices in files of their own, shut in with the library that knows them.
+/* Reads slices in files of their own, by a library in a sandbox.
  * in     the folder, or one file and its folder
  * names  of the files, sorted; NULL: in's own file */
 CW_NODISCARD cw_status cwi_dicom_read(const cwi_input *in, cwi_names *names,
@@ -58,7 +58,7 @@ CW_NODISCARD cw_status cwi_tiff_read(const cwi_input *in, cwi_names *names,
                                      const cw_read_desc *desc, cw_volume *volume,
                                      cw_error *err);
 
-/* Reads one file, shut in likewise. */
+/* Reads one file by a library in a sandbox. */
 CW_NODISCARD cw_status cwi_vdb_read(const cwi_input *in, const cw_read_desc *desc,
                                     cw_volume *volume, cw_error *err);
 

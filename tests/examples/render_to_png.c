@@ -7,7 +7,7 @@
 #include <stdio.h>
 
 /* Draws a scene with OpenGL, else with a mode of the processor. */
-static cw_status draw(cw_scene *scene, cw_picture *picture, cw_error *err)
+static cw_status draw_scene(cw_scene *scene, cw_picture *picture, cw_error *err)
 {
     cw_renderer *renderer = NULL;
     scene->mode = CW_MODE_COMPOSITE;
@@ -44,7 +44,7 @@ int main(int argc, char **argv)
         st = cw_transfer_preset("auto", &statistics, &transfer, &err);
     cw_scene scene = {.volume = &volume, .transfer = &transfer, .width = 320, .height = 240};
     if (st == CW_OK)
-        st = draw(&scene, &picture, &err);
+        st = draw_scene(&scene, &picture, &err);
     if (st == CW_OK) /* the picture is translucent: show it over a background */
         st = cw_picture_show(&picture, background, &image, &err);
     if (st == CW_OK)

@@ -9,7 +9,8 @@
 #include <stdlib.h>
 
 /* Tells whether a mesh is closed, manifold and within a distance of another one. */
-static cw_status check(const cw_mesh *mesh, const cw_mesh *full, double error_mm, cw_error *err)
+static cw_status measure_result(const cw_mesh *mesh, const cw_mesh *full, double error_mm,
+                                cw_error *err)
 {
     cw_quality quality;
     cw_distance to_full, from_full;
@@ -45,7 +46,7 @@ int main(int argc, char **argv)
     if (st == CW_OK) /* CW_ERR_UNSUPPORTED where the library was built without OpenMesh */
         st = cw_simplify(&full, &simplify, &mesh, NULL, &err);
     if (st == CW_OK)
-        st = check(&mesh, &full, simplify.error_mm, &err);
+        st = measure_result(&mesh, &full, simplify.error_mm, &err);
     if (st == CW_OK)
         st = cw_mesh_write(argv[4], &mesh, NULL, &err);
     if (st != CW_OK)

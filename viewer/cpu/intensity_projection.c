@@ -3,6 +3,7 @@
 #include "viewer/cpu/ray_traversal.h"
 
 #include "core/base/parallel.h"
+#include "core/geometry/cubic.h"
 
 #include <math.h>
 

@@ -6,7 +6,6 @@
 #include "viewer/scene/block_ranges.h"
 #include "viewer/scene/frame_setup.h"
 
-#include "core/geometry/cubic.h"
 #include "core/geometry/vec3.h"
 
 #include <math.h>

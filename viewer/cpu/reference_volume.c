@@ -12,6 +12,7 @@
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/geometry/cubic.h"
 
 #include <math.h>
 #include <string.h>

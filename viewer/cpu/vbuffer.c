@@ -14,6 +14,7 @@
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/geometry/cubic.h"
 #include "core/geometry/vec3.h"
 #include "core/volume/volume.h"
 

@@ -1,6 +1,7 @@
 #include "viewer/interact/pick_volume.h"
 
 #include "core/geometry/affine.h"
+#include "core/geometry/cubic.h"
 #include "core/geometry/vec3.h"
 #include "viewer/cpu/intensity_projection.h"
 #include "viewer/cpu/ray_traversal.h"
