@@ -3,7 +3,7 @@
 #define TESTS_GRIDS_H
 
 #include "formats/volume/vtk_cell_types.h"
-#include "support/reading.h"
+#include "support/files/reading.h"
 
 #include <math.h>
 

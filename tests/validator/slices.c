@@ -1,6 +1,6 @@
 /* Writes a small CT of a sphere in noise as DICOM slices into a folder, for other people's
  * tools to compress. The patient's name in them must turn up nowhere. */
-#include "support/dicom.h"
+#include "support/files/dicom.h"
 
 #include <math.h>
 #include <stdio.h>

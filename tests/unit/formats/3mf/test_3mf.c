@@ -1,4 +1,4 @@
-#include "support/unzip.h"
+#include "support/files/unzip.h"
 
 #include "formats/mesh/mesh_writer.h"
 

@@ -1,6 +1,6 @@
 /* 3MF read: packages of other programs, and those that lie. */
+#include "support/files/zip.h"
 #include "support/meshes.h"
-#include "support/zip.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
 #define _GNU_SOURCE /* memfd_create */
 #include "formats/bytes/inflate_stream.h"
-#include "support/reading.h"
+#include "support/files/reading.h"
 
 #include <stdio.h>
 #include <sys/mman.h>

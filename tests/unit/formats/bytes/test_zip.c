@@ -1,4 +1,4 @@
-#include "support/unzip.h"
+#include "support/files/unzip.h"
 
 #include "core/base/memory.h"
 #include "formats/bytes/zip_write.h"

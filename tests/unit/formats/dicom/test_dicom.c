@@ -1,7 +1,7 @@
 #define _GNU_SOURCE /* symlink */
-#include "support/dicom.h"
-#include "support/reading.h"
-#include "support/regions.h"
+#include "support/files/dicom.h"
+#include "support/files/reading.h"
+#include "support/files/regions.h"
 
 #include "core/base/module.h"
 

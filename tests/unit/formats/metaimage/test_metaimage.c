@@ -1,6 +1,6 @@
 #define _GNU_SOURCE /* symlink */
-#include "support/reading.h"
-#include "support/regions.h"
+#include "support/files/reading.h"
+#include "support/files/regions.h"
 
 #include <stdio.h>
 #include <unistd.h>

@@ -1,7 +1,7 @@
 #define _GNU_SOURCE /* symlink */
 #include "formats/nifti/nifti.h"
-#include "support/reading.h"
-#include "support/regions.h"
+#include "support/files/reading.h"
+#include "support/files/regions.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -1,7 +1,7 @@
 #define _GNU_SOURCE /* symlink, mkfifo */
 #include "formats/bytes/bzip2.h"
-#include "support/reading.h"
-#include "support/regions.h"
+#include "support/files/reading.h"
+#include "support/files/regions.h"
 
 #include <stdio.h>
 #include <sys/stat.h>

@@ -1,7 +1,7 @@
 #include "core/base/module.h"
-#include "support/reading.h"
-#include "support/regions.h"
-#include "support/tiffs.h"
+#include "support/files/reading.h"
+#include "support/files/regions.h"
+#include "support/files/tiffs.h"
 
 #include <stdio.h>
 #include <sys/stat.h>

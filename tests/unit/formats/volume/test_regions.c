@@ -1,5 +1,5 @@
-#include "support/reading.h"
-#include "support/regions.h"
+#include "support/files/reading.h"
+#include "support/files/regions.h"
 
 #include <stdio.h>
 

@@ -1,5 +1,5 @@
 #define _GNU_SOURCE /* locale_t, in core/base/text.h */
-#include "support/reading.h"
+#include "support/files/reading.h"
 
 #include "core/volume/volume.h"
 

@@ -1,6 +1,6 @@
 /* VTP read: every dialect of VTK's XML, and files that lie. */
+#include "support/files/vtk_xml.h"
 #include "support/meshes.h"
-#include "support/vtk_xml.h"
 
 #include <math.h>
 

@@ -1,5 +1,5 @@
-#include "support/regions.h"
-#include "support/vtk_xml.h"
+#include "support/files/regions.h"
+#include "support/files/vtk_xml.h"
 
 #include <stdio.h>
 

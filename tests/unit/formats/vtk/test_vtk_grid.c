@@ -1,6 +1,6 @@
 /* Legacy VTK files of rectilinear grids; values of cells, and arrays chosen by name. */
-#include "support/reading.h"
-#include "support/regions.h"
+#include "support/files/reading.h"
+#include "support/files/regions.h"
 
 #include <stdio.h>
 

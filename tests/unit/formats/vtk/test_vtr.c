@@ -1,6 +1,6 @@
 /* VTK's XML rectilinear grids: coordinates, values of points and of cells. */
-#include "support/reading.h"
-#include "support/vtk_xml.h"
+#include "support/files/reading.h"
+#include "support/files/vtk_xml.h"
 
 #include "core/base/memory.h"
 

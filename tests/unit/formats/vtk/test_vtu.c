@@ -1,6 +1,6 @@
 /* VTK's XML unstructured and curvilinear grids. */
+#include "support/files/vtk_xml.h"
 #include "support/grids.h"
-#include "support/vtk_xml.h"
 
 #include <stdio.h>
 

@@ -1,4 +1,4 @@
-#include "support/dicom.h"
+#include "support/files/dicom.h"
 
 #include "support/support.h"
 

@@ -1,4 +1,4 @@
-#include "support/tiffs.h"
+#include "support/files/tiffs.h"
 
 #include "support/support.h"
 

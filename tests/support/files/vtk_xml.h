@@ -3,7 +3,7 @@
 #define TESTS_VTK_XML_H
 
 #include "formats/bytes/block_reader.h"
-#include "support/reading.h"
+#include "support/files/reading.h"
 
 enum { VTK_BLOCK = 7, VTK_MOST = 8000 };
 

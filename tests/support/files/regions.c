@@ -1,4 +1,4 @@
-#include "support/regions.h"
+#include "support/files/regions.h"
 
 #include "support/support.h"
 

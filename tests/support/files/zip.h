@@ -2,7 +2,7 @@
 #ifndef TESTS_ZIP_H
 #define TESTS_ZIP_H
 
-#include "support/reading.h"
+#include "support/files/reading.h"
 
 typedef struct zip_entry {
     const char *name, *text;
