@@ -34,24 +34,24 @@ static inline bool is_read(const dialect *d)
 }
 
 /* Bytes that grow. */
-typedef struct bytes {
+typedef struct byte_buffer {
     unsigned char at[VTK_MOST];
     size_t size;
-} bytes;
+} byte_buffer;
 
-static inline void add(bytes *b, const void *more, size_t size)
+static inline void add(byte_buffer *b, const void *more, size_t size)
 {
     assert_true(b->size + size <= VTK_MOST);
     memcpy(b->at + b->size, more, size);
     b->size += size;
 }
 
-static inline void add_text(bytes *b, const char *text)
+static inline void add_text(byte_buffer *b, const char *text)
 {
     add(b, text, strlen(text));
 }
 
-static inline void add_number(bytes *b, uint64_t number, size_t size, bool big)
+static inline void add_number(byte_buffer *b, uint64_t number, size_t size, bool big)
 {
     unsigned char word[8];
     for (size_t i = 0; i < size; i++)
@@ -59,7 +59,7 @@ static inline void add_number(bytes *b, uint64_t number, size_t size, bool big)
     add(b, word, size);
 }
 
-static inline void add_base64(bytes *b, const unsigned char *from, size_t size)
+static inline void add_base64(byte_buffer *b, const unsigned char *from, size_t size)
 {
     static const char digits[] =
         "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
@@ -75,7 +75,7 @@ static inline void add_base64(bytes *b, const unsigned char *from, size_t size)
 
 /* LZ4 can hold up to 14 bytes as they are behind one byte that counts them. */
 static inline void pack_block(packing how, const unsigned char *from, size_t size,
-                              bytes *packed)
+                              byte_buffer *packed)
 {
     size_t n;
     if (how == LZ4) {
@@ -90,7 +90,8 @@ static inline void pack_block(packing how, const unsigned char *from, size_t siz
 }
 
 /* Sizes that stand in front, and the numbers of an array in blocks. */
-static inline void make_payload(const dialect *d, const bytes *plain, bytes *head, bytes *data)
+static inline void make_payload(const dialect *d, const byte_buffer *plain, byte_buffer *head,
+                                byte_buffer *data)
 {
     const size_t word = d->wide ? 8 : 4, size = plain->size;
     if (d->packing == PLAIN) {
@@ -110,9 +111,10 @@ static inline void make_payload(const dialect *d, const bytes *plain, bytes *hea
 }
 
 /* An array of numbers, in the bytes that the dialect makes of them. */
-static inline void add_payload(bytes *file, const dialect *d, const bytes *plain, bool text)
+static inline void add_payload(byte_buffer *file, const dialect *d, const byte_buffer *plain,
+                               bool text)
 {
-    bytes head = {.size = 0}, data = {.size = 0};
+    byte_buffer head = {.size = 0}, data = {.size = 0};
     make_payload(d, plain, &head, &data);
     if (d->joined || !text) {
         add(&head, data.at, data.size);
@@ -126,7 +128,7 @@ static inline void add_payload(bytes *file, const dialect *d, const bytes *plain
     }
 }
 
-static inline void add_file_tag(bytes *file, const dialect *d, const char *type)
+static inline void add_file_tag(byte_buffer *file, const dialect *d, const char *type)
 {
     static const char *const compressors[] = {"", "compressor='vtkZLibDataCompressor'",
                                               "compressor='vtkLZ4DataCompressor'"};
@@ -139,7 +141,7 @@ static inline void add_file_tag(bytes *file, const dialect *d, const char *type)
     add_text(file, text);
 }
 
-static inline void save(const bytes *file, const char *name)
+static inline void save(const byte_buffer *file, const char *name)
 {
     put_file(name, "", file->at, file->size);
 }

@@ -28,7 +28,7 @@ static size_t type_size(const char *type)
     return strstr(type, "64") ? 8 : strstr(type, "32") ? 4 : strstr(type, "16") ? 2 : 1;
 }
 
-static void add_value(bytes *plain, const char *type, double value, bool big)
+static void add_value(byte_buffer *plain, const char *type, double value, bool big)
 {
     const float single = (float)value;
     uint32_t bits32;
@@ -42,10 +42,11 @@ static void add_value(bytes *plain, const char *type, double value, bool big)
 }
 
 /* The array's element; appended, its bytes go behind those that are there. */
-static void add_array(bytes *file, bytes *appended, const dialect *d, const array *a)
+static void add_array(byte_buffer *file, byte_buffer *appended, const dialect *d,
+                      const array *a)
 {
     char text[300];
-    bytes plain = {.size = 0};
+    byte_buffer plain = {.size = 0};
     for (size_t i = 0; i < a->count; i++)
         add_value(&plain, a->type, a->numbers[i], d->big);
     snprintf(text, sizeof text, "<%s type='%s' NumberOfComponents='%zu' format='%s' ", a->tag,
@@ -85,12 +86,12 @@ static array real_array(const char *tag, const char *type, size_t components,
 }
 
 /* real and whole are the types of points and of indices. */
-static void make_file(const dialect *d, const char *real, const char *whole, bytes *file)
+static void make_file(const dialect *d, const char *real, const char *whole, byte_buffer *file)
 {
     static const int label[] = {0, 1, 2, 3, 4, 4000000}, scalar[] = {-3, 2, 1, 0, 9, 7};
     static const int colors[] = {1,  2,  3,  4,  5,  6,  7,  8,  9,
                                  10, 11, 12, 13, 14, 15, 16, 17, 255};
-    static bytes appended;
+    static byte_buffer appended;
     array rgb = whole_array("DataArray Name='odd colours'", "UInt8", colors, 18);
     rgb.components = 3;
     appended.size = file->size = 0;
@@ -169,7 +170,7 @@ static void every_dialect_gives_the_same_mesh(void **state)
     (void)state;
     static const char *const reals[] = {"Float32", "Float64"};
     static const char *const wholes[] = {"Int32", "Int64", "UInt32", "UInt64"};
-    static bytes file;
+    static byte_buffer file;
     for (unsigned n = 0; n < 128; n++) {
         const dialect d = dialect_of(n);
         if (!is_read(&d))
@@ -186,7 +187,7 @@ static void every_dialect_gives_the_same_mesh(void **state)
 static void a_cut_is_never_a_mesh(void **state)
 {
     (void)state;
-    static bytes file;
+    static byte_buffer file;
     for (unsigned n = 0; n < FORM_COUNT; n++) {
         const dialect d = {.form = (form)n, .packing = n % 2 ? ZLIB : PLAIN};
         make_file(&d, "Float32", "Int64", &file);
@@ -204,7 +205,7 @@ static void a_cut_is_never_a_mesh(void **state)
 static void no_byte_is_trusted(void **state)
 {
     (void)state;
-    static bytes file;
+    static byte_buffer file;
     for (unsigned n = 0; n < 2; n++) {
         const dialect d = {.form = n ? APPENDED_RAW : ASCII, .packing = n ? ZLIB : PLAIN};
         make_file(&d, "Float32", "Int32", &file);
@@ -390,7 +391,7 @@ static void far_doubles_get_an_origin(void **state)
 static void memory_may_run_out_anywhere(void **state)
 {
     (void)state;
-    static bytes file;
+    static byte_buffer file;
     for (form f = ASCII; f < FORM_COUNT; f++) {
         const dialect d = {.form = f, .packing = ZLIB, .big = true};
         make_file(&d, "Float64", "Int64", &file);

@@ -8,9 +8,9 @@
 enum { VOXELS = 12, BYTES = 2 * VOXELS };
 
 /* The voxels -3, -2 ... 8 (int16). */
-static void add_voxels(bytes *file, const dialect *d, bool text)
+static void add_voxels(byte_buffer *file, const dialect *d, bool text)
 {
-    bytes plain = {.size = 0};
+    byte_buffer plain = {.size = 0};
     for (int i = 0; i < VOXELS; i++)
         add_number(&plain, (uint64_t)(int64_t)(i - 3), 2, d->big);
     add_payload(file, d, &plain, text);
@@ -21,7 +21,7 @@ static void add_voxels(bytes *file, const dialect *d, bool text)
     "<Piece Extent='0 1 0 2 0 1'><PointData Scalars='s'>"
 #define TAIL "</PointData></Piece></ImageData>"
 
-static void make_file(const dialect *d, bytes *file)
+static void make_file(const dialect *d, byte_buffer *file)
 {
     char text[500];
     file->size = 0;
@@ -63,7 +63,7 @@ static void check_voxels(const char *name)
 static void every_dialect_gives_the_same_voxels(void **state)
 {
     (void)state;
-    static bytes file;
+    static byte_buffer file;
     for (unsigned n = 0; n < 128; n++) {
         const dialect d = dialect_of(n);
         if (!is_read(&d))
@@ -78,7 +78,7 @@ static void every_dialect_gives_the_same_voxels(void **state)
 static void a_cut_is_never_a_volume(void **state)
 {
     (void)state;
-    static bytes file;
+    static byte_buffer file;
     for (unsigned n = 0; n < 16; n++) {
         dialect d = dialect_of(n);
         d.big = n & 1;
@@ -95,7 +95,7 @@ static void a_cut_is_never_a_volume(void **state)
 static void no_byte_is_trusted(void **state)
 {
     (void)state;
-    static bytes file;
+    static byte_buffer file;
     const dialect d = {.form = APPENDED_RAW, .packing = ZLIB};
     make_file(&d, &file);
     for (size_t i = 0; i < file.size; i++) {
@@ -311,7 +311,7 @@ static void tables_of_blocks_are_checked_before_memory_is_taken(void **state)
         {{1, 2, 2, 4}, "compressed block 0 of 1 is damaged"},
     };
     for (size_t i = 0; i < sizeof cases / sizeof *cases; i++) {
-        bytes file = {.size = 0};
+        byte_buffer file = {.size = 0};
         add_text(&file, "<VTKFile type='ImageData' byte_order='LittleEndian' "
                         "compressor='vtkZLibDataCompressor'><ImageData><Piece "
                         "Extent='0 1 0 0 0 0'><PointData><DataArray type='UInt8' "
@@ -349,7 +349,7 @@ static void endless_files_come_to_an_end(void **state)
 static void memory_may_run_out_anywhere(void **state)
 {
     (void)state;
-    static bytes file;
+    static byte_buffer file;
     for (form f = ASCII; f < FORM_COUNT; f++) {
         const dialect d = {.form = f, .packing = ZLIB};
         make_file(&d, &file);
@@ -363,7 +363,7 @@ static void memory_may_run_out_anywhere(void **state)
 static void blocks_that_are_not_wanted_are_not_decoded(void **state)
 {
     (void)state;
-    static bytes file;
+    static byte_buffer file;
     static const char tail[] = "\n</AppendedData></VTKFile>";
     const cw_box front = {{0, 0, 0}, {2, 3, 1}}, back = {{1, 2, 1}, {1, 1, 1}};
     for (int wanted = 0; wanted < 2; wanted++) {

@@ -20,14 +20,14 @@ static const int corners[CORNER_COUNT] = {0, 1, 2, 3, 4, 5, 6, 7, 0,  1, 3, 2, 4
 
 typedef enum array { VALUES, PLACES, CONNECTIVITY, OFFSETS, TYPES, ARRAY_COUNT } array;
 
-static void add_double(bytes *to, double number, bool big)
+static void add_double(byte_buffer *to, double number, bool big)
 {
     uint64_t bits;
     memcpy(&bits, &number, sizeof bits);
     add_number(to, bits, sizeof bits, big);
 }
 
-static void make_plain(array which, const dialect *d, bytes *plain)
+static void make_plain(array which, const dialect *d, byte_buffer *plain)
 {
     const size_t size = d->wide ? 8 : 4;
     plain->size = 0;
@@ -43,7 +43,7 @@ static void make_plain(array which, const dialect *d, bytes *plain)
         add_number(plain, (uint64_t)types[i], 1, d->big);
 }
 
-static void add_ascii(bytes *to, array which)
+static void add_ascii(byte_buffer *to, array which)
 {
     char text[40];
     const int count[ARRAY_COUNT] = {POINT_COUNT, 3 * POINT_COUNT, CORNER_COUNT, CELL_COUNT,
@@ -60,9 +60,9 @@ static void add_ascii(bytes *to, array which)
 }
 
 /* One DataArray; what is appended goes to the end of `appended`. */
-static void add_array(bytes *file, bytes *appended, const dialect *d, array which)
+static void add_array(byte_buffer *file, byte_buffer *appended, const dialect *d, array which)
 {
-    static bytes plain;
+    static byte_buffer plain;
     const char *whole = d->wide ? "Int64" : "Int32";
     const char *const kinds[ARRAY_COUNT] = {"Int16", "Float64", whole, whole, "UInt8"};
     static const char *const names[ARRAY_COUNT] = {"s", "Points", "connectivity", "offsets",
@@ -82,9 +82,9 @@ static void add_array(bytes *file, bytes *appended, const dialect *d, array whic
     add_text(file, "</DataArray>\n");
 }
 
-static void make_file(const dialect *d, bytes *file)
+static void make_file(const dialect *d, byte_buffer *file)
 {
-    static bytes appended;
+    static byte_buffer appended;
     file->size = appended.size = 0;
     add_file_tag(file, d, "UnstructuredGrid");
     add_text(file, "<UnstructuredGrid><Piece NumberOfPoints='11' NumberOfCells='6'>"
@@ -136,7 +136,7 @@ static void check_file(const char *name)
 static void every_dialect_gives_the_same_grid(void **state)
 {
     (void)state;
-    static bytes file;
+    static byte_buffer file;
     for (unsigned n = 0; n < 128; n++) {
         const dialect d = dialect_of(n);
         if (!is_read(&d))
@@ -150,7 +150,7 @@ static void every_dialect_gives_the_same_grid(void **state)
 static void a_cut_is_never_a_grid(void **state)
 {
     (void)state;
-    static bytes file;
+    static byte_buffer file;
     for (unsigned n = 0; n < 16; n++) {
         dialect d = dialect_of(n);
         d.big = n & 1;
@@ -167,7 +167,7 @@ static void a_cut_is_never_a_grid(void **state)
 static void no_byte_is_trusted(void **state)
 {
     (void)state;
-    static bytes file;
+    static byte_buffer file;
     for (unsigned n = 0; n < 8; n++) {
         const dialect d = {.form = n & 1 ? APPENDED_RAW : ASCII,
                            .packing = n & 2 ? ZLIB : PLAIN,
@@ -465,7 +465,7 @@ static void damaged_files_are_told_where(void **state)
 static void pieces_share_no_bytes(void **state)
 {
     (void)state;
-    static bytes file;
+    static byte_buffer file;
     const unsigned char zeros[2000] = {0};
     const dialect d = {.form = APPENDED_RAW};
     file.size = 0;
