@@ -80,8 +80,8 @@ static cw_status measure_move(const cli_bench *b, const cw_mesh *mesh, cli_bench
     return st;
 }
 
-static cw_status measure(const cli_bench *b, const cw_mesh *mesh, cli_bench_row *row,
-                         cw_error *err)
+static cw_status measure_row(const cli_bench *b, const cw_mesh *mesh, cli_bench_row *row,
+                             cw_error *err)
 {
     const cw_quality_desc desc = {.threads = b->threads};
     cw_quality q;
@@ -133,7 +133,7 @@ static cw_status first_run(cli_bench *b, cli_bench_row *row, cw_error *err)
     if (st == CW_OK)
         st = cli_bench_take(b, row->kind, &mesh, &row->file_bytes, err);
     if (st == CW_OK)
-        st = measure(b, &mesh, row, err);
+        st = measure_row(b, &mesh, row, err);
     if (st == CW_OK && !b->surface.vertex_count) {
         b->surface = mesh;
         return CW_OK;
@@ -159,7 +159,7 @@ static int by_value(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-static double median(const double *times, size_t count)
+static double find_median(const double *times, size_t count)
 {
     double sorted[CLI_BENCH_MOST_RUNS];
     memcpy(sorted, times, count * sizeof *times);
@@ -196,11 +196,11 @@ static const cli_bench_row *row_of(const cli_bench_case *c, cli_bench_work work,
     return NULL;
 }
 
-static void compare(cli_bench_case *c)
+static void compare_with_peers(cli_bench_case *c)
 {
     for (size_t n = 0; n < c->row_count; n++)
         if (c->rows[n].status == CLI_BENCH_DONE)
-            c->rows[n].seconds = median(c->rows[n].times, c->rows[n].runs);
+            c->rows[n].seconds = find_median(c->rows[n].times, c->rows[n].runs);
     for (size_t n = 0; n < c->row_count; n++) {
         cli_bench_row *row = &c->rows[n];
         const cli_bench_row *ours = row->against ? row_of(c, row->work, row->against) : NULL;
@@ -254,7 +254,7 @@ static cw_status run_case(cli_bench *b, cw_error *err)
             st = run_work(b, (cli_bench_work)work, err);
     }
     if (st == CW_OK)
-        compare(b->now);
+        compare_with_peers(b->now);
     cw_mesh_free(&b->made);
     cw_mesh_free(&b->surface);
     cli_free_volume(&b->volume);

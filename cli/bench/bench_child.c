@@ -30,7 +30,7 @@ bool cli_find_program(const char *name, size_t n, char *path, size_t room)
 }
 
 /* In the child: nothing here may allocate. */
-static void become(const char *const *argv, const char *folder, int in, int out)
+static void exec_child(const char *const *argv, const char *folder, int in, int out)
 {
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     setpgid(0, 0);
@@ -53,7 +53,7 @@ cw_status cli_child_start(cli_child *c, const char *const *argv, const char *fol
     if (pipe2(to, O_CLOEXEC) == 0 && pipe2(from, O_CLOEXEC) == 0)
         c->pid = fork();
     if (c->pid == 0 && from[0] >= 0)
-        become(argv, folder, to[0], from[1]);
+        exec_child(argv, folder, to[0], from[1]);
     const int why = errno;
     close(to[0]);
     close(from[1]);

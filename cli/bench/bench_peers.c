@@ -129,7 +129,7 @@ void cli_peers_stop(cli_peers *p)
 }
 
 /* After a failure a new one is tried: what broke it may have been the case. */
-static cw_status revive(const cli_peers *p, cli_peer *peer, cw_error *err)
+static cw_status restart_peer(const cli_peers *p, cli_peer *peer, cw_error *err)
 {
     char answer[256];
     if (peer->child.pid)
@@ -196,8 +196,8 @@ cw_status cli_peers_put_mesh(const cli_peers *p, const cw_mesh *mesh, cw_error *
 /* --- what they are asked ------------------------------------------------------------------ */
 
 /* The numbers behind "ok", as many as are expected. */
-static cw_status ask(cli_peer *peer, const char *line, double *numbers, size_t count,
-                     cw_error *err)
+static cw_status ask_peer(cli_peer *peer, const char *line, double *numbers, size_t count,
+                          cw_error *err)
 {
     char answer[256];
     cw_status st = cli_child_ask(&peer->child, line, answer, sizeof answer, err);
@@ -228,7 +228,7 @@ cw_status cli_peer_prepare_volume(cli_peers *p, cli_peer *peer, const cw_volume 
     char line[512];
     double mm[3];
     cw_volume v;
-    cw_status st = revive(p, peer, err);
+    cw_status st = restart_peer(p, peer, err);
     if (st == CW_OK)
         st = cw_volume_resolve(volume, &v, err);
     if (st != CW_OK)
@@ -238,23 +238,23 @@ cw_status cli_peer_prepare_volume(cli_peers *p, cli_peer *peer, const cw_volume 
     snprintf(line, sizeof line, "extract %s %zu %zu %zu %.17g %.17g %.17g %.17g %.17g",
              kinds[v.type], v.dim[0], v.dim[1], v.dim[2], mm[0], mm[1], mm[2], level,
              outside_of(&v, level, inside_is_low));
-    return ask(peer, line, NULL, 0, err);
+    return ask_peer(peer, line, NULL, 0, err);
 }
 
 cw_status cli_peer_prepare_mesh(cli_peers *p, cli_peer *peer, const cw_mesh *mesh,
                                 size_t target, cw_error *err)
 {
     char line[128];
-    cw_status st = revive(p, peer, err);
+    cw_status st = restart_peer(p, peer, err);
     snprintf(line, sizeof line, "simplify %zu %zu %zu", mesh->vertex_count,
              mesh->triangle_count, target);
-    return st == CW_OK ? ask(peer, line, NULL, 0, err) : st;
+    return st == CW_OK ? ask_peer(peer, line, NULL, 0, err) : st;
 }
 
 cw_status cli_peer_run(cli_peer *peer, cli_spent *spent, cw_error *err)
 {
     double numbers[2] = {0};
-    cw_status st = ask(peer, "run", numbers, 2, err);
+    cw_status st = ask_peer(peer, "run", numbers, 2, err);
     *spent = (cli_spent){numbers[0], numbers[1] < 1e18 ? (size_t)numbers[1] : 0};
     return st;
 }
@@ -297,14 +297,14 @@ static cw_status read_result(const cli_peers *p, const double n[3], cw_mesh *mes
 }
 
 /* From mm along the volume's axes into its frame. */
-static void turn(double m[3][3], float *p)
+static void rotate_to_world(double m[3][3], float *p)
 {
     const double from[3] = {p[0], p[1], p[2]};
     for (int a = 0; a < 3; a++)
         p[a] = (float)(m[a][0] * from[0] + m[a][1] * from[1] + m[a][2] * from[2]);
 }
 
-static void place(cw_mesh *mesh, const cw_volume *v)
+static void place_in_world(cw_mesh *mesh, const cw_volume *v)
 {
     double mm[3], m[3][3];
     cw_volume_spacing(v, mm);
@@ -314,9 +314,9 @@ static void place(cw_mesh *mesh, const cw_volume *v)
             m[a][b] = v->affine[a][b] / mm[b];
     }
     for (size_t n = 0; n < mesh->vertex_count; n++) {
-        turn(m, mesh->positions + 3 * n);
+        rotate_to_world(m, mesh->positions + 3 * n);
         if (mesh->normals)
-            turn(m, mesh->normals + 3 * n);
+            rotate_to_world(m, mesh->normals + 3 * n);
     }
 }
 
@@ -325,14 +325,14 @@ cw_status cli_peer_take(cli_peers *p, cli_peer *peer, const cw_volume *placed, c
 {
     double n[3];
     cw_volume v;
-    cw_status st = ask(peer, "save", n, 3, err);
+    cw_status st = ask_peer(peer, "save", n, 3, err);
     *mesh = (cw_mesh){0};
     if (st == CW_OK)
         st = read_result(p, n, mesh, err);
     if (st == CW_OK && placed)
         st = cw_volume_resolve(placed, &v, err);
     if (st == CW_OK && placed)
-        place(mesh, &v);
+        place_in_world(mesh, &v);
     if (st != CW_OK)
         cw_mesh_free(mesh);
     return st;

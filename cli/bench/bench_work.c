@@ -54,8 +54,8 @@ static cli_spent stop_watch(const stopwatch *w)
     return (cli_spent){seconds, cli_watched_bytes(&w->memory)};
 }
 
-static cw_status extract(cli_bench *b, const cli_bench_kind *kind, cli_spent *spent,
-                         cw_error *err)
+static cw_status extract_surface(cli_bench *b, const cli_bench_kind *kind, cli_spent *spent,
+                                 cw_error *err)
 {
     const cw_extract_desc desc = {.isovalue = b->now->iso,
                                   .inside_is_low = b->now->inside_is_low,
@@ -77,8 +77,8 @@ static size_t target_of(const cli_bench *b)
     return count ? count : 1;
 }
 
-static cw_status simplify(cli_bench *b, const cli_bench_kind *kind, cli_spent *spent,
-                          cw_error *err)
+static cw_status simplify_surface(cli_bench *b, const cli_bench_kind *kind, cli_spent *spent,
+                                  cw_error *err)
 {
     const cw_simplify_desc desc = {
         .triangles = target_of(b),
@@ -117,8 +117,8 @@ static size_t size_of(const cli_bench *b, const char *name)
     return stat(path_of(b, name), &facts) == 0 ? (size_t)facts.st_size : 0;
 }
 
-static cw_status compress(cli_bench *b, const cli_bench_kind *kind, cli_spent *spent,
-                          cw_error *err)
+static cw_status compress_mesh(cli_bench *b, const cli_bench_kind *kind, cli_spent *spent,
+                               cw_error *err)
 {
     const cw_write_desc desc = {
         .compression = kind->compression,
@@ -281,9 +281,9 @@ static cw_status take_draco(cli_bench *b, const cli_bench_kind *kind, cw_mesh *m
 
 /* --- the table ---------------------------------------------------------------------------- */
 
-static const actions extracting = {NULL, extract, take_made},
-                     simplifying = {NULL, simplify, take_made},
-                     compressing = {NULL, compress, take_written},
+static const actions extracting = {NULL, extract_surface, take_made},
+                     simplifying = {NULL, simplify_surface, take_made},
+                     compressing = {NULL, compress_mesh, take_written},
                      child_extracts = {prepare_volume, run_child, take_extracted},
                      child_simplifies = {prepare_mesh, run_child, take_simplified},
                      meshopt_simplifies = {NULL, simplify_meshopt, take_meshopt},

@@ -180,7 +180,7 @@ static cw_status list_cases(const bench_args *args, cli_bench *b, cw_error *err)
 
 /* --- the run ------------------------------------------------------------------------------ */
 
-static cw_status pipeline(const bench_args *args, cli_bench *b, cw_error *err)
+static cw_status bench_cases(const bench_args *args, cli_bench *b, cw_error *err)
 {
     cw_status st = check_args(args, err);
     if (st == CW_OK)
@@ -194,12 +194,7 @@ static cw_status pipeline(const bench_args *args, cli_bench *b, cw_error *err)
     return st == CW_OK ? cli_report_make(args->csv, cli_bench_put_csv, b, err) : st;
 }
 
-static bool is_stdout(const char *path)
-{
-    return path && strcmp(path, "-") == 0;
-}
-
-static cw_status run(void *p, cw_error *err)
+static cw_status run_bench(void *p, cw_error *err)
 {
     bench_args *args = p;
     cli_bench *b = calloc(1, sizeof *b);
@@ -213,9 +208,9 @@ static cw_status run(void *p, cw_error *err)
     b->limit_s = (double)args->peer_timeout;
     b->threads = cwi_threads((int)args->input.threads);
     cli_console_start(&args->common, (cli_progress_mode)args->progress);
-    if (is_stdout(args->json) || is_stdout(args->csv))
-        cli_results_to_stderr();
-    cw_status st = pipeline(args, b, err);
+    cli_console_reserve_stdout(args->json);
+    cli_console_reserve_stdout(args->csv);
+    cw_status st = bench_cases(args, b, err);
     cli_bench_free(b);
     free(b);
     return st;
@@ -231,5 +226,5 @@ const cli_command cli_bench_command = {
     .max_inputs = 64,
     .size = sizeof(bench_args),
     .defaults = &defaults,
-    .run = run,
+    .run = run_bench,
 };

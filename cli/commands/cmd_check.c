@@ -83,6 +83,7 @@ typedef struct run_state {
     cw_verdict verdicts[CW_MAX_VERDICTS];
     size_t verdict_count;
     cli_report report;
+    double start;
 } run_state;
 
 static double least_mm3(const run_state *s)
@@ -463,7 +464,7 @@ static cw_status hold_to_profile(const run_state *s, cw_error *err)
                    profiles[s->args->profile], names);
 }
 
-static cw_status judge_mesh(run_state *s, double start, cw_error *err)
+static cw_status judge_mesh(run_state *s, cw_error *err)
 {
     const check_args *args = s->args;
     s->verdict_count = cw_check_judge(&s->findings, (cw_profile)args->profile, s->verdicts);
@@ -480,7 +481,7 @@ static cw_status judge_mesh(run_state *s, double start, cw_error *err)
         st = hold_to_profile(s, err);
     if (st == CW_OK)
         cli_result("%s: meets profile %s; %.2f s\n", s->mesh.path, profiles[args->profile],
-                   cli_seconds() - start);
+                   cli_seconds() - s->start);
     return st;
 }
 
@@ -492,33 +493,34 @@ static void free_state(run_state *s)
     cli_free_volume(&s->volume);
     cwi_free(s->defects);
     cwi_free(s->distances);
-    cli_report_free(&s->report);
+}
+
+static cw_status check_mesh(void *state, cw_error *err)
+{
+    run_state *s = state;
+    cli_report_next(&s->report, s->args->defects, s->args->iso.value);
+    cw_status st = check_args_of(s, err);
+    if (st == CW_OK)
+        st = read_inputs(s, err);
+    if (st == CW_OK)
+        st = measure_all(s, err);
+    return st == CW_OK ? judge_mesh(s, err) : st;
 }
 
 static cw_status run_check(void *p, cw_error *err)
 {
     const check_args *args = p;
-    const double start = cli_seconds();
-    run_state s = {.args = args};
+    run_state s = {.args = args, .start = cli_seconds()};
     s.report.command = "check";
     s.report.params = put_params;
     s.report.facts = put_facts;
     s.report.args = &s;
-    cli_console_start(&args->common, (cli_progress_mode)args->progress);
-    if (args->json && strcmp(args->json, "-") == 0)
-        cli_results_to_stderr();
-    cw_status st = cli_report_reserve(&s.report, 1, err);
-    if (st == CW_OK) {
-        cli_report_next(&s.report, args->defects, args->iso.value);
-        st = check_args_of(&s, err);
-    }
-    if (st == CW_OK)
-        st = read_inputs(&s, err);
-    if (st == CW_OK)
-        st = measure_all(&s, err);
-    if (st == CW_OK)
-        st = judge_mesh(&s, start, err);
-    st = cli_report_write(&s.report, st, err);
+    const cli_run run = {.common = &args->common,
+                         .progress = args->progress,
+                         .json = args->json,
+                         .body = check_mesh,
+                         .state = &s};
+    cw_status st = cli_run_reported(&run, &s.report, err);
     free_state(&s);
     return st;
 }

@@ -161,8 +161,9 @@ static cw_status convert_parts(run_state *s, cw_error *err)
     return st;
 }
 
-static cw_status run_pipeline(run_state *s, cw_error *err)
+static cw_status convert_mesh(void *state, cw_error *err)
 {
+    run_state *s = state;
     cw_status st = check_args(s, err);
     if (st == CW_OK)
         st = read_input(s, err);
@@ -185,16 +186,14 @@ static cw_status run_convert(void *p, cw_error *err)
     s.report.params = put_params;
     s.report.facts = put_facts;
     s.report.args = &s;
-    cli_console_start(&args->common, (cli_progress_mode)args->progress);
-    if (args->json && strcmp(args->json, "-") == 0)
-        cli_results_to_stderr();
-    cw_status st = cli_report_reserve(&s.report, 1, err);
-    if (st == CW_OK)
-        st = run_pipeline(&s, err);
-    st = cli_report_write(&s.report, st, err);
+    const cli_run run = {.common = &args->common,
+                         .progress = args->progress,
+                         .json = args->json,
+                         .body = convert_mesh,
+                         .state = &s};
+    cw_status st = cli_run_reported(&run, &s.report, err);
     cli_free_mesh(&s.mesh);
     cli_free_outputs(&s.outputs);
-    cli_report_free(&s.report);
     return st;
 }
 

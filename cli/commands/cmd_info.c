@@ -77,7 +77,7 @@ static cw_status find_levels(facts *f, int threads, cw_error *err)
     return CW_OK;
 }
 
-static cw_status predict(facts *f, int threads, cw_error *err)
+static cw_status predict_surface(facts *f, int threads, cw_error *err)
 {
     cw_extractor *extractor;
     cw_status st = cw_extractor_new(&f->volume.view, &extractor, err);
@@ -162,7 +162,7 @@ static cw_status find_facts(const info_args *args, facts *f, cw_error *err)
     if (st == CW_OK)
         st = cli_tell_labels(&f->volume, NULL, 0, false, err);
     if (st == CW_OK && args->levels)
-        st = predict(f, threads, err);
+        st = predict_surface(f, threads, err);
     return st == CW_OK ? st : cwi_fail_in(err, st, f->volume.path);
 }
 
@@ -595,7 +595,7 @@ static cw_status list_series(const info_args *args, facts *f, bool *listed, cw_e
     return st;
 }
 
-static cw_status run(void *p, cw_error *err)
+static cw_status run_info(void *p, cw_error *err)
 {
     info_args *args = p;
     facts f = {0};
@@ -633,5 +633,5 @@ const cli_command cli_info = {
     .min_inputs = 1,
     .max_inputs = SIZE_MAX,
     .size = sizeof(info_args),
-    .run = run,
+    .run = run_info,
 };

@@ -337,7 +337,7 @@ static cw_status shade_mesh(run_state *s, cw_error *err)
 }
 
 /* Levels are for drawing: their triangles and vertices are put in the order that is fast. */
-static cw_status order(run_state *s, cw_error *err)
+static cw_status order_for_drawing(run_state *s, cw_error *err)
 {
     cw_error why = {0};
     const cw_status st = cw_mesh_optimize(&s->pieces.piece->out, &why);
@@ -365,7 +365,7 @@ static cw_status deliver_parts(run_state *s, const cw_part *parts, size_t count,
     return cli_deliver(&s->report, &how, parts, count, 0, s->start, err);
 }
 
-static cw_status deliver(run_state *s, cw_error *err)
+static cw_status deliver_result(run_state *s, cw_error *err)
 {
     cw_part *parts = calloc(s->pieces.count, sizeof *parts);
     if (!parts)
@@ -378,7 +378,7 @@ static cw_status deliver(run_state *s, cw_error *err)
 }
 
 /* Measures what became of the pieces, shades it and writes it. */
-static cw_status finish(run_state *s, cli_made *made, cw_error *err)
+static cw_status finish_result(run_state *s, cli_made *made, cw_error *err)
 {
     cw_status st = cli_hold_pieces(&s->pieces, s->threads, err);
     if (st == CW_OK)
@@ -386,9 +386,9 @@ static cw_status finish(run_state *s, cli_made *made, cw_error *err)
     if (st == CW_OK)
         st = shade_mesh(s, err);
     if (st == CW_OK && s->args->lod.count)
-        st = order(s, err);
+        st = order_for_drawing(s, err);
     if (st == CW_OK)
-        st = deliver(s, err);
+        st = deliver_result(s, err);
     if (st != CW_OK)
         made->error = *err;
     return st;
@@ -439,7 +439,7 @@ static cw_status make_levels(run_state *s, cw_error *err)
             return st;
         tell_missed(s, s->args->lod.n[n], s->lod[n].triangle_count);
         s->pieces.piece->out = s->lod[n];
-        st = finish(s, made, err);
+        st = finish_result(s, made, err);
         s->lod[n] = s->pieces.piece->out;
         s->pieces.piece->out = (cw_mesh){0};
         s->start = cli_seconds();
@@ -447,8 +447,9 @@ static cw_status make_levels(run_state *s, cw_error *err)
     return st == CW_OK && s->outputs.count > count ? deliver_levels(s, err) : st;
 }
 
-static cw_status pipeline(run_state *s, cw_error *err)
+static cw_status simplify_mesh(void *state, cw_error *err)
 {
+    run_state *s = state;
     cw_status st = check_args(s, err);
     if (st == CW_OK)
         st = read_inputs(s, err);
@@ -458,7 +459,7 @@ static cw_status pipeline(run_state *s, cw_error *err)
         return make_levels(s, err);
     cli_made *made = cli_report_next(&s->report, s->outputs.path[0], 0);
     st = simplify_parts(s, err);
-    return st == CW_OK ? finish(s, made, err) : st;
+    return st == CW_OK ? finish_result(s, made, err) : st;
 }
 
 static void free_state(run_state *s)
@@ -469,7 +470,6 @@ static void free_state(run_state *s)
     cli_free_mesh(&s->mesh);
     cli_free_volume(&s->source);
     cli_free_outputs(&s->outputs);
-    cli_report_free(&s->report);
 }
 
 cw_status cli_run_simplify(void *p, cw_error *err)
@@ -481,13 +481,13 @@ cw_status cli_run_simplify(void *p, cw_error *err)
     s.report.params = put_params;
     s.report.facts = put_facts;
     s.report.args = &s;
-    cli_console_start(&args->common, (cli_progress_mode)args->progress);
-    if (args->json && strcmp(args->json, "-") == 0)
-        cli_results_to_stderr();
-    cw_status st = cli_report_reserve(&s.report, args->lod.count + 1, err);
-    if (st == CW_OK)
-        st = pipeline(&s, err);
-    st = cli_report_write(&s.report, st, err);
+    const cli_run run = {.common = &args->common,
+                         .progress = args->progress,
+                         .json = args->json,
+                         .meshes = args->lod.count + 1,
+                         .body = simplify_mesh,
+                         .state = &s};
+    cw_status st = cli_run_reported(&run, &s.report, err);
     free_state(&s);
     return st;
 }

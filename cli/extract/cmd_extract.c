@@ -339,8 +339,9 @@ static cw_status plan_steps(cli_extract_run *s, cw_error *err)
     return st == CW_OK ? plan_frames(s, err) : st;
 }
 
-static cw_status run_pipeline(cli_extract_run *s, cw_error *err)
+static cw_status extract_surfaces(void *state, cw_error *err)
 {
+    cli_extract_run *s = state;
     size_t empty = 0;
     cw_status st = cli_extract_check_args(s, err);
     if (st == CW_OK)
@@ -368,13 +369,12 @@ static cw_status run_extract(void *p, cw_error *err)
     s.report.params = cli_extract_put_params;
     s.report.facts = cli_extract_put_series;
     s.report.args = &s;
-    cli_console_start(&args->common, (cli_progress_mode)args->progress);
-    if (args->json && strcmp(args->json, "-") == 0)
-        cli_results_to_stderr();
-    cw_status st = cli_report_reserve(&s.report, 1, err);
-    if (st == CW_OK)
-        st = run_pipeline(&s, err);
-    st = cli_report_write(&s.report, st, err);
+    const cli_run run = {.common = &args->common,
+                         .progress = args->progress,
+                         .json = args->json,
+                         .body = extract_surfaces,
+                         .state = &s};
+    cw_status st = cli_run_reported(&run, &s.report, err);
     for (size_t n = 0; n < s.view_count; n++)
         cw_simplify_view_free(s.views + n);
     cw_extractor_free(s.extractor);
@@ -382,7 +382,6 @@ static cw_status run_extract(void *p, cw_error *err)
     cli_free_volume(&s.volume);
     cli_free_outputs(&s.outputs);
     cli_free_series(&s.series);
-    cli_report_free(&s.report);
     return st;
 }
 

@@ -99,9 +99,10 @@ void cli_say_error(const char *message)
     fputc('\n', stderr);
 }
 
-void cli_results_to_stderr(void)
+void cli_console_reserve_stdout(const char *output)
 {
-    console.results_to_stderr = true;
+    if (output && strcmp(output, "-") == 0)
+        console.results_to_stderr = true;
 }
 
 void cli_result(const char *format, ...)

@@ -11,8 +11,11 @@ typedef enum cli_progress_mode {
     CLI_PROGRESS_NONE,
 } cli_progress_mode;
 
-/* How loud to be: from the common options. Call once, before anything is printed. */
+/* Sets how loud to be, from the common options. Call it before anything is printed. */
 void cli_console_start(const cli_common *common, cli_progress_mode mode);
+
+/* Sends results to stderr when a machine-readable output, such as --json -, goes to stdout. */
+void cli_console_reserve_stdout(const char *output);
 
 /* To stderr: always unless quiet; only with -v; only with -vv. */
 void cli_say(const char *format, ...) CW_PRINTF(1, 2);
@@ -22,8 +25,7 @@ void cli_say_vv(const char *format, ...) CW_PRINTF(1, 2);
 /* The one line of an error, on stderr, in red on a terminal. */
 void cli_say_error(const char *message);
 
-/* To stdout, unless quiet; to stderr after cli_results_to_stderr(), when stdout is for JSON. */
-void cli_results_to_stderr(void);
+/* Prints to stdout, unless quiet; to stderr when stdout is reserved. */
 void cli_result(const char *format, ...) CW_PRINTF(1, 2);
 
 /* A desc's progress: draws the bar, whose rate counts units (such as "Mvoxel") of total, and

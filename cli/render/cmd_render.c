@@ -39,8 +39,7 @@ static cw_status run_render(void *p, cw_error *err)
     const render_args *args = p;
     const double start = cli_seconds();
     cli_pictures pictures = {.command = &cli_render, .args = args, .start = start};
-    if (args->json && strcmp(args->json, "-") == 0)
-        cli_results_to_stderr();
+    cli_console_reserve_stdout(args->json);
     cw_status st = cli_check_pictures(args, err);
     const bool writable = st == CW_OK; /* a report, too, is checked before it is written */
     if (st == CW_OK)

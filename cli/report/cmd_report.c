@@ -295,11 +295,6 @@ static cw_status run_pipeline(run_state *s, cw_error *err)
     return st;
 }
 
-static bool is_stdout(const char *path)
-{
-    return path && strcmp(path, "-") == 0;
-}
-
 static cw_status run_report_command(void *p, cw_error *err)
 {
     report_args *args = p;
@@ -311,8 +306,9 @@ static cw_status run_report_command(void *p, cw_error *err)
     s->study.is_field = access(args->common.inputs[0], F_OK) != 0 &&
                         cw_field_find(args->common.inputs[0], &s->study.field);
     cli_console_start(&args->common, (cli_progress_mode)args->progress);
-    if (is_stdout(args->output) || is_stdout(args->json) || is_stdout(args->csv))
-        cli_results_to_stderr();
+    cli_console_reserve_stdout(args->output);
+    cli_console_reserve_stdout(args->json);
+    cli_console_reserve_stdout(args->csv);
     cw_status st = run_pipeline(s, err);
     cli_study_free(&s->study);
     cli_free_volume(&s->volume);

@@ -39,12 +39,6 @@ cw_status cli_report_reserve(cli_report *report, size_t meshes, cw_error *err)
     return CW_OK;
 }
 
-void cli_report_free(cli_report *report)
-{
-    free(report->made);
-    free(report->steps);
-}
-
 cli_made *cli_report_next(cli_report *report, const char *path, double iso)
 {
     cli_made *made = &report->made[report->made_count++];
@@ -407,7 +401,8 @@ cw_status cli_report_make(const char *path, void (*put)(FILE *out, const void *w
     return st;
 }
 
-cw_status cli_report_write(const cli_report *report, cw_status status, cw_error *err)
+/* Writes the report of a run that ended with this status, and returns the one to end with. */
+static cw_status write_report(const cli_report *report, cw_status status, cw_error *err)
 {
     char *text;
     size_t size;
@@ -425,5 +420,18 @@ cw_status cli_report_write(const cli_report *report, cw_status status, cw_error 
         return status;
     if (st != CW_OK)
         *err = why;
+    return st;
+}
+
+cw_status cli_run_reported(const cli_run *run, cli_report *report, cw_error *err)
+{
+    cli_console_start(run->common, (cli_progress_mode)run->progress);
+    cli_console_reserve_stdout(run->json);
+    cw_status st = cli_report_reserve(report, run->meshes ? run->meshes : 1, err);
+    if (st == CW_OK)
+        st = run->body(run->state, err);
+    st = write_report(report, st, err);
+    free(report->made);
+    free(report->steps);
     return st;
 }

@@ -106,9 +106,8 @@ typedef struct cli_report {
 
 enum { CLI_MOST_STEPS = 8 }; /* of one mesh */
 
-/* Room for so many meshes; before the first step, or for more. CW_ERR_NO_MEMORY */
+/* Grows the capacity to that many meshes, before their first step. CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cli_report_reserve(cli_report *report, size_t meshes, cw_error *err);
-void cli_report_free(cli_report *report);
 
 /* What meshes have and formats may not keep, by name; places are told by a warning
  * of theirs. */
@@ -128,10 +127,20 @@ void cli_report_end(cli_report *report, const char *name, size_t in, size_t out)
 /* Says it of the latest mesh on stderr, unless quiet, and keeps it for the report. */
 void cli_report_warn(cli_report *report, const char *format, ...) CW_PRINTF(2, 3);
 
-/* Writes the report of a run that ended so, if one was asked for. Returns that status, or why
- * the report could not be written when the run itself went well. */
-CW_NODISCARD cw_status cli_report_write(const cli_report *report, cw_status status,
-                                        cw_error *err);
+/* A run of a command that makes or checks meshes. */
+typedef struct cli_run {
+    const cli_common *common;
+    int progress;     /* cli_progress_mode */
+    const char *json; /* of the command line; the body sets report->path once it is checked */
+    size_t meshes;    /* the report begins with capacity for these; default: 1 */
+    cw_status (*body)(void *state, cw_error *err);
+    void *state; /* of the body */
+} cli_run;
+
+/* Starts the console, runs the body, writes the report if it has a path, and frees the report.
+ * Returns the status of the body, or why the report could not be written when the body
+ * succeeded. */
+CW_NODISCARD cw_status cli_run_reported(const cli_run *run, cli_report *report, cw_error *err);
 
 /* Writes the text of a report to a file, or the standard output for "-". CW_ERR_OUTPUT */
 CW_NODISCARD cw_status cli_report_save(const char *path, const char *text, size_t size,
