@@ -29,7 +29,7 @@ static cw_status measure_by_field(const cli_bench *b, const cw_mesh *mesh, cli_b
         .leave_open = true,
         .threads = b->threads,
         .progress = cli_progress((double)mesh->vertex_count / 1e6, "Mvertex")};
-    cli_vertex_errors *at = &row->at_vertices;
+    cw_field_vertex_error *at = &row->at_vertices;
     float *mm = cwi_alloc_array(mesh->vertex_count, sizeof *mm);
     cw_distance d;
     if (!mm)
@@ -57,9 +57,14 @@ static cw_status measure_truth(const cli_bench *b, const cw_mesh *mesh, cli_benc
     if (st == CW_OK && c->path) {
         st = measure_by_field(b, cli_sampled(&sample, mesh), row, err);
     } else if (st == CW_OK) {
-        row->at_vertices = cli_measure_vertices(c->field, c->iso, c->voxel_mm, mesh, one_of);
-        row->surface =
-            cli_measure_truth(c->field, c->iso, c->voxel_mm, cli_sampled(&sample, mesh));
+        cw_field_error e;
+        st = cw_field_measure_vertices(c->field, c->iso, c->voxel_mm, mesh, one_of,
+                                       &row->at_vertices, err);
+        if (st == CW_OK)
+            st = cw_field_measure(c->field, c->iso, c->voxel_mm, cli_sampled(&sample, mesh), &e,
+                                  err);
+        if (st == CW_OK)
+            row->surface = (cli_gap){e.samples > 0, e.max_mm, e.rms_mm, e.p99_mm};
     }
     cli_free_sample(&sample);
     return st;
@@ -115,7 +120,7 @@ static cw_status pass_over(const cli_bench *b, cli_bench_row *row, cw_status st,
         return st;
     row->status =
         !row->is_peer && st == CW_ERR_UNSUPPORTED ? CLI_BENCH_LEFT_OUT : CLI_BENCH_FAILED;
-    row->at_vertices = (cli_vertex_errors){0};
+    row->at_vertices = (cw_field_vertex_error){0};
     row->surface = (cli_gap){0};
     row->moved = false;
     snprintf(row->why, sizeof row->why, "%s", err->message + (named ? folder + 1 : 0));

@@ -48,10 +48,10 @@ typedef struct cli_bench_row {
     double ratio;   /* of a peer: its median by that of our row `against`; 0: none */
     const char *against;
     size_t peak_bytes, vertices, triangles, file_bytes;
-    size_t worked_on;              /* triangles: of the result, or of what was simplified */
-    cli_vertex_errors at_vertices; /* to the case's surface; of a file without angles */
-    cli_gap surface;               /* likewise, of points all over the triangles */
-    bool moved;                    /* of compression: how far vertices were */
+    size_t worked_on;                  /* triangles: of the result, or of what was simplified */
+    cw_field_vertex_error at_vertices; /* to the case's surface; of a file without angles */
+    cli_gap surface;                   /* likewise, of points all over the triangles */
+    bool moved;                        /* of compression: how far vertices were */
     double moved_mean_mm, moved_max_mm;
     size_t open_edges, nonmanifold_edges, nonmanifold_vertices, zero_area;
 } cli_bench_row;

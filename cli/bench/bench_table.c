@@ -72,7 +72,7 @@ static void tell_defects(const cli_bench_row *r)
 static void tell_row(const cli_bench_row *r)
 {
     char name[96];
-    const cli_vertex_errors *v = &r->at_vertices;
+    const cw_field_vertex_error *v = &r->at_vertices;
     snprintf(name, sizeof name, "%s, %s", r->who, r->setting);
     if (r->status != CLI_BENCH_DONE) {
         cli_result("  %-38s %s: %s\n", name, cli_bench_status_names[r->status], r->why);
@@ -131,7 +131,7 @@ static void put_case(FILE *out, const cli_bench_case *c)
 static void put_row(FILE *out, const cli_bench_case *c, const cli_bench_row *r)
 {
     const bool done = r->status == CLI_BENCH_DONE, missed = r->at_vertices.missed > 0;
-    const cli_vertex_errors *v = &r->at_vertices;
+    const cw_field_vertex_error *v = &r->at_vertices;
     put_case(out, c);
     fprintf(out, ",%zu,%zu,%zu,%s,%s,", c->dim[0], c->dim[1], c->dim[2],
             cli_number_text(c->iso), work_names[r->work]);
@@ -179,7 +179,7 @@ void cli_bench_put_csv(FILE *out, const void *bench)
 
 static void json_errors(cli_json *j, const cli_bench_row *r)
 {
-    const cli_vertex_errors *v = &r->at_vertices;
+    const cw_field_vertex_error *v = &r->at_vertices;
     cli_json_open(j, "vertices_off", '{');
     cli_json_count(j, "measured", v->count);
     cli_json_count(j, "missed", v->missed);

@@ -3,7 +3,6 @@
 #include "cli/framework/quantity.h"
 #include "cli/inputs/extract_surface.h"
 #include "cli/inputs/mesh_input.h"
-#include "cli/inputs/missing_components.h"
 #include "cli/results/check_verdicts.h"
 #include "cli/results/output_names.h"
 #include "cli/results/run_report.h"
@@ -269,7 +268,7 @@ static cw_status part_missing(run_state *s, cw_mesh *surface, const cw_mesh_dist
     const double *spacing = s->volume.spacing;
     const double near = 0.25 * cbrt(spacing[0] * spacing[1] * spacing[2]);
     float *distance = calloc(surface->vertex_count + 1, sizeof *distance);
-    cli_missing missing = {0};
+    cw_drop_counts missing = {0};
     cw_status st = distance ? CW_OK
                             : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu distances",
                                       surface->vertex_count);
@@ -278,12 +277,11 @@ static cw_status part_missing(run_state *s, cw_mesh *surface, const cw_mesh_dist
     for (size_t v = 0; st == CW_OK && v < surface->vertex_count; v++)
         distance[v] = fabsf(distance[v]);
     if (st == CW_OK)
-        st = cli_drop_missing(surface, distance, fmax(near, s->findings.tolerance_mm), &missing,
-                              err);
+        st = cw_mesh_drop_distant(surface, distance, fmax(near, s->findings.tolerance_mm),
+                                  &missing, &s->findings.missing_mm, err);
     free(distance);
-    s->findings.missing = missing.count;
+    s->findings.missing = missing.dropped;
     s->findings.missing_mm3 = missing.largest_mm3;
-    s->findings.missing_mm = missing.max_mm;
     return st;
 }
 

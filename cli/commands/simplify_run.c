@@ -317,7 +317,8 @@ static cw_status measure_error(run_state *s, cli_made *made, cw_error *err)
         st = st == CW_OK ? st : cwi_fail_in(err, st, s->mesh.path);
     }
     if (st == CW_OK)
-        cli_report_end(&s->report, "measure", c->from_input.triangles, c->to_input.triangles);
+        cli_report_end(&s->report, "measure", c->with_input.from_reference.triangles,
+                       c->with_input.to_reference.triangles);
     return st;
 }
 
@@ -413,8 +414,8 @@ static cw_status deliver_levels(run_state *s, cw_error *err)
             .mesh = &s->lod[n],
             .name = names[n],
             .level = n,
-            .max_error_mm = fmax(c->to_input.max_mm, c->from_input.max_mm),
-            .rms_error_mm = cli_both_rms(c),
+            .max_error_mm = cw_mesh_comparison_max(&c->with_input),
+            .rms_error_mm = cw_mesh_comparison_rms(&c->with_input),
         };
     }
     cw_status st = deliver_parts(s, parts, count, true, err);

@@ -48,7 +48,6 @@ cw_status cli_prove_error(const cli_volume *volume, const cli_wanted *wanted,
                           cli_proof *proof, cli_comparison *compared, cw_error *err)
 {
     const double promised = simplify->error_mm;
-    double area[2] = {0, 0};
     cw_mesh full;
     cw_status st = cli_extract_full(volume, wanted, proof, &full, err);
     if (st != CW_OK)
@@ -56,13 +55,13 @@ cw_status cli_prove_error(const cli_volume *volume, const cli_wanted *wanted,
     compared->promised_mm = proof->promised_mm = promised;
     compared->diagonal_mm = diagonal_of(&full);
     compared->other = "the full surface";
-    st = cli_compare(mesh, &full, promised / 20, simplify->threads, compared, area, err);
+    st = cli_compare(mesh, &full, promised / 20, simplify->threads, compared, err);
     if (st == CW_OK && compared->has_field)
         st = measure_full(volume, wanted, simplify->threads, &full, compared, err);
     cw_mesh_free(&full);
     if (st != CW_OK)
         return cwi_fail_in(err, st, volume->path);
-    proof->mm = fmax(compared->to_input.max_mm, compared->from_input.max_mm);
+    proof->mm = cw_mesh_comparison_max(&compared->with_input);
     if (proof->mm <= promised || promised == 0)
         return CW_OK;
     return cw_fail(

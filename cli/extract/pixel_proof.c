@@ -86,45 +86,12 @@ cw_status cli_read_views(const cli_pixel_args *args, cw_simplify_view *views, si
 
 /* --- before the surface is made ----------------------------------------------------------- */
 
-static void corner_of(const cli_volume *volume, int corner, double world[3])
-{
-    const cw_volume *v = &volume->view;
-    double index[3];
-    for (int a = 0; a < 3; a++) {
-        index[a] = corner >> a & 1 ? (double)(v->dim[a] - 1) : 0;
-        world[a] = corner >> a & 1 ? volume->grid.high[a] : volume->grid.low[a];
-    }
-    if (!v->cells)
-        cw_volume_to_world(v, index, world);
-}
-
-/* At a corner's depth, on the axis: there any camera sees. */
-static cw_status error_at(const cw_simplify_view *view, double pixels, const double corner[3],
-                          double *error_mm, cw_error *err)
-{
-    cw_simplify_view bare = *view;
-    double axes[3][3], depth = 0, point[3];
-    bare.depth = NULL;
-    cw_status st = cw_camera_axes(&view->camera, axes[0], axes[1], axes[2], err);
-    for (int a = 0; a < 3; a++)
-        depth += axes[2][a] * (corner[a] - view->camera.eye[a]);
-    for (int a = 0; a < 3; a++)
-        point[a] = view->camera.eye[a] + fmax(depth, 0) * axes[2][a];
-    return st == CW_OK ? cw_simplify_view_error(&bare, pixels, point, error_mm, err) : st;
-}
-
 cw_status cli_widest_error(const cli_volume *volume, const cw_simplify_view *views,
                            size_t count, double pixels, double *error_mm, cw_error *err)
 {
-    cw_status st = CW_OK;
-    *error_mm = 0;
-    for (size_t n = 0; n < 8 * count && st == CW_OK; n++) {
-        double corner[3], here = 0;
-        corner_of(volume, (int)(n % 8), corner);
-        st = error_at(views + n / 8, pixels, corner, &here, err);
-        *error_mm = isfinite(here) ? fmax(*error_mm, here) : *error_mm;
-    }
-    return st;
+    double corners[8][3];
+    cw_volume_corners(&volume->view, corners);
+    return cw_simplify_views_error(views, count, pixels, corners[0], 8, error_mm, err);
 }
 
 typedef struct drawn {
@@ -170,75 +137,15 @@ cw_status cli_draw_views(const cli_volume *volume, const cli_wanted *wanted,
 
 /* --- what no view sees -------------------------------------------------------------------- */
 
-enum { BRICK = 8, AROUND = 2 };
-
-/* Corners of the brick's cells that the volume has. */
-static void place_brick(const cw_volume *v, const size_t first[3], double points[8][3])
-{
-    for (int n = 0; n < 8; n++) {
-        double index[3];
-        for (int a = 0; a < 3; a++) {
-            const size_t end = first[a] + BRICK < v->dim[a] ? first[a] + BRICK : v->dim[a] - 1;
-            index[a] = (double)(n >> a & 1 ? end : first[a]);
-        }
-        cw_volume_to_world(v, index, points[n]);
-    }
-}
-
-static cw_status see_brick(const cw_simplify_view *views, size_t count, double points[8][3],
-                           bool *seen, cw_error *err)
-{
-    cw_status st = CW_OK;
-    *seen = false;
-    for (size_t n = 0; n < count && st == CW_OK && !*seen; n++) {
-        cw_simplify_view bare = views[n];
-        bare.depth = NULL;
-        st = cw_simplify_view_sees(&bare, 1, points[0], 8, seen, err);
-    }
-    return st;
-}
-
-static cw_status find_seen(const cw_volume *v, const cw_simplify_view *views, size_t count,
-                           size_t low[3], size_t high[3], cw_error *err)
-{
-    size_t at[3];
-    cw_status st = CW_OK;
-    for (int a = 0; a < 3; a++) {
-        low[a] = SIZE_MAX;
-        high[a] = 0;
-    }
-    for (at[2] = 0; at[2] + 1 < v->dim[2]; at[2] += BRICK)
-        for (at[1] = 0; at[1] + 1 < v->dim[1]; at[1] += BRICK)
-            for (at[0] = 0; at[0] + 1 < v->dim[0] && st == CW_OK; at[0] += BRICK) {
-                double points[8][3];
-                bool seen;
-                place_brick(v, at, points);
-                st = see_brick(views, count, points, &seen, err);
-                for (int a = 0; a < 3 && seen; a++) {
-                    low[a] = at[a] < low[a] ? at[a] : low[a];
-                    high[a] = at[a] + BRICK > high[a] ? at[a] + BRICK : high[a];
-                }
-            }
-    return st;
-}
-
 cw_status cli_seen_part(const cli_volume *volume, const cw_simplify_view *views, size_t count,
                         cli_volume *part, cw_error *err)
 {
     const cw_volume *v = &volume->view;
-    size_t low[3], high[3];
     cw_box box;
     *part = *volume;
     if (cwi_volume_expect_dense(v, "bricks", NULL) != CW_OK)
         return CW_OK;
-    cw_status st = find_seen(v, views, count, low, high, err);
-    if (st == CW_OK && low[0] == SIZE_MAX)
-        st = cw_fail(err, CW_ERR_EMPTY, "no camera sees anything of the volume");
-    for (int a = 0; a < 3 && st == CW_OK; a++) {
-        box.first[a] = low[a] > AROUND ? low[a] - AROUND : 0;
-        const size_t end = high[a] + AROUND + 1;
-        box.count[a] = (end < v->dim[a] ? end : v->dim[a]) - box.first[a];
-    }
+    cw_status st = cw_simplify_views_box(v, views, count, &box, err);
     if (st == CW_OK)
         st = cw_volume_crop(v, &box, &part->view, err);
     return st == CW_OK ? st : cwi_fail_in(err, st, volume->path);
@@ -256,22 +163,6 @@ cw_status cli_cull(const cli_volume *volume, const cw_simplify_view *views, size
 
 /* --- the proof ---------------------------------------------------------------------------- */
 
-/* The largest distance around each vertex in pixels of the view, where it sees the vertex. */
-static cw_status measure_view(const cw_simplify_view *view, const cw_mesh *m,
-                              const float *worst, double *most, cw_error *err)
-{
-    cw_status st = CW_OK;
-    for (size_t v = 0; v < m->vertex_count && st == CW_OK; v++) {
-        const float *p = m->positions + 3 * v;
-        const double world[3] = {m->origin[0] + (double)p[0], m->origin[1] + (double)p[1],
-                                 m->origin[2] + (double)p[2]};
-        double pixel = INFINITY;
-        st = cw_simplify_view_error(view, 1, world, &pixel, err);
-        *most = fmax(*most, (double)worst[v] / pixel);
-    }
-    return st;
-}
-
 static cw_status measure_distance(const cw_mesh *from, const cw_mesh *to,
                                   const cw_simplify_desc *d, cli_proof *proof, double *most_mm,
                                   cw_error *err)
@@ -283,8 +174,11 @@ static cw_status measure_distance(const cw_mesh *from, const cw_mesh *to,
     cw_status st = worst ? cw_distance_to_mesh(from, to, &how, &distance, NULL, err)
                          : cw_fail(err, CW_ERR_NO_MEMORY, "no memory to measure %zu vertices",
                                    from->vertex_count);
-    for (size_t n = 0; n < d->view_count && st == CW_OK; n++)
-        st = measure_view(d->views + n, from, worst, &proof->views[n].pixels, err);
+    for (size_t n = 0; n < d->view_count && st == CW_OK; n++) {
+        double pixels;
+        st = cw_simplify_view_distance(d->views + n, from, worst, &pixels, err);
+        proof->views[n].pixels = fmax(proof->views[n].pixels, pixels);
+    }
     if (st == CW_OK)
         *most_mm = fmax(*most_mm, distance.max_mm);
     cwi_free(worst);
@@ -313,20 +207,6 @@ static cw_status draw_picture(const cw_simplify_view *view, const cw_mesh *mesh,
     return st;
 }
 
-static size_t count_apart(const cw_image *a, const cw_image *b)
-{
-    size_t apart = 0;
-    for (size_t n = 0; n < a->width * a->height; n++) {
-        int most = 0;
-        for (size_t k = 0; k < 3; k++) {
-            const int d = abs((int)a->pixels[4 * n + k] - (int)b->pixels[4 * n + k]);
-            most = d > most ? d : most;
-        }
-        apart += most > SHOWN;
-    }
-    return apart;
-}
-
 static cw_status compare_pictures(const cw_simplify_view *view, const cw_mesh *full,
                                   const cw_mesh *mesh, int threads, cli_view_proof *proof,
                                   cw_error *err)
@@ -335,8 +215,11 @@ static cw_status compare_pictures(const cw_simplify_view *view, const cw_mesh *f
     cw_status st = draw_picture(view, full, threads, &a, err);
     if (st == CW_OK)
         st = draw_picture(view, mesh, threads, &b, err);
+    size_t differ = 0;
     if (st == CW_OK)
-        proof->apart = (double)count_apart(&a, &b) / (double)(a.width * a.height);
+        st = cw_image_compare(&a, &b, SHOWN, &differ, err);
+    if (st == CW_OK)
+        proof->apart = (double)differ / (double)(a.width * a.height);
     cw_image_free(&a);
     cw_image_free(&b);
     return st;

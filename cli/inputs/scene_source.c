@@ -1,7 +1,6 @@
 #include "cli/inputs/scene_source.h"
 
 #include "cli/framework/console.h"
-#include "cli/inputs/densify.h"
 #include "cli/inputs/mesh_input.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
@@ -71,8 +70,8 @@ cw_status cli_need_drawable(cli_source *source, const cli_input *input, cw_error
     const cw_volume *v = &source->volume.view;
     cw_status st = CW_OK;
     if (v->sparse && !source->dense.data) {
-        st = cli_make_dense(v, input->max_voxels ? input->max_voxels : DENSE_VOXELS,
-                            &source->dense, err);
+        st = cw_volume_densify(v, input->max_voxels ? input->max_voxels : DENSE_VOXELS,
+                               &source->dense, err);
         if (st == CW_OK)
             cli_say("%s: a sparse grid, drawn as a dense one of %zu x %zu x %zu voxels",
                     source->volume.path, v->dim[0], v->dim[1], v->dim[2]);

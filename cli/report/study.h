@@ -162,20 +162,6 @@ CW_NODISCARD cw_status cli_weigh_mesh(cli_study *study, const cw_mesh *mesh,
                                       const cw_write_desc *desc, size_t *bytes,
                                       const char **path, cw_error *err);
 
-/* The distance to a field's surface, known on paper, along its gradient. */
-cli_gap cli_measure_truth(cw_field field, double iso, double voxel_mm, const cw_mesh *mesh);
-
-/* The same of vertices: every so many-th. Angles are between the lines of its normals and of
- * the surface's. */
-typedef struct cli_vertex_errors {
-    size_t count, missed; /* measured; without a surface that is reached */
-    double mean_mm, max_mm;
-    bool has_normals;
-    double mean_deg, max_deg;
-} cli_vertex_errors;
-cli_vertex_errors cli_measure_vertices(cw_field field, double iso, double voxel_mm,
-                                       const cw_mesh *mesh, size_t one_of);
-
 /* A picture of a mesh (from where all of another is seen), as a PNG in memory, in colours of
  * the distance at each vertex: from 0.001 to 1 voxel, by the logarithm. */
 CW_NODISCARD cw_status cli_draw_errors(cli_study *study, const cw_mesh *around,

@@ -145,8 +145,11 @@ static cw_status measure_sample(cli_study *s, cli_point *p, const cw_mesh *mesh,
 {
     const cw_mesh *measured = cli_sampled(sample, mesh);
     cw_status st = measure_field(s, p, measured, measured == mesh ? worst : NULL, err);
-    if (st == CW_OK && s->is_field)
-        p->truth = cli_measure_truth(s->field, s->iso, s->voxel_mm, measured);
+    if (st == CW_OK && s->is_field) {
+        cw_field_error e;
+        st = cw_field_measure(s->field, s->iso, s->voxel_mm, measured, &e, err);
+        p->truth = (cli_gap){e.samples > 0, e.max_mm, e.rms_mm, e.p99_mm};
+    }
     return st == CW_OK && worst && measured != mesh ? measure_middles(s, p, mesh, worst, err)
                                                     : st;
 }

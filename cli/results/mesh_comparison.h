@@ -5,25 +5,17 @@
 #include "cli/results/run_report.h"
 
 /* Measures a mesh and the one it was made of, both ways, and adds that to what was measured of
- * other parts: `area_mm2` is of those. Errors do not name a file.
+ * other parts. Errors do not name a file.
  * tolerance_mm  as in cw_mesh_distance_desc */
 CW_NODISCARD cw_status cli_compare(const cw_mesh *mesh, const cw_mesh *input,
                                    double tolerance_mm, int threads, cli_comparison *sum,
-                                   double area_mm2[2], cw_error *err);
+                                   cw_error *err);
 
 /* Measures how far a mesh is from the surface of a volume's field; of several the farthest is
  * kept. Errors do not name a file. */
 CW_NODISCARD cw_status cli_compare_with_field(const cw_mesh *mesh, const cli_volume *volume,
                                               double iso, bool inside_is_low, int threads,
                                               cli_comparison *c, cw_error *err);
-
-/* The root of the mean of the squares both ways. */
-double cli_both_rms(const cli_comparison *c);
-
-/* Fails, naming the first thing, when a mesh has not the components, handles and borders of the
- * one it was made of, or more flaws. Both were measured with CW_WELD_LOCAL. */
-CW_NODISCARD cw_status cli_hold_to_topology(const cw_quality *before, const cw_quality *after,
-                                            cw_error *err);
 
 /* Fails when the volume's box and that of the mesh have nothing in common. */
 CW_NODISCARD cw_status cli_check_place(const cli_volume *volume, const cw_mesh *mesh,

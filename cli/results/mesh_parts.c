@@ -104,20 +104,21 @@ cw_status cli_hold_pieces(const cli_pieces *p, int threads, cw_error *err)
         cw_quality after;
         st = cw_quality_measure(&p->piece[n].out, &desc, &after, err);
         if (st == CW_OK)
-            st = cli_hold_to_topology(&p->piece[n].before, &after, err);
+            st = cw_quality_compare(&p->piece[n].before, &after, err);
+        if (st == CW_ERR_CHECK)
+            st = cwi_fail_in(err, st, "not as promised");
     }
     return in_file(p, st, err);
 }
 
 cw_status cli_compare_pieces(const cli_pieces *p, int threads, cli_comparison *c, cw_error *err)
 {
-    double area[2] = {0, 0};
     cw_status st = CW_OK;
     c->diagonal_mm = p->diagonal_mm;
     for (size_t n = 0; n < p->count && st == CW_OK; n++)
         st = cli_compare(&p->piece[n].out, &p->piece[n].input, c->promised_mm / 100, threads, c,
-                         area, err);
-    const double most = fmax(c->to_input.max_mm, c->from_input.max_mm);
+                         err);
+    const double most = cw_mesh_comparison_max(&c->with_input);
     if (st == CW_OK && c->promised_mm > 0 && most > c->promised_mm)
         st = cw_fail(err, CW_ERR_CHECK,
                      "not as promised: %.6g mm from the input, not %.6g; nothing is written",

@@ -166,9 +166,10 @@ static void put_snap(cli_json *j, const cw_snap_counts *c)
 
 static void put_comparison(cli_json *j, const cli_comparison *c)
 {
-    cli_json_errors(j, &(cw_findings){.to_field = c->has_field ? &c->to_field : NULL,
-                                      .to_reference = c->made ? &c->to_input : NULL,
-                                      .from_reference = c->made ? &c->from_input : NULL});
+    cli_json_errors(
+        j, &(cw_findings){.to_field = c->has_field ? &c->to_field : NULL,
+                          .to_reference = c->made ? &c->with_input.to_reference : NULL,
+                          .from_reference = c->made ? &c->with_input.from_reference : NULL});
 }
 
 static void put_views(cli_json *j, const cli_proof *p)

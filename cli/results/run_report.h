@@ -22,7 +22,7 @@ enum { CLI_MOST_WARNINGS = 3 }; /* about one mesh */
 /* How far a mesh is from the one that it was made of, and that from it. */
 typedef struct cli_comparison {
     bool made, has_field; /* there are the first two, the third */
-    cw_distance to_input, from_input;
+    cw_mesh_comparison with_input;
     cw_distance to_field;
     bool has_full_field; /* that of what it was made of, by the same measure */
     cw_distance full_to_field;

@@ -98,7 +98,7 @@ typedef struct components {
     uint32_t *sets;
     float (*boxes)[6]; /* low, high */
     double *sizes;
-    bool *met;
+    bool *dropped, *met;
 } components;
 
 static void free_components(components *c)
@@ -106,6 +106,7 @@ static void free_components(components *c)
     cwi_free(c->sets);
     cwi_free(c->boxes);
     cwi_free(c->sizes);
+    cwi_free(c->dropped);
     cwi_free(c->met);
 }
 
@@ -114,8 +115,9 @@ static cw_status find_components(const cw_mesh *m, components *c, cw_error *err)
     c->sets = cwi_sets_alloc(m->vertex_count);
     c->boxes = cwi_alloc_array(m->vertex_count, sizeof *c->boxes);
     c->sizes = cwi_alloc_zeroed(m->vertex_count, sizeof *c->sizes);
+    c->dropped = cwi_alloc_zeroed(m->vertex_count, sizeof *c->dropped);
     c->met = cwi_alloc_zeroed(m->vertex_count, sizeof *c->met);
-    if (!c->sets || !c->boxes || !c->sizes || !c->met)
+    if (!c->sets || !c->boxes || !c->sizes || !c->dropped || !c->met)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for the components of %zu vertices",
                        m->vertex_count);
     for (size_t t = 0; t < m->triangle_count; t++)
@@ -176,30 +178,36 @@ static void count_component(cw_drop_counts *n, double size, bool keep)
     n->largest_mm3 = fmax(n->largest_mm3, size);
 }
 
+static void drop_components(cw_mesh *mesh, components *c, cw_drop_counts *counts)
+{
+    size_t triangles = 0;
+    *counts = (cw_drop_counts){0};
+    for (size_t t = 0; t < mesh->triangle_count; t++) {
+        const uint32_t *corners = mesh->triangles + 3 * t;
+        const uint32_t set = cwi_sets_find(c->sets, corners[0]);
+        const bool keep = !c->dropped[set];
+        if (!c->met[set])
+            count_component(counts, c->sizes[set], keep);
+        c->met[set] = true;
+        counts->triangles += !keep;
+        if (keep)
+            memmove(mesh->triangles + 3 * triangles++, corners, 3 * sizeof *corners);
+    }
+    mesh->triangle_count = triangles;
+    drop_unused(mesh, c->sets);
+}
+
 static cw_status drop_smaller(cw_mesh *mesh, double least,
                               void (*measure)(const cw_mesh *m, components *c),
                               cw_drop_counts *counts, cw_error *err)
 {
     components c = {0};
-    size_t triangles = 0;
-    *counts = (cw_drop_counts){0};
     cw_status st = find_components(mesh, &c, err);
-    if (st == CW_OK)
-        measure(mesh, &c);
-    for (size_t t = 0; t < mesh->triangle_count && st == CW_OK; t++) {
-        const uint32_t *corners = mesh->triangles + 3 * t;
-        const uint32_t set = cwi_sets_find(c.sets, corners[0]);
-        const bool keep = c.sizes[set] >= least;
-        if (!c.met[set])
-            count_component(counts, c.sizes[set], keep);
-        c.met[set] = true;
-        counts->triangles += !keep;
-        if (keep)
-            memmove(mesh->triangles + 3 * triangles++, corners, 3 * sizeof *corners);
-    }
     if (st == CW_OK) {
-        mesh->triangle_count = triangles;
-        drop_unused(mesh, c.sets);
+        measure(mesh, &c);
+        for (size_t v = 0; v < mesh->vertex_count; v++)
+            c.dropped[v] = !(c.sizes[v] >= least);
+        drop_components(mesh, &c, counts);
     }
     free_components(&c);
     return st;
@@ -232,4 +240,34 @@ cw_status cw_mesh_drop_volumes(cw_mesh *mesh, double least_mm3, cw_drop_counts *
     return st == CW_OK
                ? drop_smaller(mesh, least_mm3, measure_volumes, counts ? counts : &own, err)
                : st;
+}
+
+cw_status cw_mesh_drop_distant(cw_mesh *mesh, const float *distance_mm, double limit_mm,
+                               cw_drop_counts *counts, double *farthest_mm, cw_error *err)
+{
+    components c = {0};
+    cw_drop_counts own;
+    double farthest = 0;
+    cw_status st = cw_mesh_check(mesh, err);
+    if (st == CW_OK && !(limit_mm >= 0))
+        st = cw_fail(err, CW_ERR_ARGUMENT, "limit_mm is %g; it must be 0 or more", limit_mm);
+    if (st == CW_OK)
+        st = find_components(mesh, &c, err);
+    if (st == CW_OK) {
+        measure_volumes(mesh, &c);
+        memset(c.dropped, true, mesh->vertex_count * sizeof *c.dropped);
+        for (uint32_t v = 0; v < mesh->vertex_count; v++)
+            if ((double)distance_mm[v] <= limit_mm)
+                c.dropped[cwi_sets_find(c.sets, v)] = false;
+        for (size_t n = 0; n < 3 * mesh->triangle_count; n++) {
+            const uint32_t v = mesh->triangles[n];
+            if (c.dropped[cwi_sets_find(c.sets, v)])
+                farthest = fmax(farthest, (double)distance_mm[v]);
+        }
+        drop_components(mesh, &c, counts ? counts : &own);
+    }
+    if (st == CW_OK && farthest_mm)
+        *farthest_mm = farthest;
+    free_components(&c);
+    return st;
 }

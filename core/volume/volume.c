@@ -380,6 +380,39 @@ void cw_volume_to_world(const cw_volume *volume, const double index[3], double w
         cwi_affine_apply(volume->affine[0], at, world);
 }
 
+/* The smallest box around the samples of an irregular grid. */
+static void find_box_of_cells(const cw_volume *v, double low[3], double high[3])
+{
+    for (int a = 0; a < 3; a++) {
+        low[a] = INFINITY;
+        high[a] = -INFINITY;
+    }
+    for (size_t n = 0; n < v->dim[0]; n++) {
+        double world[3];
+        cw_volume_to_world(v, v->cells->points + 3 * n, world);
+        for (int a = 0; a < 3; a++) {
+            low[a] = fmin(low[a], world[a]);
+            high[a] = fmax(high[a], world[a]);
+        }
+    }
+}
+
+void cw_volume_corners(const cw_volume *volume, double corners[8][3])
+{
+    double box[2][3];
+    if (volume->cells)
+        find_box_of_cells(volume, box[0], box[1]);
+    for (int n = 0; n < 8; n++) {
+        double index[3];
+        for (int a = 0; a < 3; a++)
+            index[a] = n >> a & 1 ? (double)volume->dim[a] - 1 : 0;
+        if (!volume->cells)
+            cw_volume_to_world(volume, index, corners[n]);
+        for (int a = 0; a < 3 && volume->cells; a++)
+            corners[n][a] = box[n >> a & 1][a];
+    }
+}
+
 cw_status cw_volume_to_index(const cw_volume *volume, const double world[3], double index[3],
                              cw_error *err)
 {

@@ -107,6 +107,31 @@ CW_NODISCARD CW_API cw_status cw_distance_to_mesh(const cw_mesh *mesh, const cw_
                                                   cw_distance *out, float *per_vertex,
                                                   cw_error *err);
 
+/* Two meshes compared both ways, as one or in parts. A zeroed struct compares nothing yet. */
+typedef struct cw_mesh_comparison {
+    cw_distance to_reference;   /* of the points of the mesh */
+    cw_distance from_reference; /* of the points of the reference */
+    double area_mm2, reference_area_mm2;
+} cw_mesh_comparison;
+
+/* Measures a mesh and its reference both ways, and adds that to what was compared before: parts
+ * of one surface, such as the parts of a file, are compared one after the other. Maxima and
+ * bounds are the largest of all parts, rms and mean are by area, and p99 is the largest of the
+ * parts', which bounds that of all.
+ *
+ * desc        as in cw_distance_to_mesh(); `worst` must be NULL
+ * comparison  zeroed before the first part; as it was on failure
+ * Returns     as cw_distance_to_mesh() */
+CW_NODISCARD CW_API cw_status cw_mesh_compare(const cw_mesh *mesh, const cw_mesh *reference,
+                                              const cw_mesh_distance_desc *desc,
+                                              cw_mesh_comparison *comparison, cw_error *err);
+
+/* The root of the mean of both squared rms: a symmetric distance. */
+CW_API double cw_mesh_comparison_rms(const cw_mesh_comparison *comparison);
+
+/* The larger of both maxima: the Hausdorff distance, as far as it was sampled. */
+CW_API double cw_mesh_comparison_max(const cw_mesh_comparison *comparison);
+
 #ifdef __cplusplus
 }
 #endif

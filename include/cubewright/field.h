@@ -3,6 +3,7 @@
 #ifndef CUBEWRIGHT_FIELD_H
 #define CUBEWRIGHT_FIELD_H
 
+#include <cubewright/mesh.h>
 #include <cubewright/volume.h>
 
 #ifdef __cplusplus
@@ -60,6 +61,43 @@ CW_API double cw_field_stored(cw_field field, cw_type type, double value);
  * The same bytes for the same desc, for any number of threads. */
 CW_NODISCARD CW_API cw_status cw_field_sample(const cw_field_desc *desc, cw_volume *volume,
                                               cw_error *err);
+
+/* How far the points of a mesh are from the exact surface { p : f(p) = isovalue } of a field,
+ * over its area. */
+typedef struct cw_field_error {
+    size_t samples, missed; /* points measured; points from which no surface was reached */
+    double max_mm, rms_mm;
+    double p99_mm; /* 99 % of the area is nearer; known to a thousandth of a voxel */
+} cw_field_error;
+
+/* Measures a mesh at its vertices and in the middle of its triangles. Each point walks along the
+ * field's gradient by Newton's method, in steps of at most a voxel, until it is on the surface.
+ *
+ * voxel_mm  the voxels that the mesh was made from: sets the steps
+ * mesh      borrowed
+ * out       zeroed on failure
+ * Returns   CW_ERR_ARGUMENT  an unknown field, isovalue not finite, voxel_mm not above 0, or as
+ *                            cw_mesh_check(); CW_ERR_NO_MEMORY */
+CW_NODISCARD CW_API cw_status cw_field_measure(cw_field field, double isovalue, double voxel_mm,
+                                               const cw_mesh *mesh, cw_field_error *out,
+                                               cw_error *err);
+
+/* Distances of vertices from that surface, and angles between their normals and its own. */
+typedef struct cw_field_vertex_error {
+    size_t count, missed; /* measured; without a surface that is reached */
+    double mean_mm, max_mm;
+    bool has_normals;
+    double mean_deg, max_deg; /* between lines: their directions do not matter */
+} cw_field_vertex_error;
+
+/* Measures every n-th vertex of a mesh, as cw_field_measure() does.
+ * every    n; 1: all vertices
+ * Returns  as cw_field_measure(), and CW_ERR_ARGUMENT for an `every` of 0 */
+CW_NODISCARD CW_API cw_status cw_field_measure_vertices(cw_field field, double isovalue,
+                                                        double voxel_mm, const cw_mesh *mesh,
+                                                        size_t every,
+                                                        cw_field_vertex_error *out,
+                                                        cw_error *err);
 
 #ifdef __cplusplus
 }

@@ -81,6 +81,20 @@ typedef struct cw_drop_counts {
 CW_NODISCARD CW_API cw_status cw_mesh_drop_volumes(cw_mesh *mesh, double least_mm3,
                                                    cw_drop_counts *counts, cw_error *err);
 
+/* Leaves out components none of whose vertices is within a distance of something else, and then
+ * vertices that no triangle names.
+ *
+ * mesh         in place, as in cw_mesh_weld()
+ * distance_mm  vertex_count: how far each vertex is, 0 or more
+ * limit_mm     a component stays when one of its vertices is no farther
+ * counts       as in cw_mesh_drop_volumes(); may be NULL
+ * farthest_mm  the largest distance of a vertex that went; 0: none went; may be NULL
+ * Returns      CW_ERR_ARGUMENT  limit_mm is negative or NaN, or as cw_mesh_check();
+ *              CW_ERR_NO_MEMORY */
+CW_NODISCARD CW_API cw_status cw_mesh_drop_distant(cw_mesh *mesh, const float *distance_mm,
+                                                   double limit_mm, cw_drop_counts *counts,
+                                                   double *farthest_mm, cw_error *err);
+
 /* A part of a surface that is made from one end to the other: what lies between two parallel
  * planes. Slabs that follow each other have the vertices in the plane between them in common:
  * the n-th with seam 2 in one is the n-th with seam 1 in the next, at the same place. */

@@ -68,6 +68,11 @@ CW_NODISCARD CW_API cw_status cw_picture_difference(const cw_picture *a, const c
 CW_NODISCARD CW_API cw_status cw_picture_split(const cw_picture *left, const cw_picture *right,
                                                double share, cw_picture *both, cw_error *err);
 
+/* Counts the pixels whose red, green or blue differ by more than a tolerance, of 255.
+ * Returns CW_ERR_ARGUMENT for images of different sizes. */
+CW_NODISCARD CW_API cw_status cw_image_compare(const cw_image *a, const cw_image *b,
+                                               int tolerance, size_t *differ, cw_error *err);
+
 /* Writes a PNG, tagged as sRGB; without its alpha channel when nothing is translucent. The file
  * appears only when whole. Returns CW_ERR_OUTPUT, CW_ERR_NO_MEMORY, CW_ERR_BACKEND (libpng's
  * own words); CW_ERR_ARGUMENT for a picture of nothing. */

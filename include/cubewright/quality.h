@@ -117,6 +117,13 @@ CW_NODISCARD CW_API cw_status cw_mesh_orient(cw_mesh *mesh, int threads,
 /* No open, no non-manifold and no misoriented edge, no non-manifold vertex. */
 CW_API bool cw_quality_is_closed_manifold(const cw_quality *quality);
 
+/* Holds a mesh to the topology of the one that it was made from: as many components and border
+ * loops, the same Euler number, and no more non-manifold edges, non-manifold vertices and
+ * triangles without area. Both must be measured with the same weld.
+ * Returns  CW_ERR_CHECK, naming the first that differs and both counts */
+CW_NODISCARD CW_API cw_status cw_quality_compare(const cw_quality *before,
+                                                 const cw_quality *after, cw_error *err);
+
 typedef struct cw_crossings_desc {
     cw_weld weld;     /* what makes triangles neighbours; default: as indexed */
     int threads;      /* default: all */

@@ -74,6 +74,40 @@ CW_NODISCARD CW_API cw_status cw_simplify_view_sees(const cw_simplify_view *view
                                                     const double *points, size_t count,
                                                     bool *seen, cw_error *err);
 
+/* The largest distance that some views allow at the depths of some points, wherever the points
+ * are beside the axes: an error bound for what is out of sight.
+ *
+ * points    count x 3, in the world, such as cw_volume_corners()
+ * error_mm  0 where no depth allows a finite distance
+ * Returns   as cw_simplify_view_error() */
+CW_NODISCARD CW_API cw_status cw_simplify_views_error(const cw_simplify_view *views,
+                                                      size_t view_count, double pixels,
+                                                      const double *points, size_t count,
+                                                      double *error_mm, cw_error *err);
+
+/* The box of voxels that some views may see: whole bricks of 8 cells whose hull is in one of the
+ * pictures, and two voxels around them. Nothing is taken to hide anything.
+ *
+ * volume   borrowed; an evenly spaced or a rectilinear grid
+ * box      for cw_volume_crop()
+ * Returns  CW_ERR_EMPTY        no view sees any voxel
+ *          CW_ERR_UNSUPPORTED  an irregular or a sparse grid
+ *          CW_ERR_ARGUMENT     a camera that is none */
+CW_NODISCARD CW_API cw_status cw_simplify_views_box(const cw_volume *volume,
+                                                    const cw_simplify_view *views,
+                                                    size_t view_count, cw_box *box,
+                                                    cw_error *err);
+
+/* The largest of some distances around the vertices of a mesh, in pixels of a view; vertices
+ * that it does not see count as 0.
+ *
+ * distance_mm  vertex_count, such as cw_mesh_distance_desc.worst
+ * Returns      CW_ERR_ARGUMENT for a camera that is none */
+CW_NODISCARD CW_API cw_status cw_simplify_view_distance(const cw_simplify_view *view,
+                                                        const cw_mesh *mesh,
+                                                        const float *distance_mm,
+                                                        double *pixels, cw_error *err);
+
 /* Leaves out the triangles that certainly none of some views sees, with so many pixels around
  * their pictures: what is beside them, and what is farther than twice margin_mm behind what
  * they have depths of, all around it. Then vertices that no triangle names. What is left is

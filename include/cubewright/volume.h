@@ -183,6 +183,16 @@ CW_NODISCARD CW_API cw_status cw_volume_crop(const cw_volume *in, const cw_box *
 CW_NODISCARD CW_API cw_status cw_volume_coarsen(const cw_volume *in, const size_t step[3],
                                                 cw_volume *out, cw_error *err);
 
+/* Copies the voxels in the box around the leaves and tiles of a sparse grid into a dense one.
+ *
+ * sparse      borrowed
+ * max_voxels  in the box, at most
+ * dense       filled on success, emptied on failure; free it with cw_volume_free()
+ * Returns     CW_ERR_ARGUMENT  the grid is not sparse
+ *             CW_ERR_LIMIT     the box has more voxels; CW_ERR_NO_MEMORY */
+CW_NODISCARD CW_API cw_status cw_volume_densify(const cw_volume *sparse, size_t max_voxels,
+                                                cw_volume *dense, cw_error *err);
+
 /* The value (scaled) of one voxel of the first component and step; slow, for tests and probes.
  * NaN outside the volume, and on a sparse grid. */
 CW_API double cw_volume_value(const cw_volume *volume, size_t i, size_t j, size_t k);
@@ -191,6 +201,11 @@ CW_API double cw_volume_value(const cw_volume *volume, size_t i, size_t j, size_
  * on a rectilinear grid the mean. */
 CW_API void cw_volume_to_world(const cw_volume *volume, const double index[3], double world[3]);
 CW_API void cw_volume_spacing(const cw_volume *volume, double spacing_mm[3]);
+
+/* World positions of the corners of a volume with samples: corner n has the last index along
+ * axis a where n >> a & 1, else the first. Of an irregular grid they are the corners of the
+ * smallest axis-aligned box around its samples. */
+CW_API void cw_volume_corners(const cw_volume *volume, double corners[8][3]);
 
 /* The (fractional) index of a world point. CW_ERR_ARGUMENT when the affine cannot
  * be inverted. */

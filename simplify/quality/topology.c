@@ -366,3 +366,29 @@ bool cw_quality_is_closed_manifold(const cw_quality *q)
     return !q->open_edges && !q->nonmanifold_edges && !q->misoriented_edges &&
            !q->nonmanifold_vertices;
 }
+
+cw_status cw_quality_compare(const cw_quality *before, const cw_quality *after, cw_error *err)
+{
+    const struct {
+        const char *what;
+        long long before, after;
+        bool fewer; /* is as good */
+    } facts[] = {
+        {"components", (long long)before->components, (long long)after->components, false},
+        {"Euler number", before->euler, after->euler, false},
+        {"border loops", (long long)before->border_loops, (long long)after->border_loops,
+         false},
+        {"non-manifold edges", (long long)before->nonmanifold_edges,
+         (long long)after->nonmanifold_edges, true},
+        {"non-manifold vertices", (long long)before->nonmanifold_vertices,
+         (long long)after->nonmanifold_vertices, true},
+        {"triangles without area", (long long)before->degenerate, (long long)after->degenerate,
+         true},
+    };
+    for (size_t n = 0; n < sizeof facts / sizeof *facts; n++)
+        if (facts[n].after != facts[n].before &&
+            !(facts[n].fewer && facts[n].after < facts[n].before))
+            return cw_fail(err, CW_ERR_CHECK, "%s: %lld before, %lld after", facts[n].what,
+                           facts[n].before, facts[n].after);
+    return CW_OK;
+}

@@ -4,6 +4,7 @@
 #include "core/base/status.h"
 
 #include <math.h>
+#include <stdlib.h>
 
 enum { MAX_SIZE = 16384 };
 
@@ -57,4 +58,22 @@ cw_status cw_picture_show(const cw_picture *picture, const uint8_t background[2]
             show_pixel(picture->pixels + 4 * (y * w + x), row, image->pixels + 4 * (y * w + x));
     }
     return st;
+}
+
+cw_status cw_image_compare(const cw_image *a, const cw_image *b, int tolerance, size_t *differ,
+                           cw_error *err)
+{
+    *differ = 0;
+    if (a->width != b->width || a->height != b->height)
+        return cw_fail(err, CW_ERR_ARGUMENT, "images of %zu x %zu and %zu x %zu pixels",
+                       a->width, a->height, b->width, b->height);
+    for (size_t n = 0; n < a->width * a->height; n++) {
+        int largest = 0;
+        for (size_t k = 0; k < 3; k++) {
+            const int d = abs((int)a->pixels[4 * n + k] - (int)b->pixels[4 * n + k]);
+            largest = d > largest ? d : largest;
+        }
+        *differ += largest > tolerance;
+    }
+    return CW_OK;
 }

@@ -489,6 +489,97 @@ static void what_is_just_behind_is_not_hidden(void **state)
     assert_true(left[2] < left[0] / 2);
 }
 
+/* No voxel outside the box is in a picture; the box is no larger than its bricks must be. */
+static void the_box_of_views_holds_all_that_they_see(void **state)
+{
+    (void)state;
+    cw_volume v = noisy_gyroid(41);
+    cw_mesh mesh = test_extract(&v, NULL, NULL);
+    size_t smaller = 0;
+    for (int round = 0; round < 60; round++) {
+        cw_simplify_view views[2] = {random_view(&mesh, round), random_view(&mesh, round + 1)};
+        cw_box box;
+        cw_error err = {0};
+        const size_t count = 1 + (size_t)round % 2;
+        for (int n = 0; n < 2; n++) { /* of a part of the volume */
+            views[n].camera.fov_deg /= 5;
+            views[n].camera.height_mm /= 5;
+        }
+        const cw_status st = cw_simplify_views_box(&v, views, count, &box, &err);
+        if (st != CW_OK)
+            assert_int_equal(st, CW_ERR_EMPTY);
+        for (size_t a = 0; a < 3 && st == CW_OK; a++) {
+            assert_true(box.count[a] > 0 && box.first[a] + box.count[a] <= 41);
+            smaller += box.count[a] < 41;
+        }
+        for (int n = 0; n < 500; n++) {
+            double index[3], world[3];
+            bool inside = st == CW_OK;
+            for (int a = 0; a < 3; a++) {
+                index[a] = uniform(0, 40);
+                inside = inside && index[a] >= (double)box.first[a] &&
+                         index[a] <= (double)(box.first[a] + box.count[a] - 1);
+            }
+            cw_volume_to_world(&v, index, world);
+            for (size_t i = 0; i < count; i++)
+                assert_true(inside || !is_seen(views + i, world));
+        }
+    }
+    assert_true(smaller > 20);
+    cw_volume_free(&v);
+    cw_mesh_free(&mesh);
+}
+
+/* The bound at eight corners is that of any point between them: it grows with the depth. */
+static void the_widest_error_bounds_every_point(void **state)
+{
+    (void)state;
+    cw_volume v = noisy_gyroid(9);
+    cw_mesh mesh = test_extract(&v, NULL, NULL);
+    double corners[8][3];
+    cw_volume_corners(&v, corners);
+    for (int round = 0; round < 50; round++) {
+        const cw_simplify_view view = random_view(&mesh, round);
+        double widest, here, index[3], world[3];
+        cw_error err = {0};
+        assert_ok(cw_simplify_views_error(&view, 1, 2, corners[0], 8, &widest, &err), err);
+        for (int n = 0; n < 200; n++) {
+            for (int a = 0; a < 3; a++)
+                index[a] = uniform(0, 8);
+            cw_volume_to_world(&v, index, world);
+            assert_ok(cw_simplify_view_error(&view, 2, world, &here, &err), err);
+            assert_true(isinf(here) || here <= widest * (1 + 1e-9));
+        }
+    }
+    cw_volume_free(&v);
+    cw_mesh_free(&mesh);
+}
+
+static void distances_become_pixels_where_they_are_seen(void **state)
+{
+    (void)state;
+    cw_mesh mesh = surface(12);
+    cw_error err = {0};
+    float *distance = calloc(mesh.vertex_count, sizeof *distance);
+    assert_non_null(distance);
+    for (int round = 0; round < 20; round++) {
+        const cw_simplify_view view = random_view(&mesh, round);
+        double pixels, expected = 0, allowed;
+        for (size_t v = 0; v < mesh.vertex_count; v++) {
+            double world[3];
+            distance[v] = (float)uniform(0, 1);
+            for (size_t a = 0; a < 3; a++)
+                world[a] = mesh.origin[a] + (double)mesh.positions[3 * v + a];
+            assert_ok(cw_simplify_view_error(&view, 1, world, &allowed, &err), err);
+            expected = fmax(expected, (double)distance[v] / allowed);
+        }
+        assert_ok(cw_simplify_view_distance(&view, &mesh, distance, &pixels, &err), err);
+        assert_near(pixels, expected, 1e-12 * expected);
+    }
+    free(distance);
+    cw_mesh_free(&mesh);
+}
+
 static void views_that_are_none_are_refused(void **state)
 {
     (void)state;
@@ -513,6 +604,15 @@ static void views_that_are_none_are_refused(void **state)
     d.normal_deg = 0;
     memcpy(view.camera.eye, view.camera.target, sizeof view.camera.eye);
     assert_fails(cw_simplify(&mesh, &d, &out, NULL, &err), CW_ERR_ARGUMENT, "apart", err);
+    cw_volume v = noisy_gyroid(8);
+    cw_box box;
+    const double point[3] = {0, 0, 0};
+    double error;
+    assert_fails(cw_simplify_views_box(&v, &view, 1, &box, &err), CW_ERR_ARGUMENT, "apart",
+                 err);
+    assert_fails(cw_simplify_views_error(&view, 1, 1, point, 1, &error, &err), CW_ERR_ARGUMENT,
+                 "apart", err);
+    cw_volume_free(&v);
     cw_mesh_free(&mesh);
 }
 
@@ -528,6 +628,9 @@ int main(void)
         cmocka_unit_test(what_no_view_sees_is_left_out),
         cmocka_unit_test(nothing_is_seen_behind_the_eye),
         cmocka_unit_test(what_is_just_behind_is_not_hidden),
+        cmocka_unit_test(the_box_of_views_holds_all_that_they_see),
+        cmocka_unit_test(the_widest_error_bounds_every_point),
+        cmocka_unit_test(distances_become_pixels_where_they_are_seen),
         cmocka_unit_test(views_that_are_none_are_refused),
     };
     return cw_simplify_available() ? cmocka_run_group_tests(tests, NULL, NULL) : 0;

@@ -202,6 +202,46 @@ static void open_components_count_up_to_their_middle(void **state)
     cw_mesh_free(&mesh);
 }
 
+/* Of a cube of 1 mm3, one of 27 mm3 and a flat triangle those go that no vertex keeps. */
+static void components_that_are_far_away_go(void **state)
+{
+    (void)state;
+    for (int stays = 0; stays < 8; stays++) {
+        cw_mesh mesh;
+        cw_error err = {0};
+        cw_drop_counts counts;
+        float distance[20]; /* the last one is of a vertex in no triangle */
+        double farthest, expected = 0, largest = 0;
+        size_t dropped = 0;
+        make_three(&mesh);
+        distance[19] = 99;
+        for (size_t v = 0; v < 19; v++) {
+            const float x = mesh.positions[3 * v];
+            const int part = x >= 50 ? 2 : x >= 10 ? 1 : 0;
+            distance[v] = 5 + (float)v;
+            if (stays >> part & 1 && v % 8 == 2)
+                distance[v] = 4; /* one vertex is enough */
+            if (!(stays >> part & 1))
+                expected = distance[v] > expected ? distance[v] : expected;
+        }
+        for (int part = 0; part < 3; part++) {
+            const double volume = part == 0 ? 1 : part == 1 ? 27 : 0;
+            dropped += !(stays >> part & 1);
+            if (!(stays >> part & 1))
+                largest = volume > largest ? volume : largest;
+        }
+        assert_ok(cw_mesh_drop_distant(&mesh, distance, 4, &counts, &farthest, &err), err);
+        assert_int_equal(counts.dropped, dropped);
+        assert_int_equal(counts.kept, 3 - dropped);
+        assert_within(counts.largest_mm3, largest, 1e-5);
+        assert_true(farthest == expected);
+        assert_int_equal(mesh.triangle_count,
+                         12 * (stays & 1) + 12 * (stays >> 1 & 1) + (stays >> 2 & 1));
+        assert_ok(cw_mesh_check(&mesh, &err), err);
+        cw_mesh_free(&mesh);
+    }
+}
+
 static void failures_leave_the_mesh_as_it_was(void **state)
 {
     (void)state;
@@ -217,7 +257,17 @@ static void failures_leave_the_mesh_as_it_was(void **state)
         assert_int_equal(st, CW_ERR_NO_MEMORY);
         assert_int_equal(soup.vertex_count, 36);
     }
-    for (long n = 0; n < 4; n++) {
+    const float near[36] = {0};
+    for (long n = 0; n < 5; n++) {
+        cwi_alloc_fail_after(n);
+        const cw_status st = cw_mesh_drop_distant(&soup, near, 1, NULL, NULL, &err);
+        cwi_alloc_fail_after(-1);
+        assert_int_equal(st, CW_ERR_NO_MEMORY);
+        assert_int_equal(soup.vertex_count, 36);
+    }
+    assert_fails(cw_mesh_drop_distant(&soup, near, -1, NULL, NULL, &err), CW_ERR_ARGUMENT,
+                 "limit_mm is -1", err);
+    for (long n = 0; n < 5; n++) {
         cwi_alloc_fail_after(n);
         const cw_status st = cw_mesh_drop_components(&soup, 9, NULL, NULL, &err);
         cwi_alloc_fail_after(-1);
@@ -247,6 +297,7 @@ int main(void)
         cmocka_unit_test(components_that_enclose_little_go),
         cmocka_unit_test(small_cavities_are_filled),
         cmocka_unit_test(open_components_count_up_to_their_middle),
+        cmocka_unit_test(components_that_are_far_away_go),
         cmocka_unit_test(failures_leave_the_mesh_as_it_was),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -216,6 +216,22 @@ static void differences_and_splits_are_pictures(void **state)
     cw_picture_free(&b);
 }
 
+static void pixels_that_differ_are_counted(void **state)
+{
+    (void)state;
+    uint8_t p[3][4] = {{10, 20, 30, 255}, {10, 20, 30, 255}, {10, 20, 30, 255}};
+    uint8_t q[3][4] = {{12, 20, 30, 255}, {10, 20, 27, 255}, {10, 20, 30, 0}};
+    const cw_image a = {3, 1, p[0]}, b = {3, 1, q[0]}, tall = {1, 3, q[0]};
+    size_t differ;
+    cw_error err = {0};
+    for (int tolerance = 0; tolerance < 4; tolerance++) {
+        assert_ok(cw_image_compare(&a, &b, tolerance, &differ, &err), err);
+        assert_int_equal(differ, tolerance < 2 ? 2 : tolerance < 3 ? 1 : 0);
+    }
+    assert_fails(cw_image_compare(&a, &tall, 0, &differ, &err), CW_ERR_ARGUMENT,
+                 "3 x 1 and 1 x 3", err);
+}
+
 int main(void)
 {
     const struct CMUnitTest tests[] = {
@@ -225,6 +241,7 @@ int main(void)
         cmocka_unit_test(one_pixel_of_a_hundred_may_be_off),
         cmocka_unit_test(the_line_between_halves_grows_with_the_picture),
         cmocka_unit_test(similarity_of_plain_pictures),
+        cmocka_unit_test(pixels_that_differ_are_counted),
         cmocka_unit_test(differences_and_splits_are_pictures),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -1,6 +1,4 @@
-#include "cli/inputs/densify.h"
-
-#include "cli/framework/quantity.h"
+/* Dense copies of sparse grids. */
 #include "core/base/status.h"
 #include "core/volume/volume.h"
 
@@ -62,15 +60,19 @@ static void copy_leaf(const cw_volume *sparse, size_t n, const cw_volume *v, cha
                        (end[0] - at[0]) * width);
 }
 
-cw_status cli_make_dense(const cw_volume *sparse, size_t max_voxels, cw_volume *dense,
-                         cw_error *err)
+cw_status cw_volume_densify(const cw_volume *sparse, size_t max_voxels, cw_volume *dense,
+                            cw_error *err)
 {
     const size_t *n = sparse->dim;
+    *dense = (cw_volume){0};
+    if (!sparse->sparse)
+        return cw_fail(err, CW_ERR_ARGUMENT, "a sparse grid was expected; this one is not");
     if ((double)n[0] * (double)n[1] * (double)n[2] > (double)max_voxels)
-        return cw_fail(err, CW_ERR_LIMIT,
-                       "a sparse grid is drawn as a dense one, and the box around it has "
-                       "%zu x %zu x %zu voxels: more than %s (--max-voxels)",
-                       n[0], n[1], n[2], cli_count(max_voxels));
+        return cw_fail(
+            err, CW_ERR_LIMIT,
+            "the box around the sparse grid has %zu x %zu x %zu voxels; the limit is "
+            "%zu",
+            n[0], n[1], n[2], max_voxels);
     cw_status st = cw_volume_alloc(dense, sparse->type, n, 1, 1, err);
     if (st != CW_OK)
         return st;

@@ -1,0 +1,80 @@
+/* Meshes compared both ways, part by part. */
+#include "core/base/status.h"
+#include "core/geometry/vec3.h"
+
+#include <cubewright/distance.h>
+
+#include <math.h>
+
+static double area_of(const cw_mesh *m)
+{
+    double sum = 0;
+    for (size_t t = 0; t < m->triangle_count; t++) {
+        const uint32_t *c = m->triangles + 3 * t;
+        double u[3], v[3], normal[3];
+        for (size_t a = 0; a < 3; a++) {
+            const double p = (double)m->positions[3 * (size_t)c[0] + a];
+            u[a] = (double)m->positions[3 * (size_t)c[1] + a] - p;
+            v[a] = (double)m->positions[3 * (size_t)c[2] + a] - p;
+        }
+        cwi_cross(u, v, normal);
+        sum += 0.5 * sqrt(cwi_dot(normal, normal));
+    }
+    return sum;
+}
+
+static double blend_by_area(double a, double area_a, double b, double area_b)
+{
+    return area_a + area_b > 0 ? (a * area_a + b * area_b) / (area_a + area_b) : 0;
+}
+
+/* Adds the distances of one more part. Means are by area; the larger 99th percentile bounds
+ * that of both. */
+static void add_distance(cw_distance *sum, double area_sum, const cw_distance *d, double area)
+{
+    const cw_distance was = *sum;
+    if (d->max_mm > was.max_mm || was.samples == 0)
+        *sum = *d;
+    const double square =
+        blend_by_area(was.rms_mm * was.rms_mm, area_sum, d->rms_mm * d->rms_mm, area);
+    sum->max_mm = fmax(was.max_mm, d->max_mm);
+    sum->rms_mm = sqrt(square);
+    sum->mean_mm = blend_by_area(was.mean_mm, area_sum, d->mean_mm, area);
+    sum->p99_mm = fmax(was.p99_mm, d->p99_mm);
+    sum->bound_mm = fmax(was.bound_mm, d->bound_mm);
+    sum->triangles = was.triangles + d->triangles;
+    sum->samples = was.samples + d->samples;
+    sum->missed = was.missed + d->missed;
+}
+
+cw_status cw_mesh_compare(const cw_mesh *mesh, const cw_mesh *reference,
+                          const cw_mesh_distance_desc *desc, cw_mesh_comparison *comparison,
+                          cw_error *err)
+{
+    cw_distance to, from;
+    if (desc && desc->worst)
+        return cw_fail(err, CW_ERR_ARGUMENT, "'worst' is of one mesh; two are measured");
+    cw_status st = cw_distance_to_mesh(mesh, reference, desc, &to, NULL, err);
+    if (st == CW_OK)
+        st = cw_distance_to_mesh(reference, mesh, desc, &from, NULL, err);
+    if (st != CW_OK)
+        return st;
+    const double area = area_of(mesh), reference_area = area_of(reference);
+    add_distance(&comparison->to_reference, comparison->area_mm2, &to, area);
+    add_distance(&comparison->from_reference, comparison->reference_area_mm2, &from,
+                 reference_area);
+    comparison->area_mm2 += area;
+    comparison->reference_area_mm2 += reference_area;
+    return CW_OK;
+}
+
+double cw_mesh_comparison_rms(const cw_mesh_comparison *comparison)
+{
+    const double to = comparison->to_reference.rms_mm, from = comparison->from_reference.rms_mm;
+    return sqrt(0.5 * (to * to + from * from));
+}
+
+double cw_mesh_comparison_max(const cw_mesh_comparison *comparison)
+{
+    return fmax(comparison->to_reference.max_mm, comparison->from_reference.max_mm);
+}
