@@ -14,9 +14,9 @@ enum {
     UNSIGNED_SHORT = 5123,
     UNSIGNED_INT = 5125,
     FLOAT = 5126
-/* The maximum size of a buffer: GLB states lengths in 32 bits, and the JSON takes a part of that. */
+};
 
-/* GLB states its lengths in 32 bits; the JSON in front takes a little of that. */
+/* The maximum of a buffer: GLB states lengths in 32 bits, and the JSON takes a part of that. */
 static const uint64_t MOST_BYTES = UINT32_MAX - (1 << 20);
 
 void cwi_gltf_plan_free(cwi_gltf_plan *plan)
