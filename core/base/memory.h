@@ -8,12 +8,12 @@
 extern "C" {
 #endif
 
-/* Compute *out = a * b or a + b. Return false, with *out untouched, when the result does not
+/* Computes *out = a * b or a + b. Returns false, with *out untouched, when the result does not
  * fit. */
 bool cwi_size_mul(size_t a, size_t b, size_t *out);
 bool cwi_size_add(size_t a, size_t b, size_t *out);
 
-/* Allocate count elements of the given size, zeroed or not. Return NULL when the product
+/* Allocates count elements of the given size, zeroed or not. Returns NULL when the product
  * overflows or memory is out. A count of 0 gives a pointer that can be freed. Free with
  * cwi_free(). */
 void *cwi_alloc_array(size_t count, size_t size);

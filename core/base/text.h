@@ -10,10 +10,10 @@
 extern "C" {
 #endif
 
-/* Read one number at *text and move *text behind it; leading blanks are skipped. Return false,
- * and leave *text unmoved, when there is none. The first accepts the same text as strtod,
- * including "nan" and "inf". The integer form takes decimal digits with an optional sign and
- * refuses numbers that do not fit. */
+/* Reads one number at *text and moves *text behind it; leading blanks are skipped. Returns
+ * false, and leaves *text unmoved, when there is none. The first function accepts the same text
+ * as strtod, including "nan" and "inf". The integer form takes decimal digits with an optional
+ * sign and refuses numbers that do not fit. */
 bool cwi_parse_double(const char **text, double *value);
 bool cwi_parse_int(const char **text, int64_t *value);
 
@@ -25,7 +25,7 @@ bool cwi_parse_int(const char **text, int64_t *value);
 enum { CWI_ITEM_BYTES = 64 };
 bool cwi_next_item(const char **text, char *separator, char item[CWI_ITEM_BYTES]);
 
-/* Make printf and friends of this thread write points; pass the first result to the second
+/* Makes printf and friends of this thread write points; pass the first result to the second
  * call. */
 void *cwi_locale_c(void);
 void cwi_locale_restore(void *before);

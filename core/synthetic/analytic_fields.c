@@ -64,7 +64,7 @@ static double evaluate_gyroid(const double p[3])
            sin(k * p[2]) * cos(k * p[0]);
 }
 
-/* Equation 1 of [Marschner1994], f_M = 6, alpha = 0.25, on -1..1. */
+/* Evaluates equation 1 of [Marschner1994], f_M = 6, alpha = 0.25, on -1..1. */
 static double marschner_lobb(const double p[3])
 {
     const double alpha = 0.25, frequency = 6;

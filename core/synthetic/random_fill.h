@@ -8,7 +8,7 @@
 /* Returns the n-th number of SplitMix64: it depends on n alone, so threads do not matter. */
 uint64_t cwi_random_bits(uint64_t seed, uint64_t n);
 
-/* Return the n-th of a stream of numbers 0 <= x < 1, or of Gaussian ones of deviation 1. */
+/* Returns the n-th of a stream of numbers 0 <= x < 1, or of Gaussian ones of deviation 1. */
 double cwi_chance(uint64_t seed, uint64_t n);
 double cwi_gaussian(uint64_t seed, uint64_t n);
 

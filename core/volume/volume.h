@@ -86,7 +86,7 @@ CW_NODISCARD cw_status cwi_volume_own_coordinates(cw_volume *v, cw_error *err);
  * one. */
 const char *cwi_volume_kind(const cw_volume *v);
 
-/* Fail with CW_ERR_UNSUPPORTED for calls that need evenly spaced grids, or dense grids (even
+/* Fails with CW_ERR_UNSUPPORTED for calls that need evenly spaced grids, or dense grids (even
  * and rectilinear ones). */
 CW_NODISCARD cw_status cwi_volume_expect_even(const cw_volume *v, const char *what,
                                               cw_error *err);

@@ -46,7 +46,7 @@ CW_NODISCARD cw_status cwi_stream_open(cwi_stream *s, int fd, uint64_t offset, b
 CW_NODISCARD cw_status cwi_stream_open_bzip2(cwi_stream *s, int fd, uint64_t offset,
                                              cw_error *err);
 
-/* Set up the stream, before anything is read. The first one ends it at an offset of the file.
+/* Sets up the stream, before anything is read. The first one ends it at an offset of the file.
  * The others say that the file holds the bytes as base64 text, or as two hexadecimal digits
  * each.
  * Returns CW_ERR_NO_MEMORY. */
@@ -76,7 +76,7 @@ CW_NODISCARD cw_status cwi_stream_finish(cwi_stream *s, cw_error *err);
 CW_NODISCARD cw_status cwi_stream_head(int fd, void *to, size_t size, size_t *got,
                                        bool *gzipped, cw_error *err);
 
-/* Harmless on a zeroed or already closed stream. */
+/* Closes the stream. Harmless on a zeroed or already closed one. */
 void cwi_stream_close(cwi_stream *s);
 
 #endif

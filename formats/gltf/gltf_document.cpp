@@ -360,7 +360,7 @@ void name_extensions(std::string &json)
         json.replace(at, from.size(), to);
 }
 
-// tinygltf keeps offsets of extensions in 31 bits.
+// Checks the offsets of extensions, which tinygltf keeps in 31 bits.
 cw_status check_packed(const cwi_gltf_document &document, cw_error *err)
 {
     if (document.unpacked && document.bytes > INT32_MAX)

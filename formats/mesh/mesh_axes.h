@@ -29,8 +29,8 @@ enum { CWI_AXES_BYTES = 32 };
 /* Prints the axes as a line of our writers: "LPS, mm", "RAS, um, Y up". */
 void cwi_print_axes(const cw_axes *axes, char text[CWI_AXES_BYTES]);
 
-/* Read this line back, or the name of a unit or frame alone, and move *text behind it. Return
- * false, with *said unchanged, for any other text. */
+/* Reads this line back, or the name of a unit or frame alone, and moves *text behind it.
+ * Returns false, with *said unchanged, for any other text. */
 bool cwi_parse_axes(const char **text, cw_mesh_file *said);
 bool cwi_parse_unit(const char **text, cw_mesh_file *said);
 bool cwi_parse_frame(const char **text, cw_mesh_file *said);

@@ -130,7 +130,7 @@ static inline void cwi_normal(const cwi_part *part, size_t vertex, float normal[
                     part->mesh.normals[3 * vertex + (size_t)part->turn.from[a]];
 }
 
-/* Put a vertex's place, or its normal, as text: three numbers each. */
+/* Puts a vertex's place, or its normal, as text: three numbers each. */
 static inline unsigned char *cwi_put_place(unsigned char *to, const cwi_part *part, size_t v)
 {
     double place[3];

@@ -14,7 +14,7 @@ unsigned char *cwi_put_integer(unsigned char *to, uint64_t value);
 
 enum { CWI_NUMBER_BYTES = 26, CWI_POINT_BYTES = 3 * CWI_NUMBER_BYTES };
 
-/* Print "1.5" or "1 2 3.5": the shortest digits that read back the same, and a terminating
+/* Prints "1.5" or "1 2 3.5": the shortest digits that read back the same, and a terminating
  * zero. */
 void cwi_print_number(double value, char text[CWI_NUMBER_BYTES]);
 void cwi_print_point(const double point[3], char text[CWI_POINT_BYTES]);

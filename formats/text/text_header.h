@@ -35,7 +35,7 @@ int cwi_field_find(const char *const *rows, int count, const char *key, size_t l
  * behind it. Returns false at the end; words too long are cut. */
 bool cwi_next_text_word(const char **text, char word[CWI_WORD_BYTES]);
 
-/* Read exactly `wanted` numbers, the count that the field `by` states. The message names both
+/* Reads exactly `wanted` numbers, the count that the field `by` states. The message names both
  * fields. Sizes are whole numbers from 1 to 2^31 - 1. */
 CW_NODISCARD cw_status cwi_field_doubles(const char *field, const char *text, size_t wanted,
                                          const char *by, double *out, cw_error *err);

@@ -50,7 +50,7 @@ typedef struct cwi_word {
 CW_NODISCARD cw_status cwi_scan_word(cwi_scan *s, cwi_word *word, cw_error *err);
 bool cwi_word_is(const cwi_word *word, const char *text);
 
-/* Parse the whole word as a number; return false if it is none. */
+/* Parses the whole word as a number; returns false if it is none. */
 bool cwi_word_double(const cwi_word *word, double *value);
 bool cwi_word_integer(const cwi_word *word, int64_t *value);
 
@@ -64,7 +64,7 @@ CW_NODISCARD cw_status cwi_scan_end_line(cwi_scan *s, cw_error *err);
 /* Goes to the next line with a word in it; *found is false at the end of the file. */
 CW_NODISCARD cw_status cwi_scan_next_line(cwi_scan *s, bool *found, cw_error *err);
 
-/* Read the next word as a number; what: its name, for the message. */
+/* Reads the next word as a number; what: its name, for the message. */
 CW_NODISCARD cw_status cwi_scan_double(cwi_scan *s, const char *what, double *value,
                                        cw_error *err);
 CW_NODISCARD cw_status cwi_scan_integer(cwi_scan *s, const char *what, int64_t *value,

@@ -84,7 +84,7 @@ CW_NODISCARD cw_status cwi_tiff_describe(cwi_tiff_file *f, const char *descripti
 CW_NODISCARD cw_status cwi_tiff_ome(const cwi_tiff_file *f, const char *xml,
                                     cwi_tiff_facts *facts, uint32_t *order, cw_error *err);
 
-/* Return the millimetres of a unit of length, and the seconds of one of time; 0: unknown
+/* Returns the millimetres of a unit of length, and the seconds of one of time; 0: unknown
  * unit. */
 double cwi_tiff_length(const char *name, size_t length);
 double cwi_tiff_time(const char *name, size_t length);

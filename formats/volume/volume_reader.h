@@ -33,8 +33,8 @@ void cwi_note(const cw_read_desc *desc, const char *format, ...) CW_PRINTF(2, 3)
 /* Reports the number of links in a folder that were left out, if there are any. */
 void cwi_note_links(const cw_read_desc *desc, size_t links);
 
-/* Read a header into a zeroed source, which the caller frees in any case. The messages name the
- * header's fields; the caller puts the file's name in front. */
+/* Reads a header into a zeroed source, which the caller frees in any case. The messages name
+ * the header's fields; the caller puts the file's name in front. */
 CW_NODISCARD cw_status cwi_nrrd_parse(const cwi_input *in, cwi_source *src, cw_error *err);
 CW_NODISCARD cw_status cwi_nifti_parse(const cwi_input *in, cwi_source *src, cw_error *err);
 CW_NODISCARD cw_status cwi_metaimage_parse(const cwi_input *in, cwi_source *src, cw_error *err);
@@ -43,14 +43,14 @@ CW_NODISCARD cw_status cwi_vti_parse(const cwi_input *in, cwi_source *src, cw_er
 CW_NODISCARD cw_status cwi_mrc_parse(const cwi_input *in, cwi_source *src, cw_error *err);
 CW_NODISCARD cw_status cwi_inr_parse(const cwi_input *in, cwi_source *src, cw_error *err);
 
-/* Read an irregular grid; *is_grid is false when the file holds something else, which
+/* Reads an irregular grid; *is_grid is false when the file holds something else, which
  * cwi_..._parse() can then read. */
 CW_NODISCARD cw_status cwi_vtk_read_grid(const cwi_input *in, const cw_read_desc *desc,
                                          bool *is_grid, cw_volume *volume, cw_error *err);
 CW_NODISCARD cw_status cwi_vtu_read(const cwi_input *in, const cw_read_desc *desc,
                                     bool *is_grid, cw_volume *volume, cw_error *err);
 
-/* Read slices in separate files, by a library in a sandbox.
+/* Reads slices in separate files, by a library in a sandbox.
  * in     the folder, or one file and its folder
  * names  of the files, sorted; NULL: in's own file */
 CW_NODISCARD cw_status cwi_dicom_read(const cwi_input *in, cwi_names *names,

@@ -49,7 +49,7 @@ typedef struct cwi_vti {
     cwi_vti_data points, cells;
 } cwi_vti;
 
-/* Parse the attributes of one element each. */
+/* Parses the attributes of one element each. */
 CW_NODISCARD cw_status cwi_vti_image(cwi_vti *v, cwi_attributes a, cw_error *err);
 CW_NODISCARD cw_status cwi_vti_extent(cwi_attributes a, int64_t extent[6], cw_error *err);
 CW_NODISCARD cw_status cwi_vti_piece(cwi_vti *v, cwi_attributes a, cw_error *err);

@@ -62,7 +62,7 @@ typedef struct cwi_vtk {
     char others[400]; /* names and types of arrays that are not read, for messages */
 } cwi_vtk;
 
-/* Read the next line into v->line, without its end and trailing blanks, or the next line that
+/* Reads the next line into v->line, without its end and trailing blanks, or the next line that
  * is not empty. *more is false behind the last. */
 CW_NODISCARD cw_status cwi_vtk_line(cwi_vtk *v, bool *more, cw_error *err);
 CW_NODISCARD cw_status cwi_vtk_full_line(cwi_vtk *v, bool *more, cw_error *err);
@@ -79,7 +79,7 @@ static inline bool cwi_vtk_is_settled(const cwi_vtk *v)
 /* Reads the coordinates whose line is v->line, such as "X_COORDINATES count type". */
 CW_NODISCARD cw_status cwi_vtk_coordinates(cwi_vtk *v, int axis, cw_error *err);
 
-/* Read the section whose line is v->line: "POINTS count type", "CELLS ...", "CELL_TYPES
+/* Reads the section whose line is v->line: "POINTS count type", "CELLS ...", "CELL_TYPES
  * count". */
 CW_NODISCARD cw_status cwi_vtk_points(cwi_vtk *v, cw_error *err);
 CW_NODISCARD cw_status cwi_vtk_cell_corners(cwi_vtk *v, cw_error *err);

@@ -36,7 +36,7 @@ typedef struct cwi_vtk_array {
     uint64_t start, end; /* of its text in the file */
 } cwi_vtk_array;
 
-/* Parse the attributes of one element each. kind: the only kind that is read, and its
+/* Parses the attributes of one element each. kind: the only kind that is read, and its
  * description: {"ImageData", "a volume"}. */
 CW_NODISCARD cw_status cwi_vtk_xml_file(cwi_vtk_xml *v, cwi_attributes a,
                                         const char *const kind[2], cw_error *err);

@@ -75,7 +75,7 @@ CW_API void cw_memory_limit(size_t bytes);
 /* Returns the number of bytes that arrays take now. */
 CW_API size_t cw_memory_used(void);
 
-/* Return the fields of a status' row in CW_STATUS_TABLE. An unknown status reads as
+/* Returns the fields of a status' row in CW_STATUS_TABLE. An unknown status reads as
  * CW_ERR_BACKEND. */
 CW_API int cw_status_exit_code(cw_status status);
 CW_API const char *cw_status_name(cw_status status);

@@ -159,7 +159,7 @@ CW_NODISCARD CW_API cw_status cw_extractor_new(const cw_volume *volume, cw_extra
                                                cw_error *err);
 CW_API void cw_extractor_free(cw_extractor *extractor); /* harmless on NULL */
 
-/* Extract and predict as cw_extract() and cw_extract_predict(). */
+/* Extracts and predicts as cw_extract() and cw_extract_predict(). */
 CW_NODISCARD CW_API cw_status cw_extractor_extract(cw_extractor *extractor,
                                                    const cw_extract_desc *desc, cw_mesh *mesh,
                                                    cw_extract_counts *counts, cw_error *err);

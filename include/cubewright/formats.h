@@ -158,9 +158,9 @@ CW_NODISCARD CW_API cw_status cw_volume_read(const char *path, const cw_read_des
  * So does a folder whose volumes have one format and names alike except for a number; files of
  * no format in it are ignored.
  *
- * *count is 0 when the path is no series, but one volume for cw_volume_read(). That is any
- * other path that is no pattern, a pattern of slices (DICOM images, TIFF files of one page),
- * and a pattern with a layout (raw).
+ * *count is 0 when the path is no series, but one volume for cw_volume_read(). This holds for a
+ * pattern of slices (DICOM images, TIFF files of one page), for a pattern with a layout (raw),
+ * and for any other path that is not a pattern.
  *
  * files    set to an array of *count, to be freed with cw_steps_free()
  * Returns  CW_ERR_ARGUMENT  several paths, and one is a slice, or there is a layout

@@ -43,7 +43,7 @@ typedef struct cw_transfer {
  * and for a unit_mm that is not a length. */
 CW_NODISCARD CW_API cw_status cw_transfer_check(const cw_transfer *transfer, cw_error *err);
 
-/* Compute the colour and opacity of a value, and the factor of a gradient's length. */
+/* Computes the colour and opacity of a value, and the factor of a gradient's length. */
 CW_API void cw_transfer_at(const cw_transfer *transfer, double value, double color[3],
                            double *opacity);
 CW_API double cw_transfer_gradient_factor(const cw_transfer *transfer, double gradient_per_mm);

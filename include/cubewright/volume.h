@@ -192,7 +192,7 @@ CW_NODISCARD CW_API cw_status cw_volume_coarsen(const cw_volume *in, const size_
  * probes. NaN outside the volume, and on a sparse grid. */
 CW_API double cw_volume_value(const cw_volume *volume, size_t i, size_t j, size_t k);
 
-/* Compute the world point of a (fractional) index, and the millimetres between neighbours along
+/* Computes the world point of a (fractional) index, or the millimetres between neighbours along
  * each axis; on a rectilinear grid their mean. */
 CW_API void cw_volume_to_world(const cw_volume *volume, const double index[3], double world[3]);
 CW_API void cw_volume_spacing(const cw_volume *volume, double spacing_mm[3]);
