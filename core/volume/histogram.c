@@ -133,7 +133,7 @@ static void count_shorts(const cw_volume *v, size_t j, size_t k, uint64_t *count
         CASE(CW_I8, int8_t)
         CASE(CW_I16, int16_t)
 #undef CASE
-    case CW_U16: /* which has no negative numbers */
+    case CW_U16: /* a type without negative numbers */
         for (size_t i = 0; i < v->dim[0]; i++)
             counts[*(const uint16_t *)(p + (ptrdiff_t)i * v->stride[0])]++;
         break;

@@ -23,8 +23,8 @@ typedef struct cw_distance {
     size_t missed;    /* samples without a surface within reach: they count as reach */
 } cw_distance;
 
-/* How to measure from the surface of a volume. Zero fields mean the default named
- * beside them. */
+/* Options of measuring from the surface of a volume. Zero fields mean the default named beside
+ * them. */
 typedef struct cw_field_distance_desc {
     double isovalue;      /* in the unit of the values; 0 means 0 */
     bool inside_is_low;   /* default: values at or above the isovalue are inside */
@@ -68,7 +68,7 @@ CW_NODISCARD CW_API cw_status cw_distance_to_field(const cw_mesh *mesh, const cw
                                                    cw_distance *out, float *per_vertex,
                                                    cw_error *err);
 
-/* How to measure from a mesh. Zero fields mean the default named beside them. */
+/* Options of measuring from a mesh. Zero fields mean the default named beside them. */
 typedef struct cw_mesh_distance_desc {
     double tolerance_mm;  /* bound_mm - max_mm is at most this; default: 5 % of max_mm, or
                              1 % of the reference's average side where that is more */

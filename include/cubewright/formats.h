@@ -192,7 +192,7 @@ CW_NODISCARD CW_API cw_status cw_arrays_list(const char *path, const cw_read_des
                                              cw_array **arrays, size_t *count, cw_error *err);
 CW_API void cw_arrays_free(cw_array *arrays);
 
-/* One series of images in a folder of DICOM files. */
+/* A series of images in a folder of DICOM files. */
 typedef struct cw_series {
     char label[32];    /* value for cw_read_desc.series: its number, and .1, .2 ... when images
                           of several sizes, types or directions have that number */
