@@ -1,4 +1,4 @@
-/* The formats, in the order in which they are listed. */
+/* Lists the format drivers, in the order of `formats`, and finds them by name or extension. */
 #include "formats/format_registry.h"
 
 #include "core/base/features.h"
@@ -58,7 +58,7 @@ const char *cwi_list_formats(const char *(*text_of)(const cwi_format_driver *),
     return list;
 }
 
-/* Once, at run time: a module may have been left out of a package. */
+/* Fills the list once, at run time: a module may have been left out of a package. */
 static void fill_formats(void)
 {
     for (size_t n = 0; n < DRIVER_COUNT; n++) {

@@ -102,7 +102,8 @@ static cw_mesh_read_desc resolve_desc(const cw_mesh_read_desc *desc)
     return d;
 }
 
-/* Normals of degenerate triangles are NaN in some files; half a set is of no use. */
+/* Drops incomplete normals. Those of degenerate triangles are NaN in some files; half a set is
+ * of no use. */
 static void drop_broken_normals(cw_mesh *mesh)
 {
     bool ok = true;
@@ -114,7 +115,7 @@ static void drop_broken_normals(cw_mesh *mesh)
     mesh->normals = NULL;
 }
 
-/* The last one may have no triangles. */
+/* Returns the number of marks; the last one may have no triangles. */
 static size_t count_marks(const cwi_marks *marks, const cw_mesh *mesh)
 {
     const size_t n = marks->count;
@@ -143,7 +144,7 @@ static cw_status read_open_file(cwi_mesh_input *in, cw_mesh *mesh, cw_mesh_file 
     return st;
 }
 
-/* Reads the mesh, and leaves the marks of its parts to be freed. */
+/* Reads the mesh, and leaves the marks of its parts for the caller to free. */
 static cw_status read_file(const char *path, cwi_mesh_input *in, cw_mesh *mesh,
                            cw_mesh_file *said, cw_error *err)
 {

@@ -1,4 +1,4 @@
-/* Writes meshes: finds the writer, checks what is asked of it, and says what a file loses. */
+/* Writes meshes: finds the writer, checks the request, and measures the loss of a file. */
 #include <cubewright/formats.h>
 
 #include "core/base/status.h"
@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 
-/* The writer's place among the formats; that behind the last when there is none. */
+/* Returns the writer's index among the formats, or the number of formats when there is none. */
 static size_t find_writer(const char *path, const char *name)
 {
     const cwi_format_driver *f;
@@ -54,7 +54,7 @@ static cw_status fail_unknown(const char *name, cw_error *err)
                    cwi_list_formats(writer_extensions, " ", list));
 }
 
-/* glTF may be asked for what it is in any case. */
+/* Checks the axes. For glTF the axes that it always has may be requested. */
 static cw_status check_axes(const cwi_format_driver *f, const cw_axes *axes, cw_error *err)
 {
     const bool metres = axes->unit == CW_UNIT_MM || axes->unit == CW_UNIT_M;
@@ -101,7 +101,8 @@ static cw_status check_animation(const cwi_format_driver *f, const cw_write_desc
                          f->name);
 }
 
-/* The format and writer of a path, with what it needs loaded; it can do what is asked for. */
+/* Finds the format and writer of a path, loads its modules, and checks that it supports the
+ * request. */
 static cw_status prepare_writer(const char *path, const cw_write_desc *d,
                                 const cwi_format_driver **out, cw_error *err)
 {
@@ -188,7 +189,7 @@ cw_status cw_mesh_write(const char *path, const cw_mesh *mesh, const cw_write_de
     return cw_parts_write(path, &(cw_part){.mesh = mesh}, 1, desc, err);
 }
 
-/* A local file of one part holds its positions as they are. */
+/* Returns true for a local file of one part: it holds its positions as they are. */
 static bool is_exact(const cwi_part *part, const cw_write_desc *d)
 {
     const double *origin = part->mesh.origin;
@@ -241,7 +242,7 @@ cw_status cw_mesh_write_check(const char *path, const cw_write_desc *desc, cw_er
     cwi_outfile *file = NULL;
     const cwi_format_driver *f;
     cw_status st = prepare_writer(path, &d, &f, err);
-    if (st == CW_OK) /* to make a file and drop it is the only sure way to know */
+    if (st == CW_OK) /* the only sure way is to make a file and drop it */
         st = cwi_outfile_open(&file, path, d.no_clobber, err);
     cwi_outfile_abort(&file);
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);

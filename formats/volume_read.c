@@ -1,4 +1,5 @@
-/* Reads volumes: finds the reader by name, content or extension, of a file, a folder or a series. */
+/* Reads volumes from a file, a folder or a series: finds the reader by name, content or
+ * extension. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
@@ -40,7 +41,8 @@ static cw_status find_by_name(const char *name, const driver **found, cw_error *
                    list_readers(names));
 }
 
-/* A gzip file that is damaged from the start has no content to go by. */
+/* Reads the first bytes of a file. A gzip file that is damaged from the start has no content to
+ * recognise. */
 static cw_status read_head(const cwi_input *in, unsigned char *head, size_t *size,
                            bool *gzipped, cw_error *err)
 {
@@ -56,7 +58,8 @@ static bool sniffs_volume(const driver *f, const unsigned char *head, size_t siz
     return f->volume.sniff && f->volume.sniff(head, size);
 }
 
-/* By its content, or NULL. The meshes of VTK's XML are no volumes, nor are lists. */
+/* Finds a reader by the content, or returns NULL. The meshes of VTK's XML are no volumes, nor
+ * are lists. */
 static const driver *find_by_content(const unsigned char *head, size_t size, bool gzipped)
 {
     if (cwi_vtp_sniff(head, size, 0) || cwi_pvd_sniff(head, size))
@@ -124,13 +127,13 @@ static cw_status find_by_file(const cwi_input *in, const driver **found, cw_erro
         list_readers(names));
 }
 
-/* --- what a path stands for --------------------------------------------------------------- */
+/* --- files of a path -------------------------------------------------------------------- */
 
-/* One file, or all those of a folder or a pattern. */
+/* The files of a path: one file, or all those of a folder or a pattern. */
 typedef struct opened {
     cwi_input in;
     cwi_names names;
-    size_t links; /* left out */
+    size_t links; /* number of links that were left out */
     bool many;
     const driver *reader; /* NULL: raw */
 } opened;
@@ -157,7 +160,7 @@ static cw_status open_names(opened *o, const char *path, const cw_read_desc *des
     return st;
 }
 
-/* Whether a file of the folder is of a format; one that cannot be read is of none. */
+/* Returns true if a file of the folder has a format. A file that cannot be read has none. */
 static bool is_of(const cwi_input *in, const char *name, const driver *r)
 {
     unsigned char head[CWI_SNIFF_BYTES];
@@ -171,7 +174,7 @@ static bool is_of(const cwi_input *in, const char *name, const driver *r)
     return read && sniffs_volume(r, head, size);
 }
 
-/* Of a folder without slices: whether it holds volumes, or links. */
+/* Reports a folder without slices: says if it holds volumes, or links. */
 static cw_status fail_no_slice(const opened *o, cw_error *err)
 {
     char links[96] = "", all[320] = "";
@@ -214,7 +217,7 @@ static cw_status find_by_files(opened *o, cw_error *err)
     return fail_no_slice(o, err);
 }
 
-/* The format of a file whose points another file has. */
+/* Finds the format of files whose points are in another file. */
 static const driver *find_with_points(void)
 {
     size_t n = 0;
@@ -248,7 +251,7 @@ static cw_status open_path(opened *o, const char *path, const cw_read_desc *desc
 
 /* --- reading ------------------------------------------------------------------------------ */
 
-/* Files in a row hold whole slices, as many each. */
+/* Checks that files in a row hold whole slices, the same number each. */
 static cw_status check_shares(const cw_volume *v, size_t files, cw_error *err)
 {
     const size_t slices = v->dim[2] * v->steps;
@@ -264,7 +267,7 @@ static cw_status refuse_array(const char *array, cw_error *err)
                    "'%s' was asked for; files of this format have no arrays with names", array);
 }
 
-/* Headers that a source describes, and layouts. */
+/* Reads headers that become a source, and layouts. */
 static cw_status read_source(opened *o, const cw_read_desc *desc, cw_volume *volume,
                              cw_error *err)
 {
@@ -291,7 +294,7 @@ static cw_status read_source(opened *o, const cw_read_desc *desc, cw_volume *vol
     return st;
 }
 
-/* What a file by itself holds. */
+/* Reads the volume of one file by itself. */
 static cw_status read_one(opened *o, const cw_read_desc *desc, cw_volume *volume, cw_error *err)
 {
     bool is_grid = false;
@@ -312,7 +315,7 @@ static cw_status check_spacing(const double *s, cw_error *err)
     return CW_OK;
 }
 
-/* Where cells or leaves are read, all are. */
+/* Refuses a preview of a grid with cells or leaves, which are always read whole. */
 static cw_status expect_thin(const cw_read_desc *desc, cw_volume *v, cw_error *err)
 {
     cw_status st = CW_OK;
@@ -324,7 +327,7 @@ static cw_status expect_thin(const cw_read_desc *desc, cw_volume *v, cw_error *e
     return st;
 }
 
-/* Grids of OpenVDB are told by their reader. */
+/* Notes the choice among several arrays. For grids of OpenVDB their reader does it. */
 static void tell_arrays(const opened *o, const cw_read_desc *desc, const cwi_array_list *arrays)
 {
     char text[240];
@@ -376,7 +379,8 @@ cw_status cw_volume_read(const char *path, const cw_read_desc *desc, cw_volume *
     return st == CW_OK ? CW_OK : cwi_fail_in(err, st, path);
 }
 
-/* Slices have no arrays with names, and are many files: their headers are not read for that. */
+/* Lists the arrays of a file. Slices have no named arrays, and are many files, so their headers
+ * are not read. */
 cw_status cw_arrays_list(const char *path, const cw_read_desc *desc, cw_array **arrays,
                          size_t *count, cw_error *err)
 {
@@ -429,7 +433,8 @@ cw_status cw_series_list(const char *path, const cw_read_desc *desc, cw_series *
 
 typedef enum kind { UNKNOWN, SLICE, VOLUME } kind;
 
-/* A DICOM image is a slice of its series; a TIFF file is one when it has a single page. */
+/* Classifies a file. A DICOM image is a slice of its series; a TIFF file is one when it has a
+ * single page. */
 static kind kind_of(const char *path, const cw_read_desc *desc)
 {
     cw_read_desc d = *desc;
@@ -466,8 +471,8 @@ static cw_status add_path(const char *path, cwi_names *names, cw_error *err)
     return st;
 }
 
-/* What a pattern stands for is a series when none of it is a slice, and the first file is a
- * volume. What is neither is for cw_volume_read() to refuse. */
+/* Returns true if the files of a pattern are a series: none of them is a slice, and the first
+ * file is a volume. Other files are refused later, by cw_volume_read(). */
 static bool is_series(const cwi_names *names, const cw_read_desc *desc)
 {
     for (size_t i = 0; i < names->count; i++)
@@ -491,8 +496,9 @@ static cw_status refuse_slices(const cwi_names *names, const cw_read_desc *desc,
     return CW_OK;
 }
 
-/* The reader of one volume a file that all files of a folder have which are of any; NULL: they
- * are of several, or a slice is among them. Those of none are taken off the list. */
+/* Finds the one reader of all files in a folder that have a format. Returns NULL if they have
+ * several formats, or a slice is among them. Files without a format are removed from the
+ * list. */
 static const driver *find_common(const cwi_input *in, cwi_names *names)
 {
     const driver *common = NULL;
@@ -540,8 +546,8 @@ static cw_status add_below(const char *folder, const cwi_names *found, cwi_names
     return st;
 }
 
-/* The volumes of a folder, if they are a series: of one format, with names alike but for a
- * number. */
+/* Lists the volumes of a folder, if they are a series: of one format, with names alike except
+ * for a number. */
 static cw_status list_folder(const char *folder, const cw_read_desc *desc, cwi_names *names,
                              cw_error *err)
 {
@@ -558,7 +564,7 @@ static cw_status list_folder(const char *folder, const cw_read_desc *desc, cwi_n
     return st;
 }
 
-/* The format of a file, if it is a mesh; else NULL. */
+/* Returns the format of a file, if it is a mesh; else NULL. */
 static const char *mesh_format_of(const char *path)
 {
     unsigned char head[CWI_SNIFF_BYTES];
@@ -592,7 +598,7 @@ static cw_status list_pvd(const char *path, const cw_read_desc *desc, cwi_names 
     return st;
 }
 
-/* Several paths, or a pattern. */
+/* Lists the files of several paths, or of a pattern. */
 static cw_status list_paths(const char *const *paths, size_t path_count,
                             const cw_read_desc *desc, cwi_names *names, cw_error *err)
 {

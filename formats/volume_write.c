@@ -1,4 +1,4 @@
-/* Writes a volume: finds the writer, and hands it a file that appears when it is whole. */
+/* Writes a volume: finds the writer, and gives it a file that appears when it is complete. */
 #include "core/base/status.h"
 #include "core/volume/volume.h"
 #include "formats/bytes/file_pattern.h"
@@ -49,7 +49,7 @@ static cw_status check_scaling(const driver *f, const cw_volume *v, cw_error *er
                    v->intercept);
 }
 
-/* The name as one short line: the stem of the path when the caller has none. */
+/* Makes the name one short line; without a name from the caller it is the stem of the path. */
 static void make_name(const char *path, const char *name, char out[80])
 {
     const char *slash = strrchr(path, '/');

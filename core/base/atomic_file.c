@@ -1,3 +1,5 @@
+/* Writes files through a hidden temporary beside the target, which a rename puts in place once
+ * it is complete. */
 #define _GNU_SOURCE /* renameat2, getrandom, O_PATH */
 #include "core/base/atomic_file.h"
 
@@ -23,11 +25,11 @@ struct cwi_outfile {
     int fd, folder;
     char name[NAME_MAX + 1]; /* in the folder, after links are followed */
     char temporary[NAME_MAX +
-                   1]; /* in the same folder; "" before it exists and once it is gone */
+                   1]; /* in the same folder; "" before it exists and after it is removed */
     bool no_clobber;
     int failure;   /* errno of the first write that failed */
     int slot;      /* in the registry; -1 for none */
-    uint64_t size; /* bytes so far, those in the buffer too */
+    uint64_t size; /* number of bytes so far, including those in the buffer */
     size_t used;
     unsigned char *buffer;
 };
@@ -77,14 +79,14 @@ static cw_status fail_system(cw_error *err, const char *what, int number)
     return cw_fail(err, CW_ERR_OUTPUT, "%s: %s", what, strerror(number));
 }
 
-/* What stands at the path decides: nothing (exists false), a regular file, or an error. */
+/* Decides by the target that exists: nothing (exists false), a regular file, or an error. */
 static cw_status inspect_target(const char *path, bool no_clobber, bool *exists, mode_t *mode,
                                 cw_error *err)
 {
     struct stat link, info;
     *exists = lstat(path, &link) == 0;
     if (!*exists)
-        return CW_OK; /* a missing folder is found, and named, when it is opened */
+        return CW_OK; /* a missing folder is reported when it is opened */
     if (no_clobber)
         return cw_fail(err, CW_ERR_OUTPUT, "it exists, and is not to be replaced");
     if (stat(path, &info) != 0)
@@ -97,7 +99,7 @@ static cw_status inspect_target(const char *path, bool no_clobber, bool *exists,
     return CW_OK;
 }
 
-/* Opens the folder of a path whose links are resolved, and keeps the last name. */
+/* Opens the folder of a path with resolved links, and keeps the last name. */
 static cw_status open_folder(cwi_outfile *f, char *path, cw_error *err)
 {
     char *slash = strrchr(path, '/');
@@ -111,7 +113,7 @@ static cw_status open_folder(cwi_outfile *f, char *path, cw_error *err)
         slash[slash == path] = '\0'; /* the root keeps its slash */
     const char *folder = slash ? path : ".";
     f->folder = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-    if (f->folder < 0 && errno == EACCES) /* a folder one may write to, but not list */
+    if (f->folder < 0 && errno == EACCES) /* a folder with write but no list permission */
         f->folder = open(folder, O_PATH | O_DIRECTORY | O_CLOEXEC);
     if (f->folder < 0 && errno == ENOENT)
         return cw_fail(err, CW_ERR_OUTPUT, "the folder '%s' does not exist", folder);
@@ -121,7 +123,7 @@ static cw_status open_folder(cwi_outfile *f, char *path, cw_error *err)
     return CW_OK;
 }
 
-/* ".head.glb.k3x0aq.part"; long names are cut so that the whole fits a directory entry. */
+/* Makes a name such as ".head.glb.k3x0aq.part". Long names are cut to fit a directory entry. */
 static void name_temporary(cwi_outfile *f)
 {
     static const char letters[] = "abcdefghijklmnopqrstuvwxyz012345";
@@ -136,8 +138,9 @@ static void name_temporary(cwi_outfile *f)
     snprintf(f->temporary, sizeof f->temporary, ".%.*s.%s.part", room, f->name, word);
 }
 
-/* The kernel takes the umask off a new file's 0666. A replaced file's mode is narrowed at
- * creation already, so that no one can open the temporary who could not open the old file. */
+/* Creates the temporary. The kernel applies the umask to a new file's 0666. The mode of a
+ * replaced file is narrowed at creation, so no one can open the temporary who could not open
+ * the old file. */
 static cw_status make_temporary(cwi_outfile *f, bool replaces, mode_t mode, cw_error *err)
 {
     for (int i = 0; i < NAME_TRIES; i++) {
@@ -193,7 +196,7 @@ cw_status cwi_outfile_open(cwi_outfile **out, const char *path, bool no_clobber,
 {
     cwi_outfile *f = cwi_alloc_zeroed(1, sizeof *f);
     *out = NULL;
-    if (!f || !path) { /* a name that nobody had memory for */
+    if (!f || !path) { /* no memory for the name */
         cwi_free(f);
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to write a file");
     }
@@ -213,7 +216,7 @@ static cw_status fail_write(const cwi_outfile *f, cw_error *err)
     return fail_system(err, "it cannot be written", f->failure);
 }
 
-/* At the end of the file, or (at is not negative) over what stands there. */
+/* Writes at the end of the file or, if `at` is not negative, over the bytes there. */
 static cw_status write_through(cwi_outfile *f, const unsigned char *bytes, size_t size,
                                off_t at, cw_error *err)
 {
@@ -224,7 +227,7 @@ static cw_status write_through(cwi_outfile *f, const unsigned char *bytes, size_
             size -= (size_t)n;
             at += at < 0 ? 0 : n;
         } else if (n == 0) {
-            f->failure = ENOSPC; /* a regular file takes nothing only when there is no room */
+            f->failure = ENOSPC; /* a regular file accepts nothing only when the disk is full */
         } else if (errno != EINTR) {
             f->failure = errno;
         }
@@ -267,7 +270,7 @@ cw_status cwi_outfile_patch(cwi_outfile *f, uint64_t at, const void *bytes, size
     return st == CW_OK ? write_through(f, bytes, size, (off_t)at, err) : st;
 }
 
-/* Formats straight into the buffer; what does not fit is formatted again into its own. */
+/* Formats into the buffer. Text that does not fit is formatted again into memory of its own. */
 CW_PRINTF(3, 0)
 static cw_status print_args(cwi_outfile *f, cw_error *err, const char *format, va_list args)
 {
@@ -306,7 +309,8 @@ cw_status cwi_outfile_printf(cwi_outfile *f, cw_error *err, const char *format, 
     return st;
 }
 
-/* Some file systems cannot fsync; that is no reason to refuse a file that is whole. */
+/* Returns true for an error that only says fsync is not supported; a complete file is then
+ * still accepted. */
 static bool cannot_sync(int number)
 {
     return number == EINVAL || number == ENOTSUP || number == EROFS;
@@ -330,8 +334,8 @@ static cw_status finish_bytes(cwi_outfile *f, cw_error *err)
     return CW_OK;
 }
 
-/* The kernel refuses the rename when the name is taken; where the file system does not know
- * how, a hard link does the same. */
+/* Renames without replacing. The kernel refuses the rename when the name is taken. A hard link
+ * does the same where the file system lacks such a rename. */
 static int rename_new(cwi_outfile *f)
 {
     if (renameat2(f->folder, f->temporary, f->folder, f->name, RENAME_NOREPLACE) == 0)
@@ -352,7 +356,7 @@ static cw_status put_in_place(cwi_outfile *f, cw_error *err)
     if (renamed != 0)
         return fail_system(err, "it cannot be put in its place", errno);
     f->temporary[0] = '\0';
-    fsync(f->folder); /* best effort: the file is whole under its name whatever this says */
+    fsync(f->folder); /* best effort: the file is already complete under its name */
     return CW_OK;
 }
 

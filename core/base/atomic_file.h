@@ -1,4 +1,4 @@
-/* A file that appears at its path only when it is whole. */
+/* Files that appear at their path only when they are complete. */
 #ifndef CORE_BASE_ATOMIC_FILE_H
 #define CORE_BASE_ATOMIC_FILE_H
 
@@ -8,21 +8,21 @@
 extern "C" {
 #endif
 
-/* Bytes go to a hidden temporary beside the path; the commit renames it over what stood there.
- * Until then the path keeps its old file, whatever happens. Messages do not name the path: the
- * caller puts it in front. */
+/* An output file. Bytes go to a hidden temporary beside the path; the commit renames it over
+ * the old file. Until then the path keeps its old file in any case. Messages do not name the
+ * path: the caller puts it in front. */
 typedef struct cwi_outfile cwi_outfile;
 
-/* Makes the temporary. A link to a regular file is followed, and the real file replaced.
+/* Creates the temporary. A link to a regular file is followed, and the real file replaced.
  *
  * no_clobber  fail when the path exists, here and again, race-free, at the commit
  * Returns     CW_ERR_OUTPUT  folder missing or not writable, path exists and no_clobber, path
- * is a folder, device or the like; CW_ERR_NO_MEMORY */
+ *                            is a folder, device or the like; CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cwi_outfile_open(cwi_outfile **out, const char *path, bool no_clobber,
                                         cw_error *err);
 
-/* Appends bytes; buffered. CW_ERR_OUTPUT when they cannot be written; later writes and the
- * commit then fail with the same words. */
+/* Appends bytes; buffered. Returns CW_ERR_OUTPUT when they cannot be written. Later writes and
+ * the commit then fail with the same message. */
 CW_NODISCARD cw_status cwi_outfile_write(cwi_outfile *f, const void *bytes, size_t size,
                                          cw_error *err);
 
@@ -30,16 +30,16 @@ CW_NODISCARD cw_status cwi_outfile_write(cwi_outfile *f, const void *bytes, size
 CW_NODISCARD cw_status cwi_outfile_printf(cwi_outfile *f, cw_error *err, const char *format,
                                           ...) CW_PRINTF(3, 4);
 
-/* Bytes appended so far. */
+/* Returns the number of bytes appended so far. */
 uint64_t cwi_outfile_size(const cwi_outfile *f);
 
-/* Writes over bytes that were appended before: for what is known only later, such as sizes. The
+/* Writes over bytes that were appended before, for values known only later, such as sizes. The
  * next bytes are appended as before. Same errors as cwi_outfile_write(). */
 CW_NODISCARD cw_status cwi_outfile_patch(cwi_outfile *f, uint64_t at, const void *bytes,
                                          size_t size, cw_error *err);
 
 /* Flushes to the disk and renames. Frees and NULLs the file, on failure too: the temporary is
- * then gone and the path as it was. */
+ * then removed and the path unchanged. */
 CW_NODISCARD cw_status cwi_outfile_commit(cwi_outfile **f, cw_error *err);
 
 /* Removes the temporary, frees and NULLs. Harmless on NULL and after a commit. */
@@ -50,7 +50,7 @@ CW_NODISCARD cw_status cwi_outfile_save(const char *path, const void *bytes, siz
                                         cw_error *err);
 
 /* Unlinks every temporary in progress; the program then has to exit. Async-signal-safe: for a
- * second Ctrl-C. Knows the first 64 files that are open at one time. */
+ * second Ctrl-C. Covers the first 64 files that are open at one time. */
 void cwi_outfile_remove_all(void);
 
 #ifdef __cplusplus

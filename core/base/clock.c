@@ -1,3 +1,4 @@
+/* Reads the monotonic clock of the system (CLOCK_MONOTONIC). */
 #define _GNU_SOURCE /* clock_gettime */
 #include "core/base/clock.h"
 

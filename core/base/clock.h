@@ -1,4 +1,4 @@
-/* The clock that durations are measured with. */
+/* The monotonic clock for measuring durations. */
 #ifndef CORE_BASE_CLOCK_H
 #define CORE_BASE_CLOCK_H
 
@@ -8,7 +8,7 @@
 extern "C" {
 #endif
 
-/* Seconds since some moment; they never run backwards. */
+/* Returns the seconds since a fixed moment; they never run backwards. */
 double cwi_now_s(void);
 
 #ifdef __cplusplus

@@ -1,4 +1,4 @@
-/* Optional features: availability, and the reason for each that is missing. */
+/* Lists the optional features: availability, and the reason for each that is missing. */
 #include "core/base/features.h"
 
 #include "core/base/module.h"
@@ -13,7 +13,7 @@ static cw_feature features[MAX_FEATURES];
 static char file_is_missing[MAX_FEATURES][REASON_BYTES];
 static pthread_once_t features_once = PTHREAD_ONCE_INIT;
 
-/* At run time: a package may leave a module out that was built. */
+/* Fills the list at run time, since a package may leave out a module that was built. */
 static void fill_features(void)
 {
     for (size_t i = 0; i < cwi_feature_row_count && i < MAX_FEATURES; i++) {

@@ -1,15 +1,15 @@
-/* The optional parts of a build: a row each, made by CMake (core/features.cmake). */
+/* The optional parts of a build, one row each; CMake makes the rows (core/features.cmake). */
 #ifndef CORE_BASE_FEATURES_H
 #define CORE_BASE_FEATURES_H
 
 #include "core/base/status.h"
 
 typedef struct cwi_feature_row {
-    const char *name;     /* as `version --features` prints it */
-    const char *about;    /* what the feature brings */
-    const char *module;   /* the module it lives in; "" for a part of the library itself */
-    const char *option;   /* of CMake */
-    const char *packages; /* Debian's, between spaces */
+    const char *name;     /* as printed by `version --features` */
+    const char *about;    /* benefit of the feature */
+    const char *module;   /* the module that contains it; "" for a part of the library itself */
+    const char *option;   /* name of the CMake option */
+    const char *packages; /* Debian packages, separated by spaces */
     const char *reason;   /* why the feature was not built; "" when it was */
 } cwi_feature_row;
 

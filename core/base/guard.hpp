@@ -11,7 +11,8 @@
 namespace cw
 {
 
-// Memory that a library takes for itself, counted by an estimate as long as this lives.
+// Memory that a library allocates by itself, counted by an estimate during the lifetime of this
+// object.
 class Taken
 {
 public:
@@ -31,13 +32,13 @@ private:
     size_t bytes;
 };
 
-// Thrown where the caller's progress asks to stop.
+// Thrown when the caller's progress callback stops the call.
 struct Cancelled {
 };
 
-// Runs a function that returns cw_status. bad_alloc becomes CW_ERR_NO_MEMORY, Cancelled
-// CW_ERR_CANCELLED; everything else becomes CW_ERR_BACKEND with the library's name and its own
-// words.
+// Runs a function that returns cw_status. bad_alloc becomes CW_ERR_NO_MEMORY, Cancelled becomes
+// CW_ERR_CANCELLED. Everything else becomes CW_ERR_BACKEND with the name and message of the
+// library.
 template <typename Body>
 cw_status guard(cw_error *err, const char *library, Body &&body) noexcept
 {

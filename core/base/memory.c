@@ -1,3 +1,5 @@
+/* Allocates the library's memory, counts it against a limit, and lets tests make allocations
+ * fail. */
 #define _DEFAULT_SOURCE /* madvise */
 #include "core/base/memory.h"
 
@@ -10,7 +12,8 @@
 #include <sys/mman.h>
 #include <sys/resource.h>
 
-/* Per thread, so that a test that starves itself starves no one else. */
+/* The counters are per thread, so that a test that lets allocations fail affects no other
+ * thread. */
 static _Thread_local long allocations_left = -1;
 static _Thread_local bool one_failed;
 
@@ -27,16 +30,17 @@ static bool fail_by_request(void)
 }
 
 struct cwi_memory_account {
-    atomic_size_t used;         /* by all arrays that are allocated now */
+    atomic_size_t used;         /* bytes of all arrays that are allocated now */
     atomic_size_t limit;        /* 0: none */
-    atomic_size_t refused;      /* the last request beyond it */
-    atomic_size_t refused_left; /* and what was left then */
-    bool (*next_fails)(void);   /* of cwi_alloc_fail_after() */
+    atomic_size_t refused;      /* size of the last request beyond the limit */
+    atomic_size_t refused_left; /* bytes that were left then */
+    bool (*next_fails)(void);   /* callback for cwi_alloc_fail_after() */
 };
 
 static cwi_memory_account own_account = {.next_fails = fail_by_request};
 
-/* Threads may load a module at the same time: each shares the same account with it. */
+/* The account of this process. Threads may load a module at the same time: each shares the same
+ * account with it. */
 static _Atomic(cwi_memory_account *) account = &own_account;
 
 cwi_memory_account *cwi_memory_account_get(void)
@@ -95,7 +99,8 @@ bool cwi_memory_take(size_t bytes)
     return false;
 }
 
-/* Never below 0: a caller's own arrays, which were not counted, may be freed here, too. */
+/* Gives bytes back. The count never falls below 0, since uncounted arrays of a caller may be
+ * freed here, too. */
 void cwi_memory_give(size_t bytes)
 {
     size_t now = atomic_load_explicit(&account->used, memory_order_relaxed);
@@ -105,7 +110,7 @@ void cwi_memory_give(size_t bytes)
         ;
 }
 
-/* The bytes that allocated memory has; 0: not known, and then it is not counted. */
+/* Returns the true size of allocated memory; 0: unknown, and then it is not counted. */
 static size_t room_of(void *memory)
 {
 #ifdef __linux__
@@ -116,7 +121,8 @@ static size_t room_of(void *memory)
 #endif
 }
 
-/* What was taken beforehand for memory becomes what it has. Passes it on. */
+/* Corrects the count from the bytes taken beforehand to the true size of the memory. Returns
+ * the memory. */
 static void *count_memory(void *memory, size_t taken)
 {
     const size_t has = room_of(memory);
@@ -147,13 +153,14 @@ bool cwi_size_add(size_t a, size_t b, size_t *out)
     return true;
 }
 
-/* Sizes beyond PTRDIFF_MAX cannot be indexed; malloc refuses them, and compilers warn. */
+/* Computes the size of an array. Sizes beyond PTRDIFF_MAX cannot be indexed; malloc refuses
+ * them, and compilers warn. */
 static bool is_usable(size_t count, size_t size, size_t *bytes)
 {
     return cwi_size_mul(count, size, bytes) && *bytes <= PTRDIFF_MAX && !account->next_fails();
 }
 
-/* The same, and takes the bytes. */
+/* Computes the size as is_usable(), and takes the bytes. */
 static bool take_array(size_t count, size_t size, size_t *bytes)
 {
     return is_usable(count, size, bytes) && cwi_memory_take(*bytes);
@@ -161,8 +168,7 @@ static bool take_array(size_t count, size_t size, size_t *bytes)
 
 enum { LARGE_PAGE = 2 << 20 };
 
-/* Asks for large pages where whole ones lie in large memory: no harm if they are
- * not granted. */
+/* Requests large pages for the whole ones inside large memory. A refusal does no harm. */
 static void wish_large_pages(char *memory, size_t bytes)
 {
 #ifdef MADV_HUGEPAGE

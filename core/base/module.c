@@ -1,3 +1,4 @@
+/* Finds the shared objects of modules, and loads them with dlopen(). */
 #define _GNU_SOURCE /* dladdr1 */
 #include "core/base/module.h"
 
@@ -14,8 +15,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-/* The file that this function is in: the library, or a program that linked it statically, which
- * the loader names as it was called. */
+/* Finds the file that contains this function: the library, or a program that linked it
+ * statically. The loader names the program as it was called. */
 static bool find_own_file(char path[PATH_MAX])
 {
     static const char here;
@@ -55,8 +56,9 @@ bool cwi_module_present(const char *name)
     return module_path(name, path, sizeof path);
 }
 
-/* Loads a module in a process that may die of it: constructors of C++ libraries end theirs when
- * memory runs out. False where it died; whatever else is wrong, loading it here tells. */
+/* Loads a module first in a child process, which may die of it: constructors of C++ libraries
+ * end the process when memory runs out. Returns false if the child died. Other errors are
+ * reported by the loading here. */
 static bool survives_loading(const char *path)
 {
     int how = 0;
@@ -98,7 +100,7 @@ static cw_status fail_load(const char *name, const char *packages, cw_error *err
                    name, words ? words : "unknown error", packages);
 }
 
-/* The path of a module that this build has. */
+/* Finds the path of a module that this build has. */
 static cw_status find_module(const char *name, char *path, size_t size,
                              const cwi_feature_row **row, cw_error *err)
 {

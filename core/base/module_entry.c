@@ -1,5 +1,5 @@
-/* What every module exports beside its functions. A module has copies of the internal functions
- * that it calls; the account of memory is the program's. */
+/* The function that every module exports beside its struct of functions. A module has copies of
+ * the internal functions that it calls; the memory account is the program's. */
 #include "core/base/memory.h"
 #include "core/base/module.h"
 

@@ -1,3 +1,5 @@
+/* Runs work on the layers of a volume in parallel (OpenMP), with progress reports and
+ * cancellation. */
 #define _GNU_SOURCE /* clock_gettime */
 #include "core/base/parallel.h"
 
@@ -7,16 +9,16 @@
 #include <pthread.h>
 #include <time.h>
 
-/* As many threads as are asked for, or as there are enough samples for. */
+/* Returns the requested number of threads, or as many as there are enough samples for. */
 static int choose_threads(size_t layers, size_t layer_size, int asked)
 {
-    enum { SHARE = 1 << 19 }; /* samples worth a thread */
+    enum { SHARE = 1 << 19 }; /* samples that are worth one thread */
     const size_t shares = layers * layer_size / SHARE + 1;
     const int threads = cwi_threads(asked);
     return asked <= 0 && shares < (size_t)threads ? (int)shares : threads;
 }
 
-/* Threads that have run out of layers. */
+/* Counts the threads that have run out of layers. */
 typedef struct finishers {
     pthread_mutex_t lock;
     pthread_cond_t more;
@@ -47,10 +49,11 @@ static bool wait_for_threads(finishers *f, int count)
     return finished;
 }
 
-/* A thread takes a few neighbouring layers at a time: they share samples, and short turns keep
- * the threads busy to the end. One region for all layers: waking and joining threads for every
- * few layers cost more than it balanced. The calling thread goes on asking the caller when it
- * has run out of layers: those of others may take long. */
+/* Runs the layers. A thread takes a few neighbouring layers at a time: they share samples, and
+ * short chunks keep the threads busy to the end. There is one parallel region for all layers.
+ * Waking and joining threads for every few layers cost more than it balanced. When the calling
+ * thread has run out of layers, it keeps polling the caller's progress, since the other threads
+ * may take long. */
 cw_status cwi_each_layer(size_t layers, size_t layer_size, int threads,
                          const cw_progress *progress, const char *step,
                          void (*work)(void *context, size_t k), void *context, cw_error *err)

@@ -1,4 +1,4 @@
-/* Work on a volume layer by layer, shared out to threads. */
+/* Parallel work on a volume, layer by layer. */
 #ifndef CORE_BASE_PARALLEL_H
 #define CORE_BASE_PARALLEL_H
 
@@ -10,8 +10,8 @@ extern "C" {
 
 /* Runs work(context, k) for every layer k, each once, and polls progress on the calling thread.
  *
- * layer_size  samples in a layer: unless threads are asked for by number, none are woken for
- *             what one does in a moment
+ * layer_size  samples in a layer: unless a number of threads is requested, none are woken for
+ *             work that one thread does in a moment
  * threads     0 means all
  * Returns     CW_OK, or CW_ERR_CANCELLED: then some layers were left out */
 CW_NODISCARD cw_status cwi_each_layer(size_t layers, size_t layer_size, int threads,

@@ -1,3 +1,5 @@
+/* Runs library code in a child process that seccomp and resource limits confine; talks to it by
+ * a socket and shared memory. */
 #define _GNU_SOURCE /* close_range, SCM_RIGHTS, strsignal */
 #include "core/base/sandbox.h"
 
@@ -68,8 +70,8 @@ static bool send_parcel(int socket, const void *bytes, size_t size, int fd)
     return sent == (ssize_t)size;
 }
 
-/* Whether there was a message; *fd is -1 where no file came with it. Without fd none is taken:
- * no room is left for it. */
+/* Returns true if there was a message; *fd is -1 where no file came with it. With fd NULL no
+ * file is accepted: the buffer has no room for one. */
 static bool receive_parcel(int socket, void *bytes, size_t size, int *fd)
 {
     parcel p;
@@ -101,7 +103,7 @@ static void limit_resource(__rlimit_resource_t what, uint64_t most)
     setrlimit(what, &now);
 }
 
-/* The address space in use so far. */
+/* Returns the address space in use so far. */
 static uint64_t space_in_use(void)
 {
     unsigned long long pages = 0;
@@ -124,8 +126,8 @@ static void set_limits(const cwi_sandbox_desc *d)
                        space_in_use() + (d->memory ? d->memory : CWI_SANDBOX_MEMORY));
 }
 
-/* Of all files nothing stays open but the socket, which moves behind the standard streams;
- * those lead nowhere, for a library must not print what it reads. */
+/* Closes all files but the socket, which moves behind the standard streams. Those are
+ * redirected to /dev/null, since a library must not print the data that it reads. */
 static bool drop_files(int *socket, bool all)
 {
     const int nowhere = open("/dev/null", O_RDWR);
@@ -146,7 +148,8 @@ static bool drop_files(int *socket, bool all)
     return close_range(LAST_STDIO + 2, ~0u, 0) == 0;
 }
 
-/* Everything else fails with EPERM: a library that asks in vain for its settings goes on. */
+/* Allows a few system calls. All others fail with EPERM, so a library that cannot read its
+ * settings goes on without them. */
 static bool lock_system_calls(void)
 {
     static const int allowed[] = {
@@ -192,7 +195,7 @@ static void serve_requests(const cwi_sandbox *box, int socket)
     }
 }
 
-/* Loads the library, then shuts the door, unless it may stay open. */
+/* Prepares the library, then confines the process, unless it is trusted. */
 static cw_status shut_in(const cwi_sandbox_desc *d, cw_error *err)
 {
     cw_status st = d->prepare ? d->prepare(d->state, err) : CW_OK;
@@ -208,7 +211,7 @@ static cw_status shut_in(const cwi_sandbox_desc *d, cw_error *err)
     return CW_OK;
 }
 
-/* The first answer tells whether the door is shut. */
+/* Runs the child. Its first answer reports whether the sandbox is in place. */
 _Noreturn static void live(const cwi_sandbox *box, int socket, pid_t parent)
 {
     const struct sigaction usual = {.sa_handler = SIG_DFL};
@@ -217,7 +220,7 @@ _Noreturn static void live(const cwi_sandbox *box, int socket, pid_t parent)
     signal(SIGINT, SIG_IGN); /* Ctrl-C goes to all processes; the parent ends this one */
     prctl(PR_SET_PDEATHSIG, SIGKILL);
     prctl(PR_SET_NAME, "cubewright-read");
-    cwi_alloc_fail_after(-1); /* it is the caller's allocations that a test counts */
+    cwi_alloc_fail_after(-1); /* a test counts the caller's allocations only */
     answer ready = {.status = CW_OK};
     if (getppid() != parent || !drop_files(&socket, !box->desc.trusted))
         _exit(0);
@@ -234,7 +237,7 @@ static double timeout_s(const cwi_sandbox *box)
     return box->desc.timeout_s > 0 ? box->desc.timeout_s : 60;
 }
 
-/* Waits until there is something to receive, be it that the child is gone. */
+/* Waits until there is something to receive, or the child has ended. */
 static cw_status wait_for_answer(const cwi_sandbox *box, cw_error *err)
 {
     const double start = cwi_now_s();
@@ -268,7 +271,7 @@ static cw_status fail_dead(cwi_sandbox *box, cw_error *err)
                    box->desc.library);
 }
 
-/* An answer is a stranger's too: its text is cut off and made printable. */
+/* Checks an answer, which is untrusted: cuts its text off and makes it printable. */
 static cw_status take_answer(answer *a, cw_error *err)
 {
     char *text = a->error.message;
@@ -281,7 +284,8 @@ static cw_status take_answer(answer *a, cw_error *err)
     return a->status == CW_OK ? CW_OK : cw_fail(err, a->status, "%s", text);
 }
 
-/* Before its first answer a child runs nothing but the library's constructors. */
+/* Reports a child that ended before its first answer: it ran only the library's
+ * constructors. */
 static cw_status fail_unprepared(cwi_sandbox *box, cw_error *err)
 {
     int how = 0;
@@ -334,7 +338,8 @@ static cw_status fail_start(cwi_sandbox *box, const char *what, cw_error *err)
                    why ? why : "unknown error");
 }
 
-/* The child writes its results where this side may read them without a copy. */
+/* Maps memory into which the child writes its results, so that this side reads them without a
+ * copy. */
 static bool share_memory(cwi_sandbox *box)
 {
     box->shared = mmap(NULL, box->desc.shared_bytes, PROT_READ | PROT_WRITE,

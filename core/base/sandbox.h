@@ -1,10 +1,10 @@
-/* Work on the bytes of strangers in a child process: where a library crashes, hangs or is taken
- * over, the child is lost and an error remains.
+/* A sandbox: a child process that works on untrusted bytes. If a library crashes, hangs or is
+ * taken over there, only the child is lost, and the caller gets an error.
  *
- * The child has no files but those it is handed one by one, and the system calls left to it
- * (seccomp) read them, take memory and answer: it opens, starts and sends nothing. What it
- * finds goes into memory that both sides see. That memory, like its answers, is a stranger's:
- * copy, then check. */
+ * The child has no files except those handed to it one by one. seccomp leaves it the system
+ * calls that read them, allocate memory and answer. It cannot open files, start programs or
+ * send data. Its results go into memory that both sides see. That memory and the answers are
+ * untrusted: copy, then check. */
 #ifndef CORE_BASE_SANDBOX_H
 #define CORE_BASE_SANDBOX_H
 
@@ -14,7 +14,7 @@
 extern "C" {
 #endif
 
-/* Sanitizers keep terabytes of address space for themselves: memory has no limit then. */
+/* Sanitizers reserve terabytes of address space: memory has no limit then. */
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define CWI_SANITIZED 1
 #elif defined(__has_feature)
@@ -23,20 +23,20 @@ extern "C" {
 #define CWI_SANITIZED 0
 #endif
 
-/* One piece of work, done in the child.
- * state    as in the description: the child's own copy, kept from piece to piece
- * fd       the file handed over: the work's own from now on; -1: none
- * request  a copy of what cwi_sandbox_run() was given
+/* A piece of work, done in the child.
+ * state    as in the description: the child's own copy, kept from one piece to the next
+ * fd       the file handed over, which the work now owns; -1: none
+ * request  a copy of the bytes given to cwi_sandbox_run()
  * shared   the memory that both sides see */
 typedef cw_status (*cwi_sandbox_work)(void *state, int fd, const void *request, void *shared,
                                       cw_error *err);
 
-/* What comes first in the child, while it may still open files: loading a library, whose
- * constructors may well end a process that is short of memory. */
+/* The first step in the child, while it may still open files: loading a library. The library's
+ * constructors may end a process that is short of memory. */
 typedef cw_status (*cwi_sandbox_prepare)(void *state, cw_error *err);
 
 enum { CWI_SANDBOX_REQUEST = 64 };
-#define CWI_SANDBOX_MEMORY ((uint64_t)2 << 30) /* bytes, where nothing else is said */
+#define CWI_SANDBOX_MEMORY ((uint64_t)2 << 30) /* bytes; the default */
 
 typedef struct cwi_sandbox_desc {
     const char *library;         /* for messages: "DCMTK" */
@@ -44,10 +44,10 @@ typedef struct cwi_sandbox_desc {
     cwi_sandbox_work work;
     void *state;
     size_t shared_bytes; /* of the memory that both sides see */
-    uint64_t memory;     /* bytes that the child may take besides; 0: CWI_SANDBOX_MEMORY */
+    uint64_t memory;     /* bytes that the child may allocate besides; 0: CWI_SANDBOX_MEMORY */
     double timeout_s;    /* for one piece of work; 0: 60 */
     bool inside;         /* no child: the work is done here */
-    bool trusted; /* the work is on data of our own: a child that may die, without limits */
+    bool trusted;        /* the work is on our own data: a child that may die, without limits */
 } cwi_sandbox_desc;
 
 /* A zeroed sandbox is closed. */
@@ -57,20 +57,20 @@ typedef struct cwi_sandbox {
     bool open;
     int socket;
     int child;                   /* process id; 0: none */
-    const cw_progress *progress; /* may be set between pieces: asked every 100 ms ... */
-    double done;                 /* ... with this share */
+    const cw_progress *progress; /* may be set between pieces: called every 100 ms ... */
+    double done;                 /* ... with this fraction */
 } cwi_sandbox;
 
 /* Starts the child.
- * Returns what its preparation returned; CW_ERR_BACKEND when the system gives no process, or
- * has no seccomp; CW_ERR_NO_MEMORY, also when the child died of its preparation */
+ * Returns  the preparation's result; CW_ERR_BACKEND when the system gives no process, or
+ *          has no seccomp; CW_ERR_NO_MEMORY, also when the child died of its preparation */
 CW_NODISCARD cw_status cwi_sandbox_open(cwi_sandbox *box, const cwi_sandbox_desc *desc,
                                         cw_error *err);
 
-/* Has a piece of work done and waits for it.
+/* Makes the child do a piece of work, and waits for it.
  * fd       borrowed; -1: none
  * request  at most CWI_SANDBOX_REQUEST bytes
- * Returns  what the work returned; CW_ERR_BACKEND when the child died or took too long, which
+ * Returns  the work's result; CW_ERR_BACKEND when the child died or took too long, which
  *          closes the sandbox; CW_ERR_CANCELLED */
 CW_NODISCARD cw_status cwi_sandbox_run(cwi_sandbox *box, int fd, const void *request,
                                        size_t size, cw_error *err);

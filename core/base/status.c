@@ -1,3 +1,4 @@
+/* Fills in errors, describes status codes, and reports progress. */
 #include "core/base/status.h"
 
 #include <omp.h>

@@ -1,3 +1,5 @@
+/* Calls the caller's progress on the calling thread, and passes its request to stop to all
+ * threads. */
 #include "core/base/stop.h"
 
 void cwi_stop_init(cwi_stop *stop, const cw_progress *progress)

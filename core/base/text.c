@@ -1,3 +1,5 @@
+/* Parses and prints numbers independently of the locale, checks UTF-8, and prints text into
+ * memory. */
 #define _GNU_SOURCE /* strtod_l, newlocale, fopencookie */
 #include "core/base/text.h"
 
@@ -16,18 +18,19 @@ static void make_c_locale(void)
     c_locale = newlocale(LC_NUMERIC_MASK, "C", (locale_t)0);
 }
 
-/* The C locale is always there; (locale_t)0 after memory ran out leaves the program's own. */
+/* Returns the C locale, which always exists. (locale_t)0, after memory ran out, leaves the
+ * program's own. */
 static locale_t get_c_locale(void)
 {
     pthread_once(&c_locale_once, make_c_locale);
     return c_locale;
 }
 
-/* Digits of a decimal number, taken apart. */
+/* The digits and the exponent of a decimal number. */
 typedef struct decimal {
     uint64_t digits; /* without the point */
-    int count;       /* of them, leading zeros too */
-    int exponent;    /* of ten */
+    int count;       /* number of digits, including leading zeros */
+    int exponent;    /* power of ten */
 } decimal;
 
 static const char *read_digits(const char *s, decimal *d, int exponent_step)
@@ -40,7 +43,7 @@ static const char *read_digits(const char *s, decimal *d, int exponent_step)
     return s;
 }
 
-/* Up to three digits behind an 'e'; NULL when there is anything else. */
+/* Reads up to three digits behind an 'e'; returns NULL for anything else. */
 static const char *read_exponent(const char *s, decimal *d)
 {
     const bool negative = *s == '-';
@@ -50,9 +53,9 @@ static const char *read_exponent(const char *s, decimal *d)
     return e.count >= 1 && e.count <= 3 ? s : NULL;
 }
 
-/* The numbers that files are full of: digits below 2^53 and a power of ten up to 22 are exact,
- * so their product or quotient is rounded once, as it must be. False for all others, and for
- * what looks unusual: they are left to strtod, which takes five times as long. */
+/* Parses the most frequent numbers. Digits below 2^53 and powers of ten up to 22 are exact, so
+ * their product or quotient is rounded once, as it must be. Returns false for all others and
+ * for unusual forms: they are left to strtod, which takes five times as long. */
 static bool parse_short(const char **text, double *value)
 {
     static const double powers[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,
@@ -151,7 +154,7 @@ size_t cwi_utf8_length(const char *text)
     return n && code >= lowest[n] && code < 0x110000 && !surrogate ? n : 0;
 }
 
-/* Text on its way into memory: *text has room for a zero behind it. */
+/* Text that is written to memory: *text has room for a terminating zero. */
 typedef struct text_sink {
     char **text;
     size_t *size, room;
@@ -180,7 +183,7 @@ static int free_sink(void *sink)
     return 0;
 }
 
-/* Not open_memstream(): where memory runs out, that drops text without a word. */
+/* Replaces open_memstream(), which drops text without an error when memory runs out. */
 FILE *cwi_text_open(char **text, size_t *size)
 {
     static const cookie_io_functions_t functions = {.write = put_text, .close = free_sink};

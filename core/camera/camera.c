@@ -1,3 +1,4 @@
+/* Names the standard views, fits cameras to boxes, and turns and zooms cameras. */
 #include <cubewright/camera.h>
 
 #include "core/base/status.h"
@@ -7,7 +8,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Where one looks to, in LPS: +x is the patient's left, +y the back, +z the head. */
+/* The views' directions of sight, in LPS: +x is the patient's left, +y the back, +z the
+ * head. */
 static const struct {
     const char *name;
     double forward[3], up[3];
@@ -20,7 +22,7 @@ static const struct {
 
 enum { VIEW_COUNT = sizeof views / sizeof *views };
 
-/* False when there is no length to speak of, or no number. */
+/* Normalises a vector; returns false when its length is near zero or not a number. */
 static bool normalize_vector(double a[3])
 {
     const double length = sqrt(cwi_dot(a, a));
@@ -66,13 +68,13 @@ static cw_status find_view(const char *name, int *view, cw_error *err)
     return cw_fail(err, CW_ERR_ARGUMENT, "no view is named '%s'; there are%s", name, list);
 }
 
-/* How far the box reaches from its middle along an axis: a box is symmetric. */
+/* Returns half the extent of the box along an axis; a box is symmetric. */
 static double project_extent(const double half[3], const double axis[3])
 {
     return fabs(half[0] * axis[0]) + fabs(half[1] * axis[1]) + fabs(half[2] * axis[2]);
 }
 
-/* The distance from the box's middle at which the last corner enters the picture. */
+/* Returns the distance from the box's middle at which the last corner enters the picture. */
 static double perspective_distance(const double half[3], const double axes[3][3],
                                    const double slope[2])
 {
@@ -122,7 +124,7 @@ static void rotate_vector(double v[3], const double axis[3], double degrees)
         v[a] = c * v[a] + s * across[a] + along * axis[a];
 }
 
-/* From a view's directions to those beside and above it. */
+/* Turns a view's directions by azimuth and elevation. */
 static cw_status turn_view(const cw_fit_desc *d, double forward[3], double up[3], cw_error *err)
 {
     double right[3];
@@ -131,7 +133,7 @@ static cw_status turn_view(const cw_fit_desc *d, double forward[3], double up[3]
     if (!(d->elevation_deg >= -90 && d->elevation_deg <= 90))
         return cw_fail(err, CW_ERR_ARGUMENT, "an elevation of %g degrees, not -90 to 90",
                        d->elevation_deg);
-    cwi_cross(forward, up, right); /* some views' up is not across */
+    cwi_cross(forward, up, right); /* the up of some views is not perpendicular */
     cwi_cross(right, forward, up);
     normalize_vector(up);
     rotate_vector(forward, up, d->azimuth_deg);

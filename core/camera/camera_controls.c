@@ -1,3 +1,4 @@
+/* Projects points and rays through a camera, and moves it: pan, orbit, roll and dolly. */
 #include <cubewright/camera.h>
 
 #include "core/base/status.h"
@@ -16,7 +17,7 @@ static cw_status find_axes(const cw_camera *camera, axes *a, cw_error *err)
     return cw_camera_axes(camera, a->right, a->up, a->forward, err);
 }
 
-/* Half of the picture's height: in perspective a millimetre before the eye. */
+/* Returns half of the picture's height; in perspective at one millimetre before the eye. */
 static double half_height(const cw_camera *c)
 {
     return c->fov_deg > 0 ? tan(c->fov_deg * acos(-1) / 360) : c->height_mm / 2;
@@ -100,9 +101,9 @@ cw_status cw_camera_pan(cw_camera *camera, size_t height, double right_px, doubl
     return CW_OK;
 }
 
-/* What an orbit turns about. An up that leans on the line of sight is an axis by itself; one
- * straight across it may be just the picture's (as those of cw_camera_fit() are), and then
- * heads stay up if they are: the picture is level. */
+/* Finds the axis of an orbit. An up that is not perpendicular to the line of sight is itself
+ * the axis. A perpendicular up may be just the picture's (as those of cw_camera_fit() are). If
+ * the picture is level, the axis is then z, so that heads stay up. */
 static void find_turning_axis(const cw_camera *c, const axes *a, double axis[3])
 {
     static const double little = 1e-6;
@@ -114,7 +115,8 @@ static void find_turning_axis(const cw_camera *c, const axes *a, double axis[3])
     axis[2] = a->up[2] < -little ? -1 : 1;
 }
 
-/* How far the eye may go up: to just before the pole, where up and line of sight would meet. */
+/* Limits the climb of the eye: it stops just before the pole, where up and line of sight would
+ * meet. */
 static double clamp_climb(const axes *a, const double axis[3], double degrees)
 {
     static const double most = 90 - 1e-4;

@@ -1,6 +1,5 @@
-/* The little linear algebra that frames need. An affine is the 12 numbers of a 3x4 map, row by
- * row: y = A x + t. Pass affine[0]: C17 cannot pass a double[3][4] where a const one
- * is wanted. */
+/* Linear algebra of affine maps. An affine is the 12 numbers of a 3x4 map, row by row: y = A x
+ * + t. Pass affine[0]: C17 cannot pass a double[3][4] to a const parameter. */
 #ifndef CORE_GEOMETRY_AFFINE_H
 #define CORE_GEOMETRY_AFFINE_H
 
@@ -18,8 +17,8 @@ static inline void cwi_affine_apply(const double *a, const double x[3], double y
         y[r] = a[4 * r] * x[0] + a[4 * r + 1] * x[1] + a[4 * r + 2] * x[2] + a[4 * r + 3];
 }
 
-/* The cofactor matrix: determinant times inverse transpose. Takes gradients (and plane normals)
- * of index space to world directions, up to the determinant. */
+/* Computes the cofactor matrix: determinant times inverse transpose. It takes gradients (and
+ * plane normals) of index space to world directions, up to the determinant. */
 static inline void cwi_affine_cofactor(const double *a, double c[3][3])
 {
     for (int r = 0; r < 3; r++)

@@ -1,3 +1,5 @@
+/* Builds a tree of boxes with eight children per node, sorted along a Morton curve, and visits
+ * overlaps. */
 #include "core/geometry/bvh.h"
 
 #include "core/base/memory.h"
@@ -19,7 +21,8 @@ static uint64_t spread_bits(uint64_t x)
     return (x | x << 2) & UINT64_C(0x249249249249);
 }
 
-/* Where each box's middle stands on the curve through a cube of 2^16 places an edge. */
+/* Sets each key: the place of the box's middle on the curve through a cube of 2^16 places an
+ * edge. */
 static void set_keys(const float (*boxes)[6], size_t count, keyed *keys)
 {
     double low[3] = {INFINITY, INFINITY, INFINITY}, high = 0;
@@ -40,7 +43,8 @@ static void set_keys(const float (*boxes)[6], size_t count, keyed *keys)
     }
 }
 
-/* By 16 bits of the key at a time; equal keys stay as they are. False when memory is out. */
+/* Radix-sorts by 16 bits of the key at a time; the order of equal keys is kept. Returns false
+ * when memory is out. */
 static bool sort_keys(keyed **keys, size_t count)
 {
     enum { DIGITS = 1 << 16 };

@@ -1,4 +1,4 @@
-/* A tree of boxes: what is near a point, what overlaps a box? */
+/* A bounding volume hierarchy: a tree of boxes for nearest-point and overlap queries. */
 #ifndef CORE_GEOMETRY_BVH_H
 #define CORE_GEOMETRY_BVH_H
 
@@ -16,22 +16,22 @@ extern "C" {
 
 enum { CWI_WIDTH = 8, CWI_LEVELS = 12 };
 
-/* The boxes of eight neighbours, side by side for arithmetic on several at a time; those that
- * are not there are empty, low above high. */
+/* The boxes of eight neighbours, side by side, for arithmetic on several at a time. Missing
+ * boxes are empty, low above high. */
 typedef struct cwi_boxes_node {
     float low[3][CWI_WIDTH], high[3][CWI_WIDTH];
 } cwi_boxes_node;
 
-/* Items are sorted along a curve that fills space; eight in a row make a node, eight nodes one
- * of the next level, up to a single one. So the tree has no pointers and no depth to fear: any
- * boxes, equal ones too, give the same shape. Zeroed: empty. */
+/* A tree of items sorted along a space-filling curve. Eight in a row make a node, eight nodes
+ * one of the next level, up to a single one. So the tree has no pointers and a small depth: any
+ * boxes, also equal ones, give the same shape. Zeroed: empty. */
 typedef struct cwi_boxes {
     size_t count;
-    uint32_t *order; /* items as the tree has them: in slot s stands item order[s] */
+    uint32_t *order; /* items in the order of the tree: slot s holds item order[s] */
     cwi_boxes_node *nodes;
     int levels;
     size_t first[CWI_LEVELS]; /* node of each level; 0 holds items, the last is one node */
-    float most;               /* the largest coordinate, without its sign */
+    float most;               /* the largest absolute coordinate */
 } cwi_boxes;
 
 /* Sorts boxes into a tree. They are not needed afterwards.
@@ -43,17 +43,17 @@ CW_NODISCARD cw_status cwi_boxes_build(cwi_boxes *tree, const float (*boxes)[6],
                                        cw_error *err);
 void cwi_boxes_free(cwi_boxes *tree);
 
-/* Calls visit for each node of level 0, from node `first` on and in rising order, that may hold
- * boxes sharing a point with this one, until it returns false. Item s of the tree's order is
- * box s % CWI_WIDTH of node s / CWI_WIDTH. box  low x, y, z, high x, y, z; ends may
- * be infinite */
+/* Calls visit for each node of level 0 that may hold boxes sharing a point with this box. It
+ * starts at node `first`, goes in rising order, and stops when visit returns false. Item s of
+ * the tree's order is box s % CWI_WIDTH of node s / CWI_WIDTH.
+ * box  low x, y, z, high x, y, z; ends may be infinite */
 void cwi_boxes_visit(const cwi_boxes *tree, const float box[6], size_t first,
                      bool (*visit)(void *context, size_t node), void *context);
 
-/* The box around a node's boxes. */
+/* Computes the box around a node's boxes. */
 void cwi_boxes_around(const cwi_boxes_node *node, float box[6]);
 
-/* The box around a triangle. points: vertices x 3; v: three of them */
+/* Computes the box around a triangle. points: vertices x 3; v: three of them */
 static inline void cwi_boxes_triangle(const float *points, const uint32_t v[3], float box[6])
 {
     for (int a = 0; a < 3; a++) {
@@ -73,7 +73,7 @@ static inline void cwi_boxes_put(cwi_boxes_node *nodes, size_t child, const floa
     }
 }
 
-/* A node of empty boxes. */
+/* Fills a node with empty boxes. */
 static inline void cwi_boxes_clear(cwi_boxes_node *node)
 {
     const float empty[6] = {INFINITY, INFINITY, INFINITY, -INFINITY, -INFINITY, -INFINITY};
@@ -81,11 +81,11 @@ static inline void cwi_boxes_clear(cwi_boxes_node *node)
         cwi_boxes_put(node, c, empty);
 }
 
-/* Four numbers at a time, said so: compilers make jumps of loops this short. */
+/* Four numbers at a time, as explicit vectors: compilers make jumps of loops this short. */
 typedef float cwi_lanes __attribute__((vector_size(16)));
 typedef int32_t cwi_mask __attribute__((vector_size(16)));
 
-/* Bit c: lane c of a mask is set. */
+/* Returns bit c for each set lane c of a mask. */
 static inline unsigned cwi_mask_bits(const cwi_mask *mask)
 {
 #ifdef __SSE2__
@@ -96,7 +96,7 @@ static inline unsigned cwi_mask_bits(const cwi_mask *mask)
 #endif
 }
 
-/* Bit c: box c of the node shares a point with the box. */
+/* Returns bit c for each box c of the node that shares a point with the box. */
 static inline unsigned cwi_boxes_meeting(const cwi_boxes_node *n, const float box[6])
 {
     unsigned meeting = 0;
@@ -113,14 +113,14 @@ static inline unsigned cwi_boxes_meeting(const cwi_boxes_node *n, const float bo
     return meeting;
 }
 
-/* How many nodes of level 0 there are. */
+/* Returns the number of nodes of level 0. */
 static inline size_t cwi_boxes_nodes(const cwi_boxes *tree)
 {
     return (tree->count + CWI_WIDTH - 1) / CWI_WIDTH;
 }
 
-/* Squares of a point's distances from eight boxes, never too large: all is widened by slack. A
- * point is beyond at most one of a box's ends. */
+/* Computes lower bounds of the squares of a point's distances from eight boxes: the boxes are
+ * widened by slack. A point is beyond at most one of a box's ends. */
 static inline void cwi_boxes_squares(const cwi_boxes_node *n, const float p[3], float slack,
                                      float squares[CWI_WIDTH])
 {
@@ -140,9 +140,9 @@ static inline void cwi_boxes_squares(const cwi_boxes_node *n, const float p[3], 
     }
 }
 
-/* Lowers *square, of a distance, to the least that `measure` finds among items in reach.
- * Inline, so that measure becomes part of the loop. It lowers *square for the item in a slot,
- * if that is nearer. */
+/* Lowers *square, a squared distance, to the minimum that `measure` finds among items in reach.
+ * measure lowers *square for the item in a slot, if that is nearer. Inline, so that measure
+ * becomes part of the loop. */
 static inline void cwi_boxes_nearest(const cwi_boxes *tree, const double point[3],
                                      void (*measure)(void *context, size_t slot,
                                                      double *square),

@@ -1,3 +1,5 @@
+/* Finds the point of a mesh closest to a given point, by a tree of boxes around its
+ * triangles. */
 #include "core/geometry/closest_point.h"
 
 #include "core/base/memory.h"

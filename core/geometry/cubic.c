@@ -1,4 +1,4 @@
-/* Where a cubic turns, and where it has a value. */
+/* Finds the turning points of a cubic, and the place where it has a value. */
 #include "core/geometry/cubic.h"
 
 #include <math.h>
@@ -21,8 +21,8 @@ int cwi_cubic_turns(const double c[4], double x[2])
     return count;
 }
 
-/* Newton's method, kept between the two places; where it leaves them or is slow, they are
- * halved. */
+/* Finds the place by Newton's method inside a bracket. Where a step leaves the bracket or is
+ * slow, the bracket is halved. */
 double cwi_cubic_meets(const double c[4], double from, double to, double value)
 {
     const bool rises = cwi_cubic_at(c, from) < cwi_cubic_at(c, to);

@@ -1,7 +1,8 @@
-/* Doubles decide first. Where their rounding could matter, coordinates are taken
- * as whole numbers of a common unit, which nearly always fit: ties are usual, as extraction
- * cuts flat polygons into triangles. What does not fit is summed without rounding
- * [Shewchuk1997]: a product of two floats is exact in a double, of three in two doubles. */
+/* Computes orientation predicates exactly [Shewchuk1997]. Doubles decide first. Where their
+ * rounding could matter, coordinates are taken as whole numbers of a common unit, which nearly
+ * always fit. Ties are usual, as extraction cuts flat polygons into triangles. Coordinates that
+ * do not fit are summed without rounding: a product of two floats is exact in a double, of
+ * three in two doubles. */
 #include "core/geometry/exact_predicates.h"
 
 #include <float.h>
@@ -10,7 +11,7 @@
 
 enum { MOST_TERMS = 48 };
 
-/* A sum without rounding: its parts do not overlap and grow in size. */
+/* A sum without rounding: its parts do not overlap, and their sizes increase. */
 typedef struct sum {
     int count;
     double part[MOST_TERMS];
@@ -48,7 +49,7 @@ static void add_product(sum *s, double xy, double z)
     add_to_sum(s, rounded);
 }
 
-/* sign times the determinant of the rows a, b, c. */
+/* Adds sign times the determinant of the rows a, b, c. */
 static void add_determinant(sum *s, double sign, const float *a, const float *b, const float *c)
 {
     for (int i = 0; i < 3; i++) {
@@ -69,13 +70,13 @@ static int exact_orient3d(const float *a, const float *b, const float *c, const 
     return sign_of_sum(&s);
 }
 
-/* The determinant's three rows are differences of whole numbers below 2^40 in size: then its
- * six products sum up to less than 2^126. */
+/* An integer of 128 bits. The determinant's three rows are differences of whole numbers below
+ * 2^40 in size, so its six products sum up to less than 2^126. */
 #ifdef __SIZEOF_INT128__
 __extension__ typedef __int128 wide;
 enum { WHOLE_BITS = 40 };
 
-/* The power of two that takes coordinates up to `most` to just below 2^40. */
+/* Returns the power of two that takes coordinates up to `most` to just below 2^40. */
 static double unit_for(float most)
 {
     uint64_t bits;
@@ -87,7 +88,7 @@ static double unit_for(float most)
     return unit;
 }
 
-/* Points in units of a power of two; false when a coordinate is not whole. */
+/* Converts points to units of a power of two; returns false when a coordinate is not whole. */
 static bool make_whole(const float *const p[], int count, long long whole[][3])
 {
     float most = FLT_MIN;
@@ -150,7 +151,8 @@ static bool whole_orient2d(const float *const p[3], int x, int y, int *sign)
 }
 #endif
 
-/* The bound is Shewchuk's, for inputs of any size; those here cannot under- or overflow. */
+/* Decides by doubles if possible. The bound is Shewchuk's, for inputs of any size; those here
+ * cannot under- or overflow. */
 int cwi_orient3d(const float a[3], const float b[3], const float c[3], const float d[3])
 {
     const double unit = DBL_EPSILON / 2, share = (7 + 56 * unit) * unit;

@@ -1,3 +1,5 @@
+/* Numbers the places of a lattice in a hash table with open addressing, keyed by packed
+ * coordinates. */
 #include "core/geometry/lattice_map.h"
 
 #include "core/base/memory.h"

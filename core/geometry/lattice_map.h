@@ -1,4 +1,4 @@
-/* Places of a lattice, each numbered in the order in which it was first put in. */
+/* Places of a lattice, numbered in the order in which they were first added. */
 #ifndef CORE_GEOMETRY_LATTICE_MAP_H
 #define CORE_GEOMETRY_LATTICE_MAP_H
 
@@ -8,11 +8,11 @@
 
 #define CWI_NO_PLACE UINT32_MAX
 
-/* Zeroed: empty. */
+/* The table of places. Zeroed: empty. */
 typedef struct cwi_places {
     uint64_t *keys; /* three numbers of 21 bits, as cwi_place_key() packs them */
     size_t count, room;
-    uint32_t *table; /* of `slots`, a power of two: a place's number and 1 */
+    uint32_t *table; /* of `slots`, a power of two: number of a place + 1 */
     size_t slots;
 } cwi_places;
 
@@ -20,10 +20,10 @@ enum { CWI_PLACE_MOST = 1 << 21 };
 
 void cwi_places_free(cwi_places *places);
 
-/* Its number; CWI_NO_PLACE: it is not in. */
+/* Returns the number of a place; CWI_NO_PLACE if it is not in the table. */
 uint32_t cwi_places_find(const cwi_places *places, uint64_t key);
 
-/* Its number, in any case; CWI_NO_PLACE: no memory. */
+/* Returns the number of a place, adding it if needed; CWI_NO_PLACE: no memory. */
 uint32_t cwi_places_add(cwi_places *places, uint64_t key);
 
 static inline uint64_t cwi_place_key(const uint32_t at[3])

@@ -1,3 +1,4 @@
+/* Counts the crossings of a ray along x with a closed mesh, to find if a point is inside. */
 #include "core/geometry/point_in_mesh.h"
 
 #include "core/geometry/vec3.h"
@@ -15,8 +16,9 @@ static const float *vertex_position(const ray *r, uint32_t v)
     return r->mesh->positions + 3 * (size_t)v;
 }
 
-/* Whether a side from u to v passes the ray, seen along it, and which way: 1, 0 or -1. The two
- * triangles at a side compute the same numbers, so nothing slips through between them. */
+/* Finds if a side from u to v passes the ray, seen along it, and in which direction: 1, 0 or
+ * -1. The two triangles at a side compute the same numbers, so no ray slips through between
+ * them. */
 static int pass_edge(const ray *r, uint32_t u, uint32_t v)
 {
     const float *a = vertex_position(r, u < v ? u : v), *b = vertex_position(r, u < v ? v : u);

@@ -1,4 +1,4 @@
-/* Whether a point is inside a closed, oriented mesh. */
+/* Test for a point inside a closed, oriented mesh. */
 #ifndef CORE_GEOMETRY_POINT_IN_MESH_H
 #define CORE_GEOMETRY_POINT_IN_MESH_H
 
@@ -6,7 +6,8 @@
 
 #include <cubewright/mesh.h>
 
-/* Whether the mesh winds around a point at least once: what a ray along x meets is counted.
+/* Returns true if the mesh winds around a point at least once. Counts the crossings of a ray
+ * along x.
  * tree     of cwi_closest_build()
  * normals  of the mesh's triangles
  * point    relative to the mesh's origin; on the surface the answer may be either */

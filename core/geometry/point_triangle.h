@@ -1,4 +1,4 @@
-/* A point and a triangle. */
+/* Distances and closest points between a point and a segment or triangle. */
 #ifndef CORE_GEOMETRY_POINT_TRIANGLE_H
 #define CORE_GEOMETRY_POINT_TRIANGLE_H
 
@@ -6,7 +6,8 @@
 
 #include <math.h>
 
-/* Along a segment, 0 to 1, the point closest to that which lies `from` its start. */
+/* Returns the parameter, 0 to 1, of the segment's point closest to a given point; `from` is
+ * that point relative to the segment's start. */
 static inline double cwi_segment_nearest(const double from[3], const double along[3])
 {
     const double square = cwi_dot(along, along);
@@ -23,8 +24,8 @@ static inline double cwi_segment_square(const double from[3], const double along
     return cwi_dot(way, way);
 }
 
-/* A point seen from a triangle: areas of the three triangles that it makes with the sides,
- * signed, times the triangle's own. */
+/* A point seen from a triangle: the signed areas of the three triangles that it makes with the
+ * sides, times the triangle's own area. */
 typedef struct cwi_facet_view {
     double ab[3], ac[3], bc[3], ap[3], bp[3], normal[3];
     double square, in_a, in_b, in_c;
@@ -52,9 +53,9 @@ static inline cwi_facet_view cwi_facet_look(const float a[3], const float b[3],
     return f;
 }
 
-/* The square of the point's distance from the triangle. The nearest point is in the triangle's
- * plane or on a side that the point is beyond: which are the signs of three areas. Without an
- * area all sides are asked. */
+/* Returns the square of the point's distance from the triangle. The nearest point is in the
+ * triangle's plane, or on a side that the point is beyond. The signs of the three areas decide.
+ * Without an area all sides are tried. */
 static inline double cwi_facet_square(const float a[3], const float b[3], const float c[3],
                                       const double p[3])
 {
@@ -73,7 +74,7 @@ static inline double cwi_facet_square(const float a[3], const float b[3], const 
     return best;
 }
 
-/* The shares of the corners in the point of the triangle that is closest to p. */
+/* Computes the weights of the corners for the triangle's point that is closest to p. */
 static inline void cwi_facet_nearest(const float a[3], const float b[3], const float c[3],
                                      const double p[3], double share[3])
 {

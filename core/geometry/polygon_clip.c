@@ -1,3 +1,4 @@
+/* Clips a convex polygon by a plane across an axis (Sutherland-Hodgman). */
 #include "core/geometry/polygon_clip.h"
 
 #include <string.h>

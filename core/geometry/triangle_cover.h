@@ -1,10 +1,10 @@
-/* Whether a triangle is near a surface everywhere.
+/* Proof that a triangle is near a surface everywhere.
  *
  * The distance from one facet is a convex function: over a convex polygon it is largest in a
  * corner [Tang2009]. So a piece of the triangle is near if one facet is near all of its
- * corners. Else it is cut along a side of that facet, as seen along the triangle's normal, and
- * what lies beyond is another facet's. Where surfaces lie over each other that takes a few
- * pieces for each facet. */
+ * corners. Otherwise the piece is cut along a side of that facet, as seen along the triangle's
+ * normal. The part beyond belongs to another facet. Where surfaces lie over each other, a few
+ * pieces are needed for each facet. */
 #ifndef CORE_GEOMETRY_TRIANGLE_COVER_H
 #define CORE_GEOMETRY_TRIANGLE_COVER_H
 
@@ -16,18 +16,18 @@
 
 enum { CWI_PIECE_CORNERS = 16, CWI_PIECE_CUTS = 128 };
 
-/* A convex polygon, and how often it may still be cut. */
+/* A convex polygon, and the number of cuts still allowed. */
 typedef struct cwi_triangle_piece {
     int count, cuts;
     double p[CWI_PIECE_CORNERS][3];
 } cwi_triangle_piece;
 
 typedef struct cwi_cover {
-    /* Sets the corners of a facet near a point, and returns a square that its distance is not
-     * less than; if that is too large, none is near enough. */
+    /* Sets the corners of a facet near a point, and returns a lower bound of the square of its
+     * distance. If that is too large, no facet is near enough. */
     double (*nearest)(void *context, const double p[3], const float *facet[3]);
     void *context;
-    double square;    /* of the distance that is allowed */
+    double square;    /* square of the allowed distance */
     double normal[3]; /* of the triangle; of any length */
 } cwi_cover;
 
@@ -46,8 +46,8 @@ static inline bool cwi_opposite(double a, double b)
     return (a < 0 && b > 0) || (a > 0 && b < 0);
 }
 
-/* Whether the parts on both sides of a plane have room for their corners. A plane crosses two
- * sides of what is convex, but rounding may make it more. */
+/* Returns true if the parts on both sides of a plane have room for their corners. A plane
+ * crosses two sides of a convex polygon, but rounding may make it more. */
 static inline bool cwi_piece_fits(const double *height, int count)
 {
     int high = 0, low = 0;
@@ -59,8 +59,8 @@ static inline bool cwi_piece_fits(const double *height, int count)
     return high <= CWI_PIECE_CORNERS && low <= CWI_PIECE_CORNERS;
 }
 
-/* Moves what is above a plane from *piece to *above. False: all of it is on one side, or so
- * nearly that it is not worth a cut; or a part has too many corners. */
+/* Moves the part above a plane from *piece to *above. Returns false if all of it is on one
+ * side, or so nearly that a cut is not worthwhile, or if a part has too many corners. */
 static inline bool cwi_piece_cut(cwi_triangle_piece *piece, const double normal[3],
                                  const double at[3], cwi_triangle_piece *above)
 {
@@ -106,7 +106,8 @@ static inline void cwi_piece_middle(const cwi_triangle_piece *piece, double midd
     }
 }
 
-/* In the middle of its longest way: where the mean of its corners is says little. */
+/* Halves a piece in the middle of its longest extent; the mean of its corners would be a poor
+ * place. */
 static inline bool cwi_piece_halve(cwi_triangle_piece *piece, cwi_triangle_piece *other)
 {
     double longest = 0, along[3] = {0, 0, 0}, middle[3] = {0, 0, 0};
@@ -125,7 +126,7 @@ static inline bool cwi_piece_halve(cwi_triangle_piece *piece, cwi_triangle_piece
     return cwi_piece_cut(piece, along, middle, other);
 }
 
-/* Bit n: corner n is too far from a facet. */
+/* Returns bit n if corner n is too far from a facet. */
 static inline unsigned cwi_piece_far(const cwi_triangle_piece *piece,
                                      const float *const facet[3], double square)
 {
@@ -136,7 +137,7 @@ static inline unsigned cwi_piece_far(const cwi_triangle_piece *piece,
     return far;
 }
 
-/* The plane through a facet's side, along the normal, facing away from the facet. */
+/* Computes the plane through a facet's side, along the normal, facing away from the facet. */
 static inline void cwi_facet_side(const float *const facet[3], int side, const double normal[3],
                                   double at[3], double out[3])
 {
@@ -153,8 +154,8 @@ static inline void cwi_facet_side(const float *const facet[3], int side, const d
             out[k] = -out[k];
 }
 
-/* Moves what is beyond one of the facet's sides, if some of the far corners are there, from
- * *piece to *beyond; what has many corners is left to be halved. */
+/* Moves the part beyond one of the facet's sides, if some of the far corners are there, from
+ * *piece to *beyond. A piece with many corners is left to be halved. */
 static inline bool cwi_piece_cut_off(cwi_triangle_piece *piece, const float *const facet[3],
                                      unsigned far, const double normal[3],
                                      cwi_triangle_piece *beyond)
@@ -171,7 +172,7 @@ static inline bool cwi_piece_cut_off(cwi_triangle_piece *piece, const float *con
     return false;
 }
 
-/* Whether all of a piece certainly is near. Cuts it up. */
+/* Returns true if all of a piece certainly is near. Cuts it up. */
 static inline bool cwi_piece_covered(const cwi_cover *c, cwi_triangle_piece *piece)
 {
     const float *facet[3];
@@ -191,7 +192,7 @@ static inline bool cwi_piece_covered(const cwi_cover *c, cwi_triangle_piece *pie
     return true;
 }
 
-/* Whether all of a triangle certainly is. Sets the normal. */
+/* Returns true if all of a triangle certainly is near. Sets the normal. */
 static inline bool cwi_is_covered(cwi_cover *c, const double corners[3][3])
 {
     cwi_triangle_piece whole;

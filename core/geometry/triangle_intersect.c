@@ -1,4 +1,5 @@
-/* Triangle against triangle by signs of determinants [Guigue2003], neighbours told apart. */
+/* Tests pairs of triangles by signs of determinants [Guigue2003]; neighbours are treated
+ * separately. */
 #include "core/geometry/triangle_intersect.h"
 
 #include "core/geometry/exact_predicates.h"
@@ -14,8 +15,8 @@ typedef struct corners {
     const float *p[3];
 } corners;
 
-/* A closed segment and a closed triangle in one plane, seen along the axis: they are apart if
- * the line of one of their edges has all of the other on its far side. */
+/* Tests a closed segment and a closed triangle in one plane, seen along the axis. They are
+ * apart if the line of one of their edges has all of the other on its far side. */
 static bool segment_meets_flat(const float *p, const float *q, const corners *t, int axis)
 {
     const int turn = cwi_orient2d(t->p[0], t->p[1], t->p[2], axis);
@@ -34,7 +35,8 @@ static int find_side(const corners *t, const float *p)
     return cwi_orient3d(t->p[0], t->p[1], t->p[2], p);
 }
 
-/* Whether the closed segment meets the closed triangle; sp and sq are the sides of its ends. */
+/* Returns true if the closed segment meets the closed triangle; sp and sq are the sides of its
+ * ends. */
 static bool segment_meets(const float *p, const float *q, int sp, int sq, const corners *t)
 {
     if (sp * sq > 0)
@@ -78,7 +80,8 @@ static bool strangers_meet(const corners *a, const corners *b)
     return false;
 }
 
-/* With corner 0 in common they meet elsewhere only if the side across from it does. */
+/* Tests triangles with corner 0 in common: they meet elsewhere only if the side across from it
+ * does. */
 static bool around_vertex_meet(const corners *a, const corners *b)
 {
     const int a1 = find_side(b, a->p[1]), a2 = find_side(b, a->p[2]);
@@ -89,7 +92,8 @@ static bool around_vertex_meet(const corners *a, const corners *b)
     return segment_meets(b->p[1], b->p[2], find_side(a, b->p[1]), find_side(a, b->p[2]), a);
 }
 
-/* With the edge from corner 0 to 1 in common they meet elsewhere only if folded flat. */
+/* Tests triangles with the edge from corner 0 to 1 in common: they meet elsewhere only if
+ * folded flat. */
 static bool around_edge_meet(const corners *a, const corners *b)
 {
     if (find_side(a, b->p[2]) != 0)
@@ -99,7 +103,7 @@ static bool around_edge_meet(const corners *a, const corners *b)
            cwi_orient2d(a->p[0], a->p[1], b->p[2], axis);
 }
 
-/* Puts the numbers that both triangles have first, in the same order; returns how many. */
+/* Puts the common vertices first in both triangles, in the same order; returns their number. */
 static int align_common_corners(const uint32_t a[3], const uint32_t b[3], uint32_t x[3],
                                 uint32_t y[3])
 {

@@ -1,4 +1,4 @@
-/* Do two triangles of a mesh meet where they should not? */
+/* Test for two triangles of a mesh that intersect. */
 #ifndef CORE_GEOMETRY_TRIANGLE_INTERSECT_H
 #define CORE_GEOMETRY_TRIANGLE_INTERSECT_H
 
@@ -8,14 +8,14 @@
 extern "C" {
 #endif
 
-/* Whether a triangle's corners are not on a line. Exact.
- * points  vertices x 3        v  three numbers of vertices */
+/* Returns true if a triangle's corners are not on a line. Exact.
+ * points  vertices x 3        v  three indices of vertices */
 bool cwi_has_area(const float *points, const uint32_t v[3]);
 
-/* Whether two triangles with an area have a point in common other than what they share as
- * neighbours: a vertex or an edge with the same numbers. Touching counts; so does lying on each
- * other, with all three vertices the same too. Exact.
- * points  vertices x 3        a, b  three numbers of vertices each */
+/* Returns true if two triangles with an area share a point beyond their common vertices and
+ * edges. Common vertices are those with the same index. Touching counts; so does lying on each
+ * other, even with all three vertices the same. Exact.
+ * points  vertices x 3        a, b  three indices of vertices each */
 bool cwi_triangles_meet(const float *points, const uint32_t a[3], const uint32_t b[3]);
 
 #ifdef __cplusplus

@@ -1,13 +1,14 @@
-/* Convex things are apart when a plane parts them, and for triangles few planes need to be
- * tried. Every comparison keeps a margin far above the rounding errors of doubles: the answer
- * `true` is a proof. */
+/* Proves that two triangles are apart, by a separating plane: for triangles few planes need to
+ * be tried. Every comparison keeps a margin far above the rounding errors of doubles, so the
+ * answer `true` is a proof. */
 #include "core/geometry/triangle_separation.h"
 #include "core/geometry/vec3.h"
 
 #include <math.h>
 #include <string.h>
 
-/* Sines of angles: below the first is zero but for rounding, above the second is not. */
+/* Sines of angles: values below the first are zero up to rounding, values above the second are
+ * not. */
 #define FLAT  1e-9
 #define SLOPE (1.0 / 8192)
 
@@ -21,7 +22,7 @@ static void subtract_vectors(const double a[3], const double b[3], vector out)
 
 /* ---- no corner in common ---------------------------------------------------------------- */
 
-/* The triangles' shadows on a line do not meet. */
+/* Returns true if the projections of the triangles on a line do not meet. */
 static bool axis_separates(const double axis[3], const cwi_triangle *s, const cwi_triangle *t)
 {
     const double length = sqrt(cwi_dot(axis, axis));
@@ -30,13 +31,13 @@ static bool axis_separates(const double axis[3], const cwi_triangle *s, const cw
     const double d = cwi_dot(axis, t->p[0]), e = cwi_dot(axis, t->p[1]),
                  f = cwi_dot(axis, t->p[2]);
     const double margin = CWI_APART * length;
-    if (!(length > 0)) /* any other direction will do, however it was rounded */
+    if (!(length > 0)) /* any other direction works, with any rounding */
         return false;
     return cwi_lesser(cwi_lesser(a, b), c) > cwi_greater(cwi_greater(d, e), f) + margin ||
            cwi_lesser(cwi_lesser(d, e), f) > cwi_greater(cwi_greater(a, b), c) + margin;
 }
 
-/* Some plane across s and along one of its sides. */
+/* Tries the planes perpendicular to s along its sides. */
 static bool side_parts(const double normal[3], vector sides[3], const cwi_triangle *s,
                        const cwi_triangle *t)
 {
@@ -52,7 +53,7 @@ static bool side_parts(const double normal[3], vector sides[3], const cwi_triang
 static bool are_apart(const cwi_triangle *s, const cwi_triangle *t)
 {
     vector s_sides[3], t_sides[3], m, n, axis;
-    for (int a = 0; a < 3; a++) /* from middle to middle: most often */
+    for (int a = 0; a < 3; a++) /* from middle to middle: usually succeeds */
         axis[a] = s->p[0][a] + s->p[1][a] + s->p[2][a] - t->p[0][a] - t->p[1][a] - t->p[2][a];
     if (axis_separates(axis, s, t))
         return true;
@@ -72,7 +73,7 @@ static bool are_apart(const cwi_triangle *s, const cwi_triangle *t)
     return false;
 }
 
-/* ---- one corner in common: plane cones, of which only directions matter ----------------- */
+/* ---- one corner in common: plane cones, defined by directions only ----------------- */
 
 static bool unit_direction(const double from[3], const double to[3], vector out)
 {
@@ -83,8 +84,8 @@ static bool unit_direction(const double from[3], const double to[3], vector out)
     return length > 0;
 }
 
-/* A plane through the apex has s on one side and t on the other, and one of them not in it. A
- * plane through a side of each may touch both: along two lines. */
+/* Tries a plane through the apex with s on one side and t on the other, one of them not in it.
+ * A plane through a side of each may touch both, along two lines. */
 static bool parts_cones(const double axis[3], vector s[2], vector t[2], bool through_sides)
 {
     const double length = sqrt(cwi_dot(axis, axis)), flat = FLAT * length,
@@ -126,7 +127,7 @@ static bool cones_apart(const cwi_triangle *s, const cwi_triangle *t)
     if (!unit_direction(s->p[0], s->p[1], u[0]) || !unit_direction(s->p[0], s->p[2], u[1]) ||
         !unit_direction(t->p[0], t->p[1], v[0]) || !unit_direction(t->p[0], t->p[2], v[1]))
         return false;
-    for (int a = 0; a < 3; a++) /* from the middle of one to that of the other: most often */
+    for (int a = 0; a < 3; a++) /* from middle to middle: usually succeeds */
         axis[a] = u[0][a] + u[1][a] - v[0][a] - v[1][a];
     if (parts_cones(axis, u, v, false) || side_parts_cones(u, v) || side_parts_cones(v, u))
         return true;
@@ -138,7 +139,7 @@ static bool cones_apart(const cwi_triangle *s, const cwi_triangle *t)
     return false;
 }
 
-/* ---- two corners in common: a hinge, which must not be shut ----------------------------- */
+/* ---- two corners in common: a hinge, which must not be closed --------------------------- */
 
 static bool hinge_is_open(const cwi_triangle *s, const cwi_triangle *t)
 {
@@ -168,9 +169,9 @@ bool cwi_triangles_apart(const cwi_triangle *s, const cwi_triangle *t, int share
     }
 }
 
-/* ---- how far a triangle is -------------------------------------------------------------- */
+/* ---- distance of a triangle -------------------------------------------------------------- */
 
-/* From the origin to the nearest point of the line from p to q, if it is nearer. */
+/* Tries the nearest point of the line from p to q to the origin, if it is nearer. */
 static void try_side(const double p[3], const double q[3], double nearest[3])
 {
     vector d, at;
@@ -182,8 +183,9 @@ static void try_side(const double p[3], const double q[3], double nearest[3])
         memcpy(nearest, at, sizeof at);
 }
 
-/* Its plane's nearest point, if all sides have that on their left; or else a point of a side
- * that has it on its right. The corners' cross products add up to the normal. */
+/* Finds the nearest point of the triangle's plane, if all sides have it on their left;
+ * otherwise a point of a side that has it on its right. The corners' cross products add up to
+ * the normal. */
 void cwi_nearest_of_triangle(const cwi_triangle *t, double nearest[3])
 {
     vector corners[3], n;

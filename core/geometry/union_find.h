@@ -1,10 +1,10 @@
-/* Union-find: numbers joined into sets, each named by its least. */
+/* Union-find: joins numbers into sets; the minimum of a set names it. */
 #ifndef CORE_GEOMETRY_UNION_FIND_H
 #define CORE_GEOMETRY_UNION_FIND_H
 
 #include "core/base/memory.h"
 
-/* Each number a set by itself; NULL when memory is out. */
+/* Makes each number a set by itself; returns NULL when memory is out. */
 static inline uint32_t *cwi_sets_alloc(size_t count)
 {
     uint32_t *parent = (uint32_t *)cwi_alloc_array(count, sizeof *parent);

@@ -1,4 +1,4 @@
-/* Vectors of three, and the lesser and greater of two numbers. */
+/* Vectors of three doubles, and minimum and maximum without NaN handling. */
 #ifndef CORE_GEOMETRY_VEC3_H
 #define CORE_GEOMETRY_VEC3_H
 
@@ -17,8 +17,8 @@ static inline void cwi_cross(const double a[3], const double b[3], double out[3]
     out[2] = a[0] * b[1] - a[1] * b[0];
 }
 
-/* Makes a vector 1 long; false, and nothing is done, where it is 0 or not finite. Scales by the largest component first: squares of tiny or huge ones do
- * not survive. */
+/* Normalises a vector. Returns false, and changes nothing, where it is 0 or not finite. Scales
+ * by the largest component first, since squares of tiny or huge ones under- or overflow. */
 static inline bool cwi_normalise(double d[3])
 {
     const double largest = fmax(fmax(fabs(d[0]), fabs(d[1])), fabs(d[2]));
@@ -32,7 +32,7 @@ static inline bool cwi_normalise(double d[3])
     return true;
 }
 
-/* Without the care for NaN that makes fmin and fmax calls. */
+/* Returns the minimum, without the handling of NaN that makes fmin and fmax calls. */
 static inline double cwi_lesser(double a, double b)
 {
     return a < b ? a : b;

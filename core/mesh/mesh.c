@@ -1,3 +1,4 @@
+/* Allocates, frees and checks meshes, and computes their bounds. */
 #include "core/mesh/mesh.h"
 
 #include "core/base/memory.h"

@@ -1,19 +1,19 @@
-/* Allocating a mesh. */
+/* Allocation of meshes, and removal of marked triangles. */
 #ifndef CORE_MESH_MESH_H
 #define CORE_MESH_MESH_H
 
 #include <cubewright/mesh.h>
 
-/* Uninitialised positions, triangles and, if asked, normals. */
+/* Allocates uninitialised positions, triangles and, if requested, normals. */
 CW_NODISCARD cw_status cwi_mesh_alloc(cw_mesh *mesh, size_t vertices, size_t triangles,
                                       bool normals, cw_error *err);
 
-/* The same in the memory of those that a mesh has, which is emptied on failure. */
+/* Does the same in the memory of the mesh's arrays; the mesh is emptied on failure. */
 CW_NODISCARD cw_status cwi_mesh_renew(cw_mesh *mesh, size_t vertices, size_t triangles,
                                       bool normals, cw_error *err);
 
 /* Leaves out the triangles with a mark, and then vertices that no triangle names.
- * Returns  CW_ERR_NO_MEMORY, and the mesh is as it was */
+ * Returns  CW_ERR_NO_MEMORY, and the mesh is unchanged */
 CW_NODISCARD cw_status cwi_mesh_drop_marked(cw_mesh *mesh, const bool *marked, cw_error *err);
 
 #endif

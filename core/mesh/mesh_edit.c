@@ -1,3 +1,5 @@
+/* Welds vertices, and drops marked triangles and components that are small in diagonal or
+ * volume. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/union_find.h"
@@ -10,7 +12,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Moves element v of each array to number[v], if it has one; numbers rise. */
+/* Moves element v of each array to number[v], if it has one; numbers are rising. */
 static void move_vertices(cw_mesh *m, const uint32_t *number, size_t count)
 {
     for (size_t v = 0; v < m->vertex_count; v++) {
@@ -92,8 +94,8 @@ cw_status cw_mesh_weld(cw_mesh *mesh, size_t *merged, cw_error *err)
 
 /* --- components -------------------------------------------------------------------------- */
 
-/* Sets of vertices that triangles join, each with its box and what it is judged by: at the
- * place of its least vertex. */
+/* Sets of vertices that triangles join, each with its box and its measure. Both are stored at
+ * the set's minimum vertex. */
 typedef struct components {
     uint32_t *sets;
     float (*boxes)[6]; /* low, high */
@@ -128,7 +130,7 @@ static cw_status find_components(const cw_mesh *m, components *c, cw_error *err)
         float *box = c->boxes[set];
         for (size_t a = 0; a < 3; a++) {
             const float p = m->positions[3 * v + a];
-            box[a] = v == set || p < box[a] ? p : box[a]; /* the least vertex comes first */
+            box[a] = v == set || p < box[a] ? p : box[a]; /* the minimum vertex comes first */
             box[3 + a] = v == set || p > box[3 + a] ? p : box[3 + a];
         }
     }
@@ -148,7 +150,7 @@ static void measure_diagonals(const cw_mesh *m, components *c)
     }
 }
 
-/* Sums of tetrahedra up to the middle of the box. */
+/* Sums the tetrahedra up to the middle of the box. */
 static void measure_volumes(const cw_mesh *m, components *c)
 {
     for (size_t t = 0; t < m->triangle_count; t++) {

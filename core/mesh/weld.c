@@ -1,3 +1,4 @@
+/* Finds points at equal coordinates by a hash table. */
 #include "core/mesh/weld.h"
 
 #include "core/base/memory.h"
@@ -22,8 +23,8 @@ static size_t hash_point(const float *p)
     return (size_t)hash;
 }
 
-/* The slot that holds the point (as its number + 1), or the free one where it belongs; the
- * search starts at the slot that the point's hash says. */
+/* Finds the slot that holds the point (as its number + 1), or the free one for it. The search
+ * starts at the slot of the point's hash. */
 static size_t find_slot(const uint32_t *table, size_t slots, size_t start, const float *points,
                         const float *point)
 {
@@ -52,7 +53,7 @@ bool cwi_weld(const float *points, size_t count, uint32_t *map)
     return true;
 }
 
-/* Room for twice as many points, in a table that is never more than half full. */
+/* Doubles the capacity; the table is never more than half full. */
 static bool grow_table(cwi_welder *w)
 {
     const size_t room = w->room ? 2 * w->room : 1024, slots = 2 * room;
@@ -63,7 +64,7 @@ static bool grow_table(cwi_welder *w)
     uint32_t *table = cwi_alloc_zeroed(slots, sizeof *table);
     if (!table)
         return false;
-    for (size_t v = 0; v < w->count; v++) /* all differ: the first free slot is theirs */
+    for (size_t v = 0; v < w->count; v++) /* all differ, so each takes the first free slot */
         for (size_t s = hash_point(points + 3 * v) & (slots - 1);; s = (s + 1) & (slots - 1))
             if (!table[s]) {
                 table[s] = (uint32_t)v + 1;
@@ -78,8 +79,9 @@ static bool grow_table(cwi_welder *w)
 
 enum { BATCH = 64 };
 
-/* Slots of a table that is larger than the caches arrive late: all are asked for first, then
- * the points that they name, and only then is anything compared. */
+/* Adds a batch of points. Slots of a table that is larger than the caches arrive late. So all
+ * slots are prefetched first, then the points that they name, and only then are points
+ * compared. */
 static bool add_batch(cwi_welder *w, const float *points, size_t count, uint32_t *indices)
 {
     size_t start[BATCH];

@@ -1,4 +1,4 @@
-/* Which points are at the same place? */
+/* Welding: finds points at the same place. */
 #ifndef CORE_MESH_WELD_H
 #define CORE_MESH_WELD_H
 
@@ -14,7 +14,7 @@ extern "C" {
  * Returns false when memory is out; takes 8 to 16 bytes a point. */
 bool cwi_weld(const float *points, size_t count, uint32_t *map);
 
-/* Points met one after another, of which each place is kept once. Zeroed, it has none. */
+/* Points added one after another; each place is kept once. Zeroed, it has none. */
 typedef struct cwi_welder {
     float *points; /* count x 3, the first met at each place */
     size_t count, room;
@@ -23,7 +23,7 @@ typedef struct cwi_welder {
 } cwi_welder;
 
 /* Sets each index to that of a finite point (count x 3), which is new when its place was not
- * met before. Many points in a call are faster than many calls: their places are fetched
+ * met before. Many points per call are faster than many calls, since their slots are prefetched
  * together. Returns false when memory is out, or after 2^32 - 2 points. */
 bool cwi_welder_add(cwi_welder *w, const float *points, size_t count, uint32_t *indices);
 void cwi_welder_free(cwi_welder *w);

@@ -1,3 +1,5 @@
+/* Evaluates the analytic fields (sphere, torus, plane, gyroid, Marschner-Lobb, CT head) and
+ * samples them into volumes. */
 #include <cubewright/field.h>
 
 #include "core/base/parallel.h"
@@ -62,7 +64,7 @@ static double evaluate_gyroid(const double p[3])
            sin(k * p[2]) * cos(k * p[0]);
 }
 
-/* Equation 1 of [Marschner1994], f_M = 6, alpha = 0.25, on -1..1. */
+/* Evaluates equation 1 of [Marschner1994], f_M = 6, alpha = 0.25, on -1..1. */
 static double marschner_lobb(const double p[3])
 {
     const double alpha = 0.25, frequency = 6;
@@ -91,8 +93,9 @@ static const struct {
     {{0, 26, -92}, {8, 8, 58}, 30},
 };
 
-/* Soft edges about 2 mm wide, as a scanner's point spread makes them. The distance to an
- * ellipsoid is first order: the implicit function over the length of its gradient. */
+/* Evaluates the CT head. Edges are soft, about 2 mm wide, like the point spread of a scanner.
+ * The distance to an ellipsoid is first order: the implicit function over the length of its
+ * gradient. */
 static double ct_head(const double p[3])
 {
     double hu = -1000;

@@ -1,3 +1,4 @@
+/* Makes random numbers by SplitMix64 and Box-Muller, and stores voxels of any type. */
 #include "core/synthetic/random_fill.h"
 
 #include <math.h>
@@ -17,7 +18,7 @@ double cwi_chance(uint64_t seed, uint64_t n)
     return (double)(cwi_random_bits(seed, n) >> 11) * 0x1p-53;
 }
 
-/* Box-Muller: one of the pair is used. */
+/* Makes a Gaussian number by Box-Muller: one of the pair is used. */
 double cwi_gaussian(uint64_t seed, uint64_t n)
 {
     const double u = cwi_chance(seed, 2 * n) + 0x1p-53;

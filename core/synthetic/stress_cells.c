@@ -1,7 +1,8 @@
-/* Cells of every case. Up to the 48 motions of a cube and a change of sign there are 30 kinds
- * of cells that have a surface: 33 of [Chernyaev1995] but the empty one and the mirror images
- * 12.3 and 14. Their corners are small whole numbers found by a search at random, such that a
- * quarter added to or taken from any of them leaves the case what it is. */
+/* Cells of every case of marching cubes. Up to the 48 motions of a cube and a change of sign
+ * there are 30 kinds of cells that have a surface. They are the 33 of [Chernyaev1995] without
+ * the empty one and the mirror images 12.3 and 14. Their corners are small whole numbers, found
+ * by a random search. Adding or subtracting a quarter at any of them does not change the
+ * case. */
 #include "core/synthetic/stress_fields.h"
 
 static const signed char kinds[CWI_HARD_KINDS][8] = {
@@ -40,8 +41,8 @@ static const signed char kinds[CWI_HARD_KINDS][8] = {
     {4, -7, -1, 7, -5, 7, 5, -8}, /* tunnel */
 };
 
-/* Twelve times that, and no two corners alike by chance: equal ones put critical points where
- * those who count them cannot tell them apart. */
+/* Offsets for the corners after multiplication by twelve, so that no two are equal by chance.
+ * Equal corners put critical points where counters cannot distinguish them. */
 static const signed char uneven[8] = {0, 1, -2, 2, -1, 1, -1, 2};
 
 bool cwi_hard_cell(const cwi_hard_sample *s, size_t *cell, unsigned *corner)
@@ -57,7 +58,8 @@ bool cwi_hard_cell(const cwi_hard_sample *s, size_t *cell, unsigned *corner)
     return true;
 }
 
-/* Motion 8 m + n: the m-th order of axes, after those of bit set n have been reversed. */
+/* Returns a corner. Motion 8 m + n is the m-th order of axes, after reversal of the axes in n's
+ * bits. */
 double cwi_hard_corner(size_t n, unsigned corner)
 {
     static const int orders[6][3] = {{0, 1, 2}, {0, 2, 1}, {1, 0, 2},

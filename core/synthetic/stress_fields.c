@@ -1,5 +1,5 @@
-/* The hard cases, a function and a row each. Inside is where values are at or above the
- * isovalue. */
+/* Evaluates the hard cases, one function and one row each. Values at or above the isovalue are
+ * inside. */
 #include "core/synthetic/stress_fields.h"
 
 #include "core/synthetic/random_fill.h"
@@ -21,25 +21,25 @@ static double draw_chance(const sample *s, uint64_t stream)
     return cwi_chance(s->seed + 977 * stream, number_place(s->at));
 }
 
-/* One of -n, ..., n. */
+/* Returns one of -n, ..., n. */
 static double draw_whole_number(const sample *s, int n)
 {
     return floor((2 * n + 1) * draw_chance(s, 1)) - n;
 }
 
-/* From a sample in the middle: along an axis, and along all of them. */
+/* Returns the distance from a sample in the middle, along one axis. */
 static double from_sample(const sample *s, int axis)
 {
     return (double)s->at[axis] - (double)(s->dim[axis] / 2);
 }
 
-/* From the middle of a cell in the middle: never 0. */
+/* Returns the distance from the middle of a cell in the middle: never 0. */
 static double from_cell(const sample *s, int axis)
 {
     return from_sample(s, axis) + 0.5;
 }
 
-/* From the middle, off any sample and cell's middle. */
+/* Computes the position relative to the middle, off any sample and cell's middle. */
 static void from_middle(const sample *s, double p[3])
 {
     static const double off[3] = {0.13, -0.08, 0.21};
@@ -52,7 +52,7 @@ static double vector_length(double x, double y, double z)
     return sqrt(x * x + y * y + z * z);
 }
 
-/* Half the shortest side, in voxels. */
+/* Returns half the shortest side, in voxels. */
 static double half_extent(const sample *s)
 {
     size_t n = s->dim[0] < s->dim[1] ? s->dim[0] : s->dim[1];
@@ -60,7 +60,7 @@ static double half_extent(const sample *s)
     return 0.5 * (double)(n - 1);
 }
 
-/* The distance to a sphere of 2/3 of that, positive inside. */
+/* Returns the distance to a sphere of 2/3 of that, positive inside. */
 static double evaluate_ball(const sample *s)
 {
     double p[3];
@@ -164,7 +164,7 @@ static double double_cone(const sample *s)
     return x * x + y * y - z * z;
 }
 
-/* So many of the type's next numbers up, or down. */
+/* Moves a number by some steps of its type's precision, up or down. */
 static double nudge_number(const sample *s, double x, int steps)
 {
     const double to = steps < 0 ? -DBL_MAX : DBL_MAX;
@@ -174,14 +174,14 @@ static double nudge_number(const sample *s, double x, int steps)
     return x;
 }
 
-/* On the saddle, a number above and one below, by turns. */
+/* Returns -1, 0 or 1 alternately: a number below the saddle, on it, or above it. */
 static int shift_of(size_t cell)
 {
     return (int)(cell % 3) - 1;
 }
 
-/* The face of corners 0 to 3, turned with the cell's number: a b against 1 a b, of 12 bits
- * each, so that the product is exact in any type. */
+/* Samples the face of corners 0 to 3, turned with the cell's number: a b against 1 a b. a and b
+ * have 12 bits each, so that the product is exact in any type. */
 static double near_saddle_face(const sample *s)
 {
     size_t cell;
@@ -197,7 +197,8 @@ static double near_saddle_face(const sample *s)
     return c > 3 ? -1 : sign * face[c];
 }
 
-/* Two corners of 3 across a cell of -1: the saddle is at (3 + 3 - 6) / 8 on the diagonal. */
+/* Samples two corners of 3 across a cell of -1: the saddle is at (3 + 3 - 6) / 8 on the
+ * diagonal. */
 static double near_saddle_inside(const sample *s)
 {
     size_t cell;
@@ -234,7 +235,8 @@ static double wire_askew(const sample *s)
     return x == from_sample(s, 1) && x == from_sample(s, 2) ? 1 : -1;
 }
 
-/* A direction without whole numbers: no two rows of samples are the same distances off. */
+/* Returns the position along a direction without whole numbers: no two rows of samples have
+ * equal distances. */
 static double along_tilt(const double p[3])
 {
     return (p[0] + sqrt(3.0) * p[1] + sqrt(7.0) * p[2]) / sqrt(11.0);
@@ -271,7 +273,7 @@ static double evaluate_astroid(const sample *s)
            cbrt(p[2] * p[2]);
 }
 
-/* A cube on its tip: three directions at right angles. */
+/* Samples a cube on its tip: three directions at right angles. */
 static double evaluate_corners(const sample *s)
 {
     static const double axis[3][3] = {{1, 1, 1}, {1, -1, 0}, {1, 1, -2}};
@@ -285,7 +287,7 @@ static double evaluate_corners(const sample *s)
     return half_extent(s) / 2 - largest;
 }
 
-/* A needle that is a quarter as wide as it is long, its tip at the top. */
+/* Samples a needle that is a quarter as wide as it is long, its tip at the top. */
 static double evaluate_spike(const sample *s)
 {
     double p[3];
@@ -304,7 +306,8 @@ static double near_nyquist(const sample *s)
     return sin(k * p[0]) + sin(k * p[1]) + sin(k * p[2]);
 }
 
-/* Its frequency grows with the distance, to half a wave a voxel at the nearest border. */
+/* Samples waves whose frequency grows with the distance, to half a wave a voxel at the nearest
+ * border. */
 static double zone_plate(const sample *s)
 {
     double p[3];
@@ -382,7 +385,8 @@ static double inf_islands(const sample *s)
                              : evaluate_ball(s);
 }
 
-/* Noise: alone, and on a ball whose values end at -1 and 1, so many decibels below it. */
+/* Noise: alone, and on a ball whose values end at -1 and 1, with a signal-to-noise ratio in
+ * decibels. */
 
 static double even_noise(const sample *s)
 {
@@ -395,7 +399,8 @@ static double noisy_ball(const sample *s)
     return signal + pow(10, -s->parameter / 20) * cwi_gaussian(s->seed, number_place(s->at));
 }
 
-/* Small spheres, eight voxels apart, each off its block's middle by up to half a voxel. */
+/* Samples small spheres, eight voxels apart, each off its block's middle by up to half a
+ * voxel. */
 static double small_spheres(const sample *s)
 {
     double p[3];
@@ -405,7 +410,7 @@ static double small_spheres(const sample *s)
     return s->parameter - vector_length(p[0], p[1], p[2]);
 }
 
-/* How a row ends: isovalue, scale, spacing, first sample; and the parameter. */
+/* The end of a row: isovalue, scale, spacing, first sample; and the parameter. */
 #define AT(iso, scale)    (iso), (scale), 1, 0
 #define CASE(name, about) "hard/" name, about
 

@@ -1,3 +1,4 @@
+/* Samples the hard cases into volumes, and finds them by name. */
 #include "core/synthetic/stress_fields.h"
 
 #include "core/base/parallel.h"
@@ -22,7 +23,8 @@ bool cw_hard_find(const char *name, size_t *n)
     return false;
 }
 
-/* Not spread over the range as cw_field_stored() does: what is whole, or equal, stays so. */
+/* Scales the value, but does not spread it over the range as cw_field_stored() does: whole or
+ * equal values stay so. */
 double cw_hard_stored(size_t n, cw_type type, double value)
 {
     double low, high;
@@ -52,7 +54,7 @@ static void sample_layer(void *context, size_t k)
         for (s.at[0] = 0; s.at[0] < v->dim[0]; s.at[0]++) {
             const size_t n = (k * v->dim[1] + s.at[1]) * v->dim[0] + s.at[0];
             double value = w->row->value(&s);
-            if (d->noise > 0) /* another stream than that of noisy cases */
+            if (d->noise > 0) /* a stream of its own, different from noisy cases */
                 value += d->noise * cwi_gaussian(~d->seed, n);
             cwi_fill(d->type, v->owned, n, cw_hard_stored(d->number, d->type, value));
         }

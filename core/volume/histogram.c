@@ -1,3 +1,4 @@
+/* Computes histograms of volumes, and Otsu thresholds from them [Otsu1979], [Liao2001]. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
@@ -10,7 +11,7 @@ static bool is_integer(cw_type type)
     return type != CW_F32 && type != CW_F64;
 }
 
-/* One row's values, scaled; returns how many were no-data and leaves those out. */
+/* Loads one row's values, scaled; leaves no-data ones out and counts them. */
 static size_t load_row(const cw_volume *v, size_t j, size_t k, double *values, size_t *nodata)
 {
     const char *p = cwi_voxel_address(v, 0, j, k);
@@ -25,7 +26,7 @@ static size_t load_row(const cw_volume *v, size_t j, size_t k, double *values, s
     return n;
 }
 
-/* Range and counts of the layers; both are the same in any order. */
+/* Updates range and counts of values by a row; both are the same in any order. */
 static void scan_row(const double *values, size_t n, cw_statistics *s)
 {
     for (size_t i = 0; i < n; i++) {
@@ -39,8 +40,8 @@ static void scan_row(const double *values, size_t n, cw_statistics *s)
     }
 }
 
-/* The bin of a finite value. Values of integer types are counted in whole steps: a slope such
- * as 2.02 must not round one into the bin below. */
+/* Returns the bin of a finite value. Values of integer types are counted in whole steps: a
+ * slope such as 2.02 must not round one into the bin below. */
 static size_t bin_of(const cw_statistics *s, double value)
 {
     const bool whole = s->quantum > 0;
@@ -72,8 +73,8 @@ static void set_bins(cw_statistics *s, size_t bin_count)
     s->bin_width = span > 0 ? span / (double)bin_count : 1;
 }
 
-/* Calls one of the two row functions for every row; each thread has its own sums, added in
- * any order because they are whole numbers, minima and maxima. */
+/* Calls one of the two row functions for every row. Each thread has its own sums, added in any
+ * order because they are whole numbers, minima and maxima. */
 static cw_status each_row(const cw_volume *v, int threads, bool bins, cw_statistics *total,
                           cw_error *err)
 {
@@ -111,7 +112,7 @@ static cw_status each_row(const cw_volume *v, int threads, bool bins, cw_statist
     return starved ? cw_fail(err, CW_ERR_NO_MEMORY, "no memory for a histogram") : CW_OK;
 }
 
-/* Types of so few numbers that how often each occurs can be counted. */
+/* Returns true for types with so few numbers that the frequency of each can be counted. */
 static bool is_short(cw_type type)
 {
     return is_integer(type) && cw_type_size(type) <= 2;
@@ -132,7 +133,7 @@ static void count_shorts(const cw_volume *v, size_t j, size_t k, uint64_t *count
         CASE(CW_I8, int8_t)
         CASE(CW_I16, int16_t)
 #undef CASE
-    case CW_U16: /* which has no numbers below 0 */
+    case CW_U16: /* a type without negative numbers */
         for (size_t i = 0; i < v->dim[0]; i++)
             counts[*(const uint16_t *)(p + (ptrdiff_t)i * v->stride[0])]++;
         break;
@@ -141,7 +142,7 @@ static void count_shorts(const cw_volume *v, size_t j, size_t k, uint64_t *count
     }
 }
 
-/* How often each number occurs, from the lowest; NULL: no memory. */
+/* Counts the frequency of each number, from the lowest; returns NULL without memory. */
 static uint64_t *count_all_shorts(const cw_volume *v, int threads)
 {
     uint64_t *total = cwi_alloc_zeroed(SHORTS, sizeof *total);
@@ -172,7 +173,7 @@ static double short_at(const cw_volume *v, size_t n)
     return (double)n - (v->type == CW_U16 ? 0 : SHORT_ZERO);
 }
 
-/* What scan_row() finds of all rows. */
+/* Computes the results of scan_row() over all rows from the frequencies. */
 static void scan_shorts(const cw_volume *v, const uint64_t *counts, cw_statistics *s)
 {
     for (size_t n = 0; n < SHORTS; n++) {
@@ -202,7 +203,8 @@ static void bin_shorts(const cw_volume *v, const uint64_t *counts, cw_statistics
     }
 }
 
-/* Range first, then bins: of short types both from the counts of all numbers. */
+/* Computes the range first, then the bins; for short types both from the frequencies of all
+ * numbers. */
 static cw_status gather_histogram(const cw_volume *v, size_t bin_count, int threads,
                                   cw_statistics *s, cw_error *err)
 {
@@ -238,7 +240,7 @@ cw_status cw_volume_statistics(const cw_volume *volume, size_t bin_count, int th
     cw_status st = cw_volume_select(volume, 0, 0, &v, err);
     if (st != CW_OK)
         return st;
-    if (v.sparse) { /* leaves stand one behind another */
+    if (v.sparse) { /* leaves are stored one after another */
         v.dim[0] = v.dim[1] = CWI_LEAF;
         v.dim[2] = CWI_LEAF * v.sparse->leaf_count;
     }
@@ -263,15 +265,16 @@ typedef struct moments {
     double *count, *sum;
 } moments;
 
-/* What a class of bins [from, to) adds to the variance between classes, up to a constant. */
+/* Returns the contribution of a class of bins [from, to) to the variance between classes, up to
+ * a constant. */
 static double class_variance(const moments *m, size_t from, size_t to)
 {
     const double count = m->count[to] - m->count[from], sum = m->sum[to] - m->sum[from];
     return count > 0 ? sum * sum / count : -1;
 }
 
-/* best[c][b]: the largest variance of bins [0, b) in c + 1 classes, none empty; from[c][b]:
- * where the last of them begins. */
+/* Computes best[c][b]: the largest variance of bins [0, b) in c + 1 classes, none empty.
+ * from[c][b] is the start of the last class. */
 static void divide_classes(const moments *m, size_t bins, int classes, double *best,
                            size_t *from)
 {
@@ -291,8 +294,8 @@ static void divide_classes(const moments *m, size_t bins, int classes, double *b
         }
 }
 
-/* The level between two classes: the middle of the empty bins between them, and for integers
- * between two values, where no sample stands. */
+/* Returns the level between two classes: the middle of the empty bins between them. For
+ * integers it is between two values, where no sample lies. */
 static double level_before(const cw_statistics *s, size_t bin)
 {
     size_t below = bin;

@@ -1,9 +1,10 @@
+/* Interpolates the value of a volume trilinearly at a world point. */
 #include "core/volume/volume.h"
 
 #include <math.h>
 
-/* The cell and the share of the way through it along an axis. Rounding may take what stands on
- * a border beyond it. False: outside. */
+/* Finds the cell and the fraction of the way through it along an axis. Rounding may move a
+ * point on a border beyond it. Returns false outside. */
 static bool find_cell(size_t dim, double index, size_t *cell, double *share)
 {
     static const double rounding = 1e-9;

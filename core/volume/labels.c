@@ -1,4 +1,4 @@
-/* Whether the whole numbers of a volume stand for things: a label map. */
+/* Detects label maps: volumes whose whole numbers stand for objects. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
@@ -6,7 +6,8 @@
 #include <string.h>
 
 enum { MOST_VOXELS = 1 << 22, FEWEST_LABELS = 3 };
-/* Of label maps at least 0.8 of the pairs are equal, of scans and photographs at most 0.25. */
+/* Limits of detection. Equal pairs are at least 0.8 in label maps, and at most 0.25 in scans
+ * and photographs. */
 static const double EQUAL_SHARE = 0.7, SKIPPING_SHARE = 0.2;
 
 /* Values in rising order, each with the number under which its pairs are counted. */
@@ -15,7 +16,7 @@ typedef struct census {
     bool too_many;
     double value[CW_LABELS_MOST];
     size_t number[CW_LABELS_MOST];
-    uint32_t (*pairs)[CW_LABELS_MOST]; /* of neighbours, by the numbers of both */
+    uint32_t (*pairs)[CW_LABELS_MOST]; /* counts of neighbours, by the numbers of both */
 } census;
 
 static size_t find_value(const census *c, double value)
@@ -77,7 +78,7 @@ static void count_rows(const cw_volume *v, census *c)
         count_row(v, row % v->dim[1], row / v->dim[1], c);
 }
 
-/* The number of the value that most pairs have on both sides: the background. */
+/* Returns the number of the value that most pairs have on both sides: the background. */
 static size_t most_frequent(const census *c)
 {
     size_t best = 0;

@@ -1,3 +1,4 @@
+/* Computes the lengths of the vectors of a volume's components. */
 #include "core/base/status.h"
 #include "core/volume/volume.h"
 

@@ -1,3 +1,5 @@
+/* Makes volumes, fills in their defaults, checks them, takes parts of them, and maps indices to
+ * the world. */
 #include "core/volume/volume.h"
 
 #include "core/base/memory.h"
@@ -39,7 +41,8 @@ static bool packed_bytes(const cw_volume *v, size_t *bytes)
     return fits && n <= PTRDIFF_MAX;
 }
 
-/* x fastest, components interleaved in front of it, time slowest; in a sparse grid's leaves. */
+/* Sets strides: x fastest, components interleaved in front of it, time slowest; on a sparse
+ * grid within leaves. */
 static void set_packed_strides(cw_volume *v)
 {
     const size_t leaf[3] = {CWI_LEAF, CWI_LEAF, CWI_LEAF}, *dim = v->sparse ? leaf : v->dim;
@@ -139,7 +142,7 @@ static cw_status check_coordinates(const cw_volume *v, cw_error *err)
     return CW_OK;
 }
 
-/* What describes the grid is there, and nothing contradicts it. */
+/* Checks that the arrays of the grid exist and do not contradict each other. */
 static cw_status check_grid(const cw_volume *v, cw_error *err)
 {
     const cw_cells *c = v->cells;

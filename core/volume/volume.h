@@ -1,4 +1,4 @@
-/* Reading and writing single voxels of any type. */
+/* Internal access to volumes: single voxels of any type, coordinates, and parts of a volume. */
 #ifndef CORE_VOLUME_VOLUME_H
 #define CORE_VOLUME_VOLUME_H
 
@@ -6,11 +6,11 @@
 
 #include <math.h>
 
-/* Of a sparse grid: voxels along a side of a leaf, and in it. */
+/* Sizes of a sparse grid's leaf: voxels along a side, and in all. */
 enum { CWI_LEAF = 8, CWI_LEAF_VOXELS = CWI_LEAF * CWI_LEAF * CWI_LEAF };
 
-/* The stored number at an address, as it stands in memory; exact, as every type fits
- * a double. */
+/* Returns the stored number at an address, without scaling; exact, as every type fits a
+ * double. */
 static inline double cwi_voxel_at(cw_type type, const void *p)
 {
     switch (type) {
@@ -50,11 +50,11 @@ static inline void cwi_voxel_put(cw_type type, void *p, double value)
     }
 }
 
-/* Sizes and affine of every step-th voxel in place of those of all; strides stay.
+/* Keeps every step-th voxel: changes sizes and affine; strides stay.
  * Returns CW_ERR_ARGUMENT as cw_volume_coarsen(). */
 CW_NODISCARD cw_status cwi_volume_thin(cw_volume *volume, const size_t step[3], cw_error *err);
 
-/* Leaves of a volume's shape (sizes and affine) what is inside a box; data are not touched.
+/* Reduces a volume's shape (sizes and affine) to the part inside a box; data are not touched.
  * Returns CW_ERR_ARGUMENT when the box is empty or leaves the volume. */
 CW_NODISCARD cw_status cwi_volume_shrink(cw_volume *v, const cw_box *box, cw_error *err);
 
@@ -63,8 +63,8 @@ static inline bool cwi_is_rectilinear(const cw_volume *v)
     return v->coordinates[0] != NULL;
 }
 
-/* Where index i + share stands along an axis of at least 2: the coordinate, or the index
- * itself. Beyond the ends it goes on as between the last two. i: -1 to dim - 1 */
+/* Returns the place of index i + share along an axis of at least 2: the coordinate, or the
+ * index itself. Beyond the ends it is extrapolated from the last two. i: -1 to dim - 1 */
 static inline double cwi_grid_coordinate(const cw_volume *v, int axis, ptrdiff_t i,
                                          double share)
 {
@@ -76,17 +76,18 @@ static inline double cwi_grid_coordinate(const cw_volume *v, int axis, ptrdiff_t
     return at[i < 0 ? 0 : i] + (i < 0 ? share - 1 : share) * (at[low + 1] - at[low]);
 }
 
-/* The (fractional) index of a coordinate, the other way round. */
+/* Returns the (fractional) index of a coordinate, the inverse of cwi_grid_coordinate(). */
 double cwi_coordinate_index(const cw_volume *v, int axis, double coordinate);
 
-/* Gives a volume, the copy of another, coordinates of its own. CW_ERR_NO_MEMORY */
+/* Gives a copied volume coordinates of its own. Returns CW_ERR_NO_MEMORY. */
 CW_NODISCARD cw_status cwi_volume_own_coordinates(cw_volume *v, cw_error *err);
 
-/* "a rectilinear grid", or another kind that is not evenly spaced; NULL for one that is. */
+/* Returns "a rectilinear grid", or another kind that is not evenly spaced; NULL for an even
+ * one. */
 const char *cwi_volume_kind(const cw_volume *v);
 
-/* Fails with CW_ERR_UNSUPPORTED for what is made for evenly spaced grids only, and for what is
- * made for dense grids, even and rectilinear ones. */
+/* Fails with CW_ERR_UNSUPPORTED for calls that need evenly spaced grids, or dense grids (even
+ * and rectilinear ones). */
 CW_NODISCARD cw_status cwi_volume_expect_even(const cw_volume *v, const char *what,
                                               cw_error *err);
 CW_NODISCARD cw_status cwi_volume_expect_dense(const cw_volume *v, const char *what,

@@ -1,4 +1,5 @@
-/* A 3MF package on its way to a mesh: what its models say, and where their objects stand. */
+/* The state of reading a 3MF package: the content of its models, and the placement of their
+ * objects. */
 #ifndef FORMATS_3MF_3MF_H
 #define FORMATS_3MF_3MF_H
 
@@ -7,20 +8,21 @@
 #include "formats/text/xml.h"
 
 typedef enum cwi_3mf_type {
-    CWI_3MF_SHAPE,   /* model, surface: what is read */
+    CWI_3MF_SHAPE,   /* model, surface: these are read */
     CWI_3MF_SUPPORT, /* support, solidsupport */
     CWI_3MF_OTHER
 } cwi_3mf_type;
 
-/* Points and triangles of one mesh, or components; a run of each among those of all. */
+/* An object: a mesh, given by ranges of points and triangles among all, or a range of
+ * components. */
 typedef struct cwi_3mf_object {
     size_t first_point, end_point, first_triangle, end_triangle;
     size_t first_component, end_component;
-    size_t name; /* where it starts among the names */
+    size_t name; /* start of its name among the names */
     cwi_3mf_type type;
 } cwi_3mf_object;
 
-/* An object of a model, placed: a component of another one, or an item of the build. */
+/* A placed object of a model: a component of another one, or an item of the build. */
 typedef struct cwi_3mf_component {
     uint32_t model, id;
     double place[12]; /* an affine */
@@ -30,11 +32,11 @@ typedef struct cwi_3mf_component {
 typedef struct cwi_3mf_resource {
     uint64_t key; /* of model and id; 0: none */
     bool is_group;
-    size_t object;     /* ... which */
+    size_t object;     /* ... its number */
     size_t first, end; /* among the colours */
 } cwi_3mf_resource;
 
-/* Few enough that even ids made to collide are found in no time. */
+/* Maximums, small enough that even ids made to collide are found quickly. */
 enum { CWI_3MF_MODELS = 1024, CWI_3MF_RESOURCES = 1 << 16 };
 
 typedef struct cwi_3mf {
@@ -48,11 +50,12 @@ typedef struct cwi_3mf {
     bool is_wanted[CWI_3MF_MODELS];
     size_t model_count;
 
-    /* What they hold. Triangles count points from the first of all. */
+    /* The models' content. Triangles count points from the first of all. */
     cwi_mesh_build build;
-    uint32_t *point_colors; /* which of the colours, or cwi_3mf_none; of the first so many */
+    uint32_t *point_colors; /* index of a colour, or cwi_3mf_none; for the first color_count
+                               points */
     size_t point_color_room, point_color_count;
-    bool mixed_colors; /* some point has two: then none are kept */
+    bool mixed_colors; /* some point has two colours: then none are kept */
     uint32_t *colors;  /* 0xRRGGBBAA */
     size_t color_count, color_room;
     cwi_3mf_object *objects;
@@ -76,14 +79,14 @@ extern const uint32_t cwi_3mf_none;
  * extension that is not read), CW_ERR_LIMIT, CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cwi_3mf_read_model(cwi_3mf *m, size_t model, cw_error *err);
 
-/* Puts the objects where the build wants them, into the mesh. Returns the same. */
+/* Copies the objects, placed as the build states, into the mesh. Returns the same errors. */
 CW_NODISCARD cw_status cwi_3mf_place(cwi_3mf *m, cw_error *err);
 
-/* Reads an entry of the package as XML. CW_ERR_LIMIT for more text than may be read. */
+/* Reads an entry of the package as XML. Returns CW_ERR_LIMIT for more text than may be read. */
 CW_NODISCARD cw_status cwi_3mf_read_xml(cwi_3mf *m, const char *path,
                                         const cwi_xml_rules *rules, void *user, cw_error *err);
 
-/* The resource of a model and id; NULL when there is none. */
+/* Finds the resource of a model and id; returns NULL when there is none. */
 cwi_3mf_resource *cwi_3mf_find(const cwi_3mf *m, size_t model, uint32_t id);
 
 #endif

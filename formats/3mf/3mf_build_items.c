@@ -1,4 +1,4 @@
-/* Where the objects of a 3MF package stand. */
+/* Places the objects of a 3MF package as its build items and components state. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/affine.h"
@@ -7,11 +7,11 @@
 #include <math.h>
 #include <string.h>
 
-/* How deep components may nest; how many placings may be made, and how many triangles and
- * points may be drawn in any case. */
+/* Maximums: the depth of nested components, the number of placings, and the number of triangles
+ * and points that may be drawn in any case. */
 enum { DEEPEST = 64, MOST_PLACINGS = 1 << 20, FREE_COUNT = 1 << 26 };
 
-/* A mesh of an object, in its place. */
+/* A placed mesh of an object. */
 typedef struct instance {
     size_t object;
     double place[12];
@@ -27,7 +27,7 @@ typedef struct placing {
     uint64_t drawn, most; /* points and triangles */
 } placing;
 
-/* --- which objects stand where ----------------------------------------------------------- */
+/* --- instances ------------------------------------------------------------------------- */
 
 static void multiply_transforms(const double *a, const double *b, double *out)
 {
@@ -57,7 +57,7 @@ static cw_status add_instance(placing *p, size_t index, const double *place, cw_
     return st;
 }
 
-/* Counts the triangles of an object that is left out, or of what it is made of. */
+/* Counts the triangles of an object that is left out, or of its components. */
 static void count_left_out(const placing *p, cwi_3mf_type type, const cwi_3mf_object *o)
 {
     cw_mesh_file *said = p->m->said;
@@ -68,8 +68,9 @@ static void count_left_out(const placing *p, cwi_3mf_type type, const cwi_3mf_ob
         said->other_triangles += triangles;
 }
 
-/* Components nest no deeper than DEEPEST, so this goes no deeper, either. An object that is
- * left out leaves out what it is made of: `type` is that of the outermost such object. */
+/* Visits a component. Components nest no deeper than DEEPEST, so this recursion goes no deeper,
+ * either. A left-out object leaves out its components: `type` is that of the outermost such
+ * object. */
 static cw_status visit_component(placing *p, const cwi_3mf_component *c, const double *parent,
                                  int depth, cwi_3mf_type type, cw_error *err)
 {
@@ -104,7 +105,8 @@ static cw_status visit_component(placing *p, const cwi_3mf_component *c, const d
     return st;
 }
 
-/* A file of nothing but what is left out would be an empty mesh without a word. */
+/* Reports a file whose objects are all left out; otherwise it would be an empty mesh without a
+ * message. */
 static cw_status check_left_out(const placing *p, cw_error *err)
 {
     const cw_mesh_file *said = p->m->said;
@@ -136,8 +138,8 @@ static cw_status find_instances(placing *p, cw_error *err)
 
 /* --- placing ----------------------------------------------------------------------------- */
 
-/* Where all are moved alike and not turned, the move becomes the mesh's origin and their places
- * keep their bits. */
+/* Uses a common move as the mesh's origin, so that places keep their bits. Requires that all
+ * objects are moved alike and not turned. */
 static bool take_origin(placing *p)
 {
     double *origin = p->m->mesh->origin;
@@ -157,7 +159,8 @@ static bool is_mirrored(const instance *i)
     return cwi_affine_determinant(i->place) < 0;
 }
 
-/* Whether the objects that are read are those that are built, each once and in that order. */
+/* Returns true if the objects that are read are those that are built, each once and in that
+ * order. */
 static bool is_in_order(const placing *p)
 {
     size_t next = 0;
@@ -178,7 +181,7 @@ static void swap_corners(uint32_t *triangle)
     triangle[2] = second;
 }
 
-/* Moves the object's points where they are. */
+/* Moves the object's points to their place. */
 static void move_object(cwi_mesh_build *b, const cwi_3mf_object *o, const instance *i,
                         bool origin_taken)
 {
@@ -190,7 +193,7 @@ static void move_object(cwi_mesh_build *b, const cwi_3mf_object *o, const instan
         swap_corners(b->triangles + 3 * t);
 }
 
-/* Adds a copy of the object's points and triangles, and of the colours that points have. */
+/* Adds a copy of the object's points and triangles, and of the points' colours. */
 static cw_status copy_object(cwi_3mf *m, cwi_mesh_build *to, uint32_t **colors,
                              size_t *color_room, const cwi_3mf_object *o, cw_error *err)
 {
@@ -218,7 +221,7 @@ static cw_status copy_object(cwi_3mf *m, cwi_mesh_build *to, uint32_t **colors,
     return CW_OK;
 }
 
-/* Makes the build consist of the instances in their order, each with points of its own. */
+/* Rebuilds the mesh from the instances in their order, each with points of its own. */
 static cw_status copy_objects(placing *p, cw_error *err)
 {
     cwi_3mf *m = p->m;
@@ -243,7 +246,7 @@ static cw_status copy_objects(placing *p, cw_error *err)
     return CW_OK;
 }
 
-/* Moves the points of every instance, which stand in their order, and marks the parts. */
+/* Moves the points of every instance, stored in their order, and marks the parts. */
 static cw_status move_instances(placing *p, cw_error *err)
 {
     cwi_3mf *m = p->m;
@@ -267,7 +270,7 @@ static cw_status move_instances(placing *p, cw_error *err)
     return st;
 }
 
-/* Colours of points that none is given are white, as they are when drawn. */
+/* Colours points without a colour white, as they are drawn. */
 static cw_status color_points(cwi_3mf *m, size_t count, cw_error *err)
 {
     size_t room = 0;

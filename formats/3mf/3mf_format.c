@@ -1,4 +1,4 @@
-/* 3MF: what is read and written, and by whom. */
+/* The driver of 3MF: its reader, its writer, and what the format keeps. */
 #include "formats/driver/format_driver.h"
 
 const cwi_format_driver cwi_format_3mf = {

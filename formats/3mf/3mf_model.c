@@ -1,4 +1,4 @@
-/* What the elements of a 3MF model say. */
+/* Reads the elements of a 3MF model: objects, colours, components and the build. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
@@ -13,18 +13,18 @@ const uint32_t cwi_3mf_none = UINT32_MAX;
 
 enum { TEXT_BYTES = 128 };
 
-/* What our writer leaves as metadata. */
+/* Facts that our writer stores as metadata. */
 typedef enum fact { NO_FACT, FRAME, UP, ORIGIN } fact;
 
 typedef struct parsing {
     cwi_3mf *m;
     size_t model;
     cwi_xml *xml;
-    cwi_3mf_object object; /* under way */
+    cwi_3mf_object object; /* the current object */
     uint32_t object_id;
-    uint32_t group_id, color; /* what triangles have that name none */
-    cwi_3mf_resource *group;  /* the colours under way */
-    cwi_3mf_resource *used;   /* the last that triangles named, and by what */
+    uint32_t group_id, color; /* of triangles without colours of their own */
+    cwi_3mf_resource *group;  /* the group of colours being read */
+    cwi_3mf_resource *used;   /* the group that triangles named last, and its id */
     uint32_t used_id;
     fact fact;
     char text[TEXT_BYTES];
@@ -49,7 +49,7 @@ static cw_status read_number(const parsing *p, const char *what, const char *val
     return fail_attribute(p, err, what, value);
 }
 
-/* A whole number up to 2^31 - 1. */
+/* Reads a whole number up to 2^31 - 1. */
 static cw_status read_whole(const parsing *p, const char *what, const char *value, uint32_t *to,
                             cw_error *err)
 {
@@ -62,7 +62,7 @@ static cw_status read_whole(const parsing *p, const char *what, const char *valu
     return CW_OK;
 }
 
-/* Twelve numbers, for points that are rows: they become an affine. */
+/* Reads twelve numbers, written for points as row vectors, into an affine. */
 static cw_status read_place(const parsing *p, const char *value, double place[12],
                             cw_error *err)
 {
@@ -86,7 +86,7 @@ static uint64_t key_of(size_t model, uint32_t id)
     return ((uint64_t)model + 1) << 32 | id;
 }
 
-/* Where a key is, or would be; some slot is free. */
+/* Finds the slot of a key, or the free slot for it; some slot is free. */
 static cwi_3mf_resource *find_slot(cwi_3mf_resource *resources, size_t slots, uint64_t key)
 {
     size_t slot = (size_t)(key * 0x9e3779b97f4a7c15u >> 32) % slots;
@@ -103,7 +103,7 @@ cwi_3mf_resource *cwi_3mf_find(const cwi_3mf *m, size_t model, uint32_t id)
     return r->key ? r : NULL;
 }
 
-/* Twice as many slots, so that half of them are free. */
+/* Doubles the slots, so that half of them are free. */
 static cw_status make_slots(parsing *p, cw_error *err)
 {
     cwi_3mf *m = p->m;
@@ -145,7 +145,7 @@ static cw_status add_resource(parsing *p, uint32_t id, cwi_3mf_resource **added,
     return CW_OK;
 }
 
-/* Which of the colours a group has at an index; none of what is no group of colours. */
+/* Finds the colour at an index of a group; none if the resource is no group of colours. */
 static cw_status find_color(parsing *p, uint32_t group, uint32_t index, uint32_t *color,
                             cw_error *err)
 {
@@ -305,7 +305,7 @@ static cw_status end_object(void *user, cwi_xml *x, cw_error *err)
     return CW_OK;
 }
 
-/* The values of some attributes, in one pass; NULL where there is none. */
+/* Finds the values of some attributes, in one pass; NULL where there is none. */
 static void pick_attributes(cwi_attributes a, const char *const *names, const char **values,
                             int count)
 {
@@ -332,7 +332,8 @@ static cw_status start_vertex(void *user, cwi_xml *x, cwi_attributes a, cw_error
     return st == CW_OK ? cwi_build_point(&p->m->build, point, err) : st;
 }
 
-/* A triangle gives its corners colours; once any point has two, none are kept. */
+/* Gives a point a colour, from a corner of a triangle. Once any point has two, none are
+ * kept. */
 static cw_status give_color(parsing *p, size_t point, uint32_t color, cw_error *err)
 {
     cwi_3mf *m = p->m;
@@ -397,7 +398,7 @@ static cw_status start_triangle(void *user, cwi_xml *x, cwi_attributes a, cw_err
 
 /* --- components and the build ------------------------------------------------------------ */
 
-/* A path names a model that a relationship of the package names, too. */
+/* Finds the model of a path, which a relationship of the package must also name. */
 static cw_status find_model(const parsing *p, const char *path, uint32_t *model, cw_error *err)
 {
     cwi_3mf *m = p->m;
@@ -440,7 +441,7 @@ static cw_status start_component(void *user, cwi_xml *x, cwi_attributes a, cw_er
     return add_component(p, a, &m->components, &m->component_count, &m->component_room, err);
 }
 
-/* Only the package's own model builds anything. */
+/* Starts the build, in the package's own model only. */
 static cw_status start_build(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
 {
     parsing *p = user;
@@ -461,8 +462,8 @@ static cw_status start_item(void *user, cwi_xml *x, cwi_attributes a, cw_error *
 
 /* --- the model --------------------------------------------------------------------------- */
 
-/* Extensions that may be required: others can hold what is to be printed in ways of
- * their own. */
+/* Returns true for supported extensions that a file may require. Other extensions can hold the
+ * printed shape in ways of their own. */
 static bool is_known_extension(const char *name)
 {
     static const char *const known[] = {"/material/", "/production/", "/trianglesets/"};
@@ -472,7 +473,7 @@ static bool is_known_extension(const char *name)
     return false;
 }
 
-/* Prefixes, whose names the same element declares. */
+/* Checks the required extensions: prefixes, whose names the same element declares. */
 static cw_status check_extensions(cwi_attributes a, cw_error *err)
 {
     const char *at = cwi_attribute(a, "requiredextensions");

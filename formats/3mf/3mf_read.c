@@ -1,5 +1,5 @@
-/* 3MF: the package. Its relationships name the model, and that one's the models it takes parts
- * of; nothing else in the archive is looked at. */
+/* Reads 3MF packages. The relationships name the model, and its own relationships name the
+ * models of its parts. Nothing else in the archive is read. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/3mf/3mf.h"
@@ -7,8 +7,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Text may be so many times as large as the archive, beyond what is free: the XML of real
- * models packs to a tenth. */
+/* The text may be 100 times as large as the archive, once it is beyond a free amount. The XML
+ * of real models packs to a tenth. */
 enum { FREE_TEXT = 64 << 20, MOST_RATIO = 100 };
 
 bool cwi_3mf_sniff(const unsigned char *head, size_t size, uint64_t file_size)
@@ -31,7 +31,7 @@ static cw_status take_text(cwi_3mf *m, const cwi_unzip_entry *entry, cw_error *e
     return CW_OK;
 }
 
-/* An entry on its way into the parser, with progress. */
+/* An entry that is read by the parser, with progress. */
 typedef struct reading {
     cwi_unzip_stream stream;
     const cw_progress *progress;
@@ -96,8 +96,8 @@ static const cwi_xml_element elements[ELEMENT_COUNT] = {
 static const cwi_xml_rules rules = {
     .elements = elements, .element_count = ELEMENT_COUNT, .most_elements = MOST_RELATIONSHIPS};
 
-/* Adds the models that the relationships of a part name: "3D/_rels/3dmodel.model.rels" for
- * "3D/3dmodel.model". */
+/* Adds the models that the relationships of a part name. They are in
+ * "3D/_rels/3dmodel.model.rels" for "3D/3dmodel.model". */
 static cw_status add_related(cwi_3mf *m, const char *part, cw_error *err)
 {
     char path[512];

@@ -1,5 +1,5 @@
-/* 3MF: a zip archive with one model in XML. An object for each part, placed by its build item;
- * vertex colours by the materials extension, which slicers read. */
+/* Writes 3MF: a zip archive with one model in XML. Each part becomes an object, placed by its
+ * build item; vertex colours use the materials extension, which slicers read. */
 #include "formats/mesh/mesh_writer.h"
 
 #include "core/base/memory.h"
@@ -27,7 +27,7 @@ static const char relationships[] =
     "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/>\n"
     "</Relationships>\n";
 
-/* The format's words for units. */
+/* The format's names of units. */
 static const char *const units[CW_UNIT_COUNT] = {
     [CW_UNIT_MM] = "millimeter", [CW_UNIT_UM] = "micron", [CW_UNIT_CM] = "centimeter",
     [CW_UNIT_M] = "meter",       [CW_UNIT_IN] = "inch",   [CW_UNIT_FT] = "foot"};
@@ -62,7 +62,7 @@ static int compare_colors(const void *a, const void *b)
     return (*x > *y) - (*x < *y);
 }
 
-/* The colours that there are, each once and in order. */
+/* Lists the existing colours, each once and in order. */
 static size_t list_colors(const cw_mesh *mesh, uint32_t *colors)
 {
     size_t count = 0;
@@ -112,8 +112,8 @@ static unsigned char *encode_vertex(const cwi_part *part, size_t v, unsigned cha
     return cwi_put_text(to, "\"/>\n");
 }
 
-/* The format wants three vertices: triangles that name one twice, which have no area, are left
- * out. */
+/* Encodes a triangle. The format requires three vertices, so triangles that name one twice,
+ * which have no area, are left out. */
 static unsigned char *encode_triangle(const cwi_part *part, size_t t, unsigned char *to)
 {
     static const char *const vertices[3] = {"<triangle v1=\"", "\" v2=\"", "\" v3=\""};
@@ -142,14 +142,14 @@ static cw_status write_mesh(model *m, const cwi_part *part, cw_error *err)
     return st == CW_OK ? print_model(m, err, "</triangles>\n</mesh>\n</object>\n") : st;
 }
 
-/* Every part has two numbers of its own, for its colours and for itself. */
+/* Returns the object's number. Every part has two numbers: for its colours and for itself. */
 static size_t object_id(size_t part)
 {
     return 2 * part + 2;
 }
 
-/* Vertices stay where they are: the build item holds the origin. An object that has colours
- * must name one for itself, too. */
+/* Writes an object. Vertices stay where they are: the build item holds the origin. An object
+ * with colours must name one for itself, too. */
 static cw_status write_object(model *m, const cwi_part *given, size_t id, cw_error *err)
 {
     char name[CWI_XML_BYTES(CWI_NAME_BYTES)], group[64] = "";
@@ -176,8 +176,8 @@ static cw_status write_object(model *m, const cwi_part *given, size_t id, cw_err
 
 /* --- the model --------------------------------------------------------------------------- */
 
-/* Where the part stands. Of a local file all count from the same origin, which is told and not
- * applied. */
+/* Writes the place of the part. In a local file all parts count from the same origin, which is
+ * stated and not applied. */
 static cw_status write_item(model *m, const cwi_part *part, size_t id, cw_error *err)
 {
     double origin[3];
@@ -190,7 +190,8 @@ static cw_status write_item(model *m, const cwi_part *part, size_t id, cw_error 
     return print_model(m, err, "<item objectid=\"%zu\"%s/>\n", id, transform);
 }
 
-/* What cubewright reads back has a prefix, as names of others must. */
+/* Writes the head. Metadata for cubewright's reader have a prefix, as the format requires for
+ * such names. */
 static cw_status write_head(model *m, cw_error *err)
 {
     const cw_axes *axes = m->out->axes;
@@ -226,8 +227,8 @@ static cw_status write_model(model *m, const cwi_parts *parts, cw_error *err)
     return st == CW_OK ? print_model(m, err, "</build>\n</model>\n") : st;
 }
 
-/* More than any vertex, colour and triangle take: whether the model may have 4 GiB must be
- * known in front of it. */
+/* Returns true if the model may reach 4 GiB, by upper bounds for vertices, colours and
+ * triangles. That must be known before the model is written. */
 static bool is_huge(const cwi_parts *parts)
 {
     const uint64_t vertex = 120, triangle = 140, object = 2 * CWI_XML_BYTES(CWI_NAME_BYTES);

@@ -1,10 +1,10 @@
-/* RFC 4648, section 4. Every writer of VTK files pads each of the pieces that it encodes, so
- * text goes on behind padding. */
+/* Encodes and decodes Base64 (RFC 4648, section 4). Every writer of VTK files pads each of the
+ * pieces that it encodes, so text goes on behind padding. */
 #include "formats/bytes/base64.h"
 
 enum { WRONG, BLANK, PADDING, END, DIGIT = 0x80 };
 
-/* The six bits that a character stands for, with the highest set; or what else it is. */
+/* The six bits of a character, with the highest bit set; or its other meaning. */
 /* clang-format off */
 static const unsigned char values[256] = {
     ['A'] = 0x80, 0x81, 0x82, 0x83, 0x84, 0x85, 0x86, 0x87, 0x88, 0x89, 0x8a, 0x8b, 0x8c,
@@ -17,7 +17,7 @@ static const unsigned char values[256] = {
 };
 /* clang-format on */
 
-/* Whole groups without blanks, which is what nearly all text is made of. */
+/* Decodes whole groups without blanks; nearly all text consists of them. */
 static size_t decode_groups(const char *text, size_t size, size_t *used, unsigned char *to,
                             size_t room)
 {
@@ -44,7 +44,8 @@ static void take_padding(cwi_base64 *b)
     b->in_group = (b->in_group + 1) & 3;
 }
 
-/* The second, third and fourth character of a group each complete a byte. */
+/* Adds the bits of a character. The second, third and fourth one of a group each complete a
+ * byte. */
 static size_t take_bits(cwi_base64 *b, unsigned char value, unsigned char *to)
 {
     b->bits = b->bits << 6 | (value & 63);

@@ -1,20 +1,21 @@
-/* Base64 text to bytes, in portions of any size. */
+/* Base64: text to bytes in portions of any size, and bytes to text. */
 #ifndef FORMATS_BYTES_BASE64_H
 #define FORMATS_BYTES_BASE64_H
 
 #include <cubewright/core.h>
 
-/* Where decoding stands. Zeroed at the start. */
+/* The state of decoding. Zeroed at the start. */
 typedef struct cwi_base64 {
-    uint32_t bits;     /* of the group of four characters that is under way */
+    uint32_t bits;     /* of the current group of four characters */
     unsigned in_group; /* characters of it so far */
     bool padded;       /* ... and only '=' may follow in it */
     bool ended;        /* at a '<': an XML tag follows */
-    bool wrong;        /* at a character that is neither */
+    bool wrong;        /* at any other character */
 } cwi_base64;
 
-/* Decodes until the room is full, the text is used up, or an end; blanks are passed over, and
- * behind padding a new group starts. Returns the bytes written; *used counts characters. */
+/* Decodes until the room is full, the text is used up, or an end is reached. Blanks are
+ * skipped, and a new group starts behind padding. Returns the bytes written; *used counts
+ * characters. */
 size_t cwi_base64_decode(cwi_base64 *b, const char *text, size_t size, size_t *used,
                          unsigned char *to, size_t room);
 

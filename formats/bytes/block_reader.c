@@ -1,3 +1,5 @@
+/* Reads data in separately compressed blocks (zlib or LZ4) behind a table of their sizes, as in
+ * VTK's XML files. */
 #include "formats/bytes/block_reader.h"
 
 #include "core/base/memory.h"
@@ -6,14 +8,14 @@
 #include <limits.h>
 #include <string.h>
 
-/* The most bytes that one byte can stand for, and those that a block has besides. */
+/* Bounds of the codecs: the maximum gain per byte, and the bytes of a block besides. */
 static const struct {
     const char *name;
     uint64_t ratio, besides;
 } codecs[CWI_CODEC_COUNT] = {
     [CWI_CODEC_ZLIB] = {"zlib", 1032, 0}, [CWI_CODEC_LZ4] = {"LZ4", 255, 64}};
 
-enum { HEAD_WORDS = 3 }; /* blocks, bytes of each, bytes of a last one that is smaller */
+enum { HEAD_WORDS = 3 }; /* number of blocks, bytes of each, bytes of a smaller last one */
 
 static uint64_t word_at(const cwi_packed_blocks *b, const unsigned char *words, size_t index)
 {
@@ -30,7 +32,7 @@ static size_t block_bytes(const cwi_packed_blocks *b, size_t index)
     return index + 1 == b->count ? b->last : b->bytes;
 }
 
-/* The counts in front of the table must give the bytes that are wanted. */
+/* Checks that the counts before the table give the wanted bytes. */
 static cw_status check_head(cwi_packed_blocks *b, const unsigned char *head, uint64_t wanted,
                             uint64_t there, cw_error *err)
 {
@@ -59,7 +61,7 @@ static cw_status check_head(cwi_packed_blocks *b, const unsigned char *head, uin
     return CW_OK;
 }
 
-/* Sets *most to the largest block, compressed. */
+/* Checks the table; sets *most to the size of the largest compressed block. */
 static cw_status check_table(const cwi_packed_blocks *b, uint64_t there, uint64_t *most,
                              cw_error *err)
 {
@@ -114,7 +116,7 @@ void cwi_blocks_close(cwi_packed_blocks *b)
     *b = (cwi_packed_blocks){0};
 }
 
-/* One whole zlib stream, with its checksum, and nothing behind it. */
+/* Inflates one whole zlib stream, with its checksum, and nothing behind it. */
 static cw_status inflate_block(const cwi_packed_blocks *b, size_t packed, unsigned char *to,
                                size_t size, bool *whole, cw_error *err)
 {
@@ -134,7 +136,7 @@ static cw_status inflate_block(const cwi_packed_blocks *b, size_t packed, unsign
     return CW_OK;
 }
 
-/* Decodes the next block to where there is room for it. */
+/* Decodes the next block into memory with enough room. */
 static cw_status decode_block(cwi_packed_blocks *b, unsigned char *to, cw_error *err)
 {
     const size_t index = b->next++, size = block_bytes(b, index);
@@ -154,7 +156,7 @@ static cw_status decode_block(cwi_packed_blocks *b, unsigned char *to, cw_error 
     return st;
 }
 
-/* Decodes the next block to be taken in parts. */
+/* Decodes the next block into a buffer, from which it is taken in parts. */
 static cw_status hold_block(cwi_packed_blocks *b, cw_error *err)
 {
     if (!b->held && !(b->held = cwi_alloc_array(block_bytes(b, 0), 1)))
@@ -178,7 +180,7 @@ void cwi_blocks_skip(cwi_packed_blocks *b, uint64_t bytes)
     b->skipped += bytes;
 }
 
-/* Goes to the bytes behind those to leave out. */
+/* Skips the bytes to leave out. */
 static cw_status settle_block(cwi_packed_blocks *b, cw_error *err)
 {
     cw_status st = CW_OK;

@@ -1,3 +1,5 @@
+/* Writes data in blocks compressed by zlib, behind a table of their sizes that is filled in at
+ * the end. */
 #include "formats/bytes/block_writer.h"
 
 #include "core/base/memory.h"
@@ -7,7 +9,7 @@
 
 #include <assert.h>
 
-/* Words in front of the sizes: blocks, bytes of each, bytes of a last one that is smaller. */
+/* Words before the sizes: number of blocks, bytes of each, bytes of a smaller last one. */
 enum { BLOCK_BYTES = 256 << 10, HEAD_WORDS = 3, WORD = 8, LEVEL = 1 };
 
 cw_status cwi_block_sink_open(cwi_block_sink *b, cwi_outfile *file, cw_error *err)
@@ -56,7 +58,7 @@ static cw_status flush_block(cwi_block_sink *b, cw_error *err)
     b->z.avail_in = (uInt)b->held;
     b->z.next_out = b->packed;
     b->z.avail_out = (uInt)b->packed_room;
-    deflate(&b->z, Z_FINISH); /* there is room for whatever it makes */
+    deflate(&b->z, Z_FINISH); /* there is room for any output */
     const size_t packed = b->packed_room - b->z.avail_out;
     b->held = 0;
     assert(b->next < b->count);

@@ -1,28 +1,29 @@
-/* Data in blocks that are each compressed by zlib, behind a table of their sizes: as VTK's XML
- * files hold them, and as block_reader.h reads them. Words are of 64 bits, little end first. */
+/* Writing of data in blocks that are each compressed by zlib, behind a table of their sizes.
+ * VTK's XML files hold them, and block_reader.h reads them. Words have 64 bits,
+ * little-endian. */
 #ifndef FORMATS_BYTES_BLOCK_WRITER_H
 #define FORMATS_BYTES_BLOCK_WRITER_H
 
 #include "formats/bytes/deflate_file.h"
 
-/* A zeroed one is closed. */
+/* A writer of blocks. A zeroed one is closed. */
 typedef struct cwi_block_sink {
     cwi_outfile *file; /* borrowed */
     z_stream z;
     bool deflates;
-    unsigned char *block, *packed; /* one as it is, and compressed */
+    unsigned char *block, *packed; /* one block, plain and compressed */
     size_t packed_room, held;      /* bytes of the block so far */
-    unsigned char *table;          /* of the array under way */
+    unsigned char *table;          /* of the current array */
     size_t table_bytes, count, next;
     uint64_t table_at;
 } cwi_block_sink;
 
 CW_NODISCARD cw_status cwi_block_sink_open(cwi_block_sink *b, cwi_outfile *file, cw_error *err);
 
-/* Starts an array of so many bytes (not 0): its table is filled in when it ends. */
+/* Starts an array; `bytes` is its size (not 0). Its table is filled in when it ends. */
 CW_NODISCARD cw_status cwi_block_sink_begin(cwi_block_sink *b, uint64_t bytes, cw_error *err);
 
-/* Bytes of the array; b is a cwi_block_sink. */
+/* Adds bytes to the array; b is a cwi_block_sink. */
 CW_NODISCARD cw_status cwi_block_sink_put(void *b, const void *bytes, size_t size,
                                           cw_error *err);
 CW_NODISCARD cw_status cwi_block_sink_end(cwi_block_sink *b, cw_error *err);

@@ -1,3 +1,4 @@
+/* Decompresses bzip2 data by libbz2, behind an interface like zlib's inflate(). */
 #include "formats/bytes/bzip2.h"
 
 #include "core/base/memory.h"
@@ -5,7 +6,7 @@
 #include <bzlib.h>
 
 typedef struct decompressor {
-    bool begun; /* a stream */
+    bool begun; /* a stream was begun */
     bz_stream bz;
 } decompressor;
 

@@ -1,4 +1,4 @@
-/* Stands in for bzip2.c where libbz2-dev is missing, or with -DCUBEWRIGHT_BZIP2=OFF. */
+/* Replaces bzip2.c where libbz2-dev is missing, or with -DCUBEWRIGHT_BZIP2=OFF. */
 #include "formats/bytes/bzip2.h"
 
 bool cwi_bzip2_present(void)

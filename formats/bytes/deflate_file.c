@@ -1,3 +1,4 @@
+/* Writes bytes to a file, plain or deflated by zlib. */
 #include "formats/bytes/deflate_file.h"
 
 #include "core/base/memory.h"
@@ -38,8 +39,8 @@ static cw_status put_bytes(cwi_sink *s, const void *bytes, size_t size, cw_error
     return s->file ? cwi_outfile_write(s->file, bytes, size, err) : CW_OK;
 }
 
-/* Runs deflate until it has taken all its input, and given all its output when that
- * is asked. */
+/* Runs deflate until it has taken all its input, and given all its output if that is
+ * requested. */
 static cw_status pump_deflate(cwi_sink *s, int flush, cw_error *err)
 {
     cw_status st = CW_OK;

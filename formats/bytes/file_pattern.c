@@ -1,3 +1,5 @@
+/* Lists the files of a folder or a pattern in natural order, and finds the number in which
+ * names differ. */
 #define _GNU_SOURCE /* O_PATH, fdopendir */
 #include "formats/bytes/file_pattern.h"
 
@@ -22,7 +24,7 @@ static bool is_digit(char c)
     return c >= '0' && c <= '9';
 }
 
-/* Numbers of any length: the longer one is larger once leading zeros are gone. */
+/* Compares numbers of any length: after leading zeros the longer one is larger. */
 static int compare_numbers(const char **a, const char **b)
 {
     *a += strspn(*a, "0");
@@ -46,7 +48,7 @@ int cwi_natural_order(const char *a, const char *b)
         if (order)
             return order;
     }
-    return *s || *t ? (*s ? 1 : -1) : strcmp(a, b); /* 1 and 01 are no equals either */
+    return *s || *t ? (*s ? 1 : -1) : strcmp(a, b); /* 1 and 01 also differ */
 }
 
 static int compare_names(const void *a, const void *b)
@@ -77,8 +79,8 @@ static const char DIGITS[] = "0123456789";
 
 enum { UNLIKE = -2, SAME = -1 };
 
-/* Which number, counted from 0, is all that two names differ by; SAME where they differ by
- * leading zeros at most. */
+/* Finds the only number in which two names differ, counted from 0. Returns SAME where they
+ * differ by leading zeros at most. */
 static int differing_number(const char *a, const char *b)
 {
     int found = SAME, number = 0;
@@ -138,13 +140,13 @@ typedef struct listing {
 
 static cw_status list_folder(listing *l, const char *folder, int depth, cw_error *err);
 
-/* What stands under one name: left out, listed, or gone into. */
+/* Handles the entry of one name: leaves it out, lists it, or lists the folder. */
 static cw_status take_entry(listing *l, int folder, const char *prefix, const char *name,
                             int depth, cw_error *err)
 {
     char path[1024];
     struct stat info;
-    const bool named = depth == 0 && cwi_input_is_named(l->in, name); /* the user's own words */
+    const bool named = depth == 0 && cwi_input_is_named(l->in, name); /* named by the user */
     const int follow = l->in->allow_external || named ? 0 : AT_SYMLINK_NOFOLLOW;
     if ((name[0] == '.' && !named) || fstatat(folder, name, &info, follow) != 0)
         return CW_OK;
@@ -162,7 +164,7 @@ static cw_status take_entry(listing *l, int folder, const char *prefix, const ch
     return list_folder(l, path, depth + 1, err);
 }
 
-/* prefix: empty, or a folder with its slash. */
+/* Lists a folder; prefix is empty, or a folder with its slash. */
 static cw_status list_folder(listing *l, const char *prefix, int depth, cw_error *err)
 {
     const int flags = O_RDONLY | O_DIRECTORY | O_CLOEXEC;
@@ -226,7 +228,7 @@ cw_status cwi_files_find(cwi_input *in, const char *path, bool deep, cwi_names *
     const bool external = in->allow_external;
     cw_status st = cwi_input_open_folder(in, pattern ? "." : path, err);
     in->path = path;
-    in->allow_external = external || pattern; /* the user's own words */
+    in->allow_external = external || pattern; /* named by the user */
     if (st != CW_OK || pattern)
         return st == CW_OK ? match_names(path, names, err) : st;
     listing l = {.in = in, .deep = deep, .names = names};

@@ -1,40 +1,40 @@
-/* Which files a path of a user's stands for when it names more than one: a folder, or a pattern
- * such as 'scan/slice_*.tif'. */
+/* The files of a user's path that names more than one: a folder, or a pattern such as
+ * 'scan/slice_*.tif'. */
 #ifndef FORMATS_BYTES_FILE_PATTERN_H
 #define FORMATS_BYTES_FILE_PATTERN_H
 
 #include "formats/bytes/input_file.h"
 
-/* As strcmp(), but numbers in names go by their value: slice_9 comes before slice_10. */
+/* Compares as strcmp(), but numbers in names by their value: slice_9 comes before slice_10. */
 int cwi_natural_order(const char *a, const char *b);
 
-/* Whether a path holds one of * ? [ and there is no file of that very name. */
+/* Returns true if a path contains one of * ? [ and no file has that very name. */
 bool cwi_files_is_pattern(const char *path);
 
-/* Opens what a path names, a folder or the folder that a pattern starts from, and adds the
- * files in natural order: those in the folder and, if deep, below it; or those that match.
- * Hidden ones are left out, and links as long as external files are not allowed (*links counts
- * them). Names are for cwi_input_open_side(). Close in with cwi_input_close(). Returns
- * CW_ERR_IO when the folder is not to be opened, or nothing matches; CW_ERR_LIMIT for more than
- * 65,536 files or folders nested deeper than 16. */
+/* Opens the folder of a path, or the folder from which a pattern starts. Adds its files in
+ * natural order: those in the folder and, if deep, below it; or those that match. Hidden files
+ * are left out. So are links unless external files are allowed (*links counts them). The names
+ * are for cwi_input_open_side(). Close in with cwi_input_close(). Returns CW_ERR_IO when the
+ * folder cannot be opened, or nothing matches; CW_ERR_LIMIT for more than 65,536 files or
+ * folders nested deeper than 16. */
 CW_NODISCARD cw_status cwi_files_find(cwi_input *in, const char *path, bool deep,
                                       cwi_names *names, size_t *links, cw_error *err);
 
 /* Puts names into natural order. */
 void cwi_files_sort(cwi_names *names);
 
-/* Adds the files in the folder of an open input, its own among them, and no deeper; *links
+/* Adds the files in the folder of an open input, its own among them, and none below; *links
  * counts those left out. */
 CW_NODISCARD cw_status cwi_files_beside(const cwi_input *in, cwi_names *names, size_t *links,
                                         cw_error *err);
 
-/* The numbers in names that are alike but for one number; false where they are not, or where it
- * has more than 15 digits. */
+/* Finds the numbers in names that are alike except for one number. Returns false where they are
+ * not, or where the number has more than 15 digits. */
 bool cwi_files_numbers(const cwi_names *names, double *numbers);
 
 bool cwi_is_folder(const char *path);
 
-/* Whether a path ends in one of the blank-separated extensions, in any case of letters. */
+/* Returns true if a path ends in one of the blank-separated extensions, in any letter case. */
 bool cwi_has_extension(const char *path, const char *extensions);
 
 #endif

@@ -1,3 +1,5 @@
+/* Reads sequential bytes of a file, decoding base64 or hexadecimal text and inflating gzip,
+ * zlib or bzip2 on the way. */
 #include "formats/bytes/inflate_stream.h"
 
 #include "core/base/memory.h"
@@ -8,7 +10,8 @@
 
 #include <string.h>
 
-/* What inflates may take some bytes ahead, and give them back when the data are over. */
+/* Buffer sizes. A decompressor may read AHEAD_BYTES too far, and gives them back when the data
+ * end. */
 enum { BUFFER_BYTES = 1 << 16, DRAIN_BYTES = 1 << 16, AHEAD_BYTES = 8 };
 
 static voidpf zlib_alloc(voidpf unused, uInt items, uInt size)
@@ -89,7 +92,7 @@ void cwi_stream_close(cwi_stream *s)
     *s = (cwi_stream){.fd = -1};
 }
 
-/* What the file holds, as it is. */
+/* Reads the bytes of the file as they are. */
 static cw_status fetch_plain(cwi_stream *s, void *to, size_t size, size_t *got, cw_error *err)
 {
     const uint64_t left = s->end > s->offset ? s->end - s->offset : 0;
@@ -130,7 +133,7 @@ static int hex_digit(char c)
                                             : -1;
 }
 
-/* One character of the text; false where it is neither a digit nor a blank. */
+/* Decodes one character of the text; returns false where it is neither a digit nor a blank. */
 static bool take_hex(cwi_stream *s, char c, unsigned char *to, size_t *got)
 {
     const int digit = hex_digit(c);
@@ -169,8 +172,8 @@ static cw_status fetch_bytes(cwi_stream *s, void *to, size_t size, size_t *got, 
                        : fetch_base64(s, to, size, got, err);
 }
 
-/* Puts more of the file behind what is still to be inflated, and behind the bytes before it
- * that may be given back. */
+/* Appends more of the file to the input of inflate. The input follows the bytes that may be
+ * given back. */
 static cw_status refill_input(cwi_stream *s, size_t *got, cw_error *err)
 {
     const size_t used = (size_t)(s->z.next_in - s->buffer);
@@ -182,8 +185,8 @@ static cw_status refill_input(cwi_stream *s, size_t *got, cw_error *err)
     return st;
 }
 
-/* Behind compressed data that end before their file only zeros may stand, with which tapes and
- * some tools fill up their blocks. */
+/* Checks the rest of a file whose compressed data end before it. Only zeros may follow, with
+ * which tapes and some tools fill up their blocks. */
 static cw_status check_padding(cwi_stream *s, cw_error *err)
 {
     size_t got = 1;
@@ -200,8 +203,8 @@ static cw_status check_padding(cwi_stream *s, cw_error *err)
     return st;
 }
 
-/* After one gzip member, or one stream of bzip2: goes on when the next one follows, else the
- * data are over. */
+/* Continues after one gzip member, or one stream of bzip2, when the next one follows. Otherwise
+ * the data end. */
 static cw_status start_next_member(cwi_stream *s, cw_error *err)
 {
     const char *magic = s->bzip2 ? "BZh" : "\x1f\x8b";
@@ -226,7 +229,7 @@ static cw_status fail_inflate(const cwi_stream *s, int code, cw_error *err)
                                          : "no progress");
 }
 
-/* One call of inflate. zlib's own totals are not used: they wrap at 4 GiB on some systems. */
+/* Calls inflate once. zlib's own totals are not used: they wrap at 4 GiB on some systems. */
 static cw_status inflate_some(cwi_stream *s, unsigned char *to, size_t size, size_t *got,
                               cw_error *err)
 {

@@ -1,3 +1,5 @@
+/* Opens untrusted files and the side files that they name, without leaving the folder, and
+ * expands name patterns. */
 #define _GNU_SOURCE /* O_PATH, strerrordesc_np */
 #include "formats/bytes/input_file.h"
 
@@ -28,7 +30,8 @@ static const char *kind_of_file(mode_t mode)
                             : "a device";
 }
 
-/* O_NONBLOCK keeps a pipe or a tape from holding us up before fstat has told what it is. */
+/* Opens a regular file. O_NONBLOCK prevents waiting for a pipe or a tape before fstat has
+ * reported the type. */
 static cw_status open_regular(int folder, const char *name, int flags, int *fd, uint64_t *size,
                               cw_error *err)
 {
@@ -186,7 +189,7 @@ cw_status cwi_names_add(cwi_names *names, const char *name, cw_error *err)
     const size_t n = names->count;
     if (n >= MOST_NAMES)
         return cw_fail(err, CW_ERR_LIMIT, "more than %d data files", MOST_NAMES);
-    if ((n & (n - 1)) == 0) { /* full at every power of two */
+    if ((n & (n - 1)) == 0) { /* the capacity is reached at every power of two */
         char **items = cwi_realloc_array(names->items, n ? 2 * n : 1, sizeof *items);
         if (!items)
             return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu file names", n + 1);
@@ -207,16 +210,17 @@ void cwi_names_free(cwi_names *names)
     *names = (cwi_names){0};
 }
 
-/* A file name with one number in it, taken apart. */
+/* A file name that contains one number, split into parts. */
 typedef struct pattern {
-    int head; /* bytes in front of the number */
+    int head; /* number of bytes before the number */
     int width;
     bool zeros;       /* pad with zeros, not blanks */
-    const char *tail; /* what follows the number */
+    const char *tail; /* text after the number */
     int tail_length;
 } pattern;
 
-/* Never handed to printf: a stranger's format string is a stranger's program. */
+/* Splits a pattern. It is never passed to printf, since a format string of an untrusted file
+ * could do harm. */
 static bool take_apart(const char *text, size_t length, pattern *p)
 {
     const char *percent = memchr(text, '%', length);

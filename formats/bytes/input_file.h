@@ -1,35 +1,37 @@
-/* Opening files that someone else wrote: the header a user names, and the data files
- * it names. */
+/* Opening of untrusted files: the header that a user names, and the data files that it
+ * names. */
 #ifndef FORMATS_BYTES_INPUT_FILE_H
 #define FORMATS_BYTES_INPUT_FILE_H
 
 #include <cubewright/formats.h>
 
-/* An open file to read, and the folder it was named in. */
+/* An open file, and the folder in which it was named. */
 typedef struct cwi_input {
     const char *path; /* borrowed */
-    int folder;       /* where side files are looked up */
+    int folder;       /* folder of the side files */
     int fd;
-    uint64_t size;                 /* bytes, as the system says */
+    uint64_t size;                 /* number of bytes that the system reports */
     bool allow_external;           /* side files may lie elsewhere */
-    const char *array;             /* that is asked for; NULL: any */
-    struct cwi_array_list *arrays; /* where readers list those there are; NULL: nobody asks */
+    const char *array;             /* name of the wanted array; NULL: any */
+    struct cwi_array_list *arrays; /* list that readers fill with the arrays; NULL: not
+                                      wanted */
 } cwi_input;
 
-/* Opens the file a user named; links are followed, as the user may well have made them.
+/* Opens the file that a user named. Links are followed, as the user may have made them.
  * Returns CW_ERR_IO when it is missing, empty, unreadable or anything but a regular file. */
 CW_NODISCARD cw_status cwi_input_open(cwi_input *in, const char *path, cw_error *err);
 void cwi_input_close(cwi_input *in);
 
-/* Opens a folder to find side files in; there is no file. CW_ERR_IO. */
+/* Opens a folder in which side files are found; there is no file. Returns CW_ERR_IO. */
 CW_NODISCARD cw_status cwi_input_open_folder(cwi_input *in, const char *path, cw_error *err);
 
-/* Whether a name in the folder is that of the file that is open. */
+/* Returns true if a name in the folder is that of the open file. */
 bool cwi_input_is_named(const cwi_input *in, const char *name);
 
-/* Opens a file that the header names; the header itself is not looked up again. Unless
- * in->allow_external it must lie in the header's folder or below: no absolute path, "..",
- * scheme, backslash or percent sign, and no link on the way. The file is the caller's to close.
+/* Opens a file that the header names; the header itself is not opened again. Unless
+ * in->allow_external it must lie in the header's folder or below. No absolute path, "..",
+ * scheme, backslash or percent sign, and no link on the way is allowed. The caller closes the
+ * file.
  * Returns CW_ERR_UNSAFE for a name that leaves the folder, else as cwi_input_open(). */
 CW_NODISCARD cw_status cwi_input_open_side(const cwi_input *in, const char *name, int *fd,
                                            uint64_t *size, cw_error *err);
@@ -46,8 +48,8 @@ typedef struct cwi_names {
 
 CW_NODISCARD cw_status cwi_names_add(cwi_names *names, const char *name, cw_error *err);
 
-/* Adds the names that "PATTERN FIRST LAST STEP [DEPTH]" stands for: one %d, %3d or %03d, a step
- * above 0. *depth gets the last number, or stays as it is when there is none. */
+/* Adds the names of the pattern "PATTERN FIRST LAST STEP [DEPTH]": one %d, %3d or %03d, a step
+ * above 0. *depth gets the last number, or stays unchanged when there is none. */
 CW_NODISCARD cw_status cwi_names_expand(cwi_names *names, const char *text, int64_t *depth,
                                         cw_error *err);
 void cwi_names_free(cwi_names *names);

@@ -1,3 +1,4 @@
+/* Inflates gzip and zlib data by ISA-L, behind an interface like zlib's inflate(). */
 #include "formats/bytes/isal.h"
 
 #include "core/base/memory.h"
@@ -5,7 +6,7 @@
 #include <isa-l/igzip_lib.h>
 
 typedef struct inflater {
-    bool begun; /* a member, whose first byte has told its kind */
+    bool begun; /* a member was begun; its first byte decides its kind */
     struct inflate_state isal;
 } inflater;
 
@@ -39,7 +40,8 @@ static void begin_member(inflater *f, unsigned char first)
     f->begun = true;
 }
 
-/* Bytes that it took ahead, in whole, are given back: up to eight, in front of next_in. */
+/* Ends a member. Whole bytes that ISA-L read too far are given back: up to eight, before
+ * next_in. */
 static void end_member(inflater *f)
 {
     const uint32_t ahead = (uint32_t)f->isal.read_in_length / 8;

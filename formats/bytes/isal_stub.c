@@ -1,3 +1,4 @@
+/* Replaces isal.c in builds without ISA-L: zlib then inflates. */
 #include "formats/bytes/isal.h"
 
 bool cwi_isal_open(void **state)

@@ -1,5 +1,5 @@
-/* Numbers as bytes, little end first on any machine; each function returns the end of what it
- * put. */
+/* Numbers as little-endian bytes on any machine; each function returns the end of the bytes it
+ * wrote. */
 #ifndef FORMATS_BYTES_LITTLE_ENDIAN_H
 #define FORMATS_BYTES_LITTLE_ENDIAN_H
 

@@ -1,4 +1,4 @@
-/* LZ4 blocks, through liblz4. */
+/* Decodes LZ4 blocks by liblz4. */
 #include "formats/bytes/block_reader.h"
 
 #include <limits.h>

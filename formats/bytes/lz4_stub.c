@@ -1,4 +1,4 @@
-/* Stands in for lz4.c where liblz4-dev is missing, or with -DCUBEWRIGHT_LZ4=OFF. */
+/* Replaces lz4.c where liblz4-dev is missing, or with -DCUBEWRIGHT_LZ4=OFF. */
 #include "formats/bytes/block_reader.h"
 
 bool cwi_lz4_present(void)

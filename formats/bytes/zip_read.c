@@ -1,3 +1,5 @@
+/* Reads zip archives: finds entries by the directory, checks their records, and inflates
+ * them. */
 #include "formats/bytes/zip_read.h"
 
 #include "core/base/memory.h"
@@ -6,13 +8,13 @@
 #include <string.h>
 #include <strings.h>
 
-/* Sizes of the fixed records; how many bytes the directory may have, and a comment
- * behind it. */
+/* Sizes of the fixed records, and the maximum bytes of the directory and of a comment behind
+ * it. */
 enum { LOCAL = 30, CENTRAL = 46, END = 22, END64 = 56, LOCATOR = 20 };
 enum { MOST_BYTES = 4 << 20, MOST_COMMENT = 65535, BUFFER_BYTES = 1 << 16 };
 enum { STORED = 0, DEFLATED = 8, ENCRYPTED = 1, MOST_RATIO = 1032 };
 
-static const uint32_t FULL = UINT32_MAX; /* the true number stands in a field of 64 bits */
+static const uint32_t FULL = UINT32_MAX; /* the true number is in a field of 64 bits */
 
 static uint64_t read_number(const unsigned char *at, size_t size)
 {
@@ -27,7 +29,7 @@ static cw_status fail_damaged(const char *what, cw_error *err)
     return cw_fail(err, CW_ERR_FORMAT, "the zip archive is damaged: %s", what);
 }
 
-/* Reads exactly so many bytes. */
+/* Reads exactly `size` bytes. */
 static cw_status read_at(const cwi_input *in, uint64_t at, void *to, size_t size,
                          const char *what, cw_error *err)
 {
@@ -38,7 +40,7 @@ static cw_status read_at(const cwi_input *in, uint64_t at, void *to, size_t size
 
 /* --- the directory ----------------------------------------------------------------------- */
 
-/* Where the last record starts; behind it only a comment of the length that it says stands. */
+/* Finds the start of the last record. Only a comment of the stated length may follow it. */
 static cw_status find_end(const cwi_input *in, uint64_t *end, unsigned char record[END],
                           cw_error *err)
 {
@@ -63,7 +65,8 @@ static cw_status find_end(const cwi_input *in, uint64_t *end, unsigned char reco
                                  : st;
 }
 
-/* The same with fields of 64 bits, which a locator in front of the last record leads to. */
+/* Reads the same record with fields of 64 bits; a locator before the last record names its
+ * place. */
 static cw_status read_end64(const cwi_input *in, uint64_t *end, uint64_t *count,
                             uint64_t *bytes, uint64_t *start, cw_error *err)
 {
@@ -122,7 +125,7 @@ void cwi_unzip_close(cwi_unzip *z)
 
 /* --- entries ----------------------------------------------------------------------------- */
 
-/* Numbers that are FULL in the record stand in its extra field, in this order. */
+/* Reads the extra field. It holds the numbers that are FULL in the record, in this order. */
 static bool read_extra(const unsigned char *extra, size_t size, cwi_unzip_entry *e)
 {
     uint64_t *const wide[3] = {&e->size, &e->packed, &e->start};
@@ -150,7 +153,8 @@ static bool same_name(const unsigned char *text, size_t length, const char *name
     return length == strlen(name) && strncasecmp((const char *)text, name, length) == 0;
 }
 
-/* The record of a name; NULL when there is none. *whole: all records fit into the directory. */
+/* Finds the record of a name; NULL when there is none. *whole: all records fit into the
+ * directory. */
 static const unsigned char *find_record(const cwi_unzip *z, const char *name, bool *whole)
 {
     const unsigned char *at = z->directory, *end = at + z->bytes;
@@ -177,7 +181,7 @@ bool cwi_unzip_has(const cwi_unzip *z, const char *name)
     return find_record(z, name + (*name == '/'), &whole);
 }
 
-/* In front of an entry its header says the same; the sizes may be missing there. */
+/* Checks the header before an entry against the record; the sizes may be missing there. */
 static cw_status check_local(const cwi_unzip *z, cwi_unzip_entry *e, cw_error *err)
 {
     unsigned char head[LOCAL];
@@ -258,7 +262,7 @@ void cwi_unzip_end(cwi_unzip_stream *s)
     *s = (cwi_unzip_stream){0};
 }
 
-/* The next bytes of the entry as they are in the file; none behind its end. */
+/* Reads the next bytes of the entry as they are in the file; none beyond its end. */
 static cw_status fetch_bytes(cwi_unzip_stream *s, void *to, size_t size, size_t *got,
                              cw_error *err)
 {
@@ -306,7 +310,7 @@ static cw_status inflate_some(cwi_unzip_stream *s, void *to, size_t size, size_t
     return st;
 }
 
-/* At the end: all of it, and what was meant. */
+/* Checks size and checksum at the end. */
 static cw_status check_whole(const cwi_unzip_stream *s, cw_error *err)
 {
     if (s->given != s->entry.size)

@@ -1,3 +1,5 @@
+/* Writes zip archives: headers, deflated entries and the directory, with 64-bit fields where
+ * needed. */
 #include "formats/bytes/zip_write.h"
 
 #include "core/base/status.h"
@@ -6,21 +8,21 @@
 #include <assert.h>
 #include <string.h>
 
-/* Sizes of the fixed records, and where in an entry's header its sums are. */
+/* Sizes of the fixed records, and the place of the sums in an entry's header. */
 enum { LOCAL = 30, CENTRAL = 46, END = 22, END64 = 56, LOCATOR = 20, EXTRA = 20, SUMS_AT = 14 };
 
-/* A version of 4.5 knows sizes of 64 bits. All entries are of the first moment there is: two
- * runs write the same bytes. */
+/* Fields of the headers. Version 4.5 allows sizes of 64 bits. All entries have the earliest
+ * possible time, so that two runs write the same bytes. */
 enum { VERSION = 20, VERSION64 = 45, DEFLATED = 8, TIME = 0, DAY = 1 << 5 | 1 };
 
-static const uint32_t FULL = UINT32_MAX; /* the true number stands in a field of 64 bits */
+static const uint32_t FULL = UINT32_MAX; /* the true number is in a field of 64 bits */
 
 static uint32_t clip_to_32_bits(uint64_t number)
 {
     return number < FULL ? (uint32_t)number : FULL;
 }
 
-/* The sizes of an entry with 64 bits each, and where it starts if that is asked. */
+/* Writes the sizes of an entry in 64 bits each, and its start if that is not NULL. */
 static unsigned char *put_extra(unsigned char *to, uint64_t size, uint64_t packed,
                                 const uint64_t *start)
 {
@@ -31,7 +33,7 @@ static unsigned char *put_extra(unsigned char *to, uint64_t size, uint64_t packe
     return start ? cwi_put_u64(to, *start) : to;
 }
 
-/* What both headers of an entry say. */
+/* Writes the common part of both headers of an entry. */
 static unsigned char *put_common(unsigned char *to, const cwi_zip_entry *e, bool wide)
 {
     to = cwi_put_u16(to, wide ? VERSION64 : VERSION);
@@ -45,7 +47,7 @@ static unsigned char *put_common(unsigned char *to, const cwi_zip_entry *e, bool
     return cwi_put_u16(to, (uint16_t)strlen(e->name));
 }
 
-/* In front of the entry: once without sums, and again over it when they are known. */
+/* Writes the header before the entry: first without sums, and again when they are known. */
 static unsigned char *put_local(unsigned char *to, const cwi_zip_entry *e)
 {
     to = cwi_put_u32(to, 0x04034b50);
@@ -73,7 +75,7 @@ static unsigned char *put_central(unsigned char *to, const cwi_zip_entry *e)
     return wide ? put_extra(to, e->size, e->packed, &e->start) : to;
 }
 
-/* The directory's place, in 64 bits and where to find that. */
+/* Writes the directory's place in 64 bits, and a locator for it. */
 static unsigned char *put_end64(unsigned char *to, size_t count, uint64_t start, uint64_t size)
 {
     to = cwi_put_u32(to, 0x06064b50);

@@ -1,5 +1,5 @@
-/* A zip archive, written as a stream: each entry is deflated on its way, and the sizes in front
- * of it are filled in behind it. */
+/* Writing of zip archives as a stream. Each entry is deflated on its way; the sizes before it
+ * are filled in afterwards. */
 #ifndef FORMATS_BYTES_ZIP_WRITE_H
 #define FORMATS_BYTES_ZIP_WRITE_H
 
@@ -14,25 +14,25 @@ typedef struct cwi_zip_entry {
     uint64_t start, packed, size;
 } cwi_zip_entry;
 
-/* A zeroed one is closed. */
+/* An archive being written. A zeroed one is closed. */
 typedef struct cwi_zip {
     cwi_outfile *file; /* borrowed */
-    cwi_sink sink;     /* of the entry under way */
+    cwi_sink sink;     /* of the current entry */
     cwi_zip_entry entries[CWI_ZIP_ENTRIES];
     size_t count;
 } cwi_zip;
 
-/* Starts an entry. huge: it may have 4 GiB or more; some readers know no such entries.
+/* Starts an entry. huge: it may reach 4 GiB or more; some readers do not support such entries.
  * Returns CW_ERR_NO_MEMORY, CW_ERR_OUTPUT */
 CW_NODISCARD cw_status cwi_zip_begin(cwi_zip *z, const char *name, bool huge, cw_error *err);
 
-/* Bytes of the entry; z is a cwi_zip. */
+/* Adds bytes to the entry; z is a cwi_zip. */
 CW_NODISCARD cw_status cwi_zip_put(void *z, const void *bytes, size_t size, cw_error *err);
 
-/* Ends it. CW_ERR_LIMIT when it has 4 GiB and is not huge; CW_ERR_OUTPUT */
+/* Ends the entry. Returns CW_ERR_LIMIT when it has 4 GiB and is not huge; CW_ERR_OUTPUT */
 CW_NODISCARD cw_status cwi_zip_end(cwi_zip *z, cw_error *err);
 
-/* An entry of one text. */
+/* Writes an entry of one text. */
 CW_NODISCARD cw_status cwi_zip_text(cwi_zip *z, const char *name, const char *text,
                                     cw_error *err);
 

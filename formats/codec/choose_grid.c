@@ -1,4 +1,4 @@
-/* How fine a grid has to be: for the tolerance, and so that the shape stays. */
+/* Chooses the coarsest quantization grid that keeps the tolerance and the shape. */
 #include "formats/codec/quantization_grid.h"
 
 #include "core/base/status.h"
@@ -6,7 +6,8 @@
 #include <math.h>
 
 enum { SHORT_BITS = 16, EXPONENTIAL_BITS = 24 };
-static const double DIAGONALS = 20000; /* that the default tolerance goes into */
+static const double DIAGONALS = 20000; /* the default tolerance is the diagonal divided by
+                                          this */
 
 static const struct {
     const char *name;
@@ -57,15 +58,15 @@ static cw_status fail_shape(const cwi_quantization_grid *grid, const cwi_grid_ha
         grid->bits < CWI_MOST_GRID_BITS ? "; meshopt has up to 24, Draco up to 30" : "");
 }
 
-/* Beyond integers of 16 bits, meshopt's exponential filter makes multiples of a power
- * of two. */
+/* Divides the grid. Beyond integers of 16 bits, meshopt's exponential filter makes multiples of
+ * a power of two. */
 static void lay_grid(cwi_quantization_grid *grid, cw_compression kind, int bits)
 {
     cwi_grid_refine(grid, bits, kind == CW_COMPRESS_MESHOPT && bits > SHORT_BITS);
     grid->single = kind == CW_COMPRESS_DRACO;
 }
 
-/* The most that a vertex is moved: from where it was to where a decoder puts it. */
+/* Measures the largest move of a vertex: from its place to where a decoder puts it. */
 static double measure_error(const cwi_quantization_grid *grid, const cwi_parts *parts)
 {
     double worst = 0;
@@ -85,7 +86,7 @@ static double measure_error(const cwi_quantization_grid *grid, const cwi_parts *
     return sqrt(worst);
 }
 
-/* The coarsest grid that keeps tolerance and shape; *found is false when none does. */
+/* Finds the coarsest grid that keeps tolerance and shape; *found is false when none does. */
 static cw_status find_grid(cwi_quantization_grid *grid, const cwi_parts *parts,
                            cw_compression kind, double tolerance, bool *found,
                            cwi_grid_harm *harm, cw_error *err)
@@ -122,7 +123,7 @@ cw_status cwi_grid_choose(cwi_quantization_grid *grid, const cwi_parts *parts,
         st = find_grid(grid, parts, desc->compression, tolerance, &found, &harm, err);
     }
     if (st == CW_OK && !found && desc->compression == CW_COMPRESS_MESHOPT)
-        grid->bits = 0; /* then positions stay as they are */
+        grid->bits = 0; /* positions then stay unchanged */
     else if (st == CW_OK && !found)
         return fail_shape(grid, &harm, tolerance, err);
     if (st == CW_OK && found) {

@@ -1,4 +1,4 @@
-/* Loads the modules that compress, and frees what they decode. */
+/* Loads the modules that compress (draco, meshopt), and frees their decoded arrays. */
 #include "core/base/memory.h"
 #include "core/base/module.h"
 #include "formats/codec/draco_wrap.h"

@@ -1,3 +1,4 @@
+/* Encodes a mesh by Draco, decodes it again, and verifies the result. */
 #include "formats/codec/draco_pack.h"
 
 #include "core/base/clock.h"

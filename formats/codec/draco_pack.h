@@ -1,10 +1,10 @@
-/* A mesh as Draco's bytes, decoded again and held against what it was made of. */
+/* Encoding of a mesh by Draco, verified by decoding it again. */
 #ifndef FORMATS_CODEC_DRACO_PACK_H
 #define FORMATS_CODEC_DRACO_PACK_H
 
 #include "formats/codec/draco_wrap.h"
 
-/* What came out. Free it with cwi_draco_packed_free(). */
+/* The encoded and the decoded mesh. Free it with cwi_draco_packed_free(). */
 typedef struct cwi_draco_packed {
     unsigned char *bytes;
     size_t size;
@@ -16,7 +16,7 @@ typedef struct cwi_draco_packed {
  * colors   vertex_count x 4, in place of the mesh's; NULL: none
  * comment  of the file; NULL: none
  * desc     for its level
- * told     the seconds it took are added, and the normals' error goes up to what it was
+ * told     adds the seconds used, and raises the normals' error to the maximum
  * Returns  CW_ERR_CHECK when the decoded mesh is not the one that was encoded; CW_ERR_BACKEND;
  *          CW_ERR_UNSUPPORTED; CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cwi_draco_pack(const cw_mesh *mesh, const uint8_t *colors,
@@ -25,10 +25,10 @@ CW_NODISCARD cw_status cwi_draco_pack(const cw_mesh *mesh, const uint8_t *colors
                                       cw_compressed *told, cw_error *err);
 void cwi_draco_packed_free(cwi_draco_packed *packed);
 
-/* Triangles that name a vertex twice: Draco has no form for them. */
+/* Counts triangles that name a vertex twice: Draco cannot store them. */
 size_t cwi_draco_count_degenerate(const cw_mesh *mesh);
 
-/* Leaves them out of a mesh whose triangles are its own; no edge opens where they go. */
+/* Leaves such triangles out of a mesh that owns its triangles; no edge becomes open. */
 void cwi_draco_drop_degenerate(cw_mesh *mesh);
 
 #endif

@@ -1,4 +1,4 @@
-// The only file that knows Draco.
+// Wraps Draco's encoder and decoder; this is the only file that uses Draco.
 #include "formats/codec/draco_wrap.h"
 
 #include "core/base/guard.hpp"
@@ -17,12 +17,12 @@
 namespace
 {
 
-// What Draco takes for itself at most.
+// The maximum memory that Draco allocates by itself, per triangle.
 enum { TRIANGLE_BYTES = 100 };
 
 enum { COLOR_BITS = 8 };
 
-// The name under which a comment stands among the metadata.
+// The key of a comment in the metadata.
 const char COMMENT[] = "cubewright";
 
 cw_status fail_draco(cw_error *err, cw_status status, const char *what,
@@ -33,7 +33,7 @@ cw_status fail_draco(cw_error *err, cw_status status, const char *what,
 
 // --- encoding ------------------------------------------------------------------------------
 
-// One value for each point, in their order.
+// Adds an attribute with one value per point, in their order.
 int add_attribute(draco::Mesh &mesh, draco::GeometryAttribute::Type type, draco::DataType kind,
                   int numbers, bool normalized, const void *values, size_t count)
 {
@@ -58,8 +58,7 @@ void add_faces(draco::Mesh &mesh, const cwi_arrays &from)
     }
 }
 
-// All digits of a number, whatever the locale's decimal point: as an integer times a power of
-// two.
+// Prints all digits of a number in any locale: as an integer times a power of two.
 std::string print_exactly(float value)
 {
     int exponent;
@@ -70,8 +69,8 @@ std::string print_exactly(float value)
     return text;
 }
 
-// Draco's own SetAttributeExplicitQuantization() passes the grid on as text of six decimals, so
-// that the encoder would round to another grid than ours.
+// Builds the options of the grid. Draco's own SetAttributeExplicitQuantization() passes it on
+// as text of six decimals, so the encoder would round to a different grid.
 draco::Options position_options(const cwi_quantization_grid &grid)
 {
     draco::Options options;
@@ -147,7 +146,7 @@ const draco::PointAttribute *find(const draco::Mesh &mesh, int id, int numbers)
     return found && found->num_components() >= numbers ? found : nullptr;
 }
 
-// The first of a kind, where nobody else names it.
+// Finds the first attribute of a kind, where the caller names none.
 int find_first(const draco::Mesh &mesh, draco::GeometryAttribute::Type type, int numbers)
 {
     const draco::PointAttribute *found = mesh.GetNamedAttribute(type);
@@ -163,7 +162,7 @@ cwi_draco_ids find_all(const draco::Mesh &mesh)
             find_first(mesh, draco::GeometryAttribute::COLOR, 3)};
 }
 
-// False where a point has no value.
+// Copies triples; returns false where a point has no value.
 template <typename T> bool copy_triples(const draco::PointAttribute &from, size_t count, T *to)
 {
     for (size_t i = 0; i < count; i++) {
@@ -174,7 +173,7 @@ template <typename T> bool copy_triples(const draco::PointAttribute &from, size_
     return true;
 }
 
-// Whether positions that were not made floats again count on this grid.
+// Returns true if integer positions are on this grid.
 bool is_on_grid(const draco::PointAttribute &positions, const cwi_quantization_grid &grid)
 {
     draco::AttributeQuantizationTransform is;
@@ -183,7 +182,7 @@ bool is_on_grid(const draco::PointAttribute &positions, const cwi_quantization_g
            is.min_value(1) == grid.origin[1] && is.min_value(2) == grid.origin[2];
 }
 
-// As shares of the largest, be they numbers or floats.
+// Copies colours as fractions of the maximum, from integers or floats.
 bool copy_colors(const draco::PointAttribute &from, size_t count, uint8_t *to)
 {
     const bool real = from.data_type() == draco::DT_FLOAT32;
@@ -206,7 +205,7 @@ bool copy_colors(const draco::PointAttribute &from, size_t count, uint8_t *to)
     return true;
 }
 
-// Draco 1.5.5 was seen to call meshes good that name points they do not have.
+// Copies the faces. Draco 1.5.5 was seen to accept meshes that name points they do not have.
 bool copy_faces(const draco::Mesh &mesh, uint32_t *to)
 {
     for (uint32_t t = 0; t < mesh.num_faces(); t++)

@@ -1,4 +1,4 @@
-/* Draco behind plain C: the functions of the module "draco". */
+/* The interface of the module "draco": plain C functions around Draco. */
 #ifndef FORMATS_CODEC_DRACO_WRAP_H
 #define FORMATS_CODEC_DRACO_WRAP_H
 
@@ -10,21 +10,21 @@ extern "C" {
 
 enum { CWI_DRACO_COMMENT = 256 };
 
-/* The arrays of one mesh; those that are not there are NULL. A zeroed one is empty. */
+/* The arrays of one mesh; missing ones are NULL. A zeroed one is empty. */
 typedef struct cwi_arrays {
     size_t vertex_count, triangle_count;
     float *positions;                /* vertex_count x 3 */
-    uint32_t *places;                /* vertex_count x 3: positions counted on a grid */
+    uint32_t *places;                /* vertex_count x 3: positions as places on a grid */
     float *normals;                  /* vertex_count x 3 */
     uint8_t *colors;                 /* vertex_count x 4, linear */
     uint32_t *triangles;             /* triangle_count x 3 */
-    char comment[CWI_DRACO_COMMENT]; /* that our own writer left; empty: none */
+    char comment[CWI_DRACO_COMMENT]; /* left by our own writer; empty: none */
 } cwi_arrays;
 
-/* Frees with cwi_free() what a decoder has made. */
+/* Frees the arrays that a decoder has made, with cwi_free(). */
 void cwi_arrays_free(cwi_arrays *arrays);
 
-/* Draco's numbers for attributes; -1: not there. */
+/* Draco's numbers of attributes; -1: missing. */
 typedef struct cwi_draco_ids {
     int position, normal, color;
 } cwi_draco_ids;
@@ -42,14 +42,14 @@ typedef struct cwi_draco_functions {
                         unsigned char **bytes, size_t *size, cwi_draco_ids *ids, cw_error *err);
 
     /* Decodes the attributes that ids name; NULL: the first of each kind. Indices are below the
-     * vertex count, whatever the bytes: more than most vertices or triangles are CW_ERR_LIMIT,
-     * damage is CW_ERR_FORMAT. grid  NULL: positions are floats. Otherwise they stay places on
-     * this grid, on which they were encoded; CW_ERR_CHECK: it was another one. */
+     * vertex count for any input. More than `most` vertices or triangles are CW_ERR_LIMIT,
+     * damage is CW_ERR_FORMAT. grid: NULL gives positions as floats. Otherwise they stay places
+     * on this grid, on which they were encoded; CW_ERR_CHECK: it was another grid. */
     cw_status (*decode)(const void *bytes, size_t size, const cwi_draco_ids *ids, size_t most,
                         const cwi_quantization_grid *grid, cwi_arrays *arrays, cw_error *err);
 } cwi_draco_functions;
 
-/* Loads the module. CW_ERR_UNSUPPORTED: not in this build. */
+/* Loads the module. Returns CW_ERR_UNSUPPORTED if it is not in this build. */
 CW_NODISCARD cw_status cwi_draco_functions_load(const cwi_draco_functions **functions,
                                                 cw_error *err);
 

@@ -1,5 +1,5 @@
-/* The only file that knows meshoptimizer. Of its formats those are written that
- * EXT_meshopt_compression names: indices of version 1, vertices of version 0. */
+/* Wraps meshoptimizer; this is the only file that uses it. It writes the formats of
+ * EXT_meshopt_compression: indices of version 1, vertices of version 0. */
 #include "formats/codec/meshopt_wrap.h"
 
 #include "core/base/memory.h"
@@ -26,7 +26,7 @@ static cw_status reorder_mesh(uint32_t *triangles, size_t triangle_count, size_t
         meshopt_optimizeVertexCacheStrip(ordered, triangles, count, vertex_count);
     size_t next = meshopt_optimizeVertexFetchRemap(remap, ordered, count, vertex_count);
     for (size_t v = 0; v < vertex_count; v++)
-        if (remap[v] == ~0u) /* no triangle names it: last */
+        if (remap[v] == ~0u) /* no triangle names it: it comes last */
             remap[v] = (uint32_t)next++;
     for (size_t i = 0; i < count; i++)
         triangles[i] = remap[ordered[i]];
@@ -34,7 +34,7 @@ static cw_status reorder_mesh(uint32_t *triangles, size_t triangle_count, size_t
     return CW_OK;
 }
 
-/* Gives back what a bound on the size was too large for. */
+/* Gives back the unused part of a buffer that was allocated by an upper bound. */
 static cw_status shrink_bytes(unsigned char **bytes, size_t size, cw_error *err)
 {
     unsigned char *fit = cwi_realloc_array(*bytes, size, 1);
@@ -109,7 +109,7 @@ static void undo_filter(void *vertices, size_t count, size_t stride, int kind)
 
 static size_t simplify_mesh(const cw_mesh *mesh, size_t triangles, uint32_t *left)
 {
-    const float no_limit = 1e10f; /* of its error */
+    const float no_limit = 1e10f; /* of the error */
     return meshopt_simplify(left, mesh->triangles, 3 * mesh->triangle_count, mesh->positions,
                             mesh->vertex_count, 3 * sizeof(float), 3 * triangles, no_limit, 0,
                             NULL) /

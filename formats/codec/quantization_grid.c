@@ -1,3 +1,5 @@
+/* Builds quantization grids, and counts the vertices and triangles that rounding to them merges
+ * or flattens. */
 #include "formats/codec/quantization_grid.h"
 
 #include "core/base/memory.h"
@@ -29,8 +31,8 @@ cwi_quantization_grid cwi_grid_around(const cwi_parts *parts)
     return grid;
 }
 
-/* The box ends between multiples of the step, and range is rounded itself: that takes up to
- * three places. */
+/* Divides the box by a dyadic step. The box ends between multiples of the step, and range is
+ * itself rounded; that takes up to three places. */
 static void lay_dyadic(cwi_quantization_grid *grid)
 {
     frexp((double)grid->range / (double)((1u << grid->bits) - 4), &grid->exponent);
@@ -58,8 +60,8 @@ double cwi_grid_error(const cwi_quantization_grid *grid)
 
 /* --- harm --------------------------------------------------------------------------------- */
 
-/* Places, and where they are found again; places of exact grids are below 2^24 and serve as
- * both. */
+/* Rounds points to places, and to the decoded positions. Places of exact grids are below 2^24
+ * and serve as both. */
 static void round_points(const cwi_quantization_grid *grid, const cw_mesh *mesh,
                          uint32_t *places, float *found)
 {
@@ -70,7 +72,8 @@ static void round_points(const cwi_quantization_grid *grid, const cw_mesh *mesh,
     }
 }
 
-/* Whether two corners' differences from the third are not parallel: exact, below 2^62. */
+/* Returns true if two corners' differences from the third are not parallel: exact, below
+ * 2^62. */
 static bool spans_places(const uint32_t *points, const uint32_t *t)
 {
     const uint32_t *p = points + 3 * (size_t)t[0], *q = points + 3 * (size_t)t[1],

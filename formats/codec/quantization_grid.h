@@ -1,5 +1,5 @@
-/* The grid that the positions of a file are rounded to, one for all its parts so that they meet
- * where they met before. */
+/* The grid to which the positions of a file are rounded. All parts share one grid, so that they
+ * still meet where they met before. */
 #ifndef FORMATS_CODEC_QUANTIZATION_GRID_H
 #define FORMATS_CODEC_QUANTIZATION_GRID_H
 
@@ -11,36 +11,37 @@ extern "C" {
 
 enum { CWI_MOST_GRID_BITS = 30 };
 
-/* Positions are origin + n * step, n from 0 to 2^bits - 1, along each axis. The step is
- * range / (2^bits - 1); or it is dyadic: a power of two, of which the origin is a multiple. */
+/* A grid. Positions are origin + n * step, n from 0 to 2^bits - 1, along each axis. The step is
+ * range / (2^bits - 1); or it is dyadic: a power of two, and the origin is a multiple of it. */
 typedef struct cwi_quantization_grid {
     float low[3]; /* of the box */
     float origin[3];
     float range; /* the longest edge of the box */
     int bits;
     bool dyadic;
-    bool single;  /* a decoder makes floats of the places: cwi_grid_decode() */
+    bool single;  /* decoders compute in single precision: cwi_grid_decode() */
     int exponent; /* of a dyadic step */
     double step;
 } cwi_quantization_grid;
 
-/* What rounding to a grid does to meshes. */
+/* The damage that rounding to a grid does to meshes. */
 typedef struct cwi_grid_harm {
-    size_t merged; /* vertices that fall onto another one, from which they were apart */
+    size_t merged; /* vertices that fall onto another one, different before */
     size_t flat;   /* triangles that had an area and lose it */
 } cwi_grid_harm;
 
-/* The box of the positions (origins left out) of all meshes, as a grid of no bits yet. */
+/* Returns the box of the positions (origins left out) of all meshes, as a grid with no bits
+ * yet. */
 cwi_quantization_grid cwi_grid_around(const cwi_parts *parts);
 
 /* Divides the box again, as finely as the bits allow; dyadic takes 17 to 24 of them. */
 void cwi_grid_refine(cwi_quantization_grid *grid, int bits, bool dyadic);
 
-/* The most that rounding moves a point; the last digits of floats aside. */
+/* Returns the maximum move of a point by rounding, apart from the last digits of floats. */
 double cwi_grid_error(const cwi_quantization_grid *grid);
 
-/* By the arithmetic of glTF's and Draco's encoders. From 24 bits on, rounding can give
- * 2^bits. */
+/* Rounds a coordinate with the arithmetic of glTF's and Draco's encoders. From 24 bits on, the
+ * result can be 2^bits. */
 static inline uint32_t cwi_grid_round_even(const cwi_quantization_grid *grid, float coordinate,
                                            int axis)
 {
@@ -49,8 +50,8 @@ static inline uint32_t cwi_grid_round_even(const cwi_quantization_grid *grid, fl
     return at <= 0 ? 0 : (uint32_t)at;
 }
 
-/* Where a place is found, counted from the parts' origin: by the arithmetic of Draco's decoder,
- * or exactly. */
+/* Returns the decoded position of a place, relative to the parts' origin. It uses the
+ * arithmetic of Draco's decoder, or is exact. */
 static inline double cwi_grid_decode(const cwi_quantization_grid *grid, uint32_t place,
                                      int axis)
 {
@@ -59,7 +60,8 @@ static inline double cwi_grid_decode(const cwi_quantization_grid *grid, uint32_t
                         : (double)grid->origin[axis] + grid->step * place;
 }
 
-/* Single precision has no digit left to round 24 bits with. */
+/* Rounds a coordinate to a dyadic grid, in doubles: single precision has no digit left for 24
+ * bits. */
 static inline uint32_t cwi_grid_round_dyadic(const cwi_quantization_grid *grid,
                                              float coordinate, int axis)
 {
@@ -68,7 +70,7 @@ static inline uint32_t cwi_grid_round_dyadic(const cwi_quantization_grid *grid,
     return at <= 0 ? 0 : at >= most ? (uint32_t)most : (uint32_t)at;
 }
 
-/* The place of a coordinate, counted from 0. */
+/* Returns the place of a coordinate, counted from 0. */
 static inline uint32_t cwi_grid_round(const cwi_quantization_grid *grid, float coordinate,
                                       int axis)
 {
@@ -76,7 +78,7 @@ static inline uint32_t cwi_grid_round(const cwi_quantization_grid *grid, float c
                         : cwi_grid_round_even(grid, coordinate, axis);
 }
 
-/* The same counted from the middle of the places: a signed number of as many bits. */
+/* Returns the place counted from the middle of the places: a signed number of the same bits. */
 static inline int32_t cwi_grid_round_signed(const cwi_quantization_grid *grid, float coordinate,
                                             int axis)
 {
@@ -88,19 +90,20 @@ static inline double cwi_grid_middle(const cwi_quantization_grid *grid, int axis
     return (double)grid->origin[axis] + (double)(1 << (grid->bits - 1)) * grid->step;
 }
 
-/* CW_ERR_ARGUMENT for a compression that there is not, or bits that it has not. */
+/* Returns CW_ERR_ARGUMENT for an unknown compression, or bits that it does not have. */
 CW_NODISCARD cw_status cwi_grid_check_bits(const cw_write_desc *desc, cw_error *err);
 
 /* Lays the coarsest grid around the parts, of one origin, that keeps the tolerance and the
- * shape; or one of the bits that are stated, whatever it does to the shape. grid     bits 0:
- * meshopt has none, positions are to stay as they are told     bits, step, error and harm are
- * filled in Returns  CW_ERR_CHECK when there is none; CW_ERR_LIMIT for a box too large;
+ * shape. With stated bits it lays that grid, whatever the effect on the shape.
+ * grid     bits 0: meshopt has no such grid, positions stay unchanged
+ * told     bits, step, error and harm are filled in
+ * Returns  CW_ERR_CHECK when there is none; CW_ERR_LIMIT for a box too large;
  * CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cwi_grid_choose(cwi_quantization_grid *grid, const cwi_parts *parts,
                                        const cw_write_desc *desc, cw_compressed *told,
                                        cw_error *err);
 
-/* Counts the harm over all meshes together. CW_ERR_NO_MEMORY. */
+/* Counts the harm over all meshes together. Returns CW_ERR_NO_MEMORY. */
 CW_NODISCARD cw_status cwi_grid_measure(const cwi_quantization_grid *grid,
                                         const cwi_parts *parts, cwi_grid_harm *harm,
                                         cw_error *err);

@@ -1,3 +1,5 @@
+/* Compares a decoded mesh with the original by order-independent sums of triangle hashes
+ * [Steele2014]. */
 #include "formats/codec/verify_decoded.h"
 
 #include "core/base/memory.h"
@@ -10,12 +12,12 @@
 
 static const double DEGREES = 180 / 3.14159265358979323846;
 
-/* Sums over triangles, the same in any order of them. */
+/* Sums over triangles, independent of their order. */
 typedef struct sums {
     uint64_t a, b;
 } sums;
 
-/* [Steele2014] A hash of one number. */
+/* Hashes one number [Steele2014]. */
 static uint64_t mix_bits(uint64_t x)
 {
     x += 0x9e3779b97f4a7c15u;
@@ -24,8 +26,8 @@ static uint64_t mix_bits(uint64_t x)
     return x ^ x >> 31;
 }
 
-/* Corners by the first vertex at their place, the lowest of them first: turning a triangle
- * changes nothing, turning it over does, unless two of its corners are one. */
+/* Hashes a triangle. Corners are the first vertices at their places, the lowest of them first.
+ * Turning a triangle changes nothing; reversing it does, unless two of its corners are one. */
 static uint64_t hash_triangle(const uint32_t *triangle, const uint32_t *map)
 {
     uint64_t c[3];
@@ -48,8 +50,8 @@ static sums sum_triangles(const uint32_t *triangles, size_t count, const uint32_
     return s;
 }
 
-/* Places of the mesh, and behind them those of the decoded one: as bits of floats, for below
- * 2^30 they are finite. */
+/* Stores the places of the mesh, and after them those of the decoded one, as bits of floats:
+ * below 2^30 they are finite. */
 static void put_places(const cw_mesh *mesh, const cwi_quantization_grid *grid,
                        const cwi_decoded *d, float *places)
 {
@@ -70,8 +72,8 @@ static double angle_between(const float *a, const float *b)
     return atan2(sqrt(cwi_dot(w, w)), cwi_dot(u, v)) * DEGREES;
 }
 
-/* Marks places that several vertices of the mesh are at: which of them a decoded one was, is
- * not to be told. */
+/* Marks places with several vertices of the mesh. There a decoded vertex cannot be assigned to
+ * one of them. */
 static void mark_shared(const uint32_t *map, size_t count, bool *shared)
 {
     for (size_t v = 0; v < count; v++)

@@ -1,4 +1,4 @@
-/* The order of triangles and vertices, as meshoptimizer would have it. */
+/* Reorders triangles and vertices of a mesh for the vertex cache, by meshoptimizer. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/codec/meshopt_wrap.h"

@@ -1,6 +1,6 @@
-/* What a DICOM file says of itself: the facts that the module "dicom" (DCMTK, in a process of
- * its own) puts into the shared memory. Nothing in here has been checked, and nothing of it is
- * a patient's: neither name nor number nor date is ever taken out of a file. */
+/* Facts of a DICOM file, which the module "dicom" (DCMTK, in a sandboxed process) puts into the
+ * shared memory. Nothing in here has been checked. Nothing identifies a patient: neither name
+ * nor number nor date is ever taken out of a file. */
 #ifndef FORMATS_DICOM_DICOM_H
 #define FORMATS_DICOM_DICOM_H
 
@@ -10,7 +10,7 @@
 extern "C" {
 #endif
 
-/* What may tell frames at one place apart, the surest first. */
+/* Attributes that may distinguish frames at one place, the most reliable first. */
 enum {
     CWI_DICOM_TEMPORAL,  /* TemporalPositionIdentifier, TemporalPositionIndex */
     CWI_DICOM_REFERENCE, /* FrameReferenceTime */
@@ -34,39 +34,40 @@ typedef struct cwi_dicom_frame {
     double spacing[2];  /* mm between columns, between rows */
     double between;     /* SpacingBetweenSlices, else SliceThickness */
     double slope, intercept;
-    double keys[CWI_DICOM_KEYS]; /* NaN: not said */
+    double keys[CWI_DICOM_KEYS]; /* NaN: not stated */
     uint32_t has;                /* cwi_dicom_has */
-    uint32_t segment;            /* of a segmentation: its number */
+    uint32_t segment;            /* of a segmentation: the segment's number */
 } cwi_dicom_frame;
 
 typedef enum cwi_dicom_kind {
     CWI_DICOM_NO_IMAGE, /* a directory, a report, ... */
     CWI_DICOM_IMAGE,
-    CWI_DICOM_SEGMENTATION, /* a frame holds the pixels of one segment, yes or no */
+    CWI_DICOM_SEGMENTATION, /* a frame holds the mask of one segment */
     CWI_DICOM_LABELMAP      /* a pixel is the number of a segment */
 } cwi_dicom_kind;
 
 typedef struct cwi_dicom_facts {
     cwi_dicom_kind kind;
     char series[72], instance[72], modality[20];
-    char refusal[160];               /* why its pixels are not read; empty: they are */
+    char refusal[160];               /* the reason why its pixels are not read; empty: they
+                                        are */
     int64_t number, instance_number; /* SeriesNumber; INT64_MIN: none */
     uint32_t columns, rows, samples, frame_count;
-    cw_type type;         /* of the pixels that are given out */
-    uint64_t pixel_bytes; /* of pixels as they are stored; 0: compressed */
-    bool deflated;        /* the file as a whole */
+    cw_type type;         /* of the returned pixels */
+    uint64_t pixel_bytes; /* of the stored pixels; 0: compressed */
+    bool deflated;        /* the whole file is deflated */
     bool has_padding;
     double padding[2];
 } cwi_dicom_facts; /* frame_count frames follow */
 
-/* What an image within DICOM must be. */
+/* The size that an image within DICOM must have. */
 typedef struct cwi_dicom_image {
     uint32_t columns, rows, samples;
     cw_type type;
 } cwi_dicom_image;
 
-/* JPEG 2000: the pixels of one image, interleaved, as numbers of the type.
- * Returns CW_ERR_FORMAT for one that is damaged or not of that size, CW_ERR_UNSUPPORTED,
+/* Decodes JPEG 2000: the pixels of one image, interleaved, as numbers of the type.
+ * Returns CW_ERR_FORMAT for one that is damaged or has another size, CW_ERR_UNSUPPORTED,
  * CW_ERR_NO_MEMORY. */
 CW_NODISCARD cw_status cwi_dicom_jpeg2000(const void *data, size_t size,
                                           const cwi_dicom_image *image, void *pixels,

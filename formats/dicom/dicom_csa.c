@@ -1,3 +1,4 @@
+/* Reads numbers from the CSA header of Siemens scanners. */
 #include "formats/dicom/dicom_csa.h"
 
 #include "core/base/text.h"
@@ -5,8 +6,9 @@
 #include <stdint.h>
 #include <string.h>
 
-/* A tag: a name of 64 bytes, three numbers (how many values, their kind, its number), how many
- * items follow, and a mark. An item: four numbers that tell its length, then a text. */
+/* Sizes in the header. A tag is a name of 64 bytes, three numbers (count of values, their kind,
+ * its number), the count of items that follow, and a mark. An item is four numbers with its
+ * length, then a text. */
 enum { TAG_BYTES = 84, TAG_ITEMS = 76, ITEM_BYTES = 16, NAME_BYTES = 64, MOST_TAGS = 1000 };
 
 typedef struct reader {
@@ -27,7 +29,8 @@ static bool has_bytes(const reader *r, size_t count)
     return r->at <= r->size && count <= r->size - r->at;
 }
 
-/* Goes to the text of the next item and sets its length; false where the header is damaged. */
+/* Goes to the text of the next item and sets its length; returns false where the header is
+ * damaged. */
 static bool next_item(reader *r, size_t *length)
 {
     if (!has_bytes(r, ITEM_BYTES))
@@ -49,7 +52,7 @@ static bool parse_item(const reader *r, size_t length, double *number)
     return cwi_parse_double(&from, number);
 }
 
-/* Passes the items of a tag; the first ones may be wanted. */
+/* Passes the items of a tag; reads the first `wanted` ones. */
 static bool pass_items(reader *r, uint32_t items, int wanted, double *numbers, int *found)
 {
     *found = 0;
@@ -59,7 +62,7 @@ static bool pass_items(reader *r, uint32_t items, int wanted, double *numbers, i
             return false;
         if (*found < wanted && (uint32_t)*found == n && parse_item(r, length, numbers + n))
             ++*found;
-        r->at += (length + 3) / 4 * 4; /* an item begins at a multiple of four */
+        r->at += (length + 3) / 4 * 4; /* items begin at multiples of four */
     }
     return true;
 }

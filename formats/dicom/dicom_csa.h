@@ -1,5 +1,5 @@
-/* The CSA header that Siemens scanners put into a DICOM file: tags with names, whose items are
- * texts. Two versions of it are in use, of which the newer begins with "SV10". */
+/* Reading of the CSA header that Siemens scanners put into a DICOM file. It has named tags,
+ * whose items are texts. Two versions are in use; the newer one begins with "SV10". */
 #ifndef FORMATS_DICOM_DICOM_CSA_H
 #define FORMATS_DICOM_DICOM_CSA_H
 
@@ -10,8 +10,8 @@
 extern "C" {
 #endif
 
-/* The first `count` items of a tag as numbers; false where there are fewer, or where the header
- * is damaged in front of them. */
+/* Reads the first `count` items of a tag as numbers. Returns false where there are fewer, or
+ * where the header is damaged before them. */
 bool cwi_csa_numbers(const unsigned char *header, size_t size, const char *tag, int count,
                      double *numbers);
 

@@ -1,4 +1,4 @@
-// The file that the module "dicom" has open, and what its two halves need to know of it.
+// The open file of the module "dicom", and the state that its two halves share.
 #ifndef FORMATS_DICOM_DICOM_FILE_HPP
 #define FORMATS_DICOM_DICOM_FILE_HPP
 
@@ -13,7 +13,7 @@
 namespace cw
 {
 
-// How pixels are stored: the attributes of the Image Pixel module.
+// The storage of pixels: the attributes of the Image Pixel module.
 struct PixelLayout {
     uint32_t columns = 0, rows = 0, samples = 1, frames = 1;
     unsigned allocated = 0, stored = 0, high = 0;
@@ -25,7 +25,7 @@ struct PixelLayout {
     } // numbers of a frame
 };
 
-// Slices side by side in one image, row by row; without a mosaic it is one by one.
+// A mosaic: slices side by side in one image, row by row; without a mosaic it is one by one.
 struct Mosaic {
     uint32_t across = 1, count = 1;
     double normal[3] = {0, 0, 0}; // from a slice to the next one
@@ -59,10 +59,10 @@ struct DicomFile {
     }
 };
 
-// The text of a value; empty where there is none.
+// Returns the text of a value; empty where there is none.
 OFString text_of(DcmItem *item, const DcmTagKey &tag, unsigned long at = 0);
 
-// A number, whatever its representation; false where there is none, or none that is finite.
+// Reads a number in any representation; returns false where there is none that is finite.
 bool number_of(DcmItem *item, const DcmTagKey &tag, unsigned long at, double *out);
 
 // Decodes a frame into file.pixels: packed, interleaved, of the layout's type.

@@ -1,4 +1,4 @@
-/* DICOM: what is read and written, and by whom. */
+/* The driver of DICOM: its reader and the list of series. */
 #include "formats/driver/format_driver.h"
 
 const cwi_format_driver cwi_format_dicom = {

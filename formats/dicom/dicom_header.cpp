@@ -1,4 +1,4 @@
-// DCMTK behind plain C, the first half: from a file to its facts.
+// Reads the facts of a file by DCMTK, behind plain C: the first half of the module "dicom".
 #include "core/base/guard.hpp"
 #include "core/base/text.h"
 #include "formats/dicom/dicom_csa.h"
@@ -30,7 +30,7 @@ bool number_of(DcmItem *item, const DcmTagKey &tag, unsigned long at, double *ou
     Float64 value = 0;
     if (!item)
         return false;
-    if (item->findAndGetFloat64(tag, value, at).bad()) { // none of the real representations
+    if (item->findAndGetFloat64(tag, value, at).bad()) { // not one of the real representations
         const OFString text = text_of(item, tag, at);
         const char *s = text.c_str();
         if (!cwi_parse_double(&s, &value))
@@ -62,7 +62,7 @@ int64_t integer_of(DcmItem *item, const DcmTagKey &tag)
                                                                       : INT64_MIN;
 }
 
-// 0 where it is stated, and no whole number above 0.
+// Returns the number of frames; 0 where it is stated, but is no whole number above 0.
 uint32_t frames_of(DcmItem *data)
 {
     double value;
@@ -101,7 +101,7 @@ DcmItem *first_item(DcmItem *item, const DcmTagKey &sequence)
     return nullptr;
 }
 
-// DCMTK 3.6.7 does not know the class of label maps.
+// Finds the kind of object. DCMTK 3.6.7 does not know the class of label maps.
 cwi_dicom_kind kind_of(DcmItem *data)
 {
     static const char label_map[] = "1.2.840.10008.5.1.4.1.1.66.7";
@@ -131,7 +131,8 @@ bool layout_type(PixelLayout &l, const char **why)
     return true;
 }
 
-// Colours are taken as they are stored; what is compressed, DCMTK turns into RGB.
+// Checks the colour model. Plain colours are read as stored; DCMTK converts compressed ones to
+// RGB.
 const char *check_colour(DcmItem *data, uint32_t samples, bool compressed)
 {
     const OFString model = text_of(data, DCM_PhotometricInterpretation);
@@ -143,7 +144,8 @@ const char *check_colour(DcmItem *data, uint32_t samples, bool compressed)
                         : "its colours are not stored as RGB";
 }
 
-// The colours of a palette are looks: its indices are the numbers of segments.
+// Checks the pixels of labels. A palette gives display colours: its indices are the numbers of
+// segments.
 const char *check_labels(const PixelLayout &l)
 {
     return l.samples != 1 || l.is_signed || (l.type != CW_U8 && l.type != CW_U16)
@@ -184,7 +186,7 @@ bool is_real(const PixelLayout &l)
     return l.type == CW_F32 || l.type == CW_F64;
 }
 
-// As stored, without a sign: the padding value is one of the pixels.
+// Returns the padding value as stored, without a sign: it is one of the pixel values.
 double padding_of(DcmItem *data, const DcmTagKey &tag, const PixelLayout &l, double otherwise)
 {
     double value;
@@ -228,7 +230,7 @@ void take_keys(DcmItem *item, cwi_dicom_frame *f)
             f->keys[row.key] = value;
 }
 
-// Geometry and scaling, where an item has them.
+// Reads geometry and scaling, where an item has them.
 void take_plane(DcmItem *item, cwi_dicom_frame *f)
 {
     double spacing[2], value;
@@ -237,7 +239,7 @@ void take_plane(DcmItem *item, cwi_dicom_frame *f)
     if (numbers_of(item, DCM_ImageOrientationPatient, 6, &f->axes[0][0]))
         f->has |= CWI_DICOM_ORIENTATION;
     if (numbers_of(item, DCM_PixelSpacing, 2, spacing)) {
-        f->spacing[0] = spacing[1]; // "row spacing" comes first: that between rows
+        f->spacing[0] = spacing[1]; // "row spacing" comes first: the spacing between rows
         f->spacing[1] = spacing[0];
         f->has |= CWI_DICOM_SPACING;
     }
@@ -267,7 +269,7 @@ cwi_dicom_frame plain_frame(DcmItem *data)
     return f;
 }
 
-// The functional groups of a multi-frame object: those of all frames, then those of one.
+// Reads the functional groups of a multi-frame object: those of all frames, then those of one.
 void take_groups(DcmItem *groups, cwi_dicom_frame *f)
 {
     static const DcmTagKey planes[] = {DCM_PixelMeasuresSequence, DCM_PlaneOrientationSequence,
@@ -284,7 +286,7 @@ void take_groups(DcmItem *groups, cwi_dicom_frame *f)
         f->segment = count_of(segment, DCM_ReferencedSegmentNumber, 0);
 }
 
-// Frames at equal distances from the first, or at stated ones, along the normal.
+// Places frames at equal distances from the first, or at stated ones, along the normal.
 void take_offset(DcmItem *data, uint32_t n, cwi_dicom_frame *f)
 {
     const double(&a)[2][3] = f->axes;
@@ -319,7 +321,7 @@ void take_frames(DcmItem *data, cwi_dicom_facts *facts)
 // --- mosaics
 // -----------------------------------------------------------------------------------
 
-// Siemens scanners show the slices of one moment side by side.
+// Returns true for a mosaic: Siemens scanners show the slices of one moment side by side.
 bool is_mosaic(DcmItem *data, const PixelLayout &l)
 {
     for (unsigned long n = 0; n < 16; n++)
@@ -328,7 +330,7 @@ bool is_mosaic(DcmItem *data, const PixelLayout &l)
     return false;
 }
 
-// The element of the private group that a name has reserved; NULL where there is none.
+// Finds the element of a private group that a name has reserved; NULL where there is none.
 const Uint8 *private_bytes(DcmItem *data, Uint16 group, const char *name, Uint16 number,
                            size_t *size)
 {
@@ -346,7 +348,7 @@ const Uint8 *private_bytes(DcmItem *data, Uint16 group, const char *name, Uint16
     return nullptr;
 }
 
-// Reads how many slices there are, and where they go; returns why not.
+// Reads the number and the direction of the slices; returns the error, or NULL.
 const char *read_mosaic(DcmItem *data, const PixelLayout &l, Mosaic &m)
 {
     size_t size = 0;
@@ -368,7 +370,8 @@ const char *read_mosaic(DcmItem *data, const PixelLayout &l, Mosaic &m)
     return nullptr;
 }
 
-// The stated place is that of a slice as large as the mosaic, around the same middle.
+// Computes the place of the first slice. The stated place is that of a slice as large as the
+// mosaic, around the same middle.
 const char *place_slices(const Mosaic &m, cwi_dicom_facts *f)
 {
     cwi_dicom_frame *frames = reinterpret_cast<cwi_dicom_frame *>(f + 1), first = frames[0];
@@ -414,14 +417,14 @@ void unfold(DicomFile &d, cwi_dicom_facts *f)
 // --- the file
 // ----------------------------------------------------------------------------------
 
-// What the file itself says its pixels are stored as.
+// Returns the transfer syntax that the file states for its pixels.
 OFString syntax_of(DicomFile &d)
 {
     const OFString text = text_of(d.file->getMetaInfo(), DCM_TransferSyntaxUID);
     return text.substr(0, text.find_first_not_of("0123456789."));
 }
 
-// Refuses by name what DCMTK does not know, or knows but does not decode.
+// Refuses, by name, syntaxes that DCMTK does not know, or knows but does not decode.
 void check_syntax(DicomFile &d, cwi_dicom_facts *f)
 {
     static const struct {
@@ -436,7 +439,7 @@ void check_syntax(DicomFile &d, cwi_dicom_facts *f)
     const OFString uid = syntax_of(d);
     const DcmXfer syntax(uid.c_str());
     const E_TransferSyntax known = syntax.getXfer();
-    if (uid.empty()) // a file without a head says nothing
+    if (uid.empty()) // a file without a meta header states nothing
         return;
     if (known != EXS_Unknown &&
         (!syntax.isEncapsulated() || known == EXS_JPEG2000LosslessOnly ||
@@ -505,7 +508,7 @@ cw_status take_facts(DicomFile &d, cwi_dicom_facts *f, size_t room, cw_error *er
     const cwi_dicom_kind kind = kind_of(data);
     const Stored s = find_pixels(data, d.layout, kind, is_compressed(d));
     if (!s.element)
-        return CW_OK; // no image, and no matter
+        return CW_OK; // no image: ignored
     const char *unreadable = why_unreadable(d);
     if (unreadable)
         refuse(f, unreadable);
@@ -576,8 +579,8 @@ cw_status work(void *state, int fd, const void *request, void *shared, cw_error 
     });
 }
 
-// What DCMTK does once in a process. It reads its dictionary from a file, and would log what it
-// reads.
+// DCMTK's initialisation, once per process. It reads its dictionary from a file, and would log
+// the data that it reads.
 struct Library {
     Library()
     {

@@ -1,4 +1,4 @@
-/* JPEG 2000, which Debian's DCMTK does not decode: by OpenJPEG. */
+/* Decodes JPEG 2000 images in DICOM by OpenJPEG, since Debian's DCMTK does not. */
 #include "core/base/status.h"
 #include "formats/dicom/dicom.h"
 
@@ -67,7 +67,7 @@ static cw_status fail_image(const cwi_dicom_image *m, const char *why, cw_error 
                    m->columns, m->rows, why[0] ? why : "no reason given");
 }
 
-/* The header is held against DICOM's before memory is taken for pixels. */
+/* Checks the header against DICOM's before memory is allocated for pixels. */
 static const char *check_header(const opj_image_t *image, const cwi_dicom_image *m)
 {
     const unsigned bits = 8 * (unsigned)cw_type_size(m->type);

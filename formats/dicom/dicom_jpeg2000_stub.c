@@ -1,3 +1,4 @@
+/* Replaces dicom_jpeg2000.c in builds without OpenJPEG. */
 #include "core/base/status.h"
 #include "formats/dicom/dicom.h"
 

@@ -1,3 +1,4 @@
+/* Walks over the elements of a DICOM file without recursion, to find their depth and number. */
 #include "formats/dicom/dicom_nesting.h"
 
 #include "core/base/status.h"
@@ -10,34 +11,34 @@ enum { WINDOW = 4096, PREAMBLE = 128, MOST_ELEMENTS = 1 << 23 };
 static const uint64_t MOST_INFLATED = (uint64_t)1 << 33;
 static const uint32_t UNDEFINED = 0xffffffff;
 
-/* A sequence or an item that has begun. */
+/* A sequence or an item that was entered. */
 typedef struct level {
-    uint64_t end;  /* UINT64_MAX: where its mark is */
-    bool implicit; /* its elements name no representation */
+    uint64_t end;  /* UINT64_MAX: it ends at a mark */
+    bool implicit; /* its elements state no value representation */
 } level;
 
 typedef struct walk {
     int fd;
     uint64_t size, at;
     unsigned char bytes[WINDOW];
-    uint64_t start; /* of the bytes in the file, or in what it inflates to */
+    uint64_t start; /* of the bytes in the file, or in the inflated data */
     size_t held;
     bool deflated; /* then: */
     z_stream inflater;
     unsigned char packed[WINDOW];
-    uint64_t packed_at; /* behind those, in the file */
+    uint64_t packed_at; /* place in the file of the next compressed bytes */
     bool big_endian;
     level levels[CWI_DICOM_DEEPEST + 1];
-    int depth; /* the last of levels; 0: the file itself */
+    int depth; /* index of the last level; 0: the file itself */
 } walk;
 
 typedef struct element {
     uint32_t tag, length;
     char vr[3];
-    uint64_t value; /* where it is */
+    uint64_t value; /* place of the value */
 } element;
 
-/* Inflates until the bytes are full, or there is no more. */
+/* Inflates until the buffer is full, or the data end. */
 static void inflate_more(walk *w, cw_error *err)
 {
     z_stream *z = &w->inflater;
@@ -57,7 +58,7 @@ static void inflate_more(walk *w, cw_error *err)
     w->held = WINDOW - z->avail_out;
 }
 
-/* As peek(): what lies in front of the bytes is given up. */
+/* Returns bytes as peek_bytes(); the bytes before them are discarded. */
 static const unsigned char *peek_inflated(walk *w, uint64_t at, size_t count, cw_error *err)
 {
     size_t before = SIZE_MAX;
@@ -74,7 +75,7 @@ static const unsigned char *peek_inflated(walk *w, uint64_t at, size_t count, cw
                                                               : NULL;
 }
 
-/* The next bytes; NULL where the file ends first. */
+/* Returns the next bytes; NULL where the file ends first. */
 static const unsigned char *peek_bytes(walk *w, uint64_t at, size_t count, cw_error *err)
 {
     if (w->deflated)
@@ -134,8 +135,8 @@ static bool starts_with_item(walk *w, uint64_t at, cw_error *err)
     return b && read_number(w, b, 2) == 0xfffe && read_number(w, b + 2, 2) == 0xe000;
 }
 
-/* Whether there are elements in it: sequences, items but not those of pixels, and what without
- * a representation looks like a sequence. */
+/* Returns true if an element contains elements: sequences, items other than those of pixels,
+ * and elements without a representation that look like a sequence. */
 static bool is_nest(walk *w, const element *e, bool in_pixels, cw_error *err)
 {
     if (e->tag == 0xfffee000)
@@ -149,7 +150,7 @@ static bool is_nest(walk *w, const element *e, bool in_pixels, cw_error *err)
 
 static cw_status walk_elements(walk *w, cw_error *err)
 {
-    int pixels = 0; /* the depth at which they begin; 0: not in them */
+    int pixels = 0; /* the depth at which pixels begin; 0: not inside them */
     element e;
     for (int count = 0;; count++) {
         if (count == MOST_ELEMENTS)
@@ -175,7 +176,7 @@ static cw_status walk_elements(walk *w, cw_error *err)
             return cw_fail(err, CW_ERR_FORMAT,
                            "sequences are nested deeper than %d at byte %llu",
                            CWI_DICOM_DEEPEST, (unsigned long long)e.value);
-        const bool unknown = strcmp(e.vr, "UN") == 0; /* those are implicit inside */
+        const bool unknown = strcmp(e.vr, "UN") == 0; /* their content is implicit */
         w->levels[++w->depth] =
             (level){.end = e.length == UNDEFINED ? UINT64_MAX : e.value + e.length,
                     .implicit = here->implicit || unknown};
@@ -184,7 +185,7 @@ static cw_status walk_elements(walk *w, cw_error *err)
     }
 }
 
-/* Goes on with what the bytes from here on inflate to; false: no memory. */
+/* Continues with the inflated bytes from here on; returns false without memory. */
 static bool begin_inflating(walk *w)
 {
     w->packed_at = w->at;
@@ -193,7 +194,8 @@ static bool begin_inflating(walk *w)
     return w->deflated;
 }
 
-/* Reads the meta header, for the syntax of what follows; false: not to be walked over. */
+/* Reads the meta header, for the syntax of the rest; returns false if the rest cannot be walked
+ * over. */
 static bool read_meta(walk *w, cw_error *err)
 {
     static const char implicit[] = "1.2.840.10008.1.2", big[] = "1.2.840.10008.1.2.2",
@@ -203,7 +205,7 @@ static bool read_meta(walk *w, cw_error *err)
     element e;
     w->at = b && memcmp(b, "DICM", 4) == 0 ? PREAMBLE + 4 : 0;
     b = peek_bytes(w, w->at, 6, err);
-    if (w->at == 0 && b && b[0] != 2) { /* the bare elements, as a rule implicit */
+    if (w->at == 0 && b && b[0] != 2) { /* no meta header; elements are usually implicit */
         w->levels[0].implicit = !(b[4] >= 'A' && b[5] >= 'A');
         return true;
     }

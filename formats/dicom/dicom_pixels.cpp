@@ -1,4 +1,5 @@
-// DCMTK behind plain C, the second half: from a frame to its pixels.
+// Decodes the pixels of a frame by DCMTK, behind plain C: the second half of the module
+// "dicom".
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/dicom/dicom_file.hpp"
@@ -13,8 +14,8 @@ using namespace cw;
 namespace
 {
 
-// Moves the bits that are stored to the bottom, and a sign to the top; what is above them, as
-// old overlays are, is no part of a pixel.
+// Moves the stored bits to the bottom, and extends the sign. The bits above them, such as old
+// overlays, are no part of a pixel.
 template <typename Unsigned, typename Signed>
 void mend_bits(const PixelLayout &l, void *pixels, size_t count)
 {
@@ -59,7 +60,7 @@ cw_status fail_short(uint32_t frame, cw_error *err)
     return fail_frame(frame, "'PixelData' ends before it", err);
 }
 
-// One bit a pixel, from a place among the bits on.
+// Unpacks pixels of one bit each, from a given bit on.
 void spread_bits(DicomFile &d, const Uint8 *bytes, uint64_t first)
 {
     const size_t count = d.layout.count();
@@ -68,7 +69,7 @@ void spread_bits(DicomFile &d, const Uint8 *bytes, uint64_t first)
         d.pixels[i] = bytes[(first + i) / 8] >> ((first + i) % 8) & 1;
 }
 
-// One bit a pixel: frames follow each other without a gap, be it within a byte.
+// Reads pixels of one bit each. Frames follow each other without a gap, even within a byte.
 cw_status read_bits(DicomFile &d, uint32_t frame, cw_error *err)
 {
     const size_t count = d.layout.count();
@@ -98,7 +99,7 @@ DcmPixelData *pixel_data(DicomFile &d)
     return dynamic_cast<DcmPixelData *>(element);
 }
 
-// Adds a fragment of compressed pixels; false where there is none of that number.
+// Adds a fragment of compressed pixels; returns false where none has that number.
 bool add_fragment(DcmPixelSequence *fragments, unsigned long number,
                   std::vector<unsigned char> &bytes)
 {
@@ -110,8 +111,8 @@ bool add_fragment(DcmPixelSequence *fragments, unsigned long number,
     return true;
 }
 
-// A frame has a fragment of its own, or the only frame has all. The first is a table of
-// offsets.
+// Collects the fragments of a frame. Each frame has one fragment, or the only frame has all.
+// The first fragment is a table of offsets.
 cw_status read_fragments(DicomFile &d, uint32_t frame, std::vector<unsigned char> &bytes,
                          cw_error *err)
 {
@@ -132,8 +133,8 @@ cw_status read_fragments(DicomFile &d, uint32_t frame, std::vector<unsigned char
     return CW_OK;
 }
 
-// Runs of bytes (PackBits): n < 128 is followed by n + 1 bytes, n > 128 repeats one 257 - n
-// times. Returns how many bytes there are, at most room.
+// Decodes runs of bytes (PackBits): n < 128 is followed by n + 1 bytes, n > 128 repeats one 257
+// - n times. Returns the number of bytes, at most room.
 size_t unpack_runs(const unsigned char *from, size_t size, unsigned char *to, size_t room)
 {
     size_t at = 0, filled = 0;
@@ -154,8 +155,8 @@ size_t unpack_runs(const unsigned char *from, size_t size, unsigned char *to, si
     return filled;
 }
 
-// Runs of bytes that hold eight pixels each: DCMTK decodes whole bytes alone. The head counts
-// segments and says where each starts; here is but one.
+// Decodes runs of bytes that hold eight pixels each, since DCMTK decodes whole bytes only. The
+// head counts segments and states their starts; here there is only one.
 cw_status read_runs_of_bits(DicomFile &d, uint32_t frame, cw_error *err)
 {
     enum { HEAD = 64 };
@@ -186,7 +187,7 @@ cw_status read_jpeg2000(DicomFile &d, uint32_t frame, cw_error *err)
     return cwi_dicom_jpeg2000(bytes.data(), bytes.size(), &image, d.pixels.data(), err);
 }
 
-// Floats are no "pixel data" to DCMTK.
+// Reads floats, which are no "pixel data" to DCMTK.
 cw_status read_reals(DicomFile &d, uint32_t frame, cw_error *err)
 {
     const PixelLayout &l = d.layout;

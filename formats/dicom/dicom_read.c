@@ -1,3 +1,4 @@
+/* Reads a DICOM series as a volume, and lists the series of a folder. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/bytes/file_pattern.h"
@@ -13,7 +14,7 @@ static cw_status open_library(cwi_planes *planes, const cw_read_desc *desc, cw_e
     return cwi_planes_open(planes, "dicom", "DCMTK", desc, err);
 }
 
-/* The facts of the one file that was named. */
+/* Reads the facts of the one file that was named. */
 static cw_status facts_of_file(const cwi_input *in, cwi_planes *planes, cwi_dicom_facts *f,
                                cw_error *err)
 {
@@ -31,7 +32,7 @@ static cw_status facts_of_file(const cwi_input *in, cwi_planes *planes, cwi_dico
     return CW_OK;
 }
 
-/* All files of a folder, or those beside one file that are of its series. */
+/* Scans all files of a folder, or those beside one file that are of its series. */
 static cw_status scan_files(const cwi_input *in, cwi_names *names, cwi_planes *planes,
                             cwi_dicom_scan *found, cw_error *err)
 {
@@ -48,7 +49,8 @@ static cw_status scan_files(const cwi_input *in, cwi_names *names, cwi_planes *p
     return st;
 }
 
-/* Of a folder all of it counts, of a file's neighbours what may have been meant. */
+/* Notes the findings. In a folder all files count; beside a named file only probable members
+ * do. */
 static void note_scan(const cw_read_desc *desc, const cwi_dicom_scan *found, bool folder)
 {
     cwi_note_links(desc, found->links);
@@ -85,7 +87,7 @@ cw_status cwi_dicom_read(const cwi_input *in, cwi_names *names, const cw_read_de
         st = cwi_check_frame(&stack.shape, "ImagePositionPatient", err);
     if (st == CW_OK) {
         cwi_set_spacing(&stack.shape, desc);
-        stack.files = found.files; /* lent */
+        stack.files = found.files; /* borrowed */
         st = cwi_stack_load(&stack, in, &planes, desc, volume, err);
         stack.files = (cwi_names){0};
     }
@@ -113,7 +115,7 @@ static void describe_series(cwi_dicom_scan *found, size_t n, const cw_read_desc 
     s->tilt_degrees = findings.tilt_degrees;
     snprintf(s->finding, sizeof s->finding, "%s",
              s->status == CW_OK ? findings.gaps : err.message);
-    if (s->status != CW_OK) { /* what is known all the same */
+    if (s->status != CW_OK) { /* the facts that are known anyway */
         s->shape.type = from->sample->file->type;
         s->shape.dim[0] = from->sample->file->columns;
         s->shape.dim[1] = from->sample->file->rows;

@@ -1,3 +1,4 @@
+/* Scans DICOM files for their facts, checks these, and sorts the images into series. */
 #include "formats/dicom/dicom_series.h"
 
 #include "core/base/memory.h"
@@ -18,8 +19,9 @@ static bool is_capital(unsigned char c)
     return c >= 'A' && c <= 'Z';
 }
 
-/* Passes an element of a few bytes in little-endian order; false where its tag does not come
- * behind *tag, or is of no group ahead of pixels. The first must be of group 2 or 8. */
+/* Passes an element of a few bytes in little-endian order. Returns false where its tag does not
+ * follow *tag, or belongs to a group that does not precede pixels. The first must be of group 2
+ * or 8. */
 static bool pass_element(const unsigned char *head, size_t size, size_t *at, uint32_t *tag)
 {
     enum { LONGEST = 128 };
@@ -44,8 +46,8 @@ static bool pass_element(const unsigned char *head, size_t size, size_t *at, uin
     return true;
 }
 
-/* Without a preamble there is nothing but elements: the first three must be some that come
- * first, one behind the other. */
+/* Recognises DICOM. Without a preamble the file starts with elements: the first three must be
+ * some that come first, in order. */
 bool cwi_dicom_sniff(const unsigned char *head, size_t size)
 {
     uint32_t tag = 0;
@@ -71,7 +73,7 @@ void cwi_dicom_scan_free(cwi_dicom_scan *scan)
 
 #define IS_TERMINATED(text) (memchr((text), '\0', sizeof(text)) != NULL)
 
-/* What a file claims is held against what it has before anything is made of it. */
+/* Checks the claims of a file against its size, before anything is allocated for them. */
 static cw_status check_claim(const cwi_dicom_facts *f, uint64_t file_bytes, cw_error *err)
 {
     const uint64_t bits = f->kind == CWI_DICOM_SEGMENTATION ? 1 : 8 * cw_type_size(f->type);
@@ -90,7 +92,7 @@ static cw_status check_claim(const cwi_dicom_facts *f, uint64_t file_bytes, cw_e
                    (unsigned long long)file_bytes);
 }
 
-/* The facts are a stranger's: DCMTK's process may have been taken over. */
+/* Checks the facts, which are untrusted: DCMTK's process may have been taken over. */
 static cw_status check_facts(const cwi_dicom_facts *f, uint64_t file_bytes, cw_error *err)
 {
     if (!IS_TERMINATED(f->series) || !IS_TERMINATED(f->instance) ||
@@ -147,7 +149,7 @@ static cw_status keep_file(cwi_dicom_scan *scan, const char *name, const cwi_dic
     return CW_OK;
 }
 
-/* A code such as CT; what is none may be anything, and is not to be printed. */
+/* Keeps a code such as CT. Anything else may contain any text, and must not be printed. */
 static void clean_modality(cwi_dicom_facts *f)
 {
     static const char letters[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZ";
@@ -198,7 +200,7 @@ static cw_status take_file(cwi_dicom_scan *scan, const cwi_input *in, const char
     if (f.kind == CWI_DICOM_NO_IMAGE)
         scan->strangers++;
     if (f.kind == CWI_DICOM_NO_IMAGE || (only && !same_images(only, &f)))
-        return CW_OK; /* whatever is wrong with it */
+        return CW_OK; /* with any kind of damage */
     clean_modality(&f);
     if (st == CW_OK)
         st = keep_file(scan, name, &f, (const char *)shared + sizeof f, err);
@@ -234,7 +236,7 @@ static int compare_numbers(int64_t a, int64_t b)
     return (a > b) - (a < b);
 }
 
-/* By number, then by identity: names of files decide nothing. */
+/* Compares by number, then by identity: names of files decide nothing. */
 static int compare_planes(const void *x, const void *y)
 {
     const cwi_dicom_plane *a = x, *b = y;
@@ -245,7 +247,8 @@ static int compare_planes(const void *x, const void *y)
     return order ? order : compare_numbers(a->number, b->number);
 }
 
-/* An image of the same identity, at the same place, is the same under another file's name. */
+/* Returns true for a copy: an image of the same identity at the same place, under another file
+ * name. */
 static bool is_copy(const cwi_dicom_plane *a, const cwi_dicom_plane *b)
 {
     const cwi_dicom_facts *f = a->file, *g = b->file;
@@ -255,7 +258,7 @@ static bool is_copy(const cwi_dicom_plane *a, const cwi_dicom_plane *b)
            memcmp(a->frame.position, b->frame.position, sizeof a->frame.position) == 0;
 }
 
-/* Of copies the file that was named stays, else the first. */
+/* Drops copies. The file that was named stays, else the first one. */
 static void drop_copies(cwi_dicom_scan *scan, const cwi_input *in)
 {
     size_t kept = 0;
@@ -313,13 +316,14 @@ static cw_status sort_into_series(cwi_dicom_scan *scan, const cwi_input *in, cw_
     return CW_OK;
 }
 
-/* A file that nobody named must not stand in the way of one that somebody did. */
+/* Returns true if a file may be left out. A file that the user did not name must not block the
+ * one that the user did name. */
 static bool may_be_left_out(const cwi_input *in, const char *name, cw_status st)
 {
     return !cwi_input_is_named(in, name) && st != CW_ERR_CANCELLED && st != CW_ERR_NO_MEMORY;
 }
 
-/* Its reading may have ended the library's process. */
+/* Leaves a file out. Reading it may have ended the library's process. */
 static cw_status leave_out(cwi_dicom_scan *scan, const char *name, cwi_planes *planes,
                            cw_error *err)
 {

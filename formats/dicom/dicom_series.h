@@ -9,7 +9,7 @@
 typedef struct cwi_dicom_plane {
     const cwi_dicom_facts *file; /* its facts */
     size_t index;                /* of the file */
-    uint32_t number;             /* of the frame in it */
+    uint32_t number;             /* of the frame in the file */
     size_t series;
     double distance; /* along the normal, mm: set by cwi_dicom_stack() */
     size_t place, step;
@@ -18,33 +18,33 @@ typedef struct cwi_dicom_plane {
 
 /* Planes of one scanner series, of one size, type and direction. */
 typedef struct cwi_dicom_series {
-    char label[32]; /* SeriesNumber; with .1, .2 ... where it has several of them */
+    char label[32]; /* SeriesNumber; with .1, .2 ... where several series have that number */
     const cwi_dicom_plane *sample;
-    size_t count; /* of planes */
+    size_t count; /* number of planes */
 } cwi_dicom_series;
 
 /* A zeroed scan is empty. */
 typedef struct cwi_dicom_scan {
-    cwi_names files; /* those that hold images */
+    cwi_names files; /* files with images */
     cwi_dicom_facts **facts;
     cwi_dicom_plane *planes;
     size_t plane_count, plane_room;
     cwi_dicom_series *series;
     size_t series_count;
-    size_t strangers; /* files that are no DICOM images */
-    size_t copies;    /* ... and that are there more than once */
-    size_t links;     /* beside the one that was named, left out */
-    size_t damaged;   /* files beside the one that was named */
+    size_t strangers; /* number of files that are no DICOM images */
+    size_t copies;    /* number of copies of images */
+    size_t links;     /* links beside the named file, left out */
+    size_t damaged;   /* damaged files beside the named file */
     char damage[320]; /* of the first of them */
 } cwi_dicom_scan;
 
-/* Has DCMTK read a file that was found to be fit for it. */
+/* Makes DCMTK read a file that has passed the checks. */
 CW_NODISCARD cw_status cwi_dicom_facts_of(cwi_planes *planes, int fd, uint64_t size,
                                           const void **shared, cw_error *err);
 
-/* Takes the facts of the files among names that are DICOM images, and sorts them into series.
- * only  NULL, or the facts of the file that was named: its series, and images like it, are what
- *       is wanted; files beside it that are damaged are left out, and counted
+/* Reads the facts of the files among names that are DICOM images, and sorts them into series.
+ * only  NULL, or the facts of the file that was named: only its series, and images like it,
+ *       are wanted; damaged files beside it are left out, and counted
  * Returns  CW_ERR_FORMAT for a file that is damaged, or whose facts contradict each other */
 CW_NODISCARD cw_status cwi_dicom_scan_files(cwi_dicom_scan *scan, const cwi_input *in,
                                             cwi_names *names, const cwi_dicom_facts *only,
@@ -52,8 +52,7 @@ CW_NODISCARD cw_status cwi_dicom_scan_files(cwi_dicom_scan *scan, const cwi_inpu
 void cwi_dicom_scan_free(cwi_dicom_scan *scan);
 
 /* Finds a series by its label or UID; without a name the only one.
- * Returns CW_ERR_UNSAFE when there are several, CW_ERR_ARGUMENT when there is none of that
- * name. */
+ * Returns CW_ERR_UNSAFE when there are several, CW_ERR_ARGUMENT when none has that name. */
 CW_NODISCARD cw_status cwi_dicom_choose(const cwi_dicom_scan *scan, const char *name,
                                         size_t *series, cw_error *err);
 

@@ -1,3 +1,5 @@
+/* Stacks the planes of a DICOM series into a volume: order, time steps, distances, tilt,
+ * segmentations. */
 #define _GNU_SOURCE /* qsort_r */
 #include "formats/dicom/dicom_stack.h"
 
@@ -14,18 +16,18 @@
 
 static const double PI = 3.14159265358979323846;
 
-/* The planes of the series, sorted on the way to a stack. */
+/* The planes of the series while they are sorted. */
 typedef struct sorting {
     cwi_dicom_plane *planes;
     size_t count;
-    size_t places; /* how many different ones they stand at */
+    size_t places; /* number of different places */
     size_t steps;  /* planes at each place */
     double normal[3];
     const cw_read_desc *desc;
     cwi_dicom_findings *findings;
 } sorting;
 
-/* --- geometry that is there --------------------------------------------------------------- */
+/* --- checks of the geometry --------------------------------------------------------------- */
 
 static bool states_spacing(const cw_read_desc *desc)
 {
@@ -102,7 +104,7 @@ static int by_place_and_number(const void *x, const void *y)
     return m != n ? (m < n ? -1 : 1) : (a->number > b->number) - (a->number < b->number);
 }
 
-/* Places that differ by less than a thousandth of a pixel are one. */
+/* Finds the places; those that differ by less than a thousandth of a pixel are one. */
 static void find_places(sorting *s)
 {
     const double *x = s->planes[0].frame.axes[0], *y = s->planes[0].frame.axes[1];
@@ -120,7 +122,7 @@ static void find_places(sorting *s)
     sort_planes(s, by_place_and_number);
 }
 
-/* Planes at one place, from *first on. */
+/* Returns the number of planes at one place, from *first on. */
 static size_t planes_here(const sorting *s, size_t first)
 {
     size_t n = first;
@@ -129,8 +131,7 @@ static size_t planes_here(const sorting *s, size_t first)
     return n - first;
 }
 
-/* The rank of each plane among those at its place, by one key; false where two have
- * the same. */
+/* Ranks the planes at one place by one key; returns false where two have the same value. */
 static bool rank_here(cwi_dicom_plane *planes, size_t count, int key)
 {
     for (size_t i = 0; i < count; i++) {
@@ -179,7 +180,8 @@ static void keep_first_of_each(sorting *s)
     s->count = kept;
 }
 
-/* As many planes at every place: a series in time, of echoes, or the like. */
+/* Finds the steps: the same number of planes at every place is a series in time, of echoes, or
+ * similar. */
 static cw_status find_steps(sorting *s, cw_error *err)
 {
     static const char *const names[] = {"TemporalPosition", "FrameReferenceTime",
@@ -210,7 +212,7 @@ static cw_status find_steps(sorting *s, cw_error *err)
 
 /* --- the row of slices -------------------------------------------------------------------- */
 
-/* The way from the first to the last place for each millimetre along the normal. */
+/* Computes the way from the first to the last place per millimetre along the normal. */
 static void find_row(const sorting *s, double along[3])
 {
     const cwi_dicom_plane *a = &s->planes[0], *b = &s->planes[s->count - 1];
@@ -220,7 +222,7 @@ static void find_row(const sorting *s, double along[3])
                                  : s->normal[r];
 }
 
-/* How far a plane stands beside the row, mm. */
+/* Returns the distance of a plane from the row, in mm. */
 static double off_row(const sorting *s, const cwi_dicom_plane *p, const double along[3])
 {
     const cwi_dicom_plane *first = &s->planes[0];
@@ -236,7 +238,8 @@ static double smaller_spacing(const sorting *s)
     return cwi_lesser(s->planes[0].frame.spacing[0], s->planes[0].frame.spacing[1]);
 }
 
-/* Slices shifted evenly against each other make a sheared frame, which is where they are. */
+/* Finds the tilt. Slices shifted evenly against each other make a sheared frame at their true
+ * places. */
 static cw_status find_tilt(sorting *s, double along[3], cw_error *err)
 {
     double worst = 0;
@@ -294,7 +297,8 @@ static cw_status check_scaling(const sorting *s, cw_error *err)
     return CW_OK;
 }
 
-/* PET scanners scale each slice by itself: then the values are stored, not the pixels. */
+/* Sets the kind of values. PET scanners scale each slice by itself: then values are stored, not
+ * pixels. */
 static void set_values(const sorting *s, cwi_stack *stack)
 {
     const cwi_dicom_facts *f = s->planes[0].file;
@@ -357,7 +361,7 @@ static cw_status make_room(const sorting *s, size_t slots, cwi_stack *stack, cw_
     return CW_OK;
 }
 
-/* Each file is opened once, and read from its start to its end. */
+/* Compares by file and frame: each file is opened once, and read from start to end. */
 static int by_file(const void *x, const void *y, void *planes)
 {
     const cwi_plane *a = (const cwi_plane *)planes + ((const cwi_slot *)x)->low;
@@ -398,7 +402,7 @@ static void note_findings(const sorting *s)
                                                 : "interpolated to even ones");
 }
 
-/* Slices with a known place. */
+/* Stacks slices with a known place. */
 static cw_status stack_placed(sorting *s, cwi_stack *stack, cw_error *err)
 {
     cwi_slices slices = {0};
@@ -428,8 +432,8 @@ static cw_status stack_placed(sorting *s, cwi_stack *stack, cw_error *err)
 
 /* --- segmentations ------------------------------------------------------------------------ */
 
-/* The distance of slices: stated, or the smallest there is. Where a segment has nothing, a
- * slice may be left out, so gaps tell nothing. */
+/* Returns the distance of slices: stated, or the smallest found. Slices in which a segment is
+ * empty may be left out, so gaps are no error. */
 static double segment_step(const sorting *s)
 {
     const cwi_dicom_frame *f = &s->planes[0].frame;
@@ -442,7 +446,7 @@ static double segment_step(const sorting *s)
                                                         : 1;
 }
 
-/* Puts each plane's place on the row; *slices is how long that is. */
+/* Sets the index of each plane in the row; *slices is the row's length. */
 static cw_status find_segment_places(sorting *s, double step, size_t *slices, cw_error *err)
 {
     for (size_t i = 0; i < s->count; i++) {
@@ -467,7 +471,7 @@ static uint32_t highest_segment(const sorting *s)
     return most;
 }
 
-/* Where segments overlap, the one of the highest number stays. */
+/* Compares by label: where segments overlap, the one of the highest number stays. */
 static int by_label(const void *x, const void *y)
 {
     const cwi_slot *a = x, *b = y;
@@ -493,7 +497,7 @@ static cw_status fill_labels(const sorting *s, cwi_stack *stack, cw_error *err)
     return st;
 }
 
-/* A frame of a label map holds all segments of its place. */
+/* Fills label maps: a frame holds all segments of its place. */
 static cw_status fill_maps(const sorting *s, cwi_stack *stack, cw_error *err)
 {
     cw_status st = make_room(s, s->count, stack, err);
@@ -542,10 +546,10 @@ static cw_status stack_segments(sorting *s, cwi_stack *stack, cw_error *err)
 
 /* --- images without a place --------------------------------------------------------------- */
 
-/* Slices whose distance a person stated: in the order of their numbers. */
+/* Stacks slices whose distance the user stated, in the order of their numbers. */
 static cw_status stack_numbered(sorting *s, cwi_stack *stack, cw_error *err)
 {
-    for (size_t i = 1; i < s->count; i++) /* the scan has sorted them */
+    for (size_t i = 1; i < s->count; i++) /* the scan has sorted the planes */
         if (s->planes[i].file->instance_number == s->planes[i - 1].file->instance_number &&
             s->planes[i].number == s->planes[i - 1].number)
             return cw_fail(err, CW_ERR_UNSAFE,

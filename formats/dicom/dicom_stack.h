@@ -1,15 +1,15 @@
-/* From the planes of a DICOM series to a volume: their order, their distances, their tilt. */
+/* Stacking of the planes of a DICOM series into a volume: their order, distances and tilt. */
 #ifndef FORMATS_DICOM_DICOM_STACK_H
 #define FORMATS_DICOM_DICOM_STACK_H
 
 #include "formats/dicom/dicom_series.h"
 #include "formats/volume/slice_stack.h"
 
-/* What was found on the way. */
+/* Findings about the series. */
 typedef struct cwi_dicom_findings {
     double tilt_degrees; /* of the slices' row against their normal */
-    char gaps[192];      /* what is uneven; empty where nothing is */
-    size_t made;         /* slices between others */
+    char gaps[192];      /* uneven distances; empty: none */
+    size_t made;         /* number of interpolated slices */
 } cwi_dicom_findings;
 
 /* Fills a zeroed stack; slices ascend along the cross product of row and column directions.

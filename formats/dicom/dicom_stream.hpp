@@ -1,4 +1,4 @@
-// An open file as DCMTK reads it. DCMTK opens files by name; here is but a descriptor.
+// The input stream by which DCMTK reads an open descriptor; DCMTK itself opens files by name.
 #ifndef FORMATS_DICOM_DICOM_STREAM_HPP
 #define FORMATS_DICOM_DICOM_STREAM_HPP
 
@@ -69,7 +69,7 @@ private:
         start = at;
         filled = pread(fd, buffer, sizeof buffer, at);
         if (filled <= 0)
-            condition = EC_InvalidStream; // it was longer a moment ago
+            condition = EC_InvalidStream; // the file has become shorter
     }
 
     int fd;
@@ -87,7 +87,7 @@ public:
           base(start)
     {
     }
-    // Lets DCMTK leave pixels in the file until they are asked for.
+    // Lets DCMTK leave pixels in the file until they are needed.
     DcmInputStreamFactory *newFactory() const override;
 
 private:

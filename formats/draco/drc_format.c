@@ -1,4 +1,4 @@
-/* Draco files: what is read and written, and by whom. */
+/* The driver of Draco files: their reader, their writer, and what the format keeps. */
 #include "formats/driver/format_driver.h"
 
 const cwi_format_driver cwi_format_drc = {

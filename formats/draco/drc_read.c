@@ -1,5 +1,5 @@
-/* Draco files. The library decodes them in a process of its own, which keeps what came out and
- * hands it over by and by: how much that is, is known only then. */
+/* Reads Draco files. The library decodes them in a sandboxed process, which keeps the result
+ * and hands it over piece by piece. Only the result tells how large it is. */
 #include "core/base/memory.h"
 #include "core/base/sandbox.h"
 #include "core/base/status.h"
@@ -10,7 +10,8 @@
 #include <math.h>
 #include <string.h>
 
-/* What Draco was seen to reach, and far beyond: a claim of more is a lie. */
+/* An upper bound of Draco's compression, far beyond all observed files; larger claims are
+ * rejected. */
 enum { MOST_GAIN = 1024, WINDOW = 4 << 20 };
 
 typedef enum operation {
@@ -21,7 +22,8 @@ typedef enum operation {
     COPY_TRIANGLES
 } operation;
 
-/* The file lies at the start of the shared memory; what is copied takes its place. */
+/* A request to the child. The file lies at the start of the shared memory; copied arrays
+ * replace it. */
 typedef struct request {
     operation op;
     uint64_t most;        /* DECODE: vertices or triangles */
@@ -146,7 +148,7 @@ static cw_status check_arrays(const cw_mesh *m, cw_error *err)
     return CW_OK;
 }
 
-/* Two lines, of which the second is there in local files only. */
+/* Reads the comment: two lines, the second one in local files only. */
 static void take_comment(char *text, cw_mesh *mesh, cw_mesh_file *said)
 {
     char *second = strchr(text, '\n');

@@ -1,4 +1,4 @@
-/* Draco files: one mesh on a grid, as Draco's own programs and three.js read it. */
+/* Writes Draco files: one mesh on a grid, readable by Draco's own programs and three.js. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/mesh/mesh.h"
@@ -12,7 +12,8 @@ static cw_status fail_memory(cw_error *err)
     return cw_fail(err, CW_ERR_NO_MEMORY, "no memory to compress the mesh");
 }
 
-/* A part's vertices and triangles behind those of the parts before it, as the file has them. */
+/* Appends a part's vertices and triangles to those of the parts before it, as the file has
+ * them. */
 static void put_part(const cwi_part *part, cw_mesh *whole)
 {
     const cw_mesh *m = &part->mesh;
@@ -72,7 +73,7 @@ cw_status cwi_drc_write(const cwi_parts *parts, cwi_mesh_output *out, cw_error *
     if (st == CW_OK)
         st = cwi_draco_pack(&whole.mesh, whole.mesh.colors, &grid, comment, desc, &packed,
                             &told, err);
-    if (st == CW_OK) /* compressing is nearly all there is to do */
+    if (st == CW_OK) /* compressing is nearly all of the work */
         st = cwi_progress(out->progress, "writing", 0.95, err);
     if (st == CW_OK)
         st = cwi_outfile_write(out->file, packed.bytes, packed.size, err);

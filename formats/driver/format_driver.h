@@ -1,5 +1,5 @@
-/* A format, as its folder describes it: what it is called, and who reads and writes it. Every folder
- * of a format has a constant of it; formats/format_registry.c lists them. */
+/* The driver of a format: its names, its readers and its writers. Every folder of a format
+ * defines a constant of this type; formats/format_registry.c lists them. */
 #ifndef FORMATS_DRIVER_FORMAT_DRIVER_H
 #define FORMATS_DRIVER_FORMAT_DRIVER_H
 
@@ -12,7 +12,8 @@
 typedef struct cwi_volume_reading {
     const char *extensions; /* NULL: those of the format */
     bool gzipped;           /* the whole file may be a gzip file */
-    /* Whether a file that starts so is of the format; NULL: content cannot tell. */
+    /* Returns true if a file with such a head has the format; NULL: the content cannot
+     * decide. */
     bool (*sniff)(const unsigned char *head, size_t size);
     /* Reads a header, from which voxels are then loaded. */
     cw_status (*parse)(const cwi_input *in, cwi_source *src, cw_error *err);
@@ -28,26 +29,26 @@ typedef struct cwi_volume_reading {
     /* Lists the series of a folder. */
     cw_status (*list_series)(const cwi_input *in, cwi_names *names, const cw_read_desc *desc,
                              cw_series **series, size_t *count, cw_error *err);
-    bool holds_pages;  /* slices: a file of several is a volume */
-    bool tells_arrays; /* its reader itself says which of several it took */
-    bool needs_points; /* it is the format of a file whose points another file has */
+    bool holds_pages;  /* slices: a file with several pages is a volume */
+    bool tells_arrays; /* its reader itself reports which of several arrays it took */
+    bool needs_points; /* it is the format of files whose points are in another file */
 } cwi_volume_reading;
 
 typedef struct cwi_volume_writing {
-    const char *extensions; /* that are written */
+    const char *extensions; /* extensions that are written */
     bool has_scaling;       /* slope and intercept have a place in the header */
     cw_status (*save)(const cwi_save *save, cw_error *err); /* NULL: it writes no volume */
 } cwi_volume_writing;
 
 typedef struct cwi_mesh_reading {
     cwi_mesh_sniffer *sniff; /* NULL: content cannot tell */
-    bool sniffs_last;        /* the size of the file tells, so other formats are asked first */
+    bool sniffs_last;        /* the file's size decides, so other formats are tried first */
     cwi_mesh_reader *read;   /* NULL: it reads no mesh */
 } cwi_mesh_reading;
 
 typedef struct cwi_mesh_writing {
     cwi_mesh_writer *write;              /* NULL: it writes no mesh */
-    cw_status (*prepare)(cw_error *err); /* finds what it needs; NULL: nothing */
+    cw_status (*prepare)(cw_error *err); /* finds its modules; NULL: nothing to find */
     bool own_axes;                       /* unit and frame are those of the format */
     bool text;                           /* it is text, or can be */
     bool compresses;                     /* it has compressed forms */
@@ -60,9 +61,9 @@ typedef struct cwi_format_driver {
     const char *name;       /* "nrrd" */
     const char *extensions; /* ".nrrd .nhdr" */
     const char *about;
-    const char *feature; /* that it needs, as `version --features` calls it; NULL: none */
-    const char *lost;    /* what writing drops; NULL: nothing */
-    unsigned keeps;      /* of a mesh that is written: cw_keeps flags */
+    const char *feature; /* required feature, as named by `version --features`; NULL: none */
+    const char *lost;    /* information that writing drops; NULL: nothing */
+    unsigned keeps;      /* properties of a written mesh: cw_keeps flags */
     cwi_volume_reading volume;
     cwi_volume_writing save;
     cwi_mesh_reading mesh;

@@ -1,4 +1,4 @@
-/* An animation that shows one piece after another: the numbers behind its samplers. */
+/* Plans the animation that shows one piece after another: the keys of each node's scale. */
 #include "formats/gltf/gltf_pack.h"
 
 #include "core/base/memory.h"
@@ -6,8 +6,9 @@
 
 #include <string.h>
 
-/* Scales of a node: hidden, shown, hidden to the end; and hidden, shown to the end. A piece
- * that is shown from the start on leaves out the first of its row. */
+/* The scales of a node in time. A row is: hidden, shown, hidden, hidden to the end; the last
+ * piece has: hidden, shown, shown to the end. A piece that is shown from the start omits the
+ * first of its row. */
 enum { LAST_ROW = 4, ROWS = 7 };
 static const float scales[ROWS] = {0, 1, 0, 0, 0, 1, 1};
 enum { SCALE_BYTES = 12, VALUES_BYTES = ROWS * SCALE_BYTES };
@@ -17,7 +18,7 @@ static void add_key(cwi_gltf_piece *piece, double time_s)
     piece->times[piece->time_count++] = (float)time_s;
 }
 
-/* Every piece has a key at the end: all samplers of an animation end together. */
+/* Sets the times of a piece. Every piece has a key at the end, so all samplers end together. */
 static void set_keys(cwi_gltf_piece *piece, double end_s)
 {
     const cwi_part *part = piece->part;

@@ -1,4 +1,5 @@
-/* The bytes that a glTF file keeps its numbers in: a chunk, text, or a file of their own. */
+/* Loads the bytes of glTF's buffers from a chunk, text or a file, and reads accessors from
+ * them. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/gltf/gltf_decompress.h"
@@ -9,12 +10,12 @@
 #include <strings.h>
 #include <unistd.h>
 
-/* Where a buffer's bytes are. */
+/* The place of a buffer's bytes. */
 typedef struct place {
     const char *digits; /* base64; NULL: in a file */
     int fd, own_fd;     /* own_fd: to be closed, or -1 */
     uint64_t start;     /* in the file */
-    uint64_t held;      /* bytes there are in truth */
+    uint64_t held;      /* number of bytes that really exist */
 } place;
 
 /* --- data: URIs -------------------------------------------------------------------------- */
@@ -35,7 +36,7 @@ static int decode_sextet(char c)
     return c == '+' || c == '-' ? 62 : c == '/' || c == '_' ? 63 : -1;
 }
 
-/* Bytes from offset on; any place can be decoded alone, as 4 digits make 3 bytes. */
+/* Decodes bytes from an offset on; any place can be decoded alone, as 4 digits make 3 bytes. */
 static cw_status decode_base64(const char *digits, uint64_t offset, uint64_t size,
                                unsigned char *to, cw_error *err)
 {
@@ -51,7 +52,7 @@ static cw_status decode_base64(const char *digits, uint64_t offset, uint64_t siz
     return CW_OK;
 }
 
-/* The digits of a data: URI, and how many bytes they stand for. */
+/* Finds the digits of a data: URI, and the number of bytes that they encode. */
 static cw_status find_digits(const char *uri, uint64_t buffer, place *p, cw_error *err)
 {
     static const char marker[] = ";base64,";
@@ -86,7 +87,7 @@ static int hex_digit(char c)
                                                 : -1;
 }
 
-/* "my%20mesh.bin" to "my mesh.bin", before the name is checked. */
+/* Decodes a name, "my%20mesh.bin" to "my mesh.bin", before it is checked. */
 static cw_status decode_name(const char *uri, char name[1024], cw_error *err)
 {
     size_t used = 0;
@@ -122,7 +123,7 @@ static bool range_fits(uint64_t offset, uint64_t size, uint64_t held)
     return offset <= held && size <= held - offset;
 }
 
-/* Where a buffer's bytes are; to be closed in any case. */
+/* Finds the place of a buffer's bytes; the caller closes it in any case. */
 static cw_status find_place(const cwi_gltf_bytes *from, const cwi_gltf_buffer *b,
                             uint64_t index, place *p, cw_error *err)
 {
@@ -147,7 +148,8 @@ static void close_place(place *p)
         close(p->own_fd);
 }
 
-/* What is claimed is there: only then memory is taken for it. */
+/* Loads a range of bytes. Memory is allocated only after the claimed bytes were found to
+ * exist. */
 static cw_status load_range(const place *p, uint64_t offset, uint64_t size,
                             unsigned char **bytes, cw_error *err)
 {
@@ -227,7 +229,7 @@ static cw_status check_accessor(const cwi_gltf_scene *scene, int accessor, const
     return CW_OK;
 }
 
-/* The numbers of a primitive that was decoded as a whole. */
+/* Opens the numbers of a primitive that was decoded as a whole. */
 static cw_status open_unpacked(const cwi_gltf_bytes *from, const cwi_gltf_accessor *a,
                                int accessor, cwi_gltf_numbers *numbers, cw_error *err)
 {
@@ -258,7 +260,7 @@ static cw_status open_unpacked(const cwi_gltf_bytes *from, const cwi_gltf_access
     return CW_OK;
 }
 
-/* The bytes of a view from an offset on, decoded where they are compressed. */
+/* Loads the bytes of a view from an offset on, decoded where they are compressed. */
 static cw_status load_view(const cwi_gltf_bytes *from, const cwi_gltf_scene *scene,
                            const cwi_gltf_view *v, uint64_t offset, uint64_t size,
                            unsigned char **bytes, cw_error *err)
@@ -283,8 +285,8 @@ static cw_status load_view(const cwi_gltf_bytes *from, const cwi_gltf_scene *sce
     return st;
 }
 
-/* The elements of a view, from an offset on: checked against it, then loaded. stride
- * 0: packed. */
+/* Loads the elements of a view, from an offset on, after a check against the view. stride 0:
+ * packed. */
 static cw_status load_elements(const cwi_gltf_bytes *from, const cwi_gltf_scene *scene,
                                int64_t view, uint64_t offset, uint64_t count, uint64_t element,
                                uint64_t stride, const char *what, int accessor,
@@ -312,7 +314,8 @@ static cw_status load_elements(const cwi_gltf_bytes *from, const cwi_gltf_scene 
 
 /* --- sparse accessors -------------------------------------------------------------------- */
 
-/* Elements that are zero take no byte of the file: what may be claimed of them is bounded. */
+/* Limits for sparse accessors without a view: their zeros take no byte of the file, so claims
+ * are bounded. */
 enum { FREE_ZEROS = 1 << 20, ZEROS_EACH = 1024 };
 
 static cw_status make_zeros(const cwi_gltf_accessor *a, const char *what, int accessor,
@@ -329,7 +332,7 @@ static cw_status make_zeros(const cwi_gltf_accessor *a, const char *what, int ac
                             (unsigned long long)a->count);
 }
 
-/* Puts values at their indices, which rise from one to the next. */
+/* Puts values at their indices; the indices must rise. */
 static cw_status replace_elements(const cwi_gltf_sparse *s, const unsigned char *indices,
                                   const unsigned char *values, size_t element, int accessor,
                                   cwi_gltf_numbers *numbers, cw_error *err)

@@ -1,5 +1,5 @@
-/* Compression that keeps its promise: a grid fine enough for the tolerance and the shape, one
- * for all parts; and what was compressed is decoded and held against what it was made of. */
+/* Compresses the parts of a glTF file on one common grid that keeps the tolerance and the
+ * shape. Everything compressed is decoded again and compared with the original. */
 #include "formats/gltf/gltf_pack.h"
 
 #include "core/base/clock.h"
@@ -33,8 +33,8 @@ cw_status cwi_gltf_prepare_codec(const cw_write_desc *desc, cw_error *err)
 
 /* --- one origin, arrays of our own -------------------------------------------------------- */
 
-/* A copy of a part that counts from another origin: parts on one grid need one. Normals and
- * colours stay the caller's unless they are to be put into another order. */
+/* Copies a part and moves it to another origin: parts on one grid need a common one. Normals
+ * and colours stay the caller's arrays unless they are to be reordered. */
 static cw_status copy_part(const cwi_part *part, const double origin[3], bool all, cw_mesh *own,
                            cw_error *err)
 {
@@ -64,7 +64,8 @@ static bool same_origin(const cwi_parts *parts)
     return true;
 }
 
-/* The parts' arrays are the caller's; where they have to change, copies take their place. */
+/* Replaces parts by copies where their arrays have to change, since these belong to the
+ * caller. */
 static cw_status own_parts(cwi_gltf_plan *plan, bool all, cw_error *err)
 {
     cwi_part *items = plan->parts.items;
@@ -89,7 +90,7 @@ static cw_status own_parts(cwi_gltf_plan *plan, bool all, cw_error *err)
 
 /* --- blocks ------------------------------------------------------------------------------- */
 
-/* Takes over bytes; they begin at a multiple of 8. */
+/* Takes over bytes as a block; blocks begin at multiples of 8. */
 static cw_status add_block(cwi_gltf_plan *plan, unsigned char *bytes, size_t size, uint64_t *at,
                            cw_error *err)
 {
@@ -156,7 +157,7 @@ static cw_status compress_draco(cwi_gltf_plan *plan, cwi_gltf_piece *piece,
 
 /* --- meshopt ------------------------------------------------------------------------------ */
 
-/* Whether the filter makes of the bytes what their accessor says. */
+/* Checks that the filter decodes the bytes to the numbers that their accessor states. */
 static bool are_stored(const cwi_meshopt_functions *meshopt, const cwi_gltf_plan *plan,
                        const float *positions, unsigned char *bytes, size_t count)
 {
@@ -170,8 +171,8 @@ static bool are_stored(const cwi_meshopt_functions *meshopt, const cwi_gltf_plan
     return true;
 }
 
-/* What was packed is unpacked, and must be the same to the byte; indices to the triangle, for
- * their codec may turn them. */
+/* Decodes packed data again, which must be the same to the byte. Indices must give the same
+ * triangles, since their codec may rotate them. */
 static cw_status check_packed(const cwi_meshopt_functions *meshopt, const cwi_gltf_plan *plan,
                               const cwi_gltf_piece *piece, const cwi_gltf_array *a,
                               const unsigned char *raw, const cwi_gltf_block *b, cw_error *err)
@@ -254,11 +255,12 @@ static cw_status compress_meshopt(cwi_gltf_plan *plan, size_t p,
         cwi_gltf_plan_arrays(plan, piece);
     for (size_t n = 0; st == CW_OK && n < piece->array_count; n++)
         st = pack_array(plan, piece, &piece->arrays[n], meshopt, err);
-    plan->document.unpacked = 1; /* how large, is counted later */
+    plan->document.unpacked = 1; /* its size is counted later */
     return st;
 }
 
-/* Normals in bytes are the only thing that quantising moves beside positions. */
+/* Measures the error of normals in bytes: besides positions, only they are moved by
+ * quantising. */
 static void measure_normals(const cwi_gltf_plan *plan, cw_compressed *told)
 {
     for (size_t p = 0; p < plan->parts.count; p++) {

@@ -1,3 +1,4 @@
+/* Decodes compressed views (meshopt) and primitives (Draco) of glTF in a sandboxed process. */
 #include "formats/gltf/gltf_decompress.h"
 #include "formats/codec/meshopt_wrap.h"
 
@@ -6,12 +7,13 @@
 
 #include <string.h>
 
-/* What codecs were seen to reach, and far beyond: a claim of more is a lie. */
+/* Limits of compression, far beyond those observed in codecs; larger claims are rejected. */
 enum { MOST_GAIN = 1024, MOST_STRIDE = 256, LEAST_SHARED = 16 << 20 };
 
 typedef enum job_kind { JOB_VERTICES, JOB_TRIANGLES, JOB_INDICES, JOB_DRACO } job_kind;
 
-/* The compressed bytes lie at the start of the shared memory, what comes out behind them. */
+/* A job for the child. Compressed bytes lie at the start of the shared memory, results behind
+ * them. */
 typedef struct job {
     job_kind kind;
     int filter; /* of JOB_VERTICES: cwi_meshopt_filter */
@@ -89,7 +91,7 @@ void cwi_gltf_unpacker_close(cwi_gltf_unpacker *u)
     cwi_sandbox_close(&u->box);
 }
 
-/* A process that shares at least so many bytes, with the libraries that are loaded by now. */
+/* Starts a process that shares at least `bytes` bytes, with the libraries loaded so far. */
 static cw_status start_sandbox(cwi_gltf_unpacker *u, size_t bytes, bool anew, cw_error *err)
 {
     if (u->box.open && u->box.desc.shared_bytes >= bytes && !anew)
@@ -166,7 +168,7 @@ cw_status cwi_gltf_unpack_view(cwi_gltf_unpacker *u, const cwi_gltf_view *v,
     return CW_OK;
 }
 
-/* Copies an array out of the shared memory and moves on; false when memory is out. */
+/* Copies an array out of the shared memory and advances; returns false when memory is out. */
 static bool take_array(const char **from, void *array, size_t size)
 {
     void *copy = cwi_alloc_array(size, 1);

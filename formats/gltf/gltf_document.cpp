@@ -1,4 +1,4 @@
-// glTF on its way out: plain numbers become JSON, by tinygltf. The bytes of buffers pass it by.
+// Makes the JSON of a glTF file from plain numbers, by tinygltf, without the bytes of buffers.
 #include "formats/gltf/gltf_module.hpp"
 
 #include "core/base/guard.hpp"
@@ -39,7 +39,7 @@ tinygltf::Value meshopt_extension(const cwi_gltf_array &a)
     return tinygltf::Value(extension);
 }
 
-// Where an array's bytes are. meshopt's are packed; its view is of a buffer that no file has.
+// Adds an array's view. The view of meshopt data is in a buffer that no file has.
 int add_view(tinygltf::Model &model, const cwi_gltf_array &a)
 {
     const bool indices = a.use == CWI_GLTF_INDICES;
@@ -57,7 +57,7 @@ int add_view(tinygltf::Model &model, const cwi_gltf_array &a)
     return int(model.bufferViews.size()) - 1;
 }
 
-// Draco's accessors say what comes out, and have no view.
+// Adds an accessor. For Draco it describes the decoded data, and has no view.
 int add_accessor(tinygltf::Model &model, const cwi_gltf_piece &piece, const cwi_gltf_array &a)
 {
     tinygltf::Accessor accessor;
@@ -92,8 +92,8 @@ tinygltf::Value draco_extension(tinygltf::Model &model, const cwi_gltf_piece &pi
                                   {"attributes", tinygltf::Value(ids)}});
 }
 
-// Vertex colours are multiplied with the base colour, so with them it is white. Pieces that
-// look alike share a material.
+// Finds the material of a piece. Vertex colours are multiplied with the base colour, so the
+// base colour is white with them. Similar pieces share a material.
 int find_material(tinygltf::Model &model, const cwi_gltf_piece &piece)
 {
     const double grey = piece.part->mesh.colors ? 1.0 : 0.8;
@@ -140,9 +140,9 @@ void tell_level(const cwi_part &part, Object &extras)
     }
 }
 
-// LPS millimetres to glTF's metres, +Y up, front towards +Z: (x, y, z) goes to 0.001 (x, z,
-// -y). The node does it, so that the vertices stay as they are. Adding 0.0 turns -0 into 0. Of
-// a local scene the origin is told, not applied.
+// Makes the node of a piece. It turns LPS millimetres to glTF's metres, +Y up, front towards
+// +Z: (x, y, z) goes to 0.001 (x, z, -y). So the vertices stay as they are. Adding 0.0 turns -0
+// into 0. In a local scene the origin is stated, not applied.
 tinygltf::Node make_node(const cwi_gltf_piece &piece, const double *local_origin)
 {
     const double half = std::sqrt(0.5), scale = 0.001 * piece.step, *t = piece.translation;
@@ -155,9 +155,9 @@ tinygltf::Node make_node(const cwi_gltf_piece &piece, const double *local_origin
     return node;
 }
 
-// The node of level 0 names those of the others, and the shares of the screen down to which
-// each is shown: where the next one would have as many triangles to an area as level 0 has on
-// all of it. The last is shown down to nothing.
+// Adds levels to the node of level 0. It names the other nodes, and the shares of the screen
+// down to which each is shown. At that share the next level would have as many triangles to an
+// area as level 0 has on all of it. The last level is shown at any smaller share.
 void add_levels(tinygltf::Node &node, const cwi_gltf_piece *levels, size_t count, int first,
                 Object &extras)
 {
@@ -172,7 +172,7 @@ void add_levels(tinygltf::Node &node, const cwi_gltf_piece *levels, size_t count
     extras["MSFT_screencoverage"] = tinygltf::Value(coverage);
 }
 
-// How many pieces are levels of the first one, with it.
+// Returns the number of pieces that are levels of the first one, including it.
 size_t count_levels(const cwi_gltf_piece *pieces, size_t count)
 {
     size_t n = 1;
@@ -181,7 +181,7 @@ size_t count_levels(const cwi_gltf_piece *pieces, size_t count)
     return n;
 }
 
-// One of `left` pieces, of which the others come next.
+// Adds one of `left` pieces; the others follow it.
 void add_piece(tinygltf::Model &model, const cwi_gltf_piece &piece, size_t left,
                const double *local_origin)
 {
@@ -219,7 +219,7 @@ void add_piece(tinygltf::Model &model, const cwi_gltf_piece &piece, size_t left,
         model.scenes[0].nodes.push_back(index);
 }
 
-// A view of floats that are no attributes.
+// Adds a view of floats that are not attributes.
 int add_key_view(tinygltf::Model &model, uint64_t at, uint64_t floats)
 {
     tinygltf::BufferView view;
@@ -242,7 +242,7 @@ int add_key_accessor(tinygltf::Model &model, int view, size_t first, size_t coun
     return int(model.accessors.size()) - 1;
 }
 
-// Pieces that begin and end alike share the accessor of their scales.
+// Finds the accessor of a piece's scales; pieces that begin and end alike share it.
 int find_scales(tinygltf::Model &model, int view, const cwi_gltf_piece &piece)
 {
     const size_t offset = piece.first_scale * 3 * sizeof(float);
@@ -252,8 +252,8 @@ int find_scales(tinygltf::Model &model, int view, const cwi_gltf_piece &piece)
     return add_key_accessor(model, view, piece.first_scale, piece.time_count, 3);
 }
 
-// A node above that of a piece, which the animation scales: the piece's own stays exact. Who
-// plays no animation sees the first.
+// Adds a parent node, which the animation scales, so that the piece's own node stays exact.
+// Readers that play no animation show the first piece.
 void add_step(tinygltf::Model &model, const cwi_gltf_piece &piece, int child)
 {
     tinygltf::Node node;
@@ -340,7 +340,7 @@ tinygltf::Model make_model(const cwi_gltf_document &document)
     if (document.end_s > 0)
         add_animation(model, document);
     if (has_levels(document))
-        model.extensionsUsed.push_back(GLTF_LOD); // readers may do without
+        model.extensionsUsed.push_back(GLTF_LOD); // optional for readers
     if (document.quantized)
         use_extension(model, "KHR_mesh_quantization");
     if (document.unpacked)
@@ -350,7 +350,8 @@ tinygltf::Model make_model(const cwi_gltf_document &document)
     return model;
 }
 
-// tinygltf writes no extensions of views, but extras: those of meshopt are renamed.
+// Renames extras of views. tinygltf writes extras but no extensions of views; meshopt's are
+// written as extras.
 void name_extensions(std::string &json)
 {
     const std::string from = std::string("\"extras\":{\"") + GLTF_MESHOPT;
@@ -359,7 +360,7 @@ void name_extensions(std::string &json)
         json.replace(at, from.size(), to);
 }
 
-// tinygltf keeps offsets of extensions in 31 bits.
+// Checks the offsets of extensions, which tinygltf keeps in 31 bits.
 cw_status check_packed(const cwi_gltf_document &document, cw_error *err)
 {
     if (document.unpacked && document.bytes > INT32_MAX)

@@ -1,5 +1,5 @@
-/* What is in a glTF file that we write: its arrays and where their bytes lie. The module "gltf"
- * makes the JSON of it; the bytes are written beside. */
+/* The content of a glTF file that is written: its arrays and the places of their bytes. The
+ * module "gltf" makes the JSON from it; the bytes are written separately. */
 #ifndef FORMATS_GLTF_GLTF_DOCUMENT_H
 #define FORMATS_GLTF_GLTF_DOCUMENT_H
 
@@ -21,12 +21,13 @@ typedef enum cwi_gltf_use {
 /* An accessor and its view. */
 typedef struct cwi_gltf_array {
     cwi_gltf_use use;
-    int component, numbers; /* 5120 to 5126; of an element, 1 to 4 */
+    int component, numbers; /* component type, 5120 to 5126; numbers in an element, 1 to 4 */
     bool normalized;
-    bool exponential;           /* meshopt: a filter makes its numbers floats */
+    bool exponential;           /* meshopt: a filter turns its numbers into floats */
     uint64_t count, stride;     /* elements, and bytes from one to the next */
-    uint64_t at;                /* in the buffer, or (meshopt) in the one that is never there */
-    uint64_t packed_at, packed; /* meshopt: where its bytes are, and how many */
+    uint64_t at;                /* place in the buffer, or (meshopt) in the buffer that no file
+                                   has */
+    uint64_t packed_at, packed; /* meshopt: place and number of its compressed bytes */
 } cwi_gltf_array;
 
 /* A node with a mesh of one primitive. */
@@ -34,14 +35,14 @@ typedef struct cwi_gltf_piece {
     const cwi_part *part;
     cwi_gltf_array arrays[CWI_GLTF_USES];
     size_t array_count;
-    double low[3], high[3]; /* of POSITION, as it is stored */
+    double low[3], high[3]; /* box of POSITION, as it is stored */
     double translation[3];  /* mm, LPS: of the stored positions, ... */
     double step;            /* ... which are multiples of this many mm */
     bool translucent;
-    uint64_t draco_at, draco; /* where Draco's bytes are, and how many; 0: not Draco's */
+    uint64_t draco_at, draco; /* place and number of Draco's bytes; 0: no Draco */
     cwi_draco_ids ids;
     float times[4]; /* keys of its scale, if there is an animation: seconds, ... */
-    size_t time_count, first_scale; /* ... and which of the scales belongs to the first */
+    size_t time_count, first_scale; /* ... and the index of the first key's scale */
 } cwi_gltf_piece;
 
 typedef struct cwi_gltf_document {
@@ -49,13 +50,13 @@ typedef struct cwi_gltf_document {
     size_t count;
     const cw_provenance *provenance;
     size_t provenance_count;
-    const double *local_origin; /* told in the extras of nodes; NULL: applied */
+    const double *local_origin; /* stated in the extras of nodes; NULL: applied */
     double end_s;               /* of the animation that shows one piece at a time; 0: none */
-    uint64_t keys_at;   /* where its numbers are: so many scales, then the times of ... */
-    size_t scale_count; /* ... every piece */
-    bool quantized;     /* integers for positions or normals: KHR_mesh_quantization */
-    uint64_t bytes;     /* of the buffer */
-    uint64_t unpacked;  /* meshopt: of the buffer that is never there; else 0 */
+    uint64_t keys_at;           /* place of the animation's numbers: scale_count scales, */
+    size_t scale_count;         /* then the times of every piece */
+    bool quantized;             /* integers for positions or normals: KHR_mesh_quantization */
+    uint64_t bytes;             /* of the buffer */
+    uint64_t unpacked;          /* meshopt: size of the buffer that no file has; else 0 */
 } cwi_gltf_document;
 
 #ifdef __cplusplus

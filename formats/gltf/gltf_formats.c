@@ -1,4 +1,4 @@
-/* glTF, binary and as text: what is read and written, and by whom. */
+/* The drivers of glTF, binary and as text: their readers, their writers, and what they keep. */
 #include "formats/driver/format_driver.h"
 
 const cwi_format_driver cwi_format_glb = {

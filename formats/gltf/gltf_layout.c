@@ -1,3 +1,5 @@
+/* Lays out the arrays of a glTF file: accessors, their bytes, bounds and places in the
+ * buffer. */
 #include "formats/gltf/gltf_pack.h"
 
 #include "core/base/memory.h"
@@ -14,7 +16,7 @@ enum {
     FLOAT = 5126
 };
 
-/* GLB states its lengths in 32 bits; the JSON in front takes a little of that. */
+/* The maximum of a buffer: GLB states lengths in 32 bits, and the JSON takes a part of that. */
 static const uint64_t MOST_BYTES = UINT32_MAX - (1 << 20);
 
 void cwi_gltf_plan_free(cwi_gltf_plan *plan)
@@ -33,7 +35,7 @@ void cwi_gltf_plan_free(cwi_gltf_plan *plan)
 
 /* --- arrays ------------------------------------------------------------------------------- */
 
-/* 65535 as an index of 16 bits means "restart" and must not name a vertex. */
+/* Returns the type of indices. 65535 in 16 bits means "restart" and must not be an index. */
 static int index_component(const cw_mesh *mesh)
 {
     return mesh->vertex_count <= UINT16_MAX ? UNSIGNED_SHORT : UNSIGNED_INT;
@@ -90,7 +92,7 @@ double cwi_gltf_stored(const cwi_gltf_plan *plan, float coordinate, int axis)
                           : cwi_grid_round(g, coordinate, axis);
 }
 
-/* The box of positions as they are stored: of single precision, to the bit. */
+/* Finds the box of the stored positions, exact to the bit in single precision. */
 static void find_bounds(const cwi_gltf_plan *plan, cwi_gltf_piece *piece)
 {
     const cw_mesh *m = &piece->part->mesh;
@@ -106,7 +108,7 @@ static void find_bounds(const cwi_gltf_plan *plan, cwi_gltf_piece *piece)
     }
 }
 
-/* Where the stored positions stand: the node says so. */
+/* Sets the node's translation: the place of the stored positions. */
 static void place_piece(const cwi_gltf_plan *plan, cwi_gltf_piece *piece)
 {
     const cwi_quantization_grid *g = &plan->grid;
@@ -128,7 +130,7 @@ static bool is_translucent(const cw_mesh *mesh)
 
 /* --- bytes -------------------------------------------------------------------------------- */
 
-/* Colours are sRGB here and linear in glTF; alpha is linear already. */
+/* Fills the table from sRGB to linear colours, which glTF has; alpha is already linear. */
 static void fill_linear(unsigned char linear[256])
 {
     for (int i = 0; i < 256; i++) {
@@ -193,7 +195,7 @@ void cwi_gltf_put(const cwi_gltf_plan *plan, const cwi_gltf_piece *piece,
 
 /* --- the file ----------------------------------------------------------------------------- */
 
-/* Arrays one behind another, each from a multiple of 4 bytes on, as accessors demand. */
+/* Places the arrays one after another, each at a multiple of 4 bytes, as accessors require. */
 static cw_status lay_out(cwi_gltf_plan *plan, cw_error *err)
 {
     cwi_gltf_document *d = &plan->document;
@@ -214,7 +216,8 @@ static cw_status lay_out(cwi_gltf_plan *plan, cw_error *err)
                          (double)d->bytes / 1073741824.0);
 }
 
-/* glTF without extensions has floats for positions and normals. */
+/* Returns true if positions or normals are integers; glTF without extensions requires
+ * floats. */
 static bool is_quantized(const cwi_gltf_piece *piece)
 {
     for (size_t n = 0; n < piece->array_count; n++) {
@@ -225,7 +228,7 @@ static bool is_quantized(const cwi_gltf_piece *piece)
     return false;
 }
 
-/* Copies the list of parts: compression may put others in their place. */
+/* Makes the pieces, and copies the list of parts, since compression may replace them. */
 static cw_status make_pieces(cwi_gltf_plan *plan, const cwi_parts *parts, cw_error *err)
 {
     plan->pieces = cwi_alloc_zeroed(parts->count, sizeof *plan->pieces);
@@ -267,7 +270,7 @@ cw_status cwi_gltf_plan_make(cwi_gltf_plan *plan, const cwi_parts *parts,
     if (out->desc->compression != CW_COMPRESS_NONE)
         st = cwi_gltf_compress(plan, out->desc, err);
     for (size_t p = 0; st == CW_OK && p < parts->count; p++)
-        if (!plan->pieces[p].array_count) /* what is compressed has its own already */
+        if (!plan->pieces[p].array_count) /* compressed pieces have theirs already */
             cwi_gltf_plan_arrays(plan, &plan->pieces[p]);
     if (st == CW_OK)
         st = lay_out(plan, err);

@@ -1,4 +1,4 @@
-// What the two halves of the module "gltf" share. Only they know tinygltf.
+// The interface between the two halves of the module "gltf", the only files that use tinygltf.
 #ifndef FORMATS_GLTF_GLTF_MODULE_HPP
 #define FORMATS_GLTF_GLTF_MODULE_HPP
 
@@ -10,7 +10,7 @@ constexpr const char *GLTF_MESHOPT = "EXT_meshopt_compression";
 constexpr const char *GLTF_LOD = "MSFT_lod";
 constexpr const char *GLTF_DRACO = "KHR_draco_mesh_compression";
 
-// cwi_gltf_functions.document.
+// Makes the JSON of a document; stored as cwi_gltf_functions.document.
 CW_NODISCARD cw_status cwi_gltf_document_make(const cwi_gltf_document *document, char **json,
                                               size_t *size, cw_error *err);
 

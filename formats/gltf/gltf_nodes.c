@@ -1,4 +1,4 @@
-/* The nodes of a glTF scene: which meshes stand where. */
+/* Walks over the nodes of a glTF scene, and finds the places of its meshes. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
@@ -28,8 +28,8 @@ static bool is_unturned(const double *place)
     return true;
 }
 
-/* The millimetres that were meant by metres. Our writer's 0.001 times an origin may have come
- * from several: the one with the fewest digits is taken. */
+/* Converts metres to millimetres. Our writer's 0.001 times an origin may result from several
+ * numbers: the one with the fewest digits is taken. */
 static double from_metres(double metres)
 {
     const double millimetres = 1000 * metres;
@@ -52,7 +52,8 @@ static double from_metres(double metres)
     return same ? found : millimetres;
 }
 
-/* Where a node's mesh stands. Where our writer left the origin of a local file, it is added. */
+/* Sets the place of a node's mesh. Where our writer left out the origin of a local file, it is
+ * added. */
 static cw_status set_place(cwi_gltf_instance *at, const double *world, cw_mesh_file *said,
                            cw_error *err)
 {
@@ -68,12 +69,12 @@ static cw_status set_place(cwi_gltf_instance *at, const double *world, cw_mesh_f
     at->place[1][3] = from_metres(-world[11]);
     at->place[2][3] = from_metres(world[7]);
     for (int a = 0; at->node->has_origin && a < 3; a++)
-        at->place[a][3] += at->node->origin[a]; /* a local file: the scene counts from there */
+        at->place[a][3] += at->node->origin[a]; /* a local file: the scene is relative to it */
     said->local = said->local || at->node->has_origin;
     return CW_OK;
 }
 
-/* A scale of 0 along all axes is how an animation hides what is not to be seen now. */
+/* Returns true for a scale of 0 along all axes, by which animations hide nodes. */
 static bool is_hidden(const double *world)
 {
     for (int i = 0; i < 12; i++)
@@ -82,7 +83,7 @@ static bool is_hidden(const double *world)
     return true;
 }
 
-/* A node with its children to be visited. */
+/* A node whose children are to be visited. */
 typedef struct visit {
     int node, parent;
     size_t depth;
@@ -119,8 +120,8 @@ static cw_status enter_node(cwi_gltf_reader *r, visit v, bool *visited, cw_mesh_
     return set_place(at, r->world[v.node], said, err);
 }
 
-/* Depth first, in the order of the file. The stack cannot overflow: every node is pushed by its
- * one parent or is a root, else there is one that is reached in two ways. */
+/* Walks depth first, in the order of the file. The stack cannot overflow: every node is pushed
+ * by its only parent or is a root. A node that is reached in two ways is an error. */
 static cw_status walk_nodes(cwi_gltf_reader *r, visit *stack, size_t room, bool *visited,
                             cw_mesh_file *said, cw_error *err)
 {

@@ -1,4 +1,4 @@
-/* The primitives of a glTF mesh: vertices and triangles, placed where a node says. */
+/* Adds the primitives of a glTF mesh: vertices and triangles, placed by a node. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/affine.h"
@@ -56,7 +56,7 @@ static cw_status add_points(cwi_gltf_reader *r, const cwi_gltf_instance *at,
 
 enum { FLOAT = 5126 };
 
-/* Normals turn by the inverse transpose, which keeps them outward in a mirror, too. */
+/* Turns a normal by the inverse transpose, which keeps it outward in a mirror, too. */
 static void turn_normal(double cofactor[3][3], double sign, const double n[3], float out[3])
 {
     double turned[3], length = 0;
@@ -100,7 +100,7 @@ static cw_status add_normals(cwi_gltf_reader *r, const cwi_gltf_instance *at, in
     return st;
 }
 
-/* Linear light to sRGB, 0 to 1 to 0 to 255; alpha is linear in both. */
+/* Converts linear light from 0 to 1 into sRGB from 0 to 255; alpha is linear in both. */
 static uint8_t to_srgb(double linear, bool is_alpha)
 {
     const double c = linear > 0 ? fmin(linear, 1) : 0;
@@ -110,7 +110,7 @@ static uint8_t to_srgb(double linear, bool is_alpha)
     return (uint8_t)lround(255 * s);
 }
 
-/* Colours of bytes are looked up: there are two tables of 256. */
+/* Converts colours. Those of bytes are looked up, in two tables of 256. */
 static void convert_colors(const cwi_gltf_numbers *numbers, uint8_t *to)
 {
     uint8_t table[2][256];
@@ -125,7 +125,8 @@ static void convert_colors(const cwi_gltf_numbers *numbers, uint8_t *to)
                       : to_srgb(cwi_gltf_number(numbers, i, c), c == 3);
 }
 
-/* A primitive without colours among others that have some is white, as when it is drawn. */
+/* Adds colours. A primitive without colours among others that have some is white, as it is
+ * drawn. */
 static cw_status add_colors(cwi_gltf_reader *r, int accessor, size_t first, cw_error *err)
 {
     const size_t count = r->build.point_count;
@@ -168,7 +169,7 @@ static cw_status add_vertices(cwi_gltf_reader *r, const cwi_gltf_instance *at,
 
 enum { POINTS, LINES, LINE_LOOP, LINE_STRIP, TRIANGLES, STRIP, FAN };
 
-/* The corners of triangle t; those of a strip are wound by turns. */
+/* Returns the corners of triangle t; the winding of a strip's triangles alternates. */
 static void corners_of(int mode, size_t t, size_t corner[3])
 {
     const size_t odd = t % 2;
@@ -181,7 +182,7 @@ static void corners_of(int mode, size_t t, size_t corner[3])
                                       : t + 1 + c;
 }
 
-/* Indices counted from the primitive's first vertex; without an accessor every vertex once. */
+/* Indices relative to the primitive's first vertex; without an accessor every vertex once. */
 typedef struct corners {
     cwi_gltf_numbers numbers;
     bool listed;
@@ -240,7 +241,7 @@ static cw_status open_corners(const cwi_gltf_reader *r, const cwi_gltf_primitive
     return st;
 }
 
-/* How many points or lines a primitive has that is not read. */
+/* Counts the points or lines of a primitive that is not read. */
 static size_t count_skipped(const cwi_gltf_scene *scene, const cwi_gltf_primitive *p)
 {
     const int accessor = p->indices >= 0 ? p->indices : p->position;
@@ -250,7 +251,8 @@ static size_t count_skipped(const cwi_gltf_scene *scene, const cwi_gltf_primitiv
     return p->mode == LINES ? count / 2 : p->mode == LINE_STRIP && count ? count - 1 : count;
 }
 
-/* first: of the primitive's vertices, which are the last ones. */
+/* Adds the triangles of a primitive. first: index of its first vertex; its vertices are the
+ * last ones. */
 static cw_status add_corners(cwi_gltf_reader *r, const cwi_gltf_instance *at,
                              const cwi_gltf_primitive *p, size_t first, cw_error *err)
 {
@@ -279,7 +281,7 @@ static uint64_t count_of(const cwi_gltf_scene *scene, int accessor)
                : 0;
 }
 
-/* Decodes what Draco compressed, unless the file has it in plain, too. */
+/* Decodes a primitive that Draco compressed, unless the file also has it uncompressed. */
 static cw_status unpack_primitive(cwi_gltf_reader *r, const cwi_gltf_primitive *p,
                                   cw_error *err)
 {
@@ -307,8 +309,8 @@ static cw_status unpack_primitive(cwi_gltf_reader *r, const cwi_gltf_primitive *
     return st;
 }
 
-/* The primitives of a mesh often share their vertices: those of the one before are used again,
- * so that what is closed stays closed. */
+/* Adds an instance of a mesh. The primitives of a mesh often share their vertices. Then the
+ * vertices of the one before are used again, so that closed surfaces stay closed. */
 cw_status cwi_gltf_add_instance(cwi_gltf_reader *r, const cwi_gltf_instance *at,
                                 cw_mesh_file *said, cw_error *err)
 {

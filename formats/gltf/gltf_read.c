@@ -1,4 +1,5 @@
-/* glTF: a scene's triangles, placed by its nodes, merged into one mesh of LPS millimetres. */
+/* Reads glTF: the triangles of a scene, placed by its nodes, merged into one mesh of LPS
+ * millimetres. */
 #include "core/base/memory.h"
 #include "core/base/module.h"
 #include "core/base/status.h"
@@ -47,7 +48,7 @@ bool cwi_gltf_sniff(const unsigned char *head, size_t size, uint64_t file_size)
     return i < size && head[i] == '{';
 }
 
-/* A chunk's size and where its bytes are; false where the file has no more. */
+/* Finds a chunk's size and the place of its bytes; fails where the file has no more. */
 static cw_status find_chunk(const cwi_input *in, uint64_t at, uint64_t end, const char *kind,
                             uint64_t *size, cw_error *err)
 {
@@ -64,7 +65,7 @@ static cw_status find_chunk(const cwi_input *in, uint64_t at, uint64_t end, cons
     return CW_OK;
 }
 
-/* The header, a chunk of JSON, and as a rule one of bytes. */
+/* Reads the header, a chunk of JSON, and usually one of bytes. */
 static cw_status find_chunks(cwi_gltf_reader *r, uint64_t *json, uint64_t *json_size,
                              cw_error *err)
 {
@@ -91,7 +92,7 @@ static cw_status find_chunks(cwi_gltf_reader *r, uint64_t *json, uint64_t *json_
     return find_chunk(in, *json + *json_size, end, "BIN\0", &r->bytes.chunk_size, err);
 }
 
-/* A range of bytes within what a buffer says that it has. */
+/* Checks that a range of bytes lies within the stated size of its buffer. */
 static cw_status check_range(const cwi_gltf_scene *scene, size_t view, const char *member,
                              int64_t buffer, uint64_t offset, uint64_t bytes, cw_error *err)
 {
@@ -144,7 +145,8 @@ static cw_status parse_json(cwi_gltf_reader *r, uint64_t at, uint64_t size, cw_e
 
 /* --- the scene --------------------------------------------------------------------------- */
 
-/* Where all instances are moved alike and not turned, their positions stay to the bit. */
+/* Returns true if all instances are moved alike and not turned; positions then stay to the
+ * bit. */
 static bool is_shifted(const cwi_gltf_reader *r)
 {
     for (size_t i = 0; i < r->instance_count; i++)
@@ -155,7 +157,8 @@ static bool is_shifted(const cwi_gltf_reader *r)
     return r->instance_count > 0;
 }
 
-/* The frame is known where each node says so and none has been turned since. */
+/* Describes the mesh. The frame is known where each node states it and none has been turned
+ * since. */
 static void describe_mesh(const cwi_gltf_reader *r, cw_mesh *mesh, cw_mesh_file *said)
 {
     const cwi_gltf_instance *one = r->instances;
@@ -169,12 +172,12 @@ static void describe_mesh(const cwi_gltf_reader *r, cw_mesh *mesh, cw_mesh_file 
         mesh->origin[a] = one->place[a][3];
 }
 
-/* As many as there are bytes in truth: a small file that draws itself over and over must not
- * take all memory. */
+/* Returns the maximum number of elements, derived from the real number of bytes. A small file
+ * that draws itself many times must not take all memory. */
 static uint64_t most_elements(const cwi_gltf_reader *r)
 {
     uint64_t largest = 0;
-    if (r->in->desc.max_triangles < UINT32_MAX) /* the caller knows */
+    if (r->in->desc.max_triangles < UINT32_MAX) /* the caller decides */
         return 3 * r->in->desc.max_triangles + FREE_COUNT;
     for (size_t i = 0; i < r->scene.buffer_count; i++) {
         const uint64_t bytes = cwi_gltf_file_bytes(&r->bytes, &r->scene.buffers[i]);
@@ -190,13 +193,13 @@ static uint64_t claimed_count(const cwi_gltf_scene *scene, int accessor)
     return count < UINT32_MAX ? count : UINT32_MAX;
 }
 
-/* What drawing a mesh adds, by its own words. */
+/* The elements that drawing a mesh adds, as the file states them. */
 typedef struct drawing {
     uint64_t vertices, triangles;
     bool counted;
 } drawing;
 
-/* A primitive of nothing counts as a triangle: it takes time, too. */
+/* Counts a drawing. An empty primitive counts as a triangle, since it takes time, too. */
 static drawing count_drawing(const cwi_gltf_scene *scene, const cwi_gltf_mesh *mesh)
 {
     drawing sum = {.counted = true};
@@ -211,7 +214,7 @@ static drawing count_drawing(const cwi_gltf_scene *scene, const cwi_gltf_mesh *m
     return sum;
 }
 
-/* The arrays that a mesh takes while it is put together: points are doubles until then. */
+/* Checks the memory of the arrays while a mesh is built: points are doubles until the end. */
 static cw_status check_memory(const cwi_gltf_reader *r, const drawing *sum, cw_error *err)
 {
     const uint64_t limit = r->in->desc.max_bytes;
@@ -227,7 +230,7 @@ static cw_status check_memory(const cwi_gltf_reader *r, const drawing *sum, cw_e
                    text);
 }
 
-/* Meshes that are drawn again and again are added up before the first one is drawn. */
+/* Adds up meshes that are drawn repeatedly, before the first one is drawn. */
 static cw_status check_repeats(const cwi_gltf_reader *r, cw_error *err)
 {
     const size_t count = r->scene.mesh_count;
@@ -287,7 +290,7 @@ static cw_status read_scene(cwi_mesh_input *in, bool binary, cw_mesh *mesh, cw_m
     uint64_t json = 0, json_size = in->file.size;
     r.unpacker.desc = &in->desc;
     r.bytes.unpacker = &r.unpacker;
-    /* what is missing is told first; what is there is loaded where the file is parsed */
+    /* a missing module is reported first; an existing one is loaded where the file is parsed */
     cw_status st = cwi_module_present("gltf") ? CW_OK : cwi_gltf_prepare(err);
     if (st == CW_OK && binary)
         st = find_chunks(&r, &json, &json_size, err);

@@ -1,4 +1,4 @@
-/* A glTF scene on its way to a mesh: what the parts of its reader share. */
+/* The state of reading a glTF scene into a mesh, which the parts of the reader share. */
 #ifndef FORMATS_GLTF_GLTF_READER_H
 #define FORMATS_GLTF_GLTF_READER_H
 
@@ -10,7 +10,7 @@ typedef struct cwi_gltf_instance {
     int mesh;
     const cwi_gltf_node *node;
     double place[3][4]; /* to LPS millimetres */
-    bool unturned;      /* nothing but a translation */
+    bool unturned;      /* its place is only a translation */
 } cwi_gltf_instance;
 
 typedef struct cwi_gltf_reader {
@@ -23,24 +23,24 @@ typedef struct cwi_gltf_reader {
     cwi_gltf_instance *instances;
     size_t instance_count;
     bool shifted;  /* every instance is moved by the mesh's origin, and nothing else */
-    uint64_t most; /* vertices, and triangles, that the scene may be drawn with */
+    uint64_t most; /* maximum of vertices, and of triangles, that may be drawn */
     cwi_mesh_build build;
-    float *normals; /* a place for each point; NULL: none so far */
+    float *normals; /* room for one per point; NULL: none so far */
     uint8_t *colors;
     size_t normal_room, color_room;
     bool no_normals; /* some primitive has none: then none are kept */
 } cwi_gltf_reader;
 
-/* Walks the scene's nodes and finds those that have a mesh, and where it stands.
+/* Walks over the scene's nodes, and finds those that have a mesh, and its place.
  * Returns CW_ERR_FORMAT for nodes that are no forest, or nest too deeply. */
 CW_NODISCARD cw_status cwi_gltf_find_instances(cwi_gltf_reader *r, cw_mesh_file *said,
                                                cw_error *err);
 
-/* Adds the vertices and triangles of one of them. */
+/* Adds the vertices and triangles of one instance. */
 CW_NODISCARD cw_status cwi_gltf_add_instance(cwi_gltf_reader *r, const cwi_gltf_instance *at,
                                              cw_mesh_file *said, cw_error *err);
 
-/* CW_ERR_LIMIT for more vertices or triangles than r->most. */
+/* Returns CW_ERR_LIMIT for more vertices or triangles than r->most. */
 CW_NODISCARD cw_status cwi_gltf_limit(const cwi_gltf_reader *r, uint64_t count, cw_error *err);
 
 #endif

@@ -1,6 +1,6 @@
-/* tinygltf, shut in a process of its own: JSON goes in, and a scene comes out, through memory
- * that both sides see. What comes out is the work of a stranger's file: every size and range in
- * it is checked. */
+/* Runs tinygltf in a sandboxed process. JSON goes in, and a scene comes out through memory that
+ * both sides see. The scene results from an untrusted file, so every size and range in it is
+ * checked. */
 #include "core/base/memory.h"
 #include "core/base/sandbox.h"
 #include "core/base/status.h"
@@ -12,9 +12,9 @@
 enum { LARGEST_ELEMENT = 256, MOST_JSON = 32 << 20, HEAD = 64 << 10 };
 static const uint64_t NO_URI = UINT64_MAX;
 
-/* One array of a scene. */
+/* An array of a scene. */
 typedef struct column {
-    size_t array, count; /* where the pointer and the number of elements are */
+    size_t array, count; /* offsets of the pointer and of the number of elements */
     size_t size;         /* of an element */
 } column;
 
@@ -44,7 +44,7 @@ static size_t count_of(const cwi_gltf_scene *s, const column *c)
     return *(const size_t *)(const void *)((const char *)s + c->count);
 }
 
-/* A part of the shared memory, written or read from its start on. */
+/* A part of the shared memory, written or read from its start. */
 typedef struct tape {
     char *at, *end;
 } tape;
@@ -77,7 +77,7 @@ static bool put_uri(tape *t, const char *uri)
     return put_bytes(t, &size, sizeof size) && (!uri || put_bytes(t, uri, strlen(uri)));
 }
 
-/* Every array, its length in front; behind them the places of buffers. */
+/* Writes a scene: every array after its length, then the URIs of buffers. */
 bool cwi_gltf_put_scene(const cwi_gltf_scene *s, void *to, size_t room)
 {
     tape tape_to = {.at = to, .end = (char *)to + room}, *t = &tape_to;
@@ -93,7 +93,7 @@ bool cwi_gltf_put_scene(const cwi_gltf_scene *s, void *to, size_t room)
 }
 
 typedef struct job {
-    const cwi_gltf_functions *functions; /* loaded there */
+    const cwi_gltf_functions *functions; /* loaded in the child */
     size_t json, shared;                 /* bytes */
 } job;
 
@@ -150,7 +150,7 @@ static cw_status take_column(tape *t, const column *c, cwi_gltf_scene *s, cw_err
     return CW_OK;
 }
 
-/* A bool of a stranger's may hold anything. */
+/* Makes a bool valid: untrusted memory may hold any byte. */
 static void mend_bool(bool *b)
 {
     unsigned char byte;
@@ -158,7 +158,8 @@ static void mend_bool(bool *b)
     *b = byte != 0;
 }
 
-/* What our own module takes care of, and its process may not have. */
+/* Checks the scene. Our own module keeps these rules, but its process may have been taken
+ * over. */
 static bool mend_scene(cwi_gltf_scene *s)
 {
     for (size_t i = 0; i < s->accessor_count; i++) {
@@ -188,7 +189,7 @@ cw_status cwi_gltf_take_scene(const void *from, size_t size, cwi_gltf_scene *s, 
     t->end = t->at + size;
     for (size_t n = 0; st == CW_OK && n < COLUMNS; n++)
         st = take_column(t, &columns[n], s, err);
-    for (size_t i = 0; i < s->buffer_count; i++) /* addresses of the child's */
+    for (size_t i = 0; i < s->buffer_count; i++) /* addresses in the child */
         s->buffers[i].uri = NULL;
     for (size_t i = 0; st == CW_OK && i < s->buffer_count; i++)
         st = take_uri(t, &s->buffers[i].uri, err);
@@ -200,7 +201,7 @@ cw_status cwi_gltf_take_scene(const void *from, size_t size, cwi_gltf_scene *s, 
 cw_status cwi_gltf_parse(const char *json, size_t size, const cw_mesh_read_desc *desc,
                          cwi_gltf_scene *scene, cw_error *err)
 {
-    const size_t dense = size < MOST_JSON ? size : MOST_JSON; /* beside its strings */
+    const size_t dense = size < MOST_JSON ? size : MOST_JSON; /* without its strings */
     job j = {.json = size, .shared = 2 * size + LARGEST_ELEMENT * dense + HEAD};
     cwi_sandbox box = {0};
     const cwi_sandbox_desc shut = {.library = "tinygltf",
@@ -225,9 +226,9 @@ cw_status cwi_gltf_parse(const char *json, size_t size, const cw_mesh_read_desc 
 
 /* --- writing ------------------------------------------------------------------------------ */
 
-/* The JSON of a document goes the other way: its size, then its bytes. */
+/* A job of the other direction: a document in, and its JSON out: its size, then its bytes. */
 typedef struct writing {
-    const cwi_gltf_functions *functions; /* loaded there */
+    const cwi_gltf_functions *functions; /* loaded in the child */
     const cwi_gltf_document *document;
     size_t room;
 } writing;
@@ -253,7 +254,7 @@ static cw_status make_json(void *state, int fd, const void *request, void *share
     return st;
 }
 
-/* Far more than the JSON takes, of which no more is used than there is. */
+/* Returns an upper bound, far above the JSON's size. Unused memory is never touched. */
 static size_t room_for_json(const cwi_gltf_document *d)
 {
     enum { BASE = 1 << 20, PER_PIECE = 16 << 10, WORST_ESCAPE = 6 };
@@ -273,7 +274,7 @@ static cw_status take_json(const void *shared, char **json, size_t *size, cw_err
     return CW_OK;
 }
 
-/* Where the system gives no process, it is done here. */
+/* Makes the JSON in a process of its own, or here where the system gives none. */
 cw_status cwi_gltf_make_json(const cwi_gltf_document *document, char **json, size_t *size,
                              cw_error *err)
 {

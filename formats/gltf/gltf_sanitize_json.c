@@ -1,4 +1,5 @@
-/* JSON, made fit for a library that trusts it. */
+/* Sanitizes JSON for tinygltf, which trusts its input: limits nesting and renames unneeded
+ * keys. */
 #include "core/base/status.h"
 #include "formats/gltf/gltf_scene.h"
 
@@ -10,7 +11,7 @@ enum {
     MOST_STRUCTURE = 32 << 20
 };
 
-/* The end of a string that starts at its first quote: behind the last one. */
+/* Returns the end of a string, given the place of its first quote: behind the last one. */
 static size_t string_end(const char *json, size_t size, size_t at)
 {
     for (at++; at < size && json[at] != '"'; at++)
@@ -36,7 +37,7 @@ static bool is_wanted(const char *key, size_t length)
     return false;
 }
 
-/* A key of the outermost object, with its quotes: in the same number of bytes. */
+/* Renames a key of the outermost object, with its quotes, in the same number of bytes. */
 static void rename_key(char *key, size_t size)
 {
     static const char buffers[] = "\"buffers\"", instead[] = "\"extras\" ";
@@ -53,8 +54,8 @@ static bool is_number(const char *json, size_t size, size_t at)
     return at < size && (json[at] == '-' || (json[at] >= '0' && json[at] <= '9'));
 }
 
-/* A key of a primitive: its indices are hidden from tinygltf, which refuses those that Draco
- * compressed, in its "extras". Behind the key is at end. */
+/* Renames the key of a primitive's indices to "extras". This hides indices compressed by Draco,
+ * which tinygltf would refuse. `end` is the place behind the key. */
 static void hide_indices(char *json, size_t size, size_t at, size_t end)
 {
     static const char indices[] = "\"indices\"", extras[] = "\"extras\"";

@@ -1,5 +1,5 @@
-/* What a glTF file says, as plain numbers: the parts of it that a mesh needs. Nothing here has
- * been checked; indices are as in the file, -1 where there is none. */
+/* The content of a glTF file as plain numbers, as far as a mesh needs it. Nothing here has been
+ * checked; indices are as in the file, -1 where there is none. */
 #ifndef FORMATS_GLTF_GLTF_SCENE_H
 #define FORMATS_GLTF_GLTF_SCENE_H
 
@@ -11,7 +11,7 @@ extern "C" {
 
 typedef struct cwi_gltf_buffer {
     char *uri;      /* NULL: the binary chunk */
-    uint64_t bytes; /* as the JSON says */
+    uint64_t bytes; /* as the JSON states */
 } cwi_gltf_buffer;
 
 typedef enum cwi_gltf_mode {
@@ -28,7 +28,7 @@ typedef struct cwi_gltf_view {
     int packed_mode, packed_filter;
 } cwi_gltf_view;
 
-/* Elements that take the place of others. */
+/* Elements that replace others. */
 typedef struct cwi_gltf_sparse {
     uint64_t count; /* 0: none */
     int64_t index_view, value_view;
@@ -49,7 +49,7 @@ typedef struct cwi_gltf_primitive {
     int mode; /* 0 to 6 */
     int indices, position, normal, color;
     int draco; /* the view of KHR_draco_mesh_compression; -1: not compressed */
-    int draco_position, draco_normal, draco_color; /* Draco's numbers for attributes; or -1 */
+    int draco_position, draco_normal, draco_color; /* Draco's numbers of attributes; or -1 */
 } cwi_gltf_primitive;
 
 typedef struct cwi_gltf_mesh {
@@ -60,9 +60,9 @@ typedef struct cwi_gltf_node {
     int mesh;
     size_t first, end;                /* of children */
     double local[3][4];               /* to the parent's frame */
-    bool lps, has_origin, has_affine; /* what our writer leaves in extras */
+    bool lps, has_origin, has_affine; /* flags that our writer stores in extras */
     double origin[3], affine[3][4];
-    size_t levels; /* that MSFT_lod names */
+    size_t levels; /* number of levels that MSFT_lod names */
 } cwi_gltf_node;
 
 /* A zeroed scene is empty. */
@@ -80,41 +80,43 @@ typedef struct cwi_gltf_scene {
 
 void cwi_gltf_scene_free(cwi_gltf_scene *scene);
 
-/* A scene as bytes, to leave a process: false when there is no room. And back, into a zeroed
- * scene that the caller frees: CW_ERR_BACKEND for lengths, ranges or kinds that cannot be. */
+/* Writes a scene as bytes, for transfer between processes; false when there is no room. The
+ * second function reads it back into a zeroed scene that the caller frees. It returns
+ * CW_ERR_BACKEND for impossible lengths, ranges or kinds. */
 bool cwi_gltf_put_scene(const cwi_gltf_scene *scene, void *to, size_t room);
 CW_NODISCARD cw_status cwi_gltf_take_scene(const void *from, size_t size, cwi_gltf_scene *scene,
                                            cw_error *err);
 
-/* Holds JSON against the members that are read of it: type, range, and that what must be there
- * is. What is not read may hold anything.
+/* Checks the members of the JSON that are read: type, range, and presence of required ones.
+ * Other members may hold anything.
  * Returns CW_ERR_FORMAT, which names the member as "meshes[0].primitives[1].indices". */
 CW_NODISCARD cw_status cwi_gltf_check(const char *json, size_t size, cw_error *err);
 
-/* Makes JSON fit for a library that trusts it: refuses nesting deeper than 64 and more than 32
- * MiB beside strings, and renames what no mesh needs (images, materials, extensions, ...), so
- * that it is never looked at. The indices of primitives become their "extras", for those that
- * Draco compressed have no view. "buffers" becomes "extras", which only describes: the bytes of
- * buffers are for cwi_gltf_load() alone. */
+/* Sanitizes JSON for a library that trusts it. Refuses nesting deeper than 64 and more than 32
+ * MiB besides strings. Renames keys that no mesh needs (images, materials, extensions, ...), so
+ * that the library ignores them. The indices of primitives become their "extras", since those
+ * that Draco compressed have no view. "buffers" becomes "extras", which only describe: only
+ * cwi_gltf_load() reads the bytes of buffers. */
 CW_NODISCARD cw_status cwi_gltf_blind(char *json, size_t size, cw_error *err);
 
-/* Where the bytes of buffers are. */
+/* The place of the buffers' bytes. */
 typedef struct cwi_gltf_bytes {
     const cwi_input *in;
     uint64_t chunk, chunk_size; /* the binary chunk of a .glb file */
     struct cwi_gltf_unpacker *unpacker;
-    const cwi_gltf_primitive *unpacked; /* the one whose arrays are these, not the buffers' */
+    const cwi_gltf_primitive *unpacked; /* a decoded primitive: its arrays are here, not in the
+                                           buffers */
     const struct cwi_arrays *arrays;
 } cwi_gltf_bytes;
 
-/* The bytes from an offset of a buffer on: copied, to be freed with cwi_free().
- * Returns CW_ERR_FORMAT where the buffer or what holds it is shorter; CW_ERR_UNSAFE,
- * CW_ERR_IO for a file of its own; CW_ERR_NO_MEMORY. */
+/* Copies the bytes from an offset of a buffer on, to be freed with cwi_free().
+ * Returns CW_ERR_FORMAT where the buffer or its container is shorter; CW_ERR_UNSAFE,
+ * CW_ERR_IO for a separate file; CW_ERR_NO_MEMORY. */
 CW_NODISCARD cw_status cwi_gltf_load(const cwi_gltf_bytes *from, const cwi_gltf_scene *scene,
                                      uint64_t buffer, uint64_t offset, uint64_t size,
                                      unsigned char **bytes, cw_error *err);
 
-/* The size of the file that a buffer has of its own; 0 when there is none. */
+/* Returns the size of a buffer's separate file; 0 when there is none. */
 uint64_t cwi_gltf_file_bytes(const cwi_gltf_bytes *from, const cwi_gltf_buffer *buffer);
 
 /* The numbers of an accessor, checked against view and buffer, one after another. */
@@ -125,13 +127,14 @@ typedef struct cwi_gltf_numbers {
     bool normalized;
 } cwi_gltf_numbers;
 
-/* what names the accessor's use in messages: "POSITION". */
+/* Opens the numbers of an accessor. what: the accessor's use, for messages: "POSITION". */
 CW_NODISCARD cw_status cwi_gltf_open_numbers(const cwi_gltf_bytes *from,
                                              const cwi_gltf_scene *scene, int accessor,
                                              const char *what, cwi_gltf_numbers *numbers,
                                              cw_error *err);
 
-/* Number c of element i: as it is, or (normalized) as a share of its type's largest. */
+/* Returns number c of element i: unchanged, or (normalized) as a fraction of its type's
+ * maximum. */
 double cwi_gltf_number(const cwi_gltf_numbers *numbers, size_t i, int c);
 
 #ifdef __cplusplus

@@ -1,5 +1,5 @@
-/* glTF's JSON held against a table of the members that we read, before a library reads it:
- * tinygltf takes a member of the wrong type for one that is not there. */
+/* Checks glTF's JSON against a table of the members that are read, before tinygltf reads it.
+ * tinygltf treats a member of the wrong type as missing. */
 #include "core/base/status.h"
 #include "core/base/text.h"
 #include "formats/gltf/gltf_scene.h"
@@ -17,7 +17,7 @@ typedef enum value_kind {
     INDEX,   /* into a list of the outermost object */
     INDICES,
     WHOLE,   /* a whole number from least to most, a multiple of step */
-    NUMBERS, /* as many as `most`; none is larger than `largest`, unless that is 0 */
+    NUMBERS, /* up to `most` numbers; none is larger than `largest`, unless that is 0 */
     BOOLEAN,
     STRING,
     STRINGS,
@@ -47,12 +47,12 @@ typedef struct rule {
     uint64_t least, most; /* of WHOLE; most 0: no limit */
     uint64_t step;
     double largest;             /* of NUMBERS */
-    const char *choices;        /* words with a blank between */
+    const char *choices;        /* words separated by blanks */
     const struct rule *members; /* of an object */
 } rule;
 
-/* tinygltf keeps whole numbers of extensions and of "sparse" in 31 bits, and cuts off the rest;
- * those of buffers go through it in 32. */
+/* The maximum of small numbers. tinygltf keeps whole numbers of extensions and of "sparse" in
+ * 31 bits, and cuts off the rest; those of buffers pass through it in 32 bits. */
 #define MOST_SMALL INT32_MAX
 #define ALL_CODES  "5120 5121 5122 5123 5125 5126"
 
@@ -84,7 +84,7 @@ static const rule node[] = {
     {.key = "children", .kind = INDICES, .list = NODES},
     {.key = "matrix", .kind = NUMBERS, .most = 16},
     {.key = "translation", .kind = NUMBERS, .most = 3},
-    {.key = "rotation", .kind = NUMBERS, .most = 4, .largest = 1.001}, /* rounded, maybe */
+    {.key = "rotation", .kind = NUMBERS, .most = 4, .largest = 1.001}, /* allows for rounding */
     {.key = "scale", .kind = NUMBERS, .most = 3},
     {.key = "extensions", .kind = OBJECT},
     {0}};
@@ -158,7 +158,8 @@ static const rule outermost[] = {
 
 /* --- walking through JSON ---------------------------------------------------------------- */
 
-/* Only as much of the grammar is checked as the walk needs; tinygltf refuses the rest. */
+/* A walk through the JSON. It checks only the grammar that it needs; tinygltf refuses the
+ * rest. */
 typedef struct walker {
     const char *json;
     size_t size, at;
@@ -179,7 +180,7 @@ static cw_status fail_broken(const walker *w)
                    "the glTF is not valid: its JSON is broken at byte %zu", w->at);
 }
 
-/* The next character that is no blank; 0 at the end. */
+/* Returns the next character that is not a blank; 0 at the end. */
 static char next_char(walker *w)
 {
     while (w->at < w->size && w->json[w->at] && strchr(" \t\r\n", w->json[w->at]))
@@ -194,7 +195,7 @@ static bool take_char(walker *w, char c)
     return found;
 }
 
-/* A string's bytes, without its quotes; NULL for anything else. */
+/* Returns a string's bytes, without its quotes; NULL for anything else. */
 static const char *take_string(walker *w, size_t *length)
 {
     if (!take_char(w, '"'))
@@ -208,7 +209,7 @@ static const char *take_string(walker *w, size_t *length)
     return start;
 }
 
-/* A number, true, false or null: all up to what may stand behind it. */
+/* Returns a number, true, false or null: all characters up to a delimiter. */
 static const char *take_bare(walker *w, size_t *length)
 {
     next_char(w);
@@ -219,7 +220,7 @@ static const char *take_bare(walker *w, size_t *length)
     return *length ? start : NULL;
 }
 
-/* Passes a value over, without recursion. */
+/* Skips a value, without recursion. */
 static bool skip_value(walker *w)
 {
     size_t depth = 0, length;
@@ -255,7 +256,8 @@ static size_t put_path(const place *p, char path[PATH_BYTES])
     return used < PATH_BYTES ? used : PATH_BYTES - 1;
 }
 
-/* The value that starts at `from`, short enough for a message; its bytes are of a stranger. */
+/* Shortens the value that starts at `from` for a message, and makes its untrusted bytes
+ * printable. */
 static void show_value(const char *from, const char *end, char shown[SHOWN_BYTES])
 {
     size_t used = 0;
@@ -268,7 +270,8 @@ static void show_value(const char *from, const char *end, char shown[SHOWN_BYTES
     snprintf(shown + used, SHOWN_BYTES - used, "%s", from < end ? "..." : "");
 }
 
-/* "nodes[3].mesh: -5 is not an index (0 to 7)". The value starts at byte `start`. */
+/* Reports a wrong value: "nodes[3].mesh: -5 is not an index (0 to 7)". The value starts at byte
+ * `start`. */
 static cw_status fail_value(walker *w, size_t start, const place *p, const char *wanted)
 {
     char path[PATH_BYTES] = "", shown[SHOWN_BYTES];
@@ -313,7 +316,7 @@ static bool is_number(const char *text, size_t length)
     return length && (*text == '-' || (*text >= '0' && *text <= '9'));
 }
 
-/* A whole number, written without a point or an exponent, as glTF asks for. */
+/* Parses a whole number, written without a point or an exponent, as glTF requires. */
 static bool parse_whole(const char *text, size_t length, uint64_t *value)
 {
     *value = 0;
@@ -338,7 +341,7 @@ static bool is_choice(const char *choices, const char *text, size_t length)
     return false;
 }
 
-/* A bare value at hand; for any other *length is 0. */
+/* Returns the next value if it is bare; for any other one *length is 0. */
 static const char *look_at_bare(walker *w, size_t *length)
 {
     const size_t start = w->at;
@@ -410,7 +413,7 @@ static cw_status check_plain(walker *w, const rule *r, const place *p)
 
 static cw_status check_value(walker *w, const rule *r, const place *p);
 
-/* The elements of a list: each is of the kind `one`. */
+/* Checks the elements of a list: each is of the kind `one`. */
 static cw_status check_list(walker *w, const rule *r, value_kind one, const place *p)
 {
     const size_t start = w->at;
@@ -436,7 +439,7 @@ static cw_status check_list(walker *w, const rule *r, value_kind one, const plac
     return st;
 }
 
-/* Whether a key as it is written, maybe with escapes, spells a name. */
+/* Returns true if a key as written, possibly with escapes, spells a name. */
 static bool key_spells(const char *key, size_t length, const char *name)
 {
     size_t i = 0;
@@ -478,7 +481,8 @@ static cw_status check_required(const walker *w, const rule *rules, unsigned see
     return CW_OK;
 }
 
-/* One member behind its key. glTF's own names are written without escapes, by its own rules. */
+/* Checks the value of one member. glTF requires that its own names are written without
+ * escapes. */
 static cw_status check_member(walker *w, const rule *r, bool escaped, const place *p)
 {
     const place at = {p, r->key, 0};
@@ -565,7 +569,8 @@ static bool count_elements(walker *w, size_t *count)
     return take_char(w, ']');
 }
 
-/* How long the outermost lists are: indices may stand before the lists they point into. */
+/* Counts the outermost lists' elements first, since indices may precede the lists they point
+ * into. */
 static bool count_lists(walker *w)
 {
     if (!take_char(w, '{'))

@@ -1,4 +1,4 @@
-// glTF on its way in: JSON becomes plain numbers, by tinygltf. The bytes of buffers pass it by.
+// Turns glTF's JSON into plain numbers by tinygltf, without the bytes of buffers.
 #include "formats/gltf/gltf_module.hpp"
 
 #include "core/base/guard.hpp"
@@ -12,7 +12,7 @@
 namespace
 {
 
-// Arrays go to C: ours frees them, even those of a scene that was not finished.
+// Allocates an array for C, which frees all arrays, even those of an incomplete scene.
 template <typename T> cw_status allocate(T *&array, size_t &count, size_t wanted, cw_error *err)
 {
     array = static_cast<T *>(cwi_alloc_zeroed(wanted, sizeof(T)));
@@ -26,15 +26,15 @@ cw_status fail_model(cw_error *err, std::string words)
     return cw_fail(err, CW_ERR_FORMAT, "the glTF is not valid: %.400s", words.c_str());
 }
 
-// A member of what may be no object.
+// Returns a member of a value, which may not be an object.
 const tinygltf::Value &member(const tinygltf::Value &from, const char *key)
 {
     static const tinygltf::Value none;
     return from.IsObject() ? from.Get(key) : none;
 }
 
-// What cwi_gltf_blind() left of "buffers": a list of objects, in "extras". tinygltf makes an
-// int of 'byteLength', which cwi_gltf_check() holds within 32 bits.
+// Copies the buffers: a list of objects, which cwi_gltf_blind() has renamed to "extras".
+// tinygltf makes an int of 'byteLength'; cwi_gltf_check() has limited it to 32 bits.
 cw_status copy_buffers(const tinygltf::Value &list, cwi_gltf_scene &scene, cw_error *err)
 {
     const size_t count = list.IsArray() ? list.ArrayLen() : 0;
@@ -52,7 +52,7 @@ cw_status copy_buffers(const tinygltf::Value &list, cwi_gltf_scene &scene, cw_er
     return st;
 }
 
-// A whole number from 0 on; anything else becomes more than there can be.
+// Returns a whole number from 0 on; anything else becomes a number that is too large.
 uint64_t number_of(const tinygltf::Value &value)
 {
     const double number = value.IsNumber() ? value.GetNumberAsDouble() : -1;
@@ -103,7 +103,7 @@ cw_status copy_views(const tinygltf::Model &model, cwi_gltf_scene &scene, cw_err
     return st;
 }
 
-// Numbers of an element; matrices are of no use.
+// Returns the count of numbers in an element; matrices are not used.
 int numbers_of(int type)
 {
     if (type == TINYGLTF_TYPE_SCALAR)
@@ -147,7 +147,8 @@ int find_attribute(const tinygltf::Primitive &primitive, const char *name)
 void copy_primitive(const tinygltf::Primitive &from, cwi_gltf_primitive &to)
 {
     to.mode = from.mode < 0 ? TINYGLTF_MODE_TRIANGLES : from.mode;
-    to.indices = from.extras.IsNumber() ? id_of(from.extras) : -1; // see cwi_gltf_blind()
+    to.indices =
+        from.extras.IsNumber() ? id_of(from.extras) : -1; // renamed by cwi_gltf_blind()
     to.position = find_attribute(from, "POSITION");
     to.normal = find_attribute(from, "NORMAL");
     to.color = find_attribute(from, "COLOR_0");
@@ -181,7 +182,8 @@ cw_status copy_meshes(const tinygltf::Model &model, cwi_gltf_scene &scene, cw_er
     return CW_OK;
 }
 
-// The numbers of an array of that many; false, and the old ones left, for anything else.
+// Copies the numbers of an array of that count; for anything else returns false and keeps the
+// old ones.
 bool copy_numbers(const tinygltf::Value &from, double *to, size_t count)
 {
     if (!from.IsArray() || from.ArrayLen() != count)
@@ -195,7 +197,7 @@ bool copy_numbers(const tinygltf::Value &from, double *to, size_t count)
     return true;
 }
 
-// What make_extras() wrote.
+// Reads the extras that make_extras() wrote.
 void copy_extras(const tinygltf::Value &extras, cwi_gltf_node &node)
 {
     const tinygltf::Value &frame = member(extras, "frame"), &unit = member(extras, "unit");
@@ -214,7 +216,7 @@ size_t count_levels(const tinygltf::Node &node)
     return ids.IsArray() ? ids.ArrayLen() : 0;
 }
 
-// Translation times rotation times scale. The quaternion need not have unit length.
+// Computes translation times rotation times scale. The quaternion need not have unit length.
 void set_matrix(const tinygltf::Node &from, double to[3][4])
 {
     const std::vector<double> &m = from.matrix, &t = from.translation, &s = from.scale;
@@ -280,7 +282,7 @@ cw_status copy_nodes(const tinygltf::Model &model, cwi_gltf_scene &scene, cw_err
     return CW_OK;
 }
 
-// The scene to show; without any scene, every node that is no other's child.
+// Copies the roots of the scene to show; without any scene, all nodes without a parent.
 cw_status copy_roots(const tinygltf::Model &model, cwi_gltf_scene &scene, cw_error *err)
 {
     std::vector<int> roots;
@@ -305,7 +307,7 @@ cw_status copy_roots(const tinygltf::Model &model, cwi_gltf_scene &scene, cw_err
     return st;
 }
 
-// Extensions that change how a scene looks, but not where its triangles are, do no harm.
+// Checks required extensions. Those that change only the look of a scene are accepted.
 cw_status check_extensions(const tinygltf::Model &model, cw_error *err)
 {
     const std::vector<std::string> harmless = {
@@ -321,7 +323,7 @@ cw_status check_extensions(const tinygltf::Model &model, cw_error *err)
     return CW_OK;
 }
 
-// What a primitive takes from an accessor, and the types that glTF allows for it.
+// The use of an accessor in a primitive, and the types that glTF allows for it.
 struct Usage {
     const char *name, *wanted;
     bool (*fits)(const tinygltf::Accessor &accessor, bool quantized);
@@ -388,7 +390,7 @@ cw_status check_usage(const tinygltf::Model &model, const std::string &path, int
                    usage.name, accessor, usage.wanted);
 }
 
-// Points and lines are left out, whatever they hold.
+// Checks the types of accessors. Points and lines are left out, with any content.
 cw_status check_usages(const tinygltf::Model &model, const cwi_gltf_scene &scene, cw_error *err)
 {
     const auto &names = model.extensionsRequired;
@@ -427,11 +429,11 @@ cw_status parse_scene(const char *json, size_t size, cwi_gltf_scene *scene,
         tinygltf::Model model;
         std::string words, warning;
         loader.SetImageLoader(ignore_image, nullptr);
-        loader.SetFsCallbacks({});   // it opens no file
-        model.asset.version.clear(); // not what it takes for granted
+        loader.SetFsCallbacks({});   // it must open no file
+        model.asset.version.clear(); // no default
         const bool done =
             loader.LoadASCIIFromString(&model, &words, &warning, json, unsigned(size), "", 0);
-        if (!done || !words.empty()) // what is broken it may leave out, and go on
+        if (!done || !words.empty()) // it may omit broken parts and go on
             return fail_model(err, words);
         if (model.asset.version.compare(0, 2, "2.") != 0)
             return cw_fail(err, CW_ERR_FORMAT, "'asset.version' is '%.20s'; 2.0 was expected",

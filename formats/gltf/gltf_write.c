@@ -1,4 +1,5 @@
-/* glTF: the JSON is made by a module, the bytes are written beside it, a piece at a time. */
+/* Writes glTF: a module makes the JSON, and the bytes are written separately, piece by
+ * piece. */
 #include "core/base/memory.h"
 #include "core/base/module.h"
 #include "core/base/status.h"
@@ -26,7 +27,7 @@ cw_status cwi_gltf_prepare(cw_error *err)
 
 /* --- the buffer's bytes ------------------------------------------------------------------- */
 
-/* Bytes on their way to the file: as they are, or (text) as base64. */
+/* A pipe of bytes to the file: unchanged, or (text) as base64. */
 typedef struct pipe {
     cwi_mesh_output *out;
     bool text;
@@ -111,8 +112,8 @@ static cw_status write_buffer(const cwi_gltf_plan *plan, cwi_mesh_output *out, b
 
 /* --- the file ----------------------------------------------------------------------------- */
 
-/* "buffers" goes in front of what the module made: it leaves that out, as it holds no bytes.
- * The second one is that of meshopt's unpacked bytes, which no file has. */
+/* Prints "buffers", which goes before the module's JSON; the module leaves it out, as it has no
+ * bytes. The second buffer is that of meshopt's unpacked bytes, which no file has. */
 static int print_buffers(const cwi_gltf_plan *plan, const char *uri, char *text, size_t size)
 {
     const cwi_gltf_document *d = &plan->document;

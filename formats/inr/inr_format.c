@@ -1,4 +1,4 @@
-/* INRIMAGE-4: what is read and written, and by whom. */
+/* The driver of INRIMAGE-4: its names and its reader. */
 #include "formats/driver/format_driver.h"
 
 const cwi_format_driver cwi_format_inr = {

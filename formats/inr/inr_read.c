@@ -1,5 +1,5 @@
-/* INRIMAGE-4: a text header of "KEY=value" lines, filled up to a multiple of 256 bytes, and the
- * voxels behind it; or all of that as a gzip file. */
+/* Reads INRIMAGE-4: a text header of "KEY=value" lines, padded to a multiple of 256 bytes, then
+ * the voxels; or all of that as a gzip file. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/bytes/inflate_stream.h"
@@ -58,7 +58,7 @@ typedef struct inr {
     char *text;
     size_t size; /* of the header */
     bool gzipped;
-    const char *value[KEY_COUNT]; /* as written; NULL: the key is not there */
+    const char *value[KEY_COUNT]; /* as written; NULL: the key is missing */
 } inr;
 
 bool cwi_inr_sniff(const unsigned char *head, size_t size)
@@ -94,7 +94,7 @@ static cw_status read_text(const cwi_input *in, inr *n, cw_error *err)
     return st;
 }
 
-/* Other keys, which there may be, are passed over. */
+/* Keeps the value of a known key; other keys are legal and ignored. */
 static cw_status keep_key(inr *n, const char *line, cw_error *err)
 {
     const size_t length = strcspn(line, "= \t");
@@ -204,7 +204,7 @@ static cw_status read_cpu(const inr *n, cwi_source *src, cw_error *err)
     return CW_OK;
 }
 
-/* "2**-8": fixed-point numbers are counts of that. */
+/* Reads the scale "2**-8": fixed-point numbers are multiples of it. */
 static cw_status read_scale(const inr *n, cw_volume *shape, cw_error *err)
 {
     const char *scale = n->value[K_SCALE];

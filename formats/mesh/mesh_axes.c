@@ -1,3 +1,5 @@
+/* Converts points between LPS millimetres and a file's unit and frame, and parses the names of
+ * both. */
 #include "formats/mesh/mesh_axes.h"
 
 #include "core/base/status.h"
@@ -6,8 +8,8 @@
 #include <stdio.h>
 #include <string.h>
 
-/* RAS turns by half a turn about z; then (x, y, z) becomes (x, z, -y), so that z points up
- * along y. Neither mirrors, so windings stay. */
+/* Makes the turn to a file's axes. RAS is half a turn about z. Y up is (x, y, z) to (x, z, -y),
+ * so that z points up along y. Neither mirrors, so windings stay. */
 cwi_turn cwi_turn_to(const cw_axes *axes)
 {
     const double ras = axes->ras ? -1 : 1;
@@ -32,7 +34,7 @@ void cwi_print_axes(const cw_axes *axes, char text[CWI_AXES_BYTES])
              cw_unit_name(axes->unit), axes->y_up ? ", Y up" : "");
 }
 
-/* Whether a word stands at *text that ends there; moves behind it. */
+/* Moves *text behind a word, if it is there and ends there; else returns false. */
 static bool skip_word(const char **text, const char *word)
 {
     const size_t length = strlen(word);
@@ -82,7 +84,7 @@ bool cwi_parse_axes(const char **text, cw_mesh_file *said)
     return true;
 }
 
-/* The world's coordinates of a point of the file. */
+/* Converts a point of the file to the world's coordinates. */
 static void turn_back(const cwi_turn *t, const double file[3], double world[3])
 {
     for (int a = 0; a < 3; a++)

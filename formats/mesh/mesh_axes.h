@@ -1,4 +1,4 @@
-/* Units and frames of mesh files: from LPS millimetres to them and back. */
+/* Units and frames of mesh files: conversion from LPS millimetres and back. */
 #ifndef FORMATS_MESH_MESH_AXES_H
 #define FORMATS_MESH_MESH_AXES_H
 
@@ -8,15 +8,15 @@
 extern "C" {
 #endif
 
-/* Coordinate a of the file is sign[a] * times / over of coordinate from[a] of the world. One of
- * times and over is 1, so that short decimals stay short. */
+/* A turn: coordinate a of the file is sign[a] * times / over of coordinate from[a] of the
+ * world. times or over is 1, so that short decimals stay short. */
 typedef struct cwi_turn {
     int from[3];
     double sign[3], times, over;
 } cwi_turn;
 
 cwi_turn cwi_turn_to(const cw_axes *axes);
-/* Adding 0.0 turns -0 into 0. */
+/* Converts a coordinate. Adding 0.0 turns -0 into 0. */
 static inline double cwi_turn_coordinate(const cwi_turn *turn, int axis, double world)
 {
     return turn->sign[axis] * world * turn->times / turn->over + 0.0;
@@ -26,17 +26,17 @@ void cwi_turn_point(const cwi_turn *turn, const double world[3], double file[3])
 
 enum { CWI_AXES_BYTES = 32 };
 
-/* "LPS, mm", "RAS, um, Y up": as our writers leave it in a line of text. */
+/* Prints the axes as a line of our writers: "LPS, mm", "RAS, um, Y up". */
 void cwi_print_axes(const cw_axes *axes, char text[CWI_AXES_BYTES]);
 
-/* Reads it back, or the name of a unit or frame alone, and moves *text behind it. False, and
- * *said as it was, where something else stands. */
+/* Reads this line back, or the name of a unit or frame alone, and moves *text behind it.
+ * Returns false, with *said unchanged, for any other text. */
 bool cwi_parse_axes(const char **text, cw_mesh_file *said);
 bool cwi_parse_unit(const char **text, cw_mesh_file *said);
 bool cwi_parse_frame(const char **text, cw_mesh_file *said);
 
-/* Turns a mesh that was read as it stands in the file to LPS millimetres.
- * Returns CW_ERR_FORMAT for places that single precision cannot say then. */
+/* Turns a mesh from the file's coordinates to LPS millimetres.
+ * Returns CW_ERR_FORMAT for places that single precision then cannot hold. */
 CW_NODISCARD cw_status cwi_turn_back(cw_mesh *mesh, const cw_axes *axes, cw_error *err);
 
 #ifdef __cplusplus

@@ -1,4 +1,4 @@
-/* Points and faces, as a file gives them, become a mesh. */
+/* Builds a mesh from the points and faces of a file, within the limits of memory. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
@@ -12,7 +12,7 @@
 
 /* --- memory within limits ---------------------------------------------------------------- */
 
-/* Twice the room, or what is asked for, or (at the limit) as much as there may be. */
+/* Returns twice the capacity, or the requested one, or (near the limit) the maximum. */
 static size_t next_room(const cwi_mesh_input *in, size_t room, size_t count, size_t size)
 {
     const uint64_t limit = in->desc.max_bytes;
@@ -62,7 +62,7 @@ cw_status cwi_mesh_begin_part(cwi_mesh_input *in, const char *name, size_t trian
 {
     cwi_marks *m = &in->marks;
     const bool empty = m->count && m->items[m->count - 1].triangle == triangle;
-    const bool untitled = m->count == 0 && triangle > 0; /* what was there before */
+    const bool untitled = m->count == 0 && triangle > 0; /* triangles without a part */
     const size_t length = strlen(name);
     if (empty)
         m->name_bytes = m->items[--m->count].name;
@@ -190,9 +190,9 @@ static bool all_single(const cwi_mesh_build *b)
     return true;
 }
 
-/* 0 where single precision holds the places as they are, or nearly as well as it would hold
- * them relative to another one. The rule is that of the OBJ writer: far is ten times the size.
- * Halves are added, so that the largest doubles have a middle, too. */
+/* Chooses the origin. It is 0 where single precision holds the places exactly, or nearly as
+ * well as relative to another origin. The rule is that of the OBJ writer: far is ten times the
+ * size. Halves are added, so that the largest doubles have a middle, too. */
 static void choose_origin(const cwi_mesh_build *b, double origin[3])
 {
     double middle[3], size = 0, distance = 0;
@@ -211,7 +211,8 @@ static void choose_origin(const cwi_mesh_build *b, double origin[3])
         origin[a] = far ? middle[a] : 0;
 }
 
-/* Doubles to floats in the same memory: float i lies in front of every double still to come. */
+/* Rounds doubles to floats in the same memory: float i lies before every double still to
+ * come. */
 static cw_status round_points(cwi_mesh_build *b, const double origin[3], cw_error *err)
 {
     char *memory = (char *)b->points;
@@ -250,7 +251,7 @@ cw_status cwi_mesh_shrink(cw_mesh *mesh, cw_error *err)
     return st;
 }
 
-/* The floats that round_points() left where the doubles were. */
+/* Moves the floats that round_points() left in the doubles' memory. */
 static cw_status move_arrays(cwi_mesh_build *b, cw_mesh *mesh, cw_error *err)
 {
     void *memory = b->points;

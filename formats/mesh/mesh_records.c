@@ -1,4 +1,4 @@
-/* Records of a mesh on their way into a file: vertices, triangles, lines of text. */
+/* Writes the records of a mesh to a file: vertices, triangles, lines of text. */
 #include "core/base/status.h"
 #include "formats/mesh/mesh_writer.h"
 #include "formats/mesh/place_parts.h"

@@ -1,5 +1,4 @@
-/* What the mesh writers share: where bytes go, the records they are made of, places in the
- * world. */
+/* The common parts of mesh writers: parts, outputs, records, and coordinates in the file. */
 #ifndef FORMATS_MESH_MESH_WRITER_H
 #define FORMATS_MESH_MESH_WRITER_H
 
@@ -16,23 +15,26 @@ extern "C" {
 
 enum { CWI_NAME_BYTES = 256, CWI_RECORD_BYTES = 512 };
 
-/* A part as a writer gets it: checked, with triangles. */
+/* A part as a writer receives it: checked, with triangles. */
 typedef struct cwi_part {
-    cw_mesh mesh;  /* borrows its arrays; those that the file does not keep are NULL. For a
-                      local file its origin counts from that of the file. */
+    cw_mesh mesh;  /* borrows its arrays; those that the file does not keep are NULL. In a local
+                      file its origin is relative to that of the file */
     cwi_turn turn; /* from its coordinates to those of the file */
-    uint64_t first, first_normal, first_triangle; /* what the parts before it have */
-    int digits;                                   /* that a place is written with in text */
-    const uint32_t *numbers;                      /* of each vertex, for a writer's own use */
-    size_t group;                                 /* likewise */
+    uint64_t first, first_normal, first_triangle; /* numbers of elements in the parts before
+                                                     it */
+    int digits;                                   /* number of digits of a coordinate in text */
+    const uint32_t *numbers;                      /* one per vertex, for a writer's own use */
+    size_t group;                                 /* for a writer's own use */
     size_t level;                                 /* of detail, as in cw_part */
     double max_error_mm, rms_error_mm;            /* the same */
     double time_s;                                /* the same */
-    double from_s, until_s;                       /* in sight; from the animation's start */
+    double from_s, until_s;                       /* time in sight; from the animation's
+                                                     start */
     char name[CWI_NAME_BYTES];                    /* printable UTF-8 on one line */
 } cwi_part;
 
-/* Formats that hold one mesh write them one behind the other; all have the same arrays then. */
+/* All parts of a file. Formats of one mesh write them one after the other; all then have the
+ * same arrays. */
 typedef struct cwi_parts {
     cwi_part *items;
     size_t count;
@@ -40,16 +42,16 @@ typedef struct cwi_parts {
     double end_s;                 /* of the animation that shows them; 0: there is none */
 } cwi_parts;
 
-/* Takes bytes on their way into a file; to is its own. */
+/* Takes bytes for a file; `to` is its own state. */
 typedef cw_status cwi_drain(void *to, const void *bytes, size_t size, cw_error *err);
 
 typedef struct cwi_mesh_output {
     cwi_outfile *file;
-    cwi_drain *drain; /* where records go; NULL: to the file as they are */
+    cwi_drain *drain; /* receiver of records; NULL: the file itself */
     void *drain_to;
-    const char *name;           /* of all parts together; as that of a part */
-    const double *local_origin; /* what gives the world's coordinates when added, as the file
-                                   counts them; NULL: nothing */
+    const char *name;           /* name of all parts together; like that of a part */
+    const double *local_origin; /* the origin that gives the world's coordinates when added, in
+                                   the file's axes; NULL: none */
     const cw_write_desc *desc;
     const cw_axes *axes;
     bool text;
@@ -69,17 +71,18 @@ cwi_mesh_writer cwi_glb_write;
 cwi_mesh_writer cwi_gltf_write;
 cwi_mesh_writer cwi_drc_write;
 
-/* As VTP with indices of 64 bits, which cwi_vtp_write() takes for meshes that need them. */
+/* Writes VTP with indices of 64 bits; cwi_vtp_write() calls it for meshes that need them. */
 cwi_mesh_writer cwi_vtp_write_wide;
 
-/* Loads the module that both glTF writers need. CW_ERR_UNSUPPORTED: not in this build. */
+/* Loads the module that both glTF writers need. Returns CW_ERR_UNSUPPORTED if it is not in this
+ * build. */
 CW_NODISCARD cw_status cwi_gltf_prepare(cw_error *err);
 
-/* Loads the module of the codec that is asked for, before there is anything to compress.
- * CW_ERR_ARGUMENT: it has not so many bits; CW_ERR_UNSUPPORTED. */
+/* Loads the module of the requested codec, before there is anything to compress.
+ * Returns CW_ERR_ARGUMENT for bits that it does not support; CW_ERR_UNSUPPORTED. */
 CW_NODISCARD cw_status cwi_gltf_prepare_codec(const cw_write_desc *desc, cw_error *err);
 
-/* Puts record i of a part at to, where there is room for CWI_RECORD_BYTES; returns its end. */
+/* Puts record i of a part at `to`, with room for CWI_RECORD_BYTES; returns its end. */
 typedef unsigned char *cwi_record_encoder(const cwi_part *part, size_t i, unsigned char *to);
 
 /* Writes a part's records 0 to count - 1 and reports progress on the way. */
@@ -95,23 +98,23 @@ CW_NODISCARD cw_status cwi_write_triangles(const cwi_parts *parts, cwi_mesh_outp
 
 enum { CWI_ORIGIN_BYTES = 160 };
 
-/* The origin of a local file as text, between what stands before and after it: " from 1 2 3.5".
+/* Prints the origin of a local file, between the texts before and after it: " from 1 2 3.5".
  * Empty for a file of world coordinates. */
 void cwi_print_origin(const cwi_mesh_output *out, const char *before, const char *after,
                       char text[CWI_ORIGIN_BYTES]);
 
-/* Adds what a part loses in a file that holds its coordinates in single precision. */
+/* Adds the loss of a part in a file that holds its coordinates in single precision. */
 CW_NODISCARD cw_status cwi_measure_loss(const cwi_part *part, cw_write_loss *loss,
                                         cw_error *err);
 
-/* The part's box in the file. */
+/* Computes the part's box in the file's coordinates. */
 void cwi_part_bounds(const cwi_part *part, double low[3], double high[3]);
 
-/* CW_ERR_LIMIT when a coordinate is beyond single precision's largest number. */
+/* Returns CW_ERR_LIMIT when a coordinate is beyond single precision's maximum. */
 CW_NODISCARD cw_status cwi_check_single(const cwi_parts *parts, cw_error *err);
 
-/* As it stands in the file. Summed in double: a position keeps its micrometres until the format
- * takes them. */
+/* Returns a coordinate of the file. It is summed in double: a position keeps its micrometres
+ * until the format rounds it. */
 static inline double cwi_file_coordinate(const cwi_part *part, size_t vertex, int axis)
 {
     const int a = part->turn.from[axis];
@@ -127,7 +130,7 @@ static inline void cwi_normal(const cwi_part *part, size_t vertex, float normal[
                     part->mesh.normals[3 * vertex + (size_t)part->turn.from[a]];
 }
 
-/* A vertex's place and its normal as text: three numbers each. */
+/* Puts a vertex's place, or its normal, as text: three numbers each. */
 static inline unsigned char *cwi_put_place(unsigned char *to, const cwi_part *part, size_t v)
 {
     double place[3];
@@ -143,13 +146,13 @@ static inline unsigned char *cwi_put_normal(unsigned char *to, const cwi_part *p
     return cwi_put_singles(to, normal);
 }
 
-/* A triangle's corner, counted through all parts from 0. */
+/* Returns the index of a triangle's corner, counted through all parts from 0. */
 static inline uint64_t cwi_corner_number(const cwi_part *part, size_t triangle, int corner)
 {
     return part->first + part->mesh.triangles[3 * triangle + (size_t)corner];
 }
 
-/* "3 0 1 2": a face of PLY as text, and of OFF. */
+/* Puts a face as text, for PLY and OFF: "3 0 1 2". */
 static inline unsigned char *cwi_put_face_line(const cwi_part *part, size_t triangle,
                                                unsigned char *to)
 {

@@ -1,3 +1,4 @@
+/* Prepares parts for a writer: names, arrays, origins, digits and times. */
 #include "formats/mesh/place_parts.h"
 
 #include "core/base/memory.h"
@@ -9,7 +10,7 @@
 
 /* --- names ------------------------------------------------------------------------------- */
 
-/* Bytes of the character at text that a name may keep; 0 when it may not. */
+/* Returns the bytes of the character at text, if a name may keep it; otherwise 0. */
 static size_t kept_length(const char *text)
 {
     const unsigned char first = (unsigned char)text[0];
@@ -45,7 +46,8 @@ void cwi_choose_name(const char *path, const cw_part *parts, size_t count,
     cwi_clean_name(stem, dot && dot != stem ? (size_t)(dot - stem) : strlen(stem), name);
 }
 
-/* A part without a name has that of all, with its number behind it where there are several. */
+/* Names a part. Without a name of its own it has that of all, and a number if there are
+ * several. */
 static void name_part(cwi_part *part, const char *given, const char *all, size_t number,
                       size_t count)
 {
@@ -89,7 +91,7 @@ static void keep_arrays(cw_mesh *m, unsigned keeps)
     m->labels = keeps & CW_KEEPS_LABELS ? m->labels : NULL;
 }
 
-/* Arrays of which one part has none are of no use where all parts share them. */
+/* Drops arrays that one part lacks, for formats where all parts share the arrays. */
 static void choose_arrays(cwi_parts *parts, unsigned keeps)
 {
     unsigned shared = keeps;
@@ -116,8 +118,9 @@ void cwi_part_bounds(const cwi_part *part, double low[3], double high[3])
     }
 }
 
-/* Nine digits give a float back to the bit, the tenth is room for the origin. Where the mesh
- * stands more than ten times its own size from zero, 17 give a double. */
+/* Returns the number of digits for coordinates. Nine give a float back to the bit, the tenth is
+ * for the origin. Where the mesh is more than ten times its own size from zero, 17 give a
+ * double. */
 static int digits_of(const cwi_part *part)
 {
     double low[3], high[3], distance = 0, size = 0;
@@ -149,7 +152,7 @@ static void add_part(cwi_parts *parts, const cw_part *given, const double origin
     parts->triangles += mesh->triangle_count;
 }
 
-/* When a part comes into sight, or all is over, counted from the start. */
+/* Returns the time when a part comes into sight, or the end of all, counted from the start. */
 static double begin_s(const cw_part *parts, size_t count, size_t i)
 {
     const double last = parts[count - 1].time_s - parts[0].time_s;

@@ -1,4 +1,4 @@
-/* What single precision leaves of a mesh in world coordinates. */
+/* Measures the loss when a mesh in world coordinates is rounded to single precision. */
 #include "formats/mesh/mesh_writer.h"
 
 #include "core/base/memory.h"
@@ -8,7 +8,7 @@
 #include <float.h>
 #include <math.h>
 
-/* Coordinates beyond single precision stay at its largest number. */
+/* Rounds points. Coordinates beyond single precision become its maximum. */
 static void round_points(const cwi_part *part, float *rounded)
 {
     for (size_t i = 0; i < 3 * part->mesh.vertex_count; i++) {
@@ -56,7 +56,7 @@ static bool same_point(const float *points, size_t v, size_t u)
     return p[0] == q[0] && p[1] == q[1] && p[2] == q[2];
 }
 
-/* Vertices whose rounded point an earlier one has that is elsewhere in truth. */
+/* Counts vertices whose rounded point is that of an earlier vertex at a different place. */
 static size_t count_merged(const cw_mesh *mesh, const uint32_t *map)
 {
     size_t merged = 0;

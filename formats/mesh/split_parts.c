@@ -1,4 +1,5 @@
-/* A mesh taken apart where its marks say. */
+/* Splits a mesh at its marks into parts; runs of triangles that share vertices stay
+ * together. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
@@ -7,7 +8,7 @@
 
 static const uint32_t NONE = UINT32_MAX;
 
-/* All in one piece of memory: the parts, and behind them what they point to. */
+/* The result in one piece of memory: the parts, and after them the data they point to. */
 typedef struct held {
     cw_mesh mesh;
     char name[CWI_NAME_BYTES];
@@ -16,10 +17,10 @@ typedef struct held {
 typedef struct split {
     cw_mesh *whole;
     const cwi_marks *marks;
-    size_t run_count;  /* marks, or 1 */
+    size_t run_count;  /* number of marks, or 1 */
     uint32_t *part_of; /* of each run of triangles between two marks */
     uint32_t *run_of;  /* of each vertex: the first run that names it */
-    uint32_t *new;     /* its number in its part */
+    uint32_t *new;     /* the vertex' number in its part */
     cw_part *parts;
     held *held;
     size_t count;
@@ -32,9 +33,9 @@ static size_t run_start(const split *s, size_t run)
                                    : s->whole->triangle_count;
 }
 
-/* --- which runs are one part ------------------------------------------------------------- */
+/* --- runs joined to parts ----------------------------------------------------------------- */
 
-/* Runs that share a vertex are one set. */
+/* Joins runs that share a vertex to one set. */
 static void join_runs(split *s)
 {
     for (size_t v = 0; v < s->whole->vertex_count; v++)
@@ -48,8 +49,8 @@ static void join_runs(split *s)
         }
 }
 
-/* Numbers them in the order of the file; runs without triangles are none. A root is met before
- * what is joined with it. */
+/* Numbers the sets in the order of the file; runs without triangles have no number. A root is
+ * met before the runs that are joined with it. */
 static void number_parts(split *s)
 {
     for (uint32_t run = 0; run < s->run_count; run++) {
@@ -74,7 +75,7 @@ static void count_elements(split *s)
             s->new[v] = (uint32_t)s->held[s->part_of[s->run_of[v]]].mesh.vertex_count++;
 }
 
-/* The arrays that the whole has. */
+/* Allocates the arrays that the whole has. */
 static bool make_arrays(const cw_mesh *whole, cw_mesh *m)
 {
     const size_t n = m->vertex_count;
@@ -134,7 +135,7 @@ static bool take_apart(split *s)
     return true;
 }
 
-/* Each has the name of its first run. */
+/* Gives each part the name of its first run. */
 static void name_parts(split *s)
 {
     for (size_t run = s->marks->count; run-- > 0;)
@@ -153,7 +154,7 @@ static bool make_parts(split *s)
         join_runs(s);
         number_parts(s);
     }
-    const size_t count = s->count ? s->count : 1; /* a mesh of nothing is one, too */
+    const size_t count = s->count ? s->count : 1; /* an empty mesh is one part, too */
     s->parts = cwi_alloc_zeroed(count, sizeof *s->parts + sizeof *s->held);
     if (!s->parts)
         return false;
@@ -166,7 +167,7 @@ static bool make_parts(split *s)
     return true;
 }
 
-/* The copies stand beside the whole for a while. */
+/* Checks the memory: the copies exist beside the whole for a while. */
 static cw_status limit_memory(const cwi_mesh_input *in, const cw_mesh *m, cw_error *err)
 {
     const uint64_t limit = in->desc.max_bytes;

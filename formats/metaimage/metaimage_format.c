@@ -1,4 +1,4 @@
-/* MetaImage: what is read and written, and by whom. */
+/* The driver of MetaImage: its names, its reader and its writer. */
 #include "formats/driver/format_driver.h"
 
 const cwi_format_driver cwi_format_metaimage = {

@@ -1,4 +1,4 @@
-/* MetaImage: "Key = value" lines, the last of which says where the voxels are.
+/* Reads MetaImage: "Key = value" lines; the last one states the place of the voxels. Defined at
  * itk.org/Wiki/ITK/MetaIO/Documentation. */
 #include "core/base/status.h"
 #include "formats/text/text_header.h"
@@ -50,7 +50,7 @@ static const char *const key_names[KEY_COUNT] = {
     [K_IGNORED] = "comment|objectsubtype|transformtype|name|id|parentid|color|modality",
 };
 
-/* MetaIO's LONG has 32 bits everywhere. */
+/* The element types. MetaIO's LONG has 32 bits everywhere. */
 static const struct {
     const char *name;
     cw_type type;
@@ -63,12 +63,12 @@ static const struct {
 
 typedef struct metaimage {
     cwi_lines lines;
-    const char *value[KEY_COUNT]; /* as written; NULL: the key is not there */
+    const char *value[KEY_COUNT]; /* as written; NULL: the key is missing */
     size_t dimensions;
     size_t size[MOST_AXES];
 } metaimage;
 
-/* The first line is "Key = ..." with a key that we know. */
+/* Recognises a first line "Key = ..." with a known key. */
 bool cwi_metaimage_sniff(const unsigned char *head, size_t size)
 {
     const char *text = (const char *)head;
@@ -79,7 +79,7 @@ bool cwi_metaimage_sniff(const unsigned char *head, size_t size)
            cwi_field_find(key_names, KEY_COUNT, text, length) >= 0;
 }
 
-/* Keys of someone's own are legal, so unknown ones are passed over. */
+/* Keeps a value. Private keys are legal, so unknown ones are ignored. */
 static cw_status keep_key(metaimage *m, const char *line, cw_error *err)
 {
     const char *equals = strchr(line, '=');
@@ -173,9 +173,9 @@ static cw_status read_sizes(metaimage *m, cwi_source *src, cw_error *err)
     return cwi_source_set_axes(src, axes, 1 + m->dimensions, err);
 }
 
-/* --- where the voxels are ---------------------------------------------------------------- */
+/* --- place of the voxels ----------------------------------------------------------------- */
 
-/* Reads "LIST", "LIST 2" and "LIST 2D": files with that many axes each. */
+/* Reads "LIST", "LIST 2" and "LIST 2D": files with that number of axes each. */
 static cw_status read_list(metaimage *m, cwi_source *src, int64_t *depth, cw_error *err)
 {
     const char *said = m->value[K_DATA_FILE] + 4;
@@ -203,7 +203,8 @@ static cw_status check_file_count(const metaimage *m, const cwi_source *src, int
     return CW_OK;
 }
 
-/* Whether the text is this word (given in lower case), or starts with it and a blank. */
+/* Returns true if the text is this word (given in lower case), or starts with it and a
+ * blank. */
 static bool is_word(const char *text, const char *word)
 {
     return cwi_field_find(&word, 1, text, strcspn(text, " \t")) == 0;
@@ -227,7 +228,8 @@ static cw_status read_files(metaimage *m, cwi_source *src, cw_error *err)
     return st == CW_OK ? check_file_count(m, src, depth, err) : st;
 }
 
-/* HeaderSize counts from the start of the file with the voxels, in a LOCAL file too. */
+/* Reads HeaderSize, which counts from the start of the file with the voxels, in a LOCAL file
+ * too. */
 static cw_status read_header_size(const metaimage *m, cwi_source *src, cw_error *err)
 {
     int64_t size = 0;
@@ -244,7 +246,8 @@ static cw_status read_header_size(const metaimage *m, cwi_source *src, cw_error 
     return st;
 }
 
-/* 0 stands for a size that is not known; of several files no one says which one it is of. */
+/* Reads the compressed size. 0 means an unknown size. With several files it is unclear to which
+ * one it belongs. */
 static cw_status read_compressed_size(const metaimage *m, cwi_source *src, cw_error *err)
 {
     int64_t size = 0;
@@ -270,7 +273,7 @@ static cw_status read_encoding(const metaimage *m, cwi_source *src, cw_error *er
 
 /* --- frame ------------------------------------------------------------------------------- */
 
-/* Reads numbers of a key into a row, which keeps its defaults when the key is not there. */
+/* Reads numbers of a key into a row, which keeps its defaults when the key is missing. */
 static cw_status read_numbers(const metaimage *m, key k, const char *name, size_t count,
                               double *out, cw_error *err)
 {
@@ -290,8 +293,8 @@ static cw_status read_unit(const metaimage *m, double *mm, cw_error *err)
     return CW_OK;
 }
 
-/* Row i of the matrix is the direction of axis i, as ITK has it. A time axis has its place in
- * it, but turns nothing. */
+/* Sets the affine. Row i of the matrix is the direction of axis i, as in ITK. A time axis has a
+ * row in it, but does not turn anything. */
 static void set_affine(const metaimage *m, const double *spacing, const double *matrix,
                        const double *origin, double mm, cw_volume *shape)
 {

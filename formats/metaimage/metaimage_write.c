@@ -1,4 +1,4 @@
-/* MetaImage, one file, zlib compressed. */
+/* Writes MetaImage: one file, compressed by zlib. */
 #include "formats/volume/volume_writer.h"
 #include "formats/volume/voxel_source.h"
 
@@ -8,8 +8,8 @@ static const char *const types[CW_TYPE_COUNT] = {
     [CW_F32] = "MET_FLOAT", [CW_F64] = "MET_DOUBLE",
 };
 
-/* The header states the compressed size in front of the data, and files are written front to
- * back: the voxels are compressed twice, the first time only to be counted. */
+/* Measures the compressed size, which the header states before the data. Files are written
+ * front to back, so the voxels are compressed twice, the first time only for counting. */
 static cw_status measure_deflated(const cwi_save *save, uint64_t *bytes, cw_error *err)
 {
     cwi_sink sink = {0};
@@ -21,7 +21,7 @@ static cw_status measure_deflated(const cwi_save *save, uint64_t *bytes, cw_erro
     return st;
 }
 
-/* Numbers of a key for each axis; time has its own behind the three of space. */
+/* Writes the numbers of a key for each axis; time has its own after the three of space. */
 static cw_status write_numbers(const cwi_save *save, const char *key, const double space[3],
                                double time, cw_error *err)
 {
@@ -32,7 +32,7 @@ static cw_status write_numbers(const cwi_save *save, const char *key, const doub
     return st == CW_OK ? cwi_outfile_printf(save->file, err, "\n") : st;
 }
 
-/* A row per axis: its direction. */
+/* Writes the matrix: one row per axis, its direction. */
 static cw_status write_matrix(const cwi_save *save, const double spacing[3], cw_error *err)
 {
     const cw_volume *v = save->volume;

@@ -1,4 +1,4 @@
-/* MRC and CCP4: what is read and written, and by whom. */
+/* The driver of MRC and CCP4: its names and its reader. */
 #include "formats/driver/format_driver.h"
 
 const cwi_format_driver cwi_format_mrc = {

@@ -1,5 +1,5 @@
-/* MRC2014 and CCP4 maps: a header of 256 words. ccpem.ac.uk/mrc-format/mrc2014, and IMOD's
- * additions to it. */
+/* Reads MRC2014 and CCP4 maps: a header of 256 words (ccpem.ac.uk/mrc-format/mrc2014), with
+ * IMOD's additions. */
 #include "core/base/status.h"
 #include "formats/bytes/inflate_stream.h"
 #include "formats/volume/volume_reader.h"
@@ -20,7 +20,7 @@ enum { STACK_GROUP = 401, LAST_STACK_GROUP = 630 }; /* space group + 400: a stac
 static const double mm_per_angstrom = 1e-7;
 static const double radians = 3.14159265358979323846 / 180;
 
-/* Offsets of fields; those of three are for columns, rows, sections or for X, Y, Z. */
+/* Offsets of fields. Those with three values are for columns, rows, sections or for X, Y, Z. */
 typedef enum field {
     NX = 0,
     MODE = 12,
@@ -52,9 +52,9 @@ typedef struct mrc {
     unsigned char bytes[HEADER];
     bool big;
     bool gzipped;
-    int imod_flags; /* as if not IMOD's, where they are not */
+    int imod_flags; /* 0 where the file is not IMOD's */
     size_t size[3];
-    int axis[3]; /* of the cell, 0 to 2: along columns, rows, sections */
+    int axis[3]; /* axis of the cell, 0 to 2: along columns, rows, sections */
     size_t steps;
 } mrc;
 
@@ -76,8 +76,8 @@ static double read_number(const mrc *m, field at, int index)
 
 /* --- byte order -------------------------------------------------------------------------- */
 
-/* In this byte order the header makes sense: sizes, a mode, and axes that are a permutation, or
- * left zero. */
+/* Returns true if the header makes sense in this byte order: sizes, a mode, and axes that are a
+ * permutation, or left zero. */
 static bool is_plausible(const mrc *m)
 {
     unsigned axes = 0, zeros = 0;
@@ -92,7 +92,7 @@ static bool is_plausible(const mrc *m)
            read_word(m, MODE, 0) <= 101;
 }
 
-/* The machine stamp decides where there is one, else what is plausible. */
+/* Finds the byte order: by the machine stamp if there is one, else by plausibility. */
 static bool find_order(mrc *m)
 {
     const unsigned char *stamp = m->bytes + MACHINE;
@@ -103,7 +103,7 @@ static bool find_order(mrc *m)
     return stamp[0] != 0x11 && stamp[0] != 0x44 && is_plausible(m);
 }
 
-/* "MAP " stands in all files but old ones, which go by their extension. */
+/* Recognises "MAP ", which all but old files contain; old ones are recognised by extension. */
 bool cwi_mrc_sniff(const unsigned char *head, size_t size)
 {
     mrc m = {0};
@@ -154,7 +154,8 @@ static cw_status read_type(const mrc *m, cwi_source *src, cw_error *err)
     return cwi_fail_type(err, "MODE", name);
 }
 
-/* A stack of volumes holds them one after another along its sections, MZ of them each. */
+/* Reads the steps. A stack of volumes holds them one after another along its sections, MZ of
+ * them each. */
 static cw_status read_steps(mrc *m, cw_error *err)
 {
     const int32_t group = read_word(m, ISPG, 0), each = read_word(m, MX, 2);
@@ -199,11 +200,12 @@ static cw_status read_place(const mrc *m, cwi_source *src, cw_error *err)
 
 /* --- frame ------------------------------------------------------------------------------- */
 
-/* The cell's edges for its lengths and angles: a along x, b in the plane of x and y. */
+/* Computes the cell's edges from its lengths and angles: a along x, b in the plane of x and
+ * y. */
 static cw_status cell_edges(const double angle[3], double edges[3][3], cw_error *err)
 {
     double c[3];
-    for (int a = 0; a < 3; a++) /* 0: not said */
+    for (int a = 0; a < 3; a++) /* 0: not stated */
         c[a] = angle[a] == 0 || angle[a] == 90 ? 0 : cos(angle[a] * radians);
     const double sine = sqrt(1 - c[2] * c[2]), y = (c[0] - c[1] * c[2]) / sine;
     const double z = 1 - c[1] * c[1] - y * y;
@@ -218,7 +220,7 @@ static cw_status cell_edges(const double angle[3], double edges[3][3], cw_error 
     return CW_OK;
 }
 
-/* Whether the cell has lengths at all; simple writers leave them zero. */
+/* Returns true if the cell has lengths at all; simple writers leave them zero. */
 static bool has_cell(const mrc *m)
 {
     for (int a = 0; a < 3; a++)
@@ -243,8 +245,8 @@ static cw_status read_spacing(const mrc *m, double spacing[3], cw_error *err)
     return CW_OK;
 }
 
-/* Where the first voxel stands: ORIGIN says so in Angstrom, else the START words in voxels.
- * IMOD used to write the way back to zero instead. */
+/* Sets the place of the first voxel: ORIGIN in Angstrom, else the START words in voxels. Old
+ * versions of IMOD wrote the way back to zero instead. */
 static void set_origin(const mrc *m, double mm, cw_volume *shape)
 {
     const double sign = m->imod_flags & IMOD_ORIGIN ? mm : -mm;

@@ -1,16 +1,16 @@
-/* Where the fields of the two NIfTI headers stand: the reader and the writer share
- * the table. */
+/* The places of the fields in both NIfTI headers; the reader and the writer share this
+ * table. */
 #ifndef FORMATS_NIFTI_NIFTI_H
 #define FORMATS_NIFTI_NIFTI_H
 
 #include <cubewright/volume.h>
 
-/* The fields that mean something to us; the rest of a header is zero, or ignored. */
+/* The fields that are used; the rest of a header is zero, or ignored. */
 typedef enum cwi_nifti_field {
     CWI_NIFTI_SIZEOF_HDR,
     CWI_NIFTI_DATATYPE,
     CWI_NIFTI_BITPIX,
-    CWI_NIFTI_DIM,    /* 8 numbers: how many are used, then sizes */
+    CWI_NIFTI_DIM,    /* 8 numbers: the count of dimensions, then sizes */
     CWI_NIFTI_PIXDIM, /* 8 numbers: qfac, then spacings */
     CWI_NIFTI_VOX_OFFSET,
     CWI_NIFTI_SCL_SLOPE,
@@ -27,8 +27,8 @@ typedef enum cwi_nifti_field {
 
 /* A version of the header. */
 typedef struct cwi_nifti_layout {
-    size_t bytes;                /* of the header, as sizeof_hdr says */
-    size_t voxels;               /* where the voxels start at the earliest */
+    size_t bytes;                /* of the header, as in sizeof_hdr */
+    size_t voxels;               /* minimum offset of the voxels */
     size_t magic, magic_bytes;   /* offset and length */
     const char *one_file, *pair; /* the two magics */
     size_t descrip;              /* offset of 80 bytes of text */
@@ -41,14 +41,14 @@ typedef struct cwi_nifti_layout {
 /* NIfTI-1, NIfTI-2. */
 extern const cwi_nifti_layout cwi_nifti_layouts[2];
 
-/* A number of a field, in either byte order. Every kind fits a double as far as sizes go that
- * are read at all. */
+/* Returns a number of a field, in either byte order. All numbers fit a double, for sizes that
+ * can be read at all. */
 double cwi_nifti_get(const cwi_nifti_layout *layout, const unsigned char *header, bool swapped,
                      cwi_nifti_field field, int index);
 void cwi_nifti_put(const cwi_nifti_layout *layout, unsigned char *header, cwi_nifti_field field,
                    int index, double value);
 
-/* NIfTI's number for a voxel type. */
+/* Returns NIfTI's number of a voxel type. */
 int cwi_nifti_datatype(cw_type type);
 
 #endif

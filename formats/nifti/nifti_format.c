@@ -1,4 +1,4 @@
-/* NIfTI-1 and NIfTI-2: what is read and written, and by whom. */
+/* The driver of NIfTI-1 and NIfTI-2: its names, its reader and its writer. */
 #include "formats/driver/format_driver.h"
 
 const cwi_format_driver cwi_format_nifti = {

@@ -1,4 +1,4 @@
-/* NIfTI-1 and -2: headers of fixed layout, nifti.nimh.nih.gov. */
+/* Reads NIfTI-1 and NIfTI-2: headers of fixed layout (nifti.nimh.nih.gov). */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/bytes/file_pattern.h"
@@ -83,7 +83,7 @@ int cwi_nifti_datatype(cw_type type)
 
 /* --- fields ------------------------------------------------------------------------------ */
 
-/* Any of the kinds of number. */
+/* A number of any kind. */
 typedef union number {
     unsigned char bytes[8];
     int8_t b;
@@ -146,14 +146,14 @@ void cwi_nifti_put(const cwi_nifti_layout *layout, unsigned char *header, cwi_ni
 
 /* --- the header -------------------------------------------------------------------------- */
 
-/* The header's bytes, and how to read them. */
+/* The header's bytes, and their layout and byte order. */
 typedef struct nifti {
     unsigned char bytes[MOST_HEADER];
     const cwi_nifti_layout *layout;
     bool swapped;
-    bool is_pair; /* the voxels are in a file of their own */
+    bool is_pair; /* the voxels are in a separate file */
     bool gzipped;
-    int used; /* dimensions: dim[0] */
+    int used; /* number of dimensions: dim[0] */
 } nifti;
 
 static double get_field(const nifti *n, cwi_nifti_field field, int index)
@@ -161,7 +161,7 @@ static double get_field(const nifti *n, cwi_nifti_field field, int index)
     return cwi_nifti_get(n->layout, n->bytes, n->swapped, field, index);
 }
 
-/* Which version, in which byte order: what makes sizeof_hdr right. */
+/* Finds the version and the byte order for which sizeof_hdr is right. */
 static bool find_layout(nifti *n)
 {
     for (int i = 0; i < 4; i++) {
@@ -173,7 +173,8 @@ static bool find_layout(nifti *n)
     return false;
 }
 
-/* The newlines in NIfTI-2's magic show whether a file went through a text transfer. */
+/* Checks the magic. The newlines in NIfTI-2's magic show if a text transfer has damaged the
+ * file. */
 static bool has_magic(const nifti *n, const char *magic)
 {
     return memcmp(n->bytes + n->layout->magic, magic, n->layout->magic_bytes) == 0;
@@ -238,7 +239,8 @@ static cw_status read_type(const nifti *n, cwi_source *src, size_t *components, 
     return cwi_fail_type(err, "datatype", name);
 }
 
-/* dim[5] counts values per voxel, one whole series of volumes after another. */
+/* Reads the sizes. dim[5] counts values per voxel, stored as one whole series of volumes after
+ * another. */
 static cw_status read_dims(nifti *n, cwi_source *src, size_t colours, cw_error *err)
 {
     static const cwi_role roles[8] = {[1] = CWI_AXIS_X,
@@ -266,7 +268,7 @@ static cw_status read_dims(nifti *n, cwi_source *src, size_t colours, cw_error *
     return cwi_source_set_axes(src, axes, count, err);
 }
 
-/* "head.hdr.gz" stands beside "head.img.gz". */
+/* Names the file of voxels: "head.hdr.gz" belongs to "head.img.gz". */
 static cw_status name_image(const cwi_input *in, cwi_source *src, cw_error *err)
 {
     const char *slash = strrchr(in->path, '/');
@@ -307,7 +309,8 @@ static cw_status read_place(const cwi_input *in, const nifti *n, cwi_source *src
     return n->is_pair ? name_image(in, src, err) : CW_OK;
 }
 
-/* A slope that is 0 or not finite means: no scaling. Colours are never scaled. */
+/* Reads slope and intercept. A slope that is 0 or not finite means no scaling. Colours are
+ * never scaled. */
 static void read_scaling(const nifti *n, size_t colours, cw_volume *shape)
 {
     const double slope = get_field(n, CWI_NIFTI_SCL_SLOPE, 0);
@@ -321,7 +324,7 @@ static void read_scaling(const nifti *n, size_t colours, cw_volume *shape)
 
 /* --- frame ------------------------------------------------------------------------------- */
 
-/* Spacings are lengths; an axis with one voxel may well have none. */
+/* Reads the spacings, which must be positive; an axis with one voxel may have none. */
 static cw_status read_spacing(const nifti *n, double spacing[3], cw_error *err)
 {
     for (int a = 0; a < 3; a++) {
@@ -346,8 +349,8 @@ static cw_status check_quaternion(const double q[4], cw_error *err)
                    "'quatern_b', 'c', 'd' are %g %g %g; they must be finite", q[1], q[2], q[3]);
 }
 
-/* Method 2: a rotation from a unit quaternion of which the first number is left to be computed;
- * where rounding took the others beyond length 1, it is a half turn. */
+/* Reads the frame by method 2: a rotation by a unit quaternion whose first number is computed
+ * from the others. Where rounding made their length more than 1, it is a half turn. */
 static cw_status read_qform(const nifti *n, cw_volume *shape, cw_error *err)
 {
     double spacing[3], q[4] = {0};
@@ -410,7 +413,7 @@ static void read_units(const nifti *n, cw_volume *shape)
             shape->affine[r][c] *= scale;
 }
 
-/* NIFTI_INTENT_LABEL, NIFTI_INTENT_NEURONAME */
+/* Marks labels: NIFTI_INTENT_LABEL, NIFTI_INTENT_NEURONAME. */
 static void read_intent(const nifti *n, cw_volume *shape)
 {
     const double code = get_field(n, CWI_NIFTI_INTENT_CODE, 0);

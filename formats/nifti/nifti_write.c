@@ -1,4 +1,5 @@
-/* NIfTI-1, or NIfTI-2 when a size needs more than 16 bits. The frame goes into the sform. */
+/* Writes NIfTI-1, or NIfTI-2 when a size needs more than 16 bits. The frame goes into the
+ * sform. */
 #include "formats/nifti/nifti.h"
 #include "formats/volume/volume_writer.h"
 #include "formats/volume/voxel_source.h"
@@ -7,7 +8,7 @@
 
 enum { MOST_BYTES = 544, SPACE_MM = 2, TIME_SECONDS = 8, INTENT_VECTOR = 1007 };
 
-/* A header being filled in. */
+/* A header that is being filled in. */
 typedef struct header {
     unsigned char bytes[MOST_BYTES];
     const cwi_nifti_layout *layout;
@@ -48,8 +49,8 @@ static void put_shape(header *h, const cw_volume *v)
     put_field(h, CWI_NIFTI_SCL_INTER, 0, v->intercept);
 }
 
-/* Code 1 is the scanner's frame, 2 one that was aligned to something: what we say of a frame
- * that is not known, as NIfTI has no other way to keep it. */
+/* Stores the frame. Code 1 is the scanner's frame, 2 a frame aligned to something. Code 2 is
+ * used for an unknown frame, as NIfTI has no other way to keep it. */
 static void put_frame(header *h, const cw_volume *v)
 {
     double spacing[3], ras[3][4];
@@ -69,7 +70,7 @@ static void put_frame(header *h, const cw_volume *v)
                   (v->step_seconds > 0 ? TIME_SECONDS : 0));
 }
 
-/* The four bytes between header and voxels are zero: no extensions. */
+/* Fills the header. The four bytes between header and voxels are zero: no extensions. */
 static void fill_header(header *h, const cwi_save *save)
 {
     *h = (header){.layout = choose_layout(save->volume)};

@@ -1,4 +1,5 @@
-/* NRRD's fields and axes, between the file that reads them and the one that places them. */
+/* The fields and axes of NRRD, shared by the parser of the header and the code that places the
+ * axes. */
 #ifndef FORMATS_NRRD_NRRD_H
 #define FORMATS_NRRD_NRRD_H
 
@@ -7,7 +8,7 @@
 
 enum { CWI_NRRD_MOST_AXES = 16 };
 
-/* The fields that mean something to us, and one for all others that NRRD defines. */
+/* The fields that are used, and one for all others that NRRD defines. */
 typedef enum cwi_nrrd_field {
     CWI_NRRD_TYPE,
     CWI_NRRD_DIMENSION,
@@ -32,7 +33,7 @@ typedef enum cwi_nrrd_field {
     CWI_NRRD_FIELD_COUNT
 } cwi_nrrd_field;
 
-/* What an axis is: of space, of time, or of values that belong to one voxel. */
+/* The kind of an axis: of space, of time, or of values that belong to one voxel. */
 typedef enum cwi_nrrd_kind {
     CWI_NRRD_KIND_UNKNOWN,
     CWI_NRRD_KIND_SPACE,
@@ -41,34 +42,34 @@ typedef enum cwi_nrrd_kind {
     CWI_NRRD_KIND_VALUES
 } cwi_nrrd_kind;
 
-/* One axis as the header tells of it. */
+/* An axis as the header describes it. */
 typedef struct cwi_nrrd_axis {
     size_t size;
     cwi_nrrd_kind kind;
     bool has_vector;
     double vector[4];   /* in the space's own coordinates */
-    bool is_cell;       /* samples stand in the middle of cells */
-    double mm, seconds; /* per unit; 0: not said */
+    bool is_cell;       /* samples are in the middle of cells */
+    double mm, seconds; /* per unit; 0: not stated */
 } cwi_nrrd_axis;
 
-/* A header, taken apart as far as the reading has come. */
+/* The parts of a header read so far. */
 typedef struct cwi_nrrd {
     cwi_lines lines;
-    const char *value[CWI_NRRD_FIELD_COUNT]; /* as written; NULL: the field is not there */
-    bool has_segments;                       /* keys tell of them: values are labels */
+    const char *value[CWI_NRRD_FIELD_COUNT]; /* as written; NULL: the field is missing */
+    bool has_segments;                       /* keys describe segments: values are labels */
     size_t dimension;
     cwi_nrrd_axis axis[CWI_NRRD_MOST_AXES];
     double spacing[CWI_NRRD_MOST_AXES], min[CWI_NRRD_MOST_AXES],
-        max[CWI_NRRD_MOST_AXES]; /* NaN: not said */
-    int space;                   /* the row of a table of named worlds, or -1 */
+        max[CWI_NRRD_MOST_AXES]; /* NaN: not stated */
+    int space;                   /* the row in a table of named worlds, or -1 */
     size_t space_dimension;      /* 0: no world is described */
     double origin[4];
-    double world_mm[4];   /* per unit of each world coordinate; 0: not said */
+    double world_mm[4];   /* per unit of each world coordinate; 0: not stated */
     double world_seconds; /* per unit of the fourth */
 } cwi_nrrd;
 
-/* Reads what the header says of axes and of the world around them, and sets the source's sizes,
- * strides and frame. Needs the type and the plain sizes. */
+/* Reads the axes and their world from the header, and sets the source's sizes, strides and
+ * frame. Needs the type and the plain sizes. */
 CW_NODISCARD cw_status cwi_nrrd_describe(cwi_nrrd *n, cwi_source *src, cw_error *err);
 
 #endif

@@ -1,4 +1,4 @@
-/* NRRD: what the axes are, and where in the world their voxels stand. */
+/* Interprets the axes of NRRD, and places the voxels in the world. */
 #include "formats/nrrd/nrrd.h"
 
 #include "core/base/status.h"
@@ -23,7 +23,7 @@ static const struct {
     {CWI_NRRD_KIND_VALUES, "3d-symmetric-matrix|3d-masked-symmetric-matrix"},
 };
 
-/* Worlds with names; sign turns the first two coordinates to left and posterior. */
+/* Named worlds; sign turns the first two coordinates to left and posterior. */
 static const struct {
     const char *names;
     size_t dimension;
@@ -80,7 +80,7 @@ static void set_unit(cwi_nrrd_axis *a, const char *word)
     find_unit(word, &a->mm, &a->seconds);
 }
 
-/* One word an axis. */
+/* Reads one word per axis. */
 static cw_status read_words(cwi_nrrd *n, cwi_nrrd_field f, const char *name,
                             void (*set)(cwi_nrrd_axis *, const char *), cw_error *err)
 {
@@ -98,7 +98,7 @@ static cw_status read_words(cwi_nrrd *n, cwi_nrrd_field f, const char *name,
                    count, n->dimension);
 }
 
-/* One number an axis; those not said stay as they are. */
+/* Reads one number per axis; missing ones keep their values. */
 static cw_status read_numbers(cwi_nrrd *n, cwi_nrrd_field f, const char *name, double *out,
                               cw_error *err)
 {
@@ -236,8 +236,8 @@ static bool any_spacing(const cwi_nrrd *n)
     return false;
 }
 
-/* Direction decides where the header has any; then the kind; then whether a spacing is given
- * where others have one. */
+/* Returns true for an axis of space. Direction decides where the header has any; then the kind;
+ * then a spacing, where other axes have one. */
 static bool is_spatial(const cwi_nrrd *n, size_t index)
 {
     const cwi_nrrd_axis *a = &n->axis[index];
@@ -249,8 +249,8 @@ static bool is_spatial(const cwi_nrrd *n, size_t index)
     return !(any_spacing(n) && isnan(n->spacing[index]));
 }
 
-/* An axis that is not of space. Lists hold what their author liked; those with more entries
- * than a voxel may have values are taken as steps, as are slow axes without a kind. */
+/* Returns the role of an axis that is not of space. Lists may hold anything. Those with more
+ * entries than a voxel may have values are taken as steps, as are slow axes without a kind. */
 static cwi_role other_role(const cwi_nrrd_axis *a, bool is_fastest)
 {
     if (a->kind == CWI_NRRD_KIND_VALUES || (a->kind == CWI_NRRD_KIND_LIST && a->size <= 16))
@@ -301,7 +301,7 @@ static double axis_spacing(const cwi_nrrd *n, size_t i)
     return 1;
 }
 
-/* axis mins are where the axis starts: at the first sample, or half a cell in front of it. */
+/* Returns the start of an axis from axis mins: the first sample, or half a cell before it. */
 static double axis_start(const cwi_nrrd *n, size_t i)
 {
     return isnan(n->min[i]) ? 0 : n->min[i] + (n->axis[i].is_cell ? axis_spacing(n, i) / 2 : 0);
@@ -320,8 +320,8 @@ static void set_column(const cwi_nrrd *n, size_t i, int c, double affine[3][4])
         affine[c][3] = axis_start(n, i) * mm;
 }
 
-/* Whether a column of the affine was given in coordinates of the world. A world without
- * directions does not say how the axes lie in it. */
+/* Returns true if a column of the affine was given in coordinates of the world. A world without
+ * directions does not state how the axes lie in it. */
 static bool is_of_world(const cwi_nrrd *n, int column)
 {
     return n->value[CWI_NRRD_SPACE_DIRECTIONS] ||
@@ -374,7 +374,7 @@ static void set_frame(const cwi_nrrd *n, const cwi_axis *roles, cw_volume *shape
     turn_world(n, axes_have_units, shape);
 }
 
-/* Axes the file does not have stand at right angles to those it has, a millimetre apart. */
+/* Adds missing axes, perpendicular to the existing ones, a millimetre apart. */
 static void add_missing_axes(const cwi_axis *roles, size_t count, bool has_directions,
                              double affine[3][4])
 {

@@ -1,5 +1,5 @@
-/* NRRD: the header's fields, in the order in which later ones need earlier ones.
- * The format is defined at teem.sourceforge.net/nrrd/format.html. */
+/* Reads the header of NRRD; the order of the fields here is the one in which later ones need
+ * earlier ones. Defined at teem.sourceforge.net/nrrd/format.html. */
 #include "core/base/status.h"
 #include "formats/bytes/bzip2.h"
 #include "formats/nrrd/nrrd.h"
@@ -34,7 +34,7 @@ static const char *const field_names[CWI_NRRD_FIELD_COUNT] = {
          "oldmin|oldmax|blocksize"),
 };
 
-/* What an axis is: of space, of time, or of values that belong to one voxel. */
+/* The kinds of axes: of space, of time, or of values that belong to one voxel. */
 
 static const struct {
     const char *names;
@@ -76,7 +76,7 @@ static cw_status keep_field(cwi_nrrd *n, const char *line, cw_error *err)
     const char *colon = strchr(line, ':');
     if (!colon)
         return cw_fail(err, CW_ERR_FORMAT, "line %zu holds no 'field: value'", n->lines.number);
-    if (colon[1] == '=') { /* a key of someone's own: Slicer names the segments of a map */
+    if (colon[1] == '=') { /* a private key: Slicer names the segments of a label map */
         n->has_segments |= strncmp(line, "Segment", 7) == 0 && isdigit((unsigned char)line[7]);
         return CW_OK;
     }
@@ -98,7 +98,8 @@ static bool is_list(const char *data_file)
            (data_file[4] == '\0' || data_file[4] == ' ');
 }
 
-/* The header ends at an empty line, at the file's end, or where a list of files starts. */
+/* Reads the fields. The header ends at an empty line, at the file's end, or where a list of
+ * files starts. */
 static cw_status read_fields(cwi_nrrd *n, cw_error *err)
 {
     char *line;
@@ -120,7 +121,7 @@ static cw_status require_field(const cwi_nrrd *n, cwi_nrrd_field f, cw_error *er
                : cw_fail(err, CW_ERR_FORMAT, "the field '%s' is missing", field_names[f]);
 }
 
-/* --- what the voxels are ----------------------------------------------------------------- */
+/* --- type of the voxels ------------------------------------------------------------------ */
 
 static cw_status read_sizes(cwi_nrrd *n, cw_error *err)
 {
@@ -199,7 +200,7 @@ static cw_status read_endian(const cwi_nrrd *n, cwi_source *src, cw_error *err)
     return cw_fail(err, CW_ERR_FORMAT, "'endian' is '%.40s'; it must be little or big", name);
 }
 
-/* --- where the voxels are ---------------------------------------------------------------- */
+/* --- place of the voxels ----------------------------------------------------------------- */
 
 static cw_status read_skips(const cwi_nrrd *n, cwi_source *src, cw_error *err)
 {
@@ -219,7 +220,8 @@ static cw_status read_skips(const cwi_nrrd *n, cwi_source *src, cw_error *err)
     return st;
 }
 
-/* Files of `depth` axes each: one fewer than the voxels have, unless the header says. */
+/* Checks the number of files of `depth` axes each: one axis fewer than the voxels, unless
+ * stated. */
 static cw_status check_file_count(const cwi_nrrd *n, const cwi_source *src, int64_t depth,
                                   cw_error *err)
 {

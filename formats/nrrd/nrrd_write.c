@@ -1,4 +1,4 @@
-/* NRRD, one file, gzipped; doubles are written so that they read back to the bit. */
+/* Writes NRRD: one gzipped file; doubles are written so that they read back to the bit. */
 #include "formats/volume/volume_writer.h"
 #include "formats/volume/voxel_source.h"
 
@@ -7,8 +7,8 @@ static const char *const types[CW_TYPE_COUNT] = {
     [CW_U32] = "uint32", [CW_I32] = "int32", [CW_F32] = "float",  [CW_F64] = "double",
 };
 
-/* The start of a line with a word per axis: one for the values, where voxels have several, then
- * one for each axis of space. The word for time is the caller's. */
+/* Starts a line with a word per axis: one for the values, where voxels have several, then one
+ * for each axis of space. The caller adds the word for time. */
 static cw_status start_axes(const cwi_save *save, const char *field, const char *values,
                             const char *space, cw_error *err)
 {
@@ -67,7 +67,7 @@ static cw_status write_frame(const cwi_save *save, cw_error *err)
     return st;
 }
 
-/* Spacings and units may be given for the axes that have no direction. */
+/* Writes spacings and units of time. They are allowed for axes that have no direction. */
 static cw_status write_time(const cwi_save *save, cw_error *err)
 {
     const cw_volume *v = save->volume;

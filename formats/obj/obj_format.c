@@ -1,4 +1,4 @@
-/* Wavefront OBJ: what is read and written, and by whom. */
+/* The driver of Wavefront OBJ: its reader, its writer, and what the format keeps. */
 #include "formats/driver/format_driver.h"
 
 const cwi_format_driver cwi_format_obj = {

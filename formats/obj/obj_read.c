@@ -1,4 +1,4 @@
-/* Wavefront OBJ: vertices, normals and faces, in objects or groups; materials do not matter. */
+/* Reads Wavefront OBJ: vertices, normals and faces, in objects or groups; ignores materials. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
@@ -13,11 +13,12 @@ static const uint32_t NONE = UINT32_MAX;
 typedef struct obj {
     cwi_mesh_build build;
     float *normals;      /* normal_count x 3 */
-    uint32_t *normal_of; /* a vertex's normal, or NONE; for the first named of them */
+    uint32_t *normal_of; /* a vertex's normal, or NONE; for the first normal_of_count
+                            vertices */
     size_t normal_count, normal_room, named, named_room;
     bool mixed;       /* some vertex has two normals, or a corner none: then none are kept */
-    bool ours;        /* a comment is that of our writer */
-    bool has_objects; /* then groups are no parts */
+    bool ours;        /* a comment of our writer was found */
+    bool has_objects; /* then groups are not parts */
 } obj;
 
 /* --- normals ----------------------------------------------------------------------------- */
@@ -31,7 +32,7 @@ static cw_status read_normal(obj *o, cwi_scan *s, cw_error *err)
     for (size_t a = 0; a < 3 && st == CW_OK; a++) {
         double number = 0;
         st = cwi_scan_double(s, "a normal's coordinate", &number, err);
-        if (st == CW_OK) /* one that is beyond single precision is no normal */
+        if (st == CW_OK) /* numbers beyond single precision make no normal */
             o->normals[3 * o->normal_count + a] = fabs(number) < 1e30 ? (float)number : NAN;
     }
     o->normal_count += st == CW_OK;
@@ -45,8 +46,8 @@ static bool same_normal(const obj *o, uint32_t m, uint32_t n)
                              3 * sizeof *o->normals) == 0);
 }
 
-/* A corner of the vertex has this normal. Once any vertex has two, none are kept; nor are they
- * where a face comes before its vertices, whose number could then be anything. */
+/* Gives a vertex the normal of a corner. Once any vertex has two, none are kept. Nor are they
+ * kept where a face precedes its vertices, since their number could be anything. */
 static cw_status name_normal(obj *o, uint32_t vertex, int64_t normal, cw_error *err)
 {
     o->mixed = o->mixed || normal < 0 || normal >= NONE || vertex >= o->build.point_count;
@@ -89,13 +90,14 @@ static cw_status keep_normals(obj *o, cw_mesh *mesh, cw_error *err)
 
 /* --- faces ------------------------------------------------------------------------------- */
 
-/* The file counts from 1, or with negative numbers back from the last one so far. */
+/* Converts a number to an index. The file counts from 1, or with negative numbers back from the
+ * last one. */
 static int64_t to_index(int64_t number, size_t count)
 {
     return number < 0 ? (int64_t)count + number : number - 1;
 }
 
-/* "v", "v/t", "v//n" or "v/t/n"; a normal of 0 is none. */
+/* Parses "v", "v/t", "v//n" or "v/t/n"; a normal of 0 means none. */
 static bool parse_corner(const cwi_word *word, int64_t *vertex, int64_t *normal)
 {
     const char *at = word->text, *end = word->text + word->size;
@@ -143,7 +145,7 @@ static cw_status read_face(obj *o, cwi_scan *s, cw_mesh_file *said, cw_error *er
 
 /* --- lines ------------------------------------------------------------------------------- */
 
-/* What follows x y z may be a weight or a colour, and is left out. */
+/* Reads x y z of a vertex. Further numbers may be a weight or a colour, and are ignored. */
 static cw_status read_vertex(obj *o, cwi_scan *s, cw_error *err)
 {
     double point[3] = {0};

@@ -1,4 +1,5 @@
-/* Wavefront OBJ: text, so the one plain format that keeps places far from zero exact. */
+/* Writes Wavefront OBJ: text, so the only plain format that keeps places far from zero
+ * exact. */
 #include "formats/mesh/mesh_writer.h"
 
 static unsigned char *encode_place(const cwi_part *part, size_t v, unsigned char *to)
@@ -11,7 +12,7 @@ static unsigned char *encode_normal(const cwi_part *part, size_t v, unsigned cha
     return cwi_put_text(cwi_put_normal(cwi_put_text(to, "vn "), part, v), "\n");
 }
 
-/* Numbers start at 1, and go on from object to object. */
+/* Encodes a face. Numbers start at 1, and continue from object to object. */
 static unsigned char *encode_face(const cwi_part *part, size_t t, unsigned char *to)
 {
     *to++ = 'f';

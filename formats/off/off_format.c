@@ -1,4 +1,4 @@
-/* OFF: what is read and written, and by whom. */
+/* The driver of OFF: its reader, its writer, and what the format keeps. */
 #include "formats/driver/format_driver.h"
 
 const cwi_format_driver cwi_format_off = {

@@ -1,4 +1,5 @@
-/* OFF, the text form: OFF, NOFF with normals, COFF with colours, STOFF with texture places. */
+/* Reads OFF as text: OFF, NOFF with normals, COFF with colours, STOFF with texture
+ * coordinates. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/mesh/mesh_reader.h"
@@ -20,7 +21,7 @@ static bool skip_letters(const char **at, const char *letters)
     return same;
 }
 
-/* "[ST][C][N][4][n]OFF" and nothing behind it. 4: homogeneous, n: of any dimension. */
+/* Parses "[ST][C][N][4][n]OFF" with nothing behind it. 4: homogeneous, n: of any dimension. */
 static bool parse_keyword(const char *text, off *o, bool *odd)
 {
     skip_letters(&text, "ST");
@@ -60,7 +61,8 @@ static cw_status read_keyword(off *o, cwi_scan *s, cw_error *err)
     return CW_OK;
 }
 
-/* A vertex is at least "0 0 0" and a line end, a face at least "0" and one. */
+/* Checks the counts. A vertex has at least "0 0 0" and a line end, a face at least "0" and
+ * one. */
 static cw_status check_counts(const cwi_scan *s, int64_t vertices, int64_t faces, cw_error *err)
 {
     const uint64_t room = cwi_scan_left(s) + 1;
@@ -77,7 +79,7 @@ static cw_status check_counts(const cwi_scan *s, int64_t vertices, int64_t faces
     return CW_OK;
 }
 
-/* The first word that is no comment; of those ours are looked at. */
+/* Reads the first word that is no comment; comments of our writer are parsed. */
 static cw_status first_word(cwi_scan *s, cwi_word *word, cw_mesh *mesh, cw_mesh_file *said,
                             cw_error *err)
 {
@@ -100,7 +102,8 @@ static cw_status first_word(cwi_scan *s, cwi_word *word, cw_mesh *mesh, cw_mesh_
     return st;
 }
 
-/* Vertices, faces and (never used, at times left out) edges: behind the keyword or below. */
+/* Reads the counts of vertices, faces and edges (unused, sometimes missing), behind the keyword
+ * or below. */
 static cw_status read_counts(off *o, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *said,
                              cw_error *err)
 {
@@ -133,8 +136,8 @@ static cw_status make_room(off *o, cw_mesh *mesh, cw_error *err)
     return st;
 }
 
-/* Whole numbers up to 255, or numbers up to 1 with a point in them; alpha may be left out. A
- * vertex without three of them is white. */
+/* Reads a colour: whole numbers up to 255, or numbers up to 1 with a point in them. Alpha is
+ * optional. A vertex with fewer than three numbers is white. */
 static cw_status read_color(cwi_scan *s, uint8_t color[4], cw_error *err)
 {
     double number[4] = {0};
@@ -164,7 +167,7 @@ static cw_status read_vertex(off *o, cwi_scan *s, cw_mesh *mesh, cw_error *err)
         st = cwi_scan_double(s, "a coordinate", &point[a], err);
     for (int a = 0; a < 3 && st == CW_OK && o->normals; a++)
         st = cwi_scan_double(s, "a normal's coordinate", &normal[a], err);
-    for (size_t a = 0; a < 3 && st == CW_OK && o->normals; a++) /* others are no normals */
+    for (size_t a = 0; a < 3 && st == CW_OK && o->normals; a++) /* others are not normals */
         mesh->normals[3 * v + a] = fabs(normal[a]) < 1e30 ? (float)normal[a] : NAN;
     if (st == CW_OK && o->colors)
         st = read_color(s, mesh->colors + 4 * v, err);
@@ -188,7 +191,7 @@ static cw_status read_face(off *o, cwi_scan *s, cw_mesh_file *said, cw_error *er
     return st;
 }
 
-/* On to the line of number i of what was counted. */
+/* Goes to the line of element i. */
 static cw_status go_to_line(cwi_scan *s, const char *what, uint64_t i, uint64_t count,
                             cw_error *err)
 {

@@ -1,4 +1,4 @@
-/* OFF: text; with colours it begins with COFF, with normals NOFF, with both CNOFF. */
+/* Writes OFF as text; the keyword is COFF with colours, NOFF with normals, CNOFF with both. */
 #include "formats/mesh/mesh_writer.h"
 
 static unsigned char *encode_vertex(const cwi_part *part, size_t v, unsigned char *to)

@@ -1,4 +1,4 @@
-/* PLOT3D: what is read and written, and by whom. */
+/* The driver of PLOT3D: its names and its reader. */
 #include "formats/driver/format_driver.h"
 
 const cwi_format_driver cwi_format_plot3d = {

@@ -1,6 +1,6 @@
+/* Reads PLOT3D: a solution and, in another file, the points of its curvilinear grid. The file
+ * sizes decide the encoding, since the files do not state it. */
 #define _DEFAULT_SOURCE /* realpath */
-/* PLOT3D: a solution and, in another file, the points of its curvilinear grid. Nothing in the
- * files says so: sizes have to tell how they are written. */
 #include "core/base/status.h"
 #include "formats/volume/irregular_grid.h"
 #include "formats/volume/named_arrays.h"
@@ -15,18 +15,19 @@ static const char *const names[] = {"Density", "MomentumX", "MomentumY", "Moment
                                     "StagnationEnergy"};
 enum { QUANTITIES = sizeof names / sizeof *names, CONDITIONS = 4 };
 
-/* How a file is written: as C does, or as Fortran, with the size of each record around it; with
- * a count of grids, which is 1, or without; in one byte order or the other. */
+/* The encoding of a file. It is written as by C, or as by Fortran with the size of each record
+ * around it. It has a count of grids, which must be 1, or none. It has one of two byte
+ * orders. */
 typedef struct form {
     bool big_endian, counted;
-    size_t mark, width; /* bytes around a record; of a number */
+    size_t mark, width; /* bytes around a record; bytes of a number */
     size_t along[3];
-    uint64_t data; /* where the numbers begin */
+    uint64_t data; /* offset of the numbers */
 } form;
 
 typedef struct plot3d {
     form points, solution;
-    char *path; /* of the points */
+    char *path; /* path of the file of points */
     size_t quantity;
 } plot3d;
 
@@ -38,8 +39,8 @@ static int32_t integer_at(const unsigned char *p, bool big_endian)
     return (int32_t)n;
 }
 
-/* Sizes of a file written so; false where it cannot be one. conditions: numbers in a record of
- * their own before the others; quantities: numbers a point. */
+/* Tries one encoding: sets the sizes; returns false where they cannot be right. conditions:
+ * numbers in a separate record before the others; quantities: numbers per point. */
 static bool try_form(form *f, const unsigned char *head, uint64_t size, size_t conditions,
                      size_t quantities)
 {
@@ -117,7 +118,7 @@ static cw_status choose_quantity(const char *wanted, size_t *quantity, cw_error 
                   : CW_OK;
 }
 
-/* Both forms, which must have the same sizes. */
+/* Finds the encodings of both files, which must have the same sizes. */
 static cw_status find_forms(const cwi_input *in, const cwi_input *points, plot3d *p,
                             cw_error *err)
 {
@@ -137,7 +138,7 @@ static cw_status read_grid(const cwi_input *in, const cwi_input *points, plot3d 
                            const cw_read_desc *desc, cw_volume *volume, cw_error *err)
 {
     cwi_grid_piece piece = {0};
-    cwi_input both = *in; /* the user named the other file, wherever it is */
+    cwi_input both = *in; /* the user named the other file, so it may be anywhere */
     both.allow_external = true;
     both.size += points->size;
     memcpy(piece.along, p->points.along, sizeof piece.along);

@@ -1,4 +1,4 @@
-/* The header of a PLY file: which elements there are, and what each consists of. */
+/* The header of a PLY file: its elements, and the properties of each. */
 #ifndef FORMATS_PLY_PLY_H
 #define FORMATS_PLY_PLY_H
 
@@ -17,7 +17,7 @@ typedef enum cwi_ply_type {
     CWI_PLY_TYPE_COUNT
 } cwi_ply_type;
 
-/* What a property of a vertex or face means to us. */
+/* The use of a vertex's or face's property. */
 typedef enum cwi_ply_role {
     CWI_PLY_X,
     CWI_PLY_Y,
@@ -32,7 +32,7 @@ typedef enum cwi_ply_role {
     CWI_PLY_SCALAR,
     CWI_PLY_LABEL,
     CWI_PLY_INDICES,
-    CWI_PLY_NOTHING /* read and forgotten */
+    CWI_PLY_NOTHING /* read and ignored */
 } cwi_ply_role;
 
 typedef struct cwi_ply_property {
@@ -45,7 +45,7 @@ typedef struct cwi_ply_property {
 enum { CWI_PLY_ELEMENTS = 32, CWI_PLY_PROPERTIES = 256, CWI_PLY_NAME = 24 };
 
 typedef struct cwi_ply_element {
-    char name[CWI_PLY_NAME];      /* cut */
+    char name[CWI_PLY_NAME];      /* shortened */
     char what[CWI_PLY_NAME + 12]; /* "element 'NAME'", for messages */
     uint64_t count;
     size_t first, end; /* in properties */
@@ -58,13 +58,13 @@ typedef struct cwi_ply_header {
     size_t element_count, property_count;
     uint64_t body;    /* offset of the first element */
     size_t lines;     /* of the header */
-    double origin[3]; /* named by a local file of ours; else 0 */
+    double origin[3]; /* stated by our local files; else 0 */
 } cwi_ply_header;
 
 size_t cwi_ply_type_size(cwi_ply_type type);
 
-/* Reads the header, and checks that the file is long enough for what it counts. known and local
- * of said are set. */
+/* Reads the header, and checks that the file is long enough for its counts. Sets known and
+ * local of said. */
 CW_NODISCARD cw_status cwi_ply_parse(const cwi_input *in, cwi_ply_header *h, cw_mesh_file *said,
                                      cw_error *err);
 

@@ -1,4 +1,4 @@
-/* PLY: what is read and written, and by whom. */
+/* The driver of PLY: its reader, its writer, and what the format keeps. */
 #include "formats/driver/format_driver.h"
 
 const cwi_format_driver cwi_format_ply = {

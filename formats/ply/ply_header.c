@@ -1,3 +1,4 @@
+/* Parses the header of a PLY file and checks its counts against the file's size. */
 #include "formats/ply/ply.h"
 
 #include "core/base/status.h"
@@ -18,7 +19,7 @@ static const struct {
     [CWI_PLY_F32] = {"float", "float32", 4}, [CWI_PLY_F64] = {"double", "float64", 8},
 };
 
-/* A colour's types are those that have a known largest value. */
+/* The known properties. Types of colours are those with a known maximum. */
 static const struct {
     const char *element, *name;
     cwi_ply_role role;
@@ -106,7 +107,7 @@ static cwi_ply_role find_role(const cwi_ply_element *e, const char *name, bool i
     return CWI_PLY_NOTHING;
 }
 
-/* "TYPE NAME" or "list TYPE TYPE NAME". */
+/* Parses "TYPE NAME" or "list TYPE TYPE NAME". */
 static cw_status parse_property(cwi_ply_header *h, const char *rest, const char *line,
                                 cw_error *err)
 {
@@ -139,8 +140,8 @@ static cw_status parse_property(cwi_ply_header *h, const char *rest, const char 
     return st;
 }
 
-/* What our writer says of unit, frame, up and origin; the latter two are only taken from a file
- * that is ours, as others may mean something else. */
+/* Parses a comment of our writer: unit, frame, up and origin. Up and origin are only accepted
+ * from our own files, as they may mean something else in others. */
 static void parse_comment(cwi_ply_header *h, const char *rest, bool *ours, cw_mesh_file *said)
 {
     char word[CWI_WORD_BYTES] = "", value[CWI_WORD_BYTES] = "";
@@ -205,7 +206,7 @@ static cw_status parse_lines(cwi_ply_header *h, cwi_lines *lines, cw_mesh_file *
     return st;
 }
 
-/* The fewest bytes that one element takes: of text, a digit and a blank each. */
+/* Returns the minimum bytes of one element: of text, a digit and a blank each. */
 static uint64_t least_bytes(const cwi_ply_header *h, const cwi_ply_element *e)
 {
     uint64_t bytes = 0;
@@ -218,7 +219,7 @@ static uint64_t least_bytes(const cwi_ply_header *h, const cwi_ply_element *e)
 
 static cw_status check_counts(const cwi_ply_header *h, uint64_t left, cw_error *err)
 {
-    left += h->text; /* the last line may have no end */
+    left += h->text; /* the last line may have no line end */
     for (size_t i = 0; i < h->element_count; i++) {
         const cwi_ply_element *e = &h->elements[i];
         const uint64_t bytes = least_bytes(h, e);

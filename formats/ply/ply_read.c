@@ -1,4 +1,4 @@
-/* PLY: text or binary of either byte order, elements and properties in any order. */
+/* Reads PLY: text or binary of either byte order, elements and properties in any order. */
 #include "formats/ply/ply.h"
 
 #include "core/base/memory.h"
@@ -11,7 +11,7 @@
 typedef struct ply {
     cwi_ply_header header;
     cwi_mesh_build build;
-    bool has[CWI_PLY_NOTHING + 1]; /* roles that some property of 'vertex' plays */
+    bool has[CWI_PLY_NOTHING + 1]; /* roles of the properties of 'vertex' that exist */
 } ply;
 
 bool cwi_ply_sniff(const unsigned char *head, size_t size, uint64_t file_size)
@@ -61,7 +61,7 @@ static cw_status read_number(const ply *p, cwi_scan *s, const cwi_ply_element *e
     return st;
 }
 
-/* Text may say 2.5 where the header says int. */
+/* Reads a whole number; text may contain 2.5 where the header states int. */
 static cw_status read_whole(const ply *p, cwi_scan *s, const cwi_ply_element *e,
                             cwi_ply_type type, int64_t *whole, cw_error *err)
 {
@@ -77,7 +77,7 @@ static cw_status read_whole(const ply *p, cwi_scan *s, const cwi_ply_element *e,
 
 /* --- elements ---------------------------------------------------------------------------- */
 
-/* A list of corners, or one whose numbers are read and forgotten. */
+/* Reads a list of corners, or a list whose numbers are ignored. */
 static cw_status read_list(ply *p, cwi_scan *s, const cwi_ply_element *e,
                            const cwi_ply_property *property, cw_mesh_file *said, cw_error *err)
 {
@@ -102,7 +102,8 @@ static cw_status read_list(ply *p, cwi_scan *s, const cwi_ply_element *e,
     return st;
 }
 
-/* Whole numbers are shares of their type's largest, others of 1. */
+/* Converts a number to a colour: whole numbers are fractions of their type's maximum, others of
+ * 1. */
 static uint8_t to_color(double number, cwi_ply_type type)
 {
     const double largest[CWI_PLY_TYPE_COUNT] = {127,        255,        32767, 65535,
@@ -117,7 +118,7 @@ static float to_single(double number)
                                            : (float)copysign((double)INFINITY, number);
 }
 
-/* One property of vertex v; what was asked for has its array. */
+/* Stores one property of vertex v; requested ones have an array. */
 static void store_property(cw_mesh *mesh, size_t v, double point[3],
                            const cwi_ply_property *property, double number)
 {
@@ -176,7 +177,7 @@ static const cwi_ply_element *find_element(const cwi_ply_header *h, const char *
     return NULL;
 }
 
-/* Every role once, at most: arrays have one place for each. */
+/* Finds the roles, each at most once: arrays have one place for each. */
 static cw_status find_roles(ply *p, cw_error *err)
 {
     const cwi_ply_header *h = &p->header;
@@ -214,8 +215,8 @@ static cw_status make_vertex_room(ply *p, cw_mesh *mesh, size_t count, cw_error 
     return st;
 }
 
-/* Room for faces that are triangles of one-byte numbers, if the file is long enough for them:
- * lists that turn out to be empty must not have taken more than the file's size. */
+/* Reserves room for triangular faces with one-byte numbers, if the file is long enough for
+ * them. Lists that are empty in truth must not have taken more memory than the file's size. */
 static cw_status make_room(ply *p, cw_mesh *mesh, uint64_t file_size, cw_error *err)
 {
     const cwi_ply_element *vertex = find_element(&p->header, "vertex");

@@ -1,4 +1,4 @@
-/* PLY, binary little-endian or text: everything a mesh holds but its affine. */
+/* Writes PLY, binary little-endian or text: everything of a mesh except its affine. */
 #include "formats/mesh/mesh_writer.h"
 
 #include "core/base/status.h"
@@ -53,7 +53,7 @@ static unsigned char *encode_text_vertex(const cwi_part *part, size_t v, unsigne
 static cw_status write_header(const cwi_parts *parts, const cwi_mesh_output *out, cw_error *err)
 {
     const cw_mesh *mesh = &parts->items[0].mesh; /* all have the same arrays */
-    /* int is what readers expect; uint only when the numbers need it */
+    /* readers expect int; uint is used only when the numbers need it */
     const char *index = parts->vertices > INT32_MAX ? "uint" : "int";
     char origin[CWI_ORIGIN_BYTES];
     cwi_print_origin(out, "comment origin ", "\n", origin);

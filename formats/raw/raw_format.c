@@ -1,4 +1,4 @@
-/* Voxels without a header: what is read and written, and by whom. */
+/* The driver of voxels without a header, which are read by a given layout. */
 #include "formats/driver/format_driver.h"
 
 const cwi_format_driver cwi_format_raw = {

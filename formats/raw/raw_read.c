@@ -1,3 +1,4 @@
+/* Parses the layout of voxels without a header, and makes a source from it. */
 #include "core/base/status.h"
 #include "core/base/text.h"
 #include "formats/text/text_header.h"
@@ -131,8 +132,8 @@ static cw_status parse_pair(const char *pair, unsigned *seen, cw_raw_layout *lay
                    (int)(length < 40 ? length : 40), pair);
 }
 
-/* Up to a comma that a number does not follow: sizes and lengths may be parted by
- * commas, too. */
+/* Returns the length of a pair: up to a comma that no number follows. Sizes and lengths may
+ * also be separated by commas. */
 static size_t pair_length(const char *text)
 {
     size_t length = strcspn(text, ",");

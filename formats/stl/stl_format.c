@@ -1,4 +1,4 @@
-/* STL: what is read and written, and by whom. */
+/* The driver of STL: its reader, its writer, and what the format keeps. */
 #include "formats/driver/format_driver.h"
 
 const cwi_format_driver cwi_format_stl = {

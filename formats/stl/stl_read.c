@@ -1,4 +1,5 @@
-/* STL, binary and text. Facets share nothing; corners at one place become one vertex. */
+/* Reads STL, binary and text. Facets share nothing, so corners at one place become one
+ * vertex. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
@@ -18,8 +19,9 @@ static uint32_t u32_at(const unsigned char *b)
     return b[0] | (uint32_t)b[1] << 8 | (uint32_t)b[2] << 16 | (uint32_t)b[3] << 24;
 }
 
-/* Size decides, as binary files may well begin with "solid". Some are longer than their facets,
- * so that rule is left to files that cannot be text. */
+/* Returns true if the size is that of a binary file, since binary files may also begin with
+ * "solid". Some are longer than their facets; they are accepted later, if they cannot be
+ * text. */
 static bool is_binary(const unsigned char *head, size_t size, uint64_t file_size)
 {
     return size >= START && file_size == START + (uint64_t)FACET * u32_at(head + HEADER);
@@ -38,7 +40,7 @@ bool cwi_stl_sniff(const unsigned char *head, size_t size, uint64_t file_size)
     return is_binary(head, size, file_size) || is_text(head, size);
 }
 
-/* The mesh as it grows: our welder's points, and three of them for each facet. */
+/* The mesh while it grows: the welder's points, and three of them for each facet. */
 typedef struct facets {
     cwi_mesh_input *in;
     cwi_welder welder;
@@ -46,7 +48,7 @@ typedef struct facets {
     size_t count, room;
 } facets;
 
-/* The welder's memory counts when it has grown: its points and its table. */
+/* Counts the welder's memory when it has grown: its points and its table. */
 static cw_status limit_memory(const facets *f, cw_error *err)
 {
     const uint64_t limit = f->in->desc.max_bytes;
@@ -70,7 +72,7 @@ static cw_status check_corners(const facets *f, const float *corners, size_t cou
     return CW_OK;
 }
 
-/* Facets of nine coordinates each; there is room for them. */
+/* Adds facets of nine coordinates each; there is room for them. */
 static cw_status add_facets(facets *f, const float *corners, size_t count, cw_error *err)
 {
     const size_t room = f->welder.room;
@@ -93,8 +95,8 @@ static cw_status make_room(facets *f, uint64_t count, cw_error *err)
     return st;
 }
 
-/* "cubewright, LPS, mm from 1 2 3", as our writer leaves it: frame and unit, and the origin of
- * a local file. */
+/* Reads the words of our writer, "cubewright, LPS, mm from 1 2 3": frame and unit, and the
+ * origin of a local file. */
 static void take_words(const char *text, cw_mesh *mesh, cw_mesh_file *said)
 {
     static const char ours[] = "cubewright, ", from[] = " from ";
@@ -149,7 +151,7 @@ static cw_status read_binary(facets *f, cwi_scan *s, cw_mesh *mesh, cw_mesh_file
 
 /* --- text -------------------------------------------------------------------------------- */
 
-/* Whether a word is a keyword, in any case of letters. */
+/* Returns true if a word is a keyword, in any letter case. */
 static bool is_keyword(const cwi_word *word, const char *keyword)
 {
     size_t i = 0;
@@ -180,7 +182,7 @@ static cw_status read_text_corner(cwi_scan *s, float point[3], cw_error *err)
     return st;
 }
 
-/* Behind the word "facet". The normal may be anything, "nan" too. */
+/* Reads a facet behind the word "facet". The normal may be anything, even "nan". */
 static cw_status read_text_facet(facets *f, cwi_scan *s, cw_error *err)
 {
     cwi_word word;
@@ -203,7 +205,7 @@ static cw_status read_text_facet(facets *f, cwi_scan *s, cw_error *err)
     return st == CW_OK ? add_facets(f, corners, 1, err) : st;
 }
 
-/* Takes our words off the end of a solid's name. */
+/* Removes our words from the end of a solid's name. */
 static void take_name(char *name, cw_mesh *mesh, cw_mesh_file *said)
 {
     static const char ours[] = "cubewright, ";
@@ -217,7 +219,7 @@ static void take_name(char *name, cw_mesh *mesh, cw_mesh_file *said)
         *at = '\0';
 }
 
-/* Behind the word "solid"; its name may be any words. */
+/* Reads a solid behind the word "solid"; its name may be any words. */
 static cw_status read_solid(facets *f, cwi_scan *s, cw_mesh *mesh, cw_mesh_file *said,
                             cw_error *err)
 {

@@ -1,4 +1,5 @@
-/* STL. Binary: an 80-byte header, a count, then 50 bytes a triangle. Text: one solid. */
+/* Writes STL. Binary: an 80-byte header, a count, then 50 bytes per triangle. Text: one
+ * solid. */
 #include "formats/mesh/mesh_writer.h"
 
 #include "core/base/status.h"
@@ -6,8 +7,8 @@
 #include <math.h>
 #include <stdio.h>
 
-/* Of the corners as they are written, so that normal and winding agree for every reader. Far
- * from zero rounding may leave a facet without area: its normal is 0 0 0. */
+/* Computes the normal of the corners as written, so that normal and winding agree for every
+ * reader. Far from zero, rounding may leave a facet without area: its normal is 0 0 0. */
 static void facet_normal(float corner[3][3], float normal[3])
 {
     double edge[2][3], n[3];
@@ -22,7 +23,7 @@ static void facet_normal(float corner[3][3], float normal[3])
         normal[a] = length > 0 ? (float)(n[a] / length) : 0;
 }
 
-/* A facet's normal and its corners. */
+/* Computes a facet's normal and its corners. */
 static void find_facet(const cwi_part *part, size_t i, float normal[3], float corner[3][3])
 {
     const uint32_t *vertex = part->mesh.triangles + 3 * i;
@@ -53,7 +54,7 @@ static unsigned char *encode_text_facet(const cwi_part *part, size_t i, unsigned
     return cwi_put_text(to, "endloop\nendfacet\n");
 }
 
-/* Not "solid ...": readers take that for the text form. */
+/* Fills the header. It must not begin with "solid": readers take that for the text form. */
 static void fill_header(const cwi_mesh_output *out, uint32_t count, unsigned char header[84])
 {
     char axes[CWI_AXES_BYTES], origin[CWI_ORIGIN_BYTES], text[80 + CWI_ORIGIN_BYTES];

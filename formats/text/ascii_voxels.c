@@ -1,3 +1,4 @@
+/* Reads voxels written as decimal numbers, and checks that they fit their type. */
 #include "formats/text/ascii_voxels.h"
 
 #include "core/base/status.h"
@@ -6,10 +7,10 @@
 #include <math.h>
 #include <string.h>
 
-/* A longer run without a blank is no number. */
+/* The longest accepted number; a longer run without a blank is an error. */
 enum { LONGEST_NUMBER = 63 };
 
-/* The next byte, or -1 at the end. */
+/* Reads the next byte, or -1 at the end. */
 static cw_status next_byte(cwi_numbers *n, int *byte, cw_error *err)
 {
     cw_status st = CW_OK;
@@ -44,7 +45,7 @@ static cw_status next_token(cwi_numbers *n, char token[LONGEST_NUMBER + 1], cw_e
     return st;
 }
 
-/* The least and greatest number of each type; floating types take any. */
+/* The minimum and maximum of each type; floating types accept any number. */
 static const struct {
     double low, high;
 } ranges[CW_TYPE_COUNT] = {

@@ -1,4 +1,4 @@
-/* The units of length that files name. */
+/* The names and millimetres of the units of length that files may state. */
 #include <cubewright/formats.h>
 
 static const struct {

@@ -1,3 +1,5 @@
+/* Prints numbers as text without printf: integers, decimals of given digits, and shortest
+ * forms. */
 #include "formats/text/number_format.h"
 
 #include "core/base/text.h"
@@ -8,7 +10,7 @@
 
 enum { LONGEST = 25, MOST_DIGITS = 15 };
 
-/* A double holds each of them exactly. */
+/* Powers of ten that a double holds exactly. */
 static const double tens[] = {1e0,  1e1,  1e2,  1e3,  1e4,  1e5,  1e6,  1e7,  1e8,  1e9,
                               1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19};
 
@@ -32,7 +34,7 @@ unsigned char *cwi_put_integer(unsigned char *to, uint64_t value)
     return to;
 }
 
-/* The digits behind the point, but for zeros at their end. */
+/* Puts the digits behind the point, without trailing zeros. */
 static unsigned char *put_fraction(unsigned char *to, uint64_t fraction, int places)
 {
     for (; fraction % 10 == 0; fraction /= 10)
@@ -43,8 +45,8 @@ static unsigned char *put_fraction(unsigned char *to, uint64_t fraction, int pla
     return end;
 }
 
-/* All digits are made one whole number. The product that does it is off by 1e-7 of a digit at
- * most: far less than what tells two floats apart. */
+/* Puts a decimal. All digits become one whole number by one product. The product is off by 1e-7
+ * of a digit at most: far less than the difference of two floats. */
 unsigned char *cwi_put_decimal(unsigned char *to, double value, int digits)
 {
     const double size = fabs(value);

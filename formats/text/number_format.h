@@ -1,5 +1,5 @@
-/* Numbers as text, in records that a writer puts together: some ten times as fast as printf,
- * and with a point in any locale. Each function returns the end of what it put. */
+/* Numbers as text, for the records of writers: some ten times as fast as printf, and with a
+ * point in any locale. Each function returns the end of its output. */
 #ifndef FORMATS_TEXT_NUMBER_FORMAT_H
 #define FORMATS_TEXT_NUMBER_FORMAT_H
 
@@ -7,14 +7,15 @@
 
 #include <string.h>
 
-/* As "%.*g" does, but for the last digit of a tie. 9 digits bring a float back to the bit, 17 a
- * double. Takes up to 24 bytes; there is no negative zero. */
+/* Puts a decimal like "%.*g", except for the last digit of a tie. 9 digits bring a float back
+ * to the bit, 17 a double. Takes up to 24 bytes; there is no negative zero. */
 unsigned char *cwi_put_decimal(unsigned char *to, double value, int digits);
 unsigned char *cwi_put_integer(unsigned char *to, uint64_t value);
 
 enum { CWI_NUMBER_BYTES = 26, CWI_POINT_BYTES = 3 * CWI_NUMBER_BYTES };
 
-/* "1.5", "1 2 3.5": the fewest digits that read back the same, and a zero behind them. */
+/* Prints "1.5" or "1 2 3.5": the shortest digits that read back the same, and a terminating
+ * zero. */
 void cwi_print_number(double value, char text[CWI_NUMBER_BYTES]);
 void cwi_print_point(const double point[3], char text[CWI_POINT_BYTES]);
 
@@ -25,7 +26,7 @@ static inline unsigned char *cwi_put_text(unsigned char *to, const char *text)
     return to + size;
 }
 
-/* Three numbers with a blank between them. */
+/* Puts three numbers with blanks between them. */
 static inline unsigned char *cwi_put_decimals(unsigned char *to, const double values[3],
                                               int digits)
 {

@@ -1,3 +1,4 @@
+/* Reads the lines of text headers, and parses their fields: words, numbers and sizes. */
 #include "formats/text/text_header.h"
 
 #include "core/base/memory.h"
@@ -9,8 +10,8 @@
 
 enum { MOST_HEADER = 1 << 20, MOST_LINE = 1 << 16 };
 
-/* What ends lines: a line feed, or, where the first line ends with it alone, a carriage return,
- * as on an old Macintosh. */
+/* Finds the character that ends lines: a line feed, or a carriage return, as on an old
+ * Macintosh, where it alone ends the first line. */
 static char find_line_end(const char *text, size_t size)
 {
     const char *feed = memchr(text, '\n', size);
@@ -85,7 +86,7 @@ cw_status cwi_lines_names(cwi_lines *lines, cwi_names *names, cw_error *err)
     return st;
 }
 
-/* Whether a row's name ("axismins") is the key ("Axis Mins"). */
+/* Returns true if a row's name ("axismins") is the key ("Axis Mins"). */
 static bool same_name(const char *name, size_t name_length, const char *key, size_t key_length)
 {
     size_t n = 0;
@@ -125,8 +126,8 @@ bool cwi_next_text_word(const char **text, char word[CWI_WORD_BYTES])
     return true;
 }
 
-/* Says what is wrong with the text at which reading stopped, after `got` numbers: too few, too
- * many, or something that is none. Nothing, when all went well. */
+/* Reports an error in the text at which reading stopped, after `got` numbers: too few, too
+ * many, or something that is no number. Reports nothing when all went well. */
 static cw_status check_end(const char *field, const char *text, size_t got, size_t wanted,
                            const char *by, const char *kind, cw_error *err)
 {
@@ -154,7 +155,7 @@ cw_status cwi_field_doubles(const char *field, const char *text, size_t wanted, 
     return check_end(field, text, got, wanted, by, "a number", err);
 }
 
-/* Not "2.5", and not a number too large: those are left where they stand. */
+/* Parses a whole number; leaves *text at one such as "2.5" or one that is too large. */
 static bool parse_whole(const char **text, int64_t *value)
 {
     const char *s = *text;

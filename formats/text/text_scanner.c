@@ -1,3 +1,5 @@
+/* Scans the bytes of a mesh file in a buffer: words, numbers and lines of text, or binary
+ * records. */
 #include "formats/text/text_scanner.h"
 
 #include "core/base/memory.h"
@@ -31,7 +33,7 @@ uint64_t cwi_scan_left(const cwi_scan *s)
     return behind + (s->end - s->next);
 }
 
-/* Whether the first line that ends in some text ends with a carriage return alone. */
+/* Returns true if the first line of a text ends with a carriage return alone. */
 static bool has_cr_lines(const char *text, size_t size)
 {
     const char *cr = memchr(text, '\r', size);
@@ -53,8 +55,8 @@ cw_status cwi_scan_open_text(cwi_scan *s, const cwi_input *in, uint64_t offset,
     return CW_OK;
 }
 
-/* Makes line feeds of the carriage returns that end lines, from an index on. One at the very
- * end is given back while the file has more: a line feed may follow. */
+/* Turns the carriage returns that end lines into line feeds, from an index on. One at the very
+ * end is given back while the file has more, since a line feed may follow. */
 static void turn_line_ends(cwi_scan *s, size_t from)
 {
     char *at = s->text + from, *end = s->text + s->end;
@@ -89,7 +91,7 @@ static cw_status refill_buffer(cwi_scan *s, cw_error *err)
     return st;
 }
 
-/* At least so many bytes are held behind next, unless the file has no more. */
+/* Makes sure that `size` bytes are in memory behind next, unless the file has no more. */
 static inline cw_status hold_bytes(cwi_scan *s, size_t size, cw_error *err)
 {
     const bool enough = s->end - s->next >= size || s->offset >= s->in->size;
@@ -113,7 +115,8 @@ static inline bool is_blank(char c)
     return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f';
 }
 
-/* Bytes of a backslash that ends its line, with that end; 0 when there is none. */
+/* Returns the bytes of a backslash that ends its line, including that end; 0 when there is
+ * none. */
 static inline size_t joint_size(const cwi_scan *s, const char *at)
 {
     if (!s->by_line || at[0] != '\\')
@@ -121,7 +124,7 @@ static inline size_t joint_size(const cwi_scan *s, const char *at)
     return at[1] == '\n' ? 2 : at[1] == '\r' && at[2] == '\n' ? 3 : 0;
 }
 
-/* Bytes of whatever may stand in front of a word; 0 at a word or an end. */
+/* Returns the bytes of anything that may precede a word; 0 at a word or an end. */
 static inline size_t blank_size(const cwi_scan *s, const char *at)
 {
     if (is_blank(*at) || (*at == '\n' && !s->by_line))

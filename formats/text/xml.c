@@ -1,3 +1,4 @@
+/* Parses XML as a stream by Expat, by a table of elements, within limits, and escapes text. */
 #include "formats/text/xml.h"
 
 #include "core/base/memory.h"
@@ -12,7 +13,7 @@ struct cwi_xml {
     XML_Parser expat;
     const cwi_xml_rules *rules;
     void *user;
-    int path[MOST_DEPTH]; /* rows; OTHER where none fits */
+    int path[MOST_DEPTH]; /* rows; OTHER for elements outside of the table */
     size_t depth;
     uint64_t count, fed;
     bool stopped;
@@ -20,7 +21,7 @@ struct cwi_xml {
     cw_error *err;
 };
 
-/* The name behind its prefix. */
+/* Returns the name without its prefix. */
 static const char *local_name(const char *name)
 {
     const char *colon = strrchr(name, ':');
@@ -62,7 +63,7 @@ size_t cwi_xml_depth(const cwi_xml *x)
 
 /* --- events ------------------------------------------------------------------------------ */
 
-/* Ends the parsing after the event at hand, with a status or because it is enough. */
+/* Ends the parsing after the current event, with a status or because enough was read. */
 static void settle_status(cwi_xml *x, cw_status status)
 {
     x->status = status;
@@ -70,7 +71,7 @@ static void settle_status(cwi_xml *x, cw_status status)
         XML_StopParser(x->expat, XML_FALSE);
 }
 
-/* Expat may go on for an event or two after it was stopped. */
+/* Returns true after a stop: Expat may deliver an event or two more. */
 static bool is_over(const cwi_xml *x)
 {
     return x->status != CW_OK || x->stopped;
@@ -186,7 +187,7 @@ static cw_status fail_xml(const cwi_xml *x)
                    (unsigned long)XML_GetCurrentLineNumber(x->expat), XML_ErrorString(code));
 }
 
-/* Expat keeps a tag until it is whole: so its length has a limit. */
+/* Checks the length of a tag, which Expat keeps in memory until it is complete. */
 static cw_status check_tag(const cwi_xml *x)
 {
     const XML_Index at = XML_GetCurrentByteIndex(x->expat);

@@ -1,5 +1,5 @@
-/* What a TIFF file says of itself: the facts that the module "tiff" (libtiff, in a process of
- * its own) puts into the shared memory. Nothing in here has been checked. */
+/* Facts of a TIFF file, which the module "tiff" (libtiff, in a sandboxed process) puts into the
+ * shared memory. Nothing in here has been checked. */
 #ifndef FORMATS_TIFF_TIFF_H
 #define FORMATS_TIFF_TIFF_H
 
@@ -9,17 +9,17 @@ enum { CWI_TIFF_MOST_PAGES = 65536 };
 
 typedef struct cwi_tiff_facts {
     uint32_t columns, rows, samples;
-    uint32_t bits;       /* of a sample, as it is stored */
-    cw_type type;        /* of samples as they are given out */
+    uint32_t bits;       /* of a stored sample */
+    cw_type type;        /* of samples as they are returned */
     uint32_t compressed; /* 0: no */
-    uint32_t turned;     /* 0: no; else white was 0, and values are turned round */
+    uint32_t turned;     /* 0: no; else white was 0, and values are inverted */
     uint32_t page_count; /* of full resolution, in the file */
     uint32_t slices, channels, steps;
-    double spacing[3];   /* along x, y and z; 0: not said */
-    double unit_mm[3];   /* the millimetres that they are counted in; 0: not said */
-    double step_seconds; /* 0: not said */
+    double spacing[3];   /* along x, y and z; 0: not stated */
+    double unit_mm[3];   /* millimetres of their unit; 0: not stated */
+    double step_seconds; /* 0: not stated */
     double slope, intercept;
-    char note[160]; /* what was decided on the way; empty: nothing */
+    char note[160]; /* a decision to report; empty: none */
 } cwi_tiff_facts;   /* slices * channels * steps numbers of pages (uint32_t) follow: slices vary
                        fastest, then channels, then steps */
 

@@ -1,6 +1,6 @@
-/* Strips and tiles that are deflated, and the predictors in front of that. Not left to libtiff:
- * where a damaged stream asks for more room than there is, that takes what it has for all, and
- * it verifies no checksum of a strip that it reads by zlib. */
+/* Decodes deflated strips and tiles of TIFF, and their predictors. libtiff does not do it, for
+ * two reasons. It accepts partial data where a damaged stream needs more room than there is.
+ * And it verifies no checksum of a strip that it reads by zlib. */
 #include "core/base/status.h"
 #include "formats/bytes/inflate_stream.h"
 #include "formats/tiff/tiff_file.h"
@@ -10,7 +10,7 @@
 
 enum { NO_PREDICTOR = 1, DIFFERENCES = 2, FLOATS = 3 };
 
-/* The sum of numbers up to each, samples apart. */
+/* Replaces numbers by their running sums, separately for each sample. */
 static void add_up(void *row, size_t count, size_t stride, size_t size)
 {
     uint8_t *u8 = row;
@@ -27,8 +27,8 @@ static void add_up(void *row, size_t count, size_t stride, size_t size)
         u64[i] += u64[i - stride];
 }
 
-/* Floats come as all their high bytes, then all the next ones, ..., whatever the
- * file's order. */
+/* Joins the bytes of floats: they are stored as all high bytes, then all the next ones, ..., in
+ * any byte order of the file. */
 static void join_floats(unsigned char *row, unsigned char *copy, size_t count, size_t size)
 {
     memcpy(copy, row, count * size);
@@ -39,7 +39,7 @@ static void join_floats(unsigned char *row, unsigned char *copy, size_t count, s
     }
 }
 
-/* From what was deflated to numbers of this machine. */
+/* Converts deflated rows into numbers of this machine. */
 static void undo_predictor(const cwi_tiff_file *f, unsigned char *row, size_t bytes,
                            unsigned char *copy)
 {
@@ -67,8 +67,8 @@ static cw_status check_predictor(const cwi_tiff_layout *l, cw_error *err)
                           l->predictor, l->bits);
 }
 
-/* On to the checksum, past rows that some writers put behind a short strip's. What follows in
- * the strip's bytes is nobody's. */
+/* Reads on to the checksum, past rows that some writers put after those of a short strip.
+ * Further bytes of the strip are ignored. */
 static cw_status finish_stream(cwi_stream *s, size_t bytes, cw_error *err)
 {
     unsigned char waste[4096];

@@ -1,4 +1,5 @@
-/* What a description says of the pages of a TIFF file: ImageJ's lines are read here. */
+/* Interprets the description of a TIFF file's pages: reads ImageJ's lines here, and passes
+ * OME's XML on. */
 #include "core/base/status.h"
 #include "core/base/text.h"
 #include "formats/tiff/tiff_file.h"
@@ -22,7 +23,8 @@ static double find_unit(const unit *units, size_t count, const char *name, size_
     return 0;
 }
 
-/* The micro sign is Unicode's, a Greek letter, Latin-1's, or as Java escapes it. */
+/* Returns the millimetres of a unit. The micro sign is Unicode's, a Greek letter, Latin-1's, or
+ * as Java escapes it. */
 double cwi_tiff_length(const char *name, size_t length)
 {
     static const unit units[] = {
@@ -47,7 +49,7 @@ double cwi_tiff_time(const char *name, size_t length)
 
 /* --- ImageJ ------------------------------------------------------------------------------- */
 
-/* The rest of the line KEY=; NULL: there is none. */
+/* Finds the rest of the line KEY=; returns NULL if there is none. */
 static const char *find_line(const char *text, const char *key, size_t *length)
 {
     const size_t size = strlen(key);
@@ -95,7 +97,7 @@ static bool is_one_run(const cwi_tiff_file *f)
     return true;
 }
 
-/* Stacks of more than 4 GiB: one directory, and all images behind the first one. */
+/* Finds the images of stacks over 4 GiB: one directory, and all images after the first one. */
 static cw_status find_images(cwi_tiff_file *f, uint32_t images, cw_error *err)
 {
     const cwi_tiff_layout *l = &f->layout;
@@ -124,7 +126,7 @@ static cw_status find_images(cwi_tiff_file *f, uint32_t images, cw_error *err)
     return CW_OK;
 }
 
-/* Pages are in the order channel, slice, frame; what is not said is 1, and slices the rest. */
+/* Orders the pages as channel, slice, frame. Missing counts are 1, and slices take the rest. */
 static cw_status order_images(const cwi_tiff_file *f, const char *text, cwi_tiff_facts *facts,
                               uint32_t *order, cw_error *err)
 {
@@ -151,7 +153,7 @@ static cw_status order_images(const cwi_tiff_file *f, const char *text, cwi_tiff
     return CW_OK;
 }
 
-/* Pixels per unit; of files that ImageJ has not calibrated, 72 in an inch. */
+/* Finds the pixels per unit; in files that ImageJ has not calibrated it is 72 per inch. */
 static void find_pixels(const cwi_tiff_file *f, const char *text, cwi_tiff_facts *facts)
 {
     static const char *const keys[] = {"unit", "yunit", "zunit"};
@@ -215,7 +217,7 @@ static cw_status describe_imagej(cwi_tiff_file *f, const char *text, cwi_tiff_fa
     return CW_OK;
 }
 
-/* --- whose description it is -------------------------------------------------------------- */
+/* --- kinds of descriptions ---------------------------------------------------------------- */
 
 static bool is_ome(const char *text)
 {

@@ -1,5 +1,5 @@
-/* A walk along the directories of a TIFF file, ahead of libtiff: that takes a chain that breaks
- * off for one that ends, and leaves out values that are not there. */
+/* Walks along the directories of a TIFF file before libtiff does. libtiff treats a broken chain
+ * as complete, and leaves out values beyond the file's end. */
 #define _GNU_SOURCE /* pread */
 #include "core/base/memory.h"
 #include "core/base/status.h"
@@ -18,7 +18,7 @@ enum {
     SHORT = 3,
     RATIONAL = 5,
     FIRST_PRIVATE_TAG = 32768,
-    UIC2_TAG = 33629 /* MetaMorph's: count tells the planes behind one directory */
+    UIC2_TAG = 33629 /* MetaMorph's: its count is the number of planes in one directory */
 };
 
 static cw_status fail_cut(const char *what, uint32_t directory, cw_error *err)
@@ -57,7 +57,7 @@ static size_t bytes_of_type(uint64_t type)
     return type < sizeof sizes ? sizes[type] : 0;
 }
 
-/* What others may have written into tags of their own is no matter. */
+/* Checks an entry; private tags of other programs are not checked. */
 static cw_status check_entry(const cwi_tiff_file *f, const unsigned char *entry,
                              uint32_t directory, cw_error *err)
 {
@@ -84,13 +84,13 @@ static cw_status check_entry(const cwi_tiff_file *f, const unsigned char *entry,
                    (unsigned long long)f->size);
 }
 
-/* A row of tags, read a few at a time. */
+/* A list of tags, read a few at a time. */
 typedef struct tags {
     uint64_t at, count, next;
     unsigned char bytes[ENTRIES_AT_ONCE * BIG_ENTRY];
 } tags;
 
-/* The next tag; NULL: there is none, or the file ends. */
+/* Returns the next tag; NULL: there is none, or the file ends. */
 static const unsigned char *next_tag(const cwi_tiff_file *f, tags *t)
 {
     const size_t size = f->big ? BIG_ENTRY : ENTRY, n = t->next % ENTRIES_AT_ONCE;
@@ -167,7 +167,7 @@ static bool add_offset(cwi_tiff_file *f, uint64_t offset, uint32_t *room)
     return true;
 }
 
-/* A single value of a type; NULL where there is none. */
+/* Finds a single value of a type; NULL where there is none. */
 static const unsigned char *find_tag(const cwi_tiff_file *f, uint32_t directory, uint16_t tag,
                                      uint16_t type, tags *t)
 {
@@ -204,7 +204,7 @@ bool cwi_tiff_rational(const cwi_tiff_file *f, uint16_t tag, double *value)
     return at != NULL;
 }
 
-/* A circle is found by a mark, which is moved on at every power of two. */
+/* Walks along the chain. A circle is detected by a mark, which moves at every power of two. */
 cw_status cwi_tiff_walk(cwi_tiff_file *f, cw_error *err)
 {
     uint64_t at = 0, mark = 0;

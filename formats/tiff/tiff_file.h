@@ -1,5 +1,5 @@
-/* The file that the module "tiff" has open: what its parts know of each other. All of it runs
- * in a process of its own. */
+/* The open file of the module "tiff", and the functions that its parts share. All of it runs in
+ * a sandboxed process. */
 #ifndef FORMATS_TIFF_TIFF_FILE_H
 #define FORMATS_TIFF_TIFF_FILE_H
 
@@ -7,19 +7,19 @@
 
 #include <tiffio.h>
 
-/* How the pixels of a page are stored, and what becomes of them. */
+/* The storage of a page's pixels, and their form as returned. */
 typedef struct cwi_tiff_layout {
     uint32_t columns, rows;
     uint16_t samples, bits, format;
     uint16_t compression, photometric, orientation, predictor;
     cw_type type;
     bool tiled, turned, low_bit_first;
-    uint16_t planes;     /* stored one behind another: 1, or one a sample */
+    uint16_t planes;     /* stored one after another: 1, or one per sample */
     uint32_t tile_width; /* strips: columns */
     uint32_t band_rows;  /* of a strip or a row of tiles */
     uint32_t bands;
-    size_t stored_row; /* bytes of a row of a plane as libtiff gives it */
-    size_t row;        /* ... and of a row as it is given out */
+    size_t stored_row; /* bytes of a row of a plane as libtiff returns it */
+    size_t row;        /* ... and of a row as the module returns it */
 } cwi_tiff_layout;
 
 typedef struct cwi_tiff_file {
@@ -31,29 +31,29 @@ typedef struct cwi_tiff_file {
     uint32_t offset_count;
     uint32_t *pages; /* directories of full resolution */
     uint32_t page_count;
-    uint64_t behind; /* not 0: one directory, and the page_count pages' pixels one behind
-                        another from here on */
-    int64_t page;    /* the layout's; -1: none */
+    uint64_t behind; /* not 0: there is one directory, and the pixels of page_count pages start
+                        here, one after another */
+    int64_t page;    /* page of the layout; -1: none */
     cwi_tiff_layout layout;
-    int64_t band; /* the one in pixels; -1: none */
+    int64_t band; /* the band in `pixels`; -1: none */
     unsigned char *pixels, *tile, *line;
     size_t pixel_room, tile_room, line_room;
-    bool guessed;   /* libtiff makes up the bytes of the directory's strips */
-    int complained; /* libtiff, since cwi_tiff_listen(): 1, it warned; 2, it failed */
+    bool guessed;   /* libtiff has guessed the bytes of the directory's strips */
+    int complained; /* libtiff's complaint since cwi_tiff_listen(): 1, a warning; 2, an error */
     char complaint[200];
 } cwi_tiff_file;
 
-/* Finds the directories of the file, and holds all that they point to against its size: a loop,
- * or a tag's value beyond the end, is an error. */
+/* Finds the directories of the file, and checks everything that they point to against its size.
+ * A loop, or a tag's value beyond the end, is an error. */
 CW_NODISCARD cw_status cwi_tiff_walk(cwi_tiff_file *f, cw_error *err);
 
-/* Forgets what libtiff complained of so far. */
+/* Clears libtiff's complaints so far. */
 void cwi_tiff_listen(cwi_tiff_file *f);
 
-/* Turns to a page and finds its layout. */
+/* Opens a page and finds its layout. */
 CW_NODISCARD cw_status cwi_tiff_turn_to(cwi_tiff_file *f, uint32_t page, cw_error *err);
 
-/* Puts rows of the page turned to. */
+/* Reads rows of the open page. */
 CW_NODISCARD cw_status cwi_tiff_rows(cwi_tiff_file *f, uint32_t first, uint32_t count,
                                      unsigned char *to, cw_error *err);
 
@@ -66,25 +66,26 @@ static inline bool cwi_tiff_is_deflated(const cwi_tiff_layout *l)
 CW_NODISCARD cw_status cwi_tiff_inflate(cwi_tiff_file *f, uint32_t strile, unsigned char *to,
                                         size_t bytes, size_t row_bytes, cw_error *err);
 
-/* Makes a buffer large enough; what it held is lost. */
+/* Makes a buffer large enough; its content is lost. */
 CW_NODISCARD cw_status cwi_tiff_make_room(unsigned char **buffer, size_t *room, uint64_t bytes,
                                           cw_error *err);
 
-/* What libtiff does not tell: a short of a directory, 0 where there is none; and a rational
- * number of the first, which libtiff rounds to single precision; false where there is none. */
+/* Read values that libtiff does not return. The first is a short of a directory, 0 where there
+ * is none. The second is a rational number of the first directory, which libtiff rounds to
+ * single precision; false where there is none. */
 uint16_t cwi_tiff_short(const cwi_tiff_file *f, uint32_t directory, uint16_t tag);
 bool cwi_tiff_rational(const cwi_tiff_file *f, uint16_t tag, double *value);
 
-/* What the first directory's description says of the pages: ImageJ's, OME's or nobody's. Fills
- * in the facts behind page_count, and the order of pages. The first directory is open, and the
- * layout that of the first page. */
+/* Interprets the first directory's description of the pages: ImageJ's, OME's or none. Fills in
+ * the facts behind page_count, and the order of pages. The first directory must be open, and
+ * the layout that of the first page. */
 CW_NODISCARD cw_status cwi_tiff_describe(cwi_tiff_file *f, const char *description,
                                          cwi_tiff_facts *facts, uint32_t *order, cw_error *err);
 CW_NODISCARD cw_status cwi_tiff_ome(const cwi_tiff_file *f, const char *xml,
                                     cwi_tiff_facts *facts, uint32_t *order, cw_error *err);
 
-/* The millimetres of a unit of length, and the seconds of one of time; 0: none that
- * is known. */
+/* Returns the millimetres of a unit of length, and the seconds of one of time; 0: unknown
+ * unit. */
 double cwi_tiff_length(const char *name, size_t length);
 double cwi_tiff_time(const char *name, size_t length);
 

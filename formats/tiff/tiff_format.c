@@ -1,4 +1,4 @@
-/* TIFF: what is read and written, and by whom. */
+/* The driver of TIFF: its names and its reader. */
 #include "formats/driver/format_driver.h"
 
 const cwi_format_driver cwi_format_tiff = {

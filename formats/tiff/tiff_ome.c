@@ -1,5 +1,5 @@
-/* OME-TIFF: the first description is a document in XML that says which page is which plane of
- * an image, and how large its voxels are. */
+/* Reads OME-TIFF. The first description is a document in XML that assigns pages to the planes
+ * of an image, and states the sizes of voxels. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
@@ -20,11 +20,11 @@ typedef struct parsing {
     const cwi_tiff_file *file;
     cwi_tiff_facts *facts;
     uint32_t *order;
-    uint32_t size[AXIS_COUNT]; /* as many pages; C: that hold all samples of theirs */
+    uint32_t size[AXIS_COUNT]; /* number of pages; C: of pages that hold all their samples */
     axis axes[AXIS_COUNT];     /* the fastest first */
     size_t depth, elements, images;
-    bool placed;    /* some planes are */
-    char name[256]; /* of the file that planes are in; empty: not said */
+    bool placed;    /* some planes were assigned */
+    char name[256]; /* of the file that contains planes; empty: not stated */
     cw_status status;
     cw_error *err;
 } parsing;
@@ -39,7 +39,7 @@ static const char *find_attribute(attributes a, const char *name)
     return NULL;
 }
 
-/* A whole number from 0 on; false where there is another thing. */
+/* Parses a whole number from 0 on; returns false for anything else. */
 static bool parse_whole(attributes a, const char *name, uint32_t otherwise, uint32_t *value)
 {
     const char *text = find_attribute(a, name);
@@ -166,7 +166,7 @@ static cw_status place_page(parsing *p, uint32_t directory, const uint32_t at[AX
     return CW_OK;
 }
 
-/* Directories from one on are planes from one on. */
+/* Assigns directories from one on to planes from one on. */
 static cw_status place_all(parsing *p, uint32_t directory, uint32_t at[AXIS_COUNT],
                            uint32_t count)
 {
@@ -297,7 +297,7 @@ static cw_status fail_xml(const parsing *p)
                    (unsigned long)XML_GetCurrentLineNumber(p->expat), XML_ErrorString(code));
 }
 
-/* Everything must have its page. */
+/* Checks that every plane has its page. */
 static cw_status finish_parsing(parsing *p)
 {
     uint32_t first[AXIS_COUNT] = {0, 0, 0};

@@ -1,6 +1,6 @@
-/* From the pages of a TIFF file to rows of pixels. What is not compressed and in strips is read
- * from the file itself: any rows, however long the strip. The rest is libtiff's, a strip or a
- * row of tiles at a time. */
+/* Reads rows of pixels from the pages of a TIFF file. Uncompressed strips are read from the
+ * file itself: any rows, of a strip of any length. libtiff decodes the rest, a strip or a row
+ * of tiles at a time. */
 #define _GNU_SOURCE /* pread */
 #include "core/base/memory.h"
 #include "core/base/status.h"
@@ -34,14 +34,14 @@ cw_status cwi_tiff_make_room(unsigned char **buffer, size_t *room, uint64_t byte
                              (unsigned long long)bytes);
 }
 
-/* --- what is not compressed --------------------------------------------------------------- */
+/* --- uncompressed data -------------------------------------------------------------------- */
 
 static bool is_raw(const cwi_tiff_layout *l)
 {
     return !l->tiled && l->compression == COMPRESSION_NONE;
 }
 
-/* Where a row is, and how many of those that are wanted stand there without a gap. */
+/* Finds the place of a row, and the number of wanted rows that follow without a gap. */
 static uint64_t find_row(const cwi_tiff_file *f, uint16_t plane, uint32_t row, uint32_t wanted,
                          uint32_t *run)
 {
@@ -106,9 +106,10 @@ static cw_status read_raw(const cwi_tiff_file *f, uint16_t plane, uint32_t row, 
     return st;
 }
 
-/* --- what is compressed ------------------------------------------------------------------- */
+/* --- compressed data ---------------------------------------------------------------------- */
 
-/* Libtiff goes on over damage with a warning, and hands out what it has. */
+/* Checks a result of libtiff, which continues over damage with a warning and returns partial
+ * data. */
 static cw_status check_decoded(const cwi_tiff_file *f, tmsize_t got, size_t wanted,
                                cw_error *err)
 {
@@ -117,7 +118,7 @@ static cw_status check_decoded(const cwi_tiff_file *f, tmsize_t got, size_t want
     return fail_page(f, f->complained ? f->complaint : "they are too few", err);
 }
 
-/* A strip or tile. */
+/* Decodes a strip or tile. */
 static cw_status decode_strip(cwi_tiff_file *f, uint32_t n, unsigned char *to, size_t bytes,
                               size_t row_bytes, cw_error *err)
 {
@@ -137,7 +138,7 @@ static cw_status decode_strip(cwi_tiff_file *f, uint32_t n, unsigned char *to, s
                          bytes, err);
 }
 
-/* A row of tiles, as far as they are in the image. */
+/* Decodes a row of tiles, as far as they are in the image. */
 static cw_status decode_tiles(cwi_tiff_file *f, uint32_t first, uint32_t rows,
                               unsigned char *to, cw_error *err)
 {
@@ -164,7 +165,7 @@ static uint32_t rows_of_band(const cwi_tiff_layout *l, uint32_t band)
     return left < l->band_rows ? left : l->band_rows;
 }
 
-/* The planes of a band into f->pixels. */
+/* Decodes the planes of a band into f->pixels. */
 static cw_status decode_band(cwi_tiff_file *f, uint32_t band, cw_error *err)
 {
     const cwi_tiff_layout *l = &f->layout;
@@ -198,7 +199,7 @@ static bool is_mirrored(const cwi_tiff_layout *l)
     return l->orientation == ORIENTATION_TOPRIGHT || l->orientation == ORIENTATION_BOTRIGHT;
 }
 
-/* Whether rows are given out as libtiff gives them. */
+/* Returns true if rows are returned as libtiff returns them. */
 static bool is_plain(const cwi_tiff_layout *l)
 {
     return l->bits > 1 && l->planes == 1 && !l->turned && l->orientation == ORIENTATION_TOPLEFT;
@@ -217,7 +218,7 @@ static void spread_samples(const unsigned char *from, size_t count, size_t size,
         memcpy(to + i * step * size, from + i * size, size);
 }
 
-/* More shall be brighter; alpha and the like are as they are. */
+/* Inverts samples, so that larger is brighter; alpha and other extra samples stay unchanged. */
 static void turn_round(const cwi_tiff_layout *l, unsigned char *row)
 {
     const size_t size = cw_type_size(l->type);
@@ -238,7 +239,8 @@ static void mirror_row(const cwi_tiff_layout *l, unsigned char *row)
     }
 }
 
-/* stored: the row of the first plane; the others' are so many bytes on. */
+/* Assembles a row. stored: the row of the first plane; each next plane is `plane` bytes
+ * further. */
 static void put_row(const cwi_tiff_layout *l, const unsigned char *stored, size_t plane,
                     unsigned char *to)
 {
@@ -258,7 +260,7 @@ static void put_row(const cwi_tiff_layout *l, const unsigned char *stored, size_
         mirror_row(l, to);
 }
 
-/* The stored rows from one on into memory, as many as come in one go. */
+/* Reads stored rows from one on into memory, as many as one piece holds. */
 static cw_status read_piece(cwi_tiff_file *f, uint32_t row, uint32_t most,
                             const unsigned char **stored, size_t *plane, uint32_t *count,
                             cw_error *err)
@@ -284,7 +286,7 @@ static cw_status read_piece(cwi_tiff_file *f, uint32_t row, uint32_t most,
     return st;
 }
 
-/* A whole strip that needs nothing done to it goes straight to its place. */
+/* Returns true for a whole strip without conversion; it goes directly to its place. */
 static bool rows_fit(const cwi_tiff_layout *l, uint32_t row, uint32_t end)
 {
     return is_plain(l) && !l->tiled && row % l->band_rows == 0 &&

@@ -1,4 +1,4 @@
-/* TIFF stacks: the pages of one file, or slices in files of their own. */
+/* Reads TIFF stacks: the pages of one file, or slices in separate files. */
 #include "formats/tiff/tiff.h"
 
 #include "core/base/memory.h"
@@ -25,10 +25,10 @@ bool cwi_tiff_sniff(const unsigned char *head, size_t size)
 
 static uint64_t planes_of(const cwi_tiff_facts *f)
 {
-    return (uint64_t)f->slices * f->channels * f->steps; /* once each is below 2^17 */
+    return (uint64_t)f->slices * f->channels * f->steps; /* valid as each is below 2^17 */
 }
 
-/* What a file claims is held against what it has before anything is made of it. */
+/* Checks the claims of a file against its size, before anything is allocated for them. */
 static cw_status check_claim(const cwi_tiff_facts *f, uint64_t file_bytes, cw_error *err)
 {
     const uint64_t row = ((uint64_t)f->columns * f->samples * f->bits + 7) / 8; /* < 2^37 */
@@ -63,7 +63,7 @@ static cw_status check_numbers(const cwi_tiff_facts *f, cw_error *err)
     return CW_OK;
 }
 
-/* The facts are a stranger's: libtiff's process may have been taken over. */
+/* Checks the facts, which are untrusted: libtiff's process may have been taken over. */
 static cw_status check_facts(const cwi_tiff_facts *f, uint64_t file_bytes, cw_error *err)
 {
     const uint32_t most = CWI_TIFF_MOST_PAGES;
@@ -86,7 +86,8 @@ static cw_status check_facts(const cwi_tiff_facts *f, uint64_t file_bytes, cw_er
     return st == CW_OK ? check_claim(f, file_bytes, err) : st;
 }
 
-/* order  may be NULL, else set to an array of the pages' numbers, to be freed */
+/* Reads the facts. order may be NULL; else it is set to an array of the pages' numbers, to be
+ * freed. */
 static cw_status take_facts(cwi_planes *planes, int fd, uint64_t file_bytes, cwi_tiff_facts *f,
                             uint32_t **order, cw_error *err)
 {
@@ -133,8 +134,8 @@ static void set_sizes(const cwi_tiff_facts *f, size_t slices, cwi_stack *stack)
     v->step_stride = v->stride[2] * (ptrdiff_t)slices * (ptrdiff_t)f->channels;
 }
 
-/* Millimetres where all axes have a distance between samples and a unit; else the numbers as
- * they are. */
+/* Sets the frame: millimetres where all axes have a distance between samples and a unit; else
+ * the plain numbers. */
 static void set_frame(const cwi_tiff_facts *f, const cw_read_desc *desc, cw_volume *v)
 {
     bool known = true, some = false;
@@ -174,7 +175,7 @@ static int by_plane(const void *x, const void *y)
     return (a->low > b->low) - (a->low < b->low);
 }
 
-/* The pages of one file, read from its start to its end. */
+/* Stacks the pages of one file, read from start to end. */
 static cw_status stack_pages(const cwi_tiff_facts *f, const uint32_t *order, cwi_stack *stack,
                              cw_error *err)
 {
@@ -197,12 +198,12 @@ typedef struct slices {
     const cwi_input *in;
     cwi_planes *planes;
     const cw_read_desc *desc;
-    cwi_names files; /* those that are TIFF */
+    cwi_names files; /* the TIFF files */
     cwi_tiff_facts facts;
     uint32_t *order;
 } slices;
 
-/* By name, else by content: a slice that is damaged is no stranger. */
+/* Returns true for a TIFF file, by name, else by content: a damaged slice is not skipped. */
 static bool is_tiff(const cwi_input *in, const char *name)
 {
     unsigned char head[4];
@@ -238,7 +239,7 @@ static size_t folder_length(const char *name)
     return slash ? (size_t)(slash - name) : 0;
 }
 
-/* A pattern may well reach into several. */
+/* Checks that all files are in one folder; a pattern may match in several. */
 static cw_status check_folder(const slices *s, cw_error *err)
 {
     const char *first = s->files.items[0];
@@ -295,7 +296,7 @@ static cw_status look_into(slices *s, size_t file, cw_error *err)
     return st;
 }
 
-/* Facts of every file, before a pixel of any. */
+/* Reads the facts of every file, before any pixels. */
 static cw_status look_into_all(slices *s, cw_error *err)
 {
     cw_status st = CW_OK;
@@ -308,7 +309,7 @@ static cw_status look_into_all(slices *s, cw_error *err)
     return st;
 }
 
-/* The numbers that names differ by, else 0, 1, 2 ... */
+/* Finds the places: the numbers in which names differ, else 0, 1, 2 ... */
 static cw_status find_places(const slices *s, double *places, cw_error *err)
 {
     if (!cwi_files_numbers(&s->files, places)) {

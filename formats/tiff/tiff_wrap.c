@@ -1,4 +1,5 @@
-/* libtiff behind plain C: opening, the layouts of pages, the facts. */
+/* Wraps libtiff behind plain C: opens files, finds the layouts of pages, and collects the
+ * facts. */
 #define _GNU_SOURCE /* pread */
 #include "core/base/memory.h"
 #include "core/base/status.h"
@@ -10,7 +11,7 @@
 
 enum { MOST_SAMPLES = 4, AT_ONCE = 1 << 30 };
 
-/* --- the file as libtiff reads it --------------------------------------------------------- */
+/* --- libtiff's access to the file --------------------------------------------------------- */
 
 static tmsize_t on_read(thandle_t handle, void *to, tmsize_t size)
 {
@@ -50,7 +51,7 @@ static toff_t on_size(thandle_t handle)
     return ((cwi_tiff_file *)handle)->size;
 }
 
-/* The first error counts, else the first warning. */
+/* Keeps a complaint: the first error, else the first warning. */
 CW_PRINTF(3, 0)
 static int keep_complaint(cwi_tiff_file *f, int how, const char *format, va_list arguments)
 {
@@ -69,8 +70,8 @@ static int on_error(TIFF *tiff, void *user, const char *module, const char *form
     return keep_complaint(user, 2, format, arguments);
 }
 
-/* A form of LZW from before TIFF 6 is read as well as today's. Where 'StripByteCounts' are
- * wrong, libtiff makes up others. */
+/* Handles a warning. Files with an LZW form from before TIFF 6 are accepted. Where
+ * 'StripByteCounts' are wrong, libtiff makes up others. */
 CW_PRINTF(4, 0)
 static int on_warning(TIFF *tiff, void *user, const char *module, const char *format,
                       va_list arguments)
@@ -102,7 +103,8 @@ static void close_file(cwi_tiff_file *f)
     *f = (cwi_tiff_file){.fd = -1, .page = -1, .band = -1};
 }
 
-/* No mapping of the file (m), strips as they are (c), no directory read yet (h). */
+/* Opens the file: no mapping into memory (m), strips unchanged (c), no directory read yet
+ * (h). */
 static cw_status open_file(cwi_tiff_file *f, int fd, uint64_t size, cw_error *err)
 {
     close_file(f);
@@ -177,7 +179,8 @@ static cw_status find_type(cwi_tiff_layout *l, cw_error *err)
                    l->bits, l->format, l->format < 7 ? formats[l->format] : "unknown");
 }
 
-/* Libjbig takes the memory that a stream tells it to, and aborts where there is none. */
+/* Refuses JBIG: libjbig allocates as much memory as a stream states, and aborts where there is
+ * none. */
 static cw_status check_compression(const cwi_tiff_layout *l, cw_error *err)
 {
     const uint16_t c = l->compression;
@@ -196,7 +199,7 @@ static cw_status check_compression(const cwi_tiff_layout *l, cw_error *err)
     return CW_OK;
 }
 
-/* Libjpeg makes RGB of YCbCr; nothing else is converted. */
+/* Finds the colours. libjpeg converts YCbCr to RGB; nothing else is converted. */
 static cw_status find_colours(TIFF *tiff, cwi_tiff_layout *l, cw_error *err)
 {
     static const struct {
@@ -228,7 +231,7 @@ static cw_status find_colours(TIFF *tiff, cwi_tiff_layout *l, cw_error *err)
                    l->photometric, name);
 }
 
-/* Strips and rows of tiles, and that libtiff counts their bytes as we do. */
+/* Finds strips and rows of tiles, and checks that libtiff's sizes of them agree with ours. */
 static cw_status find_bands(TIFF *tiff, cwi_tiff_layout *l, cw_error *err)
 {
     const uint64_t samples = l->planes > 1 ? 1 : l->samples;
@@ -272,7 +275,7 @@ static cw_status check_sizes(TIFF *tiff, cwi_tiff_layout *l, cw_error *err)
     return CW_OK;
 }
 
-/* Of the directory that is open. */
+/* Finds the layout of the open directory. */
 static cw_status find_layout(cwi_tiff_file *f, cw_error *err)
 {
     TIFF *t = f->tiff;
@@ -336,7 +339,8 @@ static size_t strile_bytes(const cwi_tiff_file *f, const cwi_tiff_layout *l, uin
     return (left < l->band_rows ? left : l->band_rows) * l->stored_row;
 }
 
-/* That all strips and tiles lie in the file; what is not compressed, as long as it is. */
+/* Checks that all strips and tiles lie in the file, and that uncompressed ones are long
+ * enough. */
 static cw_status check_striles(const cwi_tiff_file *f, uint32_t page, cw_error *err)
 {
     const cwi_tiff_layout *l = &f->layout;
@@ -367,7 +371,7 @@ static cw_status check_striles(const cwi_tiff_file *f, uint32_t page, cw_error *
     return CW_OK;
 }
 
-/* Thumbnails and masks are no slices. */
+/* Returns true for a page, not for a thumbnail or a mask. */
 static bool is_page(const cwi_tiff_file *f, uint32_t directory)
 {
     uint32_t kind;
@@ -392,7 +396,7 @@ static cw_status check_alike(const cwi_tiff_layout *a, const cwi_tiff_layout *b,
                    a->columns, a->rows, a->samples, a->bits, cw_type_name(a->type));
 }
 
-/* Walks through all directories; the first page's layout is what they must have. */
+/* Walks through all directories; all pages must have the first page's layout. */
 static cw_status find_pages(cwi_tiff_file *f, cwi_tiff_facts *facts, cwi_tiff_layout *first,
                             cw_error *err)
 {

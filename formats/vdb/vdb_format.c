@@ -1,4 +1,4 @@
-/* OpenVDB: what is read and written, and by whom. */
+/* The driver of OpenVDB: its names and its reader. */
 #include "formats/driver/format_driver.h"
 
 const cwi_format_driver cwi_format_vdb = {

@@ -1,5 +1,5 @@
-/* OpenVDB files: level sets, fog volumes and other grids of one number a voxel, as sparse
- * grids. */
+/* Reads OpenVDB files: level sets, fog volumes and other grids of one number per voxel, as
+ * sparse grids. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
@@ -18,9 +18,9 @@ bool cwi_vdb_sniff(const unsigned char *head, size_t size)
     return size >= 8 && memcmp(head, " BDV\0\0\0\0", 8) == 0;
 }
 
-/* --- which grid --------------------------------------------------------------------------- */
+/* --- the grid ----------------------------------------------------------------------------- */
 
-/* What is printed of a stranger's text. */
+/* Makes untrusted text printable. */
 static void clean_text(char *text, size_t room)
 {
     text[room - 1] = '\0';
@@ -48,7 +48,7 @@ static cw_status take_facts(cwi_planes *planes, const cwi_input *in, cwi_vdb_fac
     return CW_OK;
 }
 
-/* "'density', 'temperature'": the names of grids, as far as they fit. */
+/* Lists the names of grids, as far as they fit: "'density', 'temperature'". */
 static const char *list_names(const cwi_vdb_facts *f, char text[256])
 {
     size_t used = 0;
@@ -59,7 +59,7 @@ static const char *list_names(const cwi_vdb_facts *f, char text[256])
     return text;
 }
 
-/* The grid of a name, or the first level set, else the first that can be read. */
+/* Chooses the grid of a name, or the first level set, else the first that can be read. */
 static cw_status choose_grid(const cwi_vdb_facts *f, const char *name, size_t *chosen,
                              cw_error *err)
 {
@@ -114,7 +114,8 @@ static void tell_choice(const cw_read_desc *desc, const cwi_vdb_facts *f, const 
 
 /* --- the volume --------------------------------------------------------------------------- */
 
-/* A leaf has a mask of 64 bytes in the file, however well its voxels are compressed. */
+/* Checks the counts. Each leaf has a mask of 64 bytes in the file, even if its voxels are well
+ * compressed. */
 static cw_status check_counts(const cwi_vdb_grid *g, uint64_t file_bytes,
                               const cw_read_desc *desc, cw_error *err)
 {
@@ -141,7 +142,7 @@ static cw_status check_counts(const cwi_vdb_grid *g, uint64_t file_bytes,
     return CW_OK;
 }
 
-/* Voxel 0 is the first of the first leaf. */
+/* Sets the shape of the volume. Voxel 0 is the first of the first leaf. */
 static cw_status set_shape(const cwi_vdb_grid *g, const cw_read_desc *desc, cw_volume *v,
                            cw_error *err)
 {
@@ -166,7 +167,8 @@ static cw_status set_shape(const cwi_vdb_grid *g, const cw_read_desc *desc, cw_v
     return st;
 }
 
-/* What describes the grid, in memory of the volume's own; of a header the counts alone. */
+/* Allocates the description of the grid as the volume's own memory; for a header only the
+ * counts. */
 static cw_status make_grid(const cwi_vdb_grid *g, bool header, cw_volume *v, cw_error *err)
 {
     const size_t leaves = header ? 0 : g->leaf_count, tiles = header ? 0 : g->tile_count;
@@ -235,16 +237,16 @@ static cw_status read_chosen(cwi_planes *planes, const cwi_input *in, const cwi_
     return st;
 }
 
-/* What the library may take for a file, whatever its numbers claim. A leaf has a mask of 64
- * bytes in it and up to 4,200 in memory; a node has masks of 8 KiB, and up to 32,768 tiles of
- * 40 bytes, kept twice while they grow. */
+/* Returns the maximum memory that the library may allocate for a file, whatever its numbers
+ * claim. A leaf has a mask of 64 bytes in the file and up to 4,200 bytes in memory. A node has
+ * masks of 8 KiB, and up to 32,768 tiles of 40 bytes, kept twice while they grow. */
 static uint64_t most_memory(uint64_t file_bytes)
 {
     const uint64_t base = (uint64_t)128 << 20, factor = 512;
     return file_bytes < (UINT64_MAX - base) / factor ? base + factor * file_bytes : UINT64_MAX;
 }
 
-/* Memory that ran out under that limit alone is the file's fault. */
+/* Reports a damaged file if the memory ran out only because of that limit. */
 static cw_status judge_memory(cw_status st, uint64_t limit, uint64_t file_bytes, cw_error *err)
 {
     if (st != CW_ERR_NO_MEMORY || limit != most_memory(file_bytes) || cwi_memory_is_limited())

@@ -1,5 +1,5 @@
-// OpenVDB behind plain C: a file's grids, their leaves and tiles. No thread is started: the
-// process may not.
+// Wraps OpenVDB behind plain C: a file's grids, their leaves and tiles. It starts no thread,
+// since the process may not.
 #include "core/base/guard.hpp"
 
 extern "C" {
@@ -22,7 +22,7 @@ namespace
 
 using openvdb::GridBase;
 
-// A file by its number: OpenVDB's own would open a path.
+// A stream buffer over a file descriptor; OpenVDB's own would open a path.
 class descriptor_buffer : public std::streambuf
 {
 public:
@@ -66,12 +66,12 @@ private:
     }
 
     int fd;
-    int64_t size, at = 0; // of the buffer's first byte
+    int64_t size, at = 0; // offset of the buffer's first byte
     std::vector<char> bytes;
 };
 
-// A grid whose tree is freed without TBB: its threads do not come along into the process, and
-// none may be started there. A tree that is empty does not ask for them.
+// A grid whose tree is freed without TBB. TBB's threads do not exist in the forked process, and
+// none may be started there. Freeing an empty tree does not need them.
 class held_grid
 {
 public:
@@ -107,13 +107,13 @@ private:
     GridBase::Ptr held;
 };
 
-// A layout of files that this OpenVDB does not know: it would be guessed at.
+// A file version that this OpenVDB does not know; it would only guess at the layout.
 struct unknown_version {
     uint32_t number;
 };
 
-// A file's grids in their order, as openvdb::io::Stream reads them; but without voxels, or only
-// one of them.
+// A file's grids in their order, as openvdb::io::Stream reads them, but without voxels, or with
+// those of only one grid.
 class archive : public openvdb::io::Archive
 {
 public:
@@ -132,7 +132,7 @@ public:
         count = std::max(readGridCount(in), 0);
     }
 
-    // The next grid, without voxels; none where its type is not known.
+    // Reads the next grid, without voxels; returns none where its type is not known.
     held_grid next(openvdb::io::GridDescriptor &about)
     {
         held_grid grid = begin(about);
@@ -155,7 +155,7 @@ public:
         return grid;
     }
 
-    // Its voxels, or on to the next grid without them.
+    // Reads the grid's voxels, or skips them to the next grid.
     void finish(const openvdb::io::GridDescriptor &about, const held_grid &grid, bool voxels)
     {
         if (grid && !about.isInstance() && (voxels || !inputHasGridOffsets()))
@@ -167,13 +167,13 @@ public:
     int32_t count;
 
 private:
-    // Its description. OpenVDB leaves off at a type that it does not know, ahead of the places.
+    // Reads a grid's description. At an unknown type OpenVDB stops before the file offsets.
     held_grid begin(openvdb::io::GridDescriptor &about)
     {
         try {
             return held_grid(about.read(in));
         } catch (const openvdb::LookupError &) {
-            int64_t places[3]; // of the grid, its voxels, its end
+            int64_t places[3]; // offsets of the grid, its voxels, its end
             in.read(reinterpret_cast<char *>(places), sizeof places);
             about.setEndPos(places[2]);
             if (!inputHasGridOffsets())
@@ -187,7 +187,7 @@ private:
     openvdb::io::StreamMetadata::Ptr stream{new openvdb::io::StreamMetadata};
 };
 
-// What is read of a tree, in the order in which it is handed over.
+// The parts of a tree that are read, in the order in which they are returned.
 struct content {
     std::vector<cw_tile> tiles;
     std::vector<const void *> leaves;
@@ -202,11 +202,11 @@ void take_box(content &c, const openvdb::Coord &origin, int64_t size, uint32_t a
         const int64_t leaf = origin[a] >> 3;
         c.low[a] = std::min(c.low[a], leaf);
         c.high[a] = std::max(c.high[a], leaf + size - 1);
-        at[a] = uint32_t(leaf + (int64_t(1) << 29)); // for now, so that all are positive
+        at[a] = uint32_t(leaf + (int64_t(1) << 29)); // temporarily, so that all are positive
     }
 }
 
-// Joins tiles of one value that touch along an axis and are as large across it.
+// Joins tiles of one value that touch along an axis and have the same size across it.
 void join_tiles(std::vector<cw_tile> &tiles, int axis)
 {
     const int u = (axis + 1) % 3, v = (axis + 2) % 3;
@@ -229,7 +229,7 @@ void join_tiles(std::vector<cw_tile> &tiles, int axis)
     tiles.resize(kept);
 }
 
-// Masks have no values but whether they are on; in leaves that is what they give out.
+// Masks have only active states, no values; in leaves the states are read as values.
 template <typename Tree>
 constexpr bool is_mask = std::is_same<typename Tree::BuildType, openvdb::ValueMask>::value;
 
@@ -275,7 +275,7 @@ template <typename Tree> content content_of(const Tree &tree)
     return c;
 }
 
-// Calls f(tree, type) for a grid of one number a voxel; false for others.
+// Calls f(tree, type) for a grid of one number per voxel; returns false for others.
 template <typename Grid, typename F> bool try_type(const GridBase &grid, cw_type type, F &&f)
 {
     if (!grid.isType<Grid>())
@@ -305,12 +305,12 @@ void put_voxels(const std::vector<const void *> &leaves, size_t first, size_t co
     }
 }
 
-// What the process holds: the file, and the grid that was last read with its voxels.
+// The state of the process: the file, and the last grid that was read with its voxels.
 struct state {
     int fd = -1;
     int64_t size = 0;
     held_grid grid;
-    size_t number = 0; // of that grid
+    size_t number = 0; // number of that grid
     content held;
 };
 
@@ -372,7 +372,8 @@ void put_unknown(const openvdb::io::GridDescriptor &about, cwi_vdb_grid &f)
     put_text("its type " + about.gridType() + " is not known", f.refusal, sizeof f.refusal);
 }
 
-// As cw::guard(), but files that end too early or are of another version are told so.
+// Runs a function as cw::guard(), with messages for files that end too early or have another
+// version.
 template <typename Body> cw_status guard_file(cw_error *err, Body &&body)
 {
     return cw::guard(err, "OpenVDB", [&] {

@@ -1,9 +1,10 @@
+/* Reads the corners of cells from VTK's lists, and converts them to the order of our shapes. */
 #include "formats/volume/cell_connectivity.h"
 
 #include "core/base/status.h"
 #include "formats/volume/vtk_cell_types.h"
 
-/* Where the numbers of the next cell end. */
+/* Finds the end of the next cell's numbers. */
 static cw_status find_end(cwi_corner_list *list, size_t *out, cw_error *err)
 {
     const size_t there = list->numbers.count;
@@ -29,7 +30,7 @@ static cw_status find_end(cwi_corner_list *list, size_t *out, cw_error *err)
     return CW_OK;
 }
 
-/* Takes the corners of a cell that has so many. */
+/* Converts the corners of a cell that has `there` numbers left. */
 static cw_status take_corners(const cwi_corner_list *list, const cwi_cell_kind *kind,
                               size_t there, size_t base, uint32_t *to, cw_error *err)
 {

@@ -1,3 +1,5 @@
+/* Compares a caller's claim on unit and frame with the file's statement, and turns volumes and
+ * meshes. */
 #include "formats/volume/frame_claim.h"
 
 #include "core/base/status.h"
@@ -6,13 +8,13 @@
 #include <stdio.h>
 #include <string.h>
 
-/* Axes whose unit may be none of ours. */
+/* Axes whose unit may be another one than ours. */
 typedef struct axes {
     double unit_mm;
     bool ras, y_up;
 } axes;
 
-/* What a file says: of what is not known, as it was taken. */
+/* The file's statement; unknown parts are as the reader assumed. */
 typedef struct saying {
     axes axes;
     bool has_unit, has_frame, has_up;
@@ -32,7 +34,8 @@ static bool is_unit(double mm, cw_unit unit)
     return fabs(cw_unit_mm(unit) - mm) <= 1e-9 * mm;
 }
 
-/* From coordinates of the file to LPS millimetres: cwi_turn_to(), the other way round. */
+/* Computes the matrix from coordinates of the file to LPS millimetres: the inverse of
+ * cwi_turn_to(). */
 static void set_matrix(const axes *x, double m[3][3])
 {
     const double ras = x->ras ? -1 : 1;
@@ -42,8 +45,8 @@ static void set_matrix(const axes *x, double m[3][3])
     m[2][x->y_up ? 1 : 2] = x->unit_mm;
 }
 
-/* What turns what was read by the one into what is to be read by the other. Both matrices have
- * columns of one length at right angles. */
+/* Computes the matrix that turns coordinates read with the axes `from` into those with the axes
+ * `to`. Both matrices have perpendicular columns of equal length. */
 static void set_change(const axes *from, const axes *to, double m[3][3])
 {
     double was[3][3], is[3][3];
@@ -78,7 +81,7 @@ static cw_status check_agreement(const cw_claim *claim, const saying *s, cw_erro
     return CW_OK;
 }
 
-/* The axes that count, by the rule. */
+/* Chooses the axes that count, by the rule. */
 static axes choose_axes(const cw_claim *claim, const saying *s)
 {
     const bool fills = claim->rule == CW_CLAIM_FILL;
@@ -135,7 +138,7 @@ cw_status cwi_claim_volume(const cw_claim *claim, cw_volume *v, cw_error *err)
         return st;
     const axes x = choose_axes(claim, &said);
     set_change(&said.axes, &x, m);
-    if (v->cells && v->cells->points) /* which are the volume's own */
+    if (v->cells && v->cells->points) /* owned by the volume */
         turn_points(m, (double *)(uintptr_t)v->cells->points, v->dim[0]);
     else if (!v->cells)
         turn_affine(m, v->affine);

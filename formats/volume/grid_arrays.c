@@ -1,3 +1,4 @@
+/* Loads arrays of tuples into memory, and returns their numbers as doubles or whole numbers. */
 #include "formats/volume/grid_arrays.h"
 
 #include "core/volume/volume.h"
@@ -15,7 +16,8 @@ cw_status cwi_tuples_describe(cwi_source *src, const char *field, cw_type type, 
     return cwi_source_set_axes(src, axes, 2, err);
 }
 
-/* Halves were turned round one by one; those of a number still stand in the file's order. */
+/* Joins the halves of 64-bit numbers. Each half was byte-swapped, but the order of halves is
+ * still the file's. */
 static void join_halves(cwi_tuples *t)
 {
     uint32_t *half = t->data.owned;

@@ -1,3 +1,5 @@
+/* Reads irregular grids in two passes: checks the arrays and selects the cells, then builds the
+ * volume. */
 #include "formats/volume/irregular_grid.h"
 
 #include "core/base/memory.h"
@@ -12,25 +14,25 @@
 #include <math.h>
 #include <string.h>
 
-/* Bits of vtkGhostType: of a point, that it is blanked; of a cell, that another piece has it,
- * that finer ones have taken its place, that it is blanked. */
+/* Bits of vtkGhostType. Of a point: it is blanked. Of a cell: another piece has it, finer ones
+ * have replaced it, it is blanked. */
 enum { HIDDEN_POINT = 2, LEFT_OUT_CELL = 1 | 8 | 32 };
 
-/* More samples could not be numbered. */
+/* The maximum number of samples; more could not be numbered. */
 static const size_t most_samples = UINT32_MAX - 1;
 
-/* The arrays become a volume in two passes: the first checks them all and finds the cells that
- * stay, the second has room for exactly those. */
+/* The building of a volume from the arrays in two passes. The first checks all arrays and finds
+ * the cells that stay. The second has room for exactly those. */
 typedef struct building {
     const cwi_irregular *g;
     const cwi_input *in;
     const cw_read_desc *desc;
     uint64_t bytes;       /* of memory taken so far */
-    uint64_t claimed;     /* bytes of the file that all arrays take, at least */
-    double total, done;   /* bytes of arrays that are checked, and that have been read */
-    double now;           /* ... of the one that is being read */
+    uint64_t claimed;     /* minimum bytes of the file for all arrays */
+    double total, done;   /* bytes of all checked arrays, and bytes read so far */
+    double now;           /* ... of the current array */
     size_t points, cells; /* of all pieces, as the file counts them */
-    uint8_t *types;       /* of all cells, CWI_VTK_EMPTY for what is left out */
+    uint8_t *types;       /* of all cells; CWI_VTK_EMPTY for left-out ones */
     size_t flat, curved, marked;
 
     cw_volume volume;
@@ -63,7 +65,8 @@ static cw_status describe_array(const building *b, size_t piece, cwi_grid_role r
     return b->g->describe(b->g->file, piece, role, count, src, wide, err);
 }
 
-/* Of one array as part of all. Corners are counted only when they are read. */
+/* Reports the progress of one array as part of all. Corners are counted only when they are
+ * read. */
 static bool report_progress(void *user, const char *step, double done)
 {
     const building *b = user;
@@ -98,7 +101,7 @@ static void drop_array(building *b, cwi_tuples *t)
     cwi_tuples_free(t);
 }
 
-/* Each array fits the file, and all of them do. */
+/* Checks that each array fits the file, and that all of them together do. */
 static cw_status check_array(building *b, size_t piece, cwi_grid_role role, size_t count,
                              cw_error *err)
 {
@@ -123,7 +126,7 @@ static cw_status check_array(building *b, size_t piece, cwi_grid_role role, size
                    piece, (unsigned long long)b->claimed, (unsigned long long)b->in->size);
 }
 
-/* --- first pass: what is there ----------------------------------------------------------- */
+/* --- first pass: checks ------------------------------------------------------------------ */
 
 cw_status cwi_grid_along(cwi_grid_piece *piece, const char *field, cw_error *err)
 {
@@ -147,7 +150,7 @@ static bool is_curvilinear(const cwi_grid_piece *p)
     return p->along[0] != 0;
 }
 
-/* A piece's numbers of corners of one of its hexahedra. */
+/* Computes the corners of a hexahedron, as sample numbers of its piece. */
 static void find_corners(const cwi_grid_piece *p, size_t cell, size_t corners[8])
 {
     static const uint8_t steps[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
@@ -195,7 +198,7 @@ static cw_status count_shape(building *b, size_t cell, int64_t type, cw_error *e
     return CW_OK;
 }
 
-/* Types of a piece's cells, of which those of our shapes stay. */
+/* Reads the types of a piece's cells; those of our shapes stay. */
 static cw_status read_types(building *b, size_t piece, uint8_t *types, cw_error *err)
 {
     const cwi_grid_piece *p = &b->g->pieces[piece];
@@ -222,8 +225,8 @@ static void leave_out(building *b, uint8_t *type)
     *type = CWI_VTK_EMPTY;
 }
 
-/* Blanked cells, and those of curvilinear grids around blanked points; cells that
- * others have. */
+/* Leaves out blanked cells, cells of curvilinear grids around blanked points, and cells that
+ * other pieces have. */
 static cw_status apply_marks(building *b, size_t piece, uint8_t *types, cw_error *err)
 {
     const cwi_grid_piece *p = &b->g->pieces[piece];
@@ -341,7 +344,8 @@ static cw_status allocate_grid(building *b, cw_error *err)
 
 /* --- second pass ------------------------------------------------------------------------- */
 
-/* As vertices are written in single precision, and products of three lengths are taken. */
+/* Limits coordinates: vertices are written in single precision, and products of three lengths
+ * are taken. */
 static bool is_moderate(double x)
 {
     return fabs(x) < 1e30;
@@ -360,7 +364,7 @@ static cw_status read_points(building *b, size_t piece, size_t first, cw_error *
                              "point %zu has the coordinate %g; they must be finite and below "
                              "1e30",
                              n, x);
-            *to++ = x + 0.0; /* no negative zeros, so that equal places are equal bits */
+            *to++ = x + 0.0; /* no negative zeros, so that equal places have equal bits */
         }
     drop_array(b, &t);
     return st;
@@ -382,8 +386,8 @@ static cw_status load_corners(building *b, size_t piece, cwi_corner_list *list, 
                        : st;
 }
 
-/* Corners of one piece's cells that stay, to be put at *to, which is moved on. base is the
- * number of the piece's first sample. */
+/* Reads the corners of one piece's remaining cells to *to, which advances. base is the number
+ * of the piece's first sample. */
 static cw_status read_corners(building *b, size_t piece, const uint8_t *types, size_t base,
                               uint32_t **to, cw_error *err)
 {
@@ -466,7 +470,7 @@ static cw_status read_values(building *b, cw_error *err)
     return st;
 }
 
-/* Adds a cell's value to each of its corners, of which one may be there twice. */
+/* Adds a cell's value to each of its corners; a corner may occur twice. */
 static void add_value(building *b, const cwi_tuples *t, size_t cell, const uint32_t *corners,
                       size_t corner_count, uint32_t *around)
 {
@@ -504,7 +508,7 @@ static cw_status add_values(building *b, uint32_t *around, cw_error *err)
     return st;
 }
 
-/* The mean of the cells around each sample; without any, it has no value. */
+/* Computes the mean of the cells around each sample; without any, it has no value. */
 static cw_status average_values(building *b, cw_error *err)
 {
     const size_t samples = b->volume.dim[0], components = b->volume.components;
@@ -525,7 +529,7 @@ static cw_status average_values(building *b, cw_error *err)
     return st;
 }
 
-/* Of samples that are the same the first stays. Values of cells are none of the points'. */
+/* Keeps the first of equal samples. Values of cells are not compared. */
 static cw_status merge_samples(building *b, cw_error *err)
 {
     const size_t samples = b->volume.dim[0], bytes = b->g->of_cells ? 0 : value_bytes(b);

@@ -1,15 +1,15 @@
-/* Irregular grids: what a header says of their arrays, and the one way from there to a volume
- * with cells. */
+/* Irregular grids: the description of their arrays by a header, and the common reader that
+ * makes a volume with cells from it. */
 #ifndef FORMATS_VOLUME_IRREGULAR_GRID_H
 #define FORMATS_VOLUME_IRREGULAR_GRID_H
 
 #include "formats/volume/grid_arrays.h"
 
-/* Arrays of a piece. Cells are as VTK numbers their kinds and corners. */
+/* The arrays of a piece. Kinds and corners of cells are numbered as in VTK. */
 typedef enum cwi_grid_role {
     CWI_GRID_POINTS, /* three numbers each */
     CWI_GRID_TYPES,  /* the kind of each cell */
-    CWI_GRID_ENDS,   /* where its corners end among all */
+    CWI_GRID_ENDS,   /* end of each cell's corners among all */
     CWI_GRID_CORNERS,
     CWI_GRID_VALUES,
     CWI_GRID_POINT_MARKS, /* vtkGhostType */
@@ -21,35 +21,35 @@ typedef struct cwi_grid_piece {
     size_t points, cells;
     size_t along[3]; /* points along x, y, z of a curvilinear grid, which has neither types nor
                         corners; else 0 */
-    size_t listed;   /* numbers in a list of corners that has their count in front of each cell,
-                        and no ends; else 0 */
+    size_t listed;   /* length of a list of corners where each cell's count precedes its
+                        corners, and there are no ends; else 0 */
     bool has_point_marks, has_cell_marks;
 } cwi_grid_piece;
 
-/* What a header says. Everything in it is borrowed. */
+/* The description of a grid by its header. Everything in it is borrowed. */
 typedef struct cwi_irregular {
     const cwi_grid_piece *pieces;
     size_t piece_count;
-    const char *point_field; /* where the file counts points, for messages */
-    const char *array;       /* the name of that with the values */
+    const char *point_field; /* name of the number of points in the file, for messages */
+    const char *array;       /* the name of the array of values */
     cw_type type;
     size_t components;
-    bool of_cells; /* it has a value for each cell */
+    bool of_cells; /* the array has one value per cell */
 
-    /* Describes an array of a piece, of so many tuples, for cwi_tuples_load(). */
+    /* Describes an array of a piece, of `count` tuples, for cwi_tuples_load(). */
     cw_status (*describe)(const void *file, size_t piece, cwi_grid_role role, size_t count,
                           cwi_source *src, bool *wide, cw_error *err);
     const void *file;
 } cwi_irregular;
 
-/* How many points and cells a curvilinear grid has. field: where the file says so.
+/* Computes the numbers of points and cells of a curvilinear grid. field: its name in the file.
  * Returns CW_ERR_FORMAT when it is flat, CW_ERR_LIMIT */
 CW_NODISCARD cw_status cwi_grid_along(cwi_grid_piece *piece, const char *field, cw_error *err);
 
-/* Reads the grid, with the kinds of cells that we have; notes what is left out or merged.
- * Samples that are the same in place and value, as pieces have along their seams, become one.
- * Values of cells are averaged around each sample. A header alone has the samples that the file
- * counts and shapes, but neither points nor corners.
+/* Reads the grid, with the kinds of cells that we have; notes left-out cells and merged
+ * samples. Samples that are the same in place and value, such as along the seams of pieces,
+ * become one. Values of cells are averaged around each sample. A header alone has the samples
+ * and shapes that the file counts, but neither points nor corners.
  *
  * Returns  as cw_volume_read() */
 CW_NODISCARD cw_status cwi_irregular_read(const cwi_irregular *grid, const cwi_input *in,

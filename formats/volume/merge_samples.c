@@ -1,3 +1,4 @@
+/* Finds equal samples by a hash table, and drops all but the first of them. */
 #include "formats/volume/merge_samples.h"
 
 #include "core/base/memory.h"
@@ -27,8 +28,8 @@ bool cwi_samples_map(const double *points, const void *values, size_t value_byte
     uint32_t *table = cwi_alloc_zeroed(slots, sizeof *table); /* sample + 1, or 0 */
     if (!table)
         return false;
-    /* Hashes start from that of all points, so that no file can be made of samples that share
-     * one. */
+    /* The seed of the hashes is a hash of all points, so no file can be made of samples that
+     * collide. */
     const uint64_t seed = mix_hash(0, points, count * point_bytes);
     *same = 0;
     for (size_t n = 0; n < count; n++) {
@@ -59,7 +60,7 @@ void cwi_samples_drop(double *points, void *values, size_t value_bytes, size_t c
     unsigned char *value = values;
     uint32_t left = 0;
     for (size_t n = 0; n < count; n++) {
-        if (map[n] < n) { /* the first one has been moved already */
+        if (map[n] < n) { /* the first one was already moved */
             map[n] = map[map[n]];
             continue;
         }

@@ -1,4 +1,4 @@
-/* Samples that stand twice: the same place and the same value. */
+/* Merging of samples with the same place and the same value. */
 #ifndef FORMATS_VOLUME_MERGE_SAMPLES_H
 #define FORMATS_VOLUME_MERGE_SAMPLES_H
 
@@ -8,12 +8,13 @@
  * points       count x 3, without negative zeros; count below 2^32 - 1
  * values       count x value_bytes
  * map          count; on success every entry is at most its index
- * same         set to how many are not the first
+ * same         set to the number of samples that are not the first
  * Returns false when memory is out; takes 8 to 16 bytes a sample. */
 bool cwi_samples_map(const double *points, const void *values, size_t value_bytes, size_t count,
                      uint32_t *map, size_t *same);
 
-/* Leaves of the samples the first ones, in their order, and makes map say where each is now. */
+/* Keeps only the first ones of equal samples, in their order, and makes map give their new
+ * numbers. */
 void cwi_samples_drop(double *points, void *values, size_t value_bytes, size_t count,
                       uint32_t *map);
 

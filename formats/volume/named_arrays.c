@@ -1,3 +1,4 @@
+/* Collects the names of a file's arrays for lists and messages. */
 #include "formats/volume/named_arrays.h"
 
 #include "core/base/memory.h"

@@ -1,4 +1,4 @@
-/* What readers tell of their choices, and the spacing that a caller states. */
+/* Passes readers' notes to the caller, and applies the spacing that a caller states. */
 #include "formats/volume/volume_reader.h"
 
 #include <stdarg.h>

@@ -1,7 +1,8 @@
+/* Plans the runs of bytes that a region of a file's voxels consists of. */
 #include "formats/volume/region_runs.h"
 
-/* As long as faster axes are wanted from end to end, what is wanted of an axis
- * stands together. */
+/* Plans the runs. As long as all of the faster axes is wanted, the wanted part of an axis is
+ * contiguous. */
 void cwi_runs_plan(cwi_runs *runs, const cwi_source *src, const cw_box *box,
                    const size_t every[3])
 {

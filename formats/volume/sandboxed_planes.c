@@ -1,3 +1,5 @@
+/* Runs the modules dicom, tiff and openvdb in sandboxed processes, and reads facts and planes
+ * from them. */
 #include "formats/volume/sandboxed_planes.h"
 
 #include "core/base/memory.h"
@@ -7,7 +9,7 @@
 #include <stdatomic.h>
 #include <string.h>
 
-/* Modules that a child has survived, in the order of the names. */
+/* Modules that a child process has loaded successfully, in the order of the names. */
 static const char *const names[] = {"dicom", "tiff", "openvdb"};
 enum { MODULES = sizeof names / sizeof *names };
 static atomic_bool survived[MODULES];
@@ -61,8 +63,8 @@ cw_status cwi_planes_open(cwi_planes *planes, const char *module, const char *li
                                   .memory = desc->max_bytes,
                                   .timeout_s = desc->timeout_s,
                                   .inside = desc->no_sandbox};
-    /* from the second file on, every child finds the library loaded: a tenth of a
-     * second less */
+    /* from the second file on, every child finds the library loaded, which saves a
+     * tenth of a second */
     cw_status st = CW_OK;
     if (atomic_load(survived_of(module)) && !cwi_memory_is_limited())
         st = load_module(planes, err);

@@ -1,5 +1,5 @@
-/* Planes of pixels that a library takes out of files, shut in a process of its own: what the
- * modules "tiff" and "dicom" have in common. */
+/* Planes of pixels that a library in a sandboxed process reads from files: the common interface
+ * of the modules "tiff", "dicom" and "openvdb". */
 #ifndef FORMATS_VOLUME_SANDBOXED_PLANES_H
 #define FORMATS_VOLUME_SANDBOXED_PLANES_H
 
@@ -12,7 +12,7 @@ extern "C" {
 #endif
 
 typedef enum cwi_plane_op {
-    CWI_PLANE_FACTS, /* take the file handed over and put its facts into the shared memory */
+    CWI_PLANE_FACTS, /* open the file handed over and put its facts into the shared memory */
     CWI_PLANE_PIXELS /* put rows of one of its planes there: packed, native byte order */
 } cwi_plane_op;
 
@@ -24,23 +24,23 @@ typedef struct cwi_plane_request {
 
 enum { CWI_PLANES_SHARED = 64 << 20 };
 
-/* What a module exports. The facts have a struct of the module's own. */
+/* The functions that a module exports. The facts have a struct of the module's own. */
 typedef struct cwi_plane_functions {
     void *(*state_new)(void); /* NULL: out of memory */
     void (*state_free)(void *state);
     cw_status (*prepare)(cw_error *err); /* while files may still be opened; may be NULL */
-    cwi_sandbox_work work;               /* of cwi_plane_request */
+    cwi_sandbox_work work;               /* handles a cwi_plane_request */
 } cwi_plane_functions;
 
-/* A library at work. A zeroed one is closed. It stays where it was opened. */
+/* A library in its process. A zeroed one is closed. It must not move after it was opened. */
 typedef struct cwi_planes {
     const char *module;
     const cwi_plane_functions *functions; /* in the process that reads */
-    void *state;                          /* as well */
+    void *state;                          /* also there */
     cwi_sandbox box;
 } cwi_planes;
 
-/* Starts a process and loads a module in it; `library` is what it has inside, for messages.
+/* Starts a process and loads a module in it; `library` names the library inside, for messages.
  * Returns  CW_ERR_UNSUPPORTED  not in this build; as cwi_sandbox_open() */
 CW_NODISCARD cw_status cwi_planes_open(cwi_planes *planes, const char *module,
                                        const char *library, const cw_read_desc *desc,
@@ -50,7 +50,7 @@ void cwi_planes_close(cwi_planes *planes);
 /* Starts the process again where it has ended. */
 CW_NODISCARD cw_status cwi_planes_restart(cwi_planes *planes, cw_error *err);
 
-/* Hands a file over; returns its facts, or fails as the module does. Copy them, then check. */
+/* Hands a file over. Returns its facts, or fails as the module does. Copy them, then check. */
 CW_NODISCARD cw_status cwi_planes_facts(cwi_planes *planes, int fd, uint64_t file_bytes,
                                         const void **facts, cw_error *err);
 

@@ -1,3 +1,5 @@
+/* Lays slices out at equal distances: keeps even ones, and interpolates where some are missing
+ * or distances vary. */
 #include "formats/volume/slice_spacing.h"
 
 #include "core/base/memory.h"
@@ -8,8 +10,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Positions in headers are rounded to a tenth or a hundredth of a millimetre: a step is even
- * within a twentieth. */
+/* The tolerance of an even step: a twentieth. Positions in headers are rounded to a tenth or a
+ * hundredth of a millimetre. */
 static const double TOLERANCE = 0.05;
 enum { FINEST = 8, MOST_SLICES = 65536 };
 
@@ -25,7 +27,7 @@ static int compare_places(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* The distances between neighbours, ascending; NULL: no memory. */
+/* Returns the distances between neighbours, ascending; NULL without memory. */
 static double *measure_distances(const double *places, size_t count)
 {
     double *d = cwi_alloc_array(count, sizeof *d);
@@ -36,8 +38,7 @@ static double *measure_distances(const double *places, size_t count)
     return d;
 }
 
-/* Whether all places are on a row of so many steps from the first to the last, no two
- * at one. */
+/* Returns true if all places are on an even row of `steps` steps, no two at one. */
 static bool on_row(const double *places, size_t count, double steps)
 {
     const double step = (places[count - 1] - places[0]) / steps;
@@ -51,7 +52,7 @@ static bool on_row(const double *places, size_t count, double steps)
     return true;
 }
 
-/* The first place with more than a step and a half behind it. */
+/* Finds the first place whose distance to the next is more than a step and a half. */
 static size_t first_gap(const double *places, size_t count, double step)
 {
     size_t i = 0;
@@ -60,7 +61,7 @@ static size_t first_gap(const double *places, size_t count, double step)
     return i;
 }
 
-/* One slice of a row of count from the first place to the last. */
+/* Computes one slice of an even row of count from the first place to the last. */
 static cwi_slice slice_at(const double *places, size_t count, size_t *low, double at,
                           double step)
 {
@@ -93,7 +94,7 @@ static cw_status lay_row(const double *places, size_t count, double steps, cwi_s
     return CW_OK;
 }
 
-/* The slices as they come, one step apart. */
+/* Lays the given slices out one step apart. */
 static cw_status lay_as_even(const double *places, size_t count, cwi_slices *s, cw_error *err)
 {
     s->count = count;
@@ -106,7 +107,7 @@ static cw_status lay_as_even(const double *places, size_t count, cwi_slices *s, 
     return CW_OK;
 }
 
-/* Steps of the row that slices are missing from, or of one that is fine enough. */
+/* Finds the number of steps of the row with missing slices, or of a row that is fine enough. */
 static double find_row(const double *places, size_t count, const double *gaps, const char *unit,
                        cwi_slices *s)
 {

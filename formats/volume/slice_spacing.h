@@ -1,13 +1,13 @@
-/* Slices along an axis: whether they stand at equal distances, and what to do where not. */
+/* Slices along an axis: check of equal distances, and interpolation of missing slices. */
 #ifndef FORMATS_VOLUME_SLICE_SPACING_H
 #define FORMATS_VOLUME_SLICE_SPACING_H
 
 #include <cubewright/formats.h>
 
-/* Where one slice of the result comes from: (1 - t) low + t high. */
+/* The sources of one slice of the result: (1 - t) low + t high. */
 typedef struct cwi_slice {
     size_t low, high;
-    double t; /* 0: low as it is */
+    double t; /* 0: low unchanged */
 } cwi_slice;
 
 /* Slices at equal distances. A zeroed one is empty. */
@@ -15,16 +15,16 @@ typedef struct cwi_slices {
     size_t count;
     double step; /* in the unit of the places */
     cwi_slice *items;
-    size_t made;       /* of the items, between two slices */
-    char finding[192]; /* what is uneven, for people; empty where nothing is */
+    size_t made;       /* number of items that are interpolated */
+    char finding[192]; /* uneven distances, for people; empty: none */
 } cwi_slices;
 
 /* Lays out slices that stand at ascending places.
  *
  * They count as even when none is off by more than a twentieth of the step. Where some are
- * missing from an even row, CW_GAPS_INTERPOLATE makes those; where distances vary, it lays out
- * as many slices as the smallest distance asks for, the first and the last where they were, but
- * no more than eight for a usual distance.
+ * missing from an even row, CW_GAPS_INTERPOLATE interpolates those. Where distances vary, the
+ * smallest distance decides the number of slices. The first and the last slice stay, and there
+ * are no more than eight slices for a usual distance.
  *
  * unit     of places, for messages
  * Returns  CW_ERR_UNSAFE where they are uneven and gaps says to stop; CW_ERR_LIMIT for more

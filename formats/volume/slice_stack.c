@@ -1,3 +1,5 @@
+/* Reads the planes of a stack from files, and turns their pixels into the voxels of a
+ * volume. */
 #include "formats/volume/slice_stack.h"
 
 #include "core/base/memory.h"
@@ -22,11 +24,11 @@ typedef struct reading {
     const cwi_stack *stack;
     const cwi_input *in;
     cwi_planes *planes;
-    size_t file;               /* the one handed over last; SIZE_MAX: none */
-    cw_box box;                /* what is wanted */
-    size_t every;              /* of its slices, the n-th */
-    size_t pixels;             /* wanted of a plane, samples counted */
-    unsigned char *low, *high; /* planes as the module gives them */
+    size_t file;               /* the last file handed over; SIZE_MAX: none */
+    cw_box box;                /* the wanted region */
+    size_t every;              /* every n-th of its slices */
+    size_t pixels;             /* number of wanted samples in a plane */
+    unsigned char *low, *high; /* planes as the module returns them */
     char *voxels;
 } reading;
 
@@ -37,7 +39,7 @@ static bool is_padding(const cwi_stack *s, double pixel)
     return s->has_padding && pixel >= s->padding[0] && pixel <= s->padding[1];
 }
 
-/* What a pixel of a plane is in the result; *nodata where it is padding. */
+/* Returns the value of a plane's pixel in the result; sets *nodata where it is padding. */
 static double value_of(const reading *r, const cwi_plane *plane, const unsigned char *pixels,
                        size_t i, bool *nodata)
 {
@@ -74,7 +76,7 @@ static void put_label(const reading *r, const cwi_slot *slot, char *to)
 
 /* --- from files to pixels ----------------------------------------------------------------- */
 
-/* NULL: the file that is open. */
+/* Returns the name of a file; NULL: the open file. */
 static const char *file_name(const cwi_stack *s, size_t file)
 {
     return s->files.count ? s->files.items[file] : NULL;
@@ -98,7 +100,7 @@ static cw_status hand_over(reading *r, size_t file, cw_error *err)
     return st;
 }
 
-/* Leaves the wanted columns of rows, one behind another. */
+/* Keeps the wanted columns of rows, one row after another. */
 static void keep_columns(const reading *r, char *rows)
 {
     const cwi_stack *s = r->stack;
@@ -108,7 +110,7 @@ static void keep_columns(const reading *r, char *rows)
         memmove(rows + j * kept, rows + j * row + r->box.first[0] * pixel, kept);
 }
 
-/* The wanted rows of a plane; there must be room for whole ones. */
+/* Reads the wanted rows of a plane; there must be room for whole rows. */
 static cw_status read_plane(reading *r, size_t index, void *to, cw_error *err)
 {
     const cwi_stack *s = r->stack;
@@ -124,7 +126,7 @@ static cw_status read_plane(reading *r, size_t index, void *to, cw_error *err)
                : cwi_fail_in(err, st, file_name(s, plane->file));
 }
 
-/* Whether voxels are the module's pixels and nothing else. */
+/* Returns true if voxels are the module's pixels without any conversion. */
 static bool is_plain(const cwi_stack *s, const cwi_slot *slot)
 {
     const bool ranged =
@@ -139,7 +141,7 @@ static cw_status read_slot(reading *r, const cwi_slot *slot, cw_error *err)
     const size_t kept = (r->box.count[2] - 1) / r->every + 1;
     const size_t bytes = r->pixels * cw_type_size(s->shape.type);
     const bool plain = is_plain(s, slot);
-    if (z >= r->box.count[2] || z % r->every) /* in front of it, too */
+    if (z >= r->box.count[2] || z % r->every) /* also for slices before it */
         return CW_OK;
     char *to = r->voxels + (slot->place / slices * kept + z / r->every) * bytes;
     if (plain && r->box.count[0] == s->shape.dim[0])
@@ -169,7 +171,7 @@ static cw_status read_slots(reading *r, const cw_progress *progress, cw_error *e
     return st == CW_OK ? cwi_progress(progress, "reading", 1, err) : st;
 }
 
-/* Of what the sizes ask for; false when that is more than an address space holds. */
+/* Computes the bytes of the sizes; returns false when they exceed the address space. */
 static bool count_bytes(const cw_volume *v, const size_t held[3], size_t *bytes)
 {
     return cwi_size_mul(held[0], held[1], bytes) && cwi_size_mul(*bytes, held[2], bytes) &&
@@ -178,7 +180,7 @@ static bool count_bytes(const cw_volume *v, const size_t held[3], size_t *bytes)
            cwi_size_mul(*bytes, cw_type_size(v->type), bytes) && *bytes <= PTRDIFF_MAX;
 }
 
-/* What no slot claims. */
+/* Fills the voxels that no slot covers. */
 static void fill_voxels(const cwi_stack *s, char *voxels, size_t bytes)
 {
     const size_t size = cw_type_size(s->shape.type);
@@ -187,7 +189,7 @@ static void fill_voxels(const cwi_stack *s, char *voxels, size_t bytes)
         cwi_voxel_put(s->shape.type, voxels + i, s->shape.nodata);
 }
 
-/* `v` is the shape of what is wanted. */
+/* Loads the voxels; `v` is the shape of the wanted part. */
 static cw_status load_voxels(cw_volume v, size_t bytes, reading *r, const cw_read_desc *desc,
                              cw_volume *volume, cw_error *err)
 {
@@ -215,7 +217,8 @@ static cw_status load_voxels(cw_volume v, size_t bytes, reading *r, const cw_rea
     return st;
 }
 
-/* Strides of so many columns, rows and slices in memory, in place of those of all slices. */
+/* Sets the strides of `count` columns, rows and slices in memory, in place of those of all
+ * slices. */
 static void pack_strides(cw_volume *v, size_t slices, const size_t count[3])
 {
     const ptrdiff_t plane = v->stride[2], all = plane * (ptrdiff_t)slices;
@@ -223,12 +226,12 @@ static void pack_strides(cw_volume *v, size_t slices, const size_t count[3])
     v->stride[2] = v->stride[1] * (ptrdiff_t)count[1];
     const ptrdiff_t packed = v->stride[2] * (ptrdiff_t)count[2];
     v->step_stride = v->step_stride / all * packed;
-    if (v->component_stride >= plane) /* components in planes of their own */
+    if (v->component_stride >= plane) /* components in separate planes */
         v->component_stride = v->component_stride / all * packed;
 }
 
-/* The shape of every n-th voxel of a box. In memory are `held` voxels: columns and rows are all
- * there, and every n-th slice. */
+/* Computes the shape of every n-th voxel of a box. `held` voxels are in memory: all columns and
+ * rows, and every n-th slice. */
 static cw_status narrow_to_region(const cw_read_desc *desc, reading *r, size_t held[3],
                                   cw_volume *v, cw_error *err)
 {

@@ -1,11 +1,12 @@
-/* The readers of volumes: each looks at the first bytes of a file, and parses a header. */
+/* The readers of volumes: functions that recognise the formats, and functions that read
+ * them. */
 #ifndef FORMATS_VOLUME_VOLUME_READER_H
 #define FORMATS_VOLUME_VOLUME_READER_H
 
 #include "formats/volume/voxel_source.h"
 
-/* Whether a file that starts so, inflated if it is a gzip file, is of the format. size is at
- * most CWI_SNIFF_BYTES. */
+/* Recognise a format by a file's head, inflated if it is a gzip file. size is at most
+ * CWI_SNIFF_BYTES. */
 enum { CWI_SNIFF_BYTES = 512 };
 bool cwi_nrrd_sniff(const unsigned char *head, size_t size);
 bool cwi_nifti_sniff(const unsigned char *head, size_t size);
@@ -19,16 +20,17 @@ bool cwi_dicom_sniff(const unsigned char *head, size_t size);
 bool cwi_tiff_sniff(const unsigned char *head, size_t size);
 bool cwi_vdb_sniff(const unsigned char *head, size_t size);
 
-/* The format of an open file, by content, then by its extension; NULL: it is no volume. */
+/* Returns the format of an open file, by content, then by its extension; NULL: it is no
+ * volume. */
 const char *cwi_volume_format_of(const cwi_input *in);
 
 /* Stretches the axes to the spacing that a description states; directions and origin stay. */
 void cwi_set_spacing(cw_volume *v, const cw_read_desc *desc);
 
-/* Tells the reader's caller of something found and decided on. */
+/* Reports a finding or decision to the reader's caller. */
 void cwi_note(const cw_read_desc *desc, const char *format, ...) CW_PRINTF(2, 3);
 
-/* Tells how many links of a folder were left out, where there are any. */
+/* Reports the number of links in a folder that were left out, if there are any. */
 void cwi_note_links(const cw_read_desc *desc, size_t links);
 
 /* Reads a header into a zeroed source, which the caller frees in any case. The messages name
@@ -42,13 +44,13 @@ CW_NODISCARD cw_status cwi_mrc_parse(const cwi_input *in, cwi_source *src, cw_er
 CW_NODISCARD cw_status cwi_inr_parse(const cwi_input *in, cwi_source *src, cw_error *err);
 
 /* Reads an irregular grid; *is_grid is false when the file holds something else, which
- * cwi_..._parse() then knows. */
+ * cwi_..._parse() can then read. */
 CW_NODISCARD cw_status cwi_vtk_read_grid(const cwi_input *in, const cw_read_desc *desc,
                                          bool *is_grid, cw_volume *volume, cw_error *err);
 CW_NODISCARD cw_status cwi_vtu_read(const cwi_input *in, const cw_read_desc *desc,
                                     bool *is_grid, cw_volume *volume, cw_error *err);
 
-/* Reads slices in files of their own, by a library in a sandbox.
+/* Reads slices in separate files, by a library in a sandbox.
  * in     the folder, or one file and its folder
  * names  of the files, sorted; NULL: in's own file */
 CW_NODISCARD cw_status cwi_dicom_read(const cwi_input *in, cwi_names *names,
@@ -70,7 +72,7 @@ CW_NODISCARD cw_status cwi_dicom_list(const cwi_input *in, cwi_names *names,
                                       const cw_read_desc *desc, cw_series **series,
                                       size_t *count, cw_error *err);
 
-/* The same from a layout that the caller of the library states. */
+/* Makes a source from a layout that the caller of the library states. */
 CW_NODISCARD cw_status cwi_raw_describe(const cw_raw_layout *layout, cwi_source *src,
                                         cw_error *err);
 

@@ -1,4 +1,4 @@
-/* The writers of volumes, and what they share. */
+/* The common parts of the writers of volumes, and the list of writers. */
 #ifndef FORMATS_VOLUME_VOLUME_WRITER_H
 #define FORMATS_VOLUME_VOLUME_WRITER_H
 
@@ -6,7 +6,7 @@
 
 #include <cubewright/formats.h>
 
-/* One volume on its way into one file. */
+/* A volume to be written to one file. */
 typedef struct cwi_save {
     const cw_volume *volume; /* resolved */
     cwi_outfile *file;
@@ -19,8 +19,8 @@ CW_NODISCARD cw_status cwi_nrrd_save(const cwi_save *save, cw_error *err);
 CW_NODISCARD cw_status cwi_nifti_save(const cwi_save *save, cw_error *err);
 CW_NODISCARD cw_status cwi_metaimage_save(const cwi_save *save, cw_error *err);
 
-/* Hands the voxels to the sink and finishes it: x fastest, then y, z, time; the components
- * interleaved in front of x, or one whole series after another. */
+/* Passes the voxels to the sink and finishes it. Order: x fastest, then y, z, time; the
+ * components interleaved in front of x, or one whole series after another. */
 CW_NODISCARD cw_status cwi_save_voxels(const cwi_save *save, bool components_last,
                                        cwi_sink *sink, cw_error *err);
 

@@ -1,4 +1,4 @@
-/* Voxels on their way into a file, a row at a time. */
+/* Writes the voxels of a volume to a file, row by row. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/volume/volume.h"
@@ -6,12 +6,12 @@
 
 #include <string.h>
 
-/* One row of voxels without gaps: where it stands already, or gathered into a buffer. */
+/* A row of voxels without gaps: in the volume itself, or gathered into a buffer. */
 typedef struct rows {
     const cw_volume *volume;
     size_t components; /* per voxel of the row */
     size_t bytes;
-    unsigned char *buffer; /* NULL: rows stand packed in the volume */
+    unsigned char *buffer; /* NULL: rows are packed in the volume */
 } rows;
 
 static cw_status rows_open(rows *r, const cw_volume *v, bool components_last, cw_error *err)

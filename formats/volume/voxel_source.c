@@ -1,3 +1,5 @@
+/* Reads voxels from files as a source describes them: checks sizes first, then decodes all or a
+ * region. */
 #define _GNU_SOURCE /* close */
 #include "formats/volume/voxel_source.h"
 
@@ -107,8 +109,7 @@ cw_status cwi_source_set_axes(cwi_source *src, const cwi_axis *axes, size_t coun
         return cw_fail(err, CW_ERR_FORMAT,
                        "'%s' asks for %zu values per voxel; at most %d are read",
                        src->size_field, sizes[CWI_AXIS_COMPONENT], MOST_COMPONENTS);
-    for (int r = 0; r < CWI_ROLE_COUNT;
-         r++) /* never stepped along, but as packed data have it */
+    for (int r = 0; r < CWI_ROLE_COUNT; r++) /* never used as a step, but as in packed data */
         if (strides[r] == 0)
             strides[r] = r == CWI_AXIS_COMPONENT ? voxel : bytes;
     cw_volume *v = &src->shape;
@@ -124,7 +125,8 @@ cw_status cwi_source_set_axes(cwi_source *src, const cwi_axis *axes, size_t coun
     return CW_OK;
 }
 
-/* Vertices are written as 32-bit floats in places, and products of three lengths are taken. */
+/* Limits lengths: vertices are written as 32-bit floats in places, and products of three
+ * lengths are taken. */
 static bool is_moderate(double x)
 {
     return fabs(x) < 1e30;
@@ -151,12 +153,12 @@ cw_status cwi_check_frame(const cw_volume *v, const char *field, cw_error *err)
     return CW_OK;
 }
 
-/* One file with voxels, open. */
+/* An open file with voxels. */
 typedef struct part {
     int fd;
-    uint64_t size;  /* of the file; less where the voxels end before it */
+    uint64_t size;  /* of the file; less where the voxels end earlier */
     uint64_t start; /* of the (encoded) voxels in it */
-    bool own;       /* fd is closed with the part */
+    bool own;       /* fd is closed together with the part */
 } part;
 
 static size_t share_bytes(const cwi_source *src)
@@ -185,22 +187,22 @@ static cw_status skip_lines(const part *p, uint64_t lines, uint64_t *start, cw_e
     return CW_OK;
 }
 
-/* Bytes to skip that are seen only once they are decoded. */
+/* Returns the bytes to skip after decoding. */
 static uint64_t decoded_skip(const cwi_source *src)
 {
     const bool packed = src->encoding == CWI_DEFLATED || src->encoding == CWI_BZIP2;
     return packed || src->base64 ? src->skip : 0;
 }
 
-/* Bytes of the file, or the most that base64 text of that size can hold. */
+/* Returns the bytes of the file, or the maximum that base64 text of that size can hold. */
 static uint64_t bytes_of_text(const cwi_source *src, uint64_t encoded)
 {
     return src->base64 ? encoded / 4 * 3 + encoded % 4 : encoded;
 }
 
-/* The most voxel bytes that the encoded bytes in the file can stand for. Deflate never grows
- * data more than 1032 times, bzip2 by its blocks; a number and its blank take two bytes, the
- * last may lack the blank. What blocks stand for, their table tells. */
+/* Returns the maximum of voxel bytes that the encoded bytes in the file can stand for. Deflate
+ * expands data at most 1032 times, bzip2 by its blocks. A number and its blank take two bytes;
+ * the last may lack the blank. For CWI_BLOCKS the table states the sizes. */
 static uint64_t most_bytes(const cwi_source *src, uint64_t encoded)
 {
     const uint64_t voxel = cw_type_size(src->shape.type);
@@ -234,8 +236,8 @@ static cw_status check_share(const cwi_source *src, part *p, cw_error *err)
                    (unsigned long long)p->start);
 }
 
-/* A stream over the encoded voxels of a part, and the table of their blocks where they are in
- * blocks. Close both in any case. */
+/* Opens a stream over the encoded voxels of a part, and the table of their blocks, if any.
+ * Close both in any case. */
 static cw_status open_stream(const cwi_source *src, const part *p, cwi_stream *stream,
                              cwi_packed_blocks *blocks, cw_error *err)
 {
@@ -258,7 +260,7 @@ static cw_status open_stream(const cwi_source *src, const part *p, cwi_stream *s
     return st;
 }
 
-/* A table of blocks says more of their sizes than the size of the file does. */
+/* Checks a table of blocks, which states sizes more precisely than the size of the file. */
 static cw_status check_blocks(const cwi_source *src, const part *p, cw_error *err)
 {
     cwi_stream stream = {0};
@@ -310,19 +312,19 @@ static cw_status open_part(const cwi_source *src, const cwi_input *in, size_t in
     return st;
 }
 
-/* The reading of all parts, and of the one that is open. */
+/* The state of reading all parts, and of the open one. */
 typedef struct reading {
     const cwi_source *src;
     const cw_progress *progress;
-    cwi_runs runs;     /* what is wanted */
-    uint64_t at;       /* among the bytes of all voxels */
-    unsigned char *to; /* where the next that are wanted have their place */
+    cwi_runs runs;     /* the wanted bytes */
+    uint64_t at;       /* offset among the bytes of all voxels */
+    unsigned char *to; /* destination of the next wanted bytes */
     cwi_stream stream;
     cwi_packed_blocks blocks;
     cwi_numbers numbers;
 } reading;
 
-/* Whole blocks, straight to their place. Their ends need not be a voxel's. */
+/* Decodes whole blocks directly to their place. Their ends need not be those of voxels. */
 static cw_status take_blocks(reading *r, size_t most, size_t *got, cw_error *err)
 {
     const size_t voxel = cw_type_size(r->src->shape.type);
@@ -333,7 +335,7 @@ static cw_status take_blocks(reading *r, size_t most, size_t *got, cw_error *err
     return st;
 }
 
-/* Puts the next voxels to their place: a portion, of at most so many bytes. */
+/* Reads the next voxels to their place: a portion of at most `most` bytes. */
 static cw_status take_bytes(reading *r, size_t most, size_t *got, cw_error *err)
 {
     const cwi_source *src = r->src;
@@ -351,7 +353,7 @@ static cw_status take_bytes(reading *r, size_t most, size_t *got, cw_error *err)
     return st;
 }
 
-/* Leaves out the next voxels: a portion, of at most so many bytes. */
+/* Skips the next voxels: a portion of at most `most` bytes. */
 static cw_status drop_bytes(reading *r, uint64_t most, size_t *got, cw_error *err)
 {
     const cw_type type = r->src->shape.type;
@@ -364,7 +366,7 @@ static cw_status drop_bytes(reading *r, uint64_t most, size_t *got, cw_error *er
     return CW_OK;
 }
 
-/* Takes or leaves out the next bytes of the part, portion by portion. */
+/* Reads or skips the next bytes of the part, portion by portion. */
 static cw_status pass_bytes(reading *r, uint64_t bytes, bool wanted, cw_error *err)
 {
     cw_status st = CW_OK;
@@ -381,9 +383,9 @@ static cw_status pass_bytes(reading *r, uint64_t bytes, bool wanted, cw_error *e
     return st;
 }
 
-/* Compressed data that end later than the header says. A place that is too far is let be: there
- * is only padding. So is a place that is too near in a file of voxels alone, which is whole by
- * its checksum: VTK's sample frogtissue.mhd names 260 020 of 262 087 bytes. */
+/* Checks if compressed data end later than the header states. A stated end that is too far is
+ * accepted: there is only padding. So is one that is too near in a file of voxels alone, whose
+ * checksum proves it complete: VTK's sample frogtissue.mhd names 260 020 of 262 087 bytes. */
 static cw_status check_packed(const reading *r, uint64_t start, cw_error *err)
 {
     const cwi_stream *s = &r->stream;
@@ -395,8 +397,9 @@ static cw_status check_packed(const reading *r, uint64_t start, cw_error *err)
         (unsigned long long)r->src->packed, (unsigned long long)(s->packed_end - start));
 }
 
-/* What is wanted of a part that ends at this byte of all. What is behind it is not looked at,
- * and so the checksum is only where the part was read to its end. */
+/* Reads the wanted bytes of a part that ends at this offset of all. Bytes behind the last
+ * wanted one are not read, so the checksum is verified only where the part was read to its
+ * end. */
 static cw_status read_runs(reading *r, uint64_t end, cw_error *err)
 {
     cw_status st = CW_OK;
@@ -431,9 +434,9 @@ static bool has_wanted(const reading *r, size_t index)
     return r->runs.left > 0 && r->runs.next / share_bytes(r->src) == index;
 }
 
-/* Opens every part and checks it, or opens those of which something is wanted, and reads it. A
- * header may name more files than a program may keep open, so they are opened again for
- * reading, with every check again. */
+/* Opens every part and checks it, or opens the parts with wanted voxels, and reads them. A
+ * header may name more files than a program may keep open. So they are opened again for
+ * reading, and checked again. */
 static cw_status walk_parts(const cwi_source *src, const cwi_input *in, reading *r,
                             cw_error *err)
 {
@@ -483,7 +486,7 @@ cw_status cwi_check_limits(const cw_volume *v, size_t bytes, const char *field,
     return CW_OK;
 }
 
-/* Sizes, place, strides and bytes of a region in place of those of the whole. */
+/* Replaces sizes, place, strides and bytes by those of a region. */
 static cw_status narrow_to_region(const cwi_source *src, const cw_box *region, cwi_source *out,
                                   cw_error *err)
 {
@@ -498,8 +501,8 @@ static cw_status narrow_to_region(const cwi_source *src, const cw_box *region, c
     return st == CW_OK ? cwi_source_set_axes(out, axes, src->axis_count, err) : st;
 }
 
-/* How far apart voxels are that are read: along the fastest of x, y and z next to each other,
- * for they stand together in the file. */
+/* Chooses the distances of the voxels that are read. Along the fastest of x, y and z they are
+ * neighbours, since these are contiguous in the file. */
 static void choose_steps(const cwi_source *src, const cw_read_desc *desc, size_t step[3],
                          int *fastest)
 {
@@ -513,7 +516,7 @@ static void choose_steps(const cwi_source *src, const cw_read_desc *desc, size_t
         step[*fastest] = 1;
 }
 
-/* Shape and bytes of every n-th voxel in place of those of all. */
+/* Replaces shape and bytes by those of every n-th voxel. */
 static cw_status thin_source(const cw_read_desc *desc, cwi_source *out, cw_error *err)
 {
     size_t every[3], step[3];
@@ -532,12 +535,12 @@ static cw_status thin_source(const cw_read_desc *desc, cwi_source *out, cw_error
     if (st == CW_OK)
         st = cwi_source_set_axes(out, axes, out->axis_count, err);
     memcpy(v->dim, dim, sizeof dim);
-    if (fastest >= 0) /* passed over in memory */
+    if (fastest >= 0) /* skipped in memory */
         v->stride[fastest] *= (ptrdiff_t)every[fastest];
     return st;
 }
 
-/* `wanted` is the source or, narrowed and thinned, a part of it. */
+/* Loads the voxels. `wanted` is the source or, narrowed and thinned, a part of it. */
 static cw_status load_voxels(const cwi_source *src, const cwi_source *wanted,
                              const cwi_input *in, const cw_read_desc *desc, cw_volume *volume,
                              cw_error *err)

@@ -1,4 +1,5 @@
-/* What a header parser finds out, and the one way from there to voxels in memory. */
+/* The description of voxels in files by a header parser, and the common reader that loads
+ * them. */
 #ifndef FORMATS_VOLUME_VOXEL_SOURCE_H
 #define FORMATS_VOLUME_VOXEL_SOURCE_H
 
@@ -7,17 +8,17 @@
 
 #include <cubewright/volume.h>
 
-/* How voxels are written down. */
+/* The encoding of voxels in a file. */
 typedef enum cwi_encoding {
     CWI_RAW,
-    CWI_DEFLATED, /* gzip or zlib, told apart by content */
+    CWI_DEFLATED, /* gzip or zlib, distinguished by content */
     CWI_BZIP2,
     CWI_ASCII, /* decimal numbers with blanks between them */
-    CWI_HEX,   /* two hexadecimal digits a byte; blanks between them do not matter */
+    CWI_HEX,   /* two hexadecimal digits per byte; blanks between them are ignored */
     CWI_BLOCKS /* compressed block by block, behind a table */
 } cwi_encoding;
 
-/* What an axis of the file stands for. */
+/* The meaning of an axis of the file. */
 typedef enum cwi_role {
     CWI_AXIS_X,
     CWI_AXIS_Y,
@@ -32,29 +33,30 @@ typedef struct cwi_axis {
     size_t size;
 } cwi_axis;
 
-/* A zeroed source describes nothing. Free it with cwi_source_free(). */
+/* The description of voxels. A zeroed source describes nothing. Free it with
+ * cwi_source_free(). */
 typedef struct cwi_source {
-    cw_volume shape;               /* everything but the voxels; strides as the file has them */
+    cw_volume shape;               /* everything but the voxels; strides as in the file */
     size_t bytes;                  /* of all voxels */
-    cwi_axis axes[CWI_ROLE_COUNT]; /* the fastest first; a role stands in it once at most */
+    cwi_axis axes[CWI_ROLE_COUNT]; /* the fastest first; each role occurs at most once */
     size_t axis_count;
     const char *size_field;  /* the header's name for the sizes, for messages */
     const char *frame_field; /* ... and for directions, spacing and origin */
-    const char *noun;        /* for what is stored, in messages; NULL: voxels */
+    const char *noun;        /* name of the stored items, in messages; NULL: voxels */
 
     cwi_names files; /* data files, each with an equal share; none: the header's own file */
     cwi_encoding encoding;
     cwi_block_form blocks; /* of CWI_BLOCKS */
-    bool base64;           /* all that is encoded is once more encoded, as text */
+    bool base64;           /* the encoded bytes are again encoded, as base64 text */
     bool big_endian;
-    uint64_t offset; /* bytes at the start of each file in front of everything else */
+    uint64_t offset; /* bytes at the start of each file before everything else */
     uint64_t span;   /* bytes of the file behind the offset, voxels among them; 0: all */
     uint64_t lines;  /* lines behind the offset to leave out */
     uint64_t skip;   /* decoded bytes in front of the first voxel */
-    uint64_t packed; /* compressed bytes, as "CompressedDataSize" says; 0: it is not known */
+    uint64_t packed; /* compressed bytes, as stated by "CompressedDataSize"; 0: unknown */
     bool at_end;     /* raw: the voxels are the last bytes of the file instead */
-    bool has_arrays; /* with names: it is the one that was asked for, if any was */
-    char note[200];  /* what the user should know; empty: nothing */
+    bool has_arrays; /* with names: it is the requested one, if any was requested */
+    char note[200];  /* information for the user; empty: nothing */
 } cwi_source;
 
 /* Sets axes, sizes, strides and bytes from the file's axes, the fastest first; roles left out
@@ -69,14 +71,14 @@ cw_status cwi_fail_type(cw_error *err, const char *field, const char *name);
 /* Turns a right-anterior-superior affine to LPS or back. */
 void cwi_flip_ras(double affine[3][4]);
 
-/* Fills columns that are all zero (2D data have no third axis) with a unit vector at right
- * angles to the others. */
+/* Fills columns that are all zero (2D data have no third axis) with a unit vector perpendicular
+ * to the others. */
 void cwi_fill_columns(double affine[3][4]);
 
-/* Turns round the bytes of each of count numbers; for size 1 it does nothing. */
+/* Reverses the bytes of each of count numbers; for size 1 it does nothing. */
 void cwi_swap_bytes(void *numbers, size_t count, size_t size);
 
-/* Whether this machine keeps the high byte first. */
+/* Returns true if this machine stores the high byte first. */
 bool cwi_machine_is_big_endian(void);
 
 /* Refuses an affine with columns that are not finite, have no length or lie in one plane. */
@@ -87,7 +89,7 @@ CW_NODISCARD cw_status cwi_check_frame(const cw_volume *shape, const char *field
 CW_NODISCARD cw_status cwi_check_limits(const cw_volume *shape, size_t bytes, const char *field,
                                         const cw_read_desc *desc, cw_error *err);
 
-/* Checks the source, but its frame, against its files and the limits, then reads the voxels
+/* Checks the source, except its frame, against its files and the limits. Then reads the voxels
  * (unless desc->header_only), all of them or desc->region. Nothing is allocated before every
  * size is known to be possible.
  *

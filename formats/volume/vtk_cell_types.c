@@ -1,3 +1,4 @@
+/* Maps VTK's cell types to our shapes, and gives their names and numbers of corners. */
 #include "formats/volume/vtk_cell_types.h"
 
 #define FLAT(name)                                                                             \
@@ -17,7 +18,7 @@
         name, CWI_CELL_CURVED, shape                                                           \
     }
 
-/* By VTK's number: vtkCellType.h. */
+/* The kinds of cells by VTK's number (vtkCellType.h). */
 static const cwi_cell_kind kinds[] = {
     [CWI_VTK_EMPTY] = FLAT("empty cell"),
     [1] = FLAT("vertex"),

@@ -1,10 +1,10 @@
-/* What tells a list of the files of a time series (.pvd) from other files. */
+/* Recognition of a list of the files of a time series (.pvd). */
 #ifndef FORMATS_VTK_PVD_H
 #define FORMATS_VTK_PVD_H
 
 #include <cubewright/formats.h>
 
-/* Whether a file that starts so is a list; size is that of the head. */
+/* Returns true if a file with such a head is a list; size is that of the head. */
 bool cwi_pvd_sniff(const unsigned char *head, size_t size);
 
 #endif

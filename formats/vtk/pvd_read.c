@@ -1,4 +1,4 @@
-/* ParaView's list of the files of a time series (.pvd). */
+/* Reads ParaView's list of the files of a time series (.pvd). */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/base/text.h"
@@ -36,7 +36,8 @@ static cw_status start_file(void *user, cwi_xml *x, cwi_attributes a, cw_error *
                    type ? type : "");
 }
 
-/* A name in the file as this program opens it: from the list's own folder. */
+/* Makes a path for this program from a name in the file, which is relative to the list's
+ * folder. */
 static char *path_of(const cwi_input *in, const char *name)
 {
     const char *slash = strrchr(in->path, '/');
@@ -107,7 +108,7 @@ static int compare_times(const void *a, const void *b)
     return (s->time > t->time) - (s->time < t->time);
 }
 
-/* Several files of one time are the parts of a run on several processors. */
+/* Refuses several files of one time: they are the parts of a run on several processors. */
 static cw_status check_entries(parsing *p, cw_error *err)
 {
     if (p->count == 0)

@@ -1,4 +1,4 @@
-/* ParaView's list of the files of a time series. */
+/* Writes ParaView's list of the files of a time series (.pvd), with relative names. */
 #define _GNU_SOURCE /* realpath */
 #include <cubewright/formats.h>
 
@@ -11,7 +11,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* A path from the root on; its folder must be there. */
+/* Resolves a path to an absolute one; its folder must exist. */
 static cw_status resolve_path(const char *path, char full[PATH_MAX], cw_error *err)
 {
     char folder[PATH_MAX];
@@ -30,7 +30,8 @@ static cw_status resolve_path(const char *path, char full[PATH_MAX], cw_error *e
     return CW_OK;
 }
 
-/* The path of a file as seen from the folder that another one is in; both from the root on. */
+/* Computes the path of a file relative to the folder of another one; both paths are
+ * absolute. */
 static cw_status relate_path(const char *from, const char *file, char related[PATH_MAX],
                              cw_error *err)
 {

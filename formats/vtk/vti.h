@@ -1,14 +1,14 @@
-/* VTK's XML image data and rectilinear grids, between the file that finds the elements and the
- * one that reads them. */
+/* VTK's XML image data and rectilinear grids: the elements, shared by the file that finds them
+ * and the one that parses their attributes. */
 #ifndef FORMATS_VTK_VTI_H
 #define FORMATS_VTK_VTI_H
 
 #include "formats/volume/named_arrays.h"
 #include "formats/vtk/vtk_xml.h"
 
-/* How well an array will do as the volume: the one that was asked for goes before the one that
- * PointData or CellData names as its scalars, that before others of one value, and those before
- * arrays of several. */
+/* The preference of an array as the volume: first the requested array, then the one that
+ * PointData or CellData names as its scalars, then others of one value, then arrays of several
+ * values. */
 typedef enum cwi_vti_rank {
     CWI_VTI_NONE,
     CWI_VTI_SEVERAL,
@@ -25,19 +25,19 @@ typedef struct cwi_vti_array {
 
 /* Arrays for the same places. */
 typedef struct cwi_vti_data {
-    char scalars[CWI_WORD_BYTES]; /* the name that the element gives */
+    char scalars[CWI_WORD_BYTES]; /* the name that the element states */
     bool of_cells;
     cwi_vti_array best;
 } cwi_vti_data;
 
-/* What there is to choose from. */
+/* The choice among the arrays. */
 typedef struct cwi_vti_choice {
-    const char *wanted;   /* the name of the array that was asked for; NULL: none */
-    cwi_array_list *list; /* where arrays are listed; NULL: nobody asks */
+    const char *wanted;   /* the name of the requested array; NULL: none */
+    cwi_array_list *list; /* list that receives the arrays; NULL: not needed */
     char others[400];     /* names and types of arrays that are not read, for messages */
 } cwi_vti_choice;
 
-/* What the elements say, as far as they have been seen. */
+/* The content of the elements read so far. */
 typedef struct cwi_vti {
     cwi_vtk_xml file;
     cwi_vti_choice choice;
@@ -49,23 +49,23 @@ typedef struct cwi_vti {
     cwi_vti_data points, cells;
 } cwi_vti;
 
-/* The elements that mean something, each filling in what its attributes say. */
+/* Parses the attributes of one element each. */
 CW_NODISCARD cw_status cwi_vti_image(cwi_vti *v, cwi_attributes a, cw_error *err);
 CW_NODISCARD cw_status cwi_vti_extent(cwi_attributes a, int64_t extent[6], cw_error *err);
 CW_NODISCARD cw_status cwi_vti_piece(cwi_vti *v, cwi_attributes a, cw_error *err);
 void cwi_vti_data_start(cwi_vti_data *data, bool of_cells, cwi_attributes a);
 
-/* One array; *kept when it is the best so far, and is now data->best. */
+/* Handles one array; *kept when it is the best so far, and is now data->best. */
 CW_NODISCARD cw_status cwi_vti_data_array(cwi_vti_choice *choice, cwi_vti_data *data,
                                           cwi_attributes a, bool *kept, cw_error *err);
 
-/* Says that none of the arrays will do. */
+/* Reports that none of the arrays can be used. */
 CW_NODISCARD cw_status cwi_vti_fail_choice(const cwi_vti_choice *choice, cw_error *err);
 
-/* Several time steps in one file are refused. */
+/* Refuses several time steps in one file. */
 CW_NODISCARD cw_status cwi_vti_check_times(cwi_attributes a, cw_error *err);
 
-/* One array of coordinates, v->coordinates[*n]. */
+/* Parses one array of coordinates, v->coordinates[*n]. */
 CW_NODISCARD cw_status cwi_vti_coordinates(cwi_vti *v, cwi_attributes a, size_t *n,
                                            cw_error *err);
 

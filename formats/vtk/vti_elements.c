@@ -1,4 +1,4 @@
-/* What the attributes of .vti elements mean. */
+/* Parses the attributes of .vti and .vtr elements, and ranks their arrays. */
 #include "core/base/status.h"
 #include "core/base/text.h"
 #include "formats/vtk/vti.h"

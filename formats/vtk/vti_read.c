@@ -1,6 +1,6 @@
-/* VTK's XML image data (.vti) and rectilinear grids (.vtr). The elements are read as a stream:
- * the text of arrays only passes through, and reading stops where appended data start, which
- * need be no XML at all. */
+/* Reads VTK's XML image data (.vti) and rectilinear grids (.vtr). The elements are read as a
+ * stream. The text of arrays only passes through. Reading stops where appended data start,
+ * which need not be XML. */
 #include "core/base/status.h"
 #include "formats/volume/volume_reader.h"
 #include "formats/vtk/vti.h"
@@ -10,7 +10,8 @@
 
 enum { MOST_ELEMENTS = 10000 };
 
-/* The first element is VTKFile: of image data or of something else, which is then refused. */
+/* Recognises the first element VTKFile, of image data or of another kind, which is then
+ * refused. */
 bool cwi_vti_sniff(const unsigned char *head, size_t size)
 {
     return cwi_vtk_xml_sniff(head, size, "");
@@ -20,7 +21,7 @@ bool cwi_vti_sniff(const unsigned char *head, size_t size)
 
 typedef struct parsing {
     cwi_vti vti;
-    cwi_vtk_array *open; /* the next tag ends its text; NULL: none that is wanted */
+    cwi_vtk_array *open; /* the next tag ends its text; NULL: no wanted array */
 } parsing;
 
 static cw_status start_file(void *user, cwi_xml *x, cwi_attributes a, cw_error *err)
@@ -168,7 +169,7 @@ static const cwi_xml_rules rules = {.elements = elements,
 
 /* --- the array ---------------------------------------------------------------------------- */
 
-/* The array that is the volume: at points, unless only cells have one. */
+/* Chooses the array that is the volume: at points, unless only cells have one. */
 static const cwi_vti_array *choose_array(const cwi_vti *v)
 {
     return v->points.best.rank != CWI_VTI_NONE ? &v->points.best : &v->cells.best;
@@ -226,8 +227,8 @@ static cw_status set_sizes(const cwi_vti *v, cwi_source *src, cw_error *err)
     return st == CW_OK ? cwi_source_set_axes(src, axes, 4, err) : st;
 }
 
-/* World = Origin + Direction (Spacing * index), the index counted from the extent's; of cells
- * half a step on. */
+/* Sets the frame: World = Origin + Direction (Spacing * index). The index counts from that of
+ * the extent. Cells are half a step further. */
 static void set_frame(const cwi_vti *v, cw_volume *shape)
 {
     for (int r = 0; r < 3; r++)

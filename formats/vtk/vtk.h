@@ -1,4 +1,4 @@
-/* Legacy VTK: lines of text with the numbers of arrays between them. */
+/* Legacy VTK files: lines of text with the numbers of arrays between them. */
 #ifndef FORMATS_VTK_VTK_H
 #define FORMATS_VTK_VTK_H
 
@@ -7,9 +7,8 @@
 
 enum { CWI_VTK_LINE_BYTES = 1024 };
 
-/* How well an array will do as the volume: the one that was asked for goes before attributes
- * called SCALARS, those before other arrays of one value, and those before arrays
- * of several. */
+/* The preference of an array as the volume: first the requested array, then attributes called
+ * SCALARS, then other arrays of one value, then arrays of several values. */
 typedef enum cwi_vtk_rank {
     CWI_VTK_NONE,
     CWI_VTK_SEVERAL,
@@ -26,61 +25,62 @@ typedef struct cwi_legacy_array {
     cwi_vtk_rank rank;
 } cwi_legacy_array;
 
-/* Numbers that the grid itself needs: coordinates along an axis, corners of cells. */
+/* The numbers of the grid itself: coordinates along an axis, corners of cells. */
 typedef struct cwi_vtk_row {
     cw_type type;
     bool wide; /* whole numbers of 64 bits: type is that of their halves */
     size_t count;
-    uint64_t offset; /* of its numbers in the file; 0: it has none such */
+    uint64_t offset; /* of its numbers in the file; 0: missing */
 } cwi_vtk_row;
 
-/* What an irregular grid is made of. */
+/* The arrays of an irregular grid. */
 typedef struct cwi_vtk_cells {
     cwi_vtk_row points; /* three numbers each; count is that of points */
     cwi_vtk_row corners, ends, types;
     cwi_vtk_row marks[2]; /* vtkGhostType of points, of cells */
     size_t count;         /* of cells */
-    size_t listed; /* numbers among which cells have their count in front, up to version 4; else
-                      0 */
+    size_t listed; /* length of the list where each cell's count precedes its corners, up to
+                      version 4; else 0 */
 } cwi_vtk_cells;
 
 /* A walk through the file from line to line. */
 typedef struct cwi_vtk {
     const cwi_input *in;
     uint64_t offset; /* of the next line */
-    size_t number;   /* of lines given so far; numbers of arrays do not count */
+    size_t number;   /* number of lines returned so far; numbers of arrays do not count */
     bool binary;
-    int version; /* the first number of it */
+    int version; /* the major version */
     char line[CWI_VTK_LINE_BYTES];
 
-    const char *wanted;             /* the name of the array that was asked for; NULL: none */
+    const char *wanted;             /* the name of the requested array; NULL: none */
     cwi_legacy_array points, cells; /* the best of each so far */
-    cwi_legacy_array *best;         /* of what the arrays now read are for; NULL: neither */
+    cwi_legacy_array *best;         /* the best for the current kind of data; NULL: neither */
     size_t count;                   /* ... and the number of them */
     cwi_vtk_row coordinates[3];
     cwi_vtk_cells grid;
-    bool to_end;      /* marks may stand behind the best array */
+    bool to_end;      /* marks may follow the best array */
     char others[400]; /* names and types of arrays that are not read, for messages */
 } cwi_vtk;
 
-/* Reads the next line into v->line, without its end and trailing blanks, or the next that is
- * not empty. *more is false behind the last. */
+/* Reads the next line into v->line, without its end and trailing blanks, or the next line that
+ * is not empty. *more is false behind the last. */
 CW_NODISCARD cw_status cwi_vtk_line(cwi_vtk *v, bool *more, cw_error *err);
 CW_NODISCARD cw_status cwi_vtk_full_line(cwi_vtk *v, bool *more, cw_error *err);
 
-/* The text behind the first word of v->line. */
+/* Returns the text behind the first word of v->line. */
 const char *cwi_vtk_value(const cwi_vtk *v);
 
-/* Whether no array can be better than what was found. */
+/* Returns true if no array can be better than the one found. */
 static inline bool cwi_vtk_is_settled(const cwi_vtk *v)
 {
     return !v->to_end && v->points.rank >= CWI_VTK_SCALARS;
 }
 
-/* Reads the coordinates that v->line starts: "X_COORDINATES count type", say. */
+/* Reads the coordinates whose line is v->line, such as "X_COORDINATES count type". */
 CW_NODISCARD cw_status cwi_vtk_coordinates(cwi_vtk *v, int axis, cw_error *err);
 
-/* Reads what v->line starts: "POINTS count type", "CELLS ...", "CELL_TYPES count". */
+/* Reads the section whose line is v->line: "POINTS count type", "CELLS ...", "CELL_TYPES
+ * count". */
 CW_NODISCARD cw_status cwi_vtk_points(cwi_vtk *v, cw_error *err);
 CW_NODISCARD cw_status cwi_vtk_cell_corners(cwi_vtk *v, cw_error *err);
 CW_NODISCARD cw_status cwi_vtk_cell_types(cwi_vtk *v, cw_error *err);
@@ -90,17 +90,17 @@ CW_NODISCARD cw_status cwi_vtk_describe(const cwi_vtk *v, const cwi_vtk_row *row
                                         const char *field, size_t components, size_t count,
                                         cwi_source *src, bool *wide, cw_error *err);
 
-/* Passes over the numbers at hand, and sets in the row where and what they are. skipped: so
- * many in front are none of its. */
+/* Skips the numbers of a row, and stores their place and type in it. skipped: count of leading
+ * numbers that do not belong to it. */
 CW_NODISCARD cw_status cwi_vtk_row_pass(cwi_vtk *v, const char *field, const char *type_name,
                                         size_t skipped, size_t count, cwi_vtk_row *row,
                                         cw_error *err);
 
-/* Says that a line ends too early. */
+/* Reports that a line ends too early. */
 CW_NODISCARD cw_status cwi_vtk_fail_cut_short(const cwi_vtk *v, cw_error *err);
 
-/* Reads the section that v->line starts, if it is one of arrays; they are passed over, and the
- * best of them kept. False when the line is something else. */
+/* Reads the section whose line is v->line, if it is one of arrays. They are skipped, and the
+ * best of them is kept. *known is false when the line is something else. */
 CW_NODISCARD cw_status cwi_vtk_section(cwi_vtk *v, bool *known, cw_error *err);
 
 #endif

@@ -1,5 +1,5 @@
-/* The arrays of a legacy VTK file, each behind a line that says what it holds. To come from one
- * to the next, its numbers are passed over: bytes by their count, text number by number. */
+/* Finds the arrays of a legacy VTK file, each behind a line that describes it. The numbers of
+ * an array are skipped to find the next one: bytes by their count, text number by number. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/volume/named_arrays.h"
@@ -12,8 +12,8 @@
 
 enum { MOST_LINES = 10000, MOST_COMPONENTS = 1 << 16 };
 
-/* Types with the bits that a number takes in binary files, where that is the same everywhere;
- * `type` is -1 for those that are not read. */
+/* The types, with the bits of a number in binary files, where those are the same everywhere.
+ * `type` is -1 for types that are not read. */
 typedef struct vtk_type {
     const char *names;
     int type;
@@ -33,8 +33,8 @@ static const vtk_type types[] = {
     {"long|unsigned_long|vtktypeint64|vtktypeuint64", -1, 64},
 };
 
-/* An attribute's line: its keyword, the words behind the name (c: count of components, t: type,
- * C: a count that may be missing), and the components where no word says them. */
+/* The lines of attributes: the keyword, the words behind the name (c: count of components,
+ * t: type, C: an optional count), and the components where no word states them. */
 static const struct {
     const char *names, *words;
     size_t components;
@@ -98,7 +98,7 @@ static bool is_keyword(const char *line, const char *names)
     return cwi_field_find(&names, 1, line, strcspn(line, " \t")) == 0;
 }
 
-/* Lines up to an empty one tell more of the array in front of them; none of it is needed. */
+/* Skips lines up to an empty one: metadata of the array before them, which are not needed. */
 static cw_status skip_metadata(cwi_vtk *v, cw_error *err)
 {
     bool more;
@@ -109,7 +109,7 @@ static cw_status skip_metadata(cwi_vtk *v, cw_error *err)
     return st;
 }
 
-/* --- numbers, passed over ---------------------------------------------------------------- */
+/* --- skipping of numbers ----------------------------------------------------------------- */
 
 static cw_status skip_bytes(cwi_vtk *v, const char *name, size_t count, size_t bits,
                             cw_error *err)
@@ -206,7 +206,7 @@ static cw_status pass_numbers(cwi_vtk *v, const char *name, size_t count, size_t
     return v->binary ? skip_bytes(v, name, count, bits, err) : skip_text(v, name, count, err);
 }
 
-/* Marks say which points or cells are hidden. */
+/* Keeps marks, which tell the hidden points or cells. */
 static void keep_marks(cwi_vtk *v, const cwi_legacy_array *said, const vtk_type *type)
 {
     if (strcmp(said->name, "vtkGhostType") == 0 && said->components == 1 && type->type >= 0)
@@ -214,7 +214,8 @@ static void keep_marks(cwi_vtk *v, const cwi_legacy_array *said, const vtk_type 
             (cwi_vtk_row){.type = (cw_type)type->type, .count = v->count, .offset = v->offset};
 }
 
-/* One array starts here: perhaps it is kept; goes behind it, if there is a reason to. */
+/* Handles an array that starts here: keeps it if it is better, and skips it if reading goes
+ * on. */
 static cw_status pass_array(cwi_vtk *v, const cwi_legacy_array *said, const char *type_name,
                             size_t tuples, cw_error *err)
 {
@@ -249,7 +250,7 @@ cw_status cwi_vtk_row_pass(cwi_vtk *v, const char *field, const char *type_name,
                        "'%s' is of type '%s'; whole or real numbers were expected", field,
                        type_name);
     cw_status st = pass_numbers(v, field, skipped, type->bits, err);
-    row->wide = type->type < 0 && v->binary; /* in text they are numbers like any other */
+    row->wide = type->type < 0 && v->binary; /* in text they are ordinary numbers */
     row->type = type->type >= 0 ? (cw_type)type->type : v->binary ? CW_U32 : CW_F64;
     row->count = count;
     row->offset = v->offset;
@@ -276,7 +277,7 @@ cw_status cwi_vtk_coordinates(cwi_vtk *v, int axis, cw_error *err)
     return cwi_vtk_row_pass(v, field, type_name, 0, (size_t)count, &v->coordinates[axis], err);
 }
 
-/* The byte that "%20" or the like stands for; 0: none. */
+/* Decodes a byte such as "%20"; returns 0 if there is none. */
 static char decode_name(const char *s)
 {
     if (s[0] != '%' || !isxdigit((unsigned char)s[1]) || !isxdigit((unsigned char)s[2]))
@@ -284,7 +285,7 @@ static char decode_name(const char *s)
     return (char)strtol((const char[]){s[1], s[2], '\0'}, NULL, 16);
 }
 
-/* Names have their blanks, and more, as %20 and the like. */
+/* Reads a name, in which blanks and other characters are written as %20 and so on. */
 static bool next_name(const char **text, char name[CWI_WORD_BYTES])
 {
     char word[CWI_WORD_BYTES];
@@ -296,7 +297,7 @@ static bool next_name(const char **text, char name[CWI_WORD_BYTES])
     return true;
 }
 
-/* Behind SCALARS stands "LOOKUP_TABLE name", which some writers leave out. */
+/* Skips "LOOKUP_TABLE name" behind SCALARS, which some writers leave out. */
 static cw_status skip_lookup_name(cwi_vtk *v, cw_error *err)
 {
     char kept[CWI_VTK_LINE_BYTES];
@@ -339,7 +340,7 @@ static cw_status read_attribute(cwi_vtk *v, int row, cw_error *err)
     return pass_array(v, &array, type, v->count, err);
 }
 
-/* Moves *text behind the name in front of a count, and any blanks. */
+/* Moves *text behind the name before a count, and any blanks. */
 static void skip_name(const char **text, char name[CWI_WORD_BYTES])
 {
     name[0] = '\0';
@@ -347,7 +348,7 @@ static void skip_name(const char **text, char name[CWI_WORD_BYTES])
     *text += strspn(*text, " \t");
 }
 
-/* "LOOKUP_TABLE name size": colours for someone else. */
+/* Skips "LOOKUP_TABLE name size": colours, which are not used. */
 static cw_status read_lookup_table(cwi_vtk *v, cw_error *err)
 {
     char name[CWI_WORD_BYTES];
@@ -360,7 +361,7 @@ static cw_status read_lookup_table(cwi_vtk *v, cw_error *err)
     return pass_numbers(v, name, 4 * (size_t)size, 8, err);
 }
 
-/* "name components tuples type" */
+/* Reads an array of a field: "name components tuples type". */
 static cw_status read_field_array(cwi_vtk *v, cw_error *err)
 {
     cwi_legacy_array array = {.rank = CWI_VTK_ONE};
@@ -385,7 +386,7 @@ static cw_status read_field_array(cwi_vtk *v, cw_error *err)
     return pass_array(v, &array, words[2], (size_t)tuples, err);
 }
 
-/* "FIELD name count", then as many arrays. */
+/* Reads "FIELD name count", then that number of arrays. */
 static cw_status read_field(cwi_vtk *v, cw_error *err)
 {
     char name[CWI_WORD_BYTES];

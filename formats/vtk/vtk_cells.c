@@ -1,4 +1,4 @@
-/* Points and cells of a legacy VTK file's irregular grid. */
+/* Reads points and cells of a legacy VTK file's irregular grid. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/volume/grid_arrays.h"
@@ -6,7 +6,7 @@
 
 #include <strings.h>
 
-/* The next word of a line as a count. */
+/* Reads the next word of a line as a count. */
 static cw_status next_count(const cwi_vtk *v, const char *field, const char **text, size_t *out,
                             cw_error *err)
 {
@@ -33,7 +33,7 @@ cw_status cwi_vtk_points(cwi_vtk *v, cw_error *err)
     return st;
 }
 
-/* A line "OFFSETS type" or "CONNECTIVITY type", and its numbers. */
+/* Reads a line "OFFSETS type" or "CONNECTIVITY type", and its numbers. */
 static cw_status read_named(cwi_vtk *v, const char *name, size_t skipped, size_t count,
                             cwi_vtk_row *row, cw_error *err)
 {
@@ -51,8 +51,9 @@ static cw_status read_named(cwi_vtk *v, const char *name, size_t skipped, size_t
     return cwi_vtk_row_pass(v, name, type, skipped, count, row, err);
 }
 
-/* "CELLS cells numbers", then for each cell the count of its corners and these. From version 5
- * on "CELLS ends corners", the ends from 0, in a list each. */
+/* Reads the corners of cells: "CELLS cells numbers", then for each cell the count of its
+ * corners and these. From version 5 on it is "CELLS ends corners", with the ends from 0, in a
+ * list each. */
 cw_status cwi_vtk_cell_corners(cwi_vtk *v, cw_error *err)
 {
     cwi_vtk_cells *g = &v->grid;

@@ -1,4 +1,4 @@
-/* VTK's formats: what is read and written, and by whom. */
+/* The drivers of VTK's formats (legacy, vtu, vti, vtp): their names, readers and writers. */
 #include "formats/driver/format_driver.h"
 
 const cwi_format_driver cwi_format_vtk = {

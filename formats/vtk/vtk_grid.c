@@ -1,3 +1,5 @@
+/* Places rectilinear grids of VTK by their coordinates, and converts counts of points to those
+ * of cells. */
 #include "formats/vtk/vtk_grid.h"
 
 #include "core/base/memory.h"
@@ -16,8 +18,8 @@ cw_status cwi_vtk_grid_row(cwi_source *row, const char *size_field, cw_type type
     return cwi_source_set_axes(row, &axis, 1, err);
 }
 
-/* Grids may be written from their far end: then the axis points the other way, and numbers
- * rise. */
+/* Makes the coordinates of an axis rise. Grids may be written from their far end; then the axis
+ * points the other way. */
 static cw_status raise_axis(double *at, size_t count, int axis, cw_volume *shape, cw_error *err)
 {
     const double sign = count > 1 && at[1] < at[0] ? -1 : 1;

@@ -1,5 +1,5 @@
-/* Legacy VTK image data and grids, rectilinear, curvilinear and unstructured: "VTK File
- * Formats", the simple legacy formats, version 1.0 to 5.1. */
+/* Reads legacy VTK image data and grids: rectilinear, curvilinear and unstructured ("VTK File
+ * Formats", the simple legacy formats, version 1.0 to 5.1). */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/volume/irregular_grid.h"
@@ -53,7 +53,7 @@ static const char *const grid_names[GRID_FIELD_COUNT] = {
     [G_COORDINATES + 2] = "z_coordinates",
 };
 
-/* The kinds of dataset that have the field. */
+/* The kinds of dataset that have each field. */
 static const unsigned grid_kinds[GRID_FIELD_COUNT] = {
     [G_DIMENSIONS] = EVEN | RECTILINEAR | CURVILINEAR,
     [G_ORIGIN] = EVEN,
@@ -66,7 +66,7 @@ static const unsigned grid_kinds[GRID_FIELD_COUNT] = {
     [G_COORDINATES + 2] = RECTILINEAR,
 };
 
-/* The grid of points, as far as the file has told of it. */
+/* The description of the grid read so far. */
 typedef struct grid {
     dataset kind;
     const char *name; /* of the kind */
@@ -95,7 +95,7 @@ static cw_status read_magic(cwi_vtk *v, cw_error *err)
         return cw_fail(err, CW_ERR_FORMAT, "the version is '%.20s'; 1.0 to 5.1 are read",
                        version);
     v->version = *version - '0';
-    return cwi_vtk_line(v, &more, err); /* a title, or none */
+    return cwi_vtk_line(v, &more, err); /* a title, possibly empty */
 }
 
 static cw_status read_form(cwi_vtk *v, cw_error *err)
@@ -116,7 +116,7 @@ static bool is_keyword(const cwi_vtk *v, const char *names)
     return cwi_field_find(&names, 1, v->line, strcspn(v->line, " \t")) == 0;
 }
 
-/* A FIELD may stand in front. */
+/* Reads the kind of dataset; a FIELD may precede it. */
 static cw_status read_dataset(cwi_vtk *v, grid *g, cw_error *err)
 {
     bool more = true, known = true;
@@ -146,7 +146,7 @@ static cw_status read_dataset(cwi_vtk *v, grid *g, cw_error *err)
 
 /* --- the grid ---------------------------------------------------------------------------- */
 
-/* The field that v->line starts; -1: none of such a grid. */
+/* Finds the field of the line v->line; -1: such a grid has no such field. */
 static int find_field(const cwi_vtk *v, const grid *g)
 {
     const int field =
@@ -174,7 +174,7 @@ static cw_status read_grid_field(cwi_vtk *v, int field, grid *g, cw_error *err)
     return cwi_field_doubles("SPACING", value, 3, by, g->spacing, err);
 }
 
-/* Of a plane of points, or a line, there are cells too. */
+/* Checks a count. A plane of points, or a line, also counts as having cells. */
 static cw_status check_count(const cwi_vtk *v, const char *field, const grid *g, cw_error *err)
 {
     const size_t cells = v->best == &v->cells;
@@ -198,7 +198,7 @@ static cw_status check_count(const cwi_vtk *v, const char *field, const grid *g,
                    v->count, wanted);
 }
 
-/* "POINT_DATA n" or "CELL_DATA n": what the arrays behind it are for. */
+/* Reads "POINT_DATA n" or "CELL_DATA n": the places of the arrays that follow. */
 static cw_status start_data(cwi_vtk *v, const grid *g, cw_error *err)
 {
     const bool points = is_keyword(v, "point_data");
@@ -225,8 +225,8 @@ static cw_status read_line(cwi_vtk *v, grid *g, cw_error *err)
     return st;
 }
 
-/* Walks the file until nothing better can come, or to its end. Behind the best array only the
- * list of them all is of interest: what is wrong there does no harm. */
+/* Walks through the file until no better array can come, or to its end. Behind the best array
+ * only the list of all arrays matters, so errors there are ignored. */
 static cw_status read_lines(cwi_vtk *v, grid *g, cw_error *err)
 {
     const bool listing = v->in->arrays && !v->to_end;
@@ -246,7 +246,7 @@ static cw_status read_lines(cwi_vtk *v, grid *g, cw_error *err)
     return cw_fail(err, st, "%s", why.message);
 }
 
-/* The array that is the volume: at points, unless only cells have one. */
+/* Chooses the array that is the volume: at points, unless only cells have one. */
 static const cwi_legacy_array *choose_array(const cwi_vtk *v)
 {
     return v->points.rank != CWI_VTK_NONE ? &v->points : &v->cells;
@@ -307,7 +307,7 @@ static cw_status set_coordinates(const cwi_vtk *v, const grid *g, cwi_source *sr
     return cwi_vtk_grid_place(rows, v->in, choose_array(v) == &v->cells, &src->shape, err);
 }
 
-/* Flat data may have no thickness. Cells are half a step on. */
+/* Sets the frame. Flat data may have no thickness. Cells are half a step further. */
 static void set_frame(const cwi_vtk *v, const grid *g, cw_volume *shape)
 {
     for (int a = 0; a < 3; a++) {

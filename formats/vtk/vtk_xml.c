@@ -1,3 +1,4 @@
+/* Parses the common elements of VTK's XML files, and finds the bytes of their arrays. */
 #include "formats/vtk/vtk_xml.h"
 
 #include "core/base/status.h"
@@ -21,8 +22,8 @@ bool cwi_vtk_xml_sniff(const unsigned char *head, size_t size, const char *word)
 
 /* --- elements ---------------------------------------------------------------------------- */
 
-/* Sets *found to the row of a word that must be one of them; it keeps its value when there is
- * no such attribute. */
+/* Sets *found to the row of a word that must be one of them. It is unchanged when there is no
+ * such attribute. */
 static cw_status one_of(cwi_attributes a, const char *name, const char *const *rows, int count,
                         int *found, cw_error *err)
 {
@@ -138,7 +139,8 @@ cw_status cwi_vtk_xml_appended(cwi_vtk_xml *v, cwi_attributes a, cw_error *err)
 
 /* --- appended data ----------------------------------------------------------------------- */
 
-/* Behind them the file must go on to its last tag: expat has not seen whether it does. */
+/* Checks that the file goes on to its last tag behind the appended data, since Expat has not
+ * read that. */
 static cw_status check_end(const cwi_input *in, cw_error *err)
 {
     static const char tag[] = "</VTKFile>";
@@ -154,7 +156,7 @@ static cw_status check_end(const cwi_input *in, cw_error *err)
     return cw_fail(err, CW_ERR_FORMAT, "the file does not end with %s: it is cut off", tag);
 }
 
-/* They start with an underscore. */
+/* Finds the appended data, which start with an underscore. */
 cw_status cwi_vtk_xml_find_appended(const cwi_input *in, cwi_vtk_xml *v, cw_error *err)
 {
     char text[256];
@@ -195,7 +197,7 @@ static void set_place(const cwi_vtk_xml *v, const cwi_vtk_array *a, cwi_source *
     }
 }
 
-/* In front of data that are not compressed stands the count of their bytes. */
+/* Checks the count of bytes that precedes uncompressed data. */
 static cw_status check_count(const cwi_input *in, const cwi_vtk_xml *v,
                              const cwi_vtk_array *array, const cwi_source *src, cw_error *err)
 {

@@ -1,5 +1,5 @@
-/* VTK's XML PolyData: polygons and strips with what their points have. The elements are read
- * first; then each array that matters, one after another, by the way that voxels go. */
+/* Reads VTK's XML PolyData: polygons and strips with the data of their points. The elements are
+ * read first; then each needed array, one after another, by the reader of voxels. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "formats/mesh/mesh_reader.h"
@@ -13,11 +13,11 @@
 
 enum { MOST_ELEMENTS = 10000 };
 
-/* The arrays that matter. */
+/* The arrays that are read. */
 typedef enum role {
     POINTS,
-    POLYGONS,     /* corners of polygons, one behind the other */
-    POLYGON_ENDS, /* and where each polygon ends among them */
+    POLYGONS,     /* corners of polygons, one after another */
+    POLYGON_ENDS, /* and the end of each polygon among them */
     STRIPS,
     STRIP_ENDS,
     NORMALS,
@@ -37,7 +37,7 @@ typedef struct vtp {
     cwi_vtk_array *open; /* the next tag ends its text; NULL: none */
     int64_t points, polygons, strips;
     size_t pieces;
-    char normals[CWI_WORD_BYTES], scalars[CWI_WORD_BYTES]; /* those that PointData names */
+    char normals[CWI_WORD_BYTES], scalars[CWI_WORD_BYTES]; /* names stated by PointData */
     bool ours;
     cwi_mesh_build build;
 } vtp;
@@ -90,7 +90,7 @@ static cw_status start_point_data(void *user, cwi_xml *x, cwi_attributes a, cw_e
     return CW_OK;
 }
 
-/* The first array of a role stays; of arrays in PointData the one that is named. */
+/* Keeps the first array of a role; of arrays in PointData the named one. */
 static cw_status keep_array(vtp *v, cwi_xml *x, role r, const cwi_vtk_array *array, bool named)
 {
     if (v->has[r] && !named)
@@ -102,7 +102,7 @@ static cw_status keep_array(vtp *v, cwi_xml *x, role r, const cwi_vtk_array *arr
     return CW_OK;
 }
 
-/* An array of Points, Polys or Strips. */
+/* Keeps an array of Points, Polys or Strips. */
 static cw_status keep_structure(vtp *v, cwi_xml *x, cwi_attributes a, role first, role ends,
                                 cw_error *err)
 {
@@ -136,7 +136,7 @@ static cw_status start_strips(void *user, cwi_xml *x, cwi_attributes a, cw_error
     return keep_structure(user, x, a, STRIPS, STRIP_ENDS, err);
 }
 
-/* What an array of PointData is to us; ROLE_COUNT: nothing. */
+/* Returns the role of an array of PointData; ROLE_COUNT: none. */
 static role role_of(const cwi_vtk_array *array)
 {
     const bool real = array->type == CW_F32 || array->type == CW_F64;
@@ -237,7 +237,7 @@ static void drop_tuples(vtp *v, cwi_tuples *t)
     cwi_tuples_free(t);
 }
 
-/* Reads an array of so many tuples; field is where the file counts them. */
+/* Reads an array of `count` tuples; field: name of the count in the file. */
 static cw_status load_tuples(vtp *v, role r, const char *field, uint64_t count, cwi_tuples *t,
                              cw_error *err)
 {
@@ -278,8 +278,7 @@ static float to_single(double number)
     return fabs(number) <= (double)FLT_MAX ? (float)number : NAN;
 }
 
-/* Reads an array of PointData into one of the mesh, with so many elements of a size
- * a vertex. */
+/* Reads an array of PointData into one of the mesh, which has `size` elements per vertex. */
 static cw_status read_attribute(vtp *v, role r, void *array, size_t size, cw_error *err)
 {
     cwi_tuples n;
@@ -306,7 +305,8 @@ static cw_status read_attribute(vtp *v, role r, void *array, size_t size, cw_err
     return st;
 }
 
-/* The corners of one polygon, or of one strip, whose triangles are wound by turns. */
+/* Adds the corners of one polygon, or of one strip, whose triangles have alternating
+ * winding. */
 static cw_status add_corners(vtp *v, const cwi_tuples *corners, size_t from, size_t to,
                              bool strip, cw_error *err)
 {
@@ -327,7 +327,7 @@ static cw_status add_corners(vtp *v, const cwi_tuples *corners, size_t from, siz
     return st;
 }
 
-/* Ends must not go back; the last says how many corners there are. */
+/* Checks the ends: they must not decrease; the last one is the number of corners. */
 static cw_status check_ends(const cwi_tuples *ends, const char *field, cw_error *err)
 {
     int64_t before = 0;

@@ -1,4 +1,4 @@
-/* VTK's XML PolyData: arrays appended as they are, each in blocks compressed by zlib. */
+/* Writes VTK's XML PolyData: arrays as appended raw data, each in blocks compressed by zlib. */
 #include "formats/bytes/block_writer.h"
 #include "formats/mesh/place_parts.h"
 
@@ -50,7 +50,7 @@ static unsigned char *encode_wide_corners(const cwi_part *part, size_t t, unsign
     return to;
 }
 
-/* Where a polygon's corners end among those of all. */
+/* Encodes the end of a polygon's corners among all corners. */
 static unsigned char *encode_end(const cwi_part *part, size_t t, unsigned char *to)
 {
     return cwi_put_u32(to, (uint32_t)(3 * (part->first_triangle + t + 1)));
@@ -67,8 +67,8 @@ typedef enum width { ANY, NARROW, WIDE } width;
 
 /* An array of the file. */
 typedef struct array {
-    unsigned keeps; /* there when the mesh has it; 0: always */
-    width width;    /* there when numbers need 64 bits, or do not */
+    unsigned keeps; /* written when the mesh has it; 0: always */
+    width width;    /* written when numbers need 64 bits, or when they do not */
     const char *type, *name;
     size_t numbers, bytes; /* of a vertex or triangle */
     bool of_triangles;     /* else of vertices */
@@ -76,7 +76,7 @@ typedef struct array {
     const char *before, *behind; /* tags of the elements around it */
 } array;
 
-/* In the order of the file. */
+/* The arrays, in the order of the file. */
 static const array arrays[] = {
     {CW_KEEPS_NORMALS, ANY, "Float32", "Normals", 3, 12, false, encode_normal, "", ""},
     {CW_KEEPS_COLORS, ANY, "UInt8", "RGBA", 4, 4, false, encode_color, "", ""},
@@ -96,12 +96,12 @@ typedef struct vtp {
     const cwi_parts *parts;
     cwi_block_sink blocks;
     bool has[ARRAY_COUNT];
-    uint64_t offset_at[ARRAY_COUNT]; /* where the file tells where the array is */
+    uint64_t offset_at[ARRAY_COUNT]; /* places in the file of the arrays' offsets */
 } vtp;
 
 static void choose_arrays(vtp *f, bool wide)
 {
-    const unsigned has = cwi_arrays_of(&f->parts->items[0].mesh); /* all have the same */
+    const unsigned has = cwi_arrays_of(&f->parts->items[0].mesh); /* all parts have the same */
     for (int i = 0; i < ARRAY_COUNT; i++)
         f->has[i] = (!arrays[i].keeps || arrays[i].keeps & has) &&
                     (arrays[i].width == ANY || (arrays[i].width == WIDE) == wide);
@@ -122,7 +122,7 @@ static cw_status declare_array(vtp *f, int i, cw_error *err)
                : st;
 }
 
-/* What viewers show at first: scalars, else colours. */
+/* Returns the array that viewers show at first: scalars, else colours. */
 static const char *shown_array(const vtp *f)
 {
     const cw_mesh *mesh = &f->parts->items[0].mesh;
@@ -153,7 +153,7 @@ static cw_status write_head(vtp *f, cw_error *err)
                        : st;
 }
 
-/* The bytes of an array; they start so far behind the underscore. */
+/* Writes the bytes of an array; offset: their distance from the underscore. */
 static cw_status write_array(vtp *f, int i, uint64_t offset, cw_error *err)
 {
     const array *a = &arrays[i];

@@ -1,5 +1,5 @@
-/* VTK's XML unstructured grids (.vtu) and curvilinear ones (.vts). The elements are read as a
- * stream, as those of .vti; then the arrays, by the way of all irregular grids. */
+/* Reads VTK's XML unstructured grids (.vtu) and curvilinear ones (.vts). The elements are read
+ * as a stream, like those of .vti; then the arrays, by the common reader of irregular grids. */
 #define _GNU_SOURCE /* memmem */
 #include "core/base/memory.h"
 #include "core/base/status.h"
@@ -12,9 +12,9 @@
 
 enum { MOST_ELEMENTS = 100000 };
 
-/* What a Piece says. */
+/* The content of a Piece. */
 typedef struct piece {
-    cwi_vtk_array arrays[CWI_GRID_ROLE_COUNT]; /* but for the values */
+    cwi_vtk_array arrays[CWI_GRID_ROLE_COUNT]; /* all but the values */
     bool has[CWI_GRID_ROLE_COUNT];
     cwi_vti_data points, cells;
 } piece;
@@ -25,9 +25,9 @@ typedef struct parsing {
     bool curvilinear;
     cwi_vti_choice choice;
     cwi_grid_piece *grid;
-    piece *pieces; /* as many */
+    piece *pieces; /* count of them */
     size_t count, room;
-    cwi_vtk_array *open; /* the next tag ends its text; NULL: none that is wanted */
+    cwi_vtk_array *open; /* the next tag ends its text; NULL: no wanted array */
     bool of_cells;
 } parsing;
 
@@ -41,7 +41,7 @@ static const char *cell_field(const parsing *p)
     return p->curvilinear ? "Extent" : "NumberOfCells";
 }
 
-/* The first element is VTKFile, and says which kind of grid it holds. */
+/* Recognises the first element VTKFile and its kind of grid. */
 bool cwi_vtu_sniff(const unsigned char *head, size_t size)
 {
     static const char tag[] = "<VTKFile";
@@ -148,7 +148,7 @@ static void open_text(parsing *p, cwi_xml *x, cwi_vtk_array *array)
     array->start = array->end = cwi_xml_tag_end(x);
 }
 
-/* An array that the grid needs. */
+/* Keeps an array that the grid needs. */
 static cw_status keep_array(parsing *p, cwi_xml *x, cwi_attributes a, cwi_grid_role role,
                             size_t components, cw_error *err)
 {
@@ -176,7 +176,7 @@ static bool is_named(cwi_attributes a, const char *name)
     return said && strcmp(said, name) == 0;
 }
 
-/* One that might be the values, or says which of them count. */
+/* Handles an array that may be the values, or the marks of hidden points or cells. */
 static cw_status start_data_array(parsing *p, cwi_xml *x, cwi_attributes a, cwi_vti_data *data,
                                   cwi_grid_role marks, cw_error *err)
 {
@@ -236,7 +236,7 @@ static cw_status end_text(void *user, cwi_xml *x, cw_error *err)
     return CW_OK;
 }
 
-/* Both kinds of grid have the same in their pieces, but for cells. */
+/* The elements. Both kinds of grid have the same in their pieces, except for cells. */
 enum {
     GRID,
     PIECE,
@@ -284,13 +284,13 @@ static const cwi_xml_rules rules = {.elements = elements,
 
 /* --- to a grid --------------------------------------------------------------------------- */
 
-/* The array of a piece that is the volume: at points, unless only cells have one. */
+/* Returns the array of a piece that is the volume: at points, unless only cells have one. */
 static const cwi_vti_array *values_of(const parsing *p, size_t n)
 {
     return p->of_cells ? &p->pieces[n].cells.best : &p->pieces[n].points.best;
 }
 
-/* Empty pieces, as a parallel run may write them, need not have arrays. */
+/* Drops empty pieces, which a parallel run may write; they need not have arrays. */
 static void drop_empty(parsing *p)
 {
     size_t left = 0;
@@ -299,10 +299,10 @@ static void drop_empty(parsing *p)
             p->pieces[left] = p->pieces[n];
             p->grid[left++] = p->grid[n];
         }
-    p->count = p->count && left == 0 ? 1 : left; /* one to be told of */
+    p->count = p->count && left == 0 ? 1 : left; /* one for messages */
 }
 
-/* All pieces have the array that the first one chooses. */
+/* Chooses the array; all pieces must have the one that the first piece chooses. */
 static cw_status choose_array(parsing *p, cw_error *err)
 {
     if (p->count == 0)

@@ -1,4 +1,4 @@
-/* Verdicts: what is known of a mesh, held against what it is for. */
+/* Verdicts: judges the measurements of a mesh against a profile, the purpose of the mesh. */
 #ifndef CUBEWRIGHT_CHECK_H
 #define CUBEWRIGHT_CHECK_H
 
@@ -9,7 +9,7 @@
 extern "C" {
 #endif
 
-/* What a mesh is for, and so what must hold. */
+/* The purpose of a mesh, and with it the properties that must hold. */
 typedef enum cw_profile {
     CW_PROFILE_BASIC, /* an oriented 2-manifold without flaws, open or closed */
     CW_PROFILE_PRINT, /* basic, closed, free of crossings, and of a size that printers can make
@@ -25,8 +25,8 @@ typedef enum cw_profile {
 #define CW_FEM_MIN_ANGLE_DEG 10.0
 #define CW_FEM_MAX_ASPECT    10.0
 
-/* Measurements of one mesh, each made by the call named beside it. Those left NULL were not
- * made: what needs them is not judged, or is unknown where the profile asks for it. */
+/* Measurements of one mesh, each made by the call named beside it. A NULL means "not measured".
+ * Verdicts that need it are then left out, or are unknown where the profile asks for them. */
 typedef struct cw_findings {
     const cw_quality *quality;     /* cw_quality_measure(), welded, with shells; required */
     const cw_crossings *crossings; /* cw_self_intersections() */
@@ -34,16 +34,16 @@ typedef struct cw_findings {
     const cw_distance *to_field;   /* cw_distance_to_field() */
     const cw_distance *from_field; /* cw_distance_to_mesh() from the field's own surface */
     const cw_quality *field;       /* cw_quality_measure() of the field's own surface */
-    size_t missing; /* components of that surface that the mesh has nothing near: from_field is
-                       without them */
+    size_t missing; /* components of that surface with nothing of the mesh near them; from_field
+                       is without them */
     double missing_mm3,
-        missing_mm; /* what the largest encloses; how far the mesh is from one */
+        missing_mm; /* volume that the largest encloses; how far the mesh is from one */
     const cw_distance *to_reference, *from_reference; /* cw_distance_to_mesh() both ways */
-    double tolerance_mm; /* for the distances; 0: none, they are only told */
+    double tolerance_mm; /* for the distances; 0: no limit, distances are only reported */
     bool has_normals;
 } cw_findings;
 
-/* From the worst to the best. */
+/* Grades, from the worst to the best. */
 typedef enum cw_grade {
     CW_GRADE_FAIL,    /* the profile's promise does not hold */
     CW_GRADE_UNKNOWN, /* the profile asks for it, and it was not or could not be decided */
@@ -62,33 +62,35 @@ typedef struct cw_verdict {
 
 enum { CW_MAX_VERDICTS = 24 };
 
-/* Whether a profile asks for cw_self_intersections(), without which it is unknown. */
+/* Returns true if a profile asks for cw_self_intersections(); without it the verdict is
+ * unknown. */
 CW_API bool cw_check_wants_crossings(cw_profile profile);
 
-/* Judges the findings. Returns how many verdicts were written, the worst first. */
+/* Judges the findings. Returns the number of verdicts written, the worst first. */
 CW_API size_t cw_check_judge(const cw_findings *findings, cw_profile profile,
                              cw_verdict verdicts[CW_MAX_VERDICTS]);
 
-/* No verdict is a failure or unknown. */
+/* Returns true if no verdict is a failure or unknown. */
 CW_API bool cw_check_holds(const cw_verdict *verdicts, size_t count);
 
-/* "fail", "unknown", "warn", "ok", "note". */
+/* Returns "fail", "unknown", "warn", "ok" or "note". */
 CW_API const char *cw_grade_name(cw_grade grade);
 
-/* One colour a defect, for cw_check_paint(): red, green, blue. */
+/* A colour (red, green, blue) for each defect, for cw_check_paint(). */
 typedef struct cw_paint {
     cw_defect defect;
     const char *name, *color; /* "open edges", "red"; static */
     uint8_t rgb[3];
 } cw_paint;
 
-/* The paints in the order in which they win where a triangle has several defects. */
+/* Returns the paints by priority: the first one wins where a triangle has several defects. */
 CW_API const cw_paint *cw_check_paints(size_t *count);
 
-/* Makes a copy of a mesh in which triangles with defects have their colour all over (as have
- * the neighbours of those without area, which cannot be seen), and the others are grey, or,
- * with distances, run from grey at 0 through yellow to red at full_mm. Painted triangles share
- * no vertex with those of another colour, so the mesh is for looking at.
+/* Makes a coloured copy of a mesh. Triangles with defects are painted all over with the
+ * defect's colour. So are the neighbours of triangles without area, which cannot be seen. The
+ * other triangles are grey; with distances they run from grey at 0 through yellow to red at
+ * full_mm. Painted triangles share no vertex with triangles of another colour, so the copy is
+ * only for looking at.
  *
  * defects    triangle_count sets of cw_defect, as the checks leave them
  * distances  vertex_count, mm, such as cw_field_distance_desc.worst; or NULL. Kept as scalars

@@ -1,4 +1,5 @@
-/* Status, errors, progress: what every call of the library has in common. */
+/* Status codes, errors, progress reports and memory limits: what all calls of the library
+ * share. */
 #ifndef CUBEWRIGHT_CORE_H
 #define CUBEWRIGHT_CORE_H
 
@@ -23,7 +24,8 @@ extern "C" {
 #endif
 
 /* One row per status: constant, exit code of the command line, name in JSON, text for people.
- * The enum, the command line's exit codes and `cubewright help exit` are all made from it. */
+ * The enum, the exit codes of the command line and `cubewright help exit` are all made from
+ * this table. */
 #define CW_STATUS_TABLE(X)                                                                     \
     X(CW_OK, 0, "ok", "done")                                                                  \
     X(CW_ERR_CHECK, 1, "check-failed", "a check failed: the surface is not as promised")       \
@@ -47,14 +49,14 @@ typedef enum cw_status {
         CW_STATUS_COUNT
 } cw_status;
 
-/* Why a call failed, for a person: subject, what is wrong, what was expected, what
- * was there. */
+/* The reason why a call failed, for a person: subject, problem, expected value, actual
+ * value. */
 typedef struct cw_error {
     cw_status status;
     char message[512];
 } cw_error;
 
-/* How far a call has come, and the caller's chance to stop it. Zero means none. */
+/* A progress callback, with which the caller can also stop a call. Zeroed: no callback. */
 typedef struct cw_progress {
     /* Called on the calling thread: the step's name and the share of it done, 0 to 1.
      * Return false to cancel: the call then fails with CW_ERR_CANCELLED. */
@@ -62,23 +64,24 @@ typedef struct cw_progress {
     void *user;
 } cw_progress;
 
-/* The version of the library at run time, such as "0.1.0". */
+/* Returns the version of the library at run time, such as "0.1.0". */
 CW_API const char *cw_version(void);
 
-/* Limits what the arrays of all calls in this process take together; calls that need more fail
- * with CW_ERR_NO_MEMORY. What other libraries take is counted by estimates, and the program
- * itself is not counted. 0, as at the start: no limit. Linux alone counts. */
+/* Limits the total size of the arrays of all calls in this process. Calls that need more fail
+ * with CW_ERR_NO_MEMORY. Memory of other libraries is counted by estimates; the program itself
+ * is not counted. 0 means no limit, as at the start. Only Linux counts. */
 CW_API void cw_memory_limit(size_t bytes);
 
-/* The bytes that arrays take now. */
+/* Returns the number of bytes that arrays take now. */
 CW_API size_t cw_memory_used(void);
 
-/* The row of CW_STATUS_TABLE for a status; an unknown status reads as CW_ERR_BACKEND. */
+/* Returns the fields of a status' row in CW_STATUS_TABLE. An unknown status reads as
+ * CW_ERR_BACKEND. */
 CW_API int cw_status_exit_code(cw_status status);
 CW_API const char *cw_status_name(cw_status status);
 CW_API const char *cw_status_text(cw_status status);
 
-/* An optional part of the library, which a build can be without. */
+/* An optional part of the library, which a build may lack. */
 typedef struct cw_feature {
     const char *name;   /* such as "simplify" or "draco" */
     const char *about;  /* what it brings */
@@ -86,7 +89,7 @@ typedef struct cw_feature {
     const char *reason; /* why it is not available; "" when it is */
 } cw_feature;
 
-/* The optional parts, available or not: count rows that live as long as the program. */
+/* Returns the optional parts, available or not: count rows that live as long as the program. */
 CW_API const cw_feature *cw_features(size_t *count);
 
 #ifdef __cplusplus

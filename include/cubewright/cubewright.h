@@ -1,4 +1,4 @@
-/* The whole library. */
+/* Includes every public header of the library. */
 #ifndef CUBEWRIGHT_CUBEWRIGHT_H
 #define CUBEWRIGHT_CUBEWRIGHT_H
 

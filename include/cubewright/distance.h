@@ -1,5 +1,4 @@
-/* How far a mesh lies from what it should be: from the surface of a volume, from
- * another mesh. */
+/* Distances from a mesh to the surface of a volume, and from a mesh to another mesh. */
 #ifndef CUBEWRIGHT_DISTANCE_H
 #define CUBEWRIGHT_DISTANCE_H
 
@@ -11,57 +10,57 @@ extern "C" {
 #endif
 
 /* Distances of the points of a mesh, in millimetres of the world. Mean, rms, bias and p99 are
- * weighted by area: of the mesh's surface, not of its vertices. */
+ * weighted by the area of the mesh's surface, not by its vertices. */
 typedef struct cw_distance {
     double max_mm, rms_mm, mean_mm;
     double p99_mm;    /* 99 % of the area is nearer; known to 0.2 % */
     double bias_mm;   /* mean with a sign, positive outside; from a mesh: 0 */
     double bound_mm;  /* from a mesh: no point is farther than this; from a field: 0 */
-    double where[3];  /* the point of the mesh, in the world, where max was met */
-    size_t triangle;  /* that holds it */
-    size_t triangles; /* measured, all of the mesh's; 0: nothing to measure, all is 0 */
+    double where[3];  /* the point of the mesh, in the world, with the distance max */
+    size_t triangle;  /* the triangle with that point */
+    size_t triangles; /* triangles measured: all of the mesh; 0: nothing to measure, all is 0 */
     size_t samples;   /* points measured */
-    size_t missed;    /* of them without a surface within reach: they count as reach */
+    size_t missed;    /* samples without a surface within reach: they count as reach */
 } cw_distance;
 
-/* How to measure from the surface of a volume. Zero fields mean the default named
- * beside them. */
+/* Options of measuring from the surface of a volume. Zero fields mean the default named beside
+ * them. */
 typedef struct cw_field_distance_desc {
     double isovalue;      /* in the unit of the values; 0 means 0 */
     bool inside_is_low;   /* default: values at or above the isovalue are inside */
     bool leave_open;      /* default: where the data end inside, their end is surface too */
     double reach_mm;      /* how far to look for the surface; default: 4 voxels, a voxel being
                              the cube root of its volume */
-    double step_voxels;   /* points are at most so far apart along sides; default 1 */
-    float *worst;         /* vertex_count: the largest distance met in the triangles around each
-                             vertex; default: not kept */
+    double step_voxels;   /* largest distance between points along sides; default 1 */
+    float *worst;         /* vertex_count values: the largest distance met in the triangles
+                             around each vertex; default: not kept */
     int threads;          /* default: all that OpenMP offers */
     cw_progress progress; /* default: none */
 } cw_field_distance_desc;
 
 /* Measures how far a mesh lies from the surface { p : f(p) = isovalue } of the trilinear field
- * f of a volume, the surface that cw_extract() approximates.
+ * f of a volume. cw_extract() approximates that surface.
  *
- * Distances are Euclidean, in the world, to the closest point of the surface itself, within
- * 0.1 % and 1e-5 voxels. They are taken at vertices, in the middle of sides and in the middle
- * of triangles; triangles whose sides are longer than two steps are divided first, evenly.
- * Beyond 2^25 points the steps grow. Where the domain ends (the volume's border, NaN and
- * no-data voxels) inside, its end closes the surface, unless left open: then cells that touch
- * missing voxels have no surface. Which points count as inside is as in cw_extract().
+ * Distances are Euclidean, in the world, to the closest point of the surface itself, within 0.1
+ * % and 1e-5 voxels. They are taken at vertices, in the middle of sides and in the middle of
+ * triangles. Triangles with sides longer than two steps are first divided evenly. Beyond 2^25
+ * points the steps grow. The domain ends at the volume's border and at NaN and no-data voxels.
+ * Where it ends inside, its end closes the surface. With leave_open, cells that touch missing
+ * voxels have no surface instead. Points count as inside as in cw_extract().
  *
  * mesh        borrowed
  * volume      borrowed; at least 2 voxels along each axis; first component and step are used
  * desc        borrowed; NULL means all defaults
  * out         zeroed on failure
- * per_vertex  vertex_count distances in mm, negative inside; or NULL. A mesh without triangles
- *             has these, and nothing else
+ * per_vertex  vertex_count distances in mm, negative inside; or NULL. For a mesh without
+ *             triangles these are the only result
  *
  * Returns  CW_ERR_ARGUMENT  isovalue not finite, reach or step negative or not finite, volume
  *                           too thin, or as cw_mesh_check() and cw_volume_resolve()
  *          CW_ERR_UNSUPPORTED  the grid is rectilinear
  *          CW_ERR_NO_MEMORY; CW_ERR_CANCELLED
- * Cost     about half a microsecond for a point near the surface; where there is none, time in
- *          proportion to the voxels within reach
+ * Cost     about half a microsecond for a point near the surface; elsewhere in proportion to
+ *          the voxels within reach
  * Threads  reentrant; the same to the bit for any number of threads
  * Source   simplify/README.md */
 CW_NODISCARD CW_API cw_status cw_distance_to_field(const cw_mesh *mesh, const cw_volume *volume,
@@ -69,28 +68,28 @@ CW_NODISCARD CW_API cw_status cw_distance_to_field(const cw_mesh *mesh, const cw
                                                    cw_distance *out, float *per_vertex,
                                                    cw_error *err);
 
-/* How to measure from a mesh. Zero fields mean the default named beside them. */
+/* Options of measuring from a mesh. Zero fields mean the default named beside them. */
 typedef struct cw_mesh_distance_desc {
     double tolerance_mm;  /* bound_mm - max_mm is at most this; default: 5 % of max_mm, or
                              1 % of the reference's average side where that is more */
-    double step_mm;       /* points of mean, rms and p99 are at most so far apart along sides;
-                             default: the length of a side in the reference, on average */
-    bool vertices_only;   /* measure at the vertices alone, each counting the same; bound_mm is
+    double step_mm;       /* largest distance between the points of mean, rms and p99 along
+                             sides; default: the average length of a side in the reference */
+    bool vertices_only;   /* measure only at the vertices, all with equal weight; bound_mm is
                              then 0. Default: over the surface */
     float *worst;         /* as in cw_field_distance_desc */
     int threads;          /* default: all that OpenMP offers */
     cw_progress progress; /* default: none */
 } cw_mesh_distance_desc;
 
-/* Measures how far a mesh lies from a reference mesh: the one-sided Hausdorff distance, and
- * what the mean over its surface is. Ask again with the meshes exchanged for the other side.
+/* Measures how far a mesh lies from a reference mesh: the one-sided Hausdorff distance and
+ * the mean over its surface. Exchange the meshes for the other side.
  *
  * Distances are to the closest point of the reference's triangles, exact but for rounding. The
- * largest over all points of all triangles is at least max_mm, met at `where`, and at most
+ * largest over all points of all triangles is at least max_mm, reached at `where`, and at most
  * bound_mm. Mean, rms and p99 are over points as in cw_distance_to_field().
  *
- * mesh, reference  borrowed; each with its own origin; triangles without area count as the
- *                  sides or points that they are
+ * mesh, reference  borrowed; each with its own origin; triangles without area count as
+ *                  sides or points
  * desc             borrowed; NULL means all defaults
  * out              zeroed on failure
  * per_vertex       vertex_count distances of mesh in mm; or NULL

@@ -1,5 +1,4 @@
-/* Fields whose surfaces are known on paper, sampled into volumes: for trying and
- * for testing. */
+/* Analytic fields with known surfaces, sampled into volumes for trying and testing. */
 #ifndef CUBEWRIGHT_FIELD_H
 #define CUBEWRIGHT_FIELD_H
 
@@ -31,7 +30,7 @@ typedef enum cw_field {
         CW_FIELD_COUNT
 } cw_field;
 
-/* What cw_field_sample() makes. Zero fields mean the default named beside them. */
+/* Options of cw_field_sample(). Zero fields mean the default named beside them. */
 typedef struct cw_field_desc {
     cw_field field;
     size_t dim[3]; /* voxels; default 64 each */
@@ -47,12 +46,13 @@ CW_API const char *cw_field_about(cw_field field);
 CW_API double cw_field_isovalue(cw_field field);
 CW_API bool cw_field_find(const char *name, cw_field *field);
 
-/* The field's value at a world point in millimetres. */
+/* Returns the field's value at a world point in millimetres. */
 CW_API double cw_field_value(cw_field field, const double world[3]);
 
-/* What a value of the field is in a volume of a type. Floats, and CT in types that hold -1024
- * to 2000, keep the value; CT in u16 and u32 adds 1024; else the field's range is spread over
- * 0..255, -128..127, 0..65535 or -32768..32767, whichever the type holds. */
+/* Returns the voxel value that stores a value of the field in a volume of a type. Floats, and
+ * CT in types that hold -1024 to 2000, keep the value. CT in u16 and u32 adds 1024. Otherwise
+ * the field's range is spread over 0..255, -128..127, 0..65535 or -32768..32767, whichever the
+ * type holds. */
 CW_API double cw_field_stored(cw_field field, cw_type type, double value);
 
 /* Samples a field into a new volume centred on the world's zero, rounded for integer types.

@@ -1,4 +1,4 @@
-/* Files: bytes to volume or mesh, volume and mesh to bytes. */
+/* Reading and writing of files: volumes, meshes, series of slices and of time steps. */
 #ifndef CUBEWRIGHT_FORMATS_H
 #define CUBEWRIGHT_FORMATS_H
 
@@ -9,26 +9,25 @@
 extern "C" {
 #endif
 
-/* The layout of a headerless file. */
+/* The layout of a file without a header. */
 typedef struct cw_raw_layout {
     size_t dim[3]; /* required */
     cw_type type;
     size_t components; /* 0 means 1; interleaved */
     size_t steps;      /* 0 means 1 */
     bool big_endian;
-    uint64_t offset;   /* bytes in front of the first voxel */
+    uint64_t offset;   /* number of bytes before the first voxel */
     double spacing[3]; /* mm; all 0 means 1 each, and the unit is then unknown */
 } cw_raw_layout;
 
-/* What to do where slices are missing, or not at equal distances. */
+/* The policy for slices that are missing or not at equal distances. */
 typedef enum cw_gaps {
     CW_GAPS_STOP,        /* CW_ERR_UNSAFE */
-    CW_GAPS_INTERPOLATE, /* slices at equal distances, made of the nearest two */
+    CW_GAPS_INTERPOLATE, /* make slices at equal distances from the nearest two */
     CW_GAPS_ALLOW        /* take the slices as if they were at equal distances */
 } cw_gaps;
 
-/* What to do with slices that are shifted against each other, as a tilted gantry
- * leaves them. */
+/* The policy for slices that are shifted against each other, as a tilted gantry leaves them. */
 typedef enum cw_tilt {
     CW_TILT_CORRECT, /* leave them where they are: the frame is sheared */
     CW_TILT_KEEP     /* stack them up as if they were not shifted */
@@ -53,61 +52,63 @@ typedef enum cw_unit {
 CW_API const char *cw_unit_name(cw_unit unit);
 CW_API double cw_unit_mm(cw_unit unit);
 
-/* What coordinates in a file mean. Zeroed: LPS millimetres, +Z up. */
+/* The meaning of coordinates in a file. Zeroed: LPS millimetres, +Z up. */
 typedef struct cw_axes {
     cw_unit unit;
     bool ras;  /* x to the right and y to the front; default: to the left and to the back */
     bool y_up; /* (x, y, z) stands as (x, z, -y) */
 } cw_axes;
 
-/* What to do where a file says something else than its reader's caller. */
+/* The rule for a file that contradicts its reader's caller. */
 typedef enum cw_claim_rule {
     CW_CLAIM_AGREE,   /* CW_ERR_ARGUMENT */
-    CW_CLAIM_FILL,    /* what the file says counts */
-    CW_CLAIM_OVERRIDE /* what the caller says counts */
+    CW_CLAIM_FILL,    /* the file's statement counts */
+    CW_CLAIM_OVERRIDE /* the caller's statement counts */
 } cw_claim_rule;
 
-/* What a caller says of the coordinates in a file that may name neither unit nor frame: as with
- * OpenVDB, which by custom is in metres and y-up. Zeroed: nothing. */
+/* The caller's statement on coordinates in a file that may name neither unit nor frame. An
+ * OpenVDB file, for example, is by custom in metres and y-up. Zeroed: no statement. */
 typedef struct cw_claim {
-    bool has_unit, has_frame, has_up; /* which of these is said */
+    bool has_unit, has_frame, has_up; /* which of these are stated */
     cw_axes axes;                     /* unit; ras; y_up */
     cw_claim_rule rule;
 } cw_claim;
 
-/* How to read a volume. Zero-initialise it; a zero field means the default named beside it. */
+/* Options of reading a volume. Zero-initialise the struct; a zero field means the default named
+ * beside it. */
 typedef struct cw_read_desc {
     const char *reader;       /* a name of cw_formats(); default: by content, then extension */
     const cw_raw_layout *raw; /* read as headerless bytes laid out so; default: by header */
-    bool header_only;         /* leave data NULL: everything else is filled in, but of an
-                                 irregular grid neither points nor corners */
+    bool header_only;         /* leave data NULL and fill in everything else; for an irregular
+                                 grid neither points nor corners */
     bool allow_external;      /* data files outside the header's folder; default: refused */
-    const cw_box *region;     /* only these voxels, x y z; default: all */
+    const cw_box *region;     /* read only these voxels, x y z; default: all */
     size_t every[3];          /* of these, every n-th along x, y and z, as cw_volume_coarsen();
-                                 what is between them takes little memory; default: 1, all */
+                                 the voxels between them take little memory; default: 1, all */
     uint64_t max_voxels;      /* default 2^40 */
-    uint64_t max_bytes;       /* of voxels in memory, of an irregular grid with all that reading
-                                 it takes; default: no limit */
+    uint64_t max_bytes;       /* of voxels in memory; for an irregular grid all memory of
+                                 reading it; default: no limit */
     double spacing_mm[3];     /* in place of the file's; default: all 0, the file's */
-    cw_claim claim;           /* of the file's coordinates; default: as it says, else LPS mm */
-    const char *array;        /* by its name, where files have several; default: the one that
-                                 the file names, else the first of one value */
+    cw_claim claim;           /* on the file's coordinates; default: as the file states, else
+                                 LPS mm */
+    const char *array;        /* the name, where files have several; default: the array that the
+                                 file names, else the first of one value */
 
-    const char *points; /* of a PLOT3D solution: the file of its grid's points, and that it
-                           is one */
+    const char *points; /* for a PLOT3D solution: the file of its grid's points; marks it as
+                           one */
 
     /* Slices in files of their own (TIFF, DICOM). */
-    const char *series; /* label or UID, as of cw_series_list(); default: the only one */
+    const char *series; /* label or UID, as from cw_series_list(); default: the only one */
     cw_gaps gaps;
     cw_tilt tilt;
 
-    /* Libraries run in a process of their own, without rights, so that a file that breaks one
-     * breaks nothing else. */
-    bool no_sandbox;  /* run them in this one instead */
+    /* Libraries run in a sandboxed process without rights, so a file that breaks one breaks
+     * nothing else. */
+    bool no_sandbox;  /* run them in this process instead */
     double timeout_s; /* for one file; default 60 */
 
-    /* Called on the calling thread with one line for each thing that was found and decided on:
-     * a tilt, slices left out, which of several arrays is taken. Default: none. */
+    /* Called on the calling thread with one line for each finding and decision: a tilt, slices
+     * left out, the choice among several arrays. Default: none. */
     void (*note)(void *user, const char *text);
     void *note_user;
     cw_progress progress; /* default: none */
@@ -115,22 +116,22 @@ typedef struct cw_read_desc {
 
 /* Reads a volume: the whole file or a region of it, every component and time step.
  *
- * path is a file, a folder of slices, or a pattern such as "scan/slice_*.tif" that names them;
- * numbers in their names count as numbers. With a layout (raw), each has an equal share of the
- * voxels. A DICOM file stands for its whole series, as far as it is in the same folder.
+ * path is a file, a folder of slices, or a pattern such as "scan/slice_*.tif" that names them.
+ * Numbers in their names count as numbers. With a layout (raw), each slice has an equal share
+ * of the voxels. A DICOM file stands for its whole series, as far as it is in the same folder.
  *
  * The header is checked against the file's true size before anything is allocated. Voxels keep
- * their type and numbers; only byte order is mended. Direction, origin and spacing arrive in
- * the affine as the file states them, turned to LPS millimetres.
+ * their type and numbers; only the byte order is converted. Direction, origin and spacing are
+ * stored in the affine as the file states them, turned to LPS millimetres.
  *
- * A region is what cw_volume_crop() would leave of the whole, and takes memory for itself
- * alone. The file is read up to its last voxel: uncompressed data are passed over where they
- * are not wanted, compressed ones inflated and dropped, and then the checksum at their end is
- * verified only if the region reaches it.
+ * A region is the part that cw_volume_crop() would leave of the whole; only it takes memory.
+ * The file is read up to the region's last voxel. Unwanted uncompressed data are skipped,
+ * compressed data are inflated and dropped. The checksum at their end is verified only if the
+ * region reaches it.
  *
- * Of an irregular grid cells of our four shapes are read; what is left out is noted. Samples
- * that are the same in place and value to the bit become one. Values of cells are averaged
- * around each sample, to CW_F64. Its header counts samples as the file does.
+ * From an irregular grid, cells of our four shapes are read; omissions are noted. Samples that
+ * are the same in place and value to the bit become one. Values of cells are averaged around
+ * each sample, to CW_F64. The header of such a grid counts samples as the file does.
  *
  * volume   filled on success, else emptied; free it with cw_volume_free(), a header's too
  * format   set to the reader's name (static); may be NULL
@@ -141,25 +142,25 @@ typedef struct cw_read_desc {
  *                              uneven, without a place, or shifted unevenly
  *          CW_ERR_UNSUPPORTED  compressed with a library that is not in this build; a region of
  *                              an irregular grid
- *          CW_ERR_BACKEND      a library died of the file, or took too long
+ *          CW_ERR_BACKEND      a library crashed on the file, or took too long
  *          CW_ERR_LIMIT        more voxels or bytes than allowed; CW_ERR_NO_MEMORY
  *          CW_ERR_ARGUMENT     no such reader or array; a region that is empty or leaves the
  *                              volume; a spacing for an irregular grid, or beside the claim
- *                              of a unit; a claim that the file
- * contradicts; CW_ERR_CANCELLED */
+ *                              of a unit; a claim that the file contradicts
+ *          CW_ERR_CANCELLED */
 CW_NODISCARD CW_API cw_status cw_volume_read(const char *path, const cw_read_desc *desc,
                                              cw_volume *volume, const char **format,
                                              cw_error *err);
 
-/* Lists the files of a time series, of which each is a volume, and a step. Paths name files or
- * folders of slices, patterns stand for the files that match; numbers in names count as
- * numbers, so that 2 comes before 10. A .pvd file by itself stands for the files that it lists,
- * and so does a folder whose volumes are of one format and have names alike but for a number;
- * files of no format in it do not matter.
+/* Lists the files of a time series; each file is a volume and a step. Paths name files or
+ * folders of slices; patterns stand for the files that match. Numbers in names count as
+ * numbers, so that 2 comes before 10. A .pvd file by itself stands for the files that it lists.
+ * So does a folder whose volumes have one format and names alike except for a number; files of
+ * no format in it are ignored.
  *
- * No series, but one volume for cw_volume_read(), is any other path that is no pattern, a
- * pattern of slices (DICOM images, TIFF files of one page), and a pattern with a layout (raw):
- * *count is 0.
+ * *count is 0 when the path is no series, but one volume for cw_volume_read(). This holds for a
+ * pattern of slices (DICOM images, TIFF files of one page), for a pattern with a layout (raw),
+ * and for any other path that is not a pattern.
  *
  * files    set to an array of *count, to be freed with cw_steps_free()
  * Returns  CW_ERR_ARGUMENT  several paths, and one is a slice, or there is a layout
@@ -171,19 +172,19 @@ CW_NODISCARD CW_API cw_status cw_steps_list(const char *const *paths, size_t pat
                                             size_t *count, cw_error *err);
 CW_API void cw_steps_free(char **files, size_t count);
 
-/* One of the arrays of values that a file has with names, or a grid of OpenVDB. */
+/* A named array of values in a file, or a grid of OpenVDB. */
 typedef struct cw_array {
     char name[64];
     char type[32]; /* as the file calls it: "Float32", "unsigned_char" */
     size_t components;
-    bool of_cells;   /* a value for each cell; else for each sample */
-    bool is_read;    /* cw_volume_read() takes it by its name */
-    bool is_default; /* it is the one that is taken when none is named */
+    bool of_cells;   /* one value for each cell; else for each sample */
+    bool is_read;    /* cw_volume_read() can read it by its name */
+    bool is_default; /* the array that is read when none is named */
 } cw_array;
 
 /* Lists the arrays of a file of VTK, the quantities of PLOT3D or the grids of OpenVDB. Files of
- * other formats, folders and patterns have none. Of two of one name, one at points and one at
- * cells, that at points is read.
+ * other formats, folders and patterns have none. If an array at points and one at cells have
+ * the same name, the one at points is read.
  *
  * arrays   set to *count of them, to be freed with cw_arrays_free(); NULL when there are none
  * Returns  as cw_volume_read() for a header */
@@ -191,87 +192,90 @@ CW_NODISCARD CW_API cw_status cw_arrays_list(const char *path, const cw_read_des
                                              cw_array **arrays, size_t *count, cw_error *err);
 CW_API void cw_arrays_free(cw_array *arrays);
 
-/* One series of images in a folder of DICOM files. */
+/* A series of images in a folder of DICOM files. */
 typedef struct cw_series {
-    char label[32];    /* what cw_read_desc.series takes: its number, and .1, .2 ... when
-                          images of several sizes, types or directions have that number */
+    char label[32];    /* value for cw_read_desc.series: its number, and .1, .2 ... when images
+                          of several sizes, types or directions have that number */
     char modality[20]; /* "CT"; may be empty */
     size_t images;
     cw_volume shape;     /* as it would be read, without voxels; with a status other than CW_OK
                             only type and dim, which then counts the images */
     double tilt_degrees; /* of the row of slices against their normal */
-    cw_status status;    /* of reading it so: CW_OK, CW_ERR_UNSAFE, ... */
-    char finding[512];   /* what is uneven, missing or wrong; empty: nothing */
+    cw_status status;    /* result of reading it so: CW_OK, CW_ERR_UNSAFE, ... */
+    char finding[512];   /* the uneven, missing or wrong part; empty: nothing */
 } cw_series;
 
-/* Lists the series that a folder, or a file's folder, holds; a path without DICOM images has
- * none. Neither names nor dates of patients are read.
+/* Lists the series in a folder, or in a file's folder. A path without DICOM images has none.
+ * Neither names nor dates of patients are read.
  *
- * series   set to an array of *count, to be freed with cw_series_free(); NULL when there is
- * none Returns  CW_ERR_UNSUPPORTED when the build has no DICOM; as cw_volume_read() */
+ * series   an array of *count, to be freed with cw_series_free(); NULL when there is none
+ * Returns  CW_ERR_UNSUPPORTED when the build has no DICOM; as cw_volume_read() */
 CW_NODISCARD CW_API cw_status cw_series_list(const char *path, const cw_read_desc *desc,
                                              cw_series **series, size_t *count, cw_error *err);
 CW_API void cw_series_free(cw_series *series);
 
-/* Reads a layout written as on the command line, for example
+/* Parses a layout written as on the command line, for example
  * "dims=512x512x300,type=u16le,offset=62,spacing=0.5x0.5x1,components=1,steps=1".
  * Type is one of the eight with an optional le or be; le when left out.
  * Returns CW_ERR_ARGUMENT naming the key that is wrong. */
 CW_NODISCARD CW_API cw_status cw_raw_layout_parse(const char *text, cw_raw_layout *layout,
                                                   cw_error *err);
 
-/* How to read a mesh. Zero-initialise it; a zero field means the default named beside it. */
+/* Options of reading a mesh. Zero-initialise the struct; a zero field means the default named
+ * beside it. */
 typedef struct cw_mesh_read_desc {
     const char *reader;     /* a name of cw_formats(); default: by content, then extension */
     bool allow_external;    /* buffers outside the .gltf file's folder; default: refused */
     uint64_t max_triangles; /* default 2^32 - 1 */
-    uint64_t max_bytes;     /* of the arrays that a mesh takes while read; default: no limit */
-    bool no_sandbox;        /* run libraries in this process, not in one without rights */
+    uint64_t max_bytes;     /* of the arrays that a mesh takes during reading; default: no
+                               limit */
+    bool no_sandbox;        /* run libraries in this process, not in a sandboxed one */
     double timeout_s;       /* for a library; default 60 */
-    cw_claim claim;         /* of the file's coordinates; default: as it says, else LPS mm */
+    cw_claim claim;         /* on the file's coordinates; default: as the file states, else LPS
+                               mm */
     cw_progress progress;   /* default: none */
 } cw_mesh_read_desc;
 
-/* What a mesh file says of itself, and what was made of it. */
+/* Facts that a mesh file states, and the reader's decisions. */
 typedef struct cw_mesh_file {
     const char *format; /* the reader's name (static) */
-    unsigned known;     /* cw_known flags; what is not known was taken as LPS millimetres */
-    cw_axes axes;       /* from which it was turned; zeroed for glTF and where not known */
+    unsigned known;     /* cw_known flags; unknown properties were taken as LPS millimetres */
+    cw_axes axes;       /* the file's own axes; zeroed for glTF and where not known */
     bool local;         /* coordinates were relative to an origin that the file names */
-    size_t parts;       /* that were merged: objects of OBJ, items of 3MF, primitives of
+    size_t parts;       /* number of merged parts: objects of OBJ, items of 3MF, primitives of
                            glTF; else 1 */
     size_t polygons;    /* faces of more than three corners, cut into fans of triangles */
     size_t skipped;     /* points, lines and faces of fewer than three corners: left out */
-    size_t levels;      /* coarser levels of detail of what was read, at most (MSFT_lod of
-                           glTF): no part of its scene, left out */
-    size_t hidden;      /* meshes of glTF that a scale of 0 hides, as those that an animation
-                           shows later: left out */
+    size_t levels;      /* maximum number of coarser levels of detail of a mesh (MSFT_lod of
+                           glTF): no part of the scene, left out */
+    size_t hidden;      /* meshes of glTF hidden by a scale of 0, such as those that an
+                           animation shows later: left out */
     size_t supports, support_triangles; /* placed objects of 3MF for support, and ... */
     size_t others, other_triangles;     /* ... those of type "other": left out */
 } cw_mesh_file;
 
 /* Reads a mesh: all parts of the file, merged, in LPS millimetres.
  *
- * Vertices keep their numbers, also those that no triangle names, and positions their bits
+ * Vertices keep their numbers, also those that no triangle names. Positions keep their bits
  * where the file has single precision. STL shares nothing: its corners at equal coordinates
  * become one vertex, and its facet normals are ignored. Triangles without area are kept. A
- * polygon becomes a fan around its first corner, which is right when it is convex. Normals are
- * kept when every vertex has one that is finite, and OBJ names no two for it. A file without
- * triangles gives a mesh without any, and CW_OK.
+ * polygon becomes a fan around its first corner, which is right when the polygon is convex.
+ * Normals are kept when every vertex has one that is finite, and OBJ does not name two for it.
+ * A file without triangles gives a mesh without triangles, and CW_OK.
  *
- * The origin is the one that the file names, if it is one of ours. Else it is 0, unless places
- * are more than ten times the mesh's size from zero and more exact than single precision: then
- * it is the middle of the mesh's box.
+ * The origin is the one that the file names, if this library wrote it. Otherwise it is 0, with
+ * one exception. If places are more than ten times the mesh's size from zero, and more exact
+ * than single precision, it is the middle of the mesh's box.
  *
- * glTF is in metres, +Y up: its scene is turned to LPS millimetres, (x, y, z) to (1000 x,
- * -1000 z, 1000 y). Nodes place their meshes as often as they say; a mirrored one has its
- * winding turned round, so that triangles stay counter-clockwise from outside. Materials,
- * skins, morph targets and animations are ignored, images never looked at; what has a scale of
- * 0 along all axes is hidden, and left out.
+ * glTF is in metres, +Y up: its scene is turned to LPS millimetres, (x, y, z) to (1000 x, -1000
+ * z, 1000 y). Every placement of a mesh by a node is read. A mirrored mesh has its winding
+ * reversed, so that triangles stay counter-clockwise from outside. Materials, skins, morph
+ * targets and animations are ignored, and images are never read. A node with a scale of 0 along
+ * all axes is hidden, and left out.
  *
- * 3MF places the objects of its build, components and all, in the unit that it names; a
- * mirrored one likewise has its winding turned round. Colours of 3MF are kept when no vertex
- * has two.
+ * From 3MF all objects of the build are placed, with components, in the unit that the file
+ * names. A mirrored object also has its winding reversed. Colours of 3MF are kept when no
+ * vertex has two.
  *
  * mesh     filled on success, emptied on failure; free it with cw_mesh_free()
  * file     filled on success; may be NULL
@@ -282,7 +286,7 @@ typedef struct cw_mesh_file {
  *                              a model outside itself; an XML document type
  *          CW_ERR_UNSUPPORTED  glTF or LZ4 is not in this build, or the file needs an extension
  *                              of glTF or 3MF that is not read
- *          CW_ERR_BACKEND      a library died of the file, or took too long
+ *          CW_ERR_BACKEND      a library crashed on the file, or took too long
  *          CW_ERR_LIMIT        more triangles, vertices or bytes than allowed; glTF or 3MF that
  *                              draws its meshes so often that 2^26 triangles and the bytes of
  *                              its files are exceeded, 3MF whose text is 64 MiB and 100 times
@@ -293,36 +297,37 @@ typedef struct cw_mesh_file {
 CW_NODISCARD CW_API cw_status cw_mesh_read(const char *path, const cw_mesh_read_desc *desc,
                                            cw_mesh *mesh, cw_mesh_file *file, cw_error *err);
 
-/* A mesh with a name, as one of several in a file. */
+/* A named mesh, one of several in a file. */
 typedef struct cw_part {
     const cw_mesh *mesh; /* borrowed */
-    const char *name;    /* default: that of the file, with a number behind it */
-    size_t level; /* of detail: n + 1 is a coarser form of level n, right before it, to be
-                     shown where that is seen small; default: 0, a part by itself */
-    double max_error_mm, rms_error_mm; /* of a level: how far it is from the truth; default: 0,
-                                          not told */
-    double time_s; /* animated: when it comes into sight, in place of the part before it */
+    const char *name;    /* default: the file's name and a number */
+    size_t level; /* level of detail: level n + 1 is a coarser form of level n, right after it,
+                     for viewers to show where the part appears small; default: 0, a part by
+                     itself */
+    double max_error_mm, rms_error_mm; /* for a level: its distance from the true surface;
+                                          default: 0, not stated */
+    double time_s; /* animated: the time at which it appears, in place of the part before it */
 } cw_part;
 
-/* Reads the parts of a file, each as a mesh: the objects of OBJ, or its groups if it has no
- * objects; the solids of an STL text; the build items of 3MF; the nodes of glTF. Groups that
- * share vertices are one part, so that none is cut from its neighbours. Vertices that no
- * triangle names are left out, if there are several parts; other formats, and files without
- * parts, give one.
+/* Reads the parts of a file, each as a mesh. Parts are the objects of OBJ, or its groups if it
+ * has no objects; the solids of an STL text; the build items of 3MF; the nodes of glTF. Groups
+ * that share vertices are one part, so that none is cut from its neighbours. If there are
+ * several parts, vertices that no triangle names are left out. Other formats, and files without
+ * parts, give one part.
  *
  * parts    set to an array of *count, which owns the meshes: free it with cw_parts_free().
- *          Names are NULL where the file has none; what is no printable UTF-8 in them is '_'.
+ *          Names are NULL where the file has none; bytes other than printable UTF-8 become '_'.
  * Returns  as cw_mesh_read()
  * Cost     that of cw_mesh_read() and, if there are several, as much memory once more */
 CW_NODISCARD CW_API cw_status cw_parts_read(const char *path, const cw_mesh_read_desc *desc,
                                             cw_part **parts, size_t *count, cw_mesh_file *file,
                                             cw_error *err);
 
-/* Harmless on NULL. */
+/* Frees parts and their meshes. Harmless on NULL. */
 CW_API void cw_parts_free(cw_part *parts, size_t count);
 
-/* How glTF holds meshes. Each but the first needs an extension of glTF that viewers must know;
- * all are written so that positions of all parts stand on one grid. */
+/* The storage of meshes in glTF. Each but the first needs an extension of glTF that viewers
+ * must know. The positions of all parts are written on one common grid. */
 typedef enum cw_compression {
     CW_COMPRESS_NONE,
     CW_COMPRESS_QUANTIZE, /* 16 bits a coordinate: KHR_mesh_quantization */
@@ -330,25 +335,25 @@ typedef enum cw_compression {
     CW_COMPRESS_MESHOPT /* EXT_meshopt_compression: 16 bits are quantised, up to 24 filtered */
 } cw_compression;
 
-/* What compression did, measured on what was decoded again. */
+/* The results of compression, measured on the decoded data. */
 typedef struct cw_compressed {
-    int bits;                  /* of a coordinate; 0: positions are as they were */
-    double step_mm;            /* of the grid */
-    double error_mm;           /* the most that a vertex was moved */
-    double normal_degrees;     /* ... and a normal turned */
+    int bits;                  /* bits of a coordinate; 0: positions are unchanged */
+    double step_mm;            /* step of the grid */
+    double error_mm;           /* the largest move of a vertex */
+    double normal_degrees;     /* ... and the largest turn of a normal */
     size_t merged;             /* vertices that fell onto another: only with bits stated */
     size_t flat;               /* triangles that lost their area: only with bits stated */
-    size_t dropped;            /* triangles with a vertex twice, which Draco has no form for */
+    size_t dropped;            /* triangles with a vertex twice, which Draco cannot store */
     uint64_t bytes;            /* of the arrays in the file */
-    double encode_s, decode_s; /* and to check what was decoded */
+    double encode_s, decode_s; /* times to encode, and to check the decoded data */
 } cw_compressed;
 
-/* A line of where a mesh comes from, for the file's own record. */
+/* A line on the origin of a mesh, for the file's own record. */
 typedef struct cw_provenance {
     const char *key, *value;
 } cw_provenance;
 
-/* How to write a volume or mesh. Zero-initialise it. */
+/* Options of writing a volume or mesh. Zero-initialise the struct. */
 typedef struct cw_write_desc {
     const char *format;         /* a name of cw_formats(); default: by the path's extension */
     const char *name;           /* of the object inside the file; default: the path's stem */
@@ -357,21 +362,23 @@ typedef struct cw_write_desc {
     cw_axes axes;               /* mesh: default LPS millimetres; glTF is in metres, +Y up */
     bool text;                  /* STL, PLY: numbers as text; default: binary */
     cw_compression compression; /* of glTF; CW_ERR_ARGUMENT for other formats */
-    double tolerance_mm; /* ... that it may move a vertex; default: 1/20,000 of the diagonal */
-    int bits;            /* ... of a coordinate, 1 to 16 (quantize), 24 (meshopt) or 30 (Draco),
-                            whatever that does; default: as many as the tolerance and the shape
-                            ask for */
-    int level;           /* ... of Draco, 1 (fast) to 10 (small); default 7 */
+    double tolerance_mm; /* for glTF: the largest move of a vertex; default: 1/20,000 of the
+                            diagonal */
+    int bits;            /* for glTF: bits of a coordinate, 1 to 16 (quantize), 24 (meshopt) or
+                            30 (Draco), whatever the loss; default: as many as the tolerance and
+                            the shape require */
+    int level;           /* for Draco: 1 (fast) to 10 (small); default 7 */
     cw_compressed *compressed; /* filled in; default: none */
-    bool animated; /* of glTF: parts are shown one after another, each at its time_s; default:
+    bool animated; /* for glTF: parts are shown one after another, each at its time_s; default:
                       all of them at once; CW_ERR_ARGUMENT for other formats */
     const cw_provenance *provenance; /* in the extras of a glTF file; default: none */
     size_t provenance_count;
     cw_progress progress; /* default: none */
 } cw_write_desc;
 
-/* Writes beside the path, flushes, then renames: the path holds the old file or the whole new
- * one. The format is the path's extension (.nrrd, .nii, .nii.gz, .mha, .mhd is not written).
+/* Writes a volume to a file beside the path, flushes it, then renames it. So the path holds
+ * either the old file or the whole new one. The path's extension decides the format (.nrrd,
+ * .nii, .nii.gz, .mha; .mhd is not written).
  * Returns  CW_ERR_ARGUMENT     no writer of that name or extension; local, text or axes, which
  *                              are for meshes
  *          CW_ERR_OUTPUT       folder missing, disk full, path exists and no_clobber
@@ -380,36 +387,36 @@ typedef struct cw_write_desc {
 CW_NODISCARD CW_API cw_status cw_volume_write(const char *path, const cw_volume *volume,
                                               const cw_write_desc *desc, cw_error *err);
 
-/* Writes a mesh in the same way: .glb, .gltf, .stl, .ply, .obj, .off, .3mf or .vtp.
- * glTF goes out in metres, +Y up and facing +Z, by the node's transform: vertices stay exact,
- * as they do in 3MF, whose build items hold the origin. The others hold world coordinates
- * (origin added), LPS millimetres: see cw_mesh_write_loss().
+/* Writes a mesh in the same way: .glb, .gltf, .stl, .ply, .obj, .off, .3mf or .vtp. glTF is
+ * written in metres, +Y up and facing +Z, by the node's transform, so vertices stay exact. They
+ * stay exact in 3MF, too, whose build items hold the origin. The other formats hold world
+ * coordinates (origin added), LPS millimetres: see cw_mesh_write_loss().
  *
  * local leaves the origin out: coordinates are the mesh's positions, and the glTF node has no
- * translation. The file names the origin, which gives the world's coordinates when added: PLY,
- * OBJ, OFF and VTP in a comment, STL in its header when it fits there, glTF in the node's
- * extras, 3MF in its metadata.
+ * translation. The file names the origin; adding it gives the coordinates of the world. PLY,
+ * OBJ, OFF and VTP name it in a comment, STL in its header when it fits there, glTF in the
+ * node's extras, 3MF in its metadata.
  *
- * Those comments name unit and frame (axes), too; cw_mesh_read() turns them back.
+ * Those comments also name unit and frame (axes); cw_mesh_read() converts them back.
  * Returns  as cw_volume_write(); CW_ERR_ARGUMENT as cw_mesh_check(), for an empty mesh, for
- *          glTF in another unit or frame than its own, for text of a format that has none;
+ *          glTF in another unit or frame than its own, for text in a format without text;
  *          CW_ERR_LIMIT when the format's own sizes are too small for the mesh. */
 CW_NODISCARD CW_API cw_status cw_mesh_write(const char *path, const cw_mesh *mesh,
                                             const cw_write_desc *desc, cw_error *err);
 
-/* Writes parts into one file: OBJ and 3MF get an object for each. In the others they become one
- * mesh, one behind the other, with the arrays that all of them have. Parts without triangles
- * are left out. Of a local file the origin is that of the first part.
+/* Writes parts into one file. OBJ and 3MF get an object for each. In the other formats the
+ * parts are joined into one mesh, with the arrays that all of them have. Parts without
+ * triangles are left out. A local file has the origin of the first part.
  *
- * Levels of detail are for glTF: its scene holds level 0, whose node names those of the others
- * (MSFT_lod), with the share of the screen below which each is enough: that at which it has as
- * many triangles to an area as level 0 has on all of it. Readers without the extension see
- * level 0 alone, and so does cw_mesh_read().
+ * Levels of detail are for glTF. Its scene holds level 0, whose node names the nodes of the
+ * other levels (MSFT_lod) and the share of the screen below which each is enough. At that share
+ * it has as many triangles to an area as level 0 has on all of it. Readers without the
+ * extension see only level 0, and so does cw_mesh_read().
  *
- * Animated parts each have a node whose scale an animation holds at 1 from its time until that
- * of the next, and else at 0; the last stays as long as the one before it. The animation starts
- * with the first part. One without triangles shows nothing for its time. Who plays no
- * animation, cw_mesh_read() too, sees the first part that has triangles.
+ * Animated parts each have a node whose scale is animated: 1 from the part's time until that of
+ * the next part, otherwise 0. The last part stays as long as the one before it. The animation
+ * starts with the first part. A part without triangles shows nothing for its time. Readers that
+ * play no animation, such as cw_mesh_read(), show the first part that has triangles.
  *
  * Returns as cw_mesh_write(); CW_ERR_ARGUMENT for levels that do not follow one another, have
  * no triangles, or are for another format; for an animation of fewer than two parts, of levels,
@@ -418,20 +425,21 @@ CW_NODISCARD CW_API cw_status cw_parts_write(const char *path, const cw_part *pa
                                              size_t count, const cw_write_desc *desc,
                                              cw_error *err);
 
-/* What a file will not hold of a mesh, above all what single precision takes from world
- * coordinates. */
+/* The parts of a mesh that a file will not hold, above all the digits of world coordinates that
+ * single precision loses. */
 typedef struct cw_write_loss {
     double step_mm;         /* between neighbouring numbers, at the farthest coordinate */
-    size_t merged_vertices; /* that fall onto another one, from which they were apart */
-    size_t flat_triangles;  /* that had an area and have none */
-    unsigned dropped;       /* what the meshes have and the file will not: cw_keeps flags */
+    size_t merged_vertices; /* vertices that fall onto another one, different before */
+    size_t flat_triangles;  /* triangles that had an area and lose it */
+    unsigned dropped;       /* attributes that the meshes have and the file will not: cw_keeps
+                               flags */
 } cw_write_loss;
 
-/* Measures what a reader with single precision will not get of the file that cw_mesh_write()
- * or cw_parts_write() would write. No vertex or triangle for glTF, and for local files: those
- * hold the positions as they are. STL and PLY lose it in the file; OBJ and OFF hold every
- * digit, but most of their readers do not. Vertices of different parts are not compared.
- * CW_KEEPS_PLACES is dropped where some vertex or triangle is lost.
+/* Measures the loss for a reader with single precision of a file by cw_mesh_write() or
+ * cw_parts_write(). glTF and local files lose no vertex or triangle: they hold the positions as
+ * they are. STL and PLY lose digits in the file. OBJ and OFF hold every digit, but most of
+ * their readers do not. Vertices of different parts are not compared. CW_KEEPS_PLACES is
+ * dropped where some vertex or triangle is lost.
  *
  * Returns  CW_ERR_ARGUMENT  no such writer, or as cw_mesh_check(); CW_ERR_NO_MEMORY
  * Cost     time in proportion to the triangles, and 28 bytes a vertex at most */
@@ -442,44 +450,45 @@ CW_NODISCARD CW_API cw_status cw_parts_write_loss(const char *path, const cw_par
                                                   size_t count, const cw_write_desc *desc,
                                                   cw_write_loss *loss, cw_error *err);
 
-/* Whether cw_mesh_write() could write to a path, as far as can be known before there is a mesh:
- * writer and library at hand, folder there and writable, nothing in the way. Same errors. */
+/* Checks if cw_mesh_write() could write to a path, as far as can be known before there is a
+ * mesh. The writer and its library must be present, the folder must exist and be writable, and
+ * nothing may be in the way. Returns the same errors. */
 CW_NODISCARD CW_API cw_status cw_mesh_write_check(const char *path, const cw_write_desc *desc,
                                                   cw_error *err);
 
-/* Orders the triangles of a mesh for the caches of graphics processors, and its vertices in the
- * order in which triangles name them.
+/* Orders the triangles of a mesh for the caches of graphics processors. Orders its vertices as
+ * the triangles name them.
  *
- * mesh     in place; as it was on failure
+ * mesh     in place; unchanged on failure
  * Returns  CW_ERR_UNSUPPORTED  this build has no meshoptimizer; CW_ERR_ARGUMENT as
  *                              cw_mesh_check(); CW_ERR_NO_MEMORY
  * Source   meshoptimizer: optimizeVertexCache, optimizeVertexFetch */
 CW_NODISCARD CW_API cw_status cw_mesh_optimize(cw_mesh *mesh, cw_error *err);
 
-/* A file of a time series. */
+/* A file of a time series, with its time. */
 typedef struct cw_pvd_entry {
     const char *path; /* as this program names it */
     double time;
 } cw_pvd_entry;
 
-/* Reads a .pvd file, in the order of times; a file without a time is of time 0. Entries name
- * files that are there, as they are reached from here. Of desc only allow_external counts: else
- * they lie below the .pvd's folder.
+/* Reads a .pvd file, in the order of times; an entry without a time has time 0. Entries name
+ * existing files, by paths that are valid from the current folder. Only allow_external of desc
+ * counts; without it the files must lie below the .pvd's folder.
  * entries  set to *count of them, to be freed with cw_pvd_free()
- * Returns  CW_ERR_IO           it or one of its files is missing, or no regular file
- *          CW_ERR_FORMAT       no list, an empty one, a time that is no number
+ * Returns  CW_ERR_IO           the .pvd or one of its files is missing, or no regular file
+ *          CW_ERR_FORMAT       no list, an empty one, a time that is not a number
  *          CW_ERR_UNSAFE       a file outside the .pvd's folder; an XML document type
  *          CW_ERR_UNSUPPORTED  several files of one time; CW_ERR_LIMIT; CW_ERR_NO_MEMORY */
 CW_NODISCARD CW_API cw_status cw_pvd_read(const char *path, const cw_read_desc *desc,
                                           cw_pvd_entry **entries, size_t *count, cw_error *err);
 CW_API void cw_pvd_free(cw_pvd_entry *entries, size_t count);
 
-/* Whether a path names a .pvd file, by its content. */
+/* Returns true if the content of a file is that of a .pvd file. */
 CW_API bool cw_pvd_is(const char *path);
 
-/* Writes a .pvd file, which ParaView opens as a time series: it lists files, such as .vtp, with
+/* Writes a .pvd file, which ParaView opens as a time series. It lists files, such as .vtp, with
  * the time of each, by names relative to its own folder. Files of one time in a row are parts
- * of it. The files need not be there. Of desc only no_clobber counts.
+ * of it. The files need not exist. Only no_clobber of desc counts.
  * Returns  CW_ERR_ARGUMENT  no entries, a time that is not finite, a file that cannot be named
  *                           from the .pvd's folder because one of both paths goes up by ".."
  *          CW_ERR_OUTPUT as cw_mesh_write() */
@@ -487,10 +496,11 @@ CW_NODISCARD CW_API cw_status cw_pvd_write(const char *path, const cw_pvd_entry 
                                            size_t count, const cw_write_desc *desc,
                                            cw_error *err);
 
-/* What of a mesh a file of a format holds. */
+/* The properties of a mesh that a file of a format holds. */
 typedef enum cw_keeps {
     CW_KEEPS_SHARING = 1, /* vertices that triangles share */
-    CW_KEEPS_PLACES = 2,  /* positions to the bit however far from zero: the origin is apart */
+    CW_KEEPS_PLACES =
+        2, /* positions to the bit at any distance from zero: the origin is separate */
     CW_KEEPS_NORMALS = 4,
     CW_KEEPS_COLORS = 8,
     CW_KEEPS_SCALARS = 16,
@@ -500,7 +510,7 @@ typedef enum cw_keeps {
     CW_KEEPS_ALL = 255
 } cw_keeps;
 
-/* One row of what this build reads and writes. */
+/* A format that this build or another one reads or writes. */
 typedef struct cw_format {
     const char *name;       /* "nrrd" */
     const char *extensions; /* ".nrrd .nhdr" */
@@ -508,15 +518,15 @@ typedef struct cw_format {
     bool reads_volume, writes_volume, reads_mesh, writes_mesh;
     bool in_this_build;
     const char *reason; /* why it is not in this build; "" when it is */
-    const char *lost;   /* what writing drops; "" for nothing */
-    unsigned keeps;     /* of a mesh that is written: cw_keeps flags */
+    const char *lost;   /* information that writing drops; "" for nothing */
+    unsigned keeps;     /* parts of a written mesh that the file keeps: cw_keeps flags */
 } cw_format;
 
-/* The format that a mesh is written in: of that name, or (name is NULL) by the path's
- * extension. NULL when there is none. */
+/* Returns the format in which a mesh is written: the one of that name or, if name is NULL, the
+ * one of the path's extension. Returns NULL when there is none. */
 CW_API const cw_format *cw_mesh_format(const char *path, const char *name);
 
-/* All formats, in_this_build or not; *count rows, static. */
+/* Returns all formats, in_this_build or not; *count rows, static. */
 CW_API const cw_format *cw_formats(size_t *count);
 
 #ifdef __cplusplus

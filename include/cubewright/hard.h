@@ -1,5 +1,5 @@
-/* Fields that extractors break on, sampled into volumes: the hard cases, by name. What becomes
- * of each, and why, is in extract/hard-cases.md. */
+/* Hard cases by name: fields on which extractors fail, sampled into volumes. The result of each
+ * case, and its reason, are in extract/hard-cases.md. */
 #ifndef CUBEWRIGHT_HARD_H
 #define CUBEWRIGHT_HARD_H
 
@@ -12,31 +12,32 @@ extern "C" {
 typedef struct cw_hard {
     const char *name, *about; /* the name begins with "hard/" */
     double isovalue;
-    double scale; /* integer types hold so many times the value; 0: floats only */
+    double scale; /* integer types store the value times this; 0: floats only */
     double spacing_mm;
-    double first_mm; /* where the first sample stands, along each axis; 0: zero is the middle */
+    double first_mm; /* place of the first sample along each axis; 0: the volume is centred on
+                        zero */
 } cw_hard;
 
-/* The n-th case; NULL after the last. */
+/* Returns the n-th case; NULL after the last. */
 CW_API const cw_hard *cw_hard_at(size_t n);
 CW_API bool cw_hard_find(const char *name, size_t *n);
 
-/* What a value of the n-th case is in a volume of a type: floats keep it, integers hold it
- * times the scale, unsigned ones 128 more. */
+/* Returns the voxel value that stores a value of the n-th case in a volume of a type. Floats
+ * keep it, integers hold it times the scale, and unsigned integers add 128. */
 CW_API double cw_hard_stored(size_t n, cw_type type, double value);
 
-/* What cw_hard_sample() makes. Zero fields mean the default named beside them. */
+/* Options of cw_hard_sample(). Zero fields mean the default named beside them. */
 typedef struct cw_hard_desc {
-    size_t number; /* of the case */
-    size_t dim[3]; /* voxels; default 64 each, which is enough for all there is in a case */
+    size_t number; /* number of the case */
+    size_t dim[3]; /* voxels; default 64 each, enough to show all parts of a case */
     cw_type type;  /* CW_U8 first: name it */
     double noise;  /* standard deviation of Gaussian noise, in the case's unit; default none */
-    uint64_t seed; /* of the noise, and of what is random in a case */
+    uint64_t seed; /* seed of the noise and of the random parts of a case */
     int threads;   /* default: all */
     cw_progress progress; /* default: none */
 } cw_hard_desc;
 
-/* Samples a case into a new volume; integer types are rounded, and held within 8 bits or 16.
+/* Samples a case into a new volume; integer types are rounded and clamped to 8 or 16 bits.
  * Returns CW_ERR_ARGUMENT for an unknown case or type, an integer type where the case needs
  * floats, and noise below 0; CW_ERR_LIMIT, CW_ERR_NO_MEMORY, CW_ERR_CANCELLED.
  * The same bytes for the same desc, for any number of threads. */

@@ -1,4 +1,4 @@
-/* A triangle mesh with shared vertices. */
+/* Triangle meshes with shared vertices: checks, welding, dropping of components, and slabs. */
 #ifndef CUBEWRIGHT_MESH_H
 #define CUBEWRIGHT_MESH_H
 
@@ -29,24 +29,25 @@ typedef struct cw_mesh {
 /* Frees the arrays and zeroes the struct. Harmless on a zeroed or already freed mesh. */
 CW_API void cw_mesh_free(cw_mesh *mesh);
 
-/* Checks what code below relies on: arrays present, every index below vertex_count, positions
- * finite. Returns CW_ERR_ARGUMENT naming the first thing that is wrong. */
+/* Checks the properties that other functions rely on: arrays present, every index below
+ * vertex_count, positions finite. Returns CW_ERR_ARGUMENT naming the first error. */
 CW_NODISCARD CW_API cw_status cw_mesh_check(const cw_mesh *mesh, cw_error *err);
 
-/* World box of the vertices; false (and zeros) for a mesh without vertices. */
+/* Computes the world box of the vertices; returns false (and zeros) for a mesh without
+ * vertices. */
 CW_API bool cw_mesh_bounds(const cw_mesh *mesh, double min[3], double max[3]);
 
-/* Makes one vertex of those at equal positions (0 equals -0): the first of them, with its
- * normal, colour and whatever else it has. Triangles that name a vertex twice are left out, and
- * then vertices that no triangle names.
+/* Merges vertices at equal positions (0 equals -0) into the first of them, with its normal,
+ * colour and other attributes. Triangles that name a vertex twice are left out, and then
+ * vertices that no triangle names.
  *
- * mesh     in place: its arrays stay where they are, and only get shorter; as it was on failure
- * merged   vertices that were at the place of another; may be NULL
+ * mesh     in place: its arrays stay where they are, and only get shorter; unchanged on failure
+ * merged   number of vertices at the place of another; may be NULL
  * Returns  CW_ERR_ARGUMENT as cw_mesh_check(); CW_ERR_NO_MEMORY */
 CW_NODISCARD CW_API cw_status cw_mesh_weld(cw_mesh *mesh, size_t *merged, cw_error *err);
 
-/* Leaves out components (sets of triangles joined by vertices) whose box has a diagonal shorter
- * than so much, and then vertices that no triangle names.
+/* Leaves out small components (sets of triangles joined by vertices): those whose box has a
+ * diagonal shorter than diagonal_mm. Then leaves out vertices that no triangle names.
  *
  * mesh     in place, as in cw_mesh_weld()
  * dropped, kept   components; may be NULL
@@ -56,23 +57,24 @@ CW_NODISCARD CW_API cw_status cw_mesh_drop_components(cw_mesh *mesh, double diag
                                                       size_t *dropped, size_t *kept,
                                                       cw_error *err);
 
-/* What became of components. */
+/* Counts and volumes of dropped and kept components. */
 typedef struct cw_drop_counts {
     size_t dropped, kept;  /* components */
-    size_t triangles;      /* that went */
-    double dropped_mm3;    /* what all that went enclose, together */
-    double largest_mm3;    /* the most that one of them does; 0: none went */
-    double least_kept_mm3; /* the least that one of the others does; 0: none stayed */
+    size_t triangles;      /* triangles of the dropped components */
+    double dropped_mm3;    /* volume enclosed by all dropped components together */
+    double largest_mm3;    /* the largest volume of a dropped component; 0: none dropped */
+    double least_kept_mm3; /* the smallest volume of a kept component; 0: none kept */
 } cw_drop_counts;
 
-/* Leaves out components that enclose less than so much, and then vertices that no triangle
+/* Leaves out components that enclose less than least_mm3, and then vertices that no triangle
  * names.
  *
- * Each component counts by its own surface, whichever way it faces, with what lies in it: a
- * solid with its cavities, a cavity with the islands in it. What lies in a component encloses
- * less than that, so it goes whenever that does: no cavity is left without its solid, and small
- * cavities are filled. An open component encloses what lies between it and the middle of its
- * box, signed by the side that is seen from there: nothing, where it is flat.
+ * Each component counts by its own surface, whichever way it faces, with everything that lies
+ * in it: a solid with its cavities, a cavity with the islands in it. A component inside another
+ * encloses less than the outer one, so it is dropped whenever the outer one is. No cavity is
+ * left without its solid, and small cavities are filled. An open component encloses the volume
+ * between it and the middle of its box, signed by the side that is seen from there. That is
+ * zero where the component is flat.
  *
  * mesh     in place, as in cw_mesh_weld()
  * counts   may be NULL
@@ -95,21 +97,21 @@ CW_NODISCARD CW_API cw_status cw_mesh_drop_distant(cw_mesh *mesh, const float *d
                                                    double limit_mm, cw_drop_counts *counts,
                                                    double *farthest_mm, cw_error *err);
 
-/* A part of a surface that is made from one end to the other: what lies between two parallel
- * planes. Slabs that follow each other have the vertices in the plane between them in common:
- * the n-th with seam 2 in one is the n-th with seam 1 in the next, at the same place. */
+/* A part of a surface that is made from one end to the other: the part between two parallel
+ * planes. Slabs that follow each other share the vertices in the plane between them. The n-th
+ * vertex with seam 2 in one slab is the n-th with seam 1 in the next, at the same place. */
 typedef struct cw_slab {
     const cw_mesh *mesh; /* without normals; some vertices may be in no triangle */
-    const uint8_t *seam; /* vertices: 1 in the plane to the slab before, 2 in the plane to the
-                            one after, else 0 */
-    double along[3];     /* of the mesh's positions x: all vertices that are in neither plane */
+    const uint8_t *seam; /* one per vertex: 1 in the plane to the slab before, 2 in the plane to
+                            the slab after, else 0 */
+    double along[3];     /* a direction: all vertices x of the mesh that are in neither plane */
     double low, high;    /* have low < along . x < high; infinite at the ends */
     size_t triangles;    /* of the whole surface */
     bool last;
 } cw_slab;
 
-/* Who takes slabs, one after the other; what is not CW_OK ends it, and is what the maker then
- * returns. The slab is the maker's, and gone after the call. */
+/* A receiver of slabs, one after the other. A status other than CW_OK stops the maker, which
+ * then returns it. The slab belongs to the maker and is invalid after the call. */
 typedef struct cw_slab_sink {
     cw_status (*take)(void *user, const cw_slab *slab, cw_error *err);
     void *user;

@@ -1,4 +1,5 @@
-/* What can be said about a mesh: is it closed, a manifold, how large is it? */
+/* Quality of a mesh: closedness, manifoldness, orientation, self-intersections, size and shapes
+ * of triangles. */
 #ifndef CUBEWRIGHT_QUALITY_H
 #define CUBEWRIGHT_QUALITY_H
 
@@ -8,14 +9,14 @@
 extern "C" {
 #endif
 
-/* Which vertices count as one. */
+/* The rule by which vertices count as one. */
 typedef enum cw_weld {
     CW_WELD_NONE,  /* those with the same index */
     CW_WELD_WORLD, /* those with equal single-precision world points, as readers of STL see */
     CW_WELD_LOCAL, /* those with equal positions */
 } cw_weld;
 
-/* What can be wrong with a triangle; bits of cw_quality_desc.defects. */
+/* Defects of a triangle; bits of cw_quality_desc.defects. */
 typedef enum cw_defect {
     CW_DEFECT_OPEN = 1 << 0,         /* has an open edge */
     CW_DEFECT_NONMANIFOLD = 1 << 1,  /* at a non-manifold edge or vertex */
@@ -27,8 +28,8 @@ typedef enum cw_defect {
     CW_DEFECT_INTERSECTING = 1 << 7, /* meets a triangle that is no neighbour */
 } cw_defect;
 
-/* A needle's longest side is more than 20 times its shortest; a cap has an angle above 160
- * degrees, and is not counted as a needle as well. */
+/* Thresholds: a needle's longest side is more than 20 times its shortest. A cap has an angle
+ * above 160 degrees; it is not also counted as a needle. */
 #define CW_NEEDLE_RATIO  20.0
 #define CW_CAP_ANGLE_DEG 160.0
 
@@ -39,46 +40,46 @@ enum { CW_ANGLE_BINS = 18, CW_ASPECT_BINS = 9, CW_LENGTH_BINS = 20 };
 typedef struct cw_shapes {
     double min_angle_deg, max_angle_deg, max_aspect;
     double min_edge_mm, max_edge_mm;
-    size_t angles[CW_ANGLE_BINS];   /* all three of each triangle, 10 degrees a bin */
-    size_t smallest[CW_ANGLE_BINS]; /* the smallest of each triangle, 60 / 18 degrees a bin */
+    size_t angles[CW_ANGLE_BINS];   /* all three of each triangle, 10 degrees per bin */
+    size_t smallest[CW_ANGLE_BINS]; /* the smallest of each triangle, 60 / 18 degrees per bin */
     size_t aspects[CW_ASPECT_BINS]; /* up to cw_aspect_ends, and beyond */
     size_t lengths[CW_LENGTH_BINS]; /* of edges: equal steps of the logarithm from min to max */
 } cw_shapes;
 
-/* Where the bins of aspects end; the last has no end. */
+/* The ends of the bins of aspects; the last bin has no end. */
 extern CW_API const double cw_aspect_ends[CW_ASPECT_BINS - 1];
 
-/* Facts of one mesh, counted from its triangles as indexed, unless welded. Edges are unordered
- * vertex pairs of triangles; triangles that name a vertex twice have none. */
+/* Facts on one mesh, counted from its triangles as indexed, unless welded. Edges are unordered
+ * vertex pairs of triangles; triangles that name a vertex twice have no edges. */
 typedef struct cw_quality {
     size_t vertices, triangles, edges;
     size_t components;           /* sets of triangles joined by vertices */
     size_t unused_vertices;      /* in no triangle, as indexed */
-    size_t merged_vertices;      /* in one, but welded to another vertex */
+    size_t merged_vertices;      /* in a triangle, but welded to another vertex */
     size_t open_edges;           /* in one triangle */
     size_t border_loops;         /* closed chains of open edges */
-    size_t nonmanifold_edges;    /* in more than two */
+    size_t nonmanifold_edges;    /* in more than two triangles */
     size_t misoriented_edges;    /* in two triangles that run through it the same way */
-    size_t nonmanifold_vertices; /* whose triangles form more than one fan */
+    size_t nonmanifold_vertices; /* their triangles form more than one fan */
     size_t duplicates;           /* triangles with the same vertices as an earlier one */
     size_t degenerate;           /* triangles of zero area in double precision */
     size_t needles, caps;        /* triangles: see above */
     size_t cavities;    /* closed, oriented components facing inward, inside one solid */
-    size_t inside_out;  /* such components facing inward, but not so */
-    size_t nested;      /* such components facing outward, inside another one */
+    size_t inside_out;  /* closed, oriented components facing inward, other than cavities */
+    size_t nested;      /* closed, oriented components facing outward, inside another one */
     size_t open_inward; /* open, oriented components that seem to face inward */
     size_t to_turn;     /* components that cw_mesh_orient() would turn round */
     int64_t euler;      /* used vertices - edges + triangles */
     int64_t genus;      /* handles of all components; -1 unless an oriented manifold */
     double area_mm2;
-    double volume_mm3;     /* signed; positive when triangles wind outward. Of closed meshes */
+    double volume_mm3;     /* of closed meshes; signed, positive when triangles wind outward */
     double min[3], max[3]; /* world box, mm */
     cw_shapes shapes;
 } cw_quality;
 
 typedef struct cw_quality_desc {
     cw_weld weld;     /* default: as indexed */
-    bool shells;      /* count cavities to to_turn too; default: they stay 0 */
+    bool shells;      /* also count the fields from cavities to to_turn; default: 0 */
     int threads;      /* default: all */
     uint8_t *defects; /* triangle_count: bits of cw_defect are set in it; default: none kept */
     cw_progress progress; /* default: none */
@@ -93,28 +94,30 @@ CW_NODISCARD CW_API cw_status cw_quality_measure(const cw_mesh *mesh,
                                                  const cw_quality_desc *desc, cw_quality *out,
                                                  cw_error *err);
 
-/* The bytes that measuring takes beside the mesh; for one with open edges a third more. */
+/* Returns the bytes that measuring takes beside the mesh; for one with open edges a third
+ * more. */
 CW_API size_t cw_quality_bytes(size_t vertices, size_t triangles);
 
-/* What cw_mesh_orient() did. */
+/* Counts of cw_mesh_orient(). */
 typedef struct cw_orient_counts {
-    size_t turned;    /* shells, that is components */
-    size_t triangles; /* of these */
+    size_t turned;    /* shells, i.e. components, that were turned */
+    size_t triangles; /* number of their triangles */
 } cw_orient_counts;
 
-/* Turns shells round that face the wrong way: outer ones shall face outward, those inside an
- * odd number of closed others are cavities and face inward. Left as they are: open shells, of
- * which a bowl may face either way, and those whose triangles do not agree with each other or
- * that are no manifold. Vertices at equal positions count as one. Normals are turned with their
- * shell where they agreed with its triangles.
+/* Turns shells that face the wrong way. Outer shells should face outward. Shells inside an odd
+ * number of closed others are cavities and should face inward. Two kinds of shells are left as
+ * they are: open ones, since a bowl may face either way, and those that are no manifold or
+ * whose triangles do not agree with each other. Vertices at equal positions count as one.
+ * Normals are turned with their shell where they agreed with its triangles.
  *
- * mesh     in place: the corners of triangles change places; as it was on failure
+ * mesh     in place: the corners of triangles change places; unchanged on failure
  * counts   may be NULL
  * Returns  as cw_quality_measure() */
 CW_NODISCARD CW_API cw_status cw_mesh_orient(cw_mesh *mesh, int threads,
                                              cw_orient_counts *counts, cw_error *err);
 
-/* No open, no non-manifold and no misoriented edge, no non-manifold vertex. */
+/* Returns true if there are no open, non-manifold or misoriented edges and no non-manifold
+ * vertices. */
 CW_API bool cw_quality_is_closed_manifold(const cw_quality *quality);
 
 /* Holds a mesh to the topology of the one that it was made from: as many components and border
@@ -125,7 +128,7 @@ CW_NODISCARD CW_API cw_status cw_quality_compare(const cw_quality *before,
                                                  const cw_quality *after, cw_error *err);
 
 typedef struct cw_crossings_desc {
-    cw_weld weld;     /* what makes triangles neighbours; default: as indexed */
+    cw_weld weld;     /* the rule that makes triangles neighbours; default: as indexed */
     int threads;      /* default: all */
     uint8_t *defects; /* triangle_count: CW_DEFECT_INTERSECTING is set; default: none kept */
     cw_progress progress; /* default: none */
@@ -135,11 +138,11 @@ typedef struct cw_crossings_desc {
 typedef struct cw_crossings {
     size_t count;
     uint32_t *pairs; /* count x 2 triangles, the lower first, in rising order */
-    bool undecided;  /* so many triangles are in one place that some pairs were not looked at */
+    bool undecided;  /* too many triangles are in one place: some pairs were not checked */
 } cw_crossings;
 
 /* Finds every pair of triangles that have a point in common other than the vertex or edge they
- * share: crossing, touching, overlapping or equal. Exact, by the sign of determinants;
+ * share: crossing, touching, overlapping or equal. Exact, by signs of determinants;
  * triangles without area are left out (cw_quality counts them).
  *
  * out      filled on success; free it with cw_crossings_free()
@@ -154,7 +157,7 @@ CW_NODISCARD CW_API cw_status cw_self_intersections(const cw_mesh *mesh,
 
 CW_API void cw_crossings_free(cw_crossings *crossings);
 
-/* The same questions, answered by CGAL. Self-intersections as cw_self_intersections(). */
+/* The same facts, computed by CGAL. Self-intersections are those of cw_self_intersections(). */
 typedef struct cw_cgal_facts {
     bool is_polygon_mesh; /* an oriented 2-manifold, maybe open; if not, all else is 0 */
     bool closed;
@@ -165,18 +168,18 @@ typedef struct cw_cgal_facts {
     double area_mm2, volume_mm3; /* volume: of closed meshes */
 } cw_cgal_facts;
 
-/* Whether this build has the module with CGAL in it. That module is under the GPL. */
+/* Returns true if this build has the module with CGAL. That module is under the GPL. */
 CW_API bool cw_quality_has_cgal(void);
 
 /* Asks CGAL's Polygon Mesh Processing; takes ten times as long as our own checks.
  * Returns  as cw_quality_measure(); CW_ERR_UNSUPPORTED without the module; CW_ERR_BACKEND with
- *          CGAL's words when it gives up */
+ *          CGAL's message when it fails */
 CW_NODISCARD CW_API cw_status cw_quality_ask_cgal(const cw_mesh *mesh, cw_weld weld,
                                                   cw_cgal_facts *out, cw_error *err);
 
-/* One-sided Hausdorff distance from a mesh to a reference by CGAL, off by at most the
- * tolerance. Returns  as cw_quality_ask_cgal(); CW_ERR_BACKEND for a mesh that is no oriented
- * manifold */
+/* Computes the one-sided Hausdorff distance from a mesh to a reference by CGAL, within the
+ * tolerance.
+ * Returns  as cw_quality_ask_cgal(); CW_ERR_BACKEND for a mesh that is no oriented manifold */
 CW_NODISCARD CW_API cw_status cw_distance_by_cgal(const cw_mesh *mesh, const cw_mesh *reference,
                                                   double tolerance_mm, double *out_mm,
                                                   cw_error *err);

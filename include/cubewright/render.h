@@ -1,4 +1,5 @@
-/* Pictures of volumes and meshes, in every classic mode, without a window. */
+/* Rendering of volumes and meshes into pictures, in every classic mode, without a window;
+ * picking. */
 #ifndef CUBEWRIGHT_RENDER_H
 #define CUBEWRIGHT_RENDER_H
 
@@ -12,15 +13,15 @@
 extern "C" {
 #endif
 
-/* One row per mode: constant, name, what it is, and the paper it follows.
+/* One row per mode: constant, name, description, and the paper it follows.
  *
- * Intensity projections (mip, minip, average, local-mip) show one value a ray: in the colour
- * that the transfer function has for it and, whatever opacity that has, opaque; nothing where
- * the ray meets no value. They have no light and no depth cue. Where a ray passes through a
- * gap, average leaves that out of the mean. A local maximum of local-mip may lie where the ray
- * enters or leaves values; if none reaches the threshold, it is the highest value that counts.
+ * Intensity projections (mip, minip, average, local-mip) show one value per ray. It has the
+ * colour of the transfer function and is opaque, whatever its opacity there. Nothing shows
+ * where the ray meets no value. These modes have no light and no depth cue. average leaves gaps
+ * on the ray out of the mean. A local maximum of local-mip may lie where the ray enters or
+ * leaves values. If none reaches the threshold, the highest value counts.
  *
- * A gradient is interpolated between those of the voxels around, which are central differences,
+ * A gradient is interpolated between those of the voxels around. These are central differences,
  * one-sided at the border, 0 where a neighbour has no value and along an axis of one voxel. A
  * cell with a corner that has no value is empty. */
 #define CW_MODE_TABLE(X)                                                                       \
@@ -59,12 +60,12 @@ CW_API const char *cw_mode_name(cw_mode mode);
 CW_API const char *cw_mode_about(cw_mode mode);
 CW_API const char *cw_mode_source(cw_mode mode);
 
-/* Who draws. */
+/* The backend that draws. */
 typedef enum cw_backend {
-    CW_BACKEND_AUTO, /* the CPU for what only it does (vbuffer, reference), else EGL */
+    CW_BACKEND_AUTO, /* the CPU for its own modes (vbuffer, reference), else EGL */
     CW_BACKEND_EGL,  /* OpenGL 3.3, without a display */
-    CW_BACKEND_CPU,  /* vbuffer, reference, intensity projections, and opaque meshes, in a light
-                        of their own, alone or with those */
+    CW_BACKEND_CPU,  /* vbuffer, reference, intensity projections, and opaque meshes, alone (in
+                        a light of their own) or with those */
     CW_BACKEND_COUNT
 } cw_backend;
 
@@ -77,7 +78,8 @@ typedef struct cw_light {
     float color[3];
 } cw_light;
 
-/* What is kept lies where normal . p >= distance, p in the world, LPS millimetres. */
+/* A clip plane: it keeps the points with normal . p >= distance, p in the world, LPS
+ * millimetres. */
 typedef struct cw_clip {
     double normal[3];
     double distance_mm;
@@ -86,14 +88,14 @@ typedef struct cw_clip {
 /* A slice to draw: all p with normal . p = distance. */
 typedef cw_clip cw_slice;
 
-/* How reflective things are: I = ambient C + sum over lights (diffuse |n.l| C + specular
+/* Reflection of light: I = ambient C + sum over lights (diffuse |n.l| C + specular
  * |n.h|^shininess) I_l. Both sides are lit. Where a volume's gradient is 0 there is no n, and
  * only ambient light. */
 typedef struct cw_material {
     float ambient, diffuse, specular, shininess; /* all 0: 0.25, 0.75, 0.2, 32 */
 } cw_material;
 
-/* What colours a mesh. */
+/* The source of a mesh's colours. */
 typedef enum cw_tint {
     CW_TINT_COLORS,  /* the mesh's colours, else the scene's */
     CW_TINT_SCALARS, /* the mesh's scalars, dark to bright from tint_low to tint_high */
@@ -101,7 +103,7 @@ typedef enum cw_tint {
     CW_TINT_COUNT
 } cw_tint;
 
-/* Bits of what slices of a texture are blended in. */
+/* The pixel type in which slices of a texture are blended. */
 typedef enum cw_target {
     CW_TARGET_32F, /* single precision */
     CW_TARGET_16,  /* unsigned, normalised */
@@ -111,11 +113,11 @@ typedef enum cw_target {
 } cw_target;
 
 /* A scene. Zero-initialise it and set what you need; a zero field means the default named
- * beside it. What pointers point to is borrowed. */
+ * beside it. Memory behind pointers is borrowed. */
 typedef struct cw_scene {
     cw_mode mode;
     const cw_volume *volume;     /* evenly spaced; required for all modes but mesh */
-    const cw_mesh *mesh;         /* drawn too, opaque, whatever the mode; required for mesh */
+    const cw_mesh *mesh;         /* also drawn, opaque, in any mode; required for mesh */
     const cw_transfer *transfer; /* required for all modes but mesh */
     cw_camera camera;            /* default (up all 0): front view of everything, 30 degrees */
     size_t width, height;        /* pixels, at most 16384; default 1280 x 720 */
@@ -123,48 +125,49 @@ typedef struct cw_scene {
 
     /* light and depth */
     cw_light lights[CW_MAX_LIGHTS]; /* light_count of them */
-    size_t light_count;             /* default: one, white, from the eye; for meshes, when no
-                                       material is given either, a studio's */
+    size_t light_count;             /* default: one, white, from the eye; for meshes without a
+                                       material, studio lights */
     cw_material material;
     bool lit;        /* volumes are shaded by their gradient; meshes always are */
-    float depth_cue; /* 0 to 1: the share of the background at the far end of what is seen,
-                        rising linearly from 0 at the near end */
+    float depth_cue; /* 0 to 1: the fraction of the background at the far end of the visible
+                        range, rising linearly from 0 at the near end */
     float background[2][3];      /* top and bottom, for depth_cue and slices; sRGB */
-    cw_clip clips[CW_MAX_CLIPS]; /* clip_count of them: only what all of them keep is drawn */
+    cw_clip clips[CW_MAX_CLIPS]; /* clip_count planes: points kept by all of them are drawn */
     size_t clip_count;
-    bool cut_away; /* what all of them would keep is what is left out */
+    bool cut_away; /* leave out what all of them would keep, draw the rest */
 
     /* rays and slices */
     double step_vox;        /* distance of samples along a ray, or of slices of a texture, in
-                               smallest spacings; default 1 */
+                               units of the smallest spacing; default 1 */
     bool cell_steps;        /* samples end at the faces of cells */
     bool no_preintegration; /* sample at the middle of each step */
-    bool jitter;            /* shift the samples of every ray by another part of a step */
+    bool jitter;            /* shift the samples of every ray by a different fraction of a
+                               step */
     bool exact_filter;      /* trilinear interpolation by the shader, not the texture unit */
-    bool no_skipping;       /* go through what is empty as well */
-    float stop_opacity;     /* rays, and layers of meshes, end there; default 0.9999,
+    bool no_skipping;       /* do not skip empty space */
+    float stop_opacity;     /* rays, and layers of meshes, end at this opacity; default 0.9999,
                                vbuffer 0.99999 */
-    double threshold;       /* local-mip: the value a maximum has to reach */
-    bool lean;              /* for a first picture, and with less memory. Gradients are found
-                               anew by the shader, where they can be, not kept in a texture:
-                               lit rays are up to a third slower; always so of large volumes.
+    double threshold;       /* local-mip: the minimum of a maximum that counts */
+    bool lean;              /* saves memory and time of the first picture. The shader computes
+                               gradients where it can, instead of reading them from a texture;
+                               lit rays are up to a third slower. Always so for large volumes.
                                Where the processor draws (Mesa's llvmpipe), voxels without gaps
-                               of u8, u16, i16 or f32 are read where the caller has them, and
-                               there is no texture of them: rays are a sixth slower. texture and
-                               shaded-texture have textures always */
-    size_t texture_edge;    /* largest edge of a 3D texture, in voxels; default: what GL can */
-    cw_target target;       /* texture, shaded-texture: what slices are blended in */
+                               of u8, u16, i16 or f32 are read from the caller's memory without
+                               a texture; rays are a sixth slower. texture and shaded-texture
+                               always have textures */
+    size_t texture_edge;    /* maximum edge of a 3D texture, in voxels; default: GL's maximum */
+    cw_target target;       /* texture, shaded-texture: the pixel type for blending slices */
     bool colors_first;      /* texture, shaded-texture: interpolate colours, not data */
-    size_t normals;         /* shaded-texture: directions of the table, at most 8192; default
-                               1024. It is lit whether or not lit is set */
-    bool mark_boundary;     /* shaded-texture: only cells at material boundaries, whose samples
-                               have a point of the opacities between them */
+    size_t normals;         /* shaded-texture: number of directions in the table, at most 8192;
+                               default 1024. The mode is lit whether or not lit is set */
+    bool mark_boundary;     /* shaded-texture: draw only cells at material boundaries: between
+                               the values of their samples lies a point of the opacities */
     bool linear_opacity;    /* projection: opacity, not depth, is linear over a polygon, as in
                                1991 */
-    double tree_error;      /* splat-tree: largest error of a node, in the table's range 0..1 of
-                               values; 0: every voxel is splatted. projection: half the range
-                               of values of a node that is drawn whole */
-    size_t splat_budget;    /* splat-tree: about how many splats a picture may take: the error
+    double tree_error;      /* splat-tree: maximum error of a node, in the table's range 0..1 of
+                               values; 0: every voxel is splatted. projection: half the range of
+                               values of a node that is drawn whole */
+    size_t splat_budget;    /* splat-tree: approximate maximum of splats in a picture; the error
                                is raised until they suffice; default: no limit */
 
     /* slices */
@@ -176,18 +179,18 @@ typedef struct cw_scene {
     cw_tint tint;
     double tint_low, tint_high; /* both 0: the range of the scalars */
     bool wireframe;             /* edges drawn over the triangles; faint where they are dense */
-    bool cap;                   /* the cut through a clipped mesh, which is closed, is filled */
+    bool cap;                   /* fill the cut through a clipped mesh, which must be closed */
 
     int threads;          /* default: all that OpenMP offers */
-    cw_progress progress; /* default: none. Asked every few milliseconds, but while GL compiles
-                             a shader or makes room for a volume; a picture that is cancelled
-                             leaves what was uploaded, and the next one is as any other. The
-                             report finds the EGL context that the caller of cw_render() had,
-                             and may draw with any, by EGL: with another renderer, too, but
+    cw_progress progress; /* default: none. Called every few milliseconds, except while GL
+                             compiles a shader or allocates a volume. A cancelled picture leaves
+                             its uploads in place, and the next picture is as usual. The report
+                             runs with the EGL context that the caller of cw_render() had. It
+                             may draw with any context, by EGL, also with another renderer, but
                              not with this one */
 } cw_scene;
 
-/* A renderer keeps what it has uploaded of a scene for the next picture of it. */
+/* A renderer. It keeps the uploads of a scene for the next picture of it. */
 typedef struct cw_renderer cw_renderer;
 
 /* Makes a renderer.
@@ -197,14 +200,15 @@ CW_NODISCARD CW_API cw_status cw_renderer_new(cw_backend backend, cw_renderer **
                                               cw_error *err);
 CW_API void cw_renderer_free(cw_renderer *renderer);
 
-/* What draws: "CPU", or the GL's own words. Valid as long as the renderer. */
+/* Returns the name of the drawing device: "CPU", or the name that GL reports. Valid as long as
+ * the renderer. */
 CW_API const char *cw_renderer_name(const cw_renderer *renderer);
 
 /* Draws a scene. Deterministic: the same scene gives the same picture on the same machine, and
- * by the CPU on any.
+ * on the CPU on any machine.
  *
  * picture  filled on success, emptied on failure; free it with cw_picture_free()
- * Returns  CW_ERR_ARGUMENT     something the mode needs is missing or out of range
+ * Returns  CW_ERR_ARGUMENT     an input of the mode is missing or out of range
  *          CW_ERR_UNSUPPORTED  the mode is not one of the backend's; a volume that is not
  *                              evenly spaced
  *          CW_ERR_BACKEND      GL failed or its context was lost: make another renderer
@@ -212,7 +216,7 @@ CW_API const char *cw_renderer_name(const cw_renderer *renderer);
 CW_NODISCARD CW_API cw_status cw_render(cw_renderer *renderer, const cw_scene *scene,
                                         cw_picture *picture, cw_error *err);
 
-/* What is seen at a place on a picture. */
+/* The kind of object that a pixel of a picture shows. */
 typedef enum cw_pick_kind {
     CW_PICK_NOTHING,
     CW_PICK_VOLUME,
@@ -224,41 +228,43 @@ typedef struct cw_picked {
     cw_pick_kind kind; /* CW_PICK_NOTHING: all below is 0 */
     double point[3];   /* in the world, LPS millimetres */
     double depth_mm;   /* before the eye, along the camera's line of sight */
-    double value;      /* of the volume; of a mesh its scalar, NaN when it has none */
-    size_t number;     /* of the slice, of the triangle; SIZE_MAX: a cut that cap fills */
+    double value;      /* of the volume; of a mesh its scalar, NaN without scalars */
+    size_t number;     /* of the slice or the triangle; SIZE_MAX: a cut that cap fills */
 } cw_picked;
 
-/* Finds what a scene shows at a place, as cw_render() would draw it, without drawing: the
- * nearest point of mesh, slices and volume that is not clipped. In a volume it is where
- *  - the modes that blend reach half of full opacity, by rays as those of reference; where they
- *    do not, the middle of the cell that covers most, if all of it covers 1/512 or more. Which
- *    cells shaded-texture's mark_boundary leaves out is not looked at;
- *  - mip, minip and local-mip find their value, for the first time; average: the highest.
- * A mesh behind that is what is seen if the volume before it covers less than half; and if it
- * is translucent it is seen all the same.
+/* Finds the point that a scene shows at a pixel, as cw_render() would draw it, without drawing.
+ * It is the nearest point of mesh, slices and volume that is not clipped. In a volume it is the
+ * point where
+ *  - the modes that blend reach half of full opacity, by rays as those of reference. Where they
+ *    do not, it is the middle of the cell that covers most, if the whole ray covers 1/512 or
+ *    more. Cells that shaded-texture's mark_boundary leaves out are included here;
+ *  - mip, minip and local-mip find their value for the first time; average: the highest value.
+ * A mesh behind that point is picked if the volume before it covers less than half. A
+ * translucent mesh is picked like an opaque one.
  *
  * pixel    from the picture's upper left corner, y down
- * Returns  as cw_render(), and CW_ERR_ARGUMENT for a pixel that is no number
+ * Returns  as cw_render(), and CW_ERR_ARGUMENT for a pixel that is not a number
  * Cost     in proportion to the triangles (a million: some 10 ms), and to the cells met */
 CW_NODISCARD CW_API cw_status cw_pick(const cw_scene *scene, const double pixel[2],
                                       cw_picked *picked, cw_error *err);
 
-/* The orthographic camera that looks straight at a slice and sees all of it, for a picture that
- * is aspect times as wide as high; with it, the mode slices draws that slice flat. Directions
- * are those of radiology: axial slices are seen from the feet, with the patient's right on the
- * picture's left and the front up; coronal ones from the front, right on the left, the head up;
- * sagittal ones from the left, the front on the picture's left, the head up. Oblique ones are
- * seen as those they are closest to.
- * Returns CW_ERR_ARGUMENT for a slice that misses the volume or has no direction, for an aspect
- * that is none, and as cw_volume_resolve(). */
+/* Makes the orthographic camera that looks straight at a slice and sees all of it. aspect is
+ * the picture's width over its height. With this camera the mode slices draws that slice flat.
+ * Directions are those of radiology. Axial slices are seen from the feet, with the patient's
+ * right on the picture's left and the front up. Coronal ones are seen from the front, right on
+ * the left, the head up. Sagittal ones are seen from the left, the front on the picture's left,
+ * the head up. Oblique ones are seen like those they are closest to.
+ * Returns CW_ERR_ARGUMENT for a slice that misses the volume or has no direction, for an
+ * invalid aspect, and as cw_volume_resolve(). */
 CW_NODISCARD CW_API cw_status cw_slice_camera(const cw_volume *volume, const cw_slice *slice,
                                               double aspect, cw_camera *camera, cw_error *err);
 
-/* Tells a renderer that voxels or vertices it has drawn were written to since, or freed: it
- * knows them by their address. */
+/* Makes a renderer forget the voxels and vertices that it has drawn. Call it after they were
+ * changed or freed, since the renderer knows them by their address. */
 CW_API void cw_renderer_forget(cw_renderer *renderer);
 
-/* How to draw a mesh alone. Zero-initialise it; a zero field means the default named beside it. */
+/* Options of drawing a mesh alone. Zero-initialise the struct; a zero field means the default
+ * named beside it. */
 typedef struct cw_render_mesh_desc {
     cw_camera camera;         /* default (up all 0): front view of the whole mesh, 30 degrees */
     size_t width, height;     /* pixels, at most 16384; default 1280 x 720 */
@@ -272,8 +278,9 @@ typedef struct cw_render_mesh_desc {
     cw_progress progress; /* default: none */
 } cw_render_mesh_desc;
 
-/* Draws a mesh on the CPU in double precision, without OpenGL: nearest surface first, lit on both sides; back faces are tinted red, so that an
- * open or inside-out surface shows. A mesh without normals is drawn with its triangles' own.
+/* Draws a mesh on the CPU in double precision, without OpenGL: the nearest surface, lit on both
+ * sides. Back faces are tinted red, so that an open or inside-out surface shows. A mesh without
+ * normals is drawn with the normals of its triangles.
  *
  * image    filled on success, emptied on failure; free it with cw_image_free()
  * Returns  CW_ERR_ARGUMENT  as cw_mesh_check() and cw_camera_axes(); sizes out of range

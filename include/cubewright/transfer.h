@@ -1,4 +1,5 @@
-/* Transfer functions: from a value to the colour and the opacity it is shown with. */
+/* Transfer functions: maps from a value to the colour and the opacity with which it is
+ * shown. */
 #ifndef CUBEWRIGHT_TRANSFER_H
 #define CUBEWRIGHT_TRANSFER_H
 
@@ -21,12 +22,12 @@ typedef struct cw_opacity_point {
     float opacity;
 } cw_opacity_point;
 
-/* A transfer function: linear between points, constant beyond the ends. Points' values do not
- * fall; two at one value are a jump, which belongs to the side above. No colours: white; no
- * opacities: fully transparent; no gradients: 1 everywhere.
+/* A transfer function: linear between points, constant beyond the ends. The values of the
+ * points never decrease. Two points at one value are a jump; the value itself belongs to the
+ * side above. No colours: white; no opacities: fully transparent; no gradients: 1 everywhere.
  *
- * Opacity o is what a path of unit_mm through that value covers: the extinction coefficient is
- * -ln(1 - o) / unit_mm, and o is taken as at most 1 - 1e-6. */
+ * Opacity o is the opacity of a path of unit_mm through that value. The extinction coefficient
+ * is -ln(1 - o) / unit_mm, and o is limited to 1 - 1e-6. */
 typedef struct cw_transfer {
     size_t color_count, opacity_count, gradient_count;
     cw_color_point colors[CW_TRANSFER_POINTS];
@@ -37,33 +38,33 @@ typedef struct cw_transfer {
     double unit_mm;                                 /* default: the volume's smallest spacing */
 } cw_transfer;
 
-/* Returns CW_ERR_ARGUMENT, naming the point, for values that fall or are not finite, for
- * colours and opacities outside of 0 to 1, too many points, and a unit_mm that is no length. */
+/* Checks a transfer function. Returns CW_ERR_ARGUMENT, naming the point, for values that
+ * decrease or are not finite, for colours and opacities outside of 0 to 1, for too many points,
+ * and for a unit_mm that is not a length. */
 CW_NODISCARD CW_API cw_status cw_transfer_check(const cw_transfer *transfer, cw_error *err);
 
-/* The colour and opacity of a value, and the factor of a gradient's length. */
+/* Computes the colour and opacity of a value, and the factor of a gradient's length. */
 CW_API void cw_transfer_at(const cw_transfer *transfer, double value, double color[3],
                            double *opacity);
 CW_API double cw_transfer_gradient_factor(const cw_transfer *transfer, double gradient_per_mm);
 
-/* The name of the n-th preset; NULL after the last. */
+/* Returns the name of the n-th preset; NULL after the last. */
 CW_API const char *cw_transfer_preset_name(size_t n);
 CW_API const char *cw_transfer_preset_about(size_t n);
 
-/* A preset. Those of CT stand at Hounsfield units; others are fitted to the values.
+/* Makes a preset. Those of CT are in Hounsfield units; others are fitted to the values.
  * statistics  of the volume, with 256 bins or more; borrowed
- * Returns CW_ERR_ARGUMENT for an unknown name, with the names there are. */
+ * Returns CW_ERR_ARGUMENT for an unknown name, with the existing names. */
 CW_NODISCARD CW_API cw_status cw_transfer_preset(const char *name,
                                                  const cw_statistics *statistics,
                                                  cw_transfer *transfer, cw_error *err);
 
-/* A transfer function as JSON, in a file or as text:
+/* Reads or writes a transfer function as JSON, in a file or as text:
  *     {"schema": "cubewright-transfer-1", "unit_mm": 1,
  *      "colors": [[-1000, "#000000"], [300, "#ffeedd"]],
  *      "opacities": [[100, 0], [300, 0.5]], "gradients": [[0, 0], [40, 1]]}
  * Values are read back to the bit; colours are kept in steps of 1/255.
- * text     as it is in a file, of at most CW_TRANSFER_TEXT bytes with the 0 at its end when it
- *          is written
+ * text     as in a file; when written, at most CW_TRANSFER_TEXT bytes with the final 0
  * Returns  CW_ERR_IO; CW_ERR_FORMAT, with the line or the field that is wrong; CW_ERR_OUTPUT;
  *          CW_ERR_ARGUMENT as cw_transfer_check() */
 enum { CW_TRANSFER_TEXT = 16384 };

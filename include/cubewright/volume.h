@@ -1,4 +1,5 @@
-/* A volume: a view of typed voxels, with the map from voxel indices to the world. */
+/* Volumes: views of typed voxels, with a map from voxel indices to the world; statistics of
+ * values. */
 #ifndef CUBEWRIGHT_VOLUME_H
 #define CUBEWRIGHT_VOLUME_H
 
@@ -26,8 +27,9 @@ typedef enum cw_type {
         CW_TYPE_COUNT
 } cw_type;
 
-/* What the file said of its unit and frame. The affine is LPS millimetres in any case: with
- * nothing said, numbers are taken as millimetres and axes as LPS, and these flags tell so. */
+/* Properties that the file stated: unit, frame, kind of values. The affine is always in LPS
+ * millimetres. Where the file states nothing, numbers are taken as millimetres and axes as LPS;
+ * the flag is then unset. */
 typedef enum cw_known {
     CW_KNOWN_UNIT = 1,
     CW_KNOWN_FRAME = 2,
@@ -47,19 +49,20 @@ typedef enum cw_shape {
 /* An irregular grid: samples that stand anywhere, and the cells between them. */
 typedef struct cw_cells {
     const double *points;    /* 3 a sample */
-    size_t count;            /* of cells */
-    const uint8_t *shapes;   /* cw_shape, one a cell */
-    const uint32_t *corners; /* numbers of samples, one cell's after another's: 4, 5, 6, 8 */
+    size_t count;            /* number of cells */
+    const uint8_t *shapes;   /* cw_shape, one per cell */
+    const uint32_t *corners; /* indices of samples, cell after cell: 4, 5, 6 or 8 each */
 } cw_cells;
 
-/* A box of voxels with one value; in leaves, as are all sizes and places here. */
+/* A box of voxels with one value. All its sizes and places count in leaves. */
 typedef struct cw_tile {
     uint32_t at[3], size[3];
     double value; /* as stored, before slope and intercept */
 } cw_tile;
 
-/* A sparse grid: voxels are kept in leaves of 8 x 8 x 8, regions of one value in tiles, and
- * everything else, beyond dim too, has the background's value. Nothing is kept twice. */
+/* A sparse grid: voxels are stored in blocks ("leaves") of 8 x 8 x 8, regions of one value in
+ * tiles. All other voxels, also beyond dim, have the background's value. No voxel is stored
+ * twice. */
 typedef struct cw_sparse {
     size_t leaf_count;
     const uint32_t (*leaves)[3]; /* the voxels of leaf n are data + n * 512 voxels, x fastest;
@@ -90,16 +93,17 @@ typedef struct cw_volume {
     ptrdiff_t step_stride;        /* bytes; 0: one packed volume after another */
     double step_seconds;          /* time between steps; 0: unknown */
     double affine[3][4];          /* index to world, LPS millimetres; all 0: identity */
-    const double *coordinates[3]; /* dim[0], dim[1], dim[2], rising: where planes of samples
-                                     stand, in place of their index. All three, or NULL */
+    const double *coordinates[3]; /* dim[0], dim[1], dim[2] rising values: places of planes of
+                                     samples, in place of their index. All three, or NULL */
     const cw_cells *cells;        /* an irregular grid's; else NULL */
     const cw_sparse *sparse;      /* a sparse grid's; else NULL */
     double slope, intercept;      /* value = slope * voxel + intercept; slope 0 means 1 */
     bool has_nodata; /* voxels equal to nodata, before scaling, are outside the domain */
     double nodata;
     unsigned known;           /* cw_known flags */
-    double said_unit_mm;      /* what the file's own unit was, before it became mm; 0: mm */
-    bool said_ras;            /* and whether its own x and y went to the right and the front */
+    double said_unit_mm;      /* the file's own unit before conversion to mm; 0: mm */
+    bool said_ras;            /* true if the file's own x and y went to the right and the
+                                 front */
     void *owned, *owned_grid; /* memory freed by cw_volume_free(), of voxels and of coordinates,
                                  cells or leaves; NULL for a borrowed view */
 } cw_volume;
@@ -124,11 +128,11 @@ CW_NODISCARD CW_API cw_status cw_volume_alloc(cw_volume *volume, cw_type type,
 /* Frees what the volume owns and zeroes it. Harmless on a zeroed or already freed volume. */
 CW_API void cw_volume_free(cw_volume *volume);
 
-/* The owned voxels, to be written to; NULL for a borrowed view. */
+/* Returns the owned voxels, for writing; NULL for a borrowed view. */
 CW_API void *cw_volume_voxels(cw_volume *volume);
 
-/* Copies *in to *out with every defaulted field filled in, so that code below needs no special
- * cases. Borrowed like *in: free only one of them.
+/* Copies *in to *out with every defaulted field filled in, so that other functions need no
+ * special cases. Borrowed like *in: free only one of them.
  * Returns CW_ERR_ARGUMENT for an unknown type, a zero dim, a missing pointer, an affine or
  * scaling that is not finite or cannot be inverted, strides that break the type's alignment,
  * coordinates that do not rise or are not all there, more than one of coordinates, cells and
@@ -136,16 +140,16 @@ CW_API void *cw_volume_voxels(cw_volume *volume);
 CW_NODISCARD CW_API cw_status cw_volume_resolve(const cw_volume *in, cw_volume *out,
                                                 cw_error *err);
 
-/* A borrowed view of one component at one time step.
- * Returns CW_ERR_ARGUMENT when there is none such. */
+/* Makes a borrowed view of one component at one time step.
+ * Returns CW_ERR_ARGUMENT when it does not exist. */
 CW_NODISCARD CW_API cw_status cw_volume_select(const cw_volume *in, size_t component,
                                                size_t step, cw_volume *out, cw_error *err);
 
-/* The length of the vector that the components of a voxel are, at one time step: the root of
- * the sum of their squares, scaled, in double precision, as CW_F32. NaN where a component has
- * no value.
+/* Computes the length of each voxel's vector of components, at one time step. It is the root of
+ * the sum of their squares, scaled, computed in double precision and stored as CW_F32. NaN
+ * where a component has no value.
  *
- * out      owns its voxels, and borrows coordinates or cells of *in; free it before that
+ * out      owns its voxels, and borrows coordinates or cells of *in; free it before *in
  * Returns  CW_ERR_ARGUMENT  no such step, or one component; as cw_volume_resolve()
  *          CW_ERR_UNSUPPORTED on a sparse grid; CW_ERR_LIMIT; CW_ERR_NO_MEMORY */
 CW_NODISCARD CW_API cw_status cw_volume_magnitude(const cw_volume *in, size_t step, int threads,
@@ -153,33 +157,34 @@ CW_NODISCARD CW_API cw_status cw_volume_magnitude(const cw_volume *in, size_t st
 
 enum { CW_LABELS_MOST = 255 };
 
-/* What a volume has of labels: whole numbers that stand for things, not for amounts. */
+/* Labels of a volume: whole numbers that stand for objects, not for amounts. */
 typedef struct cw_labels {
-    bool found;                   /* CW_KNOWN_LABELS, or values that look so */
-    bool more;                    /* than are listed: of a volume that says it holds labels */
-    size_t count;                 /* of values; at most CW_LABELS_MOST */
+    bool found;                   /* CW_KNOWN_LABELS, or values that look like labels */
+    bool more;                    /* more values exist than are listed: in a volume that states
+                                     it holds labels */
+    size_t count;                 /* number of values; at most CW_LABELS_MOST */
     double value[CW_LABELS_MOST]; /* rising */
 } cw_labels;
 
-/* Finds whether the first component and step holds labels. The values of a volume that does not
- * say so must be whole, 3 to CW_LABELS_MOST; of neighbours along x that are not both the most
- * frequent value, 7 in 10 must be equal; and of those that differ, 2 in 10 must skip a value
- * that occurs. A smooth picture skips none, and a noisy one has no equal neighbours. At most
- * 2^22 voxels are looked at, in rows spread evenly. Returns CW_ERR_ARGUMENT as
- * cw_volume_resolve(). */
+/* Finds if the first component and step holds labels. A volume with CW_KNOWN_LABELS does. The
+ * values of another one must meet three conditions. They are whole numbers, 3 to CW_LABELS_MOST
+ * of them. Of neighbours along x that are not both the most frequent value, 7 in 10 are equal.
+ * Of those that differ, 2 in 10 skip a value that occurs. A smooth picture skips none, and a
+ * noisy one has no equal neighbours. At most 2^22 voxels are examined, in rows spread evenly.
+ * Returns CW_ERR_ARGUMENT as cw_volume_resolve(). */
 CW_NODISCARD CW_API cw_status cw_volume_labels(const cw_volume *volume, cw_labels *out,
                                                cw_error *err);
 
-/* A borrowed view of the voxels inside a box; its affine places them where they were.
+/* Makes a borrowed view of the voxels inside a box; its affine leaves them where they were.
  * Returns CW_ERR_ARGUMENT when the box is empty or leaves the volume. */
 CW_NODISCARD CW_API cw_status cw_volume_crop(const cw_volume *in, const cw_box *box,
                                              cw_volume *out, cw_error *err);
 
-/* A borrowed view of every step[a]-th voxel along axis a, from the first one on, each where it
- * was: for a quick look. Values are picked, not averaged. Up to step[a] - 1 voxels at the far
- * end are beyond the view. Returns CW_ERR_ARGUMENT for a step of 0 and for one, other than 1,
- * that leaves a single voxel: at most dim[a] - 1; when the affine leaves the range of doubles;
- * CW_ERR_UNSUPPORTED on a rectilinear grid. */
+/* Makes a borrowed view of every step[a]-th voxel along axis a, starting with the first, for a
+ * quick look. Each voxel stays where it was. Values are picked, not averaged. Up to step[a] - 1
+ * voxels at the far end are beyond the view. Returns CW_ERR_ARGUMENT for a step of 0, for a
+ * step other than 1 that leaves a single voxel (at most dim[a] - 1 is allowed), and when the
+ * affine leaves the range of doubles; CW_ERR_UNSUPPORTED on a rectilinear grid. */
 CW_NODISCARD CW_API cw_status cw_volume_coarsen(const cw_volume *in, const size_t step[3],
                                                 cw_volume *out, cw_error *err);
 
@@ -193,32 +198,32 @@ CW_NODISCARD CW_API cw_status cw_volume_coarsen(const cw_volume *in, const size_
 CW_NODISCARD CW_API cw_status cw_volume_densify(const cw_volume *sparse, size_t max_voxels,
                                                 cw_volume *dense, cw_error *err);
 
-/* The value (scaled) of one voxel of the first component and step; slow, for tests and probes.
- * NaN outside the volume, and on a sparse grid. */
+/* Returns the (scaled) value of one voxel of the first component and step; slow, for tests and
+ * probes. NaN outside the volume, and on a sparse grid. */
 CW_API double cw_volume_value(const cw_volume *volume, size_t i, size_t j, size_t k);
 
-/* World point of a (fractional) index; and the millimetres between neighbours along each axis,
- * on a rectilinear grid the mean. */
+/* Computes the world point of a (fractional) index, or the millimetres between neighbours along
+ * each axis; on a rectilinear grid their mean. */
 CW_API void cw_volume_to_world(const cw_volume *volume, const double index[3], double world[3]);
 CW_API void cw_volume_spacing(const cw_volume *volume, double spacing_mm[3]);
 
-/* World positions of the corners of a volume with samples: corner n has the last index along
- * axis a where n >> a & 1, else the first. Of an irregular grid they are the corners of the
- * smallest axis-aligned box around its samples. */
+/* Computes the world positions of the corners of a volume that has samples. Corner n has the
+ * last index along axis a where n >> a & 1, else the first. The corners of an irregular grid
+ * are those of the smallest axis-aligned box around its samples. */
 CW_API void cw_volume_corners(const cw_volume *volume, double corners[8][3]);
 
-/* The (fractional) index of a world point. CW_ERR_ARGUMENT when the affine cannot
- * be inverted. */
+/* Computes the (fractional) index of a world point. Returns CW_ERR_ARGUMENT when the affine
+ * cannot be inverted. */
 CW_NODISCARD CW_API cw_status cw_volume_to_index(const cw_volume *volume, const double world[3],
                                                  double index[3], cw_error *err);
 
-/* The value (scaled) at a world point of an even or rectilinear grid, of the first component
- * and step: trilinear between the voxels around. For probes. NaN outside (an axis of one voxel
- * reaches half a voxel to both sides), where one of those voxels has no value, and on other
- * grids. */
+/* Returns the (scaled) value at a world point of an even or rectilinear grid, of the first
+ * component and step. It is trilinear between the voxels around. For probes. NaN outside, where
+ * one of those voxels has no value, and on other grids. An axis of one voxel reaches half a
+ * voxel to both sides. */
 CW_API double cw_volume_sample(const cw_volume *volume, const double world[3]);
 
-/* What the values are: range, and how often each occurs. */
+/* Statistics of the values: range and frequencies. */
 typedef struct cw_statistics {
     double min, max;   /* over finite values inside the domain; both 0 when there are none */
     size_t finite;     /* values counted in the range */
@@ -230,8 +235,8 @@ typedef struct cw_statistics {
     uint64_t *bins;   /* bin_count counts; the last bin holds max too */
 } cw_statistics;
 
-/* Counts the values of the first component and step into bin_count bins (0: range only); of a
- * sparse grid those in leaves.
+/* Counts the values of the first component and step into bin_count bins (0: range only). On a
+ * sparse grid only values in leaves are counted.
  * threads  0 means all
  * Returns  CW_ERR_ARGUMENT as cw_volume_resolve(); CW_ERR_NO_MEMORY; free with
  *          cw_statistics_free(). The result is the same for any number of threads. */
@@ -240,8 +245,9 @@ CW_NODISCARD CW_API cw_status cw_volume_statistics(const cw_volume *volume, size
                                                    cw_error *err);
 CW_API void cw_statistics_free(cw_statistics *statistics);
 
-/* Levels that separate the histogram into level_count + 1 classes (1 to 3) with the largest
- * variance between classes: [Otsu1979], and [Liao2001] for more than one level.
+/* Finds the levels that separate the histogram into level_count + 1 classes (level_count is 1
+ * to 3) with the largest variance between classes: [Otsu1979], and [Liao2001] for more than one
+ * level.
  * Returns false when the histogram has too few filled bins. */
 CW_API bool cw_statistics_otsu(const cw_statistics *statistics, int level_count,
                                double *levels);
