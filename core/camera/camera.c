@@ -22,15 +22,6 @@ static const struct {
 
 enum { VIEW_COUNT = sizeof views / sizeof *views };
 
-/* Normalises a vector; returns false when its length is near zero or not a number. */
-static bool normalize_vector(double a[3])
-{
-    const double length = sqrt(cwi_dot(a, a));
-    for (int i = 0; i < 3; i++)
-        a[i] /= length;
-    return isnormal(length);
-}
-
 const char *cw_view_name(size_t n)
 {
     return n < VIEW_COUNT ? views[n].name : NULL;
@@ -41,10 +32,10 @@ cw_status cw_camera_axes(const cw_camera *camera, double right[3], double up[3],
 {
     for (int a = 0; a < 3; a++)
         forward[a] = camera->target[a] - camera->eye[a];
-    if (!normalize_vector(forward))
+    if (!cwi_to_unit(forward))
         return cw_fail(err, CW_ERR_ARGUMENT, "the camera's eye and target must be apart");
     cwi_cross(forward, camera->up, right);
-    if (!normalize_vector(right))
+    if (!cwi_to_unit(right))
         return cw_fail(err, CW_ERR_ARGUMENT, "the camera's up is along its line of sight");
     cwi_cross(right, forward, up);
     if (!(camera->fov_deg >= 0 && camera->fov_deg < 180))
@@ -135,10 +126,10 @@ static cw_status turn_view(const cw_fit_desc *d, double forward[3], double up[3]
                        d->elevation_deg);
     cwi_cross(forward, up, right); /* the up of some views is not perpendicular */
     cwi_cross(right, forward, up);
-    normalize_vector(up);
+    cwi_to_unit(up);
     rotate_vector(forward, up, d->azimuth_deg);
     cwi_cross(forward, up, right);
-    normalize_vector(right);
+    cwi_to_unit(right);
     rotate_vector(forward, right, -d->elevation_deg);
     rotate_vector(up, right, -d->elevation_deg);
     return CW_OK;
@@ -148,7 +139,7 @@ cw_status cw_camera_turn(cw_camera *camera, const double axis[3], double degrees
 {
     double unit[3], arm[3];
     memcpy(unit, axis, sizeof unit);
-    if (!normalize_vector(unit) || !isfinite(degrees))
+    if (!cwi_to_unit(unit) || !isfinite(degrees))
         return cw_fail(err, CW_ERR_ARGUMENT, "a turn of %g degrees about (%g, %g, %g)", degrees,
                        axis[0], axis[1], axis[2]);
     for (int a = 0; a < 3; a++)

@@ -32,6 +32,18 @@ static inline bool cwi_normalise(double d[3])
     return true;
 }
 
+/* Divides a vector of ordinary size by its length. Leaves it, and returns false, where the length
+ * is 0, denormal or not finite. Faster than cwi_normalise(), which takes any size. */
+static inline bool cwi_to_unit(double v[3])
+{
+    const double length = sqrt(cwi_dot(v, v));
+    if (!isnormal(length))
+        return false;
+    for (int a = 0; a < 3; a++)
+        v[a] /= length;
+    return true;
+}
+
 /* Returns the minimum, without the handling of NaN that makes fmin and fmax calls. */
 static inline double cwi_lesser(double a, double b)
 {

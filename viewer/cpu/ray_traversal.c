@@ -1,4 +1,5 @@
 #include "viewer/cpu/ray_traversal.h"
+#include "viewer/scene/cell_lattice.h"
 
 #include "core/geometry/affine.h"
 #include "core/volume/volume.h"
@@ -146,18 +147,6 @@ void cwi_walk_cubic(const cwi_walk *w, const double v[8], double c[4])
     c[3] = rise[2] * d[2];
 }
 
-static double row_derivative(const cw_volume *v, const char *p, int axis, size_t n)
-{
-    const size_t dim = v->dim[axis];
-    if (dim == 1)
-        return 0;
-    const bool has_low = n > 0, has_high = n + 1 < dim;
-    const double a = cwi_voxel_at(v->type, has_low ? p - v->stride[axis] : p),
-                 b = cwi_voxel_at(v->type, has_high ? p + v->stride[axis] : p);
-    const double d = v->slope * (b - a) / (has_low && has_high ? 2 : 1);
-    return isfinite(d) && !(v->has_nodata && (a == v->nodata || b == v->nodata)) ? d : 0;
-}
-
 void cwi_walk_gradients(const cwi_walk *w, double g[3][8])
 {
     const cw_volume *v = w->volume;
@@ -165,9 +154,12 @@ void cwi_walk_gradients(const cwi_walk *w, double g[3][8])
         size_t at[3];
         for (int a = 0; a < 3; a++)
             at[a] = (size_t)w->at[a] + (v->dim[a] > 1 && (n >> a & 1));
-        const char *p = cwi_voxel_address(v, at[0], at[1], at[2]);
-        for (int a = 0; a < 3; a++)
-            g[a][n] = row_derivative(v, p, a, at[a]);
+        double gradient[3];
+        cwi_lattice_gradient(v, at, gradient);
+        for (int a = 0; a < 3; a++) {
+            const double scaled = v->slope * gradient[a];
+            g[a][n] = isfinite(scaled) ? scaled : 0;
+        }
     }
 }
 

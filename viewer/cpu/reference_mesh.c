@@ -64,13 +64,6 @@ typedef struct facet {
 } facet;
 
 /* A vector without length stays as it is. */
-static void normalize_vector(double a[3])
-{
-    const double length = sqrt(cwi_dot(a, a));
-    for (int i = 0; i < 3 && length > 0; i++)
-        a[i] /= length;
-}
-
 static double snap_to_grid(double x)
 {
     return nearbyint(x * 256) / 256;
@@ -260,7 +253,7 @@ static void facet_normal(const cw_mesh *mesh, facet *f)
             side[e][a] = (double)mesh->positions[3 * (size_t)corner[e + 1] + a] -
                          (double)mesh->positions[3 * (size_t)corner[0] + a];
     cwi_cross(side[f->is_back], side[!f->is_back], f->normal);
-    normalize_vector(f->normal);
+    cwi_to_unit(f->normal);
 }
 
 /* The vertices' normals, turned to the side that is seen: both sides are lit, and neither a
@@ -278,7 +271,7 @@ static void surface_normal(const cw_mesh *mesh, const facet *f, const double sha
         memcpy(n, f->normal, 3 * sizeof *n);
     for (int a = 0; a < 3 && side < 0; a++)
         n[a] = -n[a];
-    normalize_vector(n);
+    cwi_to_unit(n);
 }
 
 /* Linear colour of the surface itself; its inside is redder and darker. */
@@ -302,7 +295,7 @@ static void to_eye(const scene *s, double x, double y, double v[3])
     const double u = (x - s->width / 2.0) / s->scale, w = (s->height / 2.0 - y) / s->scale;
     for (int a = 0; a < 3; a++)
         v[a] = -s->forward[a] - (s->perspective ? u * s->right[a] + w * s->up[a] : 0);
-    normalize_vector(v);
+    cwi_to_unit(v);
 }
 
 /* Diffuse light from the eye and, softer, from above its left shoulder; a little from
@@ -317,7 +310,7 @@ static void shade_sample(const scene *s, const facet *f, double x, double y, dou
     to_eye(s, x, y, v);
     for (int a = 0; a < 3; a++)
         h[a] = v[a] + s->fill_light[a];
-    normalize_vector(h);
+    cwi_to_unit(h);
     const double head = fmax(cwi_dot(n, v), 0), fill = fmax(cwi_dot(n, s->fill_light), 0);
     double gloss = fmax(cwi_dot(n, h), 0);
     for (int i = 0; i < 5; i++)
@@ -508,7 +501,7 @@ static cw_status set_up_scene(const cw_mesh *mesh, const cw_render_mesh_desc *d,
         s->color[a] = to_linear(d->color[a]);
         distance += (camera->target[a] - camera->eye[a]) * s->forward[a];
     }
-    normalize_vector(s->fill_light);
+    cwi_to_unit(s->fill_light);
     s->near_mm = s->perspective ? 1e-6 * distance : 0;
     s->scale = s->perspective ? s->height / 2.0 / tan(camera->fov_deg * acos(-1) / 360)
                               : s->height / camera->height_mm;

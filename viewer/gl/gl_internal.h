@@ -181,8 +181,7 @@ const char *cwi_gl_volume_defines(const cwi_gl_volume *volume);
  * texture; of a large one, which then would be five times as large, they are differences of
  * interpolated values. */
 CW_NODISCARD cw_status cwi_gl_need_gradients(cwi_gl *gl, const char **defines, cw_error *err);
-/* The derivatives of voxels, unscaled, along each axis: what gradients are made of. */
-void cwi_gl_derivatives(const cw_volume *volume, const size_t at[3], double derivatives[3]);
+
 void cwi_gl_drop_volume(cwi_gl *gl);
 
 /* Binds a brick's textures and sets the uniforms brick_first and brick_size of a program. */

@@ -366,21 +366,6 @@ static void put_gradient_row(const cw_volume *v, const cwi_gl_brick *b, size_t j
     }
 }
 
-/* As rows of gradients are, of one voxel. */
-static double row_derivative(const cw_volume *v, const char *at, int axis, size_t n)
-{
-    const char *low = row_at(v, at, axis, n, -1), *high = row_at(v, at, axis, n, 1);
-    const double a = cwi_voxel_at(v->type, low), b = cwi_voxel_at(v->type, high);
-    const double d = (b - a) * (double)step_length(v, axis, n);
-    return isfinite(d) && !(v->has_nodata && (a == v->nodata || b == v->nodata)) ? d : 0;
-}
-
-void cwi_gl_derivatives(const cw_volume *v, const size_t at[3], double out[3])
-{
-    for (int a = 0; a < 3; a++)
-        out[a] = row_derivative(v, cwi_voxel_address(v, at[0], at[1], at[2]), a, at[a]);
-}
-
 /* Layers of a brick; false when there is no memory for a thread's rows. */
 static bool put_gradients(const cw_volume *v, const cwi_gl_brick *b, double scale, size_t from,
                           size_t count, uint16_t (*out)[4])

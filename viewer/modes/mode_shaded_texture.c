@@ -3,6 +3,7 @@
 #include "viewer/modes/slab_textures.h"
 
 #include "viewer/proxy/quantized_normals.h"
+#include "viewer/scene/cell_lattice.h"
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
@@ -92,7 +93,7 @@ static uint16_t normal_of(const cw_volume *v, const shaded_state *t,
                           const double to_world[3][3], const size_t at[3])
 {
     double gradient[3], world[3];
-    cwi_gl_derivatives(v, at, gradient);
+    cwi_lattice_gradient(v, at, gradient);
     for (int r = 0; r < 3; r++)
         world[r] = cwi_dot(to_world[r], gradient);
     const size_t n = cwi_directions_nearest(&t->directions, world);

@@ -5,13 +5,6 @@
 #include <math.h>
 #include <string.h>
 
-static void normalize_vector(double v[3])
-{
-    const double length = sqrt(cwi_dot(v, v));
-    for (int a = 0; a < 3 && length > 0; a++)
-        v[a] /= length;
-}
-
 /* x^power for whole powers, as most are, and others; quicker than pow(). */
 static double raise_power(double x, double power)
 {
@@ -30,12 +23,12 @@ void cwi_lighting_make(const cwi_frame *f, const double direction[3], cwi_lighti
     for (size_t n = 0; n < l->count; n++) {
         const cw_light *light = &f->scene.lights[n];
         memcpy(l->direction[n], light->direction, sizeof l->direction[n]);
-        normalize_vector(l->direction[n]);
+        cwi_to_unit(l->direction[n]);
         for (int a = 0; a < 3; a++) {
             l->halfway[n][a] = l->direction[n][a] - direction[a];
             l->color[n][a] = (double)light->color[a];
         }
-        normalize_vector(l->halfway[n]);
+        cwi_to_unit(l->halfway[n]);
     }
 }
 
@@ -44,7 +37,7 @@ void cwi_lighting_shade(const cwi_lighting *l, const double gradient[3], double 
     double n[3] = {gradient[0], gradient[1], gradient[2]};
     double light[3];
     const bool has_side = n[0] != 0 || n[1] != 0 || n[2] != 0;
-    normalize_vector(n);
+    cwi_to_unit(n);
     for (int c = 0; c < 3; c++)
         light[c] = (double)l->material.ambient * color[c];
     for (size_t i = 0; i < l->count && has_side; i++) {
