@@ -92,7 +92,7 @@ static void place_camera(const cw_fit_desc *d, const double axes[3][3], cw_camer
     if (half[0] + half[1] + half[2] == 0)
         half[0] = half[1] = half[2] = 0.5; /* a point: a picture of a millimetre around it */
     if (d->fov_deg > 0) {
-        const double slope = tan(d->fov_deg * acos(-1) / 360) * inner;
+        const double slope = tan(d->fov_deg * CWI_PI / 360) * inner;
         distance = perspective_distance(half, axes, (const double[2]){slope * aspect, slope});
     } else {
         const double tall =
@@ -107,7 +107,7 @@ static void place_camera(const cw_fit_desc *d, const double axes[3][3], cw_camer
 /* Turns a vector about an axis of unit length (Rodrigues' formula). */
 static void rotate_vector(double v[3], const double axis[3], double degrees)
 {
-    const double angle = degrees * acos(-1) / 180, c = cos(angle), s = sin(angle);
+    const double angle = degrees * CWI_PI / 180, c = cos(angle), s = sin(angle);
     const double along = cwi_dot(axis, v) * (1 - c);
     double across[3];
     cwi_cross(axis, v, across);
@@ -153,7 +153,7 @@ cw_status cw_camera_turn(cw_camera *camera, const double axis[3], double degrees
 
 cw_status cw_camera_zoom(cw_camera *camera, double factor, cw_error *err)
 {
-    const double half = acos(-1) / 360;
+    const double half = CWI_PI / 360;
     if (!(isnormal(factor) && factor > 0))
         return cw_fail(err, CW_ERR_ARGUMENT, "a zoom of %g: above 0 was expected", factor);
     camera->fov_deg = atan(tan(camera->fov_deg * half) / factor) / half;

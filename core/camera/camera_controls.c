@@ -20,7 +20,7 @@ static cw_status find_axes(const cw_camera *camera, axes *a, cw_error *err)
 /* Returns half of the picture's height; in perspective at one millimetre before the eye. */
 static double half_height(const cw_camera *c)
 {
-    return c->fov_deg > 0 ? tan(c->fov_deg * acos(-1) / 360) : c->height_mm / 2;
+    return c->fov_deg > 0 ? tan(c->fov_deg * CWI_PI / 360) : c->height_mm / 2;
 }
 
 static double target_distance(const cw_camera *c)
@@ -123,7 +123,7 @@ static double clamp_climb(const axes *a, const double axis[3], double degrees)
     double level[3];
     cwi_cross(a->forward, axis, level);
     const double now = atan2(-cwi_dot(a->forward, axis), sqrt(cwi_dot(level, level)));
-    const double elevation = now * 180 / acos(-1);
+    const double elevation = now * 180 / CWI_PI;
     return fmin(fmax(elevation + degrees, -most), most) - elevation;
 }
 
@@ -151,7 +151,7 @@ cw_status cw_camera_orbit(cw_camera *camera, double right_deg, double up_deg, cw
 cw_status cw_camera_roll(cw_camera *camera, double degrees, cw_error *err)
 {
     axes a;
-    const double angle = degrees * acos(-1) / 180;
+    const double angle = degrees * CWI_PI / 180;
     cw_status st = find_axes(camera, &a, err);
     if (st == CW_OK && !isfinite(degrees))
         st = cw_fail(err, CW_ERR_ARGUMENT, "a roll of %g degrees", degrees);

@@ -14,7 +14,7 @@ enum {
 };
 
 static const double HISTOGRAM_VOXELS = 4; /* the distance that the last bin begins at */
-static const double DEGREES = 180 / 3.14159265358979323846;
+static const double DEGREES = 180 / CWI_PI;
 
 static double field_gradient(cw_field field, const double p[3], double h, double g[3])
 {

@@ -5,12 +5,11 @@
 #include "core/base/parallel.h"
 #include "core/base/status.h"
 #include "core/geometry/affine.h"
+#include "core/geometry/vec3.h"
 #include "core/synthetic/random_fill.h"
 
 #include <math.h>
 #include <string.h>
-
-#define PI 3.14159265358979323846
 
 static const struct {
     const char *name;
@@ -59,7 +58,7 @@ static double vector_length(double x, double y, double z)
 
 static double evaluate_gyroid(const double p[3])
 {
-    const double k = 2 * PI * 2.5 / 80;
+    const double k = 2 * CWI_PI * 2.5 / 80;
     return sin(k * p[0]) * cos(k * p[1]) + sin(k * p[1]) * cos(k * p[2]) +
            sin(k * p[2]) * cos(k * p[0]);
 }
@@ -69,8 +68,8 @@ static double marschner_lobb(const double p[3])
 {
     const double alpha = 0.25, frequency = 6;
     const double r = sqrt(p[0] * p[0] + p[1] * p[1]);
-    const double wave = cos(2 * PI * frequency * cos(PI * r / 2));
-    return (1 - sin(PI * p[2] / 2) + alpha * (1 + wave)) / (2 * (1 + alpha));
+    const double wave = cos(2 * CWI_PI * frequency * cos(CWI_PI * r / 2));
+    return (1 - sin(CWI_PI * p[2] / 2) + alpha * (1 + wave)) / (2 * (1 + alpha));
 }
 
 /* Parts of the head, LPS millimetres: ellipsoids, each painted over those before it. */

@@ -1,9 +1,8 @@
 /* Makes random numbers by SplitMix64 and Box-Muller, and stores voxels of any type. */
 #include "core/synthetic/random_fill.h"
+#include "core/geometry/vec3.h"
 
 #include <math.h>
-
-#define PI 3.14159265358979323846
 
 uint64_t cwi_random_bits(uint64_t seed, uint64_t n)
 {
@@ -23,7 +22,7 @@ double cwi_gaussian(uint64_t seed, uint64_t n)
 {
     const double u = cwi_chance(seed, 2 * n) + 0x1p-53;
     const double v = cwi_chance(seed, 2 * n + 1);
-    return sqrt(-2 * log(u)) * cos(2 * PI * v);
+    return sqrt(-2 * log(u)) * cos(2 * CWI_PI * v);
 }
 
 bool cwi_fill_range(cw_type type, double *low, double *high)

@@ -2,12 +2,11 @@
  * inside. */
 #include "core/synthetic/stress_fields.h"
 
+#include "core/geometry/vec3.h"
 #include "core/synthetic/random_fill.h"
 
 #include <float.h>
 #include <math.h>
-
-#define PI 3.14159265358979323846
 
 typedef struct cwi_hard_sample sample;
 
@@ -302,7 +301,7 @@ static double near_nyquist(const sample *s)
 {
     double p[3];
     from_middle(s, p);
-    const double k = 0.93 * PI;
+    const double k = 0.93 * CWI_PI;
     return sin(k * p[0]) + sin(k * p[1]) + sin(k * p[2]);
 }
 
@@ -313,7 +312,7 @@ static double zone_plate(const sample *s)
     double p[3];
     from_middle(s, p);
     const double square = p[0] * p[0] + p[1] * p[1] + p[2] * p[2];
-    return cos(PI / 2 * square / half_extent(s)) - 0.1;
+    return cos(CWI_PI / 2 * square / half_extent(s)) - 0.1;
 }
 
 /* Ends of the number line. */

@@ -4,6 +4,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/triangle_intersect.h"
 #include "core/mesh/weld.h"
 
 #include <math.h>
@@ -87,19 +88,6 @@ static bool spans_places(const uint32_t *points, const uint32_t *t)
            u[2] * v[0] != u[0] * v[2];
 }
 
-static bool has_area(const float *points, const uint32_t *t)
-{
-    const float *p = points + 3 * (size_t)t[0], *q = points + 3 * (size_t)t[1],
-                *r = points + 3 * (size_t)t[2];
-    double u[3], v[3];
-    for (int a = 0; a < 3; a++) {
-        u[a] = (double)q[a] - (double)p[a];
-        v[a] = (double)r[a] - (double)p[a];
-    }
-    return u[0] * v[1] != u[1] * v[0] || u[1] * v[2] != u[2] * v[1] ||
-           u[2] * v[0] != u[0] * v[2];
-}
-
 static bool is_elsewhere(const float *points, size_t v, size_t u)
 {
     const float *p = points + 3 * v, *q = points + 3 * u;
@@ -113,8 +101,8 @@ static void count_harm(const cw_mesh *mesh, const uint32_t *places, const float 
         harm->merged += map[v] != v && is_elsewhere(mesh->positions, v, map[v]);
     for (size_t t = 0; t < mesh->triangle_count; t++) {
         const uint32_t *triangle = mesh->triangles + 3 * t;
-        harm->flat += !(spans_places(places, triangle) && has_area(found, triangle)) &&
-                      has_area(mesh->positions, triangle);
+        harm->flat += !(spans_places(places, triangle) && cwi_has_area(found, triangle)) &&
+                      cwi_has_area(mesh->positions, triangle);
     }
 }
 

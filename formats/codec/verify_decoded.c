@@ -10,7 +10,7 @@
 #include <math.h>
 #include <string.h>
 
-static const double DEGREES = 180 / 3.14159265358979323846;
+static const double DEGREES = 180 / CWI_PI;
 
 /* Sums over triangles, independent of their order. */
 typedef struct sums {

@@ -14,8 +14,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const double PI = 3.14159265358979323846;
-
 /* The planes of the series while they are sorted. */
 typedef struct sorting {
     cwi_dicom_plane *planes;
@@ -244,7 +242,7 @@ static cw_status find_tilt(sorting *s, double along[3], cw_error *err)
 {
     double worst = 0;
     find_row(s, along);
-    s->findings->tilt_degrees = atan(sqrt(fmax(0, cwi_dot(along, along) - 1))) * 180 / PI;
+    s->findings->tilt_degrees = atan(sqrt(fmax(0, cwi_dot(along, along) - 1))) * 180 / CWI_PI;
     for (size_t i = 0; i < s->count; i++)
         worst = fmax(worst, off_row(s, &s->planes[i], along));
     if (s->desc->tilt == CW_TILT_KEEP) {

@@ -5,6 +5,7 @@
 #include "core/base/clock.h"
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/vec3.h"
 #include "core/mesh/mesh.h"
 #include "formats/codec/draco_pack.h"
 #include "formats/codec/meshopt_wrap.h"
@@ -276,7 +277,7 @@ static void measure_normals(const cwi_gltf_plan *plan, cw_compressed *told)
             }
             const double c = cosine / sqrt(lengths[0] * lengths[1]);
             told->normal_degrees =
-                fmax(told->normal_degrees, c < 1 ? acos(c) * 180 / 3.14159265358979323846 : 0);
+                fmax(told->normal_degrees, c < 1 ? acos(c) * 180 / CWI_PI : 0);
         }
     }
 }

@@ -3,6 +3,7 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/triangle_intersect.h"
 #include "core/mesh/weld.h"
 
 #include <float.h>
@@ -27,25 +28,12 @@ static double step_of(const cwi_part *part)
                         : 0;
 }
 
-static bool has_area(const float *points, const uint32_t *t)
-{
-    const float *p = points + 3 * (size_t)t[0], *q = points + 3 * (size_t)t[1],
-                *r = points + 3 * (size_t)t[2];
-    double u[3], v[3];
-    for (int a = 0; a < 3; a++) {
-        u[a] = (double)q[a] - (double)p[a];
-        v[a] = (double)r[a] - (double)p[a];
-    }
-    return u[0] * v[1] != u[1] * v[0] || u[1] * v[2] != u[2] * v[1] ||
-           u[2] * v[0] != u[0] * v[2];
-}
-
 static size_t count_flat(const cw_mesh *mesh, const float *rounded)
 {
     size_t flat = 0;
     for (size_t t = 0; t < mesh->triangle_count; t++) {
         const uint32_t *triangle = mesh->triangles + 3 * t;
-        flat += !has_area(rounded, triangle) && has_area(mesh->positions, triangle);
+        flat += !cwi_has_area(rounded, triangle) && cwi_has_area(mesh->positions, triangle);
     }
     return flat;
 }

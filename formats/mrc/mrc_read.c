@@ -1,6 +1,7 @@
 /* Reads MRC2014 and CCP4 maps: a header of 256 words (ccpem.ac.uk/mrc-format/mrc2014), with
  * IMOD's additions. */
 #include "core/base/status.h"
+#include "core/geometry/vec3.h"
 #include "formats/bytes/inflate_stream.h"
 #include "formats/volume/volume_reader.h"
 
@@ -18,7 +19,7 @@ enum {
 enum { STACK_GROUP = 401, LAST_STACK_GROUP = 630 }; /* space group + 400: a stack of volumes */
 
 static const double mm_per_angstrom = 1e-7;
-static const double radians = 3.14159265358979323846 / 180;
+static const double radians = CWI_PI / 180;
 
 /* Offsets of fields. Those with three values are for columns, rows, sections or for X, Y, Z. */
 typedef enum field {

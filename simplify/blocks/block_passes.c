@@ -4,6 +4,7 @@
 #include "core/base/module.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
+#include "core/geometry/vec3.h"
 #include "core/mesh/mesh.h"
 #include "simplify/blocks/partition.h"
 #include "simplify/quality/mesh_within.h"
@@ -194,7 +195,7 @@ cw_status cwi_passes_remember(cwi_passes *p, const cw_mesh *input, cw_error *err
         st = find_normals(p, err);
     p->original.allowed = p->allowed;
     p->original.normals = p->normals;
-    p->original.straight = (float)cos(p->desc->normal_deg * acos(-1) / 180);
+    p->original.straight = (float)cos(p->desc->normal_deg * CWI_PI / 180);
     return st;
 }
 

@@ -6,6 +6,7 @@
 #include "core/geometry/bvh.h"
 #include "core/geometry/exact_predicates.h"
 #include "core/geometry/union_find.h"
+#include "core/geometry/vec3.h"
 
 #include <math.h>
 #include <string.h>
@@ -109,8 +110,7 @@ static void wind_around(void *context, size_t k)
 static void find_open_inward(const work *w, uint8_t *wrong, cw_quality *q)
 {
     for (size_t v = 0; v < w->welded->mesh->vertex_count; v++) {
-        const double area = w->shells->area[v],
-                     whole = area * sqrt(area) / (6 * sqrt(acos(-1)));
+        const double area = w->shells->area[v], whole = area * sqrt(area) / (6 * sqrt(CWI_PI));
         wrong[v] = wrong[v] == 1 && w->shells->volume[v] < -0.1 * whole;
         q->open_inward += wrong[v];
     }

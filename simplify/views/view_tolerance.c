@@ -19,7 +19,7 @@ static const double NEAREST = 1e-3;
 static void see_perspective(cwi_view_tolerance *v, const cw_camera *c, const double size[2],
                             double pixels)
 {
-    const double open = tan(c->fov_deg * acos(-1) / 360), k = size[1] / (2 * open);
+    const double open = tan(c->fov_deg * CWI_PI / 360), k = size[1] / (2 * open);
     double away[3];
     for (int n = 0; n < 2; n++)
         v->slope[n] = (0.5 * size[n] + pixels) / k;

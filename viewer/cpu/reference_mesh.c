@@ -503,7 +503,7 @@ static cw_status set_up_scene(const cw_mesh *mesh, const cw_render_mesh_desc *d,
     }
     cwi_to_unit(s->fill_light);
     s->near_mm = s->perspective ? 1e-6 * distance : 0;
-    s->scale = s->perspective ? s->height / 2.0 / tan(camera->fov_deg * acos(-1) / 360)
+    s->scale = s->perspective ? s->height / 2.0 / tan(camera->fov_deg * CWI_PI / 360)
                               : s->height / camera->height_mm;
     s->points = cwi_alloc_array(mesh->vertex_count, sizeof *s->points);
     s->spans = cwi_alloc_array(mesh->triangle_count, sizeof *s->spans);

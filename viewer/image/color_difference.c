@@ -3,12 +3,11 @@
 
 #include "core/base/memory.h"
 #include "core/base/status.h"
+#include "core/geometry/vec3.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
-
-#define PI 3.14159265358979323846
 
 /* Opacity above which the reference shows something. */
 static const float covered = 1e-4f;
@@ -45,13 +44,13 @@ void cwi_lab_of(const double srgb[3], double lab[3])
 
 static double hue_of(double a, double b)
 {
-    const double degrees = a == 0 && b == 0 ? 0 : atan2(b, a) * 180 / PI;
+    const double degrees = a == 0 && b == 0 ? 0 : atan2(b, a) * 180 / CWI_PI;
     return degrees < 0 ? degrees + 360 : degrees;
 }
 
 static double cos_deg(double degrees)
 {
-    return cos(degrees * PI / 180);
+    return cos(degrees * CWI_PI / 180);
 }
 
 static double seventh_power(double x)
@@ -100,10 +99,11 @@ double cwi_delta_e(const double a[3], const double b[3])
     const double t = 1 - 0.17 * cos_deg(hue - 30) + 0.24 * cos_deg(2 * hue) +
                      0.32 * cos_deg(3 * hue + 6) - 0.20 * cos_deg(4 * hue - 63);
     const double blue = 30 * exp(-(hue - 275) / 25 * ((hue - 275) / 25));
-    const double rotation = -sin(2 * blue * PI / 180) * 2 * chroma_share(mean);
+    const double rotation = -sin(2 * blue * CWI_PI / 180) * 2 * chroma_share(mean);
     const double dl = (b[0] - a[0]) / (1 + 0.015 * light * light / sqrt(20 + light * light));
     const double dc = (q[0] - p[0]) / (1 + 0.045 * mean);
-    const double dh = 2 * sqrt(p[0] * q[0]) * sin(turn / 2 * PI / 180) / (1 + 0.015 * mean * t);
+    const double dh =
+        2 * sqrt(p[0] * q[0]) * sin(turn / 2 * CWI_PI / 180) / (1 + 0.015 * mean * t);
     return sqrt(fmax(dl * dl + dc * dc + dh * dh + rotation * dc * dh, 0));
 }
 

@@ -31,7 +31,7 @@ static void make_footprint(cwi_splats *s)
 {
     float rows[FOOTPRINT_ROWS];
     const double end = table_radius * table_radius / 2, rest = exp(-end);
-    const double integral = 2 * acos(-1) * (1 - rest - end * rest);
+    const double integral = 2 * CWI_PI * (1 - rest - end * rest);
     for (int n = 0; n < FOOTPRINT_ROWS; n++)
         rows[n] = (float)((exp(-end * n / (FOOTPRINT_ROWS - 1)) - rest) / integral);
     s->footprint = cwi_gl_texture(GL_TEXTURE_2D, UNIT_FOOTPRINT, true);

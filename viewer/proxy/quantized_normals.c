@@ -16,7 +16,7 @@ void cwi_directions_free(cwi_directions *d)
 
 static void place_directions(cwi_directions *d)
 {
-    const double pi = acos(-1), golden = pi * (3 - sqrt(5));
+    const double golden = CWI_PI * (3 - sqrt(5));
     for (size_t n = 0; n < d->count; n++) {
         const double z = 1 - ((double)n + 0.5) / (double)d->count, r = sqrt(1 - z * z);
         d->all[n][0] = r * cos(golden * (double)n);

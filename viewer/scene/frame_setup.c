@@ -159,7 +159,7 @@ static cw_status set_camera(cwi_frame *f, const double min[3], const double max[
     memcpy(f->eye_mm, c->eye, sizeof f->eye_mm);
     f->perspective = c->fov_deg > 0;
     f->half[1] =
-        f->perspective ? tan(c->fov_deg * acos(-1) / 360) : c->height_mm / 2 / f->unit_mm;
+        f->perspective ? tan(c->fov_deg * CWI_PI / 360) : c->height_mm / 2 / f->unit_mm;
     f->half[0] = f->half[1] * aspect;
     return CW_OK;
 }

@@ -30,7 +30,7 @@ static void lab_to_srgb(double lightness, double a, double b, double srgb[3])
 
 void cwi_ramp_color(double share, double srgb[3])
 {
-    const double t = fmin(fmax(share, 0), 1), degree = acos(-1) / 180;
+    const double t = fmin(fmax(share, 0), 1), degree = CWI_PI / 180;
     const double lightness = 18 + 74 * t, hue = (310 - 205 * t) * degree;
     const double tint = 2 * t - 0.75; /* 0 where sRGB has least: in the teals */
     const double chroma = 27 + 30 * tint * tint;
