@@ -48,6 +48,15 @@ int test_rounds(int count)
     return TEST_IS_SLOW ? TEST_SOME(count) : (count + 3) / 4;
 }
 
+unsigned test_seed(unsigned own)
+{
+    const char *added = getenv("CUBEWRIGHT_TEST_SEED");
+    const unsigned seed = own + (added ? (unsigned)strtoul(added, NULL, 10) : 0);
+    print_message("random seed %u (CUBEWRIGHT_TEST_SEED=%s)\n", seed, added ? added : "0");
+    srand(seed);
+    return seed;
+}
+
 int test_folder_make(void **state)
 {
     (void)state;

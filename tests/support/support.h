@@ -22,6 +22,10 @@
  * quarter, under sanitizers an eighth, and all with CUBEWRIGHT_TEST_LONG=1. */
 int test_rounds(int count);
 
+/* Seeds rand() and prints the seed, which ctest shows of a test that fails. The seed is `own`,
+ * plus CUBEWRIGHT_TEST_SEED where that is set: other random cases of the same test. */
+unsigned test_seed(unsigned own);
+
 /* The call succeeded; else the test fails with its message. */
 #define assert_ok(call, err)                                                                   \
     do {                                                                                       \

@@ -259,7 +259,7 @@ static void all_eight_types_give_the_sphere(void **state)
 static void integer_noise_stays_manifold(void **state)
 {
     (void)state;
-    srand(7);
+    test_seed(7);
     for (int round = 0; round < 400; round++) {
         int8_t voxels[6 * 5 * 7];
         for (size_t n = 0; n < sizeof voxels; n++)
@@ -306,7 +306,7 @@ static double determinant(const cw_volume *v)
 static void any_affine_keeps_the_outside_out(void **state)
 {
     (void)state;
-    srand(3);
+    test_seed(3);
     for (int round = 0; round < 12; round++) {
         cw_volume v = test_sample(CW_FIELD_SPHERE, 40, CW_F32);
         const double voxel = v.affine[0][0];
@@ -368,7 +368,7 @@ static void a_sample_on_the_isovalue_is_inside(void **state)
 static void voxels_without_value_end_the_surface_cleanly(void **state)
 {
     (void)state;
-    srand(11);
+    test_seed(11);
     for (int round = 0; round < 200; round++) {
         float voxels[6 * 6 * 6];
         for (int n = 0; n < 216; n++) {
@@ -514,7 +514,7 @@ static size_t count_open_curves(const cw_mesh *mesh)
 static void border_loops_are_the_open_surfaces_borders(void **state)
 {
     (void)state;
-    srand(5);
+    test_seed(5);
     for (int round = 0; round < 60; round++) {
         float voxels[5 * 4 * 3];
         for (int n = 0; n < 60; n++)

@@ -343,12 +343,14 @@ static void vertices_are_near_surfaces_that_are_known(void **state)
     }
 }
 
-/* A cell's signs, which of its faces join, and what the count says of it: by whole numbers. */
+/* A cell's signs, its joined faces, and the components and Euler number of its surface, from whole
+ * numbers. 0: a face is tied, which lies between two cases, or the count cannot decide. */
 static uint64_t cell_key(const float v[8])
 {
     static const int faces[6][4] = {{0, 1, 3, 2}, {4, 5, 7, 6}, {0, 1, 5, 4},
                                     {2, 3, 7, 6}, {0, 2, 6, 4}, {1, 3, 7, 5}};
     uint64_t key = 0;
+    bool is_tied = false;
     for (int c = 0; c < 8; c++)
         key |= (uint64_t)(v[c] > 0) << c;
     for (int f = 0; f < 6; f++) {
@@ -357,11 +359,13 @@ static uint64_t cell_key(const float v[8])
         const bool ambiguous =
             (*a > 0) == (*c > 0) && (*b > 0) == (*d > 0) && (*a > 0) != (*b > 0);
         const float product = *a * *c - *b * *d;
+        is_tied = is_tied || (ambiguous && product == 0);
         key |= (uint64_t)(ambiguous ? 1 + (product > 0) : 0) << (8 + 2 * f);
     }
     const test_truth t = test_topology_counted(v, (const size_t[3]){2, 2, 2}, 0);
-    return !t.decidable ? 0
-                        : key | (uint64_t)t.components << 20 | (uint64_t)(t.euler + 16) << 28;
+    return is_tied || !t.decidable
+               ? 0
+               : key | (uint64_t)t.components << 20 | (uint64_t)(t.euler + 16) << 28;
 }
 
 enum { KEYS = 4096, RANDOM_CELLS = TEST_SOME(400000) };
@@ -408,7 +412,7 @@ static void every_case_of_marching_cubes_is_there(void **state)
     cw_volume v = make(n, CW_I8, 44, 44, 44);
     add_cells_of_volume(k, &v);
     assert_int_equal(k->count, 766);
-    srand(31);
+    test_seed(31);
     for (int r = 0; r < RANDOM_CELLS; r++) {
         float corners[8];
         bool in = false, out = false;

@@ -87,7 +87,7 @@ static void fill(cw_volume *v, int round)
 static void slabs_are_the_surface(void **state)
 {
     (void)state;
-    srand(5);
+    test_seed(5);
     for (int round = 0; round < 32; round++) {
         cw_volume v;
         cw_mesh whole;

@@ -66,7 +66,7 @@ static double rms(const cw_mesh *mesh, const cw_mesh *reference)
 static void a_number_of_triangles_is_met(void **state)
 {
     (void)state;
-    srand(11);
+    test_seed(11);
     for (int round = TEST_IS_SLOW ? 3 : 0; round < 4; round++) {
         cw_volume v = noisy_gyroid(32, 0.05);
         const cw_extract_desc extract = {.leave_open = round & 1};
@@ -122,7 +122,7 @@ static void a_box_needs_few_triangles(void **state)
 static void an_error_is_kept(void **state)
 {
     (void)state;
-    srand(12);
+    test_seed(12);
     for (int round = TEST_IS_SLOW ? 3 : 0; round < 4; round++) {
         cw_volume v = noisy_column(16, 22, round ? 0.02 : 0);
         const cw_extract_desc extract = {.leave_open = round & 1};

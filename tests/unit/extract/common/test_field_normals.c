@@ -62,7 +62,7 @@ static void points_off_the_grid_get_the_spheres_normals(void **state)
         cw_mesh mesh = {.vertex_count = COUNT};
         float truth[3 * COUNT];
         mesh.positions = cwi_alloc_array(COUNT, 3 * sizeof *mesh.positions);
-        srand(7);
+        test_seed(7);
         for (size_t p = 0; p < COUNT; p++) {
             double d[3], length = 0;
             for (int a = 0; a < 3; a++) {

@@ -57,7 +57,7 @@ static void every_engine_gives_the_same_bytes(void **state)
     (void)state;
     enum { EDGE = TEST_IS_SLOW ? 3 : 6 };
     double *memory = malloc(sizeof *memory * (EDGE * EDGE * 200 + 8));
-    srand(23);
+    test_seed(23);
     for (size_t width = 2; width <= 200; width++)
         for (int type = 0; type < CW_TYPE_COUNT; type++) {
             const size_t bytes = cw_type_size((cw_type)type), shift = (size_t)rand() % 8;
@@ -169,7 +169,7 @@ static void no_data_is_as_nan(void **state)
 {
     (void)state;
     static const size_t sizes[][3] = {{70, 9, 12}, {64, 20, 7}, {130, 8, 9}, {5, 40, 40}};
-    srand(41);
+    test_seed(41);
     for (int round = 0; round < (TEST_IS_SLOW ? 12 : 96); round++) {
         cw_volume v[2];
         cw_extractor *x;

