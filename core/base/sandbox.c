@@ -25,6 +25,10 @@
 
 enum { POLL_MS = 100, LAST_STDIO = 2, CHILD_FILES = 64 };
 
+/* Bytes of address space that the child needs for itself, beyond those of the library: the
+ * seccomp filter, and the stack and heap of its loop. A limit of a few bytes would leave none. */
+enum { CHILD_OVERHEAD = 4 << 20 };
+
 typedef struct answer {
     cw_status status;
     cw_error error;
@@ -122,8 +126,8 @@ static void set_limits(const cwi_sandbox_desc *d)
     limit_resource(RLIMIT_NOFILE, CHILD_FILES);
     limit_resource(RLIMIT_STACK, (uint64_t)8 << 20);
     if (!CWI_SANITIZED)
-        limit_resource(RLIMIT_AS,
-                       space_in_use() + (d->memory ? d->memory : CWI_SANDBOX_MEMORY));
+        limit_resource(RLIMIT_AS, space_in_use() + CHILD_OVERHEAD +
+                                      (d->memory ? d->memory : CWI_SANDBOX_MEMORY));
 }
 
 /* Closes all files but the socket, which moves behind the standard streams. Those are

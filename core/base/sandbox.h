@@ -44,7 +44,8 @@ typedef struct cwi_sandbox_desc {
     cwi_sandbox_work work;
     void *state;
     size_t shared_bytes; /* of the memory that both sides see */
-    uint64_t memory;     /* bytes that the child may allocate besides; 0: CWI_SANDBOX_MEMORY */
+    uint64_t memory;     /* bytes for the library, besides what the child itself needs;
+                            0: CWI_SANDBOX_MEMORY */
     double timeout_s;    /* for one piece of work; 0: 60 */
     bool inside;         /* no child: the work is done here */
     bool trusted;        /* the work is on our own data: a child that may die, without limits */
