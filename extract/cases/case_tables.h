@@ -1,5 +1,5 @@
-/* What the 256 cube cases and the resolutions of their ambiguous faces look like, and those of
- * other cells; the tables are made by generate_tables.c. Triangles name edges of the cell, three a
+/* Tables of the 256 cube cases, the resolutions of their ambiguous faces, and the cases of
+ * other cells. generate_tables.c makes them. Triangles name edges of the cell, three a
  * triangle, counter-clockwise seen from outside the solid. */
 #ifndef EXTRACT_CASES_CASE_TABLES_H
 #define EXTRACT_CASES_CASE_TABLES_H

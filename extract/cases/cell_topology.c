@@ -1,3 +1,5 @@
+/* Resolves ambiguous cells as the trilinear interpolant does [Nielson1991]: decides which faces
+ * join, finds tunnels, and builds the triangles. */
 #include "extract/cases/cell_topology.h"
 
 #include "core/geometry/vec3.h"
@@ -208,8 +210,8 @@ static void set_tunnel(cwi_cell_plan *plan, const sweep *s, int column, double t
     }
 }
 
-/* Whether some slice across an axis may have columns inside and outside by turns: two opposite
- * ones are inside at one end at least, and the other two outside. */
+/* Returns true if some slice across an axis may have columns alternately inside and outside:
+ * two opposite ones are inside at one end at least, and the other two outside. */
 static bool may_alternate(unsigned cube, int axis)
 {
     /* columns by their low corners: all, and opposite ones */
@@ -263,7 +265,7 @@ static void find_tunnel(cwi_cell_plan *plan, unsigned cube, const double values[
     }
 }
 
-/* What a loop's disc consists of. */
+/* Returns the number of triangles of a loop's disc. */
 static int disc_triangles(const cwi_config *config, int loop)
 {
     return config->loop_length[loop] - (config->cone[loop] ? 0 : 2);

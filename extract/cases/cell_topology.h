@@ -3,7 +3,7 @@
  * A cell's signs leave two questions. On each ambiguous face, are the inside corners joined?
  * The asymptotic decider [Nielson1991] answers with the sign of a product difference, exact and
  * the same from both cells. And inside, do two patches of a kind meet through a tunnel? Slices
- * z = t are bilinear; where their corners are inside and outside by turns, the same product
+ * z = t are bilinear; where their corners are alternately inside and outside, the same product
  * difference is a quadratic in t, and there is a tunnel just when it changes sign and changes
  * back between two events that already settle it (corners changing sign, or the end faces). */
 #ifndef EXTRACT_CASES_CELL_TOPOLOGY_H
@@ -19,7 +19,7 @@ enum { CWI_CELL_MAX_TRIANGLES = 18, CWI_CELL_MAX_VERTICES = 4, CWI_CELL_INNER = 
  * Values as below. */
 bool cwi_face_joins(const double inside[2], const double outside[2], bool zero_inside);
 
-/* What an ambiguous cell's surface consists of, known from its values alone. */
+/* The plan of an ambiguous cell's surface, known from the cell's values alone. */
 typedef struct cwi_cell_plan {
     const cwi_config *config;
     int tunnel[2];        /* loops that a tunnel joins; both -1: none */

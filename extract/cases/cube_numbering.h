@@ -68,7 +68,7 @@ static inline int cwi_edge_between(int a, int b)
     }
 }
 
-/* The corners of a face are inside and outside by turns. */
+/* Returns true if the corners of a face are alternately inside and outside. */
 static inline bool cwi_face_is_ambiguous(int cube_case, int face)
 {
     const int a = cube_case >> cwi_face_corner(face, 0) & 1;

@@ -122,7 +122,7 @@ static bool is_inside(int cell_case, int corner)
     return cell_case >> corner & 1;
 }
 
-/* The corners of a face are inside and outside by turns. */
+/* Returns true if the corners of a face are alternately inside and outside. */
 static bool is_ambiguous_face(const shape *s, int cell_case, int face)
 {
     bool turns = s->face_size[face] == 4;

@@ -1,3 +1,5 @@
+/* Computes the normals of vertices from the field's gradient, and from triangles where it
+ * vanishes. */
 #include "extract/common/field_normals.h"
 
 #include "core/base/memory.h"

@@ -1,4 +1,4 @@
-/* What gradients and triangles say of normals. */
+/* Normals of vertices, from gradients of the field and from triangles. */
 #ifndef EXTRACT_COMMON_FIELD_NORMALS_H
 #define EXTRACT_COMMON_FIELD_NORMALS_H
 

@@ -46,7 +46,7 @@ static inline void begin_row(cell_list *l, const cwi_bit_grid *g, const cwi_row 
     }
 }
 
-/* Lists go on, in the same row, after one of so many words. */
+/* Continues the lists in the same row, after a list of `words` words. */
 static inline void go_on(cell_list *l, size_t words)
 {
     memcpy(l->edges[0].first, l->edges[words].first, sizeof l->edges[0].first);
@@ -73,7 +73,7 @@ static inline void load_edges(cell_list *l, size_t words, const cwi_bit_grid *g,
     }
 }
 
-/* The places of the cells at so many bits. */
+/* Lists the places of the cells whose bits are set, `count` of them. */
 static inline void list_bits(uint64_t bits, size_t count, size_t word, uint16_t *cell)
 {
 #if CWI_WIDE
@@ -99,8 +99,8 @@ static inline bool counts_on(const cwi_bit_grid *g, size_t j, size_t k)
     return !g->live || cwi_is_whole(g, j, k);
 }
 
-/* Lists the active cells of word w after n others and so many words. Returns how many cells
- * there are then. */
+/* Lists the active cells of word w, after n other cells and `words` other words. Returns the
+ * number of cells listed then. */
 static inline size_t list_cells(cell_list *l, size_t words, size_t n, const cwi_bit_grid *g,
                                 const cell_rows *samples, size_t j, size_t k, size_t w)
 {

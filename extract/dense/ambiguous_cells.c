@@ -1,3 +1,5 @@
+/* Plans the ambiguous cells of a dense grid from the values of their eight corners, and writes
+ * their triangles and inner vertices. */
 #include "extract/dense/ambiguous_cells.h"
 
 #include "core/base/memory.h"
@@ -17,7 +19,7 @@ static double stored_at(const cw_volume *v, size_t i, size_t j, size_t k)
     return v->has_nodata && x == v->nodata ? NAN : x;
 }
 
-/* What a number is as the decisions see it: times this, after the level is taken off. */
+/* Returns 1 or -1: the factor of numbers for the decisions, after the level is subtracted. */
 static double toward_inside(const cwi_bit_grid *grid)
 {
     return grid->invert ? -1 : 1;

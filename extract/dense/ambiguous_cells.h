@@ -1,4 +1,4 @@
-/* Ambiguous cells of a grid: their values, what they are made of, and their inner vertices. */
+/* Ambiguous cells of a grid: their values, their plans, and their inner vertices. */
 #ifndef EXTRACT_DENSE_AMBIGUOUS_CELLS_H
 #define EXTRACT_DENSE_AMBIGUOUS_CELLS_H
 

@@ -1,3 +1,5 @@
+/* Allocates the bit planes of a dense grid, sets the isovalue, and classifies the samples, in
+ * parallel, as inside or outside. */
 #include "extract/dense/bit_planes.h"
 
 #include "core/base/memory.h"

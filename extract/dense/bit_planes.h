@@ -22,7 +22,7 @@ typedef struct cwi_leaf_bits {
     uint8_t wanted, solid;
 } cwi_leaf_bits;
 
-/* What counting notes of a layer. */
+/* Counts of a layer, and the plans of its ambiguous cells. */
 typedef struct cwi_layer {
     size_t vertices, triangles;
     bool at_border;  /* the solid meets the volume's border here */
@@ -102,8 +102,8 @@ CW_NODISCARD cw_status cwi_grid_classify(cwi_bit_grid *grid, const cwi_engine *e
                                          cw_error *err);
 size_t cwi_grid_bytes(const cwi_bit_grid *grid);
 
-/* What of classification is the same for every sample: the isovalue in stored numbers, and
- * which side of it is inside. */
+/* Sets the isovalue, as a stored number, and its inside: these are the same for every
+ * sample. */
 CW_NODISCARD cw_status cwi_grid_set_level(cwi_bit_grid *grid, const cw_extract_desc *desc,
                                           cw_error *err);
 

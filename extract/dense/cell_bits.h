@@ -40,7 +40,7 @@ static inline __m256i cwi_set_in_bytes(__m256i bits)
 }
 #endif
 
-/* Adds, word by word, how many bits are set in so many, up to 31. */
+/* Adds to each sum the number of bits set in its word of `count` vectors, up to 31. */
 static inline void cwi_add_set(const cwi_words *bits, int count, cwi_words *sums)
 {
 #ifdef __AVX512VPOPCNTDQ__

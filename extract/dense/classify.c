@@ -206,8 +206,8 @@ static inline uint64_t ordered_f32(const float *x)
 #define ordered_u32 plain_ordered_u32
 #define ordered_i32 plain_ordered_i32
 
-/* What the leaves around word w of the row are. Leaves that share samples, and are not wanted,
- * are alike. */
+/* Returns the bits of the leaves around word w of the row. Leaves that share samples, and are
+ * not wanted, have the same bits. */
 static cwi_leaf_bits leaves_of_samples(const cwi_bit_grid *g, const cwi_brick_rows *b, size_t w)
 {
     cwi_leaf_bits bits = {0, 0};
@@ -219,9 +219,9 @@ static cwi_leaf_bits leaves_of_samples(const cwi_bit_grid *g, const cwi_brick_ro
     return bits;
 }
 
-/* Where all samples are compared they are prefetched so many bytes ahead, a line at a time:
- * more than processors do by themselves. Into the second cache: the first one has fewer lines
- * on their way to it at a time. */
+/* Prefetching, where all samples are compared: AHEAD bytes ahead, a line at a time. That is
+ * more than processors do by themselves. It goes to the second cache: the first one has fewer
+ * lines on their way to it at a time. */
 enum { AHEAD = 4096, LINE = 64, SECOND = 2 };
 
 #define TYPED "extract/dense/classify.inc"
@@ -252,7 +252,7 @@ void cwi_classify_rows(const cwi_bit_grid *g, size_t j, size_t k, size_t rows, b
     classify[g->volume.type](g, j, k, rows, in, out);
 }
 
-/* What is wanted of the samples of a layer of bricks. */
+/* Classifies the wanted samples of a layer of bricks. */
 static void classify_bricks(const cwi_bit_grid *g, size_t b)
 {
     static void (*const classify[CW_TYPE_COUNT])(const cwi_bit_grid *, const size_t[2],

@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-/* What some words of a layer come to; after a row's last word comes the next row's first. */
+/* Counts of some words of a layer; after a row's last word comes the next row's first. */
 typedef struct word_counts {
     unsigned busy, open;        /* word n, bit n: it has such cells as mixed; as ambiguous */
     cwi_words mixed, ambiguous; /* cells whose corners are on both sides; of these, those whose
@@ -88,14 +88,14 @@ static void count_ambiguous(const cwi_bit_grid *g, uint64_t ambiguous, size_t j,
     }
 }
 
-/* The first so many of CWI_WORDS words. */
+/* Returns the bits of the first `count` of CWI_WORDS words. */
 static inline unsigned first_words(size_t count)
 {
     return count < CWI_WORDS ? (1u << count) - 1 : (1u << CWI_WORDS) - 1;
 }
 
-/* Some of the cells of so many words from word w of row (j, k) on, the n-th that were counted,
- * are, in part, padding: there the solid meets the border. */
+/* Returns true if mixed cells of `count` words are partly padding: there the solid meets the
+ * border. The words start at word w of row (j, k), the n-th that was counted. */
 static bool meets_border(const cwi_bit_grid *g, const word_counts *c, int n, int count,
                          size_t j, size_t k, size_t w)
 {
@@ -120,9 +120,9 @@ static uint64_t count_live_edges(const cwi_bit_grid *g, unsigned busy, size_t j,
     return count;
 }
 
-/* Adds so many words from word w of row (j, k) on, the n-th that were counted, to their row's
- * counts. An edge that is crossed belongs to a cell whose corners differ, as the last samples
- * of every row, and the last rows, are padding. */
+/* Adds the counts of `count` words to those of their row. The words start at word w of row (j,
+ * k), the n-th that was counted. An edge that is crossed belongs to a cell whose corners
+ * differ, as the last samples of every row, and the last rows, are padding. */
 static inline void take_words(const cwi_bit_grid *g, const word_counts *c, int n, int count,
                               size_t j, size_t k, size_t w, cwi_row *row)
 {

@@ -6,7 +6,7 @@
 
 #include <stdint.h>
 
-/* So many are computed at a time, at most. */
+/* The maximum number of cubics solved at a time. */
 enum { CWI_CUBICS = 16 };
 
 /* The weights of four samples at -1, 0, 1 and 2 in the value, or the slope, at t of the cubic

@@ -1,4 +1,4 @@
-/* What an extraction holds between counting and writing. */
+/* State of an extraction between counting and writing. */
 #ifndef EXTRACT_DENSE_DENSE_PLAN_H
 #define EXTRACT_DENSE_DENSE_PLAN_H
 

@@ -7,7 +7,7 @@
 /* Corners of triangles that memory is prefetched for before they are written. */
 enum { AHEAD = 1024 };
 
-/* What writing a row of cells goes on with. */
+/* State that writing a row of cells carries from cell to cell. */
 typedef struct cwi_cursor {
     uint32_t *out;
     const uint32_t *end;

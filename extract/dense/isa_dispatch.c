@@ -1,3 +1,5 @@
+/* Lists the engines (plain, SSE2, AVX2, AVX-512), and picks the best one that the processor can
+ * run. */
 #include "extract/dense/isa_dispatch.h"
 
 static bool is_always(void)

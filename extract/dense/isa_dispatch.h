@@ -17,8 +17,8 @@ typedef struct cwi_case_emission {
     uint8_t edges;                  /* how many; 0: signs alone do not settle the surface */
 } cwi_case_emission;
 
-/* What is written of cells: of those of each case, and of a configuration of one that has no
- * vertices inside. */
+/* Triangles written for cells: those of each case, and those of each configuration of a case
+ * that has no vertices inside the cell. */
 typedef struct cwi_emission {
     cwi_case_emission of_case[256];
     uint8_t config_edge[CWI_CASE_CONFIGS][32];
@@ -47,12 +47,12 @@ struct cwi_engine {
      * saw samples with values on each side. */
     void (*classify_layer)(const cwi_bit_grid *grid, size_t b, cwi_range *leaves, bool *in,
                            bool *out);
-    /* Writes the inside bits of so many rows of layer k, from row j on, all of them wanted; and
-     * tells as classify_layer. */
+    /* Writes the inside bits of `rows` rows of layer k, from row j on, all of them wanted.
+     * Reports `in` and `out` as classify_layer does. */
     void (*classify_rows)(const cwi_bit_grid *grid, size_t j, size_t k, size_t rows, bool *in,
                           bool *out);
-    /* Tells, in addition, whether some of so many packed voxels, a multiple of 64, are inside,
-     * and some are not. */
+    /* Sets `in` if some of `count` packed voxels, a multiple of 64, are inside, and `out` if
+     * some are not. Clears neither. */
     void (*find_sides)(const cwi_bit_grid *grid, const void *voxels, size_t count, bool *in,
                        bool *out);
     /* Leaves a layer's counts, not yet first numbers, in its rows. */

@@ -1,3 +1,5 @@
+/* Builds the octree of value ranges [Wilhelms1992] upward from its leaves, and marks with it
+ * the leaves that the isovalue crosses. */
 #include "extract/dense/minmax_octree.h"
 
 #include "core/base/memory.h"
@@ -126,7 +128,7 @@ static size_t mark_below(const cwi_octree *t, int l, const size_t at[3], cwi_bit
     return leaves;
 }
 
-/* What the tree says of the eight leaves in a word of a row of bricks. */
+/* Returns, from the ranges, the bits of the eight leaves in a word of a row of bricks. */
 static cwi_leaf_bits leaf_bits(const cwi_octree *t, const cwi_bit_grid *g, size_t row, size_t w)
 {
     const cwi_range *leaves = t->level[0] + row * t->dim[0][0];

@@ -19,14 +19,15 @@ typedef struct cwi_range {
 
 struct cwi_octree {
     bool grown;        /* the nodes hold ranges */
-    size_t leaf_bytes; /* a leaf by itself takes as long to read as so many bytes a sample in a
-                          row: with more leaves wanted than that makes up for, all are read */
+    size_t leaf_bytes; /* time to read a leaf by itself, in bytes a sample of reading whole
+                          rows; when the wanted leaves cost more than all samples, all samples
+                          are read */
     int levels;
     size_t dim[CWI_OCTREE_LEVELS][3]; /* bricks along each axis; level 0 has the leaves */
     cwi_range *level[CWI_OCTREE_LEVELS];
 };
 
-/* Makes room for the leaves of a grid; freeing an empty or already freed tree is harmless. */
+/* Allocates the leaf level for a grid; freeing an empty or already freed tree is harmless. */
 CW_NODISCARD cw_status cwi_octree_init(cwi_octree *tree, const cwi_bit_grid *grid,
                                        cw_error *err);
 void cwi_octree_free(cwi_octree *tree);

@@ -16,7 +16,7 @@
 #include <immintrin.h>
 #endif
 
-/* What is compiled once for each axis; and what needs all registers. */
+/* Functions that are compiled once for each axis, and those that need all registers. */
 #define ALWAYS_INLINE __attribute__((always_inline)) static inline
 #define NEVER_INLINE  __attribute__((noinline)) static
 
@@ -28,13 +28,13 @@ enum {
     BATCH = 128, /* edges; arithmetic is on LANES at a time */
     LANES = 16,
     ROOM = BATCH + 64 + LANES,
-    AHEAD = 3, /* rows that samples are fetched before they are needed, */
-    DENSE = 2, /* in rows with more vertices than so many a word */
+    AHEAD = 3, /* rows by which samples are prefetched, */
+    DENSE = 2, /* in rows with more vertices a word than this */
     FAR = 512, /* numbers that memory is prefetched for before they are written */
     TILE = 32  /* rows that are done in all layers before the next */
 };
 
-/* What edges are listed apart: with all samples around them, at the volume's border, and
+/* Kinds of edges, listed apart: with all samples around them, at the volume's border, and
  * between its last sample along an axis and the padding. */
 enum { INNER, OUTER, CAP, KINDS };
 
@@ -54,7 +54,8 @@ typedef struct cwi_edge_list {
     cwi_run run[ROOM + 1];
 } cwi_edge_list;
 
-/* What is listed from now on is in row j, and its vertices are numbered from number on. */
+/* Begins a run: edges listed from now on are in row j, and their vertices are numbered from
+ * `number` on. */
 static inline void begin_run(cwi_edge_list *l, size_t j, uint32_t number)
 {
     if (!l->runs || l->run[l->runs - 1].begin < l->count)
@@ -79,9 +80,9 @@ static inline void clear_list(cwi_edge_list *l)
     l->count = 0;
 }
 
-/* Adds the edges at the bits of a word of row j, whose lowest stands at i. Several at a time,
- * whether there are so many or not: how many there are cannot be foreseen, and a wrong guess
- * costs more. */
+/* Adds the edges at the bits of a word of row j, whose lowest bit stands at i. It writes
+ * several at a time, even where there are fewer: their number cannot be predicted, and a wrong
+ * guess costs more. */
 static inline void list_edges(cwi_edge_list *l, uint64_t bits, size_t i, size_t j)
 {
     int32_t *to_i = l->i + l->count, *to_j = l->j + l->count;
@@ -227,16 +228,17 @@ typedef int32_t cwi_lanes __attribute__((vector_size(4 * LANES)));
 typedef uint32_t cwi_bit_lanes __attribute__((vector_size(4 * LANES)));
 typedef float cwi_float_lanes __attribute__((vector_size(4 * LANES)));
 
-/* What stands at so many bytes from an address, in each lane. Not the shorter intrinsic: it
- * waits for what its register held before. */
+/* Loads the 32 bits at an offset in bytes from an address, in each lane. It avoids the shorter
+ * intrinsic, which waits for the previous content of its register. */
 ALWAYS_INLINE cwi_bit_lanes gather(const char *at, cwi_lanes bytes)
 {
     return (cwi_bit_lanes)_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), 0xffff,
                                                       (__m512i)bytes, at, 1);
 }
 
-/* The samples of a volume, so many bytes each, can be gathered, and that is fast: not where
- * microcode mends Gather Data Sampling, on processors older than those with bfloat16. */
+/* Returns true if the samples of a volume, `voxel` bytes each, can be gathered, and gathering
+ * is fast. It is slow where microcode mitigates Gather Data Sampling, on processors older than
+ * those with bfloat16. */
 static inline bool can_gather(const cw_volume *v, ptrdiff_t voxel)
 {
     const ptrdiff_t row = v->stride[1];

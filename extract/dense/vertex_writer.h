@@ -27,8 +27,8 @@ static inline void cwi_store_position(const cwi_vertex_sink *sink, const size_t 
     cwi_world_position(sink, at, x, sink->positions + 3 * n);
 }
 
-/* g: the gradient of the stored numbers in index space. A zero normal where it vanishes or is
- * not finite: the caller mends those from triangles. */
+/* Writes a vertex's normal. g: the gradient of the stored numbers in index space. Where it
+ * vanishes or is not finite the normal is zero: the caller repairs it from triangles. */
 static inline void cwi_store_normal(cwi_vertex_sink *sink, double g[3], size_t n)
 {
     double d[3] = {0, 0, 0};
