@@ -1,4 +1,4 @@
-/* What the public calls of extraction share. */
+/* Functions that the public calls of extraction share. */
 #ifndef EXTRACT_EXTRACT_INTERNAL_H
 #define EXTRACT_EXTRACT_INTERNAL_H
 

@@ -70,7 +70,8 @@ static void mark_seam(const cwi_plan *p, size_t layer, uint8_t mark, uint8_t *se
         memset(seam + row[j].first[0], mark, row[j].first[2] - row[j].first[0]);
 }
 
-/* What stands in the last layer, but belongs to the next slab, was written in part. */
+/* Clears the vertices in the last layer that belong to the next slab: they were written in
+ * part. */
 static void clear_beyond(const cwi_plan *p, size_t layer, float *positions)
 {
     const cwi_row *row = p->rows + layer * p->grid.rows_y;

@@ -1,3 +1,5 @@
+/* Extracts the isosurface of an irregular grid: plans elements, places crossings, numbers
+ * vertices, and writes the mesh. */
 #include "extract/irregular/cell_surface.h"
 
 #include "core/base/memory.h"
@@ -206,7 +208,7 @@ static void write_normal(const writing *w, const cwi_element *e, const double we
         normal[a] = known ? (float)(outward * sum[a]) : 0;
 }
 
-/* A point in a cell is told by the weights of its corners. */
+/* Writes a vertex at the point of a cell that the weights of the cell's corners give. */
 static void write_vertex(const writing *w, const cwi_element *e, const double weights[8],
                          size_t vertex)
 {

@@ -113,8 +113,8 @@ static bool has_faces(const cwi_element *e, const faces *f)
     return true;
 }
 
-/* What has no face that became a line can stay as it is: edges between one sample and itself
- * are never crossed. */
+/* Rebuilds a cell that has collapsed faces as a simpler one. A cell none of whose faces became
+ * a line stays as it is: edges between one sample and itself are never crossed. */
 bool cwi_element_collapse(cwi_element *e)
 {
     faces f;

@@ -6,7 +6,7 @@
 
 #include <math.h>
 
-/* What the edges at a sample add up to: the slope s in direction u along each should be g . u,
+/* Sums over the edges at a sample. The slope s in direction u along each should be g . u,
  * weighed by the inverse square of its length, so that u u^T g = s u. */
 typedef struct normal_equations {
     double a[6]; /* xx, xy, xz, yy, yz, zz */

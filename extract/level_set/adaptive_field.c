@@ -1,3 +1,4 @@
+/* Samples the signed distance from a mesh at the points of an adaptive grid [Frisken2000]. */
 #include "extract/level_set/adaptive_field.h"
 
 #include "core/base/memory.h"

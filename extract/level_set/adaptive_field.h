@@ -48,14 +48,14 @@ CW_NODISCARD cw_status cwi_adaptive_init(cwi_adaptive *a, const cw_mesh *mesh,
                                          cw_error *err);
 void cwi_adaptive_free(cwi_adaptive *a);
 
-/* What a surface is not near. */
+/* The parts of a surface that are not near the mesh. */
 typedef struct cwi_beyond {
     bool any;       /* point of the one is too far from the other */
     size_t divided; /* cells there, but those that cannot be divided any more */
 } cwi_beyond;
 
-/* Divides the cells that have of the surface what is farther than limit_mm from the mesh, and,
- * if both_ways, of the mesh what is so far from the surface.
+/* Divides the cells where the surface is farther than limit_mm from the mesh and, if both_ways,
+ * those where the mesh is that far from the surface.
  * Returns  CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
 CW_NODISCARD cw_status cwi_adaptive_divide(cwi_adaptive *a, const cw_mesh *surface,
                                            double limit_mm, bool both_ways, cwi_beyond *beyond,

@@ -291,7 +291,8 @@ static cw_status hand_over(const build *b, cw_volume *grid, cw_error *err)
     return CW_OK;
 }
 
-/* What there is of points, in all and while it grows, and of cells. */
+/* Compares the memory for points, in all and while their number grows, and for cells with the
+ * limit. */
 static cw_status check_fits(const build *b, cw_error *err)
 {
     const cwi_adaptive *a = b->a;

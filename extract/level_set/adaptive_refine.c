@@ -82,7 +82,8 @@ static void cut_by_cell(pieces *p, const cwi_polygon *g, const struct cell *cell
     }
 }
 
-/* What of a polygon is between two planes of samples, for each two. */
+/* Cuts a polygon along axis a, and then those before it, into parts between planes of
+ * samples. */
 static void cut_along(pieces *p, const cwi_polygon *g, int a, struct cell *cell)
 {
     double low = INFINITY, high = -INFINITY;

@@ -1,3 +1,4 @@
+/* Moves the vertices of a warped grid's surface to the mesh, as far as no triangles cross. */
 #include "extract/level_set/feature_warp.h"
 
 #include "core/base/memory.h"
@@ -70,7 +71,7 @@ typedef struct settling {
     cwi_boxes tree;    /* of all triangles, wherever on their ways their corners stop */
     uint32_t *asked;   /* those that moved since they were looked at */
     uint8_t *is_asked; /* of triangles */
-    uint8_t *crosses;  /* likewise: something */
+    uint8_t *crosses;  /* of triangles: 1 where they cross another */
     size_t asked_count;
 } settling;
 

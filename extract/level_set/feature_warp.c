@@ -1,3 +1,5 @@
+/* Moves samples of a distance field to the right side of sharp edges, corners and thin
+ * walls. */
 #include "extract/level_set/feature_warp.h"
 
 #include "core/base/memory.h"
@@ -342,7 +344,8 @@ static void wish_across(warping *g, const cwi_move *m, int a, int by, int other_
     add_wish(g, second, inside);
 }
 
-/* What is between two of a side would be a hole. */
+/* Wishes the sample between two samples of one side to be on that side: else it would be a
+ * hole. */
 static void wish_between(warping *g, const cwi_move *m, int a, int by)
 {
     const bool inside = m->value < 0;

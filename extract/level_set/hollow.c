@@ -1,3 +1,5 @@
+/* Hollows a solid: offsets its surface inward by the wall's thickness, and carves drains from
+ * the cavity outward. */
 #include "extract/level_set/level_set.h"
 
 #include "core/base/memory.h"
@@ -13,7 +15,7 @@
 #include <math.h>
 #include <string.h>
 
-/* A drain as all points within a radius of a ray. */
+/* A drain: all points within a radius of a ray. */
 typedef struct ray {
     double from[3], along[3], radius; /* along: of length 1 */
 } ray;
@@ -106,7 +108,8 @@ static double volume_under(const cw_mesh *m, const uint32_t corner[3])
     return cwi_dot(p[0], normal) / 6;
 }
 
-/* What faces outward encloses a cavity; what faces inward is a part of the wall inside one. */
+/* Finds the cavities. A component that faces outward encloses a cavity; one that faces inward
+ * is a part of the wall inside a cavity. */
 static cw_status find_cavities(hollowing *h, cw_error *err)
 {
     const cw_mesh *m = &h->inner;

@@ -1,3 +1,5 @@
+/* Makes a sparse level set from a mesh: distances by OpenVDB, rough ones computed again
+ * exactly, and signs by winding numbers along rows. */
 #include "extract/level_set/level_set.h"
 
 #include "core/base/memory.h"
@@ -259,7 +261,8 @@ static int compare_places(const void *a, const void *b)
     return 0;
 }
 
-/* Between two leaves of a row there is no surface: all is inside, or all outside. */
+/* Makes tiles of the gaps inside the mesh. Between two leaves in a row there is no surface: all
+ * is inside, or all is outside. */
 static cw_status make_tiles(build *b, cw_error *err)
 {
     uint32_t(*rows)[3] = cwi_alloc_array(b->leaf_count, sizeof *rows);

@@ -1,4 +1,4 @@
-/* What is made from level sets of meshes has in common. */
+/* Level sets of meshes: the checks, limits and sampling that their uses share. */
 #ifndef EXTRACT_LEVEL_SET_LEVEL_SET_H
 #define EXTRACT_LEVEL_SET_LEVEL_SET_H
 
@@ -7,7 +7,7 @@
 #include <cubewright/level_set.h>
 #include <cubewright/quality.h>
 
-/* Distances are kept to so many voxels beyond what is asked for: enough for gradients. */
+/* Number of voxels by which distances reach farther than requested: enough for gradients. */
 enum { CWI_BAND = 3 };
 
 /* Fails with CW_ERR_ARGUMENT for a mesh that encloses nothing, and measures it. */

@@ -1,3 +1,4 @@
+/* Offsets or remeshes a mesh by its level set, and refines voxels until the result holds. */
 #include "extract/common/field_normals.h"
 #include "extract/level_set/adaptive_field.h"
 #include "extract/level_set/feature_warp.h"
@@ -110,7 +111,8 @@ static cw_status find_beyond(const making *m, const cw_mesh *from, const cw_mesh
     return st;
 }
 
-/* What is inside of something else is not of the surface, and lost. */
+/* Finds out, once, if parts of the mesh overlap: parts inside others are not of the surface,
+ * and are lost. */
 static cw_status find_overlap(making *m, cw_error *err)
 {
     const cw_crossings_desc how = {.threads = m->desc->threads, .progress = m->desc->progress};
@@ -196,10 +198,11 @@ static cw_status make_either(making *m, cw_mesh *out, bool *holds, bool *is_near
 enum {
     MOST_HALVINGS = 2,
     MOST_ROUNDS = 16,
-    FEW = 1 << 18 /* triangles: in a moment there are so many */
+    FEW = 1 << 18 /* number of triangles that takes only a moment */
 };
 
-/* Whether voxels of half the size are worth a try, where there are now so many triangles. */
+/* Returns true if voxels of half the size are worth a try, where the surface now has
+ * `triangles` triangles. */
 static bool should_halve(const making *m, size_t triangles, bool is_near)
 {
     return !m->desc->no_refine && (is_near || 4 * triangles <= FEW) &&

@@ -13,12 +13,13 @@ typedef struct cwi_distances_desc {
     const cw_mesh *mesh;
     double first[3]; /* where voxel 0 stands, relative to the mesh's origin */
     double voxel_mm;
-    double reach; /* distances are found up to so many voxels, to either side */
+    double reach; /* distances are found up to this number of voxels, on both sides */
     int threads;
     cw_progress progress;
 } cwi_distances_desc;
 
-/* Leaves of 8 x 8 x 8 voxels: all that are within reach of the mesh, and few others. */
+/* Distances in leaves, each 8 x 8 x 8 voxels: all leaves within reach of the mesh, and few
+ * others. */
 typedef struct cwi_distances cwi_distances;
 
 typedef struct cwi_levelset_functions {

@@ -1,3 +1,5 @@
+/* Cuts a surface's triangles at the sharp edges and corners of a mesh [Kobbelt2001]
+ * [Attene2005]. */
 #include "extract/level_set/sharp_edges.h"
 
 #include "core/base/memory.h"
@@ -465,7 +467,8 @@ static bool restore_unsound(const sharpener *s, size_t t)
     return is_unsound;
 }
 
-/* What is whole stays so: nothing is cut or moved from here on, only put back. */
+/* Lists the triangles that changed. Others stay as they are: from here on nothing is cut or
+ * moved, only put back. */
 static void find_changed(sharpener *s)
 {
     s->changed_count = 0;

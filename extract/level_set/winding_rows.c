@@ -1,3 +1,5 @@
+/* Finds by exact integer arithmetic where rows of a grid cross a mesh, and counts windings
+ * along them. */
 #include "extract/level_set/winding_rows.h"
 
 #include "core/base/memory.h"

@@ -31,13 +31,13 @@ enum { EVERY = 3 /* layers */ };
 #define SNAPPED (UINT64_C(1) << 62)
 #define SAMPLE  (SNAPPED - 1)
 
-/* What a layer's clusters were moved. */
+/* Distances by which a layer's clusters were moved. */
 typedef struct layer_sums {
     size_t count;
     double moved[2], error[2], error_sum[2]; /* mm, voxels */
 } layer_sums;
 
-/* What the steps work on. */
+/* Data that the steps work on. */
 typedef struct snap_run {
     cwi_snapping s;
     layer_sums *sums;

@@ -1,3 +1,4 @@
+/* Finds the cluster of vertices close to one sample, the triangles around it, and its rim. */
 #include "extract/snap/snap_cluster.h"
 
 uint64_t cwi_sample_number(const cwi_bit_grid *g, size_t i, size_t j, size_t k)

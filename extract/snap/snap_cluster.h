@@ -1,4 +1,5 @@
-/* What the files that snap share: a mesh while it is snapped, and one sample's cluster. */
+/* Types that the files of snapping share: a mesh while it is snapped, and one sample's
+ * cluster. */
 #ifndef EXTRACT_SNAP_SNAP_CLUSTER_H
 #define EXTRACT_SNAP_SNAP_CLUSTER_H
 
@@ -14,7 +15,7 @@ enum {
     CWI_RIM = 64, /* bits in a word; a dozen is usual */
 };
 
-/* What the mesh does not tell of a vertex. */
+/* Data of a vertex that the mesh does not have. */
 typedef struct cwi_place {
     double x[3];   /* its position as stored, in padded index */
     uint64_t near; /* 1 + the sample it is close to; 0: none */

@@ -148,7 +148,7 @@ static shape shape_at(const cwi_snapping *s, size_t triangle)
                     cwi_mesh_position(s, t[2]));
 }
 
-/* What a cluster's triangles look like before it goes anywhere. */
+/* Shape of a cluster's triangles before the cluster moves. */
 typedef struct looks {
     double normal[CWI_RIM][3]; /* of the owners */
     double worst;              /* sharpness */

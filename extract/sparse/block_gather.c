@@ -1,3 +1,4 @@
+/* Gathers the samples of a block from its leaves and tiles, and their inside bits. */
 #include "extract/sparse/block_gather.h"
 
 #include "core/base/memory.h"
@@ -93,7 +94,8 @@ static span span_of(const cwi_gathering *g, int a, size_t slot)
                   .in_leaf = slot ? 0 : CWI_LEAF - g->halo};
 }
 
-/* So many runs, from and to so many bytes apart; most are those of whole leaves. */
+/* Copies `count` runs of `bytes` bytes. Successive runs are from_step and to_step bytes apart;
+ * most are those of whole leaves. */
 static inline void copy_runs(char *to, size_t to_step, const char *from, size_t from_step,
                              size_t bytes, size_t count)
 {

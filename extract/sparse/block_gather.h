@@ -17,7 +17,7 @@ typedef struct cwi_gathering {
     const cwi_leaf_blocks *blocks;
     const cwi_engine *engine;
     size_t halo;      /* samples before the first cell */
-    size_t sample[3]; /* of the block: with the halo, and so many and one after the last cell */
+    size_t sample[3]; /* of the block: `halo` before its cells, and halo + 1 after them */
     char *voxels;     /* sample[2] x sample[1] rows */
     uint32_t region[CWI_SLOTS_Z][CWI_SLOTS_Y][CWI_SLOTS_X]; /* what is there */
     uint8_t sides[CWI_SLOTS_Z][CWI_SLOTS_Y][CWI_SLOTS_X];

@@ -1,3 +1,5 @@
+/* Sorts the leaves and tiles of a sparse grid into blocks, and keeps the blocks that the
+ * surface may cross. */
 #include "extract/sparse/leaf_blocks.h"
 
 #include "core/base/memory.h"
@@ -233,7 +235,8 @@ static reach reach_along(const cwi_region *r, int a, uint32_t around)
                    .buried_last = (uint32_t)(high / side - 1)};
 }
 
-/* Leaves of a region that block b's cells touch. */
+/* Returns the number of leaves along an axis that both a region and the cells of block b
+ * touch. */
 static uint32_t measure_overlap(const reach *r, uint32_t b, uint32_t side)
 {
     const uint64_t first = (uint64_t)b * side, last = first + side;

@@ -1,9 +1,9 @@
 /* The leaves and tiles of a sparse grid, sorted into blocks of cells that an engine can work
  * on.
  *
- * A block is CWI_BLOCK_X x _Y x _Z leaves of cells: cell (i, j, k) has the samples (i, j, k) to
- * (i+1, j+1, k+1). Blocks are counted from one before the first leaf, as the cells before it
- * have samples of it. */
+ * A block has the cells in CWI_BLOCK_X x _Y x _Z leaves. Cell (i, j, k) has the samples (i, j,
+ * k) to (i+1, j+1, k+1). Blocks are counted from one before the first leaf, as the cells before
+ * it have samples of it. */
 #ifndef EXTRACT_SPARSE_LEAF_BLOCKS_H
 #define EXTRACT_SPARSE_LEAF_BLOCKS_H
 
@@ -34,7 +34,7 @@ typedef struct cwi_stranger {
     uint32_t beyond; /* bit a: that is the next along axis a */
 } cwi_stranger;
 
-/* What the engine made of a block. */
+/* The mesh that the engine made from a block. */
 typedef struct cwi_block_mesh {
     void *memory; /* of all that follows */
     float *positions, *normals;

@@ -1,3 +1,5 @@
+/* Extracts the isosurface of a sparse grid: marches its blocks in parallel, and joins their
+ * meshes at the seams. */
 #include "extract/sparse/sparse_extract.h"
 
 #include "core/base/memory.h"
@@ -23,7 +25,7 @@ enum {
 };
 static const int cells[3] = {CELLS_X, CELLS_Y, CELLS_Z};
 
-/* What a thread holds of the block at hand. */
+/* A thread's data of the block it works on. */
 typedef struct worker {
     cwi_plan plan;
     cwi_gathering gathering;
@@ -180,7 +182,7 @@ static size_t bytes_of(const sparse_plan *p, const cwi_leaf_block *b)
     return cwi_extract_mesh_bytes(&c, !p->desc->no_normals);
 }
 
-/* What is too much is told as soon as it is found, not when all is made. */
+/* Checks the limits as soon as a block is made, not when all are made. */
 static cw_status check_made(sparse_plan *p, const cwi_leaf_block *b, cw_error *err)
 {
     const cw_extract_desc *d = p->desc;
@@ -303,7 +305,8 @@ static void set_live(cwi_bit_grid *g, size_t first)
             g->live[k * g->rows_y + j] = bits;
 }
 
-/* What of a block's planes matters is the same for all blocks. */
+/* Sets the part of a block's planes that the extraction reads; it is the same for all
+ * blocks. */
 static cw_status set_window(cwi_bit_grid *g, size_t first, cw_error *err)
 {
     uint64_t *window = cwi_alloc_array(4 * g->rows, sizeof *window);
