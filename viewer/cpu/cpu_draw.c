@@ -1,3 +1,5 @@
+/* Draws the modes of the CPU renderer, and blends a volume with the mesh in it by the mesh's
+ * depths. */
 #include "viewer/cpu/cpu_draw.h"
 
 #include "viewer/cpu/cpu_mesh.h"

@@ -9,7 +9,7 @@
 extern "C" {
 #endif
 
-/* What is kept for the next picture of the same volume. Zeroed: nothing. */
+/* State kept for the next picture of the same volume. Zeroed: nothing is kept. */
 typedef struct cwi_cpu {
     cw_volume key;
     cwi_ranges ranges; /* of key, when it has blocks */

@@ -1,3 +1,5 @@
+/* Draws the mode mesh on the CPU: turns the tint into colours of vertices, and calls
+ * cw_render_mesh(). */
 #include "viewer/cpu/cpu_mesh.h"
 
 #include "core/base/memory.h"
@@ -63,7 +65,8 @@ static void tint_triangles(const cw_mesh *mesh, const double range[2], cw_mesh *
     }
 }
 
-/* A view of the mesh with the arrays that the tint makes anew; drop_tinted() frees those. */
+/* Makes a view of the mesh with its own arrays for the tint's colours; drop_tinted() frees
+ * those. */
 static cw_status make_tinted(const cw_scene *s, const double range[2], cw_mesh *m,
                              cw_error *err)
 {

@@ -1,3 +1,5 @@
+/* Draws intensity projections: walks each ray through the cells, and keeps the highest, lowest,
+ * mean or first local maximum of the value. */
 #include "viewer/cpu/intensity_projection.h"
 
 #include "viewer/cpu/ray_traversal.h"
@@ -7,7 +9,7 @@
 
 #include <math.h>
 
-/* What is known of a ray's value so far. */
+/* State of a ray's value so far. */
 typedef struct tally {
     bool has_value;
     double extreme;

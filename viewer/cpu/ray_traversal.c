@@ -1,3 +1,5 @@
+/* Walks a ray from cell to cell, and finds the field's values, gradients and cubics along
+ * it. */
 #include "viewer/cpu/ray_traversal.h"
 
 #include "core/geometry/affine.h"

@@ -419,8 +419,9 @@ static void draw_one_band(const scene *s, int band, hit *hits, cw_image *image)
     shade_band(s, first, rows, hits, image);
 }
 
-/* Only the calling thread reports; once it is told to stop, bands are left out. It may get no
- * band while the others work, so it is asked once more at the end. */
+/* Draws all bands. Only the calling thread reports progress; when it is asked to stop, other
+ * bands are left out. It may get no band while the others work, so it reports once more at the
+ * end. */
 static cw_status draw_bands(const scene *s, hit *hits, size_t band_hits, cw_image *image,
                             cw_error *err)
 {

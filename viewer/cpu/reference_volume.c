@@ -66,7 +66,7 @@ void cwi_reference_make(const cwi_frame *frame, cwi_reference *r)
     r->has_gradients = frame->scene.lit || frame->transfer.gradient_count > 0;
 }
 
-/* What a ray meets in a cell; x goes from 0 to 1. */
+/* The medium that a ray meets in a cell; x goes from 0 to 1. */
 typedef struct medium {
     const cwi_reference *reference;
     const cwi_lighting *lighting;

@@ -33,10 +33,11 @@ static const float to_first = -0.038675134594812866f, to_second = 0.538675134594
 /* Optical depth that two points are enough for. */
 static const float most_depth = 0.5f;
 
-/* What the extinction may differ by at two points of a piece, times its length. */
+/* The maximum difference of the extinction at two points of a piece, times the piece's
+ * length. */
 static const float most_steepness = 0.1f;
 
-/* What the two points may differ by, where gradients count. */
+/* The maximum difference of the two points, where gradients count. */
 static const float most_turn = 2e-3f;
 
 typedef struct vbuffer vbuffer;
@@ -200,8 +201,8 @@ static void change_by_depth(const state *s, double x, lanes *glow)
         (*glow)[c] = cue * (*glow)[c] + (1 - cue) * s->background[c];
 }
 
-/* What a point glows with, of which the transfer function told. x: its place in the cell, 0 to
- * 1; gradient: in eye space, if there is need of it */
+/* Changes the glow of a point, as the transfer function gave it, by gradient and depth. x: its
+ * place in the cell, 0 to 1; gradient: in eye space, if it is needed */
 static inline lanes finish_cell(const state *s, double x, const double gradient[3], lanes glow)
 {
     if (s->b->has_gradients)
@@ -471,7 +472,7 @@ static void draw_row(void *context, size_t y)
 static void find_parts(vbuffer *b)
 {
     const double step = (b->table.high - b->table.low) / (CWI_TABLE_ROWS - 1);
-    size_t before = 0; /* knots below the row's end */
+    size_t before = 0; /* breakpoints below the row's end */
     for (size_t n = 0; n <= CWI_TABLE_ROWS; n++) {
         const double begin = b->table.low + ((double)n - 1) * step,
                      end = b->table.low + (double)n * step;

@@ -1,4 +1,4 @@
-/* What shaders are told of a volume, and voxels that they read where the caller has them. */
+/* Sets a volume's uniforms for shaders, and lets them read voxels in the caller's memory. */
 #include "viewer/gl/gl_internal.h"
 
 #include "core/volume/volume.h"

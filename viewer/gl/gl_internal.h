@@ -1,5 +1,5 @@
-/* What the files of the GL module share: the context, what was uploaded to it, and
- * the modes. */
+/* Types and functions that the files of the GL module share: the context, the data uploaded to
+ * it, and the modes. */
 #ifndef VIEWER_GL_GL_INTERNAL_H
 #define VIEWER_GL_GL_INTERNAL_H
 
@@ -41,7 +41,7 @@ typedef struct cwi_gl_volume {
     size_t edge;   /* as the scene had it */
     cwi_gl_texels kind;
     double scale, bias;
-    double range; /* of the scaled values, above 0; gradients are told in it */
+    double range; /* of the scaled values, above 0; the unit of gradients */
     size_t brick_count;
     size_t texture_bytes; /* counted as taken */
     cwi_gl_brick *bricks;
@@ -154,7 +154,7 @@ CW_NODISCARD cw_status cwi_gl_report(cwi_gl *gl, const char *step, double done, 
 /* The same, when the last report was some milliseconds ago: for loops of the CPU. */
 CW_NODISCARD cw_status cwi_gl_report_soon(cwi_gl *gl, const char *step, double done,
                                           cw_error *err);
-/* What is drawn next is the n-th part of count of the picture. */
+/* Announces that the n-th part of count of the picture is drawn next. */
 void cwi_gl_part(cwi_gl *gl, size_t n, size_t count);
 
 /* Draws what takes long, and reports in between: the whole picture, for fragment shaders that
@@ -175,20 +175,21 @@ CW_NODISCARD cw_status cwi_gl_take_volume(cwi_gl *gl, bool as_textures, cw_error
 bool cwi_gl_find_voxels(cwi_gl *gl);
 /* x fastest, without gaps. */
 bool cwi_gl_is_packed(const cw_volume *volume);
-/* What shaders have to be defined with. */
+/* Returns the definitions that shaders of this volume need. */
 const char *cwi_gl_volume_defines(const cwi_gl_volume *volume);
-/* What shaders have to be defined with to find gradients. Those of a small volume become a
- * texture; of a large one, which then would be five times as large, they are differences of
- * interpolated values. */
+/* Finds the definitions that shaders need to compute gradients. Gradients of a small volume
+ * become a texture. Those of a large one, which would then be five times as large, are
+ * differences of interpolated values. */
 CW_NODISCARD cw_status cwi_gl_need_gradients(cwi_gl *gl, const char **defines, cw_error *err);
-/* The derivatives of voxels, unscaled, along each axis: what gradients are made of. */
+/* Computes the derivatives of voxels, unscaled, along each axis. Gradients are made from
+ * them. */
 void cwi_gl_derivatives(const cw_volume *volume, const size_t at[3], double derivatives[3]);
 void cwi_gl_drop_volume(cwi_gl *gl);
 
 /* Binds a brick's textures and sets the uniforms brick_first and brick_size of a program. */
 void cwi_gl_bind_brick(GLuint program, const cwi_gl_brick *brick);
 
-/* Sets the uniform last_block for a texture of so many blocks. */
+/* Sets the uniform last_block for a texture of dim[0] x dim[1] x dim[2] blocks. */
 void cwi_gl_set_last_block(GLuint program, const size_t dim[3]);
 
 /* Numbers of the bricks from the farthest to the nearest; free with cwi_free(). */

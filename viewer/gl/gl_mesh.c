@@ -1,3 +1,5 @@
+/* Uploads the frame's mesh to the GPU, and allocates the textures for its layers and cut
+ * faces. */
 #include "viewer/gl/gl_mesh.h"
 
 #include "core/base/memory.h"

@@ -57,7 +57,8 @@ static void find_range(const cwi_ranges *ranges, double range[2])
     }
 }
 
-/* Wide types are told from their middle, in units of half their range. */
+/* Scales wide types: their numbers are uploaded relative to the middle, in units of half their
+ * range. */
 static void fit_wide(const cw_volume *v, const double range[2], cwi_gl_texels *kind)
 {
     if (kind->type != GL_FLOAT || v->type == CW_F32)

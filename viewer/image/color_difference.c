@@ -1,3 +1,5 @@
+/* Compares pictures: colour differences by CIEDE2000 [Sharma2005], and the structural
+ * similarity of luma. */
 #include "viewer/image/color_difference.h"
 #include "viewer/scene/srgb.h"
 
@@ -60,7 +62,7 @@ static double seventh_power(double x)
     return cube * cube * x;
 }
 
-/* What chroma that high, to the seventh, is of that and 25 to the seventh; its root. */
+/* Returns the root of c^7 / (c^7 + 25^7), for a chroma c. */
 static double chroma_share(double chroma)
 {
     return sqrt(seventh_power(chroma) / (seventh_power(chroma) + seventh_power(25)));

@@ -1,3 +1,4 @@
+/* Copies images onto others, and tiles images of any sizes into a sheet of equal cells. */
 #include <cubewright/overlay.h>
 
 #include "core/base/status.h"

@@ -1,3 +1,5 @@
+/* Draws annotations on an image: the volume's box, axes, scale bar, colour bar, histogram and
+ * caption. */
 #include <cubewright/overlay.h>
 
 #include "core/base/memory.h"
@@ -356,7 +358,8 @@ static size_t find_curve(const cw_transfer *t, const double range[2],
     return count + 1;
 }
 
-/* As high as the box where it is highest, which is told. */
+/* Draws the opacity curve. Its highest point is as high as the box, and is labelled with its
+ * value. */
 static void draw_curve(const board *b, const double range[2], const double box[4])
 {
     double points[CW_TRANSFER_POINTS + 2][2], most = 0, color[4];

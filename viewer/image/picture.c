@@ -1,3 +1,5 @@
+/* Allocates pictures of floats, composites them over a background into bytes, and compares
+ * images. */
 #include <cubewright/picture.h>
 
 #include "core/base/memory.h"

@@ -1,3 +1,4 @@
+/* Allocates images of bytes, and writes them as PNG files by libpng. */
 #include <cubewright/picture.h>
 
 #include "core/base/atomic_file.h"
@@ -28,7 +29,7 @@ void cw_image_free(cw_image *image)
     *image = (cw_image){0};
 }
 
-/* What libpng's callbacks need. The status outlives the jump they leave by. */
+/* Data for libpng's callbacks. The status outlives the jump by which they leave. */
 typedef struct writer {
     cwi_outfile *file;
     cw_error *err;

@@ -1,3 +1,4 @@
+/* Draws antialiased strokes and rectangles onto images, a row at a time. */
 #include "viewer/image/strokes.h"
 
 #include <math.h>

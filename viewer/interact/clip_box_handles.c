@@ -1,3 +1,4 @@
+/* Places, hits and drags the six handles of a clip box, and finds its visible edges. */
 #include "viewer/interact/clip_box_handles.h"
 
 #include "core/geometry/vec3.h"

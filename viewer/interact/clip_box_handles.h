@@ -38,8 +38,8 @@ typedef struct cwi_box_edge {
 void cwi_handles_place(const cwi_handle_view *view, const cwi_world_box *box,
                        cwi_handle handles[CWI_HANDLES]);
 
-/* The handle at most so many pixels away, of several the one nearest to the eye;
- * CWI_HANDLE_NONE. */
+/* Returns the handle at most radius_px away, or CWI_HANDLE_NONE; of several, the one nearest to
+ * the eye. */
 int cwi_handles_hit(const cwi_handle handles[CWI_HANDLES], const double pixel[2],
                     double radius_px);
 

@@ -1,3 +1,5 @@
+/* Finds the nearest thing seen at a pixel: a mesh, a slice, or a volume as its mode shows
+ * it. */
 #include "viewer/interact/pick_mesh.h"
 #include "viewer/interact/pick_volume.h"
 #include "viewer/scene/slice.h"

@@ -1,3 +1,4 @@
+/* Intersects a ray with the triangles of a mesh, and with the caps of its cuts. */
 #include "viewer/interact/pick_mesh.h"
 
 #include "core/geometry/vec3.h"

@@ -1,3 +1,5 @@
+/* Picks the point of a volume along a ray: where half of the light is absorbed, where a
+ * projection's value occurs, or on a slice. */
 #include "viewer/interact/pick_volume.h"
 
 #include "core/geometry/affine.h"
@@ -10,9 +12,9 @@
 #include <math.h>
 #include <string.h>
 
-enum { STEPS = 8 }; /* of a piece of the ray between knots */
+enum { STEPS = 8 }; /* of a piece of the ray between breakpoints */
 
-/* What a ray has gone through so far. */
+/* State of a ray after the cells it has passed. */
 typedef struct passage {
     const cwi_frame *frame;
     cwi_knots knots;

@@ -1,4 +1,4 @@
-/* What of a volume is seen along a ray, and where. */
+/* The point of a volume that is seen along a ray. */
 #ifndef VIEWER_INTERACT_PICK_VOLUME_H
 #define VIEWER_INTERACT_PICK_VOLUME_H
 
@@ -14,8 +14,8 @@ typedef struct cwi_volume_hit {
     double opacity; /* that all of the ray's volume has: 1 of an intensity projection */
 } cwi_volume_hit;
 
-/* What the modes that blend, and intensity projections, show through a point of the picture, in
- * samples, up to a depth. */
+/* Find the point that blending modes, and intensity projections, show at a point of the
+ * picture, in samples, up to a depth. */
 cwi_volume_hit cwi_pick_blended(const cwi_frame *frame, double x, double y, double depth);
 cwi_volume_hit cwi_pick_intensity(const cwi_frame *frame, double x, double y, double depth);
 

@@ -1,3 +1,5 @@
+/* Edits a transfer function: finds, moves, inserts and removes points; shifts, scales and
+ * mirrors all of them. */
 #include "viewer/interact/transfer_edit.h"
 
 #include <assert.h>

@@ -16,7 +16,7 @@
 
 extern const char cwi_glsl_mesh[], cwi_glsl_layer[];
 
-/* What lies behind more layers than this is left out. */
+/* The maximum number of layers; those behind them are left out. */
 enum { MOST_LAYERS = 128 };
 
 /* Half the width of edges, in pixels. */
@@ -114,7 +114,7 @@ static cw_status draw_caps(cwi_gl *gl, const cwi_gl_mesh *m, manner how, cw_erro
     return CW_OK;
 }
 
-/* What is nearest, into what is bound. */
+/* Draws the nearest surface into the framebuffer that is bound. */
 static cw_status draw_surface(cwi_gl *gl, cwi_gl_mesh *m, manner how, cw_error *err)
 {
     GLuint program;

@@ -10,7 +10,8 @@
 
 extern const char cwi_glsl_mip[];
 
-/* What is found is handed on from brick to brick in two textures, taken by turns. */
+/* State of a projection. Values found so far pass from brick to brick in two textures, used
+ * alternately. */
 typedef struct projector {
     GLuint ranges;
     size_t blocks[3];

@@ -16,14 +16,14 @@
 
 enum { SHADE_COLUMNS = 256, BOUNDARY = 1 << 15 };
 
-/* What the textures of directions depend on, beside the volume. */
+/* Settings that the textures of directions depend on, beside the volume. */
 typedef struct normals_key {
     size_t count;
     bool mark_boundary;
     cw_transfer transfer; /* zeroed unless boundaries are marked */
 } normals_key;
 
-/* What the table of colours depends on. */
+/* Settings that the table of colours depends on. */
 typedef struct shades_key {
     size_t count, light_count;
     cw_light lights[CW_MAX_LIGHTS];

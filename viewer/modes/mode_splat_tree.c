@@ -10,8 +10,8 @@
 #include <math.h>
 #include <string.h>
 
-/* What is kept from picture to picture of a volume: the last error that was fitted, too, for
- * that is a walk through the whole tree. */
+/* State kept between pictures of a volume. It includes the last error that was fitted, since
+ * fitting walks through the whole tree. */
 typedef struct tree {
     cwi_pyramid pyramid;
     size_t budget; /* that it was fitted to; 0: none was */

@@ -13,7 +13,7 @@ enum {
     CWI_UNIT_SHADES                  /* colours by direction and value */
 };
 
-/* What a mode keeps from one picture to the next. Zeroed is valid. */
+/* State that a mode keeps from one picture to the next. Zeroed is valid. */
 typedef struct cwi_gl_slabs {
     GLuint array, corners; /* of the rectangles drawn */
     GLuint framebuffer, color;

@@ -1,3 +1,5 @@
+/* Splats voxels into sheets: projects them as Gaussians [Westover1990], adds them up in a
+ * sheet, and blends sheets. */
 #include "viewer/modes/splat_sheets.h"
 
 #include "core/base/memory.h"

@@ -1,3 +1,5 @@
+/* Projects the faces of a box, and overlays front and back faces into convex pieces
+ * [Wilhelms1991]. */
 #include "viewer/proxy/projected_cells.h"
 
 #include "core/geometry/affine.h"

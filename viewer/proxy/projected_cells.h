@@ -1,4 +1,4 @@
-/* What a box of index space covers of the picture, in convex pieces: the geometry of coherent
+/* Convex pieces of the picture that a box of index space covers: the geometry of coherent
  * projection [Wilhelms1991]. In a piece every ray enters by one face and leaves by another, so
  * that both depths (in perspective their reciprocals) are linear over it. */
 #ifndef VIEWER_PROXY_PROJECTED_CELLS_H

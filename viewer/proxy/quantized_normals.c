@@ -1,3 +1,5 @@
+/* Spreads directions over a half sphere in a golden spiral, and finds the nearest by a map of
+ * candidates on an octahedron. */
 #include "viewer/proxy/quantized_normals.h"
 
 #include "core/base/memory.h"
@@ -86,8 +88,9 @@ static double nearest_angle(const cwi_directions *d, const double v[3])
     return acos(fmin(most, 1));
 }
 
-/* What is nearest to a point of a cell is no farther from its middle than the nearest of that
- * plus twice the radius: angles between lines add up at most. Counts when to is NULL. */
+/* Lists, or counts when to is NULL, the directions that may be nearest to a point of a cell.
+ * None is farther from the cell's middle than the middle's nearest, plus twice the radius:
+ * angles between lines add up at most. */
 static size_t put_candidates(const cwi_directions *d, size_t cell, uint16_t *to)
 {
     double middle[3], radius;

@@ -34,8 +34,8 @@ void cwi_pyramid_free(cwi_pyramid *pyramid);
 const cwi_pyramid_node *cwi_pyramid_node_at(const cwi_pyramid *pyramid, size_t level,
                                             const size_t node[3]);
 
-/* How values are seen: a transfer function's table, and what of it is visible; sheets are
- * across an axis. */
+/* Settings by which values are seen: a transfer function's table, and its visible part; sheets
+ * are across an axis. */
 typedef struct cwi_pyramid_view {
     const cwi_frame *frame;
     const cwi_table *table;
@@ -43,7 +43,7 @@ typedef struct cwi_pyramid_view {
     int axis;
 } cwi_pyramid_view;
 
-/* What a node looks like: coordinates in the table, clamped to it where it is constant. */
+/* Look of a node, in coordinates of the table, clamped to it where it is constant. */
 typedef struct cwi_pyramid_look {
     float mean, error; /* error: the largest difference of a voxel from the mean */
     bool shows_any;    /* some value within its range is visible */

@@ -1,3 +1,5 @@
+/* Divides a view's depth into slabs, and marks, in tiles of the picture, those that meet
+ * something visible. */
 #include "viewer/proxy/view_slabs.h"
 
 #include "core/base/memory.h"
@@ -60,7 +62,7 @@ void cwi_slabs_clear(cwi_slabs *s)
     memset(s->rows, 0, s->layer_count * sizeof *s->rows);
 }
 
-/* What a box covers: samples of the picture, and depths. */
+/* Bounds of a box: samples of the picture, and depths. */
 typedef struct bounds {
     double low[3], high[3];
 } bounds;

@@ -1,6 +1,5 @@
-/* Slabs of space between planes that face the viewer: what a slice through a 3D texture stands
- * for. A slab is drawn where it meets something visible, which is told in tiles of
- * the picture. */
+/* Slabs of space between planes that face the viewer; each slice through a 3D texture stands
+ * for one. A slab is drawn in the tiles of the picture where it meets something visible. */
 #ifndef VIEWER_PROXY_VIEW_SLABS_H
 #define VIEWER_PROXY_VIEW_SLABS_H
 
