@@ -1,3 +1,5 @@
+/* Finds the range of values in each block of a volume, in parallel, and each block's distance
+ * to the next visible one. */
 #include "viewer/scene/block_ranges.h"
 
 #include "viewer/scene/voxel_rows.h"

@@ -1,3 +1,5 @@
+/* Orders the layers of a lattice from the eye, tests ranges of values for visibility, and finds
+ * gradients and masses of voxels. */
 #include "viewer/scene/cell_lattice.h"
 
 #include "core/base/memory.h"

@@ -1,4 +1,4 @@
-/* What the modes that draw a volume cell by cell or voxel by voxel share. */
+/* Functions shared by the modes that draw a volume cell by cell or voxel by voxel. */
 #ifndef VIEWER_SCENE_CELL_LATTICE_H
 #define VIEWER_SCENE_CELL_LATTICE_H
 

@@ -1,3 +1,5 @@
+/* Fills in a scene's defaults, and computes the frame: camera, matrices, clip planes and
+ * depths. */
 #include "viewer/scene/frame_setup.h"
 
 #include "core/base/status.h"

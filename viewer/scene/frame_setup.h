@@ -70,7 +70,7 @@ void cwi_frame_to_world(const cwi_frame *frame, const double eye[3], double worl
 #define CWI_MOST_OPACITY (1 - 1e-6)
 double cwi_frame_extinction(const cwi_frame *frame, double opacity);
 
-/* What is left of the light of something at a depth: 1 near, 1 - depth_cue far. */
+/* Returns the fraction of light that is left at a depth: 1 near, 1 - depth_cue far. */
 double cwi_frame_cue(const cwi_frame *frame, double depth);
 
 /* The matrix that takes a gradient in index space (per voxel) to eye space (per unit). */

@@ -1,3 +1,4 @@
+/* Reads JSON files of up to 1 MiB, and checks their schema and keys. */
 #include "viewer/scene/json.h"
 
 #include "core/base/memory.h"

@@ -1,3 +1,4 @@
+/* Shades points by the Blinn-Phong model, lit from both sides, in eye space. */
 #include "viewer/scene/lighting.h"
 
 #include "core/geometry/vec3.h"

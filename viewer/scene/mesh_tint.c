@@ -1,3 +1,4 @@
+/* Computes the colour ramp in CIELAB, the shape of triangles, and the range of a tint. */
 #include "viewer/scene/mesh_tint.h"
 #include "viewer/scene/srgb.h"
 

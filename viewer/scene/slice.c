@@ -1,3 +1,5 @@
+/* Sets up slices through a volume, their colours, and cameras that face them as radiologists
+ * do. */
 #include "viewer/scene/slice.h"
 
 #include "core/base/status.h"

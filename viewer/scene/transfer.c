@@ -1,3 +1,4 @@
+/* Checks transfer functions, and interpolates their colours and opacities linearly. */
 #include <cubewright/transfer.h>
 
 #include "core/base/status.h"

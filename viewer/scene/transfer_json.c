@@ -1,3 +1,4 @@
+/* Reads and writes transfer functions as JSON, by the schema "cubewright-transfer-1". */
 #define _GNU_SOURCE /* fmemopen */
 #include "viewer/scene/transfer_json.h"
 

@@ -269,7 +269,8 @@ static void make_inverted(const cw_statistics *s, cw_transfer *t)
     put_opacity(t, low + 0.93 * range, 0);
 }
 
-/* What is around things is left out; the rest fades in, the densest of it nearly solid. */
+/* Makes a preset that hides the surroundings of things. The rest fades in; the densest part is
+ * nearly solid. */
 static void make_above(const cw_statistics *s, cw_transfer *t)
 {
     const classes c = find_classes(s);

@@ -1,3 +1,5 @@
+/* Splits a transfer function into linear pieces, and cuts cubics where these pieces begin and
+ * end. */
 #include "viewer/scene/transfer_segments.h"
 
 #include "core/geometry/cubic.h"
@@ -38,7 +40,7 @@ static void find_knots(const cw_transfer *t, cwi_knots *k)
     k->count = kept;
 }
 
-/* Through two values inside, so that jumps at the knots do not matter. */
+/* Fits a line through two values inside the piece, so that jumps at its ends do not matter. */
 static void fit_line(const cw_transfer *t, cwi_linear *l)
 {
     double a = l->low + (l->high - l->low) / 4, b = l->low + (l->high - l->low) * 3 / 4;

@@ -1,3 +1,4 @@
+/* Samples a transfer function into a table, and integrates it over segments [Engel2001]. */
 #include "viewer/scene/transfer_table.h"
 
 #include "core/base/memory.h"
@@ -212,7 +213,7 @@ cw_status cwi_table_preintegrate(const cwi_table *table, double length, size_t c
     if (!sum)
         return cw_fail(err, CW_ERR_NO_MEMORY,
                        "no memory for a pre-integrated transfer function");
-    enum { WORK = 64 }; /* an entry is as much as so many samples elsewhere */
+    enum { WORK = 64 }; /* one entry takes as long as this number of samples elsewhere */
     integration work = {table, length, count, (const double(*)[4])sum, out};
     cw_status st = cwi_each_layer(count, WORK * count, threads, progress, "integrating",
                                   integrate_row, &work, err);

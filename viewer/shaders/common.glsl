@@ -1,4 +1,4 @@
-// What every shader knows of the picture. See viewer/scene/frame_setup.h for the spaces.
+// Uniforms and functions of all shaders. See viewer/scene/frame_setup.h for the spaces.
 layout(std140) uniform Frame
 {
     mat4 projection;
@@ -140,7 +140,7 @@ vec3 gradient_at(vec3 index)
     return gradient_in(brick_place(index));
 }
 
-// What the transfer function makes of the extinction by the gradient.
+// Returns the factor by which the transfer function multiplies the extinction, by the gradient.
 float gradient_factor(vec3 gradient)
 {
     float at = clamp(length(gradient) / limits.y, 0.0, 1.0);
@@ -173,8 +173,8 @@ vec4 stretch(vec4 color, float power)
     return color.a > 0.0 ? vec4(color.rgb * (alpha / color.a), alpha) : vec4(0.0);
 }
 
-// What the gradient makes of a premultiplied colour: more or less of it, and light on it. SHADES: it
-// comes with light.
+// Changes a premultiplied colour by the gradient: more or less of it, and light on it. SHADES:
+// it is lit already.
 vec4 by_gradient(vec4 color, vec3 gradient, vec3 to_eye)
 {
 #ifdef FACTOR

@@ -19,8 +19,9 @@ vec4 half_segment(float front, float back)
     return isnan(front + back) ? vec4(0.0) : color;
 }
 
-// What a full segment adds that has such ends and such a middle. Both ends are shifted by two thirds
-// of what the middle is above their mean: so the mean is that of the parabola.
+// Returns the colour that a full segment adds, with given values at its ends and its middle.
+// Both ends are shifted by two thirds of the middle's height above their mean: so the mean is
+// that of the parabola.
 vec4 segment_through(float front, float middle, float back)
 {
     float shift = (2.0 / 3.0) * (middle - 0.5 * (front + back));

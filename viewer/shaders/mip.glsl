@@ -79,9 +79,9 @@ vec4 take_cell(vec4 found, vec4 v)
     return take(found, v.w);
 }
 
-// What the ray is bound to find: the ranges of the blocks it passes through say so, and samples of
-// the most promising one. Of the part that it is looked for in stays, in whole steps, what can better
-// that.
+// Finds a value that the ray reaches for certain, from the ranges of the blocks it passes and
+// from samples of the most promising block. Shortens the part of the ray, by whole steps, to
+// where a better value may be.
 vec4 foresee(ray r, inout vec2 part, vec4 found)
 {
 #ifdef FORESEE

@@ -59,8 +59,8 @@ vec4 over(vec4 front, vec4 back)
     return front + (1.0 - front.a) * back;
 }
 
-// What a part of the way adds, over which the value is linear. Beyond its ends the table goes on
-// as it is there: those parts have one value each.
+// Returns the colour that a part of the way adds, over which the value is linear. Beyond the
+// table's ends its last value continues: those parts have one value each.
 vec4 between(float front, float back, float extent)
 {
 #ifdef SEGMENTS
@@ -84,7 +84,7 @@ vec4 between(float front, float back, float extent)
 #endif
 }
 
-// What the part from t.x to t.y adds; distances along the ray.
+// Returns the colour that the part from t.x to t.y adds; distances along the ray.
 vec4 along(ray r, way w, vec2 t, float y)
 {
     if (!(t.y > t.x))

@@ -1,5 +1,6 @@
-// What a ray gains in a slab, within one brick's box: slices through 3D textures [Wilson1994],
-// pre-integrated [Engel2001], shaded by gradients or by quantised gradients [VanGelder1996].
+// Integrates a ray's colour in a slab, within one brick's box: slices through 3D textures
+// [Wilson1994], pre-integrated [Engel2001], shaded by gradients or by quantised gradients
+// [VanGelder1996].
 uniform sampler2D segments;
 uniform sampler3D classes;  // premultiplied: colour x extinction, extinction per unit
 uniform usampler3D normals; // each voxel's direction; the highest bit: a boundary's cell

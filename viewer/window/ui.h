@@ -47,11 +47,11 @@ typedef struct cwi_ui_event {
     const char *text;   /* copied by feed() */
 } cwi_ui_event;
 
-/* What a frame has of input. Names of keys: letters and digits as "A" and "1"; "Space",
- * "Enter", "Tab", "Escape", "Backspace", "Delete", "Insert", "Home", "End", "PageUp",
- * "PageDown", "Left", "Right", "Up", "Down", "F1" to "F12", and characters such as "[", "?" and
- * "+" as they are typed; before them "Ctrl+", "Alt+", "Shift+" in that order, Shift not before
- * characters that need it anyway. (With Ctrl or Alt nothing is typed: "Ctrl+Shift+=".) */
+/* Input of a frame. Names of keys: letters and digits as "A" and "1"; "Space", "Enter", "Tab",
+ * "Escape", "Backspace", "Delete", "Insert", "Home", "End", "PageUp", "PageDown", "Left",
+ * "Right", "Up", "Down", "F1" to "F12", and characters such as "[", "?" and "+" as they are
+ * typed; before them "Ctrl+", "Alt+", "Shift+" in that order, Shift not before characters that
+ * need it anyway. (With Ctrl or Alt nothing is typed: "Ctrl+Shift+=".) */
 typedef struct cwi_ui_input {
     size_t width, height; /* of the framebuffer */
     double x, y;          /* the mouse; -1, -1: outside */
@@ -119,7 +119,7 @@ typedef struct cwi_ui_functions {
     const cwi_ui_input *(*begin)(cwi_ui *ui, double wait_s);
     /* Shows the frame. CW_ERR_BACKEND: GL's error, or its context was lost */
     cw_status (*end)(cwi_ui *ui, cw_error *err);
-    /* What the last frame showed. */
+    /* Copies the picture that the last frame showed. */
     cw_status (*grab)(cwi_ui *ui, cw_image *image, cw_error *err);
 
     void (*set_title)(cwi_ui *ui, const char *title);

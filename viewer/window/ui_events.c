@@ -23,7 +23,7 @@ static bool make_room(cwi_ui_queue *q)
     return true;
 }
 
-/* What was taken is dropped when all of it was. */
+/* Empties the queue when all of it was taken. */
 static void rewind_when_empty(cwi_ui_queue *q)
 {
     if (q->first == q->count)
@@ -96,7 +96,7 @@ cw_status cwi_ui_feed(cwi_ui *ui, const cwi_ui_event *event, cw_error *err)
     return st;
 }
 
-/* What a frame has taken so far. */
+/* Events that a frame has taken so far. */
 typedef struct taken {
     bool any, moved, button[CWI_UI_BUTTONS], at_place, key, edit, wrote, alone;
 } taken;

@@ -78,7 +78,8 @@ static double time_to_wait(const cwi_ui *ui, double wait_s)
     return ui->wake > 0 && ui->wake < wait_s ? ui->wake : wait_s;
 }
 
-/* What was woken for, such as a tip, takes a frame to be laid out too. */
+/* Waits for input. After a wake-up by the clock, such as for a tooltip, one more frame is
+ * needed to lay out. */
 static void wait_for_input(cwi_ui *ui, double wait_s)
 {
     const double seconds = time_to_wait(ui, wait_s);

@@ -1,4 +1,5 @@
-/* What widgets are drawn into, and the pictures they show. */
+/* Allocates and reads the framebuffer that widgets are drawn into, and uploads the pictures
+ * they show. */
 #include "viewer/gl/gl_context.h"
 #include "viewer/window/ui_internal.h"
 

@@ -1,5 +1,5 @@
-/* Dear ImGui itself: its context, letters and colours, what it is told of input, and a frame of
- * it. It throws nothing, and its memory is malloc's. */
+/* Runs Dear ImGui: its context, fonts and colours, the input passed to it, and its frames.
+ * Nothing here throws, and memory is allocated by malloc. */
 #include "viewer/window/ui_internal.h"
 
 #include <backends/imgui_impl_opengl3.h>
@@ -240,8 +240,8 @@ void cwi_ui_imgui_choose(cwi_ui *ui)
     ImGui::SetCurrentContext(ui->imgui);
 }
 
-/* ImGui would undo, in a text that it is given anew, what was typed in the one before, and
- * write before and behind it. */
+/* Forgets what was typed. Else ImGui, when a text gets a new content, would undo typing in the
+ * previous one, and would write before and behind the new one. */
 static void forget_typed(ImGuiContext *imgui)
 {
     if (imgui->InputTextState.ID != imgui->ActiveId)

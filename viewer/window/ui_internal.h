@@ -1,7 +1,7 @@
-/* What the files of the window module share. A frame's way: the screen (ui_glfw_window.c) puts what
- * comes from outside into the queue, as feed() does; ui_events.c takes a frame's share of it;
- * ui_imgui.cpp shows that to Dear ImGui, whose widgets are ui_widgets.cpp; ui_framebuffer.c has what
- * they draw into. */
+/* Types and functions that the files of the window module share. A frame's way: the screen
+ * (ui_glfw_window.c) puts input from outside into the queue, as feed() does. ui_events.c takes
+ * a frame's share of it. ui_imgui.cpp shows that to Dear ImGui, whose widgets are
+ * ui_widgets.cpp. ui_framebuffer.c has the framebuffer that they draw into. */
 #ifndef VIEWER_WINDOW_UI_INTERNAL_H
 #define VIEWER_WINDOW_UI_INTERNAL_H
 
@@ -17,7 +17,7 @@ extern "C" {
 enum { CWI_UI_GONE = 1 << 16 }; /* a panel that ImGui did not begin, beside its flags */
 enum { CWI_UI_SLOTS = 16, CWI_UI_NAME_SIZE = 64, CWI_UI_DEPTH = 8, CWI_UI_LARGEST = 16384 };
 
-/* What waits to be taken; text is the queue's. */
+/* Events that wait to be taken; text is the queue's. */
 typedef struct cwi_ui_queue {
     cwi_ui_event *items;
     double *times; /* when they came, in seconds */
@@ -35,7 +35,7 @@ typedef struct cwi_ui_places {
     size_t count, room;
 } cwi_ui_places;
 
-/* What is drawn into: a window's own framebuffer does not keep what it showed. */
+/* A framebuffer to draw into: a window's own framebuffer does not keep what it showed. */
 typedef struct cwi_ui_target {
     unsigned framebuffer, color;
     size_t width, height; /* 0: none yet */
@@ -133,7 +133,7 @@ int cwi_ui_panel_at(const cwi_ui *ui); /* index of the one at hand; -1: none */
 /* Dear ImGui (ui_imgui.cpp) */
 CW_NODISCARD cw_status cwi_ui_imgui_open(cwi_ui *ui,
                                          cw_error *err); /* within enter() and leave() */
-void cwi_ui_imgui_close(cwi_ui *ui);                     /* likewise */
+void cwi_ui_imgui_close(cwi_ui *ui);                     /* within enter() and leave(), too */
 void cwi_ui_imgui_choose(cwi_ui *ui);                    /* of several windows, this one */
 void cwi_ui_imgui_write(const char *text);
 void cwi_ui_imgui_begin(cwi_ui *ui);

@@ -24,7 +24,7 @@ ImU32 packed(const cwi_ui_color c)
 
 /* ---- where widgets are ---- */
 
-/* What of it can be seen. */
+/* Notes the visible part of a widget's rectangle. */
 void note_rect(cwi_ui *ui, const char *label, ImRect r)
 {
     r.ClipWith(ImGui::GetCurrentWindow()->ClipRect);
