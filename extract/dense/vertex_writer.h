@@ -1,4 +1,4 @@
-/* Storing one vertex: index space to the mesh's positions and normals. */
+/* Stores one vertex: converts index space to the mesh's positions and normals. */
 #ifndef EXTRACT_DENSE_VERTEX_WRITER_H
 #define EXTRACT_DENSE_VERTEX_WRITER_H
 
@@ -6,7 +6,7 @@
 #include "core/volume/volume.h"
 #include "extract/dense/isa_dispatch.h"
 
-/* x: cell coordinates from padded sample at[]. */
+/* Computes a position. x: cell coordinates from padded sample at[]. */
 static inline void cwi_world_position(const cwi_vertex_sink *sink, const size_t at[3],
                                       const double x[3], float position[3])
 {
