@@ -99,7 +99,7 @@ cwi_vertex_sink cwi_make_sink(const cw_volume *v, bool invert, cw_mesh *mesh)
     return sink;
 }
 
-/* Copies triangles. A mirroring affine turns them inside out: then two corners change places. */
+/* Copies triangles. A mirroring affine turns them inside out: two corners change places. */
 static void turn_triangles(const uint8_t *from, int count, bool flip, uint8_t *to)
 {
     for (int n = 0; n < 3 * count; n++)

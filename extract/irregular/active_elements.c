@@ -151,8 +151,8 @@ static void find_case(const cwi_cells *g, cwi_element *e)
                                  << n);
 }
 
-/* Whether a cell is an element, and that. Cells without a value at some corner are
- * not there. */
+/* Returns true if a cell is an element, and that. Cells without a value at some corner are not
+ * there. */
 static bool take_element(const cwi_cells *g, uint8_t shape, const uint32_t *corners,
                          cwi_element *e)
 {

@@ -95,7 +95,7 @@ int cwi_face_ring(const cwi_element *e, int face, uint8_t ring[4]);
 /* In a face of an element, the position from which the edge between two samples leads on. */
 int cwi_edge_position(const cwi_element *e, int face, uint32_t s, uint32_t t);
 
-/* Whether the surface, or a cap, runs through a face. */
+/* Returns true if the surface, or a cap, runs through a face. */
 bool cwi_face_matters(const cwi_cells *g, const cwi_element *e, int face);
 
 /* A face's samples in an order that does not depend on the cell: from the least toward the
@@ -205,8 +205,8 @@ static inline bool cwi_corner_inside(const cwi_element *e, int corner)
     return e->inside >> corner & 1;
 }
 
-/* Whether an ambiguous face of an element joins its inside corners; the same from the other
- * side. */
+/* Returns true if an ambiguous face of an element joins its inside corners; the same from the
+ * other side. */
 bool cwi_cells_join(const cwi_cells *g, const cwi_element *e, int face);
 
 #endif

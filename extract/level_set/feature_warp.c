@@ -104,7 +104,8 @@ static bool is_inside(const warping *g, const double p[3])
 
 /* ---- moves ------------------------------------------------------------------------------- */
 
-/* Whether the way from x on the surface, through what is inside or outside, soon leaves it. */
+/* Returns true if the way from x on the surface, through what is inside or outside, soon leaves
+ * it. */
 static bool is_thin(const warping *g, const double x[3], const double in[3], bool inside)
 {
     double at[3], p[3];
@@ -235,7 +236,7 @@ static int compare_sides(const void *a, const void *b)
     return (s->triangle > t->triangle) - (s->triangle < t->triangle);
 }
 
-/* Whether the other corner of the one triangle is below the other's plane. */
+/* Returns true if the other corner of the one triangle is below the other's plane. */
 static bool is_convex(const warping *g, const side *s, const side *t)
 {
     const uint32_t *v = g->mesh->triangles + 3 * (size_t)t->triangle;

@@ -17,7 +17,7 @@ CW_NODISCARD cw_status cwi_level_set_check(const cw_mesh *mesh, int threads,
 /* Bytes for a level set of a mesh, by its area; with reach_mm beyond CWI_BAND voxels. */
 double cwi_level_set_bytes(const cw_quality *q, double voxel_mm, double reach_mm);
 
-/* Whether that is within limits. */
+/* Returns true if that is within limits. */
 bool cwi_level_set_fits(const cw_quality *q, double voxel_mm, double reach_mm,
                         size_t max_bytes);
 

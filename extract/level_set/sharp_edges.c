@@ -143,7 +143,8 @@ static void meet_three(const plane *const p[3], const double away[3], double way
             (away[0] * cross[0][a] + away[1] * cross[1][a] + away[2] * cross[2][a]) / volume;
 }
 
-/* Whether the way from x leads to the surface, and not too far: then there is the cut. */
+/* Returns true if the way from x leads to the surface, and not too far: then there is the
+ * cut. */
 static bool take_way(const sharpener *s, const double x[3], const double way[3], cut *c)
 {
     const double to[3] = {x[0] + way[0], x[1] + way[1], x[2] + way[2]};
@@ -392,7 +393,7 @@ static void divide_triangle(const sharpener *s, size_t t, division *d)
 
 /* ---- what stays as it is ----------------------------------------------------------------- */
 
-/* Whether a part is no sliver, and faces as one of three planes does. */
+/* Returns true if a part is no sliver, and faces as one of three planes does. */
 static bool is_sound(const sharpener *s, const part *p, const plane *const planes[3])
 {
     double u[3], v[3], n[3], longest = 0, best = -1;
@@ -410,7 +411,7 @@ static bool is_sound(const sharpener *s, const part *p, const plane *const plane
     return best >= faces;
 }
 
-/* Whether a corner of it is not where it was. */
+/* Returns true if a corner of it is not where it was. */
 static bool has_moved(const sharpener *s, size_t t)
 {
     bool has = false;
@@ -451,7 +452,7 @@ static void restore_some(const sharpener *s, size_t t, const division *d)
         restore_triangle(s, t);
 }
 
-/* Whether something had to be restored. */
+/* Returns true if something had to be restored. */
 static bool restore_unsound(const sharpener *s, size_t t)
 {
     const plane *planes[3];

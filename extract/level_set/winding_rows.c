@@ -41,8 +41,8 @@ static int64_t edge_area(const corner *a, const corner *b, int64_t y, int64_t z)
     return (b->y - a->y) * (z - a->z) - (b->z - a->z) * (y - a->y);
 }
 
-/* Whether the row is to the left of the edge. One that meets it passes by as if it stood at
- * (y + e, z + e * e), for an e that is smaller than any number. */
+/* Returns true if the row is to the left of the edge. One that meets it passes by as if it
+ * stood at (y + e, z + e * e), for an e that is smaller than any number. */
 static bool is_left(int64_t twice_area, const corner *a, const corner *b)
 {
     if (twice_area != 0)

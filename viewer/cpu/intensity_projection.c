@@ -120,9 +120,9 @@ static void add_cell(cw_mode mode, const cwi_walk *w, tally *t)
         add_local(w, v, t);
 }
 
-/* Whether a block of cells can be passed over: it has no values, or none that would be told. A
- * stretch of values goes on behind it, below the threshold as its end was, and so as if it
- * began there. */
+/* Returns true if a block of cells can be passed over: it has no values, or none that would be
+ * told. A stretch of values goes on behind it, below the threshold as its end was, and so as if
+ * it began there. */
 static bool is_passed_over(cw_mode mode, const float range[2], tally *t)
 {
     const double low = (double)range[0], high = (double)range[1];

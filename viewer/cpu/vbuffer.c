@@ -244,7 +244,7 @@ static lanes glow_of_piece(const state *s, const cwi_linear *l, const double val
     return finish_cell(s, x, gradient, glow);
 }
 
-/* Whether two points tell of a stretch well enough. Light may turn within a cell. */
+/* Returns true if two points tell of a stretch well enough. Light may turn within a cell. */
 static inline bool is_told(const state *s, lanes first, lanes second, float length)
 {
     const float depth = (first[3] + second[3]) * 0.5f * length;

@@ -169,9 +169,9 @@ CW_NODISCARD cw_status cwi_gl_draw_triangles(cwi_gl *gl, size_t count, bool inde
 /* Has the frame's volume for shaders: where it is, if that is not to be textures and what draws
  * can read it there, or uploaded. What is there already stays. */
 CW_NODISCARD cw_status cwi_gl_take_volume(cwi_gl *gl, bool as_textures, cw_error *err);
-/* Whether shaders can read the only brick's voxels where the caller has them: the processor
- * draws, and they are of a type that it fetches, one after another. Then there is no upload,
- * and no memory for another volume. */
+/* Returns true if shaders can read the only brick's voxels where the caller has them: the
+ * processor draws, and they are of a type that it fetches, one after another. Then there is no
+ * upload, and no memory for another volume. */
 bool cwi_gl_find_voxels(cwi_gl *gl);
 /* x fastest, without gaps. */
 bool cwi_gl_is_packed(const cw_volume *volume);

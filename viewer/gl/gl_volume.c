@@ -166,7 +166,7 @@ static cw_status upload_brick(cwi_gl *gl, const cwi_gl_texels *kind, const cwi_g
     return st;
 }
 
-/* Whether this OpenGL makes such a texture: only the proxy says so. */
+/* Returns true if this OpenGL makes such a texture: only the proxy says so. */
 static bool texture_fits(GLenum inner, size_t w, size_t h, size_t d)
 {
     GLint got = 0, most = 0;

@@ -127,7 +127,7 @@ static void find_corners(board *b)
     }
 }
 
-/* Whether the face at an end of an axis is seen from outside. */
+/* Returns true if the face at an end of an axis is seen from outside. */
 static bool is_seen(const board *b, int axis, int end)
 {
     const cwi_frame *f = b->frame;

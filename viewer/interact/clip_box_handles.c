@@ -20,7 +20,7 @@ static void find_middle(const cwi_world_box *box, int handle, double middle[3])
     middle[axis] = handle % 2 ? box->high[axis] : box->low[axis];
 }
 
-/* Whether the face of a handle is seen from inside of the box. */
+/* Returns true if the face of a handle is seen from inside of the box. */
 static bool faces_away(const cwi_handle_view *v, const cwi_world_box *box, int handle)
 {
     const cw_camera *c = &v->camera;

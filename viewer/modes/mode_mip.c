@@ -101,7 +101,7 @@ static const char *name_of(cw_mode mode)
                                      : "LOCAL";
 }
 
-/* Whether the range of a block holds for every ray through it. */
+/* Returns true if the range of a block holds for every ray through it. */
 static bool can_foresee(const cwi_gl *gl)
 {
     const cw_mode mode = gl->frame->scene.mode;

@@ -139,7 +139,7 @@ static void make_pattern(job *j, const double size[3])
         weigh_vertex(j->frame, &p->pieces.vertices[n], low, size, p->front[n], p->back[n]);
 }
 
-/* Whether a side of the picture has all of the vertices from a number on behind it. */
+/* Returns true if a side of the picture has all of the vertices from a number on behind it. */
 static bool is_outside(const job *j, size_t from)
 {
     bool out[4] = {true, true, true, true};

@@ -36,7 +36,7 @@ static void find_voxels(const walk *w, int axis, size_t level, size_t n, size_t 
     at[1] = end < dim ? end : dim;
 }
 
-/* Whether a plane that clips goes through a node. */
+/* Returns true if a plane that clips goes through a node. */
 static bool is_clipped(const cwi_splats *s, const double eye[3], const float size[3])
 {
     const double *m = s->frame->eye_from_index;

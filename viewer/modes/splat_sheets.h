@@ -41,7 +41,8 @@ CW_NODISCARD cw_status cwi_splats_open(cwi_splats *s, cwi_gl *gl, bool has_nodes
                                        cw_error *err);
 void cwi_splats_close(cwi_splats *s);
 
-/* Whether clips, and a place in front of the eye, keep a splat at a point of index space. */
+/* Returns true if clips, and a place in front of the eye, keep a splat at a point of index
+ * space. */
 bool cwi_splats_keep(const cwi_splats *s, const double at[3], double eye[3]);
 
 /* Adds a splat, that was kept at a point of eye space, to the sheet. */

@@ -81,7 +81,7 @@ static bool has_value(const cw_volume *v, size_t i, size_t j, size_t k)
     return isfinite(x) && !(v->has_nodata && x == v->nodata);
 }
 
-/* Whether the cell between two samples along each axis has values at all corners. */
+/* Returns true if the cell between two samples along each axis has values at all corners. */
 static bool is_whole(const cw_volume *v, const size_t low[3], const size_t high[3])
 {
     for (size_t k = low[2]; k <= high[2]; k++)

@@ -83,8 +83,8 @@ static size_t bin_of(const cw_statistics *s, double value)
     return b <= 0 ? 0 : b >= (double)s->bin_count ? s->bin_count - 1 : (size_t)b;
 }
 
-/* Whether most lies in the middle, and little above: that is what is around things, too, such
- * as the noise of a scan, or what fills it. */
+/* Returns true if most lies in the middle, and little above: that is what is around things,
+ * too, such as the noise of a scan, or what fills it. */
 static bool is_around(const cw_statistics *s, double first, double second)
 {
     return count_between(s, first, second) > 0.6 && count_between(s, second, s->max) < 0.15;

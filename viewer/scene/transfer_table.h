@@ -24,7 +24,7 @@ enum { CWI_TABLE_ROWS = 4096 };
 CW_NODISCARD cw_status cwi_table_make(const cwi_frame *frame, cwi_table *table, cw_error *err);
 void cwi_table_free(cwi_table *table);
 
-/* Whether something within a range of values is not fully transparent. */
+/* Returns true if something within a range of values is not fully transparent. */
 bool cwi_table_is_visible(const cwi_table *table, double low, double high);
 
 /* Rows that a pre-integrated table needs: more for narrow peaks, 256 to 1024. */

@@ -20,7 +20,7 @@ float block_exit(ray r, vec3 at)
     return box_exit(r, at, low, low + 8.0);
 }
 
-// Whether nothing in a range changes what was found.
+// Returns true if nothing in a range changes what was found.
 bool is_useless(vec2 range, vec4 found)
 {
 #ifdef MIP

@@ -105,8 +105,8 @@ typedef struct cwi_ui_functions {
     double (*scale)(const cwi_ui *ui);     /* 1: letters of 13 pixels */
     double (*seconds)(const cwi_ui *ui);   /* since open() */
 
-    /* Whether input waits that begin() would take; asks the system for it. What takes long
-     * calls this, and stops when there is some. */
+    /* Returns true if input waits that begin() would take; asks the system for it. What takes
+     * long calls this, and stops when there is some. */
     bool (*pending)(cwi_ui *ui);
     /* Queues input as if it came from outside. CW_ERR_ARGUMENT for a key of an unknown name */
     cw_status (*feed)(cwi_ui *ui, const cwi_ui_event *event, cw_error *err);

@@ -101,10 +101,10 @@ typedef struct taken {
     bool any, moved, button[CWI_UI_BUTTONS], at_place, key, edit, wrote, alone;
 } taken;
 
-/* Whether an event belongs into the frame at hand too: each change must be seen, and where and
- * in which order it was. The way to where a button goes down is not dragged, and what is
- * dragged gets where it is let go. A key that is down must come up before it goes
- * down again. */
+/* Returns true if an event belongs into the frame at hand too: each change must be seen, and
+ * where and in which order it was. The way to where a button goes down is not dragged, and what
+ * is dragged gets where it is let go. A key that is down must come up before it goes down
+ * again. */
 static bool fits_frame(const cwi_ui *ui, const taken *t, const cwi_ui_event *e, int last_key)
 {
     if (t->alone)
