@@ -1,4 +1,5 @@
-/* Which cells to divide. */
+/* Decides which cells to divide: those with parts of a surface that are too far from the
+ * other. */
 #include "core/geometry/polygon_clip.h"
 #include "extract/level_set/adaptive_field.h"
 
@@ -55,8 +56,8 @@ static void add_triangle(pieces *p, const cwi_polygon *g, int n, const struct ce
     p->cells[p->count++] = *cell;
 }
 
-/* Cuts what is in a cell by those that it is divided into. For what is in the smallest that are
- * divided once more there is nothing left to do. */
+/* Cuts the part of a polygon in a cell by the cells that it is divided into. In the smallest
+ * cells, which are divided once more, nothing is left to do. */
 static void cut_by_cell(pieces *p, const cwi_polygon *g, const struct cell *cell)
 {
     if (g->count < 3)
@@ -114,8 +115,8 @@ static void cut_triangle(pieces *p, const cw_mesh *m, size_t t)
 
 /* ---- what is beyond ---------------------------------------------------------------------- */
 
-/* All of it is, if there is nothing to be near to.
- * beyond  of each triangle whether it is; free it with cwi_free() */
+/* Finds the triangles that are beyond the limit; all are if the other mesh is empty.
+ * beyond  1 for each triangle that is beyond; free it with cwi_free() */
 static cw_status find_beyond(const cwi_adaptive *a, const cw_mesh *from, const cw_mesh *to,
                              double limit_mm, uint8_t **beyond, cw_error *err)
 {

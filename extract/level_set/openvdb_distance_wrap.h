@@ -27,8 +27,8 @@ typedef struct cwi_levelset_functions {
      * Returns  CW_ERR_NO_MEMORY; CW_ERR_CANCELLED; CW_ERR_BACKEND */
     cw_status (*open)(const cwi_distances_desc *desc, cwi_distances **out, cw_error *err);
     size_t (*leaves)(const cwi_distances *distances);
-    /* A leaf's place, in leaves, and how many voxels its own are from the mesh, x fastest:
-     * never negative. Beyond the reach it is the reach. */
+    /* Takes a leaf's place, in leaves, and the distances of its voxels from the mesh, in
+     * voxels, x fastest: never negative. Beyond the reach it is the reach. */
     void (*take)(const cwi_distances *distances, size_t leaf, int32_t at[3], float voxels[512]);
     void (*close)(cwi_distances *distances); /* harmless on NULL */
 } cwi_levelset_functions;
