@@ -17,7 +17,7 @@
 
 enum { FACE, EDGE, CORNER, JOINS = 6 };
 
-/* Largest cosines of normals: of faces that meet at less than 80 degrees, and of those that
+/* Maximum cosines of normals: of faces that meet at less than 80 degrees, and of those that
  * meet at less than 120, which count where the part between them is thin. */
 static const double sharp = -0.17, bent = 0.5;
 
@@ -201,8 +201,8 @@ static void follow_edge(warping *g, const uint32_t ends[2], const double in[3], 
     }
 }
 
-/* Considers the end of an edge, if it is a corner of the same kind as the edge. An end where a
- * concave edge continues as a convex one is not. */
+/* Considers the end of an edge as a corner, if it is one of the same kind as the edge: not
+ * where an edge between faces that turn in ends in one that turns out. */
 static void consider_corner(warping *g, uint32_t v, const double edge_in[3], bool inside,
                             bool always)
 {

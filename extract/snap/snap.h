@@ -1,5 +1,5 @@
-/* Merging crossings that stand close to one and the same sample: the needles between
- * them go. */
+/* Merges crossings that stand close to the same sample, so that the needles between them
+ * vanish. */
 #ifndef EXTRACT_SNAP_SNAP_H
 #define EXTRACT_SNAP_SNAP_H
 

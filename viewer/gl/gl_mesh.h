@@ -1,4 +1,4 @@
-/* A mesh on the GPU, and what it takes to draw it translucent and cut open. */
+/* A mesh on the GPU, and the textures for drawing it translucent and cut open. */
 #ifndef VIEWER_GL_GL_MESH_H
 #define VIEWER_GL_GL_MESH_H
 

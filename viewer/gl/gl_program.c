@@ -31,7 +31,7 @@ static GLuint compile_shader(GLenum stage, const char *defines, const char *sour
     return 0;
 }
 
-/* Units and blocks are not said in GLSL 3.30. */
+/* Sets texture units and blocks, which GLSL 3.30 cannot declare. */
 static void set_units(GLuint program)
 {
     static const struct {
