@@ -84,7 +84,7 @@ static cw_status draw_frame(cw_renderer *r, const cwi_frame *frame, cw_picture *
     return st == CW_OK ? r->functions->draw(r->gl, frame, picture, err) : st;
 }
 
-/* Means of n x n samples. */
+/* Averages n x n samples. */
 static cw_status average_samples(const cw_picture *fine, size_t n, cw_picture *out,
                                  cw_error *err)
 {

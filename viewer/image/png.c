@@ -85,7 +85,7 @@ static bool is_opaque(const cw_image *image)
     return true;
 }
 
-/* Leaves by libpng's jump on any error: nothing here may own memory. */
+/* Writes the image; leaves by libpng's jump on any error, so nothing here may own memory. */
 static void put_image(png_structp png, png_infop info, const cw_image *image)
 {
     const bool opaque = is_opaque(image);

@@ -11,7 +11,7 @@ extern "C" {
 /* A point of the volume on a ray. */
 typedef struct cwi_volume_hit {
     double t;       /* along the ray, in eye space; INFINITY: there is none */
-    double opacity; /* that all of the ray's volume has: 1 of an intensity projection */
+    double opacity; /* of the whole ray's volume: 1 for an intensity projection */
 } cwi_volume_hit;
 
 /* Find the point that blending modes, and intensity projections, show at a point of the
@@ -19,8 +19,8 @@ typedef struct cwi_volume_hit {
 cwi_volume_hit cwi_pick_blended(const cwi_frame *frame, double x, double y, double depth);
 cwi_volume_hit cwi_pick_intensity(const cwi_frame *frame, double x, double y, double depth);
 
-/* The nearest of the slices (normals of unit length) that has a value on a ray in eye space;
- * its number. INFINITY: there is none. */
+/* Finds the nearest of the slices (normals of unit length) that has a value on a ray in eye
+ * space, and its number. INFINITY: there is none. */
 double cwi_pick_slice(const cwi_frame *frame, const cw_slice *slices, size_t count,
                       const double origin[3], const double direction[3], size_t *number);
 

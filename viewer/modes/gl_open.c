@@ -1,4 +1,4 @@
-/* Opening and closing what draws by OpenGL. */
+/* Opens and closes the OpenGL renderer, and lists the functions of its module. */
 #include "viewer/modes/gl_draw.h"
 
 #include "core/base/memory.h"

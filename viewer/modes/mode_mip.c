@@ -36,7 +36,7 @@ static void drop_mip_mode(void *state)
     cwi_free(p);
 }
 
-/* Ranges of values as those of what textures hold; none: from infinity down. */
+/* Converts ranges of values to ranges of texels; without values: from infinity down. */
 static void to_texels(const cwi_gl_volume *v, cwi_ranges *ranges, size_t count)
 {
     for (size_t n = 0; n < count; n++) {
@@ -108,7 +108,7 @@ static bool can_foresee(const cwi_gl *gl)
     return (mode == CW_MODE_MIP || mode == CW_MODE_MINIP) && !gl->volume.ranges.has_gaps;
 }
 
-/* One brick, the n-th from the front of count. */
+/* Draws one brick, the n-th from the front of `count`. */
 static cw_status draw_brick(cwi_gl *gl, const projector *p, const cwi_gl_brick *brick, size_t n,
                             size_t count, cw_error *err)
 {

@@ -210,8 +210,8 @@ static void tally_node(tally *t, size_t level, const size_t node[3], float end)
     }
 }
 
-/* Each node is drawn for errors from its own up to the least above it: one walk through the
- * tree counts for all errors. */
+/* Counts splats for all errors in one walk through the tree: each node is drawn for errors from
+ * its own up to the least above it. */
 void cwi_pyramid_counts(const cwi_pyramid *pyramid, const cwi_pyramid_view *view,
                         size_t *counts)
 {
