@@ -43,7 +43,8 @@ void cwi_visible_free(cwi_visible *visible)
     *visible = (cwi_visible){0};
 }
 
-/* Clamped; a row that is interpolated is as visible as those around it. */
+/* Returns the row of a coordinate, clamped; an interpolated row is as visible as those around
+ * it. */
 static float row_of(const cwi_visible *visible, float at)
 {
     return (at < 0 ? 0 : at > 1 ? 1 : at) * (float)(visible->count - 1);

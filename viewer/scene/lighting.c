@@ -13,7 +13,7 @@ static void normalize_vector(double v[3])
         v[a] /= length;
 }
 
-/* x^power for whole powers, as most are, and others; quicker than pow(). */
+/* Returns x^power for whole powers, as most are, and others; faster than pow(). */
 static double raise_power(double x, double power)
 {
     double result = 1;

@@ -8,11 +8,13 @@
 extern "C" {
 #endif
 
-/* From dark to bright, for 0 to 1: lightness (CIE L*) rises evenly from 18 to 92 while the hue
- * goes from violet over blue and green to yellow, at a chroma that sRGB has throughout. */
+/* Computes a colour of the ramp from dark to bright, for 0 to 1. Lightness (CIE L*) rises
+ * evenly from 18 to 92, while the hue goes from violet over blue and green to yellow. The
+ * chroma is within sRGB throughout. */
 void cwi_ramp_color(double share, double srgb[3]);
 
-/* 4 sqrt(3) area / sum of squared edges: 1 of an equilateral triangle, 0 of a flat one. */
+/* Returns 4 sqrt(3) area / sum of squared edges: 1 for an equilateral triangle, 0 for a flat
+ * one. */
 double cwi_triangle_shape(const cw_mesh *mesh, size_t triangle);
 
 /* Finds the values at the ends of the ramp. Returns CW_ERR_ARGUMENT when the scene's tint is

@@ -68,8 +68,8 @@ void cwi_slice_color(const cw_slice *slice, double srgb[3])
     memcpy(srgb, along ? habits[axis].color : oblique, 3 * sizeof *srgb);
 }
 
-/* Where the plane meets the edges of the volume's box, in the picture's directions: low and
- * high of right and up. False when it does not. */
+/* Finds where the plane meets the edges of the volume's box, in the picture's directions: low
+ * and high of right and up. Returns false when it does not. */
 static bool find_extent(const cw_volume *v, const cw_slice *s, const double axes[2][3],
                         double extent[2][2])
 {

@@ -6,7 +6,8 @@ uniform float step_length;
 uniform vec3 last_block; // of skip
 out vec4 result;
 
-// Where a texel's value is in the texture of segments, which is clamped: scale and bias.
+// Returns scale and bias from a texel to its place in the texture of segments, which is
+// clamped.
 vec2 segment_scale()
 {
     return vec2(texels.x * (dim.w - 1.0), texels.y * (dim.w - 1.0) + 0.5) / dim.w;
@@ -33,7 +34,7 @@ vec4 segment_through(float front, float middle, float back)
     return color;
 }
 
-// How far a ray goes through empty blocks, at most so far.
+// Returns how far a ray goes through empty blocks, at most `most`.
 float leap_from(ray r, vec3 from, float most)
 {
     float way = 0.0;

@@ -20,14 +20,15 @@ float value_at(vec3 place)
 #endif
 }
 
-// Colour and opacity of a way through an extinction: C = (1 - e^-alpha) / alpha E, O = 1 - e^-alpha.
+// Returns colour and opacity of a way through an extinction: C = (1 - e^-alpha) / alpha E, O =
+// 1 - e^-alpha.
 vec4 absorb(vec3 color, float alpha)
 {
     float opacity = 1.0 - exp(-alpha);
     return vec4(color * opacity, opacity);
 }
 
-// Premultiplied; what has no value is empty.
+// Returns the segment's colour, premultiplied; it is empty without a value.
 vec4 segment_between(vec3 from, vec3 to, float extent)
 {
 #ifdef SEGMENTS

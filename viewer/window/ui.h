@@ -1,9 +1,9 @@
-/* The window and what is in it: GLFW and Dear ImGui behind C functions. A module, loaded when
- * first needed; without a display the same window is a framebuffer that nobody sees.
+/* The window and its widgets: GLFW and Dear ImGui behind C functions. A module, loaded when
+ * first needed; without a display the same window is a hidden framebuffer.
  *
  * One thread. A frame is begin(), widgets and drawing, end(). Lengths and places are pixels of
  * the framebuffer, from its upper left corner, y down. All text is UTF-8. There may be many
- * windows that nobody sees, but only one that somebody does. */
+ * hidden windows, but only one visible window. */
 #ifndef VIEWER_WINDOW_UI_H
 #define VIEWER_WINDOW_UI_H
 
@@ -61,7 +61,8 @@ typedef struct cwi_ui_input {
     bool down[CWI_UI_BUTTONS];                            /* held now */
     bool pressed[CWI_UI_BUTTONS], lifted[CWI_UI_BUTTONS]; /* in this frame */
     bool twice[CWI_UI_BUTTONS]; /* pressed, the second time in a row */
-    bool over_widget;           /* the mouse is on a panel, or what it began there goes on */
+    bool over_widget;           /* the mouse is on a panel, or an action that began there
+                                   continues */
     bool typing;                /* keys go into a widget; keys[] has none */
     size_t key_count;
     char keys[CWI_UI_KEYS][CWI_UI_KEY_SIZE]; /* that went down */
@@ -75,7 +76,7 @@ typedef struct cwi_ui_rect {
     double x, y, width, height;
 } cwi_ui_rect;
 
-/* A widget of one's own: what the mouse does to it. */
+/* An area for a custom widget, and the mouse's actions on it. */
 typedef struct cwi_ui_area {
     cwi_ui_rect rect;
     bool over;                          /* the mouse is on it */
@@ -105,8 +106,8 @@ typedef struct cwi_ui_functions {
     double (*scale)(const cwi_ui *ui);     /* 1: letters of 13 pixels */
     double (*seconds)(const cwi_ui *ui);   /* since open() */
 
-    /* Returns true if input waits that begin() would take; asks the system for it. What takes
-     * long calls this, and stops when there is some. */
+    /* Returns true if input waits that begin() would take; asks the system for it. Long work
+     * calls this, and stops when there is some. */
     bool (*pending)(cwi_ui *ui);
     /* Queues input as if it came from outside. CW_ERR_ARGUMENT for a key of an unknown name */
     cw_status (*feed)(cwi_ui *ui, const cwi_ui_event *event, cw_error *err);
