@@ -8,14 +8,14 @@
 extern "C" {
 #endif
 
-/* Returns the scene's slices, or the default: axial, coronal, sagittal through the volume's
+/* Finds the scene's slices, or the default: axial, coronal, sagittal through the volume's
  * middle. The normals are of unit length. CW_ERR_ARGUMENT for a slice without direction or
  * place. */
 CW_NODISCARD cw_status cwi_slices_of(const cw_scene *scene, const cw_volume *volume,
                                      cw_slice slices[CW_MAX_SLICES], size_t *count,
                                      cw_error *err);
 
-/* Returns the colour of the frame of slices in a direction: axial red, coronal green, sagittal
+/* Finds the colour of the frame of slices in a direction: axial red, coronal green, sagittal
  * yellow, oblique violet; sRGB. */
 void cwi_slice_color(const cw_slice *slice, double srgb[3]);
 
