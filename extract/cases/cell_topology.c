@@ -321,8 +321,8 @@ void cwi_cell_plan_make(unsigned cube, const double values[8], bool zero_inside,
     count_parts(plan);
 }
 
-/* From the lowest bit: the configuration, and for each end of a tunnel its loop, from 1, and
- * its corner. */
+/* Packs a plan. From the lowest bit: the configuration and, for each end of a tunnel, its loop,
+ * from 1, and its corner. */
 uint32_t cwi_cell_plan_pack(const cwi_cell_plan *plan)
 {
     uint32_t code = (uint32_t)(plan->config - cwi_configs);

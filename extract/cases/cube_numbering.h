@@ -1,4 +1,4 @@
-/* How the corners, edges and faces of a cube are numbered.
+/* Numbers the corners, edges and faces of a cube.
  *
  * Corner c stands at x = c & 1, y = c >> 1 & 1, z = c >> 2. An edge runs along one axis between
  * the two corners that differ in it: 0..3 along x, 4..7 along y, 8..11 along z; within an axis

@@ -49,7 +49,7 @@ static bool is_divided_beside(const build *b, const leaf *l, const int way[3])
     return cwi_adaptive_is_divided(b->a, l->size, at);
 }
 
-/* Of the three cells around an edge with this one. */
+/* Returns true if one of the other three cells around an edge is divided. */
 static bool is_edge_cut(const build *b, const leaf *l, const int way[3])
 {
     bool cut = is_divided_beside(b, l, way);

@@ -193,7 +193,7 @@ static void free_pieces(pieces *p)
     cwi_free(p->cells);
 }
 
-/* All pieces are cut before cells are divided for any. */
+/* Divides cells at both meshes. All pieces are cut before cells are divided for any. */
 cw_status cwi_adaptive_divide(cwi_adaptive *a, const cw_mesh *surface, double limit_mm,
                               bool both_ways, cwi_beyond *beyond, cw_error *err)
 {

@@ -9,7 +9,8 @@
 
 #include "extract/dense/isa_dispatch.h"
 
-/* Along x a row of samples, with what is around it, just fits a word of bits. */
+/* The size of a block in leaves. Along x a row of samples, with its surroundings, just fits a
+ * word of bits. */
 enum { CWI_BLOCK_X = 7, CWI_BLOCK_Y = 4, CWI_BLOCK_Z = 4 };
 
 /* Number of the space outside all regions. */

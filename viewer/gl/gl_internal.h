@@ -105,7 +105,7 @@ struct cwi_gl {
 typedef struct cwi_gl_mode {
     cw_mode mode;
     bool goes_along_rays; /* draws into target.rays */
-    /* Of the mode's state, made at the first call. The frame is gl->frame. */
+    /* Draws by the mode's state, which is made at the first call. The frame is gl->frame. */
     cw_status (*draw)(cwi_gl *gl, void **state, cw_error *err);
     /* Frees it, when another volume or mesh comes and at the end; NULL: there is none. */
     void (*drop)(void *state);

@@ -50,7 +50,7 @@ static void set_look(const cwi_gl *gl, const cwi_gl_mesh *m, GLuint program)
     cwi_gl_set(program, "line_width", LINE_WIDTH * (float)s->samples);
 }
 
-/* How a surface is drawn. */
+/* Options by which a surface is drawn. */
 typedef struct manner {
     bool opaque, peels;
 } manner;

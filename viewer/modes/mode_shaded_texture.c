@@ -194,7 +194,8 @@ static void fill_key(const cwi_gl *gl, shades_key *key)
     key->high = gl->transfer.table.high;
 }
 
-/* As shade() of common.glsl, for a direction of the table: light is gain x colour + shine. */
+/* Light of a direction of the table, as shade() of common.glsl computes it: gain x colour +
+ * shine. */
 typedef struct reflection {
     double gain[3], shine[3];
 } reflection;

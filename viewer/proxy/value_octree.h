@@ -24,8 +24,8 @@ typedef struct cwi_pyramid {
     } levels[32];
 } cwi_pyramid;
 
-/* Of a resolved, evenly spaced volume; about 2.3 bytes a voxel. CW_ERR_NO_MEMORY.
- * has_gaps: whether some samples have no value, see cwi_lattice_mass() */
+/* Makes the octree of a resolved, evenly spaced volume; about 2.3 bytes a voxel.
+ * CW_ERR_NO_MEMORY. has_gaps: whether some samples have no value, see cwi_lattice_mass() */
 CW_NODISCARD cw_status cwi_pyramid_make(const cw_volume *volume, bool has_gaps, int threads,
                                         const cw_progress *progress, cwi_pyramid *pyramid,
                                         cw_error *err);

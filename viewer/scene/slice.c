@@ -8,8 +8,9 @@
 #include <math.h>
 #include <string.h>
 
-/* How radiologists look at slices across each axis of LPS. Sagittal: from the left side, the
- * nose to the picture's left; coronal: from the front; axial: from the feet. */
+/* The directions in which radiologists look at slices across each axis of LPS. Sagittal: from
+ * the left side, the nose to the picture's left; coronal: from the front; axial: from the
+ * feet. */
 static const struct {
     double forward[3], up[3], color[3];
 } habits[] = {{{-1, 0, 0}, {0, 0, 1}, {0.95, 0.80, 0.25}},

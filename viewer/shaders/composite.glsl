@@ -13,7 +13,7 @@ vec2 segment_scale()
     return vec2(texels.x * (dim.w - 1.0), texels.y * (dim.w - 1.0) + 0.5) / dim.w;
 }
 
-// Half a segment, straight; NaN is empty.
+// Returns the colour of half a segment, straight; NaN is empty.
 vec4 half_segment(float front, float back)
 {
     vec4 color = stretch(textureLod(segments, vec2(front, back), 0.0), 0.5);

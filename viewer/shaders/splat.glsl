@@ -3,7 +3,7 @@
 // With NODES also the part of a node in a sheet: a rectangle of the lattice, blurred as its voxels
 // would be, so that nodes next to each other leave no seam.
 #ifdef NODES
-// How a ray through a point of eye space goes through index space, per unit.
+// Returns the step through index space, per unit, of a ray through a point of eye space.
 vec3 slope_through(vec3 at)
 {
     return mat3(index_from_eye) * (view.x > 0.5 ? normalize(at) : vec3(0.0, 0.0, -1.0));
@@ -128,7 +128,7 @@ float cover(float x, float reach, float blur)
 }
 #endif
 
-// How high the footprint is; of a node, times the way through the sheet.
+// Returns the height of the footprint; for a node, multiplied by the way through the sheet.
 float height()
 {
 #ifdef NODES

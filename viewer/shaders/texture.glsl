@@ -43,7 +43,7 @@ vec4 segment_between(vec3 from, vec3 to, float extent)
 }
 
 #ifdef SHADES
-// Of a direction and a value.
+// Returns the shaded colour of a direction and a value.
 vec3 shade_of(uint direction, float coordinate)
 {
     vec2 size = vec2(textureSize(shades, 0));

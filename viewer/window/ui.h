@@ -191,10 +191,10 @@ typedef struct cwi_ui_functions {
     void (*menu_end)(cwi_ui *ui);
     bool (*item)(cwi_ui *ui, const char *label, const char *key, bool checked, bool enabled);
 
-    /* Where a widget was in the last frame, as far as it could be seen and without the label at
-     * its side: by its label (without ##...) or, of several, by "panel/label". Also "panel",
-     * "panel/close", "choice/name" and "menu/item" where they are open. false: it was not
-     * there. For scripts that use it by name. */
+    /* Finds the visible part of a widget in the last frame, without the label at its side: by
+     * its label (without ##...) or, of several, by "panel/label". Also "panel", "panel/close",
+     * "choice/name" and "menu/item" where they are open. false: it was not there. For scripts
+     * that use it by name. */
     bool (*find)(const cwi_ui *ui, const char *label, cwi_ui_rect *rect);
 } cwi_ui_functions;
 

@@ -24,7 +24,7 @@ typedef struct cwi_ui_queue {
     size_t first, count, room;
 } cwi_ui_queue;
 
-/* Where widgets are. */
+/* The place of a widget. */
 typedef struct cwi_ui_place {
     char panel[CWI_UI_NAME_SIZE], label[CWI_UI_NAME_SIZE];
     cwi_ui_rect rect;
@@ -90,8 +90,8 @@ void cwi_ui_key_name(char name[CWI_UI_KEY_SIZE], unsigned modifiers, const char 
 
 /* The queue (ui_events.c) */
 CW_NODISCARD cw_status cwi_ui_feed(cwi_ui *ui, const cwi_ui_event *event, cw_error *err);
-/* As feed(), of a checked event; what does not fit into memory is lost. A key that repeats is
- * lost when it still waits to be taken: frames may be slower than fingers. */
+/* Queues a checked event, as feed(); an event that does not fit into memory is lost. A key that
+ * repeats is lost while it still waits to be taken: frames may be slower than fingers. */
 bool cwi_ui_queue_put(cwi_ui *ui, const cwi_ui_event *event, bool repeats);
 void cwi_ui_queue_take(cwi_ui *ui); /* a frame's share, into ui->input and Dear ImGui */
 void cwi_ui_queue_free(cwi_ui *ui);
