@@ -10,7 +10,7 @@
  * segment ends at, exactly one other starts from: segments close up into directed loops.
  * 3. Each loop is a polygon, triangulated without new points. No diagonal may join two points
  * of one face: it would lie in the wall between two cells, where the neighbour's may lie too,
- * and four triangles would share an edge. Of what is left the triangulation with the widest
+ * and four triangles would share an edge. Of the others the triangulation with the widest
  *    smallest angle, points in the middle of their edges, is taken. Some loops of 8, 9 and 12
  *    edges have none left, or only ones that cross themselves: those become cones around a
  * vertex inside the cell.

@@ -113,7 +113,7 @@ static void cut_triangle(pieces *p, const cw_mesh *m, size_t t)
     cut_along(p, &g, 2, &cell);
 }
 
-/* ---- what is beyond ---------------------------------------------------------------------- */
+/* ---- parts beyond the limit -------------------------------------------------------------- */
 
 /* Finds the triangles that are beyond the limit; all are if the other mesh is empty.
  * beyond  1 for each triangle that is beyond; free it with cwi_free() */

@@ -34,7 +34,7 @@ typedef struct hollowing {
     cw_hollow_facts facts;
 } hollowing;
 
-/* --- what is asked for -------------------------------------------------------------------- */
+/* --- parameters --------------------------------------------------------------------------- */
 
 static double find_narrowest(const cw_hollow_desc *d)
 {

@@ -253,7 +253,7 @@ static void limit_leaves(build *b)
     b->voxels = less ? less : b->voxels;
 }
 
-/* --- what is inside, and far from the surface --------------------------------------------- */
+/* --- inside, and far from the surface ----------------------------------------------------- */
 
 static int compare_places(const void *a, const void *b)
 {

@@ -79,7 +79,7 @@ static cw_status make_plain(making *m, cw_mesh *out, cw_error *err)
     return st;
 }
 
-/* ---- what is promised of the mesh's own surface ------------------------------------------ */
+/* ---- guarantees for the mesh's own surface ----------------------------------------------- */
 
 static int64_t count_handles(const cw_quality *q)
 {

@@ -496,7 +496,7 @@ static void restore_all_unsound(const sharpener *s)
     }
 }
 
-/* ---- what is made ------------------------------------------------------------------------ */
+/* ---- the new mesh ------------------------------------------------------------------------ */
 
 static void number_cuts(cut *cuts, size_t count, size_t *vertices)
 {

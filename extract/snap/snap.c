@@ -220,7 +220,7 @@ static void snap_layer(void *context, size_t n)
     }
 }
 
-/* ---- what it cost ----------------------------------------------------------------------- */
+/* ---- errors ----------------------------------------------------------------------------- */
 
 /* The distance of the surface from a vertex that was merged: in the world, and in voxels. */
 typedef struct distances {

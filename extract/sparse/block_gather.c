@@ -29,7 +29,7 @@ void cwi_gathering_free(cwi_gathering *g)
     g->voxels = NULL;
 }
 
-/* --- what is where ------------------------------------------------------------------------ */
+/* --- regions by slot ---------------------------------------------------------------------- */
 
 /* Finds the slots of a block that a region is in, along an axis: begin to end. */
 static void find_slots(const cwi_leaf_block *b, const cwi_region *r, int a, size_t slot[2])

@@ -176,7 +176,7 @@ static double twice_area(const polygon *p)
     return sum;
 }
 
-/* Cuts off what is to the right of the line from a to b [Sutherland1974]; corners within
+/* Cuts off the part to the right of the line from a to b [Sutherland1974]; corners within
  * rounding of the line stay unchanged. */
 static void cut_polygon(polygon *p, const double a[2], const double b[2], double rounding)
 {

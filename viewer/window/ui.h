@@ -89,7 +89,7 @@ typedef enum cwi_ui_layer { CWI_UI_BEHIND, CWI_UI_PANEL, CWI_UI_FRONT } cwi_ui_l
 
 typedef enum cwi_ui_panel {
     CWI_UI_FIXED = 1, /* cannot be moved, sized or folded */
-    CWI_UI_BARE = 2,  /* no title bar, as large as what is in it, hardly any background */
+    CWI_UI_BARE = 2,  /* no title bar, as large as its content, hardly any background */
     CWI_UI_MODAL = 4  /* in the middle, and nothing else can be used */
 } cwi_ui_panel;
 
@@ -153,7 +153,7 @@ typedef struct cwi_ui_functions {
     void (*clip_end)(cwi_ui *ui, cwi_ui_layer layer);
 
     /* Panels. rect: where it is at first (FIXED, BARE: always); width or height 0: as needed.
-     * false: folded or clipped, skip what is in it; panel_end() in any case. *open: NULL, or
+     * false: folded or clipped, skip the content; panel_end() in any case. *open: NULL, or
      * cleared by its closing button. */
     bool (*panel_begin)(cwi_ui *ui, const char *title, const cwi_ui_rect *rect, unsigned flags,
                         bool *open);

@@ -206,7 +206,7 @@ static void on_drop(GLFWwindow *w, int count, const char **paths)
 
 static void on_close(GLFWwindow *w)
 {
-    glfwSetWindowShouldClose(w, GLFW_FALSE); /* whoever draws decides */
+    glfwSetWindowShouldClose(w, GLFW_FALSE); /* the drawing code decides */
     put_event(w, (cwi_ui_event){.kind = CWI_UI_CLOSE});
 }
 
@@ -348,7 +348,7 @@ void cwi_ui_screen_close(cwi_ui *ui)
     ui->screen = NULL;
 }
 
-/* ---- what is asked of it ---- */
+/* ---- calls of the other files ---- */
 
 /* Makes the window's context current, until leave(): contexts of EGL and of others do not work
  * together on one thread. */

@@ -124,7 +124,7 @@ CW_NODISCARD cw_status cwi_ui_target_keep(cwi_ui *ui, int slot, const cw_image *
 /* Places (ui_widget_rects.c). Labels end before ##. */
 void cwi_ui_label(char out[CWI_UI_NAME_SIZE], const char *label);
 void cwi_ui_places_add(cwi_ui *ui, const char *label, const cwi_ui_rect *rect);
-void cwi_ui_places_turn(cwi_ui *ui); /* what was now is the last frame's */
+void cwi_ui_places_turn(cwi_ui *ui); /* this frame's places become the last frame's */
 bool cwi_ui_places_find(const cwi_ui *ui, const char *label, cwi_ui_rect *rect);
 void cwi_ui_panel_enter(cwi_ui *ui, const char *title, unsigned flags); /* labels are in it */
 void cwi_ui_panel_leave(cwi_ui *ui);
@@ -137,7 +137,7 @@ void cwi_ui_imgui_close(cwi_ui *ui);                     /* within enter() and l
 void cwi_ui_imgui_choose(cwi_ui *ui);                    /* of several windows, this one */
 void cwi_ui_imgui_write(const char *text);
 void cwi_ui_imgui_begin(cwi_ui *ui);
-void cwi_ui_imgui_layout(cwi_ui *ui); /* ends widgets; what is drawn is known */
+void cwi_ui_imgui_layout(cwi_ui *ui); /* ends widgets; the drawing is then known */
 void cwi_ui_imgui_draw(void);         /* into the framebuffer that is bound */
 int cwi_ui_imgui_cursor(const cwi_ui *ui);
 
