@@ -1,4 +1,5 @@
-/* The public calls: a surface at once, several of one volume, counts alone. */
+/* Implements the public calls: a surface at once, several surfaces of one volume, and counts
+ * alone. */
 #include <cubewright/extract.h>
 
 #include "core/base/memory.h"
@@ -33,7 +34,8 @@ cw_status cwi_plan_init(cwi_plan *p, const cwi_engine *engine, const cw_volume *
                : cwi_grid_init(&p->grid, volume, err);
 }
 
-/* Sparse and irregular grids are extracted at one go; mesh NULL: counted. */
+/* Returns false for sparse and irregular grids, which are extracted at once; mesh NULL:
+ * counted. */
 bool cwi_plan_is_dense(const cwi_plan *p)
 {
     return !p->grid.volume.sparse && !p->grid.volume.cells;
@@ -48,7 +50,7 @@ cw_status cwi_extract_at_once(cwi_plan *p, const cw_extract_desc *d, cw_mesh *me
                     : cwi_extract_sparse(p->engine, v, d, mesh, &p->counts, err);
 }
 
-/* Everything that is known of the surface before it is made. */
+/* Finds everything that is known of the surface before it is made. */
 cw_status cwi_plan_make(cwi_plan *p, const cw_extract_desc *d, cw_error *err)
 {
     memset(&p->counts, 0, sizeof p->counts);
@@ -72,7 +74,8 @@ cw_status cwi_plan_make(cwi_plan *p, const cw_extract_desc *d, cw_error *err)
     return st == CW_OK ? cwi_extract_check_limits(d, &p->counts, err) : st;
 }
 
-/* On a rectilinear grid differences are not those of neighbours alone. */
+/* Computes normals on a rectilinear grid, where differences do not depend on neighbours
+ * alone. */
 static cw_status shade_by_coordinates(const cwi_plan *p, const cw_extract_desc *d,
                                       cw_mesh *mesh, cw_error *err)
 {

@@ -1,14 +1,14 @@
-/* What the public calls of extraction share. */
+/* Functions that the public calls of extraction share. */
 #ifndef EXTRACT_EXTRACT_INTERNAL_H
 #define EXTRACT_EXTRACT_INTERNAL_H
 
 #include "extract/dense/dense_plan.h"
 
-/* A zeroed plan for a volume of any kind; free it with cwi_plan_free(). */
+/* Makes a zeroed plan for a volume of any kind; free it with cwi_plan_free(). */
 CW_NODISCARD cw_status cwi_plan_init(cwi_plan *plan, const cwi_engine *engine,
                                      const cw_volume *volume, cw_error *err);
 
-/* Sparse and irregular grids are extracted at one go. */
+/* Returns false for sparse and irregular grids, which are extracted at once. */
 bool cwi_plan_is_dense(const cwi_plan *plan);
 
 /* Classifies and counts a dense grid: all that is known of the surface before it is made. */

@@ -1,4 +1,4 @@
-/* A surface a slab at a time: slabs share no vertex number, and meet in a seam. */
+/* Extracts a surface slab by slab: slabs share no vertex number, and meet in a seam. */
 #include "extract/extract_internal.h"
 
 #include "core/base/memory.h"
@@ -24,8 +24,8 @@ static size_t vertices_before(const cwi_plan *p, size_t layer)
     return layer < p->grid.rows_z ? p->grid.layers[layer].vertices : p->counts.vertices;
 }
 
-/* Where the slab that begins with a layer ends. What is left behind it is a slab of half the
- * size at least. */
+/* Returns the layer where the slab that begins with a layer ends. The rest behind it is a slab
+ * of at least half the size. */
 static size_t end_of_slab(const cwi_plan *p, size_t begin, size_t triangles)
 {
     const size_t last = p->grid.rows_z - 1;
@@ -36,7 +36,7 @@ static size_t end_of_slab(const cwi_plan *p, size_t begin, size_t triangles)
                                                                                          : end;
 }
 
-/* Vertices and triangles of the largest slab. */
+/* Counts the vertices and triangles of the largest slab. */
 static cw_extract_counts largest_slab(const cwi_plan *p, size_t triangles)
 {
     cw_extract_counts most = {0};
@@ -50,7 +50,7 @@ static cw_extract_counts largest_slab(const cwi_plan *p, size_t triangles)
     return most;
 }
 
-/* Numbers in the slab become those in the mesh, or, negative, the other way round. */
+/* Turns numbers in the slab into those in the mesh, or, with negated arguments, back. */
 static void shift_rows(cwi_plan *p, const cwi_writing *w, uint32_t vertices, size_t triangles)
 {
     const size_t rows = p->grid.rows_y;
@@ -62,7 +62,7 @@ static void shift_rows(cwi_plan *p, const cwi_writing *w, uint32_t vertices, siz
     }
 }
 
-/* Crossings of edges that lie in the plane of a layer of samples. */
+/* Marks the crossings of edges that lie in the plane of a layer of samples. */
 static void mark_seam(const cwi_plan *p, size_t layer, uint8_t mark, uint8_t *seam)
 {
     const cwi_row *row = p->rows + layer * p->grid.rows_y;
@@ -70,7 +70,8 @@ static void mark_seam(const cwi_plan *p, size_t layer, uint8_t mark, uint8_t *se
         memset(seam + row[j].first[0], mark, row[j].first[2] - row[j].first[0]);
 }
 
-/* What stands in the last layer, but belongs to the next slab, was written in part. */
+/* Clears the vertices in the last layer that belong to the next slab: they were written in
+ * part. */
 static void clear_beyond(const cwi_plan *p, size_t layer, float *positions)
 {
     const cwi_row *row = p->rows + layer * p->grid.rows_y;
@@ -79,14 +80,16 @@ static void clear_beyond(const cwi_plan *p, size_t layer, float *positions)
                (size_t)(row[j + 1].first[0] - row[j].first[2]) * 3 * sizeof *positions);
 }
 
-/* The height of a share of the way from a layer of samples to the next, from the origin. */
+/* Returns the height, from the origin, of a fraction of the way from a layer of samples to the
+ * next. */
 static double height_of(const cwi_writing *w, size_t layer, double share)
 {
     const cw_volume *v = &w->plan->grid.volume;
     return cwi_grid_coordinate(v, 2, (ptrdiff_t)layer - 1, share) - w->sink.centre[2];
 }
 
-/* Vertices are kept CWI_NUDGE away from planes; half of that allows for rounding. */
+/* Sets the planes of a slab. Vertices are kept CWI_NUDGE away from planes; half of that allows
+ * for rounding. */
 static void set_planes(const cwi_plan *p, const cwi_writing *w, cw_slab *slab)
 {
     double cofactor[3][3];
@@ -179,7 +182,7 @@ cw_status cw_extract_slabs(const cw_volume *volume, const cw_extract_desc *desc,
     const size_t max_bytes = d.max_bytes;
     cwi_plan p = {0};
     d.no_normals = true;
-    d.max_bytes = 0; /* is for slabs, not for all of it */
+    d.max_bytes = 0; /* the limit is for slabs, not for the whole surface */
     cw_status st = d.snap == 0
                        ? cwi_plan_init(&p, cwi_engine_best(), volume, err)
                        : cw_fail(err, CW_ERR_ARGUMENT,

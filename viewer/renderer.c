@@ -1,3 +1,4 @@
+/* Chooses a backend for each scene, OpenGL or CPU, and averages samples to pixels. */
 #include <cubewright/render.h>
 
 #include "core/base/memory.h"
@@ -65,7 +66,7 @@ void cw_renderer_forget(cw_renderer *r)
     cwi_cpu_forget(&r->cpu);
 }
 
-/* What GL does not draw is left to the CPU. */
+/* Returns true for modes that GL does not draw, which are left to the CPU. */
 static bool is_for_cpu(const cw_renderer *r, cw_mode mode)
 {
     return r->backend == CW_BACKEND_CPU ||
@@ -83,7 +84,7 @@ static cw_status draw_frame(cw_renderer *r, const cwi_frame *frame, cw_picture *
     return st == CW_OK ? r->functions->draw(r->gl, frame, picture, err) : st;
 }
 
-/* Means of n x n samples. */
+/* Averages n x n samples. */
 static cw_status average_samples(const cw_picture *fine, size_t n, cw_picture *out,
                                  cw_error *err)
 {

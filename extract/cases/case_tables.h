@@ -1,5 +1,5 @@
-/* What the 256 cube cases and the resolutions of their ambiguous faces look like, and those of
- * other cells; the tables are made by generate_tables.c. Triangles name edges of the cell, three a
+/* Tables of the 256 cube cases, the resolutions of their ambiguous faces, and the cases of
+ * other cells. generate_tables.c makes them. Triangles name edges of the cell, three a
  * triangle, counter-clockwise seen from outside the solid. */
 #ifndef EXTRACT_CASES_CASE_TABLES_H
 #define EXTRACT_CASES_CASE_TABLES_H
@@ -13,18 +13,19 @@ enum {
     CWI_CONFIGS = 802,      /* these first, then those of the other shapes */
 };
 
-/* One rule for every face, inside corners kept apart: number of triangles, and
- * their corners. */
+/* Tables for one rule for every face: inside corners are kept apart. The number of triangles of
+ * each case, and their corners. */
 extern const uint8_t cwi_case_count[256];
 extern const uint8_t cwi_case_triangles[256][3 * CWI_CASE_MAX_TRIANGLES];
 
-/* A case whose surface its signs alone do not settle: it has ambiguous faces, or two corners
- * that a tunnel may join. Bit f of the first: face f is ambiguous. */
+/* Cases whose surface their signs alone do not settle: they have ambiguous faces, or two
+ * corners that a tunnel may join. Bit f of the first table: face f is ambiguous. */
 extern const uint8_t cwi_case_ambiguous_faces[256];
 extern const bool cwi_case_is_ambiguous[256];
 
-/* Where the configurations of a case begin. Within a case they count the ambiguous faces' bits,
- * lowest face first; a bit is set where the inside corners of the face are joined. */
+/* The number of each case's first configuration. Within a case, configurations count the
+ * ambiguous faces' bits, lowest face first. A bit is set where the inside corners of the face
+ * are joined. */
 extern const uint16_t cwi_case_first_config[256];
 
 /* A case with its faces resolved. Loops are directed polygons of crossed edges on the cube's
@@ -41,8 +42,9 @@ typedef struct cwi_config {
 
 extern const cwi_config cwi_configs[CWI_CONFIGS];
 
-/* A shape of cells: what belongs to what, and where its configurations are. A hexahedron's
- * corners, edges and faces are numbered as cube_numbering.h has them, others' corners as VTK's. */
+/* A shape of cells: how corners, edges and faces belong together, and where its configurations
+ * are. A hexahedron's corners, edges and faces are numbered as in cube_numbering.h, others'
+ * corners as in VTK. */
 typedef struct cwi_shape {
     uint8_t corner_count, edge_count, face_count;
     uint8_t edges[12][2];      /* corners, the lower first */

@@ -1,3 +1,5 @@
+/* Resolves ambiguous cells as the trilinear interpolant does [Nielson1991]: decides which faces
+ * join, finds tunnels, and builds the triangles. */
 #include "extract/cases/cell_topology.h"
 
 #include "core/geometry/vec3.h"
@@ -12,10 +14,10 @@
 #define PLAIN_LEAST 1e-140
 #define PLAIN_MOST  1e140
 
-/* The sign of a c - b d, exactly: products are compared, and if equal, as rounding keeps their
- * order, their rounding errors. Where exponents are extreme the products of what is left
- * without them are, the first one times as much as they differ by: 2^4 outweighs any such
- * product. */
+/* Returns the sign of a c - b d, exactly. Compares the products and, if these are equal, their
+ * rounding errors, as rounding keeps their order. Where exponents are extreme, it compares the
+ * products of the mantissas, the first one scaled by the difference of the exponents. That
+ * scale is limited to 2^4, which outweighs any such product. */
 static int compare_products(double a, double c, double b, double d)
 {
     if (a * c != b * d)
@@ -39,9 +41,9 @@ static int compare_products(double a, double c, double b, double d)
     return (e > f) - (e < f);
 }
 
-/* A tie is broken as if the zero side's values were shifted a little, all alike. Without finite
- * values: an outside corner that is infinitely low, or has no value, keeps the inside ones
- * apart; an infinitely high inside one joins them. */
+/* Breaks a tie as if the zero side's values were shifted a little, all by the same amount.
+ * Without finite values, an outside corner that is infinitely low, or has no value, keeps the
+ * inside ones apart. An infinitely high inside corner joins them. */
 bool cwi_face_joins(const double inside[2], const double outside[2], bool zero_inside)
 {
     if (!isfinite(outside[0]) || !isfinite(outside[1]))
@@ -89,15 +91,16 @@ static bool corner_inside(const sweep *s, int corner)
     return s->cube >> corner & 1;
 }
 
-/* The corner that a column is joined to at height t: its end on this side of the root. */
+/* Returns the corner that a column is joined to at height t: its end on this side of the
+ * root. */
 static int column_corner(const sweep *s, int n, double t)
 {
     return t < s->root[n] ? columns[n] : columns[n] + 4;
 }
 
-/* Whether column m's root comes before column n's. Where one of two neighbours leaves the
- * inside and the other enters it, their face is ambiguous, and its decision is the order: the
- * one that enters comes first when the inside corners are joined. */
+/* Returns true if column m's root comes before column n's. Where one of two neighbours leaves
+ * the inside and the other enters it, their face is ambiguous, and its decision is the order:
+ * the one that enters comes first when the inside corners are joined. */
 static bool root_is_before(const sweep *s, int m, int n)
 {
     static const int faces[4] = {2, 1, 3, 0}; /* between columns n and n + 1 */
@@ -119,7 +122,7 @@ static void add_event(sweep *s, double t, int column)
     s->event_column[i] = column;
 }
 
-/* False when a value is not finite: no tunnel is sought there. */
+/* Sets up the sweep. Returns false when a value is not finite: no tunnel is sought there. */
 static bool start_sweep(sweep *s, unsigned cube, const double values[8], bool zero_inside)
 {
     double largest = 0;
@@ -151,9 +154,9 @@ static bool start_sweep(sweep *s, unsigned cube, const double values[8], bool ze
     return true;
 }
 
-/* Whether the inside columns (in, in + 2) are joined in the slice at an event that bounds a
- * stretch of alternating columns. Where an inside column vanishes they are apart; where an
- * outside one does, joined; the end faces have been decided. */
+/* Returns true if the inside columns (in, in + 2) are joined in the slice at an event that
+ * bounds a stretch of alternating columns. Where an inside column vanishes they are apart;
+ * where an outside one vanishes they are joined. The end faces are already decided. */
 static bool joined_at(const sweep *s, int event, int in)
 {
     const int column = s->event_column[event];
@@ -162,8 +165,8 @@ static bool joined_at(const sweep *s, int event, int in)
     return face_is_joined(s->cube, s->values, s->zero_inside, column == -1 ? 4 : 5);
 }
 
-/* Whether the difference of products has, between t and u, an extremum of the other sign than
- * at both ends. q(t) = in in' - out out' = A t^2 + B t + C. */
+/* Returns true if the difference of products has, between t and u, an extremum whose sign is
+ * opposite to the sign at both ends. q(t) = in in' - out out' = A t^2 + B t + C. */
 static bool turns_back(const sweep *s, int in, bool joined, double t, double u)
 {
     const long double a = s->low[in], c = s->low[in + 2], b = s->low[1 - in],
@@ -195,8 +198,8 @@ static int find_loop(const cwi_config *config, int patch, int other)
     return -1;
 }
 
-/* A tunnel joins the patches of two opposite columns of a kind; around it lies the patch of the
- * other two. It replaces the discs of the two loops between them by one tube. */
+/* Adds the tunnel that joins the patches of two opposite columns of one kind; around it lies
+ * the patch of the other two. One tube replaces the discs of the two loops between them. */
 static void set_tunnel(cwi_cell_plan *plan, const sweep *s, int column, double t)
 {
     const uint8_t *patch = plan->config->patch;
@@ -208,8 +211,8 @@ static void set_tunnel(cwi_cell_plan *plan, const sweep *s, int column, double t
     }
 }
 
-/* Whether some slice across an axis may have columns inside and outside by turns: two opposite
- * ones are inside at one end at least, and the other two outside. */
+/* Returns true if some slice across an axis may have columns alternately inside and outside:
+ * two opposite ones are inside at one end at least, and the other two outside. */
 static bool may_alternate(unsigned cube, int axis)
 {
     /* columns by their low corners: all, and opposite ones */
@@ -220,15 +223,15 @@ static bool may_alternate(unsigned cube, int axis)
            ((inside & odd) == odd && (outside & even[axis]) == even[axis]);
 }
 
-/* A tunnel shows in slices across any axis. */
+/* Returns true if a tunnel is possible: it shows in slices across any axis. */
 static bool may_have_tunnel(const cwi_config *config, unsigned cube)
 {
     return config->loop_count > 1 && may_alternate(cube, 0) && may_alternate(cube, 1) &&
            may_alternate(cube, 2);
 }
 
-/* In a cell with two opposite corners alone on their side, whether no slice across z finds both
- * of their columns there: the lower one's ends before the other's begins. */
+/* Returns true if, in a cell with two opposite corners alone on their side, no slice across z
+ * finds both of their columns there: the lower one's ends before the other's begins. */
 static bool columns_pass(const cwi_config *config, unsigned cube, const double values[8])
 {
     const unsigned alone = __builtin_popcount(cube) == 2 ? cube : ~cube & 255;
@@ -263,13 +266,13 @@ static void find_tunnel(cwi_cell_plan *plan, unsigned cube, const double values[
     }
 }
 
-/* What a loop's disc consists of. */
+/* Returns the number of triangles of a loop's disc. */
 static int disc_triangles(const cwi_config *config, int loop)
 {
     return config->loop_length[loop] - (config->cone[loop] ? 0 : 2);
 }
 
-/* Whether a loop is an end of the tunnel, not of a disc. */
+/* Returns true if a loop is an end of the tunnel, not of a disc. */
 static bool is_tube(const cwi_cell_plan *plan, int loop)
 {
     return loop == plan->tunnel[0] || loop == plan->tunnel[1];
@@ -280,8 +283,8 @@ static bool has_tunnel(const cwi_cell_plan *plan)
     return plan->tunnel[0] >= 0;
 }
 
-/* Tubes are known between a loop of three edges and any other, and between two of four; by
- * enumeration there are no others. */
+/* Returns true if a tube can be built: tubes are known between a loop of three edges and any
+ * other, and between two of four. By enumeration there are no others. */
 static bool can_tunnel(const cwi_cell_plan *plan)
 {
     const int i = plan->tunnel[0], j = plan->tunnel[1];
@@ -318,8 +321,8 @@ void cwi_cell_plan_make(unsigned cube, const double values[8], bool zero_inside,
     count_parts(plan);
 }
 
-/* From the lowest bit: the configuration, and for each end of a tunnel its loop, from 1, and
- * its corner. */
+/* Packs a plan. From the lowest bit: the configuration and, for each end of a tunnel, its loop,
+ * from 1, and its corner. */
 uint32_t cwi_cell_plan_pack(const cwi_cell_plan *plan)
 {
     uint32_t code = (uint32_t)(plan->config - cwi_configs);
@@ -362,8 +365,8 @@ static void edge_point(const builder *b, int edge, double p[3])
         p[a] = (corner >> a & 1) + (a == cwi_edge_axis(edge) ? b->crossings[edge] : 0);
 }
 
-/* A cone from the mean of a loop's points: every loop on the cube's surface is seen whole from
- * any point inside, so a cone does not cross itself. */
+/* Builds a cone from the mean of a loop's points. Every loop on the cube's surface is seen
+ * whole from any point inside, so a cone does not cross itself. */
 static void build_cone(builder *b, const uint8_t *edges, int count)
 {
     double *apex = b->cell->vertices[b->vertex_count];
@@ -392,11 +395,11 @@ static void build_discs(builder *b)
     }
 }
 
-/* A tube is two sheets that meet in a ring, a small triangle inside the cell. Some plane parts
- * its two loops; the ring lies in it. Seen along suitable lines (a projection) each loop is a
- * polygon that can be seen whole from one point, around which the ring is drawn small enough:
- * the sheet from loop to ring then covers the projection once, and the sheets stay on their
- * sides of the plane. So the tube does not cross itself.
+/* A tube is two sheets that meet in a ring, a small triangle inside the cell. Some plane
+ * separates its two loops; the ring lies in it. Seen along suitable lines (a projection) each
+ * loop is a polygon that can be seen whole from one point, around which the ring is drawn small
+ * enough: the sheet from loop to ring then covers the projection once, and the sheets stay on
+ * their sides of the plane. So the tube does not cross itself.
  *
  * Around a corner (a loop of three): lines through the corner; the other loop lies on the far
  * faces. Between two opposite edges of the cube (two loops of four): lines across them. */
@@ -407,7 +410,7 @@ typedef struct projection {
     double stretch[3]; /* central: the plane is sum of x / stretch = 1 */
 } projection;
 
-/* Coordinates from the projection's corner. */
+/* Turns a point into coordinates from the projection's corner, or back. */
 static void mirror_point(const projection *p, double x[3])
 {
     for (int a = 0; a < 3; a++)
@@ -430,7 +433,7 @@ static void project_point(const projection *p, const double point[3], double fla
     }
 }
 
-/* The point of the plane that is seen at a place. */
+/* Finds the point of the plane that is seen at a place of the projection. */
 static void lift_point(const projection *p, const double flat[2], double point[3])
 {
     const int v = (p->along + 1) % 3, w = (p->along + 2) % 3;
@@ -476,7 +479,7 @@ static void flatten_loop(const builder *b, const projection *p, int loop, flat_l
     f->turn = area < 0 ? -1 : 1;
 }
 
-/* The smallest distance from a point inside to the lines of a polygon's sides. */
+/* Returns the smallest distance from a point inside to the lines of a polygon's sides. */
 static double measure_clearance(const flat_loop *f, const double centre[2])
 {
     double least = 1;
@@ -489,7 +492,7 @@ static double measure_clearance(const flat_loop *f, const double centre[2])
     return fmax(least, 1e-6);
 }
 
-/* Corner i of the ring, counter-clockwise. */
+/* Computes the direction of corner i of the ring, counter-clockwise. */
 static void ring_direction(int i, double d[2])
 {
     static const double directions[3][2] = {
@@ -498,8 +501,8 @@ static void ring_direction(int i, double d[2])
     d[1] = directions[i][1];
 }
 
-/* The loop's point that is farthest out across the ring's side from corner i to j: it
- * sees it. */
+/* Returns the loop's point that is farthest out across the ring's side from corner i to j: that
+ * point sees the side. */
 static int find_farthest(const flat_loop *f, const double centre[2], int i, int j)
 {
     double d[2], e[2], most = -INFINITY;
@@ -517,7 +520,7 @@ static int find_farthest(const flat_loop *f, const double centre[2], int i, int 
     return found;
 }
 
-/* The sheet between a loop and the ring whose corners are numbered from ring on. */
+/* Builds the sheet between a loop and the ring whose corners are numbered from `ring` on. */
 static void build_sheet(builder *b, const flat_loop *f, const double centre[2], int ring)
 {
     const int step = f->turn > 0 ? 1 : 2; /* the ring is walked the way the loop is */
@@ -525,7 +528,7 @@ static void build_sheet(builder *b, const flat_loop *f, const double centre[2], 
     for (int n = 0; n < 3; n++) {
         const int corner = n * step % 3, following = (n + 1) * step % 3;
         const int last = find_farthest(f, centre, corner, following);
-        /* the third stretch takes what is left of the loop, also when that is all or nothing */
+        /* the third stretch takes the rest of the loop, even when that is all or nothing */
         const int steps = n < 2 ? (last - i + f->count) % f->count : f->count - walked;
         for (int k = 0; k < steps; k++) {
             const int from = f->edges[i], to = f->edges[(i + 1) % f->count];
@@ -537,8 +540,8 @@ static void build_sheet(builder *b, const flat_loop *f, const double centre[2], 
     }
 }
 
-/* The mean of the directions, seen from the projection's corner, to the corners of a patch: a
- * point from which the loop around that patch is seen whole. */
+/* Computes the mean of the directions, seen from the projection's corner, to the corners of a
+ * patch: a point from which the loop around that patch is seen whole. */
 static void patch_centre(const builder *b, const projection *p, int corner, double centre[2])
 {
     const uint8_t *patch = b->plan->config->patch;
@@ -557,8 +560,8 @@ static void patch_centre(const builder *b, const projection *p, int corner, doub
     centre[1] /= count;
 }
 
-/* From a corner: the plane halfway between the loop's points on its three edges and
- * their ends. */
+/* Projects from a corner: the plane halfway between the loop's points on its three edges and
+ * the edges' ends. */
 static void project_from_corner(const builder *b, int corner, projection *p)
 {
     *p = (projection){.central = true, .corner = corner};
@@ -568,7 +571,7 @@ static void project_from_corner(const builder *b, int corner, projection *p)
     }
 }
 
-/* Across the cell from an edge, both of whose corners are of one patch. */
+/* Projects across the cell from an edge, both of whose corners are in one patch. */
 static void project_from_edge(const builder *b, int corner, projection *p)
 {
     const uint8_t *patch = b->plan->config->patch;

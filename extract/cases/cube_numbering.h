@@ -1,4 +1,4 @@
-/* How the corners, edges and faces of a cube are numbered.
+/* Numbers the corners, edges and faces of a cube.
  *
  * Corner c stands at x = c & 1, y = c >> 1 & 1, z = c >> 2. An edge runs along one axis between
  * the two corners that differ in it: 0..3 along x, 4..7 along y, 8..11 along z; within an axis
@@ -28,8 +28,9 @@ static inline int cwi_edge_corner(int edge)
     }
 }
 
-/* The edges of a row of cubes lie in eight rows, four along x and two along each of y and z:
- * those at i + 1 are those at i of the next cube. The edge of a cube in row n, the one at i. */
+/* The edges of a row of cubes lie in eight rows, four along x and two along each of y and z.
+ * Those at i + 1 are those at i of the next cube. cwi_row_edge() returns the edge of a cube
+ * that is in row n at i. */
 enum { CWI_EDGE_ROWS = 8 };
 
 static inline int cwi_row_edge(int n)
@@ -37,15 +38,15 @@ static inline int cwi_row_edge(int n)
     return n < 4 ? n : 2 * n - 4;
 }
 
-/* An edge joins corners on different sides. */
+/* Returns true if an edge joins corners on different sides. */
 static inline bool cwi_edge_is_crossed(unsigned cube_case, int edge)
 {
     const int low = cwi_edge_corner(edge), high = low | 1 << cwi_edge_axis(edge);
     return (cube_case >> low ^ cube_case >> high) & 1;
 }
 
-/* Corner number n, 0 to 3, around a face, counter-clockwise seen from outside the cube. Face
- * 2 * axis has that coordinate 0, face 2 * axis + 1 has it 1. */
+/* Returns corner number n, 0 to 3, around a face, counter-clockwise seen from outside the cube.
+ * Face 2 * axis has that coordinate 0, face 2 * axis + 1 has it 1. */
 static inline int cwi_face_corner(int face, int n)
 {
     const int axis = face >> 1, side = face & 1;
@@ -54,7 +55,7 @@ static inline int cwi_face_corner(int face, int n)
     return (side << axis) | (turn == 1 || turn == 2 ? u : 0) | (turn >= 2 ? v : 0);
 }
 
-/* The edge between two corners that differ along one axis. */
+/* Returns the edge between two corners that differ along one axis. */
 static inline int cwi_edge_between(int a, int b)
 {
     const int low = a & b;
@@ -68,7 +69,7 @@ static inline int cwi_edge_between(int a, int b)
     }
 }
 
-/* The corners of a face are inside and outside by turns. */
+/* Returns true if the corners of a face are alternately inside and outside. */
 static inline bool cwi_face_is_ambiguous(int cube_case, int face)
 {
     const int a = cube_case >> cwi_face_corner(face, 0) & 1;

@@ -10,7 +10,7 @@
  * segment ends at, exactly one other starts from: segments close up into directed loops.
  * 3. Each loop is a polygon, triangulated without new points. No diagonal may join two points
  * of one face: it would lie in the wall between two cells, where the neighbour's may lie too,
- * and four triangles would share an edge. Of what is left the triangulation with the widest
+ * and four triangles would share an edge. Of the others the triangulation with the widest
  *    smallest angle, points in the middle of their edges, is taken. Some loops of 8, 9 and 12
  *    edges have none left, or only ones that cross themselves: those become cones around a
  * vertex inside the cell.
@@ -87,7 +87,7 @@ static void define_cube(shape *s)
     }
 }
 
-/* The number of the edge between two corners, which is new when they have none yet. */
+/* Returns the number of the edge between two corners; adds the edge when there is none yet. */
 static int edge_between(shape *s, int a, int b)
 {
     for (int e = 0; e < s->edge_count; e++)
@@ -122,7 +122,7 @@ static bool is_inside(int cell_case, int corner)
     return cell_case >> corner & 1;
 }
 
-/* The corners of a face are inside and outside by turns. */
+/* Returns true if the corners of a face are alternately inside and outside. */
 static bool is_ambiguous_face(const shape *s, int cell_case, int face)
 {
     bool turns = s->face_size[face] == 4;
@@ -137,8 +137,8 @@ static bool joins_on_face(const shape *s, int cell_case, int joined, int face)
     return is_ambiguous_face(s, cell_case, face) && (joined >> face & 1);
 }
 
-/* next[e] = the edge that the loop through e goes to; -1 where the surface does not cross. Bit
- * f of joined: the inside corners of face f are joined, if it is ambiguous. */
+/* Finds next[e], the edge that the loop through e goes to; -1 where the surface does not cross.
+ * Bit f of joined: the inside corners of face f are joined, if it is ambiguous. */
 static void trace_faces(const shape *s, int cell_case, int joined, int next[12])
 {
     for (int e = 0; e < 12; e++)
@@ -172,7 +172,8 @@ static void unite_sets(uint8_t *parent, int x, int y)
     parent[x > y ? x : y] = (uint8_t)(x > y ? y : x);
 }
 
-/* Corners of a kind are of one patch when edges, or the diagonals of faces, connect them. */
+/* Finds patches. Corners of one kind are in one patch when edges, or the diagonals of faces,
+ * connect them. */
 static void trace_patches(const shape *s, int cell_case, int joined, uint8_t patch[8])
 {
     for (int c = 0; c < 8; c++)
@@ -236,8 +237,8 @@ static bool may_join(const shape *s, const polygon *p, int i, int j)
     return neighbours || !share_face(s, p->edge[i], p->edge[j]);
 }
 
-/* The best triangulation of the corners i..j of a polygon, whose side i-j is settled; returns
- * its smallest angle, below 0 when there is none. Exhaustive: loops are short. */
+/* Finds the best triangulation of the corners i..j of a polygon, whose side i-j is settled.
+ * Returns its smallest angle, below 0 when there is none. Exhaustive: loops are short. */
 static double triangulate_polygon(const shape *s, const polygon *p, int i, int j,
                                   triangles *best)
 {
@@ -277,7 +278,8 @@ static polygon take_loop(int next[12], int edge)
     return p;
 }
 
-/* Loops of 9 have no triangulation, and those of 8 and 12 may cross themselves. */
+/* Returns true for loops that become cones: those without a triangulation, and all of 8 edges
+ * or more. Loops of 9 have none, and those of 8 and 12 may cross themselves. */
 static bool needs_cone(const shape *s, const polygon *loop, triangles *t)
 {
     t->count = 0;
@@ -357,7 +359,7 @@ static void print_config(const cwi_config *c)
     printf(", %d, %d},\n", c->triangle_count, c->vertex_count);
 }
 
-/* One number a case. */
+/* Prints a table of one number a case. */
 static void print_table(const char *head, int (*number)(int cube_case))
 {
     printf("\nconst %s[256] = {\n", head);
@@ -393,7 +395,7 @@ static int config_count(const shape *s, int cell_case)
     return 1 << __builtin_popcount((unsigned)ambiguous_faces(s, cell_case));
 }
 
-/* Configurations of the cases before one. */
+/* Returns the number of configurations of the cases before a case. */
 static int count_before(const shape *s, int cell_case)
 {
     int first = 0;
@@ -424,7 +426,7 @@ static void print_numbers(const int *numbers, int count)
     printf("}, ");
 }
 
-/* The two faces at each edge. */
+/* Prints the two faces at each edge. */
 static void print_edge_faces(const shape *s)
 {
     printf("{");
@@ -438,7 +440,7 @@ static void print_edge_faces(const shape *s)
     printf("}, ");
 }
 
-/* first: of its configurations among those of all shapes. */
+/* Prints a shape. first: the number of its first configuration among those of all shapes. */
 static void print_shape(const shape *s, int first)
 {
     printf("{%d, %d, %d, {", s->corner_count, s->edge_count, s->face_count);

@@ -1,3 +1,4 @@
+/* Compares the triangles and the memory of an extraction with the limits of its descriptor. */
 #include "extract/common/extract_limits.h"
 
 #include "core/base/status.h"

@@ -1,4 +1,4 @@
-/* What an extraction needs, held against what its descriptor allows. */
+/* Checks of an extraction's triangles and memory against the limits of its descriptor. */
 #ifndef EXTRACT_COMMON_EXTRACT_LIMITS_H
 #define EXTRACT_COMMON_EXTRACT_LIMITS_H
 

@@ -1,3 +1,5 @@
+/* Computes the normals of vertices from the field's gradient, and from triangles where it
+ * vanishes. */
 #include "extract/common/field_normals.h"
 
 #include "core/base/memory.h"
@@ -58,7 +60,8 @@ double cwi_voxel_scale(const cw_volume *v)
     return ldexp(1, -exponent);
 }
 
-/* One thread, in the order of triangles: sums do not depend on the number of threads. */
+/* Runs in one thread, in the order of triangles: sums do not depend on the number of
+ * threads. */
 cw_status cwi_mend_normals(cw_mesh *mesh, double scale, cw_error *err)
 {
     size_t count = 0;
@@ -93,8 +96,8 @@ cw_status cwi_mend_normals(cw_mesh *mesh, double scale, cw_error *err)
 
 enum { CHUNK = 4096 };
 
-/* So much of a voxel may rounding have put a point beyond the last sample; the vertices of a
- * cap are four times as far out. */
+/* Rounding may have put a point beyond the last sample by this fraction of a voxel. The
+ * vertices of a cap are four times as far out. */
 #define REACH (1.0 / 4096)
 
 typedef struct shading {
@@ -116,8 +119,9 @@ static bool fetch_sample(const cw_volume *v, const size_t at[3], int axis, int s
     return !isnan(*value) && !(v->has_nodata && *value == v->nodata);
 }
 
-/* The derivative along an axis where distances differ: the slopes on both sides, each by the
- * distance on the other one, which is exact for parabolas. Values are halves; NaN: none. */
+/* Computes the derivative along an axis where distances differ: the slopes on both sides, each
+ * weighted by the distance on the other side, which is exact for parabolas. Values are halves;
+ * NaN: none. */
 static double difference_unevenly(const cw_volume *v, int axis, size_t i, double before,
                                   double centre, double after)
 {
@@ -132,8 +136,9 @@ static double difference_unevenly(const cw_volume *v, int axis, size_t i, double
     return (below * high + above * low) / (low + high);
 }
 
-/* As extraction does at a sample: central differences of the stored numbers, one-sided where a
- * neighbour is missing or infinite. False at a sample without value. */
+/* Computes the gradient as extraction does at a sample: central differences of the stored
+ * numbers, one-sided where a neighbour is missing or infinite. Returns false at a sample
+ * without value. */
 static bool sample_gradient(const cw_volume *v, const size_t at[3], double g[3])
 {
     double centre;
@@ -158,7 +163,7 @@ static bool sample_gradient(const cw_volume *v, const size_t at[3], double g[3])
     return true;
 }
 
-/* The cell of a vertex, and where in it; false outside the volume. */
+/* Finds the cell of a vertex, and the place in it; returns false outside the volume. */
 static bool find_cell(const shading *s, size_t vertex, size_t cell[3], double share[3])
 {
     const cw_volume *v = &s->volume;
@@ -178,8 +183,8 @@ static bool find_cell(const shading *s, size_t vertex, size_t cell[3], double sh
     return true;
 }
 
-/* The gradient at a vertex, in index space. False outside the domain: where a sample without
- * value has more weight than rounding gives it. */
+/* Interpolates the gradient at a vertex, in index space. Returns false outside the domain:
+ * where a sample without value has more weight than rounding gives it. */
 static bool interpolate_gradient(const shading *s, size_t vertex, double sum[3])
 {
     size_t cell[3];

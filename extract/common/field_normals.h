@@ -1,20 +1,22 @@
-/* What gradients and triangles say of normals. */
+/* Normals of vertices, from gradients of the field and from triangles. */
 #ifndef EXTRACT_COMMON_FIELD_NORMALS_H
 #define EXTRACT_COMMON_FIELD_NORMALS_H
 
 #include <cubewright/mesh.h>
 #include <cubewright/volume.h>
 
-/* The map from gradients of the stored numbers, in index space, to outward directions of the
- * world: the inverse transpose of the affine, here as its cofactors, the largest of them 1; the
- * sign holds the determinant's and the side that is inside (invert: that of low numbers). */
+/* Computes the map from gradients of the stored numbers, in index space, to outward directions
+ * of the world. It is the inverse transpose of the affine, here as its cofactors, the largest
+ * of them 1. Its sign includes the determinant's and the side that is inside (invert: that of
+ * low numbers). */
 void cwi_outward(const cw_volume *volume, bool invert, double cofactor[3][3]);
 
-/* A power of two that makes voxels about 1 large, so that no product of sides leaves the range
- * of floats. */
+/* Returns a power of two that makes voxels about 1 large, so that no product of sides leaves
+ * the range of floats. */
 double cwi_voxel_scale(const cw_volume *volume);
 
-/* Normals that are zero become those of the triangles around their vertex, by area. */
+/* Replaces normals that are zero by those of the triangles around their vertex, weighted by
+ * area. */
 CW_NODISCARD cw_status cwi_mend_normals(cw_mesh *mesh, double scale, cw_error *err);
 
 #endif

@@ -1,5 +1,5 @@
-/* The cells of a row that the surface crosses, and the vertices around them. Included by what
- * is compiled for each engine. */
+/* The cells of a row that the surface crosses, and the vertices around them. Included by the
+ * files that are compiled for each engine. */
 #ifndef EXTRACT_DENSE_ACTIVE_CELLS_H
 #define EXTRACT_DENSE_ACTIVE_CELLS_H
 
@@ -8,12 +8,12 @@
 
 #include <string.h>
 
-/* Words whose cells are listed before they are written, so that no loop is as short as the
- * cells in a word: its end cannot be foreseen. */
+/* Words whose cells are listed before they are written. A loop over the cells of one word would
+ * be too short: its end cannot be predicted. */
 enum { WORDS = 16, LIST = 64 * WORDS };
 
 /* The eight rows of edges around a row of cells, in the order of cwi_row_edge(): their axis,
- * and which of the four rows of samples they begin in. */
+ * and the row of samples, out of four, in which they begin. */
 static const struct {
     uint8_t axis, j, k;
 } edge_rows[CWI_EDGE_ROWS] = {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}, {0, 1, 1},
@@ -21,7 +21,7 @@ static const struct {
 
 typedef uint32_t edge_lanes __attribute__((vector_size(4 * CWI_EDGE_ROWS)));
 
-/* The numbers of the first vertices in each row from a cell's i on, and from i + 1 on. */
+/* Numbers of the first vertices in each row: from a cell's i on, and from i + 1 on. */
 typedef struct cell_numbers {
     edge_lanes here, next;
 } cell_numbers;
@@ -46,13 +46,13 @@ static inline void begin_row(cell_list *l, const cwi_bit_grid *g, const cwi_row 
     }
 }
 
-/* Lists go on, in the same row, after one of so many words. */
+/* Continues the lists in the same row, after a list of `words` words. */
 static inline void go_on(cell_list *l, size_t words)
 {
     memcpy(l->edges[0].first, l->edges[words].first, sizeof l->edges[0].first);
 }
 
-/* Vertices on the edges around a word of cells some of which are not live. */
+/* Loads the vertices on the edges around a word of cells some of which are not live. */
 static inline void load_edges(cell_list *l, size_t words, const cwi_bit_grid *g,
                               const cell_rows *samples, size_t j, size_t k, size_t w)
 {
@@ -73,7 +73,7 @@ static inline void load_edges(cell_list *l, size_t words, const cwi_bit_grid *g,
     }
 }
 
-/* The places of the cells at so many bits. */
+/* Lists the places of the cells whose bits are set, `count` of them. */
 static inline void list_bits(uint64_t bits, size_t count, size_t word, uint16_t *cell)
 {
 #if CWI_WIDE
@@ -92,15 +92,15 @@ static inline void list_bits(uint64_t bits, size_t count, size_t word, uint16_t 
 #endif
 }
 
-/* Each crossed edge around row (j, k) of cells that has a vertex is one of a live cell's, so
- * that numbers need but be counted on from cell to cell. */
+/* Returns true if each crossed edge around row (j, k) of cells that has a vertex belongs to a
+ * live cell. Numbers then only count on from cell to cell. */
 static inline bool counts_on(const cwi_bit_grid *g, size_t j, size_t k)
 {
     return !g->live || cwi_is_whole(g, j, k);
 }
 
-/* Lists the active cells of word w after n others and so many words. Returns how many cells
- * there are then. */
+/* Lists the active cells of word w, after n other cells and `words` other words. Returns the
+ * number of cells listed then. */
 static inline size_t list_cells(cell_list *l, size_t words, size_t n, const cwi_bit_grid *g,
                                 const cell_rows *samples, size_t j, size_t k, size_t w)
 {
@@ -115,7 +115,7 @@ static inline size_t list_cells(cell_list *l, size_t words, size_t n, const cwi_
     return n + count;
 }
 
-/* The numbers of the first vertices from a cell on, from their ranks. */
+/* Finds the numbers of the first vertices from a cell on, from their ranks. */
 static inline void rank_cell(const cell_list *l, size_t place, edge_lanes *lanes)
 {
     const uint64_t before = (UINT64_C(1) << place % 64) - 1;
@@ -164,8 +164,8 @@ static inline void cell_vertices(const cell_numbers *numbers, uint32_t vertex[12
         vertex[n] = n < 4 ? here[n] : n & 1 ? next[2 + n / 2] : here[2 + n / 2];
 }
 
-/* Writes the vertices at some edges, and no more. Not inline: where larger writes are at hand
- * this is seldom called, and a burden on the loop around. */
+/* Writes the vertices at some edges, and no more. It is not inline: it is seldom called where
+ * larger writes are possible, and would slow the loop around it. */
 __attribute__((noinline)) static void put_few(const cell_numbers *numbers, const uint8_t *edge,
                                               unsigned count, uint32_t *out)
 {
@@ -175,8 +175,8 @@ __attribute__((noinline)) static void put_few(const cell_numbers *numbers, const
         out[n] = vertex[edge[n]];
 }
 
-/* Writes the vertices at up to 16 edges; what is too much, before end, the next cells write
- * over. */
+/* Writes the vertices at up to 16 edges. Those in excess, before end, are overwritten by the
+ * next cells. */
 static inline uint32_t *put_triangles(const cell_numbers *numbers, const uint8_t *edge,
                                       unsigned count, uint32_t *out, const uint32_t *end)
 {

@@ -1,3 +1,5 @@
+/* Plans the ambiguous cells of a dense grid from the values of their eight corners, and writes
+ * their triangles and inner vertices. */
 #include "extract/dense/ambiguous_cells.h"
 
 #include "core/base/memory.h"
@@ -8,7 +10,7 @@
 
 #include <math.h>
 
-/* The number stored for a padded sample; NaN where there is none. */
+/* Returns the number stored for a padded sample; NaN where there is none. */
 static double stored_at(const cw_volume *v, size_t i, size_t j, size_t k)
 {
     if (i - 1 >= v->dim[0] || j - 1 >= v->dim[1] || k - 1 >= v->dim[2]) /* 0 wraps around */
@@ -17,7 +19,7 @@ static double stored_at(const cw_volume *v, size_t i, size_t j, size_t k)
     return v->has_nodata && x == v->nodata ? NAN : x;
 }
 
-/* What a number is as the decisions see it: times this, after the level is taken off. */
+/* Returns 1 or -1: the factor of numbers for the decisions, after the level is subtracted. */
 static double toward_inside(const cwi_bit_grid *grid)
 {
     return grid->invert ? -1 : 1;
@@ -28,8 +30,8 @@ double cwi_value_at(const cwi_bit_grid *grid, size_t i, size_t j, size_t k)
     return toward_inside(grid) * (stored_at(&grid->volume, i, j, k) - grid->level);
 }
 
-/* The numbers of a cell's eight corners, less the level, times a factor; most cells are within
- * the volume. */
+/* Loads the numbers of a cell's eight corners, minus the level, times a factor. Most cells are
+ * within the volume. */
 static void load_corners(const cw_volume *v, const size_t at[3], double level, double factor,
                          double values[8])
 {
@@ -65,8 +67,8 @@ void cwi_corner_values(const cwi_bit_grid *grid, const size_t at[3], double valu
     load_corners(&grid->volume, at, grid->level, toward_inside(grid), values);
 }
 
-/* Doubles the room of a layer's list when it is full. Without memory for it there is no list:
- * its cells are planned twice. */
+/* Appends a cell's plan to its layer's list, and doubles the capacity when the list is full.
+ * Without memory for it there is no list: the layer's cells are planned twice. */
 static void note_cell(cwi_layer *layer, uint32_t code)
 {
     if (layer->plan_count == layer->plan_room && !layer->plans_lost) {
@@ -97,7 +99,7 @@ void cwi_ambiguous_plan(const cwi_bit_grid *grid, const size_t at[3], unsigned c
     note_cell(&grid->layers[at[2]], cwi_cell_plan_pack(plan));
 }
 
-/* Central differences at a corner, in halves; NaN where a neighbour is missing. */
+/* Computes central differences at a corner, in halves; NaN where a neighbour is missing. */
 static void corner_gradient(const cw_volume *v, const size_t at[3], size_t corner, double g[3])
 {
     const size_t p[3] = {at[0] + (corner & 1), at[1] + (corner >> 1 & 1),
@@ -109,8 +111,8 @@ static void corner_gradient(const cw_volume *v, const size_t at[3], size_t corne
     }
 }
 
-/* The corners' gradients, interpolated. Near the border and missing values it is NaN: such
- * vertices get their normal from the triangles around them. */
+/* Interpolates the corners' gradients. Near the border and missing values the result is NaN:
+ * such vertices get their normal from the triangles around them. */
 static void inner_gradient(const cw_volume *v, const size_t at[3], const double p[3],
                            double g[3])
 {
@@ -125,7 +127,7 @@ static void inner_gradient(const cw_volume *v, const size_t at[3], const double 
     }
 }
 
-/* Where an edge of the cell is crossed: as its vertex says. */
+/* Returns where an edge of the cell is crossed, the same as its vertex. */
 static double crossing_of(const cwi_bit_grid *grid, const size_t cell[3],
                           const double stored[8], int edge)
 {

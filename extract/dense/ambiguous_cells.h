@@ -1,18 +1,18 @@
-/* Ambiguous cells of a grid: their values, what they are made of, and their inner vertices. */
+/* Ambiguous cells of a grid: their values, their plans, and their inner vertices. */
 #ifndef EXTRACT_DENSE_AMBIGUOUS_CELLS_H
 #define EXTRACT_DENSE_AMBIGUOUS_CELLS_H
 
 #include "extract/cases/cell_topology.h"
 #include "extract/dense/isa_dispatch.h"
 
-/* A padded sample as the decisions see it: its number less the isovalue, positive inside; NaN
- * where there is none. */
+/* Returns a padded sample as the decisions see it: its number minus the isovalue, positive
+ * inside; NaN where there is none. */
 double cwi_value_at(const cwi_bit_grid *grid, size_t i, size_t j, size_t k);
 
-/* Of the eight corners of a cell. */
+/* Finds these values at the eight corners of a cell. */
 void cwi_corner_values(const cwi_bit_grid *grid, const size_t at[3], double values[8]);
 
-/* Which side a sample on the isovalue is on. */
+/* Returns true if a sample on the isovalue is inside. */
 static inline bool cwi_zero_is_inside(const cwi_bit_grid *grid)
 {
     return grid->invert == grid->strict;

@@ -1,3 +1,5 @@
+/* Allocates the bit planes of a dense grid, sets the isovalue, and classifies the samples, in
+ * parallel, as inside or outside. */
 #include "extract/dense/bit_planes.h"
 
 #include "core/base/memory.h"
@@ -51,8 +53,8 @@ static cw_status allocate_planes(cwi_bit_grid *g, cw_error *err)
     return g->inside && g->busy && g->filled && g->layers ? CW_OK : no_memory(g, err);
 }
 
-/* Positions are floats: they cannot tell voxels apart that are too small, and cannot reach the
- * ends of volumes that are too large. */
+/* Checks the range of positions. They are floats: they cannot distinguish voxels that are too
+ * small, and cannot reach the ends of volumes that are too large. */
 cw_status cwi_extract_check_range(const cw_volume *v, cw_error *err)
 {
     double spacing[3];
@@ -82,7 +84,8 @@ cw_status cwi_grid_init(cwi_bit_grid *g, const cw_volume *volume, cw_error *err)
     return st == CW_OK ? allocate_planes(g, err) : st;
 }
 
-/* The cells all of whose samples have values: each needs its own row of these and the next. */
+/* Finds the cells all of whose samples have values: each needs this row of samples and the
+ * next. */
 static void find_live(const cwi_bit_grid *g)
 {
     for (size_t r = 0; r < g->rows; r++) {
@@ -112,7 +115,7 @@ static void clear_cells(uint64_t *row, size_t w, uint64_t cells, bool before)
         row[w - 1] &= ~(cells << 63);
 }
 
-/* Word w of row (j, k) of cells may hold crossings. */
+/* Returns true if word w of row (j, k) of cells may have crossings. */
 static bool is_wanted(const cwi_bit_grid *g, size_t j, size_t k, size_t w)
 {
     if (j + 1 >= g->rows_y || k + 1 >= g->rows_z)
@@ -120,9 +123,9 @@ static bool is_wanted(const cwi_bit_grid *g, size_t j, size_t k, size_t w)
     return g->everything || cwi_grid_wanted(g, j, k)[w / 64] >> w % 64 & 1;
 }
 
-/* Drops cells that meet in nothing but a crossed edge: two live ones, diagonal, the other two
- * dead. Both would put triangles at its vertex, in two fans. One sweep; true if any was
- * dropped, which may have left others so. */
+/* Drops cells that share nothing but a crossed edge: two live ones, diagonal, while the other
+ * two are dead. Both would put triangles at its vertex, in two fans. Makes one sweep; returns
+ * true if any was dropped, which may leave others so. */
 static bool drop_pinched(cwi_bit_grid *g)
 {
     bool changed = false;
@@ -185,7 +188,7 @@ cw_status cwi_grid_set_level(cwi_bit_grid *g, const cw_extract_desc *desc, cw_er
     return st;
 }
 
-/* A layer of padding, and one of the others, which are alike. */
+/* Makes a layer of padding, and one for all other layers, which are alike. */
 static cw_status set_box(cwi_bit_grid *g, cw_error *err)
 {
     const size_t layer = g->rows_y * g->words;
@@ -197,7 +200,8 @@ static cw_status set_box(cwi_bit_grid *g, cw_error *err)
     return CW_OK;
 }
 
-/* Cells at the end of the domain are dropped where the surface stays open. */
+/* Finds the live cells. Where the surface stays open, cells at the end of the domain are
+ * dropped. */
 static cw_status set_live(cwi_bit_grid *g, bool leave_open, cw_error *err)
 {
     cwi_free(g->live);
@@ -240,7 +244,7 @@ static void classify_layer(void *context, size_t b)
     }
 }
 
-/* Marks what is wanted, and whether a tree is to be grown while everything is read. */
+/* Marks the wanted words, and decides if a tree is grown while everything is read. */
 static cw_status plan_classification(classification *c, cwi_bit_grid *g, cwi_octree *tree,
                                      cw_error *err)
 {
@@ -267,8 +271,8 @@ static bool any_gap(const cwi_bit_grid *g)
     return any & CWI_GAP;
 }
 
-/* Compares what is wanted. Once that was everything it is known whether there are gaps; without
- * them nothing is to be looked for later. */
+/* Compares the wanted samples. Once that was everything, it is known whether there are gaps;
+ * without gaps, none are sought later. */
 static cw_status compare_samples(classification *c, cwi_bit_grid *g,
                                  const cw_extract_desc *desc, cw_error *err)
 {
@@ -285,7 +289,7 @@ static cw_status compare_samples(classification *c, cwi_bit_grid *g,
     return st;
 }
 
-/* The same of everything, and which samples have values. */
+/* Compares all samples, and finds those that have values. */
 static cw_status compare_all(classification *c, cwi_bit_grid *g, const cw_extract_desc *desc,
                              cw_error *err)
 {

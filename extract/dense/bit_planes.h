@@ -10,19 +10,19 @@
 
 #include <cubewright/extract.h>
 
-/* The sides of the isovalue that some samples are on. */
+/* The sides of the isovalue on which samples are. */
 enum { CWI_OUTSIDE = 1, CWI_INSIDE = 2, CWI_BOTH = CWI_OUTSIDE | CWI_INSIDE };
 
-/* The surface is looked for in bricks of 8 x 8 x 8 cells. */
+/* The edge, in cells, of the bricks in which the surface is sought: 8 x 8 x 8 cells. */
 enum { CWI_BRICK = 8 };
 
-/* Of the eight leaves in a word, bit b for leaf b: those that the octree cannot rule out, and
- * of the others those that are inside. */
+/* The eight leaves in a word, bit b for leaf b: those that the octree cannot rule out and, of
+ * the others, those that are inside. */
 typedef struct cwi_leaf_bits {
     uint8_t wanted, solid;
 } cwi_leaf_bits;
 
-/* What counting notes of a layer. */
+/* Counts of a layer, and the plans of its ambiguous cells. */
 typedef struct cwi_layer {
     size_t vertices, triangles;
     bool at_border;  /* the solid meets the volume's border here */
@@ -31,7 +31,7 @@ typedef struct cwi_layer {
     bool plans_lost; /* there was no memory */
 } cwi_layer;
 
-/* The isovalue in stored numbers, and which side of it is inside. */
+/* The isovalue as a stored number, and the side of it that is inside. */
 typedef struct cwi_level {
     double at;
     bool strict; /* crossed upward above, not at, the level: values fall as numbers rise */
@@ -44,7 +44,8 @@ CW_NODISCARD cw_status cwi_level_find(const cw_volume *volume, const cw_extract_
 typedef struct cwi_octree cwi_octree;
 typedef struct cwi_engine cwi_engine;
 
-/* Some sample of a row is inside; its first is, or its last; some has no value. */
+/* Facts about a row: some sample is inside, the first one is, the last one is, some has no
+ * value. */
 enum { CWI_ANY_INSIDE = 1, CWI_FIRST_INSIDE = 2, CWI_LAST_INSIDE = 4, CWI_GAP = 8 };
 
 typedef struct cwi_bit_grid {
@@ -82,38 +83,38 @@ typedef struct cwi_bit_grid {
     bool crossed;     /* some samples with values are inside and some are not */
 } cwi_bit_grid;
 
-/* Per-row numbers: of the first vertex on the row's x-, y- and z-edges and inside its cells,
- * and of its cells' first triangle. */
+/* Numbers of a row: its first vertex on x-, y- and z-edges and inside cells, and its cells'
+ * first triangle. */
 typedef struct cwi_row {
     uint32_t first[4];
     size_t triangle;
 } cwi_row;
 
-/* Looks at a volume and makes room for its planes. Free with cwi_grid_free(), also after an
- * error. */
+/* Sets up a grid for a volume, and allocates its planes. Free with cwi_grid_free(), also after
+ * an error. */
 CW_NODISCARD cw_status cwi_grid_init(cwi_bit_grid *grid, const cw_volume *volume,
                                      cw_error *err);
 void cwi_grid_free(cwi_bit_grid *grid);
 
-/* Compares the samples with the isovalue: all of them, or where a tree tells which are wanted,
- * those. A tree that is not grown yet is, on the way; it may be NULL. */
+/* Compares the samples with the isovalue: all of them, or only those that a tree marks as
+ * wanted. A tree that is not grown yet is grown on the way; tree may be NULL. */
 CW_NODISCARD cw_status cwi_grid_classify(cwi_bit_grid *grid, const cwi_engine *engine,
                                          cwi_octree *tree, const cw_extract_desc *desc,
                                          cw_error *err);
 size_t cwi_grid_bytes(const cwi_bit_grid *grid);
 
-/* What of classification is the same for every sample: the isovalue in stored numbers, and
- * which side of it is inside. */
+/* Sets the isovalue, as a stored number, and its inside: these are the same for every
+ * sample. */
 CW_NODISCARD cw_status cwi_grid_set_level(cwi_bit_grid *grid, const cw_extract_desc *desc,
                                           cw_error *err);
 
-/* Whether positions can tell the voxels apart and reach all of them. */
+/* Checks that positions can distinguish the voxels and can reach all of them. */
 CW_NODISCARD cw_status cwi_extract_check_range(const cw_volume *volume, cw_error *err);
 
-/* A plane of bits for the grid, not cleared; NULL without memory. */
+/* Allocates a plane of bits for the grid, not cleared; NULL without memory. */
 uint64_t *cwi_grid_plane(const cwi_bit_grid *grid);
 
-/* Closed curves along which the surface meets the sides of the volume's box. */
+/* Counts the closed curves along which the surface meets the sides of the volume's box. */
 CW_NODISCARD cw_status cwi_grid_border_loops(const cwi_bit_grid *grid, size_t *loops,
                                              cw_error *err);
 
@@ -127,19 +128,19 @@ static inline const uint64_t *cwi_grid_busy(const cwi_bit_grid *g, size_t row)
     return g->busy + row * g->masks;
 }
 
-/* The row of bricks that row (j, k) of cells lies in. */
+/* Returns the row of bricks that row (j, k) of cells lies in. */
 static inline size_t cwi_grid_bricks(const cwi_bit_grid *g, size_t j, size_t k)
 {
     return k / CWI_BRICK * g->bricks_y + j / CWI_BRICK;
 }
 
-/* The wanted words of row (j, k) of cells. */
+/* Returns the wanted words of row (j, k) of cells. */
 static inline const uint64_t *cwi_grid_wanted(const cwi_bit_grid *g, size_t j, size_t k)
 {
     return g->wanted + cwi_grid_bricks(g, j, k) * g->masks;
 }
 
-/* The rows of bricks that row (j, k) of samples, of voxels, is a side of: one to four. */
+/* The rows of bricks that touch row (j, k) of samples: one to four. */
 typedef struct cwi_brick_rows {
     size_t count, row[4];
 } cwi_brick_rows;
@@ -157,7 +158,7 @@ static inline cwi_brick_rows cwi_rows_around(const cwi_bit_grid *g, size_t j, si
     return b;
 }
 
-/* The words of the row that cells of wanted words look at, in mask word m. */
+/* Returns the words of the row that cells of wanted words read, in mask word m. */
 static inline uint64_t cwi_wanted_samples(const cwi_bit_grid *g, const cwi_brick_rows *b,
                                           size_t m)
 {
@@ -175,7 +176,7 @@ static inline bool cwi_any_wanted(const cwi_bit_grid *g, const cwi_brick_rows *b
     return any;
 }
 
-/* Eight bits to the samples of eight leaves. */
+/* Spreads eight bits to the samples of eight leaves. */
 static inline uint64_t cwi_spread_leaves(unsigned bits)
 {
     const uint64_t apart =
@@ -183,7 +184,8 @@ static inline uint64_t cwi_spread_leaves(unsigned bits)
     return __builtin_bswap64(apart) * 255;
 }
 
-/* The first word at or after w whose bit is set in a mask; `words` when there is none. */
+/* Returns the first word at or after w whose bit is set in a mask; `words` when there is
+ * none. */
 static inline size_t cwi_next_marked_word(const uint64_t *mask, size_t w, size_t words)
 {
     for (; w < words; w = (w | 63) + 1) {
@@ -194,15 +196,16 @@ static inline size_t cwi_next_marked_word(const uint64_t *mask, size_t w, size_t
     return words;
 }
 
-/* Word w of a row moved down by one sample: bit i is sample i + 1. After a row's last word
- * comes the next row's first, whose lowest bit is padding, as the one beyond this row
+/* Returns word w of a row moved down by one sample: bit i is sample i + 1. After a row's last
+ * word comes the next row's first, whose lowest bit is padding, as the one beyond this row
  * would be. */
 static inline uint64_t cwi_next_samples(const uint64_t *row, size_t w)
 {
     return row[w] >> 1 | row[w + 1] << 63;
 }
 
-/* Bit i: samples i and i + 1 along axis from row (j, k) are on different sides. */
+/* Returns the crossed edges; bit i: samples i and i + 1 along axis from row (j, k) are on
+ * different sides. */
 static inline uint64_t cwi_grid_crossed(const cwi_bit_grid *g, int axis, size_t j, size_t k,
                                         size_t w)
 {

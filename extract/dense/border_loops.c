@@ -1,4 +1,4 @@
-/* How many closed curves the surface draws on the sides of the volume's box.
+/* Counts the closed curves that the surface draws on the sides of the volume's box.
  *
  * The box's surface is a sphere of squares, on which the inside samples, joined along the edges
  * of squares, and across a diagonal where the surface joins it, make patches. A patch with b
@@ -28,8 +28,8 @@ typedef struct side {
     size_t at;
 } side;
 
-/* Number of a sample on the box's surface: the bottom layer, a ring for every layer,
- * the top. */
+/* Returns the number of a sample on the box's surface: the bottom layer, a ring for every
+ * layer, the top. */
 static size_t surface_index(const size_t n[3], const size_t p[3])
 {
     const size_t layer = n[0] * n[1], ring = 2 * (n[0] + n[1]) - 4;
@@ -45,7 +45,8 @@ static size_t surface_index(const size_t n[3], const size_t p[3])
     return begin + 2 * n[0] + 2 * (p[1] - 1) + (p[0] != 0);
 }
 
-/* Word w of a row of samples; bricks that are not wanted hold nothing inside at the border. */
+/* Returns word w of a row of samples; bricks that are not wanted have nothing inside at the
+ * border. */
 static inline uint64_t word_at(const cwi_bit_grid *g, size_t j, size_t k, size_t w)
 {
     if (!g->everything) {
@@ -68,7 +69,8 @@ static uint32_t find_root(uint32_t *parent, uint32_t x)
     return x;
 }
 
-/* Sample x of line n of a side, a patch of its own when it is seen first. */
+/* Returns the number of sample x of line n of a side; makes it a patch of its own when it is
+ * first seen. */
 static uint32_t number_sample(box *b, const side *s, size_t n, size_t x)
 {
     size_t p[3];
@@ -93,7 +95,7 @@ static void join_samples(box *b, uint32_t x, uint32_t y)
     }
 }
 
-/* Bits of line n of a side. */
+/* Loads the bits of line n of a side. */
 static void load_line(const box *b, const side *s, size_t n, uint64_t *line)
 {
     size_t p[3];
@@ -115,15 +117,16 @@ static void load_line(const box *b, const side *s, size_t n, uint64_t *line)
     }
 }
 
-/* The first sample of the run of bits, within one word, that sample x of a line belongs to. */
+/* Returns the first sample of the run of bits, within one word, that sample x of a line belongs
+ * to. */
 static size_t run_start(const uint64_t *line, size_t x)
 {
     const uint64_t gaps = ~line[x / 64] & ((UINT64_C(1) << x % 64) - 1);
     return x / 64 * 64 + (gaps ? 64 - (size_t)__builtin_clzll(gaps) : 0);
 }
 
-/* Joins what one line holds: runs across words, and runs with those of their samples that
- * another side knows by themselves. */
+/* Joins the runs of one line: those across words, and each with its samples that another side
+ * already has. */
 static void join_line(box *b, const side *s, size_t n, const uint64_t *line)
 {
     const size_t length = b->n[s->along];
@@ -147,7 +150,8 @@ static void join_line(box *b, const side *s, size_t n, const uint64_t *line)
                          number_sample(b, s, n, run_start(line, x)));
 }
 
-/* Joins the inside corners of square (x, n - 1), which alternate, where the surface does. */
+/* Joins the inside corners of square (x, n - 1), which alternate, where the surface joins
+ * them. */
 static void join_diagonal(box *b, const side *s, size_t n, size_t x, const uint64_t *before,
                           const uint64_t *line)
 {
@@ -204,7 +208,8 @@ static void join_side(box *b, const side *s)
     }
 }
 
-/* Samples and joins on the box's 12 edges were counted by two sides, its corners by three. */
+/* Corrects the counts: samples and joins on the box's 12 edges were counted by two sides, its
+ * corners by three. */
 static void correct_edges(box *b)
 {
     for (int axis = 0; axis < 3; axis++)

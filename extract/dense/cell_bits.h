@@ -1,5 +1,5 @@
-/* Some words of bits at a time, of 64 cells each: which edges are crossed, and what that makes
- * of the cells. Included by what is compiled for each engine. */
+/* Several words of bits at a time, of 64 cells each: finds crossed edges, and from them
+ * triangles and ambiguous cells. Included by the files that are compiled for each engine. */
 #ifndef EXTRACT_DENSE_CELL_BITS_H
 #define EXTRACT_DENSE_CELL_BITS_H
 
@@ -9,7 +9,7 @@
 #include <immintrin.h>
 #endif
 
-/* As many as a register holds: compilers take wider vectors apart by way of memory. */
+/* The number of words that a register holds: compilers split wider vectors by way of memory. */
 #ifdef __AVX512VPOPCNTDQ__
 enum { CWI_WORDS = 8 };
 #elif defined __AVX2__
@@ -20,7 +20,7 @@ enum { CWI_WORDS = 2 };
 
 typedef uint64_t cwi_words __attribute__((vector_size(8 * CWI_WORDS)));
 
-/* Not by memcpy, which takes some registers by halves. */
+/* Loads words without memcpy, which compiles to loads of half a register. */
 static inline void cwi_load_words(const uint64_t *from, cwi_words *to)
 {
     typedef cwi_words anywhere __attribute__((aligned(sizeof *from)));
@@ -28,7 +28,8 @@ static inline void cwi_load_words(const uint64_t *from, cwi_words *to)
 }
 
 #if defined __AVX2__ && !defined __AVX512VPOPCNTDQ__
-/* How many bits are set in each byte: the sum of two of four bits, looked up [Mula2018]. */
+/* Counts the bits set in each byte: the sum of its two groups of four bits, looked up
+ * [Mula2018]. */
 static inline __m256i cwi_set_in_bytes(__m256i bits)
 {
     const __m256i four = _mm256_set1_epi8(15),
@@ -40,7 +41,7 @@ static inline __m256i cwi_set_in_bytes(__m256i bits)
 }
 #endif
 
-/* Adds, word by word, how many bits are set in so many, up to 31. */
+/* Adds to each sum the number of bits set in its word of `count` vectors, up to 31. */
 static inline void cwi_add_set(const cwi_words *bits, int count, cwi_words *sums)
 {
 #ifdef __AVX512VPOPCNTDQ__
@@ -58,7 +59,7 @@ static inline void cwi_add_set(const cwi_words *bits, int count, cwi_words *sums
 #endif
 }
 
-/* Which words have bits set: word n, bit n. */
+/* Returns the words that have bits set: word n, bit n. */
 static inline unsigned cwi_words_set(const cwi_words *bits)
 {
 #ifdef __AVX512VPOPCNTDQ__
@@ -74,7 +75,7 @@ static inline unsigned cwi_words_set(const cwi_words *bits)
 #endif
 }
 
-/* Leaves only the words whose bits are set. */
+/* Clears the words whose bits in `wanted` are not set. */
 static inline void cwi_keep_words(unsigned wanted, cwi_words *words)
 {
 #ifdef __AVX512VPOPCNTDQ__
@@ -89,7 +90,7 @@ static inline void cwi_keep_words(unsigned wanted, cwi_words *words)
 #endif
 }
 
-/* The sum of some words: word n, bit n. */
+/* Returns the sum of the wanted words: word n, bit n. */
 static inline uint64_t cwi_sum_words(unsigned wanted, const cwi_words *words)
 {
 #ifdef __AVX512VPOPCNTDQ__
@@ -110,7 +111,8 @@ static inline uint64_t cwi_sum_words(unsigned wanted, const cwi_words *words)
 #endif
 }
 
-/* The 12 edges of cubes, as in cube_numbering.h, that are crossed, from the bits of their 8 corners. */
+/* Finds the 12 edges of cubes, as in cube_numbering.h, that are crossed, from the bits of their
+ * 8 corners. */
 static inline void cwi_cross_edges(const cwi_words corner[8], cwi_words crossed[12])
 {
     for (int n = 0; n < 4; n++) {
@@ -121,8 +123,9 @@ static inline void cwi_cross_edges(const cwi_words corner[8], cwi_words crossed[
     }
 }
 
-/* The cells whose signs alone do not settle their surface, as cwi_case_is_ambiguous: those with
- * all edges of a face crossed, of which three tell, or all edges at two opposite corners. */
+/* Finds the cells whose signs alone do not settle their surface, as cwi_case_is_ambiguous.
+ * These have all edges of a face crossed, of which three are tested, or all edges at two
+ * opposite corners. */
 static inline void cwi_find_ambiguous(const cwi_words crossed[12], cwi_words *ambiguous)
 {
     const cwi_words *x = crossed, *y = crossed + 4, *z = crossed + 8;
@@ -133,8 +136,8 @@ static inline void cwi_find_ambiguous(const cwi_words crossed[12], cwi_words *am
         (x[1] & y[0] & z[2] & x[2] & y[3] & z[1]) | (x[1] & y[1] & z[3] & x[2] & y[2] & z[0]);
 }
 
-/* Adds, word by word, the triangles of some cells, none of them ambiguous: each has one loop,
- * of its crossed edges, and two triangles less than these. */
+/* Adds, word by word, the triangles of some cells, none of them ambiguous. Each cell has one
+ * loop of its crossed edges, and two triangles less than edges. */
 static inline void cwi_add_triangles(const cwi_words crossed[12], const cwi_words *cells,
                                      cwi_words *sums)
 {

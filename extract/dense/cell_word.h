@@ -1,5 +1,5 @@
-/* 64 cells of a row at a time: what their corners are, and what that makes of them. Included by
- * what is compiled for each engine. */
+/* Loads 64 cells of a row at a time, and finds their cases and which of them are mixed.
+ * Included by the files that are compiled for each engine. */
 #ifndef EXTRACT_DENSE_CELL_WORD_H
 #define EXTRACT_DENSE_CELL_WORD_H
 
@@ -10,7 +10,7 @@
 #include <immintrin.h>
 #endif
 
-/* The place of the lowest bit that is set; of none, any. */
+/* Returns the place of the lowest bit that is set; any place when none is. */
 static inline unsigned cwi_lowest(uint64_t bits)
 {
 #ifdef __BMI__
@@ -47,8 +47,8 @@ static inline __m512i four_words(const cell_rows *r, size_t w)
                           (long long)r->row[1][w], (long long)r->row[0][w]));
 }
 
-/* The cases of 64 cells, whose corners n are the bits of lane n: an 8 x 64 matrix of bits,
- * turned. */
+/* Computes the cases of 64 cells, whose corners n are the bits of lane n: transposes an 8 x 64
+ * matrix of bits. */
 static inline __m512i turn_corner(__m512i corner)
 {
     /* byte 8 b + 7 - n: bits of cells 8 b to 8 b + 7 for corner n */
@@ -70,7 +70,7 @@ static inline cell_word load_cells(const cell_rows *r, size_t w)
     return c;
 }
 
-/* The cases of active cells; those of others may be left out. */
+/* Stores the cases of active cells; those of others may be left out. */
 static inline void store_cases(const cell_word *c, uint64_t active, uint8_t cases[64])
 {
     (void)active;
@@ -110,7 +110,7 @@ static inline cell_word load_cells(const cell_rows *r, size_t w)
     return c;
 }
 
-/* In each eight bytes: an 8 x 8 matrix of bits, transposed [Warren2013, 7-3]. */
+/* Transposes, in each eight bytes, an 8 x 8 matrix of bits [Warren2013, 7-3]. */
 static inline __m256i transpose8(__m256i x)
 {
     const __m256i by_one = _mm256_set1_epi64x(0x00aa00aa00aa00aa),
@@ -124,7 +124,7 @@ static inline __m256i transpose8(__m256i x)
     return _mm256_xor_si256(x, _mm256_xor_si256(t, _mm256_slli_epi64(t, 28)));
 }
 
-/* The cases of active cells; those of others may be left out. */
+/* Stores the cases of active cells; those of others may be left out. */
 static inline void store_cases(const cell_word *c, uint64_t active, uint8_t cases[64])
 {
     /* byte b of corners 0 to 3 side by side, and in the upper half of 4 to 7; b up to 3, then
@@ -162,7 +162,7 @@ static inline cell_word load_cells(const cell_rows *r, size_t w)
     return c;
 }
 
-/* Eight bytes as an 8 x 8 matrix of bits, transposed [Warren2013, 7-3]. */
+/* Transposes eight bytes as an 8 x 8 matrix of bits [Warren2013, 7-3]. */
 static inline uint64_t transpose8(uint64_t x)
 {
     uint64_t t = (x ^ x >> 7) & UINT64_C(0x00aa00aa00aa00aa);

@@ -1,5 +1,5 @@
-/* Samples to bits: which are inside. Compiled for each engine; where an engine has no faster
- * way, the plain loops of classify.inc do. */
+/* Classifies samples as bits, set where they are inside. Compiled for each engine; the plain
+ * loops of classify.inc serve where an engine has no faster way. */
 #include "core/volume/volume.h"
 #include "extract/dense/isa_dispatch.h"
 
@@ -14,14 +14,14 @@
 #define SIMD 0
 #endif
 
-/* Eight bytes of 0 or 1 to bits; byte i to bit i. Their product with the constant gathers their
- * lowest bits in its top byte. */
+/* Packs eight bytes of 0 or 1 into bits, byte i to bit i. Their product with the constant
+ * gathers their lowest bits in its top byte. */
 static inline uint64_t pack_eight(uint64_t bytes)
 {
     return bytes * UINT64_C(0x0102040810204080) >> 56;
 }
 
-/* As many bytes as a leaf has samples in a row. */
+/* One byte for each sample of a leaf in a row. */
 typedef signed char leaf_bytes __attribute__((vector_size(CWI_BRICK)));
 
 static inline uint64_t leaf_bits(leaf_bytes b)
@@ -29,7 +29,7 @@ static inline uint64_t leaf_bits(leaf_bytes b)
     return pack_eight((uint64_t)b & UINT64_C(0x0101010101010101));
 }
 
-/* 64 bytes of 0 or 1 to bits. */
+/* Packs 64 bytes of 0 or 1 into bits. */
 static inline uint64_t pack_bits(const unsigned char bytes[64])
 {
     uint64_t bits = 0;
@@ -104,7 +104,7 @@ static inline uint64_t above_16(const void *x, int16_t limit, int16_t flip)
         const __m256i *p = (const __m256i *)x + 2 * n;
         const __m256i a = _mm256_cmpgt_epi16(l, _mm256_xor_si256(_mm256_loadu_si256(p), f));
         const __m256i b = _mm256_cmpgt_epi16(l, _mm256_xor_si256(_mm256_loadu_si256(p + 1), f));
-        /* packing works within halves: the middle quarters change places */
+        /* packing works within halves: swap the middle quarters */
         const __m256i packed = _mm256_permute4x64_epi64(_mm256_packs_epi16(a, b), 0xd8);
         below |= (uint64_t)(uint32_t)_mm256_movemask_epi8(packed) << 32 * n;
     }
@@ -206,8 +206,8 @@ static inline uint64_t ordered_f32(const float *x)
 #define ordered_u32 plain_ordered_u32
 #define ordered_i32 plain_ordered_i32
 
-/* What the leaves around word w of the row are. Leaves that share samples, and are not wanted,
- * are alike. */
+/* Returns the bits of the leaves around word w of the row. Leaves that share samples, and are
+ * not wanted, have the same bits. */
 static cwi_leaf_bits leaves_of_samples(const cwi_bit_grid *g, const cwi_brick_rows *b, size_t w)
 {
     cwi_leaf_bits bits = {0, 0};
@@ -219,15 +219,15 @@ static cwi_leaf_bits leaves_of_samples(const cwi_bit_grid *g, const cwi_brick_ro
     return bits;
 }
 
-/* Where all samples are compared they are prefetched so many bytes ahead, a line at a time:
- * more than processors do by themselves. Into the second cache: the first one has fewer lines
- * on their way to it at a time. */
+/* Prefetching, where all samples are compared: AHEAD bytes ahead, a line at a time. That is
+ * more than processors do by themselves. It goes to the second cache: the first one has fewer
+ * lines on their way to it at a time. */
 enum { AHEAD = 4096, LINE = 64, SECOND = 2 };
 
 #define TYPED "extract/dense/classify.inc"
 #include "extract/dense/for_each_type.inc"
 
-/* The padding around a layer of bits, or a whole layer of it. */
+/* Clears the padding around a layer of bits, or a whole layer of padding. */
 static void clear_padding(const cwi_bit_grid *g, uint64_t *plane, size_t k)
 {
     const size_t layer = g->rows_y * g->words, row = g->words * sizeof *plane;
@@ -237,7 +237,7 @@ static void clear_padding(const cwi_bit_grid *g, uint64_t *plane, size_t k)
     memset(first + layer - g->words, 0, row);
 }
 
-/* Rows of bricks whose samples stay near the processor until they are measured. */
+/* Number of rows of bricks whose samples stay in the cache until they are measured. */
 enum { TOGETHER = 4 };
 
 void cwi_classify_rows(const cwi_bit_grid *g, size_t j, size_t k, size_t rows, bool *in,
@@ -252,7 +252,7 @@ void cwi_classify_rows(const cwi_bit_grid *g, size_t j, size_t k, size_t rows, b
     classify[g->volume.type](g, j, k, rows, in, out);
 }
 
-/* What is wanted of the samples of a layer of bricks. */
+/* Classifies the wanted samples of a layer of bricks. */
 static void classify_bricks(const cwi_bit_grid *g, size_t b)
 {
     static void (*const classify[CW_TYPE_COUNT])(const cwi_bit_grid *, const size_t[2],
@@ -293,7 +293,7 @@ void cwi_classify_layer(const cwi_bit_grid *g, size_t b, cwi_range *leaves, bool
         if (g->find_values)
             clear_padding(g, g->has, k);
     }
-    if (!leaves) { /* as memory lies */
+    if (!leaves) { /* in the order of memory */
         for (size_t k = begin ? begin : 1; k < end && k + 1 < g->rows_z; k++)
             cwi_classify_rows(g, 1, k, g->rows_y - 2, in, out);
         return;

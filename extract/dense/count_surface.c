@@ -1,13 +1,14 @@
-/* Counting what a layer of cells comes to, from bit planes. Compiled for each engine. */
+/* Counts the vertices and triangles of a layer of cells, from bit planes. Compiled for each
+ * engine. */
 #include "extract/dense/ambiguous_cells.h"
 #include "extract/dense/cell_bits.h"
 #include "extract/dense/cell_word.h"
 
 #include <string.h>
 
-/* What some words of a layer come to; after a row's last word comes the next row's first. */
+/* Counts of some words of a layer; after a row's last word comes the next row's first. */
 typedef struct word_counts {
-    unsigned busy, open;        /* word n, bit n: it has such cells as mixed; as ambiguous */
+    unsigned busy, open;        /* bit n: word n has mixed cells; has ambiguous cells */
     cwi_words mixed, ambiguous; /* cells whose corners are on both sides; of these, those whose
                                    signs do not settle the rest */
     cwi_words counts;           /* fields of COUNT_BITS: edges that are crossed along each axis,
@@ -17,7 +18,7 @@ typedef struct word_counts {
 /* 64 cells have 320 triangles at most, and up to eight words are summed. */
 enum { COUNT_BITS = 16 };
 
-/* Finds out about the cells that matter, and counts. */
+/* Finds the mixed and ambiguous cells of some words, and counts. */
 static inline void count_cells(const cwi_bit_grid *g, size_t k, size_t word,
                                const cwi_words corner[8], word_counts *c)
 {
@@ -39,7 +40,7 @@ static inline void count_cells(const cwi_bit_grid *g, size_t k, size_t word,
     c->counts = count;
 }
 
-/* Counts the words from one of layer k on, those that are wanted: word n, bit n. */
+/* Counts the wanted ones of successive words of layer k, from `word` on: word n, bit n. */
 static inline void count_words(const cwi_bit_grid *g, size_t k, size_t word, unsigned wanted,
                                word_counts *c)
 {
@@ -67,7 +68,7 @@ static inline void count_words(const cwi_bit_grid *g, size_t k, size_t word, uns
     }
 }
 
-/* Counts what becomes of the ambiguous cells in word w of row (j, k). */
+/* Counts the vertices and triangles of the ambiguous cells in word w of row (j, k). */
 static void count_ambiguous(const cwi_bit_grid *g, uint64_t ambiguous, size_t j, size_t k,
                             size_t w, cwi_row *row)
 {
@@ -88,14 +89,14 @@ static void count_ambiguous(const cwi_bit_grid *g, uint64_t ambiguous, size_t j,
     }
 }
 
-/* The first so many of CWI_WORDS words. */
+/* Returns the bits of the first `count` of CWI_WORDS words. */
 static inline unsigned first_words(size_t count)
 {
     return count < CWI_WORDS ? (1u << count) - 1 : (1u << CWI_WORDS) - 1;
 }
 
-/* Some of the cells of so many words from word w of row (j, k) on, the n-th that were counted,
- * are, in part, padding: there the solid meets the border. */
+/* Returns true if mixed cells of `count` words are partly padding: there the solid meets the
+ * border. The words start at word w of row (j, k), the n-th that was counted. */
 static bool meets_border(const cwi_bit_grid *g, const word_counts *c, int n, int count,
                          size_t j, size_t k, size_t w)
 {
@@ -106,8 +107,8 @@ static bool meets_border(const cwi_bit_grid *g, const word_counts *c, int n, int
            (last - w < (size_t)count && (c->mixed[n + (int)(last - w)] >> dim[0] % 64 & 1));
 }
 
-/* Vertices on edges of live cells, along each axis, in the busy words from word w of row (j, k)
- * on, packed like counts. */
+/* Counts vertices on edges of live cells, along each axis, in the busy words from word w of row
+ * (j, k) on, packed like `counts`. */
 static uint64_t count_live_edges(const cwi_bit_grid *g, unsigned busy, size_t j, size_t k,
                                  size_t w)
 {
@@ -120,9 +121,9 @@ static uint64_t count_live_edges(const cwi_bit_grid *g, unsigned busy, size_t j,
     return count;
 }
 
-/* Adds so many words from word w of row (j, k) on, the n-th that were counted, to their row's
- * counts. An edge that is crossed belongs to a cell whose corners differ, as the last samples
- * of every row, and the last rows, are padding. */
+/* Adds the counts of `count` words to those of their row. The words start at word w of row (j,
+ * k), the n-th that was counted. An edge that is crossed belongs to a cell whose corners
+ * differ, as the last samples of every row, and the last rows, are padding. */
 static inline void take_words(const cwi_bit_grid *g, const word_counts *c, int n, int count,
                               size_t j, size_t k, size_t w, cwi_row *row)
 {
@@ -162,8 +163,8 @@ static void count_group(const cwi_bit_grid *g, size_t j, size_t k, size_t w, uns
     }
 }
 
-/* Some sample in the rows of samples around these rows of cells of layer k is inside, or it is
- * not known. */
+/* Returns true if some sample in the rows of samples around these rows of cells of layer k is
+ * inside, or if that is unknown. */
 static bool any_filled(const cwi_bit_grid *g, size_t j, size_t last, size_t k)
 {
     const uint8_t *filled = g->filled + k * g->rows_y;
@@ -219,7 +220,7 @@ static void sum_layer(cwi_row *rows, size_t count, cwi_layer *layer)
     layer->triangles = triangle;
 }
 
-/* No cell of the layer can be crossed. */
+/* Returns true if no cell of the layer can be crossed. */
 static bool is_unwanted(const cwi_bit_grid *g, size_t k)
 {
     if (g->everything || k + 1 == g->rows_z)

@@ -1,24 +1,24 @@
-/* Which edges of a row carry vertices, 64 at a time. */
+/* Finds the edges of a row that have vertices, 64 at a time. */
 #ifndef EXTRACT_DENSE_CROSSED_EDGES_H
 #define EXTRACT_DENSE_CROSSED_EDGES_H
 
 #include "extract/dense/bit_planes.h"
 
-/* Live cells of layer k: rows_y x words. Of a box's layers two are kept. */
+/* Returns the live cells of layer k: rows_y x words. Of a box, only two layers are stored. */
 static inline const uint64_t *cwi_live_layer(const cwi_bit_grid *g, size_t k)
 {
     const size_t inner = k >= 1 && k < g->volume.dim[2];
     return g->live + (g->boxed ? inner : k) * g->rows_y * g->words;
 }
 
-/* All cells of row (j, k) but the padding at its ends are live: on edges around them there are
- * vertices wherever these are crossed, but along x toward padding. */
+/* Returns true if all cells of row (j, k), but the padding at its ends, are live. Then edges
+ * around them have vertices wherever they are crossed, except along x toward padding. */
 static inline bool cwi_is_whole(const cwi_bit_grid *g, size_t j, size_t k)
 {
     return g->boxed && j >= 1 && j < g->volume.dim[1] && k >= 1 && k < g->volume.dim[2];
 }
 
-/* Live cells of word w in row (j, k) of cells; none outside the grid. */
+/* Returns the live cells of word w in row (j, k) of cells; none outside the grid. */
 static inline uint64_t cwi_live_cells(const cwi_bit_grid *g, size_t j, size_t k, size_t w)
 {
     if (j >= g->rows_y - 1 || k >= g->rows_z - 1) /* true for the row before the first, too */
@@ -26,7 +26,8 @@ static inline uint64_t cwi_live_cells(const cwi_bit_grid *g, size_t j, size_t k,
     return cwi_live_layer(g, k)[j * g->words + w];
 }
 
-/* With open borders an edge has a vertex only if one of the four cells around it is live. */
+/* Returns the edges around live cells. With open borders an edge has a vertex only if one of
+ * the four cells around it is live. */
 static inline uint64_t cwi_live_edges(const cwi_bit_grid *g, int axis, size_t j, size_t k,
                                       size_t w)
 {
@@ -40,14 +41,14 @@ static inline uint64_t cwi_live_edges(const cwi_bit_grid *g, int axis, size_t j,
     return here | here << 1 | before >> 63;
 }
 
-/* Of a block: the edges of live cells along axis from row (j, k). */
+/* Returns, for a block, the edges of live cells along axis from row (j, k). */
 static inline const uint64_t *cwi_edge_window(const cwi_bit_grid *g, int axis, size_t j,
                                               size_t k)
 {
     return g->window + ((size_t)axis + 1) * g->rows + k * g->rows_y + j;
 }
 
-/* Edges along axis from row (j, k) that may have vertices. */
+/* Returns the edges along axis from row (j, k) that may have vertices. */
 static inline uint64_t cwi_edge_mask(const cwi_bit_grid *g, int axis, size_t j, size_t k,
                                      size_t w)
 {
@@ -59,21 +60,21 @@ static inline uint64_t cwi_edge_mask(const cwi_bit_grid *g, int axis, size_t j, 
                                  : cwi_live_edges(g, axis, j, k, w);
 }
 
-/* Bit i: there is a vertex on the edge along axis from sample i of row (j, k). */
+/* Returns the edges with vertices; bit i: the edge along axis from sample i of row (j, k). */
 static inline uint64_t cwi_edge_vertices(const cwi_bit_grid *g, int axis, size_t j, size_t k,
                                          size_t w)
 {
     return cwi_grid_crossed(g, axis, j, k, w) & cwi_edge_mask(g, axis, j, k, w);
 }
 
-/* Padded index n along an axis is that of a voxel with two after it and one before it, or two
- * for cubics. */
+/* Returns true if padded index n along an axis is that of a voxel with two voxels after it and
+ * one before it (two for cubics). */
 static inline bool cwi_is_inner(const cwi_bit_grid *g, int axis, size_t n)
 {
     return n >= (g->cubic ? 3 : 2) && n + 2 <= g->volume.dim[axis];
 }
 
-/* Bits from to to - 1 of a row that are in the word whose lowest is `begin`. */
+/* Returns bits `from` to `to` - 1 of a row, within the word whose lowest bit is `begin`. */
 static inline uint64_t cwi_bits_between(size_t begin, size_t from, size_t to)
 {
     uint64_t bits = ~UINT64_C(0);
@@ -84,8 +85,8 @@ static inline uint64_t cwi_bits_between(size_t begin, size_t from, size_t to)
     return bits;
 }
 
-/* Of the word at at[]: edges, along any axis, all of whose samples and their neighbours are
- * voxels. */
+/* Returns the edges of the word at at[], along any axis, all of whose samples and their
+ * neighbours are voxels. */
 static inline uint64_t cwi_inner_edges(const cwi_bit_grid *g, const size_t at[3])
 {
     if (!cwi_is_inner(g, 1, at[1]) || !cwi_is_inner(g, 2, at[2]))
@@ -93,7 +94,7 @@ static inline uint64_t cwi_inner_edges(const cwi_bit_grid *g, const size_t at[3]
     return cwi_bits_between(at[0], g->cubic ? 3 : 2, g->volume.dim[0] - 1);
 }
 
-/* Word w of a row of samples moved up by some, or moved down. */
+/* Return word w of a row of samples moved up, or down, by a number of samples. */
 static inline uint64_t cwi_moved_up(const uint64_t *row, size_t w, unsigned by)
 {
     return row[w] << by | (w ? row[w - 1] >> (64 - by) : 0);
@@ -104,7 +105,8 @@ static inline uint64_t cwi_moved_down(const uint64_t *row, size_t w, unsigned by
     return row[w] >> by | row[w + 1] << (64 - by);
 }
 
-/* Samples of word w of an inner row (j, k) that have values, as have all six around each. */
+/* Returns the samples of word w of an inner row (j, k) that have values, and whose six
+ * neighbours have values. */
 static inline uint64_t cwi_valued_samples(const cwi_bit_grid *g, size_t j, size_t k, size_t w)
 {
     const size_t layer = g->rows_y * g->words;
@@ -113,8 +115,8 @@ static inline uint64_t cwi_valued_samples(const cwi_bit_grid *g, size_t j, size_
            row[w + g->words] & *(row + w - layer) & row[w + layer];
 }
 
-/* Samples of word w of an inner row (j, k) that have values, as have those one and two away
- * along both axes other than this one. */
+/* Returns the samples of word w of an inner row (j, k) that have values, as have those one and
+ * two away along both other axes. */
 static inline uint64_t cwi_valued_crosses(const cwi_bit_grid *g, int axis, size_t j, size_t k,
                                           size_t w)
 {
@@ -132,7 +134,7 @@ static inline uint64_t cwi_valued_crosses(const cwi_bit_grid *g, int axis, size_
     return valued;
 }
 
-/* Inner edges along an axis all of whose samples on cubics have values. */
+/* Returns the inner edges along an axis all of whose samples on cubics have values. */
 static inline uint64_t cwi_valued_cubics(const cwi_bit_grid *g, int axis, const size_t at[3],
                                          uint64_t inner)
 {
@@ -152,8 +154,8 @@ static inline uint64_t cwi_valued_cubics(const cwi_bit_grid *g, int axis, const 
     return inner;
 }
 
-/* Of the word at at[]: inner edges along an axis whose samples, and these's neighbours, all
- * have values. */
+/* Returns the inner edges along an axis, of the word at at[], whose samples, and the neighbours
+ * of these, all have values. */
 static inline uint64_t cwi_valued_edges(const cwi_bit_grid *g, int axis, const size_t at[3])
 {
     const size_t w = at[0] / 64, j = at[1] + (axis == 1), k = at[2] + (axis == 2);
@@ -169,7 +171,7 @@ static inline uint64_t cwi_valued_edges(const cwi_bit_grid *g, int axis, const s
     return inner & here & after;
 }
 
-/* Edges along an axis both of whose ends are voxels. */
+/* Returns the edges along an axis both of whose ends are voxels. */
 static inline uint64_t cwi_volume_edges(const cwi_bit_grid *g, int axis, const size_t at[3])
 {
     const size_t *dim = g->volume.dim;

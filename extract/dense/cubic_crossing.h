@@ -1,4 +1,4 @@
-/* Where grid edges are crossed by the cubics through four samples along them. */
+/* Finds where grid edges are crossed by the cubics through four samples along them. */
 #ifndef EXTRACT_DENSE_CUBIC_CROSSING_H
 #define EXTRACT_DENSE_CUBIC_CROSSING_H
 
@@ -6,11 +6,11 @@
 
 #include <stdint.h>
 
-/* So many are computed at a time, at most. */
+/* The maximum number of cubics solved at a time. */
 enum { CWI_CUBICS = 16 };
 
-/* The weights of four samples at -1, 0, 1 and 2 in the value, or the slope, at t of the cubic
- * through them. */
+/* Compute the weights of four samples at -1, 0, 1 and 2 in the value, or the slope, at t of the
+ * cubic through them. */
 static inline void cwi_cubic_weights(double t, double w[4])
 {
     w[0] = -t * (t - 1) * (t - 2) / 6;
@@ -27,15 +27,15 @@ static inline void cwi_cubic_slopes(double t, double w[4])
     w[3] = (3 * t * t - 1) / 6;
 }
 
-/* Cubics by their powers of t, times the sign that makes them rise from 0 to 1, and where each
- * is known to be crossed between. */
+/* Cubics as coefficients of the powers of t, with the sign that makes them rise from 0 to 1,
+ * and the bracket in which each is known to be crossed. */
 typedef struct cwi_cubic_search {
     double power[4][CWI_CUBICS], low[CWI_CUBICS], high[CWI_CUBICS];
     int64_t going[CWI_CUBICS]; /* 1 or 0 */
 } cwi_cubic_search;
 
-/* One of Newton's steps for each that is not done, or half its bracket where that leaves it.
- * Returns how many are still not done. */
+/* Takes a step of Newton's method for each cubic that is not done, or halves its bracket where
+ * the step leaves it. Returns the number of cubics still not done. */
 static inline int64_t cwi_step_cubics(cwi_cubic_search *restrict s, size_t count,
                                       double *restrict t)
 {
@@ -57,9 +57,9 @@ static inline int64_t cwi_step_cubics(cwi_cubic_search *restrict s, size_t count
     return going;
 }
 
-/* Where cubics through numbers at -1, 0, 1 and 2, x[0] to x[3], cross the level between 0 and
- * 1. found: 0 where a number is not finite, or the cubic may cross more than once, as its
- * Bezier points then change sides more than once; else 1. */
+/* Finds where cubics through numbers at -1, 0, 1 and 2, x[0] to x[3], cross the level between 0
+ * and 1. found: 0 where a number is not finite, or where the cubic may cross more than once, as
+ * its Bezier points change sides more than once; else 1. */
 static inline void cwi_cross_cubics(const double x[4][CWI_CUBICS], size_t count, double level,
                                     double *restrict t, int64_t *restrict found)
 {
@@ -89,7 +89,7 @@ static inline void cwi_cross_cubics(const double x[4][CWI_CUBICS], size_t count,
         t[n] = cwi_off_ends(t[n]);
 }
 
-/* One of them. False where none is found. */
+/* Finds the crossing of one cubic. Returns false where none is found. */
 static inline bool cwi_cubic_crossing(const double x[4], double level, double *t)
 {
     double one[4][CWI_CUBICS];

@@ -1,4 +1,4 @@
-/* A dense grid between counting and writing: rows are numbered, and layers written. */
+/* Numbers the rows of a dense grid after counting, and writes its layers in parallel. */
 #include "extract/dense/dense_plan.h"
 
 #include "core/base/memory.h"
@@ -18,7 +18,7 @@ static void count_layer(void *context, size_t k)
     p->engine->count_layer(&p->grid, k, p->rows);
 }
 
-/* First numbers within a layer become those within the mesh. */
+/* Turns first numbers within a layer into those within the mesh. */
 static void number_layer(void *context, size_t k)
 {
     cwi_plan *p = context;
@@ -37,7 +37,7 @@ static cw_status number_rows(cwi_plan *p, int threads, cw_error *err)
     for (size_t k = 0; k < g->rows_z; k++) {
         cwi_layer *layer = &g->layers[k];
         const size_t vertices = layer->vertices, triangles = layer->triangles;
-        layer->vertices = v; /* from now on: before the layer */
+        layer->vertices = v; /* from now on: the number before the layer */
         layer->triangles = t;
         v += vertices;
         t += triangles;
@@ -99,7 +99,7 @@ cwi_vertex_sink cwi_make_sink(const cw_volume *v, bool invert, cw_mesh *mesh)
     return sink;
 }
 
-/* A mirroring affine turns triangles inside out: two corners change places. */
+/* Copies triangles. A mirroring affine turns them inside out: two corners change places. */
 static void turn_triangles(const uint8_t *from, int count, bool flip, uint8_t *to)
 {
     for (int n = 0; n < 3 * count; n++)
@@ -126,8 +126,8 @@ cwi_emission cwi_make_emission(const cw_volume *v, bool simple)
     return emission;
 }
 
-/* Layers that a thread writes at a time: many at first, as two shares read some samples both;
- * few at last, so that no thread waits for long. */
+/* Number of layers that a thread writes at a time: many at first, as neighbouring shares both
+ * read some samples; few at last, so that no thread waits for long. */
 enum { LARGE_SHARE = 32, SMALL_SHARE = 8 };
 
 static size_t begin_of_share(const cwi_writing *w, size_t share)

@@ -1,12 +1,12 @@
-/* Where a grid edge is crossed. */
+/* Computes where a grid edge is crossed. */
 #ifndef EXTRACT_DENSE_EDGE_CROSSING_H
 #define EXTRACT_DENSE_EDGE_CROSSING_H
 
 #include <math.h>
 #include <stdbool.h>
 
-/* Vertices keep this share of an edge between them and its ends: three vertices around one
- * sample then never coincide, also after rounding to single precision. */
+/* The fraction of an edge that vertices keep from its ends. Three vertices around one sample
+ * then never coincide, even after rounding to single precision. */
 #define CWI_NUDGE (1.0 / 1024)
 
 static inline double cwi_off_ends(double t)
@@ -15,9 +15,9 @@ static inline double cwi_off_ends(double t)
     return t > 1 - CWI_NUDGE ? 1 - CWI_NUDGE : t;
 }
 
-/* The share of the edge from number a to number b at which the level is crossed, kept off both
- * ends. NaN is an end without a value: the crossing is then a cap, just beyond the
- * other end. */
+/* Returns the fraction of the edge from number a to number b at which the level is crossed,
+ * kept off both ends. NaN is an end without a value: the crossing is then a cap, just beyond
+ * the other end. */
 static inline double cwi_edge_crossing(double a, double b, double level)
 {
     if (isnan(a) || isnan(b))

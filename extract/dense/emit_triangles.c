@@ -1,13 +1,13 @@
-/* Writing the vertices and triangles of layers, from bit planes. Compiled for each engine. */
+/* Writes the vertices and triangles of layers, from bit planes. Compiled for each engine. */
 #include "extract/dense/active_cells.h"
 #include "extract/dense/ambiguous_cells.h"
 
 #include <string.h>
 
-/* Corners of triangles that memory is prefetched for before they are written. */
+/* Number of triangle corners by which memory is prefetched before it is written. */
 enum { AHEAD = 1024 };
 
-/* What writing a row of cells goes on with. */
+/* State that writing a row of cells carries from cell to cell. */
 typedef struct cwi_cursor {
     uint32_t *out;
     const uint32_t *end;
@@ -15,7 +15,7 @@ typedef struct cwi_cursor {
     size_t plan;    /* of the next ambiguous cell, in its layer */
 } cwi_cursor;
 
-/* The triangles of an ambiguous cell that has vertices inside, and these. */
+/* Writes the triangles of an ambiguous cell that has inner vertices, and these vertices. */
 static void emit_inner(const cwi_bit_grid *g, const size_t at[3], const cell_numbers *numbers,
                        unsigned cube, bool flip, cwi_vertex_sink *sink, cwi_cursor *to)
 {
@@ -34,7 +34,7 @@ static void emit_inner(const cwi_bit_grid *g, const size_t at[3], const cell_num
     }
 }
 
-/* The triangles of an ambiguous cell. */
+/* Writes the triangles of an ambiguous cell. */
 __attribute__((noinline)) static void emit_ambiguous(const cwi_bit_grid *g, const size_t at[3],
                                                      const cell_numbers *numbers, unsigned cube,
                                                      const cwi_emission *emission,
@@ -105,7 +105,7 @@ void cwi_write_layers(const cwi_bit_grid *g, size_t begin, size_t end, size_t ce
                       const cwi_row *rows, const cwi_emission *emission, cwi_vertex_sink *sink,
                       uint32_t *triangles)
 {
-    /* what is too much is written over by the next rows, but not those of other threads */
+    /* excess writes are overwritten by the next rows, but not those of other threads */
     cwi_cursor to = {.end = triangles + 3 * rows[cells * g->rows_y].triangle};
     cell_list list;
     memset(&list.edges, 0, sizeof list.edges); /* not known where numbers count on */

@@ -1,3 +1,5 @@
+/* Lists the engines (plain, SSE2, AVX2, AVX-512), and picks the best one that the processor can
+ * run. */
 #include "extract/dense/isa_dispatch.h"
 
 static bool is_always(void)
@@ -20,8 +22,8 @@ static bool has_avx512(void)
            __builtin_cpu_supports("avx512vbmi2") && __builtin_cpu_supports("avx512vpopcntdq") &&
            __builtin_cpu_supports("gfni");
 }
-/* Name, test, what compares samples, and what marches: baseline x86-64 has an instruction that
- * gathers comparisons in bits, but none that would make marching faster. */
+/* Name, test, engine of comparisons, and engine of marching. Baseline x86-64 has an instruction
+ * that gathers comparisons in bits, but none that would make marching faster. */
 #define ENGINES(X)                                                                             \
     X(plain, is_always, plain, plain)                                                          \
     X(sse2, is_always, sse2, plain)                                                            \

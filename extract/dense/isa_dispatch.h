@@ -1,5 +1,5 @@
-/* The inner loops of extraction, compiled once for any machine and again for what better ones
- * can do. All engines give the same bytes. */
+/* The inner loops of extraction, compiled once for any machine and again for better instruction
+ * sets. All engines give the same bytes. */
 #ifndef EXTRACT_DENSE_ISA_DISPATCH_H
 #define EXTRACT_DENSE_ISA_DISPATCH_H
 
@@ -9,16 +9,16 @@
 
 #include <cubewright/mesh.h>
 
-/* Triangles of a case, in the order they are written: three edges each, with room to take 16 at
- * once. */
+/* Triangles of a case, in the order in which they are written, three edges each; padded so that
+ * 16 can be read at once. */
 typedef struct cwi_case_emission {
     _Alignas(32) uint8_t edge[16];
     uint8_t crossed[CWI_EDGE_ROWS]; /* 1 where the edge in the row is */
     uint8_t edges;                  /* how many; 0: signs alone do not settle the surface */
 } cwi_case_emission;
 
-/* What is written of cells: of those of each case, and of a configuration of one that has no
- * vertices inside. */
+/* Triangles written for cells: those of each case, and those of each configuration of a case
+ * that has no vertices inside the cell. */
 typedef struct cwi_emission {
     cwi_case_emission of_case[256];
     uint8_t config_edge[CWI_CASE_CONFIGS][32];
@@ -26,13 +26,13 @@ typedef struct cwi_emission {
     bool flip; /* triangles are turned round, as the affine mirrors */
 } cwi_emission;
 
-/* Where vertices go. */
+/* Destination of vertices: arrays, and the maps from index space. */
 typedef struct cwi_vertex_sink {
     float *positions, *normals; /* normals may be NULL */
     double affine[3][3];        /* index to world directions */
-    bool diagonal;              /* only that is not 0 */
+    bool diagonal;              /* only the diagonal is not 0 */
     double centre[3];           /* index, or coordinate, that stands at the mesh's origin */
-    const cw_volume *grid;      /* whose coordinates these are */
+    const cw_volume *grid;      /* that these coordinates are of */
     double cofactor[3][3];      /* index gradient to outward world direction */
     float cap[3][2][3];         /* normals of caps across an axis, low and high side */
     bool missing;               /* some normal is zero as the gradient vanished */
@@ -41,35 +41,36 @@ typedef struct cwi_vertex_sink {
 struct cwi_engine {
     const char *name;
     bool (*usable)(void);
-    /* Writes the inside bits of what is wanted in brick layer b, that is eight layers of padded
-     * samples, or as many as are left; where values are to be found, which samples have
-     * values; and, unless leaves is NULL, the ranges of the layer's bricks. Tells whether it
-     * saw samples with values on each side. */
+    /* Writes the inside bits of the wanted samples in brick layer b: eight layers of padded
+     * samples, or as many as are left. Where values are sought, it also writes which samples
+     * have values. Unless leaves is NULL, it writes the ranges of the layer's bricks. Reports
+     * whether samples with values are on each side. */
     void (*classify_layer)(const cwi_bit_grid *grid, size_t b, cwi_range *leaves, bool *in,
                            bool *out);
-    /* Writes the inside bits of so many rows of layer k, from row j on, all of them wanted; and
-     * tells as classify_layer. */
+    /* Writes the inside bits of `rows` rows of layer k, from row j on, all of them wanted.
+     * Reports `in` and `out` as classify_layer does. */
     void (*classify_rows)(const cwi_bit_grid *grid, size_t j, size_t k, size_t rows, bool *in,
                           bool *out);
-    /* Tells, in addition, whether some of so many packed voxels, a multiple of 64, are inside,
-     * and some are not. */
+    /* Sets `in` if some of `count` packed voxels, a multiple of 64, are inside, and `out` if
+     * some are not. Clears neither. */
     void (*find_sides)(const cwi_bit_grid *grid, const void *voxels, size_t count, bool *in,
                        bool *out);
-    /* Leaves a layer's counts, not yet first numbers, in its rows. */
+    /* Stores a layer's counts, not yet first numbers, in its rows. */
     void (*count_layer)(const cwi_bit_grid *grid, size_t k, cwi_row *rows);
-    /* Writes the vertices of the layers begin to end, and the triangles of those begin to
-     * cells, to their places. */
+    /* Writes, to their places, the vertices of the layers begin to end, and the triangles of
+     * those from begin to cells. */
     void (*write_layers)(const cwi_bit_grid *grid, size_t begin, size_t end, size_t cells,
                          const cwi_row *rows, const cwi_emission *emission,
                          cwi_vertex_sink *sink, uint32_t *triangles);
 };
 
-/* The n-th engine this machine can use, the plain one first; NULL when there are fewer. */
+/* Returns the n-th engine this machine can use, the plain one first; NULL when there are
+ * fewer. */
 const cwi_engine *cwi_engine_at(size_t n);
 const cwi_engine *cwi_engine_best(void);
 
-/* In files that are compiled for each engine, CWI_ENGINE is its name, and CWI_WIDE tells
- * whether it may shuffle, count and compress bytes and bits in words of 512 bits. */
+/* In files that are compiled for each engine, CWI_ENGINE is its name, and CWI_WIDE is whether
+ * it may shuffle, count and compress bytes and bits in words of 512 bits. */
 #ifdef CWI_ENGINE
 #if defined __AVX512VBMI2__ && defined __AVX512VBMI__ && defined __GFNI__ &&                   \
     defined __AVX512VPOPCNTDQ__

@@ -1,3 +1,5 @@
+/* Builds the octree of value ranges [Wilhelms1992] upward from its leaves, and marks with it
+ * the leaves that the isovalue crosses. */
 #include "extract/dense/minmax_octree.h"
 
 #include "core/base/memory.h"
@@ -54,7 +56,7 @@ static const cwi_range *node_at(const cwi_octree *t, int level, size_t x, size_t
     return t->level[level] + (z * t->dim[level][1] + y) * t->dim[level][0] + x;
 }
 
-/* The up to eight children of a node: where they stand a level below. */
+/* Iterates over the up to eight children of a node: their places a level below. */
 #define EACH_CHILD(t, l, at, x, y, z)                                                          \
     for (size_t z = 2 * at[2]; z < 2 * at[2] + 2 && z < t->dim[l - 1][2]; z++)                 \
         for (size_t y = 2 * at[1]; y < 2 * at[1] + 2 && y < t->dim[l - 1][1]; y++)             \
@@ -86,7 +88,7 @@ void cwi_octree_grow(cwi_octree *t)
     t->grown = true;
 }
 
-/* Which sides of the grid's level the numbers of a brick are on. */
+/* Finds the sides of the grid's level on which the numbers of a brick are. */
 static void find_sides(const cwi_range *r, const cwi_bit_grid *g, bool *in, bool *out)
 {
     const bool any_above = g->strict ? r->high > g->level : r->high >= g->level;
@@ -102,7 +104,8 @@ bool cwi_octree_crossed(const cwi_octree *t, const cwi_bit_grid *g)
     return in && out;
 }
 
-/* Some cell of the brick may have corners on both sides; what has no value is outside. */
+/* Returns true if some cell of the brick may have corners on both sides; samples without value
+ * are outside. */
 static bool straddles_level(const cwi_range *r, const cwi_bit_grid *g)
 {
     bool in, out;
@@ -126,7 +129,7 @@ static size_t mark_below(const cwi_octree *t, int l, const size_t at[3], cwi_bit
     return leaves;
 }
 
-/* What the tree says of the eight leaves in a word of a row of bricks. */
+/* Returns, from the ranges, the bits of the eight leaves in a word of a row of bricks. */
 static cwi_leaf_bits leaf_bits(const cwi_octree *t, const cwi_bit_grid *g, size_t row, size_t w)
 {
     const cwi_range *leaves = t->level[0] + row * t->dim[0][0];

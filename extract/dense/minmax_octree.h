@@ -1,9 +1,9 @@
 /* A branch-on-need octree of the lowest and highest number in each brick of cells
  * [Wilhelms1992].
  *
- * Cells are those of the padded grid (extract/dense/bit_planes.h); a leaf is a brick of 8 x 8 x 8 of them,
- * and its range is over the 9 x 9 x 9 samples around them. Each level above halves the bricks
- * along every axis, rounding up: no level is padded to a power of two. */
+ * Cells are those of the padded grid (extract/dense/bit_planes.h). A leaf is a brick of 8 x 8 x
+ * 8 cells, and its range is over the 9 x 9 x 9 samples around them. Each level above halves the
+ * bricks along every axis, rounding up: no level is padded to a power of two. */
 #ifndef EXTRACT_DENSE_MINMAX_OCTREE_H
 #define EXTRACT_DENSE_MINMAX_OCTREE_H
 
@@ -11,7 +11,7 @@
 
 enum { CWI_OCTREE_LEVELS = 64, CWI_LEAF_BYTES = 20 /* measured */ };
 
-/* The numbers in a brick; none: from infinity to -infinity. */
+/* Range of the numbers in a brick; from infinity to -infinity when there are none. */
 typedef struct cwi_range {
     double low, high;
     bool gap; /* some samples are padding or have no value */
@@ -19,27 +19,28 @@ typedef struct cwi_range {
 
 struct cwi_octree {
     bool grown;        /* the nodes hold ranges */
-    size_t leaf_bytes; /* a leaf by itself takes as long to read as so many bytes a sample in a
-                          row: with more leaves wanted than that makes up for, all are read */
+    size_t leaf_bytes; /* time to read a leaf by itself, in bytes a sample of reading whole
+                          rows; when the wanted leaves cost more than all samples, all samples
+                          are read */
     int levels;
     size_t dim[CWI_OCTREE_LEVELS][3]; /* bricks along each axis; level 0 has the leaves */
     cwi_range *level[CWI_OCTREE_LEVELS];
 };
 
-/* Makes room for the leaves of a grid; freeing an empty or already freed tree is harmless. */
+/* Allocates the leaf level for a grid; freeing an empty or already freed tree is harmless. */
 CW_NODISCARD cw_status cwi_octree_init(cwi_octree *tree, const cwi_bit_grid *grid,
                                        cw_error *err);
 void cwi_octree_free(cwi_octree *tree);
 size_t cwi_octree_bytes(const cwi_octree *tree);
 
-/* Makes the levels above the leaves, which hold their ranges. */
+/* Makes the levels above the leaves, whose ranges are known. */
 void cwi_octree_grow(cwi_octree *tree);
 
-/* Some numbers are inside and some are not. */
+/* Returns true if some numbers are inside and some are not. */
 bool cwi_octree_crossed(const cwi_octree *tree, const cwi_bit_grid *grid);
 
-/* Marks, in the grid, the words of cells that straddling leaves lie in. Returns how many leaves
- * these are. */
+/* Marks, in the grid, the words of cells in which straddling leaves lie. Returns the number of
+ * these leaves. */
 size_t cwi_octree_mark(const cwi_octree *tree, cwi_bit_grid *grid);
 size_t cwi_octree_leaves(const cwi_octree *tree);
 

@@ -1,4 +1,4 @@
-/* Vertices and normals. Compiled for each engine.
+/* Places vertices on crossed edges, and computes their normals. Compiled for each engine.
  *
  * Crossed edges are listed until there are enough for arithmetic on many at a time; vertices
  * beside no-data, NaN or infinite values and where the gradient vanishes are computed one by
@@ -16,11 +16,11 @@
 #include <immintrin.h>
 #endif
 
-/* What is compiled once for each axis; and what needs all registers. */
+/* Functions that are compiled once for each axis, and those that need all registers. */
 #define ALWAYS_INLINE __attribute__((always_inline)) static inline
 #define NEVER_INLINE  __attribute__((noinline)) static
 
-/* Lengths of gradients whose squares have lost nothing to overflow or underflow. */
+/* Limits for lengths of gradients, between which squares neither overflow nor underflow. */
 #define LEAST 1e-280
 #define MOST  1e280
 
@@ -28,13 +28,13 @@ enum {
     BATCH = 128, /* edges; arithmetic is on LANES at a time */
     LANES = 16,
     ROOM = BATCH + 64 + LANES,
-    AHEAD = 3, /* rows that samples are fetched before they are needed, */
-    DENSE = 2, /* in rows with more vertices than so many a word */
+    AHEAD = 3, /* rows by which samples are prefetched, */
+    DENSE = 2, /* in rows with more vertices a word than this */
     FAR = 512, /* numbers that memory is prefetched for before they are written */
-    TILE = 32  /* rows that are done in all layers before the next */
+    TILE = 32  /* rows that are finished in all layers before the next rows */
 };
 
-/* What edges are listed apart: with all samples around them, at the volume's border, and
+/* Kinds of edges, listed apart: with all samples around them, at the volume's border, and
  * between its last sample along an axis and the padding. */
 enum { INNER, OUTER, CAP, KINDS };
 
@@ -45,16 +45,18 @@ typedef struct cwi_run {
     uint32_t number; /* of the first vertex */
 } cwi_run;
 
-/* Crossed edges along one axis of a layer, until there are BATCH of them: where they begin. */
+/* Crossed edges along one axis of a layer, up to BATCH of them, by the samples where they
+ * begin. */
 typedef struct cwi_edge_list {
     int axis;
     size_t k, count, runs;
-    bool few; /* in a row: nothing was fetched for them ahead */
+    bool few; /* few vertices in a row: nothing was prefetched for them */
     _Alignas(64) int32_t i[ROOM], j[ROOM];
     cwi_run run[ROOM + 1];
 } cwi_edge_list;
 
-/* What is listed from now on is in row j, and its vertices are numbered from number on. */
+/* Begins a run: edges listed from now on are in row j, and their vertices are numbered from
+ * `number` on. */
 static inline void begin_run(cwi_edge_list *l, size_t j, uint32_t number)
 {
     if (!l->runs || l->run[l->runs - 1].begin < l->count)
@@ -62,14 +64,14 @@ static inline void begin_run(cwi_edge_list *l, size_t j, uint32_t number)
     l->run[l->runs - 1] = (cwi_run){l->count, j, number};
 }
 
-/* The number of the vertex on the next edge that is listed in this run. */
+/* Returns the number of the vertex on the next edge that is listed in this run. */
 static inline uint32_t next_number(const cwi_edge_list *l)
 {
     const cwi_run *last = &l->run[l->runs - 1];
     return last->number + (uint32_t)(l->count - last->begin);
 }
 
-/* Empties the list; its last run goes on. */
+/* Empties the list; its last run continues. */
 static inline void clear_list(cwi_edge_list *l)
 {
     if (!l->count)
@@ -79,9 +81,9 @@ static inline void clear_list(cwi_edge_list *l)
     l->count = 0;
 }
 
-/* Adds the edges at the bits of a word of row j, whose lowest stands at i. Several at a time,
- * whether there are so many or not: how many there are cannot be foreseen, and a wrong guess
- * costs more. */
+/* Adds the edges at the bits of a word of row j, whose lowest bit stands at i. It writes
+ * several at a time, even where there are fewer: their number cannot be predicted, and a wrong
+ * guess costs more. */
 static inline void list_edges(cwi_edge_list *l, uint64_t bits, size_t i, size_t j)
 {
     int32_t *to_i = l->i + l->count, *to_j = l->j + l->count;
@@ -107,20 +109,21 @@ static inline void list_edges(cwi_edge_list *l, uint64_t bits, size_t i, size_t 
     } while (bits);
 }
 
-/* Where the last edges of a run end in a list. */
+/* Returns where the edges of run r end in the list. */
 static inline size_t end_of_run(const cwi_edge_list *l, size_t r)
 {
     return r + 1 < l->runs ? l->run[r + 1].begin : l->count;
 }
 
-/* As many as its edges, rounded up to whole vectors. */
+/* Returns the number of edges, rounded up to whole vectors. */
 static inline size_t lanes_of(const cwi_edge_list *l)
 {
     return (l->count + LANES - 1) / LANES * LANES;
 }
 
-/* As memcpy, of the vectors of a few vertices, for which a call counts; up to 15 more numbers
- * may be read. Vertices that follow will be written to what follows: it is fetched. */
+/* Copies the vectors of a few vertices; a call of memcpy would cost too much. Up to 15 more
+ * numbers may be read. The memory behind them, where the next vertices will be written, is
+ * prefetched. */
 static inline void copy_vectors(float *to, const float *from, size_t count)
 {
     count *= 3;
@@ -145,7 +148,7 @@ static inline void copy_vectors(float *to, const float *from, size_t count)
 #endif
 }
 
-/* The vectors of a list's vertices to their places. */
+/* Stores the vectors of a list's vertices at their places. */
 static inline void store_runs(const cwi_edge_list *l, float (*positions)[3],
                               float (*normals)[3], const cwi_vertex_sink *sink)
 {
@@ -158,13 +161,14 @@ static inline void store_runs(const cwi_edge_list *l, float (*positions)[3],
     }
 }
 
-/* The axes of the differences around an edge along one, its own first. */
+/* Returns the n-th axis of the differences around an edge along `axis`; its own axis is the
+ * first. */
 static inline int axis_of(int axis, int n)
 {
     return n == 0 ? axis : n == 1 ? axis == 0 : axis == 2 ? 1 : 2;
 }
 
-/* Where the padding of a layer, as padded samples count, begins. */
+/* Returns the address where the padding of a layer begins, counted in padded samples. */
 static inline const char *first_padded(const cw_volume *v, size_t k)
 {
     const char *first = cwi_voxel_address(v, 0, 0, k - 1);
@@ -173,7 +177,7 @@ static inline const char *first_padded(const cw_volume *v, size_t k)
 
 enum { ANY_AXIS = -1 };
 
-/* A list's edges in the world. */
+/* The map from a list's edges to the world. */
 typedef struct cwi_edge_frame {
     double affine[3][3];
     double first[2]; /* column and row that stand at the origin, as padded samples count */
@@ -190,9 +194,9 @@ static inline cwi_edge_frame make_frame(const cwi_edge_list *list, const cwi_ver
     return f;
 }
 
-/* A power of two which brings a number, not negative, to 1 or above, below 2: its exponent's
- * bits from those of the largest power. Of what is not finite, or too huge, it is negative or
- * zero. */
+/* Returns a power of two that scales a non-negative number to at least 1 and below 2. Its
+ * exponent bits are those of the largest power minus the number's. For numbers that are not
+ * finite, or too huge, it is negative or zero. */
 #define POWER_BESIDE(name, real, word, digits)                                                 \
     static inline real name(real x)                                                            \
     {                                                                                          \
@@ -207,7 +211,7 @@ POWER_BESIDE(power_beside_f32, float, uint32_t, FLT_MANT_DIG)
 POWER_BESIDE(power_beside_f64, double, uint64_t, DBL_MANT_DIG)
 #define power_beside(x) _Generic(x, float : power_beside_f32, double : power_beside_f64)(x)
 
-/* Four numbers side by side, of small types: compilers take them one by one. */
+/* Converts four adjacent numbers of small types; compilers convert them one by one. */
 #ifdef __SSE4_1__
 #define SMALL_TYPE(name, load)                                                                 \
     static inline void side_by_side_##name(const void *at,                                     \
@@ -222,21 +226,22 @@ SMALL_TYPE(i16, _mm_loadu_si64)
 #endif
 
 #if CWI_WIDE
-/* Numbers, and bits, in LANES lanes. */
+/* Vectors of numbers, and of bits, in LANES lanes. */
 typedef int32_t cwi_lanes __attribute__((vector_size(4 * LANES)));
 typedef uint32_t cwi_bit_lanes __attribute__((vector_size(4 * LANES)));
 typedef float cwi_float_lanes __attribute__((vector_size(4 * LANES)));
 
-/* What stands at so many bytes from an address, in each lane. Not the shorter intrinsic: it
- * waits for what its register held before. */
+/* Loads the 32 bits at an offset in bytes from an address, in each lane. It avoids the shorter
+ * intrinsic, which waits for the previous content of its register. */
 ALWAYS_INLINE cwi_bit_lanes gather(const char *at, cwi_lanes bytes)
 {
     return (cwi_bit_lanes)_mm512_mask_i32gather_epi32(_mm512_setzero_si512(), 0xffff,
                                                       (__m512i)bytes, at, 1);
 }
 
-/* The samples of a volume, so many bytes each, can be gathered, and that is fast: not where
- * microcode mends Gather Data Sampling, on processors older than those with bfloat16. */
+/* Returns true if the samples of a volume, `voxel` bytes each, can be gathered, and gathering
+ * is fast. It is slow where microcode mitigates Gather Data Sampling, on processors older than
+ * those with bfloat16. */
 static inline bool can_gather(const cw_volume *v, ptrdiff_t voxel)
 {
     const ptrdiff_t row = v->stride[1];
@@ -247,7 +252,7 @@ static inline bool can_gather(const cw_volume *v, ptrdiff_t voxel)
            __builtin_cpu_supports("avx512bf16");
 }
 
-/* As cwi_off_ends, of all lanes. */
+/* Does the same as cwi_off_ends, for all lanes. */
 ALWAYS_INLINE void all_off_ends(double share[LANES])
 {
     for (int n = 0; n < LANES; n += 8) {
@@ -256,8 +261,8 @@ ALWAYS_INLINE void all_off_ends(double share[LANES])
     }
 }
 
-/* Vectors from three arrays to one: of what 16 numbers from the n-th on are, in two steps, as
- * an instruction chooses from two registers. */
+/* Interleaves three arrays into one of vectors. Each 16 numbers from the n-th on are made in
+ * two steps, as an instruction selects from two registers. */
 #define XY(n)       ((n) / 3 + ((n) % 3 == 1 ? LANES : 0))
 #define XYZ(n)      ((n) % 3 == 2 ? (n) / 3 + LANES : (n) % LANES)
 #define FOUR(of, n) of(n), of((n) + 1), of((n) + 2), of((n) + 3)
@@ -277,17 +282,17 @@ ALWAYS_INLINE void interleave_lanes(float from[3][LANES], float (*to)[3])
 
 _Static_assert((int)CWI_CUBICS == (int)LANES, "cubics fill the lanes");
 
-/* Edges whose vertices are on cubics: the samples before them, at their ends and after; between
- * neighbours of these, one and two voxels away along both other axes, the differences; and what
- * comes of it. */
+/* Edges whose vertices are on cubics: the samples before them, at their ends and after them;
+ * the differences between neighbours of these, one and two voxels away along both other axes;
+ * and the results. */
 typedef struct cwi_cubic_lanes {
     _Alignas(64) double along[4][LANES], near[2][4][LANES], far[2][4][LANES];
     int64_t found[LANES]; /* 1: usable */
     float normal[3][LANES];
 } cwi_cubic_lanes;
 
-/* Normals to cubics at shares t of their edges: along the edge from the slope, across it from a
- * cubic through derivatives of fourth order. */
+/* Computes normals to cubics at fractions t of their edges: along the edge from the slope,
+ * across it from a cubic through derivatives of fourth order. */
 static void turn_cubics(cwi_cubic_lanes *restrict c, const double *restrict t,
                         const cwi_vertex_sink *sink, int axis)
 {

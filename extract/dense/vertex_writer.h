@@ -1,4 +1,4 @@
-/* Storing one vertex: index space to the mesh's positions and normals. */
+/* Stores one vertex: converts index space to the mesh's positions and normals. */
 #ifndef EXTRACT_DENSE_VERTEX_WRITER_H
 #define EXTRACT_DENSE_VERTEX_WRITER_H
 
@@ -6,7 +6,7 @@
 #include "core/volume/volume.h"
 #include "extract/dense/isa_dispatch.h"
 
-/* x: cell coordinates from padded sample at[]. */
+/* Computes a position. x: cell coordinates from padded sample at[]. */
 static inline void cwi_world_position(const cwi_vertex_sink *sink, const size_t at[3],
                                       const double x[3], float position[3])
 {
@@ -27,8 +27,8 @@ static inline void cwi_store_position(const cwi_vertex_sink *sink, const size_t 
     cwi_world_position(sink, at, x, sink->positions + 3 * n);
 }
 
-/* g: the gradient of the stored numbers in index space. A zero normal where it vanishes or is
- * not finite: the caller mends those from triangles. */
+/* Writes a vertex's normal. g: the gradient of the stored numbers in index space. Where it
+ * vanishes or is not finite the normal is zero: the caller repairs it from triangles. */
 static inline void cwi_store_normal(cwi_vertex_sink *sink, double g[3], size_t n)
 {
     double d[3] = {0, 0, 0};

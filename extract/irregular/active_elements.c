@@ -1,4 +1,4 @@
-/* From an irregular grid to the elements that its surface is made of. */
+/* Finds the elements of an irregular grid: the cells that its surface is made of. */
 #include "core/base/memory.h"
 #include "core/base/parallel.h"
 #include "core/base/status.h"
@@ -58,8 +58,8 @@ static void look_at_samples(void *context, size_t chunk)
     }
 }
 
-/* Positions are floats, which have to reach from the middle to the farthest point, and to tell
- * it from the middle. */
+/* Sets the origin and checks the range. Positions are floats: they have to reach from the
+ * middle to the farthest point, and to distinguish it from the middle. */
 static cw_status set_frame(cwi_cells *g, const sampling *s, cw_error *err)
 {
     double far = 0;
@@ -96,7 +96,8 @@ static cw_status compare_samples(cwi_cells *g, cw_error *err)
 
 /* --- cells ------------------------------------------------------------------------------- */
 
-/* Where the corners of each chunk of cells begin: those of all before it are known then. */
+/* Finds where the corners of each chunk of cells begin, so that chunks can be read
+ * independently. */
 static cw_status find_chunks(cwi_cells *g, cw_error *err)
 {
     const cw_cells *cells = g->volume.cells;
@@ -116,11 +117,11 @@ static cw_status find_chunks(cwi_cells *g, cw_error *err)
     return CW_OK;
 }
 
-/* For every chunk first the elements in it, then those before it. */
+/* Counts for every chunk: first the elements in it, then those before it. */
 typedef struct gathering {
     cwi_cells *g;
     size_t *elements;
-    size_t bad; /* the first cell with a corner that is no sample */
+    size_t bad; /* the first cell with a corner that is not a sample */
 } gathering;
 
 static void take_corners(cwi_element *e, const uint32_t *corners)
@@ -151,8 +152,8 @@ static void find_case(const cwi_cells *g, cwi_element *e)
                                  << n);
 }
 
-/* Whether a cell is an element, and that. Cells without a value at some corner are
- * not there. */
+/* Makes the element of a cell; returns false if it is not one. Cells without a value at some
+ * corner count as absent. */
 static bool take_element(const cwi_cells *g, uint8_t shape, const uint32_t *corners,
                          cwi_element *e)
 {

@@ -1,4 +1,4 @@
-/* Where the grid ends: the border's faces, the caps in them, and the loops along them. */
+/* Finds where the grid ends: the border's faces, the caps in them, and the loops along them. */
 #include "extract/irregular/boundary_faces.h"
 
 #include "core/base/memory.h"
@@ -54,7 +54,7 @@ void cwi_find_cap(const cwi_cells *g, uint32_t face, cwi_cap *c)
         if (cwi_corner_inside(e, corners[ring[n]]) ||
             !cwi_corner_inside(e, corners[ring[(n + 1) % size]]))
             continue;
-        c->count += !(joined && c->count); /* the second run goes on where the first ends */
+        c->count += !(joined && c->count); /* the second run continues where the first ends */
         add_run(c, e, corners, ring, size, n);
     }
     if (c->count)
@@ -102,8 +102,8 @@ static double square_of(const cwi_cells *g, uint32_t face, cwi_cap_corner a, cwi
     return square;
 }
 
-/* No other two corners and this one are on one edge of the face: of five it is the middle one
- * of three samples, of six a crossing. */
+/* Finds a corner that is on no edge of the face together with two others. Of five corners it is
+ * the middle one of three samples, of six a crossing. */
 int cwi_cap_fan(const cwi_cells *g, uint32_t face, const cwi_cap *c, int polygon)
 {
     const cwi_cap_corner *corner = c->corner[polygon];
@@ -123,7 +123,7 @@ static bool is_border(const cwi_cells *g, uint32_t face)
 
 /* --- vertices ---------------------------------------------------------------------------- */
 
-/* The sample that the edge from a position in a face leads to. */
+/* Returns the sample that the edge from a position in a face leads to. */
 static uint32_t sample_after(const cwi_cells *g, uint32_t face, int position)
 {
     const int size = cwi_shape_of(cwi_element_of(g, face))->face_size[face % CWI_CELL_FACES];
@@ -146,7 +146,7 @@ static uint32_t turn_about(const cwi_cells *g, uint32_t face, int position)
     }
 }
 
-/* The border's n-th face is this one; they are in order. */
+/* Returns the index of a face among the border's faces, which are in order. */
 static size_t border_index(const cwi_cells *g, uint32_t face)
 {
     size_t low = 0, high = g->border_count;
@@ -160,7 +160,7 @@ static size_t border_index(const cwi_cells *g, uint32_t face)
     return low;
 }
 
-/* The position of a sample in a face: of those that it has there, the last. */
+/* Returns the position of a sample in a face; the last one if it has several. */
 static int corner_position(const cwi_cells *g, uint32_t face, uint32_t sample)
 {
     const cwi_element *e = cwi_element_of(g, face);
@@ -172,8 +172,8 @@ static int corner_position(const cwi_cells *g, uint32_t face, uint32_t sample)
     return ring[n];
 }
 
-/* Corners of caps are joined to those at the same sample in the next face around it; where the
- * border meets itself there, that makes a set of each of its sheets. */
+/* Joins corners of caps to those at the same sample in the next face around it. Where the
+ * border meets itself there, each of its sheets becomes a set. */
 static void join_corners(const cwi_cells *g, uint32_t *sets)
 {
     for (size_t b = 0; b < g->border_count; b++) {
@@ -198,7 +198,7 @@ static void join_corners(const cwi_cells *g, uint32_t *sets)
     }
 }
 
-/* Sets become numbers, in the order of faces. */
+/* Turns sets into numbers, in the order of faces. */
 static void number_corners(cwi_cells *g, const uint32_t *sets)
 {
     const uint32_t first = (uint32_t)(g->edge_vertices + g->inner_vertices);
@@ -221,9 +221,9 @@ static void number_corners(cwi_cells *g, const uint32_t *sets)
 
 /* --- sides that caps would share --------------------------------------------------------- */
 
-/* Two sheets of the border may have two vertices in common, and so a side: where cells touch in
- * an edge, or do not fit together. Such a side gets a vertex in its middle, and a cap with such
- * sides or diagonals one in its own. */
+/* Kinds of sides. Two sheets of the border may share two vertices, and so a side: where cells
+ * touch in an edge, or do not fit together. Such a side gets a vertex in its middle, and a cap
+ * with such sides or diagonals gets one inside. */
 typedef enum side_kind {
     SIDE_EDGE,    /* between two samples, and two caps */
     SIDE_SEGMENT, /* between two crossings: of a cap and the surface */
@@ -246,7 +246,7 @@ static void add_side(sides *s, side_kind kind, size_t border, int at, uint32_t u
         (side){{u < v ? u : v, u < v ? v : u}, (uint32_t)border, (uint8_t)kind, (uint8_t)at};
 }
 
-/* The border face, and the position in it, on the other side of an edge. */
+/* Returns the border face, and the position in it, on the other side of an edge. */
 static size_t partner_of(const cwi_cells *g, size_t border, int at, int *there)
 {
     const uint32_t face = g->border[border].face, next = turn_about(g, face, at);
@@ -322,7 +322,7 @@ static cw_status mark_shared_sides(cwi_cells *g, cw_error *err)
     return CW_OK;
 }
 
-/* A middle on an edge is that of both caps there. */
+/* Numbers the vertex in the middle of an edge; both caps there share it. */
 static void number_middle(cwi_cells *g, size_t border, int at)
 {
     const cwi_element *e = cwi_element_of(g, g->border[border].face);
@@ -337,8 +337,8 @@ static void number_middle(cwi_cells *g, size_t border, int at)
     g->border[partner].middles[there] = vertex;
 }
 
-/* Numbers what was marked, and the caps' triangles. What is cut of the surface adds to the
- * counts that elements have of theirs. */
+/* Numbers the marked vertices, and the caps' triangles. Cut triangles of the surface add to the
+ * counts of their elements. */
 static void number_caps(cwi_cells *g)
 {
     for (size_t b = 0; b < g->border_count; b++) {
@@ -384,8 +384,8 @@ static cw_status plan_caps(cwi_cells *g, cw_error *err)
 
 /* ----------------------------------------------------------------------------------------- */
 
-/* Each crossing on the border is an end of two of the segments that faces there have: so there
- * are as many of both, and what they form are loops. */
+/* Counts the loops. Each crossing on the border is an end of two of the segments in faces
+ * there. So there are equally many of both, and the segments form loops. */
 static cw_status count_loops(cwi_cells *g, cw_error *err)
 {
     uint32_t *sets = cwi_sets_alloc(g->edge_vertices);

@@ -1,4 +1,4 @@
-/* The border's faces, seen as what caps are made of. */
+/* The border's faces as the parts that caps are made of. */
 #ifndef EXTRACT_IRREGULAR_BOUNDARY_FACES_H
 #define EXTRACT_IRREGULAR_BOUNDARY_FACES_H
 
@@ -7,8 +7,8 @@
 #define CWI_NO_VERTEX UINT32_MAX
 #define CWI_WANTED    (UINT32_MAX - 1) /* not numbered yet */
 
-/* A corner of a cap: a sample that is inside, or the crossing of the edge that leads on from a
- * position in the face. */
+/* A corner of a cap: a sample that is inside, or the crossing of the edge from a position in
+ * the face to the next. */
 typedef struct cwi_cap_corner {
     bool crossing;
     uint8_t at;
@@ -24,18 +24,20 @@ typedef struct cwi_cap {
 
 void cwi_find_cap(const cwi_cells *g, uint32_t face, cwi_cap *c);
 
-/* The vertex at a corner; that in the middle of the segment from corner n to the next, if it is
- * one and has one; and all around a polygon, with those in the middle of sides. */
+/* Return the vertex at a corner; the vertex in the middle of the segment from corner n to the
+ * next, if there is one; and all vertices around a polygon, with those in the middle of
+ * sides. */
 uint32_t cwi_cap_vertex(const cwi_cells *g, const cwi_border_face *face, cwi_cap_corner corner);
 uint32_t cwi_cap_segment_middle(const cwi_border_face *face, const cwi_cap *c, int polygon,
                                 int n);
 int cwi_cap_vertices(const cwi_cells *g, const cwi_border_face *face, const cwi_cap *c,
                      int polygon, uint32_t vertices[CWI_CAP_VERTICES]);
 
-/* The corner that a polygon's triangles have in common, if it has no vertex inside. */
+/* Returns the corner that a polygon's triangles share, if the polygon has no vertex inside. */
 int cwi_cap_fan(const cwi_cells *g, uint32_t face, const cwi_cap *c, int polygon);
 
-/* The vertex on the edge that leads on from a position in a face, and the sample there. */
+/* Return the vertex on the edge from a position in a face to the next, and the sample at the
+ * position. */
 uint32_t cwi_crossing_at(const cwi_cells *g, uint32_t face, int position);
 uint32_t cwi_sample_at(const cwi_cells *g, uint32_t face, int position);
 

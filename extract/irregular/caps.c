@@ -1,4 +1,5 @@
-/* Caps: what closes the solid where the grid ends. */
+/* Writes caps, which close the solid where the grid ends, and separates vertices of the border
+ * that coincide. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/mesh/mesh.h"
@@ -16,7 +17,7 @@ static void put_triangle(uint32_t *triangle, uint32_t a, uint32_t b, uint32_t c,
     triangle[flip ? 1 : 2] = c;
 }
 
-/* Normals are those of the triangles around. */
+/* Writes a vertex with a zero normal, which later becomes that of the triangles around. */
 static void put_vertex(cw_mesh *mesh, size_t vertex, const double p[3])
 {
     for (size_t a = 0; a < 3; a++) {
@@ -46,7 +47,7 @@ static void write_corners(const cwi_cells *g, const cwi_border_face *face, cw_me
     }
 }
 
-/* Those in the middle of sides and of polygons. */
+/* Writes the vertices in the middle of sides and of polygons. */
 static void write_middles(const cwi_cells *g, const cwi_border_face *face, cw_mesh *mesh)
 {
     cwi_cap c;
@@ -68,8 +69,9 @@ static void write_middles(const cwi_cells *g, const cwi_border_face *face, cw_me
     }
 }
 
-/* An element's triangle at the segment from u to v, which has a vertex in its middle, becomes
- * two: one in its own place, one after its count others. */
+/* Cuts an element's triangle in two at the segment from u to v, which has a vertex in its
+ * middle. One takes the triangle's own place, the other follows the element's `count`
+ * triangles. */
 static void cut_triangle(const cwi_element *e, size_t count, const uint32_t segment[2],
                          uint32_t middle, cw_mesh *mesh)
 {
@@ -86,7 +88,8 @@ static void cut_triangle(const cwi_element *e, size_t count, const uint32_t segm
         }
 }
 
-/* The surface runs along a segment against the cap. count: of the element's triangles so far */
+/* Cuts the surface's triangles along a cap's segments; the surface runs along a segment in the
+ * direction opposite to the cap's. count: of the element's triangles so far */
 static void cut_segments(const cwi_cells *g, const cwi_border_face *face, size_t *count,
                          cw_mesh *mesh)
 {
@@ -103,7 +106,7 @@ static void cut_segments(const cwi_cells *g, const cwi_border_face *face, size_t
         }
 }
 
-/* Border faces of an element follow each other. */
+/* Cuts the surface along all caps. Border faces of an element follow each other. */
 static void cut_surface(const cwi_cells *g, cw_mesh *mesh)
 {
     size_t count = 0;
@@ -150,13 +153,13 @@ void cwi_cells_write_caps(const cwi_cells *g, cw_mesh *mesh)
 
 /* --- vertices in one place --------------------------------------------------------------- */
 
-/* Where cells touch in an edge or a sample only, or samples stand on each other, several of the
- * border's vertices stand in one place. */
+/* State of the separation. Where cells touch in an edge or a sample only, or samples coincide,
+ * several of the border's vertices stand in one place. */
 typedef struct parting {
     const cwi_cells *g;
     cw_mesh *mesh;
-    uint8_t *met;     /* vertices: of the border; 2: one of several */
-    double (*sum)[4]; /* of the middles of their cells, and how many */
+    uint8_t *met;     /* 1: a vertex of the border; 2: one of several in its place */
+    double (*sum)[4]; /* sum of the middles of their cells, and its count */
 } parting;
 
 /* Calls back for every vertex of every border face. */
@@ -197,7 +200,8 @@ static void add_middle(parting *p, const cwi_element *e, size_t v)
     p->sum[v][3]++;
 }
 
-/* Marks the vertices that are not alone; false: there are none, or (*enough) no memory. */
+/* Marks the vertices that share their place with others. Returns false if there are none, or
+ * (*enough) no memory. */
 static bool find_crowded(parting *p, bool *enough)
 {
     size_t count = 0;

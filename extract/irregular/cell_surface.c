@@ -1,3 +1,5 @@
+/* Extracts the isosurface of an irregular grid: plans elements, places crossings, numbers
+ * vertices, and writes the mesh. */
 #include "extract/irregular/cell_surface.h"
 
 #include "core/base/memory.h"
@@ -16,8 +18,8 @@
 
 /* --- what the elements are made of ------------------------------------------------------- */
 
-/* A hexahedron is treated as the trilinear field in it, other cells have no tunnels: slices of
- * a wedge are linear, and whatever is inside them reaches a corner. */
+/* Plans an element. A hexahedron is treated as the trilinear field in it. Other cells have no
+ * tunnels: slices of a wedge are linear, and every inside part of them reaches a corner. */
 static void plan_element(const cwi_cells *g, const cwi_element *e, cwi_cell_plan *plan)
 {
     const cwi_shape *s = cwi_shape_of(e);
@@ -38,7 +40,7 @@ static void plan_element(const cwi_cells *g, const cwi_element *e, cwi_cell_plan
     cwi_cell_plan_unpack(config, plan);
 }
 
-/* Leaves counts where first numbers will be. */
+/* Plans a chunk, and stores counts in the places of first numbers. */
 static void plan_chunk(void *context, size_t chunk)
 {
     cwi_cells *g = context;
@@ -58,8 +60,8 @@ static void plan_chunk(void *context, size_t chunk)
 
 /* --- vertices on edges ------------------------------------------------------------------- */
 
-/* A crossing is one vertex in all cells around its edge that are joined by faces there; where
- * cells touch in an edge only, each has its own. */
+/* Joins the crossings at a face. A crossing is one vertex in all cells around its edge that are
+ * joined by faces there. Where cells touch in an edge only, each has its own vertex. */
 static void join_crossings(cwi_cells *g, uint32_t face)
 {
     const uint32_t other = g->across[face];
@@ -99,7 +101,7 @@ static cw_status place_crossings(cwi_cells *g, cw_error *err)
     return CW_OK;
 }
 
-/* Sets become vertices: a set's least comes first, and parents before their children. */
+/* Turns sets into vertices: a set's least comes first, and parents before their children. */
 static void number_crossings(cwi_cells *g)
 {
     uint32_t count = 0;
@@ -115,7 +117,7 @@ static void number_crossings(cwi_cells *g)
     g->edge_vertices = count;
 }
 
-/* Counts become first numbers. */
+/* Turns counts into first numbers. */
 static void number_inner(cwi_cells *g)
 {
     for (size_t n = 0; n < g->count; n++) {
@@ -137,7 +139,8 @@ static void number_triangles(cwi_cells *g)
 
 /* --- the plan ---------------------------------------------------------------------------- */
 
-/* All that is held at some time; gradients as if there were one a crossing. */
+/* Returns the bytes of all arrays that exist at some time; gradients as if there were one per
+ * crossing. */
 static size_t working_bytes(const cwi_cells *g)
 {
     const size_t gradients =
@@ -159,7 +162,7 @@ static cw_status finish_counts(cwi_cells *g, cw_error *err)
     return cwi_extract_check_limits(g->desc, &g->counts, err);
 }
 
-/* Everything that is known of the surface before it is made. */
+/* Finds everything that is known of the surface before it is made. */
 static cw_status make_plan(cwi_cells *g, cw_error *err)
 {
     cw_status st = cwi_cells_gather(g, err);
@@ -192,7 +195,7 @@ typedef struct writing {
     cw_mesh *mesh;
 } writing;
 
-/* The outward direction at a point in a cell; zero where nothing tells. */
+/* Writes the outward direction at a point in a cell; zero where the gradient gives none. */
 static void write_normal(const writing *w, const cwi_element *e, const double weights[8],
                          float *normal)
 {
@@ -206,7 +209,7 @@ static void write_normal(const writing *w, const cwi_element *e, const double we
         normal[a] = known ? (float)(outward * sum[a]) : 0;
 }
 
-/* A point in a cell is told by the weights of its corners. */
+/* Writes a vertex at the point of a cell that the weights of the cell's corners give. */
 static void write_vertex(const writing *w, const cwi_element *e, const double weights[8],
                          size_t vertex)
 {
@@ -225,8 +228,8 @@ static void write_vertex(const writing *w, const cwi_element *e, const double we
         write_normal(w, e, weights, w->mesh->normals + 3 * vertex);
 }
 
-/* The share of an edge, from its first corner, where it is crossed: found from its lower sample
- * in every cell. */
+/* Returns the fraction of an edge, from its first corner, at which it is crossed. Every cell
+ * computes it from the edge's lower sample. */
 static double crossing_of(const cwi_cells *g, const cwi_element *e, int edge)
 {
     const uint32_t a = e->corners[cwi_shape_of(e)->edges[edge][0]],
@@ -244,7 +247,7 @@ static void add_crossing(const cwi_element *e, const double shares[12], int edge
     weights[corners[1]] += weight * shares[edge];
 }
 
-/* A vertex inside a cube, in its own coordinates. */
+/* Computes the weights of a cube's corners for a vertex inside, from its own coordinates. */
 static void weigh_cube(const double p[3], double weights[8])
 {
     for (int c = 0; c < 8; c++)
@@ -252,7 +255,8 @@ static void weigh_cube(const double p[3], double weights[8])
             (c & 1 ? p[0] : 1 - p[0]) * (c & 2 ? p[1] : 1 - p[1]) * (c & 4 ? p[2] : 1 - p[2]);
 }
 
-/* Of other cells only cones have one: in the middle of their loop's points. */
+/* Computes the weights for other cells. Only cones have a vertex inside: in the middle of their
+ * loop's points. */
 static void weigh_cone(const cwi_element *e, const cwi_config *config, const double shares[12],
                        int n, double weights[8])
 {

@@ -1,9 +1,9 @@
 /* Irregular grids: from cells of any shape to the surface. The parts, in the order in which
  * they are used; cell_surface.c is the recipe.
  *
- * What the surface is made of are elements: cells with corners on both sides, and where it is
- * to be capped those wholly inside too. A face of an element is numbered 6 times the element +
- * the shape's face. */
+ * The surface is made of elements: cells with corners on both sides and, where it is capped,
+ * also those wholly inside. A face of an element is numbered 6 times the element + the shape's
+ * face. */
 #ifndef EXTRACT_IRREGULAR_CELL_SURFACE_H
 #define EXTRACT_IRREGULAR_CELL_SURFACE_H
 
@@ -16,7 +16,7 @@
 
 enum { CWI_CELL_CHUNK = 4096, CWI_CELL_FACES = 6 };
 
-/* Beside those of bit_planes.h, the side of samples without value. */
+/* A third side, beside those of bit_planes.h: that of samples without value. */
 enum { CWI_ABSENT = 4 };
 
 typedef struct cwi_element {
@@ -36,7 +36,7 @@ typedef struct cwi_element {
 typedef struct cwi_border_face {
     uint32_t face;
     uint32_t corners[4]; /* vertices of a cap at its inside corners, by position in the face */
-    uint32_t middles[4]; /* on the side of a cap that leads on from a position; seldom */
+    uint32_t middles[4]; /* on the side of a cap from a position to the next; seldom */
     uint32_t centres[2]; /* inside its polygons; seldom */
     size_t first_triangle; /* of the caps' */
 } cwi_border_face;
@@ -45,7 +45,7 @@ typedef struct cwi_cells {
     cw_volume volume; /* resolved: one component, one step */
     const cw_extract_desc *desc;
     cwi_level level;
-    double centre[3];              /* of the points' box: what positions are relative to */
+    double centre[3];              /* middle of the points' box: the origin of positions */
     double reach;                  /* the longest side of that box */
     double largest;                /* finite number among the samples, without its sign */
     uint8_t *sides;                /* of the samples */
@@ -64,8 +64,8 @@ typedef struct cwi_cells {
     cw_extract_counts counts;
 } cwi_cells;
 
-/* The surface of an irregular grid, as cw_extract() makes it. Without a mesh it is counted
- * only; counts may be NULL. */
+/* Extracts the surface of an irregular grid as cw_extract() does. Without a mesh it is only
+ * counted; counts may be NULL. */
 CW_NODISCARD cw_status cwi_cells_extract(const cw_volume *volume, const cw_extract_desc *desc,
                                          cw_mesh *mesh, cw_extract_counts *counts,
                                          cw_error *err);
@@ -82,24 +82,25 @@ CW_NODISCARD cw_status cwi_cells_gather(cwi_cells *g, cw_error *err);
 
 /* --- degenerate_cells.c -------------------------------------------------------------------- */
 
-/* Makes an element with repeated corners one that all the rest can be done with; false where
- * none encloses what it does. */
+/* Turns an element with repeated corners into one that all later steps can process. Returns
+ * false where none encloses the same volume. */
 bool cwi_element_collapse(cwi_element *e);
 
 /* --- face_pairing.c ----------------------------------------------------------------------- */
 
-/* The positions in a face whose corner is not the next one's sample: 3 or 4 of them, fewer in
- * cells that are to be collapsed. The edge from each leads to the next one. */
+/* Finds the positions in a face whose corner is not the next one's sample: 3 or 4 of them,
+ * fewer in cells that have to be collapsed. The edge from each leads to the next one. */
 int cwi_face_ring(const cwi_element *e, int face, uint8_t ring[4]);
 
-/* In a face of an element, the position from which the edge between two samples leads on. */
+/* Returns the position, in a face of an element, at which the edge between two samples
+ * starts. */
 int cwi_edge_position(const cwi_element *e, int face, uint32_t s, uint32_t t);
 
-/* Whether the surface, or a cap, runs through a face. */
+/* Returns true if the surface, or a cap, runs through a face. */
 bool cwi_face_matters(const cwi_cells *g, const cwi_element *e, int face);
 
 /* A face's samples in an order that does not depend on the cell: from the least toward the
- * lesser of its neighbours; UINT32_MAX ends those of a triangle. */
+ * lesser of its neighbours. UINT32_MAX ends those of a triangle. */
 typedef struct cwi_face_key {
     uint32_t samples[4];
     bool reversed; /* against the order of the cell's face */
@@ -107,8 +108,8 @@ typedef struct cwi_face_key {
 
 cwi_face_key cwi_face_key_of(const cwi_element *e, int face);
 
-/* Finds the faces that two elements have in common, and turns elements so that neighbours
- * agree on what is out. */
+/* Finds the faces that two elements share, and turns elements so that neighbours agree on the
+ * outward direction. */
 CW_NODISCARD cw_status cwi_cells_pair_faces(cwi_cells *g, cw_error *err);
 CW_NODISCARD cw_status cwi_cells_orient(cwi_cells *g, cw_error *err);
 
@@ -122,7 +123,7 @@ CW_NODISCARD cw_status cwi_cells_find_border(cwi_cells *g, cw_error *err);
 
 void cwi_cells_write_caps(const cwi_cells *g, cw_mesh *mesh);
 
-/* Moves vertices of the border that stand in one place a little apart, each into its cells. */
+/* Moves vertices of the border that coincide a little apart, each into its cells. */
 CW_NODISCARD cw_status cwi_cells_part(const cwi_cells *g, cw_mesh *mesh, cw_error *err);
 
 /* --- least_squares_gradients.c --------------------------------------------------------------------- */
@@ -150,20 +151,20 @@ static inline double cwi_stored_at(const cwi_cells *g, uint32_t sample)
     return cwi_voxel_at(g->volume.type, cwi_voxel_address(&g->volume, sample, 0, 0));
 }
 
-/* Where cw_cells lists a shape's corner: a hexahedron's around its base and above it, while a
- * cube's are x fastest. */
+/* Returns the place at which cw_cells lists a shape's corner: a hexahedron's around its base
+ * and above it, while a cube's are x fastest. */
 static inline int cwi_listed_corner(uint8_t shape, int corner)
 {
     return shape == CW_HEXAHEDRON ? corner ^ (corner >> 1 & 1) : corner;
 }
 
-/* The edge of a face of an element between two samples. */
+/* Returns the edge of a face of an element between two samples. */
 static inline int cwi_edge_of(const cwi_element *e, int face, uint32_t s, uint32_t t)
 {
     return cwi_shape_of(e)->face_edges[face][cwi_edge_position(e, face, s, t)];
 }
 
-/* Elements are worked on in chunks. */
+/* Returns the number of chunks in which elements are processed. */
 static inline size_t cwi_chunks_of(const cwi_cells *g)
 {
     return (g->count + CWI_CELL_CHUNK - 1) / CWI_CELL_CHUNK;
@@ -175,14 +176,14 @@ static inline void cwi_chunk_of(const cwi_cells *g, size_t chunk, size_t *begin,
     *end = *begin + CWI_CELL_CHUNK < g->count ? *begin + CWI_CELL_CHUNK : g->count;
 }
 
-/* As the decisions see it: less the isovalue, positive inside. */
+/* Returns a sample's value as the decisions see it: minus the isovalue, positive inside. */
 static inline double cwi_value_of(const cwi_cells *g, uint32_t sample)
 {
     const double stored = cwi_stored_at(g, sample);
     return g->level.invert ? g->level.at - stored : stored - g->level.at;
 }
 
-/* Where a sample stands in the world, from the mesh's origin. */
+/* Computes the place of a sample in the world, from the mesh's origin. */
 static inline void cwi_place_of(const cwi_cells *g, uint32_t sample, double p[3])
 {
     const double *x = g->volume.cells->points + 3 * (size_t)sample;
@@ -193,7 +194,7 @@ static inline void cwi_place_of(const cwi_cells *g, uint32_t sample, double p[3]
     }
 }
 
-/* The place of a crossed edge of an element in cwi_cells.crossings. */
+/* Returns the place of a crossed edge of an element in cwi_cells.crossings. */
 static inline size_t cwi_crossing_slot(const cwi_element *e, int edge)
 {
     const unsigned before = e->crossed & ((1u << edge) - 1);
@@ -205,8 +206,8 @@ static inline bool cwi_corner_inside(const cwi_element *e, int corner)
     return e->inside >> corner & 1;
 }
 
-/* Whether an ambiguous face of an element joins its inside corners; the same from the other
- * side. */
+/* Returns true if an ambiguous face of an element joins its inside corners; the same from the
+ * other side. */
 bool cwi_cells_join(const cwi_cells *g, const cwi_element *e, int face);
 
 #endif

@@ -1,10 +1,10 @@
-/* Cells some of whose corners are one sample: a hexahedron where a grid's lines meet is a
- * wedge, a pyramid or a tetrahedron, which has none of its flat faces. */
+/* Rebuilds cells some of whose corners are one sample. Where a grid's lines meet, a hexahedron
+ * is a wedge, a pyramid or a tetrahedron, without its flat faces. */
 #include "extract/irregular/cell_surface.h"
 
 #include <string.h>
 
-/* Faces that are left when repeated corners are taken out. */
+/* Faces that remain after repeated corners are removed. */
 typedef struct faces {
     int count, triangles;
     cwi_face_key key[CWI_CELL_FACES];
@@ -17,7 +17,8 @@ static bool same_face(const cwi_face_key *a, const cwi_face_key *b)
     return memcmp(a->samples, b->samples, sizeof a->samples) == 0;
 }
 
-/* False where one of them touches itself, or two are the same. flat: some have become lines */
+/* Collects the faces. Returns false where one of them touches itself, or two are the same.
+ * flat: some have become lines */
 static bool take_faces(const cwi_element *e, faces *f, bool *flat)
 {
     const cwi_shape *s = cwi_shape_of(e);
@@ -53,7 +54,7 @@ static int face_of_size(const faces *f, int size)
     return face;
 }
 
-/* A sample of the faces that is not one of face n's. */
+/* Returns a sample of the faces that is not in face n. */
 static uint32_t sample_beyond(const faces *f, int n)
 {
     for (int m = 0; m < f->count; m++)
@@ -67,7 +68,7 @@ static uint32_t sample_beyond(const faces *f, int n)
     return f->corner[n][0];
 }
 
-/* The neighbour of a sample, in some quadrangle, that is not one of triangle n's. */
+/* Returns the neighbour of a sample, in some quadrangle, that is not in triangle n. */
 static uint32_t opposite_corner(const faces *f, int n, uint32_t sample)
 {
     for (int m = 0; m < f->count; m++)
@@ -80,7 +81,8 @@ static uint32_t opposite_corner(const faces *f, int n, uint32_t sample)
     return sample;
 }
 
-/* A face of the cell, seen from outside, is the new one's base seen from below. */
+/* Rebuilds an element: a face of the cell, seen from outside, is the base of the new one seen
+ * from below. */
 static void rebuild_element(const faces *f, cwi_element *e)
 {
     const int size = f->triangles == 4 && f->count == 5 ? 4 : 3, base = face_of_size(f, size);
@@ -96,7 +98,7 @@ static void rebuild_element(const faces *f, cwi_element *e)
     }
 }
 
-/* The new cell has exactly the faces that were left. */
+/* Returns true if the new cell has exactly the faces that remained. */
 static bool has_faces(const cwi_element *e, const faces *f)
 {
     faces own;
@@ -113,8 +115,8 @@ static bool has_faces(const cwi_element *e, const faces *f)
     return true;
 }
 
-/* What has no face that became a line can stay as it is: edges between one sample and itself
- * are never crossed. */
+/* Rebuilds a cell that has collapsed faces as a simpler one. A cell none of whose faces became
+ * a line stays as it is: edges between one sample and itself are never crossed. */
 bool cwi_element_collapse(cwi_element *e)
 {
     faces f;

@@ -1,4 +1,4 @@
-/* Which faces two elements have in common, and which way round their cells are.
+/* Finds the faces that two elements share, and orients their cells.
  *
  * Faces are sorted into buckets by their least sample, where the few that may be equal are next
  * to each other. */
@@ -82,7 +82,8 @@ bool cwi_face_matters(const cwi_cells *g, const cwi_element *e, int face)
 
 enum { SAMPLE_CHUNK = 4096 };
 
-/* Two elements run through their common face the same way: one of them is inside out. */
+/* Bit of a pair of elements that run through their common face the same way: one of them is
+ * inside out. */
 #define TWISTED (UINT32_C(1) << 31)
 
 /* A face without its least sample, which is its bucket's. */
@@ -92,7 +93,7 @@ typedef struct bucket_face {
 
 typedef struct pairing {
     cwi_cells *g;
-    uint32_t *ends; /* of the samples' buckets; while they are filled, of what is in them */
+    uint32_t *ends; /* of the samples' buckets; while they are filled, of their contents */
     bucket_face *faces;
 } pairing;
 
@@ -156,7 +157,7 @@ static bool is_reversed(const cwi_cells *g, uint32_t face)
     return cwi_face_key_of(&g->elements[face / CWI_CELL_FACES], face % CWI_CELL_FACES).reversed;
 }
 
-/* All corners of a cell are corners of another. */
+/* Returns true if all corners of a cell are corners of another. */
 static bool lies_in(const cwi_element *e, const cwi_element *other)
 {
     const int count = cwi_shape_of(e)->corner_count, others = cwi_shape_of(other)->corner_count;
@@ -170,7 +171,7 @@ static bool lies_in(const cwi_element *e, const cwi_element *other)
     return true;
 }
 
-/* Cells that lie in each other are no neighbours. */
+/* Joins two faces, unless one cell lies in the other: such cells are not neighbours. */
 static void join_faces(cwi_cells *g, uint32_t a, uint32_t b)
 {
     const cwi_element *e = &g->elements[a / CWI_CELL_FACES],
@@ -182,8 +183,8 @@ static void join_faces(cwi_cells *g, uint32_t a, uint32_t b)
     g->across[b] = a | twist;
 }
 
-/* Faces of one element are the border's, and so are those of three or more: which of them
- * belong together nothing tells. */
+/* Pairs the faces of a bucket. Faces of a single element belong to the border, and so do those
+ * of three or more: nothing shows which of them belong together. */
 static void pair_bucket(cwi_cells *g, bucket_face *faces, size_t count)
 {
     sort_faces(faces, count);
@@ -207,7 +208,7 @@ static void pair_chunk(void *context, size_t chunk)
     }
 }
 
-/* Counts become where buckets begin; returns the sum of them. */
+/* Turns counts into the places where buckets begin; returns their sum. */
 static size_t place_buckets(pairing *p)
 {
     uint32_t sum = 0;
@@ -264,8 +265,8 @@ cw_status cwi_cells_pair_faces(cwi_cells *g, cw_error *err)
 
 /* --- which way round --------------------------------------------------------------------- */
 
-/* Sets of elements that common faces connect, each named by its least, and whether one is the
- * other way round than its parent. */
+/* Sets of elements that common faces connect, each named by its least, and whether an element
+ * is oriented opposite to its parent. */
 typedef struct orientation {
     cwi_cells *g;
     uint32_t *parent;
@@ -273,7 +274,7 @@ typedef struct orientation {
     double *volume; /* of each element, as its corners are numbered */
 } orientation;
 
-/* The set, and whether the element is turned against it. */
+/* Returns the set of an element, and whether it is oriented opposite to the set. */
 static uint32_t find_root(orientation *o, uint32_t n, bool *turned)
 {
     uint32_t root = n;
@@ -292,8 +293,8 @@ static uint32_t find_root(orientation *o, uint32_t n, bool *turned)
     return root;
 }
 
-/* Joins the elements at a face. One that would have to be turned both ways, as in a Moebius
- * strip of cells, is not joined here: the face is made a border. */
+/* Joins the elements at a face. An element that would have to be turned both ways, as in a
+ * Moebius strip of cells, is not joined here: the face becomes a border. */
 static void join_across(orientation *o, uint32_t face)
 {
     const uint32_t code = o->g->across[face], other = code & ~TWISTED;
@@ -314,7 +315,7 @@ static void join_across(orientation *o, uint32_t face)
     o->turned[a > b ? a : b] = turned;
 }
 
-/* Six times the volume of the tetrahedron between four points. */
+/* Returns six times the volume of the tetrahedron between four points. */
 static double volume_of(const double *o, const double *a, const double *b, const double *c)
 {
     double u[3], v[3], w[3], across[3];
@@ -327,8 +328,8 @@ static double volume_of(const double *o, const double *a, const double *b, const
     return cwi_dot(across, w);
 }
 
-/* Faces, in fans of triangles, seen from corner 0; both ways to halve a quadrangle. In points'
- * space, where the longest side is 1. */
+/* Measures volumes: fans of triangles in faces, seen from corner 0; a quadrangle is halved both
+ * ways. In the space of the points, where the longest side is 1. */
 static void measure_chunk(void *context, size_t chunk)
 {
     orientation *o = context;
@@ -356,7 +357,7 @@ static void measure_chunk(void *context, size_t chunk)
     }
 }
 
-/* Every set is turned so that its cells' volumes in the world have a positive sum. */
+/* Turns every set so that its cells' volumes in the world have a positive sum. */
 static void turn_sets(orientation *o)
 {
     cwi_cells *g = o->g;

@@ -1,4 +1,5 @@
-/* Gradients at the samples of an irregular grid, by least squares over its cells' edges. */
+/* Computes gradients at the samples of an irregular grid, by least squares over its cells'
+ * edges. */
 #include "core/base/memory.h"
 #include "core/base/status.h"
 #include "core/geometry/vec3.h"
@@ -6,7 +7,7 @@
 
 #include <math.h>
 
-/* What the edges at a sample add up to: the slope s in direction u along each should be g . u,
+/* Sums over the edges at a sample. The slope s in direction u along each should be g . u,
  * weighed by the inverse square of its length, so that u u^T g = s u. */
 typedef struct normal_equations {
     double a[6]; /* xx, xy, xz, yy, yz, zz */
@@ -44,7 +45,7 @@ static void add_edge(fitting *f, uint32_t sample, uint32_t other)
     }
 }
 
-/* By cofactors. Zero where the edges lie in a plane. */
+/* Solves by cofactors. The result is zero where the edges lie in a plane. */
 static void solve_equations(const normal_equations *n, double g[3])
 {
     const double *a = n->a;
@@ -52,7 +53,7 @@ static void solve_equations(const normal_equations *n, double g[3])
                          a[1] * a[4] - a[2] * a[3], a[0] * a[5] - a[2] * a[2],
                          a[1] * a[2] - a[0] * a[4], a[0] * a[3] - a[1] * a[1]};
     const double determinant = a[0] * c[0] + a[1] * c[1] + a[2] * c[2];
-    const double edges = a[0] + a[3] + a[5]; /* as many as there are */
+    const double edges = a[0] + a[3] + a[5]; /* the number of edges */
     g[0] = (c[0] * n->b[0] + c[1] * n->b[1] + c[2] * n->b[2]) / determinant;
     g[1] = (c[1] * n->b[0] + c[3] * n->b[1] + c[4] * n->b[2]) / determinant;
     g[2] = (c[2] * n->b[0] + c[4] * n->b[1] + c[5] * n->b[2]) / determinant;
@@ -60,7 +61,7 @@ static void solve_equations(const normal_equations *n, double g[3])
         g[0] = g[1] = g[2] = 0;
 }
 
-/* A cell's edges, if all its corners have values and one of them is wanted. */
+/* Adds a cell's edges, if all its corners have values and one of them is wanted. */
 static void add_cell(fitting *f, uint8_t shape, const uint32_t *corners)
 {
     const cwi_shape *s = &cwi_shapes[shape];

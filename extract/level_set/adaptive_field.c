@@ -1,3 +1,4 @@
+/* Samples the signed distance from a mesh at the points of an adaptive grid [Frisken2000]. */
 #include "extract/level_set/adaptive_field.h"
 
 #include "core/base/memory.h"
@@ -85,8 +86,9 @@ cw_status cwi_adaptive_measure(cwi_adaptive *a, cw_error *err)
 
 /* ---- cells ------------------------------------------------------------------------------- */
 
-/* Cells that touch one that is divided are as large, or smaller. Cells of the size before are
- * divided first, and so on: the depth is that of sizes. */
+/* Divides a cell. Cells that touch a divided one are as large as it, or smaller. Cells of the
+ * next larger size are divided first, and so on: the recursion is as deep as there are
+ * sizes. */
 bool cwi_adaptive_put(cwi_adaptive *a, int size, const uint32_t at[3])
 {
     const size_t before = a->divided[size].count;

@@ -1,10 +1,10 @@
 /* A signed distance from a mesh, sampled more finely where that is needed [Frisken2000].
  *
- * Samples are an even grid's. Cells of that, and those in turn, are divided into eight where
- * something asks for it, and their neighbours so that no two that touch are more than one
- * division apart. Where a cell meets smaller ones it becomes pyramids and tetrahedra around its
- * middle; so faces of cells coincide, and the surface comes from the extraction of irregular
- * grids with all that it promises.
+ * The samples form an even grid. Its cells, and then their parts, are divided into eight where
+ * more detail is needed. Neighbours are divided too, so that no two cells that touch are more
+ * than one division apart. Where a cell meets smaller ones it becomes pyramids and tetrahedra
+ * around its middle; so faces of cells coincide, and the surface comes from the extraction of
+ * irregular grids with all that it promises.
  *
  * The smallest cells are divided once more, into tetrahedra around points on their edges, in
  * their faces and in themselves, which stand where the mesh is: so no wall, gap or speck is too
@@ -17,12 +17,12 @@
 
 #include <cubewright/level_set.h>
 
-/* The smallest cells have 1 / 8 of a voxel's side; points between their corners are odd parts
- * of a voxel, but for where they stand. */
+/* The smallest cells have 1 / 8 of a voxel's side. Points between their corners are at odd
+ * multiples of 1 / CWI_PARTS of a voxel, unless they are moved. */
 enum { CWI_DIVISIONS = 3, CWI_PARTS = 2 << CWI_DIVISIONS };
 
-/* Voxels that points are from the surface, at least: what is thinner becomes so thick that its
- * triangles are not flat. */
+/* Minimum distance of points from the surface, in voxels: thinner parts are thickened so that
+ * their triangles are not flat. */
 #define CWI_THIN 0.01
 
 typedef struct cwi_adaptive {
@@ -48,25 +48,25 @@ CW_NODISCARD cw_status cwi_adaptive_init(cwi_adaptive *a, const cw_mesh *mesh,
                                          cw_error *err);
 void cwi_adaptive_free(cwi_adaptive *a);
 
-/* What a surface is not near. */
+/* The parts of a surface that are not near the mesh. */
 typedef struct cwi_beyond {
-    bool any;       /* point of the one is too far from the other */
-    size_t divided; /* cells there, but those that cannot be divided any more */
+    bool any;       /* some point of one is too far from the other */
+    size_t divided; /* cells there, except those that cannot be divided further */
 } cwi_beyond;
 
-/* Divides the cells that have of the surface what is farther than limit_mm from the mesh, and,
- * if both_ways, of the mesh what is so far from the surface.
+/* Divides the cells where the surface is farther than limit_mm from the mesh and, if both_ways,
+ * those where the mesh is that far from the surface.
  * Returns  CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
 CW_NODISCARD cw_status cwi_adaptive_divide(cwi_adaptive *a, const cw_mesh *surface,
                                            double limit_mm, bool both_ways, cwi_beyond *beyond,
                                            cw_error *err);
 
-/* The cells at the surface as an irregular grid, whose values are borrowed from here; free it
- * with cw_volume_free(). The same for any number of threads.
+/* Makes an irregular grid of the cells at the surface, whose values are borrowed from here;
+ * free it with cw_volume_free(). The same for any number of threads.
  * Returns  CW_ERR_NO_MEMORY; CW_ERR_CANCELLED; CW_ERR_LIMIT for desc->max_bytes */
 CW_NODISCARD cw_status cwi_adaptive_grid(cwi_adaptive *a, cw_volume *grid, cw_error *err);
 
-/* The side of the smallest cells, in mm. */
+/* Returns the side of the smallest cells, in mm. */
 double cwi_adaptive_least(const cwi_adaptive *a);
 
 /* ---- between adaptive*.c ----------------------------------------------------------------- */
@@ -74,19 +74,20 @@ double cwi_adaptive_least(const cwi_adaptive *a);
 /* Places and measures the points that are not measured yet. */
 CW_NODISCARD cw_status cwi_adaptive_measure(cwi_adaptive *a, cw_error *err);
 
-/* Where a point of the lattice stands, in voxels, and whether it was put there for a side of
- * the surface, which is then the one that it counts as being on. */
+/* Finds where a point of the lattice stands, in voxels. Returns true if it was moved to be on a
+ * side of the surface, and then reports that side. */
 bool cwi_adaptive_place(const cwi_adaptive *a, const uint32_t at[3], double place[3],
                         bool *inside);
 
-/* A mesh's vertex in voxels; and a place in voxels from the mesh's origin. */
+/* Converts a mesh's vertex to voxels, and a place in voxels to a position from the mesh's
+ * origin. */
 void cwi_adaptive_from_mesh(const cwi_adaptive *a, const cw_mesh *m, uint32_t vertex,
                             double place[3]);
 void cwi_adaptive_to_mesh(const cwi_adaptive *a, const double place[3], double p[3]);
 
 bool cwi_adaptive_is_inside(const cwi_adaptive *a, const double place[3]);
 
-/* Divides a cell of a size: 0 is a voxel's. False: no memory. */
+/* Divides a cell of a size: 0 is a voxel's. Returns false without memory. */
 bool cwi_adaptive_put(cwi_adaptive *a, int size, const uint32_t at[3]);
 
 static inline bool cwi_adaptive_is_divided(const cwi_adaptive *a, int size,

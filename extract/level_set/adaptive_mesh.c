@@ -1,4 +1,4 @@
-/* From divided cells to an irregular grid. */
+/* Converts divided cells to an irregular grid. */
 #include "extract/level_set/adaptive_field.h"
 
 #include "core/base/memory.h"
@@ -10,14 +10,14 @@
 #include <string.h>
 
 /* A cell that is not divided into smaller ones. It has 27 points, x fastest: corners, middles
- * of edges and of faces, its own; those that its neighbours have too are there, and what these
- * ask for. */
+ * of edges and of faces, and its own middle. Points exist that its neighbours have too, and
+ * those that these need. */
 typedef struct leaf {
     int size;
     uint32_t at[3];
     bool has[27];
-    bool matters; /* its own point does, even if the others are all on one side */
-    bool cut[6];  /* faces beyond which there are smaller cells: 2 * axis + which side */
+    bool matters; /* its own point is needed, even if all others are on one side */
+    bool cut[6];  /* faces beyond which there are smaller cells: 2 * axis + side */
 } leaf;
 
 /* The cells of the grid that is made; its samples are the points, all of them. */
@@ -49,7 +49,7 @@ static bool is_divided_beside(const build *b, const leaf *l, const int way[3])
     return cwi_adaptive_is_divided(b->a, l->size, at);
 }
 
-/* Of the three cells around an edge with this one. */
+/* Returns true if one of the other three cells around an edge is divided. */
 static bool is_edge_cut(const build *b, const leaf *l, const int way[3])
 {
     bool cut = is_divided_beside(b, l, way);
@@ -66,7 +66,8 @@ static int middle_of_face(int face)
     return CENTRE + (face % 2 ? 1 : -1) * steps[face / 2];
 }
 
-/* Point n of the eight around a face, counter-clockwise seen from inside, from a corner on. */
+/* Returns point n of the eight around a face, counter-clockwise seen from inside, from a corner
+ * on. */
 static int around_face(int face, int n)
 {
     static const int way[8][2] = {{-1, -1}, {0, -1}, {1, -1}, {1, 0},
@@ -106,7 +107,7 @@ static uint32_t find_point(build *b, const leaf *l, int n)
     return p;
 }
 
-/* Looks at a cell, and works on it, if it is not divided into smaller ones. */
+/* Visits a cell, and calls `work` for it, if it is not divided into smaller ones. */
 static void visit_leaf(build *b, leaf *l, void (*work)(build *b, const leaf *l))
 {
     if (l->size < CWI_DIVISIONS && cwi_adaptive_is_divided(b->a, l->size, l->at))
@@ -141,7 +142,8 @@ static void add_whole(build *b, const uint32_t at[3])
     b->out_of_memory |= cwi_places_add(&b->whole, cwi_place_key(at)) == CWI_NO_PLACE;
 }
 
-/* A distance changes by no more than the way gone. */
+/* Adds the voxels around a sample that may be crossed. A distance changes by no more than the
+ * length of the way. */
 static void add_crossed(build *b, const uint32_t at[3], float value)
 {
     bool low = value <= 0, high = value >= 0;
@@ -157,7 +159,7 @@ static void add_crossed(build *b, const uint32_t at[3], float value)
         add_whole(b, at);
 }
 
-/* Those that the surface crosses, and those that touch what is divided. */
+/* Finds the voxels that the surface crosses, and those that touch divided cells. */
 static void find_whole(build *b)
 {
     const cw_volume *v = b->a->volume;
@@ -198,7 +200,7 @@ static bool make_room(build *b)
     return b->count < b->room && b->corner_count + 8 <= b->corner_room;
 }
 
-/* points  of the leaf's 27 */
+/* Adds a cell to the grid. points: of the leaf's 27 */
 static void add_cell(build *b, const leaf *l, cw_shape shape, const int *points, int count)
 {
     if (!make_room(b)) {
@@ -210,7 +212,7 @@ static void add_cell(build *b, const leaf *l, cw_shape shape, const int *points,
         b->corners[b->corner_count++] = find_point(b, l, points[n]);
 }
 
-/* Between a face and the cell's middle. */
+/* Adds the cells between a face and the cell's middle. */
 static void add_face(build *b, const leaf *l, int face)
 {
     const int middle = middle_of_face(face);
@@ -291,7 +293,8 @@ static cw_status hand_over(const build *b, cw_volume *grid, cw_error *err)
     return CW_OK;
 }
 
-/* What there is of points, in all and while it grows, and of cells. */
+/* Compares the memory for points, in all and while their number grows, and for cells with the
+ * limit. */
 static cw_status check_fits(const build *b, cw_error *err)
 {
     const cwi_adaptive *a = b->a;

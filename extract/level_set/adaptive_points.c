@@ -1,6 +1,6 @@
-/* Where points between the corners of the smallest cells stand: on the side of the surface that
- * most of the corners around are not on, if that comes near enough, else in the middle. So they
- * follow each other through walls and gaps thinner than the cells. */
+/* Places the points between the corners of the smallest cells: on the side of the surface that
+ * fewer of the corners around are on, if that side comes near enough, else in the middle. So
+ * they follow each other through walls and gaps thinner than the cells. */
 #include "core/geometry/polygon_clip.h"
 #include "extract/level_set/adaptive_field.h"
 
@@ -9,23 +9,23 @@
 #include <math.h>
 #include <string.h>
 
-/* Tried one after the other, in voxels: how far from a triangle. On it a point may be called
- * inside or outside: what it is in becomes as thick as CWI_THIN says anyway. */
+/* Distances from a triangle, in voxels, tried one after the other. A point on the triangle may
+ * be called inside or outside: the wall or gap it is in becomes as thick as CWI_THIN anyway. */
 static const double depths[] = {0.02, 0.005, 0.001, 0};
 
-/* Of a way from the middle to the end: how far a point goes at most. */
+/* Maximum distance that a point moves, as a fraction of the way from the middle to the end. */
 static const double most = 0.97;
 
-/* The inside of an edge, a face or a cell, which is what a point may be put in. */
+/* The inside of an edge, a face or a cell, in which a point may be placed. */
 typedef struct room {
     const cwi_adaptive *a;
     double middle[3], reach[3]; /* voxels; a reach of 0: it stays on that plane */
-    bool inside;                /* which side the point is to be on */
+    bool inside;                /* the side on which the point has to be */
     double square;              /* of the least way from the middle so far */
     double place[3];
 } room;
 
-/* How many of a room's corners are inside, of how many. */
+/* Returns how many of a room's corners are inside; `of`: the number of corners. */
 static int count_inside(const room *r, int *of)
 {
     int count = 0;
@@ -43,8 +43,8 @@ static int count_inside(const room *r, int *of)
     return count;
 }
 
-/* So far from x as the room goes: a place, and squares of its ways from there and from the
- * middle. */
+/* Finds the place in the room nearest to x, and the squares of its distances from x and from
+ * the middle. */
 static void keep_in(const room *r, const double x[3], double place[3], double squares[2])
 {
     squares[0] = squares[1] = 0;
@@ -57,7 +57,7 @@ static void keep_in(const room *r, const double x[3], double place[3], double sq
     }
 }
 
-/* A place beside x, on the mesh, along a triangle's normal. */
+/* Tries a place beside x, a point of the mesh, along a triangle's normal. */
 static void step_in(room *r, const double x[3], const double normal[3])
 {
     double n[3], length = 0;
@@ -108,7 +108,7 @@ static bool visit_node(void *context, size_t node)
     return true;
 }
 
-/* Triangles around the room, a little widened for rounding. */
+/* Tries the triangles around the room, which is a little widened for rounding. */
 static void try_triangles(room *r)
 {
     float box[6];

@@ -1,4 +1,5 @@
-/* Which cells to divide. */
+/* Decides which cells to divide: those with parts of a surface that are too far from the
+ * other. */
 #include "core/geometry/polygon_clip.h"
 #include "extract/level_set/adaptive_field.h"
 
@@ -55,8 +56,8 @@ static void add_triangle(pieces *p, const cwi_polygon *g, int n, const struct ce
     p->cells[p->count++] = *cell;
 }
 
-/* Cuts what is in a cell by those that it is divided into. For what is in the smallest that are
- * divided once more there is nothing left to do. */
+/* Cuts the part of a polygon in a cell by the cells that it is divided into. In the smallest
+ * cells, which are divided once more, nothing is left to do. */
 static void cut_by_cell(pieces *p, const cwi_polygon *g, const struct cell *cell)
 {
     if (g->count < 3)
@@ -82,7 +83,8 @@ static void cut_by_cell(pieces *p, const cwi_polygon *g, const struct cell *cell
     }
 }
 
-/* What of a polygon is between two planes of samples, for each two. */
+/* Cuts a polygon along axis a, and then those before it, into parts between planes of
+ * samples. */
 static void cut_along(pieces *p, const cwi_polygon *g, int a, struct cell *cell)
 {
     double low = INFINITY, high = -INFINITY;
@@ -111,10 +113,10 @@ static void cut_triangle(pieces *p, const cw_mesh *m, size_t t)
     cut_along(p, &g, 2, &cell);
 }
 
-/* ---- what is beyond ---------------------------------------------------------------------- */
+/* ---- parts beyond the limit -------------------------------------------------------------- */
 
-/* All of it is, if there is nothing to be near to.
- * beyond  of each triangle whether it is; free it with cwi_free() */
+/* Finds the triangles that are beyond the limit; all are if the other mesh is empty.
+ * beyond  1 for each triangle that is beyond; free it with cwi_free() */
 static cw_status find_beyond(const cwi_adaptive *a, const cw_mesh *from, const cw_mesh *to,
                              double limit_mm, uint8_t **beyond, cw_error *err)
 {
@@ -191,7 +193,7 @@ static void free_pieces(pieces *p)
     cwi_free(p->cells);
 }
 
-/* All pieces are cut before cells are divided for any. */
+/* Divides cells at both meshes. All pieces are cut before cells are divided for any. */
 cw_status cwi_adaptive_divide(cwi_adaptive *a, const cw_mesh *surface, double limit_mm,
                               bool both_ways, cwi_beyond *beyond, cw_error *err)
 {

@@ -1,3 +1,4 @@
+/* Moves the vertices of a warped grid's surface to the mesh, as far as no triangles cross. */
 #include "extract/level_set/feature_warp.h"
 
 #include "core/base/memory.h"
@@ -12,8 +13,8 @@
 
 enum { CHUNK = 1024, ROUNDS = 5 };
 
-/* Of a voxel: vertices nearer to the mesh stay; what is farther is tangled; and triangles are
- * flat below such a height. */
+/* Fractions of a voxel: vertices nearer than this to the mesh stay; those farther than this are
+ * tangled; triangles are flat below this height. */
 static const double near = 0.02, tangled = 0.15, low = 1e-4;
 
 /* A vertex on its way: at `from` with share 0, at from + way with share 1. */
@@ -32,8 +33,8 @@ typedef struct motion {
     uint32_t *mover_of; /* of vertices; UINT32_MAX: none */
     float (*ways)[3];   /* of vertices, to the mesh */
     float (*means)[4];  /* of vertices' neighbours: sums, and how many */
-    double voxel, far;  /* from where on vertices are pulled */
-    bool by_means;      /* to the mesh from where neighbours are on average */
+    double voxel, far;  /* distance from which vertices are pulled */
+    bool by_means;      /* pulled to the mesh from the mean of their neighbours */
 } motion;
 
 static float *vertex_position(const cw_mesh *m, uint32_t v)
@@ -64,17 +65,17 @@ static void forget_movers(motion *m)
 
 /* ---- as far as nothing crosses ----------------------------------------------------------- */
 
-/* Triangles that moved, looked at for what they cross. */
+/* State of the test of triangles that moved, for crossings. */
 typedef struct settling {
     motion *motion;
     cwi_boxes tree;    /* of all triangles, wherever on their ways their corners stop */
-    uint32_t *asked;   /* those that moved since they were looked at */
+    uint32_t *asked;   /* those that moved since they were last tested */
     uint8_t *is_asked; /* of triangles */
-    uint8_t *crosses;  /* likewise: something */
+    uint8_t *crosses;  /* of triangles: 1 where they cross another */
     size_t asked_count;
 } settling;
 
-/* A triangle that is looked at. */
+/* The test of one triangle. */
 typedef struct look {
     const settling *s;
     uint32_t triangle;
@@ -92,7 +93,8 @@ static mover *mover_at(const motion *m, uint32_t vertex)
     return k == UINT32_MAX ? NULL : m->movers + k;
 }
 
-/* Rounding keeps what is between the ends between them. */
+/* Finds the box of a triangle's corners on their ways. Rounding keeps points between the ends
+ * between them. */
 static void box_of_ways(const motion *m, size_t triangle, float box[6])
 {
     cwi_boxes_triangle(m->surface->positions, triangle_corners(m, triangle), box);
@@ -112,7 +114,7 @@ static void note_crossing(const settling *s, uint32_t triangle)
     s->crosses[triangle] = 1;
 }
 
-/* Of two that are both looked at only one looks. */
+/* Tests two triangles. If both are to be tested, only one of them does it. */
 static void test_pair(const look *l, uint32_t other)
 {
     const settling *s = l->s;
@@ -153,7 +155,7 @@ static void look_at_chunk(void *context, size_t chunk)
     }
 }
 
-/* Its corners go back half of their ways, or the last tenth. */
+/* Moves a triangle's corners back by half of their ways, or by the last tenth. */
 static void hold_back(motion *m, size_t triangle)
 {
     for (size_t n = 0; n < 3; n++) {
@@ -188,7 +190,7 @@ static void hold_back_all(settling *s)
             hold_back(m, t);
 }
 
-/* Triangles at what moved are looked at next. */
+/* Lists the triangles at vertices that moved, to be tested next. */
 static void ask_moved(settling *s)
 {
     motion *m = s->motion;
@@ -225,7 +227,8 @@ static cw_status find_places(settling *s, cw_error *err)
     return st;
 }
 
-/* With every vertex back at its start nothing crosses: so there is an end. */
+/* Moves vertices back until no triangles cross. It ends: with every vertex back at its start
+ * nothing crosses. */
 static cw_status settle_vertices(motion *m, int threads, const cw_progress *progress,
                                  cw_error *err)
 {
@@ -250,7 +253,8 @@ static cw_status settle_vertices(motion *m, int threads, const cw_progress *prog
 
 /* ---- where samples went ------------------------------------------------------------------ */
 
-/* Trilinear between the moves of the samples around: on an edge of the grid, of its ends. */
+/* Interpolates trilinearly between the moves of the samples around: on an edge of the grid, of
+ * its ends. */
 static bool way_at(const cwi_warp *w, const double at[3], float way[3])
 {
     double sum[3] = {0};
@@ -326,8 +330,8 @@ static void find_ways(void *context, size_t chunk)
     }
 }
 
-/* To the closest points of the mesh; every other time only what is tangled, from where its
- * neighbours are on average: that frees it. */
+/* Pulls vertices to the closest points of the mesh. Every other time it pulls only tangled
+ * ones, from the mean of their neighbours: that frees them. */
 static cw_status pull_vertices(motion *m, bool by_means, int threads,
                                const cw_progress *progress, cw_error *err)
 {

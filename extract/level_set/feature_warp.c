@@ -1,3 +1,5 @@
+/* Moves samples of a distance field to the right side of sharp edges, corners and thin
+ * walls. */
 #include "extract/level_set/feature_warp.h"
 
 #include "core/base/memory.h"
@@ -15,23 +17,23 @@
 
 enum { FACE, EDGE, CORNER, JOINS = 6 };
 
-/* Of normals, the largest cosine: of faces that meet at less than 80 degrees, and at less than
- * 120, which count where what is between them is thin. */
+/* Maximum cosines of normals: of faces that meet at less than 80 degrees, and of those that
+ * meet at less than 120, which count where the part between them is thin. */
 static const double sharp = -0.17, bent = 0.5;
 
-/* Of normals around a corner, their mean's length: a cube's is 0.58. */
+/* Length of the mean of the normals around a corner, at most: a cube's is 0.58. */
 static const double pointed = 0.55;
 
-/* In voxels: walls and gaps up to so thick; the least distance of a sample that is moved; how
- * far from an edge is looked which cube it is in. */
+/* In voxels: the maximum thickness of thin walls and gaps; the minimum distance of a sample
+ * that is moved; the distance from an edge at which its cube is determined. */
 static const double thin = 2.4, least = 0.01, beside = 0.01;
 
-/* Tried one after the other, in voxels: how deep a sample goes in from an edge or a face, and
- * how far from where it was along each axis. */
+/* Pairs tried one after the other, in voxels: how deep a sample goes in from an edge or a face,
+ * and how far from its old place along each axis. */
 static const double depths[][2] = {{0.25, 0.45}, {0.1, 0.45},  {0.04, 0.45}, {0.1, 0.5},
                                    {0.04, 0.52}, {0.01, 0.51}, {0.001, 9}};
 
-/* A sample that had better be on a side. */
+/* A sample that should be on a given side. */
 typedef struct wish {
     uint32_t at[3];
     bool inside;
@@ -45,7 +47,7 @@ typedef struct warping {
     cwi_places leaves;    /* of the volume */
     double (*normals)[3]; /* of triangles */
     double (*corners)[4]; /* of vertices: normals around, weighted by angle; those weights */
-    wish *wishes;         /* sorted; NULL: what is thin counts */
+    wish *wishes;         /* sorted; NULL: thin parts count */
     size_t wish_count, wish_room;
     bool out_of_memory;
 } warping;
@@ -57,7 +59,7 @@ static float *voxel_at(const warping *g, const uint32_t at[3])
     return cwi_level_set_voxel(g->volume, &g->leaves, at);
 }
 
-/* Trilinear, in voxels; NaN beyond the band. */
+/* Interpolates the distance trilinearly, in voxels; NaN beyond the band. */
 static double distance_at(const warping *g, const double at[3])
 {
     double sum = 0;
@@ -102,7 +104,8 @@ static bool is_inside(const warping *g, const double p[3])
 
 /* ---- moves ------------------------------------------------------------------------------- */
 
-/* Whether the way from x on the surface, through what is inside or outside, soon leaves it. */
+/* Returns true if the way from x on the surface, through what is inside or outside, soon leaves
+ * it. */
 static bool is_thin(const warping *g, const double x[3], const double in[3], bool inside)
 {
     double at[3], p[3];
@@ -136,8 +139,8 @@ static bool step_in(const warping *g, const double x[3], const double in[3], boo
     return false;
 }
 
-/* Considers to move a sample to x, on the surface. For a face only those on the wrong side go,
- * for an edge or a corner all: they may be on the right side, but far from it. */
+/* Considers moving a sample to x, on the surface. For a face only samples on the wrong side
+ * move, for an edge or a corner all: they may be on the right side, but far from it. */
 static void consider_move(warping *g, const uint32_t at[3], const double x[3],
                           const double in[3], bool inside, int rank)
 {
@@ -156,7 +159,7 @@ static void consider_move(warping *g, const uint32_t at[3], const double x[3],
 
 /* ---- edges and corners ------------------------------------------------------------------- */
 
-/* The part of an edge that is in the cube of one sample. */
+/* Considers the part of an edge that is in the cube of one sample. */
 static void consider_part(warping *g, const double from[3], const double way[3], double begin,
                           double end, const double in[3], bool inside, bool always)
 {
@@ -175,7 +178,7 @@ static void consider_part(warping *g, const double from[3], const double way[3],
         consider_move(g, at, x, in, inside, EDGE);
 }
 
-/* Goes along an edge from cube to cube. */
+/* Follows an edge from cube to cube. */
 static void follow_edge(warping *g, const uint32_t ends[2], const double in[3], bool inside,
                         bool always)
 {
@@ -198,8 +201,8 @@ static void follow_edge(warping *g, const uint32_t ends[2], const double in[3], 
     }
 }
 
-/* The end of an edge, if it is a corner as the edge is: not where an edge between faces that
- * turn in ends in one that turns out. */
+/* Considers the end of an edge as a corner, if it is one of the same kind as the edge: not
+ * where an edge between faces that turn in ends in one that turns out. */
 static void consider_corner(warping *g, uint32_t v, const double edge_in[3], bool inside,
                             bool always)
 {
@@ -233,7 +236,7 @@ static int compare_sides(const void *a, const void *b)
     return (s->triangle > t->triangle) - (s->triangle < t->triangle);
 }
 
-/* Whether the other corner of the one triangle is below the other's plane. */
+/* Returns true if the other corner of the one triangle is below the other's plane. */
 static bool is_convex(const warping *g, const side *s, const side *t)
 {
     const uint32_t *v = g->mesh->triangles + 3 * (size_t)t->triangle;
@@ -264,7 +267,7 @@ static void consider_edge(warping *g, const side *s, const side *t)
         consider_corner(g, s->ends[k], in, inside, always);
 }
 
-/* In a closed mesh each side has two triangles. */
+/* Considers all edges. In a closed mesh each side has two triangles. */
 static void consider_edges(warping *g)
 {
     const cw_mesh *m = g->mesh;
@@ -325,8 +328,8 @@ static void step_along(const uint32_t at[3], int a, int by, uint32_t to[3])
     to[a] += (uint32_t)by;
 }
 
-/* Of four in a square, two of a side across from each other: where they touch, marching cubes
- * may part them. */
+/* Wishes to join, of four samples in a square, two of one side across from each other: where
+ * they touch, marching cubes may separate them. */
 static void wish_across(warping *g, const cwi_move *m, int a, int by, int other_by)
 {
     const int b = (a + 1) % 3;
@@ -342,7 +345,8 @@ static void wish_across(warping *g, const cwi_move *m, int a, int by, int other_
     add_wish(g, second, inside);
 }
 
-/* What is between two of a side would be a hole. */
+/* Wishes the sample between two samples of one side to be on that side: else it would be a
+ * hole. */
 static void wish_between(warping *g, const cwi_move *m, int a, int by)
 {
     const bool inside = m->value < 0;
@@ -387,7 +391,7 @@ static void clip_to_cubes(const cwi_polygon *in, int a, double middle, cwi_polyg
     cwi_polygon_clip(&half, a, middle + 0.5, 1, out);
 }
 
-/* The samples whose cubes a polygon is in, along an axis. */
+/* Finds the samples whose cubes a polygon is in, along an axis. */
 static void polygon_range(const cwi_polygon *p, int a, double *low, double *high)
 {
     *low = INFINITY;
@@ -416,7 +420,7 @@ static bool has_area(const cwi_polygon *p)
     return cwi_dot(sum, sum) > 1e-8;
 }
 
-/* The part of a triangle that is in the cube of one sample. */
+/* Considers the part of a triangle that is in the cube of one sample. */
 static void consider_piece(warping *g, const cwi_polygon *p, const double cube[3],
                            const double n[3])
 {
@@ -435,8 +439,8 @@ static void consider_piece(warping *g, const cwi_polygon *p, const double cube[3
         consider_move(g, at, x, in, inside, FACE);
 }
 
-/* Goes from cube to cube: last along the axis that the triangle faces most, where it is in few
- * of them. */
+/* Considers a face from cube to cube: last along the axis that the triangle faces most, along
+ * which it is in few cubes. */
 static void consider_face(warping *g, size_t t)
 {
     const double *n = g->normals[t];
@@ -522,7 +526,7 @@ static bool make_room(warping *g)
     return g->normals && g->corners && cwi_level_set_leaves(g->volume, &g->leaves);
 }
 
-/* Into the volume. What is joined with nothing stays. */
+/* Writes the moves into the volume. Samples that are joined with none stay. */
 static void apply_moves(const warping *g)
 {
     for (size_t n = 0; n < g->warp->count; n++) {

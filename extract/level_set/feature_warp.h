@@ -1,11 +1,11 @@
-/* Samples of a distance from a mesh, moved to what they miss: sharp edges, tips, and walls and
- * gaps thinner than a voxel.
+/* Moves samples of a distance from a mesh to the features that they miss: sharp edges, tips,
+ * and walls and gaps thinner than a voxel.
  *
- * Each sample stands for the cube of what is nearest to it along every axis. If a sharp edge or
- * a thin wall runs through that cube and the sample is on the wrong side of the surface, it is
- * moved within its cube to the right one, and has the distance from there. Samples of cubes
- * that follow each other along an edge are neighbours in the grid, so marching cubes joins what
- * they stand for. Its vertices, which lie between samples, then go where those went. */
+ * Each sample stands for the cube of points that are nearest to it along every axis. If a sharp
+ * edge or a thin wall runs through that cube and the sample is on the wrong side of the
+ * surface, it is moved within its cube to the right one, and has the distance from there.
+ * Samples of successive cubes along an edge are neighbours in the grid, so marching cubes joins
+ * them. Its vertices, which lie between samples, then follow the samples. */
 #ifndef EXTRACT_LEVEL_SET_FEATURE_WARP_H
 #define EXTRACT_LEVEL_SET_FEATURE_WARP_H
 
@@ -18,13 +18,13 @@
 typedef struct cwi_move {
     uint32_t at[3];
     int rank;      /* corners go before edges, edges before faces */
-    double square; /* of the way to what it is moved for, in voxels */
+    double square; /* of the distance it is moved by, in voxels */
     double way[3]; /* voxels */
     double value;  /* mm */
 } cwi_move;
 
 typedef struct cwi_warp {
-    cwi_move *moves; /* as `places` numbers their samples */
+    cwi_move *moves; /* in the order in which `places` numbers their samples */
     size_t count, room;
     cwi_places places;
     double corner[3], voxel; /* where sample 0 stands in the world; mm */
@@ -38,21 +38,23 @@ CW_NODISCARD cw_status cwi_warp_init(cwi_warp *warp, const cw_mesh *mesh, cw_vol
                                      cw_error *err);
 void cwi_warp_free(cwi_warp *warp);
 
-/* Moves the vertices of the surface that was extracted from these samples: where the samples
- * went, and from there on to the mesh, as far as nothing crosses or becomes flat.
+/* Moves the vertices of the surface that was extracted from these samples. They follow the
+ * samples, and then go to the mesh, as far as nothing crosses or becomes flat.
  * surface  free of crossings, before and after
  * Returns  as cw_self_intersections(); CW_ERR_NO_MEMORY: then vertices are where they may cross
  * Threads  the same to the bit for any number */
 CW_NODISCARD cw_status cwi_unwarp(const cwi_warp *warp, const cw_mesh *mesh, int threads,
                                   const cw_progress *progress, cw_mesh *surface, cw_error *err);
 
-/* The n-th of the eight samples around a place in the grid, and its trilinear share. */
+/* Finds the n-th of the eight samples around a place in the grid, and returns its trilinear
+ * weight. */
 double cwi_warp_corner(const double at[3], int n, uint32_t corner[3]);
 
-/* NULL: that sample was not moved. */
+/* Finds the move of a sample; NULL: the sample was not moved. */
 cwi_move *cwi_warp_find(const cwi_warp *warp, const uint32_t at[3]);
 
-/* In place of the sample's earlier move, if any. False: no memory. */
+/* Stores a move, in place of the sample's earlier move, if any. Returns false without
+ * memory. */
 bool cwi_warp_put(cwi_warp *warp, const cwi_move *move);
 
 #endif

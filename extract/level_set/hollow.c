@@ -1,3 +1,5 @@
+/* Hollows a solid: offsets its surface inward by the wall's thickness, and carves drains from
+ * the cavity outward. */
 #include "extract/level_set/level_set.h"
 
 #include "core/base/memory.h"
@@ -13,7 +15,7 @@
 #include <math.h>
 #include <string.h>
 
-/* A drain as all points within a radius of a ray. */
+/* A drain: all points within a radius of a ray. */
 typedef struct ray {
     double from[3], along[3], radius; /* along: of length 1 */
 } ray;
@@ -25,14 +27,14 @@ typedef struct hollowing {
     double voxel_mm;
     cw_volume volume;
     cw_mesh inner; /* surfaces of the cavities, facing outward */
-    uint32_t *set; /* vertices of it: the least one of their component */
+    uint32_t *set; /* for each of its vertices: the least vertex of its component */
     double *size;  /* of the component that a vertex names, mm3 */
     uint32_t largest;
     ray *rays;
     cw_hollow_facts facts;
 } hollowing;
 
-/* --- what is asked for -------------------------------------------------------------------- */
+/* --- parameters --------------------------------------------------------------------------- */
 
 static double find_narrowest(const cw_hollow_desc *d)
 {
@@ -95,7 +97,7 @@ static void point_of(const cw_mesh *m, size_t vertex, double p[3])
         p[a] = m->origin[a] + (double)m->positions[3 * vertex + a];
 }
 
-/* The volume under a triangle, with a sign; the mesh's origin is the tip. */
+/* Returns the signed volume under a triangle; the mesh's origin is the tip. */
 static double volume_under(const cw_mesh *m, const uint32_t corner[3])
 {
     double p[3][3], normal[3];
@@ -106,7 +108,8 @@ static double volume_under(const cw_mesh *m, const uint32_t corner[3])
     return cwi_dot(p[0], normal) / 6;
 }
 
-/* What faces outward encloses a cavity; what faces inward is a part of the wall inside one. */
+/* Finds the cavities. A component that faces outward encloses a cavity; one that faces inward
+ * is a part of the wall inside a cavity. */
 static cw_status find_cavities(hollowing *h, cw_error *err)
 {
     const cw_mesh *m = &h->inner;
@@ -141,15 +144,16 @@ static double distance_to_ray(const ray *r, const double p[3])
     return sqrt(cwi_dot(off, off)) - r->radius;
 }
 
-/* How far a vertex of the largest cavity's surface is along a ray; others are nowhere. */
+/* Returns how far a vertex of the largest cavity's surface is along a ray; other vertices do
+ * not count. */
 static double measure_depth(const hollowing *h, const ray *r, size_t vertex, double p[3])
 {
     point_of(&h->inner, vertex, p);
     return h->set[vertex] == h->largest ? cwi_dot(p, r->along) : -INFINITY;
 }
 
-/* From the largest cavity's farthest point on; of several, as on a flat floor, the one that is
- * nearest to their middle. */
+/* Starts a ray at the largest cavity's farthest point. Of several, as on a flat floor, it takes
+ * the one nearest to their middle. */
 static void place_ray(const hollowing *h, const cw_drain *drain, ray *r)
 {
     const double length = sqrt(cwi_dot(drain->direction, drain->direction));
@@ -176,7 +180,7 @@ static void place_ray(const hollowing *h, const cw_drain *drain, ray *r)
         }
 }
 
-/* A drain opens the cavities whose surface it meets. */
+/* Counts the cavities that stay sealed. A drain opens the cavities whose surface it meets. */
 static void count_sealed(hollowing *h)
 {
     for (size_t v = 0; v < h->inner.vertex_count; v++) {
@@ -202,8 +206,8 @@ static float carve_sample(const hollowing *h, double distance, const double p[3]
     return (float)fmin(solid, limit);
 }
 
-/* The level set becomes that of the wall. All of a wall is in leaves: tiles are in cavities, as
- * far from it as the background. */
+/* Turns the level set into that of the wall. All of a wall is in leaves: tiles are in cavities,
+ * as far from it as the background. */
 static void carve_all(hollowing *h)
 {
     const cw_volume *v = &h->volume;
@@ -237,7 +241,7 @@ static cw_status place_rays(hollowing *h, cw_error *err)
 
 /* --- the result --------------------------------------------------------------------------- */
 
-/* Puts the cavities' surfaces, turned inside out, behind the mesh. */
+/* Appends the cavities' surfaces, turned inside out, to the mesh. */
 static cw_status join_surfaces(const hollowing *h, cw_mesh *out, cw_error *err)
 {
     const cw_mesh *m = h->mesh, *in = &h->inner;
@@ -286,7 +290,7 @@ static cw_status measure_wall(hollowing *h, const cw_mesh *outer, cw_error *err)
     return st;
 }
 
-/* With drains the outer surface is that of the level set, too. */
+/* Makes the surface with drains; the outer surface is then taken from the level set, too. */
 static cw_status drain_cavity(hollowing *h, cw_mesh *out, cw_error *err)
 {
     cw_mesh outer = {0};

@@ -1,3 +1,5 @@
+/* Makes a sparse level set from a mesh: distances by OpenVDB, rough ones computed again
+ * exactly, and signs by winding numbers along rows. */
 #include "extract/level_set/level_set.h"
 
 #include "core/base/memory.h"
@@ -18,7 +20,7 @@ bool cw_level_set_available(void)
     return cwi_module_present("levelset");
 }
 
-/* Voxels whose distance is asked for at one time, and what is kept for each. */
+/* Number of voxels whose distances are computed at a time, and the bytes stored for each. */
 enum { BATCH = 1 << 22, BATCH_BYTES = 4 * sizeof(float) + sizeof(float *) };
 
 /* --- before it is made -------------------------------------------------------------------- */
@@ -42,16 +44,17 @@ cw_status cwi_level_set_check(const cw_mesh *mesh, int threads, cw_quality *q, c
     return CW_OK;
 }
 
-/* Voxels along an axis, with what is kept around the mesh, in whole leaves. */
+/* Returns the number of voxels along an axis, including the reach around the mesh, in whole
+ * leaves. */
 static double count_samples(const cw_quality *q, int a, double voxel_mm, double reach_mm)
 {
     const double around = 2 * (reach_mm / voxel_mm + CWI_BAND + 2 * CWI_LEAF);
     return (q->max[a] - q->min[a]) / voxel_mm + around;
 }
 
-/* A band around a plane meets leaves as if it were 12 voxels thicker. A leaf is there with
- * numbers of triangles while it is made, then with the volume's own. Distances from triangles
- * need 76 bytes each. */
+/* Estimates bytes. A band around a plane meets leaves as if it were 12 voxels thicker. A leaf
+ * exists with numbers of triangles while it is made, then with the volume's own. Distances from
+ * triangles need 76 bytes each. */
 double cwi_level_set_bytes(const cw_quality *q, double voxel_mm, double reach_mm)
 {
     double box = 1;
@@ -98,7 +101,7 @@ static cw_status check_fits(const cw_quality *q, const cw_level_set_desc *d, dou
 typedef struct build {
     const cw_level_set_desc *desc;
     const cw_mesh *mesh;
-    const double *level; /* what distances have to be exact near; NULL: all */
+    const double *level; /* distances must be exact near it; NULL: everywhere */
     const cwi_levelset_functions *functions;
     cwi_distances *distances;
     cwi_winding winding;
@@ -111,7 +114,7 @@ typedef struct build {
     cw_tile *tiles;
 } build;
 
-/* Distances in voxels become such in millimetres, with signs. */
+/* Converts a leaf's distances from voxels to millimetres, with signs. */
 static void sign_leaf(const build *b, const uint32_t at[3], float voxels[CWI_LEAF_VOXELS])
 {
     bool inside[CWI_LEAF];
@@ -126,7 +129,8 @@ static void sign_leaf(const build *b, const uint32_t at[3], float voxels[CWI_LEA
         }
 }
 
-/* Places are within the grid, which is made so large. */
+/* Takes the leaves from OpenVDB. Places are within the grid, whose size is chosen
+ * accordingly. */
 static cw_status take_leaves(build *b, cw_error *err)
 {
     b->leaf_count = b->functions->leaves(b->distances);
@@ -154,12 +158,13 @@ typedef struct batch {
     size_t count;
     float (*points)[3]; /* relative to the grid's corner */
     float *distances;
-    float **voxels; /* whose they are */
+    float **voxels; /* the voxels they belong to */
 } batch;
 
-/* OpenVDB looks at every triangle near a voxel that is within a voxel or so. Farther out it
- * asks neighbours for triangles, and not enough of them: some distances are too large, by a
- * voxel at most. Those that matter are within CWI_BAND of the level then. */
+/* Returns true if a distance may be inexact and matters. OpenVDB tests every triangle near a
+ * voxel that is within about a voxel. Farther out it takes triangles from neighbours, and not
+ * enough of them: some distances are too large, by a voxel at most. With a level, only those
+ * within CWI_BAND of it matter. */
 static bool is_rough(const build *b, float value)
 {
     const double voxels = fabs((double)value) / b->desc->voxel_mm;
@@ -220,7 +225,7 @@ static cw_status make_exact(build *b, cw_error *err)
 
 /* --- limits ------------------------------------------------------------------------------- */
 
-/* Returns whether some voxels are not too far from the surface. */
+/* Limits distances. Returns true if some voxels are not too far from the surface. */
 static bool limit_leaf(const build *b, float voxels[CWI_LEAF_VOXELS])
 {
     const float low = (float)-b->desc->inside_mm, high = (float)b->desc->outside_mm;
@@ -232,7 +237,7 @@ static bool limit_leaf(const build *b, float voxels[CWI_LEAF_VOXELS])
     return near;
 }
 
-/* Leaves in which there is nothing but one of the two limits go. */
+/* Drops the leaves that have nothing but one of the two limits. */
 static void limit_leaves(build *b)
 {
     size_t to = 0;
@@ -248,7 +253,7 @@ static void limit_leaves(build *b)
     b->voxels = less ? less : b->voxels;
 }
 
-/* --- what is inside, and far from the surface --------------------------------------------- */
+/* --- inside, and far from the surface ----------------------------------------------------- */
 
 static int compare_places(const void *a, const void *b)
 {
@@ -259,7 +264,8 @@ static int compare_places(const void *a, const void *b)
     return 0;
 }
 
-/* Between two leaves of a row there is no surface: all is inside, or all outside. */
+/* Makes tiles of the gaps inside the mesh. Between two leaves in a row there is no surface: all
+ * is inside, or all is outside. */
 static cw_status make_tiles(build *b, cw_error *err)
 {
     uint32_t(*rows)[3] = cwi_alloc_array(b->leaf_count, sizeof *rows);
@@ -338,8 +344,8 @@ static void free_build(build *b)
     cwi_free(b->tiles);
 }
 
-/* The mesh's box begins in the middle between two samples, so that faces of boxes, which often
- * are a whole number of voxels apart, do not coincide with samples. */
+/* Makes the level set. The mesh's box begins in the middle between two samples. So faces of
+ * boxes, which often are a whole number of voxels apart, do not coincide with samples. */
 static cw_status make_level_set(build *b, const cw_quality *q, cw_volume *volume, cw_error *err)
 {
     const double voxel = b->desc->voxel_mm;

@@ -1,4 +1,4 @@
-/* What is made from level sets of meshes has in common. */
+/* Level sets of meshes: the checks, limits and sampling that their uses share. */
 #ifndef EXTRACT_LEVEL_SET_LEVEL_SET_H
 #define EXTRACT_LEVEL_SET_LEVEL_SET_H
 
@@ -7,23 +7,24 @@
 #include <cubewright/level_set.h>
 #include <cubewright/quality.h>
 
-/* Distances are kept to so many voxels beyond what is asked for: enough for gradients. */
+/* Number of voxels by which distances reach farther than requested: enough for gradients. */
 enum { CWI_BAND = 3 };
 
-/* Fails with CW_ERR_ARGUMENT for a mesh that encloses nothing, and measures it. */
+/* Measures a mesh; fails with CW_ERR_ARGUMENT for a mesh that encloses nothing. */
 CW_NODISCARD cw_status cwi_level_set_check(const cw_mesh *mesh, int threads,
                                            cw_quality *quality, cw_error *err);
 
-/* Bytes for a level set of a mesh, by its area; with reach_mm beyond CWI_BAND voxels. */
+/* Estimates the bytes for a level set of a mesh, by its area; with reach_mm beyond CWI_BAND
+ * voxels. */
 double cwi_level_set_bytes(const cw_quality *q, double voxel_mm, double reach_mm);
 
-/* Whether that is within limits. */
+/* Returns true if that is within max_bytes and other limits. */
 bool cwi_level_set_fits(const cw_quality *q, double voxel_mm, double reach_mm,
                         size_t max_bytes);
 
-/* As cw_level_set_from_mesh() of a mesh that was checked, with inside_mm and outside_mm beyond
- * CWI_BAND voxels.
- * level  what distances have to be exact near; NULL: everywhere */
+/* Does the same as cw_level_set_from_mesh(), for a mesh that was checked, with inside_mm and
+ * outside_mm beyond CWI_BAND voxels.
+ * level  distances must be exact near it; NULL: everywhere */
 CW_NODISCARD cw_status cwi_level_set_make(const cw_mesh *mesh, const cw_quality *q,
                                           const cw_level_set_desc *desc, const double *level,
                                           cw_volume *volume, cw_error *err);
@@ -31,7 +32,7 @@ CW_NODISCARD cw_status cwi_level_set_make(const cw_mesh *mesh, const cw_quality 
 /* Numbers a level set's leaves by their places; false: no memory. */
 bool cwi_level_set_leaves(const cw_volume *volume, cwi_places *leaves);
 
-/* A sample of it; NULL: there is none. */
+/* Returns a sample of it; NULL: there is none. */
 float *cwi_level_set_voxel(const cw_volume *volume, const cwi_places *leaves,
                            const uint32_t at[3]);
 

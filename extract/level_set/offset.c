@@ -1,3 +1,4 @@
+/* Offsets or remeshes a mesh by its level set, and refines voxels until the result holds. */
 #include "extract/common/field_normals.h"
 #include "extract/level_set/adaptive_field.h"
 #include "extract/level_set/feature_warp.h"
@@ -13,7 +14,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Shares of the box's diagonal. */
+/* Fractions of the box's diagonal. */
 static const double usual = 1.0 / 256, finest = 1.0 / 512;
 
 static double choose_voxel(const cw_offset_desc *d, const cw_quality *q)
@@ -29,14 +30,15 @@ static double choose_voxel(const cw_offset_desc *d, const cw_quality *q)
     return voxel;
 }
 
-/* A surface on the way to be made. */
+/* State of a surface while it is made. */
 typedef struct making {
     const cw_mesh *mesh;
     const cw_offset_desc *desc;
     cw_quality before;
-    double asked, voxel; /* half of those asked for is what is promised */
+    double asked, voxel; /* side of voxels as requested, and now; half of the requested side is
+                            the guaranteed distance */
     cw_volume volume;
-    bool is_known, overlaps; /* whether that was looked at; whether the mesh does */
+    bool is_known, overlaps; /* find_overlap() was called; the mesh overlaps */
 } making;
 
 static cw_status take_surface(const making *m, const cw_volume *volume, bool simple,
@@ -45,7 +47,8 @@ static cw_status take_surface(const making *m, const cw_volume *volume, bool sim
     const cw_offset_desc *d = m->desc;
     const cw_extract_desc desc = {.isovalue = d->offset_mm,
                                   .inside_is_low = true,
-                                  .leave_open = volume->cells, /* there is more beyond them */
+                                  .leave_open = volume->cells, /* the volume continues beyond
+                                                                  them */
                                   .simple_topology = simple,
                                   .threads = d->threads,
                                   .max_bytes = d->max_bytes,
@@ -76,14 +79,14 @@ static cw_status make_plain(making *m, cw_mesh *out, cw_error *err)
     return st;
 }
 
-/* ---- what is promised of the mesh's own surface ------------------------------------------ */
+/* ---- guarantees for the mesh's own surface ----------------------------------------------- */
 
 static int64_t count_handles(const cw_quality *q)
 {
     return (int64_t)q->components - q->euler / 2;
 }
 
-/* Whether a surface has neither more components nor more handles than the mesh. */
+/* Decides if a surface has neither more components nor more handles than the mesh. */
 static cw_status compare_topology(const making *m, const cw_mesh *out, bool *holds,
                                   cw_error *err)
 {
@@ -110,7 +113,8 @@ static cw_status find_beyond(const making *m, const cw_mesh *from, const cw_mesh
     return st;
 }
 
-/* What is inside of something else is not of the surface, and lost. */
+/* Finds out, once, if parts of the mesh overlap: parts inside others are not of the surface,
+ * and are lost. */
 static cw_status find_overlap(making *m, cw_error *err)
 {
     const cw_crossings_desc how = {.threads = m->desc->threads, .progress = m->desc->progress};
@@ -128,7 +132,8 @@ static cw_status find_overlap(making *m, cw_error *err)
     return st;
 }
 
-/* Whether a surface is so near to the mesh, and, unless that overlaps, the mesh to it. */
+/* Decides if a surface is within limit_mm of the mesh and, unless the mesh overlaps, the mesh
+ * is within limit_mm of the surface. */
 static cw_status compare_places(const making *m, const cw_mesh *out, double limit_mm,
                                 bool *holds, cw_error *err)
 {
@@ -142,8 +147,8 @@ static cw_status compare_places(const making *m, const cw_mesh *out, double limi
     return st;
 }
 
-/* Whether the promise is kept; if not, whether the surface is so near that smaller voxels may
- * keep it. */
+/* Decides if the guarantee holds and, if not, if the surface is so near that smaller voxels may
+ * make it hold. */
 static cw_status judge_remesh(making *m, const cw_mesh *out, bool *holds, bool *is_near,
                               cw_error *err)
 {
@@ -160,8 +165,8 @@ static cw_status judge_remesh(making *m, const cw_mesh *out, bool *holds, bool *
     return st;
 }
 
-/* From samples of the same level set that are moved to what they miss. Moving vertices does not
- * change what is joined: that is looked at before. */
+/* Makes the surface from samples of the same level set, moved to the features that they miss.
+ * Moving vertices does not change the topology: that is checked before. */
 static cw_status make_warped(making *m, cw_mesh *out, bool *holds, bool *is_near, cw_error *err)
 {
     const cw_offset_desc *d = m->desc;
@@ -181,7 +186,8 @@ static cw_status make_warped(making *m, cw_mesh *out, bool *holds, bool *is_near
     return st;
 }
 
-/* With the voxels as they are; if that breaks the promise, with samples moved. */
+/* Makes the surface with the voxels as they are; if the guarantee does not hold, with samples
+ * moved. */
 static cw_status make_either(making *m, cw_mesh *out, bool *holds, bool *is_near, cw_error *err)
 {
     cw_status st = make_plain(m, out, err);
@@ -196,18 +202,20 @@ static cw_status make_either(making *m, cw_mesh *out, bool *holds, bool *is_near
 enum {
     MOST_HALVINGS = 2,
     MOST_ROUNDS = 16,
-    FEW = 1 << 18 /* triangles: in a moment there are so many */
+    FEW = 1 << 18 /* number of triangles that takes only a moment */
 };
 
-/* Whether voxels of half the size are worth a try, where there are now so many triangles. */
+/* Returns true if voxels of half the size are worth a try, where the surface now has
+ * `triangles` triangles. */
 static bool should_halve(const making *m, size_t triangles, bool is_near)
 {
     return !m->desc->no_refine && (is_near || 4 * triangles <= FEW) &&
            cwi_level_set_fits(&m->before, m->voxel / 2, 0, m->desc->max_bytes);
 }
 
-/* With samples moved, and then with smaller voxels, until a surface is within half a voxel and
- * has neither more components nor more handles. If the limit forbids it, it is not so.
+/* Makes the surface with samples moved, and then with smaller voxels, until it is within half a
+ * voxel and has neither more components nor more handles. If the memory limit is reached,
+ * *holds is false.
  * triangles  of the surface that the voxels give as they are */
 static cw_status make_whole(making *m, size_t triangles, bool is_near, cw_mesh *out,
                             bool *holds, cw_error *err)
@@ -228,8 +236,9 @@ static cw_status make_whole(making *m, size_t triangles, bool is_near, cw_mesh *
     return st;
 }
 
-/* Gradients across edges and through thin walls may point anywhere: where they are off what the
- * triangles around say by more than 60 degrees, that is taken. */
+/* Repairs normals. Gradients across edges and through thin walls may point anywhere. Where they
+ * deviate from the normal of the triangles around by more than 60 degrees, that normal is
+ * taken. */
 static cw_status mend_normals(cw_mesh *mesh, cw_error *err)
 {
     float *gradients = mesh->normals;
@@ -261,9 +270,9 @@ static cw_status make_divided(const making *m, cwi_adaptive *a, cw_mesh *out, cw
     return st;
 }
 
-/* Divides cells and makes the surface again, until all of it is within half a voxel, there is
- * nothing left to divide, or the limit forbids it.
- * out  replaced by what is made */
+/* Divides cells and makes the surface again, until all of it is within half a voxel, nothing is
+ * left to divide, or the memory limit is reached.
+ * out  replaced by the new surface */
 static cw_status make_adaptive(making *m, cw_mesh *out, cw_offset_facts *facts, cw_error *err)
 {
     cwi_adaptive a = {0};
@@ -301,7 +310,7 @@ static cw_status count_more(const making *m, const cw_mesh *out, cw_offset_facts
     return st;
 }
 
-/* The first surface that keeps all of the promise; else one that is as near. */
+/* Makes the first surface for which the whole guarantee holds; else one that is as near. */
 static cw_status make_true(making *m, cw_mesh *out, cw_offset_facts *facts, cw_error *err)
 {
     cw_mesh whole = {0};

@@ -1,5 +1,5 @@
-// OpenVDB behind plain C: distances of voxels from a mesh. Their signs are not taken from it:
-// it fills what is shut in, hollows that were there too.
+// Wraps OpenVDB in plain C: distances of voxels from a mesh. Signs are not taken from OpenVDB:
+// it fills enclosed hollows, even those that the mesh has.
 #include "extract/level_set/openvdb_distance_wrap.h"
 #include "core/base/guard.hpp"
 
@@ -21,7 +21,7 @@ struct cwi_distances {
 namespace
 {
 
-// What OpenVDB has compiled itself: anything else takes a minute and a half to compile.
+// The adapter that OpenVDB has compiled itself: any other takes a minute and a half to compile.
 using triangles = openvdb::tools::QuadAndTriangleDataAdapter<openvdb::Vec3s, openvdb::Vec3I>;
 static_assert(sizeof(openvdb::Vec3I) == 3 * sizeof(uint32_t));
 

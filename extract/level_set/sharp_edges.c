@@ -1,3 +1,5 @@
+/* Cuts a surface's triangles at the sharp edges and corners of a mesh [Kobbelt2001]
+ * [Attene2005]. */
 #include "extract/level_set/sharp_edges.h"
 
 #include "core/base/memory.h"
@@ -13,21 +15,21 @@
 
 enum { CHUNK = 1024, ROUNDS = 12 };
 
-/* Cosines: planes that meet at more than 30 degrees make an edge; a part of a triangle does not
- * turn away from all planes at the triangle's corners. */
+/* Limits as cosines: planes that meet at more than 30 degrees make an edge; a part of a
+ * triangle does not turn away from all planes at the triangle's corners. */
 static const double edge = 0.866, faces = 0;
-/* Of the parallelepiped that three planes' normals span, at least. */
+/* Minimum volume of the parallelepiped that three planes' normals span. */
 static const double corner = 0.2;
-/* Of a voxel, at most: from the middle of what is cut to the cut, and from a vertex to its
- * plane; off the surface. At least: between vertices, and a triangle's height. */
+/* Maxima, as fractions of a voxel: from the middle of the part that is cut to the cut; from a
+ * vertex to its plane; off the surface. Minima: between vertices; a triangle's height. */
 static const double reach = 2.5, near = 0.5, off = 0.02, apart = 0.02, low = 0.002;
 
-/* Of the surface near a vertex: n . x = at. No normal: 0. */
+/* Plane of the surface near a vertex: n . x = at. No normal: 0. */
 typedef struct plane {
     double n[3], at;
 } plane;
 
-/* A vertex that there might be. */
+/* A vertex that may be added. */
 typedef struct cut {
     bool is_on;
     float x[3], n[3];
@@ -87,7 +89,8 @@ static cwi_closest find_closest(const sharpener *s, const double x[3])
     return c;
 }
 
-/* At no distance the normal is a triangle's; else it is along the shortest way. */
+/* Finds the plane of the surface near x. At distance 0 the normal is a triangle's; else it is
+ * along the shortest way. */
 static plane plane_near(const sharpener *s, const double x[3])
 {
     const cwi_closest c = find_closest(s, x);
@@ -120,7 +123,8 @@ static void find_planes(void *context, size_t chunk)
 
 /* ---- where planes meet ------------------------------------------------------------------- */
 
-/* The least way on to two planes that are `near_p` and `near_q` away along their normals. */
+/* Finds the shortest way onto two planes that are `near_p` and `near_q` away along their
+ * normals. */
 static void meet_two(const plane *p, const plane *q, double near_p, double near_q,
                      double way[3])
 {
@@ -141,7 +145,8 @@ static void meet_three(const plane *const p[3], const double away[3], double way
             (away[0] * cross[0][a] + away[1] * cross[1][a] + away[2] * cross[2][a]) / volume;
 }
 
-/* Whether the way from x leads to the surface, and not too far: then there is the cut. */
+/* Returns true if the way from x leads to the surface, and not too far: then there is the
+ * cut. */
 static bool take_way(const sharpener *s, const double x[3], const double way[3], cut *c)
 {
     const double to[3] = {x[0] + way[0], x[1] + way[1], x[2] + way[2]};
@@ -177,7 +182,7 @@ static bool is_plane(const plane *p)
 
 /* ---- sides ------------------------------------------------------------------------------- */
 
-/* From the middle of the side to where the planes at its ends meet. */
+/* Cuts a side: goes from its middle to where the planes at its ends meet. */
 static void cut_side(const sharpener *s, uint32_t u, uint32_t v, cut *c)
 {
     const plane *p[2] = {s->planes + u, s->planes + v};
@@ -202,8 +207,9 @@ static void cut_sides(void *context, size_t chunk)
             cut_side(s, (uint32_t)v, s->upper[n], s->sides + n);
 }
 
-/* In a closed, oriented surface each side is once run through from the lower vertex. Counts,
- * then ends, then fills from the ends: first[v] comes to where v's begin. */
+/* Lists sides. In a closed, oriented surface each side is traversed once from the lower vertex.
+ * Counts, then ends, then fills from the ends: first[v] becomes the place where v's sides
+ * begin. */
 static void find_sides(sharpener *s)
 {
     const cw_mesh *m = s->mesh;
@@ -222,7 +228,7 @@ static void find_sides(sharpener *s)
     }
 }
 
-/* The cut of side k of a triangle. */
+/* Returns the cut of side k of a triangle. */
 static cut *side_of(const sharpener *s, size_t t, size_t k)
 {
     const uint32_t u = s->mesh->triangles[3 * t + k],
@@ -235,8 +241,8 @@ static cut *side_of(const sharpener *s, size_t t, size_t k)
 
 /* ---- triangles --------------------------------------------------------------------------- */
 
-/* Where three planes meet in a triangle of which two sides are cut: beyond the corner the third
- * pair of planes may not meet on the surface. */
+/* Cuts a triangle at the point where three planes meet, if two of its sides are cut: beyond the
+ * corner the third pair of planes may not meet on the surface. */
 static void cut_triangle(const sharpener *s, size_t t, cut *c)
 {
     const plane *p[3];
@@ -267,7 +273,8 @@ static void cut_triangles(void *context, size_t chunk)
         cut_triangle(s, t, s->middles + t);
 }
 
-/* Samples on both sides of an edge put vertices off the surface: to its plane with one. */
+/* Moves a vertex onto its plane, if that is near and on the surface. Samples on both sides of
+ * an edge put vertices off the surface. */
 static void settle_vertex(const sharpener *s, uint32_t v)
 {
     const plane *p = s->planes + v;
@@ -320,7 +327,7 @@ typedef struct part {
 
 enum { MOST_PARTS = 6 };
 
-/* The parts of a triangle around a point of it. */
+/* Divides a triangle into parts around a point in it. */
 static int divide_around(const point *c, const point v[3], const point *const m[3],
                          part parts[MOST_PARTS])
 {
@@ -336,11 +343,12 @@ static int divide_around(const point *c, const point v[3], const point *const m[
     return count;
 }
 
-/* The parts of a triangle between its corners v and the cuts m of its sides (NULL: none). */
+/* Divides a triangle into parts between its corners v and the cuts m of its sides (NULL:
+ * none). */
 static int divide_by_cuts(const point v[3], const point *const m[3], part parts[MOST_PARTS])
 {
     const int cuts = !!m[0] + !!m[1] + !!m[2];
-    int k = 0; /* one cut: it; two: the first of them */
+    int k = 0; /* one cut: that one; two cuts: the first of them */
     while (cuts > 0 && cuts < 3 && !(m[k] && (cuts == 1 || m[(k + 1) % 3])))
         k++;
     const point *p = v + k, *q = v + (k + 1) % 3, *r = v + (k + 2) % 3;
@@ -390,7 +398,7 @@ static void divide_triangle(const sharpener *s, size_t t, division *d)
 
 /* ---- what stays as it is ----------------------------------------------------------------- */
 
-/* Whether a part is no sliver, and faces as one of three planes does. */
+/* Returns true if a part is not a sliver, and faces as one of three planes does. */
 static bool is_sound(const sharpener *s, const part *p, const plane *const planes[3])
 {
     double u[3], v[3], n[3], longest = 0, best = -1;
@@ -408,7 +416,7 @@ static bool is_sound(const sharpener *s, const part *p, const plane *const plane
     return best >= faces;
 }
 
-/* Whether a corner of it is not where it was. */
+/* Returns true if a corner of the triangle has moved. */
 static bool has_moved(const sharpener *s, size_t t)
 {
     bool has = false;
@@ -419,7 +427,7 @@ static bool has_moved(const sharpener *s, size_t t)
     return has;
 }
 
-/* Leaves its corners and sides as they were. */
+/* Restores a triangle's corners and sides. */
 static void restore_triangle(const sharpener *s, size_t t)
 {
     for (size_t k = 0; k < 3; k++) {
@@ -429,8 +437,8 @@ static void restore_triangle(const sharpener *s, size_t t)
     }
 }
 
-/* Leaves the shortest of its sides that are cut whole, as the least is lost there; with none,
- * its corners where they were. */
+/* Restores the shortest of a triangle's cut sides, as least is lost there; without cut sides it
+ * restores the corners. */
 static void restore_some(const sharpener *s, size_t t, const division *d)
 {
     cut *shortest = NULL;
@@ -449,7 +457,7 @@ static void restore_some(const sharpener *s, size_t t, const division *d)
         restore_triangle(s, t);
 }
 
-/* Whether something had to be restored. */
+/* Returns true if something had to be restored. */
 static bool restore_unsound(const sharpener *s, size_t t)
 {
     const plane *planes[3];
@@ -465,7 +473,8 @@ static bool restore_unsound(const sharpener *s, size_t t)
     return is_unsound;
 }
 
-/* What is whole stays so: nothing is cut or moved from here on, only put back. */
+/* Lists the triangles that changed. Others stay as they are: from here on nothing is cut or
+ * moved, only put back. */
 static void find_changed(sharpener *s)
 {
     s->changed_count = 0;
@@ -487,7 +496,7 @@ static void restore_all_unsound(const sharpener *s)
     }
 }
 
-/* ---- what is made ------------------------------------------------------------------------ */
+/* ---- the new mesh ------------------------------------------------------------------------ */
 
 static void number_cuts(cut *cuts, size_t count, size_t *vertices)
 {
@@ -505,7 +514,8 @@ static void put_cuts(const cut *cuts, size_t count, cw_mesh *m)
         }
 }
 
-/* Corners are cut in where two sides are, at least: into five parts or six. */
+/* Counts the parts. A triangle with two or more cut sides may be cut at a corner too: into five
+ * parts or six. */
 static size_t count_parts(const sharpener *s)
 {
     size_t count = 0;
@@ -557,7 +567,8 @@ static cw_status make_sharp(sharpener *s, cw_error *err)
     return CW_OK;
 }
 
-/* Makes it without what crosses, until nothing does; false: there is no such way. */
+/* Makes the mesh without the parts that cross, until nothing crosses; *is_clear is false if
+ * that fails. */
 static cw_status make_clear(sharpener *s, const cw_offset_desc *desc, bool *is_clear,
                             cw_error *err)
 {

@@ -1,13 +1,13 @@
-/* Edges and corners that samples of a distance cannot tell. */
+/* Restores edges and corners that samples of a distance cannot represent. */
 #ifndef EXTRACT_LEVEL_SET_SHARP_EDGES_H
 #define EXTRACT_LEVEL_SET_SHARP_EDGES_H
 
 #include <cubewright/level_set.h>
 
-/* Gives a surface at a distance from a mesh the edges and corners back that a level set's
- * voxels have cut off: sides of triangles across an edge get a vertex on it, triangles across a
- * corner one in it, and vertices beside these, which are off the surface, are put on it. What
- * would fold, flatten or cross is left as it is.
+/* Restores the edges and corners of a surface at a distance from a mesh, which a level set's
+ * voxels have cut off. Sides of triangles across an edge get a vertex on it, and triangles
+ * across a corner get one at it. Vertices beside these, which are off the surface, are moved
+ * onto it. Triangles that would fold, flatten or cross stay unchanged.
  *
  * mesh      at desc->offset_mm from `from`, closed, oriented, free of crossings; it has
  *           positions, triangles and normals alone. Vertices and triangles are added

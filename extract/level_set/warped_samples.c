@@ -1,3 +1,4 @@
+/* Stores the samples of a grid that were moved, and finds them by their place. */
 #include "extract/level_set/feature_warp.h"
 
 #include "core/base/memory.h"

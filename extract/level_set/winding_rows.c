@@ -1,3 +1,5 @@
+/* Finds by exact integer arithmetic where rows of a grid cross a mesh, and counts windings
+ * along them. */
 #include "extract/level_set/winding_rows.h"
 
 #include "core/base/memory.h"
@@ -7,9 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* Across the rows, vertices are moved to the corners of a grid so fine that nothing is seen of
- * it, and so coarse that whole numbers decide exactly which triangles a row meets. Then no row
- * slips through between two of them, and the mesh is left as often as it is entered. */
+/* Vertices are moved, across the rows, to a grid so fine that the change is invisible, and so
+ * coarse that integers decide exactly which triangles a row meets. Then no row slips through
+ * between two triangles, and the mesh is left as often as it is entered. */
 enum { FINE = 1 << 14 };
 
 typedef struct corner {
@@ -32,15 +34,15 @@ static corner corner_of(const mapping *m, uint32_t vertex)
     return (corner){at[0], llrint(at[1] * FINE), llrint(at[2] * FINE)};
 }
 
-/* Twice the area of a, b and the row, seen along it: positive when they
- * run counter-clockwise. */
+/* Returns twice the area of a, b and the row, seen along it: positive when they run
+ * counter-clockwise. */
 static int64_t edge_area(const corner *a, const corner *b, int64_t y, int64_t z)
 {
     return (b->y - a->y) * (z - a->z) - (b->z - a->z) * (y - a->y);
 }
 
-/* Whether the row is to the left of the edge. One that meets it passes by as if it stood at
- * (y + e, z + e * e), for an e that is smaller than any number. */
+/* Returns true if the row is to the left of the edge. A row that meets the edge is treated as
+ * if it stood at (y + e, z + e * e), for an e that is smaller than any number. */
 static bool is_left(int64_t twice_area, const corner *a, const corner *b)
 {
     if (twice_area != 0)
@@ -59,7 +61,8 @@ static int64_t min_of_three(int64_t a, int64_t b, int64_t c)
     return low < c ? low : c;
 }
 
-/* Rows that a triangle crosses: they are counted, or kept where there is a place for them. */
+/* Finds the rows that a triangle crosses: counts the crossings, or, with `keep`, stores
+ * them. */
 static void cross_rows(cwi_winding *w, const corner c[3], int turn, bool keep)
 {
     const int64_t low_y = ceil_div(min_of_three(c[0].y, c[1].y, c[2].y)),
@@ -89,8 +92,8 @@ static void cross_rows(cwi_winding *w, const corner c[3], int turn, bool keep)
         }
 }
 
-/* Goes through all triangles: those that run counter-clockwise, seen from high x, are left
- * through. */
+/* Visits all triangles. Rows leave the mesh through those that run counter-clockwise, seen from
+ * high x. */
 static void each_triangle(cwi_winding *w, const mapping *m, bool keep)
 {
     for (size_t t = 0; t < m->mesh->triangle_count; t++) {
@@ -108,7 +111,7 @@ static void each_triangle(cwi_winding *w, const mapping *m, bool keep)
     }
 }
 
-/* Counts become first numbers; the last is that of all. */
+/* Turns counts into first numbers; the last is the total. */
 static size_t sum_rows(cwi_winding *w, size_t rows)
 {
     size_t sum = 0;
@@ -141,7 +144,8 @@ cw_status cwi_winding_init(cwi_winding *w, const cw_mesh *mesh, const double fir
     if (!w->cross)
         return cw_fail(err, CW_ERR_NO_MEMORY, "no memory for %zu crossings", all);
     each_triangle(w, &m, true);
-    memmove(w->first + 1, w->first, rows * sizeof *w->first); /* each is where the next began */
+    memmove(w->first + 1, w->first, rows * sizeof *w->first); /* each is now where the next row
+                                                                 began */
     w->first[0] = 0;
     for (size_t n = 0; n < rows; n++)
         if (w->first[n + 1] - w->first[n] > 1)

@@ -1,14 +1,14 @@
-/* Which points of an even grid are inside a closed, oriented mesh. */
+/* Decides which points of an even grid are inside a closed, oriented mesh. */
 #ifndef EXTRACT_LEVEL_SET_WINDING_ROWS_H
 #define EXTRACT_LEVEL_SET_WINDING_ROWS_H
 
 #include <cubewright/mesh.h>
 
-/* Where rows of samples along x cross the mesh: those of row (j, k) are
+/* The crossings of rows of samples along x with the mesh. Those of row (j, k) are
  * cross[first[k * rows_y + j]] up to that of the next row, from low x to high. */
 typedef struct cwi_row_crossing {
     double x;
-    int turn; /* 1: the mesh winds once more around what follows; -1: once less */
+    int turn; /* 1: the mesh winds once more around the points behind it; -1: once less */
 } cwi_row_crossing;
 
 typedef struct cwi_winding {
@@ -17,7 +17,7 @@ typedef struct cwi_winding {
     cwi_row_crossing *cross;
 } cwi_winding;
 
-/* The most samples along an axis: so that what is computed fits 64 bits. */
+/* Maximum number of samples along an axis: so that computed numbers fit 64 bits. */
 enum { CWI_WINDING_MOST = 65535 };
 
 /* Crosses a mesh, whose vertices in the grid are at (positions - first) / voxel_mm, with rows.
@@ -27,8 +27,8 @@ CW_NODISCARD cw_status cwi_winding_init(cwi_winding *w, const cw_mesh *mesh,
                                         const size_t dim[3], cw_error *err);
 void cwi_winding_free(cwi_winding *w);
 
-/* Whether samples of a row, count of them from sample (i, j, k) on, are inside: the mesh winds
- * around them at least once. */
+/* Finds which samples of a row, `count` of them from sample (i, j, k) on, are inside: the mesh
+ * winds around them at least once. */
 void cwi_winding_row(const cwi_winding *w, size_t i, size_t j, size_t k, size_t count,
                      bool *inside);
 

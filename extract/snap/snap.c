@@ -1,15 +1,16 @@
-/* Where several edges are crossed close to the sample that they meet in, the triangles between
- * the crossings are needles. Such crossings, as far as sides of triangles join them, are a
- * cluster; it becomes one vertex, where the field has the isovalue in their middle.
+/* Merges clusters of crossings. Where several edges are crossed close to the sample at which
+ * they meet, the triangles between the crossings are needles. Such crossings, as far as sides
+ * of triangles join them, are a cluster. It becomes one vertex in their middle, where the field
+ * has the isovalue.
  *
  * The triangles around a cluster are replaced by a cone over their rim. That changes no
  * topology if they form a disc, and no vertex of the rim is in the cluster: a disc is replaced
  * by a disc. It is done only when none of the new triangles is turned over, none is worse than
- * the worst one was, and none crosses another one. What is too close to call stays as it was.
+ * the worst old one, and none crosses another. Cases too close to decide stay unchanged.
  *
  * All triangles of a cluster are in the eight cells around its sample, and no vertex leaves
- * them by more than half a voxel, so all that may be in the way is within two cells. Clusters
- * three layers apart do not see each other: every third layer is snapped at the same time. */
+ * them by more than half a voxel, so all possible obstacles are within two cells. Clusters
+ * three layers apart are independent: every third layer is snapped at the same time. */
 #include "extract/snap/snap.h"
 
 #include "core/base/memory.h"
@@ -26,18 +27,18 @@
 
 enum { EVERY = 3 /* layers */ };
 
-/* Of a vertex's sample: the cluster has been looked at; it has been snapped. */
+/* Flags in a vertex's sample: the cluster has been processed; it has been snapped. */
 #define SEEN    (UINT64_C(1) << 63)
 #define SNAPPED (UINT64_C(1) << 62)
 #define SAMPLE  (SNAPPED - 1)
 
-/* What a layer's clusters were moved. */
+/* Distances by which a layer's clusters were moved. */
 typedef struct layer_sums {
     size_t count;
     double moved[2], error[2], error_sum[2]; /* mm, voxels */
 } layer_sums;
 
-/* What the steps work on. */
+/* Data that the steps work on. */
 typedef struct snap_run {
     cwi_snapping s;
     layer_sums *sums;
@@ -46,7 +47,8 @@ typedef struct snap_run {
 
 /* ---- vertices, samples and cells -------------------------------------------------------- */
 
-/* Edges with cells on all sides: the vertices on others are on the mesh's border. */
+/* Returns the edges with cells on all sides: vertices on other edges are on the mesh's
+ * border. */
 static uint64_t inner_edges(const cwi_bit_grid *g, int axis, size_t j, size_t k, size_t w)
 {
     if (!g->live)
@@ -60,8 +62,8 @@ static uint64_t inner_edges(const cwi_bit_grid *g, int axis, size_t j, size_t k,
     return here & (here << 1 | before >> 63);
 }
 
-/* In into[], until cells are known: a vertex's sample along x, and whether its edge is an
- * x-edge. */
+/* Stores in into[], until cells are known, a vertex's sample along x, and whether its edge is
+ * an x-edge. */
 static void mark_vertex(cwi_snapping *s, size_t at[3], int axis, uint32_t v, bool inner)
 {
     cwi_place *place = &s->places[v];
@@ -107,8 +109,8 @@ static void mark_layer(void *context, size_t k)
     }
 }
 
-/* Along x, the cell that a triangle is in. An x-edge tells; so do two walls; in one of them
- * there is but one side, and a vertex inside the cell. */
+/* Returns the cell, along x, that a triangle is in. An x-edge decides it, and so do two walls.
+ * In a single wall there is only one side, and then a vertex inside the cell. */
 static uint32_t cell_of(const cwi_snapping *s, const uint32_t triangle[3])
 {
     uint32_t low = UINT32_MAX, high = 0, inner = UINT32_MAX;
@@ -128,7 +130,7 @@ static uint32_t cell_of(const cwi_snapping *s, const uint32_t triangle[3])
     return cwi_index(s, inner)[0] < (double)low ? low - 1 : low;
 }
 
-/* Triangles lie in their cells' order. */
+/* Finds the cells of a row's triangles, which are in the order of their cells. */
 static void find_cells_of_row(const cwi_snapping *s, size_t row)
 {
     const size_t first = s->rows[row].triangle, end = s->rows[row + 1].triangle;
@@ -163,7 +165,7 @@ static void reset_layer(void *context, size_t k)
 
 /* ---- snapping --------------------------------------------------------------------------- */
 
-/* The sum of the members' normals; the first one's where they cancel out. */
+/* Sums the members' normals; takes the first one's where they cancel out. */
 static void merge_normals(const cwi_snapping *s, const cwi_cluster *c)
 {
     float *normals = s->mesh->normals, *to = normals + 3 * (size_t)c->member[0];
@@ -176,7 +178,7 @@ static void merge_normals(const cwi_snapping *s, const cwi_cluster *c)
         to[a] = (float)(sum[a] / length);
 }
 
-/* Triangles with two corners in the cluster are left with two equal ones: they are gone. */
+/* Merges a cluster. Triangles with two corners in it get two equal corners: they are gone. */
 static void merge_cluster(const cwi_snapping *s, const cwi_cluster *c, const double x[3],
                           const float p[3])
 {
@@ -218,9 +220,9 @@ static void snap_layer(void *context, size_t n)
     }
 }
 
-/* ---- what it cost ----------------------------------------------------------------------- */
+/* ---- errors ----------------------------------------------------------------------------- */
 
-/* Where the surface is nearest to a vertex that was merged: in the world, and in voxels. */
+/* The distance of the surface from a vertex that was merged: in the world, and in voxels. */
 typedef struct distances {
     const float *from;
     double from_x[3];
@@ -244,7 +246,7 @@ static void add_to_sums(layer_sums *sums, int unit, double moved, double error)
     sums->error_sum[unit] += error;
 }
 
-/* A triangle cannot be nearer than a box around it. */
+/* Returns true if a triangle may be nearer: it cannot be nearer than a box around it. */
 static bool may_be_nearer(const cwi_snapping *s, const distances *d, const cwi_triangle *t)
 {
     double square = 0;
@@ -284,9 +286,9 @@ static void measure_distances(const cwi_snapping *s, const distances *d, double 
         s->edge > 0 ? s->edge * distance[1] : sqrt(cwi_dot(d->nearest[0], d->nearest[0]));
 }
 
-/* How far a vertex that was merged has gone, and how far from where it was the surface is
- * now, looked for in the cells around its sample: most likely, in the triangles that it was
- * merged into. */
+/* Measures how far a merged vertex has moved, and how far the surface is now from its old
+ * place. It searches the cells around the vertex's sample: most likely, the triangles that it
+ * was merged into are nearest. */
 static void measure_vertex(const cwi_snapping *s, uint32_t v, layer_sums *sums)
 {
     size_t at[3], triangles[CWI_STAR];
@@ -341,7 +343,7 @@ static void sum_layers(const snap_run *run, cw_snap_counts *counts)
 
 /* ---- the whole -------------------------------------------------------------------------- */
 
-/* Closes the ranks of vertices and triangles. */
+/* Removes the gaps in the arrays of vertices and triangles. */
 static void close_ranks(cwi_snapping *s)
 {
     cw_mesh *mesh = s->mesh;
@@ -402,7 +404,8 @@ static void free_room(snap_run *run)
     cwi_free(run->sums);
 }
 
-/* The length of a voxel's edges if it is a cube, so that distances need no measuring twice. */
+/* Returns the length of a voxel's edges if it is a cube, so that distances are measured only
+ * once. */
 static double find_edge(const cw_volume *v)
 {
     double square[3][3];

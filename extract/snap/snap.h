@@ -1,5 +1,5 @@
-/* Merging crossings that stand close to one and the same sample: the needles between
- * them go. */
+/* Merges crossings that stand close to the same sample, so that the needles between them
+ * vanish. */
 #ifndef EXTRACT_SNAP_SNAP_H
 #define EXTRACT_SNAP_SNAP_H
 
@@ -7,7 +7,7 @@
 
 #include <cubewright/mesh.h>
 
-/* What snapping a mesh of so many vertices and triangles takes, beside the mesh. */
+/* Returns the bytes that snapping a mesh with these counts takes, beside the mesh. */
 size_t cwi_snap_bytes(const cwi_bit_grid *grid, size_t vertices, size_t triangles);
 
 /* Snaps a mesh that was just written from a grid and its rows. desc->snap is above 0. */

@@ -1,13 +1,13 @@
-/* Whether the cone over a rim crosses itself, or what is around it.
+/* Decides if the cone over a rim crosses itself, or the triangles around it.
  *
- * Shadows tell, along the rim's normal to one of the planes between the axes. Where those of
- * the cone's triangles surround the new vertex once, it does not cross itself. If moreover all
- * that is near faces the same way, nothing can lie above or below it, and nothing is in the
- * way: so it is on smooth surfaces.
+ * It compares shadows: projections along the rim's normal to one of the planes between the
+ * axes. Where the shadows of the cone's triangles surround the new vertex once, the cone does
+ * not cross itself. If moreover all near triangles face the same way, nothing can lie above or
+ * below the cone, and nothing is in the way. That is the case on smooth surfaces.
  *
- * Otherwise every triangle near it is looked at. Where a line along a side parts the shadows of
- * two triangles, a plane parts them. What is left, above or below the cone mostly, is compared
- * in space, triangle by triangle. */
+ * Otherwise every triangle near it is tested. Where a line along a side separates the shadows
+ * of two triangles, a plane separates them. The rest, mostly above or below the cone, is
+ * compared in space, triangle by triangle. */
 #include "core/geometry/triangle_separation.h"
 #include "core/geometry/vec3.h"
 #include "extract/snap/snap_cluster.h"
@@ -15,14 +15,14 @@
 #include <math.h>
 #include <string.h>
 
-/* Shadows are apart when this far from each other: voxels. The plane through the line may be
- * slanted: in space it is at least CWI_APART. */
+/* Minimum distance of separate shadows, in voxels. The plane through the line may be slanted:
+ * in space the distance is at least CWI_APART. */
 #define MARGIN (2 * CWI_APART)
 
-/* Sines of angles that are not zero. */
+/* Minimum sine of an angle that is not zero. */
 #define SLOPE (1.0 / 8192)
 
-/* Twice the area that a triangle facing up has, at least: square voxels. */
+/* Minimum of twice the area of a triangle facing up, in square voxels. */
 #define FLAT 1e-9
 
 typedef struct point {
@@ -39,7 +39,7 @@ typedef struct cone {
     int up, axis[2];        /* along which axis, and on to which, they fall */
     double lean[2];
     point rim[CWI_RIM]; /* shadows */
-    bool flat;          /* those of its triangles do not cross */
+    bool flat;          /* shadows of its triangles do not cross */
     uint64_t known;     /* bit v % 64 is set for every vertex v of the rim */
 } cone;
 
@@ -47,7 +47,7 @@ typedef struct cone {
 typedef struct corner {
     const double *x;
     point shadow;
-    int on; /* which vertex of the rim it is, or -1 */
+    int on; /* the rim's vertex that it is, or -1 */
 } corner;
 
 typedef struct obstacle {
@@ -61,7 +61,7 @@ static const double *rim_index(const cone *o, int n)
     return cwi_index(o->s, o->c->rim[n]);
 }
 
-/* The rim's normal: of all cones over it, the sum of their triangles'. */
+/* Finds the rim's normal: the sum of the normals of the triangles of any cone over it. */
 static void find_normal(cone *o)
 {
     double p[3], q[3], across[3], sum[3] = {0, 0, 0};
@@ -97,14 +97,14 @@ static point shadow_of(const cone *o, const double x[3])
     return (point){x[a] - o->apex[a] - o->lean[0] * h, x[b] - o->apex[b] - o->lean[1] * h};
 }
 
-/* Twice the area to the left of the way from the origin to p to q. */
+/* Returns twice the area to the left of the way from the origin to p to q. */
 static double area_of(point p, point q)
 {
     return p.u * q.v - p.v * q.u;
 }
 
-/* The shadows of the new triangles do not cross: each turns left around the origin, all of them
- * once. */
+/* Returns true if the shadows of the new triangles do not cross: each turns left around the
+ * origin, and together they turn once. */
 static bool surrounds_apex(const cone *o)
 {
     int turns = 0;
@@ -169,7 +169,7 @@ static bool is_outside_box(const cone *o, const double *const x[3])
 
 /* ---- one sheet -------------------------------------------------------------------------- */
 
-/* Its shadow turns left. */
+/* Returns true if a triangle's shadow turns left. */
 static bool faces_up(const cone *o, const double *const x[3])
 {
     double u[3], v[3], across[3];
@@ -187,11 +187,11 @@ static void find_corners(const cwi_snapping *s, size_t triangle, const double *x
         x[n] = cwi_index(s, s->mesh->triangles[3 * triangle + (size_t)n]);
 }
 
-/* All in the box faces up. The star does, so it covers the shadow of the rim once, as the cone
- * does. If anything else met the cone, other than in the rim, a line upward would go through it
- * and through the star, one after the other, both times from inside to outside: for the surface
- * did not cross itself. As it is closed, the line would have come back in between, in the box,
- * through what faces down. */
+/* Returns true if all triangles in the box face up. The star does, so it covers the shadow of
+ * the rim once, as the cone does. Suppose that another triangle met the cone, other than in the
+ * rim. Then a line upward would go through it and through the star, one after the other, both
+ * times from inside to outside, for the surface did not cross itself. As the surface is closed,
+ * the line would have come back in between, in the box, through a triangle that faces down. */
 static bool is_one_sheet(const cone *o, const size_t *near, int count)
 {
     if (!o->flat || o->s->grid->live)
@@ -223,8 +223,8 @@ static bool is_beyond(const line *l, point p)
     return l->u * p.u + l->v * p.v > l->least;
 }
 
-/* Which new triangles are beyond a side of an obstacle's shadow, bit by bit. Ends of the side
- * that are on the rim are so for the triangles that share them. */
+/* Returns, bit by bit, the new triangles that are beyond a side of an obstacle's shadow. Ends
+ * of the side that are on the rim count as beyond for the triangles that share them. */
 static uint64_t beyond_side(const cone *o, const corner *from, const corner *to)
 {
     const line l = line_along(from->shadow, to->shadow);
@@ -239,8 +239,8 @@ static uint64_t beyond_side(const cone *o, const corner *from, const corner *to)
     return beyond & (beyond >> 1 | beyond << (count - 1));
 }
 
-/* New triangles that no side of an obstacle's shadow is known to part from it. The side that
- * spans most of what is seen from the apex is the one to begin with. */
+/* Returns the new triangles that no side of an obstacle's shadow is known to separate from it.
+ * It begins with the side that spans most as seen from the apex. */
 static uint64_t not_beyond(const cone *o, const obstacle *t)
 {
     const corner *c = t->corner;
@@ -259,7 +259,7 @@ static uint64_t not_beyond(const cone *o, const obstacle *t)
     return left;
 }
 
-/* An obstacle is beyond a line, but for its corners at the line's ends. */
+/* Returns true if an obstacle is beyond a line, except for its corners at the line's ends. */
 static bool is_all_beyond(const line *l, const obstacle *t, int from, int to)
 {
     for (int n = 0; n < 3; n++)
@@ -269,7 +269,8 @@ static bool is_all_beyond(const line *l, const obstacle *t, int from, int to)
     return true;
 }
 
-/* An obstacle is beyond a side of the new triangle from the rim's vertex n to the next. */
+/* Returns true if an obstacle is beyond a side of the new triangle from the rim's vertex n to
+ * the next. */
 static bool is_beyond_new(const cone *o, const obstacle *t, int n)
 {
     const int next = cwi_rim_next(o->c, n);
@@ -281,7 +282,7 @@ static bool is_beyond_new(const cone *o, const obstacle *t, int n)
             is_all_beyond(&after, t, next, next));
 }
 
-/* New triangles that the obstacle's shadow is not known to be apart from. */
+/* Returns the new triangles that are not known to be apart from the obstacle's shadow. */
 static uint64_t in_the_way(const cone *o, const obstacle *t)
 {
     uint64_t left = not_beyond(o, t);
@@ -319,7 +320,7 @@ static cwi_triangle triangle_of(const double *p, const double *q, const double *
     return t;
 }
 
-/* New triangles among themselves: neighbours share a side, others the new vertex. */
+/* Returns true if no new triangles cross: neighbours share a side, others the new vertex. */
 static bool is_clear_of_itself(const cone *o)
 {
     const int count = o->c->rim_count;
@@ -338,7 +339,7 @@ static bool is_clear_of_itself(const cone *o)
     return true;
 }
 
-/* Against the new triangle from the rim's vertex n to the next. */
+/* Returns true if an obstacle is clear of the new triangle from the rim's vertex n on. */
 static bool is_clear_of(const cone *o, const obstacle *t, int n)
 {
     const int next = cwi_rim_next(o->c, n);

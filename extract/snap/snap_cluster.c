@@ -1,3 +1,4 @@
+/* Finds the cluster of vertices close to one sample, the triangles around it, and its rim. */
 #include "extract/snap/snap_cluster.h"
 
 uint64_t cwi_sample_number(const cwi_bit_grid *g, size_t i, size_t j, size_t k)
@@ -29,7 +30,8 @@ void cwi_to_position(const cwi_snapping *s, const double x[3], float p[3])
                        v->affine[r][2] * (x[2] - s->centre[2]));
 }
 
-/* The triangles of a row's cells from i on, `count` of them (4 at most), are begin to end. */
+/* Returns the first triangle of a row's `count` cells (4 at most) from i on, and the end of
+ * these. */
 static size_t find_in_row(const cwi_snapping *s, size_t row, size_t i, unsigned count,
                           size_t *end)
 {
@@ -94,8 +96,8 @@ static bool join_triangle(const cwi_snapping *s, cwi_cluster *c, const uint32_t 
     return grown;
 }
 
-/* Keeps of the triangles around the sample those that have a vertex close to it. Whether one
- * has two. */
+/* Keeps, of the triangles around the sample, those that have a vertex close to it. Returns true
+ * if some triangle has two. */
 static bool find_candidates(const cwi_snapping *s, cwi_cluster *c)
 {
     const int around = cwi_find_triangles(s, c->at, 1, c->star);
@@ -133,8 +135,8 @@ void cwi_cluster_find(const cwi_snapping *s, uint32_t v, cwi_cluster *c)
             c->star[c->star_count++] = c->star[n];
 }
 
-/* The sides of the star's triangles opposite to a lone member, in order; false unless they are
- * one closed line that visits no vertex twice. */
+/* Finds the sides of the star's triangles opposite to a lone member, in order. Returns false
+ * unless they are one closed line that visits no vertex twice. */
 static bool find_rim(const cwi_snapping *s, cwi_cluster *c)
 {
     uint32_t from[CWI_STAR], to[CWI_STAR];
@@ -163,8 +165,9 @@ static bool find_rim(const cwi_snapping *s, cwi_cluster *c)
     return true;
 }
 
-/* The star is a surface with one rim, all members inside. It is a disc if its Euler number is
- * one; it has (3 triangles + rim) / 2 sides. And every vertex of the rim is there once. */
+/* Decides if the star is a disc. It is a surface with one rim, and all members are inside. It
+ * is a disc if its Euler number is one; it has (3 triangles + rim) / 2 sides. Every vertex of
+ * the rim must occur once. */
 bool cwi_cluster_is_disc(const cwi_snapping *s, cwi_cluster *c)
 {
     if (!find_rim(s, c))

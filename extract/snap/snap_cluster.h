@@ -1,4 +1,5 @@
-/* What the files that snap share: a mesh while it is snapped, and one sample's cluster. */
+/* Types that the files of snapping share: a mesh while it is snapped, and one sample's
+ * cluster. */
 #ifndef EXTRACT_SNAP_SNAP_CLUSTER_H
 #define EXTRACT_SNAP_SNAP_CLUSTER_H
 
@@ -14,13 +15,13 @@ enum {
     CWI_RIM = 64, /* bits in a word; a dozen is usual */
 };
 
-/* What the mesh does not tell of a vertex. */
+/* Data of a vertex that the mesh does not have. */
 typedef struct cwi_place {
     double x[3];   /* its position as stored, in padded index */
     uint64_t near; /* 1 + the sample it is close to; 0: none */
 } cwi_place;
 
-/* Of 64 cells in a row, those that have triangles, and how many cells before them do. */
+/* The cells, of 64 in a row, that have triangles, and the number of such cells before them. */
 typedef struct cwi_cell_word {
     uint64_t has;
     uint32_t before;
@@ -35,7 +36,7 @@ typedef struct cwi_snapping {
     double edge;                     /* of voxels that are cubes; else 0 */
     double shrink;        /* along any line, a voxel's length is no less in the world */
     cwi_place *places;    /* of vertices */
-    uint32_t *into;       /* vertex: what it became */
+    uint32_t *into;       /* of each vertex: the vertex it was merged into */
     float *before;        /* positions */
     cwi_cell_word *cells; /* rows x words */
     uint32_t *ends; /* from a row's first triangle on: where its cells' triangles end, counted
@@ -53,7 +54,7 @@ typedef struct cwi_cluster {
     size_t owner[CWI_RIM]; /* the star's triangle at the rim's side from here to the next */
 } cwi_cluster;
 
-/* The vertex after the n-th of the rim. */
+/* Returns the vertex after the n-th of the rim. */
 static inline int cwi_rim_next(const cwi_cluster *c, int n)
 {
     return n + 1 < c->rim_count ? n + 1 : 0;
@@ -62,7 +63,7 @@ static inline int cwi_rim_next(const cwi_cluster *c, int n)
 uint64_t cwi_sample_number(const cwi_bit_grid *grid, size_t i, size_t j, size_t k);
 void cwi_sample_place(const cwi_bit_grid *grid, uint64_t sample, size_t at[3]);
 
-/* Positions in the mesh to padded index, and back. */
+/* Convert positions in the mesh to padded index, and back. */
 void cwi_to_index(const cwi_snapping *s, const float position[3], double x[3]);
 void cwi_to_position(const cwi_snapping *s, const double x[3], float position[3]);
 
@@ -71,36 +72,37 @@ static inline const float *cwi_mesh_position(const cwi_snapping *s, uint32_t v)
     return s->mesh->positions + 3 * (size_t)v;
 }
 
-/* A triangle that was between vertices that became one. */
+/* Returns true for a triangle between vertices that were merged into one. */
 static inline bool cwi_is_gone(const uint32_t *t)
 {
     return t[0] == t[1] || t[1] == t[2] || t[2] == t[0];
 }
 
-/* Where a vertex is, in padded index. */
+/* Returns the place of a vertex, in padded index. */
 static inline const double *cwi_index(const cwi_snapping *s, uint32_t v)
 {
     return s->places[v].x;
 }
 
-/* The triangles of the cells up to `reach` (1 or 2) from a sample: CWI_STAR or CWI_NEAR at
- * most. */
+/* Finds the triangles of the cells up to `reach` (1 or 2) from a sample: CWI_STAR or CWI_NEAR
+ * at most. */
 int cwi_find_triangles(const cwi_snapping *s, const size_t at[3], size_t reach, size_t *out);
 
 bool cwi_is_member(const cwi_cluster *c, uint32_t v);
 
-/* The vertices close to v's sample that sides of triangles join to it; if there are any beside
- * v, their star. */
+/* Finds the vertices close to v's sample that sides of triangles join to it; if there are any
+ * beside v, finds their star. */
 void cwi_cluster_find(const cwi_snapping *s, uint32_t v, cwi_cluster *c);
 
-/* Finds the rim; false unless the star is a disc with all members inside. */
+/* Finds the rim; returns false unless the star is a disc with all members inside. */
 bool cwi_cluster_is_disc(const cwi_snapping *s, cwi_cluster *c);
 
-/* Finds where all members may go: padded index, and the position that is to be stored. */
+/* Finds where all members may go: the padded index, and the position to be stored. */
 bool cwi_cluster_place(const cwi_snapping *s, const cwi_cluster *c, double x[3],
                        float position[3]);
 
-/* The cone from x over the rim crosses neither itself nor what is around the star. */
+/* Returns true if the cone from x over the rim crosses neither itself nor the triangles around
+ * the star. */
 bool cwi_cone_is_clear(const cwi_snapping *s, const cwi_cluster *c, const double x[3]);
 
 #endif

@@ -1,4 +1,5 @@
-/* Where a cluster goes, and whether the cone over the rim of its star is good enough. */
+/* Places a cluster's vertex, and decides if the cone over the rim of its star is good
+ * enough. */
 #include "core/geometry/triangle_separation.h"
 #include "core/geometry/vec3.h"
 #include "extract/dense/ambiguous_cells.h"
@@ -7,17 +8,17 @@
 #include <math.h>
 #include <string.h>
 
-/* A vertex stays as close to its sample as crossings are that it is made of, and keeps off the
- * middle between two samples: voxels. */
+/* Limits in voxels: a vertex stays as close to its sample as its crossings are, and keeps off
+ * the middle between two samples. */
 #define FARTHEST 0.49
 #define ROUNDING 1e-4
 
-/* A vertex that is merged is left at most so far from the surface: voxels, times the share. */
+/* Maximum distance of a merged vertex from the surface, in voxels, times the share. */
 #define MOST_ERROR 0.25
 
 /* ---- where a cluster goes --------------------------------------------------------------- */
 
-/* The trilinear field and its gradient; NaN where it has none. */
+/* Evaluates the trilinear field and its gradient; NaN where the field has none. */
 static double evaluate_field(const cwi_bit_grid *g, const double x[3], double gradient[3])
 {
     size_t at[3];
@@ -40,7 +41,7 @@ static double evaluate_field(const cwi_bit_grid *g, const double x[3], double gr
     return value;
 }
 
-/* One step of Newton's along the gradient, the locked axes kept, towards a value. */
+/* Takes a step of Newton's method along the gradient, the locked axes kept, towards a value. */
 static bool approach_level(const cwi_bit_grid *g, double target, const bool locked[3],
                            double x[3])
 {
@@ -59,7 +60,7 @@ static bool approach_level(const cwi_bit_grid *g, double target, const bool lock
     return isfinite(x[0]) && isfinite(x[1]) && isfinite(x[2]);
 }
 
-/* The middle of some vertices, and the mean of the field there. */
+/* Computes the middle of some vertices, and returns the mean of the field there. */
 static double find_middle(const cwi_snapping *s, const uint32_t *vertex, int count,
                           double middle[3])
 {
@@ -74,8 +75,8 @@ static double find_middle(const cwi_snapping *s, const uint32_t *vertex, int cou
     return value;
 }
 
-/* From the middle to where the field is what it was at the vertices (the isovalue, where these
- * were placed by the trilinear field); not far. */
+/* Goes from the middle to a near place where the field has the value it had at the vertices:
+ * the isovalue, where these were placed by the trilinear field. */
 static bool find_place(const cwi_snapping *s, double target, const double middle[3],
                        const bool locked[3], double place[3])
 {
@@ -90,8 +91,9 @@ static bool find_place(const cwi_snapping *s, double target, const double middle
     return true;
 }
 
-/* Where the volume ends the surface has a crease. Caps are flat: their vertices have no say
- * where there are others in the same plane, and they alone where there are none. */
+/* Finds the vertices that decide the place. Where the volume ends the surface has a crease.
+ * Caps are flat: their vertices are ignored where there are others in the same plane, and
+ * decide alone where there are none. */
 static int find_voters(const cwi_snapping *s, const cwi_cluster *c, uint32_t *vertex,
                        bool locked[3])
 {
@@ -123,7 +125,8 @@ typedef struct shape {
     double sharpness; /* square of the cotangent of the smallest angle */
 } shape;
 
-/* An angle's cotangent is the dot product of its sides over twice the area. */
+/* Computes the shape of a triangle. An angle's cotangent is the dot product of its sides over
+ * twice the area. */
 static shape shape_of(const float *p, const float *q, const float *r)
 {
     double u[3], v[3], w[3];
@@ -148,7 +151,7 @@ static shape shape_at(const cwi_snapping *s, size_t triangle)
                     cwi_mesh_position(s, t[2]));
 }
 
-/* What a cluster's triangles look like before it goes anywhere. */
+/* Shape of a cluster's triangles before the cluster moves. */
 typedef struct looks {
     double normal[CWI_RIM][3]; /* of the owners */
     double worst;              /* sharpness */
@@ -166,8 +169,8 @@ static void look_at(const cwi_snapping *s, const cwi_cluster *c, looks *before)
     }
 }
 
-/* In the world, where angles matter: none is turned over, none has a smaller angle than all had
- * before. */
+/* Returns true if, in the world, where angles matter, no new triangle is turned over, and none
+ * has a smaller angle than the smallest before. */
 static bool looks_good(const cwi_snapping *s, const cwi_cluster *c, const looks *before,
                        const float p[3])
 {
@@ -180,8 +183,8 @@ static bool looks_good(const cwi_snapping *s, const cwi_cluster *c, const looks 
     return true;
 }
 
-/* Square of the distance from a point to the nearest point of the new triangles; or to one that
- * is near enough. */
+/* Returns the square of the distance from a point to the nearest point of the new triangles, or
+ * to one that is near enough. */
 static double square_from(const cwi_snapping *s, const cwi_cluster *c, const double x[3],
                           const double from[3], double enough)
 {
@@ -201,7 +204,7 @@ static double square_from(const cwi_snapping *s, const cwi_cluster *c, const dou
     return cwi_dot(nearest, nearest);
 }
 
-/* No member is left far from the new triangles. */
+/* Returns true if no member is left far from the new triangles. */
 static bool is_faithful(const cwi_snapping *s, const cwi_cluster *c, const double x[3])
 {
     const double most = MOST_ERROR * s->share;

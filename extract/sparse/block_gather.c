@@ -1,3 +1,4 @@
+/* Gathers the samples of a block from its leaves and tiles, and their inside bits. */
 #include "extract/sparse/block_gather.h"
 
 #include "core/base/memory.h"
@@ -28,9 +29,9 @@ void cwi_gathering_free(cwi_gathering *g)
     g->voxels = NULL;
 }
 
-/* --- what is where ------------------------------------------------------------------------ */
+/* --- regions by slot ---------------------------------------------------------------------- */
 
-/* The slots of a block that a region is in, along an axis: begin to end. */
+/* Finds the slots of a block that a region is in, along an axis: begin to end. */
 static void find_slots(const cwi_leaf_block *b, const cwi_region *r, int a, size_t slot[2])
 {
     const int64_t first = ((int64_t)b->at[a] - 1) * shape[a] - 1; /* the leaf in slot 0 */
@@ -68,7 +69,8 @@ static void place_regions(cwi_gathering *g, const cwi_leaf_block *b)
         }
 }
 
-/* The surface does not touch a column: it and those around it are on one side. */
+/* Returns true if the surface does not touch a column: it and those around it are on one
+ * side. */
 static bool is_idle(const cwi_gathering *g, size_t j, size_t k)
 {
     uint8_t sides = 0;
@@ -80,7 +82,8 @@ static bool is_idle(const cwi_gathering *g, size_t j, size_t k)
 
 /* --- samples ------------------------------------------------------------------------------ */
 
-/* A slot's share of the block's samples along an axis, and the first of them in its leaf. */
+/* The part of the block's samples along an axis that is in a slot, and the first of them in its
+ * leaf. */
 typedef struct span {
     size_t begin, end, in_leaf;
 } span;
@@ -93,7 +96,8 @@ static span span_of(const cwi_gathering *g, int a, size_t slot)
                   .in_leaf = slot ? 0 : CWI_LEAF - g->halo};
 }
 
-/* So many runs, from and to so many bytes apart; most are those of whole leaves. */
+/* Copies `count` runs of `bytes` bytes. Successive runs are from_step and to_step bytes apart;
+ * most are those of whole leaves. */
 static inline void copy_runs(char *to, size_t to_step, const char *from, size_t from_step,
                              size_t bytes, size_t count)
 {
@@ -105,7 +109,7 @@ static inline void copy_runs(char *to, size_t to_step, const char *from, size_t 
             memcpy(to, from, bytes);
 }
 
-/* The samples of one slot: of a leaf, or all with one value. */
+/* Copies the samples of one slot: those of a leaf, or all with one value. */
 static void copy_slot(const cwi_gathering *g, uint32_t number, span x, span y, span z)
 {
     const cw_volume *v = g->blocks->volume;
@@ -128,7 +132,7 @@ static void copy_slot(const cwi_gathering *g, uint32_t number, span x, span y, s
     }
 }
 
-/* Bits of rows whose samples, between the padding, are all on one side. */
+/* Fills the bits of rows whose samples, between the padding, are all on one side. */
 static void fill_bits(const cwi_gathering *g, bool inside, span y, span z, cwi_bit_grid *grid)
 {
     const uint64_t bits = inside ? ((UINT64_C(1) << g->sample[0]) - 1) << 1 : 0;

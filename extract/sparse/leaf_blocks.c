@@ -1,3 +1,5 @@
+/* Sorts the leaves and tiles of a sparse grid into blocks, and keeps the blocks that the
+ * surface may cross. */
 #include "extract/sparse/leaf_blocks.h"
 
 #include "core/base/memory.h"
@@ -12,7 +14,7 @@
 
 static const uint32_t shape[3] = {CWI_BLOCK_X, CWI_BLOCK_Y, CWI_BLOCK_Z};
 
-/* Leaves that the cells of a block have samples in. */
+/* Number of leaves that have samples of a block's cells. */
 enum { TOUCHED = (CWI_BLOCK_X + 1) * (CWI_BLOCK_Y + 1) * (CWI_BLOCK_Z + 1) };
 
 static size_t region_count(const cw_sparse *s)
@@ -150,7 +152,7 @@ static size_t slot_of(const cwi_leaf_blocks *b, const uint32_t at[3])
     return slot;
 }
 
-/* Its number and 1; 0: there is none. */
+/* Returns a block's number plus 1; 0: there is none. */
 static uint32_t find_number(const cwi_leaf_blocks *b, const uint32_t at[3])
 {
     return b->slots ? b->table[slot_of(b, at)] : 0;
@@ -162,7 +164,7 @@ const cwi_leaf_block *cwi_blocks_find(const cwi_leaf_blocks *b, const uint32_t a
     return number ? &b->block[number - 1] : NULL;
 }
 
-/* A table at most half full, of the blocks as they are. */
+/* Makes a table of the blocks, at most half full. */
 static bool make_table(cwi_leaf_blocks *b, size_t slots)
 {
     cwi_free(b->table);
@@ -213,14 +215,15 @@ static cw_status find_or_add(cwi_leaf_blocks *b, const uint32_t at[3], size_t ma
 
 /* --- blocks and regions ------------------------------------------------------------------- */
 
-/* Along an axis, of leaves counted from a block before the first. */
+/* Reach of a region along an axis, in leaves counted from a block before the first. */
 typedef struct reach {
     uint64_t low, high;           /* the region's first and last leaf */
     uint32_t first, last;         /* blocks that touch it */
     uint32_t buried, buried_last; /* those all of whose leaves, and one around, it has */
 } reach;
 
-/* around: 1 counts the leaf before those that the block's cells touch, too. */
+/* Computes a reach. around: 1 also counts the leaf before those that the block's cells
+ * touch. */
 static reach reach_along(const cwi_region *r, int a, uint32_t around)
 {
     const uint32_t side = shape[a];
@@ -233,7 +236,8 @@ static reach reach_along(const cwi_region *r, int a, uint32_t around)
                    .buried_last = (uint32_t)(high / side - 1)};
 }
 
-/* Leaves of a region that block b's cells touch. */
+/* Returns the number of leaves along an axis that both a region and the cells of block b
+ * touch. */
 static uint32_t measure_overlap(const reach *r, uint32_t b, uint32_t side)
 {
     const uint64_t first = (uint64_t)b * side, last = first + side;
@@ -249,7 +253,8 @@ static bool is_buried(const reach *r, uint32_t b)
 typedef cw_status (*visitor)(sorting *s, size_t region, const reach along[3],
                              const uint32_t at[3], cw_error *err);
 
-/* All blocks that touch a region, but those deep inside it: there is no surface. */
+/* Visits all blocks that touch a region, except those deep inside it, where there is no
+ * surface. */
 static cw_status visit_region(sorting *s, size_t n, uint32_t around, visitor visit,
                               cw_error *err)
 {
@@ -302,7 +307,7 @@ static int by_place(const void *a, const void *b)
     return 0;
 }
 
-/* Leaves the blocks that may be crossed, in their order. */
+/* Keeps the blocks that may be crossed, in their order. */
 static cw_status keep_crossed(sorting *s, cw_error *err)
 {
     cwi_leaf_blocks *b = s->blocks;

@@ -1,18 +1,19 @@
 /* The leaves and tiles of a sparse grid, sorted into blocks of cells that an engine can work
  * on.
  *
- * A block is CWI_BLOCK_X x _Y x _Z leaves of cells: cell (i, j, k) has the samples (i, j, k) to
- * (i+1, j+1, k+1). Blocks are counted from one before the first leaf, as the cells before it
- * have samples of it. */
+ * A block has the cells in CWI_BLOCK_X x _Y x _Z leaves. Cell (i, j, k) has the samples (i, j,
+ * k) to (i+1, j+1, k+1). Blocks are counted from one before the first leaf, as the cells before
+ * it have samples of it. */
 #ifndef EXTRACT_SPARSE_LEAF_BLOCKS_H
 #define EXTRACT_SPARSE_LEAF_BLOCKS_H
 
 #include "extract/dense/isa_dispatch.h"
 
-/* Along x a row of samples, with what is around it, just fits a word of bits. */
+/* The size of a block in leaves. Along x a row of samples, with its surroundings, just fits a
+ * word of bits. */
 enum { CWI_BLOCK_X = 7, CWI_BLOCK_Y = 4, CWI_BLOCK_Z = 4 };
 
-/* The number of what is in no region. */
+/* Number of the space outside all regions. */
 #define CWI_BACKGROUND UINT32_MAX
 
 /* A leaf or a tile: samples 8 * at to 8 * (at + size) - 1 along each axis. */
@@ -22,7 +23,7 @@ typedef struct cwi_region {
     double value;       /* of a tile */
 } cwi_region;
 
-/* Of a vertex on the low sides of its block: where its edge is, and its number. */
+/* A vertex on the low sides of its block: its edge, and its number. */
 typedef struct cwi_seam {
     uint32_t key, number;
 } cwi_seam;
@@ -31,10 +32,10 @@ typedef struct cwi_seam {
 typedef struct cwi_stranger {
     uint32_t vertex; /* as the engine numbers */
     uint32_t key;    /* in its own block */
-    uint32_t beyond; /* bit a: that is the next along axis a */
+    uint32_t beyond; /* bit a: its block is the next along axis a */
 } cwi_stranger;
 
-/* What the engine made of a block. */
+/* The mesh that the engine made from a block. */
 typedef struct cwi_block_mesh {
     void *memory; /* of all that follows */
     float *positions, *normals;
@@ -62,7 +63,7 @@ typedef struct cwi_leaf_blocks {
     size_t slots;
     uint32_t *region;   /* numbers of regions: leaves, then tiles */
     uint8_t *sides;     /* of every region */
-    uint8_t background; /* the side of what no region has */
+    uint8_t background; /* the side of the background */
 } cwi_leaf_blocks;
 
 /* Finds the blocks that the surface may cross, and what lies in them and one leaf around them.
@@ -74,7 +75,7 @@ CW_NODISCARD cw_status cwi_blocks_init(cwi_leaf_blocks *blocks, const cwi_engine
                                        cw_error *err);
 void cwi_blocks_free(cwi_leaf_blocks *blocks);
 
-/* The block at a place; NULL when the surface does not cross it. */
+/* Returns the block at a place; NULL when the surface does not cross it. */
 const cwi_leaf_block *cwi_blocks_find(const cwi_leaf_blocks *blocks, const uint32_t at[3]);
 
 cwi_region cwi_region_at(const cw_volume *volume, size_t number);

@@ -1,3 +1,5 @@
+/* Extracts the isosurface of a sparse grid: marches its blocks in parallel, and joins their
+ * meshes at the seams. */
 #include "extract/sparse/sparse_extract.h"
 
 #include "core/base/memory.h"
@@ -15,7 +17,7 @@
 #include <omp.h>
 #include <string.h>
 
-/* Of a block, along the axes. */
+/* Size of a block in cells, along the axes. */
 enum {
     CELLS_X = CWI_LEAF * CWI_BLOCK_X,
     CELLS_Y = CWI_LEAF * CWI_BLOCK_Y,
@@ -23,7 +25,7 @@ enum {
 };
 static const int cells[3] = {CELLS_X, CELLS_Y, CELLS_Z};
 
-/* What a thread holds of the block at hand. */
+/* A thread's data of the block it works on. */
 typedef struct worker {
     cwi_plan plan;
     cwi_gathering gathering;
@@ -53,7 +55,7 @@ typedef struct sparse_plan {
 
 /* --- a block's vertices ------------------------------------------------------------------- */
 
-/* Where an edge is in its block: sorted as its vertices are numbered. */
+/* Returns the key of an edge in its block; keys sort as the vertices are numbered. */
 static uint32_t key_of(const int at[3], int axis)
 {
     return (uint32_t)(((at[2] << 6 | at[1]) << 2 | axis) << 6 | at[0]);
@@ -74,8 +76,8 @@ static void note_side(worker *w, const int at[3], int axis, uint32_t vertex)
             (cwi_seam){key_of(here, axis), vertex - (uint32_t)w->stranger_count};
 }
 
-/* The vertices of a row's edges along an axis that lie in the block's sides: of rows in a side
- * all, of others those at the ends. */
+/* Notes the vertices of a row's edges along an axis that lie in the block's sides: of rows in a
+ * side all, of others those at the ends. */
 static void note_row(worker *w, size_t halo, int j, int k, int axis)
 {
     const cwi_bit_grid *g = &w->plan.grid;
@@ -105,7 +107,7 @@ static void note_sides(worker *w, size_t halo)
         }
 }
 
-/* Gathers a block and counts what its cells make. */
+/* Gathers a block, and counts the vertices and triangles of its cells. */
 static cw_status look_at(const cwi_leaf_block *b, worker *w, cw_error *err)
 {
     cwi_gather(&w->gathering, b, &w->plan.grid);
@@ -180,7 +182,7 @@ static size_t bytes_of(const sparse_plan *p, const cwi_leaf_block *b)
     return cwi_extract_mesh_bytes(&c, !p->desc->no_normals);
 }
 
-/* What is too much is told as soon as it is found, not when all is made. */
+/* Checks the limits as soon as a block is made, not when all are made. */
 static cw_status check_made(sparse_plan *p, const cwi_leaf_block *b, cw_error *err)
 {
     const cw_extract_desc *d = p->desc;
@@ -224,8 +226,8 @@ static cw_status march_block(sparse_plan *p, cwi_leaf_block *b, worker *w, cw_er
 
 /* --- joining ------------------------------------------------------------------------------ */
 
-/* The number in the mesh of another block's vertex. That block cuts the same edge, so it was
- * kept and has the key; but for leaves that lie in each other. */
+/* Finds the number in the mesh of another block's vertex. That block cuts the same edge, so it
+ * was kept and has the key; only leaves that lie in each other are an exception. */
 static bool find_stranger(const sparse_plan *p, const cwi_leaf_block *b, const cwi_stranger *s,
                           uint32_t *number)
 {
@@ -247,7 +249,8 @@ static bool find_stranger(const sparse_plan *p, const cwi_leaf_block *b, const c
     return true;
 }
 
-/* Copies a block's own vertices to the mesh, and tells where all are there. */
+/* Copies a block's own vertices to the mesh, and finds the numbers of all its vertices
+ * there. */
 static bool place_vertices(const sparse_plan *p, const cwi_leaf_block *b, uint32_t *number)
 {
     const cwi_block_mesh *piece = &b->piece;
@@ -293,7 +296,7 @@ static cw_status join_block(sparse_plan *p, cwi_leaf_block *b, worker *w, cw_err
 
 /* --- all blocks --------------------------------------------------------------------------- */
 
-/* Cells of the block itself, without the halo, make triangles. */
+/* Marks the cells that make triangles: those of the block itself, without the halo. */
 static void set_live(cwi_bit_grid *g, size_t first)
 {
     const uint64_t bits = ((UINT64_C(1) << cells[0]) - 1) << first;
@@ -303,7 +306,8 @@ static void set_live(cwi_bit_grid *g, size_t first)
             g->live[k * g->rows_y + j] = bits;
 }
 
-/* What of a block's planes matters is the same for all blocks. */
+/* Sets the part of a block's planes that the extraction reads; it is the same for all
+ * blocks. */
 static cw_status set_window(cwi_bit_grid *g, size_t first, cw_error *err)
 {
     uint64_t *window = cwi_alloc_array(4 * g->rows, sizeof *window);
@@ -326,7 +330,7 @@ static cw_status set_window(cwi_bit_grid *g, size_t first, cw_error *err)
     return CW_OK;
 }
 
-/* A grid over the samples that are gathered. */
+/* Sets up a grid over the gathered samples. */
 static cw_status init_grid(const sparse_plan *p, worker *w, cw_error *err)
 {
     const cwi_gathering *from = &w->gathering;
@@ -402,7 +406,7 @@ typedef struct turn {
     cw_status (*work)(sparse_plan *p, cwi_leaf_block *b, worker *w, cw_error *err);
 } turn;
 
-/* After a thread's first failure it does no more. */
+/* Processes a block, unless the thread failed before. */
 static void do_block(void *context, size_t n)
 {
     const turn *t = context;
@@ -427,7 +431,7 @@ static cw_status each_block(sparse_plan *p, const char *step,
     return st;
 }
 
-/* Counts become first numbers. */
+/* Turns counts into first numbers. */
 static cw_status number_blocks(sparse_plan *p, cw_extract_counts *c, cw_error *err)
 {
     size_t v = 0, t = 0, seam = 0;
@@ -468,7 +472,7 @@ static cw_status join_blocks(sparse_plan *p, const cw_extract_counts *c, cw_mesh
     return st == CW_OK && missing ? cwi_mend_normals(mesh, cwi_voxel_scale(v), err) : st;
 }
 
-/* Everything but the joining of pieces. */
+/* Makes the pieces of all blocks, without joining them. */
 static cw_status march_blocks(sparse_plan *p, cw_mesh *mesh, cw_error *err)
 {
     const cw_volume *v = &p->whole.volume;

@@ -1,3 +1,5 @@
+/* Draws the modes of the CPU renderer, and blends a volume with the mesh in it by the mesh's
+ * depths. */
 #include "viewer/cpu/cpu_draw.h"
 
 #include "viewer/cpu/cpu_mesh.h"
@@ -50,7 +52,7 @@ static cw_status draw_volume(cwi_cpu *cpu, const cwi_frame *f, const double *dep
     return st;
 }
 
-/* Puts an opaque mesh behind what was drawn. */
+/* Puts an opaque mesh behind the volume drawn so far. */
 static void put_behind(const cw_picture *mesh, cw_picture *picture)
 {
     for (size_t p = 0; p < picture->width * picture->height; p++) {

@@ -1,4 +1,4 @@
-/* Pictures drawn by the CPU. */
+/* Draws pictures on the CPU. */
 #ifndef VIEWER_CPU_CPU_DRAW_H
 #define VIEWER_CPU_CPU_DRAW_H
 
@@ -9,7 +9,7 @@
 extern "C" {
 #endif
 
-/* What is kept for the next picture of the same volume. Zeroed: nothing. */
+/* State kept for the next picture of the same volume. Zeroed: nothing is kept. */
 typedef struct cwi_cpu {
     cw_volume key;
     cwi_ranges ranges; /* of key, when it has blocks */
@@ -17,8 +17,8 @@ typedef struct cwi_cpu {
 
 bool cwi_cpu_draws(cw_mode mode);
 
-/* Draws every sample of a frame into a zeroed picture.
- * Returns CW_ERR_UNSUPPORTED for a mode, or a way to draw meshes, that GL alone has */
+/* Draws every sample of a frame into a zeroed picture. Returns CW_ERR_UNSUPPORTED for a mode,
+ * or a way to draw meshes, that only GL has */
 CW_NODISCARD cw_status cwi_cpu_draw(cwi_cpu *cpu, const cwi_frame *frame, cw_picture *picture,
                                     cw_error *err);
 void cwi_cpu_forget(cwi_cpu *cpu);

@@ -1,3 +1,5 @@
+/* Draws the mode mesh on the CPU: turns the tint into colours of vertices, and calls
+ * cw_render_mesh(). */
 #include "viewer/cpu/cpu_mesh.h"
 
 #include "core/base/memory.h"
@@ -18,7 +20,7 @@ static bool is_clear(const cw_scene *s)
     return false;
 }
 
-/* Nothing that is asked for is left out silently. */
+/* Refuses settings that the CPU does not draw, so that none is ignored silently. */
 static cw_status check_frame(const cwi_frame *f, cw_error *err)
 {
     const cw_scene *s = &f->scene;
@@ -43,14 +45,14 @@ static void put_color(double value, const double range[2], uint8_t color[4])
     color[3] = 255;
 }
 
-/* Each vertex by its scalar. */
+/* Colours each vertex by its scalar. */
 static void tint_vertices(const double range[2], cw_mesh *m)
 {
     for (size_t v = 0; v < m->vertex_count; v++)
         put_color((double)m->scalars[v], range, m->colors + 4 * v);
 }
 
-/* Each triangle, with corners of its own, by its shape. */
+/* Colours each triangle, with corners of its own, by its shape. */
 static void tint_triangles(const cw_mesh *mesh, const double range[2], cw_mesh *m)
 {
     for (size_t n = 0; n < m->vertex_count; n++) {
@@ -63,7 +65,8 @@ static void tint_triangles(const cw_mesh *mesh, const double range[2], cw_mesh *
     }
 }
 
-/* A view of the mesh with the arrays that the tint makes anew; drop_tinted() frees those. */
+/* Makes a view of the mesh with its own arrays for the tint's colours; drop_tinted() frees
+ * those. */
 static cw_status make_tinted(const cw_scene *s, const double range[2], cw_mesh *m,
                              cw_error *err)
 {

@@ -1,4 +1,4 @@
-/* The mode mesh without GL. */
+/* Draws the mode mesh without GL. */
 #ifndef VIEWER_CPU_CPU_MESH_H
 #define VIEWER_CPU_CPU_MESH_H
 
@@ -10,10 +10,12 @@ extern "C" {
 
 /* Draws a frame's mesh by reference_mesh.c into a picture of the frame's size: opaque, whole,
  * in its colours or tints.
- * depth_mm  see cw_render_mesh_desc; may be NULL Colours are rounded to bytes. Returns
- * CW_ERR_UNSUPPORTED for what only GL draws: translucent meshes, planes that clip, edges, a
- * depth cue, lights and materials; CW_ERR_ARGUMENT as cwi_tint_range(); CW_ERR_NO_MEMORY;
- * CW_ERR_CANCELLED */
+ * Colours are rounded to bytes.
+ *
+ * depth_mm  see cw_render_mesh_desc; may be NULL
+ * Returns   CW_ERR_UNSUPPORTED for settings that only GL draws: translucent meshes, clip
+ *           planes, edges, a depth cue, lights and materials; CW_ERR_ARGUMENT as
+ *           cwi_tint_range(); CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
 CW_NODISCARD cw_status cwi_cpu_draw_mesh(const cwi_frame *frame, double *depth_mm,
                                          cw_picture *picture, cw_error *err);
 

@@ -1,3 +1,5 @@
+/* Draws intensity projections: walks each ray through the cells, and keeps the highest, lowest,
+ * mean or first local maximum of the value. */
 #include "viewer/cpu/intensity_projection.h"
 
 #include "viewer/cpu/ray_traversal.h"
@@ -7,7 +9,7 @@
 
 #include <math.h>
 
-/* What is known of a ray's value so far. */
+/* State of a ray's value so far. */
 typedef struct tally {
     bool has_value;
     double extreme;
@@ -19,7 +21,7 @@ typedef struct tally {
     double last;                 /* the highest value since it last fell */
 } tally;
 
-/* Values from 0 to 1 at the places where they turn, and at the ends; how many. */
+/* Computes values where they turn, from 0 to 1, and at the ends; returns their number. */
 static int turning_values(const double c[4], double values[4])
 {
     double turns[2];
@@ -74,7 +76,7 @@ static void add_mean(const cwi_walk *w, const double v[8], tally *t)
     t->has_value = true;
 }
 
-/* The end of a stretch is a maximum too, if values rise towards it. */
+/* Ends a stretch: its end is a maximum too, if values rise towards it. */
 static void end_stretch(tally *t)
 {
     if (t->is_under_way && t->last >= t->threshold)
@@ -82,8 +84,8 @@ static void end_stretch(tally *t)
     t->is_under_way = false;
 }
 
-/* Neighbouring cells agree on the value between them only but for rounding, which is
- * no fall. */
+/* Adds a cell for local-mip. Neighbouring cells agree on the value between them except for
+ * rounding, which is not a fall. */
 static void add_local(const cwi_walk *w, const double v[8], tally *t)
 {
     double c[4], values[4], rounding = 0;
@@ -118,9 +120,9 @@ static void add_cell(cw_mode mode, const cwi_walk *w, tally *t)
         add_local(w, v, t);
 }
 
-/* Whether a block of cells can be passed over: it has no values, or none that would be told. A
- * stretch of values goes on behind it, below the threshold as its end was, and so as if it
- * began there. */
+/* Returns true if a block of cells can be skipped: it has no values, or none that would change
+ * the result. A stretch of values continues behind it, below the threshold as its end was, as
+ * if it began there. */
 static bool is_passed_over(cw_mode mode, const float range[2], tally *t)
 {
     const double low = (double)range[0], high = (double)range[1];

@@ -10,14 +10,14 @@ extern "C" {
 #endif
 
 /* Draws CW_MODE_MIP, CW_MODE_MINIP, CW_MODE_AVERAGE and CW_MODE_LOCAL_MIP, as
- * cwi_reference_draw(). ranges: of the frame's volume, to pass over blocks; NULL: every cell is
- * looked at */
+ * cwi_reference_draw(). ranges: of the frame's volume, to skip blocks; NULL: every cell is
+ * visited */
 CW_NODISCARD cw_status cwi_intensity_draw(const cwi_frame *frame, const cwi_ranges *ranges,
                                           const double *depths, cw_picture *picture,
                                           cw_error *err);
 
-/* The value of the frame's mode along the ray through a point of the picture; NaN where it
- * meets none. */
+/* Returns the value of the frame's mode along the ray through a point of the picture; NaN where
+ * the ray meets no value. */
 double cwi_intensity_ray(const cwi_frame *frame, const cwi_ranges *ranges, double x, double y,
                          double depth);
 

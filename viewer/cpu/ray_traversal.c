@@ -1,3 +1,5 @@
+/* Walks a ray from cell to cell, and finds the field's values, gradients and cubics along
+ * it. */
 #include "viewer/cpu/ray_traversal.h"
 #include "viewer/scene/cell_lattice.h"
 
@@ -42,8 +44,8 @@ void cwi_walk_start(cwi_walk *w, const cwi_frame *f, const cwi_ray *ray, int par
     }
 }
 
-/* The cell at w->t along an axis: rounding never takes a ray back to a cell it has left, or it
- * might go to and fro for good. */
+/* Returns the cell at w->t along an axis. Rounding never takes a ray back to a cell it has
+ * left; else it might go back and forth forever. */
 static ptrdiff_t cell_after(const cwi_walk *w, int axis)
 {
     const ptrdiff_t most = cells_along(w->volume, axis) - 1, before = w->cell[axis];
@@ -81,7 +83,7 @@ void cwi_walk_leap(cwi_walk *w, int edge, int distance)
         w->t = w->stop;
 }
 
-/* The stored numbers at the corners, from the address of the first. */
+/* Reads the stored numbers at the corners, from the address of the first. */
 static void read_corners(const cw_volume *volume, const char *p, double x[8])
 {
     ptrdiff_t side[3];
@@ -120,7 +122,8 @@ bool cwi_walk_values(const cwi_walk *w, double v[8])
     return none == 0;
 }
 
-/* Along x, which makes a line of each edge, then y and z, each of which raises the degree. */
+/* Interpolates along x, which makes a line of each edge, then along y and z, each of which
+ * raises the degree. */
 void cwi_walk_cubic(const cwi_walk *w, const double v[8], double c[4])
 {
     double s[3], d[3], line[4][2], q[2][3];

@@ -14,7 +14,7 @@
 extern "C" {
 #endif
 
-/* About the samples that a ray meets: what work on a row of the picture is worth. */
+/* About the number of samples that a ray meets: the estimated work for a row of the picture. */
 enum { CWI_RAY_SAMPLES = 512 };
 
 /* A ray of the picture and the parts of it that are drawn, in units of eye space along it. */
@@ -25,8 +25,8 @@ typedef struct cwi_ray {
     int part_count;
 } cwi_ray;
 
-/* The ray through a point of the picture, as cwi_frame_ray(); nothing of it is drawn beyond a
- * depth (INFINITY: all is). */
+/* Makes the ray through a point of the picture, as cwi_frame_ray(); nothing of it is drawn
+ * beyond a depth (INFINITY: all is drawn). */
 void cwi_ray_make(const cwi_frame *frame, double x, double y, double depth, cwi_ray *ray);
 
 /* A walk from cell to cell. An axis of one voxel has one cell, from -0.5 to 0.5. */
@@ -43,8 +43,8 @@ typedef struct cwi_walk {
 
 void cwi_walk_start(cwi_walk *walk, const cwi_frame *frame, const cwi_ray *ray, int part);
 
-/* Where the ray leaves the cell along an axis. Planes are found from their number, not from the
- * plane before: nothing adds up. */
+/* Returns where the ray leaves the cell along an axis. Planes are computed from their number,
+ * not from the plane before: errors do not add up. */
 static inline double cwi_walk_plane(const cwi_walk *w, int axis)
 {
     const double plane = (double)(w->cell[axis] + (w->slope[axis] > 0));
@@ -53,8 +53,9 @@ static inline double cwi_walk_plane(const cwi_walk *w, int axis)
                : (plane - w->index[axis]) * w->inverse[axis];
 }
 
-/* The next cell, of which more than a point is met; false: there is none. Rounding may put the
- * start behind a plane it is close to: cells met for no length at all are passed over. */
+/* Goes to the next cell, of which more than a point is met; returns false if there is none.
+ * Rounding may put the start behind a plane it is close to: cells of zero length are
+ * skipped. */
 static inline bool cwi_walk_next(cwi_walk *w)
 {
     while (w->t < w->stop) {
@@ -77,8 +78,8 @@ static inline bool cwi_walk_next(cwi_walk *w)
     return false;
 }
 
-/* The number of the block of CWI_RANGE_EDGE cells a side that the next cell is in, of a lattice
- * of dim of them; and whether that is another one than the cell that was found is in. */
+/* Returns the number of the block that the next cell is in, in a lattice of dim blocks of
+ * CWI_RANGE_EDGE cells a side; and whether that is not the block of the current cell. */
 static inline size_t cwi_walk_block(const cwi_walk *w, const size_t dim[3])
 {
     const size_t i = (size_t)w->cell[0] / CWI_RANGE_EDGE,
@@ -92,20 +93,20 @@ static inline bool cwi_walk_changes_block(const cwi_walk *w)
     return (w->cell[w->leave] ^ w->at[w->leave]) & CWI_RANGE_EDGE;
 }
 
-/* Out of blocks of edge cells a side that are empty: that of the next cell, and those around it
- * less than distance blocks away along every axis. */
+/* Leaves empty blocks of `edge` cells a side: the block of the next cell, and those around it
+ * less than `distance` blocks away along every axis. */
 void cwi_walk_leap(cwi_walk *walk, int edge, int distance);
 
-/* The values at the cell's corners, bit a of their number along axis a. False when one of them
- * has none: then the cell is empty. */
+/* Reads the values at the cell's corners; bit a of a corner's number is its place along axis a.
+ * Returns false when one of them has no value: then the cell is empty. */
 bool cwi_walk_values(const cwi_walk *walk, double v[8]);
 
-/* The field on the walk's part of the ray: c[0] + c[1] x + c[2] x^2 + c[3] x^3, x from 0
- * to 1. */
+/* Computes the field on the walk's part of the ray: c[0] + c[1] x + c[2] x^2 + c[3] x^3, x from
+ * 0 to 1. */
 void cwi_walk_cubic(const cwi_walk *walk, const double v[8], double c[4]);
 
-/* The gradient at the cell's corners, per voxel: central differences, one-sided at the border;
- * 0 where a neighbour has no value and along an axis of one voxel. */
+/* Computes the gradient at the cell's corners, per voxel: central differences, one-sided at the
+ * border; 0 where a neighbour has no value, and along an axis of one voxel. */
 void cwi_walk_gradients(const cwi_walk *walk, double g[3][8]);
 
 #ifdef __cplusplus

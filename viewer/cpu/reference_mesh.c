@@ -1,6 +1,6 @@
-/* A z-buffer in double precision. Vertices are projected once; then bands of rows are drawn
- * independently, each by one thread: first the nearest triangle of every sample, then its
- * shade.
+/* Draws a mesh by a z-buffer in double precision. Vertices are projected once; then bands of
+ * rows are drawn independently, each by one thread: first the nearest triangle of every sample,
+ * then its shade.
  *
  * Coordinates are rounded to 1/256 of a sample, as GPUs do. Within a range of 2^17 samples the
  * edge functions of such points are exact in double, and with the top-left rule every sample of
@@ -63,7 +63,6 @@ typedef struct facet {
     double normal[3]; /* for shading */
 } facet;
 
-/* A vector without length stays as it is. */
 static double snap_to_grid(double x)
 {
     return nearbyint(x * 256) / 256;
@@ -111,7 +110,8 @@ static int behind_count(const scene *s, const point p[3])
     return is_behind(s, &p[0]) + is_behind(s, &p[1]) + is_behind(s, &p[2]);
 }
 
-/* The samples whose middles lie between two coordinates, cut to a picture of that size. */
+/* Returns the samples whose middles lie between two coordinates, within a picture of that
+ * size. */
 static span sample_span(double low, double high, int size)
 {
     return (span){(int32_t)fmin(fmax(ceil(low - 0.5), 0), size),
@@ -128,7 +128,7 @@ static double max_of_three(double a, double b, double c)
     return fmax(fmax(a, b), c);
 }
 
-/* A triangle that crosses the near plane may be anywhere. */
+/* Returns the rows of a triangle. A triangle that crosses the near plane may be anywhere. */
 static span rows_of(const scene *s, size_t t)
 {
     point p[3];
@@ -167,7 +167,7 @@ static void make_homogeneous(const scene *s, const point p[3], facet *f, double 
     }
 }
 
-/* False for a triangle seen edge-on. */
+/* Sets up a facet; returns false for a triangle seen edge-on. */
 static bool set_up_facet(const scene *s, size_t t, const point p[3], facet *f)
 {
     double v[3][3];
@@ -199,7 +199,7 @@ static bool is_inside(const facet *f, const double e[3])
     return true;
 }
 
-/* Edge functions at a sample to shares of the corners, which sum to 1. */
+/* Converts edge functions at a sample to weights of the corners, which sum to 1. */
 static void find_weights(const facet *f, const double e[3], double share[3])
 {
     const double b[3] = {e[0] * f->weight[0], e[1] * f->weight[1], e[2] * f->weight[2]};
@@ -243,7 +243,7 @@ static void draw_band(const scene *s, int first, int last, hit *hits)
     }
 }
 
-/* The triangle's own normal, on the side that is seen. */
+/* Computes the triangle's own normal, on the visible side. */
 static void facet_normal(const cw_mesh *mesh, facet *f)
 {
     double side[2][3];
@@ -256,8 +256,8 @@ static void facet_normal(const cw_mesh *mesh, facet *f)
     cwi_to_unit(f->normal);
 }
 
-/* The vertices' normals, turned to the side that is seen: both sides are lit, and neither a
- * wrong winding nor wrong normals make a surface black. */
+/* Interpolates the vertices' normals, turned to the visible side. Both sides are lit, and
+ * neither a wrong winding nor wrong normals make a surface black. */
 static void surface_normal(const cw_mesh *mesh, const facet *f, const double share[3],
                            double n[3])
 {
@@ -274,7 +274,7 @@ static void surface_normal(const cw_mesh *mesh, const facet *f, const double sha
     cwi_to_unit(n);
 }
 
-/* Linear colour of the surface itself; its inside is redder and darker. */
+/* Computes the linear colour of the surface itself; its inside is redder and darker. */
 static void surface_color(const scene *s, const facet *f, const double share[3], double rgb[3])
 {
     static const double inside[3] = {0.75, 0.22, 0.17};
@@ -289,7 +289,7 @@ static void surface_color(const scene *s, const facet *f, const double share[3],
     }
 }
 
-/* From the surface to the eye. */
+/* Computes the direction from the surface to the eye. */
 static void to_eye(const scene *s, double x, double y, double v[3])
 {
     const double u = (x - s->width / 2.0) / s->scale, w = (s->height / 2.0 - y) / s->scale;
@@ -298,8 +298,9 @@ static void to_eye(const scene *s, double x, double y, double v[3])
     cwi_to_unit(v);
 }
 
-/* Diffuse light from the eye and, softer, from above its left shoulder; a little from
- * everywhere, more from above; a faint highlight [Blinn1977]. The README gives the formula. */
+/* Shades a sample: diffuse light from the eye and, softer, from above its left shoulder; a
+ * little from everywhere, more from above; a faint highlight [Blinn1977]. The README gives the
+ * formula. */
 static void shade_sample(const scene *s, const facet *f, double x, double y, double rgb[3])
 {
     double e[3], share[3], n[3], v[3], h[3];
@@ -328,8 +329,8 @@ static void background_at(const scene *s, size_t row, uint8_t rgba[4])
             (uint8_t)lround((1 - t) * s->d->background[0][a] + t * s->d->background[1][a]);
 }
 
-/* Sums the surface's samples of a pixel, in linear light; returns how many there are. The facet
- * is kept from call to call: neighbouring samples mostly lie on one triangle. */
+/* Sums the surface's samples of a pixel, in linear light; returns their number. The facet is
+ * kept from call to call: neighbouring samples mostly lie on one triangle. */
 static int sum_samples(const scene *s, const hit *hits, int x0, int y0, facet *f, double sum[3])
 {
     const int n = s->d->samples;
@@ -354,7 +355,7 @@ static int sum_samples(const scene *s, const hit *hits, int x0, int y0, facet *f
     return covered;
 }
 
-/* The rest of the pixel is background, weighed by its alpha. */
+/* Writes a pixel; the part without samples is background, weighted by its alpha. */
 static void put_pixel(const scene *s, const double sum[3], int covered, const uint8_t back[4],
                       uint8_t *pixel)
 {
@@ -412,8 +413,9 @@ static void draw_one_band(const scene *s, int band, hit *hits, cw_image *image)
     shade_band(s, first, rows, hits, image);
 }
 
-/* Only the calling thread reports; once it is told to stop, bands are left out. It may get no
- * band while the others work, so it is asked once more at the end. */
+/* Draws all bands. Only the calling thread reports progress; when it is asked to stop, other
+ * bands are left out. It may get no band while the others work, so it reports once more at the
+ * end. */
 static cw_status draw_bands(const scene *s, hit *hits, size_t band_hits, cw_image *image,
                             cw_error *err)
 {

@@ -1,9 +1,10 @@
-/* Along a ray light changes by  dC = tau c T ds,  dT = -tau T ds  [Max1995], tau the extinction
- * and c the colour of the value there. A ray is cut at the faces of cells and where the value
- * meets a knot of the transfer function; between cuts all of it is smooth. There, Gauss's
- * points: optical depth and light by the integrals of the polynomials through the integrands,
- * which is the collocation method of order 8 of [Kuntzmann1961] and [Butcher1964]. A piece that
- * differs by too much from its halves is replaced by them, and so on. */
+/* Integrates the light along a ray: dC = tau c T ds, dT = -tau T ds [Max1995], tau the
+ * extinction and c the colour of the value there. A ray is cut at the faces of cells and where
+ * the value meets a breakpoint of the transfer function; between cuts all functions are smooth.
+ * There it uses Gauss's points: optical depth and light are the integrals of the polynomials
+ * through the integrands. That is the collocation method of order 8 of [Kuntzmann1961] and
+ * [Butcher1964]. A piece that differs too much from its halves is replaced by them, and so
+ * on. */
 #include "viewer/cpu/reference_volume.h"
 
 #include "viewer/cpu/ray_traversal.h"
@@ -17,16 +18,17 @@
 #include <math.h>
 #include <string.h>
 
-/* Of a whole ray; of a piece, whatever its length: at a jump in the gradients' factor the
- * estimate falls only as fast as pieces get shorter. */
+/* Tolerances of a whole ray, and of a piece, whatever its length: at a jump in the gradients'
+ * factor the estimate falls only as fast as pieces get shorter. */
 static const double tolerance = 1e-8, piece_tolerance = 1e-13;
 
-/* A ray ends when so little light is left. */
+/* The light at which a ray ends. */
 static const double dark = 1e-10;
 
 enum { MOST_HALVINGS = 40 };
 
-/* A polynomial through one point's 1 and the others' 0, and its integral up to x. */
+/* Returns the integral, up to x, of the polynomial that is 1 at one point and 0 at the
+ * others. */
 static double inner_weight(const double at[CWI_NODES], int node, double x)
 {
     double p[CWI_NODES + 1] = {1}, sum = 0;
@@ -43,7 +45,7 @@ static double inner_weight(const double at[CWI_NODES], int node, double x)
     return sum;
 }
 
-/* The roots of Legendre's polynomial of degree 4, 35 x^4 - 30 x^2 + 3. */
+/* Makes the rule from the roots of Legendre's polynomial of degree 4, 35 x^4 - 30 x^2 + 3. */
 static void make_rule(cwi_rule *r)
 {
     const double inside = sqrt((30 - sqrt(480)) / 70), outside = sqrt((30 + sqrt(480)) / 70);
@@ -66,7 +68,7 @@ void cwi_reference_make(const cwi_frame *frame, cwi_reference *r)
     r->has_gradients = frame->scene.lit || frame->transfer.gradient_count > 0;
 }
 
-/* What a ray meets in a cell; x goes from 0 to 1. */
+/* The medium that a ray meets in a cell; x goes from 0 to 1. */
 typedef struct medium {
     const cwi_reference *reference;
     const cwi_lighting *lighting;
@@ -76,7 +78,7 @@ typedef struct medium {
     const cwi_linear *linear; /* the piece's part of the transfer function */
 } medium;
 
-/* Light that came through a piece, and what the piece adds. */
+/* Light that came through a piece, and light that the piece adds. */
 typedef struct passage {
     double color[3], depth; /* optical */
 } passage;
@@ -91,7 +93,7 @@ static double clamp_number(double x, double low, double high)
     return x < low ? low : x > high ? high : x;
 }
 
-/* Extinction and colour at a point. */
+/* Computes extinction and colour at a point. */
 static double emitted_color(const medium *m, double x, double color[3])
 {
     const cwi_frame *f = m->reference->frame;
@@ -221,7 +223,7 @@ static void add_cell(medium *m, const cwi_walk *w, const cwi_ray *ray, sum *s)
     }
 }
 
-/* y is down; the background's first colour is on top. */
+/* Computes the background's colour. y is down; the background's first colour is on top. */
 static void background_at(const cwi_frame *f, double y, double color[3])
 {
     const double share = y / (double)f->scene.height;

@@ -1,5 +1,5 @@
-/* The volume rendering integral of a scene, in double precision and to an error that is
- * estimated: what faster modes are measured against. */
+/* The volume rendering integral of a scene, in double precision and to an estimated error: the
+ * reference for faster modes. */
 #ifndef VIEWER_CPU_REFERENCE_VOLUME_H
 #define VIEWER_CPU_REFERENCE_VOLUME_H
 
@@ -27,13 +27,13 @@ typedef struct cwi_reference {
 
 void cwi_reference_make(const cwi_frame *frame, cwi_reference *reference);
 
-/* The ray through a point of the picture up to a depth (INFINITY: all of it): colour,
- * premultiplied, and opacity. Returns the estimate of their largest error. */
+/* Integrates the ray through a point of the picture up to a depth (INFINITY: all of it):
+ * colour, premultiplied, and opacity. Returns an estimate of their largest error. */
 double cwi_reference_ray(const cwi_reference *reference, double x, double y, double depth,
                          double out[4]);
 
-/* Draws a frame.
- * depths    of the mesh in front of which everything is, a sample each; NULL: there is none
+/* Draws a frame. one per sample, of the mesh that the volume is in front of; NULL: there is
+ * none
  * estimate  the largest error of a sample, but for rounding to floats; may be NULL
  * Returns   CW_ERR_NO_MEMORY; CW_ERR_CANCELLED */
 CW_NODISCARD cw_status cwi_reference_draw(const cwi_frame *frame, const double *depths,

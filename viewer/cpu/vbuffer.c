@@ -1,9 +1,8 @@
-/* The V-buffer [Upson1988] went through the picture cell by cell; this goes along a ray cell by
- * cell. In a cell it takes Gauss's two points, four values at a time: the trilinear field at
- * both ends of the cell and at both points. Where these tell that the transfer function has a
- * knot between them, or that the cell takes much of the light, the cell is cut, as the
- * reference does it. Blocks of cells that the transfer function leaves empty are
- * passed over. */
+/* Casts rays cell by cell; the V-buffer [Upson1988] went through the picture cell by cell. In a
+ * cell it takes Gauss's two points, four values at a time: the trilinear field at both ends of
+ * the cell and at both points. If these show that the transfer function has a breakpoint
+ * between them, or that the cell takes much of the light, the cell is cut, as in the reference.
+ * Blocks of cells that the transfer function leaves empty are skipped. */
 #include "viewer/cpu/vbuffer.h"
 
 #include "viewer/cpu/ray_traversal.h"
@@ -24,28 +23,30 @@
 typedef float lanes __attribute__((vector_size(16)));
 typedef int32_t int_lanes __attribute__((vector_size(16)));
 
-/* Two points of 0..1, both of weight 1/2, and how much of what is at the other one is taken for
- * the way to a point: 1/4 -+ sqrt(3) / 6. */
+/* Two points of 0..1, both of weight 1/2. The way to a point takes this fraction of the value
+ * at the other point: 1/4 -+ sqrt(3) / 6. */
 #define FIRST_POINT  0.21132486540518713
 #define SECOND_POINT 0.78867513459481287
 static const float to_first = -0.038675134594812866f, to_second = 0.53867513459481287f;
 
-/* Optical depth that two points are enough for. */
+/* Maximum optical depth for which two points are enough. */
 static const float most_depth = 0.5f;
 
-/* What the extinction may differ by at two points of a piece, times its length. */
+/* The maximum difference of the extinction at two points of a piece, times the piece's
+ * length. */
 static const float most_steepness = 0.1f;
 
-/* What the two points may differ by, where gradients count. */
+/* The maximum difference of the two points, where gradients count. */
 static const float most_turn = 2e-3f;
 
 typedef struct vbuffer vbuffer;
 
-/* Eight corners of a cell, those of even number and those of odd; false: one has no value. */
+/* Fetches eight corners of a cell, those of even and those of odd number; false: one has no
+ * value. */
 typedef bool fetch_function(const vbuffer *b, const char *p, lanes *even, lanes *odd);
 
-/* For each row of the table (and what is below the first and above the last) the lowest and the
- * highest part of the transfer function that its values have. */
+/* For each row of the table, and the values below the first and above the last, the lowest and
+ * the highest part of the transfer function that its values have. */
 typedef struct row_parts {
     uint8_t low, high;
 } row_parts;
@@ -102,7 +103,7 @@ typedef struct state {
 CW_TYPE_TABLE(FETCH)
 #undef FETCH
 
-/* Packed along x, and every number that is one counts. */
+/* Fetches floats packed along x, where every number that is not NaN counts. */
 static bool fetch_floats(const vbuffer *b, const char *p, lanes *even, lanes *odd)
 {
     const float *r0 = (const float *)p, *r1 = (const float *)(p + b->side[1]),
@@ -141,7 +142,8 @@ static inline lanes spread_lanes(float x)
     return (lanes){x, x, x, x};
 }
 
-/* exp(-x), to 2e-7 of itself: 2^n times a polynomial for 2^f, f from -1/2 to 1/2. */
+/* Returns exp(-x), to a relative error of 2e-7: 2^n times a polynomial for 2^f, f from -1/2 to
+ * 1/2. */
 static inline lanes fade_lanes(lanes x)
 {
     const int_lanes few = x < 80.0f;
@@ -156,7 +158,7 @@ static inline lanes fade_lanes(lanes x)
     return p * (lanes)((n + 127) << 23);
 }
 
-/* The field at four places of a line, as rows of the table. */
+/* Interpolates the field at four places of a line, as rows of the table. */
 static inline lanes rows_along(lanes even, lanes odd, const lanes at[3])
 {
     const lanes rise = odd - even;
@@ -200,8 +202,8 @@ static void change_by_depth(const state *s, double x, lanes *glow)
         (*glow)[c] = cue * (*glow)[c] + (1 - cue) * s->background[c];
 }
 
-/* What a point glows with, of which the transfer function told. x: its place in the cell, 0 to
- * 1; gradient: in eye space, if there is need of it */
+/* Changes the glow of a point, as the transfer function gave it, by gradient and depth. x: its
+ * place in the cell, 0 to 1; gradient: in eye space, if it is needed */
 static inline lanes finish_cell(const state *s, double x, const double gradient[3], lanes glow)
 {
     if (s->b->has_gradients)
@@ -211,8 +213,8 @@ static inline lanes finish_cell(const state *s, double x, const double gradient[
     return glow;
 }
 
-/* A stretch of a length by what is at its two points. What it adds is as opaque as its depth
- * says, which is exact for more than what the points alone would add up to; they tell the
+/* Passes a segment of a length by the values at its two points. Its opacity is that of its
+ * optical depth, which is more exact than the sum over the points alone; the points give the
  * colour. */
 static inline void pass_segment(state *s, lanes first, lanes second, float length)
 {
@@ -227,7 +229,7 @@ static inline void pass_segment(state *s, lanes first, lanes second, float lengt
     s->light *= left[2];
 }
 
-/* A point of a piece, by the transfer function itself. */
+/* Computes the glow at a point of a piece, by the transfer function itself. */
 static lanes glow_of_piece(const state *s, const cwi_linear *l, const double value[4], double x)
 {
     double v = cwi_cubic_at(value, x);
@@ -243,7 +245,7 @@ static lanes glow_of_piece(const state *s, const cwi_linear *l, const double val
     return finish_cell(s, x, gradient, glow);
 }
 
-/* Whether two points tell of a stretch well enough. Light may turn within a cell. */
+/* Returns true if two points represent a segment well enough. Light may turn within a cell. */
 static inline bool is_told(const state *s, lanes first, lanes second, float length)
 {
     const float depth = (first[3] + second[3]) * 0.5f * length;
@@ -257,7 +259,7 @@ static inline bool is_told(const state *s, lanes first, lanes second, float leng
     return s->light * most < most_turn;
 }
 
-/* A piece, in parts where two points do not tell of it. */
+/* Passes a piece, in parts where two points do not represent it. */
 static void pass_piece(state *s, const cwi_transfer_segment *piece, const double value[4])
 {
     const float length = (float)(s->walk.to - s->walk.from);
@@ -294,7 +296,7 @@ static void find_gradients(state *s)
                                 s->b->to_eye[a][2] * cubic[2][n];
 }
 
-/* A cell with a knot in it. */
+/* Passes a cell with a breakpoint in it. */
 static void pass_in_pieces(state *s)
 {
     cwi_transfer_segment pieces[CWI_PIECES];
@@ -310,8 +312,9 @@ static void pass_in_pieces(state *s)
             pass_piece(s, &pieces[n], value);
 }
 
-/* Gradients at the cell's corners, per voxel and in rows, as values are: by the cells on both
- * sides along each axis. False: there is none on one side, or one without a value. */
+/* Fetches gradients at the cell's corners, per voxel and in rows, as values are: by the cells
+ * on both sides along each axis. Returns false if a cell is missing on one side, or has no
+ * value. */
 static bool fetch_gradients(const vbuffer *b, const cwi_walk *w, const char *p, lanes even,
                             lanes odd, lanes g[3][2])
 {
@@ -335,7 +338,7 @@ static bool fetch_gradients(const vbuffer *b, const cwi_walk *w, const char *p, 
     return true;
 }
 
-/* The gradients at the two points of a cell, in eye space. */
+/* Computes the gradients at the two points of a cell, in eye space. */
 static void gradients_at_points(state *s, const char *p, lanes even, lanes odd,
                                 const lanes at[3], double gradients[2][3])
 {
@@ -365,9 +368,9 @@ static inline const row_parts *parts_of(const vbuffer *b, float row)
     return &b->parts[(int32_t)(at > 0 ? at < most ? at : most : 0)];
 }
 
-/* The values a cell may have along the ray. Where they turn, the cubic goes farther than at the
- * four places: a parabola by half the difference, by little if it turns close to an end; a
- * rough cubic by more. */
+/* Estimates the range of values of a cell along the ray. Where they turn, the cubic goes
+ * farther than at the four places. For a parabola that is half the difference, and little if it
+ * turns close to an end; for a rough cubic it is more. */
 static inline void range_of(lanes rows, float *low, float *high)
 {
     *low = *high = rows[0];
@@ -467,11 +470,12 @@ static void draw_row(void *context, size_t y)
         draw_pixel(b, x, y);
 }
 
-/* Rows of the table stand at evenly spaced values; a part begins at its knot. */
+/* Finds the parts of rows. Rows of the table stand at evenly spaced values; a part begins at
+ * its breakpoint. */
 static void find_parts(vbuffer *b)
 {
     const double step = (b->table.high - b->table.low) / (CWI_TABLE_ROWS - 1);
-    size_t before = 0; /* knots below the row's end */
+    size_t before = 0; /* breakpoints below the row's end */
     for (size_t n = 0; n <= CWI_TABLE_ROWS; n++) {
         const double begin = b->table.low + ((double)n - 1) * step,
                      end = b->table.low + (double)n * step;

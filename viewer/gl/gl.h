@@ -4,7 +4,7 @@
 
 #include "viewer/scene/frame_setup.h"
 
-typedef struct cwi_gl cwi_gl; /* a context, and what was uploaded to it */
+typedef struct cwi_gl cwi_gl; /* a context, and the data uploaded to it */
 
 typedef struct cwi_gl_functions {
     cw_status (*open)(cwi_gl **gl, cw_error *err); /* by EGL, without a display */

@@ -1,4 +1,4 @@
-/* What shaders are told of a volume, and voxels that they read where the caller has them. */
+/* Sets a volume's uniforms for shaders, and lets them read voxels in the caller's memory. */
 #include "viewer/gl/gl_internal.h"
 
 #include "core/volume/volume.h"
@@ -12,13 +12,15 @@ bool cwi_gl_is_packed(const cw_volume *v)
            v->stride[2] == v->stride[1] * (ptrdiff_t)v->dim[1];
 }
 
-/* Signed ones become the texels that textures have of them. */
+/* Returns true for voxels that can be fetched. Signed ones become the texels that textures have
+ * of them. */
 static bool is_fetched(const cw_volume *v, const cwi_gl_texels *kind)
 {
     return (kind->as_is || (v->type == CW_I16 && !v->has_nodata)) && cwi_gl_is_packed(v);
 }
 
-/* Mesa's software renderer reads any memory of the process as a buffer. */
+/* Returns true if voxels can be read in place: Mesa's software renderer reads any memory of the
+ * process as a buffer. */
 static bool can_find(const cwi_gl *gl, size_t count)
 {
     GLint most = 0;
@@ -59,7 +61,7 @@ const char *cwi_gl_volume_defines(const cwi_gl_volume *g)
                                    : "#define IN_PLACE\n";
 }
 
-/* From a voxel to the next along each axis; 0 where there is one only. */
+/* Sets the steps from a voxel to the next along each axis; 0 where there is only one. */
 static void set_steps(GLuint program, const size_t dim[3])
 {
     const size_t steps[3] = {1, dim[0], dim[0] * dim[1]};

@@ -26,7 +26,7 @@ static EGLDisplay first_device(void)
     return eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, NULL);
 }
 
-/* Reports of a lost context are asked for where there are such. */
+/* Makes a context that reports its loss, where that is supported. */
 static EGLContext make_context(EGLDisplay display)
 {
     const EGLint wanted[] = {

@@ -1,5 +1,4 @@
-/* An OpenGL context without a display: of what draws volumes, and of windows that
- * nobody sees. */
+/* An OpenGL context without a display, for drawing volumes and for hidden windows. */
 #ifndef VIEWER_GL_GL_CONTEXT_H
 #define VIEWER_GL_GL_CONTEXT_H
 
@@ -20,21 +19,23 @@ typedef struct cwi_gl_context {
     } before; /* the caller's, while this one draws */
 } cwi_gl_context;
 
-/* Opens one; it is current afterwards, as after enter(). CW_ERR_UNSUPPORTED: what to install */
+/* Opens a context; it is current afterwards, as after enter(). CW_ERR_UNSUPPORTED: the message
+ * names the package to install */
 CW_NODISCARD cw_status cwi_gl_context_open(cwi_gl_context *context, cw_error *err);
 void cwi_gl_context_close(cwi_gl_context *context);
 
-/* The caller may have a context of its own on this thread: it comes back by leave(). */
+/* Makes the context current. The caller may have a context of its own on this thread: leave()
+ * restores it. */
 bool cwi_gl_context_enter(cwi_gl_context *context);
 void cwi_gl_context_leave(cwi_gl_context *context);
 
-/* libepoxy ends the process where it finds no OpenGL: ask before anything else of it. */
+/* Checks that OpenGL exists. libepoxy ends the process where it finds none: call this first. */
 CW_NODISCARD cw_status cwi_gl_is_there(cw_error *err);
 
 /* The rest is of the current context. "OpenGL 4.5, llvmpipe ..." */
 void cwi_gl_describe(char *name, size_t size);
 
-/* GL's errors since the last look, and a lost context. */
+/* Reports GL's errors since the last check, and a lost context. */
 CW_NODISCARD cw_status cwi_gl_check(cw_error *err);
 
 #endif

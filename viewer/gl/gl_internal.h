@@ -1,5 +1,5 @@
-/* What the files of the GL module share: the context, what was uploaded to it, and
- * the modes. */
+/* Types and functions that the files of the GL module share: the context, the data uploaded to
+ * it, and the modes. */
 #ifndef VIEWER_GL_GL_INTERNAL_H
 #define VIEWER_GL_GL_INTERNAL_H
 
@@ -8,7 +8,7 @@
 #include "viewer/scene/block_ranges.h"
 #include "viewer/scene/transfer_table.h"
 
-/* Texture units that every shader finds the same things in. */
+/* Texture units that are the same for every shader. */
 enum {
     CWI_UNIT_VOLUME,
     CWI_UNIT_TABLE,    /* cwi_table, CWI_TABLE_ROWS x 1 */
@@ -20,7 +20,7 @@ enum {
     CWI_UNIT_FREE    /* and those after it: a mode's own */
 };
 
-/* How texels are made of voxels. */
+/* Format of texels, and their relation to voxels. */
 typedef struct cwi_gl_texels {
     GLenum inner, type;
     size_t size;
@@ -41,7 +41,7 @@ typedef struct cwi_gl_volume {
     size_t edge;   /* as the scene had it */
     cwi_gl_texels kind;
     double scale, bias;
-    double range; /* of the scaled values, above 0; gradients are told in it */
+    double range; /* of the scaled values, above 0; the unit of gradients */
     size_t brick_count;
     size_t texture_bytes; /* counted as taken */
     cwi_gl_brick *bricks;
@@ -57,26 +57,26 @@ typedef struct cwi_gl_transfer {
     cwi_table table;
     GLuint rows, skip, segments, factor;
     size_t segment_rows;   /* a side of segments */
-    uint8_t *away;         /* what skip holds */
-    double segment_length; /* of what segments holds; 0: nothing */
+    uint8_t *away;         /* the content of skip */
+    double segment_length; /* of the content of segments; 0: nothing */
     double factor_end;     /* gradient per unit of eye space at the end of factor */
 } cwi_gl_transfer;
 
 enum { CWI_FACTOR_ROWS = 1024, CWI_GL_PROGRAMS = 64 };
 
-/* Where pictures are drawn: RGBA and depth textures of the picture's size. */
+/* Target of drawing: RGBA and depth textures of the picture's size. */
 typedef struct cwi_gl_target {
     GLuint framebuffer, color, depth;
     GLuint rays; /* the same color without depth, which shaders may then read */
     GLsizei width, height;
 } cwi_gl_target;
 
-/* How the scene's progress is asked while a picture is drawn. */
+/* State of progress reports while a picture is drawn. */
 typedef struct cwi_gl_watch {
     cw_progress progress; /* report: NULL when the scene has none */
     bool is_astray;       /* the context could not be made current again after a report */
     double last;          /* when the last report was, in seconds */
-    double from, to;      /* shares of the picture: of what is being drawn */
+    double from, to;      /* fractions of the picture: of the part that is being drawn */
     size_t rows, layer_rows, triangles; /* to draw before the next report */
 } cwi_gl_watch;
 
@@ -105,7 +105,7 @@ struct cwi_gl {
 typedef struct cwi_gl_mode {
     cw_mode mode;
     bool goes_along_rays; /* draws into target.rays */
-    /* Of the mode's state, made at the first call. The frame is gl->frame. */
+    /* Draws by the mode's state, which is made at the first call. The frame is gl->frame. */
     cw_status (*draw)(cwi_gl *gl, void **state, cw_error *err);
     /* Frees it, when another volume or mesh comes and at the end; NULL: there is none. */
     void (*drop)(void *state);
@@ -116,15 +116,15 @@ extern const cwi_gl_mode cwi_gl_composite, cwi_gl_mip, cwi_gl_minip, cwi_gl_aver
     cwi_gl_local_mip, cwi_gl_mesh_mode, cwi_gl_projection, cwi_gl_slices, cwi_gl_splat,
     cwi_gl_splat_tree, cwi_gl_texture_mode, cwi_gl_shaded_texture;
 
-/* Makes the context this thread's, until cwi_gl_leave() puts back what was there; false when it
- * was lost. */
+/* Makes the context this thread's, until cwi_gl_leave() restores the previous one. Returns
+ * false when it was lost. */
 bool cwi_gl_enter(cwi_gl *gl);
 void cwi_gl_leave(cwi_gl *gl);
 
 /* Starts asking the frame's progress again. */
 void cwi_gl_start_watch(cwi_gl *gl);
 
-/* Frees what was made of a volume, a mesh and a transfer function. */
+/* Frees the data made from a volume, a mesh and a transfer function. */
 void cwi_gl_drop_scene(cwi_gl *gl);
 
 /* A program of two of the sources in shaders/ (cwi_glsl_NAME), each after common.glsl; made
@@ -141,70 +141,70 @@ extern const char cwi_glsl_common[], cwi_glsl_screen[];
 /* Draws the scene's mesh, opaque, with its depth. */
 CW_NODISCARD cw_status cwi_gl_draw_mesh(cwi_gl *gl, cw_error *err);
 
-/* Defines of shaders that go along rays: what is not needed is not compiled, as machines may go
- * through it all the same. */
+/* Returns the definitions of shaders that go along rays. Unused code is not compiled, as
+ * machines may run through it all the same. */
 const char *cwi_gl_ray_defines(const cw_scene *scene);
 
 /* Draws a triangle over the whole picture. */
 void cwi_gl_draw_screen(cwi_gl *gl);
 
-/* Reports progress: waits for what was drawn, gives the caller its context, and takes the own
- * one back. CW_ERR_CANCELLED; state of GL stays, but for the framebuffer's scissor. */
+/* Reports progress: waits for drawing to finish, restores the caller's context for the report,
+ * and takes the own one back. CW_ERR_CANCELLED; GL's state stays, except for the framebuffer's
+ * scissor. */
 CW_NODISCARD cw_status cwi_gl_report(cwi_gl *gl, const char *step, double done, cw_error *err);
-/* The same, when the last report was some milliseconds ago: for loops of the CPU. */
+/* Does the same, when the last report was some milliseconds ago: for loops of the CPU. */
 CW_NODISCARD cw_status cwi_gl_report_soon(cwi_gl *gl, const char *step, double done,
                                           cw_error *err);
-/* What is drawn next is the n-th part of count of the picture. */
+/* Announces that the n-th part of count of the picture is drawn next. */
 void cwi_gl_part(cwi_gl *gl, size_t n, size_t count);
 
-/* Draws what takes long, and reports in between: the whole picture, for fragment shaders that
- * go along rays; anything that keeps to the scissor, in bands; triangles of what is bound, by
- * their indices or one after another. CW_ERR_CANCELLED */
+/* Draw long work, and report in between: the whole picture, for fragment shaders that go along
+ * rays; drawing that keeps to the scissor, in bands; triangles of the bound mesh, by their
+ * indices or one after another. CW_ERR_CANCELLED */
 CW_NODISCARD cw_status cwi_gl_draw_rays(cwi_gl *gl, cw_error *err);
 CW_NODISCARD cw_status cwi_gl_draw_layer(cwi_gl *gl, void (*draw)(void *context), void *context,
                                          cw_error *err);
 CW_NODISCARD cw_status cwi_gl_draw_triangles(cwi_gl *gl, size_t count, bool indexed,
                                              cw_error *err);
 
-/* Has the frame's volume for shaders: where it is, if that is not to be textures and what draws
- * can read it there, or uploaded. What is there already stays. */
+/* Prepares the frame's volume for shaders. It is read in place, if no textures are wanted and
+ * the renderer can read it there; else it is uploaded. A volume that is there already stays. */
 CW_NODISCARD cw_status cwi_gl_take_volume(cwi_gl *gl, bool as_textures, cw_error *err);
-/* Whether shaders can read the only brick's voxels where the caller has them: the processor
- * draws, and they are of a type that it fetches, one after another. Then there is no upload,
- * and no memory for another volume. */
+/* Returns true if shaders can read the only brick's voxels in the caller's memory: the
+ * processor draws, and the voxels are of a type that it fetches, without gaps. Then there is no
+ * upload, and no memory for another volume. */
 bool cwi_gl_find_voxels(cwi_gl *gl);
-/* x fastest, without gaps. */
+/* Returns true if voxels lie x fastest, without gaps. */
 bool cwi_gl_is_packed(const cw_volume *volume);
-/* What shaders have to be defined with. */
+/* Returns the definitions that shaders of this volume need. */
 const char *cwi_gl_volume_defines(const cwi_gl_volume *volume);
-/* What shaders have to be defined with to find gradients. Those of a small volume become a
- * texture; of a large one, which then would be five times as large, they are differences of
- * interpolated values. */
+/* Finds the definitions that shaders need to compute gradients. Gradients of a small volume
+ * become a texture. Those of a large one, which would then be five times as large, are
+ * differences of interpolated values. */
 CW_NODISCARD cw_status cwi_gl_need_gradients(cwi_gl *gl, const char **defines, cw_error *err);
-
 void cwi_gl_drop_volume(cwi_gl *gl);
 
 /* Binds a brick's textures and sets the uniforms brick_first and brick_size of a program. */
 void cwi_gl_bind_brick(GLuint program, const cwi_gl_brick *brick);
 
-/* Sets the uniform last_block for a texture of so many blocks. */
+/* Sets the uniform last_block for a texture of dim[0] x dim[1] x dim[2] blocks. */
 void cwi_gl_set_last_block(GLuint program, const size_t dim[3]);
 
-/* Numbers of the bricks from the farthest to the nearest; free with cwi_free(). */
+/* Returns the numbers of the bricks from the farthest to the nearest; free with cwi_free(). */
 size_t *cwi_gl_order_bricks(const cwi_gl *gl);
 
 /* Uploads the frame's transfer function, unless it is there, and binds it. */
 CW_NODISCARD cw_status cwi_gl_take_transfer(cwi_gl *gl, cw_error *err);
-/* And what it leaves empty: the texture skip, and away. */
+/* Uploads, in addition, which blocks it leaves empty: the texture skip, and away. */
 CW_NODISCARD cw_status cwi_gl_need_skip(cwi_gl *gl, cw_error *err);
-/* And pre-integrated, for segments of a length in units of eye space. */
+/* Uploads it, in addition, pre-integrated for segments of a length in units of eye space. */
 CW_NODISCARD cw_status cwi_gl_need_segments(cwi_gl *gl, double length, cw_error *err);
 void cwi_gl_drop_transfer(cwi_gl *gl);
 
 CW_NODISCARD cw_status cwi_gl_take_target(cwi_gl *gl, cw_error *err);
 void cwi_gl_drop_target(cwi_gl *gl);
 
-/* A texture without mipmaps, linear or nearest, clamped to its edge, bound to a unit. */
+/* Makes a texture without mipmaps, linear or nearest, clamped to its edge, bound to a unit. */
 GLuint cwi_gl_texture(GLenum kind, int unit, bool linear);
 
 #endif

@@ -1,3 +1,5 @@
+/* Uploads the frame's mesh to the GPU, and allocates the textures for its layers and cut
+ * faces. */
 #include "viewer/gl/gl_mesh.h"
 
 #include "core/base/memory.h"
@@ -60,7 +62,7 @@ static void put_vertex(const cw_mesh *mesh, size_t v, double tint, vertex *out)
     out->tint = (float)tint;
 }
 
-/* Vertices, or when expanded corners, from a number on. */
+/* Writes vertices or, for an expanded mesh, corners, from a number on. */
 static void put_chunk(const cwi_gl_mesh *m, size_t first, size_t count, vertex *out)
 {
     const cw_mesh *mesh = &m->key;
@@ -240,7 +242,8 @@ cw_status cwi_gl_need_winding(cwi_gl *gl, cwi_gl_mesh *m, size_t n, cw_error *er
     return make_target(&m->winding_targets[n], m->windings[n], 0, err);
 }
 
-/* Of the mesh's numbers: its origin is taken away from the eye in double precision. */
+/* Makes the matrix for the mesh's numbers: its origin is subtracted from the eye in double
+ * precision. */
 static void put_matrix(const cwi_frame *f, float m[16])
 {
     double d[3];

@@ -1,4 +1,4 @@
-/* A mesh on the GPU, and what it takes to draw it translucent and cut open. */
+/* A mesh on the GPU, and the textures for drawing it translucent and cut open. */
 #ifndef VIEWER_GL_GL_MESH_H
 #define VIEWER_GL_GL_MESH_H
 
@@ -24,8 +24,9 @@ typedef struct cwi_gl_mesh {
     double tint_range[2];
     GLuint array, vertices, indices, ramp, query;
 
-    /* Of the target's size; 0 until they are needed. Layers: a color, and the depths of this
-     * layer and the one before. Windings: how often the mesh goes around points of planes. */
+    /* Textures of the target's size; 0 until they are needed. Layers: a color, and the depths
+     * of this layer and the one before. Windings: how often the mesh goes around points of
+     * planes. */
     GLsizei width, height;
     GLuint layer_color, layer_depth[2], layers[2];
     GLuint windings[CWI_WINDINGS], winding_targets[CWI_WINDINGS];

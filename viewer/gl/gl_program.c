@@ -1,3 +1,4 @@
+/* Compiles and links shaders, and caches programs by their sources and definitions. */
 #include "viewer/gl/gl_internal.h"
 
 #include "core/base/status.h"
@@ -30,7 +31,7 @@ static GLuint compile_shader(GLenum stage, const char *defines, const char *sour
     return 0;
 }
 
-/* Units and blocks are not said in GLSL 3.30. */
+/* Sets texture units and blocks, which GLSL 3.30 cannot declare. */
 static void set_units(GLuint program)
 {
     static const struct {
@@ -89,7 +90,7 @@ cw_status cwi_gl_use(cwi_gl *gl, const char *vertex, const char *fragment, const
             return CW_OK;
         }
     }
-    if (gl->program_count == CWI_GL_PROGRAMS) /* of so many settings start again */
+    if (gl->program_count == CWI_GL_PROGRAMS) /* cache is full: empty it */
         while (gl->program_count > 0)
             glDeleteProgram(gl->programs[--gl->program_count].name);
     cwi_gl_program *p = &gl->programs[gl->program_count];

@@ -1,17 +1,18 @@
-/* Asking whether to go on. Who does not ask pays nothing: all is drawn at once then. Bands and
- * ranges give the same picture, for fragments are the same, and in the same order. */
+/* Reports progress, and asks whether to continue. Without a callback everything is drawn at
+ * once. Bands and ranges give the same picture, as fragments are the same, and in the same
+ * order. */
 #include "viewer/gl/gl_internal.h"
 
 #include "core/base/status.h"
 
 #include <omp.h>
 
-/* Seconds between two reports: not too many of them, and none too late. */
+/* Minimum and maximum seconds between two reports. */
 static const double soon = 0.005, late = 0.012;
 
 enum { FIRST_ROWS = 8, MOST_ROWS = 16, LEAST_ROWS = 4, FIRST_TRIANGLES = 4096 };
 
-/* The caller finds its own context, and may make another current. */
+/* Calls the caller, which finds its own context, and may make another current. */
 static bool ask_caller(void *user, const char *step, double done)
 {
     cwi_gl *gl = user;
@@ -58,7 +59,7 @@ void cwi_gl_part(cwi_gl *gl, size_t n, size_t count)
     gl->watch.to = (double)(n + 1) / (double)count;
 }
 
-/* After drawing a share of a part. */
+/* Reports after a fraction of a part was drawn. */
 static cw_status report_share(cwi_gl *gl, size_t n, size_t count, cw_error *err)
 {
     const cwi_gl_watch *w = &gl->watch;
@@ -66,7 +67,7 @@ static cw_status report_share(cwi_gl *gl, size_t n, size_t count, cw_error *err)
     return cwi_gl_report(gl, "drawing", w->from + share * (w->to - w->from), err);
 }
 
-/* More of what was quick, less of what was slow. */
+/* Adapts the size: more if drawing was fast, less if it was slow. */
 static size_t adapt_size(size_t drawn, double since, size_t least, size_t most)
 {
     glFinish();
@@ -75,7 +76,8 @@ static size_t adapt_size(size_t drawn, double since, size_t least, size_t most)
     return next < least ? least : next > most ? most : next;
 }
 
-/* Bands start at even rows: what shaders find out from neighbours stays the same. */
+/* Draws bands. They start at even rows: values that shaders take from neighbours stay the
+ * same. */
 static cw_status draw_bands(cwi_gl *gl, void (*draw)(void *), void *context, size_t *rows,
                             size_t most, cw_error *err)
 {
@@ -99,7 +101,7 @@ static void draw_screen(void *gl)
     cwi_gl_draw_screen(gl);
 }
 
-/* The next rows may be much slower than the last: so bands stay narrow. */
+/* Draws along rays. The next rows may be much slower than the last, so bands stay narrow. */
 cw_status cwi_gl_draw_rays(cwi_gl *gl, cw_error *err)
 {
     if (is_watched(gl))

@@ -1,4 +1,4 @@
-/* The context as the drawing thread's, and the end of what was uploaded to it. */
+/* Makes the context the drawing thread's, and frees the data uploaded to it. */
 #include "viewer/gl/gl_internal.h"
 
 bool cwi_gl_enter(cwi_gl *gl)

@@ -1,3 +1,4 @@
+/* Allocates textures, and the framebuffer of 32-bit floats that pictures are drawn into. */
 #include "viewer/gl/gl_internal.h"
 
 #include "core/base/status.h"

@@ -1,4 +1,4 @@
-/* A transfer function as textures, and what it leaves empty. */
+/* Uploads a transfer function as textures, and the blocks that it leaves empty. */
 #include "viewer/gl/gl_internal.h"
 
 #include "core/base/memory.h"

@@ -1,4 +1,4 @@
-/* A volume as 3D textures: one, or bricks where one would be too large. */
+/* Uploads a volume as 3D textures: one, or bricks where one would be too large. */
 #include "viewer/gl/gl_internal.h"
 #include "viewer/scene/voxel_rows.h"
 
@@ -18,7 +18,8 @@ enum {
     MOST_GRADIENTS = 1 << 24 /* voxels that have their gradients in a texture */
 };
 
-/* Eight and sixteen bits are normalised, and stay exact. Others become floats. */
+/* Returns the format of texels. Eight and sixteen bits are normalised, and stay exact; others
+ * become floats. */
 static cwi_gl_texels kind_of(const cw_volume *v)
 {
     const cwi_gl_texels single = {GL_R32F, GL_FLOAT, 4, v->type == CW_F32 && !v->has_nodata,
@@ -41,7 +42,7 @@ static cwi_gl_texels kind_of(const cw_volume *v)
     }
 }
 
-/* The range of the volume's values; 0, 1 when it has none. */
+/* Finds the range of the volume's values; 0, 1 when it has none. */
 static void find_range(const cwi_ranges *ranges, double range[2])
 {
     range[0] = INFINITY;
@@ -57,7 +58,8 @@ static void find_range(const cwi_ranges *ranges, double range[2])
     }
 }
 
-/* Wide types are told from their middle, in units of half their range. */
+/* Scales wide types: their numbers are uploaded relative to the middle, in units of half their
+ * range. */
 static void fit_wide(const cw_volume *v, const double range[2], cwi_gl_texels *kind)
 {
     if (kind->type != GL_FLOAT || v->type == CW_F32)
@@ -114,8 +116,9 @@ static size_t layers_at_once(size_t layer_bytes, size_t layers)
     return fit < 1 ? 1 : fit < layers ? fit : layers;
 }
 
-/* Mesa's software renderer interpolates eight bits in eight bits, unless a texture is mirrored
- * at its ends: up to half a texel beyond them that is as clamped as it is otherwise. */
+/* Makes a texture of values. Mesa's software renderer interpolates eight bits in eight bits,
+ * unless a texture is mirrored at its ends. Up to half a texel beyond them that is the same as
+ * clamping. */
 static GLuint values_texture(const cwi_gl_texels *kind)
 {
     const GLuint name = cwi_gl_texture(GL_TEXTURE_3D, CWI_UNIT_VOLUME, true);
@@ -133,7 +136,7 @@ static cw_status take_memory(cwi_gl_volume *g, size_t bytes, cw_error *err)
     return CW_OK;
 }
 
-/* By chunks, which are voxels as they are where they can be. */
+/* Uploads a brick in chunks, without a copy of the voxels where possible. */
 static cw_status upload_brick(cwi_gl *gl, const cwi_gl_texels *kind, const cwi_gl_brick *b,
                               cw_error *err)
 {
@@ -165,7 +168,7 @@ static cw_status upload_brick(cwi_gl *gl, const cwi_gl_texels *kind, const cwi_g
     return st;
 }
 
-/* Whether this OpenGL makes such a texture: only the proxy says so. */
+/* Returns true if this OpenGL makes such a texture: only a proxy texture shows that. */
 static bool texture_fits(GLenum inner, size_t w, size_t h, size_t d)
 {
     GLint got = 0, most = 0;
@@ -178,14 +181,14 @@ static bool texture_fits(GLenum inner, size_t w, size_t h, size_t d)
     return got != 0;
 }
 
-/* Parts an axis of n samples is cut into, of at most edge samples, one in common with
- * the next. */
+/* Returns the number of parts, of at most `edge` samples, into which an axis of n samples is
+ * cut; neighbours share a sample. */
 static size_t parts_of(size_t n, size_t edge)
 {
     return n <= edge ? 1 : (n - 2) / (edge - 1) + 1;
 }
 
-/* The largest bricks of values and gradients that fit; longest axes are cut first. */
+/* Chooses the largest bricks of values and gradients that fit; longest axes are cut first. */
 static void choose_edges(const cw_volume *v, const cwi_gl_texels *kind, size_t asked,
                          size_t edge[3])
 {
@@ -249,7 +252,7 @@ static bool is_there(const cwi_gl_volume *g, const cwi_frame *f)
            memcmp(&g->key, &f->volume, sizeof g->key) == 0;
 }
 
-/* All about a volume but its textures. */
+/* Sets up a volume, without its textures. */
 static cw_status make_volume(cwi_gl *gl, cw_error *err)
 {
     cwi_gl_volume *g = &gl->volume;
@@ -295,8 +298,8 @@ cw_status cwi_gl_take_volume(cwi_gl *gl, bool as_textures, cw_error *err)
     return st;
 }
 
-/* Half precision, rounded to the nearest, at most the largest; 0 of what is no number. Without
- * branches, so that rows of them are made at once. */
+/* Converts to half precision, rounded to the nearest, at most the largest; NaN becomes 0. It
+ * has no branches, so that rows are vectorised. */
 static uint16_t to_half(float x)
 {
     float small;
@@ -313,7 +316,8 @@ static uint16_t to_half(float x)
     return (uint16_t)(sign | half);
 }
 
-/* The row n before or after one, or that one at the border; and how far apart such two are. */
+/* Returns the row n before or after one, or that one at the border; and the distance of two
+ * such rows. */
 static const char *row_at(const cw_volume *v, const char *row, int axis, size_t at, int n)
 {
     const bool is_there = n < 0 ? at > 0 : at + 1 < v->dim[axis];
@@ -325,7 +329,8 @@ static float step_length(const cw_volume *v, int axis, size_t at)
     return at > 0 && at + 1 < v->dim[axis] ? 0.5f : 1;
 }
 
-/* From the row below to the one above; may be no number, which to_half() makes 0. */
+/* Subtracts the row below from the one above; the result may be NaN, which to_half() makes
+ * 0. */
 static void subtract_rows(const float *low, const float *high, size_t n, float scale,
                           float *out)
 {
@@ -366,7 +371,7 @@ static void put_gradient_row(const cw_volume *v, const cwi_gl_brick *b, size_t j
     }
 }
 
-/* Layers of a brick; false when there is no memory for a thread's rows. */
+/* Computes layers of a brick; returns false when there is no memory for a thread's rows. */
 static bool put_gradients(const cw_volume *v, const cwi_gl_brick *b, double scale, size_t from,
                           size_t count, uint16_t (*out)[4])
 {
@@ -421,7 +426,8 @@ static cw_status upload_gradients(cwi_gl *gl, cwi_gl_brick *b, cw_error *err)
     return st;
 }
 
-/* Differences need neighbours that are there: the next brick's are not. */
+/* Returns true if differences can be computed: they need neighbours, and the next brick's are
+ * not available. */
 static bool has_differences(const cwi_gl *gl)
 {
     const cwi_gl_volume *g = &gl->volume;
@@ -456,8 +462,8 @@ static int farther_first(const void *a, const void *b)
                                        : x->brick > y->brick;
 }
 
-/* The sum over axes of how far the eye is from a brick's faces. A brick that hides another is
- * nearer along some axes, and farther along none. */
+/* Returns the sum over axes of the eye's distance from a brick's faces. A brick that hides
+ * another is nearer along some axes, and farther along none. */
 static double brick_distance(const cwi_gl_brick *b, const double eye[3])
 {
     double sum = 0;

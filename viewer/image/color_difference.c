@@ -1,3 +1,5 @@
+/* Compares pictures: colour differences by CIEDE2000 [Sharma2005], and the structural
+ * similarity of luma. */
 #include "viewer/image/color_difference.h"
 #include "viewer/scene/srgb.h"
 
@@ -15,14 +17,14 @@ static const float covered = 1e-4f;
 enum { WINDOW = 5 }; /* pixels on each side of the middle */
 static const double window_sigma = 1.5;
 
-/* The cube root, continued by a line near 0: CIE 15. */
+/* Returns the cube root, continued by a line near 0: CIE 15. */
 static double lightness_of(double share)
 {
     const double edge = 6.0 / 29;
     return share > edge * edge * edge ? cbrt(share) : share / (3 * edge * edge) + 4.0 / 29;
 }
 
-/* IEC 61966-2-1. White is what the matrix makes of (1, 1, 1). */
+/* Converts by IEC 61966-2-1. White is the matrix's result for (1, 1, 1). */
 void cwi_lab_of(const double srgb[3], double lab[3])
 {
     static const double xyz_of[3][3] = {{0.4124564, 0.3575761, 0.1804375},
@@ -59,13 +61,13 @@ static double seventh_power(double x)
     return cube * cube * x;
 }
 
-/* What chroma that high, to the seventh, is of that and 25 to the seventh; its root. */
+/* Returns the root of c^7 / (c^7 + 25^7), for a chroma c. */
 static double chroma_share(double chroma)
 {
     return sqrt(seventh_power(chroma) / (seventh_power(chroma) + seventh_power(25)));
 }
 
-/* Chroma and hue, a being stretched where colours are close to grey. */
+/* Computes chroma and hue; a is stretched where colours are close to grey. */
 static void chroma_and_hue(const double lab[3], double stretch, double out[2])
 {
     const double a = (1 + stretch) * lab[1];
@@ -73,7 +75,7 @@ static void chroma_and_hue(const double lab[3], double stretch, double out[2])
     out[1] = hue_of(a, lab[2]);
 }
 
-/* The difference of two hues, and their mean: both the short way round. */
+/* Computes the difference of two hues, and their mean, both the short way round. */
 static void compare_hues(const double p[2], const double q[2], double *difference, double *mean)
 {
     *difference = q[1] - p[1];
@@ -117,7 +119,7 @@ static cw_status expect_same_size(const cw_picture *a, const cw_picture *b, cw_e
     return CW_OK;
 }
 
-/* A pixel over the background. */
+/* Composites a pixel over the background. */
 static void show_pixel(const cw_picture *p, size_t n, const float background[2][3],
                        double rgb[3])
 {
@@ -135,7 +137,7 @@ static void limit_color(double rgb[3])
         rgb[c] = fmin(fmax(rgb[c], 0), 1);
 }
 
-/* Of what is to be shown; delta: of each pixel compared, in order. */
+/* Measures the colours of the displayed pixels. delta: of each pixel compared, in order */
 static void measure_colors(const cw_picture *picture, const cw_picture *reference,
                            const float background[2][3], float *delta, cw_comparison *out)
 {
@@ -197,8 +199,8 @@ static void moments_of(const cw_picture *picture, const cw_picture *reference, s
     memcpy(m, all, sizeof all);
 }
 
-/* Weighted means of neighbours along one axis, to count places a step apart; at the ends of
- * those that are there. */
+/* Computes weighted means of neighbours along one axis, for `count` places `step` apart; at the
+ * ends only of the neighbours that exist. */
 static void blur_moments(const double (*in)[MOMENTS], size_t count, size_t step,
                          double (*out)[MOMENTS])
 {
@@ -218,7 +220,7 @@ static void blur_moments(const double (*in)[MOMENTS], size_t count, size_t step,
     }
 }
 
-/* Of values from 0 to 1 [Wang2004]. */
+/* Returns the structural similarity of values from 0 to 1 [Wang2004]. */
 static double structural_similarity(const double m[MOMENTS])
 {
     const double c1 = 0.01 * 0.01, c2 = 0.03 * 0.03;

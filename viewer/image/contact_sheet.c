@@ -1,3 +1,4 @@
+/* Copies images onto others, and tiles images of any sizes into a sheet of equal cells. */
 #include <cubewright/overlay.h>
 
 #include "core/base/status.h"
@@ -32,7 +33,7 @@ static cw_status find_cell(const cw_image *images, size_t count, size_t cell[2],
                      : cw_fail(err, CW_ERR_ARGUMENT, "a sheet needs at least one image");
 }
 
-/* The fewest columns that make the sheet at least as wide as high. */
+/* Returns the fewest columns that make the sheet at least as wide as high. */
 static size_t square_columns(size_t count, const size_t cell[2])
 {
     size_t columns = 1;
@@ -41,7 +42,7 @@ static size_t square_columns(size_t count, const size_t cell[2])
     return columns;
 }
 
-/* cells of a size with gaps between; 0 when that is too much. */
+/* Returns the extent of `cells` cells of a size with gaps between; 0 when that is too large. */
 static size_t sheet_extent(size_t cells, size_t size, size_t gap)
 {
     const double all = (double)cells * (double)size + ((double)cells - 1) * (double)gap;

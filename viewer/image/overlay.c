@@ -1,3 +1,5 @@
+/* Draws annotations on an image: the volume's box, axes, scale bar, colour bar, histogram and
+ * caption. */
 #include <cubewright/overlay.h>
 
 #include "core/base/memory.h"
@@ -12,7 +14,7 @@
 
 enum { MOST_BARS = 512, MOST_LABELS = 8, TEXT = 48 };
 
-/* A picture that is drawn on. Pixels of the image, not samples of the frame. */
+/* An image that is drawn on. Lengths are pixels of the image, not samples of the frame. */
 typedef struct board {
     const cw_overlay *o;
     const cwi_frame *frame;
@@ -26,7 +28,7 @@ typedef struct board {
 static const double axis_colors[3][3] = {
     {0.95, 0.45, 0.40}, {0.45, 0.85, 0.45}, {0.50, 0.65, 1}};
 
-/* The longest of 1, 2, 5 times a power of ten that is not above a length. */
+/* Returns the longest of 1, 2, 5 times a power of ten that is not above a length. */
 static double round_down(double length)
 {
     const double power = pow(10, floor(log10(length) + 1e-9)), share = length / power;
@@ -49,7 +51,7 @@ static void print_length(double mm, char text[TEXT])
         snprintf(text, TEXT, "%.6g m", mm / 1000);
 }
 
-/* With the minus that is as long as the plus. */
+/* Prints a value with a minus sign as long as the plus sign. */
 static void print_value(double value, char text[TEXT])
 {
     const double shown = value == 0 ? 0 : value; /* not -0 */
@@ -62,7 +64,7 @@ static void tint_color(double color[4], const double rgb[3], double alpha)
     color[3] = alpha;
 }
 
-/* Strokes in a colour, on a halo that keeps them apart from any picture. */
+/* Draws strokes in a colour, on a halo that separates them from any picture. */
 static void draw_lines(const board *b, const cwi_stroke *strokes, size_t count, double width,
                        const double color[4])
 {
@@ -75,7 +77,7 @@ static void draw_lines(const board *b, const cwi_stroke *strokes, size_t count, 
     cwi_pen_draw(&pen, strokes, count);
 }
 
-/* anchor  0: x is the text's left end; 0.5: its middle; 1: its right end */
+/* Writes a text. anchor: 0: x is its left end; 0.5: its middle; 1: its right end */
 static void write_text(const board *b, double x, double y, double anchor, const double color[4],
                        const char *text)
 {
@@ -89,7 +91,7 @@ static void write_text(const board *b, double x, double y, double anchor, const 
     cwi_pen_text(&pen, left, y, b->text, text);
 }
 
-/* A point of the world in the picture; false behind the eye. */
+/* Projects a point of the world to the picture; returns false behind the eye. */
 static bool project_point(const board *b, const double world[3], double at[2])
 {
     const cwi_frame *f = b->frame;
@@ -106,8 +108,8 @@ static bool project_point(const board *b, const double world[3], double at[2])
     return true;
 }
 
-/* Corners of the volume's box, else of the mesh's: bit a of a corner's number tells its end
- * along axis a. */
+/* Finds the corners of the volume's box, or else of the mesh's. Bit a of a corner's number is
+ * its end along axis a. */
 static void find_corners(board *b)
 {
     const cwi_frame *f = b->frame;
@@ -125,7 +127,7 @@ static void find_corners(board *b)
     }
 }
 
-/* Whether the face at an end of an axis is seen from outside. */
+/* Returns true if the face at an end of an axis is seen from outside. */
 static bool is_seen(const board *b, int axis, int end)
 {
     const cwi_frame *f = b->frame;
@@ -156,7 +158,7 @@ static void draw_box(const board *b)
     }
 }
 
-/* The world's directions, the farthest first. */
+/* Draws the world's directions, the farthest first. */
 static void draw_triad(const board *b)
 {
     static const char *const names[3] = {"L", "P", "S"};
@@ -185,7 +187,7 @@ static void draw_triad(const board *b)
     }
 }
 
-/* Where a direction leads, the main way first. */
+/* Names where a direction leads, the main way first. */
 static void name_direction(const double d[3], char text[4])
 {
     static const char names[3][2] = {{'R', 'L'}, {'A', 'P'}, {'I', 'S'}};
@@ -252,7 +254,7 @@ static void draw_scale_bar(const board *b)
     write_text(b, b->width / 2, y - 0.7 * b->text, 0.5, b->ink, text);
 }
 
-/* From the transfer function's first point to its last. */
+/* Finds the range from the transfer function's first point to its last. */
 static void find_range(const cw_transfer *t, double range[2])
 {
     range[0] = INFINITY;
@@ -281,8 +283,8 @@ static void frame_box(const board *b, double left, double top, double right, dou
     cwi_pen_draw(&pen, s, 4);
 }
 
-/* The colour of a share of the bar's range: of the volume's values, else of what tints the
- * mesh. */
+/* Computes the colour at a fraction of the bar's range: of the volume's values, or else of the
+ * mesh's tint. */
 static void bar_color(const cwi_frame *f, const double range[2], double share, double rgb[3])
 {
     double opacity;
@@ -325,7 +327,7 @@ static cw_status draw_color_bar(const board *b, cw_error *err)
     return CW_OK;
 }
 
-/* Heights of bars, 0 to 1, each of the most frequent of its bins. */
+/* Computes heights of bars, 0 to 1, each of the most frequent of its bins. */
 static void find_bars(const cw_statistics *s, double *bars, size_t count)
 {
     double most = 1;
@@ -338,7 +340,7 @@ static void find_bars(const cw_statistics *s, double *bars, size_t count)
             bars[i] = fmax(bars[i], log1p((double)s->bins[n]) / most);
 }
 
-/* The opacity at the ends of a range, and at the transfer function's points between. */
+/* Finds the opacity at the ends of a range, and at the transfer function's points between. */
 static size_t find_curve(const cw_transfer *t, const double range[2],
                          double points[CW_TRANSFER_POINTS + 2][2])
 {
@@ -356,7 +358,8 @@ static size_t find_curve(const cw_transfer *t, const double range[2],
     return count + 1;
 }
 
-/* As high as the box where it is highest, which is told. */
+/* Draws the opacity curve. Its highest point is as high as the box, and is labelled with its
+ * value. */
 static void draw_curve(const board *b, const double range[2], const double box[4])
 {
     double points[CW_TRANSFER_POINTS + 2][2], most = 0, color[4];
@@ -407,7 +410,7 @@ static void draw_histogram(const board *b)
     }
 }
 
-/* The letter at the top moves below lines that reach it. */
+/* Draws the caption. The letter at the top moves below lines that reach it. */
 static cw_status draw_caption(board *b, cw_error *err)
 {
     const char *line = b->o->caption;
@@ -428,7 +431,8 @@ static cw_status draw_caption(board *b, cw_error *err)
     return CW_OK;
 }
 
-/* Of the picture's rim, where things are written; what is clear counts as dark. */
+/* Returns true if the picture's rim, where texts are written, is bright; transparent pixels
+ * count as dark. */
 static bool is_bright(const cw_image *image)
 {
     const size_t w = image->width, h = image->height;
@@ -468,7 +472,7 @@ static cw_status check_overlay(const cw_overlay *o, const cwi_frame *f, cw_error
     return CW_OK;
 }
 
-/* The frame of a scene, if the image has its shape to a pixel. */
+/* Computes the frame of a scene, if the image has its shape to a pixel. */
 static cw_status take_frame(const cw_scene *scene, const cw_image *image, cwi_frame *frame,
                             cw_error *err)
 {

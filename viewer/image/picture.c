@@ -1,3 +1,5 @@
+/* Allocates pictures of floats, composites them over a background into bytes, and compares
+ * images. */
 #include <cubewright/picture.h>
 
 #include "core/base/memory.h"
@@ -34,7 +36,7 @@ static uint8_t to_byte(double share)
     return (uint8_t)lround(255 * fmin(fmax(share, 0), 1));
 }
 
-/* One pixel over a background, whose colours are not premultiplied. */
+/* Composites one pixel over a background, whose colours are not premultiplied. */
 static void show_pixel(const float *pixel, const double background[4], uint8_t *out)
 {
     const double through = fmax(1 - (double)pixel[3], 0) * background[3];

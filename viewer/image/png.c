@@ -1,3 +1,4 @@
+/* Allocates images of bytes, and writes them as PNG files by libpng. */
 #include <cubewright/picture.h>
 
 #include "core/base/atomic_file.h"
@@ -28,7 +29,7 @@ void cw_image_free(cw_image *image)
     *image = (cw_image){0};
 }
 
-/* What libpng's callbacks need. The status outlives the jump they leave by. */
+/* Data for libpng's callbacks. The status outlives the jump by which they leave. */
 typedef struct writer {
     cwi_outfile *file;
     cw_error *err;
@@ -84,7 +85,7 @@ static bool is_opaque(const cw_image *image)
     return true;
 }
 
-/* Leaves by libpng's jump on any error: nothing here may own memory. */
+/* Writes the image; leaves by libpng's jump on any error, so nothing here may own memory. */
 static void put_image(png_structp png, png_infop info, const cw_image *image)
 {
     const bool opaque = is_opaque(image);

@@ -149,7 +149,7 @@ size_t cwi_glyph(uint32_t character, cwi_stroke strokes[CWI_GLYPH_STROKES], doub
     return lines ? read_lines(lines, strokes, width) : 0;
 }
 
-/* The next character; what is not UTF-8 is U+FFFD, byte by byte. */
+/* Decodes the next character; bytes that are not UTF-8 become U+FFFD, one by one. */
 static uint32_t next_character(const char **text)
 {
     const unsigned char *t = (const unsigned char *)*text;

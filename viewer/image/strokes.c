@@ -1,3 +1,4 @@
+/* Draws antialiased strokes and rectangles onto images, a row at a time. */
 #include "viewer/image/strokes.h"
 
 #include <math.h>
@@ -7,7 +8,7 @@ static double clamp_number(double x, double low, double high)
     return fmin(fmax(x, low), high);
 }
 
-/* Over what is there; neither is premultiplied. */
+/* Blends a colour over a pixel; neither is premultiplied. */
 static void blend_pixel(uint8_t *pixel, const double color[4], double share)
 {
     const double alpha = color[3] * share, below = pixel[3] / 255.0 * (1 - alpha);
@@ -29,7 +30,7 @@ static double square_of_distance(const cwi_stroke *s, double x, double y)
     return off[0] * off[0] + off[1] * off[1];
 }
 
-/* Pixels from low to high, cut to a picture of that size. */
+/* Finds the pixels from low to high, within a picture of that size. */
 static void cut_span(double low, double high, size_t size, size_t span[2])
 {
     span[0] = (size_t)clamp_number(floor(low), 0, (double)size);
@@ -47,7 +48,8 @@ static void find_rows(const cwi_stroke *strokes, size_t count, double reach, siz
     cut_span(low - reach, high + reach, size, span);
 }
 
-/* The columns in which strokes may touch a row: those of the parts that are in reach of it. */
+/* Finds the columns in which strokes may touch a row: those of their parts that are in reach of
+ * it. */
 static void find_columns(const cwi_stroke *strokes, size_t count, double y, double reach,
                          size_t size, size_t span[2])
 {
@@ -88,7 +90,7 @@ void cwi_pen_draw(const cwi_pen *pen, const cwi_stroke *strokes, size_t count)
     }
 }
 
-/* How much of pixel n is between two coordinates. */
+/* Returns the fraction of pixel n that is between two coordinates. */
 static double overlap_pixel(size_t n, double low, double high)
 {
     return fmax(fmin(high, (double)n + 1) - fmax(low, (double)n), 0);

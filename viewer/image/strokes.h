@@ -1,5 +1,5 @@
-/* Lines and letters on images, antialiased: a pixel's share of a stroke is how far its middle
- * is inside of the stroke's outline, from 0 half a pixel outside to 1 half a pixel inside.
+/* Draws lines and letters on images, antialiased. A pixel's coverage by a stroke is how far its
+ * middle is inside the stroke's outline, from 0 half a pixel outside to 1 half a pixel inside.
  * Coordinates are pixels from the upper left corner; the first pixel's middle is (0.5, 0.5). */
 #ifndef VIEWER_IMAGE_STROKES_H
 #define VIEWER_IMAGE_STROKES_H
@@ -21,20 +21,20 @@ typedef struct cwi_stroke {
     double from[2], to[2];
 } cwi_stroke;
 
-/* Strokes as one figure: where several meet, the pixel is covered once. */
+/* Draws strokes as one figure: where several meet, the pixel is covered once. */
 void cwi_pen_draw(const cwi_pen *pen, const cwi_stroke *strokes, size_t count);
 
-/* A filled rectangle; parts of pixels count as such. */
+/* Fills a rectangle; partly covered pixels are blended. */
 void cwi_pen_fill(const cwi_pen *pen, double left, double top, double right, double bottom);
 
-/* Text, UTF-8, with capitals of a height, from a point of the baseline on; and its width. What
- * the font does not have is a box. */
+/* Draws UTF-8 text, with capitals of a height, from a point of the baseline on; and returns its
+ * width. Characters that the font does not have become a box. */
 void cwi_pen_text(const cwi_pen *pen, double x, double y, double height, const char *text);
 double cwi_text_width(double height, const char *text);
 
-/* The strokes of a character, in sixths of the height of capitals, y down from their top; how
- * many (at most as many as fit), and the character's width. 0 for one that the font does not
- * have. */
+/* Finds the strokes of a character, in sixths of the height of capitals, y down from their top;
+ * returns their number (at most as many as fit), and the character's width. 0 for a character
+ * that the font does not have. */
 enum { CWI_GLYPH_STROKES = 24 };
 size_t cwi_glyph(uint32_t character, cwi_stroke strokes[CWI_GLYPH_STROKES], double *width);
 

@@ -1,3 +1,4 @@
+/* Places, hits and drags the six handles of a clip box, and finds its visible edges. */
 #include "viewer/interact/clip_box_handles.h"
 
 #include "core/geometry/vec3.h"
@@ -19,7 +20,7 @@ static void find_middle(const cwi_world_box *box, int handle, double middle[3])
     middle[axis] = handle % 2 ? box->high[axis] : box->low[axis];
 }
 
-/* Whether the face of a handle is seen from inside of the box. */
+/* Returns true if the face of a handle is seen from inside of the box. */
 static bool faces_away(const cwi_handle_view *v, const cwi_world_box *box, int handle)
 {
     const cw_camera *c = &v->camera;
@@ -54,8 +55,8 @@ int cwi_handles_hit(const cwi_handle handles[CWI_HANDLES], const double pixel[2]
     return found;
 }
 
-/* Where the line through a point along an axis comes closest to a ray: the coordinate, and how
- * far along the ray that is. False when they run side by side. */
+/* Finds where the line through a point along an axis comes closest to a ray: the coordinate,
+ * and the distance along the ray. Returns false when they are nearly parallel. */
 static bool meet_axis(const double point[3], int axis, const double origin[3],
                       const double direction[3], double *coordinate, double *distance)
 {
@@ -105,7 +106,8 @@ bool cwi_handles_drag(const cwi_handle_view *view, const cwi_world_box *bounds,
     return true;
 }
 
-/* How far a point is before the eye; of an orthographic camera all points are. */
+/* Returns the distance of a point in front of the eye; for an orthographic camera all points
+ * are in front. */
 static double depth_of(const cwi_handle_view *v, const double forward[3], const double p[3])
 {
     const double *eye = v->camera.eye;
@@ -113,7 +115,7 @@ static double depth_of(const cwi_handle_view *v, const double forward[3], const 
     return v->camera.fov_deg > 0 ? cwi_dot(d, forward) : 1;
 }
 
-/* Leaves the part of a line that is before the eye by a little of its own length. */
+/* Keeps the part of a line that is in front of the eye, by a little of its own length. */
 static bool cut_line(const cwi_handle_view *v, const double forward[3], double ends[2][3])
 {
     const double depth[2] = {depth_of(v, forward, ends[0]), depth_of(v, forward, ends[1])};
@@ -128,7 +130,8 @@ static bool cut_line(const cwi_handle_view *v, const double forward[3], double e
     return true;
 }
 
-/* Edge 4 a + s runs along axis a; bits of s: at the high side of the two axes after a. */
+/* Finds the ends of an edge. Edge 4 a + s runs along axis a; bits of s: at the high side of the
+ * two axes after a. */
 static void edge_ends(const cwi_world_box *box, int edge, double ends[2][3])
 {
     const int axis = edge / 4, b = (axis + 1) % 3, c = (axis + 2) % 3;

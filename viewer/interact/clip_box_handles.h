@@ -8,7 +8,7 @@
 extern "C" {
 #endif
 
-/* A picture that is looked at. */
+/* A picture of the box: its camera and size. */
 typedef struct cwi_handle_view {
     cw_camera camera;
     size_t width, height; /* pixels */
@@ -22,13 +22,13 @@ typedef struct cwi_world_box {
 enum { CWI_HANDLES = 6, CWI_HANDLE_NONE = -1, CWI_BOX_EDGES = 12 };
 
 typedef struct cwi_handle {
-    bool shown;      /* it is before the eye; else the rest is 0 */
+    bool shown;      /* in front of the eye; else the rest is 0 */
     double pixel[2]; /* from the upper left corner, y down; may be beyond the picture */
     double depth_mm; /* from the eye's plane */
     bool faces_away; /* its face is seen from inside */
 } cwi_handle;
 
-/* The part of an edge that is before the eye. */
+/* The part of an edge that is in front of the eye. */
 typedef struct cwi_box_edge {
     bool shown;
     double pixels[2][2];
@@ -38,8 +38,8 @@ typedef struct cwi_box_edge {
 void cwi_handles_place(const cwi_handle_view *view, const cwi_world_box *box,
                        cwi_handle handles[CWI_HANDLES]);
 
-/* The handle at most so many pixels away, of several the one nearest to the eye;
- * CWI_HANDLE_NONE. */
+/* Returns the handle at most radius_px away, or CWI_HANDLE_NONE; of several, the one nearest to
+ * the eye. */
 int cwi_handles_hit(const cwi_handle handles[CWI_HANDLES], const double pixel[2],
                     double radius_px);
 
@@ -47,9 +47,10 @@ int cwi_handles_hit(const cwi_handle handles[CWI_HANDLES], const double pixel[2]
  * a pixel. A mouse that took a handle beside its middle keeps that distance if the caller adds
  * it to the pixel.
  *
- * bounds  where faces stay; the box stays that thick at least, wherever that leaves it room
- * False, and the box is as it was, where the line of sight tells nothing: it is within 3
- * degrees of the axis, or comes closest to it behind the eye. */
+ * bounds  limits of faces; where there is room, the box stays at least thickness_mm thick
+ *
+ * Returns false, and leaves the box unchanged, where the line of sight decides nothing: it is
+ * within 3 degrees of the axis, or comes closest to it behind the eye. */
 bool cwi_handles_drag(const cwi_handle_view *view, const cwi_world_box *bounds,
                       double thickness_mm, int handle, const double pixel[2],
                       cwi_world_box *box);

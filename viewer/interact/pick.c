@@ -1,3 +1,5 @@
+/* Finds the nearest thing seen at a pixel: a mesh, a slice, or a volume as its mode shows
+ * it. */
 #include "viewer/interact/pick_mesh.h"
 #include "viewer/interact/pick_volume.h"
 #include "viewer/scene/slice.h"
@@ -13,7 +15,7 @@ typedef struct place {
     double x, y, origin[3], direction[3];
 } place;
 
-/* The point at t along the ray. */
+/* Takes the point at t along the ray. */
 static void take_point(const place *at, cw_pick_kind kind, double t, cw_picked *out)
 {
     double eye[3];
@@ -36,7 +38,7 @@ static void take_mesh(const place *at, const cwi_mesh_hit *hit, cw_picked *out)
         out->value += hit->share[n] * (double)m->scalars[m->triangles[3 * hit->triangle + n]];
 }
 
-/* The field at the ray's point; rounding may have put that beyond the volume's face. */
+/* Returns the field at the ray's point; rounding may have put that beyond the volume's face. */
 static double value_of(const cwi_frame *f, const double point[3])
 {
     double index[3], inside[3];
@@ -71,7 +73,7 @@ static bool is_intensity(cw_mode mode)
            mode == CW_MODE_LOCAL_MIP;
 }
 
-/* Out has the mesh, if it is met; the volume is before it. */
+/* Takes the volume's point, if it is in front of the mesh, which `out` has if it is met. */
 static void take_volume(const place *at, double mesh_t, cw_picked *out)
 {
     const cwi_frame *f = at->frame;

@@ -1,3 +1,4 @@
+/* Intersects a ray with the triangles of a mesh, and with the caps of its cuts. */
 #include "viewer/interact/pick_mesh.h"
 
 #include "core/geometry/vec3.h"
@@ -15,7 +16,7 @@ typedef struct sight {
     size_t before[2]; /* triangles met before each part */
 } sight;
 
-/* Two directions across a third; all of unit length. */
+/* Finds two directions across a third; all of unit length. */
 static void find_across(double axes[3][3])
 {
     const double *d = axes[2];
@@ -58,9 +59,9 @@ static double position_along(const sight *s, const float *p, int axis)
     return s->from[axis] + (double)p[0] * a[0] + (double)p[1] * a[1] + (double)p[2] * a[2];
 }
 
-/* On which side of an edge the ray passes, and how far. An edge it goes through is passed as if
- * the ray were moved a little, the same for all edges: so that triangles that share an edge or
- * a corner do not both meet it, nor neither. */
+/* Finds on which side of an edge the ray passes, and how far. If the ray goes through the edge,
+ * it counts as moved a little, in the same way for all edges. So exactly one of the triangles
+ * that share an edge or a corner meets it. */
 static bool side_of(const double a[2], const double b[2], double *area)
 {
     *area = a[0] * b[1] - a[1] * b[0];
@@ -108,7 +109,7 @@ static bool is_kept(const sight *s, double z)
     return false;
 }
 
-/* Where a part begins inside of the mesh, a cut is filled. */
+/* Adds a filled cut where a part of the ray begins inside of the mesh. */
 static void add_caps(const sight *s, cwi_mesh_hit *hit)
 {
     for (int n = s->kept_count - 1; n >= 0; n--)

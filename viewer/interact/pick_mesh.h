@@ -1,4 +1,4 @@
-/* Where a ray meets a mesh. */
+/* Finds where a ray meets a mesh. */
 #ifndef VIEWER_INTERACT_PICK_MESH_H
 #define VIEWER_INTERACT_PICK_MESH_H
 
@@ -15,9 +15,9 @@ typedef struct cwi_mesh_hit {
     double share[3]; /* of the triangle's corners; 0 of a cut */
 } cwi_mesh_hit;
 
-/* The nearest point of the frame's mesh that is drawn, at all or by so little that its opacity
- * is 0, on a ray in eye space. Rays through edges and corners meet one of the
- * triangles there. */
+/* Finds the nearest point of the frame's mesh that is drawn, even with an opacity that rounds
+ * to 0, on a ray in eye space. Rays through edges and corners meet one of the triangles
+ * there. */
 cwi_mesh_hit cwi_pick_mesh(const cwi_frame *frame, const double origin[3],
                            const double direction[3]);
 

@@ -1,3 +1,5 @@
+/* Picks the point of a volume along a ray: where half of the light is absorbed, where a
+ * projection's value occurs, or on a slice. */
 #include "viewer/interact/pick_volume.h"
 
 #include "core/geometry/affine.h"
@@ -10,18 +12,19 @@
 #include <math.h>
 #include <string.h>
 
-enum { STEPS = 8 }; /* of a piece of the ray between knots */
+enum { STEPS = 8 }; /* of a piece of the ray between breakpoints */
 
-/* What a ray has gone through so far. */
+/* State of a ray after the cells it has passed. */
 typedef struct passage {
     const cwi_frame *frame;
     cwi_knots knots;
     double to_eye[3][3];  /* gradients */
-    double light, half;   /* what is left of it; where that became a half, or INFINITY */
-    double most, most_at; /* what the cell that took most of it took, and its middle */
+    double light, half;   /* fraction of it that is left; where that became a half, or
+                             INFINITY */
+    double most, most_at; /* the most light that a cell took, and that cell's middle */
 } passage;
 
-/* The gradient's cubics in a cell, in eye space. */
+/* Computes the gradient's cubics in a cell, in eye space. */
 static void find_gradients(const passage *p, const cwi_walk *w, double gradient[3][4])
 {
     double g[3][8], cubic[3][4];
@@ -48,7 +51,7 @@ static double extinction_at(const passage *p, const cwi_linear *l, const double 
     return extinction * cw_transfer_gradient_factor(&f->transfer, g / f->unit_mm);
 }
 
-/* A step of the ray, in eye space: light falls by the optical depth. */
+/* Passes a step of the ray, in eye space: light falls by the optical depth. */
 static void pass_segment(passage *p, double from, double length, double depth)
 {
     const double after = p->light * exp(-depth);
@@ -110,8 +113,8 @@ cwi_volume_hit cwi_pick_blended(const cwi_frame *frame, double x, double y, doub
                             opacity};
 }
 
-/* Where the field first has a value in a cell, at an end or where it turns: the same numbers,
- * to the bit, of which the value was found. */
+/* Finds where the field first has a value in a cell, at an end or where it turns. It compares
+ * the same numbers, to the bit, from which the value was found. */
 static double find_value(const cwi_walk *w, double value)
 {
     double v[8], c[4], places[4] = {0};
@@ -144,7 +147,8 @@ cwi_volume_hit cwi_pick_intensity(const cwi_frame *frame, double x, double y, do
     return (cwi_volume_hit){t, t < INFINITY};
 }
 
-/* Slices in a face of the volume, or in a plane that clips, are drawn: they have some slack. */
+/* Returns true if a point of a slice has a value. Slices in a face of the volume, or in a clip
+ * plane, are drawn: they get some tolerance. */
 static bool has_value(const cwi_frame *f, const double p[3])
 {
     static const double slack = 1e-3;

@@ -1,4 +1,4 @@
-/* What of a volume is seen along a ray, and where. */
+/* The point of a volume that is seen along a ray. */
 #ifndef VIEWER_INTERACT_PICK_VOLUME_H
 #define VIEWER_INTERACT_PICK_VOLUME_H
 
@@ -11,16 +11,16 @@ extern "C" {
 /* A point of the volume on a ray. */
 typedef struct cwi_volume_hit {
     double t;       /* along the ray, in eye space; INFINITY: there is none */
-    double opacity; /* that all of the ray's volume has: 1 of an intensity projection */
+    double opacity; /* of the whole ray's volume: 1 for an intensity projection */
 } cwi_volume_hit;
 
-/* What the modes that blend, and intensity projections, show through a point of the picture, in
- * samples, up to a depth. */
+/* Find the point that blending modes, and intensity projections, show at a point of the
+ * picture, in samples, up to a depth. */
 cwi_volume_hit cwi_pick_blended(const cwi_frame *frame, double x, double y, double depth);
 cwi_volume_hit cwi_pick_intensity(const cwi_frame *frame, double x, double y, double depth);
 
-/* The nearest of the slices (normals of unit length) that has a value on a ray in eye space;
- * its number. INFINITY: there is none. */
+/* Finds the nearest of the slices (normals of unit length) that has a value on a ray in eye
+ * space, and its number. INFINITY: there is none. */
 double cwi_pick_slice(const cwi_frame *frame, const cw_slice *slices, size_t count,
                       const double origin[3], const double direction[3], size_t *number);
 

@@ -1,3 +1,5 @@
+/* Edits a transfer function: finds, moves, inserts and removes points; shifts, scales and
+ * mirrors all of them. */
 #include "viewer/interact/transfer_edit.h"
 
 #include <assert.h>
@@ -10,8 +12,8 @@ static double clamp_between(double x, double low, double high)
     return x < low ? low : x > high ? high : x;
 }
 
-/* How far apart two values are in tolerances; in halves, as differences may be beyond what
- * doubles hold. */
+/* Returns the distance of two values in tolerances; computed in halves, as differences may be
+ * out of the range of doubles. */
 static double are_apart(double a, double b, double tolerance)
 {
     return (a / 2 - b / 2) / (tolerance / 2);
@@ -48,7 +50,7 @@ size_t cwi_transfer_near_color(const cw_transfer *t, double value, double tolera
     return found;
 }
 
-/* The distance of the origin from a line's part between two points. */
+/* Returns the distance of the origin from a line's part between two points. */
 static double distance_to_line(const double a[2], const double b[2])
 {
     const double d[2] = {b[0] - a[0], b[1] - a[1]};
@@ -164,12 +166,12 @@ bool cwi_transfer_range(const cw_transfer *t, double range[2])
     return t->opacity_count > 0 || t->color_count > 0;
 }
 
-/* A map of values that rises: (value - from) * factor + to. */
+/* An increasing map of values: (value - from) * factor + to. */
 typedef struct line {
     double from, factor, to;
 } line;
 
-/* Rounding may let values fall, and large ones leave what doubles hold. */
+/* Maps a value. Rounding may let values fall, and large ones leave the range of doubles. */
 static double map_value(const line *l, double value, double before)
 {
     const double mapped = (value - l->from) * l->factor + l->to;
@@ -229,7 +231,7 @@ bool cwi_transfer_fade(const cw_transfer *original, double factor, cw_transfer *
     return true;
 }
 
-/* Each value moves to where it is as far from the other end. */
+/* Mirrors colours: each value moves to where it is as far from the other end. */
 bool cwi_transfer_mirror(const cw_transfer *original, cw_transfer *out)
 {
     const cw_transfer from = *original; /* which may be out */

@@ -1,5 +1,5 @@
-/* One picture: uploads what is new, draws the mesh, then the mode, and reads the
- * picture back. */
+/* Draws one picture: uploads new data, draws the mesh, then the mode, and reads the picture
+ * back. */
 #include "viewer/modes/gl_draw.h"
 
 #include "core/base/memory.h"
@@ -120,7 +120,7 @@ static void put_frame(cwi_gl *gl)
     glBindBufferBase(GL_UNIFORM_BUFFER, 0, gl->frame_block);
 }
 
-/* GL's rows go up. */
+/* Reads the picture back; GL's rows go up. */
 static void read_back(const cwi_gl *gl, cw_picture *picture)
 {
     const size_t row = 4 * picture->width;
@@ -137,7 +137,7 @@ static void read_back(const cwi_gl *gl, cw_picture *picture)
     }
 }
 
-/* A picture that was cancelled leaves what it was at. */
+/* Resets GL's state: a cancelled picture leaves it unfinished. */
 static void reset_state(void)
 {
     glDisable(GL_SCISSOR_TEST);

@@ -7,7 +7,7 @@
 CW_NODISCARD cw_status cwi_gl_draw(cwi_gl *gl, const cwi_frame *frame, cw_picture *picture,
                                    cw_error *err);
 
-/* The mode's row; NULL when GL does not draw it. */
+/* Returns the mode's row; NULL when GL does not draw it. */
 const cwi_gl_mode *cwi_gl_find_mode(cw_mode mode);
 
 #endif

@@ -1,4 +1,4 @@
-/* Opening and closing what draws by OpenGL. */
+/* Opens and closes the OpenGL renderer, and lists the functions of its module. */
 #include "viewer/modes/gl_draw.h"
 
 #include "core/base/memory.h"
@@ -14,7 +14,7 @@ static void drop_states(cwi_gl *gl)
     }
 }
 
-/* What Mesa's software OpenGL was seen to take before there is anything to draw. */
+/* Memory that Mesa's software OpenGL was seen to take before anything is drawn. */
 enum { DRIVER_BYTES = 72 << 20 };
 
 static cw_status gl_open(cwi_gl **out, cw_error *err)

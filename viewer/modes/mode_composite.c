@@ -1,4 +1,5 @@
-/* Ray casting of volumes: emission and absorption along each ray, by a fragment shader. */
+/* Draws a volume by ray casting: emission and absorption along each ray, by a fragment
+ * shader. */
 #include "viewer/gl/gl_internal.h"
 
 #include "core/base/memory.h"

@@ -1,10 +1,11 @@
-/* Triangles, lit as the CPU's reference when the scene names neither lights nor a material,
- * else by them. Opaque ones need one pass; translucent ones are peeled: pass n draws the
- * nearest of what is behind pass n - 1, and is blended behind it [Everitt2001], so that the
- * order of the triangles does not matter. Of several surfaces at exactly one depth one counts.
+/* Draws triangles, lit as by the CPU's reference when the scene has neither lights nor a
+ * material, else by these. Opaque ones need one pass; translucent ones are peeled: pass n draws
+ * the nearest surface behind that of pass n - 1, and is blended behind it [Everitt2001], so
+ * that the order of the triangles does not matter. Of several surfaces at exactly one depth one
+ * counts.
  *
- * Cuts are filled where the winding number of the mesh around a plane's point is not 0: what
- * the ray leaves behind that point, less what it enters. */
+ * Cuts are filled where the winding number of the mesh around a plane's point is not 0: how
+ * often the ray leaves the mesh behind that point, minus how often it enters it. */
 #include "viewer/gl/gl_mesh.h"
 #include "viewer/scene/srgb.h"
 
@@ -16,7 +17,7 @@
 
 extern const char cwi_glsl_mesh[], cwi_glsl_layer[];
 
-/* What lies behind more layers than this is left out. */
+/* The maximum number of layers; those behind them are left out. */
 enum { MOST_LAYERS = 128 };
 
 /* Half the width of edges, in pixels. */
@@ -27,7 +28,7 @@ static bool has_colors(const cw_scene *s)
     return s->tint == CW_TINT_COLORS && s->mesh->colors;
 }
 
-/* The scene's colour, and on faces of a cut a little darker and warmer. */
+/* Sets the scene's colour; faces of a cut are a little darker and warmer. */
 static void set_plain(const cw_scene *s, GLuint program, bool cut, bool opaque)
 {
     static const float darker[3] = {0.86f, 0.72f, 0.62f};
@@ -49,7 +50,7 @@ static void set_look(const cwi_gl *gl, const cwi_gl_mesh *m, GLuint program)
     cwi_gl_set(program, "line_width", LINE_WIDTH * (float)s->samples);
 }
 
-/* How a surface is drawn. */
+/* Options by which a surface is drawn. */
 typedef struct manner {
     bool opaque, peels;
 } manner;
@@ -76,7 +77,7 @@ static bool draws_caps(const cw_scene *s)
     return s->cap && s->clip_count > 0;
 }
 
-/* Winding numbers around the points of a few planes. */
+/* Computes winding numbers around the points of a few planes. */
 static cw_status count_windings(cwi_gl *gl, cwi_gl_mesh *m, size_t n, cw_error *err)
 {
     GLuint program;
@@ -114,7 +115,7 @@ static cw_status draw_caps(cwi_gl *gl, const cwi_gl_mesh *m, manner how, cw_erro
     return CW_OK;
 }
 
-/* What is nearest, into what is bound. */
+/* Draws the nearest surface into the framebuffer that is bound. */
 static cw_status draw_surface(cwi_gl *gl, cwi_gl_mesh *m, manner how, cw_error *err)
 {
     GLuint program;
@@ -130,7 +131,7 @@ static cw_status draw_surface(cwi_gl *gl, cwi_gl_mesh *m, manner how, cw_error *
     return st == CW_OK && draws_caps(&gl->frame->scene) ? draw_caps(gl, m, how, err) : st;
 }
 
-/* Blends a layer behind what is there. */
+/* Blends a layer behind the picture so far. */
 static cw_status put_behind(cwi_gl *gl, const cwi_gl_mesh *m, cw_error *err)
 {
     GLuint program;
@@ -165,7 +166,7 @@ static void start_layer(const cwi_gl *gl, const cwi_gl_mesh *m, int n)
     glBindTexture(GL_TEXTURE_2D, gl->target.color);
 }
 
-/* Layers from the nearest on, until one is empty. */
+/* Draws layers from the nearest on, until one is empty. */
 static cw_status peel_layers(cwi_gl *gl, cwi_gl_mesh *m, cw_error *err)
 {
     GLuint drawn = 1;
@@ -195,7 +196,7 @@ static bool is_translucent(const cw_scene *s, const cwi_gl_mesh *m)
     return has_colors(s) ? m->has_alpha : s->color[3] < 1;
 }
 
-/* The mesh, and what is inside of it where it is cut. */
+/* Uploads the mesh, and prepares the filling of its cuts. */
 static cw_status take_mesh(cwi_gl *gl, void **state, cwi_gl_mesh **m, cw_error *err)
 {
     const cw_scene *s = &gl->frame->scene;

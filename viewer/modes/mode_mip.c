@@ -10,7 +10,8 @@
 
 extern const char cwi_glsl_mip[];
 
-/* What is found is handed on from brick to brick in two textures, taken by turns. */
+/* State of a projection. Values found so far pass from brick to brick in two textures, used
+ * alternately. */
 typedef struct projector {
     GLuint ranges;
     size_t blocks[3];
@@ -35,7 +36,7 @@ static void drop_mip_mode(void *state)
     cwi_free(p);
 }
 
-/* Ranges of values as those of what textures hold; none: from infinity down. */
+/* Converts ranges of values to ranges of texels; without values: from infinity down. */
 static void to_texels(const cwi_gl_volume *v, cwi_ranges *ranges, size_t count)
 {
     for (size_t n = 0; n < count; n++) {
@@ -100,14 +101,14 @@ static const char *name_of(cw_mode mode)
                                      : "LOCAL";
 }
 
-/* Whether the range of a block holds for every ray through it. */
+/* Returns true if the range of a block holds for every ray through it. */
 static bool can_foresee(const cwi_gl *gl)
 {
     const cw_mode mode = gl->frame->scene.mode;
     return (mode == CW_MODE_MIP || mode == CW_MODE_MINIP) && !gl->volume.ranges.has_gaps;
 }
 
-/* One brick, the n-th from the front of count. */
+/* Draws one brick, the n-th from the front of `count`. */
 static cw_status draw_brick(cwi_gl *gl, const projector *p, const cwi_gl_brick *brick, size_t n,
                             size_t count, cw_error *err)
 {

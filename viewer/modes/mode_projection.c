@@ -1,5 +1,5 @@
-/* Coherent projection: cells, and nodes of cells that are alike, as polygons from back to
- * front. */
+/* Draws a volume by coherent projection: cells, and nodes of similar cells, as polygons from
+ * back to front. */
 #include "viewer/gl/gl_internal.h"
 #include "viewer/proxy/projected_cells.h"
 #include "viewer/scene/cell_lattice.h"
@@ -22,12 +22,13 @@ enum {
     CHUNK_INDICES = 3 << 16
 };
 
-/* As shaders/projection.glsl takes it. */
+/* A vertex as shaders/projection.glsl reads it. */
 typedef struct vertex {
     float place[4], values[3];
 } vertex;
 
-/* The pieces of one cell in an orthographic view: those of all cells but for a shift. */
+/* The pieces of one cell in an orthographic view; those of all cells are the same but for a
+ * shift. */
 typedef struct pattern {
     bool is_made;
     double size[3];
@@ -70,7 +71,7 @@ static void flush_triangles(job *j)
     j->vertex_count = j->index_count = 0;
 }
 
-/* How much each corner of a box counts at a point, from 0 to 1 along each axis. */
+/* Computes the weight of each corner of a box at a point, from 0 to 1 along each axis. */
 static void corner_weights(const double at[3], float w[8])
 {
     for (int n = 0; n < 8; n++) {
@@ -83,7 +84,7 @@ static void corner_weights(const double at[3], float w[8])
     }
 }
 
-/* A point of the picture at a depth, in a box. */
+/* Computes the place in a box of a point of the picture at a depth. */
 static void place_in_box(const cwi_frame *f, const double at[2], double depth,
                          const double low[3], const double size[3], double share[3])
 {
@@ -139,7 +140,7 @@ static void make_pattern(job *j, const double size[3])
         weigh_vertex(j->frame, &p->pieces.vertices[n], low, size, p->front[n], p->back[n]);
 }
 
-/* Whether a side of the picture has all of the vertices from a number on behind it. */
+/* Returns true if all of the vertices from a number on are beyond one side of the picture. */
 static bool is_outside(const job *j, size_t from)
 {
     bool out[4] = {true, true, true, true};
@@ -200,7 +201,8 @@ static void draw_single(job *j, const double low[3], const double size[3], const
     put_pieces(j, &pieces, from);
 }
 
-/* Samples along an axis of a node's cells: one where the volume is a single layer. */
+/* Returns the last of the samples along an axis of a node's cells: there is one where the
+ * volume is a single layer. */
 static size_t last_of(const job *j, int axis, size_t n)
 {
     return j->frame->volume.dim[axis] > 1 ? n : 0;
@@ -234,7 +236,7 @@ static void draw_node(job *j, const node *n)
         draw_shifted(j, low, size, v);
 }
 
-/* The range of a node's samples; false: some have no value. */
+/* Finds the range of a node's samples; returns false if some have no value. */
 static bool find_range(const job *j, const node *n, float range[2])
 {
     size_t last[3];
@@ -261,7 +263,7 @@ static float clamp_unit(float x)
 
 static void visit_node(job *j, const node *n);
 
-/* The two halves along an axis that both are there, the farther first. */
+/* Finds the two halves along an axis, if both exist, the farther first. */
 static int split_node(const job *j, const node *n, int axis, size_t order[2])
 {
     const size_t half = n->edge / 2;
@@ -295,7 +297,7 @@ static void visit_parts(job *j, const node *n)
     }
 }
 
-/* Nodes that show nothing are passed over; those whose values are alike are drawn as one. */
+/* Visits a node: skips it if it shows nothing; draws it as one if its values are similar. */
 static void visit_node(job *j, const node *n)
 {
     float range[2];
@@ -310,7 +312,7 @@ static void visit_node(job *j, const node *n)
         draw_node(j, n);
 }
 
-/* The cells of a block that are in a brick as well. */
+/* Draws the cells of a block that are in a brick as well. */
 static void draw_block(job *j, const cwi_gl_brick *brick, const size_t block[3])
 {
     const cwi_table *t = &j->gl->transfer.table;
@@ -338,7 +340,8 @@ static void draw_block(job *j, const cwi_gl_brick *brick, const size_t block[3])
     visit_node(j, &whole);
 }
 
-/* The blocks a brick has cells of, along an axis: from the farthest to the nearest. */
+/* Orders the blocks of which a brick has cells, along an axis, from the farthest to the
+ * nearest. */
 static size_t *order_blocks(const job *j, const cwi_gl_brick *brick, int axis, size_t *count)
 {
     const size_t cells = brick->count[axis] > 1 ? brick->count[axis] - 1 : 1;
@@ -353,7 +356,7 @@ static size_t *order_blocks(const job *j, const cwi_gl_brick *brick, int axis, s
     return order;
 }
 
-/* A layer of blocks, by rows: between them is where drawing can be stopped. */
+/* Draws a layer of blocks, row by row: between rows drawing can be stopped. */
 static void draw_row(job *j, const cwi_gl_brick *brick, size_t *const order[3], size_t count,
                      size_t y, size_t z)
 {

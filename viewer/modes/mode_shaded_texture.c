@@ -1,5 +1,6 @@
-/* Slices through textures of values and quantised gradients [VanGelder1996]. A small table has
- * the shaded colour of every direction and value: another light changes the table alone. */
+/* Draws slices through textures of values and quantised gradients [VanGelder1996]. A small
+ * table has the shaded colour of every direction and value: another light changes the table
+ * alone. */
 #include "viewer/modes/slab_textures.h"
 
 #include "viewer/proxy/quantized_normals.h"
@@ -17,14 +18,14 @@
 
 enum { SHADE_COLUMNS = 256, BOUNDARY = 1 << 15 };
 
-/* What the textures of directions depend on, beside the volume. */
+/* Settings that the textures of directions depend on, beside the volume. */
 typedef struct normals_key {
     size_t count;
     bool mark_boundary;
     cw_transfer transfer; /* zeroed unless boundaries are marked */
 } normals_key;
 
-/* What the table of colours depends on. */
+/* Settings that the table of colours depends on. */
 typedef struct shades_key {
     size_t count, light_count;
     cw_light lights[CW_MAX_LIGHTS];
@@ -62,7 +63,8 @@ static void drop_shaded_texture(void *state)
     cwi_free(t);
 }
 
-/* A material is a range of values between two points of the opacity: how many are not above. */
+/* Returns the material of a value, a range between two points of the opacity: the number of
+ * points that are not above the value. */
 static size_t material_of(const cw_transfer *t, double value)
 {
     size_t n = 0;
@@ -71,7 +73,7 @@ static size_t material_of(const cw_transfer *t, double value)
     return n;
 }
 
-/* A cell is at a boundary when its samples are of more than one material. */
+/* Returns true if a cell is at a boundary: its samples are of more than one material. */
 static bool is_boundary(const cw_volume *v, const cw_transfer *t, const size_t at[3])
 {
     double range[2] = {INFINITY, -INFINITY};
@@ -87,8 +89,8 @@ static bool is_boundary(const cw_volume *v, const cw_transfer *t, const size_t a
     return material_of(t, range[0] + v->intercept) != material_of(t, range[1] + v->intercept);
 }
 
-/* The number of a voxel's direction, that of the table's last row where there is none; and
- * whether the cell above the voxel is at a boundary. */
+/* Returns the number of a voxel's direction, or of the table's last row where there is none;
+ * and whether the cell above the voxel is at a boundary. */
 static uint16_t normal_of(const cw_volume *v, const shaded_state *t,
                           const double to_world[3][3], const size_t at[3])
 {
@@ -165,7 +167,8 @@ static cw_status need_normals(cwi_gl *gl, shaded_state *t, cw_error *err)
     return st;
 }
 
-/* From the middle of the volume to the eye: in perspective, one direction for all of it. */
+/* Finds the direction from the middle of the volume to the eye: in perspective, one direction
+ * for the whole volume. */
 static void find_to_eye(const cwi_frame *f, double to_eye[3])
 {
     double middle[3], eye[3];
@@ -192,7 +195,8 @@ static void fill_key(const cwi_gl *gl, shades_key *key)
     key->high = gl->transfer.table.high;
 }
 
-/* As shade() of common.glsl, for a direction of the table: light is gain x colour + shine. */
+/* Light of a direction of the table, as shade() of common.glsl computes it: gain x colour +
+ * shine. */
 typedef struct reflection {
     double gain[3], shine[3];
 } reflection;

@@ -1,5 +1,5 @@
-/* Slices: what of the volume lies in a few planes, each sample of the picture by its
- * own ray. */
+/* Draws slices: the volume's values in a few planes, with a ray for each sample of the
+ * picture. */
 #include "viewer/gl/gl_internal.h"
 
 #include "core/base/status.h"

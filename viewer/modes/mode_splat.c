@@ -1,4 +1,4 @@
-/* Splatting: every voxel's footprint, sheet by sheet. */
+/* Draws a volume by splatting every voxel's footprint, sheet by sheet. */
 #include "viewer/modes/splat_sheets.h"
 
 static cw_status draw_splat_mode(cwi_gl *gl, void **state, cw_error *err)

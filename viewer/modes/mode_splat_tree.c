@@ -1,5 +1,5 @@
-/* Hierarchical splatting: nodes of an octree whose values are near enough to their mean are one
- * splat in each sheet they are in. */
+/* Draws a volume by hierarchical splatting. Nodes of an octree whose values are near enough to
+ * their mean are one splat in each sheet they are in. */
 #include "viewer/modes/splat_sheets.h"
 #include "viewer/proxy/value_octree.h"
 
@@ -10,8 +10,8 @@
 #include <math.h>
 #include <string.h>
 
-/* What is kept from picture to picture of a volume: the last error that was fitted, too, for
- * that is a walk through the whole tree. */
+/* State kept between pictures of a volume. It includes the last error that was fitted, since
+ * fitting walks through the whole tree. */
 typedef struct tree {
     cwi_pyramid pyramid;
     size_t budget; /* that it was fitted to; 0: none was */
@@ -28,7 +28,7 @@ typedef struct walk {
     size_t sheet; /* that is being drawn */
 } walk;
 
-/* The voxels of a node along an axis: the first, and the one after the last. */
+/* Finds the voxels of a node along an axis: the first, and the one after the last. */
 static void find_voxels(const walk *w, int axis, size_t level, size_t n, size_t at[2])
 {
     const size_t dim = w->splats.frame->volume.dim[axis], end = (n + 1) << (level + 1);
@@ -36,7 +36,7 @@ static void find_voxels(const walk *w, int axis, size_t level, size_t n, size_t 
     at[1] = end < dim ? end : dim;
 }
 
-/* Whether a plane that clips goes through a node. */
+/* Returns true if a clip plane goes through a node. */
 static bool is_clipped(const cwi_splats *s, const double eye[3], const float size[3])
 {
     const double *m = s->frame->eye_from_index;
@@ -58,7 +58,8 @@ static bool is_too_near(const cwi_splats *s, const double eye[3], const float si
     return s->frame->perspective && -eye[2] <= s->radius * (1 + (double)most);
 }
 
-/* The slope of the means of the nodes on both sides; of the volume's range, per voxel. */
+/* Returns the slope of the means of the nodes on both sides, as a fraction of the volume's
+ * range, per voxel. */
 static float slope_at(const walk *w, size_t level, const size_t node[3], int axis)
 {
     size_t low[3], high[3];
@@ -76,7 +77,7 @@ static float slope_at(const walk *w, size_t level, const size_t node[3], int axi
     return (float)((double)(y->mean - x->mean) / (double)away / w->splats.gl->volume.range);
 }
 
-/* A node's box ends half a voxel beyond its voxels, and at the volume's border. */
+/* Finds a node's box; it ends half a voxel beyond its voxels, or at the volume's border. */
 static void find_box(const walk *w, const size_t at[3][2], double low[3], double high[3])
 {
     const cwi_frame *f = w->splats.frame;
@@ -86,7 +87,7 @@ static void find_box(const walk *w, const size_t at[3][2], double low[3], double
     }
 }
 
-/* The part of a node in the sheet that is being drawn. */
+/* Splats the part of a node that is in the current sheet. */
 static void splat_node(walk *w, size_t level, const size_t node[3], const double low[3],
                        const double high[3], const double eye[3])
 {
@@ -127,7 +128,7 @@ static void visit_parts(walk *w, size_t level, const size_t node[3])
     }
 }
 
-/* Goes down to what is drawn in the sheet. */
+/* Visits a node, and goes down to the nodes drawn in the sheet. */
 static void visit_node(walk *w, size_t level, const size_t node[3])
 {
     size_t at[3][2];

@@ -1,4 +1,4 @@
-/* Slices through 3D textures of data, or of colours when these are interpolated
+/* Draws slices through 3D textures of data, or of colours when these are interpolated
  * [Wilson1994]. */
 #include "viewer/modes/slab_textures.h"
 
@@ -35,8 +35,8 @@ static void drop_texture_mode(void *state)
     cwi_free(t);
 }
 
-/* Emission and extinction per unit: what is linear in how much there is of a thing, and so may
- * be interpolated. No value, nothing. */
+/* Computes emission and extinction per unit. These are linear in the amount of a material, and
+ * so may be interpolated. Without a value both are 0. */
 static void classify_value(const cwi_table *t, double value, float out[4])
 {
     memset(out, 0, 4 * sizeof *out);
@@ -52,7 +52,7 @@ static void classify_value(const cwi_table *t, double value, float out[4])
         out[c] *= out[3];
 }
 
-/* NaN: none. */
+/* Returns a voxel's value; NaN: it has none. */
 static double value_of(const cw_volume *v, const cwi_gl_brick *b, size_t i, size_t j, size_t k)
 {
     const double x = cwi_voxel_at(
@@ -70,7 +70,8 @@ static void put_layer(const cwi_gl *gl, const cwi_gl_brick *b, size_t k, float (
                            out[j * b->count[0] + i]);
 }
 
-/* Half precision is relative: enough for colours that add up, whatever the opacity. */
+/* Uploads classified voxels. Half precision is relative: enough for colours that add up,
+ * whatever the opacity. */
 static cw_status upload_classes(cwi_gl *gl, const cwi_gl_brick *b, GLuint *name, cw_error *err)
 {
     const GLsizei w = (GLsizei)b->count[0], h = (GLsizei)b->count[1], d = (GLsizei)b->count[2];

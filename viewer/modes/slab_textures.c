@@ -1,6 +1,6 @@
-/* Slices through 3D textures [Wilson1994]. A slice stands for the slab of space around it, and
- * each of its fragments for the part of a ray in that slab, in one brick's box: so slabs need
- * no outline, and rays that leave the volume within a slab are right. */
+/* Draws slices through 3D textures [Wilson1994]. A slice stands for the slab of space around
+ * it, and each of its fragments for the part of a ray in that slab, in one brick's box: so
+ * slabs need no outline, and rays that leave the volume within a slab are right. */
 #include "viewer/modes/slab_textures.h"
 
 #include "core/base/memory.h"
@@ -56,7 +56,7 @@ static cw_status init_drawing(const cwi_frame *f, drawing *d, cw_error *err)
                                 : cw_fail(err, CW_ERR_NO_MEMORY, "no memory for slices");
 }
 
-/* A brick's samples as blocks of cells: first and last block along each axis. */
+/* Finds the blocks of cells of a brick's samples: first and last block along each axis. */
 static void blocks_of(const cwi_gl_brick *b, const size_t dim[3], size_t from[3], size_t to[3])
 {
     for (int a = 0; a < 3; a++) {
@@ -68,7 +68,7 @@ static void blocks_of(const cwi_gl_brick *b, const size_t dim[3], size_t from[3]
     }
 }
 
-/* The part of a range of cells that is in a brick, in index space. */
+/* Finds the part of a range of cells that is in a brick, in index space. */
 static void box_of(const cwi_frame *f, const cwi_gl_brick *b, const size_t from[3],
                    const size_t to[3], double low[3], double high[3])
 {
@@ -191,7 +191,7 @@ static cw_status draw_layer(cwi_gl *gl, GLuint program, const drawing *d,
     return cwi_gl_draw_layer(gl, draw_instances, &all, err);
 }
 
-/* The brick's box in texture coordinates: samples stand in the middle of texels. */
+/* Sets the brick's box in texture coordinates: samples stand in the middle of texels. */
 static void set_box(const cwi_frame *f, GLuint program, const cwi_gl_brick *b)
 {
     double low[3], high[3];
@@ -255,7 +255,8 @@ static void make_color(cwi_gl_slabs *s, const cwi_gl_target *like, cw_target tar
     glFramebufferTexture2D(GL_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, s->color, 0);
 }
 
-/* The module's own target has single precision; others are drawn over it in the end. */
+/* Binds a target for slabs. The module's own target has single precision; other targets are
+ * drawn over it in the end. */
 static cw_status begin_slabs(cwi_gl *gl, cwi_gl_slabs *s, cw_error *err)
 {
     const cwi_gl_target *t = &gl->target;

@@ -13,7 +13,7 @@ enum {
     CWI_UNIT_SHADES                  /* colours by direction and value */
 };
 
-/* What a mode keeps from one picture to the next. Zeroed is valid. */
+/* State that a mode keeps from one picture to the next. Zeroed is valid. */
 typedef struct cwi_gl_slabs {
     GLuint array, corners; /* of the rectangles drawn */
     GLuint framebuffer, color;
@@ -25,7 +25,7 @@ void cwi_gl_drop_slices(cwi_gl_slabs *slices);
 
 /* Draws the frame's slices, with a program of slab.glsl and texture.glsl.
  * defines  the mode's own, after which those of the scene are put
- * bind     binds what the mode has of a brick beside its values and gradients; may be NULL */
+ * bind     binds a mode's own textures of a brick, beside values and gradients; may be NULL */
 CW_NODISCARD cw_status cwi_gl_draw_slices(cwi_gl *gl, cwi_gl_slabs *slices, const char *defines,
                                           void (*bind)(const void *state, size_t brick),
                                           const void *state, cw_error *err);

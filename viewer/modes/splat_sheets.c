@@ -1,3 +1,5 @@
+/* Splats voxels into sheets: projects them as Gaussians [Westover1990], adds them up in a
+ * sheet, and blends sheets. */
 #include "viewer/modes/splat_sheets.h"
 
 #include "core/base/memory.h"
@@ -20,13 +22,13 @@ enum {
     UNIT_FOOTPRINT
 };
 
-/* Of the Gaussian of one voxel, in voxels: wide enough that what footprints on a lattice add up
- * to varies by less than 0.6 %, and no wider; the table ends at a radius in sigmas where it has
- * fallen to 0.3 %. */
+/* The Gaussian of one voxel, in voxels. It is just so wide that the sum of footprints on a
+ * lattice varies by less than 0.6 %. The table ends at a radius in sigmas where it has fallen
+ * to 0.3 %. */
 static const double sigma = 0.6, table_radius = 3.4;
 
-/* The footprint by the square of the distance: a Gaussian that is let down to reach 0 at the
- * end, over its integral. */
+/* Makes the footprint by the square of the distance: a Gaussian, lowered to reach 0 at the end,
+ * over its integral. */
 static void make_footprint(cwi_splats *s)
 {
     float rows[FOOTPRINT_ROWS];
@@ -38,7 +40,7 @@ static void make_footprint(cwi_splats *s)
     glTexImage2D(GL_TEXTURE_2D, 0, GL_R32F, FOOTPRINT_ROWS, 1, 0, GL_RED, GL_FLOAT, rows);
 }
 
-/* A buffer to add splats up in, behind the mesh's depth. */
+/* Makes a buffer in which splats are added up, behind the mesh's depth. */
 static void make_sheet(cwi_splats *s)
 {
     const cwi_gl_target *t = &s->gl->target;
@@ -51,7 +53,7 @@ static void make_sheet(cwi_splats *s)
     glClear(GL_COLOR_BUFFER_BIT);
 }
 
-/* Two triangles a splat. */
+/* Makes indices: two triangles a splat. */
 static cw_status make_indices(cwi_splats *s, cw_error *err)
 {
     static const uint32_t corners[6] = {0, 1, 2, 2, 1, 3};
@@ -103,7 +105,7 @@ static cw_status make_programs(cwi_splats *s, bool has_nodes, cw_error *err)
     return CW_OK;
 }
 
-/* The axis of index space whose layers look most straight at the eye. */
+/* Chooses the axis of index space whose layers face the eye most. */
 static int choose_axis(const cwi_frame *f)
 {
     int best = 0;
@@ -187,7 +189,7 @@ void cwi_splats_close(cwi_splats *s)
     s->chunk = NULL;
 }
 
-/* Adds what is in the chunk to the sheet. */
+/* Adds the splats of the chunk to the sheet. */
 static void flush_splats(cwi_splats *s)
 {
     if (s->count == 0 || s->status != CW_OK)
@@ -216,7 +218,8 @@ bool cwi_splats_keep(const cwi_splats *s, const double at[3], double eye[3])
     return f->scene.clip_count == 0 || is_kept != f->scene.cut_away;
 }
 
-/* Where on the picture a splat is, widened to at least half a pixel; false: beside it. */
+/* Finds the bounds of a splat on the picture, widened to at least half a pixel; returns false
+ * if it is beside the picture. */
 static bool find_bounds(const cwi_splats *s, const cwi_splat *splat, const double eye[3],
                         double bounds[4])
 {
@@ -249,7 +252,7 @@ void cwi_splats_add(cwi_splats *s, const cwi_splat *splat, const double eye[3])
     s->chunk[s->count++] = *splat;
 }
 
-/* Leaves alone what is outside of the sheet's splats. */
+/* Restricts drawing to the bounds of the sheet's splats. */
 static void cut_to_bounds(const cwi_splats *s)
 {
     GLint at[4];
@@ -328,7 +331,8 @@ static bool shows_block(const cwi_splats *s, const size_t block[3])
                            (float)(((double)range[1] - t->low) * scale));
 }
 
-/* The voxels of a block: those at its high faces are the next block's, if there is one. */
+/* Returns the end of the voxels of a block: those at its high faces are the next block's, if
+ * there is one. */
 static size_t block_end(const cwi_splats *s, int axis, size_t block)
 {
     const cwi_ranges *r = &s->gl->volume.ranges;

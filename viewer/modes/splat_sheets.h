@@ -1,4 +1,5 @@
-/* Splatting, sheet by sheet [Westover1990]: what the flat and the hierarchical mode share. */
+/* Splatting, sheet by sheet [Westover1990]: the parts shared by the flat and the hierarchical
+ * mode. */
 #ifndef VIEWER_MODES_SPLAT_SHEETS_H
 #define VIEWER_MODES_SPLAT_SHEETS_H
 
@@ -41,7 +42,8 @@ CW_NODISCARD cw_status cwi_splats_open(cwi_splats *s, cwi_gl *gl, bool has_nodes
                                        cw_error *err);
 void cwi_splats_close(cwi_splats *s);
 
-/* Whether clips, and a place in front of the eye, keep a splat at a point of index space. */
+/* Returns true if clips, and a place in front of the eye, keep a splat at a point of index
+ * space. */
 bool cwi_splats_keep(const cwi_splats *s, const double at[3], double eye[3]);
 
 /* Adds a splat, that was kept at a point of eye space, to the sheet. */
@@ -53,8 +55,8 @@ void cwi_splats_voxel(cwi_splats *s, const size_t at[3]);
 /* Splats all voxels, each by itself. */
 CW_NODISCARD cw_status cwi_splats_flat(cwi_splats *s, cw_error *err);
 
-/* Sheets, along the axis they are across, from the farthest to the nearest; free with
- * cwi_free(). */
+/* Orders the sheets, along the axis they are across, from the farthest to the nearest; free
+ * with cwi_free(). */
 size_t *cwi_splats_order(const cwi_splats *s, cw_error *err);
 
 /* Ends a sheet, the n-th of all, and asks whether to go on: CW_ERR_CANCELLED. */

@@ -1,3 +1,5 @@
+/* Projects the faces of a box, and overlays front and back faces into convex pieces
+ * [Wilhelms1991]. */
 #include "viewer/proxy/projected_cells.h"
 
 #include "core/geometry/affine.h"
@@ -50,7 +52,7 @@ static void add_corner(polygon *p, const double at[2])
         memcpy(p->at[p->count++], at, 2 * sizeof *at);
 }
 
-/* The four corners of a face, one after the other around it. */
+/* Finds the four corners of a face, one after the other around it. */
 static void face_corners(int axis, int side, int out[4])
 {
     const int b = 1 << (axis + 1) % 3, c = 1 << (axis + 2) % 3;
@@ -59,7 +61,7 @@ static void face_corners(int axis, int side, int out[4])
         out[n] = around[n] | side << axis;
 }
 
-/* A face's outline, without what is in front of the near plane. */
+/* Draws a face's outline, without the part in front of the near plane. */
 static void draw_outline(solid *s, int axis, int side, polygon *out)
 {
     const cwi_frame *f = s->frame;
@@ -86,8 +88,8 @@ static void draw_outline(solid *s, int axis, int side, polygon *out)
     }
 }
 
-/* Above 0: the face looks at the eye. In perspective how many voxels the eye is in front of it,
- * else the slope of index space along the view. */
+/* Returns a number above 0 if the face looks at the eye: in perspective the voxels by which the
+ * eye is in front of it, else the slope of index space along the view. */
 static double find_facing(const solid *s, const double low[3], const double high[3], int axis,
                           int side)
 {
@@ -106,7 +108,7 @@ static void find_plane(const solid *s, int axis, double place, double plane[3])
     plane[2] = (s->frame->perspective ? -row[2] : row[3] - place) * scale;
 }
 
-/* The corners of a convex polygon in their order around its middle. */
+/* Sorts the corners of a convex polygon in their order around its middle. */
 static void sort_around(polygon *p)
 {
     double middle[2] = {0};
@@ -174,8 +176,8 @@ static double twice_area(const polygon *p)
     return sum;
 }
 
-/* Cuts off what is to the right of the line from a to b [Sutherland1974]; what is within
- * rounding of the line stays as it is. */
+/* Cuts off the part to the right of the line from a to b [Sutherland1974]; corners within
+ * rounding of the line stay unchanged. */
 static void cut_polygon(polygon *p, const double a[2], const double b[2], double rounding)
 {
     polygon out;
@@ -214,8 +216,8 @@ static double depth_at(const solid *s, const double plane[3], const double at[2]
     return cwi_lesser(cwi_greater(depth, s->depth[0]), s->depth[1]);
 }
 
-/* A vertex's number; one that is there already when both depths are the same, too: with a face
- * seen almost edge-on, points that fall together lie apart. */
+/* Returns a vertex's number. A vertex is used again only if both depths are the same, too: on a
+ * face seen almost edge-on, points that coincide on the picture are apart in depth. */
 static uint8_t add_vertex(cwi_pieces *out, const cwi_piece_vertex *v, double size, double thick)
 {
     for (size_t n = 0; n < out->vertex_count; n++) {
@@ -232,8 +234,8 @@ static uint8_t add_vertex(cwi_pieces *out, const cwi_piece_vertex *v, double siz
     return (uint8_t)out->vertex_count++;
 }
 
-/* The corner that is farthest along a direction that no edge of a lattice is likely to have: as
- * the view turns, polygons go on being cut into the same triangles. */
+/* Returns the corner that is farthest along a direction that no edge of a lattice is likely to
+ * have. So polygons are cut into the same triangles as the view turns. */
 static int choose_first(const polygon *p)
 {
     int first = 0;
@@ -284,7 +286,7 @@ static void overlay_faces(const solid *s, const face *front, const face *back, d
         add_polygon(s, &p, front, back, size, out);
 }
 
-/* The extent of what is seen. */
+/* Returns the extent of the visible part. */
 static double size_of(const faces *f)
 {
     double low[2] = {INFINITY, INFINITY}, high[2] = {-INFINITY, -INFINITY};

@@ -1,4 +1,4 @@
-/* What a box of index space covers of the picture, in convex pieces: the geometry of coherent
+/* Convex pieces of the picture that a box of index space covers: the geometry of coherent
  * projection [Wilhelms1991]. In a piece every ray enters by one face and leaves by another, so
  * that both depths (in perspective their reciprocals) are linear over it. */
 #ifndef VIEWER_PROXY_PROJECTED_CELLS_H
@@ -24,9 +24,9 @@ typedef struct cwi_pieces {
     uint8_t indices[CWI_PIECE_INDICES];
 } cwi_pieces;
 
-/* Of the box from low to high, at most 7 in general; what is nearer than the frame's near plane
- * is cut off. Every pair of a front and a back face has a piece where both lie on top of each
- * other, which may be nothing: so there are no cases of views to tell apart. */
+/* Makes the pieces of the box from low to high, at most 7 in general; the part nearer than the
+ * frame's near plane is cut off. Every pair of a front and a back face has a piece where they
+ * overlap, which may be empty: so no cases of views have to be distinguished. */
 void cwi_pieces_make(const cwi_frame *frame, const double low[3], const double high[3],
                      cwi_pieces *pieces);
 

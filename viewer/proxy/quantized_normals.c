@@ -1,3 +1,5 @@
+/* Spreads directions over a half sphere in a golden spiral, and finds the nearest by a map of
+ * candidates on an octahedron. */
 #include "viewer/proxy/quantized_normals.h"
 
 #include "core/base/memory.h"
@@ -25,8 +27,8 @@ static void place_directions(cwi_directions *d)
     }
 }
 
-/* A point of the map, 0 to 1 along each side: the upper half of an octahedron, seen from above
- * and turned by 45 degrees. */
+/* Converts a point of the map, 0 to 1 along each side: the upper half of an octahedron, seen
+ * from above and turned by 45 degrees. */
 static void unfold_octahedron(double u, double v, double out[3])
 {
     const double x = u + v - 1, y = u - v;
@@ -44,7 +46,7 @@ static size_t part_of(double x, size_t edge)
     return part < 0 ? 0 : part < (double)edge ? (size_t)part : edge - 1;
 }
 
-/* The cell of a vector's line; false: it has no direction. */
+/* Finds the cell of a vector's line; returns false if the vector has no direction. */
 static bool cell_of(const cwi_directions *d, const double v[3], size_t *cell)
 {
     const double sum = fabs(v[0]) + fabs(v[1]) + fabs(v[2]);
@@ -56,14 +58,14 @@ static bool cell_of(const cwi_directions *d, const double v[3], size_t *cell)
     return true;
 }
 
-/* The angle between lines. */
+/* Returns the angle between lines. */
 static double angle_between(const double a[3], const double b[3])
 {
     return acos(fmin(fabs(cwi_dot(a, b)), 1));
 }
 
-/* A circle around a cell: of the map's straight lines great circles are made, so a cell is
- * inside of the circle around its corners. */
+/* Finds a circle around a cell. The map's straight lines become great circles, so a cell is
+ * inside the circle around its corners. */
 static void circle_of(const cwi_directions *d, size_t cell, double middle[3], double *radius)
 {
     const double edge = (double)d->edge;
@@ -77,7 +79,7 @@ static void circle_of(const cwi_directions *d, size_t cell, double middle[3], do
     }
 }
 
-/* Of the middle of a cell. */
+/* Returns the angle between the middle of a cell and the nearest direction. */
 static double nearest_angle(const cwi_directions *d, const double v[3])
 {
     double most = 0;
@@ -86,8 +88,9 @@ static double nearest_angle(const cwi_directions *d, const double v[3])
     return acos(fmin(most, 1));
 }
 
-/* What is nearest to a point of a cell is no farther from its middle than the nearest of that
- * plus twice the radius: angles between lines add up at most. Counts when to is NULL. */
+/* Lists, or counts when to is NULL, the directions that may be nearest to a point of a cell.
+ * None is farther from the cell's middle than the middle's nearest, plus twice the radius:
+ * angles between lines add up at most. */
 static size_t put_candidates(const cwi_directions *d, size_t cell, uint16_t *to)
 {
     double middle[3], radius;
@@ -103,7 +106,7 @@ static size_t put_candidates(const cwi_directions *d, size_t cell, uint16_t *to)
     return count;
 }
 
-/* About as many cells as directions. */
+/* Makes the map, with about as many cells as directions. */
 static cw_status make_map(cwi_directions *d, cw_error *err)
 {
     const size_t cells = d->edge * d->edge;

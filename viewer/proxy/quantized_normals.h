@@ -17,7 +17,8 @@ enum { CWI_MOST_DIRECTIONS = 8192 };
 typedef struct cwi_directions {
     size_t count;
     double (*all)[3]; /* unit length, z > 0 */
-    /* Which directions may be nearest, for cells of an octahedron's map [Engelhardt2008]. */
+    /* Candidates for the nearest direction, for cells of an octahedron's map
+     * [Engelhardt2008]. */
     size_t edge;     /* cells along a side of the map */
     uint32_t *first; /* candidate of each cell, row by row, and the end */
     uint16_t *candidates;
@@ -28,8 +29,8 @@ CW_NODISCARD cw_status cwi_directions_make(size_t count, cwi_directions *directi
                                            cw_error *err);
 void cwi_directions_free(cwi_directions *directions);
 
-/* The direction with the smallest angle to a line through the origin along v, of any length;
- * count when v is 0 or not finite. */
+/* Returns the direction with the smallest angle to a line through the origin along v, of any
+ * length; `count` when v is 0 or not finite. */
 size_t cwi_directions_nearest(const cwi_directions *directions, const double v[3]);
 
 #ifdef __cplusplus

@@ -1,3 +1,5 @@
+/* Builds an octree of a volume's mean values [Laur1991], and finds the error at which the
+ * splats drawn fit a budget. */
 #include "viewer/proxy/value_octree.h"
 
 #include "core/base/memory.h"
@@ -9,7 +11,7 @@
 
 static const cwi_pyramid_node nothing = {0, INFINITY, -INFINITY, 0};
 
-/* What a node is made of, summed up in a fixed order. */
+/* Sums over the parts of a node, added in a fixed order. */
 typedef struct sum {
     double mass, value;
     float low, high;
@@ -154,7 +156,7 @@ typedef struct tally {
     size_t voxels;
 } tally;
 
-/* So many are drawn with errors from one on, up to but without another. */
+/* Counts `count` splats that are drawn with errors `from` or more, and less than `to`. */
 static void draw_between(tally *t, size_t count, float from, float to)
 {
     const double steps = CWI_PYRAMID_STEPS;
@@ -208,8 +210,8 @@ static void tally_node(tally *t, size_t level, const size_t node[3], float end)
     }
 }
 
-/* Each node is drawn for errors from its own up to the least above it: one walk through the
- * tree counts for all errors. */
+/* Counts splats for all errors in one walk through the tree: each node is drawn for errors from
+ * its own up to the least above it. */
 void cwi_pyramid_counts(const cwi_pyramid *pyramid, const cwi_pyramid_view *view,
                         size_t *counts)
 {

@@ -1,3 +1,5 @@
+/* Divides a view's depth into slabs, and marks, in tiles of the picture, those that meet
+ * something visible. */
 #include "viewer/proxy/view_slabs.h"
 
 #include "core/base/memory.h"
@@ -7,11 +9,12 @@
 #include <math.h>
 #include <string.h>
 
-/* Thin slabs share a layer of this depth: half a block of what is known to be empty. Deep
- * scenes have thicker ones, for memory's sake. */
+/* Depth of a layer of thin slabs: half of an empty block. Deep scenes have thicker layers, to
+ * save memory. */
 enum { LAYER_DEPTH = 4, MOST_LAYERS = 1 << 16, MOST_SLABS = 1 << 24 };
 
-/* Depths from the eye's plane of the nearest and the farthest corner of the volume. */
+/* Finds the depths, from the eye's plane, of the nearest and the farthest corner of the
+ * volume. */
 static void find_depths(const cwi_frame *f, double depth[2])
 {
     depth[0] = INFINITY;
@@ -60,12 +63,12 @@ void cwi_slabs_clear(cwi_slabs *s)
     memset(s->rows, 0, s->layer_count * sizeof *s->rows);
 }
 
-/* What a box covers: samples of the picture, and depths. */
+/* Bounds of a box: samples of the picture, and depths. */
 typedef struct bounds {
     double low[3], high[3];
 } bounds;
 
-/* Of a corner in eye space. What is beside the eye is seen anywhere. */
+/* Widens bounds by a corner in eye space. A point beside the eye may be seen anywhere. */
 static void widen_bounds(const cwi_frame *f, const double eye[3], bounds *b)
 {
     const double depth = -eye[2], w = f->perspective ? depth : 1;
@@ -96,7 +99,7 @@ static bounds bounds_of(const cwi_frame *f, const double low[3], const double hi
     return b;
 }
 
-/* Numbers of the parts of a length, of count, that an interval touches; false: none. */
+/* Finds which of `count` parts of a length an interval touches; returns false if none. */
 static bool parts_of(double low, double high, double part, size_t count, size_t parts[2])
 {
     const double first = fmax(floor(low / part), 0);
@@ -125,7 +128,7 @@ void cwi_slabs_mark(cwi_slabs *s, const cwi_frame *f, const double low[3], const
             s->rows[k][j] |= mask;
 }
 
-/* The lowest run of ones of a number that is not 0. */
+/* Finds the lowest run of ones of a number that is not 0. */
 static void first_run(uint64_t bits, size_t run[2])
 {
     run[0] = 0;
@@ -141,7 +144,7 @@ static uint16_t sample_of(const cwi_slabs *s, size_t tile, size_t size)
     return (uint16_t)(tile * s->tile < size ? tile * s->tile : size);
 }
 
-/* Each run of tiles grows upward as long as it is marked. */
+/* Makes rectangles: each run of tiles grows upward as long as it is marked. */
 size_t cwi_slabs_rects(const cwi_slabs *s, const cwi_frame *f, size_t layer,
                        cwi_slab_rect rects[CWI_SLAB_RECTS])
 {

@@ -1,6 +1,5 @@
-/* Slabs of space between planes that face the viewer: what a slice through a 3D texture stands
- * for. A slab is drawn where it meets something visible, which is told in tiles of
- * the picture. */
+/* Slabs of space between planes that face the viewer; each slice through a 3D texture stands
+ * for one. A slab is drawn in the tiles of the picture where it meets something visible. */
 #ifndef VIEWER_PROXY_VIEW_SLABS_H
 #define VIEWER_PROXY_VIEW_SLABS_H
 
@@ -27,23 +26,24 @@ typedef struct cwi_slab_rect {
     uint16_t left, bottom, right, top;
 } cwi_slab_rect;
 
-/* Slabs of a frame's step through all of the volume that is in front of the eye; nothing is
+/* Makes the slabs of a frame's step through the whole volume in front of the eye; nothing is
  * marked. CW_ERR_LIMIT, CW_ERR_NO_MEMORY. */
 CW_NODISCARD cw_status cwi_slabs_init(const cwi_frame *frame, cwi_slabs *slabs, cw_error *err);
 void cwi_slabs_free(cwi_slabs *slabs);
 
-/* Marks where a box of index space may be seen; unmarks everything. */
+/* Mark where a box of index space may be seen; unmark everything. */
 void cwi_slabs_mark(cwi_slabs *slabs, const cwi_frame *frame, const double low[3],
                     const double high[3]);
 void cwi_slabs_clear(cwi_slabs *slabs);
 
-/* The marked tiles of a layer as rectangles that do not overlap; how many. */
+/* Covers the marked tiles of a layer by rectangles that do not overlap; returns their
+ * number. */
 size_t cwi_slabs_rects(const cwi_slabs *slabs, const cwi_frame *frame, size_t layer,
                        cwi_slab_rect rects[CWI_SLAB_RECTS]);
 
-/* The affine 3x4 from eye space to coordinates of a texture that has the samples from first on,
- * count of them along each axis: (s, t, r) = T S R^-1 D^-1 (x, y, z) [Wilson1994], with D and R
- * the camera's place and turn, and S and T the texture's size and place in the volume. */
+/* Computes the affine 3x4 from eye space to coordinates of a texture that has `count` samples
+ * along each axis from `first` on: (s, t, r) = T S R^-1 D^-1 (x, y, z) [Wilson1994]. D and R
+ * are the camera's place and turn, S and T the texture's size and place in the volume. */
 void cwi_slabs_texture_matrix(const cwi_frame *frame, const size_t first[3],
                               const size_t count[3], double matrix[12]);
 

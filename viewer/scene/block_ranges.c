@@ -1,3 +1,5 @@
+/* Finds the range of values in each block of a volume, in parallel, and each block's distance
+ * to the next visible one. */
 #include "viewer/scene/block_ranges.h"
 
 #include "viewer/scene/voxel_rows.h"
@@ -17,7 +19,7 @@ typedef struct job {
     bool has_failed;
 } job;
 
-/* The samples of block n along an axis. */
+/* Returns the number of samples of block n along an axis. */
 static size_t samples_of(const cw_volume *v, int axis, size_t n)
 {
     const size_t left = v->dim[axis] - CWI_RANGE_EDGE * n;
@@ -39,7 +41,7 @@ static columns clear_columns(float *from, size_t count)
     return c;
 }
 
-/* Neither NaN nor infinite. */
+/* Returns true if no number is NaN or infinite. */
 static bool are_values(const float *row, size_t count)
 {
     int gaps = 0;
@@ -48,7 +50,7 @@ static bool are_values(const float *row, size_t count)
     return !gaps;
 }
 
-/* By the numbers of a row; false when one of them is no value. */
+/* Widens ranges by the numbers of a row; returns false when one of them is not a value. */
 static bool widen_columns(const float *row, size_t count, columns c)
 {
     const bool is_whole = are_values(row, count);
@@ -72,7 +74,7 @@ static void join_columns(columns from, size_t count, columns c)
     }
 }
 
-/* The rows j of a layer of blocks, one over another. */
+/* Scans rows j of a layer of blocks, one above another. */
 static bool scan_rows(const cw_volume *v, size_t j, size_t k, float *buffer, columns c)
 {
     bool is_whole = true;
@@ -83,14 +85,14 @@ static bool scan_rows(const cw_volume *v, size_t j, size_t k, float *buffer, col
     return is_whole;
 }
 
-/* A little outward: more than the rounding to a float. */
+/* Rounds a little outward: more than the rounding to a float. */
 static float round_outward(double x, double sign)
 {
     return (float)(x + sign * (fabs(x) * 0x1p-22 + (double)FLT_MIN));
 }
 
-/* A block of a row of blocks, from the columns of its samples. Floats are within half a step of
- * what they stand for. */
+/* Computes the range of a block from the columns of its samples. Floats are within half a step
+ * of the numbers they represent. */
 static void gather_columns(const cw_volume *v, size_t i, columns c, float out[2])
 {
     const size_t first = CWI_RANGE_EDGE * i;
@@ -106,7 +108,8 @@ static void gather_columns(const cw_volume *v, size_t i, columns c, float out[2]
     out[1] = is_empty ? 0 : round_outward(a < b ? b : a, 1);
 }
 
-/* Rows of blocks share their outer rows of samples: these are read once.
+/* Scans a layer of blocks. Rows of blocks share their outer rows of samples: these are read
+ * once.
  * buffer  room for five rows */
 static bool scan_blocks(const cw_volume *v, const size_t dim[3], size_t k, float *buffer,
                         float (*blocks)[2])
@@ -169,7 +172,7 @@ cw_status cwi_ranges_make(const cw_volume *volume, int threads, const cw_progres
     return st;
 }
 
-/* Block (i, j, k) of the coarse ones: around its eight fine ones. */
+/* Computes the range of coarse block (i, j, k) from its eight fine ones. */
 static void gather_children(const cwi_ranges *fine, size_t i, size_t j, size_t k, float out[2])
 {
     out[0] = INFINITY;
@@ -206,9 +209,9 @@ void cwi_ranges_free(cwi_ranges *ranges)
     *ranges = (cwi_ranges){0};
 }
 
-/* One pass over a lattice that has a margin of one block on every side: each byte becomes at
- * most one more than the least of its 13 neighbours in front (behind, backward). A pass each
- * way, and every byte is the distance along the longest axis to the next 0, up to 255. */
+/* Makes one pass over a lattice that has a margin of one block on every side. Each byte becomes
+ * at most one more than the least of its 13 neighbours in front (behind, if backward). After a
+ * pass each way, every byte is the distance along the longest axis to the next 0, up to 255. */
 static void relax_distances(uint8_t *d, const ptrdiff_t dim[3], bool backward)
 {
     const ptrdiff_t row = dim[0], layer = dim[0] * dim[1], margin = layer + row + 1;

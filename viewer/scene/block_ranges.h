@@ -1,4 +1,4 @@
-/* The lowest and highest value in each block of cells, so that what is empty is passed over. */
+/* The lowest and highest value in each block of cells, so that empty blocks are skipped. */
 #ifndef VIEWER_SCENE_BLOCK_RANGES_H
 #define VIEWER_SCENE_BLOCK_RANGES_H
 
@@ -17,17 +17,17 @@ typedef struct cwi_ranges {
     bool has_gaps;      /* some sample has no value */
 } cwi_ranges;
 
-/* Of a resolved, evenly spaced volume. CW_ERR_NO_MEMORY, CW_ERR_CANCELLED. */
+/* Finds the ranges of a resolved, evenly spaced volume. CW_ERR_NO_MEMORY, CW_ERR_CANCELLED. */
 CW_NODISCARD cw_status cwi_ranges_make(const cw_volume *volume, int threads,
                                        const cw_progress *progress, cwi_ranges *ranges,
                                        cw_error *err);
-/* Blocks of twice the edge. CW_ERR_NO_MEMORY. */
+/* Joins blocks into blocks of twice the edge. CW_ERR_NO_MEMORY. */
 CW_NODISCARD cw_status cwi_ranges_halve(const cwi_ranges *fine, cwi_ranges *coarse,
                                         cw_error *err);
 void cwi_ranges_free(cwi_ranges *ranges);
 
-/* For each block: how many blocks away, along the longest axis, the next visible one is, up to
- * 255; 0: it is visible itself, as told by is_visible(context, low, high).
+/* Finds for each block the distance in blocks, along the longest axis, to the next visible one,
+ * up to 255. It is 0 if the block is visible itself, as is_visible(context, low, high) reports.
  * distances  free it with cwi_free()
  * Returns    CW_ERR_NO_MEMORY */
 CW_NODISCARD cw_status cwi_ranges_distances(

@@ -1,3 +1,4 @@
+/* Reads and writes cameras as JSON, by the schema "cubewright-camera-1". */
 #include <cubewright/camera.h>
 
 #include "core/base/atomic_file.h"

@@ -1,3 +1,5 @@
+/* Orders the layers of a lattice from the eye, tests ranges of values for visibility, and finds
+ * gradients and masses of voxels. */
 #include "viewer/scene/cell_lattice.h"
 
 #include "core/base/memory.h"
@@ -41,7 +43,8 @@ void cwi_visible_free(cwi_visible *visible)
     *visible = (cwi_visible){0};
 }
 
-/* Clamped; a row that is interpolated is as visible as those around it. */
+/* Returns the row of a coordinate, clamped; an interpolated row is as visible as those around
+ * it. */
 static float row_of(const cwi_visible *visible, float at)
 {
     return (at < 0 ? 0 : at > 1 ? 1 : at) * (float)(visible->count - 1);
@@ -79,7 +82,7 @@ static bool has_value(const cw_volume *v, size_t i, size_t j, size_t k)
     return isfinite(x) && !(v->has_nodata && x == v->nodata);
 }
 
-/* Whether the cell between two samples along each axis has values at all corners. */
+/* Returns true if the cell between two samples along each axis has values at all corners. */
 static bool is_whole(const cw_volume *v, const size_t low[3], const size_t high[3])
 {
     for (size_t k = low[2]; k <= high[2]; k++)

@@ -1,3 +1,5 @@
+/* Fills in a scene's defaults, and computes the frame: camera, matrices, clip planes and
+ * depths. */
 #include "viewer/scene/frame_setup.h"
 
 #include "core/base/status.h"
@@ -85,7 +87,7 @@ static cw_status fill_in(cw_scene *s, cw_error *err)
     return CW_OK;
 }
 
-/* The volume's box in index space. */
+/* Finds the volume's box in index space. */
 static void find_box(cwi_frame *f)
 {
     for (int a = 0; a < 3; a++) {
@@ -113,7 +115,7 @@ static cw_status take_volume(cwi_frame *f, cw_error *err)
     return CW_OK;
 }
 
-/* A corner of the volume's box in the world. */
+/* Computes a corner of the volume's box in the world. */
 static void box_corner(const cwi_frame *f, int n, double world[3])
 {
     double p[3];
@@ -122,7 +124,7 @@ static void box_corner(const cwi_frame *f, int n, double world[3])
     cw_volume_to_world(&f->volume, p, world);
 }
 
-/* The world box of everything that is drawn. */
+/* Computes the world box of everything that is drawn. */
 static void scene_box(const cwi_frame *f, double min[3], double max[3])
 {
     double p[3];
@@ -317,7 +319,7 @@ int cwi_frame_keep(const cwi_frame *f, const double origin[3], const double dire
     const bool away = f->scene.cut_away && f->scene.clip_count > 0;
     const double parts[2][2] = {{away ? t[0] : kept[0], away ? fmin(t[1], kept[0]) : kept[1]},
                                 {fmax(t[0], kept[1]), t[1]}};
-    if (away && !(kept[1] > kept[0])) { /* it misses what is cut away */
+    if (away && !(kept[1] > kept[0])) { /* it misses the part that is cut away */
         memcpy(intervals[0], t, sizeof intervals[0]);
         return t[1] > t[0];
     }
@@ -362,7 +364,8 @@ double cwi_frame_cue(const cwi_frame *f, double depth)
     return 1 - f->scene.depth_cue * fmin(fmax(share, 0), 1);
 }
 
-/* The gradient of f(index(eye)): the transpose of the map's derivative. */
+/* Computes the matrix of the gradient of f(index(eye)): the transpose of the map's
+ * derivative. */
 void cwi_frame_gradient_matrix(const cwi_frame *f, double m[3][3])
 {
     for (size_t r = 0; r < 3; r++)

@@ -1,4 +1,4 @@
-/* One picture of a scene, worked out: what the CPU and GL need to draw the same thing.
+/* A scene resolved for one picture: the data with which the CPU and GL draw the same thing.
  *
  * Eye space has its origin at the eye, x to the right, y up and z towards the eye; its unit is
  * the volume's smallest spacing (the 1/256th of the mesh's diagonal when there is no volume),
@@ -32,48 +32,50 @@ typedef struct cwi_frame {
     /* Neither lights nor a material were given: meshes are lit as in reference_mesh.c. */
     bool studio_light;
 
-    /* Distances from the eye's plane (depth) between which all of the scene is; near is above 0
-     * in perspective. */
+    /* Range of distances from the eye's plane (depths) that contains the whole scene; near is
+     * above 0 in perspective. */
     double near, far;
 
     /* The transfer function: extinction is per unit of eye space. */
     cw_transfer transfer;
-    double opacity_units; /* length that the transfer function's opacities are of */
+    double opacity_units; /* length to which the transfer function's opacities refer */
 
     /* Planes that clip, in eye space: n . p >= d is kept. */
     double clips[CW_MAX_CLIPS][4];
 } cwi_frame;
 
-/* Works a scene out: fills in defaults, checks what every mode relies on.
- * Returns CW_ERR_ARGUMENT, CW_ERR_UNSUPPORTED as cw_render(). */
+/* Resolves a scene: fills in defaults, and checks the conditions of all modes. Returns
+ * CW_ERR_ARGUMENT, CW_ERR_UNSUPPORTED as cw_render(). */
 CW_NODISCARD cw_status cwi_frame_init(cwi_frame *frame, const cw_scene *scene, cw_error *err);
 
-/* The ray through a point of the picture, in samples from its upper left corner, in eye space.
- * Distances along it are in units of eye space. */
+/* Computes the ray through a point of the picture, in samples from its upper left corner, in
+ * eye space. Distances along it are in units of eye space. */
 void cwi_frame_ray(const cwi_frame *frame, double x, double y, double origin[3],
                    double direction[3]);
 
-/* The parts of a ray inside of the volume's box that clips leave: up to two intervals, in
- * order; how many. In index space for a ray in eye space. */
+/* Finds the parts of a ray inside the volume's box that clip planes keep: up to two intervals,
+ * in order; returns their number. The ray is in eye space. */
 int cwi_frame_clip(const cwi_frame *frame, const double origin[3], const double direction[3],
                    double intervals[2][2]);
 
-/* The parts of an interval of a ray that clips leave: up to two, in order; how many. */
+/* Finds the parts of an interval of a ray that clip planes keep: up to two, in order; returns
+ * their number. */
 int cwi_frame_keep(const cwi_frame *frame, const double origin[3], const double direction[3],
                    const double interval[2], double kept[2][2]);
 
-/* The world point of one in eye space. */
+/* Converts a point in eye space to the world. */
 void cwi_frame_to_world(const cwi_frame *frame, const double eye[3], double world[3]);
 
-/* The extinction coefficient per unit of eye space of an opacity of the transfer function,
- * which is taken as at most that. */
+/* Returns the extinction coefficient, per unit of eye space, of an opacity of the transfer
+ * function. The opacity is limited to CWI_MOST_OPACITY. */
 #define CWI_MOST_OPACITY (1 - 1e-6)
 double cwi_frame_extinction(const cwi_frame *frame, double opacity);
 
-/* What is left of the light of something at a depth: 1 near, 1 - depth_cue far. */
+/* Returns the fraction of light that is left at a depth: 1 near, 1 - depth_cue far. */
 double cwi_frame_cue(const cwi_frame *frame, double depth);
 
-/* The matrix that takes a gradient in index space (per voxel) to eye space (per unit). */
+/* Computes the matrix that takes a gradient in index space (per voxel) to eye space (per
+ * unit). */
 void cwi_frame_gradient_matrix(const cwi_frame *frame, double m[3][3]);
 
 #ifdef __cplusplus

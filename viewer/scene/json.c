@@ -1,3 +1,4 @@
+/* Reads JSON files of up to 1 MiB, and checks their schema and keys. */
 #include "viewer/scene/json.h"
 
 #include "core/base/memory.h"
@@ -51,7 +52,7 @@ static bool is_known(const char *key, const char *const *keys)
     return false;
 }
 
-/* "schema, eye, target": for an error. */
+/* Lists keys for an error, such as "schema, eye, target". */
 static void list_keys(const char *const *keys, char *text, size_t size)
 {
     size_t used = (size_t)snprintf(text, size, "schema");
@@ -115,7 +116,7 @@ cw_status cwi_json_number(const json_t *root, const char *key, double *value, cw
     return CW_OK;
 }
 
-/* Digits until it reads back; with a point, as JSON knows no -0 without one. */
+/* Prints digits until the number reads back; with a point, as JSON has no -0 without one. */
 static const char *print_shortest(char text[CWI_JSON_NUMBER], double value, bool single)
 {
     if (value == floor(value) && fabs(value) < 1e15) {

@@ -1,4 +1,4 @@
-/* Reading small files of settings in JSON, with errors that name the field or the line. */
+/* Reads small files of settings in JSON, with errors that name the field or the line. */
 #ifndef VIEWER_SCENE_JSON_H
 #define VIEWER_SCENE_JSON_H
 
@@ -13,16 +13,16 @@ CW_NODISCARD cw_status cwi_json_read(const char *path,
                                                         void *out, cw_error *err),
                                      void *out, cw_error *err);
 
-/* One object whose 'schema' is that text and which has no key but those, which end with a NULL.
- * Free it with json_decref(). CW_ERR_FORMAT */
+/* Parses one object whose 'schema' is `schema`, and whose keys are all in `keys`, a list that
+ * ends with NULL. Free it with json_decref(). CW_ERR_FORMAT */
 CW_NODISCARD cw_status cwi_json_object(const char *bytes, size_t size, const char *schema,
                                        const char *const *keys, json_t **root, cw_error *err);
 
-/* A number of an object, when it is there. CW_ERR_FORMAT for what is no number. */
+/* Reads a number of an object, if it is present. CW_ERR_FORMAT for other types. */
 CW_NODISCARD cw_status cwi_json_number(const json_t *root, const char *key, double *value,
                                        cw_error *err);
 
-/* The shortest text that reads back as the same number, and as the same single one. */
+/* Print the shortest text that reads back as the same double, or as the same float. */
 enum { CWI_JSON_NUMBER = 32 };
 const char *cwi_json_double(char text[CWI_JSON_NUMBER], double value);
 const char *cwi_json_float(char text[CWI_JSON_NUMBER], float value);

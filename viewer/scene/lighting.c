@@ -1,3 +1,4 @@
+/* Shades points by the Blinn-Phong model, lit from both sides, in eye space. */
 #include "viewer/scene/lighting.h"
 
 #include "core/geometry/vec3.h"
@@ -5,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-/* x^power for whole powers, as most are, and others; quicker than pow(). */
+/* Returns x^power for whole powers, as most are, and others; faster than pow(). */
 static double raise_power(double x, double power)
 {
     double result = 1;

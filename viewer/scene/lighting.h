@@ -8,7 +8,8 @@
 extern "C" {
 #endif
 
-/* Lights are far away, and so a ray has one direction to each, and one halfway to the eye. */
+/* A ray's lights. They are far away, so a ray has one direction to each, and one halfway to the
+ * eye. */
 typedef struct cwi_lighting {
     cw_material material;
     size_t count;

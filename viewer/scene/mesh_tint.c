@@ -1,3 +1,4 @@
+/* Computes the colour ramp in CIELAB, the shape of triangles, and the range of a tint. */
 #include "viewer/scene/mesh_tint.h"
 #include "viewer/scene/srgb.h"
 
@@ -6,14 +7,14 @@
 
 #include <math.h>
 
-/* The inverse of CIE's f(t): a cube root, with a straight line below it. */
+/* Returns the inverse of CIE's f(t): a cube root, with a straight line below it. */
 static double inverse_f(double f)
 {
     const double knee = 6.0 / 29;
     return f > knee ? f * f * f : 3 * knee * knee * (f - 4.0 / 29);
 }
 
-/* CIELAB with the white of sRGB, D65; the matrix is IEC 61966-2-1's from XYZ. */
+/* Converts CIELAB with the white of sRGB, D65; the matrix is IEC 61966-2-1's from XYZ. */
 static void lab_to_srgb(double lightness, double a, double b, double srgb[3])
 {
     static const double white[3] = {0.9505, 1, 1.0890};

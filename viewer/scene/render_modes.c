@@ -1,4 +1,4 @@
-/* The names of the render modes, and the papers that they follow. */
+/* Lists the names of the render modes, and the papers that they follow. */
 #include <cubewright/render.h>
 
 static const struct {

@@ -1,3 +1,5 @@
+/* Sets up slices through a volume, their colours, and cameras that face them as radiologists
+ * do. */
 #include "viewer/scene/slice.h"
 
 #include "core/base/status.h"
@@ -6,8 +8,9 @@
 #include <math.h>
 #include <string.h>
 
-/* How radiologists look at slices across each axis of LPS. Sagittal: from the left side, the
- * nose to the picture's left; coronal: from the front; axial: from the feet. */
+/* The directions in which radiologists look at slices across each axis of LPS. Sagittal: from
+ * the left side, the nose to the picture's left; coronal: from the front; axial: from the
+ * feet. */
 static const struct {
     double forward[3], up[3], color[3];
 } habits[] = {{{-1, 0, 0}, {0, 0, 1}, {0.95, 0.80, 0.25}},
@@ -66,8 +69,8 @@ void cwi_slice_color(const cw_slice *slice, double srgb[3])
     memcpy(srgb, along ? habits[axis].color : oblique, 3 * sizeof *srgb);
 }
 
-/* Where the plane meets the edges of the volume's box, in the picture's directions: low and
- * high of right and up. False when it does not. */
+/* Finds where the plane meets the edges of the volume's box, in the picture's directions: low
+ * and high of right and up. Returns false when it does not. */
 static bool find_extent(const cw_volume *v, const cw_slice *s, const double axes[2][3],
                         double extent[2][2])
 {

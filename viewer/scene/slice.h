@@ -8,14 +8,15 @@
 extern "C" {
 #endif
 
-/* The scene's slices, or its default: axial, coronal, sagittal through the volume's middle. The
- * normals are of unit length. CW_ERR_ARGUMENT for a slice without direction or place. */
+/* Finds the scene's slices, or the default: axial, coronal, sagittal through the volume's
+ * middle. The normals are of unit length. CW_ERR_ARGUMENT for a slice without direction or
+ * place. */
 CW_NODISCARD cw_status cwi_slices_of(const cw_scene *scene, const cw_volume *volume,
                                      cw_slice slices[CW_MAX_SLICES], size_t *count,
                                      cw_error *err);
 
-/* The colour slices of that direction are framed in: axial red, coronal green, sagittal yellow,
- * oblique violet; sRGB. */
+/* Finds the colour of the frame of slices in a direction: axial red, coronal green, sagittal
+ * yellow, oblique violet; sRGB. */
 void cwi_slice_color(const cw_slice *slice, double srgb[3]);
 
 #ifdef __cplusplus

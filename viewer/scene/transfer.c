@@ -1,3 +1,4 @@
+/* Checks transfer functions, and interpolates their colours and opacities linearly. */
 #include <cubewright/transfer.h>
 
 #include "core/base/status.h"
@@ -70,9 +71,9 @@ cw_status cw_transfer_check(const cw_transfer *t, cw_error *err)
     return st;
 }
 
-/* The points around a value, the first of count (at least 1) rows of that size, which begin
- * with their value: rows n - 1 and n, and the share of the way between; at a jump the side
- * above. */
+/* Finds the points around a value: rows n - 1 and n, and the fraction of the way between; at a
+ * jump the side above. The points are `count` rows (at least 1) of `row` bytes that begin with
+ * their value. */
 static size_t find_place(const void *points, size_t row, size_t count, double value,
                          double *share)
 {

@@ -1,3 +1,4 @@
+/* Reads and writes transfer functions as JSON, by the schema "cubewright-transfer-1". */
 #define _GNU_SOURCE /* fmemopen */
 #include "viewer/scene/transfer_json.h"
 
@@ -13,7 +14,7 @@
 
 static const char schema[] = "cubewright-transfer-1";
 
-/* The n-th point of a list: [value, second]. */
+/* Takes the n-th point of a list: [value, second]. */
 static cw_status take_point(const json_t *point, const char *list, size_t n, const char *second,
                             double *value, const json_t **other, cw_error *err)
 {
@@ -26,7 +27,7 @@ static cw_status take_point(const json_t *point, const char *list, size_t n, con
     return CW_OK;
 }
 
-/* "#rrggbb" */
+/* Parses "#rrggbb". */
 static bool parse_color(const json_t *text, float color[3])
 {
     const char *hex = json_string_value(text);
@@ -83,7 +84,7 @@ static cw_status take_opacities(const json_t *root, const char *key, cw_opacity_
     return st;
 }
 
-/* A unit that is written has to be one: only one that is not there is the volume's. */
+/* Takes the unit. A unit that is present must be valid; only a missing one is the volume's. */
 static cw_status take_unit(const json_t *root, cw_transfer *t, cw_error *err)
 {
     cw_status st = cwi_json_number(root, "unit_mm", &t->unit_mm, err);
@@ -177,7 +178,7 @@ static void put_transfer(FILE *out, const cw_transfer *t)
     fputs("}\n", out);
 }
 
-/* 3 * 64 points of up to 70 bytes each always fit. */
+/* Formats a transfer function. 3 * 64 points of up to 70 bytes each always fit. */
 cw_status cw_transfer_format(const cw_transfer *transfer, char text[CW_TRANSFER_TEXT],
                              cw_error *err)
 {

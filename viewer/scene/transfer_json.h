@@ -1,4 +1,4 @@
-/* Transfer functions from bytes in memory. */
+/* Parses transfer functions from bytes in memory. */
 #ifndef VIEWER_SCENE_TRANSFER_JSON_H
 #define VIEWER_SCENE_TRANSFER_JSON_H
 
@@ -8,7 +8,8 @@
 extern "C" {
 #endif
 
-/* As cw_transfer_read(), of the file's bytes; transfer is untouched on failure. */
+/* Does the same as cw_transfer_read(), for the file's bytes; transfer is unchanged on
+ * failure. */
 CW_NODISCARD cw_status cwi_transfer_parse(const char *bytes, size_t size, cw_transfer *transfer,
                                           cw_error *err);
 

@@ -1,5 +1,6 @@
-/* Presets. Those of CT stand at Hounsfield units, per millimetre; the others are fitted to the
- * histogram, per voxel. Colours and opacities were chosen by looking at scans. */
+/* Makes preset transfer functions. Those for CT stand at Hounsfield units, per millimetre. The
+ * others are fitted to the histogram, per voxel. Colours and opacities were chosen by looking
+ * at scans. */
 #include <cubewright/transfer.h>
 
 #include "core/base/status.h"
@@ -21,7 +22,7 @@ static void put_opacity(cw_transfer *t, double value, double opacity)
     t->opacities[t->opacity_count++] = (cw_opacity_point){value, (float)opacity};
 }
 
-/* The value below which a share of those lie that are counted from a bin on. */
+/* Returns the value below which a fraction of the values lie, counted from a bin on. */
 static double find_quantile(const cw_statistics *s, size_t first, double share)
 {
     double total = 0, sum = 0;
@@ -37,14 +38,14 @@ static double find_quantile(const cw_statistics *s, size_t first, double share)
     return s->max;
 }
 
-/* The middle of the values that a bin counts: those of integer types end a step below
+/* Returns the middle of the values that a bin counts: bins of integer types end a step below
  * the next. */
 static double middle_of(const cw_statistics *s, size_t bin)
 {
     return s->min + s->bin_width * ((double)bin + 0.5) - s->quantum / 2;
 }
 
-/* How much of all lies between two values. */
+/* Returns the fraction of all values that lie between two values. */
 static double count_between(const cw_statistics *s, double low, double high)
 {
     double sum = 0;
@@ -55,7 +56,7 @@ static double count_between(const cw_statistics *s, double low, double high)
     return s->finite ? sum / (double)s->finite : 0;
 }
 
-/* The value around which most others lie, within 2 % of a range. */
+/* Returns the value around which most others lie, within 2 % of a range. */
 static double find_peak(const cw_statistics *s, double low, double high)
 {
     const double reach = fmax((high - low) / 100, s->bin_width);
@@ -71,8 +72,8 @@ static double find_peak(const cw_statistics *s, double low, double high)
     return peak;
 }
 
-/* Where values part into what is around things, the things, and the densest of them: rising,
- * apart, within the range. high: what nearly all values are below. */
+/* Values that separate the surroundings, the objects, and the densest of these: rising, apart,
+ * within the range. high: nearly all values are below it. */
 typedef struct classes {
     double first, second, high;
 } classes;
@@ -83,8 +84,8 @@ static size_t bin_of(const cw_statistics *s, double value)
     return b <= 0 ? 0 : b >= (double)s->bin_count ? s->bin_count - 1 : (size_t)b;
 }
 
-/* Whether most lies in the middle, and little above: that is what is around things, too, such
- * as the noise of a scan, or what fills it. */
+/* Returns true if most values lie in the middle, and few above. Then these are surroundings
+ * too, such as the noise of a scan, or the material that fills it. */
 static bool is_around(const cw_statistics *s, double first, double second)
 {
     return count_between(s, first, second) > 0.6 && count_between(s, second, s->max) < 0.15;
@@ -116,7 +117,8 @@ static classes find_classes(const cw_statistics *s)
     return c;
 }
 
-/* The opacity a voxel has that covers so much along a share of the volume's width. */
+/* Returns the opacity of a voxel so that a fraction of the volume's width has the given
+ * opacity. */
 static double spread_opacity(const cw_statistics *s, double opacity, double share)
 {
     const double across = fmax(cbrt((double)s->finite) * share, 1);
@@ -166,7 +168,7 @@ static void make_ct_skin(const cw_statistics *s, cw_transfer *t)
     put_opacity(t, 0, 0.7);
 }
 
-/* Tissue as a veil, what is brighter in it dense. */
+/* Makes a preset with tissue as a veil, and brighter parts of it dense. */
 static void make_mr(const cw_statistics *s, cw_transfer *t)
 {
     const classes c = find_classes(s);
@@ -187,7 +189,7 @@ static void make_grey_between(double low, double high, cw_transfer *t)
     put_color(t, high, 0xffffff);
 }
 
-/* Black where most is, white at what few reach: vessels. */
+/* Makes a preset for vessels: black at most values, white at the few highest. */
 static void make_mip(const cw_statistics *s, cw_transfer *t)
 {
     make_grey_between(find_quantile(s, 0, 0.5), find_quantile(s, 0, 0.9995), t);
@@ -200,7 +202,8 @@ static void make_grey(const cw_statistics *s, cw_transfer *t)
     put_opacity(t, s->min, 1);
 }
 
-/* Means along rays, air and all, stay below the densest class. */
+/* Makes a preset for means along rays, which include air and so stay below the densest
+ * class. */
 static void make_xray(const cw_statistics *s, cw_transfer *t)
 {
     make_grey_between(s->min, fmax(find_classes(s).second, s->min + s->bin_width), t);
@@ -217,7 +220,8 @@ static void make_fog(const cw_statistics *s, cw_transfer *t)
     put_opacity(t, c.high, spread_opacity(s, 0.9, 0.3));
 }
 
-/* Distances from a surface at 0, negative inside: solid, but for half a bin. */
+/* Makes a preset for distances from a surface at 0, negative inside: solid, but for half a
+ * bin. */
 static void make_level_set(const cw_statistics *s, cw_transfer *t)
 {
     const double depth = fmin(s->min, 0), soft = 0.05 * fmax(-depth, 1e-30);
@@ -226,7 +230,7 @@ static void make_level_set(const cw_statistics *s, cw_transfer *t)
     put_opacity(t, 0, 0);
 }
 
-/* Quantities with a sign, mostly about 0: both sides of it, in two colours. */
+/* Returns true for signed quantities, mostly around 0: both sides get their own colour. */
 static bool is_signed(const cw_statistics *s, double low, double high)
 {
     const double range = high - low;
@@ -251,7 +255,8 @@ static void make_signed(const cw_statistics *s, double low, double high, cw_tran
     put_opacity(t, high, dense);
 }
 
-/* Air as the highest value of all: a slide scanned by light, an inverted map. */
+/* Returns true if air has the highest value of all: a slide scanned by light, an inverted
+ * map. */
 static bool is_inverted(const cw_statistics *s)
 {
     const double range = s->max - s->min;
@@ -269,7 +274,8 @@ static void make_inverted(const cw_statistics *s, cw_transfer *t)
     put_opacity(t, low + 0.93 * range, 0);
 }
 
-/* What is around things is left out; the rest fades in, the densest of it nearly solid. */
+/* Makes a preset that hides the surroundings of things. The rest fades in; the densest part is
+ * nearly solid. */
 static void make_above(const cw_statistics *s, cw_transfer *t)
 {
     const classes c = find_classes(s);
@@ -334,7 +340,7 @@ static cw_status fail_unknown(const char *name, cw_error *err)
                    name, list);
 }
 
-/* One value, or none: opaque grey, as there is nothing to tell apart. */
+/* Makes an opaque grey for one value, or none, as there is nothing to distinguish. */
 static void make_single(const cw_statistics *s, cw_transfer *t)
 {
     put_color(t, s->min, 0xb8b8b8);

@@ -1,3 +1,5 @@
+/* Splits a transfer function into linear pieces, and cuts cubics where these pieces begin and
+ * end. */
 #include "viewer/scene/transfer_segments.h"
 
 #include "core/geometry/cubic.h"
@@ -11,8 +13,8 @@ static int in_order(const void *a, const void *b)
     return (x > y) - (x < y);
 }
 
-/* Between two opacities: where the most that counts is reached, beyond which extinction is
- * constant. */
+/* Adds the breakpoint between two opacities at which the maximum opacity is reached, beyond
+ * which extinction is constant. */
 static void add_limit(const cw_opacity_point *p, cwi_knots *k)
 {
     const double a = (double)p[0].opacity - CWI_MOST_OPACITY,
@@ -38,7 +40,7 @@ static void find_knots(const cw_transfer *t, cwi_knots *k)
     k->count = kept;
 }
 
-/* Through two values inside, so that jumps at the knots do not matter. */
+/* Fits a line through two values inside the piece, so that jumps at its ends do not matter. */
 static void fit_line(const cw_transfer *t, cwi_linear *l)
 {
     double a = l->low + (l->high - l->low) / 4, b = l->low + (l->high - l->low) * 3 / 4;
@@ -94,8 +96,8 @@ bool cwi_knots_is_visible(const cwi_knots *k, double low, double high)
     return false;
 }
 
-/* A part in which the cubic does not turn: up, or down, from knot to knot. A jump belongs to
- * the side above, so what falls from a knot is below it. */
+/* Cuts a part in which the cubic does not turn: up, or down, from breakpoint to breakpoint. A
+ * jump belongs to the side above, so a cubic that falls from a breakpoint is below it. */
 static size_t cut_part(const cwi_knots *k, const double c[4], double from, double to,
                        cwi_transfer_segment *pieces)
 {

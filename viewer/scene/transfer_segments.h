@@ -1,4 +1,4 @@
-/* A transfer function as what it is, exactly: pieces that are linear, between knots. */
+/* An exact transfer function: linear pieces between breakpoints. */
 #ifndef VIEWER_SCENE_TRANSFER_SEGMENTS_H
 #define VIEWER_SCENE_TRANSFER_SEGMENTS_H
 
@@ -14,9 +14,10 @@ enum {
     CWI_PIECES = 3 * (CWI_KNOTS + 1) /* a cubic meets a value three times at most */
 };
 
-/* Between two knots: color = color[] + (value - origin) color_slope[], and opacity likewise. */
+/* A piece between two breakpoints: color = color[] + (value - origin) color_slope[]; the same
+ * holds for opacity. */
 typedef struct cwi_linear {
-    double low, high; /* the knots; infinite beyond the ends */
+    double low, high; /* the breakpoints; infinite beyond the ends */
     double origin, color[3], color_slope[3], opacity, opacity_slope;
     bool is_visible; /* somewhere in it */
 } cwi_linear;
@@ -29,19 +30,20 @@ typedef struct cwi_knots {
 
 void cwi_knots_make(const cw_transfer *transfer, cwi_knots *knots);
 
-/* How many knots are at a value or below. */
+/* Returns the number of breakpoints at a value or below. */
 size_t cwi_knots_below(const cwi_knots *knots, double value);
 
-/* Whether any value of a range is not fully transparent. */
+/* Returns true if any value of a range is not fully transparent. */
 bool cwi_knots_is_visible(const cwi_knots *knots, double low, double high);
 
-/* A part of a cubic, x from 0 to 1, whose values are all between the same knots. */
+/* A part of a cubic, x from 0 to 1, whose values are all between the same breakpoints. */
 typedef struct cwi_transfer_segment {
     double from, to;
     const cwi_linear *linear;
 } cwi_transfer_segment;
 
-/* Cuts a cubic where it meets knots and where it turns; how many pieces, at most CWI_PIECES. */
+/* Cuts a cubic where it meets breakpoints and where it turns. Returns the number of pieces, at
+ * most CWI_PIECES. */
 size_t cwi_knots_cut(const cwi_knots *knots, const double c[4], cwi_transfer_segment *pieces);
 
 #ifdef __cplusplus

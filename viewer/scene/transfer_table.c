@@ -1,3 +1,4 @@
+/* Samples a transfer function into a table, and integrates it over segments [Engel2001]. */
 #include "viewer/scene/transfer_table.h"
 
 #include "core/base/memory.h"
@@ -16,7 +17,7 @@ static void widen_range(double value, double range[2])
     range[1] = fmax(range[1], value);
 }
 
-/* From the first point to the last. */
+/* Finds the range from the first point to the last. */
 static void find_range(const cw_transfer *t, double range[2])
 {
     range[0] = INFINITY;
@@ -71,7 +72,7 @@ void cwi_table_free(cwi_table *table)
     *table = (cwi_table){0};
 }
 
-/* The row of a value, not rounded. */
+/* Returns the row of a value, not rounded. */
 static double row_of(const cwi_table *table, double value)
 {
     const double share = (value - table->low) / (table->high - table->low);
@@ -85,7 +86,7 @@ bool cwi_table_is_visible(const cwi_table *table, double low, double high)
     return table->visible[first] <= last;
 }
 
-/* The shortest way between two points that differ, at most so much. */
+/* Returns the shortest distance between two points that differ, at most `most`. */
 static double find_narrowest(const void *points, size_t row, size_t count, double most)
 {
     for (size_t n = 1; n < count; n++) {
@@ -108,8 +109,8 @@ size_t cwi_table_segment_rows(const cwi_table *table, const cw_transfer *t)
     return rows;
 }
 
-/* Running integrals over the table's rows, for count rows of the result: of the extinction, and
- * of the colours times it. */
+/* Computes running integrals over the table's rows, for `count` rows of the result: of the
+ * extinction, and of the colours times it. */
 static double (*running_integrals(const cwi_table *t, size_t count))[4]
 {
     double(*sum)[4] = cwi_alloc_zeroed(count * FINE, sizeof *sum);
@@ -133,15 +134,16 @@ static double (*running_integrals(const cwi_table *t, size_t count))[4]
     return sum;
 }
 
-/* Within a piece all glows alike: the error falls with its depth, so deep ones are cut. */
+/* Returns the number of pieces. Within a piece all of it glows alike: the error grows with its
+ * depth, so deep ones are cut. */
 static size_t piece_count(double depth, size_t span)
 {
     const double wanted = fmin(ceil(PIECES_PER_DEPTH * depth), MOST_PIECES);
     return wanted < 1 ? 1 : wanted < (double)span ? (size_t)wanted : span;
 }
 
-/* From row x to row y, which differ: pieces from front to back. scale: length per step of the
- * running integrals. */
+/* Integrates from row x to row y, which differ: pieces from front to back. scale: length per
+ * step of the running integrals. */
 static void integrate_segment(const double (*sum)[4], size_t x, size_t y, double scale,
                               float out[4])
 {
@@ -167,7 +169,7 @@ static void integrate_segment(const double (*sum)[4], size_t x, size_t y, double
     out[3] = (float)(1 - light);
 }
 
-/* A segment of one value. */
+/* Integrates a segment of one value. */
 static void integrate_flat(const cwi_table *t, double at, double length, float out[4])
 {
     const size_t i = (size_t)fmin(floor(at), (double)t->count - 2);
@@ -212,7 +214,7 @@ cw_status cwi_table_preintegrate(const cwi_table *table, double length, size_t c
     if (!sum)
         return cw_fail(err, CW_ERR_NO_MEMORY,
                        "no memory for a pre-integrated transfer function");
-    enum { WORK = 64 }; /* an entry is as much as so many samples elsewhere */
+    enum { WORK = 64 }; /* one entry takes as long as this number of samples elsewhere */
     integration work = {table, length, count, (const double(*)[4])sum, out};
     cw_status st = cwi_each_layer(count, WORK * count, threads, progress, "integrating",
                                   integrate_row, &work, err);

@@ -20,20 +20,21 @@ typedef struct cwi_table {
 
 enum { CWI_TABLE_ROWS = 4096 };
 
-/* Of a frame's transfer function. CW_ERR_NO_MEMORY. Harmless to free twice. */
+/* Makes the table of a frame's transfer function. CW_ERR_NO_MEMORY. It may be freed twice. */
 CW_NODISCARD cw_status cwi_table_make(const cwi_frame *frame, cwi_table *table, cw_error *err);
 void cwi_table_free(cwi_table *table);
 
-/* Whether something within a range of values is not fully transparent. */
+/* Returns true if something within a range of values is not fully transparent. */
 bool cwi_table_is_visible(const cwi_table *table, double low, double high);
 
-/* Rows that a pre-integrated table needs: more for narrow peaks, 256 to 1024. */
+/* Returns the number of rows that a pre-integrated table needs: more for narrow peaks, 256 to
+ * 1024. */
 size_t cwi_table_segment_rows(const cwi_table *table, const cw_transfer *transfer);
 
-/* Pre-integration [Engel2001]: what a segment of a length (units of eye space) adds along which
- * the value goes linearly from row x to row y. out is count x count x 4, y slowest: colour
- * times opacity, and opacity. Within a segment light is absorbed too: it is cut into pieces
- * whose depth and glow are exact. */
+/* Pre-integrates [Engel2001] segments of a length (units of eye space), along which the value
+ * changes linearly from row x to row y. out is count x count x 4, y slowest: colour times
+ * opacity, and opacity. Within a segment light is absorbed too: it is cut into pieces whose
+ * depth and glow are exact. */
 CW_NODISCARD cw_status cwi_table_preintegrate(const cwi_table *table, double length,
                                               size_t count, int threads,
                                               const cw_progress *progress, float *out,

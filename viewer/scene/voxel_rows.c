@@ -1,3 +1,4 @@
+/* Converts rows of voxels of any type to floats, with NaN for voxels without value. */
 #include "viewer/scene/voxel_rows.h"
 
 #include "core/volume/volume.h"

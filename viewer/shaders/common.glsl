@@ -1,4 +1,4 @@
-// What every shader knows of the picture. See viewer/scene/frame_setup.h for the spaces.
+// Uniforms and functions of all shaders. See viewer/scene/frame_setup.h for the spaces.
 layout(std140) uniform Frame
 {
     mat4 projection;
@@ -17,8 +17,8 @@ layout(std140) uniform Frame
     ivec4 counts;       // lights, clips, 1: clips cut away
 };
 
-// One brick's values: IN_PLACE the voxels themselves, x fastest, as the processor that draws finds them
-// in memory.
+// Values of one brick. IN_PLACE: the voxels themselves, x fastest, as the processor that draws
+// finds them in memory.
 #ifndef IN_PLACE
 uniform sampler3D volume;
 #elif defined(SHORTS)
@@ -40,7 +40,8 @@ vec3 brick_place(vec3 index)
     return (index - brick_first + 0.5) / brick_size;
 }
 
-// The texel at a point of index space, interpolated; NaN where a sample around it has no value.
+// Returns the texel at a point of index space, interpolated; NaN where a sample around it has
+// no value.
 #ifdef IN_PLACE
 float voxel(int n)
 {
@@ -51,7 +52,7 @@ float voxel(int n)
 #endif
 }
 
-// A point of the volume; rounding may have put it a little outside.
+// Returns the texel at a point of the volume; rounding may have put it a little outside.
 float texel_inside(vec3 index)
 {
     ivec3 i = ivec3(min(index, last_cell));
@@ -93,7 +94,7 @@ float texel_at(vec3 index)
 }
 #endif
 
-// The same at a place in the brick's texture.
+// Does the same at a place in the brick's texture.
 float texel_in(vec3 place)
 {
 #ifdef IN_PLACE
@@ -103,13 +104,13 @@ float texel_in(vec3 place)
 #endif
 }
 
-// A texel's coordinate in the table: 0 at its first value, 1 at its last.
+// Returns a texel's coordinate in the table: 0 at its first value, 1 at its last.
 float coordinate_of(float texel)
 {
     return texel * texels.x + texels.y;
 }
 
-// Colour and extinction at a coordinate; NaN has none.
+// Returns colour and extinction at a coordinate; NaN has none.
 vec4 classify(float coordinate)
 {
     float at = clamp(coordinate, 0.0, 1.0);
@@ -117,8 +118,8 @@ vec4 classify(float coordinate)
     return isnan(coordinate) ? vec4(0.0) : row;
 }
 
-// The gradient at a place in the brick's texture, in eye space, per unit. Differences of interpolated
-// values are what differences of voxels are when they are interpolated.
+// Returns the gradient at a place in the brick's texture, in eye space, per unit. Differences
+// of interpolated values equal interpolated differences of voxels.
 vec3 gradient_in(vec3 place)
 {
 #ifdef DIFFERENCES
@@ -140,14 +141,15 @@ vec3 gradient_at(vec3 index)
     return gradient_in(brick_place(index));
 }
 
-// What the transfer function makes of the extinction by the gradient.
+// Returns the factor by which the transfer function multiplies the extinction, by the gradient.
 float gradient_factor(vec3 gradient)
 {
     float at = clamp(length(gradient) / limits.y, 0.0, 1.0);
     return textureLod(factor, (at * (factor_rows - 1.0) + 0.5) / factor_rows, 0.0).r;
 }
 
-// Both sides are lit; to_eye and the gradient are in eye space. Without a gradient: ambient light.
+// Shades a colour, on both sides; to_eye and the gradient are in eye space. Without a gradient:
+// ambient light.
 vec3 shade(vec3 color, vec3 gradient, vec3 to_eye)
 {
     float size2 = dot(gradient, gradient);
@@ -166,15 +168,16 @@ vec3 shade(vec3 color, vec3 gradient, vec3 to_eye)
     return light;
 }
 
-// The same stuff on another length, or more or less of it: light through it to that power.
+// Changes a colour to the same material over another length, or in another density: its
+// transmitted light is raised to that power.
 vec4 stretch(vec4 color, float power)
 {
     float alpha = 1.0 - pow(1.0 - min(color.a, 0.9999999), power);
     return color.a > 0.0 ? vec4(color.rgb * (alpha / color.a), alpha) : vec4(0.0);
 }
 
-// What the gradient makes of a premultiplied colour: more or less of it, and light on it. SHADES: it
-// comes with light.
+// Changes a premultiplied colour by the gradient: more or less of it, and light on it. SHADES:
+// it is lit already.
 vec4 by_gradient(vec4 color, vec3 gradient, vec3 to_eye)
 {
 #ifdef FACTOR
@@ -187,7 +190,7 @@ vec4 by_gradient(vec4 color, vec3 gradient, vec3 to_eye)
     return color;
 }
 
-// The share of its own light that something at a depth keeps.
+// Returns the fraction of its own light that something at a depth keeps.
 float cue(float depth)
 {
     return 1.0 - view.w * clamp((depth - view.y) / (view.z - view.y), 0.0, 1.0);
@@ -199,7 +202,7 @@ vec3 background_at(float y)
     return mix(background[1].rgb, background[0].rgb, y);
 }
 
-// Premultiplied colour, some of it replaced by the background's.
+// Replaces some of a premultiplied colour by the background's.
 vec4 attenuate(vec4 color, float depth, float y)
 {
     return vec4(mix(color.a * background_at(y), color.rgb, cue(depth)), color.a);
@@ -230,7 +233,7 @@ ray ray_of(vec2 fragment)
     return r;
 }
 
-// texel_at() and gradient_at() of a point of a ray.
+// Return texel_at() and gradient_at() of a point of a ray.
 float texel_on(ray r, float t)
 {
 #if defined(IN_PLACE)
@@ -247,14 +250,14 @@ vec3 gradient_on(ray r, float t)
     return gradient_in(r.place + t * r.way);
 }
 
-// How far a ray goes from a point in a box of index space to where it leaves that.
+// Returns how far a ray goes from a point in a box of index space to where it leaves the box.
 float box_exit(ray r, vec3 at, vec3 low, vec3 high)
 {
     vec3 exits = (mix(low, high, r.ahead) - at) * r.inverse;
     return max(min(exits.x, min(exits.y, exits.z)), 0.0);
 }
 
-// And to where it leaves the cell that it is in, or enters.
+// Returns how far it goes to where it leaves the cell that it is in, or enters.
 float cell_exit(ray r, vec3 at)
 {
     vec3 next = mix(ceil(at - 1e-4) - 1.0, floor(at + 1e-4) + 1.0, r.ahead);
@@ -274,7 +277,7 @@ vec2 cut(vec2 t, float at, float slope)
     return t;
 }
 
-// How far along the ray the mesh is.
+// Returns the distance of the mesh along the ray.
 float mesh_distance(ray r)
 {
     float z = texelFetch(depth, ivec2(gl_FragCoord.xy), 0).r;
@@ -286,7 +289,8 @@ float mesh_distance(ray r)
     return d / -r.direction.z;
 }
 
-// The part of a ray in the brick, in front of the mesh, and the part of that which clips keep.
+// Finds the part of a ray in the brick, in front of the mesh, and the part of that which clip
+// planes keep.
 void intervals(ray r, out vec2 all, out vec2 kept)
 {
     vec3 box_low = max(low.xyz, mix(brick_first, low.xyz, lessThan(dim.xyz, vec3(1.5))));

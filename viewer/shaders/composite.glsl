@@ -6,21 +6,23 @@ uniform float step_length;
 uniform vec3 last_block; // of skip
 out vec4 result;
 
-// Where a texel's value is in the texture of segments, which is clamped: scale and bias.
+// Returns scale and bias from a texel to its place in the texture of segments, which is
+// clamped.
 vec2 segment_scale()
 {
     return vec2(texels.x * (dim.w - 1.0), texels.y * (dim.w - 1.0) + 0.5) / dim.w;
 }
 
-// Half a segment, straight; NaN is empty.
+// Returns the colour of half a segment, straight; NaN is empty.
 vec4 half_segment(float front, float back)
 {
     vec4 color = stretch(textureLod(segments, vec2(front, back), 0.0), 0.5);
     return isnan(front + back) ? vec4(0.0) : color;
 }
 
-// What a full segment adds that has such ends and such a middle. Both ends are shifted by two thirds
-// of what the middle is above their mean: so the mean is that of the parabola.
+// Returns the colour that a full segment adds, with given values at its ends and its middle.
+// Both ends are shifted by two thirds of the middle's height above their mean: so the mean is
+// that of the parabola.
 vec4 segment_through(float front, float middle, float back)
 {
     float shift = (2.0 / 3.0) * (middle - 0.5 * (front + back));
@@ -32,7 +34,7 @@ vec4 segment_through(float front, float middle, float back)
     return color;
 }
 
-// How far a ray goes through empty blocks, at most so far.
+// Returns how far a ray goes through empty blocks, at most `most`.
 float leap_from(ray r, vec3 from, float most)
 {
     float way = 0.0;

@@ -43,7 +43,8 @@ vec3 srgb_of(vec3 light)
                lessThanEqual(light, vec3(0.0031308)));
 }
 
-// As viewer/cpu/reference_mesh.c: light from the eye, from above its left shoulder, and from everywhere.
+// Lights a surface as viewer/cpu/reference_mesh.c does: from the eye, from above its left
+// shoulder, and from everywhere.
 vec3 studio(vec3 surface, vec3 n, vec3 v)
 {
     vec3 fill = normalize(vec3(-0.55, 0.65, 0.52));
@@ -65,7 +66,7 @@ vec4 light_up(vec3 p, vec3 n, vec4 surface)
     return attenuate(vec4(shown * surface.a, surface.a), -p.z, gl_FragCoord.y / picture.y);
 }
 
-// In a layer before, or behind so much that it is not seen.
+// Returns true for a point in a layer before, or behind so much that it is not seen.
 bool is_peeled(float z)
 {
 #ifdef PEEL
@@ -81,7 +82,8 @@ bool is_peeled(float z)
 in vec3 at;
 uniform float first_plane;
 
-// Along the ray a plane's function changes in one direction: beyond the plane it has the sign of its slope.
+// Counts windings. Along the ray a plane's function changes in one direction: beyond the plane
+// it has the sign of its slope.
 void main()
 {
     vec3 along = view.x > 0.5 ? at : vec3(0.0, 0.0, -1.0);
@@ -152,15 +154,15 @@ vec4 surface_here()
     return gl_FrontFacing ? surface : vec4(surface.rgb * inside, surface.a);
 }
 
-// On the side that is seen, as the triangle's own.
+// Returns the normal on the visible side, as the triangle's own.
 vec3 normal_here(vec3 own_normal)
 {
     float side = dot(direction, own_normal);
     return side == 0.0 ? own_normal : normalize(side < 0.0 ? -direction : direction);
 }
 
-// How much of the sample an edge covers: of both triangles at it, each draws its half. Where triangles
-// are only a few pixels high, edges fade, for they would hide the surface.
+// Returns how much of the sample an edge covers; of both triangles at it, each draws its half.
+// Where triangles are only a few pixels high, edges fade, or they would hide the surface.
 float edge_here(vec3 dx, vec3 dy)
 {
     vec3 heights = 1.0 / max(sqrt(dx * dx + dy * dy), 1e-20), far = share * heights;

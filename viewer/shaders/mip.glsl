@@ -1,6 +1,6 @@
-// Projections of values along rays: the highest (MIP), the lowest, the mean, and the first maximum
-// above a threshold (LOCAL). A volume in bricks is gone through front to back, each pass reading
-// what the one before left.
+// Projects values along rays: the highest (MIP), the lowest, the mean, and the first maximum
+// above a threshold (LOCAL). A volume in bricks is traversed front to back; each pass reads the
+// result of the one before.
 uniform sampler3D ranges; // of texels in each block
 uniform vec3 last_block;  // of these
 uniform sampler2D before; // value, length so far, 1: LOCAL is done, the last value
@@ -20,7 +20,7 @@ float block_exit(ray r, vec3 at)
     return box_exit(r, at, low, low + 8.0);
 }
 
-// Whether nothing in a range changes what was found.
+// Returns true if nothing in a range changes what was found.
 bool is_useless(vec2 range, vec4 found)
 {
 #ifdef MIP
@@ -30,7 +30,7 @@ bool is_useless(vec2 range, vec4 found)
 #endif
 }
 
-// How far a ray goes without a change of what was found.
+// Returns how far a ray goes without a change of the value found.
 float useless_length(ray r, vec3 at, vec4 found)
 {
 #if defined(MIP) || defined(MINIP)
@@ -60,8 +60,8 @@ vec4 take(vec4 found, float value)
     return found;
 }
 
-// The cubic through values at 0, 1/3, 2/3 and 1 of a cell, which a trilinear field is along a ray:
-// its extrema.
+// Takes the extrema of the cubic through values at 0, 1/3, 2/3 and 1 of a cell; a trilinear
+// field is a cubic along a ray.
 vec4 take_cell(vec4 found, vec4 v)
 {
     float b = -5.5 * v.x + 9.0 * v.y - 4.5 * v.z + v.w;
@@ -79,9 +79,9 @@ vec4 take_cell(vec4 found, vec4 v)
     return take(found, v.w);
 }
 
-// What the ray is bound to find: the ranges of the blocks it passes through say so, and samples of
-// the most promising one. Of the part that it is looked for in stays, in whole steps, what can better
-// that.
+// Finds a value that the ray reaches for certain, from the ranges of the blocks it passes and
+// from samples of the most promising block. Shortens the part of the ray, by whole steps, to
+// where a better value may be.
 vec4 foresee(ray r, inout vec2 part, vec4 found)
 {
 #ifdef FORESEE
@@ -113,7 +113,7 @@ vec4 foresee(ray r, inout vec2 part, vec4 found)
 }
 
 #ifdef CELLS
-// Every cell by itself; values at its ends are shared.
+// Goes cell by cell; values at a cell's ends are shared.
 vec4 along(ray r, float from, float to, vec4 found)
 {
     float value = texel_on(r, from);
@@ -141,7 +141,7 @@ vec4 along(ray r, float from, float to, vec4 found)
 }
 #else
 #ifdef AVERAGE
-// The middles of steps.
+// Takes the middles of steps.
 vec4 along(ray r, float from, float to, vec4 found)
 {
     for (float t = from; t < to; t += step_length) {
@@ -152,7 +152,8 @@ vec4 along(ray r, float from, float to, vec4 found)
     return found;
 }
 #else
-// Samples a step apart, and the last at the end: past what is useless, then through a block.
+// Takes samples a step apart, and the last at the end: skips useless parts, then goes through a
+// block.
 vec4 along(ray r, float from, float to, vec4 found)
 {
     float t = from;
@@ -174,7 +175,7 @@ vec4 along(ray r, float from, float to, vec4 found)
 #endif
 #endif
 
-// A part of a ray; first what it is bound to find.
+// Goes along a part of a ray, after foresee().
 vec4 along_part(ray r, vec2 part, vec4 found)
 {
     if (part.x < part.y) {
@@ -195,7 +196,7 @@ vec4 nothing()
     return vec4(-none, 0.0, 0.0, -none);
 }
 
-// A value's colour, opaque; in front of a mesh as opaque as the transfer function has it.
+// Returns a value's colour, opaque; in front of a mesh with the transfer function's opacity.
 vec4 show(vec4 found, bool has_mesh)
 {
 #ifdef AVERAGE

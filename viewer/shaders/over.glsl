@@ -1,4 +1,4 @@
-// Blended slices, over what is drawn already.
+// Draws blended slices over the picture so far.
 uniform sampler2D slices;
 out vec4 result;
 

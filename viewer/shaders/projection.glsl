@@ -1,5 +1,6 @@
-// Coherent projection [Wilhelms1991]: polygons over which the places where rays enter and leave a
-// cell, or in perspective their reciprocal depths, are linear. See viewer/modes/projected_cells.h.
+// Draws by coherent projection [Wilhelms1991]: polygons over which the places where rays enter
+// and leave a cell, or in perspective their reciprocal depths, are linear. See
+// viewer/modes/projected_cells.h.
 #ifdef VERTEX
 layout(
     location = 0) in vec4 place; // of the picture, -1 to 1; front depth, back minus front; in
@@ -11,7 +12,8 @@ out vec2 spans, ends;
 flat out float most;
 out vec4 linear;
 
-// The form of 1991: what the path through the cell adds, by the mean of its ends.
+// Returns the opacity in the form of 1991: of the path through the cell, by the mean of its
+// ends.
 vec4 opacity_of(vec2 at)
 {
     float w = place.z, back = w - place.w;
@@ -59,8 +61,8 @@ vec4 over(vec4 front, vec4 back)
     return front + (1.0 - front.a) * back;
 }
 
-// What a part of the way adds, over which the value is linear. Beyond its ends the table goes on
-// as it is there: those parts have one value each.
+// Returns the colour that a part of the way adds, over which the value is linear. Beyond the
+// table's ends its last value continues: those parts have one value each.
 vec4 between(float front, float back, float extent)
 {
 #ifdef SEGMENTS
@@ -84,7 +86,7 @@ vec4 between(float front, float back, float extent)
 #endif
 }
 
-// What the part from t.x to t.y adds; distances along the ray.
+// Returns the colour that the part from t.x to t.y adds; distances along the ray.
 vec4 along(ray r, way w, vec2 t, float y)
 {
     if (!(t.y > t.x))
@@ -104,8 +106,9 @@ vec4 along(ray r, way w, vec2 t, float y)
     return attenuate(color, -middle * r.direction.z, y);
 }
 
-// Polygons are rasterised on a grid: where a sliver is narrower than that, what is linear over it
-// goes on beyond its ends. Cut off at both, what two neighbours share still adds up.
+// Finds the way through the cell. Polygons are rasterised on a grid: where a sliver is narrower
+// than that, linear values continue beyond its ends. Cut off at both ends, the parts of two
+// neighbours still add up.
 way way_of(ray r)
 {
     bool slanted = view.x > 0.5;

@@ -1,5 +1,5 @@
-// What a sheet of splats, seen through, looks like: it absorbs by its depth, and shines by the mean
-// of the colours in it.
+// Colours a sheet of splats, seen through: it absorbs by its depth, and shines by the mean of
+// the colours in it.
 uniform sampler2D sheet;
 out vec4 result;
 

@@ -11,7 +11,7 @@ bool is_within(vec3 index, vec3 from, vec3 to)
     return all(greaterThanEqual(index, from - slack)) && all(lessThanEqual(index, to + slack));
 }
 
-// How much of the sample the frame covers: inside, along the volume's faces.
+// Returns how much of the sample the frame covers: inside, along the volume's faces.
 float frame_here(vec3 index)
 {
     vec3 dx = dFdx(index), dy = dFdy(index), slope = sqrt(dx * dx + dy * dy);

@@ -1,9 +1,9 @@
-// A Gaussian blob's footprint [Westover1990], an ellipse by the linearised map of its place to the
-// picture [Zwicker2001]. It adds what it absorbs to a sheet: optical depth, and colour times that.
-// With NODES also the part of a node in a sheet: a rectangle of the lattice, blurred as its voxels
-// would be, so that nodes next to each other leave no seam.
+// Draws a Gaussian blob's footprint [Westover1990], an ellipse by the linearised map of its
+// place to the picture [Zwicker2001]. It adds the absorption to a sheet: optical depth, and
+// colour times that. With NODES it also draws the part of a node in a sheet: a rectangle of the
+// lattice, blurred as its voxels would be, so that adjacent nodes leave no seam.
 #ifdef NODES
-// How a ray through a point of eye space goes through index space, per unit.
+// Returns the step through index space, per unit, of a ray through a point of eye space.
 vec3 slope_through(vec3 at)
 {
     return mat3(index_from_eye) * (view.x > 0.5 ? normalize(at) : vec3(0.0, 0.0, -1.0));
@@ -77,7 +77,7 @@ void place_voxel(vec3 at, vec4 row, float mass)
 }
 
 #ifdef NODES
-// A voxel's blob, seen along a ray and told in the sheet, is wider the more oblique the ray.
+// Places a node. A voxel's blob along a ray, measured in the sheet, is wider for oblique rays.
 void place_node(vec3 index, vec3 at, vec4 row, float mass, vec3 size)
 {
     int b = (axis + 1) % 3, c = (axis + 2) % 3;
@@ -128,7 +128,7 @@ float cover(float x, float reach, float blur)
 }
 #endif
 
-// How high the footprint is; of a node, times the way through the sheet.
+// Returns the height of the footprint; for a node, multiplied by the way through the sheet.
 float height()
 {
 #ifdef NODES

@@ -1,5 +1,6 @@
-// What a ray gains in a slab, within one brick's box: slices through 3D textures [Wilson1994],
-// pre-integrated [Engel2001], shaded by gradients or by quantised gradients [VanGelder1996].
+// Integrates a ray's colour in a slab, within one brick's box: slices through 3D textures
+// [Wilson1994], pre-integrated [Engel2001], shaded by gradients or by quantised gradients
+// [VanGelder1996].
 uniform sampler2D segments;
 uniform sampler3D classes;  // premultiplied: colour x extinction, extinction per unit
 uniform usampler3D normals; // each voxel's direction; the highest bit: a boundary's cell
@@ -19,14 +20,15 @@ float value_at(vec3 place)
 #endif
 }
 
-// Colour and opacity of a way through an extinction: C = (1 - e^-alpha) / alpha E, O = 1 - e^-alpha.
+// Returns colour and opacity of a way through an extinction: C = (1 - e^-alpha) / alpha E, O =
+// 1 - e^-alpha.
 vec4 absorb(vec3 color, float alpha)
 {
     float opacity = 1.0 - exp(-alpha);
     return vec4(color * opacity, opacity);
 }
 
-// Premultiplied; what has no value is empty.
+// Returns the segment's colour, premultiplied; it is empty without a value.
 vec4 segment_between(vec3 from, vec3 to, float extent)
 {
 #ifdef SEGMENTS
@@ -41,7 +43,7 @@ vec4 segment_between(vec3 from, vec3 to, float extent)
 }
 
 #ifdef SHADES
-// Of a direction and a value.
+// Returns the shaded colour of a direction and a value.
 vec3 shade_of(uint direction, float coordinate)
 {
     vec2 size = vec2(textureSize(shades, 0));

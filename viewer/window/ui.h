@@ -1,9 +1,9 @@
-/* The window and what is in it: GLFW and Dear ImGui behind C functions. A module, loaded when
- * first needed; without a display the same window is a framebuffer that nobody sees.
+/* The window and its widgets: GLFW and Dear ImGui behind C functions. A module, loaded when
+ * first needed; without a display the same window is a hidden framebuffer.
  *
  * One thread. A frame is begin(), widgets and drawing, end(). Lengths and places are pixels of
  * the framebuffer, from its upper left corner, y down. All text is UTF-8. There may be many
- * windows that nobody sees, but only one that somebody does. */
+ * hidden windows, but only one visible window. */
 #ifndef VIEWER_WINDOW_UI_H
 #define VIEWER_WINDOW_UI_H
 
@@ -47,11 +47,11 @@ typedef struct cwi_ui_event {
     const char *text;   /* copied by feed() */
 } cwi_ui_event;
 
-/* What a frame has of input. Names of keys: letters and digits as "A" and "1"; "Space",
- * "Enter", "Tab", "Escape", "Backspace", "Delete", "Insert", "Home", "End", "PageUp",
- * "PageDown", "Left", "Right", "Up", "Down", "F1" to "F12", and characters such as "[", "?" and
- * "+" as they are typed; before them "Ctrl+", "Alt+", "Shift+" in that order, Shift not before
- * characters that need it anyway. (With Ctrl or Alt nothing is typed: "Ctrl+Shift+=".) */
+/* Input of a frame. Names of keys: letters and digits as "A" and "1"; "Space", "Enter", "Tab",
+ * "Escape", "Backspace", "Delete", "Insert", "Home", "End", "PageUp", "PageDown", "Left",
+ * "Right", "Up", "Down", "F1" to "F12", and characters such as "[", "?" and "+" as they are
+ * typed; before them "Ctrl+", "Alt+", "Shift+" in that order, Shift not before characters that
+ * need it anyway. (With Ctrl or Alt nothing is typed: "Ctrl+Shift+=".) */
 typedef struct cwi_ui_input {
     size_t width, height; /* of the framebuffer */
     double x, y;          /* the mouse; -1, -1: outside */
@@ -61,7 +61,8 @@ typedef struct cwi_ui_input {
     bool down[CWI_UI_BUTTONS];                            /* held now */
     bool pressed[CWI_UI_BUTTONS], lifted[CWI_UI_BUTTONS]; /* in this frame */
     bool twice[CWI_UI_BUTTONS]; /* pressed, the second time in a row */
-    bool over_widget;           /* the mouse is on a panel, or what it began there goes on */
+    bool over_widget;           /* the mouse is on a panel, or an action that began there
+                                   continues */
     bool typing;                /* keys go into a widget; keys[] has none */
     size_t key_count;
     char keys[CWI_UI_KEYS][CWI_UI_KEY_SIZE]; /* that went down */
@@ -75,7 +76,7 @@ typedef struct cwi_ui_rect {
     double x, y, width, height;
 } cwi_ui_rect;
 
-/* A widget of one's own: what the mouse does to it. */
+/* An area for a custom widget, and the mouse's actions on it. */
 typedef struct cwi_ui_area {
     cwi_ui_rect rect;
     bool over;                          /* the mouse is on it */
@@ -88,7 +89,7 @@ typedef enum cwi_ui_layer { CWI_UI_BEHIND, CWI_UI_PANEL, CWI_UI_FRONT } cwi_ui_l
 
 typedef enum cwi_ui_panel {
     CWI_UI_FIXED = 1, /* cannot be moved, sized or folded */
-    CWI_UI_BARE = 2,  /* no title bar, as large as what is in it, hardly any background */
+    CWI_UI_BARE = 2,  /* no title bar, as large as its content, hardly any background */
     CWI_UI_MODAL = 4  /* in the middle, and nothing else can be used */
 } cwi_ui_panel;
 
@@ -105,7 +106,7 @@ typedef struct cwi_ui_functions {
     double (*scale)(const cwi_ui *ui);     /* 1: letters of 13 pixels */
     double (*seconds)(const cwi_ui *ui);   /* since open() */
 
-    /* Whether input waits that begin() would take; asks the system for it. What takes long
+    /* Returns true if input waits that begin() would take; asks the system for it. Long work
      * calls this, and stops when there is some. */
     bool (*pending)(cwi_ui *ui);
     /* Queues input as if it came from outside. CW_ERR_ARGUMENT for a key of an unknown name */
@@ -119,7 +120,7 @@ typedef struct cwi_ui_functions {
     const cwi_ui_input *(*begin)(cwi_ui *ui, double wait_s);
     /* Shows the frame. CW_ERR_BACKEND: GL's error, or its context was lost */
     cw_status (*end)(cwi_ui *ui, cw_error *err);
-    /* What the last frame showed. */
+    /* Copies the picture that the last frame showed. */
     cw_status (*grab)(cwi_ui *ui, cw_image *image, cw_error *err);
 
     void (*set_title)(cwi_ui *ui, const char *title);
@@ -152,7 +153,7 @@ typedef struct cwi_ui_functions {
     void (*clip_end)(cwi_ui *ui, cwi_ui_layer layer);
 
     /* Panels. rect: where it is at first (FIXED, BARE: always); width or height 0: as needed.
-     * false: folded or clipped, skip what is in it; panel_end() in any case. *open: NULL, or
+     * false: folded or clipped, skip the content; panel_end() in any case. *open: NULL, or
      * cleared by its closing button. */
     bool (*panel_begin)(cwi_ui *ui, const char *title, const cwi_ui_rect *rect, unsigned flags,
                         bool *open);
@@ -190,10 +191,10 @@ typedef struct cwi_ui_functions {
     void (*menu_end)(cwi_ui *ui);
     bool (*item)(cwi_ui *ui, const char *label, const char *key, bool checked, bool enabled);
 
-    /* Where a widget was in the last frame, as far as it could be seen and without the label at
-     * its side: by its label (without ##...) or, of several, by "panel/label". Also "panel",
-     * "panel/close", "choice/name" and "menu/item" where they are open. false: it was not
-     * there. For scripts that use it by name. */
+    /* Finds the visible part of a widget in the last frame, without the label at its side: by
+     * its label (without ##...) or, of several, by "panel/label". Also "panel", "panel/close",
+     * "choice/name" and "menu/item" where they are open. false: it was not there. For scripts
+     * that use it by name. */
     bool (*find)(const cwi_ui *ui, const char *label, cwi_ui_rect *rect);
 } cwi_ui_functions;
 

@@ -1,4 +1,4 @@
-/* Input that waits, and what a frame takes of it. */
+/* Queues input, and takes each frame's share of it. */
 #include "viewer/window/ui_internal.h"
 
 #include <math.h>
@@ -23,7 +23,7 @@ static bool make_room(cwi_ui_queue *q)
     return true;
 }
 
-/* What was taken is dropped when all of it was. */
+/* Empties the queue when all of it was taken. */
 static void rewind_when_empty(cwi_ui_queue *q)
 {
     if (q->first == q->count)
@@ -96,15 +96,15 @@ cw_status cwi_ui_feed(cwi_ui *ui, const cwi_ui_event *event, cw_error *err)
     return st;
 }
 
-/* What a frame has taken so far. */
+/* Events that a frame has taken so far. */
 typedef struct taken {
     bool any, moved, button[CWI_UI_BUTTONS], at_place, key, edit, wrote, alone;
 } taken;
 
-/* Whether an event belongs into the frame at hand too: each change must be seen, and where and
- * in which order it was. The way to where a button goes down is not dragged, and what is
- * dragged gets where it is let go. A key that is down must come up before it goes
- * down again. */
+/* Returns true if an event belongs to the current frame too. Each change must be seen, with its
+ * place and in its order. The way to where a button goes down is not a drag, and a dragged
+ * thing must reach the place where it is released. A key that is down must come up before it
+ * goes down again. */
 static bool fits_frame(const cwi_ui *ui, const taken *t, const cwi_ui_event *e, int last_key)
 {
     if (t->alone)
@@ -215,7 +215,8 @@ static void take_event(cwi_ui *ui, cwi_ui_event *e, double time)
     }
 }
 
-/* A key that edits text comes before what is written after it; one that writes does not. */
+/* Returns true for a key that edits text: it comes before text written after it. A key that
+ * writes does not. */
 static bool edits_text(const cwi_ui_event *e)
 {
     unsigned modifiers;

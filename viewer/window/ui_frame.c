@@ -1,4 +1,4 @@
-/* A frame from end to end: what waits is taken, widgets are laid out, the result is shown. */
+/* Runs a frame from begin to end: takes input, lays out widgets, and shows the result. */
 #include "viewer/window/ui_internal.h"
 
 static cw_status check_desc(const cwi_ui_desc *desc, cw_error *err)
@@ -70,7 +70,7 @@ bool cwi_ui_pending(cwi_ui *ui)
            size[1] != ui->input.height;
 }
 
-/* Nothing is waited for while something waits, or while layouts follow what was last. */
+/* Returns the time to wait: none while input waits, or while layouts follow the last input. */
 static double time_to_wait(const cwi_ui *ui, double wait_s)
 {
     if (ui->queue.first < ui->queue.count || ui->settle > 0 || !(wait_s > 0))
@@ -78,7 +78,8 @@ static double time_to_wait(const cwi_ui *ui, double wait_s)
     return ui->wake > 0 && ui->wake < wait_s ? ui->wake : wait_s;
 }
 
-/* What was woken for, such as a tip, takes a frame to be laid out too. */
+/* Waits for input. After a wake-up by the clock, such as for a tooltip, one more frame is
+ * needed to lay out. */
 static void wait_for_input(cwi_ui *ui, double wait_s)
 {
     const double seconds = time_to_wait(ui, wait_s);

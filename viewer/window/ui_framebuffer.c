@@ -1,4 +1,5 @@
-/* What widgets are drawn into, and the pictures they show. */
+/* Allocates and reads the framebuffer that widgets are drawn into, and uploads the pictures
+ * they show. */
 #include "viewer/gl/gl_context.h"
 #include "viewer/window/ui_internal.h"
 
@@ -50,7 +51,7 @@ cw_status cwi_ui_target_check(cw_error *err)
     return cwi_gl_check(err);
 }
 
-/* GL's rows go up; what shines through the window is nobody's matter. */
+/* Turns an image over, as GL's rows go up, and makes it opaque. */
 static void turn_over(cw_image *image)
 {
     const size_t row = 4 * image->width;

@@ -1,4 +1,4 @@
-/* The window, by GLFW, or what stands for one where nobody looks: a context by EGL alone. */
+/* Opens the window by GLFW or, if it is hidden, a context by EGL alone. */
 #define _POSIX_C_SOURCE 200809L /* clock_gettime */
 #include "viewer/gl/gl_context.h"
 #include "viewer/window/ui_internal.h"
@@ -59,7 +59,7 @@ static void put_event(GLFWwindow *w, cwi_ui_event event)
     cwi_ui_queue_put(ui, &event, ui->screen->repeats);
 }
 
-/* The window's own units may be larger than the framebuffer's pixels. */
+/* Reports a move. The window's own units may be larger than the framebuffer's pixels. */
 static void on_move(GLFWwindow *w, double x, double y)
 {
     int window[2], pixels[2];
@@ -129,8 +129,8 @@ static void capitalize_name(char text[8])
         text[0] = (char)(text[0] - 'a' + 'A');
 }
 
-/* With Ctrl or Alt a key writes nothing: its name is what the layout has on it, or, where that
- * is of another script, what an American one has. */
+/* Queues a shortcut. With Ctrl or Alt a key writes nothing: its name is the layout's character
+ * or, if that is of another script, an American layout's. */
 static void put_shortcut(GLFWwindow *w, unsigned modifiers, int key, int code)
 {
     const char *name = glfwGetKeyName(key, code);
@@ -144,7 +144,7 @@ static void put_shortcut(GLFWwindow *w, unsigned modifiers, int key, int code)
         put_key(w, modifiers, text);
 }
 
-/* A key that only modifies is a move to where the mouse is. */
+/* Queues a key that only modifies as a move to the mouse's place. */
 static void put_modifier(GLFWwindow *w)
 {
     double x, y;
@@ -186,7 +186,7 @@ static bool is_letter_or_digit(unsigned c)
     return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z');
 }
 
-/* A character is a key too, by the name it has on this keyboard. */
+/* Queues a character; it is a key too, by the name it has on this keyboard. */
 static void on_character(GLFWwindow *w, unsigned character)
 {
     char text[8], key[8];
@@ -206,7 +206,7 @@ static void on_drop(GLFWwindow *w, int count, const char **paths)
 
 static void on_close(GLFWwindow *w)
 {
-    glfwSetWindowShouldClose(w, GLFW_FALSE); /* whoever draws decides */
+    glfwSetWindowShouldClose(w, GLFW_FALSE); /* the drawing code decides */
     put_event(w, (cwi_ui_event){.kind = CWI_UI_CLOSE});
 }
 
@@ -232,8 +232,8 @@ static const char *glfw_words(void)
     return words ? words : "GLFW does not say why";
 }
 
-/* The system's own way first: without a GPU, X is sent pictures in half the time of EGL's. With
- * reports of a lost context where they can be had. */
+/* Makes a window by the system's own API first: without a GPU, X receives pictures in half the
+ * time of EGL. It reports lost contexts where that is supported. */
 static GLFWwindow *make_window(const cwi_ui_desc *desc)
 {
     static const int ways[][2] = {{GLFW_NATIVE_CONTEXT_API, GLFW_LOSE_CONTEXT_ON_RESET},
@@ -253,7 +253,7 @@ static GLFWwindow *make_window(const cwi_ui_desc *desc)
     return window;
 }
 
-/* Why there is no window: what OpenGL there is. */
+/* Fails with the reason why there is no window, and the OpenGL that exists. */
 static cw_status fail_window(const char *words, cw_error *err)
 {
     char found[128] = "none";
@@ -348,10 +348,10 @@ void cwi_ui_screen_close(cwi_ui *ui)
     ui->screen = NULL;
 }
 
-/* ---- what is asked of it ---- */
+/* ---- calls of the other files ---- */
 
-/* A window's context is current only meanwhile: contexts of EGL and of others on one thread do
- * not go together. */
+/* Makes the window's context current, until leave(): contexts of EGL and of others do not work
+ * together on one thread. */
 bool cwi_ui_screen_enter(cwi_ui *ui)
 {
     cwi_ui_screen *s = ui->screen;
@@ -375,14 +375,15 @@ double cwi_ui_screen_seconds(const cwi_ui *ui)
     return clock_seconds() - ui->screen->start;
 }
 
-/* Where nobody looks each frame takes as long: pictures of it are the same every time. */
+/* Returns the frame's time. Hidden frames all take the same time: pictures of them are the same
+ * every time. */
 double cwi_ui_screen_frame_time(const cwi_ui *ui)
 {
     cwi_ui_screen *s = ui->screen;
     return s->window ? cwi_ui_screen_seconds(ui) : (double)++s->frames / 60;
 }
 
-/* A window that is folded away has no pixels; the last size stays then. */
+/* Finds the window's size. A minimised window has no pixels; the last size stays then. */
 void cwi_ui_screen_size(const cwi_ui *ui, size_t size[2])
 {
     cwi_ui_screen *s = ui->screen;
@@ -421,8 +422,8 @@ void cwi_ui_screen_wait(cwi_ui *ui, double seconds)
         glfwWaitEventsTimeout(seconds);
 }
 
-/* Mesa without a GPU leaves the picture with XCB, and no wait for events sends it: what asks
- * the server something does. */
+/* Shows the picture. Mesa without a GPU leaves it with XCB, and waiting for events does not
+ * send it: a request to the server does. */
 void cwi_ui_screen_show(cwi_ui *ui)
 {
     const cwi_ui_target *t = &ui->target;

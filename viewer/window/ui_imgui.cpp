@@ -1,5 +1,5 @@
-/* Dear ImGui itself: its context, letters and colours, what it is told of input, and a frame of
- * it. It throws nothing, and its memory is malloc's. */
+/* Runs Dear ImGui: its context, fonts and colours, the input passed to it, and its frames.
+ * Nothing here throws, and memory is allocated by malloc. */
 #include "viewer/window/ui_internal.h"
 
 #include <backends/imgui_impl_opengl3.h>
@@ -89,7 +89,8 @@ void style_all(float scale)
     s.ScaleAllSizes(scale);
 }
 
-/* DejaVu's lines are 1.16 times as high as its letters' square: 15 pixels for letters of 13. */
+/* Adds the fonts. DejaVu's lines are 1.16 times as high as its letters' square: 15 pixels for
+ * letters of 13. */
 void add_letters(float scale)
 {
     ImFontAtlas *fonts = ImGui::GetIO().Fonts;
@@ -140,7 +141,8 @@ void name_keys(ImGuiIO &io)
         io.KeyMap[k.key] = cwi_ui_key_number(k.name, nullptr);
 }
 
-/* The backend looks for this library and prints when it is not there. */
+/* Returns true if libGL can be loaded: the backend looks for it, and prints when it is
+ * missing. */
 bool has_libgl()
 {
     void *library = dlopen("libGL.so.1", RTLD_LAZY | RTLD_LOCAL);
@@ -179,7 +181,7 @@ bool is_modal(const ImGuiPopupData &popup)
     return popup.Window && (popup.Window->Flags & ImGuiWindowFlags_Modal);
 }
 
-/* Escape shuts what a click beside it would shut; then it is nobody else's key. */
+/* Closes by Escape what a click outside would close; then nothing else receives the key. */
 void shut_by_escape(cwi_ui *ui)
 {
     ImGuiContext &g = *ui->imgui;
@@ -191,7 +193,7 @@ void shut_by_escape(cwi_ui *ui)
     ui->input.key_count = 0;
 }
 
-/* A modal panel that the frame was without is over, though nobody shut it. */
+/* Closes the modal panels that the frame did not begin, though nobody closed them. */
 void shut_modals_not_begun(ImGuiContext &g)
 {
     for (int n = 0; n < g.OpenPopupStack.Size; n++)
@@ -240,8 +242,8 @@ void cwi_ui_imgui_choose(cwi_ui *ui)
     ImGui::SetCurrentContext(ui->imgui);
 }
 
-/* ImGui would undo, in a text that it is given anew, what was typed in the one before, and
- * write before and behind it. */
+/* Forgets what was typed. Else ImGui, when a text gets a new content, would undo typing in the
+ * previous one, and would write before and behind the new one. */
 static void forget_typed(ImGuiContext *imgui)
 {
     if (imgui->InputTextState.ID != imgui->ActiveId)

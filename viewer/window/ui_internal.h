@@ -1,7 +1,7 @@
-/* What the files of the window module share. A frame's way: the screen (ui_glfw_window.c) puts what
- * comes from outside into the queue, as feed() does; ui_events.c takes a frame's share of it;
- * ui_imgui.cpp shows that to Dear ImGui, whose widgets are ui_widgets.cpp; ui_framebuffer.c has what
- * they draw into. */
+/* Types and functions that the files of the window module share. A frame's way: the screen
+ * (ui_glfw_window.c) puts input from outside into the queue, as feed() does. ui_events.c takes
+ * a frame's share of it. ui_imgui.cpp shows that to Dear ImGui, whose widgets are
+ * ui_widgets.cpp. ui_framebuffer.c has the framebuffer that they draw into. */
 #ifndef VIEWER_WINDOW_UI_INTERNAL_H
 #define VIEWER_WINDOW_UI_INTERNAL_H
 
@@ -17,14 +17,14 @@ extern "C" {
 enum { CWI_UI_GONE = 1 << 16 }; /* a panel that ImGui did not begin, beside its flags */
 enum { CWI_UI_SLOTS = 16, CWI_UI_NAME_SIZE = 64, CWI_UI_DEPTH = 8, CWI_UI_LARGEST = 16384 };
 
-/* What waits to be taken; text is the queue's. */
+/* Events that wait to be taken; text is the queue's. */
 typedef struct cwi_ui_queue {
     cwi_ui_event *items;
     double *times; /* when they came, in seconds */
     size_t first, count, room;
 } cwi_ui_queue;
 
-/* Where widgets are. */
+/* The place of a widget. */
 typedef struct cwi_ui_place {
     char panel[CWI_UI_NAME_SIZE], label[CWI_UI_NAME_SIZE];
     cwi_ui_rect rect;
@@ -35,7 +35,7 @@ typedef struct cwi_ui_places {
     size_t count, room;
 } cwi_ui_places;
 
-/* What is drawn into: a window's own framebuffer does not keep what it showed. */
+/* A framebuffer to draw into: a window's own framebuffer does not keep what it showed. */
 typedef struct cwi_ui_target {
     unsigned framebuffer, color;
     size_t width, height; /* 0: none yet */
@@ -90,8 +90,8 @@ void cwi_ui_key_name(char name[CWI_UI_KEY_SIZE], unsigned modifiers, const char 
 
 /* The queue (ui_events.c) */
 CW_NODISCARD cw_status cwi_ui_feed(cwi_ui *ui, const cwi_ui_event *event, cw_error *err);
-/* As feed(), of a checked event; what does not fit into memory is lost. A key that repeats is
- * lost when it still waits to be taken: frames may be slower than fingers. */
+/* Queues a checked event, as feed(); an event that does not fit into memory is lost. A key that
+ * repeats is lost while it still waits to be taken: frames may be slower than fingers. */
 bool cwi_ui_queue_put(cwi_ui *ui, const cwi_ui_event *event, bool repeats);
 void cwi_ui_queue_take(cwi_ui *ui); /* a frame's share, into ui->input and Dear ImGui */
 void cwi_ui_queue_free(cwi_ui *ui);
@@ -124,7 +124,7 @@ CW_NODISCARD cw_status cwi_ui_target_keep(cwi_ui *ui, int slot, const cw_image *
 /* Places (ui_widget_rects.c). Labels end before ##. */
 void cwi_ui_label(char out[CWI_UI_NAME_SIZE], const char *label);
 void cwi_ui_places_add(cwi_ui *ui, const char *label, const cwi_ui_rect *rect);
-void cwi_ui_places_turn(cwi_ui *ui); /* what was now is the last frame's */
+void cwi_ui_places_turn(cwi_ui *ui); /* this frame's places become the last frame's */
 bool cwi_ui_places_find(const cwi_ui *ui, const char *label, cwi_ui_rect *rect);
 void cwi_ui_panel_enter(cwi_ui *ui, const char *title, unsigned flags); /* labels are in it */
 void cwi_ui_panel_leave(cwi_ui *ui);
@@ -133,11 +133,11 @@ int cwi_ui_panel_at(const cwi_ui *ui); /* index of the one at hand; -1: none */
 /* Dear ImGui (ui_imgui.cpp) */
 CW_NODISCARD cw_status cwi_ui_imgui_open(cwi_ui *ui,
                                          cw_error *err); /* within enter() and leave() */
-void cwi_ui_imgui_close(cwi_ui *ui);                     /* likewise */
+void cwi_ui_imgui_close(cwi_ui *ui);                     /* within enter() and leave(), too */
 void cwi_ui_imgui_choose(cwi_ui *ui);                    /* of several windows, this one */
 void cwi_ui_imgui_write(const char *text);
 void cwi_ui_imgui_begin(cwi_ui *ui);
-void cwi_ui_imgui_layout(cwi_ui *ui); /* ends widgets; what is drawn is known */
+void cwi_ui_imgui_layout(cwi_ui *ui); /* ends widgets; the drawing is then known */
 void cwi_ui_imgui_draw(void);         /* into the framebuffer that is bound */
 int cwi_ui_imgui_cursor(const cwi_ui *ui);
 

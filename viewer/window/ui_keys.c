@@ -1,4 +1,4 @@
-/* Names of keys. */
+/* Converts names of keys to numbers, and back. */
 #include "viewer/window/ui_internal.h"
 
 #include <stdio.h>
@@ -16,7 +16,7 @@ static const struct {
 
 enum { NAMED = sizeof named / sizeof *named, FIRST_NAMED = 256, OTHER = 1 };
 
-/* One character of UTF-8, its length by its first byte. */
+/* Returns true if a text is one character of UTF-8, whose length is given by its first byte. */
 static bool is_one_character(const char *text)
 {
     const unsigned char c = (unsigned char)*text;

@@ -1,4 +1,4 @@
-/* Where widgets are, for those who use them by name. */
+/* Stores where widgets are, for scripts that use them by name. */
 #include "viewer/window/ui_internal.h"
 
 #include <stdio.h>
@@ -56,7 +56,7 @@ bool cwi_ui_places_find(const cwi_ui *ui, const char *label, cwi_ui_rect *rect)
     return false;
 }
 
-/* Deeper ones than there is room for share the last's name. */
+/* Enters a panel. Panels nested deeper than CWI_UI_DEPTH share the last one's name. */
 void cwi_ui_panel_enter(cwi_ui *ui, const char *title, unsigned flags)
 {
     const int at = ui->depth < CWI_UI_DEPTH ? ui->depth : CWI_UI_DEPTH - 1;

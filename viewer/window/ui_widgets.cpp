@@ -24,7 +24,7 @@ ImU32 packed(const cwi_ui_color c)
 
 /* ---- where widgets are ---- */
 
-/* What of it can be seen. */
+/* Notes the visible part of a widget's rectangle. */
 void note_rect(cwi_ui *ui, const char *label, ImRect r)
 {
     r.ClipWith(ImGui::GetCurrentWindow()->ClipRect);
@@ -34,14 +34,14 @@ void note_rect(cwi_ui *ui, const char *label, ImRect r)
     cwi_ui_places_add(ui, label, &rect);
 }
 
-/* The widget before, without the label at its side. */
+/* Notes the widget before, without the label at its side. */
 void note(cwi_ui *ui, const char *label)
 {
     if (!ImGui::GetCurrentWindow()->SkipItems)
         note_rect(ui, label, ImGui::GetCurrentContext()->LastItemData.NavRect);
 }
 
-/* A widget that is used in one go. */
+/* Notes a widget that is used in one go. */
 bool used(cwi_ui *ui, const char *label, bool is_used)
 {
     note(ui, label);
@@ -49,7 +49,7 @@ bool used(cwi_ui *ui, const char *label, bool is_used)
     return is_used;
 }
 
-/* One that is dragged or typed into. */
+/* Notes a widget that is dragged or typed into. */
 bool dragged(cwi_ui *ui, const char *label, bool is_used)
 {
     note(ui, label);
@@ -59,7 +59,7 @@ bool dragged(cwi_ui *ui, const char *label, bool is_used)
 
 /* ---- drawing ---- */
 
-/* Outside all panels ImGui would open one of its own. */
+/* Returns the list to draw into. Outside all panels ImGui would open one of its own. */
 ImDrawList *list_of(const cwi_ui *ui, cwi_ui_layer layer)
 {
     const bool in_panel =
@@ -80,7 +80,7 @@ void show(cwi_ui *ui, int slot, const cwi_ui_rect *w)
         ->AddImage(texture, point(w->x, w->y), point(w->x + w->width, w->y + w->height));
 }
 
-/* Not AddLine(): it moves lines by half a pixel. */
+/* Draws a line without AddLine(), which moves lines by half a pixel. */
 void line(cwi_ui *ui, cwi_ui_layer layer, double x0, double y0, double x1, double y1,
           const cwi_ui_color color, double thickness)
 {
@@ -157,7 +157,8 @@ void clip_end(cwi_ui *ui, cwi_ui_layer layer)
 
 /* ---- panels ---- */
 
-/* A width or height that is as needed follows what is in the panel, to the window's border. */
+/* Places a panel. A width or height of 0 follows the panel's content, up to the window's
+ * border. */
 void place_panel(const cwi_ui *ui, const char *title, const cwi_ui_rect *r, bool fixed)
 {
     const ImGuiCond when = fixed ? ImGuiCond_Always : ImGuiCond_FirstUseEver;
@@ -222,7 +223,7 @@ bool panel_begin(cwi_ui *ui, const char *title, const cwi_ui_rect *rect, unsigne
     return ImGui::Begin(title, open, flags_of(flags, r));
 }
 
-/* Its closing button, where ImGui draws it. */
+/* Notes a panel's closing button, where ImGui draws it. */
 void note_close(cwi_ui *ui, const ImGuiWindow *window)
 {
     const ImVec2 padding = ImGui::GetStyle().FramePadding;
@@ -263,8 +264,9 @@ void panel_end(cwi_ui *ui)
     }
 }
 
-/* Widgets of two sections may have one label, and that of a section's title: ImGui would take
- * one for the other, and end the program where one is typed into and the other is clicked. */
+/* Opens a section. Widgets of two sections may have the same label, or that of a section's
+ * title. ImGui would confuse them, and end the program where one is typed into and the other is
+ * clicked. */
 bool section(cwi_ui *ui, const char *title, bool open_at_first)
 {
     leave_section(ui);
@@ -278,7 +280,8 @@ bool section(cwi_ui *ui, const char *title, bool open_at_first)
 
 /* ---- widgets ---- */
 
-/* A panel as wide as what is in it would be as narrow as the longest word. */
+/* Writes wrapped text. A panel as wide as its content would be as narrow as the longest
+ * word. */
 void text(cwi_ui *ui, const char *words)
 {
     const ImGuiWindow *window = ImGui::GetCurrentWindow();
@@ -350,7 +353,7 @@ bool number(cwi_ui *ui, const char *label, double *value, double per_pixel, cons
     return dragged(ui, label, is_used);
 }
 
-/* Its place is that of the coloured square: clicks on the label do nothing. */
+/* Edits a colour. Its place is that of the coloured square: clicks on the label do nothing. */
 bool color(cwi_ui *ui, const char *label, float rgb[3])
 {
     const bool is_used = ImGui::ColorEdit3(
@@ -417,7 +420,7 @@ void disable(cwi_ui *, bool on)
         ImGui::EndDisabled();
 }
 
-/* It comes when the mouse stays. */
+/* Shows a tooltip once the mouse stays on the widget before. */
 void tip(cwi_ui *ui, const char *words)
 {
     const double delay = 0.4;
