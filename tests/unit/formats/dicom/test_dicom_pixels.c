@@ -1,0 +1,199 @@
+/* DICOM read: every kind of pixel. */
+#include "support/files/dicom_cases.h"
+
+/* --- pixels ------------------------------------------------------------------------------ */
+
+static void every_kind_of_pixel_is_read(void **state)
+{
+    (void)state;
+    uint16_t words[PIXELS];
+    uint8_t bytes[3 * PIXELS];
+    uint32_t longs[PIXELS];
+    double signed_words[PIXELS], twelve[PIXELS], plain[3 * PIXELS], turned[3 * PIXELS],
+        bits32[PIXELS];
+    for (int n = 0; n < PIXELS; n++) {
+        words[n] =
+            (uint16_t)(0xf000u + 300u * (unsigned)n); /* overlays on top of twelve bits */
+        signed_words[n] = (int16_t)words[n];
+        twelve[n] = (words[n] & 0xfff) - (words[n] & 0x800 ? 0x1000 : 0);
+        longs[n] = 70000u * (unsigned)n;
+        bits32[n] = longs[n];
+    }
+    for (int n = 0; n < 3 * PIXELS; n++) {
+        bytes[n] = (uint8_t)(7 * n);
+        plain[n] = bytes[n];
+        turned[3 * (n % PIXELS) + n / PIXELS] = bytes[n];
+    }
+    for (int s = TEST_DICOM_EXPLICIT; s <= TEST_DICOM_BIG_ENDIAN; s++) {
+        const test_dicom_syntax syntax = (test_dicom_syntax)s;
+        assert_pixels(&(test_image){.syntax = syntax, .is_signed = true, .pixels = words},
+                      signed_words, CW_I16);
+        assert_pixels(
+            &(test_image){.syntax = syntax, .is_signed = true, .stored = 12, .pixels = words},
+            twelve, CW_I16);
+    }
+    assert_pixels(&(test_image){.bits = 8, .pixels = bytes}, plain, CW_U8);
+    assert_pixels(&(test_image){.bits = 32, .pixels = longs}, bits32, CW_U32);
+    assert_pixels(&(test_image){.bits = 8, .samples = 3, .pixels = bytes}, plain, CW_U8);
+    assert_pixels(&(test_image){.bits = 8, .samples = 3, .by_plane = true, .pixels = bytes},
+                  turned, CW_U8);
+}
+
+static void slices_with_a_scale_each_become_values(void **state)
+{
+    (void)state;
+    static const char *const slopes[] = {"0.5", "0.25", "2.125"};
+    const double factor[] = {0.5, 0.25, 2.125};
+    for (int n = 0; n < 3; n++) {
+        char name[16], place[16];
+        snprintf(name, sizeof name, "%d", n);
+        snprintf(place, sizeof place, "0\\0\\%d", n);
+        test_image_write(&(test_image){.instance = n,
+                                       .position = place,
+                                       .slope = slopes[n],
+                                       .intercept = "-3",
+                                       .padding = "11"},
+                         name);
+    }
+    cw_volume v = read_all(NULL);
+    assert_int_equal(v.type, CW_F32);
+    for (size_t k = 0; k < 3; k++)
+        for (size_t n = 0; n < PIXELS; n++) {
+            const double value = cw_volume_value(&v, n % COLUMNS, n / COLUMNS, k);
+            if (n == 11)
+                assert_true(isnan(value));
+            else
+                assert_near(value, factor[k] * (double)n - 3, 0);
+        }
+    cw_volume_free(&v);
+}
+
+static void padding_is_no_data(void **state)
+{
+    (void)state;
+    cw_volume v;
+    cw_statistics s;
+    cw_error err = {0};
+    test_image_write(&(test_image){.is_signed = true, .padding = "2", .padding_limit = "5"},
+                     "p");
+    assert_ok(read_back("p", &v, &err), err);
+    assert_true(v.has_nodata);
+    assert_ok(cw_volume_statistics(&v, 0, 1, &s, &err), err);
+    assert_int_equal(s.nodata, 4);
+    assert_int_equal(s.finite, 8);
+    cw_volume_free(&v);
+}
+
+/* A slice between two others has no value where one of them has none. */
+static void padding_of_either_neighbour_is_no_data(void **state)
+{
+    (void)state;
+    static const int places[] = {0, 1, 3, 4};
+    static const uint8_t padded[] = {99, 5, 6, 99}; /* the pixel; 99: none */
+    for (int n = 0; n < 4; n++) {
+        char name[16], place[16];
+        uint16_t pixels[PIXELS];
+        for (unsigned i = 0; i < PIXELS; i++)
+            pixels[i] = i == padded[n] ? 1000 : 10;
+        snprintf(name, sizeof name, "%d", n);
+        snprintf(place, sizeof place, "0\\0\\%d", places[n]);
+        test_image_write(
+            &(test_image){
+                .instance = n, .position = place, .padding = "1000", .pixels = pixels},
+            name);
+    }
+    cw_volume v = read_all(&(cw_read_desc){.gaps = CW_GAPS_INTERPOLATE});
+    assert_int_equal(v.dim[2], 5);
+    for (size_t i = 0; i < PIXELS; i++) {
+        const double value = cw_volume_value(&v, i % COLUMNS, i / COLUMNS, 2);
+        const bool lost = v.has_nodata ? value == v.nodata : isnan(value);
+        assert_true(lost ? i == 5 || i == 6 : value == 10);
+        assert_true(lost || (i != 5 && i != 6));
+    }
+    cw_volume_free(&v);
+}
+
+/* Two images at each of two places, which are known to a thousandth of a pixel. The first key
+ * is the same for all and so orders nothing. */
+static void a_key_that_is_the_same_for_all_orders_nothing(void **state)
+{
+    (void)state;
+    static const char *const places[] = {"0\\0\\0", "0\\0\\0.0004", "0\\0\\2.0004", "0\\0\\2"};
+    char notes[512] = "";
+    const cw_read_desc desc = {.note = notes_keep, .note_user = notes};
+    for (int n = 0; n < 4; n++) {
+        char name[16];
+        snprintf(name, sizeof name, "%d", n);
+        test_image_write(&(test_image){.instance = n, .position = places[n], .trigger = "7"},
+                         name);
+    }
+    cw_volume v = read_all(&desc);
+    assert_int_equal(v.steps, 2);
+    assert_int_equal(v.dim[2], 2);
+    assert_non_null(strstr(notes, "in the order of InstanceNumber"));
+    cw_volume_free(&v);
+}
+
+/* Slices with scales of their own: 32 bits need doubles, 16 bits fit floats. */
+static void values_of_long_pixels_are_doubles(void **state)
+{
+    (void)state;
+    for (unsigned bits = 16; bits <= 32; bits += 16) {
+        uint32_t pixels[PIXELS];
+        for (unsigned i = 0; i < PIXELS; i++)
+            pixels[i] = 16777217;
+        for (int n = 0; n < 2; n++)
+            test_image_write(&(test_image){.instance = n,
+                                           .bits = bits,
+                                           .position = n ? "0\\0\\1" : "0\\0\\0",
+                                           .slope = n ? "2" : "1",
+                                           .intercept = "0",
+                                           .pixels = bits == 32 ? pixels : NULL},
+                             n ? "1" : "0");
+        cw_volume v = read_all(NULL);
+        assert_int_equal(v.type, bits == 32 ? CW_F64 : CW_F32);
+        assert_true(cw_volume_value(&v, 1, 0, 1) == (bits == 32 ? 2 * 16777217.0 : 2));
+        cw_volume_free(&v);
+    }
+}
+
+/* A byte n > 128 repeats the next one 257 - n times. */
+static void runs_are_read(void **state)
+{
+    (void)state;
+    test_dicom d;
+    unsigned char rle[64 + 4] = {1, 0, 0, 0, 64}; /* one segment, behind 64 bytes */
+    const unsigned char runs[4] = {257 - 10, 200, 257 - 2, 7};
+    cw_volume v;
+    cw_error err = {0};
+    memcpy(rle + 64, runs, 4);
+    test_image_make(&(test_image){.syntax = TEST_DICOM_RLE, .bits = 8}, &d);
+    test_dicom_open_fragments(&d);
+    test_dicom_fragment(&d, rle, sizeof rle);
+    test_dicom_close_sequence(&d);
+    test_file_write(test_path("rle.dcm"), d.bytes, d.size);
+    test_dicom_free(&d);
+    assert_ok(read_back("rle.dcm", &v, &err), err);
+    for (size_t n = 0; n < PIXELS; n++)
+        assert_near(cw_volume_value(&v, n % COLUMNS, n / COLUMNS, 0), n < 10 ? 200 : 7, 0);
+    cw_volume_free(&v);
+}
+
+int main(void)
+{
+#define TEST(name) cmocka_unit_test_setup_teardown(name, test_folder_make, test_folder_remove)
+    const struct CMUnitTest tests[] = {
+        TEST(every_kind_of_pixel_is_read),
+        TEST(slices_with_a_scale_each_become_values),
+        TEST(padding_is_no_data),
+        TEST(padding_of_either_neighbour_is_no_data),
+        TEST(a_key_that_is_the_same_for_all_orders_nothing),
+        TEST(values_of_long_pixels_are_doubles),
+        TEST(runs_are_read),
+    };
+    if (!cwi_module_present("dicom")) {
+        print_message("this build reads no DICOM\n");
+        return 0;
+    }
+    return cmocka_run_group_tests(tests, NULL, NULL);
+}
